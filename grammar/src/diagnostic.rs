@@ -1,0 +1,153 @@
+//! What is wrong with a text, as plain data: code, message, places, help.
+//!
+//! A diagnostic holds no source text; whoever shows it joins it with its [`SourceFile`](crate::SourceFile).
+//! The first label is *the* place. Every message says what, where, why and what to do.
+
+use crate::Span;
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Severity {
+    /// A fact worth knowing; never changes the exit code.
+    Advice,
+    /// It can be solved, and the answer may mislead.
+    Warning,
+    /// The problem has no meaning, or no unique trajectory.
+    Error,
+}
+
+/// A place and what is to be said about it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Label {
+    /// Where.
+    pub span: Span,
+    /// What is to be seen there.
+    pub text: String,
+}
+
+/// One finding about a text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// Which kind of finding.
+    pub code: Code,
+    /// Severity; usually that of the code.
+    pub severity: Severity,
+    /// One line, complete by itself.
+    pub message: String,
+    /// The first is the place; the others say why.
+    pub labels: Vec<Label>,
+    /// What to do about it, if that can be said.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// A finding at a place, with the severity its code usually has.
+    pub fn new(code: Code, message: impl Into<String>, span: Span, label: impl Into<String>) -> Self {
+        let labels = vec![Label { span, text: label.into() }];
+        Diagnostic { code, severity: code.severity(), message: message.into(), labels, help: None }
+    }
+
+    /// Adds a further place.
+    pub fn label(mut self, span: Span, text: impl Into<String>) -> Self {
+        self.labels.push(Label { span, text: text.into() });
+        self
+    }
+
+    /// Says what to do.
+    pub fn help(mut self, text: impl Into<String>) -> Self {
+        self.help = Some(text.into());
+        self
+    }
+
+    /// The place.
+    pub fn span(&self) -> Span {
+        self.labels[0].span
+    }
+}
+
+/// Declares [`Code`] from one table: variant, printed code, severity, title.
+macro_rules! codes {
+    ($($variant:ident = $code:literal, $severity:ident, $title:literal;)*) => {
+        /// The kinds of findings. Each has a page in `docs/diagnostics/`.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Code { $(#[doc = concat!("`", $code, "`: ", $title)] $variant),* }
+
+        impl Code {
+            /// Every code, in order.
+            pub const ALL: &[Code] = &[$(Code::$variant),*];
+
+            /// The code as printed, such as `FDC0101`.
+            pub fn as_str(self) -> &'static str {
+                match self { $(Code::$variant => $code),* }
+            }
+
+            /// The severity a finding of this code has unless said otherwise.
+            pub fn severity(self) -> Severity {
+                match self { $(Code::$variant => Severity::$severity),* }
+            }
+
+            /// A short title.
+            pub fn title(self) -> &'static str {
+                match self { $(Code::$variant => $title),* }
+            }
+        }
+    };
+}
+
+codes! {
+    MissingOperator = "FDC0001", Error, "a missing operator";
+    Unfinished = "FDC0002", Error, "something is missing or superfluous";
+    ReservedWord = "FDC0003", Error, "a reserved word used as a name";
+    TooDeep = "FDC0004", Error, "nested too deeply";
+    UnknownItem = "FDC0005", Error, "an unknown item word";
+    Unclosed = "FDC0006", Error, "a bracket without its partner";
+    NotText = "FDC0007", Error, "not a text file";
+    EmptyModel = "FDC0008", Warning, "a file without any item";
+    TooLarge = "FDC0009", Error, "a file that is too large to be a model";
+    UnknownName = "FDC0101", Error, "an unknown name";
+    DuplicateName = "FDC0102", Error, "a name declared twice";
+    WrongKind = "FDC0103", Error, "a name of the wrong kind";
+    WrongArguments = "FDC0104", Error, "the wrong number of arguments";
+    ShapeMismatch = "FDC0105", Error, "vectors of different sizes";
+    UnknownSetting = "FDC0106", Error, "an unknown method key or value";
+    EqualityGuard = "FDC0107", Error, "`==` in a guard";
+    CircularDefinition = "FDC0108", Error, "a definition that needs itself";
+    NotAllowedHere = "FDC0109", Error, "an expression that has no meaning here";
+    UnknownPart = "FDC0110", Error, "an unknown part or index";
+    UnknownUnit = "FDC0111", Error, "an unknown unit";
+    SetEquality = "FDC0201", Error, "`=` with a set on the right";
+    SetValuedHere = "FDC0202", Error, "a set-valued function where a number is needed";
+    HiddenJump = "FDC0203", Error, "a jump used as an ordinary function";
+    NoSet = "FDC0204", Advice, "`in` without a set";
+    NotAffine = "FDC0205", Error, "a right side that is not affine in `Sgn`";
+    SetProduct = "FDC0206", Warning, "a product of two set-valued functions";
+    EmptyBounds = "FDC0401", Error, "bounds that leave no room";
+    NoDuration = "FDC0402", Error, "a free time without lower bound";
+    NoBoundary = "FDC0403", Error, "a state without start or end condition";
+    Unused = "FDC0404", Warning, "a name that is never used";
+    NoEquation = "FDC0405", Error, "a state without equation";
+    NotSmooth = "FDC0406", Warning, "a constraint that is not twice differentiable";
+    NoTime = "FDC0407", Error, "a model without time";
+    NoValue = "FDC0408", Error, "a parameter without a value";
+    NotFinite = "FDC0601", Error, "not a number while solving";
+    Infeasible = "FDC0602", Error, "no feasible trajectory found";
+    NotYet = "FDC0603", Error, "a construct that `solve` cannot treat yet";
+}
+
+impl std::fmt::Display for Code {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+impl std::str::FromStr for Code {
+    type Err = ();
+
+    /// Reads `FDC0101`, `fdc0101`, `0101` or `101`.
+    fn from_str(text: &str) -> Result<Self, ()> {
+        let digits = text.trim().to_ascii_uppercase();
+        let number: u32 = digits.strip_prefix("FDC").unwrap_or(&digits).parse().map_err(|_| ())?;
+        let wanted = format!("FDC{number:04}");
+        Code::ALL.iter().copied().find(|code| code.as_str() == wanted).ok_or(())
+    }
+}

@@ -1,0 +1,19 @@
+//! The text of a model: from characters to a syntax tree and diagnostics.
+//!
+//! Parsing cannot fail: [`parse`] returns what it understood and what it did not.
+
+pub mod ast;
+mod diagnostic;
+mod source;
+
+pub use diagnostic::{Code, Diagnostic, Label, Severity};
+pub use source::{LineColumn, SourceFile, Span};
+
+/// What a text holds: the items that could be read, and what is wrong with the rest.
+#[derive(Clone, Debug, Default)]
+pub struct Parse {
+    /// The tree of everything that could be read.
+    pub tree: ast::Model,
+    /// In the order of the text.
+    pub diagnostics: Vec<Diagnostic>,
+}

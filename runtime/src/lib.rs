@@ -1,0 +1,3 @@
+//! Numbers: from a [`problem::Problem`] to solutions.
+
+pub mod problem;

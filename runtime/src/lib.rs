@@ -1,3 +1,7 @@
 //! Numbers: from a [`problem::Problem`] to solutions.
+//!
+//! Start reading at [`nlp::interior_point`].
 
+mod clarabel;
+pub mod linalg;
 pub mod problem;

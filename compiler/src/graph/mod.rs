@@ -1,0 +1,258 @@
+//! Hash-consed expressions: equal expressions have equal ids, and nothing is ever changed or removed.
+//!
+//! A node refers only to nodes made before it, so ascending ids are an order of evaluation and every pass
+//! over a graph is a loop, never a recursion. Each node is simplified by [`simplify`] as it is made.
+
+mod evaluate;
+mod print;
+mod simplify;
+mod verify;
+
+use std::collections::HashMap;
+
+use smallvec::SmallVec;
+
+use crate::builtins::Builtin;
+
+pub use evaluate::evaluate;
+pub use print::print;
+pub use verify::verify;
+
+/// An expression of a [`Graph`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct ExprId(u32);
+
+impl ExprId {
+    /// Position in the graph: operands have smaller ones.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A number that can be compared and hashed: its bits, with one zero and one NaN.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub struct OrderedBits(u64);
+
+impl OrderedBits {
+    /// The bits of `value`.
+    pub fn new(value: f64) -> Self {
+        let canonical = if value.is_nan() { f64::NAN } else { value + 0.0 };
+        OrderedBits(canonical.to_bits())
+    }
+    /// The number.
+    pub fn value(self) -> f64 {
+        f64::from_bits(self.0)
+    }
+}
+
+/// The operands of a call.
+pub type Operands = SmallVec<[ExprId; 2]>;
+
+/// One node.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub enum Expr {
+    /// A constant.
+    Number(OrderedBits),
+    /// An entry of `z = [t | x | u | p | s]`.
+    Input(u32),
+    /// The multiplier of one output in the Lagrangian.
+    Multiplier(u32),
+    /// A function of the table applied to operands.
+    Call(Builtin, Operands),
+}
+
+/// A growing set of expressions.
+#[derive(Clone, Default)]
+pub struct Graph {
+    nodes: Vec<Expr>,
+    ids: HashMap<Expr, ExprId>,
+}
+
+impl Graph {
+    /// No expressions.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+    /// Whether nothing has been made yet.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+    /// The node behind an id.
+    pub fn expr(&self, id: ExprId) -> &Expr {
+        &self.nodes[id.index()]
+    }
+    /// The value of a constant.
+    pub fn as_number(&self, id: ExprId) -> Option<f64> {
+        match self.expr(id) {
+            Expr::Number(bits) => Some(bits.value()),
+            _ => None,
+        }
+    }
+    /// The operands, if `id` calls `builtin`.
+    pub fn as_call(&self, id: ExprId, builtin: Builtin) -> Option<&[ExprId]> {
+        match self.expr(id) {
+            Expr::Call(called, operands) if *called == builtin => Some(operands),
+            _ => None,
+        }
+    }
+    /// The operands; none for leaves.
+    pub fn operands(&self, id: ExprId) -> &[ExprId] {
+        match self.expr(id) {
+            Expr::Call(_, operands) => operands,
+            _ => &[],
+        }
+    }
+
+    /// A constant.
+    pub fn number(&mut self, value: f64) -> ExprId {
+        self.intern(Expr::Number(OrderedBits::new(value)))
+    }
+    /// An entry of `z`.
+    pub fn input(&mut self, position: u32) -> ExprId {
+        self.intern(Expr::Input(position))
+    }
+    /// The multiplier of an output.
+    pub fn multiplier(&mut self, output: u32) -> ExprId {
+        self.intern(Expr::Multiplier(output))
+    }
+    /// A function applied to operands, simplified.
+    pub fn call(&mut self, builtin: Builtin, operands: &[ExprId]) -> ExprId {
+        assert_eq!(operands.len(), builtin.row().arity, "operands of {}", builtin.row().name);
+        simplify::simplify(self, builtin, operands)
+    }
+
+    /// The node itself, without simplification.
+    fn intern(&mut self, expr: Expr) -> ExprId {
+        if let Some(&id) = self.ids.get(&expr) {
+            return id;
+        }
+        let id = ExprId(u32::try_from(self.nodes.len()).expect("fewer than 2^32 expressions fit in memory"));
+        self.nodes.push(expr.clone());
+        self.ids.insert(expr, id);
+        id
+    }
+
+    /// Everything the roots need, themselves included, operands first.
+    pub fn reachable(&self, roots: &[ExprId]) -> Vec<ExprId> {
+        let mut needed = vec![false; roots.iter().map(|root| root.index() + 1).max().unwrap_or(0)];
+        roots.iter().for_each(|root| needed[root.index()] = true);
+        for index in (0..needed.len()).rev().filter(|&index| self.nodes[index].is_call()) {
+            if needed[index] {
+                self.operands(ExprId(index as u32)).iter().for_each(|operand| needed[operand.index()] = true);
+            }
+        }
+        (0..needed.len()).filter(|&index| needed[index]).map(|index| ExprId(index as u32)).collect()
+    }
+
+    /// The inputs that the roots depend on, ascending.
+    pub fn inputs_of(&self, roots: &[ExprId]) -> Vec<u32> {
+        let inputs = self.reachable(roots).into_iter().filter_map(|id| match self.expr(id) {
+            Expr::Input(position) => Some(*position),
+            _ => None,
+        });
+        let mut inputs: Vec<u32> = inputs.collect();
+        inputs.sort_unstable();
+        inputs
+    }
+
+    /// The roots with some inputs replaced.
+    pub fn substitute(
+        &mut self,
+        roots: &[ExprId],
+        inputs: &dyn Fn(u32) -> Option<ExprId>,
+    ) -> Vec<ExprId> {
+        self.rewrite(roots, |_, id, expr| match expr {
+            Expr::Input(position) => inputs(*position).unwrap_or(id),
+            _ => id,
+        })
+    }
+
+    /// The roots rebuilt bottom up: `replace` sees each node after its operands have been replaced.
+    pub fn rewrite(
+        &mut self,
+        roots: &[ExprId],
+        mut replace: impl FnMut(&mut Graph, ExprId, &Expr) -> ExprId,
+    ) -> Vec<ExprId> {
+        let mut replaced: HashMap<ExprId, ExprId> = HashMap::new();
+        for id in self.reachable(roots) {
+            let rebuilt = match self.expr(id).clone() {
+                Expr::Call(builtin, operands) => {
+                    let operands: Operands = operands.iter().map(|operand| replaced[operand]).collect();
+                    self.call(builtin, &operands)
+                }
+                _ => id,
+            };
+            let expr = self.expr(rebuilt).clone();
+            replaced.insert(id, replace(self, rebuilt, &expr));
+        }
+        roots.iter().map(|root| replaced[root]).collect()
+    }
+}
+
+impl Expr {
+    fn is_call(&self) -> bool {
+        matches!(self, Expr::Call(..))
+    }
+}
+
+/// One method per operator and common function, so that formulas can be written down.
+macro_rules! helpers {
+    ($($name:ident $builtin:ident ($($operand:ident),+);)+) => {
+        impl Graph {
+            $(
+                #[doc = concat!("`", stringify!($name), "` of the table of builtins.")]
+                pub fn $name(&mut self, $($operand: ExprId),+) -> ExprId {
+                    self.call(Builtin::$builtin, &[$($operand),+])
+                }
+            )+
+        }
+    };
+}
+
+helpers! {
+    add Add (a, b);
+    sub Sub (a, b);
+    mul Mul (a, b);
+    div Div (a, b);
+    neg Neg (a);
+    pow Pow (a, b);
+    sqrt Sqrt (a);
+    exp Exp (a);
+    log Log (a);
+    sin Sin (a);
+    cos Cos (a);
+    tan Tan (a);
+    tanh Tanh (a);
+    atan2 Atan2 (a, b);
+    abs Abs (a);
+    min Min (a, b);
+    max Max (a, b);
+    select_le SelectLe (a, b, x, y);
+}
+
+impl Graph {
+    /// `a * a`.
+    pub fn square(&mut self, a: ExprId) -> ExprId {
+        self.mul(a, a)
+    }
+    /// `factor * a`.
+    pub fn scale(&mut self, factor: f64, a: ExprId) -> ExprId {
+        let factor = self.number(factor);
+        self.mul(factor, a)
+    }
+    /// `1 / a`.
+    pub fn reciprocal(&mut self, a: ExprId) -> ExprId {
+        let one = self.number(1.0);
+        self.div(one, a)
+    }
+    /// The sum of terms, from left to right.
+    pub fn sum(&mut self, terms: &[ExprId]) -> ExprId {
+        let zero = self.number(0.0);
+        terms.iter().fold(zero, |sum, &term| self.add(sum, term))
+    }
+}

@@ -1,0 +1,216 @@
+//! A model with its meaning: names resolved, shapes known, every expression an entry of one graph.
+//!
+//! An [`Input`](crate::graph::Expr::Input) of this graph is a *symbol*: time, a state, a control and so on, all
+//! scalar. Real time, real units (SI), and a selector for each surface; lowering gives them the places that
+//! compiled functions want. Bounds and parameters stay expressions, so that the command line can change a number.
+
+use crate::graph::{ExprId, Graph};
+use fdcc_grammar::{Diagnostic, Span};
+use fdcc_runtime::problem::Method;
+
+/// What an input of the model's graph stands for. The numbers are indices into the lists of [`Model`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symbol {
+    /// Real time.
+    Time,
+    /// A state at the current time.
+    State(usize),
+    /// A control at the current time.
+    Control(usize),
+    /// A `param`.
+    Param(usize),
+    /// A `free` unknown.
+    Free(usize),
+    /// The selector in [-1, 1] of a surface.
+    Selector(usize),
+    /// A state at the start.
+    AtStart(usize),
+    /// A state at the end.
+    AtEnd(usize),
+    /// The integral over the whole time of [`Model::integrals`].
+    Integral(usize),
+    /// An argument of a function, while its body is examined by itself.
+    Argument,
+}
+
+/// Where something was written, and what to call it.
+#[derive(Clone, Debug, Default)]
+pub struct Place {
+    /// In the model's words.
+    pub name: String,
+    /// In its text.
+    pub span: Span,
+}
+
+/// `lower <= . <= upper` over parameters; infinite numbers where there is no bound.
+#[derive(Clone, Copy, Debug)]
+pub struct Range {
+    /// Lower bound.
+    pub lower: ExprId,
+    /// Upper bound.
+    pub upper: ExprId,
+}
+
+/// A `param`.
+#[derive(Clone, Debug)]
+pub struct Param {
+    /// Its declaration.
+    pub place: Place,
+    /// Its value over other parameters; `None` until the command line gives one.
+    pub value: Option<ExprId>,
+    /// What the command line may give.
+    pub range: Range,
+}
+
+/// A `free` unknown.
+#[derive(Clone, Debug)]
+pub struct Free {
+    /// Its declaration.
+    pub place: Place,
+    /// Its bounds.
+    pub range: Range,
+    /// Its guess, over parameters and other unknowns.
+    pub guess: Option<ExprId>,
+}
+
+/// A scalar state.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// Its declaration.
+    pub place: Place,
+    /// Bounds at all times.
+    pub range: Range,
+    /// `start EXPR`, over parameters and unknowns.
+    pub start: Option<ExprId>,
+    /// `start free in [a, b]`.
+    pub start_range: Option<Range>,
+    /// Its derivative in real time, affine in the selectors.
+    pub rate: ExprId,
+    /// The equation; named `x'`.
+    pub equation: Place,
+    /// Its guess over time, parameters and unknowns.
+    pub guess: Option<ExprId>,
+}
+
+/// A scalar control.
+#[derive(Clone, Debug)]
+pub struct Control {
+    /// Its declaration.
+    pub place: Place,
+    /// Bounds at all times.
+    pub range: Range,
+    /// Its guess over time, parameters and unknowns.
+    pub guess: Option<ExprId>,
+}
+
+/// A switching surface.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// Its declaration, or the first use of an unnamed one.
+    pub place: Place,
+    /// The function whose sign decides.
+    pub psi: ExprId,
+}
+
+/// A scalar row of a condition: `lower <= value <= upper`.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// The condition.
+    pub place: Place,
+    /// What is bounded.
+    pub value: ExprId,
+    /// By what.
+    pub range: Range,
+}
+
+/// An `integral(...)`.
+#[derive(Clone, Debug)]
+pub struct Integral {
+    /// The call; named by its text.
+    pub place: Place,
+    /// What is integrated over real time.
+    pub integrand: ExprId,
+}
+
+/// One scalar of the `report` block.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// Its name, with the part for a vector.
+    pub place: Place,
+    /// Its value over time.
+    pub value: ExprId,
+}
+
+/// How the two sides of an expectation compare.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Comparison {
+    /// `==`
+    Equal,
+    /// `<=`
+    LessEqual,
+    /// `>=`
+    GreaterEqual,
+}
+
+/// One line of the `expect` block.
+#[derive(Clone, Debug)]
+pub struct Expectation {
+    /// The line; named by its text.
+    pub place: Place,
+    /// The comparison.
+    pub comparison: Comparison,
+    /// Left side, right side and tolerance; `None` if only a simulation can tell.
+    pub values: Option<[ExprId; 3]>,
+}
+
+/// A model whose text has no error.
+#[derive(Clone)]
+pub struct Model {
+    /// `model NAME`, or `model`.
+    pub name: String,
+    /// All expressions, over [`Model::symbols`].
+    pub graph: Graph,
+    /// What each input of the graph is.
+    pub symbols: Vec<Symbol>,
+    /// Parameters.
+    pub params: Vec<Param>,
+    /// Parameters in an order in which each needs only earlier ones.
+    pub param_order: Vec<usize>,
+    /// Unknowns.
+    pub frees: Vec<Free>,
+    /// States.
+    pub states: Vec<State>,
+    /// Controls.
+    pub controls: Vec<Control>,
+    /// Surfaces.
+    pub surfaces: Vec<Surface>,
+    /// First and last time, over parameters and unknowns.
+    pub interval: [ExprId; 2],
+    /// Conditions at all times.
+    pub path: Vec<Row>,
+    /// Conditions at the ends.
+    pub boundary: Vec<Row>,
+    /// What is minimised, as written; none for a pure feasibility problem.
+    pub objective: Option<(Place, ExprId)>,
+    /// `-1` for `maximize`.
+    pub sense: f64,
+    /// Every `integral` of the objective, of conditions and of expectations.
+    pub integrals: Vec<Integral>,
+    /// What is reported.
+    pub report: Vec<Report>,
+    /// What is expected.
+    pub expectations: Vec<Expectation>,
+    /// How it is to be solved.
+    pub method: Method,
+    /// Whether `abs`, `min` and `max` are smoothed: there is a surface, or the model says `smooth`.
+    pub smooth: bool,
+    /// What is understood but cannot be solved yet, in the order of the text.
+    pub not_yet: Vec<Diagnostic>,
+}
+
+impl Model {
+    /// The graph input that is a symbol.
+    pub fn input_of(&self, symbol: Symbol) -> Option<u32> {
+        self.symbols.iter().position(|&known| known == symbol).map(|at| at as u32)
+    }
+}

@@ -1,0 +1,123 @@
+//! The only file that names the crate `clarabel`: its sparse LDL and its conic solver, behind our own types.
+
+use clarabel::algebra::CscMatrix;
+use clarabel::qdldl::{QDLDLFactorisation, QDLDLSettingsBuilder};
+use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+
+/// A sparse matrix by columns: values of column `j` are `column_starts[j] .. column_starts[j + 1]`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Columns {
+    pub(crate) rows: usize,
+    pub(crate) column_starts: Vec<usize>,
+    pub(crate) row_indices: Vec<usize>,
+    pub(crate) values: Vec<f64>,
+}
+
+impl Columns {
+    fn into_csc(self) -> CscMatrix<f64> {
+        let columns = self.column_starts.len() - 1;
+        CscMatrix::new(self.rows, columns, self.column_starts, self.row_indices, self.values)
+    }
+}
+
+/// `L D L'` of a symmetric matrix given by its upper triangle, in a fill-reducing order, without pivoting.
+pub(crate) struct Ldl {
+    upper: Columns,
+    positions: Vec<usize>,
+    factors: Option<QDLDLFactorisation<f64>>,
+}
+
+impl Ldl {
+    pub(crate) fn new(upper: Columns) -> Self {
+        let positions = (0..upper.values.len()).collect();
+        Ldl { upper, positions, factors: None }
+    }
+
+    /// Factors the matrix with new values; the number of positive eigenvalues, or `None` at a zero pivot.
+    pub(crate) fn factor(&mut self, values: &[f64]) -> Option<usize> {
+        match &mut self.factors {
+            Some(factors) => {
+                factors.update_values(&self.positions, values);
+                factors.refactor().ok()?;
+            }
+            None => {
+                let settings = QDLDLSettingsBuilder::default().regularize_enable(false).build().ok()?;
+                let matrix = Columns { values: values.to_vec(), ..self.upper.clone() }.into_csc();
+                self.factors = Some(QDLDLFactorisation::new(&matrix, Some(settings)).ok()?);
+            }
+        }
+        let factors = self.factors.as_ref()?;
+        factors.D.iter().all(|pivot| pivot.is_finite()).then(|| factors.positive_inertia())
+    }
+
+    /// Replaces `b` by the solution.
+    pub(crate) fn solve(&mut self, b: &mut [f64]) {
+        if let Some(factors) = &mut self.factors {
+            factors.solve(b);
+        }
+    }
+}
+
+/// `minimize 1/2 x'Px + q'x` subject to `Ax + s = b`, the first `equalities` entries of `s` zero, the others `>= 0`.
+pub(crate) struct ConicProgram {
+    /// Upper triangle.
+    pub(crate) p: Columns,
+    pub(crate) q: Vec<f64>,
+    pub(crate) a: Columns,
+    pub(crate) b: Vec<f64>,
+    pub(crate) equalities: usize,
+}
+
+/// How the conic solver ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ConicStatus {
+    Solved,
+    Infeasible,
+    Unbounded,
+    IterationLimit,
+    Failed,
+}
+
+/// Its answer: `x`, the multipliers `z` of `Ax + s = b`, and the number of iterations.
+pub(crate) struct ConicSolution {
+    pub(crate) status: ConicStatus,
+    pub(crate) x: Vec<f64>,
+    pub(crate) z: Vec<f64>,
+    pub(crate) iterations: usize,
+}
+
+/// Solves a convex quadratic programme.
+pub(crate) fn solve_conic(program: ConicProgram, tolerance: f64, max_iterations: usize) -> ConicSolution {
+    let ConicProgram { p, q, a, b, equalities } = program;
+    let cones =
+        [SupportedConeT::ZeroConeT(equalities), SupportedConeT::NonnegativeConeT(b.len() - equalities)];
+    let (variables, rows) = (q.len(), b.len());
+    let settings = DefaultSettingsBuilder::default()
+        .verbose(false)
+        .max_iter(max_iterations.min(u32::MAX as usize) as u32)
+        .tol_gap_abs(tolerance)
+        .tol_gap_rel(tolerance)
+        .tol_feas(tolerance)
+        .build();
+    let solver = settings.ok().and_then(|settings| {
+        DefaultSolver::new(&p.into_csc(), &q, &a.into_csc(), &b, &cones, settings).ok()
+    });
+    let Some(mut solver) = solver else {
+        return ConicSolution {
+            status: ConicStatus::Failed,
+            x: vec![0.0; variables],
+            z: vec![0.0; rows],
+            iterations: 0,
+        };
+    };
+    solver.solve();
+    let status = match solver.solution.status {
+        SolverStatus::Solved => ConicStatus::Solved,
+        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => ConicStatus::Infeasible,
+        SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => ConicStatus::Unbounded,
+        SolverStatus::MaxIterations => ConicStatus::IterationLimit,
+        _ => ConicStatus::Failed,
+    };
+    let iterations = solver.solution.iterations as usize;
+    ConicSolution { status, x: solver.solution.x, z: solver.solution.z, iterations }
+}

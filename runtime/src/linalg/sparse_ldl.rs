@@ -1,0 +1,102 @@
+//! The optimality conditions as one sparse matrix, for problems without stage structure.
+//!
+//! Without pivoting, an LDL factorisation needs a quasi-definite matrix; so the diagonal is shifted by
+//! `+-`[`SHIFT`], too little to change the inertia of a well-posed problem, and the solves are refined against
+//! the unshifted matrix by whoever asks for them.
+
+use super::{Factor, Inertia, Triplets};
+use crate::clarabel::{Columns, Ldl};
+
+/// Static regularisation.
+const SHIFT: f64 = 1e-8;
+
+/// Sparse LDL of the whole matrix.
+pub struct SparseLdl {
+    variables: usize,
+    fixed: Vec<bool>,
+    ldl: Ldl,
+    values: Vec<f64>,
+    /// Where each Hessian and Jacobian value goes; `None` if it belongs to a fixed variable.
+    hessian: Vec<Option<u32>>,
+    jacobian: Vec<Option<u32>>,
+    diagonal: Vec<u32>,
+}
+
+impl SparseLdl {
+    /// Prepares the matrix of `fixed.len()` variables and `rows` rows.
+    pub fn new(hessian: &Triplets, jacobian: &Triplets, fixed: &[bool], rows: usize) -> Self {
+        let variables = fixed.len();
+        let size = variables + rows;
+        let hessian_places = hessian.entries().map(|(i, j)| (!fixed[i] && !fixed[j]).then_some((i.min(j), i.max(j))));
+        let jacobian_places = jacobian.entries().map(|(i, j)| (!fixed[j]).then_some((j, variables + i)));
+        let places: Vec<_> =
+            hessian_places.chain(jacobian_places).chain((0..size).map(|i| Some((i, i)))).collect();
+        let (pattern, mut targets) = compress(&places, size);
+        let diagonal = targets.split_off(targets.len() - size).into_iter().flatten().collect();
+        let jacobian = targets.split_off(hessian.len());
+        let values = vec![0.0; pattern.values.len()];
+        SparseLdl { variables, fixed: fixed.to_vec(), ldl: Ldl::new(pattern), values, hessian: targets, jacobian, diagonal }
+    }
+
+    fn add_diagonal(&mut self, sigma: &[f64], d: &[f64]) {
+        for (i, place) in self.diagonal.iter().enumerate() {
+            self.values[*place as usize] += match i.checked_sub(self.variables) {
+                Some(row) => -d[row] - SHIFT,
+                None if self.fixed[i] => 1.0,
+                None => sigma[i] + SHIFT,
+            };
+        }
+    }
+}
+
+impl Factor for SparseLdl {
+    fn factor(&mut self, hessian: &[f64], jacobian: &[f64], sigma: &[f64], d: &[f64]) -> Inertia {
+        self.values.fill(0.0);
+        let targets = self.hessian.iter().chain(&self.jacobian);
+        for (target, value) in targets.zip(hessian.iter().chain(jacobian)) {
+            if let Some(place) = target {
+                self.values[*place as usize] += value;
+            }
+        }
+        self.add_diagonal(sigma, d);
+        match self.ldl.factor(&self.values) {
+            None => Inertia::Singular,
+            Some(positive) if positive == self.variables => Inertia::Correct,
+            Some(_) => Inertia::Wrong,
+        }
+    }
+
+    fn solve(&mut self, right_side: &mut [f64]) {
+        for (value, fixed) in right_side.iter_mut().zip(&self.fixed) {
+            if *fixed {
+                *value = 0.0;
+            }
+        }
+        self.ldl.solve(right_side);
+    }
+}
+
+/// Upper-triangular places to columns without duplicates, and the value each place became.
+fn compress(places: &[Option<(usize, usize)>], size: usize) -> (Columns, Vec<Option<u32>>) {
+    let mut order: Vec<u32> = (0..places.len() as u32).filter(|i| places[*i as usize].is_some()).collect();
+    order.sort_unstable_by_key(|i| places[*i as usize].map(|(row, column)| (column, row)));
+    let mut targets = vec![None; places.len()];
+    let mut columns =
+        Columns { rows: size, column_starts: vec![0; size + 1], row_indices: Vec::new(), values: Vec::new() };
+    let mut last = None;
+    for i in order {
+        let place = places[i as usize];
+        if place != last {
+            let (row, column) = place.unwrap_or_default();
+            columns.row_indices.push(row);
+            columns.column_starts[column + 1] += 1;
+            last = place;
+        }
+        targets[i as usize] = Some(columns.row_indices.len() as u32 - 1);
+    }
+    for column in 0..size {
+        columns.column_starts[column + 1] += columns.column_starts[column];
+    }
+    columns.values = vec![0.0; columns.row_indices.len()];
+    (columns, targets)
+}

@@ -1,0 +1,75 @@
+//! The block structure of a problem that is a chain of stages.
+//!
+//! ```text
+//! variables   x_0 u_0  x_1 u_1  ...  x_{N-1} u_{N-1}  x_N  g
+//! rows        defects_0 local_0   defects_1 local_1   ...   coupling
+//! ```
+//!
+//! Rows of interval `k` see only `x_k, u_k, x_{k+1}` and the globals `g`; its defects are regular in `x_{k+1}`.
+//! Coupling rows see only `x_0, x_N` and `g`. The Hessian couples only what some row couples.
+
+use std::ops::Range;
+
+/// Sizes of a chain of stages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stages {
+    /// Number of intervals, `N`.
+    pub intervals: usize,
+    /// States per stage.
+    pub states: usize,
+    /// Controls per interval.
+    pub controls: usize,
+    /// Variables that belong to no stage.
+    pub globals: usize,
+    /// Rows per interval beside the defects.
+    pub local_rows: usize,
+    /// Rows that belong to no interval.
+    pub coupling_rows: usize,
+}
+
+impl Stages {
+    /// Variables from one stage to the next.
+    pub fn variable_step(&self) -> usize {
+        self.states + self.controls
+    }
+    /// Rows from one interval to the next.
+    pub fn row_step(&self) -> usize {
+        self.states + self.local_rows
+    }
+    /// All variables.
+    pub fn variables(&self) -> usize {
+        self.intervals * self.variable_step() + self.states + self.globals
+    }
+    /// All rows.
+    pub fn rows(&self) -> usize {
+        self.intervals * self.row_step() + self.coupling_rows
+    }
+    /// `x_k`
+    pub fn state(&self, k: usize) -> Range<usize> {
+        let start = k * self.variable_step();
+        start..start + self.states
+    }
+    /// `u_k`
+    pub fn control(&self, k: usize) -> Range<usize> {
+        let start = k * self.variable_step() + self.states;
+        start..start + self.controls
+    }
+    /// `g`
+    pub fn globals(&self) -> Range<usize> {
+        self.variables() - self.globals..self.variables()
+    }
+    /// Defects of interval `k`.
+    pub fn defects(&self, k: usize) -> Range<usize> {
+        let start = k * self.row_step();
+        start..start + self.states
+    }
+    /// Local rows of interval `k`.
+    pub fn local(&self, k: usize) -> Range<usize> {
+        let start = k * self.row_step() + self.states;
+        start..start + self.local_rows
+    }
+    /// Coupling rows.
+    pub fn coupling(&self) -> Range<usize> {
+        self.intervals * self.row_step()..self.rows()
+    }
+}

@@ -1,0 +1,100 @@
+//! Sparse matrices as families of entries that repeat from stage to stage.
+//!
+//! A family stands for the entries `(row + k row_step, column + k column_step)`, `k = 0 .. count`. A transcribed
+//! problem has a few dozen families, whatever the length of its grid. Entries at the same place are added.
+
+/// Entries that repeat with constant steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Family {
+    /// Row of the first entry.
+    pub row: usize,
+    /// Column of the first entry.
+    pub column: usize,
+    /// Rows from one entry to the next.
+    pub row_step: usize,
+    /// Columns from one entry to the next.
+    pub column_step: usize,
+    /// Number of entries.
+    pub count: usize,
+}
+
+impl Family {
+    /// A single entry.
+    pub fn single(row: usize, column: usize) -> Self {
+        Family { row, column, row_step: 0, column_step: 0, count: 1 }
+    }
+}
+
+/// The structure of a sparse matrix; its values stand in the order of the families.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Triplets {
+    /// The families.
+    pub families: Vec<Family>,
+}
+
+impl Triplets {
+    /// Number of values.
+    pub fn len(&self) -> usize {
+        self.families.iter().map(|family| family.count).sum()
+    }
+
+    /// Whether there are no entries.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Row and column of every value, in order.
+    pub fn entries(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.families
+            .iter()
+            .flat_map(|f| (0..f.count).map(|k| (f.row + k * f.row_step, f.column + k * f.column_step)))
+    }
+
+    /// `y += A x`
+    pub fn multiply_add(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+        self.for_each_family(values, |family, values| {
+            let (mut row, mut column) = (family.row, family.column);
+            for value in values {
+                y[row] += value * x[column];
+                row += family.row_step;
+                column += family.column_step;
+            }
+        });
+    }
+
+    /// `y += A' x`
+    pub fn transposed_multiply_add(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+        self.for_each_family(values, |family, values| {
+            let (mut row, mut column) = (family.row, family.column);
+            for value in values {
+                y[column] += value * x[row];
+                row += family.row_step;
+                column += family.column_step;
+            }
+        });
+    }
+
+    /// `y += A x` where only the lower triangle of the symmetric `A` is stored.
+    pub fn symmetric_multiply_add(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+        self.multiply_add(values, x, y);
+        self.for_each_family(values, |family, values| {
+            let (mut row, mut column) = (family.row, family.column);
+            for value in values {
+                if row != column {
+                    y[column] += value * x[row];
+                }
+                row += family.row_step;
+                column += family.column_step;
+            }
+        });
+    }
+
+    fn for_each_family<'v>(&self, values: &'v [f64], mut action: impl FnMut(&Family, &'v [f64])) {
+        let mut rest = values;
+        for family in &self.families {
+            let (mine, others) = rest.split_at(family.count);
+            action(family, mine);
+            rest = others;
+        }
+    }
+}

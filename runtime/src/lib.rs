@@ -4,4 +4,6 @@
 
 mod clarabel;
 pub mod linalg;
+pub mod nlp;
 pub mod problem;
+pub mod transcribe;

@@ -1,0 +1,137 @@
+//! The barrier function, its parameter, and how far a step may go (Waechter & Biegler 2006, section 2.1, 3.7).
+
+use super::iterate::{Iterate, Slopes, Step, Values};
+use super::residuals::Residuals;
+use super::space::Space;
+
+/// The barrier problem is solved to `ACCURACY * mu` before `mu` falls.
+const ACCURACY: f64 = 10.0;
+const LINEAR_DECREASE: f64 = 0.2;
+const SUPERLINEAR_DECREASE: f64 = 1.5;
+const SMALLEST_FRACTION: f64 = 0.99;
+/// Bound multipliers stay within this factor of `mu / distance`.
+const MULTIPLIER_CORRIDOR: f64 = 1e10;
+/// Weight of the linear term that keeps variables with one bound only from running away.
+const DAMPING: f64 = 1e-5;
+
+/// The barrier parameter `mu` and the fraction `tau` of the way to the boundary that a step may go.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Barrier {
+    pub(super) mu: f64,
+    smallest: f64,
+}
+
+impl Barrier {
+    pub(super) fn new(mu: f64, tol: f64) -> Self {
+        Barrier { mu, smallest: tol / 10.0 }
+    }
+
+    pub(super) fn tau(&self) -> f64 {
+        SMALLEST_FRACTION.max(1.0 - self.mu)
+    }
+
+    /// Lowers `mu` while its problem is solved; `true` if it changed.
+    pub(super) fn update(&mut self, residuals: &Residuals) -> bool {
+        let before = self.mu;
+        while residuals.error(self.mu) <= ACCURACY * self.mu && self.lower() {}
+        self.mu < before
+    }
+
+    /// Lowers `mu` by one step; `false` if it is as low as it gets.
+    pub(super) fn lower(&mut self) -> bool {
+        let next = (LINEAR_DECREASE * self.mu).min(self.mu.powf(SUPERLINEAR_DECREASE)).max(self.smallest);
+        let lowered = next < self.mu;
+        self.mu = next.min(self.mu);
+        lowered
+    }
+
+    /// `phi = f - mu sum ln(distance) + damping`
+    pub(super) fn value(&self, space: &Space, values: &Values, y: &[f64]) -> f64 {
+        let (mut logarithms, mut damping) = (LogarithmSum::default(), 0.0);
+        space.for_each_bound(y, |i, distance, _| {
+            logarithms.add(distance);
+            if is_one_sided(space, i) {
+                damping += distance;
+            }
+        });
+        values.objective - self.mu * logarithms.sum() + DAMPING * self.mu * damping
+    }
+
+    /// Adds the gradient of the barrier terms to `gradient`.
+    pub(super) fn add_gradient(&self, space: &Space, y: &[f64], gradient: &mut [f64]) {
+        space.for_each_bound(y, |i, distance, direction| {
+            let damping = if is_one_sided(space, i) { DAMPING } else { 0.0 };
+            gradient[i] += direction * self.mu * (damping - 1.0 / distance);
+        });
+    }
+
+    /// Slope of `phi` along a step; `slopes` must be those of the iterate.
+    pub(super) fn slope(&self, space: &Space, at: &Iterate, slopes: &Slopes, step: &Step) -> f64 {
+        let gradient = &slopes.derivatives.gradient;
+        let mut slope: f64 = gradient.iter().zip(&step.y).map(|(g, d)| g * d).sum();
+        for (attached, d) in space.attached.iter().zip(&step.y[space.variables..]) {
+            slope += attached.cost * d;
+        }
+        space.for_each_bound(&at.y, |i, distance, direction| {
+            let damping = if is_one_sided(space, i) { DAMPING } else { 0.0 };
+            slope += direction * self.mu * (damping - 1.0 / distance) * step.y[i];
+        });
+        slope
+    }
+
+    /// Largest step lengths of primal and dual variables that stay inside.
+    pub(super) fn longest_steps(&self, space: &Space, at: &Iterate, step: &Step) -> (f64, f64) {
+        let tau = self.tau();
+        let (mut primal, mut dual) = (1.0f64, 1.0f64);
+        space.for_each_bound(&at.y, |i, distance, direction| {
+            let towards = -direction * step.y[i];
+            if towards * primal > tau * distance {
+                primal = tau * distance / towards;
+            }
+            let (z, dz) = if direction > 0.0 { (at.lower[i], step.lower[i]) } else { (at.upper[i], step.upper[i]) };
+            if -dz * dual > tau * z {
+                dual = tau * z / -dz;
+            }
+        });
+        (primal, dual)
+    }
+
+    /// Keeps bound multipliers near `mu / distance`.
+    pub(super) fn correct_multipliers(&self, space: &Space, at: &mut Iterate) {
+        let Iterate { y, lower, upper, .. } = at;
+        space.for_each_bound(y, |i, distance, direction| {
+            let z = if direction > 0.0 { &mut lower[i] } else { &mut upper[i] };
+            let centre = self.mu / distance;
+            *z = z.clamp(centre / MULTIPLIER_CORRIDOR, centre * MULTIPLIER_CORRIDOR);
+        });
+    }
+}
+
+fn is_one_sided(space: &Space, i: usize) -> bool {
+    space.lower[i].is_finite() != space.upper[i].is_finite()
+}
+
+/// Sum of logarithms, with one logarithm for many factors.
+struct LogarithmSum {
+    sum: f64,
+    product: f64,
+}
+
+impl Default for LogarithmSum {
+    fn default() -> Self {
+        LogarithmSum { sum: 0.0, product: 1.0 }
+    }
+}
+
+impl LogarithmSum {
+    fn add(&mut self, factor: f64) {
+        self.product *= factor;
+        if !(1e-200..1e200).contains(&self.product) {
+            self.sum += self.product.ln();
+            self.product = 1.0;
+        }
+    }
+    fn sum(&self) -> f64 {
+        self.sum + self.product.ln()
+    }
+}

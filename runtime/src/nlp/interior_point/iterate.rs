@@ -1,0 +1,103 @@
+//! A point of the primal-dual iteration and what is known there.
+
+use super::space::Space;
+use crate::nlp::{Counts, Derivatives, Nlp};
+
+/// Primal and dual variables.
+#[derive(Clone, Debug)]
+pub(super) struct Iterate {
+    /// `[v | attached]`
+    pub(super) y: Vec<f64>,
+    /// Multipliers of the rows.
+    pub(super) lambda: Vec<f64>,
+    /// Multipliers of the bounds; 0 where there is none.
+    pub(super) lower: Vec<f64>,
+    pub(super) upper: Vec<f64>,
+}
+
+impl Iterate {
+    /// Sets the multiplier of every finite bound from the distance to it.
+    pub(super) fn set_bound_multipliers(&mut self, space: &Space, value: impl Fn(f64) -> f64) {
+        let Iterate { y, lower, upper, .. } = self;
+        space.for_each_bound(y, |i, distance, direction| {
+            *(if direction > 0.0 { &mut lower[i] } else { &mut upper[i] }) = value(distance);
+        });
+    }
+}
+
+/// A direction in the same space.
+#[derive(Clone, Debug)]
+pub(super) struct Step {
+    pub(super) y: Vec<f64>,
+    pub(super) lambda: Vec<f64>,
+    pub(super) lower: Vec<f64>,
+    pub(super) upper: Vec<f64>,
+}
+
+impl Step {
+    pub(super) fn new(space: &Space) -> Self {
+        let (length, rows) = (space.len(), space.target.len());
+        Step { y: vec![0.0; length], lambda: vec![0.0; rows], lower: vec![0.0; length], upper: vec![0.0; length] }
+    }
+}
+
+/// Objective and residuals at some `y`.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Values {
+    pub(super) objective: f64,
+    pub(super) residuals: Vec<f64>,
+}
+
+impl Values {
+    /// Evaluates at `y`; `false` if anything is not finite.
+    pub(super) fn evaluate(&mut self, nlp: &mut dyn Nlp, space: &Space, y: &[f64], counts: &mut Counts) -> bool {
+        counts.values += 1;
+        self.residuals.resize(space.target.len(), 0.0);
+        let objective = nlp.values(&y[..space.variables], &mut self.residuals);
+        self.objective = objective + space.attached_cost(y);
+        space.residuals(y, &mut self.residuals);
+        self.objective.is_finite() && self.violation().is_finite()
+    }
+
+    /// `theta`: the 1-norm of the residuals.
+    pub(super) fn violation(&self) -> f64 {
+        self.residuals.iter().map(|residual| residual.abs()).sum()
+    }
+}
+
+/// Derivatives at the current iterate, and the gradient of the Lagrangian without bounds.
+pub(super) struct Slopes {
+    pub(super) derivatives: Derivatives,
+    /// `grad f + J' lambda` over `y`.
+    pub(super) lagrangian: Vec<f64>,
+}
+
+impl Slopes {
+    pub(super) fn new(nlp: &dyn Nlp, space: &Space) -> Self {
+        Slopes { derivatives: Derivatives::new(nlp), lagrangian: vec![0.0; space.len()] }
+    }
+
+    /// Evaluates at the iterate; `false` if anything is not finite.
+    pub(super) fn evaluate(&mut self, nlp: &mut dyn Nlp, space: &Space, at: &Iterate, counts: &mut Counts) -> bool {
+        counts.derivatives += 1;
+        nlp.derivatives(&at.y[..space.variables], 1.0, &at.lambda, &mut self.derivatives);
+        self.update_lagrangian(nlp, space, &at.lambda);
+        let all = self.derivatives.hessian.iter().chain(&self.derivatives.jacobian).chain(&self.lagrangian);
+        all.map(|value| value * 0.0).sum::<f64>() == 0.0
+    }
+
+    /// The gradient of the Lagrangian with these multipliers; fixed variables have none.
+    pub(super) fn update_lagrangian(&mut self, nlp: &dyn Nlp, space: &Space, lambda: &[f64]) {
+        let (variables, attached) = self.lagrangian.split_at_mut(space.variables);
+        variables.copy_from_slice(&self.derivatives.gradient);
+        nlp.jacobian_structure().transposed_multiply_add(&self.derivatives.jacobian, lambda, variables);
+        for (value, fixed) in variables.iter_mut().zip(&space.fixed) {
+            if *fixed {
+                *value = 0.0;
+            }
+        }
+        for (value, attached) in attached.iter_mut().zip(&space.attached) {
+            *value = attached.cost + attached.sign * lambda[attached.row];
+        }
+    }
+}

@@ -1,0 +1,258 @@
+//! The Newton step on the optimality conditions of the barrier problem.
+//!
+//! Bounds contribute `Sigma = z / distance`; an attached variable `j` of row `i` is eliminated and leaves
+//! `1 / Sigma_j` on the diagonal of its row. What is factored is (see [`crate::linalg`])
+//!
+//! ```text
+//!     [ H + Sigma + delta_w    J'               ] [ dv ]     [ r_v                           ]
+//!     [ J                     -1/Sigma - delta_c ] [ dl ] = - [ residual - sign r_j / Sigma_j ]
+//! ```
+//!
+//! Inertia is corrected as in Waechter & Biegler 2006, algorithm IC.
+
+use super::barrier::Barrier;
+use super::iterate::{Iterate, Slopes, Step};
+use super::space::Space;
+use crate::linalg::riccati::Riccati;
+use crate::linalg::sparse_ldl::SparseLdl;
+use crate::linalg::{Factor, Inertia};
+use crate::nlp::{Counts, Nlp};
+use crate::problem::Linear;
+
+const FIRST_REGULARIZATION: f64 = 1e-4;
+const SMALLEST_REGULARIZATION: f64 = 1e-20;
+const LARGEST_REGULARIZATION: f64 = 1e40;
+const FIRST_GROWTH: f64 = 100.0;
+const GROWTH: f64 = 8.0;
+const DECAY: f64 = 1.0 / 3.0;
+const ROW_REGULARIZATION: f64 = 1e-8;
+/// Refinement stops at this residual, relative to the right side.
+const REFINED: f64 = 1e-11;
+const MOST_REFINEMENTS: usize = 8;
+
+/// The matrix, its factors and its memory.
+pub(super) struct Kkt {
+    factor: Box<dyn Factor>,
+    /// `z / distance` over `y`.
+    sigma: Vec<f64>,
+    /// Diagonals of the factored matrix.
+    diagonal: Vec<f64>,
+    d: Vec<f64>,
+    /// Gradient of the barrier Lagrangian over `y`.
+    gradient: Vec<f64>,
+    right: Vec<f64>,
+    residual: Vec<f64>,
+    solution: Vec<f64>,
+    /// Regularisation of this factorisation, and the last that was needed.
+    pub(super) regularization: f64,
+    last_regularization: f64,
+}
+
+impl Kkt {
+    /// Prepares the factorisation the caller asks for; the recursion wherever the structure allows it.
+    pub(super) fn new(nlp: &dyn Nlp, space: &Space, linear: Linear) -> Self {
+        // Elastic rows are no longer exact equalities, and need no special care in the recursion.
+        let elastic = space.attached.len() > space.slacks;
+        let equality: Vec<bool> = space.equality.iter().map(|equality| *equality && !elastic).collect();
+        let (hessian, jacobian) = (nlp.hessian_structure(), nlp.jacobian_structure());
+        let recursion = match (linear, nlp.stages()) {
+            (Linear::SparseLdl, _) | (_, None) => None,
+            (_, Some(stages)) => Riccati::new(stages, hessian, jacobian, &space.fixed, &equality).ok(),
+        };
+        let rows = space.target.len();
+        let factor: Box<dyn Factor> = match recursion {
+            Some(recursion) => Box::new(recursion),
+            None => Box::new(SparseLdl::new(hessian, jacobian, &space.fixed, rows)),
+        };
+        let zeros = |length: usize| vec![0.0; length];
+        let size = space.variables + rows;
+        Kkt {
+            factor,
+            sigma: zeros(space.len()),
+            diagonal: zeros(space.variables),
+            d: zeros(rows),
+            gradient: zeros(space.len()),
+            right: zeros(size),
+            residual: zeros(size),
+            solution: zeros(size),
+            regularization: 0.0,
+            last_regularization: 0.0,
+        }
+    }
+
+    /// Computes the diagonals that belong to the iterate.
+    pub(super) fn assemble(&mut self, space: &Space, at: &Iterate, slopes: &Slopes, barrier: &Barrier) {
+        self.sigma.fill(0.0);
+        let sigma = &mut self.sigma;
+        space.for_each_bound(&at.y, |i, distance, direction| {
+            sigma[i] += if direction > 0.0 { at.lower[i] } else { at.upper[i] } / distance;
+        });
+        self.gradient.copy_from_slice(&slopes.lagrangian);
+        barrier.add_gradient(space, &at.y, &mut self.gradient);
+    }
+
+    /// Factors with the smallest regularisation that gives the right inertia; `false` if none does.
+    pub(super) fn factor_with_inertia(&mut self, space: &Space, slopes: &Slopes, mu: f64, counts: &mut Counts) -> bool {
+        self.regularization = 0.0;
+        let mut rows = 0.0;
+        loop {
+            match self.factor_once(space, slopes, rows, counts) {
+                Inertia::Correct => break,
+                Inertia::Singular if rows == 0.0 => rows = ROW_REGULARIZATION * mu.powf(0.25),
+                Inertia::Wrong | Inertia::Singular => self.regularization = self.next_regularization(),
+            }
+            if self.regularization > LARGEST_REGULARIZATION {
+                return false;
+            }
+        }
+        if self.regularization > 0.0 {
+            self.last_regularization = self.regularization;
+        }
+        true
+    }
+
+    fn next_regularization(&self) -> f64 {
+        match (self.regularization, self.last_regularization) {
+            (0.0, 0.0) => FIRST_REGULARIZATION,
+            (0.0, last) => (DECAY * last).max(SMALLEST_REGULARIZATION),
+            (now, 0.0) => FIRST_GROWTH * now,
+            (now, _) => GROWTH * now,
+        }
+    }
+
+    fn factor_once(&mut self, space: &Space, slopes: &Slopes, rows: f64, counts: &mut Counts) -> Inertia {
+        counts.factorizations += 1;
+        counts.regularizations += usize::from(self.regularization > 0.0);
+        for (target, sigma) in self.diagonal.iter_mut().zip(&self.sigma) {
+            *target = sigma + self.regularization;
+        }
+        self.d.fill(rows);
+        for (attached, sigma) in space.attached.iter().zip(&self.sigma[space.variables..]) {
+            self.d[attached.row] += 1.0 / (sigma + self.regularization);
+        }
+        let derivatives = &slopes.derivatives;
+        self.factor.factor(&derivatives.hessian, &derivatives.jacobian, &self.diagonal, &self.d)
+    }
+
+    /// The Newton step that removes `residuals`; `false` if the linear system could not be solved accurately.
+    pub(super) fn step(
+        &mut self,
+        nlp: &dyn Nlp,
+        space: &Space,
+        at: &Iterate,
+        slopes: &Slopes,
+        mu: f64,
+        residuals: &[f64],
+        step: &mut Step,
+    ) -> bool {
+        self.fill_right_side(space, residuals);
+        if !self.solve_refined(nlp, space, slopes) {
+            return false;
+        }
+        step.y[..space.variables].copy_from_slice(&self.solution[..space.variables]);
+        step.lambda.copy_from_slice(&self.solution[space.variables..]);
+        for (j, attached) in space.attached.iter().enumerate() {
+            let i = space.variables + j;
+            let pull = self.gradient[i] + attached.sign * step.lambda[attached.row];
+            step.y[i] = -pull / (self.sigma[i] + self.regularization);
+        }
+        let Step { y, lower, upper, .. } = step;
+        space.for_each_bound(&at.y, |i, distance, direction| {
+            let (z, dz) = if direction > 0.0 { (at.lower[i], &mut lower[i]) } else { (at.upper[i], &mut upper[i]) };
+            *dz = mu / distance - z - direction * z / distance * y[i];
+        });
+        true
+    }
+
+    fn fill_right_side(&mut self, space: &Space, residuals: &[f64]) {
+        let (a, b) = self.right.split_at_mut(space.variables);
+        for i in 0..space.variables {
+            a[i] = if space.fixed[i] { 0.0 } else { -self.gradient[i] };
+        }
+        for (target, residual) in b.iter_mut().zip(residuals) {
+            *target = -residual;
+        }
+        for (j, attached) in space.attached.iter().enumerate() {
+            let i = space.variables + j;
+            b[attached.row] += attached.sign * self.gradient[i] / (self.sigma[i] + self.regularization);
+        }
+    }
+
+    /// Iterative refinement against the matrix itself.
+    fn solve_refined(&mut self, nlp: &dyn Nlp, space: &Space, slopes: &Slopes) -> bool {
+        self.solution.fill(0.0);
+        self.residual.copy_from_slice(&self.right);
+        let goal = REFINED * largest(&self.right);
+        let mut before = f64::INFINITY;
+        for _ in 0..MOST_REFINEMENTS {
+            self.factor.solve(&mut self.residual);
+            self.solution.iter_mut().zip(&self.residual).for_each(|(x, correction)| *x += correction);
+            self.compute_residual(nlp, space, slopes);
+            let now = largest(&self.residual);
+            if now <= goal || now > 0.5 * before {
+                break;
+            }
+            before = now;
+        }
+        let size = largest(&self.right).max(largest(&self.solution));
+        largest(&self.residual) <= 1e-5 * size
+    }
+
+    fn compute_residual(&mut self, nlp: &dyn Nlp, space: &Space, slopes: &Slopes) {
+        let variables = space.variables;
+        let (hessian, jacobian) = (nlp.hessian_structure(), nlp.jacobian_structure());
+        let (dv, dl) = self.solution.split_at(variables);
+        let (a, b) = self.residual.split_at_mut(variables);
+        for i in 0..variables {
+            a[i] = self.diagonal[i] * dv[i];
+        }
+        for (i, target) in b.iter_mut().enumerate() {
+            *target = -self.d[i] * dl[i];
+        }
+        hessian.symmetric_multiply_add(&slopes.derivatives.hessian, dv, a);
+        jacobian.transposed_multiply_add(&slopes.derivatives.jacobian, dl, a);
+        jacobian.multiply_add(&slopes.derivatives.jacobian, dv, b);
+        for (residual, right) in self.residual.iter_mut().zip(&self.right) {
+            *residual = right - *residual;
+        }
+        for i in (0..variables).filter(|i| space.fixed[*i]) {
+            self.residual[i] = 0.0;
+        }
+    }
+
+    /// Least-squares multipliers: those that make the gradient of the Lagrangian smallest. Zeros where they would be huge.
+    pub(super) fn estimate_multipliers(&mut self, space: &Space, at: &mut Iterate, slopes: &Slopes) {
+        const HUGE: f64 = 1e3;
+        let zeros = vec![0.0; slopes.derivatives.hessian.len()];
+        self.sigma.fill(1.0);
+        self.diagonal.fill(1.0);
+        self.d.fill(0.0);
+        for attached in &space.attached {
+            self.d[attached.row] += 1.0;
+        }
+        at.lambda.fill(0.0);
+        self.gradient[..space.variables].copy_from_slice(&slopes.derivatives.gradient);
+        for (target, attached) in self.gradient[space.variables..].iter_mut().zip(&space.attached) {
+            *target = attached.cost;
+        }
+        for i in 0..space.len() {
+            self.gradient[i] += at.upper[i] - at.lower[i];
+        }
+        self.regularization = 0.0;
+        let residuals = vec![0.0; at.lambda.len()];
+        self.fill_right_side(space, &residuals);
+        let inertia = self.factor.factor(&zeros, &slopes.derivatives.jacobian, &self.diagonal, &self.d);
+        if inertia != Inertia::Correct {
+            return;
+        }
+        self.factor.solve(&mut self.right);
+        let estimate = &self.right[space.variables..];
+        if largest(estimate) <= HUGE {
+            at.lambda.copy_from_slice(estimate);
+        }
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |a, value| if value.abs() > a || value.is_nan() { value.abs() } else { a })
+}

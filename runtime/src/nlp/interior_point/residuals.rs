@@ -1,0 +1,54 @@
+//! How far an iterate is from satisfying the optimality conditions (Waechter & Biegler 2006, equation 5).
+//!
+//! ```text
+//!     E_mu = max( ||grad L||_inf / s_d ,  ||residuals||_inf ,  ||distance * multiplier - mu||_inf / s_c )
+//! ```
+
+use super::iterate::{Iterate, Slopes, Values};
+use super::space::Space;
+
+/// Multipliers of this average size are considered normal.
+const NORMAL_MULTIPLIER: f64 = 100.0;
+
+/// The three parts of the error, scaled.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Residuals {
+    pub(super) dual: f64,
+    pub(super) primal: f64,
+    /// Largest and smallest product of a distance and its multiplier.
+    largest_product: f64,
+    smallest_product: f64,
+    product_scale: f64,
+}
+
+impl Residuals {
+    pub(super) fn new(space: &Space, at: &Iterate, values: &Values, slopes: &Slopes) -> Self {
+        let bound_sum: f64 = at.lower.iter().chain(&at.upper).sum();
+        let row_sum: f64 = at.lambda.iter().map(|value| value.abs()).sum();
+        let (bounds, rows) = ((2 * space.len()).max(1) as f64, at.lambda.len() as f64);
+        let scale = |average: f64| average.max(NORMAL_MULTIPLIER) / NORMAL_MULTIPLIER;
+        let mut dual = 0.0f64;
+        for i in 0..space.len() {
+            dual = dual.max((slopes.lagrangian[i] - at.lower[i] + at.upper[i]).abs());
+        }
+        let (mut largest, mut smallest) = (0.0f64, f64::INFINITY);
+        space.for_each_bound(&at.y, |i, distance, direction| {
+            let product = distance * if direction > 0.0 { at.lower[i] } else { at.upper[i] };
+            (largest, smallest) = (largest.max(product), smallest.min(product));
+        });
+        Residuals {
+            dual: dual / scale((bound_sum + row_sum) / (bounds + rows)),
+            primal: values.residuals.iter().fold(0.0, |a, r| a.max(r.abs())),
+            largest_product: largest,
+            smallest_product: if smallest.is_finite() { smallest } else { 0.0 },
+            product_scale: scale(bound_sum / bounds),
+        }
+    }
+
+    /// `E_mu`
+    pub(super) fn error(&self, mu: f64) -> f64 {
+        let no_bounds = self.largest_product == 0.0 && self.smallest_product == 0.0;
+        let products = if no_bounds { 0.0 } else { (self.largest_product - mu).max(mu - self.smallest_product) };
+        self.dual.max(self.primal).max(products / self.product_scale)
+    }
+}

@@ -1,0 +1,198 @@
+//! The restoration phase: back to (nearly) feasible points when the line search is stuck.
+//!
+//! From the point `v_R` where it starts, it solves, with the very same algorithm,
+//!
+//! ```text
+//!     minimise  rho sum (p + n) + zeta/2 || D (v - v_R) ||^2    subject to   rows - p + n = 0,  p, n >= 0
+//! ```
+//!
+//! (Waechter & Biegler 2006, section 3.3), until a point is acceptable to the filter it was called from. If it ends
+//! at an optimum of its own, the problem is locally infeasible: no small move reduces the violation.
+
+use super::filter::Filter;
+use super::iterate::{Iterate, Values};
+use super::space::Space;
+use super::{Algorithm, Outcome};
+use crate::linalg::{Family, Stages, Triplets};
+use crate::nlp::{Derivatives, Nlp, Place, Progress, Status, Watch};
+use crate::problem::Bounds;
+
+const RHO: f64 = 1e3;
+const REQUIRED_DECREASE: f64 = 0.9;
+const LARGEST_BOUND_MULTIPLIER: f64 = 1e3;
+
+/// How a restoration phase ended.
+pub(super) enum Restored {
+    /// The iterate is acceptable again.
+    Acceptable,
+    /// It ends the whole solve.
+    Stopped(Status),
+}
+
+/// The rows of a programme with a new objective: stay near `reference`.
+pub(super) struct Proximity<'a> {
+    inner: &'a mut dyn Nlp,
+    reference: Vec<f64>,
+    weights: Vec<f64>,
+    hessian: Triplets,
+    /// The variable of each value that was appended to the Hessian.
+    diagonal: Vec<usize>,
+    derivatives: Derivatives,
+}
+
+impl<'a> Proximity<'a> {
+    fn new(inner: &'a mut dyn Nlp, reference: &[f64], zeta: f64) -> Self {
+        let weight = |value: &f64| zeta * (1.0 / value.abs()).min(1.0).powi(2);
+        let appended = diagonal_families(inner.stages(), reference.len());
+        let diagonal = Triplets { families: appended.clone() }.entries().map(|(i, _)| i).collect();
+        let mut hessian = inner.hessian_structure().clone();
+        hessian.families.extend(appended);
+        let derivatives = Derivatives::new(inner);
+        let weights = reference.iter().map(weight).collect();
+        Proximity { inner, reference: reference.to_vec(), weights, hessian, diagonal, derivatives }
+    }
+}
+
+/// The diagonal, in families that respect the stages.
+fn diagonal_families(stages: Option<Stages>, variables: usize) -> Vec<Family> {
+    let repeat = |i, step, count| Family { row: i, column: i, row_step: step, column_step: step, count };
+    match stages {
+        None => vec![repeat(0, 1, variables)],
+        Some(stages) => {
+            let step = stages.variable_step();
+            let chain = (0..step).map(|i| repeat(i, step, stages.intervals));
+            let ends = stages.state(stages.intervals).chain(stages.globals());
+            chain.chain(ends.map(|i| Family::single(i, i))).collect()
+        }
+    }
+}
+
+impl Nlp for Proximity<'_> {
+    fn variable_bounds(&self) -> &[Bounds] {
+        self.inner.variable_bounds()
+    }
+    fn row_bounds(&self) -> &[Bounds] {
+        self.inner.row_bounds()
+    }
+    fn jacobian_structure(&self) -> &Triplets {
+        self.inner.jacobian_structure()
+    }
+    fn hessian_structure(&self) -> &Triplets {
+        &self.hessian
+    }
+    fn stages(&self) -> Option<Stages> {
+        self.inner.stages()
+    }
+    fn values(&mut self, v: &[f64], rows: &mut [f64]) -> f64 {
+        self.inner.values(v, rows);
+        let distances = v.iter().zip(&self.reference).zip(&self.weights);
+        distances.map(|((v, r), w)| 0.5 * w * (v - r).powi(2)).sum()
+    }
+    fn derivatives(&mut self, v: &[f64], weight: f64, multipliers: &[f64], out: &mut Derivatives) {
+        self.inner.derivatives(v, 0.0, multipliers, &mut self.derivatives);
+        for i in 0..v.len() {
+            out.gradient[i] = self.weights[i] * (v[i] - self.reference[i]);
+        }
+        out.jacobian.copy_from_slice(&self.derivatives.jacobian);
+        let (inner, appended) = out.hessian.split_at_mut(self.derivatives.hessian.len());
+        inner.copy_from_slice(&self.derivatives.hessian);
+        for (target, i) in appended.iter_mut().zip(&self.diagonal) {
+            *target = weight * self.weights[*i];
+        }
+    }
+    fn row_place(&self, row: usize) -> Place {
+        self.inner.row_place(row)
+    }
+    fn not_finite(&mut self, v: &[f64]) -> Option<Place> {
+        self.inner.not_finite(v)
+    }
+}
+
+impl Algorithm {
+    /// Runs a restoration phase from the current iterate.
+    pub(super) fn restore(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Restored {
+        let violation = self.values.violation();
+        self.filter.add(violation, self.barrier.value(&self.space, &self.values, &self.at.y));
+        self.counts.restorations += 1;
+        let largest = self.values.residuals.iter().fold(0.0f64, |a, r| a.max(r.abs()));
+        let mu = self.barrier.mu.max(largest.min(1.0));
+        let variables = self.at.y[..self.space.variables].to_vec();
+        let mut proximity = Proximity::new(nlp, &variables, mu.sqrt());
+        let mut inner = self.elastic(&mut proximity, mu);
+        let status = loop {
+            let outcome = inner.iterate(&mut proximity, &mut |progress| {
+                watch(&Progress { restoration: true, ..*progress })
+            });
+            match outcome {
+                Outcome::Continue => {}
+                Outcome::Blocked => break Some(Status::NumericalFailure),
+                Outcome::Done(Status::Solved | Status::Acceptable) => break Some(Status::Infeasible),
+                Outcome::Done(status) => break Some(status),
+            }
+            if self.accepts(proximity.inner, &inner.at, violation) {
+                break None;
+            }
+        };
+        self.take_over(proximity.inner, inner);
+        match status {
+            None => {
+                self.resume(proximity.inner);
+                Restored::Acceptable
+            }
+            Some(status) => Restored::Stopped(status),
+        }
+    }
+
+    /// The restoration problem's own algorithm, at its start.
+    fn elastic(&self, proximity: &mut Proximity, mu: f64) -> Algorithm {
+        let space = self.space.elastic(RHO);
+        let start = elastic_start(&space, &self.at, &self.values.residuals, mu);
+        let mut inner = Algorithm::new(proximity, space, start, mu, self.options);
+        inner.values.evaluate(proximity, &inner.space, &inner.at.y, &mut inner.counts);
+        inner.filter = Filter::new(inner.values.violation());
+        inner.counts = self.counts;
+        inner
+    }
+
+    /// Whether the elastic iterate, without its elastic variables, satisfies the filter of this algorithm.
+    fn accepts(&mut self, nlp: &mut dyn Nlp, at: &Iterate, violation: f64) -> bool {
+        let y = &at.y[..self.space.len()];
+        let mut values = Values::default();
+        values.evaluate(nlp, &self.space, y, &mut self.counts)
+            && values.violation() <= REQUIRED_DECREASE * violation
+            && self.filter.accepts(values.violation(), self.barrier.value(&self.space, &values, y))
+    }
+
+    fn take_over(&mut self, nlp: &mut dyn Nlp, inner: Algorithm) {
+        self.counts = inner.counts;
+        self.at.y.copy_from_slice(&inner.at.y[..self.space.len()]);
+        self.values.evaluate(nlp, &self.space, &self.at.y, &mut self.counts);
+        self.fresh = false;
+    }
+
+    /// Multipliers after a restoration phase: bounds from the barrier, rows by least squares.
+    fn resume(&mut self, nlp: &mut dyn Nlp) {
+        let mu = self.barrier.mu;
+        self.at.set_bound_multipliers(&self.space, |distance| (mu / distance).min(LARGEST_BOUND_MULTIPLIER));
+        self.estimate_multipliers(nlp);
+    }
+}
+
+/// Elastic variables that minimise the barrier function at a fixed point (equation 33), and their multipliers.
+fn elastic_start(space: &Space, at: &Iterate, residuals: &[f64], mu: f64) -> Iterate {
+    let mut start = at.clone();
+    for (i, residual) in residuals.iter().enumerate() {
+        let half = (mu - RHO * residual) / (2.0 * RHO);
+        let n = half + (half * half + mu * residual / (2.0 * RHO)).sqrt();
+        let p = residual + n;
+        debug_assert_eq!(space.attached[space.slacks + 2 * i].row, i);
+        start.y.extend([p, n]);
+        start.lower.extend([mu / p, mu / n]);
+        start.upper.extend([0.0, 0.0]);
+    }
+    start.lambda.fill(0.0);
+    for z in start.lower[..at.y.len()].iter_mut().chain(&mut start.upper[..at.y.len()]) {
+        *z = z.min(RHO);
+    }
+    start
+}

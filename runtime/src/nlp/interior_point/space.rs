@@ -1,0 +1,131 @@
+//! The variables an interior point method works with: those of the programme, and those attached to its rows.
+//!
+//! `y = [v | slacks | p | n]`. Every row becomes an equality
+//!
+//! ```text
+//!     c_i(v) - target_i + sum over attached j of sign_j y_j = 0
+//! ```
+//!
+//! An inequality has a slack (`sign -1`, the bounds of the row, target 0). In a restoration phase every row has two
+//! elastic variables more, `-p + n` with `p, n >= 0` and a cost. An attached variable appears in its row only, so
+//! it is eliminated by a division, and the linear algebra never sees it.
+
+use crate::nlp::Nlp;
+use crate::problem::Bounds;
+
+/// A variable that appears, with coefficient `sign`, in one row only.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Attached {
+    pub(super) row: usize,
+    pub(super) sign: f64,
+    /// Its coefficient in the objective.
+    pub(super) cost: f64,
+}
+
+/// Sizes, bounds and attachments.
+#[derive(Clone, Debug)]
+pub(super) struct Space {
+    /// Variables of the programme.
+    pub(super) variables: usize,
+    pub(super) attached: Vec<Attached>,
+    /// How many of the attached variables are slacks; the others are elastic.
+    pub(super) slacks: usize,
+    /// Bounds of `y`; infinite for fixed variables.
+    pub(super) lower: Vec<f64>,
+    pub(super) upper: Vec<f64>,
+    /// Right-hand sides of the rows.
+    pub(super) target: Vec<f64>,
+    pub(super) fixed: Vec<bool>,
+    pub(super) equality: Vec<bool>,
+}
+
+impl Space {
+    pub(super) fn new(nlp: &dyn Nlp) -> Self {
+        let rows = nlp.row_bounds();
+        let variables = nlp.variable_bounds();
+        let equality: Vec<bool> = rows.iter().map(Bounds::is_equality).collect();
+        let fixed: Vec<bool> = variables.iter().map(Bounds::is_equality).collect();
+        let mut space = Space {
+            variables: variables.len(),
+            attached: Vec::new(),
+            slacks: 0,
+            lower: Vec::new(),
+            upper: Vec::new(),
+            target: rows.iter().map(|b| if b.is_equality() { b.lower } else { 0.0 }).collect(),
+            fixed,
+            equality,
+        };
+        for bounds in variables {
+            space.push_bounds(if bounds.is_equality() { Bounds::FREE } else { *bounds });
+        }
+        for (row, bounds) in rows.iter().enumerate().filter(|(_, bounds)| !bounds.is_equality()) {
+            space.attached.push(Attached { row, sign: -1.0, cost: 0.0 });
+            space.push_bounds(*bounds);
+        }
+        space.slacks = space.attached.len();
+        space
+    }
+
+    /// The same with two elastic variables per row, each with cost `rho`.
+    pub(super) fn elastic(&self, rho: f64) -> Self {
+        let mut space = self.clone();
+        for row in 0..self.target.len() {
+            for sign in [-1.0, 1.0] {
+                space.attached.push(Attached { row, sign, cost: rho });
+                space.push_bounds(Bounds { lower: 0.0, upper: f64::INFINITY });
+            }
+        }
+        space
+    }
+
+    fn push_bounds(&mut self, bounds: Bounds) {
+        self.lower.push(bounds.lower);
+        self.upper.push(bounds.upper);
+    }
+
+    /// Length of `y`.
+    pub(super) fn len(&self) -> usize {
+        self.lower.len()
+    }
+
+    /// Turns row values into residuals, in place.
+    pub(super) fn residuals(&self, y: &[f64], rows: &mut [f64]) {
+        rows.iter_mut().zip(&self.target).for_each(|(row, target)| *row -= target);
+        for (attached, value) in self.attached.iter().zip(&y[self.variables..]) {
+            rows[attached.row] += attached.sign * value;
+        }
+    }
+
+    /// The part of the objective that attached variables cost.
+    pub(super) fn attached_cost(&self, y: &[f64]) -> f64 {
+        let costs = self.attached.iter().zip(&y[self.variables..]);
+        costs.skip(self.slacks).map(|(attached, value)| attached.cost * value).sum()
+    }
+
+    /// Moves `y` into the interior (Waechter & Biegler 2006, section 3.6).
+    pub(super) fn push_inside(&self, y: &mut [f64], push: f64) {
+        for i in 0..y.len() {
+            let (lower, upper) = (self.lower[i], self.upper[i]);
+            let room = if upper - lower < f64::INFINITY { push * (upper - lower) } else { f64::INFINITY };
+            let from = |bound: f64| (push * bound.abs().max(1.0)).min(room);
+            if lower > f64::NEG_INFINITY {
+                y[i] = y[i].max(lower + from(lower));
+            }
+            if upper < f64::INFINITY {
+                y[i] = y[i].min(upper - from(upper));
+            }
+        }
+    }
+
+    /// Calls `action(i, distance, direction)` for every finite bound: `direction` is +1 for a lower bound, -1 for an upper.
+    pub(super) fn for_each_bound(&self, y: &[f64], mut action: impl FnMut(usize, f64, f64)) {
+        for i in 0..self.len() {
+            if self.lower[i] > f64::NEG_INFINITY {
+                action(i, y[i] - self.lower[i], 1.0);
+            }
+            if self.upper[i] < f64::INFINITY {
+                action(i, self.upper[i] - y[i], -1.0);
+            }
+        }
+    }
+}

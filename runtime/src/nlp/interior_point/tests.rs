@@ -1,0 +1,176 @@
+//! Small programmes with published answers, solved by both factorisations where they apply.
+
+use super::solve;
+use crate::linalg::{Family, Stages, Triplets};
+use crate::nlp::{Derivatives, Nlp, Options, Place, Solution, Start, Status};
+use crate::problem::{Bounds, Linear};
+use std::ops::ControlFlow;
+
+type Values = fn(&[f64], &mut [f64]) -> f64;
+type Slopes = fn(&[f64], &mut [f64], &mut [f64]);
+type Curvature = fn(&[f64], f64, &[f64], &mut [f64]);
+
+/// A dense programme; the Jacobian is row by row, the Hessian is the lower triangle row by row.
+struct Dense {
+    variables: Vec<Bounds>,
+    rows: Vec<Bounds>,
+    jacobian: Triplets,
+    hessian: Triplets,
+    functions: (Values, Slopes, Curvature),
+}
+
+impl Dense {
+    fn new(variables: Vec<Bounds>, rows: Vec<Bounds>, functions: (Values, Slopes, Curvature)) -> Self {
+        let n = variables.len();
+        let jacobian = (0..rows.len()).flat_map(|i| (0..n).map(move |j| Family::single(i, j))).collect();
+        let hessian = (0..n).flat_map(|i| (0..=i).map(move |j| Family::single(i, j))).collect();
+        let (jacobian, hessian) = (Triplets { families: jacobian }, Triplets { families: hessian });
+        Dense { variables, rows, jacobian, hessian, functions }
+    }
+
+    fn solve(mut self, start: &[f64]) -> Solution {
+        let options = Options { tol: 1e-9, max_iter: 300, linear: Linear::Automatic };
+        let start = Start { v: start.to_vec(), warm: None };
+        solve(&mut self, &start, &options, &mut |_| ControlFlow::Continue(()))
+    }
+}
+
+impl Nlp for Dense {
+    fn variable_bounds(&self) -> &[Bounds] {
+        &self.variables
+    }
+    fn row_bounds(&self) -> &[Bounds] {
+        &self.rows
+    }
+    fn jacobian_structure(&self) -> &Triplets {
+        &self.jacobian
+    }
+    fn hessian_structure(&self) -> &Triplets {
+        &self.hessian
+    }
+    fn stages(&self) -> Option<Stages> {
+        None
+    }
+    fn values(&mut self, v: &[f64], rows: &mut [f64]) -> f64 {
+        (self.functions.0)(v, rows)
+    }
+    fn derivatives(&mut self, v: &[f64], weight: f64, multipliers: &[f64], out: &mut Derivatives) {
+        (self.functions.1)(v, &mut out.gradient, &mut out.jacobian);
+        (self.functions.2)(v, weight, multipliers, &mut out.hessian);
+    }
+    fn row_place(&self, _row: usize) -> Place {
+        Place::default()
+    }
+    fn not_finite(&mut self, _v: &[f64]) -> Option<Place> {
+        Some(Place::default())
+    }
+}
+
+fn between(lower: f64, upper: f64) -> Bounds {
+    Bounds { lower, upper }
+}
+
+fn at_least(lower: f64) -> Bounds {
+    between(lower, f64::INFINITY)
+}
+
+/// Hock & Schittkowski, problem 71: f* = 17.0140173 at (1, 4.7429994, 3.8211503, 1.3794082).
+fn hock_schittkowski_71() -> Dense {
+    let values: Values = |x, rows| {
+        rows[0] = x.iter().product();
+        rows[1] = x.iter().map(|x| x * x).sum();
+        x[0] * x[3] * (x[0] + x[1] + x[2]) + x[2]
+    };
+    let slopes: Slopes = |x, g, j| {
+        let sum = x[0] + x[1] + x[2];
+        g.copy_from_slice(&[x[3] * (sum + x[0]), x[0] * x[3], x[0] * x[3] + 1.0, x[0] * sum]);
+        for i in 0..4 {
+            j[i] = (0..4).filter(|l| *l != i).map(|l| x[l]).product();
+            j[4 + i] = 2.0 * x[i];
+        }
+    };
+    let curvature: Curvature = |x, w, l, h| {
+        let pair = |a: usize, b: usize| (0..4).filter(|i| *i != a && *i != b).map(|i| x[i]).product::<f64>();
+        let f = [
+            2.0 * x[3], x[3], 0.0, x[3], 0.0, 0.0, 2.0 * x[0] + x[1] + x[2], x[0], x[0], 0.0,
+        ];
+        let mut place = 0;
+        for i in 0..4 {
+            for j in 0..=i {
+                h[place] = w * f[place] + if i == j { 2.0 * l[1] } else { l[0] * pair(i, j) };
+                place += 1;
+            }
+        }
+    };
+    Dense::new(vec![between(1.0, 5.0); 4], vec![at_least(25.0), Bounds::fixed(40.0)], (values, slopes, curvature))
+}
+
+#[test]
+fn hock_schittkowski_71_has_its_published_minimum() {
+    let solution = hock_schittkowski_71().solve(&[1.0, 5.0, 5.0, 1.0]);
+    assert_eq!(solution.status, Status::Solved);
+    assert!((solution.objective - 17.0140173).abs() < 1e-6, "{}", solution.objective);
+    for (x, expected) in solution.v.iter().zip([1.0, 4.7429994, 3.8211503, 1.3794082]) {
+        assert!((x - expected).abs() < 1e-6);
+    }
+}
+
+/// x^2 + 1 <= 0 has no solution; the smallest violation is at 0.
+#[test]
+fn an_infeasible_programme_is_recognised_at_its_smallest_violation() {
+    let values: Values = |x, rows| {
+        rows[0] = x[0] * x[0] + 1.0;
+        x[0]
+    };
+    let slopes: Slopes = |x, g, j| {
+        g[0] = 1.0;
+        j[0] = 2.0 * x[0];
+    };
+    let curvature: Curvature = |_, _, l, h| h[0] = 2.0 * l[0];
+    let row = between(f64::NEG_INFINITY, 0.0);
+    let solution = Dense::new(vec![Bounds::FREE], vec![row], (values, slopes, curvature)).solve(&[3.0]);
+    assert_eq!(solution.status, Status::Infeasible);
+    assert!((solution.constraint_violation - 1.0).abs() < 1e-3, "{}", solution.constraint_violation);
+}
+
+/// Waechter & Biegler 2000, where line searches without restoration jam: x1^2 - x2 = 1, x1 - x3 = 1/2, x2, x3 >= 0.
+#[test]
+fn the_example_that_needs_a_restoration_phase_is_solved() {
+    let values: Values = |x, rows| {
+        rows[0] = x[0] * x[0] - x[1] - 1.0;
+        rows[1] = x[0] - x[2] - 0.5;
+        x[0]
+    };
+    let slopes: Slopes = |x, g, j| {
+        g.copy_from_slice(&[1.0, 0.0, 0.0]);
+        j.copy_from_slice(&[2.0 * x[0], -1.0, 0.0, 1.0, 0.0, -1.0]);
+    };
+    let curvature: Curvature = |_, _, l, h| {
+        h.fill(0.0);
+        h[0] = 2.0 * l[0];
+    };
+    let bounds = vec![Bounds::FREE, at_least(0.0), at_least(0.0)];
+    let solution = Dense::new(bounds, vec![Bounds::fixed(0.0); 2], (values, slopes, curvature)).solve(&[-4.0, 1.0, 1.0]);
+    assert_eq!(solution.status, Status::Solved);
+    assert!((solution.objective - 1.0).abs() < 1e-7);
+}
+
+/// Minimise x subject to nothing.
+#[test]
+fn an_unbounded_programme_is_recognised() {
+    let values: Values = |x, _| x[0] + 0.5 * x[1] * x[1];
+    let slopes: Slopes = |x, g, _| g.copy_from_slice(&[1.0, x[1]]);
+    let curvature: Curvature = |_, w, _, h| h.copy_from_slice(&[0.0, 0.0, w]);
+    let solution = Dense::new(vec![Bounds::FREE; 2], Vec::new(), (values, slopes, curvature)).solve(&[0.0, 1.0]);
+    assert_eq!(solution.status, Status::Unbounded);
+}
+
+/// Minimise sqrt(x - 1) from x = 0.
+#[test]
+fn a_start_where_a_function_is_not_finite_is_reported() {
+    let values: Values = |x, _| (x[0] - 1.0).sqrt();
+    let slopes: Slopes = |x, g, _| g[0] = 0.5 / (x[0] - 1.0).sqrt();
+    let curvature: Curvature = |x, w, _, h| h[0] = -0.25 * w * (x[0] - 1.0).powf(-1.5);
+    let solution = Dense::new(vec![Bounds::FREE], Vec::new(), (values, slopes, curvature)).solve(&[0.0]);
+    assert!(matches!(solution.status, Status::NotFinite(_)));
+}

@@ -1,0 +1,218 @@
+//! Nonlinear programmes, and what a solver says about one.
+//!
+//! ```text
+//!     minimise  f(v)    subject to   lower <= c(v) <= upper,   lower <= v <= upper
+//! ```
+//!
+//! Multipliers `lambda` are those of the Lagrangian `f + lambda' c - z_lower' v + z_upper' v`: they are minus the
+//! rate at which the optimal objective grows with the right-hand side of a row.
+
+pub mod convex;
+pub mod interior_point;
+mod scaling;
+
+use crate::linalg::{Stages, Triplets};
+use crate::problem::{Bounds, Linear, Origin};
+use std::ops::ControlFlow;
+
+/// First and second derivatives at a point, in the order of the structures of the programme.
+#[derive(Clone, Debug, Default)]
+pub struct Derivatives {
+    /// Gradient of the objective, dense.
+    pub gradient: Vec<f64>,
+    /// Jacobian values.
+    pub jacobian: Vec<f64>,
+    /// Values of the lower triangle of the Lagrangian Hessian.
+    pub hessian: Vec<f64>,
+}
+
+impl Derivatives {
+    /// Zeros of the right sizes.
+    pub fn new(nlp: &dyn Nlp) -> Self {
+        Derivatives {
+            gradient: vec![0.0; nlp.variable_bounds().len()],
+            jacobian: vec![0.0; nlp.jacobian_structure().len()],
+            hessian: vec![0.0; nlp.hessian_structure().len()],
+        }
+    }
+}
+
+/// Where in the problem a row or variable belongs, for messages.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Place {
+    /// Where in the model.
+    pub origin: Origin,
+    /// Grid point, if it belongs to one.
+    pub grid_point: Option<usize>,
+}
+
+/// A nonlinear programme. Evaluations take `&mut self` for working memory only: equal inputs give equal outputs.
+pub trait Nlp {
+    /// One per variable.
+    fn variable_bounds(&self) -> &[Bounds];
+    /// One per row.
+    fn row_bounds(&self) -> &[Bounds];
+    /// Structure of the Jacobian of the rows.
+    fn jacobian_structure(&self) -> &Triplets;
+    /// Structure of the lower triangle of the Lagrangian Hessian.
+    fn hessian_structure(&self) -> &Triplets;
+    /// The chain of stages, if the programme is one.
+    fn stages(&self) -> Option<Stages>;
+    /// Objective and rows.
+    fn values(&mut self, v: &[f64], rows: &mut [f64]) -> f64;
+    /// Gradient, Jacobian and the Hessian of `weight * f + multipliers . c`.
+    fn derivatives(&mut self, v: &[f64], weight: f64, multipliers: &[f64], out: &mut Derivatives);
+    /// Where a row comes from.
+    fn row_place(&self, row: usize) -> Place;
+    /// Which part of the model is not finite at `v`, if any.
+    fn not_finite(&mut self, v: &[f64]) -> Option<Place>;
+}
+
+/// How a solve ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Status {
+    /// A local optimum to the tolerance asked for.
+    Solved,
+    /// No further progress, but the error is small enough for most uses.
+    Acceptable,
+    /// A stationary point of the constraint violation that is not feasible.
+    Infeasible,
+    /// The objective falls without end along feasible points.
+    Unbounded,
+    /// Too many iterations.
+    IterationLimit,
+    /// The caller's time is up.
+    TimeLimit,
+    /// The caller asked to stop.
+    Interrupted,
+    /// A function has no finite value or derivative at the best iterate.
+    NotFinite(Place),
+    /// The linear systems cannot be solved any more.
+    NumericalFailure,
+}
+
+/// Why the caller wants to stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// The time is up.
+    TimeLimit,
+    /// A person asked.
+    Interrupted,
+}
+
+/// One line of the iteration table.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Progress {
+    /// Iteration number.
+    pub iteration: usize,
+    /// Whether this iteration was part of a restoration phase.
+    pub restoration: bool,
+    /// Objective, unscaled.
+    pub objective: f64,
+    /// Largest violation of a row.
+    pub primal_infeasibility: f64,
+    /// Largest component of the gradient of the Lagrangian, scaled.
+    pub dual_infeasibility: f64,
+    /// Barrier parameter.
+    pub mu: f64,
+    /// Largest component of the step.
+    pub step: f64,
+    /// Primal regularisation, 0 if none.
+    pub regularization: f64,
+    /// Step length of the multipliers.
+    pub alpha_dual: f64,
+    /// Step length of the variables.
+    pub alpha_primal: f64,
+    /// Trial points of the line search.
+    pub trials: usize,
+}
+
+/// Called once per iteration; it may stop the solve.
+pub type Watch<'a> = dyn FnMut(&Progress) -> ControlFlow<Stop> + 'a;
+
+/// Options of a solve.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Tolerance on the scaled optimality error.
+    pub tol: f64,
+    /// Iteration limit.
+    pub max_iter: usize,
+    /// Factorisation.
+    pub linear: Linear,
+}
+
+/// Where a solve begins.
+#[derive(Clone, Debug, Default)]
+pub struct Start {
+    /// Variables.
+    pub v: Vec<f64>,
+    /// Multipliers of an earlier, similar solve; `None` for a cold start.
+    pub warm: Option<Multipliers>,
+}
+
+/// Multipliers of all constraints.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Multipliers {
+    /// One per row.
+    pub rows: Vec<f64>,
+    /// One per variable: lower bounds, not negative.
+    pub lower: Vec<f64>,
+    /// One per variable: upper bounds, not negative.
+    pub upper: Vec<f64>,
+}
+
+/// Work done, counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Iterations, restoration included.
+    pub iterations: usize,
+    /// Factorisations.
+    pub factorizations: usize,
+    /// Factorisations with a primal regularisation.
+    pub regularizations: usize,
+    /// Evaluations of objective and rows.
+    pub values: usize,
+    /// Evaluations of all derivatives.
+    pub derivatives: usize,
+    /// Restoration phases.
+    pub restorations: usize,
+}
+
+/// What a solver found.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// How it ended.
+    pub status: Status,
+    /// Variables: the best iterate, whatever the status.
+    pub v: Vec<f64>,
+    /// Multipliers.
+    pub multipliers: Multipliers,
+    /// Objective.
+    pub objective: f64,
+    /// Scaled optimality error.
+    pub kkt_error: f64,
+    /// Largest violation of a row or bound.
+    pub constraint_violation: f64,
+    /// Whether the optimum is known to be global.
+    pub global: bool,
+    /// Work done.
+    pub counts: Counts,
+}
+
+/// The row that is violated most, and by how much.
+pub fn worst_row(nlp: &mut dyn Nlp, v: &[f64]) -> Option<(usize, f64)> {
+    let mut rows = vec![0.0; nlp.row_bounds().len()];
+    nlp.values(v, &mut rows);
+    let violations = nlp.row_bounds().iter().zip(&rows).map(|(bounds, value)| bounds.violation(*value));
+    violations.enumerate().fold(None, |worst, (row, violation)| match worst {
+        Some((_, largest)) if largest >= violation => worst,
+        _ => Some((row, violation)),
+    })
+}
+
+/// Largest violation of rows and bounds at `v`.
+pub fn constraint_violation(nlp: &mut dyn Nlp, v: &[f64]) -> f64 {
+    let rows = worst_row(nlp, v).map_or(0.0, |(_, violation)| violation);
+    let bounds = nlp.variable_bounds().iter().zip(v).map(|(bounds, value)| bounds.violation(*value));
+    bounds.fold(rows, f64::max)
+}

@@ -1,0 +1,51 @@
+//! Which value of which function goes where in the sparse matrices of the programme.
+
+use crate::linalg::{Family, Triplets};
+use std::collections::BTreeMap;
+
+/// A quantity that repeats along the chain: its first position and its step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Repeated {
+    pub(super) first: usize,
+    pub(super) step: usize,
+}
+
+/// `target values += coefficient * column of the function`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contribution {
+    /// Column of the function's table.
+    pub(super) column: usize,
+    pub(super) coefficient: f64,
+    /// First value of the family.
+    pub(super) target: usize,
+}
+
+/// Families under construction; the same place is never listed twice.
+#[derive(Default)]
+pub(super) struct Builder {
+    structure: Triplets,
+    places: BTreeMap<(Repeated, Repeated, usize), usize>,
+    values: usize,
+}
+
+impl Builder {
+    /// The first value of the family at this place, made if needed.
+    pub(super) fn place(&mut self, row: Repeated, column: Repeated, count: usize) -> usize {
+        *self.places.entry((row, column, count)).or_insert_with(|| {
+            let (row_step, column_step) = if count == 1 { (0, 0) } else { (row.step, column.step) };
+            let family = Family { row: row.first, column: column.first, row_step, column_step, count };
+            self.structure.families.push(family);
+            self.values += count;
+            self.values - count
+        })
+    }
+
+    /// The same in the lower triangle of a symmetric matrix.
+    pub(super) fn symmetric_place(&mut self, a: Repeated, b: Repeated, count: usize) -> usize {
+        if a.first >= b.first { self.place(a, b, count) } else { self.place(b, a, count) }
+    }
+
+    pub(super) fn finish(self) -> Triplets {
+        self.structure
+    }
+}

@@ -1,0 +1,235 @@
+//! A function of the problem, evaluated once in every interval, and where its derivatives go.
+//!
+//! It sees `(tau_k + c h, (1 - w) x_k + w x_{k+1}, u_k, p)`. By the chain rule each derivative by a state splits into
+//! one by `x_k` with factor `1 - w` and one by `x_{k+1}` with factor `w`.
+
+use super::assembly::{Builder, Contribution, Repeated};
+use crate::linalg::Stages;
+use crate::problem::{Columns, Function, Problem};
+use std::sync::Arc;
+
+/// Where an output goes.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Target {
+    /// Local row of each interval, with a factor.
+    Row(usize, f64),
+    /// The objective, with a factor.
+    Objective(f64),
+}
+
+/// A function with its tables.
+pub(super) struct Sampled {
+    function: Arc<dyn Function>,
+    blend: Vec<f64>,
+    targets: Vec<Target>,
+    points: Columns,
+    values: Columns,
+    jacobian: Columns,
+    hessian: Columns,
+    multipliers: Columns,
+    row_moves: Vec<Contribution>,
+    /// Target: a variable of interval 0, and its step along the chain.
+    gradient_moves: Vec<(Contribution, usize)>,
+    hessian_moves: Vec<Contribution>,
+}
+
+/// The builders of both matrices.
+pub(super) struct Matrices {
+    pub(super) stages: Stages,
+    pub(super) jacobian: Builder,
+    pub(super) hessian: Builder,
+}
+
+impl Sampled {
+    pub(super) fn new(
+        problem: &Problem,
+        function: &Arc<dyn Function>,
+        time: f64,
+        blend: Vec<f64>,
+        targets: Vec<Target>,
+        matrices: &mut Matrices,
+    ) -> Self {
+        let intervals = matrices.stages.intervals;
+        let table = |columns| Columns::new(columns, intervals);
+        let mut points = table(function.layout().point_inputs());
+        for (k, tau) in points.column_mut(0).iter_mut().enumerate() {
+            *tau = (k as f64 + time) / intervals as f64;
+        }
+        let mut sampled = Sampled {
+            blend,
+            targets,
+            points,
+            values: table(function.outputs()),
+            jacobian: table(function.jacobian_pattern().entries.len()),
+            hessian: table(function.hessian_pattern().entries.len()),
+            multipliers: table(function.outputs()),
+            row_moves: Vec::new(),
+            gradient_moves: Vec::new(),
+            hessian_moves: Vec::new(),
+            function: Arc::clone(function),
+        };
+        sampled.map_jacobian(problem, matrices);
+        sampled.map_hessian(problem, matrices);
+        sampled
+    }
+
+    fn map_jacobian(&mut self, problem: &Problem, matrices: &mut Matrices) {
+        let (function, stages) = (Arc::clone(&self.function), matrices.stages);
+        for (column, &(output, input)) in function.jacobian_pattern().entries.iter().enumerate() {
+            for (variable, factor) in self.places(problem, stages, input as usize) {
+                match self.targets[output as usize] {
+                    Target::Row(row, scale) => {
+                        let row = Repeated { first: row, step: stages.row_step() };
+                        let target = matrices.jacobian.place(row, variable, stages.intervals);
+                        self.row_moves.push(Contribution { column, coefficient: scale * factor, target });
+                    }
+                    Target::Objective(scale) => {
+                        let target = variable.first;
+                        let contribution = Contribution { column, coefficient: scale * factor, target };
+                        self.gradient_moves.push((contribution, variable.step));
+                    }
+                }
+            }
+        }
+    }
+
+    fn map_hessian(&mut self, problem: &Problem, matrices: &mut Matrices) {
+        let (function, stages) = (Arc::clone(&self.function), matrices.stages);
+        for (column, &(a, b)) in function.hessian_pattern().entries.iter().enumerate() {
+            let first = self.places(problem, stages, a as usize);
+            let second = self.places(problem, stages, b as usize);
+            for (i, &(row, row_factor)) in first.iter().enumerate() {
+                for (j, &(other, factor)) in second.iter().enumerate() {
+                    // A square gives its mixed term once to the lower triangle.
+                    if a == b && j > i {
+                        continue;
+                    }
+                    let target = matrices.hessian.symmetric_place(row, other, stages.intervals);
+                    let coefficient = row_factor * factor;
+                    self.hessian_moves.push(Contribution { column, coefficient, target });
+                }
+            }
+        }
+    }
+
+    /// The variables of the programme behind an input, with their factors.
+    fn places(&self, problem: &Problem, stages: Stages, input: usize) -> Vec<(Repeated, f64)> {
+        let layout = self.function.layout();
+        let step = stages.variable_step();
+        if let Some(parameter) = input.checked_sub(layout.parameters().start) {
+            let unknown = problem.unknowns.iter().position(|unknown| unknown.parameter == parameter);
+            let first = stages.globals().start + unknown.expect("differentiated by unknowns only");
+            return vec![(Repeated { first, step: 0 }, 1.0)];
+        }
+        if let Some(control) = input.checked_sub(layout.controls().start) {
+            return vec![(Repeated { first: stages.states + control, step }, 1.0)];
+        }
+        let state = input - layout.states().start;
+        let ends = [(state, 1.0 - self.blend[state]), (step + state, self.blend[state])];
+        let ends = ends.into_iter().filter(|(_, factor)| *factor != 0.0);
+        ends.map(|(first, factor)| (Repeated { first, step }, factor)).collect()
+    }
+
+    /// Takes the states and controls from the variables of the programme.
+    pub(super) fn load(&mut self, stages: Stages, v: &[f64]) {
+        let (layout, step) = (*self.function.layout(), stages.variable_step());
+        for state in 0..layout.x {
+            let (new, old) = (self.blend[state], 1.0 - self.blend[state]);
+            let target = self.points.column_mut(layout.t + state);
+            let here = v[state..].iter().step_by(step);
+            let next = v[step + state..].iter().step_by(step);
+            for (value, (x, x_next)) in target.iter_mut().zip(here.zip(next)) {
+                // No arithmetic on the end that does not count: it might not be finite.
+                *value = if new == 0.0 { *x } else if old == 0.0 { *x_next } else { old * x + new * x_next };
+            }
+        }
+        for control in 0..layout.u {
+            let target = self.points.column_mut(layout.t + layout.x + control);
+            let source = v[stages.states + control..].iter().step_by(step);
+            target.iter_mut().zip(source).for_each(|(value, u)| *value = *u);
+        }
+    }
+
+    /// Adds the outputs to the rows; returns their part of the objective.
+    pub(super) fn add_values(&mut self, stages: Stages, parameters: &[f64], rows: &mut [f64]) -> f64 {
+        self.function.value(&self.points, parameters, &mut self.values);
+        let mut objective = 0.0;
+        for (output, target) in self.targets.iter().enumerate() {
+            let column = self.values.column(output);
+            match *target {
+                Target::Objective(scale) => objective += scale * column.iter().sum::<f64>(),
+                Target::Row(row, scale) => {
+                    let rows = rows[row..].iter_mut().step_by(stages.row_step());
+                    rows.zip(column).for_each(|(value, output)| *value += scale * output);
+                }
+            }
+        }
+        objective
+    }
+
+    /// Evaluates all derivatives at the loaded points.
+    pub(super) fn differentiate(&mut self, stages: Stages, parameters: &[f64], weight: f64, multipliers: &[f64]) {
+        for (output, target) in self.targets.iter().enumerate() {
+            let column = self.multipliers.column_mut(output);
+            match *target {
+                Target::Objective(scale) => column.fill(weight * scale),
+                Target::Row(row, scale) => {
+                    let source = multipliers[row..].iter().step_by(stages.row_step());
+                    column.iter_mut().zip(source).for_each(|(value, lambda)| *value = scale * lambda);
+                }
+            }
+        }
+        self.function.derivatives(
+            &self.points,
+            parameters,
+            &self.multipliers,
+            &mut self.values,
+            &mut self.jacobian,
+            &mut self.hessian,
+        );
+    }
+
+    /// Adds the derivatives to the matrices of the programme.
+    pub(super) fn scatter(&self, gradient: &mut [f64], jacobian: &mut [f64], hessian: &mut [f64]) {
+        for (table, moves, values) in
+            [(&self.jacobian, &self.row_moves, jacobian), (&self.hessian, &self.hessian_moves, hessian)]
+        {
+            for entry in moves {
+                let column = table.column(entry.column);
+                let target = &mut values[entry.target..][..column.len()];
+                target.iter_mut().zip(column).for_each(|(value, d)| *value += entry.coefficient * d);
+            }
+        }
+        for (entry, step) in &self.gradient_moves {
+            for (k, d) in self.jacobian.column(entry.column).iter().enumerate() {
+                gradient[entry.target + k * step] += entry.coefficient * d;
+            }
+        }
+    }
+
+    /// The output and interval of the first value or derivative that is not finite.
+    pub(super) fn not_finite(&mut self, stages: Stages, parameters: &[f64], rows: usize) -> Option<(usize, usize)> {
+        self.differentiate(stages, parameters, 0.0, &vec![0.0; rows]);
+        let place = |table: &Columns, column: usize| table.column(column).iter().position(|value| !value.is_finite());
+        let values = (0..self.values.columns()).filter_map(|i| Some((i, place(&self.values, i)?)));
+        let pattern = &self.function.jacobian_pattern().entries;
+        let slopes = pattern.iter().enumerate();
+        let slopes = slopes.filter_map(|(i, (row, _))| Some((*row as usize, place(&self.jacobian, i)?)));
+        if let Some(found) = values.chain(slopes).min_by_key(|(_, k)| *k) {
+            return Some(found);
+        }
+        (0..self.targets.len()).find_map(|output| {
+            (0..self.targets.len()).for_each(|i| self.multipliers.column_mut(i).fill(0.0));
+            self.multipliers.column_mut(output).fill(1.0);
+            self.function.derivatives(
+                &self.points,
+                parameters,
+                &self.multipliers,
+                &mut self.values,
+                &mut self.jacobian,
+                &mut self.hessian,
+            );
+            (0..self.hessian.columns()).find_map(|i| place(&self.hessian, i)).map(|k| (output, k))
+        })
+    }
+}

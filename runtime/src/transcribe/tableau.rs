@@ -1,0 +1,38 @@
+//! **The table** of one-step schemes.
+//!
+//! With `F = (tf - t0) f` over normalised time and `h = 1/N`, every scheme here is
+//!
+//! ```text
+//!     x_{k+1} - x_k - h sum_j b_j F(tau_k + c_j h, (1 - w_j) x_k + w_j x_{k+1}, u_k) = 0
+//! ```
+//!
+//! with a blend `w_j` per state. The integral of a cost takes the same nodes and weights, so that it has the order
+//! of the scheme.
+
+use crate::problem::{Method, Scheme};
+
+/// One evaluation of the right side in each interval.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Node {
+    /// `b`
+    pub(crate) weight: f64,
+    /// `c`
+    pub(crate) time: f64,
+    /// `w`, one per state.
+    pub(crate) blend: Vec<f64>,
+}
+
+/// The nodes of a scheme.
+pub(crate) fn nodes(method: &Method, states: usize) -> Vec<Node> {
+    let node = |weight, time, blend| Node { weight, time, blend: vec![blend; states] };
+    match method.scheme {
+        Scheme::Euler => vec![node(1.0, 0.0, 0.0)],
+        Scheme::ImplicitEuler => {
+            let mut implicit = node(1.0, 1.0, 1.0);
+            method.lagged.iter().for_each(|state| implicit.blend[*state] = 0.0);
+            vec![implicit]
+        }
+        Scheme::Midpoint => vec![node(1.0, 0.5, 0.5)],
+        Scheme::Trapezoid => vec![node(0.5, 0.0, 0.0), node(0.5, 1.0, 1.0)],
+    }
+}

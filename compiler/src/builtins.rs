@@ -393,6 +393,16 @@ table! {
         lowering: Lowering::Inline(Inline::Tanh),
         ..FUNCTION
     };
+    LogCosh = Row {
+        name: "log_cosh",
+        notation: Notation::Internal,
+        doc: "`log(cosh(x))` without overflow: the antiderivative of tanh, for smoothing `abs`.",
+        parity: Parity::Even,
+        value: |a| log_cosh(a[0]),
+        partial: |g, _, a, _| g.tanh(a[0]),
+        lowering: Lowering::Call1(log_cosh),
+        ..FUNCTION
+    };
     Abs = Row {
         name: "abs",
         doc: "Absolute value. `abs(-2) = 2`. It has a kink at 0.",
@@ -408,7 +418,7 @@ table! {
         arity: 2,
         doc: "The smaller of two. `min(1, 2) = 1`. It has a kink where they are equal.",
         smoothness: Smoothness::Kink,
-        value: |a| if a[0].is_nan() { a[0] } else { choose(a[1] < a[0] || a[1].is_nan(), a[1], a[0]) },
+        value: |a| if a[0] <= a[1] || a[0].is_nan() { a[0] } else { a[1] },
         partial: |g, _, a, which| indicator(g, a[0], a[1], which == 0),
         lowering: Lowering::Inline(Inline::Min),
         ..FUNCTION
@@ -418,7 +428,7 @@ table! {
         arity: 2,
         doc: "The larger of two. `max(1, 2) = 2`. It has a kink where they are equal.",
         smoothness: Smoothness::Kink,
-        value: |a| if a[0].is_nan() { a[0] } else { choose(a[1] > a[0] || a[1].is_nan(), a[1], a[0]) },
+        value: |a| if a[1] <= a[0] || a[0].is_nan() { a[0] } else { a[1] },
         partial: |g, _, a, which| indicator(g, a[1], a[0], which == 0),
         lowering: Lowering::Inline(Inline::Max),
         ..FUNCTION
@@ -429,7 +439,7 @@ table! {
         arity: 4,
         doc: "`select_le(a, b, x, y)` is x where a <= b, else y; what `piecewise` is made of.",
         smoothness: Smoothness::Jump,
-        value: |a| choose(a[0] <= a[1], a[2], a[3]),
+        value: |a| if a[0] <= a[1] { a[2] } else { a[3] },
         partial: |g, _, a, which| match which {
             2 => indicator(g, a[0], a[1], true),
             3 => indicator(g, a[0], a[1], false),
@@ -438,10 +448,6 @@ table! {
         lowering: Lowering::Inline(Inline::SelectLe),
         ..FUNCTION
     };
-}
-
-fn choose(condition: bool, yes: f64, no: f64) -> f64 {
-    if condition { yes } else { no }
 }
 
 /// 1 where `(a <= b) == holds`, else 0.
@@ -463,6 +469,16 @@ fn unit_circle(graph: &mut Graph, x: ExprId) -> ExprId {
     let one = graph.number(1.0);
     let rest = graph.sub(one, square);
     graph.sqrt(rest)
+}
+
+/// log(cosh(x)) = log(1 + 2 sinh(x/2)^2) near 0, and |x| + log((1 + exp(-2|x|)) / 2) where cosh might overflow.
+extern "C" fn log_cosh(x: f64) -> f64 {
+    if x.abs() < 1.0 {
+        let half = (0.5 * x).sinh();
+        (2.0 * half * half).ln_1p()
+    } else {
+        x.abs() + (-2.0 * x.abs()).exp().ln_1p() - std::f64::consts::LN_2
+    }
 }
 
 /// Functions of the standard library with the calling convention of machine code.

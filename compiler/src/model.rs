@@ -6,7 +6,7 @@
 
 use crate::graph::{ExprId, Graph};
 use fdcc_grammar::{Diagnostic, Span};
-use fdcc_runtime::problem::Method;
+use fdcc_runtime::problem::{Linear, Method, Scheme, Solver};
 
 /// What an input of the model's graph stands for. The numbers are indices into the lists of [`Model`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -209,8 +209,54 @@ pub struct Model {
 }
 
 impl Model {
+    /// A model in which nothing has been declared.
+    pub fn empty() -> Self {
+        let mut graph = Graph::new();
+        let interval = [graph.number(0.0), graph.number(1.0)];
+        Model {
+            name: "model".into(),
+            graph,
+            symbols: Vec::new(),
+            params: Vec::new(),
+            param_order: Vec::new(),
+            frees: Vec::new(),
+            states: Vec::new(),
+            controls: Vec::new(),
+            surfaces: Vec::new(),
+            interval,
+            path: Vec::new(),
+            boundary: Vec::new(),
+            objective: None,
+            sense: 1.0,
+            integrals: Vec::new(),
+            report: Vec::new(),
+            expectations: Vec::new(),
+            method: default_method(),
+            smooth: false,
+            not_yet: Vec::new(),
+        }
+    }
+
     /// The graph input that is a symbol.
     pub fn input_of(&self, symbol: Symbol) -> Option<u32> {
         self.symbols.iter().position(|&known| known == symbol).map(|at| at as u32)
+    }
+}
+
+/// What is used where the model is silent.
+fn default_method() -> Method {
+    Method {
+        scheme: Scheme::ImplicitEuler,
+        lagged: Vec::new(),
+        intervals: 200,
+        steps: 1,
+        sigma: None,
+        continuation: Vec::new(),
+        kernel: "cubic".into(),
+        solver: Solver::Automatic,
+        linear: Linear::Automatic,
+        tol: 1e-8,
+        max_iter: 3000,
+        seed: 0,
     }
 }

@@ -34,6 +34,7 @@ pub struct Item {
 }
 
 /// The kinds of items, in the order of the language reference.
+#[expect(missing_docs, reason = "the syntax above each variant names its fields")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum ItemKind {
     /// `param name = expr [unit] in [a, b]`
@@ -103,6 +104,7 @@ pub struct Interval {
 }
 
 /// What a state is at the start.
+#[expect(missing_docs, reason = "the syntax above each variant names its fields")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Start {
     /// `start expr`
@@ -210,6 +212,7 @@ pub struct Setting {
 }
 
 /// The value of a setting.
+#[expect(missing_docs, reason = "the syntax above each variant names its fields")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum SettingValue {
     /// A single word or expression (a word is a name).
@@ -254,6 +257,7 @@ pub struct Expr {
 }
 
 /// The kinds of expressions.
+#[expect(missing_docs, reason = "the syntax above each variant names its fields")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExprKind {
     /// `9.81`

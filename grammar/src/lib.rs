@@ -4,9 +4,11 @@
 
 pub mod ast;
 mod diagnostic;
+mod parse;
 mod source;
 
 pub use diagnostic::{Code, Diagnostic, Label, Severity};
+pub use parse::parse;
 pub use source::{LineColumn, SourceFile, Span};
 
 /// What a text holds: the items that could be read, and what is wrong with the rest.

@@ -1,9 +1,20 @@
 //! Numbers: from a [`problem::Problem`] to solutions.
 //!
-//! Start reading at [`nlp::interior_point`].
+//! ```text
+//! Problem -- transcribe --> TranscribedNlp -- nlp::interior_point --> Solution --> Trajectory
+//! ```
+//!
+//! Start reading at [`problem`] (the contract) and [`nlp::interior_point`] (the loop).
+
+pub mod problem;
 
 mod clarabel;
 pub mod linalg;
+
 pub mod nlp;
-pub mod problem;
 pub mod transcribe;
+
+pub mod modes;
+pub mod trajectory;
+
+pub mod homotopy;

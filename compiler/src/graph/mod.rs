@@ -161,11 +161,7 @@ impl Graph {
     }
 
     /// The roots with some inputs replaced.
-    pub fn substitute(
-        &mut self,
-        roots: &[ExprId],
-        inputs: &dyn Fn(u32) -> Option<ExprId>,
-    ) -> Vec<ExprId> {
+    pub fn substitute(&mut self, roots: &[ExprId], inputs: &dyn Fn(u32) -> Option<ExprId>) -> Vec<ExprId> {
         self.rewrite(roots, |_, id, expr| match expr {
             Expr::Input(position) => inputs(*position).unwrap_or(id),
             _ => id,

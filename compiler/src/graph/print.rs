@@ -8,7 +8,7 @@ use std::collections::HashMap;
 const LONGEST_TEXT: usize = 72;
 /// Binds most tightly: names, numbers, calls.
 const ATOM: u8 = 9;
-/// A sign binds like a product.
+/// Products, quotients and signs.
 const PREFIX: u8 = 2;
 
 /// The roots as lines `name = text`, after the lines of what they share.
@@ -45,7 +45,7 @@ struct Printer<'a> {
 impl Printer<'_> {
     fn node(&mut self, id: ExprId, uses: usize) {
         let (mut text, mut binding) = match self.graph.expr(id) {
-            Expr::Number(bits) => (bits.value().to_string(), if bits.value() < 0.0 { PREFIX } else { ATOM }),
+            Expr::Number(bits) => number(bits.value()),
             Expr::Input(position) => ((self.input)(*position), ATOM),
             Expr::Multiplier(output) => (format!("lambda[{output}]"), ATOM),
             Expr::Call(builtin, operands) => self.call(*builtin, operands),
@@ -71,19 +71,33 @@ impl Printer<'_> {
     fn call(&self, builtin: Builtin, operands: &[ExprId]) -> (String, u8) {
         let row = builtin.row();
         match row.notation {
-            Notation::Infix(binding) => (self.infix(row.name, binding, operands), binding),
+            _ if builtin == Builtin::Mul => (self.product(operands[0], operands[1]), PREFIX),
+            Notation::Infix(binding) => (self.infix(row.name, binding, operands[0], operands[1]), binding),
             Notation::Prefix => (format!("{}{}", row.name, self.text(operands[0], ATOM)), PREFIX),
-            Notation::Function => (format!("{}({})", row.name, self.list(operands)), ATOM),
-            Notation::Internal => (self.selection(operands), 0),
+            _ if builtin == Builtin::SelectLe => (self.selection(operands), 0),
+            _ => (format!("{}({})", row.name, self.list(operands)), ATOM),
         }
     }
 
-    /// The right operand of `-`, `/` and `^` must bind more tightly than the operator, as must a sign in front.
-    fn infix(&self, operator: &str, binding: u8, operands: &[ExprId]) -> String {
+    /// A product with a reciprocal that has no name is shown as the quotient it was made from.
+    fn product(&self, a: ExprId, b: ExprId) -> String {
+        match (self.denominator(b), self.denominator(a)) {
+            (Some(denominator), _) => self.infix("/", PREFIX, a, denominator),
+            (_, Some(denominator)) => self.infix("/", PREFIX, b, denominator),
+            _ => self.infix("*", PREFIX, a, b),
+        }
+    }
+
+    fn denominator(&self, id: ExprId) -> Option<ExprId> {
+        let operands = self.graph.as_call(id, Builtin::Div)?;
+        (self.texts[&id].1 != ATOM).then_some(operands[1])
+    }
+
+    /// The right operand of `-`, `/` and `^` must bind more tightly than the operator, and the left one of `^`.
+    fn infix(&self, operator: &str, binding: u8, a: ExprId, b: ExprId) -> String {
         let right = if matches!(operator, "+" | "*") { binding } else { binding + 1 };
         let left = if operator == "^" { binding + 1 } else { binding };
-        let (left, right) = (self.text(operands[0], left), self.text(operands[1], right));
-        format!("{left} {operator} {right}")
+        format!("{} {operator} {}", self.text(a, left), self.text(b, right))
     }
 
     fn selection(&self, operands: &[ExprId]) -> String {
@@ -103,6 +117,13 @@ impl Printer<'_> {
     }
 }
 
+/// Plain digits where they are few.
+fn number(value: f64) -> (String, u8) {
+    let few = value == 0.0 || (1e-4..1e7).contains(&value.abs());
+    let text = if few { value.to_string() } else { format!("{value:e}") };
+    (text, if value < 0.0 { PREFIX } else { ATOM })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,18 +137,42 @@ mod tests {
 
     #[test]
     fn brackets_stand_where_they_are_needed() {
-        assert_eq!(text(|g, x, y| { let d = g.sub(x, y); g.mul(d, y) }), "f = y * (x - y)\n");
-        assert_eq!(text(|g, x, y| { let d = g.sub(x, y); g.sub(y, d) }), "f = y - (x - y)\n");
-        assert_eq!(text(|g, x, y| { let p = g.mul(x, y); g.add(p, y) }), "f = y + x * y\n");
+        assert_eq!(
+            text(|g, x, y| {
+                let d = g.sub(x, y);
+                g.mul(d, y)
+            }),
+            "f = y * (x - y)\n"
+        );
+        assert_eq!(
+            text(|g, x, y| {
+                let d = g.sub(x, y);
+                g.sub(y, d)
+            }),
+            "f = y - (x - y)\n"
+        );
+        assert_eq!(
+            text(|g, x, y| {
+                let p = g.mul(x, y);
+                g.add(p, y)
+            }),
+            "f = y + x * y\n"
+        );
     }
 
     #[test]
     fn a_quotient_is_shown_as_one() {
-        assert_eq!(text(|g, x, y| g.div(x, y)), "f = x * (1 / y)\n");
+        assert_eq!(text(|g, x, y| g.div(x, y)), "f = x / y\n");
     }
 
     #[test]
     fn what_is_used_twice_gets_a_name() {
-        assert_eq!(text(|g, x, _| { let s = g.sin(x); g.square(s) }), "v1 = sin(x)\nf = v1 * v1\n");
+        assert_eq!(
+            text(|g, x, _| {
+                let s = g.sin(x);
+                g.square(s)
+            }),
+            "v1 = sin(x)\nf = v1 * v1\n"
+        );
     }
 }

@@ -21,7 +21,9 @@ pub fn verify(graph: &Graph) -> Result<(), String> {
 
 fn verify_node(id: ExprId, expr: &Expr) -> Result<(), String> {
     match expr {
-        Expr::Number(bits) if OrderedBits::new(bits.value()) != *bits => Err("number is not canonical".into()),
+        Expr::Number(bits) if OrderedBits::new(bits.value()) != *bits => {
+            Err("number is not canonical".into())
+        }
         Expr::Call(builtin, operands) if operands.len() != builtin.row().arity => {
             Err(format!("{} operands for {}", operands.len(), builtin.row().name))
         }

@@ -11,6 +11,8 @@ pub(crate) struct Value {
     pub parts: Parts,
     /// What it is made of.
     pub traits: Traits,
+    /// The declaration that names its components.
+    pub named: Option<usize>,
 }
 
 /// A number or a vector; unknown after an error, so that one mistake is told once.
@@ -63,7 +65,9 @@ impl Reads {
     pub const SELECTOR: Reads = Reads(32);
     /// `x(start)`, `x(end)`, `integral(e)`.
     pub const WHOLE: Reads = Reads(64);
-    pub const ALL: Reads = Reads(127);
+    /// `sliding` and `sensitivity`.
+    pub const SIMULATION: Reads = Reads(128);
+    pub const ALL: Reads = Reads(255);
 
     pub const fn or(self, other: Reads) -> Reads {
         Reads(self.0 | other.0)
@@ -81,10 +85,10 @@ impl Reads {
 }
 
 /// A `Sgn` or `match` inside a value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct SetUse {
-    /// The index of its surface.
-    pub surface: usize,
+    /// The name of its surface.
+    pub surface: Rc<str>,
     /// The call or the whole `match`.
     pub span: Span,
     /// `Sgn` rather than `match`.
@@ -115,7 +119,7 @@ impl Traits {
     /// Everything of both.
     pub fn join(mut self, other: &Traits) -> Traits {
         self.reads = self.reads.or(other.reads);
-        other.sets.iter().for_each(|it| push_new(&mut self.sets, *it));
+        other.sets.iter().for_each(|it| push_new(&mut self.sets, it.clone()));
         for knot in &other.knots {
             // A definition that is used twice is told at its first use.
             if self.knots.iter().all(|known| known.site != knot.site) {
@@ -141,16 +145,16 @@ fn push_new<T: PartialEq>(list: &mut Vec<T>, item: T) {
 impl Value {
     /// A number with its traits.
     pub fn scalar(part: ExprId, traits: Traits) -> Value {
-        Value { parts: Parts::Scalar(part), traits }
+        Value { parts: Parts::Scalar(part), traits, named: None }
     }
 
     /// Nothing known, but what it is made of.
     pub fn unknown(traits: Traits) -> Value {
-        Value { parts: Parts::Unknown, traits }
+        Value { parts: Parts::Unknown, traits, named: None }
     }
 
-    /// A plain constant or symbol.
-    pub fn reading(parts: Parts, reads: Reads) -> Value {
-        Value { parts, traits: Traits { reads, ..Traits::default() } }
+    /// A symbol or several, read by name.
+    pub fn symbols(parts: Parts, reads: Reads, named: usize) -> Value {
+        Value { parts, traits: Traits { reads, ..Traits::default() }, named: Some(named) }
     }
 }

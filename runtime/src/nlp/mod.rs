@@ -178,6 +178,18 @@ pub struct Counts {
     pub restorations: usize,
 }
 
+impl Counts {
+    /// Adds the work of another solve.
+    pub fn add(&mut self, other: &Counts) {
+        self.iterations += other.iterations;
+        self.factorizations += other.factorizations;
+        self.regularizations += other.regularizations;
+        self.values += other.values;
+        self.derivatives += other.derivatives;
+        self.restorations += other.restorations;
+    }
+}
+
 /// What a solver found.
 #[derive(Clone, Debug)]
 pub struct Solution {

@@ -96,6 +96,14 @@ impl Ends {
         }
     }
 
+    /// The gradient by the last state only.
+    pub(super) fn add_last_gradient(&self, stages: Stages, gradient: &mut [f64]) {
+        let last = stages.state(stages.intervals);
+        for entry in self.gradient_moves.iter().filter(|entry| last.contains(&entry.target)) {
+            gradient[entry.target] += entry.coefficient * self.jacobian.column(entry.column)[0];
+        }
+    }
+
     /// The first output with a value or derivative that is not finite, for these multipliers.
     pub(super) fn not_finite(&mut self, stages: Stages, parameters: &[f64], rows: usize) -> Option<usize> {
         self.differentiate(stages, parameters, 1.0, &vec![1.0; rows]);

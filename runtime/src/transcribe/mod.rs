@@ -111,6 +111,21 @@ impl<'p> TranscribedNlp<'p> {
         v
     }
 
+    /// The gradient of the objective, with each `x_k` counting only in the interval that begins at it, and `x_N` only
+    /// in the Mayer objective. Belongs to the point of the last call of `derivatives`.
+    pub(crate) fn gradient_from_here_on(&self) -> Vec<f64> {
+        let mut gradient = vec![0.0; self.stages.variables()];
+        self.nodes.iter().for_each(|node| node.add_own_gradient(self.stages, &mut gradient));
+        self.ends.add_last_gradient(self.stages, &mut gradient);
+        gradient
+    }
+
+    /// The largest absolute value of each switching function along `v`.
+    pub fn guard_sizes(&self, v: &[f64]) -> Vec<f64> {
+        let guards = crate::trajectory::guards(self.problem, self.stages, v, &self.parameters_at(v));
+        guards.iter().map(|psi| psi.iter().fold(0.0, |a: f64, value| a.max(value.abs()))).collect()
+    }
+
     fn load(&mut self, v: &[f64]) {
         for (unknown, variable) in self.problem.unknowns.iter().zip(self.stages.globals()) {
             self.parameters[unknown.parameter] = v[variable];

@@ -200,11 +200,19 @@ impl Sampled {
                 target.iter_mut().zip(column).for_each(|(value, d)| *value += entry.coefficient * d);
             }
         }
-        for (entry, step) in &self.gradient_moves {
-            for (k, d) in self.jacobian.column(entry.column).iter().enumerate() {
-                gradient[entry.target + k * step] += entry.coefficient * d;
-            }
+        self.gradient_moves.iter().for_each(|entry| self.add_gradient(entry, gradient));
+    }
+
+    fn add_gradient(&self, (entry, step): &(Contribution, usize), gradient: &mut [f64]) {
+        for (k, d) in self.jacobian.column(entry.column).iter().enumerate() {
+            gradient[entry.target + k * step] += entry.coefficient * d;
         }
+    }
+
+    /// The gradient by the states at the beginning of each interval only.
+    pub(super) fn add_own_gradient(&self, stages: Stages, gradient: &mut [f64]) {
+        let own = self.gradient_moves.iter().filter(|(entry, _)| entry.target < stages.states);
+        own.for_each(|entry| self.add_gradient(entry, gradient));
     }
 
     /// The output and interval of the first value or derivative that is not finite.

@@ -32,8 +32,8 @@ const WARM_PUSH: f64 = 1e-5;
 /// An error this small for this many iterations is acceptable.
 const ACCEPTABLE_ERROR: f64 = 1e-6;
 const ACCEPTABLE_ITERATIONS: usize = 15;
-/// Variables beyond this have left the problem.
-const DIVERGED: f64 = 1e20;
+/// Variables beyond this, at a feasible point, have left the problem.
+const DIVERGED: f64 = 1e10;
 /// A step this small, relative to the iterate, is rounding.
 const TINY_STEP: f64 = 10.0 * f64::EPSILON;
 
@@ -222,13 +222,17 @@ impl Algorithm {
             Some(Status::Solved)
         } else if self.acceptable >= ACCEPTABLE_ITERATIONS {
             Some(Status::Acceptable)
-        } else if self.at.y[..self.space.variables].iter().any(|value| value.abs() > DIVERGED) {
+        } else if self.residuals.primal <= self.options.tol && self.has_diverged() {
             Some(Status::Unbounded)
         } else if self.counts.iterations >= self.options.max_iter {
             Some(Status::IterationLimit)
         } else {
             None
         }
+    }
+
+    fn has_diverged(&self) -> bool {
+        self.at.y[..self.space.variables].iter().any(|value| value.abs() > DIVERGED)
     }
 
     fn take_step(&mut self, nlp: &mut dyn Nlp) -> Outcome {

@@ -1,0 +1,135 @@
+//! FDC0401: bounds that contradict each other, a start outside its bounds, or time that runs backwards.
+
+use super::Facts;
+use crate::model::Range;
+use crate::resolve::elaborator::Elaborator;
+use crate::resolve::text;
+use fdcc_grammar::ast::{Interval, Item, ItemKind, Start};
+use fdcc_grammar::{Code, Diagnostic, Label, Span};
+
+/// Reports all of them together: they have one cause, a slip of the pen, and one repair.
+pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
+    let mut labels = Vec::new();
+    let mut repairs = Vec::new();
+    for item in &facts.items {
+        look(facts.meaning, item, &mut labels, &mut repairs);
+    }
+    rows(facts.meaning, &mut labels, &mut repairs);
+    let mut labels = labels.into_iter();
+    if let Some(first) = labels.next() {
+        let mut diagnostic = Diagnostic::new(Code::EmptyBounds, "these bounds leave no room", first.span, first.text);
+        diagnostic.labels.extend(labels);
+        found.push(diagnostic.help(repairs.join("\n")));
+    }
+}
+
+fn look(meaning: &Elaborator<'_>, item: &Item, labels: &mut Vec<Label>, repairs: &mut Vec<String>) {
+    let first = crate::resolve::scope::declared(item).and_then(|name| meaning.scope.find(&name.name));
+    let Some(index) = first.filter(|&at| std::ptr::eq(meaning.scope.declarations[at].item, item)) else { return };
+    if let ItemKind::Time { interval, .. } = &item.kind {
+        return backwards(meaning, interval, labels, repairs);
+    }
+    let Some(index) = meaning.index_of(index) else { return };
+    match &item.kind {
+        ItemKind::Control { name, bounds: Some(bounds), parts, .. } => {
+            let ranges = meaning.model.controls[index..].iter().take(parts.len().max(1)).map(|it| it.range);
+            reversed(meaning, &format!("control {}", name.name), bounds, ranges, labels, repairs)
+        }
+        ItemKind::Free { name, bounds: Some(bounds), .. } => {
+            let range = meaning.model.frees[index].range;
+            reversed(meaning, &format!("free {}", name.name), bounds, [range], labels, repairs)
+        }
+        ItemKind::Param { name, value, bounds: Some(bounds), .. } => {
+            let range = meaning.model.params[index].range;
+            reversed(meaning, &format!("param {}", name.name), bounds, [range], labels, repairs);
+            if let Some(value) = value {
+                let given = meaning.param_values[index];
+                outside(meaning, Subject { name: &name.name, verb: "is", span: value.span }, given, range, labels, repairs);
+            }
+        }
+        ItemKind::State { name, bounds, start, parts, .. } => {
+            let states = || meaning.model.states[index..].iter().take(parts.len().max(1));
+            if let Some(bounds) = bounds {
+                reversed(meaning, &format!("state {}", name.name), bounds, states().map(|it| it.range), labels, repairs);
+            }
+            if let Some(Start::Value(value)) = start {
+                for state in states() {
+                    let given = state.start.map_or(f64::NAN, |start| meaning.numeric(start));
+                    let subject = Subject { name: &state.place.name, verb: "starts", span: value.span };
+                    outside(meaning, subject, given, state.range, labels, repairs);
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+fn numbers(meaning: &Elaborator<'_>, range: Range) -> [f64; 2] {
+    [meaning.numeric(range.lower), meaning.numeric(range.upper)]
+}
+
+fn reversed(
+    meaning: &Elaborator<'_>,
+    declaration: &str,
+    bounds: &Interval,
+    ranges: impl IntoIterator<Item = Range>,
+    labels: &mut Vec<Label>,
+    repairs: &mut Vec<String>,
+) {
+    let bad = ranges.into_iter().map(|range| numbers(meaning, range)).find(|[lower, upper]| lower > upper);
+    if let Some([lower, upper]) = bad {
+        let text = format!("lower bound {} is above upper bound {}", text::number(lower), text::number(upper));
+        labels.push(Label { span: bounds.span, text });
+        let (lower, upper) = (text::expr(&bounds.lower), text::expr(&bounds.upper));
+        repairs.push(format!("swap them: `{declaration} in [{upper}, {lower}]`"));
+    }
+}
+
+/// A value with bounds of its own.
+struct Subject<'a> {
+    name: &'a str,
+    verb: &'static str,
+    span: Span,
+}
+
+fn outside(
+    meaning: &Elaborator<'_>,
+    subject: Subject<'_>,
+    given: f64,
+    range: Range,
+    labels: &mut Vec<Label>,
+    repairs: &mut Vec<String>,
+) {
+    let [lower, upper] = numbers(meaning, range);
+    let (side, change, limit) = match () {
+        _ if lower > upper => return,
+        _ if given < lower => ("below its own lower bound", "lower", lower),
+        _ if given > upper => ("above its own upper bound", "raise", upper),
+        _ => return,
+    };
+    let (limit, given) = (text::number(limit), text::number(given));
+    labels.push(Label { span: subject.span, text: format!("{} {side} {limit}", subject.verb) });
+    let other = if subject.verb == "starts" { "start at" } else { "give it" };
+    repairs.push(format!("for `{}`, {change} the bound to {given} or {other} {limit}", subject.name));
+}
+
+fn backwards(meaning: &Elaborator<'_>, interval: &Interval, labels: &mut Vec<Label>, repairs: &mut Vec<String>) {
+    let [first, last] = meaning.interval.map(|end| meaning.numeric(end));
+    if first >= last {
+        let text = format!("ends at {}, but starts at {}", text::number(last), text::number(first));
+        labels.push(Label { span: interval.span, text });
+        repairs.push("give time a first value below its last".into());
+    }
+}
+
+/// Conditions between constants that exclude each other.
+fn rows(meaning: &Elaborator<'_>, labels: &mut Vec<Label>, repairs: &mut Vec<String>) {
+    for row in meaning.model.path.iter().chain(&meaning.model.boundary) {
+        let [lower, upper] = numbers(meaning, row.range);
+        if lower > upper {
+            let text = format!("no number is both above {} and below {}", text::number(lower), text::number(upper));
+            labels.push(Label { span: row.place.span, text });
+            repairs.push(format!("for `{}`, the left limit must be below the right one", row.place.name));
+        }
+    }
+}

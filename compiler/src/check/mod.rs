@@ -1,0 +1,81 @@
+//! The checks that need more than names and shapes: one file for each, listed here.
+
+mod bounds;
+mod duration;
+mod ends;
+mod equations;
+mod hidden_jump;
+mod links;
+mod needs_time;
+mod sets;
+mod smoothness;
+mod unused;
+mod values;
+
+use crate::resolve::elaborator::{Elaborator, Role};
+use fdcc_grammar::ast::{self, Item};
+use fdcc_grammar::{Diagnostic, Severity, Span};
+
+/// What a check may look at: the items of a phase and what they turned out to mean.
+pub(crate) struct Facts<'a, 'e> {
+    /// The items of the phase.
+    pub items: Vec<&'a Item>,
+    /// What they mean.
+    pub meaning: &'e mut Elaborator<'a>,
+    /// The whole tree.
+    pub tree: &'a ast::Model,
+}
+
+/// A check.
+type Check = fn(&mut Facts<'_, '_>, &mut Vec<Diagnostic>);
+
+/// Checks of a model with time and states of its own.
+const OF_A_PHASE: &[Check] = &[
+    needs_time::check,
+    equations::check,
+    ends::check,
+    duration::check,
+    sets::check,
+    hidden_jump::check,
+    smoothness::check,
+    bounds::check,
+    values::check,
+];
+
+/// Checks of what stands outside all phases.
+const AROUND_PHASES: &[Check] =
+    &[links::check, sets::check, hidden_jump::check, smoothness::check, bounds::check, values::check];
+
+/// All findings about a phase, or about what stands around phases.
+pub(crate) fn check(facts: &mut Facts<'_, '_>, is_phase: bool) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    let checks = if is_phase { OF_A_PHASE } else { AROUND_PHASES };
+    checks.iter().for_each(|check| check(facts, &mut found));
+    found
+}
+
+pub(crate) use unused::check as unused;
+
+impl Facts<'_, '_> {
+    /// Whether a mistake inside a span has been told already, so that more about it would be noise.
+    pub fn has_error_within(&self, span: Span) -> bool {
+        let inside = |it: &Diagnostic| it.severity == Severity::Error && it.span().start >= span.start && it.span().end <= span.end;
+        self.meaning.diagnostics.iter().any(inside)
+    }
+}
+
+impl Role<'_> {
+    /// In the words of a message.
+    pub fn describe(&self) -> String {
+        match self {
+            Role::Equation(_) => "the dynamics".into(),
+            Role::Path(Some(name), _) => format!("path constraint `{}`", name.name),
+            Role::Path(None, _) => "a path constraint".into(),
+            Role::Objective => "the objective".into(),
+            Role::Boundary(word) => format!("a condition at the {word}"),
+            Role::Surface(name) => format!("surface `{}`", name.name),
+            Role::Report(name) => format!("report `{}`", name.name),
+            Role::Number(what) => (*what).into(),
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! One kernel: what does not depend on the point, then the loop over pairs of points.
+
+use std::collections::HashMap;
+use std::mem::offset_of;
+
+use super::pairs::{Pair, Pairs};
+use super::{BlockArg, FunctionBuilder, InstBuilder, MemFlagsData, Tables, Value, elementary, memory, types};
+use crate::builtins::{Builtin, Inline, Lowering};
+use crate::generate::schedule::{Operation, Place, Schedule, Table};
+use crate::graph::{ExprId, Graph};
+
+/// Bytes of a number and of a pair.
+const NUMBER: usize = size_of::<f64>();
+const PAIR: i64 = 2 * NUMBER as i64;
+
+/// Places in [`Frame::cursors`].
+const POINTS: usize = 0;
+const MULTIPLIERS: usize = 1;
+const VALUES: usize = 2;
+const JACOBIAN: usize = 3;
+const HESSIAN: usize = 4;
+
+/// Loads may be moved to where they are needed: nobody writes to what a kernel reads.
+fn input_memory() -> MemFlagsData {
+    memory().with_readonly().with_can_move()
+}
+
+/// The body of a kernel, from its first block to its return.
+pub(super) fn build_kernel(graph: &Graph, schedule: &Schedule, mut pairs: Pairs) {
+    let frame = Frame::load(&mut pairs.builder, schedule);
+    let mut emitter =
+        Emitter { graph, schedule, frame, pairs, values: HashMap::new(), angles: HashMap::new() };
+    emitter.steps(&schedule.before);
+    emitter.all_points();
+    emitter.pairs.finish();
+}
+
+/// What the kernel was called with.
+struct Frame {
+    parameters: Value,
+    /// Pairs of points.
+    pairs: Value,
+    /// How far each column is from the first, in bytes.
+    columns: Vec<Value>,
+    /// Where the points at hand begin in the tables `points, multipliers, values, jacobian, hessian`.
+    cursors: [Value; 5],
+}
+
+impl Frame {
+    fn load(builder: &mut FunctionBuilder, schedule: &Schedule) -> Self {
+        let entry = builder.create_block();
+        builder.append_block_params_for_function_params(entry);
+        builder.switch_to_block(entry);
+        builder.seal_block(entry);
+        let tables = builder.block_params(entry)[0];
+        let mut field = |offset: usize| builder.ins().load(types::I64, memory(), tables, offset as i32);
+        let parameters = field(offset_of!(Tables, parameters));
+        let pairs = field(offset_of!(Tables, pairs));
+        let stride = field(offset_of!(Tables, stride));
+        let cursors = [
+            field(offset_of!(Tables, points)),
+            field(offset_of!(Tables, multipliers)),
+            field(offset_of!(Tables, values)),
+            field(offset_of!(Tables, jacobian)),
+            field(offset_of!(Tables, hessian)),
+        ];
+        let columns = column_offsets(builder, stride, schedule.columns());
+        Frame { parameters, pairs, columns, cursors }
+    }
+
+    fn address(&self, builder: &mut FunctionBuilder, cursor: usize, column: usize) -> Value {
+        builder.ins().iadd(self.cursors[cursor], self.columns[column])
+    }
+
+    /// To the next pair.
+    fn advance(&mut self, builder: &mut FunctionBuilder) {
+        self.cursors = self.cursors.map(|cursor| builder.ins().iadd_imm_s(cursor, PAIR));
+        self.pairs = builder.ins().iadd_imm_s(self.pairs, -1);
+    }
+
+    /// What changes from pair to pair.
+    fn carried(&self) -> Vec<BlockArg> {
+        self.cursors.into_iter().chain([self.pairs]).map(BlockArg::Value).collect()
+    }
+
+    /// Takes over what [`Self::carried`] gave.
+    fn carry(&mut self, carried: &[Value]) {
+        self.cursors.copy_from_slice(&carried[..5]);
+        self.pairs = carried[5];
+    }
+}
+
+fn column_offsets(builder: &mut FunctionBuilder, stride: Value, count: usize) -> Vec<Value> {
+    let mut offset = builder.ins().iconst(types::I64, 0);
+    (0..count)
+        .map(|_| {
+            let this = offset;
+            offset = builder.ins().iadd(this, stride);
+            this
+        })
+        .collect()
+}
+
+/// Emits the steps of a schedule.
+struct Emitter<'a, 'f> {
+    graph: &'a Graph,
+    schedule: &'a Schedule,
+    frame: Frame,
+    pairs: Pairs<'f>,
+    values: HashMap<ExprId, Pair>,
+    /// Sine and cosine of the same angle are computed together.
+    angles: HashMap<ExprId, [Pair; 2]>,
+}
+
+impl Emitter<'_, '_> {
+    /// There is at least one pair, so the end of the loop is its only test.
+    fn all_points(&mut self) {
+        let builder = &mut self.pairs.builder;
+        let (each, end) = (builder.create_block(), builder.create_block());
+        let start = self.frame.carried();
+        builder.ins().jump(each, &start);
+        start.iter().for_each(|_| {
+            builder.append_block_param(each, types::I64);
+        });
+        builder.switch_to_block(each);
+        self.frame.carry(builder.block_params(each));
+        self.one_pair();
+        let builder = &mut self.pairs.builder;
+        self.frame.advance(builder);
+        let next = self.frame.carried();
+        builder.ins().brif(self.frame.pairs, each, &next, end, &[]);
+        builder.seal_block(each);
+        builder.switch_to_block(end);
+        builder.seal_block(end);
+    }
+
+    fn one_pair(&mut self) {
+        let schedule = self.schedule;
+        self.steps(&schedule.inside);
+        for &(id, place) in &schedule.constant {
+            self.store(id, place);
+        }
+    }
+
+    fn steps(&mut self, steps: &[(ExprId, Operation)]) {
+        let schedule = self.schedule;
+        for (id, operation) in steps {
+            let value = self.operation(operation);
+            self.values.insert(*id, value);
+            for &place in schedule.varying.get(id).into_iter().flatten() {
+                self.store(*id, place);
+            }
+        }
+    }
+
+    fn store(&mut self, id: ExprId, place: Place) {
+        let cursor = match place.table {
+            Table::Values => VALUES,
+            Table::Jacobian => JACOBIAN,
+            Table::Hessian => HESSIAN,
+        };
+        let value = self.value(id);
+        let address = self.frame.address(&mut self.pairs.builder, cursor, place.column);
+        self.pairs.store(value, address);
+    }
+
+    /// Numbers are written anew at every use: reading one again is as cheap as keeping it on the stack.
+    fn value(&mut self, id: ExprId) -> Pair {
+        match self.graph.as_number(id) {
+            Some(number) => self.pairs.number(number),
+            None => self.values[&id],
+        }
+    }
+
+    fn operation(&mut self, operation: &Operation) -> Pair {
+        match operation {
+            Operation::Point(column) => self.load(POINTS, *column),
+            Operation::Multiplier(column) => self.load(MULTIPLIERS, *column),
+            Operation::Parameter(index) => {
+                self.pairs.load_once(self.frame.parameters, (index * NUMBER) as i32)
+            }
+            Operation::Call(builtin, operands) => self.call(*builtin, operands),
+            Operation::MultiplyAdd(operands) => {
+                let [a, b, c] = operands.map(|operand| self.value(operand));
+                self.pairs.multiply_add(a, b, c)
+            }
+            Operation::MultiplySubtract(operands) => {
+                let [a, b, c] = operands.map(|operand| self.value(operand));
+                self.pairs.multiply_subtract(a, b, c)
+            }
+            Operation::SubtractProduct(operands) => {
+                let [a, b, c] = operands.map(|operand| self.value(operand));
+                self.pairs.subtract_product(a, b, c)
+            }
+        }
+    }
+
+    fn load(&mut self, cursor: usize, column: usize) -> Pair {
+        let address = self.frame.address(&mut self.pairs.builder, cursor, column);
+        self.pairs.load(input_memory(), address)
+    }
+
+    fn call(&mut self, builtin: Builtin, operands: &[ExprId]) -> Pair {
+        let values: Vec<Pair> = operands.iter().map(|&operand| self.value(operand)).collect();
+        match builtin.row().lowering {
+            Lowering::Inline(Inline::Sin) => self.angle(operands[0])[0],
+            Lowering::Inline(Inline::Cos) => self.angle(operands[0])[1],
+            Lowering::Inline(inline) => instructions(&mut self.pairs, inline, &values),
+            Lowering::Call1(_) | Lowering::Call2(_) => self.pairs.call(builtin.row().name, &values),
+        }
+    }
+
+    fn angle(&mut self, operand: ExprId) -> [Pair; 2] {
+        if let Some(&both) = self.angles.get(&operand) {
+            return both;
+        }
+        let angle = self.value(operand);
+        let both = elementary::sine_and_cosine(&mut self.pairs, angle);
+        self.angles.insert(operand, both);
+        both
+    }
+}
+
+fn instructions(pairs: &mut Pairs, inline: Inline, a: &[Pair]) -> Pair {
+    match inline {
+        Inline::Add => pairs.add(a[0], a[1]),
+        Inline::Sub => pairs.subtract(a[0], a[1]),
+        Inline::Mul => pairs.multiply(a[0], a[1]),
+        Inline::Div => pairs.divide(a[0], a[1]),
+        Inline::Neg => pairs.negate(a[0]),
+        Inline::Sqrt => pairs.square_root(a[0]),
+        Inline::Abs => pairs.absolute(a[0]),
+        Inline::Min => extremum(pairs, a[0], a[1], [a[0], a[1]]),
+        Inline::Max => extremum(pairs, a[0], a[1], [a[1], a[0]]),
+        Inline::SelectLe => {
+            let mask = pairs.less_or_equal(a[0], a[1]);
+            pairs.select(mask, a[2], a[3])
+        }
+        Inline::Sin => elementary::sine_and_cosine(pairs, a[0])[0],
+        Inline::Cos => elementary::sine_and_cosine(pairs, a[0])[1],
+        Inline::Exp => elementary::exponential(pairs, a[0]),
+        Inline::Tanh => elementary::hyperbolic_tangent(pairs, a[0]),
+    }
+}
+
+/// `a` if the first of `order` is at most the second, else `b`; but what is not a number goes through.
+fn extremum(pairs: &mut Pairs, a: Pair, b: Pair, order: [Pair; 2]) -> Pair {
+    let first = pairs.less_or_equal(order[0], order[1]);
+    let chosen = pairs.select(first, a, b);
+    let undefined = pairs.is_nan(a);
+    pairs.select(undefined, a, chosen)
+}

@@ -1,0 +1,84 @@
+//! What an expression may read, depending on where it stands.
+
+use super::elaborator::Elaborator;
+use super::value::{Reads, Value};
+use fdcc_grammar::{Code, Diagnostic, Span};
+
+/// A place of the language and the kinds of symbols that have a meaning there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Context {
+    /// In the words of a message: `the objective`.
+    pub name: &'static str,
+    /// What may be read.
+    pub allowed: Reads,
+    /// Whether `x'` stands for the derivative of a guess.
+    pub is_guess: bool,
+}
+
+const SIGNAL: Reads = Reads::TIME.or(Reads::STATE).or(Reads::CONTROL).or(Reads::PARAM).or(Reads::FREE).or(Reads::SELECTOR);
+const AT_AN_END: Reads = Reads::TIME.or(Reads::STATE).or(Reads::PARAM).or(Reads::FREE);
+const WHOLE: Reads = Reads::PARAM.or(Reads::FREE).or(Reads::WHOLE);
+
+impl Context {
+    const fn new(name: &'static str, allowed: Reads) -> Self {
+        Context { name, allowed, is_guess: false }
+    }
+
+    pub const DEFINITION: Context = Context::new("a definition", Reads::ALL);
+    pub const NUMBER: Context = Context::new("a constant", Reads::PARAM);
+    pub const BOUND: Context = Context::new("a bound", Reads::PARAM);
+    pub const SETTING: Context = Context::new("a setting", Reads::PARAM);
+    pub const TIME: Context = Context::new("the bounds of time", Reads::PARAM.or(Reads::FREE));
+    pub const START: Context = Context::new("a start value", Reads::PARAM.or(Reads::FREE));
+    pub const FREE_GUESS: Context = Context::new("the guess of an unknown", Reads::PARAM.or(Reads::FREE));
+    pub const DYNAMICS: Context = Context::new("the dynamics", SIGNAL);
+    pub const PATH: Context = Context::new("a path constraint", SIGNAL);
+    pub const INTEGRAND: Context = Context::new("an integral", SIGNAL);
+    pub const REPORT: Context = Context::new("a report", SIGNAL);
+    pub const SURFACE: Context = Context::new("a surface", AT_AN_END);
+    pub const AT_AN_END: Context = Context::new("a value at the start or the end", AT_AN_END);
+    pub const BOUNDARY: Context = Context::new("a start or end condition", AT_AN_END.or(Reads::WHOLE));
+    pub const OBJECTIVE: Context = Context::new("the objective", WHOLE);
+    pub const EXPECT: Context = Context::new("an expectation", WHOLE.or(Reads::SIMULATION));
+    pub const GUESS: Context =
+        Context { name: "a guess", allowed: Reads::TIME.or(Reads::PARAM).or(Reads::FREE), is_guess: true };
+}
+
+impl Elaborator<'_> {
+    /// Lets a value through if all it reads has a meaning here.
+    pub fn admit(&mut self, what: &str, value: Value, span: Span) -> Value {
+        // What a set has no business in is told in the words of sets.
+        let of_sets = if value.traits.sets.is_empty() { Reads::default() } else { Reads::SELECTOR };
+        let beyond = value.traits.reads.beyond(self.context.allowed.or(of_sets));
+        if beyond.is_empty() {
+            return value;
+        }
+        let (label, help) = explain(what, beyond, self.context);
+        let message = format!("`{what}` has no meaning in {}", self.context.name);
+        self.fail(Diagnostic::new(Code::NotAllowedHere, message, span, label).help(help))
+    }
+}
+
+/// Why a kind of symbol has no meaning in a context, and what could be meant.
+fn explain(what: &str, beyond: Reads, context: Context) -> (&'static str, String) {
+    let whole = context.allowed.has(Reads::WHOLE);
+    if beyond.has(Reads::SIMULATION) {
+        ("only a simulation can tell", "it may stand in `expect`".into())
+    } else if beyond.has(Reads::WHOLE) {
+        ("one number for the whole run", "it may stand in the objective, in `start` and `end` conditions and in `expect`".into())
+    } else if context.is_guess {
+        ("has no guess above this line", format!("a guess may use time, `free` names and guesses above it: guess `{what}` first"))
+    } else if beyond.has(Reads::CONTROL) && whole {
+        ("a control, which varies over time and has no value at a single time", format!("write `integral({what})`, or bound it with `path`"))
+    } else if beyond.has(Reads::CONTROL) {
+        ("depends on a control", "it may depend on states, time and parameters".into())
+    } else if beyond.has(Reads::STATE.or(Reads::TIME)) && whole {
+        ("varies over time, but one number is needed", format!("write `{what}(end)`, `{what}(start)` or `integral({what})`"))
+    } else if beyond.has(Reads::STATE.or(Reads::TIME)) {
+        ("varies over time", format!("{} is made of numbers, `const` and `param`", context.name))
+    } else if beyond.has(Reads::SELECTOR) {
+        ("depends on the side of a surface", "take it along the path instead, with `integral` or `path`".into())
+    } else {
+        ("chosen by the optimiser", format!("{} is made of numbers, `const` and `param`", context.name))
+    }
+}

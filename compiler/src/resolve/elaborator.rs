@@ -1,0 +1,234 @@
+//! The state of resolution: names, graph and findings, with the ways to report and to compute a number.
+//!
+//! Evaluating an expression never fails: what went wrong is told once, and its value is unknown from there on.
+
+use super::context::Context;
+use super::scope::Scope;
+use super::value::{Parts, Reads, Traits, Value};
+use crate::graph::evaluate::evaluate;
+use crate::graph::{ExprId, Graph};
+use crate::model::{Integral, Model, Place, Symbol};
+use fdcc_grammar::ast;
+use fdcc_grammar::{Code, Diagnostic, Span};
+use std::collections::HashMap;
+
+/// How deep definitions and expressions may be nested in each other.
+pub(crate) const DEEPEST: usize = 256;
+
+/// A surface, perhaps with a mistake in it.
+pub(crate) struct SurfaceEntry {
+    /// Name and place.
+    pub place: Place,
+    /// Its function, if that is known.
+    pub psi: Option<ExprId>,
+    /// Its selector.
+    pub selector: ExprId,
+}
+
+/// What a value is used for, and what it is made of: the subject of the checks.
+pub(crate) struct Piece<'a> {
+    /// What it is used for.
+    pub role: Role<'a>,
+    /// What it is made of.
+    pub traits: Traits,
+}
+
+/// What a value is used for.
+#[derive(Clone, Copy)]
+pub(crate) enum Role<'a> {
+    Equation(&'a ast::Equation),
+    Path(Option<&'a ast::Ident>, &'a ast::Condition),
+    Objective,
+    Boundary(&'static str),
+    Surface(&'a ast::Ident),
+    Report(&'a ast::Ident),
+    Number(&'static str),
+}
+
+/// Everything that is known while the items of one phase are resolved.
+pub(crate) struct Elaborator<'a> {
+    /// Declarations.
+    pub scope: Scope<'a>,
+    /// Which declarations lie on a circle.
+    pub circular: Vec<bool>,
+    /// All expressions.
+    pub graph: Graph,
+    /// What the inputs of the graph are.
+    pub symbols: Vec<Symbol>,
+    /// What each declared name stands for.
+    pub values: Vec<Value>,
+    /// Values of the parameters, NaN where unknown.
+    pub param_values: Vec<f64>,
+    /// Names of the current function's arguments or of earlier guesses, from `frame` on.
+    pub locals: Vec<(&'a str, Value)>,
+    /// Where the visible locals begin.
+    pub frame: usize,
+    /// What may be read where we are.
+    pub context: Context,
+    /// How deep we are.
+    pub depth: usize,
+    /// The declaration whose definition is being evaluated.
+    pub owner: Option<usize>,
+    /// Whether a function's body is examined with arguments that are no real values.
+    pub examining: bool,
+    /// How many sums over data we are in.
+    pub sums: usize,
+    /// Surfaces, declared and unnamed.
+    pub surfaces: Vec<SurfaceEntry>,
+    /// Integrals.
+    pub integrals: Vec<Integral>,
+    /// The input of each integral.
+    pub integral_inputs: Vec<ExprId>,
+    /// The inputs of the states at the start and at the end.
+    pub at_ends: [Vec<ExprId>; 2],
+    /// The input that is time, if there is a time.
+    pub time: Option<u32>,
+    /// Results of functions, by function and arguments.
+    pub applied: HashMap<(usize, Vec<(Parts, Option<usize>)>), Value>,
+    /// Piecewise definitions by their place.
+    pub sites: HashMap<Span, super::knots::Site<'a>>,
+    /// Stand-ins for the arguments of functions that are examined by themselves.
+    pub arguments: Vec<ExprId>,
+    /// What has been resolved so far; graph, symbols, surfaces and integrals are moved in at the end.
+    pub model: Model,
+    /// Values and their uses.
+    pub pieces: Vec<Piece<'a>>,
+    /// First and last time.
+    pub interval: [ExprId; 2],
+    /// Findings.
+    pub diagnostics: Vec<Diagnostic>,
+    /// What cannot be solved yet.
+    pub not_yet: Vec<Diagnostic>,
+}
+
+impl<'a> Elaborator<'a> {
+    /// Nothing evaluated yet.
+    pub fn new(scope: Scope<'a>) -> Self {
+        let mut graph = Graph::new();
+        let interval = [graph.number(0.0), graph.number(1.0)];
+        let values = vec![Value::default(); scope.declarations.len()];
+        Elaborator {
+            circular: vec![false; values.len()],
+            scope,
+            graph,
+            symbols: Vec::new(),
+            values,
+            param_values: Vec::new(),
+            locals: Vec::new(),
+            frame: 0,
+            context: Context::DEFINITION,
+            depth: 0,
+            owner: None,
+            examining: false,
+            sums: 0,
+            surfaces: Vec::new(),
+            integrals: Vec::new(),
+            integral_inputs: Vec::new(),
+            at_ends: Default::default(),
+            time: None,
+            applied: HashMap::new(),
+            sites: HashMap::new(),
+            arguments: Vec::new(),
+            model: Model::empty(),
+            pieces: Vec::new(),
+            interval,
+            diagnostics: Vec::new(),
+            not_yet: Vec::new(),
+        }
+    }
+
+    /// A new input of the graph.
+    pub fn symbol(&mut self, symbol: Symbol) -> ExprId {
+        self.symbols.push(symbol);
+        self.graph.input(self.symbols.len() as u32 - 1)
+    }
+
+    /// Reports and gives the unknown value.
+    pub fn fail(&mut self, diagnostic: Diagnostic) -> Value {
+        self.diagnostics.push(diagnostic);
+        Value::default()
+    }
+
+    /// Reports a shape mismatch, unless arguments of an examined function are to blame.
+    pub fn fail_shape(&mut self, diagnostic: Diagnostic) -> Value {
+        if !self.examining {
+            self.diagnostics.push(diagnostic);
+        }
+        Value::default()
+    }
+
+    /// Notes something that is understood but cannot be solved yet.
+    pub fn not_yet(&mut self, span: Span, what: &str) {
+        let message = format!("{what} cannot be solved yet");
+        let found = Diagnostic::new(Code::NotYet, message, span, "understood by `check`, not yet by `solve`");
+        self.not_yet.push(found);
+    }
+
+    /// Evaluates in another context.
+    pub fn evaluate_in(&mut self, context: Context, expr: &'a ast::Expr) -> Value {
+        let outer = std::mem::replace(&mut self.context, context);
+        let value = self.evaluate(expr);
+        self.context = outer;
+        value
+    }
+
+    /// Evaluates for a purpose, which the checks will look at.
+    pub fn evaluate_for(&mut self, role: Role<'a>, context: Context, expr: &'a ast::Expr) -> Value {
+        let value = self.evaluate_in(context, expr);
+        self.pieces.push(Piece { role, traits: value.traits.clone() });
+        value
+    }
+
+    /// A number that depends on parameters alone.
+    pub fn evaluate_number(&mut self, role: &'static str, context: Context, expr: &'a ast::Expr) -> Option<ExprId> {
+        let value = self.evaluate_for(Role::Number(role), context, expr);
+        self.expect_number(&value, expr.span)
+    }
+
+    /// The only component of a value; reports a vector.
+    pub fn expect_number(&mut self, value: &Value, span: Span) -> Option<ExprId> {
+        match &value.parts {
+            Parts::Scalar(part) => Some(*part),
+            Parts::Unknown => None,
+            Parts::Vector(_) => {
+                let label = value.parts.describe();
+                let found = Diagnostic::new(Code::ShapeMismatch, "a number is needed here", span, label);
+                self.fail_shape(found.help("take a part such as `.x` or `[1]`, or reduce it with `norm` or `dot`"));
+                None
+            }
+        }
+    }
+
+    /// As many components as a variable has; a number stands for all of them. Empty if unknown.
+    pub fn expect_parts(&mut self, value: &Value, wanted: usize, span: Span) -> Vec<ExprId> {
+        match &value.parts {
+            Parts::Unknown => Vec::new(),
+            Parts::Scalar(part) => vec![*part; wanted],
+            Parts::Vector(parts) if parts.len() == wanted => parts.to_vec(),
+            parts => {
+                let needed = if wanted == 1 { "a number".into() } else { format!("a vector of {wanted}") };
+                let message = format!("{} where {needed} is needed", parts.describe());
+                self.fail_shape(Diagnostic::new(Code::ShapeMismatch, message, span, parts.describe()));
+                Vec::new()
+            }
+        }
+    }
+
+    /// The value with the declared parameters; NaN if it depends on anything else.
+    pub fn numeric(&self, id: ExprId) -> f64 {
+        if let Some(value) = self.graph.as_number(id) {
+            return value;
+        }
+        let value = |symbol: &Symbol| match symbol {
+            Symbol::Param(index) => self.param_values[*index],
+            _ => f64::NAN,
+        };
+        let inputs: Vec<f64> = self.symbols.iter().map(value).collect();
+        evaluate(&self.graph, &[id], &inputs, &[])[0]
+    }
+
+    /// Whether a value is a constant of the problem.
+    pub fn is_constant(value: &Value) -> bool {
+        value.traits.reads.beyond(Reads::PARAM).is_empty()
+    }
+}

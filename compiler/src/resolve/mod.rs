@@ -1,0 +1,78 @@
+//! From syntax tree to [`Model`]: names, shapes and units, with everything that is wrong with them.
+//!
+//! One walk evaluates every expression straight into the graph. A mistake is told where it is and gives the
+//! unknown value, from which nothing follows: so several mistakes are told at once, and none because of another.
+
+mod calls;
+mod conditions;
+mod context;
+mod declare;
+pub(crate) mod elaborator;
+mod expression;
+mod forms;
+mod guess;
+mod items;
+pub(crate) mod knots;
+mod operators;
+mod order;
+mod piecewise;
+pub(crate) mod scope;
+pub(crate) mod settings;
+pub(crate) mod text;
+pub(crate) mod value;
+pub(crate) mod walk;
+
+pub(crate) use calls::is_function;
+use elaborator::Elaborator;
+use fdcc_grammar::Diagnostic;
+use fdcc_grammar::ast::Item;
+use crate::model::{Model, Surface};
+use scope::Scope;
+
+/// Resolves the items of one phase together with those around it. `items` are resolved; the declarations of
+/// `outer` are known to them.
+pub(crate) fn resolve<'a>(outer: &[&'a Item], items: &[&'a Item]) -> Elaborator<'a> {
+    let mut diagnostics: Vec<Diagnostic> = Vec::new();
+    let all: Vec<&Item> = outer.iter().chain(items).copied().collect();
+    let scope = Scope::new(&all, &mut diagnostics);
+    let mut elaborator = Elaborator::new(scope);
+    elaborator.diagnostics = diagnostics;
+    elaborator.declare_all();
+    elaborator.resolve_items(items);
+    elaborator
+}
+
+impl Elaborator<'_> {
+    /// The model, once nothing is wrong with it.
+    pub(crate) fn into_model(mut self) -> Model {
+        let zero = self.graph.number(0.0);
+        // A function that is unknown for want of a feature: such a model is never lowered.
+        let surface = |entry: elaborator::SurfaceEntry| Surface { place: entry.place, psi: entry.psi.unwrap_or(zero) };
+        let surfaces: Vec<Surface> = self.surfaces.into_iter().map(surface).collect();
+        Model {
+            smooth: self.model.smooth || !surfaces.is_empty(),
+            surfaces,
+            graph: self.graph,
+            symbols: self.symbols,
+            integrals: self.integrals,
+            interval: self.interval,
+            not_yet: self.not_yet,
+            ..self.model
+        }
+    }
+}
+
+/// The known name that is nearest to a misspelt one, if any is near.
+pub(crate) fn closest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
+    let limit = name.chars().count() / 3;
+    let distance = |candidate: &str| {
+        let exact = strsim::osa_distance(name, candidate);
+        // `mun` for `muN` is nearer than `mu`.
+        let folded = strsim::osa_distance(&name.to_lowercase(), &candidate.to_lowercase());
+        let resized = name.chars().count().abs_diff(candidate.chars().count());
+        (folded, exact, resized)
+    };
+    let near = known.filter(|candidate| *candidate != name).map(|candidate| (distance(candidate), candidate));
+    let best = near.filter(|(distance, _)| distance.0 <= limit).min_by_key(|(distance, _)| *distance);
+    best.map(|(_, candidate)| candidate)
+}

@@ -1,0 +1,243 @@
+//! The `method` block: one table of keys, used by the language and by the command line.
+
+use super::context::Context;
+use super::elaborator::{Elaborator, Role};
+use super::{closest, text};
+use crate::smooth;
+use crate::units;
+use fdcc_grammar::ast::{Expr, ExprKind, Ident, ItemKind, Setting, SettingValue};
+use fdcc_grammar::{Code, Diagnostic, Span};
+use fdcc_runtime::problem::{Linear, Method, Scheme, Solver};
+
+/// The keys, each with what it takes.
+const KEYS: &[(&str, &str)] = &[
+    ("sigma", "a number above 0"),
+    ("kernel", "one of tanh, sqrt, linear, cubic, quintic"),
+    ("N", "a whole number from 1"),
+    ("steps", "a whole number from 1"),
+    ("scheme", "one of euler, implicit_euler, midpoint, trapezoid, rk4, radau1 to radau5, gauss1 to gauss5, fesd"),
+    ("solver", "one of interior_point, sqp, convex"),
+    ("linear", "one of auto, riccati, sparse_ldl"),
+    ("continue", "numbers above 0, each smaller than the one before"),
+    ("tol", "a number above 0"),
+    ("max_iter", "a whole number from 1"),
+    ("seed", "a whole number"),
+];
+
+/// Schemes and solvers that are understood but do not exist yet.
+const NOT_YET: &[&str] = &[
+    "rk4", "radau1", "radau2", "radau3", "radau4", "radau5", "gauss1", "gauss2", "gauss3", "gauss4", "gauss5", "fesd", "sqp",
+];
+
+/// A value of a setting.
+#[derive(Clone, Debug)]
+pub(crate) enum Given {
+    Number(f64),
+    Word(String),
+    List(Vec<f64>),
+}
+
+/// Why a setting was not taken.
+pub(crate) enum Refused {
+    /// There is no such key.
+    Key,
+    /// The key takes something else.
+    Value(&'static str),
+    /// Understood, but it does not exist yet.
+    NotYet,
+}
+
+/// Changes one setting.
+pub(crate) fn set(method: &mut Method, key: &str, given: &Given) -> Result<(), Refused> {
+    let expected = KEYS.iter().find(|row| row.0 == key).ok_or(Refused::Key)?.1;
+    let refused = || Refused::Value(expected);
+    let positive = || number(given).filter(|value| *value > 0.0).ok_or_else(refused);
+    let count = || whole(given).filter(|value| *value > 0).map(|value| value as usize).ok_or_else(refused);
+    let word = || match given {
+        Given::Word(word) if NOT_YET.contains(&word.as_str()) && expected.contains(first_letters(word)) => Err(Refused::NotYet),
+        Given::Word(word) => Ok(word.as_str()),
+        _ => Err(refused()),
+    };
+    match (key, given) {
+        ("N", Given::Word(word)) if word == "auto" => return Err(Refused::NotYet),
+        ("sigma", _) => method.sigma = Some(positive()?),
+        ("tol", _) => method.tol = positive()?,
+        ("N", _) => method.intervals = count()?,
+        ("steps", _) => method.steps = count()?,
+        ("max_iter", _) => method.max_iter = count()?,
+        ("seed", _) => method.seed = whole(given).ok_or_else(refused)?,
+        ("continue", _) => method.continuation = decreasing(given).ok_or_else(refused)?,
+        ("kernel", _) => method.kernel = smooth::find(word()?).ok_or_else(refused)?.name.into(),
+        ("scheme", _) => method.scheme = scheme(word()?).ok_or_else(refused)?,
+        ("solver", _) => method.solver = solver(word()?).ok_or_else(refused)?,
+        _ => method.linear = linear(word()?).ok_or_else(refused)?,
+    }
+    Ok(())
+}
+
+/// `radau3` is listed as `radau1 to radau5`.
+fn first_letters(word: &str) -> &str {
+    word.trim_end_matches(|last: char| last.is_ascii_digit())
+}
+
+fn scheme(word: &str) -> Option<Scheme> {
+    Some(match word {
+        "euler" => Scheme::Euler,
+        "implicit_euler" => Scheme::ImplicitEuler,
+        "midpoint" => Scheme::Midpoint,
+        "trapezoid" => Scheme::Trapezoid,
+        _ => return None,
+    })
+}
+
+fn solver(word: &str) -> Option<Solver> {
+    Some(match word {
+        "auto" => Solver::Automatic,
+        "interior_point" => Solver::InteriorPoint,
+        "convex" => Solver::Convex,
+        _ => return None,
+    })
+}
+
+fn linear(word: &str) -> Option<Linear> {
+    Some(match word {
+        "auto" => Linear::Automatic,
+        "riccati" => Linear::Riccati,
+        "sparse_ldl" => Linear::SparseLdl,
+        _ => return None,
+    })
+}
+
+fn number(given: &Given) -> Option<f64> {
+    match given {
+        Given::Number(value) => Some(*value).filter(|value| value.is_finite()),
+        _ => None,
+    }
+}
+
+fn whole(given: &Given) -> Option<u64> {
+    number(given).filter(|value| value.fract() == 0.0 && (0.0..=1e15).contains(value)).map(|value| value as u64)
+}
+
+fn decreasing(given: &Given) -> Option<Vec<f64>> {
+    let list = match given {
+        Given::Number(value) => vec![*value],
+        Given::List(values) => values.clone(),
+        Given::Word(_) => return None,
+    };
+    let falls = list.windows(2).all(|pair| pair[1] < pair[0]);
+    (falls && list.iter().all(|&value| value > 0.0 && value.is_finite())).then_some(list)
+}
+
+/// The nearest key, for "did you mean".
+pub(crate) fn nearest_key(key: &str) -> Option<&'static str> {
+    closest(key, KEYS.iter().map(|row| row.0))
+}
+
+/// All keys, for a message.
+pub(crate) fn keys() -> String {
+    KEYS.iter().map(|row| row.0).collect::<Vec<_>>().join(", ")
+}
+
+/// The nearest word that a key takes.
+pub(crate) fn nearest_word(expected: &'static str, given: &str) -> Option<&'static str> {
+    closest(given, expected.trim_start_matches("one of ").split([',', ' ']).filter(|word| word.len() > 2))
+}
+
+impl<'a> Elaborator<'a> {
+    /// Resolves a `method` block.
+    pub fn settings(&mut self, settings: &'a [Setting]) {
+        for setting in settings {
+            let key = &setting.key;
+            if matches!(key.name.as_str(), "sigma" | "kernel" | "continue") {
+                self.model.smooth = true;
+            }
+            let Some((given, span)) = self.given(setting) else { continue };
+            let refused = set(&mut self.model.method, &key.name, &given);
+            match refused {
+                Ok(()) => {}
+                Err(Refused::NotYet) => self.setting_not_yet(key, &given, span),
+                Err(Refused::Key) => self.unknown_key(key),
+                Err(Refused::Value(expected)) => self.wrong_value(key, &given, expected, span),
+            }
+            if let SettingValue::Scheme { name, lagged } = &setting.value {
+                self.lagged(name, lagged);
+            }
+        }
+    }
+
+    /// The value of a setting: a word, a number or a list of numbers.
+    fn given(&mut self, setting: &'a Setting) -> Option<(Given, Span)> {
+        let scale = setting.unit.as_ref().map_or(1.0, |unit| units::scale(unit, &mut self.diagnostics));
+        match &setting.value {
+            SettingValue::Scheme { name, .. } => Some((Given::Word(name.name.clone()), name.span)),
+            SettingValue::Expr(expr) => match &expr.kind {
+                ExprKind::Name(name) if self.is_word(name) => Some((Given::Word(name.clone()), expr.span)),
+                _ => self.setting_number(expr).map(|value| (Given::Number(value * scale), expr.span)),
+            },
+            SettingValue::List(list) => {
+                let numbers: Option<Vec<f64>> = list.iter().map(|expr| self.setting_number(expr)).collect();
+                let span = list.first().map_or(setting.key.span, |first| first.span.to(list[list.len() - 1].span));
+                numbers.map(|numbers| (Given::List(numbers.iter().map(|value| value * scale).collect()), span))
+            }
+        }
+    }
+
+    /// A name that is no parameter or constant is a word.
+    fn is_word(&self, name: &str) -> bool {
+        let is_number = |kind: &ItemKind| matches!(kind, ItemKind::Param { .. } | ItemKind::Const { .. } | ItemKind::Let { .. });
+        !self.scope.find(name).is_some_and(|at| is_number(&self.scope.declarations[at].item.kind))
+    }
+
+    fn setting_number(&mut self, expr: &'a Expr) -> Option<f64> {
+        let value = self.evaluate_for(Role::Number("a setting"), Context::SETTING, expr);
+        self.expect_number(&value, expr.span).map(|part| self.numeric(part))
+    }
+
+    fn setting_not_yet(&mut self, key: &Ident, given: &Given, span: Span) {
+        let word = match given {
+            Given::Word(word) => word.as_str(),
+            _ => "",
+        };
+        self.not_yet(span, &format!("a model with `{} = {word}`", key.name));
+    }
+
+    fn unknown_key(&mut self, key: &Ident) {
+        let message = format!("the method has no setting `{}`", key.name);
+        let found = Diagnostic::new(Code::UnknownSetting, message, key.span, "not a setting");
+        self.diagnostics.push(match nearest_key(&key.name) {
+            Some(near) => found.help(format!("did you mean `{near}`?")),
+            None => found.help(format!("the settings are {}", keys())),
+        });
+    }
+
+    fn wrong_value(&mut self, key: &Ident, given: &Given, expected: &'static str, span: Span) {
+        let shown = match given {
+            Given::Number(value) => text::number(*value),
+            Given::Word(word) => word.clone(),
+            Given::List(values) => values.iter().map(|value| text::number(*value)).collect::<Vec<_>>().join(", "),
+        };
+        let message = format!("`{}` cannot be `{shown}`", key.name);
+        let found = Diagnostic::new(Code::UnknownSetting, message, span, format!("needs {expected}"));
+        self.diagnostics.push(match nearest_word(expected, &shown) {
+            Some(near) if matches!(given, Given::Word(_)) => found.help(format!("did you mean `{near}`?")),
+            _ => found.help(format!("give it {expected}")),
+        });
+    }
+
+    /// The states that an implicit step takes at the old time.
+    fn lagged(&mut self, scheme: &Ident, names: &'a [Ident]) {
+        if !names.is_empty() && scheme.name != "implicit_euler" {
+            let message = format!("`{}` lags no states", scheme.name);
+            let found = Diagnostic::new(Code::UnknownSetting, message, names[0].span, "only for `implicit_euler`");
+            self.diagnostics.push(found.help("leave `lagged (...)` out, or write `scheme implicit_euler lagged (...)`"));
+        }
+        for name in names {
+            let state = self.declared_as(name, "state", |kind| matches!(kind, ItemKind::State { .. }));
+            if let Some((at, first)) = state.and_then(|at| Some((at, self.index_of(at)?))) {
+                let size = self.values[at].parts.as_slice().len();
+                self.model.method.lagged.extend(first..first + size);
+            }
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Cuts a text that cannot be read as a whole into pieces that can be tried one by one.
+//!
+//! A file and a phase are cut where an item word begins; a block such as `dynamics { ... }` where an entry begins.
+//! Item words are reserved, so they begin an item wherever the text before them is complete, and at the beginning of
+//! a line even inside brackets that somebody forgot to close. `start`, `end`, `guess` and `free` also stand inside
+//! items and need a closer look.
+
+use std::ops::Range;
+
+use super::tokens::{Kind, Token};
+use super::words;
+
+/// Pieces are ranges of token numbers.
+pub(super) type Piece = Range<usize>;
+
+/// The items of a file, or of the inside of a phase.
+pub(super) fn items(tokens: &[Token<'_>], range: Piece) -> Vec<Piece> {
+    cut(tokens, range, begins_item)
+}
+
+/// The entries of a block.
+pub(super) fn entries(tokens: &[Token<'_>], range: Piece, block: &str) -> Vec<Piece> {
+    cut(tokens, range, |so_far, at| begins_entry(so_far, at, block))
+}
+
+/// The piece being read: where it began and which brackets are open in it.
+struct SoFar<'s, 't> {
+    tokens: &'s [Token<'t>],
+    head: usize,
+    end: usize,
+    open: Vec<&'static str>,
+}
+
+impl<'t> SoFar<'_, 't> {
+    fn word(&self) -> &'t str {
+        self.tokens[self.head].text
+    }
+
+    fn text(&self, at: usize) -> &'t str {
+        if at < self.end { self.tokens[at].text } else { "" }
+    }
+
+    fn in_phase(&self) -> bool {
+        self.word() == "phase" && self.open.first() == Some(&"}")
+    }
+
+    /// Keeps account of the open brackets. A closer also closes what was left open inside its pair.
+    fn track(&mut self, at: usize) {
+        let token = &self.tokens[at];
+        if token.kind == Kind::Open {
+            self.open.push(token.closer());
+        } else if token.kind == Kind::Close
+            && let Some(partner) = self.open.iter().rposition(|closer| *closer == token.text)
+        {
+            self.open.truncate(partner);
+        } else if token.begins_line && self.in_phase() && words::form(token.text).is_some() {
+            self.open.truncate(1);
+        }
+    }
+}
+
+fn cut(tokens: &[Token<'_>], range: Piece, begins: impl Fn(&SoFar<'_, '_>, usize) -> bool) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    let mut so_far = SoFar { tokens, head: range.start, end: range.end, open: Vec::new() };
+    for at in range.clone() {
+        if at > so_far.head && begins(&so_far, at) {
+            pieces.push(so_far.head..at);
+            so_far.head = at;
+            so_far.open.clear();
+        }
+        so_far.track(at);
+    }
+    if so_far.head < range.end {
+        pieces.push(so_far.head..range.end);
+    }
+    pieces
+}
+
+fn begins_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let token = &so_far.tokens[at];
+    let outside = so_far.open.is_empty();
+    match (token.kind, words::reserved(token.text)) {
+        (Kind::Close, _) => outside,
+        (Kind::Word, Some(word)) if word.item.is_some() => {
+            if so_far.in_phase() {
+                return token.begins_line && matches!(token.text, "phase" | "link");
+            }
+            let may_begin = if outside { can_begin(so_far, at) } else { token.begins_line };
+            may_begin && !continues_item(so_far, at)
+        }
+        (Kind::Word, None) => is_misspelt_item(so_far, at) || (outside && is_unknown_item(so_far, at)),
+        _ => false,
+    }
+}
+
+/// Whether what stands before could be the end of a piece.
+fn can_begin(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    so_far.tokens[at].begins_line || can_end(&so_far.tokens[at - 1])
+}
+
+/// Whether a piece may end with a token.
+fn can_end(token: &Token<'_>) -> bool {
+    match token.kind {
+        Kind::Word => words::reserved(token.text).is_none(),
+        Kind::Sign => token.text == "'",
+        Kind::Open => false,
+        Kind::Number | Kind::Text | Kind::Close | Kind::Foreign => true,
+    }
+}
+
+/// Whether an item word belongs to the item that is being read.
+fn continues_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let next = so_far.text(at + 1);
+    // A misspelt item may be any.
+    let item = |words: &[&str]| words.contains(&so_far.word()) || words::reserved(so_far.word()).is_none();
+    match so_far.tokens[at].text {
+        "free" => so_far.tokens[at - 1].text == "start",
+        "guess" => item(&["free", "control"]) && next != "{",
+        "start" => (item(&["state"]) && !has_relation(so_far, at)) || next == ")",
+        "end" => next == ")",
+        _ => false,
+    }
+}
+
+/// Whether a comparison follows before the next item: then `start` is a condition, not a state's value.
+fn has_relation(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let ahead = &so_far.tokens[at + 1..so_far.end];
+    let until = ahead.iter().position(|token| token.begins_line && words::form(token.text).is_some());
+    let relations = ["<=", ">=", "=="];
+    ahead[..until.unwrap_or(ahead.len())].iter().any(|token| relations.contains(&token.text))
+}
+
+/// Whether a line begins with nearly an item word and a name, as in `stat v`. Two names side by side are never right.
+fn is_misspelt_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let token = &so_far.tokens[at];
+    let next = so_far.tokens[..so_far.end].get(at + 1);
+    token.begins_line
+        && next.is_some_and(|next| next.kind == Kind::Word && !next.begins_line)
+        && !words::inner_words(so_far.word()).contains(&token.text)
+        && words::closest_item(token.text).is_some()
+}
+
+/// Whether a line begins like an item, but with a word that introduces none: `unit v`, `dynamcs {`, `m = 2`.
+fn is_unknown_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let Some(next) = so_far.tokens[..so_far.end].get(at + 1) else { return false };
+    let follows = next.kind == Kind::Word || ["{", "=", ":", "'"].contains(&next.text);
+    so_far.tokens[at].begins_line
+        && !next.begins_line
+        && follows
+        && can_end(&so_far.tokens[at - 1])
+        && !words::inner_words(so_far.word()).contains(&so_far.tokens[at].text)
+}
+
+fn begins_entry(so_far: &SoFar<'_, '_>, at: usize, block: &str) -> bool {
+    let token = &so_far.tokens[at];
+    let complete = can_end(&so_far.tokens[at - 1]);
+    if looks_like_entry(so_far, at, block) && (token.begins_line || (complete && so_far.open.is_empty())) {
+        return true;
+    }
+    token.begins_line && so_far.open.is_empty() && complete && token.kind != Kind::Sign
+}
+
+/// Whether an entry of the block certainly begins here.
+fn looks_like_entry(so_far: &SoFar<'_, '_>, at: usize, block: &str) -> bool {
+    let [first, second, third, fourth] = [at, at + 1, at + 2, at + 3].map(|at| so_far.text(at));
+    let is_name = so_far.tokens[at].kind == Kind::Word && words::reserved(first).is_none();
+    match block {
+        "dynamics" => is_name && so_far.text(at - 1) != "*" && (second == "'" || (second == "*" && fourth == "'")),
+        "guess" | "report" => is_name && second == "=",
+        "jump" | "link" => is_name && second == ":=",
+        "method" => ["smooth", "grid", "continue"].contains(&first) && third == "=",
+        _ => false,
+    }
+}

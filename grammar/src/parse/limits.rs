@@ -1,0 +1,47 @@
+//! What is checked before the grammar sees a text, so that no text can exhaust its stack or its time.
+
+use super::Rule;
+use super::cut::Piece;
+use super::tokens::{Kind, Token};
+use super::words;
+
+/// Brackets inside each other. The grammar recurses on each, so this bounds its stack.
+pub(super) const MOST_BRACKETS: usize = 100;
+
+/// Words, numbers and signs of one item. An item written by a person has dozens.
+pub(super) const MOST_TOKENS: usize = 50_000;
+
+/// Why a piece cannot be read.
+pub(super) enum Failure {
+    /// The bracket with this token number is one too many inside each other.
+    TooDeep(usize),
+    /// The item has too many tokens.
+    TooLong,
+    /// The grammar gave up at this byte, where it would have gone on with one of these.
+    Stopped(usize, Vec<Rule>),
+}
+
+/// Whether a whole text may be given to the grammar.
+pub(super) fn are_kept(tokens: &[Token<'_>]) -> bool {
+    let is_item_word = |token: &Token<'_>| token.kind == Kind::Word && words::form(token.text).is_some();
+    too_deep(tokens).is_none() && tokens.split(is_item_word).all(|item| item.len() <= MOST_TOKENS)
+}
+
+/// Why a piece may not be given to the grammar.
+pub(super) fn exceeded(tokens: &[Token<'_>], piece: &Piece) -> Option<Failure> {
+    let bracket = too_deep(&tokens[piece.clone()]).map(|at| Failure::TooDeep(piece.start + at));
+    bracket.or_else(|| (piece.len() > MOST_TOKENS).then_some(Failure::TooLong))
+}
+
+/// The first bracket that stands inside too many others.
+fn too_deep(tokens: &[Token<'_>]) -> Option<usize> {
+    let mut depth = 0_usize;
+    tokens.iter().position(|token| {
+        match token.kind {
+            Kind::Open => depth += 1,
+            Kind::Close => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        depth > MOST_BRACKETS
+    })
+}

@@ -1,0 +1,118 @@
+//! Reads what can be read of a broken text.
+//!
+//! The text is cut into pieces. A piece that cannot be read gives one diagnostic and is painted over with blanks,
+//! which keeps every other place where it was; blocks and phases are first tried entry by entry, so that one wrong
+//! equation does not cost the others.
+
+use super::cut::{self, Piece};
+use super::tokens::{Token, tokens};
+use super::limits::{self, Failure};
+use super::{Rule, items, messages, pairs};
+use crate::{Diagnostic, Parse};
+
+/// Nobody reads more errors than this, so nothing behind them is tried.
+const MOST_DIAGNOSTICS: usize = 100;
+
+/// Everything readable in a text that cannot be read as a whole.
+pub(super) fn recover(text: &str) -> Parse {
+    let tokens = tokens(text);
+    let mut recovery = Recovery { tokens: &tokens, rest: text.to_owned(), diagnostics: Vec::new() };
+    let mut parse = Parse::default();
+    for piece in cut::items(&tokens, 0..tokens.len()) {
+        let is_model_line = piece.start == 0 && tokens[0].text == "model";
+        let rule = if is_model_line { Rule::only_model } else { Rule::only_item };
+        if recovery.mend(&piece, rule, None) {
+            let start = tokens[piece.start].start;
+            let pairs = pairs(rule, recovery.text(&piece)).expect("a mended piece can be read");
+            items::read_into(&mut parse, pairs, start);
+        }
+    }
+    parse.diagnostics.append(&mut recovery.diagnostics);
+    parse
+}
+
+struct Recovery<'t> {
+    tokens: &'t [Token<'t>],
+    /// The text, with blanks in place of what was wrong.
+    rest: String,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl<'t> Recovery<'t> {
+    /// Makes a piece readable if that can be done by leaving out broken entries, and reports what was wrong.
+    fn mend(&mut self, piece: &Piece, rule: Rule, block: Option<&'t str>) -> bool {
+        let before = self.diagnostics.len();
+        if before < MOST_DIAGNOSTICS {
+            let Err(failure) = self.read(piece, rule) else { return true };
+            self.mend_entries(piece);
+            let reported = self.diagnostics.len() > before;
+            if reported && self.read(piece, rule).is_ok() {
+                return true;
+            }
+            if !reported {
+                self.diagnostics.extend(messages::explain(self.tokens, piece, block, &failure));
+            }
+        }
+        self.paint_over(piece);
+        false
+    }
+
+    /// Mends the items of a phase or the entries of a block, if the piece is one.
+    fn mend_entries(&mut self, piece: &Piece) {
+        let word = self.tokens[piece.start].text;
+        let is_phase = word == "phase";
+        let Some(inside) = self.inside(piece) else { return };
+        let Some(rule) = entry_rule(word) else { return };
+        let cut = if is_phase { cut::items(self.tokens, inside) } else { cut::entries(self.tokens, inside, word) };
+        for entry in cut {
+            self.mend(&entry, rule, (!is_phase).then_some(word));
+        }
+    }
+
+    /// What stands between the first `{` of a piece and its last `}`.
+    fn inside(&self, piece: &Piece) -> Option<Piece> {
+        let tokens = &self.tokens[piece.clone()];
+        let first = tokens.iter().position(|token| token.text == "{")? + 1;
+        let last = tokens.iter().rposition(|token| token.text == "}").unwrap_or(tokens.len());
+        (first < last).then_some(piece.start + first..piece.start + last)
+    }
+
+    fn read(&self, piece: &Piece, rule: Rule) -> Result<(), Failure> {
+        if let Some(failure) = limits::exceeded(self.tokens, piece) {
+            return Err(failure);
+        }
+        match pairs(rule, self.text(piece)) {
+            Ok(_) => Ok(()),
+            Err((at, expected)) => Err(Failure::Stopped(self.tokens[piece.start].start + at, expected)),
+        }
+    }
+
+    fn text(&self, piece: &Piece) -> &str {
+        &self.rest[self.bytes(piece)]
+    }
+
+    fn bytes(&self, piece: &Piece) -> std::ops::Range<usize> {
+        self.tokens[piece.start].start..self.tokens[piece.end - 1].end()
+    }
+
+    fn paint_over(&mut self, piece: &Piece) {
+        let bytes = self.bytes(piece);
+        // Line breaks stay: whether a parenthesis is a call depends on its line.
+        let keep = |byte| if matches!(byte, b'\n' | b'\r') { char::from(byte) } else { ' ' };
+        let blanks: String = self.rest.as_bytes()[bytes.clone()].iter().copied().map(keep).collect();
+        self.rest.replace_range(bytes, &blanks);
+    }
+}
+
+/// The rule for one entry of a block or one item of a phase.
+fn entry_rule(word: &str) -> Option<Rule> {
+    Some(match word {
+        "phase" => Rule::only_phase_item,
+        "dynamics" => Rule::only_equation,
+        "guess" | "report" => Rule::only_binding,
+        "jump" | "link" => Rule::only_assignment,
+        "method" => Rule::only_setting,
+        "expect" => Rule::only_check,
+        _ => return None,
+    })
+}

@@ -1,0 +1,191 @@
+//! Slips that are made often, each with the message that helps best.
+
+use super::Rule;
+use super::messages::Place;
+use super::tokens::{Kind, Token};
+use super::words;
+use crate::{Code, Diagnostic};
+
+/// FDC0005: a line that begins with a word which introduces nothing.
+pub(super) fn unknown_item(place: &Place<'_, '_>) -> Option<Diagnostic> {
+    let first = &place.tokens[place.piece.start];
+    if place.form.is_some() || first.kind != Kind::Word || place.at != place.piece.start {
+        return None;
+    }
+    let next = place.tokens[..place.piece.end].get(place.piece.start + 1).map_or("", |token| token.text);
+    let message = format!("`{}` does not begin an item", first.text);
+    let diagnostic = |label: String| Diagnostic::new(Code::UnknownItem, message.clone(), first.span(), label);
+    Some(match (words::closest_item(first.text), next) {
+        (_, "'") => diagnostic("an equation outside `dynamics`".to_owned())
+            .help(format!("write `dynamics {{ {}' = ... }}`", first.text)),
+        (_, "=") => diagnostic("which kind of item is it?".to_owned())
+            .help(format!("write `let {0} = ...` for an expression, `param {0} = ...` for a number", first.text)),
+        (Some(meant), _) => diagnostic(format!("did you mean `{meant}`?")).help(format!("change `{}` to `{meant}`", first.text)),
+        _ => diagnostic("no item begins with this word".to_owned())
+            .help("an item begins with a word such as `param`, `state`, `control`, `dynamics`, `path` or `minimize`"),
+    })
+}
+
+/// Characters that other languages have, and what stands for them here.
+const FOREIGN: &[(&str, &str)] = &[
+    (";", "leave it out: an item ends where the next one begins"),
+    ("−", "write `-`"),
+    ("·", "write `*`"),
+    ("×", "write `*`"),
+    ("÷", "write `/`"),
+    ("≤", "write `<=`"),
+    ("≥", "write `>=`"),
+    ("²", "write `^2`"),
+    ("³", "write `^3`"),
+    ("√", "write `sqrt(...)`"),
+    ("∈", "write `in`"),
+    ("’", "write `'` for a derivative"),
+    ("′", "write `'` for a derivative"),
+    ("%", "a comment begins with `#`"),
+    ("\"", "text stands in a pair of quotes on one line, and only after `csv`"),
+];
+
+/// A character that the language does not use.
+pub(super) fn foreign_character(place: &Place<'_, '_>) -> Option<Diagnostic> {
+    let token = place.next().filter(|token| token.kind == Kind::Foreign)?;
+    let visible = token.text.chars().all(|c| !c.is_whitespace() && c.escape_debug().count() == 1 || c == '"');
+    let shown = if visible { token.text.to_owned() } else { token.text.escape_unicode().to_string() };
+    let message = format!("`{shown}` has no meaning in fdc");
+    let help = FOREIGN.iter().find(|(character, _)| *character == token.text).map(|(_, help)| *help);
+    let diagnostic = Diagnostic::new(Code::Unfinished, message, token.span(), "no item contains this character");
+    Some(diagnostic.help(help.unwrap_or("remove it")))
+}
+
+/// Items whose word is followed by a name.
+const DECLARATIONS: &[&str] = &[
+    "model", "param", "const", "let", "fn", "data", "free", "time", "state", "control", "surface", "jump", "phase",
+];
+
+/// FDC0003: a reserved word where a name or a value should stand.
+pub(super) fn reserved_name(place: &Place<'_, '_>) -> Option<Diagnostic> {
+    let token = place.next().filter(|token| !token.begins_line)?;
+    let word = words::reserved(token.text)?;
+    let previous = place.previous()?;
+    let declares = is_declared(place.tokens, place.at);
+    let parameter = place.expects(&[Rule::name]) && matches!(previous.text, "(" | "," | ".");
+    if !declares && (is_renamed_elsewhere(place.tokens, token) || !(parameter || place.expects_operand())) {
+        return None;
+    }
+    let noun = match place.form.map(|form| form.noun) {
+        Some(noun) if declares => noun,
+        _ if parameter && !place.expects_operand() => "a part or an argument",
+        _ => "a value",
+    };
+    let message = format!("`{}` is a reserved word and cannot name {noun}", token.text);
+    let label = format!("reserved: it {}", word.role);
+    let help = format!("rename it, for example `{}`{}", word.instead, other_uses(place.tokens, token.text));
+    Some(Diagnostic::new(Code::ReservedWord, message, token.span(), label).help(help))
+}
+
+/// Whether a token stands where a declaration has its name.
+fn is_declared(tokens: &[Token<'_>], at: usize) -> bool {
+    let before = |back: usize| at.checked_sub(back).map_or("", |at| tokens[at].text);
+    DECLARATIONS.contains(&before(1)) && !tokens[at].begins_line && before(2) != "start"
+}
+
+/// Whether a reserved word is used as a value because it has been declared as a name; the declaration is reported.
+pub(super) fn is_renamed_elsewhere(tokens: &[Token<'_>], token: &Token<'_>) -> bool {
+    words::reserved(token.text).is_some()
+        && (0..tokens.len()).any(|at| tokens[at].text == token.text && is_declared(tokens, at))
+}
+
+/// A line of help that counts the declaration and the uses of a reserved word as a value.
+fn other_uses(tokens: &[Token<'_>], word: &str) -> String {
+    let is_use = |at: usize| {
+        let after = tokens.get(at + 1).map_or("", |token| token.text);
+        let before = &tokens[at - 1];
+        let is_argument = before.text == "(" && after == ")";
+        let as_value = match before.kind {
+            Kind::Sign => before.text != "'",
+            Kind::Open => before.text != "{" && !is_argument,
+            Kind::Word => !tokens[at].begins_line && matches!(before.text, "minimize" | "maximize" | "path" | "in"),
+            _ => false,
+        };
+        as_value || is_declared(tokens, at)
+    };
+    let uses = (1..tokens.len()).filter(|at| tokens[*at].text == word && is_use(*at)).count();
+    if uses > 1 { format!("\n`fdcc fix` renames all {uses} uses") } else { String::new() }
+}
+
+/// `=` for `==`, `==` for `=`, and comparisons that conditions do not have.
+pub(super) fn wrong_sign(place: &Place<'_, '_>) -> Option<Diagnostic> {
+    let token = place.next()?;
+    let compares = place.expects(&[Rule::relation, Rule::guard_relation]);
+    let (message, label, help) = match token.text {
+        "=" if compares => ("`=` does not compare", "a condition needs `==` here", "write `==`, `<=` or `>=`"),
+        "<" if compares => ("a condition includes its limit", "`<` leaves the limit out", "write `<=`"),
+        ">" if compares => ("a condition includes its limit", "`>` leaves the limit out", "write `>=`"),
+        "!=" => ("`!=` is no condition", "a solver cannot keep away from a single point", "write `<=` or `>=`"),
+        "==" if place.expects(&[Rule::equals, Rule::becomes]) => {
+            ("`==` compares, it does not define", "a definition has a single `=`", "write `=`")
+        }
+        ":=" if place.expects(&[Rule::equals, Rule::becomes]) => {
+            ("`:=` belongs into `jump` and `link`", "a definition has a plain `=`", "write `=`")
+        }
+        "=" if place.expects(&[Rule::assigns]) => {
+            ("a new value is assigned with `:=`", "`=` would be an equation", "write `:=`")
+        }
+        "*" | "**" if place.previous()?.text == "*" || token.text == "**" => {
+            ("`**` is not an operator", "meant as a power?", "write `^`, as in `v^2`")
+        }
+        "&&" | "||" => ("conditions are not joined by signs", "one condition ends here", "write one item for each condition"),
+        _ => return None,
+    };
+    Some(Diagnostic::new(Code::Unfinished, message, token.span(), label).help(help))
+}
+
+/// A word that is nearly one of those that the item goes on with: `smooth sigma = 0.1 kernl tanh`.
+pub(super) fn misspelt_word(place: &Place<'_, '_>) -> Option<Diagnostic> {
+    let token = place.next().filter(|token| token.kind == Kind::Word)?;
+    let meant = words::closest(token.text, words::inner_words(place.word).iter().copied())?;
+    if meant == token.text {
+        return None;
+    }
+    let message = format!("`{}` is not a word of {}", token.text, place.form?.noun);
+    let diagnostic = Diagnostic::new(Code::Unfinished, message, token.span(), format!("did you mean `{meant}`?"));
+    Some(diagnostic.help(format!("change `{}` to `{meant}`", token.text)))
+}
+
+/// `x'' = ...`
+pub(super) fn second_derivative(place: &Place<'_, '_>) -> Option<Diagnostic> {
+    let (previous, next) = (place.previous()?, place.next()?);
+    if previous.text != "'" || next.text != "'" {
+        return None;
+    }
+    let message = "a second derivative needs a state of its own";
+    let diagnostic = Diagnostic::new(Code::Unfinished, message, next.span(), "only first derivatives stand here");
+    Some(diagnostic.help("declare a velocity and write two equations, `x' = v` and `v' = ...`"))
+}
+
+/// `in (0, 1)`, `in 0 .. 1`, `in [0]`
+pub(super) fn wrong_range(place: &Place<'_, '_>) -> Option<Diagnostic> {
+    let next = place.next().filter(|_| place.expects(&[Rule::interval]))?;
+    let message = "a range is written in brackets";
+    let diagnostic = Diagnostic::new(Code::Unfinished, message, next.span(), "`[` should stand here");
+    Some(diagnostic.help("write `in [from, to]`; both ends belong to it"))
+}
+
+/// `x' = [v, w]`
+pub(super) fn wrong_vector(place: &Place<'_, '_>) -> Option<Diagnostic> {
+    let next = place.next().filter(|next| next.text == "[" && place.expects_operand())?;
+    let message = "a vector is written in parentheses";
+    let diagnostic = Diagnostic::new(Code::Unfinished, message, next.span(), "`(` should stand here");
+    Some(diagnostic.help("write `(a, b)`; brackets are for units, ranges and parts"))
+}
+
+/// Items that have one place only: `model` at the head, phases and links outside phases.
+pub(super) fn misplaced_item(place: &Place<'_, '_>) -> Option<Diagnostic> {
+    let first = place.next().filter(|_| place.at == place.piece.start)?;
+    let help = match first.text {
+        "model" => "write it once, before the first item",
+        "phase" | "link" => "close the phase before it with `}`",
+        _ => return None,
+    };
+    let message = format!("`{}` cannot stand here", first.text);
+    Some(Diagnostic::new(Code::Unfinished, message, first.span(), "this has another place").help(help))
+}

@@ -11,6 +11,7 @@
 //! Where the defects are penalised (`d > 0`: restoration), `x+` and the multipliers are removed together by the
 //! factors of `S = [M E'; E -d]`, and `[T; L] = -S^-1 [N; R]` gives `Q = H_ww + Theta + [N; R]' [T; L]`.
 
+use super::kernels::{add_outer_product, add_product, add_symmetric_product, add_transposed_product};
 use crate::linalg::{Lu, Stages, SymmetricFactor};
 
 /// Sizes of states, controls and border.
@@ -43,10 +44,11 @@ pub(super) struct Block {
     pub(super) local: Vec<f64>,
     /// `d` of the defects.
     penalties: Vec<f64>,
-    /// `E`, `M T + N`, `Q`, `Q_uu` and `S`.
+    /// `E`, `N + M T / 2`, `Q`, `Q_uz`, `Q_uu` and `S`.
     e: Vec<f64>,
     y: Vec<f64>,
     q: Vec<f64>,
+    side: Vec<f64>,
     uu: Vec<f64>,
     s: Vec<f64>,
 }
@@ -64,6 +66,7 @@ impl Block {
             e: zeros(n * n),
             y: zeros(n * w),
             q: zeros(w * w),
+            side: zeros(m * sizes.kept()),
             uu: zeros(m * m),
             s: zeros(4 * n * n),
         }
@@ -72,25 +75,25 @@ impl Block {
 
 /// What one interval keeps for the solves that follow a factorisation.
 pub(super) struct Interval {
-    sizes: Sizes,
-    fixed: Vec<bool>,
+    pub(super) sizes: Sizes,
+    pub(super) fixed: Vec<bool>,
     /// Local rows over `(x, u, theta, x+)` and `1 / d` of each.
-    local: Vec<f64>,
-    weights: Vec<f64>,
-    m: Vec<f64>,
+    pub(super) local: Vec<f64>,
+    pub(super) weights: Vec<f64>,
+    pub(super) m: Vec<f64>,
     /// `[N; R]`, `2n x w`; only `N` is used unless the defects are penalised.
-    coupling: Vec<f64>,
+    pub(super) coupling: Vec<f64>,
     /// `[T; L]`, `2n x w`.
-    response: Vec<f64>,
-    e: Lu,
-    s: SymmetricFactor,
-    penalised: bool,
-    uu: SymmetricFactor,
-    gain: Vec<f64>,
+    pub(super) response: Vec<f64>,
+    pub(super) e: Lu,
+    pub(super) s: SymmetricFactor,
+    pub(super) penalised: bool,
+    pub(super) uu: SymmetricFactor,
+    pub(super) gain: Vec<f64>,
     /// From the backward to the forward pass: `x+` (and multipliers) at `w = 0`, pull on `x+`, `u` at `z = 0`.
-    offset: Vec<f64>,
-    pull: Vec<f64>,
-    feed_forward: Vec<f64>,
+    pub(super) offset: Vec<f64>,
+    pub(super) pull: Vec<f64>,
+    pub(super) feed_forward: Vec<f64>,
 }
 
 impl Interval {
@@ -135,26 +138,31 @@ impl Interval {
     /// Factors the interval. `value` comes in as `V_{k+1}` and leaves as `V_k`. Returns how many negative
     /// eigenvalues there are beyond one per row, or `None` at a zero pivot.
     pub(super) fn factor(&mut self, block: &mut Block, value: &mut [f64]) -> Option<usize> {
-        let Sizes { n, m, q } = self.sizes;
-        self.join_next(block, value);
-        let removed = if self.penalised { self.remove_penalised(block)? } else { self.remove_next(block)? };
-        // The common sizes as constants: the compiler unrolls their loops.
-        match (n, m, q) {
-            (5, 2, 1) => self.reduce(block, 5, 2, 1),
-            (2, 1, 1) => self.reduce(block, 2, 1, 1),
-            (2, 1, 2) => self.reduce(block, 2, 1, 2),
-            (2, 1, 3) => self.reduce(block, 2, 1, 3),
-            (4, 1, 3) => self.reduce(block, 4, 1, 3),
-            _ => self.reduce(block, n, m, q),
+        // Common sizes as constants: the compiler unrolls and vectorises their loops.
+        match self.sizes {
+            Sizes { n: 5, m: 2, q: 1 } => self.factor_sized(Sizes { n: 5, m: 2, q: 1 }, block, value),
+            Sizes { n: 2, m: 1, q: 2 } => self.factor_sized(Sizes { n: 2, m: 1, q: 2 }, block, value),
+            Sizes { n: 2, m: 1, q: 3 } => self.factor_sized(Sizes { n: 2, m: 1, q: 3 }, block, value),
+            Sizes { n: 4, m: 1, q: 3 } => self.factor_sized(Sizes { n: 4, m: 1, q: 3 }, block, value),
+            sizes => self.factor_sized(sizes, block, value),
         }
-        self.add_theta(block, value);
-        Some(removed + self.remove_controls(block, value)?)
+    }
+
+    #[inline(always)]
+    fn factor_sized(&mut self, sizes: Sizes, block: &mut Block, value: &mut [f64]) -> Option<usize> {
+        self.join_next(sizes, block, value);
+        let removed =
+            if self.penalised { self.remove_penalised(block)? } else { self.remove_next(sizes, block)? };
+        self.reduce(sizes, block);
+        self.add_theta(sizes, block, value);
+        Some(removed + self.remove_controls(sizes, block, value)?)
     }
 
     /// `M` and `N`.
-    fn join_next(&mut self, block: &mut Block, value: &[f64]) {
-        let (n, m, all, w, kept) =
-            (self.sizes.n, self.sizes.m, self.sizes.all(), self.sizes.reduced(), self.sizes.kept());
+    #[inline(always)]
+    fn join_next(&mut self, sizes: Sizes, block: &mut Block, value: &[f64]) {
+        let Sizes { n, m, q } = sizes;
+        let (all, w, kept) = (sizes.all(), sizes.reduced(), sizes.kept());
         for i in 0..n {
             let hessian = &block.hessian[(w + i) * all..][..all];
             let next = &value[i * kept..][..kept];
@@ -163,15 +171,16 @@ impl Interval {
             }
             let row = &mut self.coupling[i * w..][..w];
             row.copy_from_slice(&hessian[..w]);
-            for j in 0..self.sizes.q {
+            for j in 0..q {
                 row[n + m + j] += next[n + j];
             }
         }
     }
 
     /// `T = -E^-1 R`
-    fn remove_next(&mut self, block: &mut Block) -> Option<usize> {
-        let (n, w, all) = (self.sizes.n, self.sizes.reduced(), self.sizes.all());
+    #[inline(always)]
+    fn remove_next(&mut self, sizes: Sizes, block: &mut Block) -> Option<usize> {
+        let (n, w, all) = (sizes.n, sizes.reduced(), sizes.all());
         for i in 0..n {
             let defect = &block.defects[i * all..][..all];
             for j in 0..w {
@@ -206,77 +215,64 @@ impl Interval {
         Some(negative.abs_diff(n))
     }
 
-    /// `Q` without `Theta`.
+    /// The lower triangle of `Q` without `Theta`; with `Z = N + M T / 2` it is `H_ww + T'Z + Z'T`.
     #[inline(always)]
-    fn reduce(&mut self, block: &mut Block, n: usize, m: usize, q: usize) {
-        let w = n + m + q;
+    fn reduce(&mut self, sizes: Sizes, block: &mut Block) {
+        let (n, w, all) = (sizes.n, sizes.reduced(), sizes.all());
         for i in 0..w {
-            block.q[i * w..][..w].copy_from_slice(&block.hessian[i * (w + n)..][..w]);
+            block.q[i * w..][..w].copy_from_slice(&block.hessian[i * all..][..w]);
         }
         if self.penalised {
-            transposed_product_add(&self.coupling, &self.response, &mut block.q, 2 * n, w);
+            add_transposed_product(&self.coupling, &self.response, &mut block.q, 2 * n, w);
             return;
         }
-        block.y[..n * w].copy_from_slice(&self.coupling[..n * w]);
-        for i in 0..n {
-            for l in 0..n {
-                let factor = self.m[i * n + l];
-                for j in 0..w {
-                    block.y[i * w + j] += factor * self.response[l * w + j];
-                }
-            }
-        }
-        transposed_product_add(&self.response[..n * w], &block.y[..n * w], &mut block.q, n, w);
-        transposed_product_add(&self.coupling[..n * w], &self.response[..n * w], &mut block.q, n, w);
+        let response = &self.response[..n * w];
+        block.y.copy_from_slice(&self.coupling[..n * w]);
+        add_product(0.5, &self.m, response, &mut block.y, n, w);
+        add_symmetric_product(response, &block.y, &mut block.q, n, w);
     }
 
-    fn add_theta(&self, block: &mut Block, value: &[f64]) {
-        let (n, m, w, kept) = (self.sizes.n, self.sizes.m, self.sizes.reduced(), self.sizes.kept());
-        for i in 0..self.sizes.q {
-            for j in 0..self.sizes.q {
+    #[inline(always)]
+    fn add_theta(&self, sizes: Sizes, block: &mut Block, value: &[f64]) {
+        let Sizes { n, m, q } = sizes;
+        let (w, kept) = (sizes.reduced(), sizes.kept());
+        for i in 0..q {
+            for j in 0..q {
                 block.q[(n + m + i) * w + n + m + j] += value[(n + i) * kept + n + j];
             }
         }
     }
 
     /// Removes `u_k`; writes `V_k` to `value`.
-    fn remove_controls(&mut self, block: &mut Block, value: &mut [f64]) -> Option<usize> {
-        let (m, w, kept) = (self.sizes.m, self.sizes.reduced(), self.sizes.kept());
+    #[inline(always)]
+    fn remove_controls(&mut self, sizes: Sizes, block: &mut Block, value: &mut [f64]) -> Option<usize> {
+        let Sizes { n, m, .. } = sizes;
+        let (w, kept) = (sizes.reduced(), sizes.kept());
+        let position = |i: usize| if i < n { i } else { i + m };
         self.fix_controls(&mut block.q);
         for i in 0..kept {
-            let row = &block.q[self.position(i) * w..][..w];
-            for j in 0..kept {
-                value[i * kept + j] = row[self.position(j)];
+            for j in 0..=i {
+                let entry = block.q[position(i) * w + position(j)];
+                value[i * kept + j] = entry;
+                value[j * kept + i] = entry;
             }
         }
         if m == 0 {
             return Some(0);
         }
-        let n = self.sizes.n;
         for i in 0..m {
-            let row = &block.q[(n + i) * w..][..w];
-            block.uu[i * m..][..m].copy_from_slice(&row[n..n + m]);
             for j in 0..kept {
-                self.gain[i * kept + j] = -row[self.position(j)];
+                // Only the lower triangle of Q is filled.
+                let (row, column) = if j < n { (n + i, j) } else { (position(j), n + i) };
+                block.side[i * kept + j] = block.q[row * w + column];
+                self.gain[i * kept + j] = -block.side[i * kept + j];
             }
+            block.uu[i * m..][..m].copy_from_slice(&block.q[(n + i) * w + n..][..m]);
         }
         let negative = self.uu.factor(&block.uu)?;
         self.uu.solve(&mut self.gain, kept);
-        for i in 0..kept {
-            for l in 0..m {
-                let factor = block.q[self.position(i) * w + n + l];
-                for j in 0..kept {
-                    value[i * kept + j] += factor * self.gain[l * kept + j];
-                }
-            }
-        }
+        add_transposed_product(&block.side, &self.gain, value, m, kept);
         Some(negative)
-    }
-
-    /// Position in `w` of entry `i` of `z = (x, theta)`.
-    #[inline(always)]
-    fn position(&self, i: usize) -> usize {
-        if i < self.sizes.n { i } else { i + self.sizes.m }
     }
 
     fn fix_controls(&self, q: &mut [f64]) {
@@ -287,156 +283,6 @@ impl Interval {
                 q[j * w + n + i] = 0.0;
             }
             q[(n + i) * w + n + i] = 1.0;
-        }
-    }
-
-    /// Backward pass of a solve: `gradient` is that of `V_{k+1}` and becomes that of `V_k`.
-    pub(super) fn backward(&mut self, stages: &Stages, k: usize, a: &[f64], b: &[f64], gradient: &mut [f64]) {
-        let (n, m, w) = (self.sizes.n, self.sizes.m, self.sizes.reduced());
-        let mut g = vec![0.0; self.sizes.all()];
-        self.local_gradient(&b[stages.local(k)], &mut g);
-        for (i, index) in (stages.state(k).start..stages.control(k).end).enumerate() {
-            g[i] -= a[index];
-        }
-        for i in 0..n {
-            self.pull[i] = gradient[i] + g[w + i];
-        }
-        for i in 0..self.sizes.q {
-            g[n + m + i] += gradient[n + i];
-        }
-        self.eliminate_next(&b[stages.defects(k)], &mut g);
-        self.eliminate_controls(&mut g, gradient);
-    }
-
-    /// Local rows: `g -= J' diag(1/d) b`
-    fn local_gradient(&self, b: &[f64], g: &mut [f64]) {
-        let all = self.sizes.all();
-        for (i, value) in b.iter().enumerate() {
-            let factor = -self.weights[i] * value;
-            for j in 0..all {
-                g[j] += factor * self.local[i * all + j];
-            }
-        }
-    }
-
-    fn eliminate_next(&mut self, b: &[f64], g: &mut [f64]) {
-        let (n, w) = (self.sizes.n, self.sizes.reduced());
-        if self.penalised {
-            for i in 0..n {
-                self.offset[i] = -self.pull[i];
-                self.offset[n + i] = b[i];
-            }
-            self.s.solve(&mut self.offset, 1);
-            for i in 0..2 * n {
-                add_scaled(g, &self.coupling[i * w..][..w], self.offset[i]);
-            }
-            return;
-        }
-        self.offset[..n].copy_from_slice(b);
-        self.e.solve(&mut self.offset[..n], 1);
-        for i in 0..n {
-            let m_row = &self.m[i * n..][..n];
-            let y = self.pull[i] + dot(m_row, &self.offset[..n]);
-            add_scaled(g, &self.response[i * w..][..w], y);
-            add_scaled(g, &self.coupling[i * w..][..w], self.offset[i]);
-        }
-    }
-
-    fn eliminate_controls(&mut self, g: &mut [f64], gradient: &mut [f64]) {
-        let (n, m, kept) = (self.sizes.n, self.sizes.m, self.sizes.kept());
-        for i in 0..m {
-            if self.fixed[i] {
-                g[n + i] = 0.0;
-            }
-            self.feed_forward[i] = -g[n + i];
-        }
-        for i in 0..kept {
-            gradient[i] = g[self.position(i)];
-        }
-        for i in 0..m {
-            add_scaled(gradient, &self.gain[i * kept..][..kept], g[n + i]);
-        }
-        self.uu.solve(&mut self.feed_forward, 1);
-    }
-
-    /// Forward pass of a solve: `x` is `x_k` and becomes `x_{k+1}`.
-    pub(super) fn forward(
-        &mut self,
-        stages: &Stages,
-        k: usize,
-        a: &mut [f64],
-        b: &mut [f64],
-        x: &mut [f64],
-        theta: &[f64],
-    ) {
-        let (n, m, q, w, kept) =
-            (self.sizes.n, self.sizes.m, self.sizes.q, self.sizes.reduced(), self.sizes.kept());
-        let mut all = vec![0.0; self.sizes.all()];
-        all[..n].copy_from_slice(x);
-        all[n + m..n + m + q].copy_from_slice(theta);
-        for i in 0..m {
-            let gain = &self.gain[i * kept..][..kept];
-            all[n + i] = self.feed_forward[i] + dot(&gain[..n], x) + dot(&gain[n..], theta);
-        }
-        for i in 0..n {
-            all[w + i] = self.offset[i] + dot(&self.response[i * w..][..w], &all[..w]);
-        }
-        a[stages.state(k).start..stages.control(k).end].copy_from_slice(&all[..n + m]);
-        self.defect_multipliers(&all, &mut b[stages.defects(k)]);
-        for (i, row) in stages.local(k).enumerate() {
-            let width = all.len();
-            b[row] = self.weights[i] * (dot(&self.local[i * width..][..width], &all) - b[row]);
-        }
-        x.copy_from_slice(&all[w..]);
-    }
-
-    fn defect_multipliers(&self, all: &[f64], multipliers: &mut [f64]) {
-        let (n, w) = (self.sizes.n, self.sizes.reduced());
-        for i in 0..n {
-            multipliers[i] = if self.penalised {
-                self.offset[n + i] + dot(&self.response[(n + i) * w..][..w], &all[..w])
-            } else {
-                let from_next = dot(&self.m[i * n..][..n], &all[w..]);
-                -(self.pull[i] + from_next + dot(&self.coupling[i * w..][..w], &all[..w]))
-            };
-        }
-        if !self.penalised {
-            self.e.solve_transposed(multipliers);
-        }
-    }
-}
-
-#[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
-#[inline(always)]
-fn add_scaled(target: &mut [f64], source: &[f64], factor: f64) {
-    for (t, s) in target.iter_mut().zip(source) {
-        *t += factor * s;
-    }
-}
-
-/// `H += factor * row' row`
-fn add_outer_product(hessian: &mut [f64], row: &[f64], factor: f64) {
-    let width = row.len();
-    for (i, value) in row.iter().enumerate().filter(|(_, value)| **value != 0.0) {
-        add_scaled(&mut hessian[i * width..][..width], row, factor * value);
-    }
-}
-
-/// `Q += A' B` with `rows x w` matrices.
-#[inline(always)]
-fn transposed_product_add(a: &[f64], b: &[f64], q: &mut [f64], rows: usize, w: usize) {
-    for l in 0..rows {
-        let b_row = &b[l * w..l * w + w];
-        for i in 0..w {
-            let factor = a[l * w + i];
-            let q_row = &mut q[i * w..i * w + w];
-            for j in 0..w {
-                q_row[j] += factor * b_row[j];
-            }
         }
     }
 }

@@ -17,6 +17,8 @@
 mod assemble;
 mod border;
 mod interval;
+mod kernels;
+mod solve;
 
 use super::{Factor, Inertia, Stages, Triplets};
 use assemble::Assembly;
@@ -26,7 +28,6 @@ use interval::{Interval, Sizes};
 /// The recursion, with all its memory.
 pub struct Riccati {
     stages: Stages,
-    sizes: Sizes,
     assembly: Assembly,
     intervals: Vec<Interval>,
     border: Border,
@@ -35,6 +36,8 @@ pub struct Riccati {
     /// `[v_x; v_theta]` of the stage being left.
     gradient: Vec<f64>,
     theta: Vec<f64>,
+    x: Vec<f64>,
+    scratch: Vec<f64>,
 }
 
 impl Riccati {
@@ -62,7 +65,8 @@ impl Riccati {
         let intervals = (0..stages.intervals).map(interval).collect();
         let kept = sizes.kept();
         let (value, gradient, theta) = (vec![0.0; kept * kept], vec![0.0; kept], vec![0.0; sizes.q]);
-        Ok(Riccati { stages, sizes, assembly, intervals, border, value, gradient, theta })
+        let (x, scratch) = (vec![0.0; sizes.n], vec![0.0; sizes.all()]);
+        Ok(Riccati { stages, assembly, intervals, border, value, gradient, theta, x, scratch })
     }
 }
 
@@ -89,14 +93,13 @@ impl Factor for Riccati {
         let (a, b) = right_side.split_at_mut(self.stages.variables());
         self.border.terminal_gradient(a, b, &mut self.gradient);
         for (k, interval) in self.intervals.iter_mut().enumerate().rev() {
-            interval.backward(&self.stages, k, a, b, &mut self.gradient);
+            interval.backward(&self.stages, k, (a, b), &mut self.gradient, &mut self.scratch);
         }
-        let mut x = vec![0.0; self.sizes.n];
-        self.border.solve(&self.gradient, &mut x, &mut self.theta);
+        self.border.solve(&self.gradient, &mut self.x, &mut self.theta);
         for (k, interval) in self.intervals.iter_mut().enumerate() {
-            interval.forward(&self.stages, k, a, b, &mut x, &self.theta);
+            interval.forward(&self.stages, k, (a, b), (&mut self.x, &self.theta), &mut self.scratch);
         }
-        a[self.stages.state(self.stages.intervals)].copy_from_slice(&x);
+        a[self.stages.state(self.stages.intervals)].copy_from_slice(&self.x);
         self.border.finish(&self.theta, a, b);
     }
 }

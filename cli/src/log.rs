@@ -1,0 +1,98 @@
+//! What a person sees while a solve runs, on stderr: Ipopt's iteration table with the width of the layer, and on a
+//! terminal a progress line.
+
+use crate::output::number::scientific;
+use fdcc_runtime::nlp::Progress;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::IsTerminal;
+use std::time::Duration;
+
+/// How much to print.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Level {
+    /// Nothing.
+    None,
+    /// Every tenth iteration.
+    Short,
+    /// Every iteration.
+    Full,
+}
+
+const HEADER: &str =
+    " iter    objective    inf_pr   inf_du lg(mu)  ||d||  lg(rg) alpha_du alpha_pr  ls  sigma";
+/// The header is repeated after this many lines.
+const PAGE: usize = 20;
+const SHORT: usize = 10;
+
+/// The table of one solve.
+pub struct Log {
+    level: Level,
+    lines: usize,
+    bar: ProgressBar,
+}
+
+impl Log {
+    pub fn new(level: Level) -> Self {
+        let bar = ProgressBar::no_length();
+        if level == Level::None || !std::io::stderr().is_terminal() {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}") {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(Duration::from_millis(120));
+        Log { level, lines: 0, bar }
+    }
+
+    /// One iteration.
+    pub fn iteration(&mut self, progress: &Progress, sigma: &[f64]) {
+        self.bar.set_message(format!(
+            "iteration {}  violation {:.1e}",
+            progress.iteration, progress.primal_infeasibility
+        ));
+        let wanted = match self.level {
+            Level::None => false,
+            Level::Short => progress.iteration.is_multiple_of(SHORT),
+            Level::Full => true,
+        };
+        if !wanted {
+            return;
+        }
+        let line = line(progress, sigma);
+        let with_header = self.lines.is_multiple_of(PAGE);
+        self.lines += 1;
+        self.bar.suspend(|| {
+            if with_header {
+                eprintln!("{HEADER}");
+            }
+            eprintln!("{line}");
+        });
+    }
+
+    /// Removes the progress line.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+fn line(p: &Progress, sigma: &[f64]) -> String {
+    let regularization =
+        if p.regularization > 0.0 { format!("{:.1}", p.regularization.log10()) } else { "-".into() };
+    let sigma = sigma.iter().fold(0.0f64, |a, sigma| a.max(*sigma));
+    let sigma = if sigma > 0.0 { scientific(sigma, 1) } else { "-".into() };
+    format!(
+        "{:5}{} {:>13} {:>8} {:>8} {:>5.1} {:>8} {:>5} {:>8} {:>8} {:>3}  {}",
+        p.iteration,
+        if p.restoration { 'r' } else { ' ' },
+        scientific(p.objective, 6),
+        scientific(p.primal_infeasibility, 2),
+        scientific(p.dual_infeasibility, 2),
+        p.mu.log10(),
+        scientific(p.step, 2),
+        regularization,
+        scientific(p.alpha_dual, 2),
+        scientific(p.alpha_primal, 2),
+        p.trials,
+        sigma
+    )
+}

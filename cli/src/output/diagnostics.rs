@@ -1,0 +1,65 @@
+//! Diagnostics as JSON. Lines and columns count from 1, columns in characters; an end is one past the last character.
+
+use fdcc_grammar::{Diagnostic, Severity, SourceFile, Span};
+use serde::Serialize;
+
+/// One diagnostic.
+#[derive(Serialize)]
+pub struct Entry<'d> {
+    code: &'static str,
+    severity: &'static str,
+    message: &'d str,
+    file: &'d str,
+    #[serde(flatten)]
+    place: Place,
+    labels: Vec<LabelEntry<'d>>,
+    help: Option<&'d str>,
+    /// Repairs that are certain; `fdcc fix` will apply them.
+    fixes: [(); 0],
+}
+
+#[derive(Serialize)]
+struct LabelEntry<'d> {
+    span: Place,
+    text: &'d str,
+}
+
+/// A range of the text as people count it.
+#[derive(Serialize)]
+struct Place {
+    line: usize,
+    column: usize,
+    end_line: usize,
+    end_column: usize,
+}
+
+/// The entry of a diagnostic in its file.
+pub fn entry<'d>((source, diagnostic): (&'d SourceFile, &'d Diagnostic)) -> Entry<'d> {
+    let labels = diagnostic.labels.iter();
+    Entry {
+        code: diagnostic.code.as_str(),
+        severity: severity(diagnostic.severity),
+        message: &diagnostic.message,
+        file: &source.name,
+        place: place(source, diagnostic.span()),
+        labels: labels
+            .map(|label| LabelEntry { span: place(source, label.span), text: &label.text })
+            .collect(),
+        help: diagnostic.help.as_deref(),
+        fixes: [],
+    }
+}
+
+fn place(source: &SourceFile, span: Span) -> Place {
+    let (start, end) = (source.line_column(span.start), source.line_column(span.end));
+    Place { line: start.line, column: start.column, end_line: end.line, end_column: end.column }
+}
+
+/// `error`, `warning` or `advice`.
+pub fn severity(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+        Severity::Advice => "advice",
+    }
+}

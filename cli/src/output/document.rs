@@ -1,0 +1,198 @@
+//! The JSON document of a solve: the contract that people script against.
+
+use super::named::Named;
+use fdcc_runtime::homotopy::Outcome;
+use fdcc_runtime::modes::Mode;
+use fdcc_runtime::nlp::Status;
+use fdcc_runtime::problem::{Linear, Method, Problem, Scheme, Solver};
+use serde::{Deserialize, Serialize};
+
+/// One solve.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Document {
+    pub fdcc: String,
+    pub model: String,
+    pub source_sha256: String,
+    pub status: String,
+    pub objective: f64,
+    /// Whether the optimum is proved to be global.
+    pub global: bool,
+    pub free: Named<f64>,
+    pub params: Named<f64>,
+    pub method: MethodUsed,
+    pub iterations: usize,
+    pub kkt_error: f64,
+    pub constraint_violation: f64,
+    pub regularizations: usize,
+    pub counts: Counts,
+    pub seconds: Seconds,
+    pub time: Vec<f64>,
+    pub states: Named<Vec<f64>>,
+    pub controls: Named<Vec<f64>>,
+    pub costates: Named<Vec<f64>>,
+    pub report: Named<Vec<f64>>,
+    pub surfaces: Named<Vec<Span>>,
+}
+
+/// The method that was used, defaults and choices included.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct MethodUsed {
+    pub scheme: String,
+    #[serde(rename = "N")]
+    pub n: usize,
+    /// The width of the first surface, or nothing where nothing is smoothed.
+    pub sigma: Option<f64>,
+    /// The width of every surface.
+    pub sigmas: Named<f64>,
+    pub kernel: String,
+    pub solver: String,
+    pub linear: String,
+    pub tol: f64,
+    pub seed: u64,
+}
+
+/// Work done.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Counts {
+    pub factorizations: usize,
+    pub evaluations: usize,
+    pub derivatives: usize,
+    pub restorations: usize,
+}
+
+/// Wall-clock times: the only entries that differ between two runs.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct Seconds {
+    pub compile: f64,
+    pub solve: f64,
+    pub total: f64,
+}
+
+/// A time span in one mode of a surface.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Span {
+    pub mode: String,
+    pub from: f64,
+    pub to: f64,
+}
+
+impl Document {
+    pub fn new(problem: &Problem, outcome: &Outcome, source_sha256: &str, seconds: Seconds) -> Self {
+        let (solution, trajectory) = (&outcome.solution, &outcome.trajectory);
+        let shown = |columns: &[Vec<f64>]| -> Named<Vec<f64>> {
+            let states = problem.states.iter().zip(columns).filter(|(state, _)| !state.hidden);
+            states.map(|(state, column)| (state.name.clone(), column.clone())).collect()
+        };
+        let free: Vec<usize> = problem.unknowns.iter().map(|unknown| unknown.parameter).collect();
+        let widths: Vec<usize> = problem.surfaces.iter().map(|surface| surface.sigma).collect();
+        let named = |i: usize| (problem.parameters[i].name.clone(), trajectory.parameters[i]);
+        let fixed = (0..problem.parameters.len()).filter(|i| !free.contains(i) && !widths.contains(i));
+        let controls = problem.controls.iter().zip(&trajectory.controls);
+        let counts = &solution.counts;
+        Document {
+            fdcc: env!("CARGO_PKG_VERSION").to_string(),
+            model: problem.name.clone(),
+            source_sha256: source_sha256.to_string(),
+            status: status_name(&solution.status).to_string(),
+            objective: problem.sense * solution.objective,
+            global: solution.global,
+            free: free.iter().map(|i| named(*i)).collect(),
+            params: fixed.map(named).collect(),
+            method: MethodUsed::new(problem, outcome),
+            iterations: counts.iterations,
+            kkt_error: solution.kkt_error,
+            constraint_violation: solution.constraint_violation,
+            regularizations: counts.regularizations,
+            counts: Counts {
+                factorizations: counts.factorizations,
+                evaluations: counts.values,
+                derivatives: counts.derivatives,
+                restorations: counts.restorations,
+            },
+            seconds,
+            time: trajectory.time.clone(),
+            states: shown(&trajectory.states),
+            controls: controls.map(|(control, column)| (control.name.clone(), column.clone())).collect(),
+            costates: shown(&trajectory.costates),
+            report: problem.report_names.iter().cloned().zip(trajectory.report.iter().cloned()).collect(),
+            surfaces: surfaces(problem, outcome),
+        }
+    }
+}
+
+fn surfaces(problem: &Problem, outcome: &Outcome) -> Named<Vec<Span>> {
+    let spans = |spans: &Vec<fdcc_runtime::modes::Span>| {
+        let spans = spans.iter();
+        spans.map(|s| Span { mode: mode_name(s.mode).to_string(), from: s.from, to: s.to }).collect()
+    };
+    let surfaces = problem.surfaces.iter().zip(&outcome.modes);
+    surfaces.map(|(surface, modes)| (surface.name.clone(), spans(modes))).collect()
+}
+
+impl MethodUsed {
+    fn new(problem: &Problem, outcome: &Outcome) -> Self {
+        let method: &Method = &problem.method;
+        let surfaces = problem.surfaces.iter().zip(&outcome.sigma);
+        let solver = if outcome.convex { "convex" } else { solver_name(method.solver) };
+        MethodUsed {
+            scheme: scheme_name(method.scheme).to_string(),
+            n: method.intervals,
+            sigma: outcome.sigma.first().copied(),
+            sigmas: surfaces.map(|(surface, sigma)| (surface.name.clone(), *sigma)).collect(),
+            kernel: method.kernel.clone(),
+            solver: solver.to_string(),
+            linear: linear_name(method.linear).to_string(),
+            tol: method.tol,
+            seed: method.seed,
+        }
+    }
+}
+
+/// The name of a status in files and verdicts.
+pub fn status_name(status: &Status) -> &'static str {
+    match status {
+        Status::Solved => "solved",
+        Status::Acceptable => "acceptable",
+        Status::Infeasible => "infeasible",
+        Status::Unbounded => "unbounded",
+        Status::IterationLimit => "iteration_limit",
+        Status::TimeLimit => "time_limit",
+        Status::Interrupted => "interrupted",
+        Status::NotFinite(_) => "not_finite",
+        Status::NumericalFailure => "numerical_failure",
+    }
+}
+
+/// The name of a mode in files and verdicts.
+pub fn mode_name(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Below => "below",
+        Mode::Held => "held",
+        Mode::Above => "above",
+    }
+}
+
+/// The name of a scheme in models and files.
+pub fn scheme_name(scheme: Scheme) -> &'static str {
+    match scheme {
+        Scheme::Euler => "euler",
+        Scheme::ImplicitEuler => "implicit_euler",
+        Scheme::Midpoint => "midpoint",
+        Scheme::Trapezoid => "trapezoid",
+    }
+}
+
+fn solver_name(solver: Solver) -> &'static str {
+    match solver {
+        Solver::Automatic | Solver::InteriorPoint => "interior_point",
+        Solver::Convex => "convex",
+    }
+}
+
+fn linear_name(linear: Linear) -> &'static str {
+    match linear {
+        Linear::Automatic => "auto",
+        Linear::Riccati => "riccati",
+        Linear::SparseLdl => "sparse_ldl",
+    }
+}

@@ -1,0 +1,23 @@
+//! Everything that leaves the program: types for JSON, and the two streams.
+
+pub mod diagnostics;
+pub mod sarif;
+
+use std::io::Write;
+
+use serde::Serialize;
+
+/// Prints to the standard output. A reader that has gone away, as in `fdcc check ... | head`, is no error.
+pub fn print(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
+}
+
+/// Says on the standard error why something was not done.
+pub fn complain(text: &str) {
+    let _ = writeln!(std::io::stderr(), "fdcc: {text}");
+}
+
+/// Indented JSON with a line end.
+pub fn json(value: &impl Serialize) -> String {
+    serde_json::to_string_pretty(value).expect("our own types have text keys and finite numbers") + "\n"
+}

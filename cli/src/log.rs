@@ -1,8 +1,9 @@
 //! What a person sees while a solve runs, on stderr: Ipopt's iteration table with the width of the layer, and on a
 //! terminal a progress line.
 
-use crate::output::number::scientific;
-use fdcc_runtime::nlp::Progress;
+use crate::output::document::status_name;
+use crate::output::number::{scientific, significant};
+use fdcc_runtime::nlp::{Progress, Solution};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::Duration;
@@ -67,6 +68,15 @@ impl Log {
             }
             eprintln!("{line}");
         });
+    }
+
+    /// The end of one of several starts.
+    pub fn start(&mut self, index: u32, solution: &Solution, sense: f64) {
+        if self.level != Level::None {
+            let (status, objective) = (status_name(&solution.status), significant(sense * solution.objective, 9));
+            self.bar.suspend(|| eprintln!(" start {index:3}  {status:<18} objective {objective}"));
+        }
+        self.lines = 0;
     }
 
     /// Removes the progress line.

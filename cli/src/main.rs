@@ -1,2 +1,33 @@
-//! The command `fdcc`.
-fn main() {}
+//! The command `fdcc`: reads the command line and hands over to one file for each command.
+
+mod commands;
+mod log;
+mod model;
+mod output;
+mod render;
+mod verdict;
+mod warm;
+mod watch;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+/// Optimal control of systems with friction, switches and impacts.
+#[derive(Parser)]
+#[command(name = "fdcc", version, arg_required_else_help = true)]
+struct CommandLine {
+    #[command(subcommand)]
+    command: commands::Command,
+}
+
+fn main() -> ExitCode {
+    match CommandLine::try_parse() {
+        Ok(line) => line.command.run().into(),
+        Err(error) => {
+            // Nothing is left to do where even the complaint cannot be printed.
+            let _ = error.print();
+            if error.use_stderr() { commands::Exit::Usage.into() } else { commands::Exit::Fine.into() }
+        }
+    }
+}

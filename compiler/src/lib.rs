@@ -3,19 +3,32 @@
 pub mod builtins;
 mod check;
 pub mod differentiate;
+mod dump;
 pub mod generate;
 pub mod graph;
+pub mod lower;
 pub mod model;
+mod overrides;
 pub mod program;
 mod resolve;
 pub mod smooth;
 pub mod units;
 
 use check::Facts;
+use differentiate::differentiate;
 use fdcc_grammar::ast::{self, Item, ItemKind};
-use fdcc_grammar::{Code, Diagnostic, Severity};
+use fdcc_grammar::{Code, Diagnostic, Label, Severity, Span};
+use fdcc_runtime::problem::{Function, Problem};
+use graph::Graph;
+pub use dump::{Stage, dump};
+pub use lower::{Expectations, Expected, Program, expectations};
+use lower::{lower, numbers, problem};
 pub use model::Model;
+use program::VectorFunction;
 use resolve::resolve;
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
+pub use units::parse_quantity;
 
 /// What a syntax tree means, and what is wrong with it.
 pub struct Checked {
@@ -40,6 +53,7 @@ pub fn check(tree: &ast::Model) -> Checked {
     }
     diagnostics.extend(check::unused(tree));
     sort(&mut diagnostics);
+    let diagnostics = without_echoes(diagnostics);
     sort(&mut whole.not_yet);
     let fatal = |it: &Diagnostic| it.severity == Severity::Error && it.code != Code::NoValue;
     let name = tree.name.as_ref().map_or("model", |name| &name.name);
@@ -70,4 +84,46 @@ fn checked<'a>(
 fn sort(diagnostics: &mut Vec<Diagnostic>) {
     diagnostics.sort_by_key(|it| (it.span(), it.code));
     diagnostics.dedup_by(|a, b| (a.span(), a.code, &a.message) == (b.span(), b.code, &b.message));
+}
+
+/// One finding for each unknown name, wherever it is used; and what it is likely a slip for is not called unused.
+fn without_echoes(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let mut kept: Vec<Diagnostic> = Vec::new();
+    let mut first_use: HashMap<String, usize> = HashMap::new();
+    let mut meant: HashSet<Span> = HashSet::new();
+    for found in diagnostics {
+        if found.code == Code::UnknownName {
+            meant.extend(found.labels[1..].iter().map(|label| label.span));
+            if let Some(&at) = first_use.get(&found.message) {
+                kept[at].labels.push(Label { span: found.span(), text: "here too".into() });
+                continue;
+            }
+            first_use.insert(found.message.clone(), kept.len());
+        }
+        kept.push(found);
+    }
+    kept.retain(|it| it.code != Code::Unused || !meant.contains(&it.span()));
+    kept
+}
+
+/// Turns a model into an optimal control problem with compiled functions; or says what cannot be solved yet.
+pub fn compile(model: &Model) -> Result<Problem, Vec<Diagnostic>> {
+    not_yet(model)?;
+    let numbers = numbers(model)?;
+    let program = lower(model);
+    let functions = program.functions().map(VectorFunction::clone).to_vec();
+    let functions = machine_code(program.graph.clone(), functions);
+    Ok(problem(model, &program, &numbers, functions))
+}
+
+/// The first construct that is understood but cannot be solved.
+fn not_yet(model: &Model) -> Result<(), Vec<Diagnostic>> {
+    model.not_yet.first().map_or(Ok(()), |first| Err(vec![first.clone()]))
+}
+
+/// Derivatives, then machine code.
+fn machine_code(mut graph: Graph, functions: Vec<VectorFunction>) -> Vec<Arc<dyn Function>> {
+    let functions = functions.into_iter().map(|function| differentiate(&mut graph, function)).collect();
+    debug_assert_eq!(graph::verify(&graph), Ok(()));
+    generate::generate(&graph, functions)
 }

@@ -104,11 +104,17 @@ pub fn absolute(graph: &mut Graph, kernel: &Kernel, z: ExprId, sigma: ExprId) ->
 
 /// The roots with every `abs`, `min` and `max` in them smoothed, from the inside out.
 pub fn smooth_nonsmooth(graph: &mut Graph, roots: &[ExprId], kernel: &Kernel, sigma: ExprId) -> Vec<ExprId> {
-    graph.rewrite(roots, |graph, id, expr| match expr {
-        Expr::Call(Builtin::Abs, operands) => absolute(graph, kernel, operands[0], sigma),
-        Expr::Call(Builtin::Max, operands) => extremum(graph, kernel, operands, sigma, 0.5),
-        Expr::Call(Builtin::Min, operands) => extremum(graph, kernel, operands, sigma, -0.5),
-        _ => id,
+    graph.rewrite(roots, |graph, original, rebuilt| {
+        let (builtin, operands) = match (graph.expr(original), graph.expr(rebuilt)) {
+            (Expr::Call(was, _), Expr::Call(is, operands)) if was == is => (*is, operands.clone()),
+            _ => return rebuilt,
+        };
+        match builtin {
+            Builtin::Abs => absolute(graph, kernel, operands[0], sigma),
+            Builtin::Max => extremum(graph, kernel, &operands, sigma, 0.5),
+            Builtin::Min => extremum(graph, kernel, &operands, sigma, -0.5),
+            _ => rebuilt,
+        }
     })
 }
 

@@ -52,9 +52,21 @@ pub enum ItemKind {
     /// `time t in [a, b] [unit]`
     Time { name: Ident, interval: Interval, unit: Option<Unit> },
     /// `state name(parts) [unit] in [a, b] start expr`
-    State { name: Ident, parts: Vec<Ident>, unit: Option<Unit>, bounds: Option<Interval>, start: Option<Start> },
+    State {
+        name: Ident,
+        parts: Vec<Ident>,
+        unit: Option<Unit>,
+        bounds: Option<Interval>,
+        start: Option<Start>,
+    },
     /// `control name(parts) in [a, b] [unit] guess expr`
-    Control { name: Ident, parts: Vec<Ident>, bounds: Option<Interval>, unit: Option<Unit>, guess: Option<Expr> },
+    Control {
+        name: Ident,
+        parts: Vec<Ident>,
+        bounds: Option<Interval>,
+        unit: Option<Unit>,
+        guess: Option<Expr>,
+    },
     /// `surface name = expr`
     Surface { name: Ident, value: Expr },
     /// `dynamics { ... }`

@@ -17,4 +17,6 @@ pub mod transcribe;
 pub mod modes;
 pub mod trajectory;
 
+pub mod starts;
+
 pub mod homotopy;

@@ -59,6 +59,28 @@ fn track(g: &mut Graph) -> VectorFunction {
     function("path", vec![distance], &BY)
 }
 
+/// Objective and end conditions, over both ends; guess and interval, over time and parameters alone.
+fn once(g: &mut Graph) -> Vec<VectorFunction> {
+    let ends = Layout { x: 10, p: 4, ..Layout::default() };
+    let [x, y, duration] = [5, 6, 12].map(|input| g.input(input));
+    let target = [3.0, -1.0].map(|k| g.number(k * std::f64::consts::PI));
+    let (dx, dy) = (g.sub(x, target[0]), g.sub(y, target[1]));
+    let (dx2, dy2) = (g.square(dx), g.square(dy));
+    let distance2 = g.add(dx2, dy2);
+    let penalty = g.scale(10.0, distance2);
+    let objective = g.add(penalty, duration);
+    let mut outputs = vec![objective];
+    outputs.extend((0..5).map(|input| g.input(input)));
+    let by: Vec<u32> = (0..10).chain([12]).collect();
+    let boundary = VectorFunction { layout: ends, ..function("boundary", outputs, &by) };
+    let [tau, x] = [0, 1].map(|input| g.input(input));
+    let slope = g.cos(x);
+    let angle = g.atan2(slope, tau);
+    let guess = function("guess", vec![x, slope, angle], &[]);
+    let zero = g.number(0.0);
+    vec![boundary, guess, function("interval", vec![zero, duration], &[])]
+}
+
 fn guards_and_report(g: &mut Graph) -> Vec<VectorFunction> {
     let [_, _, _, vx, vy, th, ..] = inputs(g);
     let (sine, cosine) = (g.sin(th), g.cos(th));
@@ -74,6 +96,7 @@ fn function(name: &str, outputs: Vec<ExprId>, by: &[u32]) -> VectorFunction {
 
 fn all_functions(graph: &mut Graph) -> Vec<Differentiated> {
     let mut functions = vec![dynamics(graph, "sqrt"), track(graph)];
+    functions.extend(once(graph));
     functions.extend(guards_and_report(graph));
     functions.into_iter().map(|function| differentiate(graph, function)).collect()
 }

@@ -12,8 +12,10 @@ use fdcc_grammar::{Diagnostic, Severity, SourceFile};
 /// What is claimed and not found, and what is found and not claimed; empty if all is well.
 pub fn unclaimed(text: &str, diagnostics: &[Diagnostic]) -> Vec<String> {
     let source = SourceFile::new("model.fdc", text);
-    let mut found: Vec<(usize, &Diagnostic)> =
-        diagnostics.iter().map(|diagnostic| (source.line_column(diagnostic.span().start).line, diagnostic)).collect();
+    let mut found: Vec<(usize, &Diagnostic)> = diagnostics
+        .iter()
+        .map(|diagnostic| (source.line_column(diagnostic.span().start).line, diagnostic))
+        .collect();
     let mut problems = Vec::new();
     for claim in claims(text) {
         match found.iter().position(|(line, diagnostic)| claim.is_met_by(*line, diagnostic)) {
@@ -21,7 +23,8 @@ pub fn unclaimed(text: &str, diagnostics: &[Diagnostic]) -> Vec<String> {
             None => problems.push(format!("line {}: claimed but not found: {claim:?}", claim.line)),
         }
     }
-    let surplus = |(line, diagnostic): &(usize, &Diagnostic)| format!("line {line}: not claimed: {diagnostic:#?}");
+    let surplus =
+        |(line, diagnostic): &(usize, &Diagnostic)| format!("line {line}: not claimed: {diagnostic:#?}");
     problems.extend(found.iter().map(surplus));
     problems
 }

@@ -2,6 +2,7 @@
 
 pub mod functions;
 pub mod random;
+pub mod symbols;
 
 mod claims;
 mod markdown;

@@ -40,14 +40,18 @@ pub fn blocks(document: &str) -> Vec<Block> {
 
 /// The folder of the workspace.
 pub fn repository() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the tests are a folder of the workspace").to_owned()
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .expect("the tests are a folder of the workspace")
+        .to_owned()
 }
 
 /// Name and text of every file in a folder of the repository with an extension, in alphabetical order.
 pub fn documents(folder: &str, extension: &str) -> Vec<(String, String)> {
     let entries = fs::read_dir(repository().join(folder)).expect("the folder exists");
     let paths = entries.map(|entry| entry.expect("the folder can be read").path());
-    let mut paths: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|e| e == extension)).collect();
+    let mut paths: Vec<PathBuf> =
+        paths.filter(|path| path.extension().is_some_and(|e| e == extension)).collect();
     paths.sort();
     let name = |path: &Path| path.file_stem().expect("a file has a name").to_string_lossy().into_owned();
     paths.iter().map(|path| (name(path), fs::read_to_string(path).expect("the file is text"))).collect()

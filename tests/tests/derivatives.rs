@@ -1,40 +1,16 @@
-//! Interpreter = machine code, derivatives = differences: for every builtin, every kernel and random expressions.
-
-use std::sync::Arc;
+//! Interpreter = machine code, derivatives = differences: for every builtin and random expressions.
 
 use fdcc_compiler::builtins::{self, Builtin, Domain, Notation, Smoothness};
-use fdcc_compiler::differentiate::{derivative, differentiate};
-use fdcc_compiler::generate::generate;
-use fdcc_compiler::graph::{ExprId, Graph, evaluate, verify};
+use fdcc_compiler::differentiate::differentiate;
+use fdcc_compiler::generate::clif;
+use fdcc_compiler::graph::{ExprId, Graph, evaluate, print, verify};
 use fdcc_compiler::program::{Differentiated, VectorFunction};
-use fdcc_compiler::smooth::{self, KERNELS};
-use fdcc_runtime::problem::{Columns, Degree, Function, Layout, Origin};
+use fdcc_runtime::problem::{Columns, Degree, Layout, Origin};
 use fdcc_tests::functions::{check_differences, check_machine_code, derivatives};
 use fdcc_tests::random::Random;
+use fdcc_tests::symbols::{compile, function, states_and_parameters, table};
 
 const COUNTS: [usize; 6] = [0, 1, 2, 3, 7, 1000];
-
-/// Outputs as a function of `t` states and `p` parameters, differentiated by all of them.
-fn function(graph: &mut Graph, outputs: Vec<ExprId>, x: usize, p: usize) -> Differentiated {
-    let layout = Layout { t: 0, x, u: 0, p, s: 0 };
-    let origins = vec![Origin::default(); outputs.len()];
-    let by = (0..layout.inputs() as u32).collect();
-    differentiate(graph, VectorFunction { name: "test".into(), layout, outputs, origins, by })
-}
-
-fn compile(graph: &Graph, symbols: &Differentiated) -> Arc<dyn Function> {
-    generate(graph, vec![symbols.clone()]).remove(0)
-}
-
-/// Random numbers in all columns; what pads them is not a number.
-fn table(random: &mut Random, columns: usize, count: usize, low: f64, high: f64) -> Columns {
-    let mut table = Columns::new(columns, count);
-    table.as_mut_slice().fill(f64::NAN);
-    for column in 0..columns {
-        table.column_mut(column).iter_mut().for_each(|value| *value = random.between(low, high));
-    }
-    table
-}
 
 /// Both checks on random points between `low` and `high`.
 fn check(graph: &Graph, symbols: &Differentiated, low: f64, high: f64) -> Result<(), String> {
@@ -43,7 +19,7 @@ fn check(graph: &Graph, symbols: &Differentiated, low: f64, high: f64) -> Result
     let mut random = Random::new(1);
     let layout = symbols.function.layout;
     for count in COUNTS {
-        let points = table(&mut random, layout.x, count, low, high);
+        let points = table(&mut random, layout.point_inputs(), count, low, high);
         let multipliers = table(&mut random, symbols.function.outputs.len(), count, -1.0, 1.0);
         let parameters: Vec<f64> = (0..layout.p).map(|_| random.between(low, high)).collect();
         check_machine_code(graph, symbols, &*compiled, &points, &parameters, &multipliers, 1e-13)?;
@@ -67,7 +43,7 @@ fn call_of_inputs(graph: &mut Graph, builtin: Builtin, parameter: bool) -> Diffe
     let inputs: Vec<ExprId> = (0..arity as u32).map(|input| graph.input(input)).collect();
     let call = graph.call(builtin, &inputs);
     let parameters = usize::from(parameter);
-    function(graph, vec![call], arity - parameters, parameters)
+    function(graph, vec![call], states_and_parameters(arity - parameters, parameters))
 }
 
 #[test]
@@ -108,12 +84,26 @@ fn builtins_with_kinks_have_the_partials_of_the_branch_they_are_on() {
 }
 
 #[test]
+fn every_kind_of_input_is_read_from_its_own_place() {
+    let mut graph = Graph::new();
+    let layout = Layout { t: 1, x: 2, u: 1, p: 2, s: 2 };
+    let inputs: Vec<ExprId> = (0..8).map(|input| graph.input(input)).collect();
+    let weighted: Vec<ExprId> =
+        inputs.iter().map(|&input| graph.scale(f64::from(input.index() as u32 + 1), input)).collect();
+    let sum = graph.sum(&weighted);
+    let output = graph.sin(sum);
+    let parameter = graph.mul(inputs[4], inputs[5]);
+    let symbols = function(&mut graph, vec![output, parameter, sum], layout);
+    check(&graph, &symbols, -0.5, 0.5).expect("all inputs in their places");
+}
+
+#[test]
 fn a_wrong_partial_is_caught() {
     let mut graph = Graph::new();
     let (x, y) = (graph.input(0), graph.input(1));
     let sine = graph.sin(x);
     let product = graph.mul(sine, y);
-    let right = function(&mut graph, vec![product], 2, 0);
+    let right = function(&mut graph, vec![product], states_and_parameters(2, 0));
     check(&graph, &right, -1.0, 1.0).expect("the right derivative passes");
 
     let mut wrong = right.clone();
@@ -138,8 +128,8 @@ fn a_wrong_instruction_is_caught() {
     let x = graph.input(0);
     let sine = graph.sin(x);
     let cosine = graph.cos(x);
-    let symbols = function(&mut graph, vec![sine], 1, 0);
-    let other = function(&mut graph, vec![cosine], 1, 0);
+    let symbols = function(&mut graph, vec![sine], states_and_parameters(1, 0));
+    let other = function(&mut graph, vec![cosine], states_and_parameters(1, 0));
     let points = table(&mut Random::new(3), 1, 5, 0.1, 0.5);
     let multipliers = table(&mut Random::new(4), 1, 5, 0.1, 0.5);
     check_machine_code(&graph, &symbols, &*compile(&graph, &other), &points, &[], &multipliers, 1e-13)
@@ -268,7 +258,7 @@ fn random_expressions_are_compiled_to_what_they_mean() {
     for case in 0..60 {
         let mut graph = Graph::new();
         let outputs = random_expressions(&mut graph, &mut random, 10 + case);
-        let symbols = function(&mut graph, outputs, 3, 1);
+        let symbols = function(&mut graph, outputs, states_and_parameters(3, 1));
         verify(&graph).expect("well formed");
         let points = table(&mut random, 3, 9, -2.0, 2.0);
         let multipliers = table(&mut random, 3, 9, -1.0, 1.0);
@@ -280,12 +270,30 @@ fn random_expressions_are_compiled_to_what_they_mean() {
 }
 
 #[test]
+fn deep_expressions_need_no_deep_stack() {
+    let mut graph = Graph::new();
+    let (x, one) = (graph.input(0), graph.number(1.0));
+    let mut deep = x;
+    for _ in 0..2000 {
+        let sum = graph.add(one, deep);
+        deep = graph.sqrt(sum);
+    }
+    let small_stack = std::thread::Builder::new().stack_size(256 * 1024);
+    let text = small_stack.spawn(move || {
+        let symbols = function(&mut graph, vec![deep], states_and_parameters(1, 0));
+        compile(&graph, &symbols);
+        print(&graph, &[("y".into(), deep)], &|_| "x".into())
+    });
+    assert!(text.expect("a thread").join().expect("no overflow").contains("y = sqrt("));
+}
+
+#[test]
 fn machine_code_is_the_same_every_time() {
     let build = || {
         let mut graph = Graph::new();
         let outputs = random_expressions(&mut graph, &mut Random::new(7), 60);
-        let symbols = function(&mut graph, outputs, 3, 1);
-        fdcc_compiler::generate::clif(&graph, &[symbols])
+        let symbols = function(&mut graph, outputs, states_and_parameters(3, 1));
+        clif(&graph, &[symbols])
     };
     assert_eq!(build(), build());
 }
@@ -337,7 +345,7 @@ fn derivatives_do_not_see_the_branch_not_taken() {
     let guarded = graph.select_le(x, zero, zero, power);
     let doubled = graph.scale(2.0, guarded);
     let output = graph.sin(doubled);
-    let symbols = function(&mut graph, vec![output], 1, 0);
+    let symbols = function(&mut graph, vec![output], states_and_parameters(1, 0));
     let mut points = Columns::new(1, 3);
     points.column_mut(0).copy_from_slice(&[-1.0, 0.0, -0.5]);
     let mut multipliers = Columns::new(1, 3);
@@ -345,99 +353,6 @@ fn derivatives_do_not_see_the_branch_not_taken() {
     let results = derivatives(&*compile(&graph, &symbols), &points, &[], &multipliers);
     assert_eq!(results.jacobian.column(0), [0.0; 3]);
     assert_eq!(results.hessian.column(0), [0.0; 3]);
-}
-
-/// Expressions of z and sigma at some values, with the derivatives by z.
-fn at(graph: &Graph, expr: ExprId, z: f64, sigma: f64) -> f64 {
-    evaluate(graph, &[expr], &[z, sigma], &[])[0]
-}
-
-#[test]
-fn every_kernel_is_compiled_to_what_it_means_with_exact_derivatives() {
-    for kernel in &KERNELS {
-        let mut graph = Graph::new();
-        let (z, sigma) = (graph.input(0), graph.input(1));
-        let step = smooth::step(&mut graph, kernel, z, sigma);
-        let absolute = smooth::absolute(&mut graph, kernel, z, sigma);
-        let symbols = function(&mut graph, vec![step, absolute], 1, 1);
-        let compiled = compile(&graph, &symbols);
-        let mut points = Columns::new(1, 7);
-        // Not within a step of a difference of the ends of a compact kernel.
-        points.column_mut(0).copy_from_slice(&[-3.0, -0.9, -0.4, 0.0, 0.3, 0.7, 2.5]);
-        let multipliers = table(&mut Random::new(9), 2, 7, -1.0, 1.0);
-        check_machine_code(&graph, &symbols, &*compiled, &points, &[1.5], &multipliers, 1e-14)
-            .and_then(|()| check_differences(&*compiled, &[0, 1], &points, &[1.5], &multipliers, 1e-8))
-            .unwrap_or_else(|error| panic!("{}: {error}", kernel.name));
-    }
-}
-
-#[test]
-fn every_step_is_odd_rises_to_one_and_is_the_slope_of_its_absolute_value() {
-    for kernel in &KERNELS {
-        let mut graph = Graph::new();
-        let (z, sigma) = (graph.input(0), graph.input(1));
-        let step = smooth::step(&mut graph, kernel, z, sigma);
-        let absolute = smooth::absolute(&mut graph, kernel, z, sigma);
-        let slope = derivative(&mut graph, absolute, 0);
-        let name = kernel.name;
-        for sigma in [1.0, 0.1, 0.001] {
-            assert_eq!(at(&graph, step, 0.0, sigma), 0.0, "{name}");
-            for k in 1..200 {
-                let z = 0.013 * sigma * f64::from(k);
-                let value = at(&graph, step, z, sigma);
-                assert!((value + at(&graph, step, -z, sigma)).abs() < 1e-15, "{name} is odd at {z}");
-                assert!((at(&graph, slope, z, sigma) - value).abs() < 1e-12, "{name}: slope at {z}");
-                assert!((at(&graph, slope, -z, sigma) + value).abs() < 1e-12, "{name}: slope at -{z}");
-                assert!(value >= at(&graph, step, 0.99 * z, sigma), "{name} rises at {z}");
-                assert!(value <= 1.0 + 1e-15, "{name} stays below 1 at {z}");
-            }
-        }
-    }
-}
-
-/// The distance to the sign at a fixed z shrinks with sigma as fast as each formula says.
-#[test]
-fn every_step_approaches_the_sign_at_its_own_order() {
-    for kernel in &KERNELS {
-        let mut graph = Graph::new();
-        let (z, sigma) = (graph.input(0), graph.input(1));
-        let step = smooth::step(&mut graph, kernel, z, sigma);
-        let absolute = smooth::absolute(&mut graph, kernel, z, sigma);
-        for width in [0.1_f64, 0.05, 0.025] {
-            // 1 - tanh u = 2/(exp(2u) + 1); 1 - u/sqrt(u^2+1) <= 1/(2u^2); compact kernels are exact.
-            let bound = match kernel.name {
-                "tanh" => 2.0 / ((2.0 / width).exp() + 1.0) + 1e-15,
-                "sqrt" => 0.5 * width * width,
-                _ => 0.0,
-            };
-            let error = 1.0 - at(&graph, step, 1.0, width);
-            assert!((0.0..=bound).contains(&error), "{}: {error} at {width}", kernel.name);
-            // |z|_sigma is exact far away, and off by sigma times a constant at 0: at most sigma.
-            let far = at(&graph, absolute, -1.0, width) - 1.0;
-            assert!((-1e-15..=0.5 * width * width + 1e-8).contains(&far), "{}: {far}", kernel.name);
-            assert!((0.0..=width).contains(&at(&graph, absolute, 0.0, width)), "{}", kernel.name);
-        }
-    }
-}
-
-#[test]
-fn smoothing_leaves_no_kink_and_tends_to_what_it_replaces() {
-    for kernel in &KERNELS {
-        let mut graph = Graph::new();
-        let (x, y, sigma) = (graph.input(0), graph.input(1), graph.input(2));
-        let magnitude = graph.abs(x);
-        let smaller = graph.min(magnitude, y);
-        let root = graph.max(smaller, x);
-        let smoothed = smooth::smooth_nonsmooth(&mut graph, &[root], kernel, sigma)[0];
-        let kinks = graph.reachable(&[smoothed]).into_iter().filter(|&id| {
-            [Builtin::Abs, Builtin::Min, Builtin::Max].iter().any(|&kink| graph.as_call(id, kink).is_some())
-        });
-        assert_eq!(kinks.count(), 0, "{}", kernel.name);
-        for z in [[-0.7, 0.2, 1e-6], [0.3, 0.9, 1e-6], [0.4, -0.8, 1e-6]] {
-            let values = evaluate(&graph, &[root, smoothed], &z, &[]);
-            assert!((values[0] - values[1]).abs() < 1e-5, "{}: {values:?}", kernel.name);
-        }
-    }
 }
 
 #[test]
@@ -468,7 +383,7 @@ fn a_table_of_the_wrong_size_is_refused() {
     let mut graph = Graph::new();
     let x = graph.input(0);
     let output = graph.sin(x);
-    let symbols = function(&mut graph, vec![output], 1, 0);
+    let symbols = function(&mut graph, vec![output], states_and_parameters(1, 0));
     let (points, mut values) = (Columns::new(1, 4), Columns::new(1, 4));
     compile(&graph, &symbols).jacobian(&points, &[], &mut values, &mut Columns::new(2, 4));
 }

@@ -1,5 +1,6 @@
 //! What the parser understands and what it says about the rest. The cases are documents in `tests/syntax/`.
 
+use fdcc_grammar::ast::*;
 use fdcc_grammar::{Code, Diagnostic, Parse, SourceFile, parse};
 use fdcc_tests::{blocks, documents, repository, unclaimed};
 
@@ -8,7 +9,13 @@ fn documents_claim_every_diagnostic() {
     for (name, document) in documents("tests/tests/syntax", "md") {
         for block in blocks(&document).iter().filter(|block| block.tag == "fdc") {
             let problems = unclaimed(&block.text, &parse(&block.text).diagnostics);
-            assert!(problems.is_empty(), "{name}.md:{} {}\n{}", block.line, block.heading, problems.join("\n"));
+            assert!(
+                problems.is_empty(),
+                "{name}.md:{} {}\n{}",
+                block.line,
+                block.heading,
+                problems.join("\n")
+            );
         }
     }
 }
@@ -68,7 +75,8 @@ fn labels(source: &str, diagnostic: &Diagnostic) -> Vec<(String, String)> {
 
 fn expected_labels(case: &serde_json::Value) -> Vec<(String, String)> {
     let labels = case["labels"].as_array().expect("a case has labels");
-    let part = |label: &serde_json::Value, at: usize| label[at].as_str().expect("a label has two texts").to_owned();
+    let part =
+        |label: &serde_json::Value, at: usize| label[at].as_str().expect("a label has two texts").to_owned();
     labels.iter().map(|label| (part(label, 0), part(label, 1))).collect()
 }
 
@@ -80,5 +88,127 @@ fn a_broken_piece_costs_only_itself() {
     assert_eq!(codes, [Code::Unfinished, Code::Unfinished, Code::UnknownItem, Code::MissingOperator]);
     let kinds: Vec<String> = tree.items.iter().map(|item| format!("{:?}", item.kind)).collect();
     assert_eq!(kinds.len(), 3, "{kinds:?}");
-    assert!(kinds[1].contains("\"y\"") && !kinds[1].contains("\"x\""), "the good equation stays: {}", kinds[1]);
+    assert!(
+        kinds[1].contains("\"y\"") && !kinds[1].contains("\"x\""),
+        "the good equation stays: {}",
+        kinds[1]
+    );
+}
+
+/// The tree of an expression with all its parentheses.
+fn written_out(expr: &Expr) -> String {
+    let list = |items: &[Expr]| items.iter().map(written_out).collect::<Vec<_>>().join(", ");
+    match &expr.kind {
+        ExprKind::Number(value) => value.to_string(),
+        ExprKind::Quantity(value, unit) => {
+            let factors = unit.factors.iter().map(|(name, power)| format!("{}^{power}", name.name));
+            format!("{value}[{}]", factors.collect::<Vec<_>>().join(" "))
+        }
+        ExprKind::Name(name) => name.clone(),
+        ExprKind::Negate(inner) => format!("(-{})", written_out(inner)),
+        ExprKind::Binary(operator, left, right) => {
+            format!("({} {operator:?} {})", written_out(left), written_out(right))
+        }
+        ExprKind::Call(function, arguments) => {
+            let arguments = arguments.iter().map(|argument| match argument {
+                Argument::Expr(expr) => written_out(expr),
+                Argument::End(_) => "END".to_owned(),
+                Argument::Start(_) => "START".to_owned(),
+                Argument::Iteration(name, data) => format!("{} IN {}", name.name, data.name),
+            });
+            format!("{}({})", written_out(function), arguments.collect::<Vec<_>>().join(", "))
+        }
+        ExprKind::Part(base, part) => format!("{}.{}", written_out(base), part.name),
+        ExprKind::Index(base, index) => format!("{}[{index}]", written_out(base)),
+        ExprKind::Prime(base) => format!("{}'", written_out(base)),
+        ExprKind::Tuple(items) => format!("<{}>", list(items)),
+        ExprKind::Piecewise { arms, otherwise } => {
+            let arm = |arm: &Arm| {
+                let [left, right, value] = [&arm.left, &arm.right, &arm.value].map(written_out);
+                format!("{left} {:?} {right}: {value}; ", arm.relation)
+            };
+            format!("{{{}{}}}", arms.iter().map(arm).collect::<String>(), written_out(otherwise))
+        }
+        ExprKind::Match { surface, below, above } => {
+            format!("{}?{}:{}", surface.name, written_out(below), written_out(above))
+        }
+    }
+}
+
+#[test]
+fn operators_bind_as_on_paper() {
+    let cases = [
+        ("1 + 2 * 3", "(1 Add (2 Multiply 3))"),
+        ("a - b + c", "((a Subtract b) Add c)"),
+        ("a / b * c", "((a Divide b) Multiply c)"),
+        ("a*b/c^2", "((a Multiply b) Divide (c Power 2))"),
+        ("-x^2", "(-(x Power 2))"),
+        ("2^3^2", "(2 Power (3 Power 2))"),
+        ("2^-x^2", "(2 Power (-(x Power 2)))"),
+        ("-a * b", "((-a) Multiply b)"),
+        ("a * -b", "(a Multiply (-b))"),
+        ("a - -b", "(a Subtract (-b))"),
+        ("(a - b) - (c - d)", "((a Subtract b) Subtract (c Subtract d))"),
+        (".5 + 1e-3 + 2.", "((0.5 Add 0.001) Add 2)"),
+        ("9.81 [m/s^2] * 2", "(9.81[m^1 s^-2] Multiply 2)"),
+        ("1 [kg m^2/s/K]", "1[kg^1 m^2 s^-1 K^-1]"),
+        ("1 [1/s] + 2 [N*m]", "(1[s^-1] Add 2[N^1 m^1])"),
+        ("pos[1] + pos.x'", "(pos[1] Add pos.x')"),
+        ("coast.h(end) - x(start)", "(coast.h(END) Subtract x(START))"),
+        ("sum(k in obs, (x(k.t) - k.x)^2)", "sum(k IN obs, ((x(k.t) Subtract k.x) Power 2))"),
+        ("(a, b, (c, d))", "<a, b, <c, d>>"),
+        (
+            "piecewise { x < 1 => a  y >= b => c  otherwise => d }",
+            "{x LessEqual 1: a; y GreaterEqual b: c; d}",
+        ),
+        ("2 * match s { below => u, above => -u }", "(2 Multiply s?u:(-u))"),
+    ];
+    for (text, expected) in cases {
+        let model = format!("minimize {text}");
+        let Parse { tree, diagnostics } = parse(&model);
+        assert!(diagnostics.is_empty(), "{text}: {diagnostics:#?}");
+        let [Item { kind: ItemKind::Objective { value, .. }, .. }] = &tree.items[..] else {
+            panic!("{text}: {tree:#?}")
+        };
+        assert_eq!(written_out(value), expected, "{text}");
+        assert_eq!(&model[value.span.range()], text, "the span is the expression");
+    }
+}
+
+#[test]
+fn method_blocks_fall_into_settings() {
+    let text = "method { smooth sigma = 0.02 [m/s] kernel tanh  grid N = auto steps 2 scheme euler lagged (th, v)  \
+                continue sigma = .1, .05  solver = sqp  scheme = midpoint }";
+    let tree = parse(text).tree;
+    let ItemKind::Method { settings } = &tree.items[0].kind else { panic!("a method block: {tree:#?}") };
+    let shown = settings.iter().map(|setting| {
+        let value = match &setting.value {
+            SettingValue::Expr(value) => written_out(value),
+            SettingValue::List(values) => values.iter().map(written_out).collect::<Vec<_>>().join(" "),
+            SettingValue::Scheme { name, lagged } => {
+                lagged.iter().fold(name.name.clone(), |text, state| text + " " + &state.name)
+            }
+        };
+        format!("{}={value}", setting.key.name)
+    });
+    let expected = [
+        "sigma=0.02[m^1 s^-1]",
+        "kernel=tanh",
+        "N=auto",
+        "steps=2",
+        "scheme=euler th v",
+        "continue=0.1 0.05",
+        "solver=sqp",
+        "scheme=midpoint",
+    ];
+    assert_eq!(shown.collect::<Vec<_>>(), expected);
+}
+
+#[test]
+fn spans_end_with_the_last_token() {
+    let text = "state v [m/s]   # a comment\n\ndynamics {\n  m * v' in F   # another\n}\nstate w start free\nend w == 1   \n\n";
+    let ends = parse(text).tree.items.into_iter().map(|item| text[item.span.range()].to_owned());
+    let expected =
+        ["state v [m/s]", "dynamics {\n  m * v' in F   # another\n}", "state w start free", "end w == 1"];
+    assert_eq!(ends.collect::<Vec<_>>(), expected);
 }

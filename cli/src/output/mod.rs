@@ -1,6 +1,11 @@
 //! Everything that leaves the program: types for JSON, and the two streams.
 
+pub mod csv;
 pub mod diagnostics;
+pub mod document;
+pub mod html;
+pub mod named;
+pub mod number;
 pub mod sarif;
 
 use std::io::Write;

@@ -5,7 +5,7 @@
 
 use super::Facts;
 use crate::differentiate::derivative;
-use crate::graph::evaluate::evaluate;
+use crate::graph::evaluate;
 use crate::model::Symbol;
 use crate::resolve::{text, walk};
 use fdcc_grammar::ast::{Expr, ItemKind, Sense};

@@ -3,6 +3,7 @@
 use super::Facts;
 use fdcc_grammar::ast::ItemKind;
 use fdcc_grammar::{Code, Diagnostic};
+use std::collections::HashSet;
 
 /// Reports states that no equation moves.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
@@ -10,10 +11,10 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
         ItemKind::Dynamics { equations } => Some(equations),
         _ => None,
     });
-    let moved: Vec<&str> = equations.flatten().map(|equation| equation.state.name.as_str()).collect();
+    let moved: HashSet<&str> = equations.flatten().map(|equation| equation.state.name.as_str()).collect();
     for item in &facts.items {
         if let ItemKind::State { name, .. } = &item.kind
-            && !moved.contains(&name.name.as_str())
+            && !moved.contains(name.name.as_str())
         {
             let name_ = &name.name;
             let label = format!("declared as a state, but there is no `{name_}' = ...`");

@@ -73,6 +73,9 @@ fn repair(meaning: &Elaborator<'_>, site: &Site<'_>, knot: &Knot<'_>, place: &Kn
     }
 }
 
+/// Longer right sides are not written out, in nodes.
+const LONGEST_REPAIR: usize = 100;
+
 /// Surface and right sides for a definition of two pieces that is called once in an equation.
 fn rewritten(
     meaning: &Elaborator<'_>,
@@ -83,6 +86,11 @@ fn rewritten(
 ) -> Option<(String, [String; 2])> {
     let ExprKind::Piecewise { arms, otherwise } = &site.expr.kind else { return None };
     let [arm] = &arms[..] else { return None };
+    let mut size = 0;
+    walk::visit(&equation.right, &mut |_| size += 1);
+    if size > LONGEST_REPAIR {
+        return None;
+    }
     let actual = arguments(meaning, site, &equation.right, place.used)?;
     let psi = difference(&replace(&arm.left, &actual), &replace(&arm.right, &actual));
     let sides = [&arm.value, &**otherwise].map(|value| {

@@ -26,7 +26,7 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
 fn find_phase<'a>(facts: &Facts<'a, '_>, phase: &Ident, found: &mut Vec<Diagnostic>) -> Option<&'a [Item]> {
     let scope = &facts.meaning.scope;
     let Some(at) = scope.find(&phase.name) else {
-        found.push(scope.unknown(&phase.name, phase.span, &[]));
+        found.push(scope.unknown(&phase.name, phase.span, &[], &format!("phase {} {{ ... }}", phase.name)));
         return None;
     };
     let item = scope.declarations[at].item;

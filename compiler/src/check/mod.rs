@@ -55,6 +55,7 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, is_phase: bool) -> Vec<Diagnostic
 }
 
 pub(crate) use unused::check as unused;
+pub(crate) use values::missing as missing_value;
 
 impl Facts<'_, '_> {
     /// Whether a mistake inside a span has been told already, so that more about it would be noise.

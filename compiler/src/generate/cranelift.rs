@@ -120,7 +120,7 @@ pub(super) fn text(graph: &Graph, schedule: &Schedule) -> String {
 fn host() -> OwnedTargetIsa {
     let mut flags = settings::builder();
     let verify = if cfg!(debug_assertions) { "true" } else { "false" };
-    for (name, value) in [("opt_level", "speed"), ("enable_verifier", verify), ("unwind_info", "false")] {
+    for (name, value) in [("opt_level", "none"), ("enable_verifier", verify), ("unwind_info", "false")] {
         flags.set(name, value).expect("these flags exist");
     }
     let builder = ::cranelift::native::builder().expect("the host is one of Cranelift's targets");

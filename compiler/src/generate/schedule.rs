@@ -233,4 +233,14 @@ mod tests {
         let fused = |(_, operation): &_| !matches!(operation, Operation::Point(_) | Operation::Call(..));
         assert!(!schedule.inside.iter().any(fused));
     }
+
+    #[test]
+    fn a_product_of_parameters_stays_before_the_loop() {
+        let mut graph = Graph::new();
+        let (x, p) = (graph.input(0), graph.input(2));
+        let square = graph.square(p);
+        let root = graph.add(square, x);
+        let schedule = schedule(&graph, &LAYOUT, &[(root, PLACE)]);
+        assert!(schedule.before.iter().any(|(id, _)| *id == square));
+    }
 }

@@ -1,12 +1,12 @@
 //! Hash-consed expressions: equal expressions have equal ids, and nothing is ever changed or removed.
 //!
 //! A node refers only to nodes made before it, so ascending ids are an order of evaluation and every pass
-//! over a graph is a loop, never a recursion. Each node is simplified by [`simplify`] as it is made.
+//! over a graph is a loop, never a recursion. Each node is simplified as it is made.
 
-mod evaluate;
-mod print;
+pub mod evaluate;
+pub mod print;
 mod simplify;
-mod verify;
+pub mod verify;
 
 use std::collections::HashMap;
 
@@ -162,17 +162,18 @@ impl Graph {
 
     /// The roots with some inputs replaced.
     pub fn substitute(&mut self, roots: &[ExprId], inputs: &dyn Fn(u32) -> Option<ExprId>) -> Vec<ExprId> {
-        self.rewrite(roots, |_, id, expr| match expr {
-            Expr::Input(position) => inputs(*position).unwrap_or(id),
-            _ => id,
+        self.rewrite(roots, |graph, original, rebuilt| match graph.expr(original) {
+            Expr::Input(position) => inputs(*position).unwrap_or(rebuilt),
+            _ => rebuilt,
         })
     }
 
-    /// The roots rebuilt bottom up: `replace` sees each node after its operands have been replaced.
+    /// The roots rebuilt bottom up. `replace` is given each node as it was and as it is with its operands replaced; the
+    /// latter may have collapsed to something that was replaced already, so it must ask the former what to do.
     pub fn rewrite(
         &mut self,
         roots: &[ExprId],
-        mut replace: impl FnMut(&mut Graph, ExprId, &Expr) -> ExprId,
+        mut replace: impl FnMut(&mut Graph, ExprId, ExprId) -> ExprId,
     ) -> Vec<ExprId> {
         let mut replaced: HashMap<ExprId, ExprId> = HashMap::new();
         for id in self.reachable(roots) {
@@ -183,8 +184,7 @@ impl Graph {
                 }
                 _ => id,
             };
-            let expr = self.expr(rebuilt).clone();
-            replaced.insert(id, replace(self, rebuilt, &expr));
+            replaced.insert(id, replace(self, id, rebuilt));
         }
         roots.iter().map(|root| replaced[root]).collect()
     }
@@ -250,5 +250,21 @@ impl Graph {
     pub fn sum(&mut self, terms: &[ExprId]) -> ExprId {
         let zero = self.number(0.0);
         terms.iter().fold(zero, |sum, &term| self.add(sum, term))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_substituted_node_that_collapses_to_an_input_is_not_substituted_again() {
+        let mut graph = Graph::new();
+        let (x, y) = (graph.input(0), graph.input(1));
+        let quotient = graph.div(x, y);
+        let (seven, product) = (graph.number(7.0), graph.mul(x, y));
+        let result = graph.substitute(&[quotient], &|position| Some(if position == 0 { product } else { y }));
+        let again = graph.substitute(&result, &|position| (position == 0).then_some(seven));
+        assert_eq!((result[0], again[0]), (x, seven));
     }
 }

@@ -316,3 +316,84 @@ fn sorted(graph: &Graph, a: ExprId, b: ExprId) -> (ExprId, ExprId) {
     let key = |id: ExprId| (graph.as_number(id).is_none(), id);
     if key(a) <= key(b) { (a, b) } else { (b, a) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Builds both sides of an identity in x, y and z.
+    type Identity = fn(&mut Graph, ExprId, ExprId, ExprId) -> (ExprId, ExprId);
+
+    const IDENTITIES: &[(&str, Identity)] = &[
+        ("x / x = 1", |g, x, _, _| (g.div(x, x), g.number(1.0))),
+        ("(x y) / y = x", |g, x, y, _| (cancelled(g, x, y), x)),
+        ("(x y) / x = y", |g, x, y, _| (cancelled(g, y, x), y)),
+        ("1 / (1 / x) = x", |g, x, _, _| {
+            let reciprocal = g.reciprocal(x);
+            (g.reciprocal(reciprocal), x)
+        }),
+        ("x + x = 2 x", |g, x, _, _| (g.add(x, x), g.scale(2.0, x))),
+        ("3 x - 2 x = x", |g, x, _, _| {
+            let (three, two) = (g.scale(3.0, x), g.scale(2.0, x));
+            (g.sub(three, two), x)
+        }),
+        ("(2 x) (3 y) = 6 (y x)", |g, x, y, _| {
+            let (two, three, product) = (g.scale(2.0, x), g.scale(3.0, y), g.mul(y, x));
+            (g.mul(two, three), g.scale(6.0, product))
+        }),
+        ("x^3 = (x x) x", |g, x, _, _| {
+            let (three, square) = (g.number(3.0), g.square(x));
+            (g.pow(x, three), g.mul(square, x))
+        }),
+        ("x^(-1/2) = 1 / sqrt(x)", |g, x, _, _| {
+            let (exponent, root) = (g.number(-0.5), g.sqrt(x));
+            (g.pow(x, exponent), g.reciprocal(root))
+        }),
+        ("sin(-2 x) = -sin(2 x)", |g, x, _, _| {
+            let (minus, plus) = (g.scale(-2.0, x), g.scale(2.0, x));
+            let sine = g.sin(plus);
+            (g.sin(minus), g.neg(sine))
+        }),
+        ("a branch knows that its condition holds", |g, x, y, z| {
+            let inner = g.select_le(x, y, z, x);
+            (g.select_le(x, y, inner, y), g.select_le(x, y, z, y))
+        }),
+        ("a branch knows that its condition fails", |g, x, y, z| {
+            let inner = g.select_le(x, y, z, x);
+            (g.select_le(x, y, y, inner), g.select_le(x, y, y, x))
+        }),
+        ("both branches the same", |g, x, y, z| (g.select_le(x, y, z, z), z)),
+        ("a known comparison", |g, x, y, _| {
+            let (one, two) = (g.number(1.0), g.number(2.0));
+            (g.select_le(two, one, x, y), y)
+        }),
+        ("select(c, x, 0) y = select(c, x y, 0)", |g, x, y, z| {
+            let (zero, product) = (g.number(0.0), g.mul(x, z));
+            let gated = g.select_le(x, y, x, zero);
+            (g.mul(gated, z), g.select_le(x, y, product, zero))
+        }),
+    ];
+
+    fn cancelled(graph: &mut Graph, x: ExprId, y: ExprId) -> ExprId {
+        let product = graph.mul(x, y);
+        graph.div(product, y)
+    }
+
+    #[test]
+    fn identities_hold() {
+        for (name, identity) in IDENTITIES {
+            let mut graph = Graph::new();
+            let [x, y, z] = [0, 1, 2].map(|input| graph.input(input));
+            let (left, right) = identity(&mut graph, x, y, z);
+            assert_eq!(left, right, "{name}");
+        }
+    }
+
+    #[test]
+    fn what_has_no_finite_value_is_not_folded() {
+        let mut graph = Graph::new();
+        let zero = graph.number(0.0);
+        let infinite = graph.log(zero);
+        assert_eq!(graph.as_number(infinite), None);
+    }
+}

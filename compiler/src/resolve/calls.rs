@@ -64,7 +64,8 @@ impl<'a> Elaborator<'a> {
             },
             None if is_function(name) => self.builtin_call(name, expr, arguments),
             None => {
-                let found = self.scope.unknown(name, callee.span, &function_names());
+                let declaration = format!("fn {name}(x) = x");
+                let found = self.scope.unknown(name, callee.span, &function_names(), &declaration);
                 self.diagnostics.push(found);
                 self.plain_arguments(arguments);
                 Value::default()

@@ -30,11 +30,19 @@ impl<'a> Elaborator<'a> {
     pub fn boundary(&mut self, condition: &'a Condition, at_end: bool) {
         let word = if at_end { "end" } else { "start" };
         let place = Place { name: format!("{word} {}", text::condition(condition)), span: condition.span };
-        let mut rows = self.condition(condition, Role::Boundary(word), Context::BOUNDARY, place);
-        let values = rows.iter().map(|row| row.value).collect();
-        let moved = self.move_to_end(values, at_end);
-        rows.iter_mut().zip(moved).for_each(|(row, value)| row.value = value);
+        let rows = self.condition(condition, Role::Boundary(word), Context::BOUNDARY, place);
+        self.at_end.extend(rows.iter().map(|_| at_end));
         self.model.boundary.extend(rows);
+    }
+
+    /// Moves all boundary rows to their ends, in one walk for each end.
+    pub fn move_boundary(&mut self) {
+        for end in [false, true] {
+            let rows: Vec<usize> = (0..self.at_end.len()).filter(|&row| self.at_end[row] == end).collect();
+            let values = rows.iter().map(|&row| self.model.boundary[row].value).collect();
+            let moved = self.move_to_end(values, end);
+            rows.into_iter().zip(moved).for_each(|(row, value)| self.model.boundary[row].value = value);
+        }
     }
 
     fn condition(&mut self, condition: &'a Condition, role: Role<'a>, context: Context, place: Place) -> Vec<Row> {

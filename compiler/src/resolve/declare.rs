@@ -8,8 +8,7 @@ use super::{order, scope};
 use crate::graph::ExprId;
 use crate::model::{Control, Free, Param, Place, Range, State, Symbol};
 use crate::units;
-use fdcc_grammar::Span;
-use fdcc_grammar::ast::{Expr, Ident, Interval, Item, ItemKind, Start, Unit};
+use fdcc_grammar::ast::{Expr, Ident, Interval, ItemKind, Start, Unit};
 
 impl<'a> Elaborator<'a> {
     /// Symbols for all names, then the values of all definitions.
@@ -60,7 +59,8 @@ impl<'a> Elaborator<'a> {
             ItemKind::State { parts, .. } => self.declare_states(at, parts),
             ItemKind::Control { parts, .. } => self.declare_controls(at, parts),
             ItemKind::Surface { .. } => {
-                self.add_surface(place, None);
+                let surface = self.add_surface(place, None);
+                self.surface_of.insert(at, surface);
             }
             _ => {}
         }
@@ -128,8 +128,8 @@ impl<'a> Elaborator<'a> {
         let value_of = self.evaluate_in(Context::SURFACE, value);
         self.pieces.push(Piece { role: Role::Surface(name), traits: value_of.traits.clone() });
         let part = self.expect_number(&value_of, value.span);
-        if let Some(entry) = self.surfaces.iter_mut().find(|it| it.place.span == name.span) {
-            entry.psi = part;
+        if let Some(&surface) = self.surface_of.get(&at) {
+            self.surfaces[surface].psi = part;
         }
         self.values[at] = value_of;
     }
@@ -276,9 +276,4 @@ fn places(name: &Ident, parts: &[Ident]) -> Vec<Place> {
         return vec![place(name)];
     }
     parts.iter().map(|part| Place { name: format!("{}.{}", name.name, part.name), span: name.span }).collect()
-}
-
-/// The first and last byte of an item's name, or of the item.
-pub(crate) fn name_span(item: &Item) -> Span {
-    scope::declared(item).map_or(item.span, |name| name.span)
 }

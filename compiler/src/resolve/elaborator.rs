@@ -5,7 +5,7 @@
 use super::context::Context;
 use super::scope::Scope;
 use super::value::{Parts, Reads, Traits, Value};
-use crate::graph::evaluate::evaluate;
+use crate::graph::evaluate;
 use crate::graph::{ExprId, Graph};
 use crate::model::{Integral, Model, Place, Symbol};
 use fdcc_grammar::ast;
@@ -75,6 +75,8 @@ pub(crate) struct Elaborator<'a> {
     pub sums: usize,
     /// Surfaces, declared and unnamed.
     pub surfaces: Vec<SurfaceEntry>,
+    /// The surface of a declaration.
+    pub surface_of: HashMap<usize, usize>,
     /// Integrals.
     pub integrals: Vec<Integral>,
     /// The input of each integral.
@@ -91,6 +93,8 @@ pub(crate) struct Elaborator<'a> {
     pub arguments: Vec<ExprId>,
     /// What has been resolved so far; graph, symbols, surfaces and integrals are moved in at the end.
     pub model: Model,
+    /// Whether each boundary row of the model is at the end; its symbols are those of any time until all are known.
+    pub at_end: Vec<bool>,
     /// Values and their uses.
     pub pieces: Vec<Piece<'a>>,
     /// First and last time.
@@ -122,6 +126,7 @@ impl<'a> Elaborator<'a> {
             examining: false,
             sums: 0,
             surfaces: Vec::new(),
+            surface_of: HashMap::new(),
             integrals: Vec::new(),
             integral_inputs: Vec::new(),
             at_ends: Default::default(),
@@ -130,6 +135,7 @@ impl<'a> Elaborator<'a> {
             sites: HashMap::new(),
             arguments: Vec::new(),
             model: Model::empty(),
+            at_end: Vec::new(),
             pieces: Vec::new(),
             interval,
             diagnostics: Vec::new(),

@@ -84,7 +84,7 @@ impl<'a> Elaborator<'a> {
 
     fn unknown_name(&mut self, name: &str, span: Span) -> Value {
         let locals: Vec<&str> = self.locals[self.frame..].iter().map(|local| local.0).chain(["pi"]).collect();
-        let found = self.scope.unknown(name, span, &locals);
+        let found = self.scope.unknown(name, span, &locals, &format!("param {name} = 1"));
         self.fail(found)
     }
 

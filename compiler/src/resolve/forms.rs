@@ -46,15 +46,17 @@ impl<'a> Elaborator<'a> {
     }
 
     fn surface_named(&mut self, name: &str) -> Option<usize> {
-        let item = self.scope.declarations[self.scope.find(name)?].item;
         let is_local = self.locals[self.frame..].iter().any(|local| local.0 == name);
-        if is_local || !matches!(item.kind, ItemKind::Surface { .. }) {
-            return None;
-        }
-        self.surfaces.iter().position(|surface| surface.place.name == name)
+        if is_local { None } else { self.surface_of.get(&self.scope.find(name)?).copied() }
     }
 
     fn unnamed_surface(&mut self, psi: &'a Expr, name: &str) -> Option<usize> {
+        let is_local = self.locals[self.frame..].iter().any(|local| local.0 == name);
+        if matches!(&psi.kind, ExprKind::Name(_)) && !is_local && self.scope.find(name).is_none() {
+            let found = self.scope.unknown(name, psi.span, &[], &format!("surface {name} = x"));
+            self.diagnostics.push(found);
+            return None;
+        }
         let value = self.evaluate_in(Context::SURFACE, psi);
         if !self.single_valued(&value.traits.sets, psi.span, "the argument of `Sgn`") || self.examining {
             return None;
@@ -140,7 +142,7 @@ impl<'a> Elaborator<'a> {
             return Some(at);
         }
         let found = match self.scope.find(&surface.name) {
-            None => self.scope.unknown(&surface.name, surface.span, &[]),
+            None => self.scope.unknown(&surface.name, surface.span, &[], &format!("surface {} = x", surface.name)),
             Some(at) => {
                 let kind = scope::kind_word(self.scope.declarations[at].item);
                 let message = format!("`{}` is a {kind}, not a surface", surface.name);
@@ -201,7 +203,7 @@ impl<'a> Elaborator<'a> {
 
     fn sum(&mut self, name: &'a Ident, data: &'a Ident, term: &'a Expr, span: Span) -> Value {
         let Some(at) = self.scope.find(&data.name) else {
-            let found = self.scope.unknown(&data.name, data.span, &[]);
+            let found = self.scope.unknown(&data.name, data.span, &[], &format!("data {} = csv(\"FILE\") columns t, x", data.name));
             return self.fail(found);
         };
         let item = self.scope.declarations[at].item;
@@ -241,7 +243,7 @@ impl<'a> Elaborator<'a> {
         match &function.kind {
             ExprKind::Name(name) if is_fn(name) => self.not_yet(span, "rounding knots with `blend`"),
             ExprKind::Name(name) if self.scope.find(name).is_none() => {
-                let found = self.scope.unknown(name, function.span, &[]);
+                let found = self.scope.unknown(name, function.span, &[], &format!("fn {name}(x) = x"));
                 self.diagnostics.push(found);
             }
             _ => {

@@ -44,7 +44,7 @@ impl<'a> Elaborator<'a> {
     fn guessed(&mut self, binding: &'a Binding) -> Option<usize> {
         let name = &binding.name;
         let Some(at) = self.scope.find(&name.name) else {
-            let found = self.scope.unknown(&name.name, name.span, &[]);
+            let found = self.scope.unknown(&name.name, name.span, &[], &format!("state {} start 0", name.name));
             self.diagnostics.push(found);
             return None;
         };

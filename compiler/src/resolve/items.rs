@@ -18,6 +18,7 @@ impl<'a> Elaborator<'a> {
             }
         }
         items.iter().for_each(|item| self.item(item));
+        self.move_boundary();
     }
 
     fn item(&mut self, item: &'a Item) {
@@ -52,7 +53,9 @@ impl<'a> Elaborator<'a> {
     /// The declaration of a name that must be of some kind; reports the others.
     pub fn declared_as(&mut self, name: &Ident, wanted: &str, fits: fn(&ItemKind) -> bool) -> Option<usize> {
         let Some(at) = self.scope.find(&name.name) else {
-            let found = self.scope.unknown(&name.name, name.span, &[]);
+            let rest = if wanted == "surface" { "= x" } else { "start 0" };
+            let example = format!("{wanted} {} {rest}", name.name);
+            let found = self.scope.unknown(&name.name, name.span, &[], &example);
             self.diagnostics.push(found);
             return None;
         };

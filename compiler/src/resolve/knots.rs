@@ -8,7 +8,7 @@ use super::elaborator::Elaborator;
 use super::value::Traits;
 use crate::differentiate::derivative;
 use crate::graph::ExprId;
-use crate::graph::evaluate::evaluate;
+use crate::graph::evaluate;
 use crate::model::Symbol;
 use fdcc_grammar::ast::{Arm, Expr};
 

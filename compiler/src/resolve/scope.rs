@@ -3,6 +3,7 @@
 use super::closest;
 use fdcc_grammar::ast::{self, Ident, Item, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Span};
+use std::cell::Cell;
 use std::collections::HashMap;
 
 /// A declared name and its item.
@@ -20,7 +21,12 @@ pub(crate) struct Scope<'a> {
     /// Every declaration; the first of a name counts.
     pub declarations: Vec<Declaration<'a>>,
     by_name: HashMap<&'a str, usize>,
+    /// How many misspelt names have been compared with all others.
+    compared: Cell<usize>,
 }
+
+/// Beyond this many unknown names nobody reads proposals, and each costs a comparison with all declarations.
+const MOST_PROPOSALS: usize = 50;
 
 impl<'a> Scope<'a> {
     /// Collects the declarations of some items.
@@ -54,12 +60,14 @@ impl<'a> Scope<'a> {
         self.by_name.get(name).copied()
     }
 
-    /// "There is no such name", with the nearest one that there is.
-    pub fn unknown(&self, name: &str, span: Span, extra: &[&str]) -> Diagnostic {
+    /// "There is no such name", with the nearest one that there is, or else how to declare it.
+    pub fn unknown(&self, name: &str, span: Span, extra: &[&str], declaration: &str) -> Diagnostic {
         let found = Diagnostic::new(Code::UnknownName, format!("nothing called `{name}` here"), span, "not declared");
         let known = self.declarations.iter().map(|it| it.name.name.as_str());
-        let Some(near) = closest(name, known.chain(extra.iter().copied())) else {
-            return found.help(format!("declare it, for example `param {name} = 1`"));
+        self.compared.set(self.compared.get() + 1);
+        let known = known.chain(extra.iter().copied()).filter(|_| self.compared.get() <= MOST_PROPOSALS);
+        let Some(near) = closest(name, known) else {
+            return found.help(format!("declare it, for example `{declaration}`"));
         };
         let found = match self.find(near) {
             Some(at) => found.label(self.declarations[at].name.span, format!("did you mean `{near}`?")),

@@ -63,7 +63,12 @@ pub(crate) fn set(method: &mut Method, key: &str, given: &Given) -> Result<(), R
         ("sigma", _) => method.sigma = Some(positive()?),
         ("tol", _) => method.tol = positive()?,
         ("N", _) => method.intervals = count()?,
-        ("steps", _) => method.steps = count()?,
+        ("steps", _) => {
+            method.steps = count()?;
+            if method.steps > 1 {
+                return Err(Refused::NotYet);
+            }
+        }
         ("max_iter", _) => method.max_iter = count()?,
         ("seed", _) => method.seed = whole(given).ok_or_else(refused)?,
         ("continue", _) => method.continuation = decreasing(given).ok_or_else(refused)?,
@@ -144,6 +149,14 @@ pub(crate) fn nearest_word(expected: &'static str, given: &str) -> Option<&'stat
     closest(given, expected.trim_start_matches("one of ").split([',', ' ']).filter(|word| word.len() > 2))
 }
 
+fn shown(given: &Given) -> String {
+    match given {
+        Given::Number(value) => text::number(*value),
+        Given::Word(word) => word.clone(),
+        Given::List(values) => values.iter().map(|value| text::number(*value)).collect::<Vec<_>>().join(", "),
+    }
+}
+
 impl<'a> Elaborator<'a> {
     /// Resolves a `method` block.
     pub fn settings(&mut self, settings: &'a [Setting]) {
@@ -153,8 +166,8 @@ impl<'a> Elaborator<'a> {
                 self.model.smooth = true;
             }
             let Some((given, span)) = self.given(setting) else { continue };
-            let refused = set(&mut self.model.method, &key.name, &given);
-            match refused {
+            let taken = set(&mut self.model.method, &key.name, &given);
+            match taken {
                 Ok(()) => {}
                 Err(Refused::NotYet) => self.setting_not_yet(key, &given, span),
                 Err(Refused::Key) => self.unknown_key(key),
@@ -195,11 +208,7 @@ impl<'a> Elaborator<'a> {
     }
 
     fn setting_not_yet(&mut self, key: &Ident, given: &Given, span: Span) {
-        let word = match given {
-            Given::Word(word) => word.as_str(),
-            _ => "",
-        };
-        self.not_yet(span, &format!("a model with `{} = {word}`", key.name));
+        self.not_yet(span, &format!("a model with `{} = {}`", key.name, shown(given)));
     }
 
     fn unknown_key(&mut self, key: &Ident) {
@@ -212,11 +221,7 @@ impl<'a> Elaborator<'a> {
     }
 
     fn wrong_value(&mut self, key: &Ident, given: &Given, expected: &'static str, span: Span) {
-        let shown = match given {
-            Given::Number(value) => text::number(*value),
-            Given::Word(word) => word.clone(),
-            Given::List(values) => values.iter().map(|value| text::number(*value)).collect::<Vec<_>>().join(", "),
-        };
+        let shown = shown(given);
         let message = format!("`{}` cannot be `{shown}`", key.name);
         let found = Diagnostic::new(Code::UnknownSetting, message, span, format!("needs {expected}"));
         self.diagnostics.push(match nearest_word(expected, &shown) {

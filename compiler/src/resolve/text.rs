@@ -22,9 +22,9 @@ pub(crate) fn expr(value: &Expr) -> String {
 
 /// An expression in one of the styles.
 pub(crate) fn styled(value: &Expr, style: Style) -> String {
-    let mut out = String::new();
-    write(value, style, 0, &mut out);
-    out
+    let mut printer = Printer { style, depth: 0, out: String::new() };
+    printer.write(value, 0);
+    printer.out
 }
 
 /// A condition as it was written.
@@ -76,94 +76,122 @@ fn sign(operator: BinaryOperator) -> char {
     }
 }
 
-/// Writes `value`, in parentheses if it binds weaker than `least`.
-fn write(value: &Expr, style: Style, least: u8, out: &mut String) {
-    let own = match &value.kind {
-        ExprKind::Binary(operator, ..) => strength(*operator),
-        ExprKind::Negate(_) => SIGN,
-        ExprKind::Number(number) if *number < 0.0 => SIGN,
-        _ => ATOM,
-    };
-    let (open, close) = if own < least { ("(", ")") } else { ("", "") };
-    out.push_str(open);
-    match &value.kind {
-        ExprKind::Binary(..) => chain(value, style, out),
-        ExprKind::Negate(inner) => {
-            out.push('-');
-            write(inner, style, PRODUCT, out);
-        }
-        _ => atom(value, style, out),
-    }
-    out.push_str(close);
+/// Deeper expressions are cut off: nobody reads them, and they must not exhaust the stack.
+const DEEPEST: usize = 100;
+
+struct Printer {
+    style: Style,
+    depth: usize,
+    out: String,
 }
 
-/// A chain such as `a - b + c`, without recursion along its left side.
-fn chain(value: &Expr, style: Style, out: &mut String) {
-    let (first, rest) = walk::spine(value);
-    let lowest = rest.first().map_or(ATOM, |(_, operator, _)| strength(*operator));
-    // Parentheses that a left operand needs open at the very beginning.
-    let opened = rest.windows(2).filter(|pair| strength(pair[0].1) < strength(pair[1].1)).count();
-    out.push_str(&"(".repeat(opened));
-    write(first, style, if lowest == POWER { ATOM } else { lowest }, out);
-    for (index, (left, operator, right)) in rest.iter().enumerate() {
+impl Printer {
+    /// Writes `value`, in parentheses if it binds weaker than `least`.
+    fn write(&mut self, value: &Expr, least: u8) {
+        let own = match &value.kind {
+            ExprKind::Binary(operator, ..) => strength(*operator),
+            ExprKind::Negate(_) => SIGN,
+            ExprKind::Number(number) if *number < 0.0 => SIGN,
+            _ => ATOM,
+        };
+        if self.depth == DEEPEST {
+            return self.out.push_str("...");
+        }
+        self.depth += 1;
+        let (open, close) = if own < least { ("(", ")") } else { ("", "") };
+        self.out.push_str(open);
+        match &value.kind {
+            ExprKind::Binary(..) => self.chain(value),
+            ExprKind::Negate(inner) => {
+                self.out.push('-');
+                self.write(inner, PRODUCT);
+            }
+            _ => self.atom(value),
+        }
+        self.out.push_str(close);
+        self.depth -= 1;
+    }
+
+    /// A chain such as `a - b + c`, without recursion along its left side.
+    fn chain(&mut self, value: &Expr) {
+        let (first, rest) = walk::spine(value);
+        let lowest = rest.first().map_or(ATOM, |(_, operator, _)| strength(*operator));
+        // Parentheses that a left operand needs open at the very beginning.
+        let opened = rest.windows(2).filter(|pair| strength(pair[0].1) < strength(pair[1].1)).count();
+        self.out.push_str(&"(".repeat(opened));
+        self.write(first, if lowest == POWER { ATOM } else { lowest });
+        for (index, link) in rest.iter().enumerate() {
+            self.link(link);
+            if rest.get(index + 1).is_some_and(|next| strength(link.1) < strength(next.1)) {
+                self.out.push(')');
+            }
+        }
+    }
+
+    /// An operator and its right operand.
+    fn link(&mut self, &(left, operator, right): &walk::Link<'_>) {
         let gap = right.span.start.saturating_sub(left.span.end);
-        let tight = match style {
+        let tight = match self.style {
             Style::AsWritten if gap > 0 => gap == 1,
-            _ => strength(*operator) > SUM,
+            _ => strength(operator) > SUM,
         };
         let blank = if tight { "" } else { " " };
-        out.push_str(&format!("{blank}{}{blank}", sign(*operator)));
+        self.out.push_str(&format!("{blank}{}{blank}", sign(operator)));
         let exact = matches!(operator, BinaryOperator::Subtract | BinaryOperator::Divide) as u8;
-        let least = if *operator == BinaryOperator::Power { POWER } else { strength(*operator) + exact };
-        write(right, style, least, out);
-        let closes = rest.get(index + 1).is_some_and(|next| strength(*operator) < strength(next.1));
-        if closes {
-            out.push(')');
+        self.write(right, if operator == BinaryOperator::Power { POWER } else { strength(operator) + exact });
+    }
+
+    fn atom(&mut self, value: &Expr) {
+        match &value.kind {
+            ExprKind::Number(value) => self.out.push_str(&number(*value)),
+            ExprKind::Quantity(value, unit) => self.out.push_str(&format!("{} {}", number(*value), self::unit(unit))),
+            ExprKind::Name(name) => self.out.push_str(name),
+            ExprKind::Part(base, part) => self.postfix(base, &format!(".{}", part.name)),
+            ExprKind::Index(base, index) => self.postfix(base, &format!("[{index}]")),
+            ExprKind::Prime(base) => self.postfix(base, "'"),
+            ExprKind::Call(callee, arguments) => {
+                self.postfix(callee, "(");
+                self.list(arguments.iter(), Self::argument);
+                self.out.push(')');
+            }
+            ExprKind::Tuple(parts) => {
+                self.out.push('(');
+                self.list(parts.iter(), |this, part| this.write(part, 0));
+                self.out.push(')');
+            }
+            ExprKind::Piecewise { .. } => self.out.push_str("piecewise { ... }"),
+            ExprKind::Match { surface, below, above } => {
+                self.out.push_str(&format!("match {} {{ below => ", surface.name));
+                self.write(below, 0);
+                self.out.push_str(", above => ");
+                self.write(above, 0);
+                self.out.push_str(" }");
+            }
+            ExprKind::Negate(_) | ExprKind::Binary(..) => self.write(value, 0),
         }
     }
-}
 
-fn atom(value: &Expr, style: Style, out: &mut String) {
-    match &value.kind {
-        ExprKind::Number(value) => out.push_str(&number(*value)),
-        ExprKind::Quantity(value, unit) => out.push_str(&format!("{} {}", number(*value), self::unit(unit))),
-        ExprKind::Name(name) => out.push_str(name),
-        ExprKind::Part(base, part) => {
-            write(base, style, ATOM, out);
-            out.push_str(&format!(".{}", part.name));
-        }
-        ExprKind::Index(base, index) => {
-            write(base, style, ATOM, out);
-            out.push_str(&format!("[{index}]"));
-        }
-        ExprKind::Prime(base) => {
-            write(base, style, ATOM, out);
-            out.push('\'');
-        }
-        ExprKind::Call(callee, arguments) => {
-            write(callee, style, ATOM, out);
-            let arguments = arguments.iter().map(|argument| self::argument(argument, style));
-            out.push_str(&format!("({})", arguments.collect::<Vec<_>>().join(", ")));
-        }
-        ExprKind::Tuple(parts) => {
-            let parts: Vec<String> = parts.iter().map(|part| styled(part, style)).collect();
-            out.push_str(&format!("({})", parts.join(", ")));
-        }
-        ExprKind::Piecewise { .. } => out.push_str("piecewise { ... }"),
-        ExprKind::Match { surface, below, above } => {
-            let (below, above) = (styled(below, style), styled(above, style));
-            out.push_str(&format!("match {} {{ below => {below}, above => {above} }}", surface.name));
-        }
-        ExprKind::Negate(_) | ExprKind::Binary(..) => write(value, style, 0, out),
+    fn postfix(&mut self, base: &Expr, after: &str) {
+        self.write(base, ATOM);
+        self.out.push_str(after);
     }
-}
 
-fn argument(argument: &Argument, style: Style) -> String {
-    match argument {
-        Argument::Expr(value) => styled(value, style),
-        Argument::End(_) => "end".into(),
-        Argument::Start(_) => "start".into(),
-        Argument::Iteration(name, data) => format!("{} in {}", name.name, data.name),
+    fn list<'t, T: 't>(&mut self, items: impl Iterator<Item = &'t T>, mut write: impl FnMut(&mut Self, &'t T)) {
+        for (at, item) in items.enumerate() {
+            if at > 0 {
+                self.out.push_str(", ");
+            }
+            write(self, item);
+        }
+    }
+
+    fn argument(&mut self, argument: &Argument) {
+        match argument {
+            Argument::Expr(value) => self.write(value, 0),
+            Argument::End(_) => self.out.push_str("end"),
+            Argument::Start(_) => self.out.push_str("start"),
+            Argument::Iteration(name, data) => self.out.push_str(&format!("{} in {}", name.name, data.name)),
+        }
     }
 }
 

@@ -79,7 +79,8 @@ impl Reader<'_> {
     /// The condition of a `start`, `end` or `path` item.
     pub(super) fn condition(&mut self, item: &Pair<'_, Rule>) -> Condition {
         let pair = child(item, Rule::condition).expect("the item has a condition");
-        let relations: Vec<Relation> = children(&pair, Rule::relation).map(|sign| relation(sign.as_str())).collect();
+        let relations: Vec<Relation> =
+            children(&pair, Rule::relation).map(|sign| relation(sign.as_str())).collect();
         let mut sides = self.expressions_in(&pair).into_iter();
         let first = sides.next().expect("a condition has a left side");
         Condition { first, rest: relations.into_iter().zip(sides).collect(), span: self.span(&pair) }

@@ -44,6 +44,10 @@ impl<'t> SoFar<'_, 't> {
         self.word() == "phase" && self.open.first() == Some(&"}")
     }
 
+    fn is_item_of_phase(&self, at: usize) -> bool {
+        words::form(self.tokens[at].text).is_some() || is_misspelt_item(self, at)
+    }
+
     /// Keeps account of the open brackets. A closer also closes what was left open inside its pair.
     fn track(&mut self, at: usize) {
         let token = &self.tokens[at];
@@ -53,7 +57,7 @@ impl<'t> SoFar<'_, 't> {
             && let Some(partner) = self.open.iter().rposition(|closer| *closer == token.text)
         {
             self.open.truncate(partner);
-        } else if token.begins_line && self.in_phase() && words::form(token.text).is_some() {
+        } else if self.in_phase() && token.begins_line && self.is_item_of_phase(at) {
             self.open.truncate(1);
         }
     }
@@ -88,7 +92,9 @@ fn begins_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
             let may_begin = if outside { can_begin(so_far, at) } else { token.begins_line };
             may_begin && !continues_item(so_far, at)
         }
-        (Kind::Word, None) => is_misspelt_item(so_far, at) || (outside && is_unknown_item(so_far, at)),
+        (Kind::Word, None) if !so_far.in_phase() => {
+            is_misspelt_item(so_far, at) || (outside && is_unknown_item(so_far, at))
+        }
         _ => false,
     }
 }
@@ -165,7 +171,9 @@ fn looks_like_entry(so_far: &SoFar<'_, '_>, at: usize, block: &str) -> bool {
     let [first, second, third, fourth] = [at, at + 1, at + 2, at + 3].map(|at| so_far.text(at));
     let is_name = so_far.tokens[at].kind == Kind::Word && words::reserved(first).is_none();
     match block {
-        "dynamics" => is_name && so_far.text(at - 1) != "*" && (second == "'" || (second == "*" && fourth == "'")),
+        "dynamics" => {
+            is_name && so_far.text(at - 1) != "*" && (second == "'" || (second == "*" && fourth == "'"))
+        }
         "guess" | "report" => is_name && second == "=",
         "jump" | "link" => is_name && second == ":=",
         "method" => ["smooth", "grid", "continue"].contains(&first) && third == "=",

@@ -54,7 +54,8 @@ impl Reader<'_> {
                 (Rule::operator | Rule::scaling, "^") => {}
                 (Rule::operator | Rule::scaling, sign @ ("*" | "/")) => {
                     factors.push((factor_operator, self.power(std::mem::take(&mut powers))));
-                    factor_operator = if sign == "*" { BinaryOperator::Multiply } else { BinaryOperator::Divide };
+                    factor_operator =
+                        if sign == "*" { BinaryOperator::Multiply } else { BinaryOperator::Divide };
                 }
                 (Rule::operator, sign) => {
                     factors.push((factor_operator, self.power(std::mem::take(&mut powers))));
@@ -212,7 +213,8 @@ impl Reader<'_> {
         let mut sides = children(&guard, Rule::expression);
         let mut next = || sides.next().expect("a guard has two sides");
         let (left, right) = (side(self, next()), side(self, next()));
-        let relation = child(&guard, Rule::guard_relation).map_or(Relation::Equal, |sign| relation(sign.as_str()));
+        let relation =
+            child(&guard, Rule::guard_relation).map_or(Relation::Equal, |sign| relation(sign.as_str()));
         let value = side(self, child(pair, Rule::expression).expect("an arm has a value"));
         Arm { left, relation, right, guard_span: self.span(&guard), value }
     }

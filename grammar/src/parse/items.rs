@@ -90,10 +90,16 @@ impl Reader<'_> {
             Rule::data => self.data(pair, name),
             Rule::free => ItemKind::Free { name, bounds, unit, guess: self.guess_value(pair) },
             Rule::time => ItemKind::Time { name, interval: bounds.expect("a time has an interval"), unit },
-            Rule::state => ItemKind::State { name, parts: self.names(pair), unit, bounds, start: self.start(pair) },
-            Rule::control => {
-                ItemKind::Control { name, parts: self.names(pair), bounds, unit, guess: self.guess_value(pair) }
+            Rule::state => {
+                ItemKind::State { name, parts: self.names(pair), unit, bounds, start: self.start(pair) }
             }
+            Rule::control => ItemKind::Control {
+                name,
+                parts: self.names(pair),
+                bounds,
+                unit,
+                guess: self.guess_value(pair),
+            },
             _ => ItemKind::Surface { name, value: self.one(pair) },
         }
     }
@@ -120,7 +126,8 @@ impl Reader<'_> {
 
     fn phase_items(&mut self, pair: &Pair<'_, Rule>) -> Vec<Item> {
         let keyword_or_punctuation = [Rule::kw_phase, Rule::name, Rule::left_brace, Rule::right_brace];
-        let items = pair.clone().into_inner().filter(|inner| !keyword_or_punctuation.contains(&inner.as_rule()));
+        let items =
+            pair.clone().into_inner().filter(|inner| !keyword_or_punctuation.contains(&inner.as_rule()));
         items.filter_map(|inner| self.item(inner)).collect()
     }
 

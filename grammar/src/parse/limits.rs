@@ -11,12 +11,17 @@ pub(super) const MOST_BRACKETS: usize = 100;
 /// Words, numbers and signs of one item. An item written by a person has dozens.
 pub(super) const MOST_TOKENS: usize = 50_000;
 
+/// Bytes of one word or number, so that every message stays readable.
+pub(super) const MOST_LETTERS: usize = 255;
+
 /// Why a piece cannot be read.
 pub(super) enum Failure {
     /// The bracket with this token number is one too many inside each other.
     TooDeep(usize),
     /// The item has too many tokens.
     TooLong,
+    /// The token with this number has too many letters.
+    LongWord(usize),
     /// The grammar gave up at this byte, where it would have gone on with one of these.
     Stopped(usize, Vec<Rule>),
 }
@@ -24,13 +29,21 @@ pub(super) enum Failure {
 /// Whether a whole text may be given to the grammar.
 pub(super) fn are_kept(tokens: &[Token<'_>]) -> bool {
     let is_item_word = |token: &Token<'_>| token.kind == Kind::Word && words::form(token.text).is_some();
-    too_deep(tokens).is_none() && tokens.split(is_item_word).all(|item| item.len() <= MOST_TOKENS)
+    too_deep(tokens).is_none()
+        && long_word(tokens).is_none()
+        && tokens.split(is_item_word).all(|item| item.len() <= MOST_TOKENS)
 }
 
 /// Why a piece may not be given to the grammar.
 pub(super) fn exceeded(tokens: &[Token<'_>], piece: &Piece) -> Option<Failure> {
-    let bracket = too_deep(&tokens[piece.clone()]).map(|at| Failure::TooDeep(piece.start + at));
-    bracket.or_else(|| (piece.len() > MOST_TOKENS).then_some(Failure::TooLong))
+    let inside = &tokens[piece.clone()];
+    let bracket = || too_deep(inside).map(|at| Failure::TooDeep(piece.start + at));
+    let word = || long_word(inside).map(|at| Failure::LongWord(piece.start + at));
+    bracket().or_else(word).or_else(|| (piece.len() > MOST_TOKENS).then_some(Failure::TooLong))
+}
+
+fn long_word(tokens: &[Token<'_>]) -> Option<usize> {
+    tokens.iter().position(|token| token.text.len() > MOST_LETTERS)
 }
 
 /// The first bracket that stands inside too many others.

@@ -4,11 +4,11 @@
 //! place. Together they choose one message: what is missing or superfluous, where, and how the right form looks.
 
 use super::cut::Piece;
-use super::limits::{Failure, MOST_BRACKETS, MOST_TOKENS};
+use super::limits::{Failure, MOST_BRACKETS, MOST_LETTERS, MOST_TOKENS};
 use super::tokens::{Kind, Token};
 use super::words::{self, Form};
-use super::{Rule, slips};
-use crate::{Code, Diagnostic};
+use super::{Rule, adjacent, brackets, slips};
+use crate::{Code, Diagnostic, Span};
 
 /// The place where the grammar gave up.
 pub(super) struct Place<'p, 't> {
@@ -44,7 +44,7 @@ impl<'t> Place<'_, 't> {
 
     /// Whether an operand is complete, so that an operator could follow.
     pub fn after_operand(&self) -> bool {
-        self.expects(&[Rule::operator, Rule::scaling])
+        self.expects(&[Rule::operator, Rule::scaling, Rule::times])
     }
 
     /// Whether an operand should follow.
@@ -53,7 +53,7 @@ impl<'t> Place<'_, 't> {
     }
 
     /// The bracket that is open at the place.
-    fn innermost_bracket(&self) -> Option<&'t str> {
+    pub fn innermost_bracket(&self) -> Option<&'t str> {
         let mut open = Vec::new();
         for token in &self.tokens[self.piece.start..self.at] {
             match token.kind {
@@ -74,7 +74,8 @@ impl<'t> Place<'_, 't> {
     }
 }
 
-const OPERANDS: &[Rule] = &[Rule::expression, Rule::operand, Rule::negation, Rule::argument, Rule::factor, Rule::arm];
+const OPERANDS: &[Rule] =
+    &[Rule::expression, Rule::operand, Rule::negation, Rule::argument, Rule::factor, Rule::arm];
 
 const PIECEWISE: &str = "a piecewise looks like this: `piecewise { x <= 1 => 0  otherwise => x - 1 }`";
 const MATCH: &str = "a match looks like this: `match boost { below => u, above => 3*u }`";
@@ -127,6 +128,7 @@ pub(super) fn explain(
     let (stopped, expected) = match failure {
         Failure::TooDeep(bracket) => return Some(too_many_brackets(&tokens[*bracket])),
         Failure::TooLong => return Some(too_long(&tokens[piece.start])),
+        Failure::LongWord(word) => return Some(long_word(&tokens[*word])),
         Failure::Stopped(at, expected) => (*at, expected),
     };
     let word = block.unwrap_or(tokens[piece.start].text);
@@ -141,9 +143,9 @@ pub(super) fn explain(
         slips::foreign_character,
         slips::reserved_name,
         slips::wrong_sign,
-        unbalanced,
+        brackets::unbalanced,
         slips::misspelt_word,
-        missing_operator,
+        adjacent::missing_operator,
         slips::second_derivative,
         slips::wrong_range,
         slips::wrong_vector,
@@ -163,118 +165,17 @@ fn too_many_brackets(bracket: &Token<'_>) -> Diagnostic {
 /// FDC0009 for a single item.
 fn too_long(first: &Token<'_>) -> Diagnostic {
     let message = format!("an item of more than {MOST_TOKENS} words and signs");
-    Diagnostic::new(Code::TooLarge, message, first.span(), "this item is too long to be read")
-        .help("measurements belong in a CSV file, read with `data`; long expressions fall into parts with `let`")
+    Diagnostic::new(Code::TooLarge, message, first.span(), "this item is too long to be read").help(
+        "measurements belong in a CSV file, read with `data`; long expressions fall into parts with `let`",
+    )
 }
 
-/// FDC0001: two values side by side on one line.
-fn missing_operator(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let (previous, next) = (place.previous()?, place.next()?);
-    let in_range = place.expects(&[Rule::comma]) && place.innermost_bracket() == Some("[");
-    if !place.after_operand() || next.begins_line || !begins_value(next) || in_range {
-        return None;
-    }
-    let (left, right) = (value_before(place), value_after(place));
-    let (first, last) = (&place.tokens[left], &place.tokens[right]);
-    let [left, right] = [short(place, left, place.at - 1, previous), short(place, place.at, right, next)];
-    let message = format!("missing operator between `{left}` and `{right}`");
-    let help = format!("write `{left} * {right}` or `{left} / {right}`; fdc has no implicit multiplication");
-    let span = first.span().to(last.span());
-    Some(Diagnostic::new(Code::MissingOperator, message, span, "two values side by side").help(help))
-}
-
-fn begins_value(token: &Token<'_>) -> bool {
-    match token.kind {
-        Kind::Word => words::reserved(token.text).is_none(),
-        Kind::Number => true,
-        Kind::Open => token.text == "(",
-        _ => false,
-    }
-}
-
-/// The first token of the value that ends before the place: `sin(x)`, `pos.x`, `(a + b)`, `3`.
-fn value_before(place: &Place<'_, '_>) -> usize {
-    let mut first = place.at - 1;
-    if place.tokens[first].kind == Kind::Close {
-        first = partner(place, first, -1).unwrap_or(first);
-    }
-    let before = |back: usize| first.checked_sub(back).filter(|at| *at >= place.piece.start).map(|at| &place.tokens[at]);
-    let is_call = place.tokens[first].kind == Kind::Open && before(1).is_some_and(begins_value);
-    let is_part = before(1).is_some_and(|token| token.text == ".") && before(2).is_some_and(begins_value);
-    first - usize::from(is_call) - 2 * usize::from(is_part)
-}
-
-/// The last token of the value that begins at the place.
-fn value_after(place: &Place<'_, '_>) -> usize {
-    let opens = |at: usize| at < place.piece.end && place.tokens[at].text == "(";
-    let mut last = place.at;
-    while place.tokens[..place.piece.end].get(last + 1).is_some_and(|token| token.text == ".") {
-        last = (last + 2).min(place.piece.end - 1);
-    }
-    let open = if opens(last) { Some(last) } else { Some(last + 1).filter(|at| opens(*at)) };
-    open.and_then(|open| partner(place, open, 1)).unwrap_or(last)
-}
-
-/// The other bracket of a pair inside the piece.
-fn partner(place: &Place<'_, '_>, from: usize, step: isize) -> Option<usize> {
-    let (mut depth, mut at) = (0_isize, from);
-    loop {
-        match place.tokens[at].kind {
-            Kind::Open => depth += 1,
-            Kind::Close => depth -= 1,
-            _ => {}
-        }
-        if depth == 0 {
-            return Some(at);
-        }
-        at = at.checked_add_signed(step).filter(|at| place.piece.contains(at))?;
-    }
-}
-
-/// The text of a range of tokens if it fits into a sentence, or else of one of them.
-fn short(place: &Place<'_, '_>, first: usize, last: usize, otherwise: &Token<'_>) -> String {
-    const LONGEST: usize = 12;
-    let tokens = &place.tokens[first..=last];
-    if tokens.len() > LONGEST {
-        return otherwise.text.to_owned();
-    }
-    tokens.iter().map(|token| token.text).collect()
-}
-
-/// FDC0006: a bracket without its partner.
-fn unbalanced(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let mut open: Vec<&Token<'_>> = Vec::new();
-    for token in &place.tokens[place.piece.clone()] {
-        match token.kind {
-            Kind::Open => open.push(token),
-            Kind::Close => match open.pop() {
-                Some(opener) if opener.closer() == token.text => {}
-                Some(opener) => return Some(mismatched(opener, token)),
-                None => return Some(unopened(token)),
-            },
-            _ => {}
-        }
-    }
-    open.last().map(|opener| unclosed(opener))
-}
-
-fn unclosed(opener: &Token<'_>) -> Diagnostic {
-    let message = format!("`{}` is never closed", opener.text);
-    Diagnostic::new(Code::Unclosed, message, opener.span(), "opened here")
-        .help(format!("add `{}` where it should end", opener.closer()))
-}
-
-fn mismatched(opener: &Token<'_>, closer: &Token<'_>) -> Diagnostic {
-    let message = format!("`{}` is closed by `{}`", opener.text, closer.text);
-    Diagnostic::new(Code::Unclosed, message, opener.span(), "opened here")
-        .label(closer.span(), format!("`{}` should come first", opener.closer()))
-        .help(format!("add `{}` where it should end", opener.closer()))
-}
-
-fn unopened(closer: &Token<'_>) -> Diagnostic {
-    let message = format!("`{}` closes nothing", closer.text);
-    Diagnostic::new(Code::Unclosed, message, closer.span(), "nothing is open here")
-        .help("remove it, or open its partner before")
+/// FDC0009 for a single word.
+fn long_word(word: &Token<'_>) -> Diagnostic {
+    let message = format!("a word of more than {MOST_LETTERS} letters");
+    let first = Span::new(word.start, word.start + word.text.chars().next().map_or(0, char::len_utf8));
+    Diagnostic::new(Code::TooLarge, message, first, "this word is too long to be read")
+        .help("choose a shorter name")
 }
 
 /// FDC0002: the piece stopped too early. A parameter may end after its name, but not go on without `=`.
@@ -285,7 +186,8 @@ fn missing(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let (_, thing, help) = MISSING.iter().find(|(rules, ..)| place.expects(rules))?;
     let previous = place.previous()?;
     let message = format!("{thing} is missing after `{}`", previous.text);
-    let diagnostic = Diagnostic::new(Code::Unfinished, message, previous.span(), format!("{thing} should follow"));
+    let diagnostic =
+        Diagnostic::new(Code::Unfinished, message, previous.span(), format!("{thing} should follow"));
     Some(match help {
         Some(help) => diagnostic.help(*help),
         None => place.example(diagnostic),

@@ -2,7 +2,9 @@
 //!
 //! Nothing outside this folder knows that the grammar is written for pest, and nothing of pest's own wording is shown.
 
+mod adjacent;
 mod blocks;
+mod brackets;
 mod cut;
 mod expressions;
 mod items;
@@ -65,9 +67,12 @@ fn refuse(text: &str) -> Option<Diagnostic> {
     if text.len() > MOST_BYTES {
         let message = format!("a file of {} MB is too large to be a model", text.len() / 1_000_000);
         let diagnostic = Diagnostic::new(Code::TooLarge, message, Span::default(), "the file begins here");
-        return Some(diagnostic.help("a model has at most 4 MB; measurements belong in a CSV file, read with `data`"));
+        return Some(
+            diagnostic.help("a model has at most 4 MB; measurements belong in a CSV file, read with `data`"),
+        );
     }
-    let (at, control) = text.char_indices().find(|(_, c)| c.is_control() && !matches!(c, '\t' | '\n' | '\r'))?;
+    let (at, control) =
+        text.char_indices().find(|(_, c)| c.is_control() && !matches!(c, '\t' | '\n' | '\r'))?;
     let span = Span::new(at, at + control.len_utf8());
     let label = format!("a control character, U+{:04X}", u32::from(control));
     let diagnostic = Diagnostic::new(Code::NotText, "this is not a text file", span, label);

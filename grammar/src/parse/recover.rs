@@ -5,8 +5,8 @@
 //! equation does not cost the others.
 
 use super::cut::{self, Piece};
-use super::tokens::{Token, tokens};
 use super::limits::{self, Failure};
+use super::tokens::{Token, tokens};
 use super::{Rule, items, messages, pairs};
 use crate::{Diagnostic, Parse};
 
@@ -63,7 +63,8 @@ impl<'t> Recovery<'t> {
         let is_phase = word == "phase";
         let Some(inside) = self.inside(piece) else { return };
         let Some(rule) = entry_rule(word) else { return };
-        let cut = if is_phase { cut::items(self.tokens, inside) } else { cut::entries(self.tokens, inside, word) };
+        let cut =
+            if is_phase { cut::items(self.tokens, inside) } else { cut::entries(self.tokens, inside, word) };
         for entry in cut {
             self.mend(&entry, rule, (!is_phase).then_some(word));
         }

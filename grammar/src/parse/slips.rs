@@ -52,13 +52,15 @@ pub(super) fn foreign_character(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let shown = if visible { token.text.to_owned() } else { token.text.escape_unicode().to_string() };
     let message = format!("`{shown}` has no meaning in fdc");
     let help = FOREIGN.iter().find(|(character, _)| *character == token.text).map(|(_, help)| *help);
-    let diagnostic = Diagnostic::new(Code::Unfinished, message, token.span(), "no item contains this character");
+    let diagnostic =
+        Diagnostic::new(Code::Unfinished, message, token.span(), "no item contains this character");
     Some(diagnostic.help(help.unwrap_or("remove it")))
 }
 
 /// Items whose word is followed by a name.
 const DECLARATIONS: &[&str] = &[
-    "model", "param", "const", "let", "fn", "data", "free", "time", "state", "control", "surface", "jump", "phase",
+    "model", "param", "const", "let", "fn", "data", "free", "time", "state", "control", "surface", "jump",
+    "phase",
 ];
 
 /// FDC0003: a reserved word where a name or a value should stand.
@@ -103,7 +105,9 @@ fn other_uses(tokens: &[Token<'_>], word: &str) -> String {
         let as_value = match before.kind {
             Kind::Sign => before.text != "'",
             Kind::Open => before.text != "{" && !is_argument,
-            Kind::Word => !tokens[at].begins_line && matches!(before.text, "minimize" | "maximize" | "path" | "in"),
+            Kind::Word => {
+                !tokens[at].begins_line && matches!(before.text, "minimize" | "maximize" | "path" | "in")
+            }
             _ => false,
         };
         as_value || is_declared(tokens, at)
@@ -117,10 +121,14 @@ pub(super) fn wrong_sign(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let token = place.next()?;
     let compares = place.expects(&[Rule::relation, Rule::guard_relation]);
     let (message, label, help) = match token.text {
-        "=" if compares => ("`=` does not compare", "a condition needs `==` here", "write `==`, `<=` or `>=`"),
+        "=" if compares => {
+            ("`=` does not compare", "a condition needs `==` here", "write `==`, `<=` or `>=`")
+        }
         "<" if compares => ("a condition includes its limit", "`<` leaves the limit out", "write `<=`"),
         ">" if compares => ("a condition includes its limit", "`>` leaves the limit out", "write `>=`"),
-        "!=" => ("`!=` is no condition", "a solver cannot keep away from a single point", "write `<=` or `>=`"),
+        "!=" => {
+            ("`!=` is no condition", "a solver cannot keep away from a single point", "write `<=` or `>=`")
+        }
         "==" if place.expects(&[Rule::equals, Rule::becomes]) => {
             ("`==` compares, it does not define", "a definition has a single `=`", "write `=`")
         }
@@ -133,7 +141,11 @@ pub(super) fn wrong_sign(place: &Place<'_, '_>) -> Option<Diagnostic> {
         "*" | "**" if place.previous()?.text == "*" || token.text == "**" => {
             ("`**` is not an operator", "meant as a power?", "write `^`, as in `v^2`")
         }
-        "&&" | "||" => ("conditions are not joined by signs", "one condition ends here", "write one item for each condition"),
+        "&&" | "||" => (
+            "conditions are not joined by signs",
+            "one condition ends here",
+            "write one item for each condition",
+        ),
         _ => return None,
     };
     Some(Diagnostic::new(Code::Unfinished, message, token.span(), label).help(help))
@@ -147,7 +159,8 @@ pub(super) fn misspelt_word(place: &Place<'_, '_>) -> Option<Diagnostic> {
         return None;
     }
     let message = format!("`{}` is not a word of {}", token.text, place.form?.noun);
-    let diagnostic = Diagnostic::new(Code::Unfinished, message, token.span(), format!("did you mean `{meant}`?"));
+    let diagnostic =
+        Diagnostic::new(Code::Unfinished, message, token.span(), format!("did you mean `{meant}`?"));
     Some(diagnostic.help(format!("change `{}` to `{meant}`", token.text)))
 }
 
@@ -158,7 +171,8 @@ pub(super) fn second_derivative(place: &Place<'_, '_>) -> Option<Diagnostic> {
         return None;
     }
     let message = "a second derivative needs a state of its own";
-    let diagnostic = Diagnostic::new(Code::Unfinished, message, next.span(), "only first derivatives stand here");
+    let diagnostic =
+        Diagnostic::new(Code::Unfinished, message, next.span(), "only first derivatives stand here");
     Some(diagnostic.help("declare a velocity and write two equations, `x' = v` and `v' = ...`"))
 }
 

@@ -119,6 +119,7 @@ pub(super) fn closest<'w>(word: &str, among: impl IntoIterator<Item = &'w str>) 
     let allowed = (length / 3).clamp(1, 2);
     let similar = among.into_iter().filter(|known| known.len().abs_diff(length) <= allowed);
     let distances = similar.map(|known| (known, strsim::osa_distance(word, known)));
-    let (best, _) = distances.filter(|(_, distance)| *distance <= allowed).min_by_key(|(_, distance)| *distance)?;
+    let (best, _) =
+        distances.filter(|(_, distance)| *distance <= allowed).min_by_key(|(_, distance)| *distance)?;
     Some(best)
 }

@@ -1,0 +1,119 @@
+//! `fdcc check`: all diagnostics of each file.
+
+use clap::{Args, ValueEnum};
+use fdcc_grammar::{Diagnostic, Severity, SourceFile};
+
+use super::Exit;
+use crate::model::Loaded;
+use crate::output::{self, diagnostics, sarif};
+use crate::render;
+
+/// Report everything that is wrong with models
+#[derive(Args)]
+pub struct Check {
+    /// Models to check; `-` is the standard input
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<String>,
+    /// How to report
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    format: Format,
+    /// Treat warnings as errors
+    #[arg(long, value_name = "WHAT")]
+    deny: Option<Deny>,
+}
+
+/// More drawings than this nobody looks at; the summary counts all, and the other formats list them.
+const MOST_DRAWN: usize = 100;
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    /// With the lines of the model
+    Human,
+    /// One line for each
+    Short,
+    /// One array
+    Json,
+    /// For code scanning services
+    Sarif,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Deny {
+    Warnings,
+}
+
+impl Check {
+    /// Checks each file and prints what was found.
+    pub fn run(self) -> Exit {
+        let mut exit = Exit::Fine;
+        let mut loaded = Vec::new();
+        for file in &self.files {
+            match Loaded::read(file) {
+                Ok(model) => {
+                    exit = exit.max(self.verdict(&model.diagnostics));
+                    loaded.push(model);
+                }
+                Err(error) => {
+                    output::complain(&format!("{file} cannot be read: {error}"));
+                    exit = Exit::File;
+                }
+            }
+        }
+        output::print(&self.report(&loaded));
+        exit
+    }
+
+    fn verdict(&self, diagnostics: &[Diagnostic]) -> Exit {
+        let denied = if self.deny == Some(Deny::Warnings) { Severity::Warning } else { Severity::Error };
+        let is_wrong = diagnostics.iter().any(|diagnostic| diagnostic.severity >= denied);
+        if is_wrong { Exit::ModelError } else { Exit::Fine }
+    }
+
+    fn report(&self, loaded: &[Loaded]) -> String {
+        let found =
+            || loaded.iter().flat_map(|it| it.diagnostics.iter().map(|diagnostic| (&it.source, diagnostic)));
+        match self.format {
+            Format::Human => {
+                let renderer = render::Renderer::for_stdout();
+                let drawn: String =
+                    found().take(MOST_DRAWN).map(|(file, it)| renderer.render(it, file)).collect();
+                drawn + &summary(loaded)
+            }
+            Format::Short => found().map(|(source, diagnostic)| short(source, diagnostic)).collect(),
+            Format::Json => output::json(&found().map(diagnostics::entry).collect::<Vec<_>>()),
+            Format::Sarif => output::json(&sarif::log(found())),
+        }
+    }
+}
+
+/// `block.fdc:3:8: error[FDC0001]: missing operator between ...`
+fn short(source: &SourceFile, diagnostic: &Diagnostic) -> String {
+    let place = source.line_column(diagnostic.span().start);
+    let severity = diagnostics::severity(diagnostic.severity);
+    let Diagnostic { code, message, .. } = diagnostic;
+    format!("{}:{}:{}: {severity}[{code}]: {message}\n", source.name, place.line, place.column)
+}
+
+/// `2 errors, 1 warning in 3 files`
+fn summary(loaded: &[Loaded]) -> String {
+    let count = |severity| {
+        let all = loaded.iter().flat_map(|it| &it.diagnostics);
+        all.filter(|diagnostic| diagnostic.severity == severity).count()
+    };
+    let kinds = [(Severity::Error, "error"), (Severity::Warning, "warning")];
+    let counts = kinds.map(|(severity, noun)| (count(severity), noun));
+    let found: Vec<String> =
+        counts.iter().filter(|(n, _)| *n > 0).map(|(n, noun)| plural(*n, noun)).collect();
+    let found = if found.is_empty() { "nothing wrong".to_owned() } else { found.join(", ") };
+    let all: usize = loaded.iter().map(|it| it.diagnostics.len()).sum();
+    let shown = if all > MOST_DRAWN { format!("; the first {MOST_DRAWN} are shown") } else { String::new() };
+    if loaded.is_empty() {
+        String::new()
+    } else {
+        format!("{found} in {}{shown}\n", plural(loaded.len(), "file"))
+    }
+}
+
+fn plural(number: usize, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+}

@@ -1,0 +1,50 @@
+//! The commands, one file each, and the exit codes that they share.
+
+mod check;
+mod explain;
+mod options;
+mod solve;
+
+use std::process::ExitCode;
+
+use clap::Subcommand;
+
+/// How a command ended. The numbers are a contract with scripts; the worst of several is the largest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Exit {
+    /// Solved, or nothing wrong.
+    Fine = 0,
+    /// The model has errors.
+    ModelError = 1,
+    /// Not solved; the best iterate is written all the same.
+    NotSolved = 2,
+    /// Wrong usage.
+    Usage = 3,
+    /// A file could not be read or written.
+    File = 4,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        ExitCode::from(exit as u8)
+    }
+}
+
+/// What `fdcc` can do.
+#[derive(Subcommand)]
+pub enum Command {
+    Check(check::Check),
+    Explain(explain::Explain),
+    Solve(Box<solve::Solve>),
+}
+
+impl Command {
+    /// Does it.
+    pub fn run(self) -> Exit {
+        match self {
+            Command::Check(check) => check.run(),
+            Command::Explain(explain) => explain.run(),
+            Command::Solve(solve) => solve.run(),
+        }
+    }
+}

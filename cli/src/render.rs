@@ -1,0 +1,171 @@
+//! Diagnostics as people read them, with the lines of the model. The only file that names miette.
+//!
+//! Our own [`Diagnostic`] holds no text; [`Report`] is the pair with its file, in miette's terms.
+
+use std::fmt;
+use std::io::IsTerminal;
+
+use fdcc_grammar::{Code, Diagnostic, Severity, SourceFile};
+use miette::{
+    LabeledSpan, MietteError, MietteHandler, MietteHandlerOpts, MietteSpanContents, ReportHandler,
+    SourceCode, SourceSpan, SpanContents,
+};
+
+/// Where no terminal says how wide it is.
+const WIDTH: usize = 100;
+
+/// A longer line is not shown: no person has written it, and nobody wants a megabyte on the screen.
+const LONGEST_LINE: usize = 500;
+
+/// More places than this make no picture.
+const MOST_LABELS: usize = 10;
+
+/// Draws diagnostics for one stream.
+pub struct Renderer {
+    handler: MietteHandler,
+}
+
+impl Renderer {
+    /// As wide as the terminal, and in colour unless `NO_COLOR` is set; plain where there is no terminal.
+    pub fn for_stdout() -> Self {
+        Renderer::new(std::io::stdout().is_terminal())
+    }
+
+    /// The same for the standard error.
+    pub fn for_stderr() -> Self {
+        Renderer::new(std::io::stderr().is_terminal())
+    }
+
+    fn new(is_terminal: bool) -> Self {
+        let no_color = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+        let options = MietteHandlerOpts::new().unicode(true).context_lines(1).color(is_terminal && !no_color);
+        let options = if is_terminal { options } else { options.width(WIDTH).terminal_links(false) };
+        Renderer { handler: options.build() }
+    }
+
+    /// The diagnostic with the lines that it is about, and an empty line behind it.
+    pub fn render(&self, diagnostic: &Diagnostic, source: &SourceFile) -> String {
+        let report = Report { diagnostic, source };
+        format!("{}\n", Drawing { handler: &self.handler, report: &report })
+    }
+}
+
+/// miette draws into a formatter only.
+struct Drawing<'r> {
+    handler: &'r MietteHandler,
+    report: &'r Report<'r>,
+}
+
+impl fmt::Display for Drawing<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.handler.debug(self.report, f)
+    }
+}
+
+/// A diagnostic and its file.
+#[derive(Debug)]
+struct Report<'r> {
+    diagnostic: &'r Diagnostic,
+    source: &'r SourceFile,
+}
+
+impl Report<'_> {
+    /// Whether its lines can be shown: they are text, and not too long.
+    fn has_lines(&self) -> bool {
+        let is_short =
+            |label: &fdcc_grammar::Label| self.line(label.span.start as usize).len() <= LONGEST_LINE;
+        self.diagnostic.code != Code::NotText && self.diagnostic.labels.iter().all(is_short)
+    }
+
+    fn line(&self, offset: usize) -> &str {
+        let text = &self.source.text;
+        let start = text[..offset].rfind('\n').map_or(0, |end| end + 1);
+        text[start..].lines().next().unwrap_or_default()
+    }
+}
+
+impl fmt::Display for Report<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.diagnostic.message)?;
+        if self.has_lines() {
+            return Ok(());
+        }
+        let place = self.source.line_column(self.diagnostic.span().start);
+        write!(
+            f,
+            "\n{}:{}:{}: {}",
+            self.source.name, place.line, place.column, self.diagnostic.labels[0].text
+        )
+    }
+}
+
+impl std::error::Error for Report<'_> {}
+
+impl miette::Diagnostic for Report<'_> {
+    fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        Some(Box::new(self.diagnostic.code))
+    }
+
+    fn severity(&self) -> Option<miette::Severity> {
+        Some(match self.diagnostic.severity {
+            Severity::Error => miette::Severity::Error,
+            Severity::Warning => miette::Severity::Warning,
+            Severity::Advice => miette::Severity::Advice,
+        })
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.diagnostic.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.has_lines().then_some(self as &dyn SourceCode)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let labels = self.diagnostic.labels.iter().take(MOST_LABELS).enumerate().map(|(at, label)| {
+            let (start, length) = (label.span.start as usize, label.span.range().len());
+            let text = Some(label.text.clone());
+            if at == 0 {
+                LabeledSpan::new_primary_with_span(text, (start, length))
+            } else {
+                LabeledSpan::new(text, start, length)
+            }
+        });
+        Some(Box::new(labels))
+    }
+}
+
+/// Only the lines asked for are looked at: a text may be large, and have many diagnostics.
+impl SourceCode for Report<'_> {
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        lines_before: usize,
+        lines_after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let text = &self.source.text;
+        // Without lines before it, miette wants the span itself: it prints where the contents begin.
+        let first_line = || (0..=lines_before).fold(span.offset(), |at, lines| line_start(text, at, lines));
+        let start = if lines_before == 0 { span.offset() } else { first_line() };
+        let end = (0..=lines_after).fold(span.offset() + span.len(), |at, lines| line_end(text, at, lines));
+        let data = &text.as_bytes()[start..end];
+        let (name, place) = (self.source.name.clone(), self.source.line_column(start as u32));
+        let contents = SourceSpan::from((start, end - start));
+        let (line, column, lines) = (place.line - 1, place.column - 1, text[start..end].lines().count());
+        Ok(Box::new(MietteSpanContents::new_named(name, data, contents, line, column, lines)))
+    }
+}
+
+/// The beginning of the line of `at`, or of the line above it.
+fn line_start(text: &str, at: usize, lines: usize) -> usize {
+    let before = if lines == 0 { &text[..at] } else { &text[..at.saturating_sub(1)] };
+    let start = before.rfind('\n').map_or(0, |end| end + 1);
+    if lines > 0 && at - start > LONGEST_LINE { at } else { start }
+}
+
+/// The end of the line of `at` with its line break, or of the line below it.
+fn line_end(text: &str, at: usize, lines: usize) -> usize {
+    let end = text[at..].find('\n').map_or(text.len(), |end| at + end + 1);
+    if lines > 0 && end - at > LONGEST_LINE { at } else { end }
+}

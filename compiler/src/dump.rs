@@ -1,0 +1,207 @@
+//! Any stage of a model as text, for `fdcc show`.
+
+use crate::differentiate::differentiate;
+use crate::graph::{ExprId, Graph, print};
+use crate::lower::{Numbers, Program, lower, numbers};
+use crate::model::{Model, Symbol};
+use crate::program::{Differentiated, VectorFunction};
+use crate::resolve::text::number;
+use crate::{generate, not_yet};
+use fdcc_grammar::Diagnostic;
+use fdcc_runtime::problem::{Bounds, Layout};
+use std::fmt::Write;
+
+/// What can be shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// The problem as understood: names, sizes, bounds, sparsity, surfaces.
+    Summary,
+    /// Every expression of the model over its symbols.
+    Model,
+    /// The functions that are compiled.
+    Graph,
+    /// With their Jacobians and Hessians.
+    Derivatives,
+    /// Their machine code before Cranelift's own passes.
+    Clif,
+}
+
+/// One stage of a model as text.
+pub fn dump(model: &Model, stage: Stage) -> Result<String, Vec<Diagnostic>> {
+    if stage == Stage::Model {
+        return Ok(symbols(model));
+    }
+    not_yet(model)?;
+    let numbers = numbers(model)?;
+    let program = lower(model);
+    Ok(match stage {
+        Stage::Graph => functions(model, &program),
+        Stage::Derivatives => with_derivatives(model, &program),
+        Stage::Clif => {
+            let (graph, differentiated) = differentiated(&program);
+            generate::clif(&graph, &differentiated)
+        }
+        _ => summary(model, &program, &numbers),
+    })
+}
+
+/// The name of a symbol in the model's words.
+fn symbol_name(model: &Model, symbol: Symbol) -> String {
+    match symbol {
+        Symbol::Time => "t".into(),
+        Symbol::State(index) => model.states[index].place.name.clone(),
+        Symbol::Control(index) => model.controls[index].place.name.clone(),
+        Symbol::Param(index) => model.params[index].place.name.clone(),
+        Symbol::Free(index) => model.frees[index].place.name.clone(),
+        Symbol::Selector(index) => format!("Sgn({})", model.surfaces[index].place.name),
+        Symbol::AtStart(index) => format!("{}(start)", model.states[index].place.name),
+        Symbol::AtEnd(index) => format!("{}(end)", model.states[index].place.name),
+        Symbol::Integral(index) => model.integrals[index].place.name.clone(),
+        Symbol::Argument => "_".into(),
+    }
+}
+
+/// Expressions over the symbols of the model.
+fn over_symbols(model: &Model, roots: &[(String, ExprId)]) -> String {
+    print(&model.graph, roots, &|input| symbol_name(model, model.symbols[input as usize]))
+}
+
+/// Every expression of the model.
+fn symbols(model: &Model) -> String {
+    let mut roots: Vec<(String, ExprId)> = vec![("t0".into(), model.interval[0]), ("tf".into(), model.interval[1])];
+    roots.extend(model.params.iter().filter_map(|it| Some((it.place.name.clone(), it.value?))));
+    roots.extend(model.surfaces.iter().map(|it| (it.place.name.clone(), it.psi)));
+    for state in &model.states {
+        roots.extend(state.start.map(|start| (format!("{}(start)", state.place.name), start)));
+        roots.push((state.equation.name.clone(), state.rate));
+    }
+    roots.extend(model.path.iter().map(|it| (format!("path {}", it.place.name), it.value)));
+    roots.extend(model.boundary.iter().map(|it| (it.place.name.clone(), it.value)));
+    roots.extend(model.integrals.iter().map(|it| (format!("d/dt {}", it.place.name), it.integrand)));
+    roots.extend(model.objective.iter().map(|it| (it.0.name.clone(), it.1)));
+    roots.extend(model.report.iter().map(|it| (format!("report {}", it.place.name), it.value)));
+    over_symbols(model, &roots)
+}
+
+/// The names of a function's inputs.
+fn input_names(model: &Model, program: &Program, layout: &Layout) -> Vec<String> {
+    let hidden = program.hidden.iter().map(|&at| model.integrals[at].place.name.clone());
+    let states: Vec<String> = model.states.iter().map(|it| it.place.name.clone()).chain(hidden).collect();
+    let mut names: Vec<String> = (0..layout.t).map(|_| "tau".into()).collect();
+    match layout.x == 2 * states.len() {
+        true => ["start", "end"].iter().for_each(|end| names.extend(states.iter().map(|name| format!("{name}({end})")))),
+        false => names.extend(states.iter().take(layout.x).cloned()),
+    }
+    names.extend(model.controls.iter().take(layout.u).map(|it| it.place.name.clone()));
+    names.extend(model.params.iter().map(|it| it.place.name.clone()));
+    names.extend(model.frees.iter().map(|it| it.place.name.clone()));
+    names.extend(model.surfaces.iter().map(|it| format!("sigma({})", it.place.name)));
+    names.resize(layout.parameters().end, "sigma(abs)".into());
+    names.extend(model.surfaces.iter().take(layout.s).map(|it| format!("Sgn({})", it.place.name)));
+    names
+}
+
+fn functions(model: &Model, program: &Program) -> String {
+    let mut text = String::new();
+    for function in std::iter::once(&program.flow).chain(program.functions()) {
+        let names = input_names(model, program, &function.layout);
+        text += &format!("# {}\n", function.name);
+        text += &print(&program.graph, &labelled(function), &|input| names[input as usize].clone());
+        text += "\n";
+    }
+    text
+}
+
+fn labelled(function: &VectorFunction) -> Vec<(String, ExprId)> {
+    let label = |(at, id): (usize, &ExprId)| match &*function.origins[at].label {
+        "" => (format!("{}[{}]", function.name, at + 1), *id),
+        label => (label.to_string(), *id),
+    };
+    function.outputs.iter().enumerate().map(label).collect()
+}
+
+fn differentiated(program: &Program) -> (Graph, Vec<Differentiated>) {
+    let mut graph = program.graph.clone();
+    let functions = program.functions().map(VectorFunction::clone);
+    let functions = functions.into_iter().map(|function| differentiate(&mut graph, function)).collect();
+    (graph, functions)
+}
+
+fn with_derivatives(model: &Model, program: &Program) -> String {
+    let (graph, functions) = differentiated(program);
+    let mut text = String::new();
+    for Differentiated { function, jacobian, hessian, .. } in &functions {
+        let names = input_names(model, program, &function.layout);
+        let rows: Vec<String> = labelled(function).into_iter().map(|row| row.0).collect();
+        let mut roots = labelled(function);
+        for (&(row, column), &id) in jacobian.0.entries.iter().zip(&jacobian.1) {
+            roots.push((format!("d({})/d({})", rows[row as usize], names[column as usize]), id));
+        }
+        for (&(row, column), &id) in hessian.0.entries.iter().zip(&hessian.1) {
+            roots.push((format!("d2L/d({})d({})", names[row as usize], names[column as usize]), id));
+        }
+        text += &format!("# {}\n{}\n", function.name, print(&graph, &roots, &|input| names[input as usize].clone()));
+    }
+    text
+}
+
+/// The problem as understood.
+fn summary(model: &Model, program: &Program, numbers: &Numbers) -> String {
+    let mut text = format!("model {}\n", model.name);
+    let ends = over_symbols(model, &[("t0".into(), model.interval[0]), ("tf".into(), model.interval[1])]);
+    section(&mut text, "time", ends.lines().map(str::to_string));
+    let states = model.states.iter().map(|it| bounded(&it.place.name, numbers.bounds(model, it.range)));
+    section(&mut text, "states", states);
+    let controls = model.controls.iter().map(|it| bounded(&it.place.name, numbers.bounds(model, it.range)));
+    section(&mut text, "controls", controls);
+    let frees = model.frees.iter().enumerate().map(|(at, it)| {
+        let guess = number(numbers.of(model, Symbol::Free(at)));
+        format!("{} guess {guess}", bounded(&it.place.name, numbers.bounds(model, it.range)))
+    });
+    section(&mut text, "free", frees);
+    let params = model.params.iter().enumerate();
+    let params = params.map(|(at, it)| format!("{} = {}", it.place.name, number(numbers.of(model, Symbol::Param(at)))));
+    section(&mut text, "params", params);
+    let surfaces: Vec<(String, ExprId)> = model.surfaces.iter().map(|it| (it.place.name.clone(), it.psi)).collect();
+    section(&mut text, "surfaces", over_symbols(model, &surfaces).lines().map(str::to_string));
+    let path = model.path.iter().map(|it| bounded(&it.place.name, numbers.bounds(model, it.range)));
+    section(&mut text, "path", path);
+    section(&mut text, "boundary", model.boundary.iter().map(|it| it.place.name.clone()));
+    let objective: Vec<(String, ExprId)> = model.objective.iter().map(|it| (it.0.name.clone(), it.1)).collect();
+    section(&mut text, "objective", over_symbols(model, &objective).lines().map(str::to_string));
+    section(&mut text, "functions", differentiated(program).1.iter().map(sizes));
+    text
+}
+
+fn section(text: &mut String, title: &str, lines: impl Iterator<Item = String>) {
+    let mut title = title;
+    for line in lines {
+        writeln!(text, "{title:<10} {line}").expect("writing to a string cannot fail");
+        title = "";
+    }
+}
+
+fn bounded(name: &str, bounds: Bounds) -> String {
+    let (lower, upper) = (number(bounds.lower), number(bounds.upper));
+    match (bounds.lower.is_finite(), bounds.upper.is_finite()) {
+        (false, false) => name.into(),
+        (true, true) if bounds.is_equality() => format!("{name} == {lower}"),
+        (false, true) => format!("{name} <= {upper}"),
+        (true, false) => format!("{name} >= {lower}"),
+        (true, true) => format!("{name} in [{lower}, {upper}]"),
+    }
+}
+
+fn sizes(function: &Differentiated) -> String {
+    let VectorFunction { name, outputs, by, .. } = &function.function;
+    let (jacobian, hessian) = (function.jacobian.0.entries.len(), function.hessian.0.entries.len());
+    match by.is_empty() {
+        true => format!("{name}: {} outputs", outputs.len()),
+        false => format!(
+            "{name}: {} outputs, Jacobian {jacobian} of {} entries, Hessian {hessian} of {}",
+            outputs.len(),
+            outputs.len() * by.len(),
+            by.len() * (by.len() + 1) / 2
+        ),
+    }
+}

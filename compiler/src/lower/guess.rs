@@ -1,0 +1,82 @@
+//! The guess of states and controls over normalised time.
+//!
+//! Where the model is silent: a state runs straight from its start to its end, as far as conditions such as
+//! `end x == 1` give them; a control stays in the middle of its bounds.
+
+use super::inputs::{Sizes, of_curve};
+use super::origin;
+use crate::graph::{ExprId, Graph};
+use crate::model::{Model, Range, State, Symbol};
+use crate::program::VectorFunction;
+use fdcc_runtime::problem::Origin;
+
+/// Lowers all guesses; hidden states are guessed to be 0.
+pub(crate) fn lower(model: &Model, graph: &mut Graph, sizes: &Sizes) -> VectorFunction {
+    let layout = sizes.curve();
+    let inputs = of_curve(model, graph, &layout);
+    let zero = graph.number(0.0);
+    let mut outputs = vec![zero; sizes.states];
+    let mut origins: Vec<Origin> = model.states.iter().map(|state| origin(&state.place)).collect();
+    origins.resize(sizes.states, Origin::default());
+    for (index, state) in model.states.iter().enumerate() {
+        outputs[index] = match state.guess {
+            Some(guess) => inputs.apply(graph, &[guess])[0],
+            None => {
+                let ends = ends(model, graph, index, state);
+                let ends = inputs.apply(graph, &ends);
+                line(graph, [ends[0], ends[1]])
+            }
+        };
+    }
+    for control in &model.controls {
+        let value = control.guess.unwrap_or_else(|| middle(graph, control.range));
+        outputs.push(inputs.apply(graph, &[value])[0]);
+        origins.push(origin(&control.place));
+    }
+    VectorFunction { name: "guess".into(), layout, outputs, origins, by: Vec::new() }
+}
+
+/// `a + tau (b - a)`.
+fn line(graph: &mut Graph, [a, b]: [ExprId; 2]) -> ExprId {
+    let tau = graph.input(0);
+    let rise = graph.sub(b, a);
+    let risen = graph.mul(tau, rise);
+    graph.add(a, risen)
+}
+
+/// Where a state begins and ends, as far as that is known.
+fn ends(model: &Model, graph: &mut Graph, index: usize, state: &State) -> [ExprId; 2] {
+    let start = state.start.or_else(|| fixed_by_a_row(model, graph, Symbol::AtStart(index)));
+    let end = fixed_by_a_row(model, graph, Symbol::AtEnd(index));
+    match (start, end) {
+        (Some(start), Some(end)) => [start, end],
+        (Some(only), None) | (None, Some(only)) => [only, only],
+        (None, None) => {
+            let middle = middle(graph, state.start_range.unwrap_or(state.range));
+            [middle, middle]
+        }
+    }
+}
+
+/// The value in a condition such as `end x == 1`.
+fn fixed_by_a_row(model: &Model, graph: &mut Graph, symbol: Symbol) -> Option<ExprId> {
+    let input = model.input_of(symbol)?;
+    let symbol = graph.input(input);
+    let row = model.boundary.iter().find(|row| row.value == symbol && row.range.lower == row.range.upper);
+    row.map(|row| row.range.upper)
+}
+
+/// Halfway between bounds, or as near to 0 as they allow.
+pub(crate) fn middle(graph: &mut Graph, range: Range) -> ExprId {
+    let infinite = |graph: &Graph, bound| graph.as_number(bound).is_some_and(f64::is_infinite);
+    let zero = graph.number(0.0);
+    match (infinite(graph, range.lower), infinite(graph, range.upper)) {
+        (true, true) => zero,
+        (false, true) => graph.max(range.lower, zero),
+        (true, false) => graph.min(range.upper, zero),
+        (false, false) => {
+            let sum = graph.add(range.lower, range.upper);
+            graph.scale(0.5, sum)
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! From a [`Model`] to the vector functions of a [`Problem`](fdcc_runtime::problem::Problem), over one graph.
+//!
+//! ```text
+//! flow      f(t, x, u, p, s)                                 real time, selectors s as inputs
+//! dynamics  D f(t0 + tau D, x, u, p, s = Sgn_sigma(psi))     D = tf - t0, tau in [0, 1]; then D * running cost
+//! path, guards, report                                       over tau as well
+//! boundary  Mayer objective, conditions at [x(start), x(end)]
+//! ```
+
+mod boundary;
+mod expect;
+mod guess;
+mod inputs;
+mod numbers;
+mod objective;
+mod problem;
+
+pub use expect::{Expectations, Expected, expectations};
+pub use problem::problem;
+
+use crate::graph::{ExprId, Graph};
+use crate::model::{Model, Place};
+use crate::program::VectorFunction;
+use crate::smooth;
+use fdcc_runtime::problem::{Layout, Origin};
+use inputs::Sizes;
+pub use numbers::{Numbers, numbers};
+use objective::Objective;
+
+/// All functions of a problem, still expressions.
+pub struct Program {
+    /// The expressions.
+    pub graph: Graph,
+    /// The right side in real time with selectors as inputs; not compiled for solving.
+    pub flow: VectorFunction,
+    /// See [`Problem::dynamics`](fdcc_runtime::problem::Problem::dynamics).
+    pub dynamics: VectorFunction,
+    /// Path constraints.
+    pub path: VectorFunction,
+    /// Mayer objective and boundary conditions.
+    pub boundary: VectorFunction,
+    /// Guess of states and controls.
+    pub guess: VectorFunction,
+    /// First and last time.
+    pub interval: VectorFunction,
+    /// The functions of the surfaces.
+    pub guards: VectorFunction,
+    /// What is reported.
+    pub report: VectorFunction,
+    /// Whether the last output of `dynamics` is the integrand of the objective.
+    pub running_cost: bool,
+    /// The integrals that became states, as indices into [`Model::integrals`].
+    pub hidden: Vec<usize>,
+    /// The bounds of the outputs of `boundary` but the first.
+    pub(crate) boundary_rows: Vec<boundary::Condition>,
+}
+
+/// Lowers a model.
+pub fn lower(model: &Model) -> Program {
+    let mut graph = model.graph.clone();
+    let objective = objective::split(model, &mut graph);
+    let sizes = Sizes::new(model, objective.hidden.len());
+    let flow = flow(model, &mut graph, &sizes, &objective);
+    let over_grid = OverGrid { model, sizes: &sizes, inputs: inputs::over_grid(model, &mut graph, &sizes) };
+    let dynamics = over_grid.dynamics(&mut graph, &objective);
+    let path = over_grid.function(&mut graph, "path", model.path.iter().map(|row| (row.value, origin(&row.place))), true);
+    let guards = model.surfaces.iter().map(|surface| (surface.psi, origin(&surface.place)));
+    let guards = over_grid.function(&mut graph, "guards", guards, false);
+    let report = model.report.iter().map(|report| (report.value, origin(&report.place)));
+    let report = over_grid.function(&mut graph, "report", report, false);
+    let (boundary, boundary_rows) = boundary::lower(model, &mut graph, &sizes, &objective);
+    let guess = guess::lower(model, &mut graph, &sizes);
+    let interval = interval(model, &mut graph, &sizes);
+    let running_cost = objective.running.is_some();
+    let hidden = objective.hidden;
+    Program { graph, flow, dynamics, path, boundary, guess, interval, guards, report, running_cost, hidden, boundary_rows }
+}
+
+impl Program {
+    /// The functions that a problem compiles, in the order in which [`problem`] takes them back.
+    pub fn functions(&self) -> [&VectorFunction; 7] {
+        [&self.dynamics, &self.path, &self.boundary, &self.guess, &self.interval, &self.guards, &self.report]
+    }
+}
+
+/// Functions over normalised time, states, controls and parameters.
+struct OverGrid<'m> {
+    model: &'m Model,
+    sizes: &'m Sizes,
+    inputs: inputs::Inputs,
+}
+
+impl OverGrid<'_> {
+    /// A function whose outputs are given over the symbols of the model.
+    fn function(
+        &self,
+        graph: &mut Graph,
+        name: &str,
+        outputs: impl Iterator<Item = (ExprId, Origin)>,
+        is_solved: bool,
+    ) -> VectorFunction {
+        let (outputs, origins): (Vec<ExprId>, Vec<Origin>) = outputs.unzip();
+        let outputs = self.inputs.apply(graph, &outputs);
+        let layout = self.sizes.grid();
+        let by = if is_solved { inputs::solved_for(self.model, &layout) } else { Vec::new() };
+        let outputs = if is_solved { smoothed(self.model, graph, &outputs, self.sizes, &layout) } else { outputs };
+        VectorFunction { name: name.into(), layout, outputs, origins, by }
+    }
+
+    fn dynamics(&self, graph: &mut Graph, objective: &Objective) -> VectorFunction {
+        let outputs = rates(self.model, objective);
+        let mut function = self.function(graph, "dynamics", outputs.into_iter(), true);
+        for output in &mut function.outputs {
+            *output = graph.mul(self.inputs.duration, *output);
+        }
+        function
+    }
+}
+
+/// Right sides: of the states, of the integrals that became states, of the running cost.
+fn rates(model: &Model, objective: &Objective) -> Vec<(ExprId, Origin)> {
+    let states = model.states.iter().map(|state| (state.rate, origin(&state.equation)));
+    let integral = |&at: &usize| (model.integrals[at].integrand, origin(&model.integrals[at].place));
+    let running = objective.running.map(|cost| (cost, objective.origin.clone()));
+    states.chain(objective.hidden.iter().map(integral)).chain(running).collect()
+}
+
+fn flow(model: &Model, graph: &mut Graph, sizes: &Sizes, objective: &Objective) -> VectorFunction {
+    let layout = sizes.flow();
+    let inputs = inputs::of_flow(model, graph, &layout);
+    let (outputs, origins): (Vec<ExprId>, Vec<Origin>) = rates(model, objective).into_iter().unzip();
+    let outputs = inputs.apply(graph, &outputs);
+    VectorFunction { name: "flow".into(), layout, outputs, origins, by: Vec::new() }
+}
+
+fn interval(model: &Model, graph: &mut Graph, sizes: &Sizes) -> VectorFunction {
+    let layout = Layout { p: sizes.parameters, ..Layout::default() };
+    let inputs = inputs::of_parameters(model, graph, &layout);
+    let outputs = inputs.apply(graph, &model.interval);
+    let origins = ["t0", "tf"].map(|label| Origin { label: label.into(), span: (0, 0) }).to_vec();
+    VectorFunction { name: "interval".into(), layout, outputs, origins, by: Vec::new() }
+}
+
+/// The outputs with `abs`, `min` and `max` rounded, where smoothing is on.
+fn smoothed(model: &Model, graph: &mut Graph, outputs: &[ExprId], sizes: &Sizes, layout: &Layout) -> Vec<ExprId> {
+    match sizes.sigma_of_abs {
+        Some(at) => {
+            let sigma = graph.input((layout.parameters().start + at) as u32);
+            smooth::smooth_nonsmooth(graph, outputs, kernel(model), sigma)
+        }
+        None => outputs.to_vec(),
+    }
+}
+
+/// The kernel that the model asks for.
+fn kernel(model: &Model) -> &'static smooth::Kernel {
+    smooth::find(&model.method.kernel).expect("settings take only kernels of the table")
+}
+
+/// A place in the text as the runtime wants it.
+fn origin(place: &Place) -> Origin {
+    Origin { label: place.name.as_str().into(), span: (place.span.start, place.span.end) }
+}

@@ -1,0 +1,79 @@
+//! The numbers of a model once its parameters have values: bounds, starts, guesses of the unknowns.
+
+use crate::check::missing_value;
+use crate::graph::{ExprId, evaluate};
+use crate::model::{Model, Range, Symbol};
+use fdcc_grammar::Diagnostic;
+use fdcc_runtime::problem::Bounds;
+
+/// Values for all parameters and unknowns.
+#[derive(Clone, Debug)]
+pub struct Numbers {
+    /// One for each input of the model's graph; NaN for what is no number.
+    inputs: Vec<f64>,
+}
+
+/// Computes parameters in their order, then the guesses of the unknowns.
+pub fn numbers(model: &Model) -> Result<Numbers, Vec<Diagnostic>> {
+    let missing = model.params.iter().filter(|param| param.value.is_none());
+    let missing: Vec<Diagnostic> = missing.map(|param| missing_value(&param.place.name, param.place.span)).collect();
+    if !missing.is_empty() {
+        return Err(missing);
+    }
+    let mut numbers = Numbers { inputs: vec![f64::NAN; model.symbols.len()] };
+    for &index in &model.param_order {
+        let value = model.params[index].value.map_or(f64::NAN, |value| numbers.value(model, value));
+        numbers.set(model, Symbol::Param(index), value);
+    }
+    numbers.guess_unknowns(model);
+    Ok(numbers)
+}
+
+impl Numbers {
+    /// The value of an expression over parameters and unknowns.
+    pub fn value(&self, model: &Model, id: ExprId) -> f64 {
+        match model.graph.as_number(id) {
+            Some(value) => value,
+            None => evaluate(&model.graph, &[id], &self.inputs, &[])[0],
+        }
+    }
+
+    /// Bounds as numbers.
+    pub fn bounds(&self, model: &Model, range: Range) -> Bounds {
+        Bounds { lower: self.value(model, range.lower), upper: self.value(model, range.upper) }
+    }
+
+    /// The value of a parameter or unknown.
+    pub fn of(&self, model: &Model, symbol: Symbol) -> f64 {
+        model.input_of(symbol).map_or(f64::NAN, |input| self.inputs[input as usize])
+    }
+
+    fn set(&mut self, model: &Model, symbol: Symbol, value: f64) {
+        if let Some(input) = model.input_of(symbol) {
+            self.inputs[input as usize] = value;
+        }
+    }
+
+    /// Unknowns without a guess are in the middle of their bounds, or 1. A guess may use other unknowns, so the
+    /// guesses are computed until nothing changes.
+    fn guess_unknowns(&mut self, model: &Model) {
+        for (index, free) in model.frees.iter().enumerate() {
+            let bounds = self.bounds(model, free.range);
+            let finite = bounds.lower.is_finite() && bounds.upper.is_finite();
+            let value = if finite { 0.5 * (bounds.lower + bounds.upper) } else { 1.0_f64.clamp(bounds.lower, bounds.upper) };
+            self.set(model, Symbol::Free(index), value);
+        }
+        for _ in 0..model.frees.len() {
+            let before = self.inputs.clone();
+            for (index, free) in model.frees.iter().enumerate() {
+                if let Some(guess) = free.guess {
+                    let value = self.value(model, guess);
+                    self.set(model, Symbol::Free(index), value);
+                }
+            }
+            if before.iter().zip(&self.inputs).all(|(a, b)| a.to_bits() == b.to_bits()) {
+                break;
+            }
+        }
+    }
+}

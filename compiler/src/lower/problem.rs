@@ -1,0 +1,124 @@
+//! A [`Problem`]: compiled functions with the names, bounds and numbers of the model.
+
+use super::boundary::is_fixed;
+use super::{Numbers, Program, origin};
+use crate::model::{Model, Place, Symbol};
+use fdcc_runtime::problem::{Bounds, Function, Layout, Method, Origin, Parameter, Problem, Surface, Unknown, Variable};
+use std::sync::Arc;
+
+/// Puts together what the runtime needs. `functions` are those of [`Program::functions`], compiled.
+pub fn problem(model: &Model, program: &Program, numbers: &Numbers, functions: Vec<Arc<dyn Function>>) -> Problem {
+    let functions: [Arc<dyn Function>; 7] =
+        functions.try_into().unwrap_or_else(|_| unreachable!("a program has seven functions"));
+    let [dynamics, path, boundary, guess, interval, guards, report] = functions;
+    let parameters = parameters(model, program, numbers);
+    let first_sigma = model.params.len() + model.frees.len();
+    let layout: Layout = program.flow.layout;
+    Problem {
+        name: model.name.clone(),
+        layout,
+        states: states(model, program, numbers),
+        controls: controls(model, numbers),
+        unknowns: unknowns(model, numbers),
+        surfaces: surfaces(model, first_sigma),
+        parameters,
+        dynamics,
+        running_cost: program.running_cost,
+        path,
+        path_bounds: model.path.iter().map(|row| numbers.bounds(model, row.range)).collect(),
+        boundary,
+        boundary_bounds: program.boundary_rows.iter().map(|row| row_bounds(program, numbers, model, row)).collect(),
+        sense: model.sense,
+        has_objective: model.objective.is_some(),
+        start: starts(model, program, numbers),
+        guess,
+        interval,
+        guards,
+        report_names: model.report.iter().map(|report| report.place.name.clone()).collect(),
+        report,
+        method: model.method.clone(),
+    }
+}
+
+/// Start rows were made after the model, so their bounds may be numbers of the program's graph alone.
+fn row_bounds(program: &Program, numbers: &Numbers, model: &Model, row: &super::boundary::Condition) -> Bounds {
+    let value = |id| program.graph.as_number(id).unwrap_or_else(|| numbers.value(model, id));
+    Bounds { lower: value(row.range.lower), upper: value(row.range.upper) }
+}
+
+fn states(model: &Model, program: &Program, numbers: &Numbers) -> Vec<Variable> {
+    let declared = model.states.iter().map(|state| Variable {
+        name: state.place.name.clone(),
+        bounds: numbers.bounds(model, state.range),
+        origin: origin(&state.place),
+        hidden: false,
+    });
+    let hidden = program.hidden.iter().map(|&at| Variable {
+        name: model.integrals[at].place.name.clone(),
+        bounds: Bounds::FREE,
+        origin: origin(&model.integrals[at].place),
+        hidden: true,
+    });
+    declared.chain(hidden).collect()
+}
+
+fn controls(model: &Model, numbers: &Numbers) -> Vec<Variable> {
+    let variable = |control: &crate::model::Control| Variable {
+        name: control.place.name.clone(),
+        bounds: numbers.bounds(model, control.range),
+        origin: origin(&control.place),
+        hidden: false,
+    };
+    model.controls.iter().map(variable).collect()
+}
+
+fn parameters(model: &Model, program: &Program, numbers: &Numbers) -> Vec<Parameter> {
+    let parameter = |place: &Place, symbol| Parameter {
+        name: place.name.clone(),
+        value: numbers.of(model, symbol),
+        origin: origin(place),
+    };
+    let params = model.params.iter().enumerate().map(|(at, it)| parameter(&it.place, Symbol::Param(at)));
+    let frees = model.frees.iter().enumerate().map(|(at, it)| parameter(&it.place, Symbol::Free(at)));
+    let mut all: Vec<Parameter> = params.chain(frees).collect();
+    let width = width(&model.method);
+    for surface in &model.surfaces {
+        let name = format!("sigma({})", surface.place.name);
+        all.push(Parameter { name, value: width, origin: origin(&surface.place) });
+    }
+    if all.len() < program.flow.layout.p {
+        all.push(Parameter { name: "sigma(abs)".into(), value: width, origin: Origin::default() });
+    }
+    all
+}
+
+/// The width that the method names; the runtime may choose another for surfaces.
+fn width(method: &Method) -> f64 {
+    method.sigma.or(method.continuation.last().copied()).unwrap_or(1.0)
+}
+
+fn unknowns(model: &Model, numbers: &Numbers) -> Vec<Unknown> {
+    let unknown = |(at, free): (usize, &crate::model::Free)| Unknown {
+        parameter: model.params.len() + at,
+        bounds: numbers.bounds(model, free.range),
+    };
+    model.frees.iter().enumerate().map(unknown).collect()
+}
+
+fn surfaces(model: &Model, first_sigma: usize) -> Vec<Surface> {
+    let surface = |(at, surface): (usize, &crate::model::Surface)| Surface {
+        name: surface.place.name.clone(),
+        origin: origin(&surface.place),
+        sigma: first_sigma + at,
+    };
+    model.surfaces.iter().enumerate().map(surface).collect()
+}
+
+fn starts(model: &Model, program: &Program, numbers: &Numbers) -> Vec<Option<f64>> {
+    let fixed = |state: &crate::model::State| {
+        let start = state.start.filter(|&start| is_fixed(model, &program.graph, start))?;
+        Some(numbers.value(model, start))
+    };
+    let declared = model.states.iter().map(fixed);
+    declared.chain(program.hidden.iter().map(|_| Some(0.0))).collect()
+}

@@ -1,0 +1,74 @@
+//! What the command line may change: parameters by `--set`, settings of the method by `--method`.
+
+use crate::graph::evaluate;
+use crate::model::Model;
+use crate::resolve::closest;
+use crate::resolve::settings::{Given, Refused, keys, nearest_key, nearest_word, set};
+use crate::resolve::text::number;
+use crate::units::parse_quantity;
+
+impl Model {
+    /// Gives a parameter another value, such as `0.2` or `200[g]`.
+    pub fn set_param(&mut self, name: &str, value: &str) -> Result<(), String> {
+        let value = parse_quantity(value)?;
+        let Some(index) = self.params.iter().position(|param| param.place.name == name) else {
+            return Err(self.no_param(name));
+        };
+        let range = self.params[index].range;
+        let limits = [range.lower, range.upper].map(|limit| self.of_params(limit));
+        if value < limits[0] || value > limits[1] {
+            return Err(format!("`{name}` must be in [{}, {}]", number(limits[0]), number(limits[1])));
+        }
+        self.params[index].value = Some(self.graph.number(value));
+        if !self.param_order.contains(&index) {
+            self.param_order.insert(0, index);
+        }
+        Ok(())
+    }
+
+    /// Changes a setting, such as `sigma` to `0.01`; several values for `continue` are separated by commas.
+    pub fn set_method(&mut self, key: &str, value: &str) -> Result<(), String> {
+        match set(&mut self.method, key, &given(value)) {
+            Ok(()) => {
+                self.smooth |= matches!(key, "sigma" | "kernel" | "continue");
+                Ok(())
+            }
+            Err(Refused::NotYet) => Err(format!("`{key} = {value}` cannot be solved yet")),
+            Err(Refused::Key) => Err(match nearest_key(key) {
+                Some(near) => format!("the method has no setting `{key}`; did you mean `{near}`?"),
+                None => format!("the method has no setting `{key}`; the settings are {}", keys()),
+            }),
+            Err(Refused::Value(expected)) => Err(match nearest_word(expected, value) {
+                Some(near) => format!("`{key}` cannot be `{value}`; did you mean `{near}`?"),
+                None => format!("`{key}` cannot be `{value}`; it needs {expected}"),
+            }),
+        }
+    }
+
+    fn no_param(&self, name: &str) -> String {
+        let names = || self.params.iter().map(|param| param.place.name.as_str());
+        match closest(name, names()) {
+            Some(near) => format!("there is no parameter `{name}`; did you mean `{near}`?"),
+            None if self.params.is_empty() => format!("there is no parameter `{name}`; the model has none"),
+            None => format!("there is no parameter `{name}`; there is {}", names().collect::<Vec<_>>().join(", ")),
+        }
+    }
+
+    /// A limit, which may use other parameters; NaN, which limits nothing, if one of them has no value yet.
+    fn of_params(&self, limit: crate::graph::ExprId) -> f64 {
+        match crate::lower::numbers(self) {
+            Ok(numbers) => numbers.value(self, limit),
+            Err(_) => evaluate(&self.graph, &[limit], &vec![f64::NAN; self.symbols.len()], &[])[0],
+        }
+    }
+}
+
+fn given(value: &str) -> Given {
+    let parts: Vec<&str> = value.split(',').collect();
+    let numbers: Option<Vec<f64>> = parts.iter().map(|part| parse_quantity(part).ok()).collect();
+    match numbers.as_deref() {
+        Some([number]) => Given::Number(*number),
+        Some(numbers) => Given::List(numbers.to_vec()),
+        None => Given::Word(value.trim().into()),
+    }
+}

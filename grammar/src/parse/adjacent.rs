@@ -1,0 +1,83 @@
+//! Two values side by side: FDC0001, the most common slip of people who write formulas.
+
+use super::Rule;
+use super::messages::Place;
+use super::tokens::{Kind, Token};
+use super::words;
+use crate::{Code, Diagnostic};
+
+/// FDC0001, if two values stand side by side on one line.
+pub(super) fn missing_operator(place: &Place<'_, '_>) -> Option<Diagnostic> {
+    let (previous, next) = (place.previous()?, place.next()?);
+    let in_range = place.expects(&[Rule::comma]) && place.innermost_bracket() == Some("[");
+    if !place.after_operand() || next.begins_line || !begins_value(next) || in_range {
+        return None;
+    }
+    let (left, right) = (value_before(place), value_after(place));
+    let (first, last) = (&place.tokens[left], &place.tokens[right]);
+    let [left, right] = [short(place, left, place.at - 1, previous), short(place, place.at, right, next)];
+    let message = format!("missing operator between `{left}` and `{right}`");
+    let help = format!("write `{left} * {right}` or `{left} / {right}`; fdc has no implicit multiplication");
+    let span = first.span().to(last.span());
+    Some(Diagnostic::new(Code::MissingOperator, message, span, "two values side by side").help(help))
+}
+
+fn begins_value(token: &Token<'_>) -> bool {
+    match token.kind {
+        Kind::Word => words::reserved(token.text).is_none(),
+        Kind::Number => true,
+        Kind::Open => token.text == "(",
+        _ => false,
+    }
+}
+
+/// The first token of the value that ends before the place: `sin(x)`, `pos.x`, `(a + b)`, `3`.
+fn value_before(place: &Place<'_, '_>) -> usize {
+    let mut first = place.at - 1;
+    if place.tokens[first].kind == Kind::Close {
+        first = partner(place, first, -1).unwrap_or(first);
+    }
+    let before = |back: usize| {
+        first.checked_sub(back).filter(|at| *at >= place.piece.start).map(|at| &place.tokens[at])
+    };
+    let is_call = place.tokens[first].kind == Kind::Open && before(1).is_some_and(begins_value);
+    let is_part = before(1).is_some_and(|token| token.text == ".") && before(2).is_some_and(begins_value);
+    first - usize::from(is_call) - 2 * usize::from(is_part)
+}
+
+/// The last token of the value that begins at the place.
+fn value_after(place: &Place<'_, '_>) -> usize {
+    let opens = |at: usize| at < place.piece.end && place.tokens[at].text == "(";
+    let mut last = place.at;
+    while place.tokens[..place.piece.end].get(last + 1).is_some_and(|token| token.text == ".") {
+        last = (last + 2).min(place.piece.end - 1);
+    }
+    let open = if opens(last) { Some(last) } else { Some(last + 1).filter(|at| opens(*at)) };
+    open.and_then(|open| partner(place, open, 1)).unwrap_or(last)
+}
+
+/// The other bracket of a pair inside the piece.
+fn partner(place: &Place<'_, '_>, from: usize, step: isize) -> Option<usize> {
+    let (mut depth, mut at) = (0_isize, from);
+    loop {
+        match place.tokens[at].kind {
+            Kind::Open => depth += 1,
+            Kind::Close => depth -= 1,
+            _ => {}
+        }
+        if depth == 0 {
+            return Some(at);
+        }
+        at = at.checked_add_signed(step).filter(|at| place.piece.contains(at))?;
+    }
+}
+
+/// The text of a range of tokens if it fits into a sentence, or else of one of them.
+fn short(place: &Place<'_, '_>, first: usize, last: usize, otherwise: &Token<'_>) -> String {
+    const LONGEST: usize = 12;
+    let tokens = &place.tokens[first..=last];
+    if tokens.len() > LONGEST {
+        return otherwise.text.to_owned();
+    }
+    tokens.iter().map(|token| token.text).collect()
+}

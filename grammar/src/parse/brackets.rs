@@ -1,0 +1,41 @@
+//! Brackets without a partner: FDC0006.
+
+use super::messages::Place;
+use super::tokens::{Kind, Token};
+use crate::{Code, Diagnostic};
+
+/// FDC0006, if a bracket of the piece has no partner.
+pub(super) fn unbalanced(place: &Place<'_, '_>) -> Option<Diagnostic> {
+    let mut open: Vec<&Token<'_>> = Vec::new();
+    for token in &place.tokens[place.piece.clone()] {
+        match token.kind {
+            Kind::Open => open.push(token),
+            Kind::Close => match open.pop() {
+                Some(opener) if opener.closer() == token.text => {}
+                Some(opener) => return Some(mismatched(opener, token)),
+                None => return Some(unopened(token)),
+            },
+            _ => {}
+        }
+    }
+    open.last().map(|opener| unclosed(opener))
+}
+
+fn unclosed(opener: &Token<'_>) -> Diagnostic {
+    let message = format!("`{}` is never closed", opener.text);
+    Diagnostic::new(Code::Unclosed, message, opener.span(), "opened here")
+        .help(format!("add `{}` where it should end", opener.closer()))
+}
+
+fn mismatched(opener: &Token<'_>, closer: &Token<'_>) -> Diagnostic {
+    let message = format!("`{}` is closed by `{}`", opener.text, closer.text);
+    Diagnostic::new(Code::Unclosed, message, opener.span(), "opened here")
+        .label(closer.span(), format!("`{}` should come first", opener.closer()))
+        .help(format!("add `{}` where it should end", opener.closer()))
+}
+
+fn unopened(closer: &Token<'_>) -> Diagnostic {
+    let message = format!("`{}` closes nothing", closer.text);
+    Diagnostic::new(Code::Unclosed, message, closer.span(), "nothing is open here")
+        .help("remove it, or open its partner before")
+}

@@ -1,0 +1,120 @@
+//! Starting points other than the model's guess: an earlier solution on another grid, and random variations.
+
+use crate::nlp::{Nlp, Solution, Start, Status};
+use crate::problem::Problem;
+use crate::transcribe::TranscribedNlp;
+
+/// Signals of an earlier solution over normalised time; `None` where it has none of that name.
+#[derive(Clone, Debug, Default)]
+pub struct Earlier {
+    /// One column per state, on a uniform grid that includes both ends.
+    pub states: Vec<Option<Vec<f64>>>,
+    /// One column per control, one value per interval.
+    pub controls: Vec<Option<Vec<f64>>>,
+    /// One per unknown.
+    pub unknowns: Vec<Option<f64>>,
+}
+
+/// The earlier solution on the grid of the problem; what it lacks comes from the guess.
+pub fn resample(problem: &Problem, earlier: &Earlier) -> Vec<f64> {
+    let nlp = TranscribedNlp::new(problem);
+    let stages = nlp.chain();
+    let mut v = nlp.guess();
+    for k in 0..=stages.intervals {
+        let tau = k as f64 / stages.intervals as f64;
+        for (variable, column) in stages.state(k).zip(&earlier.states) {
+            if let Some(value) = column.as_deref().and_then(|column| linear(column, tau)) {
+                v[variable] = value;
+            }
+        }
+    }
+    for k in 0..stages.intervals {
+        let tau = (k as f64 + 0.5) / stages.intervals as f64;
+        for (variable, column) in stages.control(k).zip(&earlier.controls) {
+            if let Some(column) = column.as_deref().filter(|column| !column.is_empty()) {
+                v[variable] = column[((tau * column.len() as f64) as usize).min(column.len() - 1)];
+            }
+        }
+    }
+    for (variable, value) in stages.globals().zip(&earlier.unknowns) {
+        v[variable] = value.unwrap_or(v[variable]);
+    }
+    v
+}
+
+/// Linear interpolation on a uniform grid over [0, 1].
+fn linear(column: &[f64], tau: f64) -> Option<f64> {
+    let last = column.len().checked_sub(1)?;
+    let position = tau * last as f64;
+    let left = (position as usize).min(last.saturating_sub(1));
+    let right = (left + 1).min(last);
+    let fraction = position - left as f64;
+    Some(column[left] + fraction * (column[right] - column[left]))
+}
+
+/// Relative size of a variation.
+const VARIATION: f64 = 0.3;
+
+/// The guess (or `base`) with smooth random variations of every signal; the same for the same seed and index.
+pub fn perturbed(problem: &Problem, base: Option<Vec<f64>>, index: u32) -> Start {
+    let nlp = TranscribedNlp::new(problem);
+    let stages = nlp.chain();
+    let mut v = base.unwrap_or_else(|| nlp.guess());
+    let mut random = Random::new(problem.method.seed, index);
+    let step = stages.variable_step();
+    for i in 0..step {
+        let count = if i < stages.states { stages.intervals + 1 } else { stages.intervals };
+        let places: Vec<usize> = (0..count).map(|k| i + k * step).collect();
+        let values = places.iter().map(|place| v[*place]);
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        let size = VARIATION * room(&nlp, places[places.len() - 1], low, high);
+        let (constant, wave, cycles) = (random.next(), random.next(), 1.0 + 2.0 * random.next().abs());
+        for (k, place) in places.iter().enumerate() {
+            let tau = k as f64 / stages.intervals as f64;
+            // Fixed ends stay where they are.
+            let envelope = if i < stages.states { (std::f64::consts::PI * tau).sin() } else { 1.0 };
+            v[*place] += size * envelope * (constant + wave * (std::f64::consts::TAU * cycles * tau).sin());
+        }
+    }
+    for place in stages.globals() {
+        let size = room(&nlp, place, v[place], v[place]);
+        v[place] += VARIATION * size.min(v[place].abs().max(1.0)) * random.next();
+    }
+    Start { v, warm: None }
+}
+
+/// How far a signal may reasonably move: the width of its bounds, else its own range or size.
+fn room(nlp: &TranscribedNlp, place: usize, low: f64, high: f64) -> f64 {
+    let bounds = nlp.variable_bounds()[place];
+    let width = bounds.upper - bounds.lower;
+    if width.is_finite() { width } else { (high - low).max(low.abs().max(high.abs())).max(1.0) }
+}
+
+/// Whether `a` is the better answer: solved before not solved, then the lower objective, then the smaller violation.
+pub fn is_better(a: &Solution, b: &Solution) -> bool {
+    let solved = |solution: &Solution| matches!(solution.status, Status::Solved | Status::Acceptable);
+    match (solved(a), solved(b)) {
+        (true, true) => a.objective < b.objective,
+        (false, false) => a.constraint_violation < b.constraint_violation,
+        (solved, _) => solved,
+    }
+}
+
+/// A linear congruential generator (Knuth, MMIX).
+struct Random(u64);
+
+impl Random {
+    fn new(seed: u64, index: u32) -> Self {
+        let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ u64::from(index));
+        (0..4).for_each(|_| {
+            random.next();
+        });
+        random
+    }
+
+    /// Uniform in [-1, 1].
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}

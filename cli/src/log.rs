@@ -11,11 +11,11 @@ use std::time::Duration;
 /// How much to print.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Level {
-    /// Nothing.
+    /// Nothing but what is wrong
     None,
-    /// Every tenth iteration.
+    /// Every tenth iteration; of a sweep, each row when it is done
     Short,
-    /// Every iteration.
+    /// Every iteration
     Full,
 }
 
@@ -28,29 +28,30 @@ const SHORT: usize = 10;
 /// The table of one solve.
 pub struct Log {
     level: Level,
+    /// Stands before each line: which of several solves it is about.
+    label: String,
     lines: usize,
     bar: ProgressBar,
 }
 
 impl Log {
+    /// The table of the only solve.
     pub fn new(level: Level) -> Self {
-        let bar = ProgressBar::no_length();
-        if level == Level::None || !std::io::stderr().is_terminal() {
-            bar.set_draw_target(ProgressDrawTarget::hidden());
-        }
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}") {
-            bar.set_style(style);
-        }
-        bar.enable_steady_tick(Duration::from_millis(120));
-        Log { level, lines: 0, bar }
+        let bar = progress(ProgressBar::no_length(), level, "{spinner} {elapsed} {msg}");
+        Log { level, label: String::new(), lines: 0, bar }
+    }
+
+    /// The table of one of several solves, which share a [`bar`]; only a full log has tables.
+    pub fn of_row(level: Level, bar: &ProgressBar, row: usize) -> Self {
+        let level = if level == Level::Full { level } else { Level::None };
+        Log { level, label: format!("row {row} "), lines: 0, bar: bar.clone() }
     }
 
     /// One iteration.
     pub fn iteration(&mut self, progress: &Progress, sigma: &[f64]) {
-        self.bar.set_message(format!(
-            "iteration {}  violation {:.1e}",
-            progress.iteration, progress.primal_infeasibility
-        ));
+        let (label, iteration) = (&self.label, progress.iteration);
+        let violation = progress.primal_infeasibility;
+        self.bar.set_message(format!("{label}iteration {iteration}  violation {violation:.1e}"));
         let wanted = match self.level {
             Level::None => false,
             Level::Short => progress.iteration.is_multiple_of(SHORT),
@@ -64,17 +65,18 @@ impl Log {
         self.lines += 1;
         self.bar.suspend(|| {
             if with_header {
-                eprintln!("{HEADER}");
+                eprintln!("{label}{HEADER}");
             }
-            eprintln!("{line}");
+            eprintln!("{label}{line}");
         });
     }
 
-    /// The end of one of several starts.
+    /// The end of one of several starting points.
     pub fn start(&mut self, index: u32, solution: &Solution, sense: f64) {
         if self.level != Level::None {
-            let (status, objective) = (status_name(&solution.status), significant(sense * solution.objective, 9));
-            self.bar.suspend(|| eprintln!(" start {index:3}  {status:<18} objective {objective}"));
+            let (label, status) = (&self.label, status_name(&solution.status));
+            let objective = significant(sense * solution.objective, 9);
+            self.bar.suspend(|| eprintln!("{label} start {index:3}  {status:<18} objective {objective}"));
         }
         self.lines = 0;
     }
@@ -83,6 +85,21 @@ impl Log {
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }
+}
+
+/// The progress of several solves, on a terminal only.
+pub fn bar(level: Level, solves: usize) -> ProgressBar {
+    progress(ProgressBar::new(solves as u64), level, "{spinner} {elapsed} {pos}/{len} {bar:20} {msg}")
+}
+
+fn progress(bar: ProgressBar, level: Level, template: &str) -> ProgressBar {
+    if level == Level::None || !std::io::stderr().is_terminal() {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+        return bar;
+    }
+    bar.set_style(ProgressStyle::with_template(template).expect("the templates are fixed and right"));
+    bar.enable_steady_tick(Duration::from_millis(120));
+    bar
 }
 
 fn line(p: &Progress, sigma: &[f64]) -> String {

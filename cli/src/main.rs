@@ -1,10 +1,12 @@
 //! The command `fdcc`: reads the command line and hands over to one file for each command.
 
 mod commands;
+mod expectations;
 mod log;
 mod model;
 mod output;
 mod render;
+mod solver;
 mod verdict;
 mod warm;
 mod watch;

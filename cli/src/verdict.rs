@@ -1,8 +1,8 @@
 //! What is said at the end of a solve: how it ended, what was found, what each surface did; and the diagnostics of a
 //! solve that failed, at the lines of the model.
 
-use crate::output::document::{Document, status_name};
-use crate::output::html::switching;
+use crate::output::document::{Document, status_name, switching};
+
 use crate::output::number::{short, significant};
 use fdcc_grammar::{Code, Diagnostic, Span};
 use fdcc_runtime::homotopy::{Limiting, Outcome};

@@ -2,22 +2,22 @@
 
 use fdcc_runtime::nlp::Stop;
 use std::ops::ControlFlow;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-static INTERRUPTED: OnceLock<&'static AtomicBool> = OnceLock::new();
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// The exit code of a program that Ctrl-C ended, by the convention of shells.
+const KILLED_BY_INTERRUPT: i32 = 130;
 
 /// From now on Ctrl-C asks solves to stop; a second one ends the program.
 pub fn catch_interrupts() {
-    static FLAG: AtomicBool = AtomicBool::new(false);
     // Without a handler Ctrl-C ends the program at once: worse, but no reason to fail.
     let _ = ctrlc::set_handler(|| {
-        if FLAG.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
+        if INTERRUPTED.swap(true, Ordering::Relaxed) {
+            std::process::exit(KILLED_BY_INTERRUPT);
         }
     });
-    INTERRUPTED.get_or_init(|| &FLAG);
 }
 
 /// The moment at which a solve has to stop.
@@ -25,15 +25,15 @@ pub fn catch_interrupts() {
 pub struct Deadline(Option<Instant>);
 
 impl Deadline {
-    /// So many seconds from now.
-    pub fn after(seconds: Option<f64>) -> Self {
+    /// So many seconds from `begin`; none where there is no limit, or one that no clock reaches.
+    pub fn after(begin: Instant, seconds: Option<f64>) -> Self {
         let limit = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
-        Deadline(limit.and_then(|limit| Instant::now().checked_add(limit)))
+        Deadline(limit.and_then(|limit| begin.checked_add(limit)))
     }
 
     /// Whether to go on.
     pub fn check(&self) -> ControlFlow<Stop> {
-        if INTERRUPTED.get().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+        if INTERRUPTED.load(Ordering::Relaxed) {
             return ControlFlow::Break(Stop::Interrupted);
         }
         match self.0 {

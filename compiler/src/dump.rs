@@ -68,7 +68,8 @@ fn over_symbols(model: &Model, roots: &[(String, ExprId)]) -> String {
 
 /// Every expression of the model.
 fn symbols(model: &Model) -> String {
-    let mut roots: Vec<(String, ExprId)> = vec![("t0".into(), model.interval[0]), ("tf".into(), model.interval[1])];
+    let mut roots: Vec<(String, ExprId)> =
+        vec![("t0".into(), model.interval[0]), ("tf".into(), model.interval[1])];
     roots.extend(model.params.iter().filter_map(|it| Some((it.place.name.clone(), it.value?))));
     roots.extend(model.surfaces.iter().map(|it| (it.place.name.clone(), it.psi)));
     for state in &model.states {
@@ -89,7 +90,9 @@ fn input_names(model: &Model, program: &Program, layout: &Layout) -> Vec<String>
     let states: Vec<String> = model.states.iter().map(|it| it.place.name.clone()).chain(hidden).collect();
     let mut names: Vec<String> = (0..layout.t).map(|_| "tau".into()).collect();
     match layout.x == 2 * states.len() {
-        true => ["start", "end"].iter().for_each(|end| names.extend(states.iter().map(|name| format!("{name}({end})")))),
+        true => ["start", "end"]
+            .iter()
+            .for_each(|end| names.extend(states.iter().map(|name| format!("{name}({end})")))),
         false => names.extend(states.iter().take(layout.x).cloned()),
     }
     names.extend(model.controls.iter().take(layout.u).map(|it| it.place.name.clone()));
@@ -140,7 +143,11 @@ fn with_derivatives(model: &Model, program: &Program) -> String {
         for (&(row, column), &id) in hessian.0.entries.iter().zip(&hessian.1) {
             roots.push((format!("d2L/d({})d({})", names[row as usize], names[column as usize]), id));
         }
-        text += &format!("# {}\n{}\n", function.name, print(&graph, &roots, &|input| names[input as usize].clone()));
+        text += &format!(
+            "# {}\n{}\n",
+            function.name,
+            print(&graph, &roots, &|input| names[input as usize].clone())
+        );
     }
     text
 }
@@ -160,14 +167,17 @@ fn summary(model: &Model, program: &Program, numbers: &Numbers) -> String {
     });
     section(&mut text, "free", frees);
     let params = model.params.iter().enumerate();
-    let params = params.map(|(at, it)| format!("{} = {}", it.place.name, number(numbers.of(model, Symbol::Param(at)))));
+    let params = params
+        .map(|(at, it)| format!("{} = {}", it.place.name, number(numbers.of(model, Symbol::Param(at)))));
     section(&mut text, "params", params);
-    let surfaces: Vec<(String, ExprId)> = model.surfaces.iter().map(|it| (it.place.name.clone(), it.psi)).collect();
+    let surfaces: Vec<(String, ExprId)> =
+        model.surfaces.iter().map(|it| (it.place.name.clone(), it.psi)).collect();
     section(&mut text, "surfaces", over_symbols(model, &surfaces).lines().map(str::to_string));
     let path = model.path.iter().map(|it| bounded(&it.place.name, numbers.bounds(model, it.range)));
     section(&mut text, "path", path);
     section(&mut text, "boundary", model.boundary.iter().map(|it| it.place.name.clone()));
-    let objective: Vec<(String, ExprId)> = model.objective.iter().map(|it| (it.0.name.clone(), it.1)).collect();
+    let objective: Vec<(String, ExprId)> =
+        model.objective.iter().map(|it| (it.0.name.clone(), it.1)).collect();
     section(&mut text, "objective", over_symbols(model, &objective).lines().map(str::to_string));
     section(&mut text, "functions", differentiated(program).1.iter().map(sizes));
     text
@@ -196,12 +206,16 @@ fn sizes(function: &Differentiated) -> String {
     let VectorFunction { name, outputs, by, .. } = &function.function;
     let (jacobian, hessian) = (function.jacobian.0.entries.len(), function.hessian.0.entries.len());
     match by.is_empty() {
-        true => format!("{name}: {} outputs", outputs.len()),
+        true => format!("{name}: {}", counted(outputs.len())),
         false => format!(
-            "{name}: {} outputs, Jacobian {jacobian} of {} entries, Hessian {hessian} of {}",
-            outputs.len(),
+            "{name}: {}, Jacobian {jacobian} of {} entries, Hessian {hessian} of {}",
+            counted(outputs.len()),
             outputs.len() * by.len(),
             by.len() * (by.len() + 1) / 2
         ),
     }
+}
+
+fn counted(outputs: usize) -> String {
+    if outputs == 1 { "1 output".into() } else { format!("{outputs} outputs") }
 }

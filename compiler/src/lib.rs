@@ -16,14 +16,15 @@ pub mod units;
 
 use check::Facts;
 use differentiate::differentiate;
+pub use dump::{Stage, dump};
 use fdcc_grammar::ast::{self, Item, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Label, Severity, Span};
 use fdcc_runtime::problem::{Function, Problem};
 use graph::Graph;
-pub use dump::{Stage, dump};
 pub use lower::{Expectations, Expected, Program, expectations};
 use lower::{lower, numbers, problem};
 pub use model::Model;
+pub use overrides::is_method_key;
 use program::VectorFunction;
 use resolve::resolve;
 use std::collections::{HashMap, HashSet};

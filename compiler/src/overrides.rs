@@ -3,7 +3,7 @@
 use crate::graph::evaluate;
 use crate::model::Model;
 use crate::resolve::closest;
-use crate::resolve::settings::{Given, Refused, keys, nearest_key, nearest_word, set};
+use crate::resolve::settings::{Given, Refused, is_key, keys, nearest_key, nearest_word, set};
 use crate::resolve::text::number;
 use crate::units::parse_quantity;
 
@@ -50,7 +50,9 @@ impl Model {
         match closest(name, names()) {
             Some(near) => format!("there is no parameter `{name}`; did you mean `{near}`?"),
             None if self.params.is_empty() => format!("there is no parameter `{name}`; the model has none"),
-            None => format!("there is no parameter `{name}`; there is {}", names().collect::<Vec<_>>().join(", ")),
+            None => {
+                format!("there is no parameter `{name}`; there is {}", names().collect::<Vec<_>>().join(", "))
+            }
         }
     }
 
@@ -61,6 +63,11 @@ impl Model {
             Err(_) => evaluate(&self.graph, &[limit], &vec![f64::NAN; self.symbols.len()], &[])[0],
         }
     }
+}
+
+/// Whether the `method` block has a setting of this name.
+pub fn is_method_key(name: &str) -> bool {
+    is_key(name)
 }
 
 fn given(value: &str) -> Given {

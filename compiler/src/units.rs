@@ -99,10 +99,12 @@ pub fn scale(unit: &Unit, diagnostics: &mut Vec<Diagnostic>) -> f64 {
 }
 
 fn unknown(name: &str, span: fdcc_grammar::Span) -> Diagnostic {
-    let found = Diagnostic::new(Code::UnknownUnit, format!("`{name}` is no unit known here"), span, "not a unit");
+    let found =
+        Diagnostic::new(Code::UnknownUnit, format!("`{name}` is no unit known here"), span, "not a unit");
     match crate::resolve::closest(name, UNITS.iter().map(|row| row.0)) {
         Some(near) => found.help(format!("did you mean `[{near}]`?")),
-        None => found.help("SI units with their prefixes, and `deg rpm min h bar L ft mi mph lb`; write `[kg m/s^2]`"),
+        None => found
+            .help("SI units with their prefixes, and `deg rpm min h bar L ft mi mph lb`; write `[kg m/s^2]`"),
     }
 }
 

@@ -1,7 +1,8 @@
 //! Solving a problem: choose the solver, and drive the smoothing widths down where the model leaves them open.
 //!
-//! Widths the model names are used as they are. Otherwise each surface gets `FACTORS` times the size its switching
-//! function has along the trajectory found so far, one solve after another, each started from the one before.
+//! Widths the model names are used as they are. Otherwise each surface gets a fraction of the size its switching
+//! function has along the trajectory found so far, one solve after another, each started from the one before. Where
+//! a step is too long it is halved; where even short steps fail, the last width that could be solved is the answer.
 
 use crate::modes::{Span, modes};
 use crate::nlp::{Counts, Nlp, Options, Progress, Solution, Start, Status, Stop, convex, interior_point};
@@ -11,7 +12,11 @@ use crate::transcribe::TranscribedNlp;
 use std::ops::ControlFlow;
 
 /// Smoothing widths relative to the size of the switching function, where the model names none.
-const FACTORS: [f64; 3] = [0.1, 0.03, 0.01];
+const FIRST_FACTOR: f64 = 0.1;
+const LAST_FACTOR: f64 = 0.01;
+/// From one width to the next; after a failure the square root of it, and so on.
+const DECREASE: f64 = 0.3;
+const MOST_FAILURES: usize = 3;
 
 /// A solved (or not solved) problem.
 #[derive(Clone, Debug)]
@@ -56,7 +61,7 @@ pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Resu
     let mut nlp = TranscribedNlp::new(problem);
     let mut run = Run { problem, counts: Counts::default(), sigma: initial_sigma(problem) };
     run.apply_sigma(&mut nlp);
-    let mut start = start.unwrap_or_else(|| Start { v: nlp.guess(), warm: None });
+    let start = start.unwrap_or_else(|| Start { v: nlp.guess(), warm: None });
     if problem.method.solver != Solver::InteriorPoint && convex::is_quadratic_programme(problem) {
         let method = &problem.method;
         if let Some(solution) = convex::solve(&mut nlp, &start, method.tol, method.max_iter) {
@@ -66,31 +71,15 @@ pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Resu
     if problem.method.solver == Solver::Convex {
         return Err(Refusal::NotConvex);
     }
-    let widths = run.widths();
-    let mut solution = None;
-    for width in widths {
-        run.set_width(&mut nlp, width, &start.v);
-        let next = run.solve_once(&mut nlp, &start, watch);
-        let go_on = is_good(&next.status);
-        start = Start { v: next.v.clone(), warm: Some(next.multipliers.clone()) };
-        solution = Some(next);
-        if !go_on {
-            break;
-        }
-    }
-    let solution = solution.expect("there is at least one width");
+    let solution = match run.widths() {
+        Some(widths) => run.given(&mut nlp, start, &widths, watch),
+        None => run.chosen(&mut nlp, start, watch),
+    };
     Ok(run.finish(&mut nlp, solution, false))
 }
 
-/// A width to solve with.
-#[derive(Clone, Copy)]
-enum Width {
-    /// As the problem has it.
-    Given,
-    /// The same for all surfaces.
-    Absolute(f64),
-    /// Relative to the size of each switching function.
-    Relative(f64),
+fn warm(solution: &Solution) -> Start {
+    Start { v: solution.v.clone(), warm: Some(solution.multipliers.clone()) }
 }
 
 struct Run<'p> {
@@ -108,29 +97,60 @@ fn is_good(status: &Status) -> bool {
 }
 
 impl Run<'_> {
-    fn widths(&self) -> Vec<Width> {
+    /// The widths the model names, in their order; `None` where the choice is ours.
+    fn widths(&self) -> Option<Vec<f64>> {
         let method = &self.problem.method;
-        let mut widths: Vec<Width> = method.continuation.iter().map(|width| Width::Absolute(*width)).collect();
-        match method.sigma {
-            Some(sigma) => widths.push(Width::Absolute(sigma)),
-            None if !widths.is_empty() => {}
-            None if self.problem.surfaces.is_empty() => widths.push(Width::Given),
-            None => widths.extend(FACTORS.map(Width::Relative)),
-        }
-        widths
+        let widths: Vec<f64> = method.continuation.iter().copied().chain(method.sigma).collect();
+        let is_ours = widths.is_empty() && !self.problem.surfaces.is_empty();
+        (!is_ours).then_some(widths)
     }
 
-    fn set_width(&mut self, nlp: &mut TranscribedNlp, width: Width, v: &[f64]) {
-        match width {
-            Width::Given => {}
-            Width::Absolute(sigma) => self.sigma.fill(sigma),
-            Width::Relative(factor) => {
-                for (sigma, size) in self.sigma.iter_mut().zip(nlp.guard_sizes(v)) {
-                    *sigma = factor * if size > 0.0 { size } else { 1.0 };
-                }
+    /// Solves with one given width after the other.
+    fn given(&mut self, nlp: &mut TranscribedNlp, mut start: Start, widths: &[f64], watch: &mut Watch) -> Solution {
+        let Some((last, before)) = widths.split_last() else { return self.solve_once(nlp, &start, watch) };
+        for width in before {
+            self.sigma.fill(*width);
+            let solution = self.solve_once(nlp, &start, watch);
+            if !is_good(&solution.status) {
+                return solution;
+            }
+            start = warm(&solution);
+        }
+        self.sigma.fill(*last);
+        self.solve_once(nlp, &start, watch)
+    }
+
+    /// Solves with widths of our own choice, as small as can be solved.
+    fn chosen(&mut self, nlp: &mut TranscribedNlp, start: Start, watch: &mut Watch) -> Solution {
+        let mut factor = FIRST_FACTOR;
+        self.set_relative(nlp, factor, &start.v);
+        let mut best = self.solve_once(nlp, &start, watch);
+        let (mut decrease, mut failures) = (DECREASE, 0);
+        while is_good(&best.status) && factor > LAST_FACTOR && failures < MOST_FAILURES {
+            let before = self.sigma.clone();
+            let next = (factor * decrease).max(LAST_FACTOR);
+            self.set_relative(nlp, next, &best.v);
+            let solution = self.interior_point(nlp, &warm(&best), watch);
+            if is_good(&solution.status) {
+                (factor, best) = (next, solution);
+                continue;
+            }
+            self.sigma = before;
+            (failures, decrease) = (failures + 1, decrease.sqrt());
+            if matches!(solution.status, Status::TimeLimit | Status::Interrupted) {
+                best.status = solution.status;
             }
         }
         self.apply_sigma(nlp);
+        best.counts = self.counts;
+        best
+    }
+
+    /// Widths relative to the size of each switching function along `v`.
+    fn set_relative(&mut self, nlp: &TranscribedNlp, factor: f64, v: &[f64]) {
+        for (sigma, size) in self.sigma.iter_mut().zip(nlp.guard_sizes(v)) {
+            *sigma = factor * if size > 0.0 { size } else { 1.0 };
+        }
     }
 
     fn apply_sigma(&self, nlp: &mut TranscribedNlp) {

@@ -48,7 +48,6 @@ macro_rules! pages {
         fn page(code: Code) -> &'static str {
             match code {
                 $(Code::$variant => include_str!(concat!("../../../docs/diagnostics/", $code, ".md")),)*
-                _ => "this page is being written\n",
             }
         }
     };
@@ -64,6 +63,31 @@ pages! {
     NotText "FDC0007"
     EmptyModel "FDC0008"
     TooLarge "FDC0009"
+    UnknownName "FDC0101"
+    DuplicateName "FDC0102"
+    WrongKind "FDC0103"
+    WrongArguments "FDC0104"
+    ShapeMismatch "FDC0105"
+    UnknownSetting "FDC0106"
+    EqualityGuard "FDC0107"
+    CircularDefinition "FDC0108"
+    NotAllowedHere "FDC0109"
+    UnknownPart "FDC0110"
+    UnknownUnit "FDC0111"
+    SetEquality "FDC0201"
+    SetValuedHere "FDC0202"
+    HiddenJump "FDC0203"
+    NoSet "FDC0204"
+    NotAffine "FDC0205"
+    SetProduct "FDC0206"
+    EmptyBounds "FDC0401"
+    NoDuration "FDC0402"
+    NoBoundary "FDC0403"
+    Unused "FDC0404"
+    NoEquation "FDC0405"
+    NotSmooth "FDC0406"
+    NoTime "FDC0407"
+    NoValue "FDC0408"
     NotFinite "FDC0601"
     Infeasible "FDC0602"
     NotYet "FDC0603"

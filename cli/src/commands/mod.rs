@@ -3,7 +3,12 @@
 mod check;
 mod explain;
 mod options;
+mod show;
 mod solve;
+mod sweep;
+mod test;
+
+pub use options::{Options, Prepared, show};
 
 use std::process::ExitCode;
 
@@ -34,8 +39,11 @@ impl From<Exit> for ExitCode {
 #[derive(Subcommand)]
 pub enum Command {
     Check(check::Check),
-    Explain(explain::Explain),
     Solve(Box<solve::Solve>),
+    Sweep(Box<sweep::Sweep>),
+    Test(Box<test::Test>),
+    Show(show::Show),
+    Explain(explain::Explain),
 }
 
 impl Command {
@@ -43,8 +51,11 @@ impl Command {
     pub fn run(self) -> Exit {
         match self {
             Command::Check(check) => check.run(),
-            Command::Explain(explain) => explain.run(),
             Command::Solve(solve) => solve.run(),
+            Command::Sweep(sweep) => sweep.run(),
+            Command::Test(test) => test.run(),
+            Command::Show(show) => show.run(),
+            Command::Explain(explain) => explain.run(),
         }
     }
 }

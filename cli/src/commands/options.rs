@@ -6,96 +6,32 @@ use crate::model::Loaded;
 use crate::{output, render};
 use clap::Args;
 use fdcc_compiler::Model;
-use fdcc_grammar::{Diagnostic, Severity, SourceFile};
-use fdcc_runtime::problem::Problem;
+use fdcc_grammar::{Code, Diagnostic, Severity, SourceFile};
 use std::path::PathBuf;
 
 /// What may be changed without touching the model.
 #[derive(Args, Clone)]
-pub struct Options {
-    /// Another value of a `param`, such as `w=1` or `m=200[g]` (repeatable)
-    #[arg(long = "set", value_name = "NAME=VALUE")]
-    pub set: Vec<String>,
-    /// Another value of a key of the `method` block, such as `N=500` (repeatable)
-    #[arg(long = "method", value_name = "KEY=VALUE")]
-    pub method: Vec<String>,
-    /// Print the result as one JSON document
-    #[arg(long)]
-    pub json: bool,
-    /// Write MODEL.sol.json, MODEL.csv and MODEL.html to this folder
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Start from an earlier .sol.json, of any grid, scheme or sigma
-    #[arg(long, value_name = "FILE")]
-    pub warm: Option<PathBuf>,
-    /// Iteration table on the standard error
-    #[arg(long, value_enum, default_value_t = Level::Short)]
-    pub log: Level,
-    /// Stop after this many seconds with the best iterate
-    #[arg(long, value_name = "S", value_parser = seconds)]
-    pub time_limit: Option<f64>,
-    /// Seed of everything random
-    #[arg(long, value_name = "N")]
-    pub seed: Option<u64>,
-    /// Solve from this many starting points and keep the best solution
-    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    pub starts: u32,
+pub struct Changes {
+    /// Give a `param` another value, such as `w=1` or `m=200[g]` (repeatable)
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<String>,
+    /// Give a key of the `method` block another value, such as `N=500` (repeatable)
+    #[arg(long, value_name = "KEY=VALUE")]
+    method: Vec<String>,
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 => Ok(value),
-        _ => Err("a positive number of seconds".into()),
-    }
-}
-
-/// A model that is ready to be computed with, and its text.
-pub struct Prepared {
-    pub source: SourceFile,
-    pub model: Model,
-}
-
-/// Reads and checks a model and applies the changes. What is wrong with it is shown on the standard error.
-pub fn prepare(file: &str, options: &Options) -> Result<Prepared, Exit> {
-    let loaded = Loaded::read(file).map_err(|error| {
-        output::complain(&format!("{file} cannot be read: {error}"));
-        Exit::File
-    })?;
-    let worth_showing = |it: &&Diagnostic| it.severity >= Severity::Warning;
-    show(loaded.diagnostics.iter().filter(worth_showing), &loaded.source);
-    let is_waiting = |it: &Diagnostic| it.code == fdcc_grammar::Code::NoValue;
-    let broken = loaded.diagnostics.iter().any(|it| it.severity == Severity::Error && !is_waiting(it));
-    match loaded.model {
-        Some(model) if !broken => {
-            let model = change(model, &options.set, &options.method)?;
-            let model = match options.seed {
-                Some(seed) => change(model, &[], &[format!("seed={seed}")])?,
-                None => model,
-            };
-            Ok(Prepared { source: loaded.source, model })
+impl Changes {
+    /// Applies them, or says what is wrong with one.
+    pub fn apply(&self, model: &mut Model) -> Result<(), String> {
+        for text in &self.set {
+            let (name, value) = split(text, "--set NAME=VALUE")?;
+            model.set_param(name, value)?;
         }
-        _ => Err(Exit::ModelError),
-    }
-}
-
-/// Applies `NAME=VALUE` and `KEY=VALUE`.
-pub fn change(mut model: Model, set: &[String], method: &[String]) -> Result<Model, Exit> {
-    let result = set.iter().try_for_each(|text| {
-        let (name, value) = split(text, "--set NAME=VALUE")?;
-        model.set_param(name, value)
-    });
-    let result = result.and_then(|()| {
-        method.iter().try_for_each(|text| {
+        for text in &self.method {
             let (key, value) = split(text, "--method KEY=VALUE")?;
-            model.set_method(key, value)
-        })
-    });
-    match result {
-        Ok(()) => Ok(model),
-        Err(message) => {
-            output::complain(&message);
-            Err(Exit::Usage)
+            model.set_method(key, value)?;
         }
+        Ok(())
     }
 }
 
@@ -104,12 +40,79 @@ fn split<'t>(text: &'t str, form: &str) -> Result<(&'t str, &'t str), String> {
     Ok((name.trim(), value.trim()))
 }
 
-/// Compiles; what cannot be treated is shown on the standard error.
-pub fn compile(prepared: &Prepared) -> Result<Problem, Exit> {
-    fdcc_compiler::compile(&prepared.model).map_err(|diagnostics| {
-        show(diagnostics.iter(), &prepared.source);
-        Exit::ModelError
-    })
+/// How to solve, and what to leave behind.
+#[derive(Args, Clone)]
+pub struct Options {
+    #[command(flatten)]
+    pub changes: Changes,
+    /// Print the result as one JSON document, and nothing else, on the standard output
+    #[arg(long)]
+    pub json: bool,
+    /// Write MODEL.sol.json, MODEL.csv and MODEL.html to this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Start from an earlier .sol.json; its N, scheme and sigma may be others
+    #[arg(long, value_name = "FILE")]
+    pub warm: Option<PathBuf>,
+    /// How much to tell on the standard error while solving
+    #[arg(long, value_enum)]
+    pub log: Option<Level>,
+    /// Stop each solve after this many seconds and keep its best iterate
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub time_limit: Option<f64>,
+    /// Seed of the random variations that `--starts` makes
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Solve from K starting points, the guess and variations of it, and keep the best solution
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub starts: u32,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 => Ok(value),
+        _ => Err("it needs a number of seconds above 0".into()),
+    }
+}
+
+/// A model that is ready to be computed with, and its text.
+#[derive(Clone)]
+pub struct Prepared {
+    pub source: SourceFile,
+    pub model: Model,
+}
+
+/// [`read`] with all the options that change the model.
+pub fn prepare(file: &str, options: &Options) -> Result<Prepared, Exit> {
+    let mut prepared = read(file, &options.changes)?;
+    prepared.model.method.seed = options.seed.unwrap_or(prepared.model.method.seed);
+    Ok(prepared)
+}
+
+/// Reads and checks a model and applies the changes. What is wrong with it is shown on the standard error.
+pub fn read(file: &str, changes: &Changes) -> Result<Prepared, Exit> {
+    let loaded = Loaded::read(file).map_err(|error| {
+        output::complain(&format!("{file} cannot be read: {error}"));
+        Exit::File
+    })?;
+    let Loaded { source, model, diagnostics } = loaded;
+    // A parameter that waits for a value may get it from the changes; compiling finds out.
+    let waits = |it: &Diagnostic| model.is_some() && it.code == Code::NoValue;
+    show(diagnostics.iter().filter(|it| it.severity >= Severity::Warning && !waits(it)), &source);
+    let Some(mut model) = model else {
+        if diagnostics.iter().all(|it| it.severity < Severity::Error) {
+            output::complain(&format!("{file}: there is nothing to compute; `fdcc check` says nothing else"));
+        }
+        return Err(Exit::ModelError);
+    };
+    changes.apply(&mut model).map_err(|message| usage(&message))?;
+    Ok(Prepared { source, model })
+}
+
+/// Complains about wrong usage.
+pub fn usage(message: &str) -> Exit {
+    output::complain(message);
+    Exit::Usage
 }
 
 /// Prints diagnostics on the standard error.

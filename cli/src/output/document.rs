@@ -5,10 +5,11 @@ use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::modes::Mode;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Linear, Method, Problem, Scheme, Solver};
-use serde::{Deserialize, Serialize};
+use super::number::significant;
+use serde::Serialize;
 
-/// One solve.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+/// One solve. Numbers are written so that they read back to the same bits.
+#[derive(Clone, Debug, Serialize)]
 pub struct Document {
     pub fdcc: String,
     pub model: String,
@@ -35,7 +36,7 @@ pub struct Document {
 }
 
 /// The method that was used, defaults and choices included.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct MethodUsed {
     pub scheme: String,
     #[serde(rename = "N")]
@@ -52,7 +53,7 @@ pub struct MethodUsed {
 }
 
 /// Work done.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Counts {
     pub factorizations: usize,
     pub evaluations: usize,
@@ -61,7 +62,7 @@ pub struct Counts {
 }
 
 /// Wall-clock times: the only entries that differ between two runs.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Seconds {
     pub compile: f64,
     pub solve: f64,
@@ -69,7 +70,7 @@ pub struct Seconds {
 }
 
 /// A time span in one mode of a surface.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Span {
     pub mode: String,
     pub from: f64,
@@ -146,6 +147,18 @@ impl MethodUsed {
             seed: method.seed,
         }
     }
+}
+
+/// `held 0-0.31, below 0.31-1.92`
+pub fn switching(spans: &[Span]) -> String {
+    let range = |from: String, to: String| {
+        // A minus sign next to a dash cannot be read.
+        let dash = if from.contains('-') || to.contains('-') { " to " } else { "-" };
+        format!("{from}{dash}{to}")
+    };
+    let spans = spans.iter();
+    let spans = spans.map(|s| format!("{} {}", s.mode, range(significant(s.from, 4), significant(s.to, 4))));
+    spans.collect::<Vec<_>>().join(", ")
 }
 
 /// The name of a status in files and verdicts.

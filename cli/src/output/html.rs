@@ -1,6 +1,6 @@
 //! One HTML page per solution: a summary and a plot per signal, as inline SVG. No script, no network.
 
-use super::document::Document;
+use super::document::{Document, switching};
 use super::number::{short, significant};
 use std::fmt::Write;
 
@@ -59,13 +59,6 @@ fn summary(document: &Document) -> String {
         .iter()
         .map(|(name, value)| format!("<tr><td>{}</td><td>{}</td></tr>\n", escape(name), escape(value)));
     format!("<table>\n{}</table>\n", rows.collect::<String>())
-}
-
-/// `held 0-0.31, below 0.31-1.92`
-pub fn switching(spans: &[super::document::Span]) -> String {
-    let spans = spans.iter();
-    let spans = spans.map(|s| format!("{} {}-{}", s.mode, significant(s.from, 4), significant(s.to, 4)));
-    spans.collect::<Vec<_>>().join(", ")
 }
 
 fn plot(document: &Document, name: &str, values: &[f64]) -> String {

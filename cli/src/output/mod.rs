@@ -3,10 +3,12 @@
 pub mod csv;
 pub mod diagnostics;
 pub mod document;
+pub mod files;
 pub mod html;
 pub mod named;
 pub mod number;
 pub mod sarif;
+pub mod table;
 
 use std::io::Write;
 
@@ -22,7 +24,7 @@ pub fn complain(text: &str) {
     let _ = writeln!(std::io::stderr(), "fdcc: {text}");
 }
 
-/// Indented JSON with a line end.
+/// Indented JSON with a line end. A number that is not finite becomes `null`.
 pub fn json(value: &impl Serialize) -> String {
-    serde_json::to_string_pretty(value).expect("our own types have text keys and finite numbers") + "\n"
+    serde_json::to_string_pretty(value).expect("our own types have text keys only") + "\n"
 }

@@ -5,16 +5,21 @@ pub fn short(value: f64) -> String {
     significant(value, 6)
 }
 
-/// As many significant digits as asked for.
+/// At most as many significant digits as asked for.
 pub fn significant(value: f64, digits: usize) -> String {
+    trim(aligned(value, digits))
+}
+
+/// As many significant digits as asked for, zeros included: for columns.
+pub fn aligned(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
     let exponent = value.abs().log10().floor() as i32;
     if !(-4..=digits as i32 + 2).contains(&exponent) {
-        return trim(format!("{value:.*e}", digits - 1));
+        return format!("{value:.*e}", digits - 1);
     }
-    trim(format!("{value:.*}", (digits as i32 - 1 - exponent).max(0) as usize))
+    format!("{value:.*}", (digits as i32 - 1 - exponent).max(0) as usize)
 }
 
 /// Removes zeros that say nothing.
@@ -50,6 +55,8 @@ mod tests {
         assert_eq!(short(0.1), "0.1");
         assert_eq!(short(1000.0), "1000");
         assert_eq!(short(1e-9), "1e-9");
+        assert_eq!(short(f64::NAN), "NaN");
+        assert_eq!(aligned(5.5, 4), "5.500");
         assert_eq!(scientific(0.00123, 2), "1.23e-03");
         assert_eq!(scientific(12.0, 1), "1.2e+01");
     }

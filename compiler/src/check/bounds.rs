@@ -17,7 +17,8 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     rows(facts.meaning, &mut labels, &mut repairs);
     let mut labels = labels.into_iter();
     if let Some(first) = labels.next() {
-        let mut diagnostic = Diagnostic::new(Code::EmptyBounds, "these bounds leave no room", first.span, first.text);
+        let mut diagnostic =
+            Diagnostic::new(Code::EmptyBounds, "these bounds leave no room", first.span, first.text);
         diagnostic.labels.extend(labels);
         found.push(diagnostic.help(repairs.join("\n")));
     }
@@ -25,7 +26,9 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
 
 fn look(meaning: &Elaborator<'_>, item: &Item, labels: &mut Vec<Label>, repairs: &mut Vec<String>) {
     let first = crate::resolve::scope::declared(item).and_then(|name| meaning.scope.find(&name.name));
-    let Some(index) = first.filter(|&at| std::ptr::eq(meaning.scope.declarations[at].item, item)) else { return };
+    let Some(index) = first.filter(|&at| std::ptr::eq(meaning.scope.declarations[at].item, item)) else {
+        return;
+    };
     if let ItemKind::Time { interval, .. } = &item.kind {
         return backwards(meaning, interval, labels, repairs);
     }
@@ -44,13 +47,27 @@ fn look(meaning: &Elaborator<'_>, item: &Item, labels: &mut Vec<Label>, repairs:
             reversed(meaning, &format!("param {}", name.name), bounds, [range], labels, repairs);
             if let Some(value) = value {
                 let given = meaning.param_values[index];
-                outside(meaning, Subject { name: &name.name, verb: "is", span: value.span }, given, range, labels, repairs);
+                outside(
+                    meaning,
+                    Subject { name: &name.name, verb: "is", span: value.span },
+                    given,
+                    range,
+                    labels,
+                    repairs,
+                );
             }
         }
         ItemKind::State { name, bounds, start, parts, .. } => {
             let states = || meaning.model.states[index..].iter().take(parts.len().max(1));
             if let Some(bounds) = bounds {
-                reversed(meaning, &format!("state {}", name.name), bounds, states().map(|it| it.range), labels, repairs);
+                reversed(
+                    meaning,
+                    &format!("state {}", name.name),
+                    bounds,
+                    states().map(|it| it.range),
+                    labels,
+                    repairs,
+                );
             }
             if let Some(Start::Value(value)) = start {
                 for state in states() {
@@ -78,7 +95,8 @@ fn reversed(
 ) {
     let bad = ranges.into_iter().map(|range| numbers(meaning, range)).find(|[lower, upper]| lower > upper);
     if let Some([lower, upper]) = bad {
-        let text = format!("lower bound {} is above upper bound {}", text::number(lower), text::number(upper));
+        let text =
+            format!("lower bound {} is above upper bound {}", text::number(lower), text::number(upper));
         labels.push(Label { span: bounds.span, text });
         let (lower, upper) = (text::expr(&bounds.lower), text::expr(&bounds.upper));
         repairs.push(format!("swap them: `{declaration} in [{upper}, {lower}]`"));
@@ -113,7 +131,12 @@ fn outside(
     repairs.push(format!("for `{}`, {change} the bound to {given} or {other} {limit}", subject.name));
 }
 
-fn backwards(meaning: &Elaborator<'_>, interval: &Interval, labels: &mut Vec<Label>, repairs: &mut Vec<String>) {
+fn backwards(
+    meaning: &Elaborator<'_>,
+    interval: &Interval,
+    labels: &mut Vec<Label>,
+    repairs: &mut Vec<String>,
+) {
     let [first, last] = meaning.interval.map(|end| meaning.numeric(end));
     if first >= last {
         let text = format!("ends at {}, but starts at {}", text::number(last), text::number(first));
@@ -127,7 +150,8 @@ fn rows(meaning: &Elaborator<'_>, labels: &mut Vec<Label>, repairs: &mut Vec<Str
     for row in meaning.model.path.iter().chain(&meaning.model.boundary) {
         let [lower, upper] = numbers(meaning, row.range);
         if lower > upper {
-            let text = format!("no number is both above {} and below {}", text::number(lower), text::number(upper));
+            let text =
+                format!("no number is both above {} and below {}", text::number(lower), text::number(upper));
             labels.push(Label { span: row.place.span, text });
             repairs.push(format!("for `{}`, the left limit must be below the right one", row.place.name));
         }

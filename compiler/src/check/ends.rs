@@ -11,7 +11,9 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let mut tied: HashSet<&str> = HashSet::new();
     for item in &facts.items {
         if matches!(item.kind, ItemKind::Start { .. } | ItemKind::End { .. }) {
-            walk::expressions(item).into_iter().for_each(|expr| walk::names(expr, &mut |name, _| tied.extend([name])));
+            walk::expressions(item)
+                .into_iter()
+                .for_each(|expr| walk::names(expr, &mut |name, _| tied.extend([name])));
         }
     }
     for item in &facts.tree.items {

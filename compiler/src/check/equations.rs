@@ -18,7 +18,8 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
         {
             let name_ = &name.name;
             let label = format!("declared as a state, but there is no `{name_}' = ...`");
-            let diagnostic = Diagnostic::new(Code::NoEquation, format!("`{name_}` has no equation"), name.span, label);
+            let diagnostic =
+                Diagnostic::new(Code::NoEquation, format!("`{name_}` has no equation"), name.span, label);
             found.push(diagnostic.help(format!(
                 "add `{name_}' = ...` to `dynamics`, or declare it as `control {name_}` or `param {name_}`"
             )));

@@ -25,10 +25,17 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     }
 }
 
-fn jump(meaning: &Elaborator<'_>, site: &Site<'_>, knot: &Knot<'_>, place: &KnotUse, role: &Role<'_>) -> Diagnostic {
+fn jump(
+    meaning: &Elaborator<'_>,
+    site: &Site<'_>,
+    knot: &Knot<'_>,
+    place: &KnotUse,
+    role: &Role<'_>,
+) -> Diagnostic {
     let name = owner(meaning, site).map_or("this `piecewise`".into(), |name| format!("`{name}`"));
     let size = text::number((knot.limits[1] - knot.limits[0]).abs());
-    let message = format!("{name} jumps by {size} at `{}`, but it is used as an ordinary function", knot_text(knot));
+    let message =
+        format!("{name} jumps by {size} at `{}`, but it is used as an ordinary function", knot_text(knot));
     let [left, right] = knot.limits.map(text::number);
     let label = format!("left limit {left}, right limit {right}");
     let found = Diagnostic::new(Code::HiddenJump, message, knot.arm.guard_span, label);
@@ -50,9 +57,16 @@ pub(super) fn owner<'a>(meaning: &Elaborator<'a>, site: &Site<'_>) -> Option<&'a
 }
 
 /// The same with a surface, written out where that is simple.
-fn repair(meaning: &Elaborator<'_>, site: &Site<'_>, knot: &Knot<'_>, place: &KnotUse, role: &Role<'_>) -> String {
+fn repair(
+    meaning: &Elaborator<'_>,
+    site: &Site<'_>,
+    knot: &Knot<'_>,
+    place: &KnotUse,
+    role: &Role<'_>,
+) -> String {
     let head = "declare the switch so that fdcc can treat it:";
-    let surface = ["boost", "switch", "switching"].into_iter().find(|name| meaning.scope.find(name).is_none());
+    let surface =
+        ["boost", "switch", "switching"].into_iter().find(|name| meaning.scope.find(name).is_none());
     let surface = surface.unwrap_or("switch_");
     let written = match role {
         Role::Equation(equation) => rewritten(meaning, site, knot, place, equation),
@@ -68,7 +82,9 @@ fn repair(meaning: &Elaborator<'_>, site: &Site<'_>, knot: &Knot<'_>, place: &Kn
         }
         None => {
             let psi = difference(&knot.arm.left, &knot.arm.right);
-            format!("{head}\n  surface {surface} = {psi}\nand choose the side with `match {surface} {{ below => ..., above => ... }}`")
+            format!(
+                "{head}\n  surface {surface} = {psi}\nand choose the side with `match {surface} {{ below => ..., above => ... }}`"
+            )
         }
     }
 }
@@ -111,7 +127,9 @@ fn arguments<'e>(
     used: Span,
 ) -> Option<Vec<(&'e str, &'e Expr)>> {
     let Some(owner) = site.owner else { return Some(Vec::new()) };
-    let ItemKind::Fn { arguments: formal, body, .. } = &meaning.scope.declarations[owner].item.kind else { return None };
+    let ItemKind::Fn { arguments: formal, body, .. } = &meaning.scope.declarations[owner].item.kind else {
+        return None;
+    };
     let mut call = None;
     walk::visit(right, &mut |expr| {
         if expr.span == used {

@@ -8,7 +8,8 @@ use fdcc_grammar::{Code, Diagnostic};
 
 /// Reports links that lead nowhere.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
-    let names: Vec<&str> = facts.tree.items.iter().filter_map(declared).map(|name| name.name.as_str()).collect();
+    let names: Vec<&str> =
+        facts.tree.items.iter().filter_map(declared).map(|name| name.name.as_str()).collect();
     for item in &facts.items {
         let ItemKind::Link { from, to, assignments } = &item.kind else { continue };
         let [source, target] = [from, to].map(|phase| find_phase(facts, phase, found));
@@ -34,7 +35,10 @@ fn find_phase<'a>(facts: &Facts<'a, '_>, phase: &Ident, found: &mut Vec<Diagnost
         return Some(items);
     }
     let message = format!("`{}` is a {}, not a phase", phase.name, kind_word(item));
-    found.push(Diagnostic::new(Code::WrongKind, message, phase.span, "a phase is needed here").help("name a `phase`"));
+    found.push(
+        Diagnostic::new(Code::WrongKind, message, phase.span, "a phase is needed here")
+            .help("name a `phase`"),
+    );
     None
 }
 
@@ -50,7 +54,9 @@ fn check_target(assignment: &Assignment, target: &[Item], found: &mut Vec<Diagno
 
 fn check_source(assignment: &Assignment, source: &[Item], outer: &[&str], found: &mut Vec<Diagnostic>) {
     walk::names(&assignment.value, &mut |name, span| {
-        let known = source.iter().filter_map(declared).any(|it| it.name == name) || outer.contains(&name) || name == "pi";
+        let known = source.iter().filter_map(declared).any(|it| it.name == name)
+            || outer.contains(&name)
+            || name == "pi";
         if !known && !crate::resolve::is_function(name) {
             let message = format!("nothing called `{name}` in the phase before the link");
             let diagnostic = Diagnostic::new(Code::UnknownName, message, span, "not declared there");

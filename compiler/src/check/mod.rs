@@ -60,7 +60,9 @@ pub(crate) use values::missing as missing_value;
 impl Facts<'_, '_> {
     /// Whether a mistake inside a span has been told already, so that more about it would be noise.
     pub fn has_error_within(&self, span: Span) -> bool {
-        let inside = |it: &Diagnostic| it.severity == Severity::Error && it.span().start >= span.start && it.span().end <= span.end;
+        let inside = |it: &Diagnostic| {
+            it.severity == Severity::Error && it.span().start >= span.start && it.span().end <= span.end
+        };
         self.meaning.diagnostics.iter().any(inside)
     }
 }

@@ -11,10 +11,19 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     if declarations.iter().any(|it| matches!(it.item.kind, ItemKind::Time { .. })) {
         return;
     }
-    let moves = |kind: &ItemKind| matches!(kind, ItemKind::State { .. } | ItemKind::Control { .. } | ItemKind::Dynamics { .. });
+    let moves = |kind: &ItemKind| {
+        matches!(kind, ItemKind::State { .. } | ItemKind::Control { .. } | ItemKind::Dynamics { .. })
+    };
     if let Some(first) = facts.items.iter().find(|item| moves(&item.kind)) {
         let span = declared(first).map_or(first.span, |name| name.span);
-        let diagnostic = Diagnostic::new(Code::NoTime, "the model has no time", span, "changes over time, but from when to when?");
-        found.push(diagnostic.help("write `time t in [0, 1]`, or `free T in [0.1, 100]` and `time t in [0, T]`"));
+        let diagnostic = Diagnostic::new(
+            Code::NoTime,
+            "the model has no time",
+            span,
+            "changes over time, but from when to when?",
+        );
+        found.push(
+            diagnostic.help("write `time t in [0, 1]`, or `free T in [0.1, 100]` and `time t in [0, T]`"),
+        );
     }
 }

@@ -4,7 +4,7 @@
 use super::Facts;
 use crate::resolve::elaborator::Role;
 use crate::resolve::text;
-use crate::resolve::value::{SetUse, Traits};
+use crate::resolve::value::SetUse;
 use fdcc_grammar::ast::{Equation, EquationRelation};
 use fdcc_grammar::{Code, Diagnostic};
 
@@ -17,7 +17,7 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
             }
             (Role::Equation(equation), None) if equation.relation == EquationRelation::In => {
                 if !facts.has_error_within(equation.right.span) {
-                    found.push(no_set(equation, &piece.traits));
+                    found.push(no_set(equation));
                 }
             }
             (Role::Equation(_), _) | (_, None) => {}
@@ -32,10 +32,19 @@ fn equality(equation: &Equation, set: &SetUse) -> Diagnostic {
         true => format!("a single value when {surface} != 0, the interval [-1, 1] when {surface} == 0"),
         false => format!("a single value when {surface} != 0, anything between the two when {surface} == 0"),
     };
-    let why = if set.is_sgn { "\nWhen the block sticks, the friction force is whatever keeps it still." } else { "" };
-    Diagnostic::new(Code::SetEquality, "the right side is a set, so `=` cannot hold", equation.relation_span, "use `in` here")
-        .label(set.span, label)
-        .help(format!("write `{} in {}`{why}", left_side(equation), text::expr(&equation.right)))
+    let why = if set.is_sgn {
+        "\nWhen the block sticks, the friction force is whatever keeps it still."
+    } else {
+        ""
+    };
+    Diagnostic::new(
+        Code::SetEquality,
+        "the right side is a set, so `=` cannot hold",
+        equation.relation_span,
+        "use `in` here",
+    )
+    .label(set.span, label)
+    .help(format!("write `{} in {}`{why}", left_side(equation), text::expr(&equation.right)))
 }
 
 /// `m * v'`.
@@ -46,10 +55,15 @@ pub(super) fn left_side(equation: &Equation) -> String {
     }
 }
 
-fn no_set(equation: &Equation, _: &Traits) -> Diagnostic {
+fn no_set(equation: &Equation) -> Diagnostic {
     let repaired = format!("{} = {}", left_side(equation), text::expr(&equation.right));
-    Diagnostic::new(Code::NoSet, "`in` before a right side that is no set", equation.relation_span, "`=` says the same")
-        .help(format!("write `{repaired}`: without `Sgn` or `match` there is one value"))
+    Diagnostic::new(
+        Code::NoSet,
+        "`in` before a right side that is no set",
+        equation.relation_span,
+        "`=` says the same",
+    )
+    .help(format!("write `{repaired}`: without `Sgn` or `match` there is one value"))
 }
 
 fn needs_a_value(facts: &Facts<'_, '_>, role: &Role<'_>, set: &SetUse) -> Diagnostic {
@@ -64,7 +78,8 @@ fn needs_a_value(facts: &Facts<'_, '_>, role: &Role<'_>, set: &SetUse) -> Diagno
         Some(fdcc_grammar::ast::ItemKind::Surface { value, .. }) => text::expr(value),
         _ => set.surface.to_string(),
     };
-    let whole = if set.is_sgn { format!("Sgn({})", set.surface) } else { format!("match {} {{ ... }}", set.surface) };
+    let whole =
+        if set.is_sgn { format!("Sgn({})", set.surface) } else { format!("match {} {{ ... }}", set.surface) };
     found.help(format!(
         "for friction work write `integral(mu * N * abs({psi}))`: the same number, and continuous\n\
          for the friction force that acts, name it: `let f = selected({whole})`"

@@ -25,7 +25,13 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     }
 }
 
-fn kink(meaning: &Elaborator<'_>, site: &Site<'_>, knot: &Knot<'_>, place: &KnotUse, role: &Role<'_>) -> Diagnostic {
+fn kink(
+    meaning: &Elaborator<'_>,
+    site: &Site<'_>,
+    knot: &Knot<'_>,
+    place: &KnotUse,
+    role: &Role<'_>,
+) -> Diagnostic {
     let message = format!("{} is C^{} but not C^{}", role.describe(), knot.order - 1, knot.order);
     let derivative = if knot.order == 1 { "first" } else { "second" };
     let [left, right] = knot.limits.map(text::number);
@@ -50,13 +56,15 @@ fn function<'a>(meaning: &Elaborator<'a>, site: &Site<'_>) -> Option<&'a str> {
 /// Those who know that `abs` has a kink may suspect it.
 fn about_abs(role: &Role<'_>) -> &'static str {
     match role {
-        Role::Path(_, condition) if has_abs(condition) => "\n(`abs(e) <= c` is fine: fdcc reads it as -c <= e <= c.)",
+        Role::Path(_, condition) if has_abs(condition) => {
+            "\n(`abs(e) <= c` is fine: fdcc reads it as -c <= e <= c.)"
+        }
         _ => "",
     }
 }
 
 fn has_abs(condition: &Condition) -> bool {
-    let is_abs = |expr| matches!(expr, &ExprKind::Name(ref name) if name == "abs");
+    let is_abs = |kind: &ExprKind| matches!(kind, ExprKind::Name(name) if name == "abs");
     let sides = std::iter::once(&condition.first).chain(condition.rest.iter().map(|it| &it.1));
     sides.into_iter().any(|side| {
         let mut found = false;

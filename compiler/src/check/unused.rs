@@ -16,7 +16,13 @@ pub(crate) fn check(tree: &ast::Model) -> Vec<Diagnostic> {
     flatten(&tree.items, &mut items);
     let anywhere = reached(&items, |_| true);
     let problem = reached(&items, |kind| {
-        !matches!(kind, ItemKind::Guess { .. } | ItemKind::Report { .. } | ItemKind::Expect { .. } | ItemKind::Method { .. })
+        !matches!(
+            kind,
+            ItemKind::Guess { .. }
+                | ItemKind::Report { .. }
+                | ItemKind::Expect { .. }
+                | ItemKind::Method { .. }
+        )
     });
     items.iter().filter_map(|item| unused(item, &anywhere, &problem)).collect()
 }
@@ -26,18 +32,27 @@ fn unused(item: &Item, anywhere: &HashSet<&str>, problem: &HashSet<&str>) -> Opt
     let name_ = name.name.as_str();
     let (uses, label, why) = match item.kind {
         ItemKind::State { .. } | ItemKind::Time { .. } | ItemKind::Phase { .. } => return None,
-        ItemKind::Control { .. } => {
-            (problem, "no equation, constraint or objective mentions it", " An unused control makes the solution non-unique.")
-        }
-        ItemKind::Free { .. } => {
-            (problem, "no equation, constraint or objective mentions it", " An unused unknown makes the solution non-unique.")
-        }
+        ItemKind::Control { .. } => (
+            problem,
+            "no equation, constraint or objective mentions it",
+            " An unused control makes the solution non-unique.",
+        ),
+        ItemKind::Free { .. } => (
+            problem,
+            "no equation, constraint or objective mentions it",
+            " An unused unknown makes the solution non-unique.",
+        ),
         _ => (anywhere, "nothing mentions it", ""),
     };
     if uses.contains(name_) || name_.starts_with('_') {
         return None;
     }
-    let found = Diagnostic::new(Code::Unused, format!("{} `{name_}` is never used", kind_word(item)), name.span, label);
+    let found = Diagnostic::new(
+        Code::Unused,
+        format!("{} `{name_}` is never used", kind_word(item)),
+        name.span,
+        label,
+    );
     Some(found.help(format!("remove it, or name it `_{name_}` to keep it.{why}")))
 }
 
@@ -57,9 +72,13 @@ fn reached<'a>(items: &[&'a Item], is_root: fn(&ItemKind) -> bool) -> HashSet<&'
     let mut pending: Vec<&'a Item> = Vec::new();
     for item in items {
         match (&item.kind, declared(item)) {
-            (ItemKind::Let { .. } | ItemKind::Const { .. } | ItemKind::Fn { .. } | ItemKind::Surface { .. }, Some(name)) => {
-                definitions.entry(&name.name).or_default().push(item)
-            }
+            (
+                ItemKind::Let { .. }
+                | ItemKind::Const { .. }
+                | ItemKind::Fn { .. }
+                | ItemKind::Surface { .. },
+                Some(name),
+            ) => definitions.entry(&name.name).or_default().push(item),
             _ if is_root(&item.kind) => pending.push(item),
             _ => {}
         }
@@ -81,7 +100,9 @@ fn mentioned<'a>(item: &'a Item, see: &mut dyn FnMut(&'a str)) {
         walk::names(expr, &mut |name, _| see(name));
     }
     match &item.kind {
-        ItemKind::Jump { surface, then_hold, .. } => std::iter::once(surface).chain(then_hold).for_each(|it| see(&it.name)),
+        ItemKind::Jump { surface, then_hold, .. } => {
+            std::iter::once(surface).chain(then_hold).for_each(|it| see(&it.name))
+        }
         ItemKind::Guess { bindings } => bindings.iter().for_each(|it| see(&it.name.name)),
         _ => {}
     }

@@ -22,17 +22,24 @@ pub(crate) fn lower(
     sizes: &Sizes,
     objective: &Objective,
 ) -> (VectorFunction, Vec<Condition>) {
-    let written = model.boundary.iter().map(|row| Condition { value: row.value, place: row.place.clone(), range: row.range });
+    let written = model.boundary.iter().map(|row| Condition {
+        value: row.value,
+        place: row.place.clone(),
+        range: row.range,
+    });
     let mut conditions: Vec<Condition> = written.collect();
     for (index, state) in model.states.iter().enumerate() {
         conditions.extend(start(model, graph, index, state));
     }
     let layout = sizes.ends();
     let inputs = at_ends(model, graph, &layout, &objective.hidden);
-    let outputs: Vec<ExprId> = std::iter::once(objective.mayer).chain(conditions.iter().map(|it| it.value)).collect();
+    let outputs: Vec<ExprId> =
+        std::iter::once(objective.mayer).chain(conditions.iter().map(|it| it.value)).collect();
     let outputs = inputs.apply(graph, &outputs);
     let outputs = smoothed(model, graph, &outputs, sizes, &layout);
-    let origins = std::iter::once(objective.origin.clone()).chain(conditions.iter().map(|it| origin(&it.place))).collect();
+    let origins = std::iter::once(objective.origin.clone())
+        .chain(conditions.iter().map(|it| origin(&it.place)))
+        .collect();
     let by = solved_for(model, &layout);
     (VectorFunction { name: "boundary".into(), layout, outputs, origins, by }, conditions)
 }

@@ -42,7 +42,11 @@ pub fn expectations(model: &Model) -> Expectations {
     for expectation in &model.expectations {
         let output = expectation.values.is_some().then_some(values.len());
         values.extend(expectation.values.iter().flatten());
-        list.push(Expected { origin: origin(&expectation.place), comparison: expectation.comparison, output });
+        list.push(Expected {
+            origin: origin(&expectation.place),
+            comparison: expectation.comparison,
+            output,
+        });
     }
     let needed = objective::integrals_in(model, &graph, &values);
     let over_grid = inputs::over_grid(model, &mut graph, &sizes);
@@ -56,9 +60,11 @@ pub fn expectations(model: &Model) -> Expectations {
         at_ends.replace(model, Symbol::Integral(at), place);
     }
     let values = at_ends.apply(&mut graph, &values);
-    let functions = [values_only("expectations", layout, values), values_only("integrands", sizes.grid(), integrands)];
+    let functions =
+        [values_only("expectations", layout, values), values_only("integrands", sizes.grid(), integrands)];
     let compiled = crate::machine_code(graph, functions.to_vec());
-    let [function, integrands] = <[_; 2]>::try_from(compiled).unwrap_or_else(|_| unreachable!("two functions were given"));
+    let [function, integrands] =
+        <[_; 2]>::try_from(compiled).unwrap_or_else(|_| unreachable!("two functions were given"));
     Expectations { list, function, integrands }
 }
 

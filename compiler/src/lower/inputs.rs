@@ -88,7 +88,8 @@ pub(crate) fn of_parameters(model: &Model, graph: &mut Graph, layout: &Layout) -
         Symbol::Free(index) => Some(first + model.params.len() + index),
         _ => None,
     };
-    let by_symbol = model.symbols.iter().map(|symbol| place(symbol).map(|at| graph.input(at as u32))).collect();
+    let by_symbol =
+        model.symbols.iter().map(|symbol| place(symbol).map(|at| graph.input(at as u32))).collect();
     let mut inputs = Inputs { by_symbol, duration: model.interval[1] };
     let ends = inputs.apply(graph, &model.interval);
     inputs.duration = graph.sub(ends[1], ends[0]);

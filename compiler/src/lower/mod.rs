@@ -63,7 +63,12 @@ pub fn lower(model: &Model) -> Program {
     let flow = flow(model, &mut graph, &sizes, &objective);
     let over_grid = OverGrid { model, sizes: &sizes, inputs: inputs::over_grid(model, &mut graph, &sizes) };
     let dynamics = over_grid.dynamics(&mut graph, &objective);
-    let path = over_grid.function(&mut graph, "path", model.path.iter().map(|row| (row.value, origin(&row.place))), true);
+    let path = over_grid.function(
+        &mut graph,
+        "path",
+        model.path.iter().map(|row| (row.value, origin(&row.place))),
+        true,
+    );
     let guards = model.surfaces.iter().map(|surface| (surface.psi, origin(&surface.place)));
     let guards = over_grid.function(&mut graph, "guards", guards, false);
     let report = model.report.iter().map(|report| (report.value, origin(&report.place)));
@@ -73,7 +78,20 @@ pub fn lower(model: &Model) -> Program {
     let interval = interval(model, &mut graph, &sizes);
     let running_cost = objective.running.is_some();
     let hidden = objective.hidden;
-    Program { graph, flow, dynamics, path, boundary, guess, interval, guards, report, running_cost, hidden, boundary_rows }
+    Program {
+        graph,
+        flow,
+        dynamics,
+        path,
+        boundary,
+        guess,
+        interval,
+        guards,
+        report,
+        running_cost,
+        hidden,
+        boundary_rows,
+    }
 }
 
 impl Program {
@@ -103,7 +121,8 @@ impl OverGrid<'_> {
         let outputs = self.inputs.apply(graph, &outputs);
         let layout = self.sizes.grid();
         let by = if is_solved { inputs::solved_for(self.model, &layout) } else { Vec::new() };
-        let outputs = if is_solved { smoothed(self.model, graph, &outputs, self.sizes, &layout) } else { outputs };
+        let outputs =
+            if is_solved { smoothed(self.model, graph, &outputs, self.sizes, &layout) } else { outputs };
         VectorFunction { name: name.into(), layout, outputs, origins, by }
     }
 
@@ -142,7 +161,13 @@ fn interval(model: &Model, graph: &mut Graph, sizes: &Sizes) -> VectorFunction {
 }
 
 /// The outputs with `abs`, `min` and `max` rounded, where smoothing is on.
-fn smoothed(model: &Model, graph: &mut Graph, outputs: &[ExprId], sizes: &Sizes, layout: &Layout) -> Vec<ExprId> {
+fn smoothed(
+    model: &Model,
+    graph: &mut Graph,
+    outputs: &[ExprId],
+    sizes: &Sizes,
+    layout: &Layout,
+) -> Vec<ExprId> {
     match sizes.sigma_of_abs {
         Some(at) => {
             let sigma = graph.input((layout.parameters().start + at) as u32);

@@ -16,7 +16,8 @@ pub struct Numbers {
 /// Computes parameters in their order, then the guesses of the unknowns.
 pub fn numbers(model: &Model) -> Result<Numbers, Vec<Diagnostic>> {
     let missing = model.params.iter().filter(|param| param.value.is_none());
-    let missing: Vec<Diagnostic> = missing.map(|param| missing_value(&param.place.name, param.place.span)).collect();
+    let missing: Vec<Diagnostic> =
+        missing.map(|param| missing_value(&param.place.name, param.place.span)).collect();
     if !missing.is_empty() {
         return Err(missing);
     }
@@ -60,7 +61,11 @@ impl Numbers {
         for (index, free) in model.frees.iter().enumerate() {
             let bounds = self.bounds(model, free.range);
             let finite = bounds.lower.is_finite() && bounds.upper.is_finite();
-            let value = if finite { 0.5 * (bounds.lower + bounds.upper) } else { 1.0_f64.clamp(bounds.lower, bounds.upper) };
+            let value = if finite {
+                0.5 * (bounds.lower + bounds.upper)
+            } else {
+                1.0_f64.max(bounds.lower).min(bounds.upper)
+            };
             self.set(model, Symbol::Free(index), value);
         }
         for _ in 0..model.frees.len() {

@@ -3,11 +3,18 @@
 use super::boundary::is_fixed;
 use super::{Numbers, Program, origin};
 use crate::model::{Model, Place, Symbol};
-use fdcc_runtime::problem::{Bounds, Function, Layout, Method, Origin, Parameter, Problem, Surface, Unknown, Variable};
+use fdcc_runtime::problem::{
+    Bounds, Function, Layout, Method, Origin, Parameter, Problem, Surface, Unknown, Variable,
+};
 use std::sync::Arc;
 
 /// Puts together what the runtime needs. `functions` are those of [`Program::functions`], compiled.
-pub fn problem(model: &Model, program: &Program, numbers: &Numbers, functions: Vec<Arc<dyn Function>>) -> Problem {
+pub fn problem(
+    model: &Model,
+    program: &Program,
+    numbers: &Numbers,
+    functions: Vec<Arc<dyn Function>>,
+) -> Problem {
     let functions: [Arc<dyn Function>; 7] =
         functions.try_into().unwrap_or_else(|_| unreachable!("a program has seven functions"));
     let [dynamics, path, boundary, guess, interval, guards, report] = functions;
@@ -27,7 +34,11 @@ pub fn problem(model: &Model, program: &Program, numbers: &Numbers, functions: V
         path,
         path_bounds: model.path.iter().map(|row| numbers.bounds(model, row.range)).collect(),
         boundary,
-        boundary_bounds: program.boundary_rows.iter().map(|row| row_bounds(program, numbers, model, row)).collect(),
+        boundary_bounds: program
+            .boundary_rows
+            .iter()
+            .map(|row| row_bounds(program, numbers, model, row))
+            .collect(),
         sense: model.sense,
         has_objective: model.objective.is_some(),
         start: starts(model, program, numbers),
@@ -41,7 +52,12 @@ pub fn problem(model: &Model, program: &Program, numbers: &Numbers, functions: V
 }
 
 /// Start rows were made after the model, so their bounds may be numbers of the program's graph alone.
-fn row_bounds(program: &Program, numbers: &Numbers, model: &Model, row: &super::boundary::Condition) -> Bounds {
+fn row_bounds(
+    program: &Program,
+    numbers: &Numbers,
+    model: &Model,
+    row: &super::boundary::Condition,
+) -> Bounds {
     let value = |id| program.graph.as_number(id).unwrap_or_else(|| numbers.value(model, id));
     Bounds { lower: value(row.range.lower), upper: value(row.range.upper) }
 }

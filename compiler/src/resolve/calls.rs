@@ -36,7 +36,8 @@ fn arity(name: &str) -> Option<usize> {
 }
 
 fn function_names() -> Vec<&'static str> {
-    let table = builtins::ALL.iter().map(|it| it.row()).filter(|row| row.notation == builtins::Notation::Function);
+    let table =
+        builtins::ALL.iter().map(|it| it.row()).filter(|row| row.notation == builtins::Notation::Function);
     table.map(|row| row.name).chain(VECTOR_FUNCTIONS.iter().chain(FORMS).map(|row| row.0)).collect()
 }
 
@@ -52,14 +53,18 @@ impl<'a> Elaborator<'a> {
         let declared = self.scope.find(name).map(|at| (at, self.scope.declarations[at].item));
         match declared {
             Some((at, item)) => match &item.kind {
-                ItemKind::Fn { arguments: formal, body, .. } => self.own_function(at, formal, body, arguments, expr.span),
+                ItemKind::Fn { arguments: formal, body, .. } => {
+                    self.own_function(at, formal, body, arguments, expr.span)
+                }
                 _ if self.sums > 0 && arguments.len() == 1 => {
                     // `x(k.t)`: the model at the time of a measurement.
                     self.plain_arguments(arguments);
                     self.evaluate(callee);
                     Value::default()
                 }
-                _ if !is_function(name) => self.not_a_function(name, scope::kind_word(item), callee.span, arguments),
+                _ if !is_function(name) => {
+                    self.not_a_function(name, scope::kind_word(item), callee.span, arguments)
+                }
                 _ => self.builtin_call(name, expr, arguments),
             },
             None if is_function(name) => self.builtin_call(name, expr, arguments),
@@ -90,7 +95,9 @@ impl<'a> Elaborator<'a> {
         let message = format!("`{name}` is a {kind}, not a function");
         let found = Diagnostic::new(Code::WrongKind, message, span, format!("a {kind}"));
         let help = match kind {
-            "state" => format!("its values at the ends are `{name}(start)` and `{name}(end)`; for a product write `{name} * ...`"),
+            "state" => format!(
+                "its values at the ends are `{name}(start)` and `{name}(end)`; for a product write `{name} * ...`"
+            ),
             _ => format!("for a product write `{name} * ...`"),
         };
         self.fail(found.help(help))
@@ -109,7 +116,9 @@ impl<'a> Elaborator<'a> {
         for (value, argument) in values.iter().zip(arguments) {
             let span = argument_span(argument);
             let bilinear = name == "dot" || name == "cross";
-            if !bilinear && !self.single_valued(&value.traits.sets, span, &format!("the argument of `{name}`")) {
+            if !bilinear
+                && !self.single_valued(&value.traits.sets, span, &format!("the argument of `{name}`"))
+            {
                 return Value::default();
             }
         }
@@ -119,7 +128,14 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn count_is(&mut self, name: &str, wanted: usize, given: usize, span: Span, declared: Option<Span>) -> bool {
+    fn count_is(
+        &mut self,
+        name: &str,
+        wanted: usize,
+        given: usize,
+        span: Span,
+        declared: Option<Span>,
+    ) -> bool {
         if wanted == given {
             return true;
         }
@@ -141,11 +157,21 @@ impl<'a> Elaborator<'a> {
             match argument {
                 Argument::Expr(value) => values.push(self.evaluate(value)),
                 Argument::End(span) | Argument::Start(span) => {
-                    let found = Diagnostic::new(Code::NotAllowedHere, "an end of time as one of several arguments", *span, "stands alone");
+                    let found = Diagnostic::new(
+                        Code::NotAllowedHere,
+                        "an end of time as one of several arguments",
+                        *span,
+                        "stands alone",
+                    );
                     self.diagnostics.push(found.help("only `x(start)` and `x(end)` take it"));
                 }
                 Argument::Iteration(_, data) => {
-                    let found = Diagnostic::new(Code::NotAllowedHere, "only `sum` goes through data", data.span, "no data here");
+                    let found = Diagnostic::new(
+                        Code::NotAllowedHere,
+                        "only `sum` goes through data",
+                        data.span,
+                        "no data here",
+                    );
                     self.diagnostics.push(found.help("write `sum(k in obs, ...)`"));
                 }
             }
@@ -170,7 +196,13 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn apply_to_vectors(&mut self, name: &str, values: &[Value], arguments: &'a [Argument], span: Span) -> Value {
+    fn apply_to_vectors(
+        &mut self,
+        name: &str,
+        values: &[Value],
+        arguments: &'a [Argument],
+        span: Span,
+    ) -> Value {
         let traits = Self::joined(values);
         if values.iter().any(|value| value.parts == Parts::Unknown) {
             return Value::unknown(traits);
@@ -201,8 +233,13 @@ impl<'a> Elaborator<'a> {
     fn different_sizes(&mut self, name: &str, values: &[Value], arguments: &[Argument]) -> Value {
         let described: Vec<String> = values.iter().map(|value| value.parts.describe()).collect();
         let message = format!("`{name}` of {}", described.join(" and "));
-        let found = Diagnostic::new(Code::ShapeMismatch, message, argument_span(&arguments[0]), described[0].as_str())
-            .label(argument_span(&arguments[1]), described[1].as_str());
+        let found = Diagnostic::new(
+            Code::ShapeMismatch,
+            message,
+            argument_span(&arguments[0]),
+            described[0].as_str(),
+        )
+        .label(argument_span(&arguments[1]), described[1].as_str());
         self.fail_shape(found.help("both need the same size"))
     }
 
@@ -218,15 +255,31 @@ impl<'a> Elaborator<'a> {
         };
         match a.len() {
             2 => Value::scalar(minor(0, 1), traits),
-            3 => Value { parts: Parts::from_list(&[minor(1, 2), minor(2, 0), minor(0, 1)]), traits, named: None },
+            3 => Value {
+                parts: Parts::from_list(&[minor(1, 2), minor(2, 0), minor(0, 1)]),
+                traits,
+                named: None,
+            },
             _ => {
-                let found = Diagnostic::new(Code::ShapeMismatch, "`cross` is for two or three dimensions", span, "other sizes");
+                let found = Diagnostic::new(
+                    Code::ShapeMismatch,
+                    "`cross` is for two or three dimensions",
+                    span,
+                    "other sizes",
+                );
                 self.fail_shape(found.help("give it vectors of 2 or 3"))
             }
         }
     }
 
-    fn own_function(&mut self, at: usize, formal: &'a [Ident], body: &'a Expr, arguments: &'a [Argument], span: Span) -> Value {
+    fn own_function(
+        &mut self,
+        at: usize,
+        formal: &'a [Ident],
+        body: &'a Expr,
+        arguments: &'a [Argument],
+        span: Span,
+    ) -> Value {
         let name = self.scope.declarations[at].name;
         let fits = self.count_is(&name.name, formal.len(), arguments.len(), span, Some(name.span));
         let values = self.plain_arguments(arguments);
@@ -238,23 +291,26 @@ impl<'a> Elaborator<'a> {
 
     /// A function of the model for given arguments; remembered, because definitions build on each other.
     pub fn apply(&mut self, at: usize, formal: &'a [Ident], body: &'a Expr, values: Vec<Value>) -> Value {
-        let simple = values.iter().all(|it| it.traits.sets.is_empty() && it.traits.knots.is_empty());
-        let simple = simple && !self.examining && values.iter().all(|it| it.parts != Parts::Unknown);
-        let key = (at, values.iter().map(|it| (it.parts.clone(), it.named)).collect::<Vec<_>>());
-        if let Some(known) = self.applied.get(&key).filter(|_| simple) {
+        let key = (at, self.examining, values);
+        if let Some(known) = self.applied.get(&key) {
             return known.clone();
         }
         if self.depth > DEEPEST {
             return Value::default();
         }
-        let value = self.with_arguments(at, formal, values, |this| this.evaluate_in(Context::DEFINITION, body));
-        if simple {
-            self.applied.insert(key, value.clone());
-        }
+        let value = self
+            .with_arguments(at, formal, key.2.clone(), |this| this.evaluate_in(Context::DEFINITION, body));
+        self.applied.insert(key, value.clone());
         value
     }
 
-    fn with_arguments(&mut self, at: usize, formal: &'a [Ident], values: Vec<Value>, run: impl FnOnce(&mut Self) -> Value) -> Value {
+    fn with_arguments(
+        &mut self,
+        at: usize,
+        formal: &'a [Ident],
+        values: Vec<Value>,
+        run: impl FnOnce(&mut Self) -> Value,
+    ) -> Value {
         let outer = (self.frame, self.owner.replace(at));
         self.frame = self.locals.len();
         self.locals.extend(formal.iter().map(|name| name.name.as_str()).zip(values));

@@ -45,7 +45,13 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn condition(&mut self, condition: &'a Condition, role: Role<'a>, context: Context, place: Place) -> Vec<Row> {
+    fn condition(
+        &mut self,
+        condition: &'a Condition,
+        role: Role<'a>,
+        context: Context,
+        place: Place,
+    ) -> Vec<Row> {
         let mut rows = Vec::new();
         match &condition.rest[..] {
             [(relation, right)] => {
@@ -54,7 +60,8 @@ impl<'a> Elaborator<'a> {
             }
             [(first, middle), (second, right)] => {
                 let outer = self.sides([&condition.first, middle], role, context);
-                let (middle_value, last) = (outer[1].0.clone(), self.sides([middle, right], role, context)[1].clone());
+                let (middle_value, last) =
+                    (outer[1].0.clone(), self.sides([middle, right], role, context)[1].clone());
                 let [lower, middle_side] = outer;
                 if first == second && Self::is_constant(&lower.0) && Self::is_constant(&last.0) {
                     let ends = if *first == Relation::GreaterEqual { [last, lower] } else { [lower, last] };
@@ -83,7 +90,8 @@ impl<'a> Elaborator<'a> {
 
     /// `a relation b` for each component.
     fn pair(&mut self, sides: [Side<'a>; 2], relation: Relation, place: &Place, rows: &mut Vec<Row>) {
-        let [left, right] = if relation == Relation::GreaterEqual { [1, 0].map(|at| sides[at].clone()) } else { sides };
+        let [left, right] =
+            if relation == Relation::GreaterEqual { [1, 0].map(|at| sides[at].clone()) } else { sides };
         if relation != Relation::Equal
             && let Some(inner) = inside_abs(left.1)
         {
@@ -113,7 +121,14 @@ impl<'a> Elaborator<'a> {
     }
 
     /// `lower <= value <= upper` with constants outside.
-    fn between(&mut self, ends: [Side<'a>; 2], middle: Side<'a>, relation: Relation, place: &Place, rows: &mut Vec<Row>) {
+    fn between(
+        &mut self,
+        ends: [Side<'a>; 2],
+        middle: Side<'a>,
+        relation: Relation,
+        place: &Place,
+        rows: &mut Vec<Row>,
+    ) {
         let [lower, upper] = ends;
         let Some((low, values)) = self.same_size(&lower, &middle) else { return };
         let Some((high, _)) = self.same_size(&upper, &middle) else { return };
@@ -129,8 +144,16 @@ impl<'a> Elaborator<'a> {
     }
 
     /// `abs(e) <= c` as `-c <= e <= c`.
-    fn within(&mut self, inner: &'a Expr, left: Side<'a>, right: Side<'a>, place: &Place, rows: &mut Vec<Row>) {
-        let context = Context { allowed: left.0.traits.reads.or(self.context.allowed), ..Context::DEFINITION };
+    fn within(
+        &mut self,
+        inner: &'a Expr,
+        left: Side<'a>,
+        right: Side<'a>,
+        place: &Place,
+        rows: &mut Vec<Row>,
+    ) {
+        let context =
+            Context { allowed: left.0.traits.reads.or(self.context.allowed), ..Context::DEFINITION };
         let e = (self.evaluate_in(context, inner), inner);
         let Some((values, bounds)) = self.same_size(&e, &right) else { return };
         let is_constant = Self::is_constant(&right.0);
@@ -144,7 +167,11 @@ impl<'a> Elaborator<'a> {
             let gaps = [self.graph.sub(value, bound), self.graph.add(value, bound)];
             let zero = self.graph.number(0.0);
             let ranges = [self.one_sided(zero, false, true), self.one_sided(zero, false, false)];
-            rows.extend(gaps.into_iter().zip(ranges).map(|(value, range)| Row { place: place.clone(), value, range }));
+            rows.extend(gaps.into_iter().zip(ranges).map(|(value, range)| Row {
+                place: place.clone(),
+                value,
+                range,
+            }));
         }
     }
 
@@ -158,7 +185,8 @@ impl<'a> Elaborator<'a> {
             let message = format!("comparing {} with {}", left.0.parts.describe(), right.0.parts.describe());
             let found = Diagnostic::new(Code::ShapeMismatch, message, left.1.span, left.0.parts.describe())
                 .label(right.1.span, right.0.parts.describe());
-            self.diagnostics.push(found.help("both sides need the same size; a number is compared with each part"));
+            self.diagnostics
+                .push(found.help("both sides need the same size; a number is compared with each part"));
             return None;
         }
         let size = a.len().max(b.len());
@@ -167,8 +195,16 @@ impl<'a> Elaborator<'a> {
     }
 
     fn row_place(&self, place: &Place, left: &Value, right: &Value, at: usize) -> Place {
-        let (longer, other) = if left.parts.as_slice().len() >= right.parts.as_slice().len() { (left, right) } else { (right, left) };
-        let named = Value { parts: longer.parts.clone(), traits: Traits::default(), named: longer.named.or(other.named) };
+        let (longer, other) = if left.parts.as_slice().len() >= right.parts.as_slice().len() {
+            (left, right)
+        } else {
+            (right, left)
+        };
+        let named = Value {
+            parts: longer.parts.clone(),
+            traits: Traits::default(),
+            named: longer.named.or(other.named),
+        };
         Place { name: self.component(&place.name, &named, at), span: place.span }
     }
 
@@ -180,7 +216,9 @@ impl<'a> Elaborator<'a> {
                 // Mistakes in the unit are told at the declaration.
                 item.and_then(scope::unit).map_or(1.0, |unit| units::scale(unit, &mut Vec::new()))
             }
-            ExprKind::Negate(inner) | ExprKind::Part(inner, _) | ExprKind::Index(inner, _) => self.unit_of(inner),
+            ExprKind::Negate(inner) | ExprKind::Part(inner, _) | ExprKind::Index(inner, _) => {
+                self.unit_of(inner)
+            }
             ExprKind::Call(callee, arguments) => match &arguments[..] {
                 [Argument::Start(_) | Argument::End(_)] => self.unit_of(callee),
                 _ => inside_abs(expr).map_or(1.0, |inner| self.unit_of(inner)),

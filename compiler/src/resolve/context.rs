@@ -15,7 +15,8 @@ pub(crate) struct Context {
     pub is_guess: bool,
 }
 
-const SIGNAL: Reads = Reads::TIME.or(Reads::STATE).or(Reads::CONTROL).or(Reads::PARAM).or(Reads::FREE).or(Reads::SELECTOR);
+const SIGNAL: Reads =
+    Reads::TIME.or(Reads::STATE).or(Reads::CONTROL).or(Reads::PARAM).or(Reads::FREE).or(Reads::SELECTOR);
 const AT_AN_END: Reads = Reads::TIME.or(Reads::STATE).or(Reads::PARAM).or(Reads::FREE);
 const WHOLE: Reads = Reads::PARAM.or(Reads::FREE).or(Reads::WHOLE);
 
@@ -65,19 +66,34 @@ fn explain(what: &str, beyond: Reads, context: Context) -> (&'static str, String
     if beyond.has(Reads::SIMULATION) {
         ("only a simulation can tell", "it may stand in `expect`".into())
     } else if beyond.has(Reads::WHOLE) {
-        ("one number for the whole run", "it may stand in the objective, in `start` and `end` conditions and in `expect`".into())
+        (
+            "one number for the whole run",
+            "it may stand in the objective, in `start` and `end` conditions and in `expect`".into(),
+        )
     } else if context.is_guess {
-        ("has no guess above this line", format!("a guess may use time, `free` names and guesses above it: guess `{what}` first"))
+        (
+            "has no guess above this line",
+            format!("a guess may use time, `free` names and guesses above it: guess `{what}` first"),
+        )
     } else if beyond.has(Reads::CONTROL) && whole {
-        ("a control, which varies over time and has no value at a single time", format!("write `integral({what})`, or bound it with `path`"))
+        (
+            "a control, which varies over time and has no value at a single time",
+            format!("write `integral({what})`, or bound it with `path`"),
+        )
     } else if beyond.has(Reads::CONTROL) {
         ("depends on a control", "it may depend on states, time and parameters".into())
     } else if beyond.has(Reads::STATE.or(Reads::TIME)) && whole {
-        ("varies over time, but one number is needed", format!("write `{what}(end)`, `{what}(start)` or `integral({what})`"))
+        (
+            "varies over time, but one number is needed",
+            format!("write `{what}(end)`, `{what}(start)` or `integral({what})`"),
+        )
     } else if beyond.has(Reads::STATE.or(Reads::TIME)) {
         ("varies over time", format!("{} is made of numbers, `const` and `param`", context.name))
     } else if beyond.has(Reads::SELECTOR) {
-        ("depends on the side of a surface", "take it along the path instead, with `integral` or `path`".into())
+        (
+            "depends on the side of a surface",
+            "take it along the path instead, with `integral` or `path`".into(),
+        )
     } else {
         ("chosen by the optimiser", format!("{} is made of numbers, `const` and `param`", context.name))
     }

@@ -74,7 +74,15 @@ impl<'a> Elaborator<'a> {
         for place in places(self.scope.declarations[at].name, parts) {
             list.push(self.symbol(Symbol::State(self.model.states.len())));
             let equation = Place { name: format!("{}'", place.name), span: place.span };
-            self.model.states.push(State { place, range, start: None, start_range: None, rate, equation, guess: None });
+            self.model.states.push(State {
+                place,
+                range,
+                start: None,
+                start_range: None,
+                rate,
+                equation,
+                guess: None,
+            });
         }
         self.values[at] = Value::symbols(Parts::from_list(&list), Reads::STATE, at);
     }
@@ -144,7 +152,8 @@ impl<'a> Elaborator<'a> {
         if self.circular[at] {
             return;
         }
-        let values = self.arguments[..arguments.len()].iter().map(|&part| Value::scalar(part, Traits::default()));
+        let values =
+            self.arguments[..arguments.len()].iter().map(|&part| Value::scalar(part, Traits::default()));
         let values = values.collect();
         self.examining = true;
         self.apply(at, arguments, body, values);
@@ -161,7 +170,9 @@ impl<'a> Elaborator<'a> {
                     self.model.params[index].range = range;
                 }
             }
-            ItemKind::Free { bounds, unit, guess, .. } => self.bound_free(at, bounds.as_ref(), unit.as_ref(), guess.as_ref()),
+            ItemKind::Free { bounds, unit, guess, .. } => {
+                self.bound_free(at, bounds.as_ref(), unit.as_ref(), guess.as_ref())
+            }
             ItemKind::State { parts, unit, bounds, start, .. } => {
                 self.bound_state(at, parts.len().max(1), unit.as_ref(), bounds.as_ref(), start.as_ref())
             }
@@ -172,7 +183,13 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn bound_free(&mut self, at: usize, bounds: Option<&'a Interval>, unit: Option<&Unit>, guess: Option<&'a Expr>) {
+    fn bound_free(
+        &mut self,
+        at: usize,
+        bounds: Option<&'a Interval>,
+        unit: Option<&Unit>,
+        guess: Option<&'a Expr>,
+    ) {
         let Some(index) = self.index_of(at) else { return };
         if let Some(bounds) = bounds {
             self.model.frees[index].range = self.ranges(Context::BOUND, bounds, 1, unit)[0];
@@ -183,7 +200,14 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn bound_state(&mut self, at: usize, size: usize, unit: Option<&Unit>, bounds: Option<&'a Interval>, start: Option<&'a Start>) {
+    fn bound_state(
+        &mut self,
+        at: usize,
+        size: usize,
+        unit: Option<&Unit>,
+        bounds: Option<&'a Interval>,
+        start: Option<&'a Start>,
+    ) {
         let Some(first) = self.index_of(at) else { return };
         if let Some(bounds) = bounds {
             let ranges = self.ranges(Context::BOUND, bounds, size, unit);
@@ -220,12 +244,21 @@ impl<'a> Elaborator<'a> {
         if let Some(guess) = guess {
             let value = self.scaled(Role::Number("a guess"), Context::GUESS, guess, unit);
             let parts = self.expect_parts(&value, size, guess.span);
-            self.model.controls[first..].iter_mut().zip(parts).for_each(|(control, part)| control.guess = Some(part));
+            self.model.controls[first..]
+                .iter_mut()
+                .zip(parts)
+                .for_each(|(control, part)| control.guess = Some(part));
         }
     }
 
     /// The bounds of each component.
-    fn ranges(&mut self, context: Context, interval: &'a Interval, size: usize, unit: Option<&Unit>) -> Vec<Range> {
+    fn ranges(
+        &mut self,
+        context: Context,
+        interval: &'a Interval,
+        size: usize,
+        unit: Option<&Unit>,
+    ) -> Vec<Range> {
         let [lower, upper] = [&interval.lower, &interval.upper].map(|expr| {
             let value = self.scaled(Role::Number("a bound"), context, expr, unit);
             self.expect_parts(&value, size, expr.span)
@@ -260,7 +293,9 @@ impl<'a> Elaborator<'a> {
         let first: ExprId = *self.values[at].parts.as_slice().first()?;
         let crate::graph::Expr::Input(input) = self.graph.expr(first) else { return None };
         match self.symbols[*input as usize] {
-            Symbol::State(index) | Symbol::Control(index) | Symbol::Param(index) | Symbol::Free(index) => Some(index),
+            Symbol::State(index) | Symbol::Control(index) | Symbol::Param(index) | Symbol::Free(index) => {
+                Some(index)
+            }
             _ => None,
         }
     }

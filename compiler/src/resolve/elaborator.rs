@@ -85,8 +85,8 @@ pub(crate) struct Elaborator<'a> {
     pub at_ends: [Vec<ExprId>; 2],
     /// The input that is time, if there is a time.
     pub time: Option<u32>,
-    /// Results of functions, by function and arguments.
-    pub applied: HashMap<(usize, Vec<(Parts, Option<usize>)>), Value>,
+    /// Results of functions, by function, examination and arguments.
+    pub applied: HashMap<(usize, bool, Vec<Value>), Value>,
     /// Piecewise definitions by their place.
     pub sites: HashMap<Span, super::knots::Site<'a>>,
     /// Stand-ins for the arguments of functions that are examined by themselves.
@@ -186,7 +186,12 @@ impl<'a> Elaborator<'a> {
     }
 
     /// A number that depends on parameters alone.
-    pub fn evaluate_number(&mut self, role: &'static str, context: Context, expr: &'a ast::Expr) -> Option<ExprId> {
+    pub fn evaluate_number(
+        &mut self,
+        role: &'static str,
+        context: Context,
+        expr: &'a ast::Expr,
+    ) -> Option<ExprId> {
         let value = self.evaluate_for(Role::Number(role), context, expr);
         self.expect_number(&value, expr.span)
     }
@@ -199,7 +204,9 @@ impl<'a> Elaborator<'a> {
             Parts::Vector(_) => {
                 let label = value.parts.describe();
                 let found = Diagnostic::new(Code::ShapeMismatch, "a number is needed here", span, label);
-                self.fail_shape(found.help("take a part such as `.x` or `[1]`, or reduce it with `norm` or `dot`"));
+                self.fail_shape(
+                    found.help("take a part such as `.x` or `[1]`, or reduce it with `norm` or `dot`"),
+                );
                 None
             }
         }

@@ -68,7 +68,11 @@ impl<'a> Elaborator<'a> {
             return value.clone();
         }
         let Some(at) = self.scope.find(name) else {
-            return if name == "pi" { self.constant(std::f64::consts::PI) } else { self.unknown_name(name, span) };
+            return if name == "pi" {
+                self.constant(std::f64::consts::PI)
+            } else {
+                self.unknown_name(name, span)
+            };
         };
         if self.circular[at] {
             return Value::default();
@@ -150,7 +154,9 @@ impl<'a> Elaborator<'a> {
         let known: Vec<String> = names.iter().map(|name| format!("`.{}`", name.name)).collect();
         let help = match &value.parts {
             _ if !known.is_empty() => format!("there is {}", known.join(", ")),
-            Parts::Vector(parts) => format!("its parts have no names: count them, `[1]` to `[{}]`", parts.len()),
+            Parts::Vector(parts) => {
+                format!("its parts have no names: count them, `[1]` to `[{}]`", parts.len())
+            }
             _ => "only vectors have parts, such as `state pos(x, y)`".into(),
         };
         self.fail_shape(found.help(help))
@@ -166,16 +172,29 @@ impl<'a> Elaborator<'a> {
         if (1..=length).contains(&index) {
             return pick(value, index - 1);
         }
-        let label = if length == 0 { "a number has no parts".to_string() } else { format!("{length} parts, counted from 1") };
+        let label = if length == 0 {
+            "a number has no parts".to_string()
+        } else {
+            format!("{length} parts, counted from 1")
+        };
         let found = Diagnostic::new(Code::UnknownPart, format!("there is no part `[{index}]`"), span, label);
-        let help = if length == 0 { "leave the index out".to_string() } else { format!("write `[1]` to `[{length}]`") };
+        let help = if length == 0 {
+            "leave the index out".to_string()
+        } else {
+            format!("write `[1]` to `[{length}]`")
+        };
         self.fail_shape(found.help(help))
     }
 
     /// `x'` in a guess: the derivative in real time of what was guessed for `x`.
     fn prime(&mut self, base: &'a Expr, span: Span) -> Value {
         if !self.context.is_guess {
-            let found = Diagnostic::new(Code::NotAllowedHere, "a derivative on this side", span, "only a guess may use `'` here");
+            let found = Diagnostic::new(
+                Code::NotAllowedHere,
+                "a derivative on this side",
+                span,
+                "only a guess may use `'` here",
+            );
             return self.fail(found.help("write out the right side of its equation, or name it with `let`"));
         }
         let value = self.evaluate(base);

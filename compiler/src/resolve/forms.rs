@@ -18,16 +18,25 @@ impl<'a> Elaborator<'a> {
             ("Dir", [Argument::Expr(vector)]) => self.direction(vector, expr.span),
             ("selected", [Argument::Expr(set)]) => self.selected(set, expr.span),
             ("integral", [Argument::Expr(integrand)]) => self.integral(integrand, expr),
-            ("sum", [Argument::Iteration(name, data), Argument::Expr(term)]) => self.sum(name, data, term, expr.span),
+            ("sum", [Argument::Iteration(name, data), Argument::Expr(term)]) => {
+                self.sum(name, data, term, expr.span)
+            }
             ("interpolate", [Argument::Expr(_), Argument::Expr(_), Argument::Expr(at)]) => {
                 self.interpolate(arguments, at, expr.span)
             }
-            ("blend", [Argument::Expr(function), Argument::Expr(width)]) => self.blend(function, width, expr.span),
+            ("blend", [Argument::Expr(function), Argument::Expr(width)]) => {
+                self.blend(function, width, expr.span)
+            }
             ("sliding", [Argument::Expr(surface)]) => self.sliding(surface, expr.span),
             ("sensitivity", [Argument::Expr(of), Argument::Expr(by)]) => self.sensitivity(of, by, expr.span),
             _ => {
                 let message = format!("these are no arguments for `{name}`");
-                let found = Diagnostic::new(Code::NotAllowedHere, message, argument_span(&arguments[0]), "not an expression it takes");
+                let found = Diagnostic::new(
+                    Code::NotAllowedHere,
+                    message,
+                    argument_span(&arguments[0]),
+                    "not an expression it takes",
+                );
                 self.fail(found.help(form_help(name)))
             }
         }
@@ -41,7 +50,11 @@ impl<'a> Elaborator<'a> {
             _ => None,
         };
         let entry = known.or_else(|| self.unnamed_surface(psi, &name));
-        let set = SetUse { surface: entry.map_or(name, |at| self.surfaces[at].place.name.clone()).into(), span, is_sgn: true };
+        let set = SetUse {
+            surface: entry.map_or(name, |at| self.surfaces[at].place.name.clone()).into(),
+            span,
+            is_sgn: true,
+        };
         self.selector(entry, set)
     }
 
@@ -65,7 +78,11 @@ impl<'a> Elaborator<'a> {
         if let Some(known) = self.surfaces.iter().position(|surface| surface.psi == Some(part)) {
             return Some(known);
         }
-        let taken = self.surfaces.iter().filter(|surface| surface.place.name.split(" #").next() == Some(name)).count();
+        let taken = self
+            .surfaces
+            .iter()
+            .filter(|surface| surface.place.name.split(" #").next() == Some(name))
+            .count();
         let name = if taken == 0 { name.to_string() } else { format!("{name} #{}", taken + 1) };
         Some(self.add_surface(Place { name, span: psi.span }, Some(part)))
     }
@@ -132,8 +149,13 @@ impl<'a> Elaborator<'a> {
 
     /// Two alternatives of different sizes.
     pub fn arms_differ(&mut self, a: &Value, first: Span, b: &Value, second: Span) -> Value {
-        let found = Diagnostic::new(Code::ShapeMismatch, "the alternatives have different sizes", first, a.parts.describe())
-            .label(second, b.parts.describe());
+        let found = Diagnostic::new(
+            Code::ShapeMismatch,
+            "the alternatives have different sizes",
+            first,
+            a.parts.describe(),
+        )
+        .label(second, b.parts.describe());
         self.fail_shape(found.help("all alternatives need the same size"))
     }
 
@@ -142,7 +164,9 @@ impl<'a> Elaborator<'a> {
             return Some(at);
         }
         let found = match self.scope.find(&surface.name) {
-            None => self.scope.unknown(&surface.name, surface.span, &[], &format!("surface {} = x", surface.name)),
+            None => {
+                self.scope.unknown(&surface.name, surface.span, &[], &format!("surface {} = x", surface.name))
+            }
             Some(at) => {
                 let kind = scope::kind_word(self.scope.declarations[at].item);
                 let message = format!("`{}` is a {kind}, not a surface", surface.name);
@@ -194,16 +218,24 @@ impl<'a> Elaborator<'a> {
             _ => None,
         };
         // Most are bare states, which need no walk through the graph.
-        let bare: Option<Vec<ExprId>> = parts.iter().map(|&part| match self.graph.expr(part) {
-            Node::Input(input) => moved(*input),
-            _ => None,
-        }).collect();
+        let bare: Option<Vec<ExprId>> = parts
+            .iter()
+            .map(|&part| match self.graph.expr(part) {
+                Node::Input(input) => moved(*input),
+                _ => None,
+            })
+            .collect();
         bare.unwrap_or_else(|| self.graph.substitute(&parts, &moved))
     }
 
     fn sum(&mut self, name: &'a Ident, data: &'a Ident, term: &'a Expr, span: Span) -> Value {
         let Some(at) = self.scope.find(&data.name) else {
-            let found = self.scope.unknown(&data.name, data.span, &[], &format!("data {} = csv(\"FILE\") columns t, x", data.name));
+            let found = self.scope.unknown(
+                &data.name,
+                data.span,
+                &[],
+                &format!("data {} = csv(\"FILE\") columns t, x", data.name),
+            );
             return self.fail(found);
         };
         let item = self.scope.declarations[at].item;
@@ -238,7 +270,9 @@ impl<'a> Elaborator<'a> {
     fn blend(&mut self, function: &'a Expr, width: &'a Expr, span: Span) -> Value {
         self.evaluate_in(Context::NUMBER, width);
         let is_fn = |name: &str| {
-            self.scope.find(name).is_some_and(|at| matches!(self.scope.declarations[at].item.kind, ItemKind::Fn { .. }))
+            self.scope
+                .find(name)
+                .is_some_and(|at| matches!(self.scope.declarations[at].item.kind, ItemKind::Fn { .. }))
         };
         match &function.kind {
             ExprKind::Name(name) if is_fn(name) => self.not_yet(span, "rounding knots with `blend`"),
@@ -247,8 +281,14 @@ impl<'a> Elaborator<'a> {
                 self.diagnostics.push(found);
             }
             _ => {
-                let found = Diagnostic::new(Code::WrongKind, "`blend` rounds a function", function.span, "not a function");
-                self.diagnostics.push(found.help("write `blend(f, width)` with an `fn f(x) = piecewise { ... }`"));
+                let found = Diagnostic::new(
+                    Code::WrongKind,
+                    "`blend` rounds a function",
+                    function.span,
+                    "not a function",
+                );
+                self.diagnostics
+                    .push(found.help("write `blend(f, width)` with an `fn f(x) = piecewise { ... }`"));
             }
         }
         Value::default()
@@ -257,7 +297,12 @@ impl<'a> Elaborator<'a> {
     fn sliding(&mut self, surface: &'a Expr, span: Span) -> Value {
         let known = matches!(&surface.kind, ExprKind::Name(name) if self.surface_named(name).is_some());
         if !known && self.evaluate(surface).parts != Parts::Unknown {
-            let found = Diagnostic::new(Code::WrongKind, "`sliding` is asked of a surface", surface.span, "not a surface");
+            let found = Diagnostic::new(
+                Code::WrongKind,
+                "`sliding` is asked of a surface",
+                surface.span,
+                "not a surface",
+            );
             self.diagnostics.push(found.help("declare one: `surface name = expression`"));
         }
         self.simulated("sliding", span)

@@ -44,7 +44,8 @@ impl<'a> Elaborator<'a> {
     fn guessed(&mut self, binding: &'a Binding) -> Option<usize> {
         let name = &binding.name;
         let Some(at) = self.scope.find(&name.name) else {
-            let found = self.scope.unknown(&name.name, name.span, &[], &format!("state {} start 0", name.name));
+            let found =
+                self.scope.unknown(&name.name, name.span, &[], &format!("state {} start 0", name.name));
             self.diagnostics.push(found);
             return None;
         };
@@ -55,7 +56,8 @@ impl<'a> Elaborator<'a> {
         let kind = scope::kind_word(item);
         let message = format!("`{}` is a {kind} and cannot be guessed", name.name);
         let found = Diagnostic::new(Code::WrongKind, message, name.span, format!("a {kind}"));
-        self.diagnostics.push(found.help("guesses are for states, controls and `free` names; a helper is a `let`"));
+        self.diagnostics
+            .push(found.help("guesses are for states, controls and `free` names; a helper is a `let`"));
         None
     }
 }

@@ -6,7 +6,9 @@ use super::value::{Reads, Value};
 use super::{scope, text};
 use crate::graph::ExprId;
 use crate::model::{Comparison, Expectation, Place, Report};
-use fdcc_grammar::ast::{Assignment, Binding, Check, Equation, Expr, Ident, Interval, Item, ItemKind, Relation, Sense, Unit};
+use fdcc_grammar::ast::{
+    Assignment, Binding, Check, Equation, Expr, Ident, Interval, Item, ItemKind, Relation, Sense, Unit,
+};
 use fdcc_grammar::{Code, Diagnostic, Span};
 
 impl<'a> Elaborator<'a> {
@@ -32,7 +34,9 @@ impl<'a> Elaborator<'a> {
             ItemKind::Method { settings } => self.settings(settings),
             ItemKind::Report { bindings } => bindings.iter().for_each(|binding| self.report(binding)),
             ItemKind::Expect { checks } => checks.iter().for_each(|check| self.expectation(check)),
-            ItemKind::Metric { weights } => weights.iter().for_each(|(name, weight)| self.weight(name, weight)),
+            ItemKind::Metric { weights } => {
+                weights.iter().for_each(|(name, weight)| self.weight(name, weight))
+            }
             ItemKind::Jump { name, surface, at_most, then_hold, assignments, .. } => {
                 self.jump(name, [Some(surface), then_hold.as_ref()], at_most.as_ref(), assignments)
             }
@@ -65,9 +69,11 @@ impl<'a> Elaborator<'a> {
         }
         let kind = scope::kind_word(declaration.item);
         let message = format!("`{}` is a {kind}, not a {wanted}", name.name);
-        let found = Diagnostic::new(Code::WrongKind, message, name.span, format!("a {wanted} is needed here"))
-            .label(declaration.name.span, format!("declared as a {kind}"));
-        self.diagnostics.push(found.help(format!("declare `{}` as a {wanted}, or name another one", name.name)));
+        let found =
+            Diagnostic::new(Code::WrongKind, message, name.span, format!("a {wanted} is needed here"))
+                .label(declaration.name.span, format!("declared as a {kind}"));
+        self.diagnostics
+            .push(found.help(format!("declare `{}` as a {wanted}, or name another one", name.name)));
         None
     }
 
@@ -103,13 +109,15 @@ impl<'a> Elaborator<'a> {
             return Value::default();
         }
         let traits = right.traits.clone().join(&by.traits);
-        let (Some(by), false) = (self.expect_number(&by, factor.span), right.parts.as_slice().is_empty()) else {
+        let (Some(by), false) = (self.expect_number(&by, factor.span), right.parts.as_slice().is_empty())
+        else {
             return Value::unknown(traits);
         };
         if self.graph.as_number(by) == Some(0.0) {
             let message = format!("`{}'` is multiplied by 0", equation.state.name);
             let found = Diagnostic::new(Code::NotAllowedHere, message, factor.span, "always 0");
-            return self.fail(found.help("an equation without derivative is a constraint: write `path ... == ...`"));
+            return self
+                .fail(found.help("an equation without derivative is a constraint: write `path ... == ...`"));
         }
         self.map(Value { traits, ..right }, |graph, part| graph.div(part, by))
     }
@@ -150,7 +158,8 @@ impl<'a> Elaborator<'a> {
     }
 
     fn expectation(&mut self, check: &'a Check) {
-        let sides = [&check.left, &check.right].map(|side| self.evaluate_for(Role::Number("an expectation"), Context::EXPECT, side));
+        let sides = [&check.left, &check.right]
+            .map(|side| self.evaluate_for(Role::Number("an expectation"), Context::EXPECT, side));
         let within = match &check.within {
             Some(within) => self.evaluate_number("a tolerance", Context::NUMBER, within),
             None => Some(self.graph.number(0.0)),
@@ -164,9 +173,18 @@ impl<'a> Elaborator<'a> {
             Relation::LessEqual => Comparison::LessEqual,
             Relation::GreaterEqual => Comparison::GreaterEqual,
         };
-        let name = format!("{} {} {}", text::expr(&check.left), text::relation(check.relation), text::expr(&check.right));
+        let name = format!(
+            "{} {} {}",
+            text::expr(&check.left),
+            text::relation(check.relation),
+            text::expr(&check.right)
+        );
         let values = values.filter(|_| !simulated).and_then(|values| values.try_into().ok());
-        self.model.expectations.push(Expectation { place: Place { name, span: check.span }, comparison, values });
+        self.model.expectations.push(Expectation {
+            place: Place { name, span: check.span },
+            comparison,
+            values,
+        });
     }
 
     /// A weight of the metric: read, and used by the analysis of surfaces.
@@ -175,7 +193,13 @@ impl<'a> Elaborator<'a> {
         self.evaluate_number("a weight", Context::NUMBER, weight);
     }
 
-    fn jump(&mut self, name: &'a Ident, surfaces: [Option<&'a Ident>; 2], at_most: Option<&'a Expr>, resets: &'a [Assignment]) {
+    fn jump(
+        &mut self,
+        name: &'a Ident,
+        surfaces: [Option<&'a Ident>; 2],
+        at_most: Option<&'a Expr>,
+        resets: &'a [Assignment],
+    ) {
         for surface in surfaces.into_iter().flatten() {
             self.declared_as(surface, "surface", |kind| matches!(kind, ItemKind::Surface { .. }));
         }

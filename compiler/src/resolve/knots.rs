@@ -69,7 +69,8 @@ impl<'a> Elaborator<'a> {
     /// An input in which the guard is affine.
     fn affine_variable(&mut self, gap: ExprId) -> Option<u32> {
         let inputs = self.graph.inputs_of(&[gap]);
-        let varying = inputs.into_iter().filter(|&input| !matches!(self.symbols[input as usize], Symbol::Param(_)));
+        let varying =
+            inputs.into_iter().filter(|&input| !matches!(self.symbols[input as usize], Symbol::Param(_)));
         varying.collect::<Vec<_>>().into_iter().find(|&input| {
             let slope = derivative(&mut self.graph, gap, input);
             !self.graph.inputs_of(&[slope]).contains(&input) && self.graph.as_number(slope) != Some(0.0)
@@ -85,7 +86,13 @@ impl<'a> Elaborator<'a> {
         self.symbols.iter().enumerate().map(value).collect()
     }
 
-    fn compare(&mut self, meeting: Meeting, gaps: &[ExprId], arms: &[&[ExprId]], arm: &'a Arm) -> Option<Knot<'a>> {
+    fn compare(
+        &mut self,
+        meeting: Meeting,
+        gaps: &[ExprId],
+        arms: &[&[ExprId]],
+        arm: &'a Arm,
+    ) -> Option<Knot<'a>> {
         let place = meeting.point[meeting.variable as usize];
         let nudge = 1e-6 * (1.0 + place.abs());
         let active = [-nudge, nudge].map(|nudge| {

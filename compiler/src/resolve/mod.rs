@@ -22,11 +22,11 @@ pub(crate) mod text;
 pub(crate) mod value;
 pub(crate) mod walk;
 
+use crate::model::{Model, Surface};
 pub(crate) use calls::is_function;
 use elaborator::Elaborator;
 use fdcc_grammar::Diagnostic;
 use fdcc_grammar::ast::Item;
-use crate::model::{Model, Surface};
 use scope::Scope;
 
 /// Resolves the items of one phase together with those around it. `items` are resolved; the declarations of
@@ -47,7 +47,8 @@ impl Elaborator<'_> {
     pub(crate) fn into_model(mut self) -> Model {
         let zero = self.graph.number(0.0);
         // A function that is unknown for want of a feature: such a model is never lowered.
-        let surface = |entry: elaborator::SurfaceEntry| Surface { place: entry.place, psi: entry.psi.unwrap_or(zero) };
+        let surface =
+            |entry: elaborator::SurfaceEntry| Surface { place: entry.place, psi: entry.psi.unwrap_or(zero) };
         let surfaces: Vec<Surface> = self.surfaces.into_iter().map(surface).collect();
         Model {
             smooth: self.model.smooth || !surfaces.is_empty(),

@@ -38,7 +38,9 @@ impl<'a> Elaborator<'a> {
         match (a, b) {
             (Parts::Unknown, _) | (_, Parts::Unknown) => Parts::Unknown,
             (Parts::Scalar(a), Parts::Scalar(b)) => Parts::Scalar(apply(&mut self.graph, *a, *b)),
-            (Parts::Vector(a), Parts::Vector(b)) if matches!(operator, Add | Subtract) && a.len() == b.len() => {
+            (Parts::Vector(a), Parts::Vector(b))
+                if matches!(operator, Add | Subtract) && a.len() == b.len() =>
+            {
                 let both = a.iter().zip(b.iter());
                 Parts::Vector(both.map(|(&a, &b)| apply(&mut self.graph, a, b)).collect())
             }
@@ -66,7 +68,8 @@ impl<'a> Elaborator<'a> {
             }
             BinaryOperator::Divide => self.single_valued(b, right.1.span, "a divisor"),
             BinaryOperator::Power => {
-                self.single_valued(a, left.1.span, "the base of a power") && self.single_valued(b, right.1.span, "an exponent")
+                self.single_valued(a, left.1.span, "the base of a power")
+                    && self.single_valued(b, right.1.span, "an exponent")
             }
         }
     }
@@ -87,9 +90,14 @@ impl<'a> Elaborator<'a> {
     pub fn product_of_sets(&mut self, a: &[SetUse], b: &[SetUse], span: Span) -> bool {
         let (Some(first), Some(second)) = (a.first(), b.first()) else { return true };
         if let Some(same) = a.iter().find(|it| b.iter().any(|other| other.surface == it.surface)) {
-            let message = format!("`{}` is multiplied by itself, so the right side is not affine in `Sgn`", same.surface);
+            let message = format!(
+                "`{}` is multiplied by itself, so the right side is not affine in `Sgn`",
+                same.surface
+            );
             let found = Diagnostic::new(Code::NotAffine, message, span, "twice the same set");
-            self.diagnostics.push(found.help("off the surface `Sgn(s)^2` is 1: leave it out, or multiply by a single value"));
+            self.diagnostics.push(
+                found.help("off the surface `Sgn(s)^2` is 1: leave it out, or multiply by a single value"),
+            );
             return false;
         }
         let message = format!("a product of the sets of `{}` and `{}`", first.surface, second.surface);
@@ -106,7 +114,9 @@ impl<'a> Elaborator<'a> {
         let parts = match &value.parts {
             Parts::Unknown => Parts::Unknown,
             Parts::Scalar(part) => Parts::Scalar(apply(&mut self.graph, *part)),
-            Parts::Vector(parts) => Parts::Vector(parts.iter().map(|&part| apply(&mut self.graph, part)).collect()),
+            Parts::Vector(parts) => {
+                Parts::Vector(parts.iter().map(|&part| apply(&mut self.graph, part)).collect())
+            }
         };
         Value { parts, ..value }
     }
@@ -127,14 +137,22 @@ impl<'a> Elaborator<'a> {
 fn mismatch(operator: BinaryOperator, left: &Operand<'_>, right: &Operand<'_>) -> Diagnostic {
     let (a, b) = (left.0.parts.describe(), right.0.parts.describe());
     let (message, help) = match operator {
-        BinaryOperator::Add => (format!("adding {a} and {b}"), "both sides of a sum need the same size".into()),
-        BinaryOperator::Subtract => (format!("subtracting {b} from {a}"), "both sides need the same size".into()),
+        BinaryOperator::Add => {
+            (format!("adding {a} and {b}"), "both sides of a sum need the same size".into())
+        }
+        BinaryOperator::Subtract => {
+            (format!("subtracting {b} from {a}"), "both sides need the same size".into())
+        }
         BinaryOperator::Multiply => {
             let product = format!("dot({}, {})", text::expr(left.1), text::expr(right.1));
             (format!("multiplying {a} by {b}"), format!("for the scalar product write `{product}`"))
         }
-        BinaryOperator::Divide => (format!("dividing {a} by {b}"), "divide by a number, such as `norm(...)`".into()),
-        BinaryOperator::Power => (format!("{a} to the power of {b}"), "for the squared length write `normsq(...)`".into()),
+        BinaryOperator::Divide => {
+            (format!("dividing {a} by {b}"), "divide by a number, such as `norm(...)`".into())
+        }
+        BinaryOperator::Power => {
+            (format!("{a} to the power of {b}"), "for the squared length write `normsq(...)`".into())
+        }
     };
     Diagnostic::new(Code::ShapeMismatch, message, left.1.span, a).label(right.1.span, b).help(help)
 }

@@ -24,7 +24,8 @@ pub(crate) struct Order {
 
 /// Sorts the definitions of a scope and reports circles.
 pub(crate) fn order(scope: &Scope<'_>, diagnostics: &mut Vec<Diagnostic>) -> Order {
-    let needs: Vec<Vec<(usize, Span)>> = (0..scope.declarations.len()).map(|at| mentioned(scope, at)).collect();
+    let needs: Vec<Vec<(usize, Span)>> =
+        (0..scope.declarations.len()).map(|at| mentioned(scope, at)).collect();
     let mut marks = vec![Mark::New; needs.len()];
     let mut order = Order { sequence: Vec::new(), circular: vec![false; needs.len()] };
     for root in 0..needs.len() {
@@ -62,7 +63,8 @@ fn descend(
                 stack.push((need, 0));
             }
             Mark::Open => {
-                let from = stack.iter().position(|open| open.0 == need).expect("an open definition is on the stack");
+                let from =
+                    stack.iter().position(|open| open.0 == need).expect("an open definition is on the stack");
                 let circle: Vec<usize> = stack[from..].iter().map(|open| open.0).collect();
                 circle.iter().for_each(|&at| order.circular[at] = true);
                 report(&circle, span);
@@ -76,7 +78,8 @@ fn descend(
 fn mentioned(scope: &Scope<'_>, at: usize) -> Vec<(usize, Span)> {
     let item = scope.declarations[at].item;
     let mut needs = Vec::new();
-    let mut add = |value| walk::names(value, &mut |name, span| needs.extend(scope.find(name).map(|at| (at, span))));
+    let mut add =
+        |value| walk::names(value, &mut |name, span| needs.extend(scope.find(name).map(|at| (at, span))));
     match &item.kind {
         ItemKind::Let { value, .. } | ItemKind::Const { value, .. } => add(value),
         ItemKind::Fn { body, .. } => add(body),
@@ -92,7 +95,8 @@ fn mentioned(scope: &Scope<'_>, at: usize) -> Vec<(usize, Span)> {
 
 fn circular(scope: &Scope<'_>, circle: &[usize], span: Span) -> Diagnostic {
     let first = scope.declarations[circle[0]].name;
-    let names: Vec<&str> = circle.iter().chain(&circle[..1]).map(|&at| scope.declarations[at].name.name.as_str()).collect();
+    let names: Vec<&str> =
+        circle.iter().chain(&circle[..1]).map(|&at| scope.declarations[at].name.name.as_str()).collect();
     let message = format!("the definition of `{}` needs itself", first.name);
     Diagnostic::new(Code::CircularDefinition, message, first.span, format!("needs {}", names[1..].join(", which needs ")))
         .label(span, "this closes the circle")

@@ -18,7 +18,10 @@ impl<'a> Elaborator<'a> {
         for guard in sides.iter().flatten() {
             traits.reads = traits.reads.or(guard.traits.reads);
         }
-        traits = traits.join(&Traits { knots: vec![KnotUse { site: whole.span, used: whole.span }], ..Traits::default() });
+        traits = traits.join(&Traits {
+            knots: vec![KnotUse { site: whole.span, used: whole.span }],
+            ..Traits::default()
+        });
         for (value, arm) in values.iter().zip(arms) {
             if values_differ(value, &rest) {
                 return self.arms_differ(value, arm.value.span, &rest, otherwise.span);
@@ -30,7 +33,8 @@ impl<'a> Elaborator<'a> {
         };
         let arms: Vec<&[ExprId]> = values.iter().chain([&rest]).map(|value| value.parts.as_slice()).collect();
         self.find_knots(whole, &guards, &arms);
-        let parts: Vec<ExprId> = (0..arms[0].len()).map(|part| self.selection(&guards, &arms, part)).collect();
+        let parts: Vec<ExprId> =
+            (0..arms[0].len()).map(|part| self.selection(&guards, &arms, part)).collect();
         Value { parts: Parts::from_list(&parts), traits, named: rest.named }
     }
 
@@ -63,7 +67,8 @@ fn values_differ(a: &Value, b: &Value) -> bool {
 }
 
 fn equality(arm: &Arm) -> Diagnostic {
-    let repaired = format!("{} <= {} => {}", text::expr(&arm.left), text::expr(&arm.right), text::expr(&arm.value));
+    let repaired =
+        format!("{} <= {} => {}", text::expr(&arm.left), text::expr(&arm.right), text::expr(&arm.value));
     Diagnostic::new(
         Code::EqualityGuard,
         "comparing real numbers with `==` in a guard",

@@ -62,7 +62,8 @@ impl<'a> Scope<'a> {
 
     /// "There is no such name", with the nearest one that there is, or else how to declare it.
     pub fn unknown(&self, name: &str, span: Span, extra: &[&str], declaration: &str) -> Diagnostic {
-        let found = Diagnostic::new(Code::UnknownName, format!("nothing called `{name}` here"), span, "not declared");
+        let found =
+            Diagnostic::new(Code::UnknownName, format!("nothing called `{name}` here"), span, "not declared");
         let known = self.declarations.iter().map(|it| it.name.name.as_str());
         self.compared.set(self.compared.get() + 1);
         let known = known.chain(extra.iter().copied()).filter(|_| self.compared.get() <= MOST_PROPOSALS);

@@ -15,7 +15,10 @@ const KEYS: &[(&str, &str)] = &[
     ("kernel", "one of tanh, sqrt, linear, cubic, quintic"),
     ("N", "a whole number from 1"),
     ("steps", "a whole number from 1"),
-    ("scheme", "one of euler, implicit_euler, midpoint, trapezoid, rk4, radau1 to radau5, gauss1 to gauss5, fesd"),
+    (
+        "scheme",
+        "one of euler, implicit_euler, midpoint, trapezoid, rk4, radau1 to radau5, gauss1 to gauss5, fesd",
+    ),
     ("solver", "one of interior_point, sqp, convex"),
     ("linear", "one of auto, riccati, sparse_ldl"),
     ("continue", "numbers above 0, each smaller than the one before"),
@@ -26,7 +29,8 @@ const KEYS: &[(&str, &str)] = &[
 
 /// Schemes and solvers that are understood but do not exist yet.
 const NOT_YET: &[&str] = &[
-    "rk4", "radau1", "radau2", "radau3", "radau4", "radau5", "gauss1", "gauss2", "gauss3", "gauss4", "gauss5", "fesd", "sqp",
+    "rk4", "radau1", "radau2", "radau3", "radau4", "radau5", "gauss1", "gauss2", "gauss3", "gauss4",
+    "gauss5", "fesd", "sqp",
 ];
 
 /// A value of a setting.
@@ -54,7 +58,9 @@ pub(crate) fn set(method: &mut Method, key: &str, given: &Given) -> Result<(), R
     let positive = || number(given).filter(|value| *value > 0.0).ok_or_else(refused);
     let count = || whole(given).filter(|value| *value > 0).map(|value| value as usize).ok_or_else(refused);
     let word = || match given {
-        Given::Word(word) if NOT_YET.contains(&word.as_str()) && expected.contains(first_letters(word)) => Err(Refused::NotYet),
+        Given::Word(word) if NOT_YET.contains(&word.as_str()) && expected.contains(first_letters(word)) => {
+            Err(Refused::NotYet)
+        }
         Given::Word(word) => Ok(word.as_str()),
         _ => Err(refused()),
     };
@@ -121,7 +127,9 @@ fn number(given: &Given) -> Option<f64> {
 }
 
 fn whole(given: &Given) -> Option<u64> {
-    number(given).filter(|value| value.fract() == 0.0 && (0.0..=1e15).contains(value)).map(|value| value as u64)
+    number(given)
+        .filter(|value| value.fract() == 0.0 && (0.0..=1e15).contains(value))
+        .map(|value| value as u64)
 }
 
 fn decreasing(given: &Given) -> Option<Vec<f64>> {
@@ -132,6 +140,11 @@ fn decreasing(given: &Given) -> Option<Vec<f64>> {
     };
     let falls = list.windows(2).all(|pair| pair[1] < pair[0]);
     (falls && list.iter().all(|&value| value > 0.0 && value.is_finite())).then_some(list)
+}
+
+/// Whether there is such a key.
+pub(crate) fn is_key(key: &str) -> bool {
+    KEYS.iter().any(|row| row.0 == key)
 }
 
 /// The nearest key, for "did you mean".
@@ -190,15 +203,19 @@ impl<'a> Elaborator<'a> {
             },
             SettingValue::List(list) => {
                 let numbers: Option<Vec<f64>> = list.iter().map(|expr| self.setting_number(expr)).collect();
-                let span = list.first().map_or(setting.key.span, |first| first.span.to(list[list.len() - 1].span));
-                numbers.map(|numbers| (Given::List(numbers.iter().map(|value| value * scale).collect()), span))
+                let span =
+                    list.first().map_or(setting.key.span, |first| first.span.to(list[list.len() - 1].span));
+                numbers
+                    .map(|numbers| (Given::List(numbers.iter().map(|value| value * scale).collect()), span))
             }
         }
     }
 
     /// A name that is no parameter or constant is a word.
     fn is_word(&self, name: &str) -> bool {
-        let is_number = |kind: &ItemKind| matches!(kind, ItemKind::Param { .. } | ItemKind::Const { .. } | ItemKind::Let { .. });
+        let is_number = |kind: &ItemKind| {
+            matches!(kind, ItemKind::Param { .. } | ItemKind::Const { .. } | ItemKind::Let { .. })
+        };
         !self.scope.find(name).is_some_and(|at| is_number(&self.scope.declarations[at].item.kind))
     }
 
@@ -234,8 +251,10 @@ impl<'a> Elaborator<'a> {
     fn lagged(&mut self, scheme: &Ident, names: &'a [Ident]) {
         if !names.is_empty() && scheme.name != "implicit_euler" {
             let message = format!("`{}` lags no states", scheme.name);
-            let found = Diagnostic::new(Code::UnknownSetting, message, names[0].span, "only for `implicit_euler`");
-            self.diagnostics.push(found.help("leave `lagged (...)` out, or write `scheme implicit_euler lagged (...)`"));
+            let found =
+                Diagnostic::new(Code::UnknownSetting, message, names[0].span, "only for `implicit_euler`");
+            self.diagnostics
+                .push(found.help("leave `lagged (...)` out, or write `scheme implicit_euler lagged (...)`"));
         }
         for name in names {
             let state = self.declared_as(name, "state", |kind| matches!(kind, ItemKind::State { .. }));

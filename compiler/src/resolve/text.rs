@@ -49,7 +49,11 @@ pub(crate) fn relation(relation: Relation) -> &'static str {
 pub(crate) fn number(value: f64) -> String {
     let value = if value == 0.0 { 0.0 } else { value };
     let size = value.abs();
-    if size != 0.0 && size.is_finite() && !(1e-4..1e7).contains(&size) { format!("{value:e}") } else { format!("{value}") }
+    if size != 0.0 && size.is_finite() && !(1e-4..1e7).contains(&size) {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
+    }
 }
 
 const SUM: u8 = 1;
@@ -144,7 +148,9 @@ impl Printer {
     fn atom(&mut self, value: &Expr) {
         match &value.kind {
             ExprKind::Number(value) => self.out.push_str(&number(*value)),
-            ExprKind::Quantity(value, unit) => self.out.push_str(&format!("{} {}", number(*value), self::unit(unit))),
+            ExprKind::Quantity(value, unit) => {
+                self.out.push_str(&format!("{} {}", number(*value), self::unit(unit)))
+            }
             ExprKind::Name(name) => self.out.push_str(name),
             ExprKind::Part(base, part) => self.postfix(base, &format!(".{}", part.name)),
             ExprKind::Index(base, index) => self.postfix(base, &format!("[{index}]")),
@@ -176,7 +182,11 @@ impl Printer {
         self.out.push_str(after);
     }
 
-    fn list<'t, T: 't>(&mut self, items: impl Iterator<Item = &'t T>, mut write: impl FnMut(&mut Self, &'t T)) {
+    fn list<'t, T: 't>(
+        &mut self,
+        items: impl Iterator<Item = &'t T>,
+        mut write: impl FnMut(&mut Self, &'t T),
+    ) {
         for (at, item) in items.enumerate() {
             if at > 0 {
                 self.out.push_str(", ");

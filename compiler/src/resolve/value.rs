@@ -5,7 +5,7 @@ use fdcc_grammar::Span;
 use std::rc::Rc;
 
 /// The value of an expression.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct Value {
     /// Its components.
     pub parts: Parts,
@@ -53,7 +53,7 @@ impl Parts {
 }
 
 /// Which kinds of symbols a value reads, as a set of bits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct Reads(pub u16);
 
 impl Reads {
@@ -85,18 +85,18 @@ impl Reads {
 }
 
 /// A `Sgn` or `match` inside a value.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct SetUse {
     /// The name of its surface.
     pub surface: Rc<str>,
-    /// The call or the whole `match`.
+    /// The call or the whole `match`, or the use of the definition that holds it.
     pub span: Span,
     /// `Sgn` rather than `match`.
     pub is_sgn: bool,
 }
 
 /// A `piecewise` inside a value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct KnotUse {
     /// The `piecewise` itself.
     pub site: Span,
@@ -105,7 +105,7 @@ pub(crate) struct KnotUse {
 }
 
 /// What a value is made of, for the checks.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct Traits {
     /// Kinds of symbols.
     pub reads: Reads,
@@ -132,6 +132,7 @@ impl Traits {
     /// As seen from where a name or a call stands.
     pub fn used_at(mut self, span: Span) -> Traits {
         self.knots.iter_mut().for_each(|knot| knot.used = span);
+        self.sets.iter_mut().for_each(|set| set.span = span);
         self
     }
 }

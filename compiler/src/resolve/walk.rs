@@ -34,9 +34,10 @@ pub(crate) fn visit<'a>(value: &'a Expr, see: &mut dyn FnMut(&'a Expr)) {
 fn push_children<'a>(value: &'a Expr, into: &mut Vec<&'a Expr>) {
     match &value.kind {
         ExprKind::Number(_) | ExprKind::Quantity(..) | ExprKind::Name(_) => {}
-        ExprKind::Negate(inner) | ExprKind::Part(inner, _) | ExprKind::Index(inner, _) | ExprKind::Prime(inner) => {
-            into.push(inner)
-        }
+        ExprKind::Negate(inner)
+        | ExprKind::Part(inner, _)
+        | ExprKind::Index(inner, _)
+        | ExprKind::Prime(inner) => into.push(inner),
         ExprKind::Binary(_, left, right) => into.extend([&**left, &**right]),
         ExprKind::Call(callee, arguments) => {
             into.push(callee);
@@ -87,7 +88,9 @@ pub(crate) fn expressions(item: &Item) -> Vec<&Expr> {
             all.extend(value);
             all.extend(bounds.iter().flat_map(|it| [&it.lower, &it.upper]));
         }
-        ItemKind::Const { value, .. } | ItemKind::Let { value, .. } | ItemKind::Surface { value, .. } => all.push(value),
+        ItemKind::Const { value, .. } | ItemKind::Let { value, .. } | ItemKind::Surface { value, .. } => {
+            all.push(value)
+        }
         ItemKind::Fn { body, .. } => all.push(body),
         ItemKind::Free { bounds, guess, .. } | ItemKind::Control { bounds, guess, .. } => {
             all.extend(bounds.iter().flat_map(|it| [&it.lower, &it.upper]));
@@ -98,7 +101,9 @@ pub(crate) fn expressions(item: &Item) -> Vec<&Expr> {
             all.extend(bounds.iter().flat_map(|it| [&it.lower, &it.upper]));
             match start {
                 Some(Start::Value(value)) => all.push(value),
-                Some(Start::Free { bounds, .. }) => all.extend(bounds.iter().flat_map(|it| [&it.lower, &it.upper])),
+                Some(Start::Free { bounds, .. }) => {
+                    all.extend(bounds.iter().flat_map(|it| [&it.lower, &it.upper]))
+                }
                 None => {}
             }
         }
@@ -116,7 +121,9 @@ pub(crate) fn expressions(item: &Item) -> Vec<&Expr> {
             all.extend(condition.rest.iter().map(|it| &it.1));
         }
         ItemKind::Objective { value, .. } => all.push(value),
-        ItemKind::Guess { bindings } | ItemKind::Report { bindings } => all.extend(bindings.iter().map(|it| &it.value)),
+        ItemKind::Guess { bindings } | ItemKind::Report { bindings } => {
+            all.extend(bindings.iter().map(|it| &it.value))
+        }
         ItemKind::Method { settings } => settings.iter().for_each(|it| match &it.value {
             ast::SettingValue::Expr(value) => all.push(value),
             ast::SettingValue::List(values) => all.extend(values),

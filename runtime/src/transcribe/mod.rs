@@ -11,7 +11,7 @@
 mod assembly;
 mod boundary;
 mod sampled;
-mod tableau;
+pub(crate) mod tableau;
 
 use crate::linalg::{Stages, Triplets};
 use crate::nlp::{Derivatives, Nlp, Place};

@@ -188,10 +188,10 @@ impl Interval {
             }
             block.e[i * n..][..n].copy_from_slice(&defect[w..]);
         }
-        if !self.e.factor(&block.e) {
+        if !self.e.factor(n, &block.e) {
             return None;
         }
-        self.e.solve(&mut self.response[..n * w], w);
+        self.e.solve(n, &mut self.response[..n * w], w);
         Some(0)
     }
 

@@ -81,6 +81,10 @@ impl Factor for Riccati {
                 Some(count) => negative += count,
                 None => return Inertia::Wrong,
             }
+            // The border cannot have fewer than no negative eigenvalues.
+            if negative > self.border.rows() {
+                return Inertia::Wrong;
+            }
         }
         match self.border.factor(&self.value) {
             None => Inertia::Singular,

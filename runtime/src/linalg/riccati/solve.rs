@@ -61,7 +61,7 @@ impl Interval {
             return;
         }
         self.offset[..n].copy_from_slice(b);
-        self.e.solve(&mut self.offset[..n], 1);
+        self.e.solve(n, &mut self.offset[..n], 1);
         for i in 0..n {
             let m_row = &self.m[i * n..][..n];
             let y = self.pull[i] + dot(m_row, &self.offset[..n]);

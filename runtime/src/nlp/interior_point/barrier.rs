@@ -5,9 +5,9 @@ use super::residuals::Residuals;
 use super::space::Space;
 
 /// The barrier problem is solved to `ACCURACY * mu` before `mu` falls.
-const ACCURACY: f64 = 10.0;
+const ACCURACY: f64 = 4.0;
 const LINEAR_DECREASE: f64 = 0.2;
-const SUPERLINEAR_DECREASE: f64 = 1.5;
+const SUPERLINEAR_DECREASE: f64 = 1.2;
 const SMALLEST_FRACTION: f64 = 0.99;
 /// Bound multipliers stay within this factor of `mu / distance`.
 const MULTIPLIER_CORRIDOR: f64 = 1e10;

@@ -46,6 +46,8 @@ pub(super) struct Kkt {
     /// Regularisation of this factorisation, and the last that was needed.
     pub(super) regularization: f64,
     last_regularization: f64,
+    /// Whether the last factorisation had to raise its first guess of the regularisation.
+    was_needed: bool,
 }
 
 impl Kkt {
@@ -77,6 +79,7 @@ impl Kkt {
             solution: zeros(size),
             regularization: 0.0,
             last_regularization: 0.0,
+            was_needed: false,
         }
     }
 
@@ -93,8 +96,9 @@ impl Kkt {
 
     /// Factors with the smallest regularisation that gives the right inertia; `false` if none does.
     pub(super) fn factor_with_inertia(&mut self, space: &Space, slopes: &Slopes, mu: f64, counts: &mut Counts) -> bool {
-        self.regularization = 0.0;
-        let mut rows = 0.0;
+        // Curvature that was wrong a moment ago is likely to be wrong again: zero is tried only every other time.
+        self.regularization = if self.was_needed { self.smaller_regularization() } else { 0.0 };
+        let (first, mut rows) = (self.regularization, 0.0);
         loop {
             match self.factor_once(space, slopes, rows, counts) {
                 Inertia::Correct => break,
@@ -105,16 +109,21 @@ impl Kkt {
                 return false;
             }
         }
+        self.was_needed = self.regularization > first;
         if self.regularization > 0.0 {
             self.last_regularization = self.regularization;
         }
         true
     }
 
+    fn smaller_regularization(&self) -> f64 {
+        (DECAY * self.last_regularization).max(SMALLEST_REGULARIZATION)
+    }
+
     fn next_regularization(&self) -> f64 {
         match (self.regularization, self.last_regularization) {
             (0.0, 0.0) => FIRST_REGULARIZATION,
-            (0.0, last) => (DECAY * last).max(SMALLEST_REGULARIZATION),
+            (0.0, _) => self.smaller_regularization(),
             (now, 0.0) => FIRST_GROWTH * now,
             (now, _) => GROWTH * now,
         }

@@ -125,7 +125,7 @@ fn first_point(nlp: &mut dyn Nlp, space: &Space, start: &[f64], push: f64) -> Ve
     y
 }
 
-fn warm_multipliers(nlp: &Scaled, space: &Space, mut known: Multipliers, mu: f64, at: &mut Iterate) {
+const WARM_MU: f64 = 1e-4;
     nlp.scale(&mut known);
     at.lambda.copy_from_slice(&known.rows);
     let Iterate { y, lambda, lower, upper } = at;

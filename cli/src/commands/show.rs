@@ -1,0 +1,61 @@
+//! `fdcc show`: a model as the compiler understands it, at any stage.
+
+use super::Exit;
+use super::options::{Changes, read, show};
+use crate::output;
+use clap::{Args, ValueEnum};
+
+/// Show a problem as understood: names, values, bounds, sizes, surfaces
+#[derive(Args)]
+pub struct Show {
+    /// The model; `-` is the standard input
+    #[arg(value_name = "FILE")]
+    file: String,
+    /// Show what a stage of the compiler works on instead
+    #[arg(long, value_enum)]
+    stage: Option<Stage>,
+    #[command(flatten)]
+    changes: Changes,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Stage {
+    /// Every expression of the model over its names
+    Model,
+    /// The functions that are compiled, over their inputs
+    Graph,
+    /// The functions with their Jacobians and Hessians
+    Derivatives,
+    /// Their machine code in Cranelift's text form
+    Clif,
+}
+
+impl Show {
+    /// Prints it.
+    pub fn run(self) -> Exit {
+        let prepared = match read(&self.file, &self.changes) {
+            Ok(prepared) => prepared,
+            Err(exit) => return exit,
+        };
+        match fdcc_compiler::dump(&prepared.model, self.stage()) {
+            Ok(text) => {
+                output::print(&text);
+                Exit::Fine
+            }
+            Err(diagnostics) => {
+                show(diagnostics.iter(), &prepared.source);
+                Exit::ModelError
+            }
+        }
+    }
+
+    fn stage(&self) -> fdcc_compiler::Stage {
+        match self.stage {
+            None => fdcc_compiler::Stage::Summary,
+            Some(Stage::Model) => fdcc_compiler::Stage::Model,
+            Some(Stage::Graph) => fdcc_compiler::Stage::Graph,
+            Some(Stage::Derivatives) => fdcc_compiler::Stage::Derivatives,
+            Some(Stage::Clif) => fdcc_compiler::Stage::Clif,
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! `fdcc sweep`: one solve per value, side by side, and a table of what came out.
+
+use super::Exit;
+use super::options::{Options, Prepared, prepare, usage};
+use crate::log::{self, Level, Log};
+use crate::output::named::Named;
+use crate::output::{self, files, table};
+use crate::solver::{Compiled, Failure, Solved};
+use crate::warm;
+use crate::watch::catch_interrupts;
+use clap::Args;
+use grid::Grid;
+use indicatif::ProgressBar;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+mod grid;
+
+/// Solve once for each of several values, and print a table
+#[derive(Args)]
+pub struct Sweep {
+    /// The model; `-` is the standard input
+    #[arg(value_name = "FILE")]
+    file: String,
+    /// A `param` or a key of the `method` block, with its values; several lists go together row by row
+    #[arg(value_name = "NAME=V1,V2,...", required = true)]
+    lists: Vec<String>,
+    /// Start each solve from the solution before it, one after the other
+    #[arg(long = "continue", conflicts_with = "jobs")]
+    is_continued: bool,
+    /// How many solves run at a time; without it as many as there are processors
+    #[arg(long, value_name = "J", value_parser = clap::value_parser!(u32).range(1..))]
+    jobs: Option<u32>,
+    #[command(flatten)]
+    options: Options,
+}
+
+/// One row of the sweep, ready to be solved.
+struct Row {
+    number: usize,
+    prepared: Prepared,
+}
+
+impl Sweep {
+    /// Solves all rows and prints the table.
+    pub fn run(self) -> Exit {
+        catch_interrupts();
+        let prepared = match prepare(&self.file, &self.options) {
+            Ok(prepared) => prepared,
+            Err(exit) => return exit,
+        };
+        let (grid, rows) = match self.rows(&prepared) {
+            Ok(found) => found,
+            Err(message) => return usage(&message),
+        };
+        let solved = self.solve(&rows);
+        match solved.and_then(|solved| self.report(&grid, &solved)) {
+            Ok(exit) => exit,
+            Err(failure) => failure.report(&prepared.source),
+        }
+    }
+
+    /// The values, and the model with each of them.
+    fn rows(&self, prepared: &Prepared) -> Result<(Grid, Vec<Row>), String> {
+        let grid = Grid::read(&self.lists)?;
+        let row = |index: usize| {
+            let mut prepared = prepared.clone();
+            grid.apply(index, &mut prepared.model)?;
+            Ok(Row { number: index + 1, prepared })
+        };
+        let rows: Result<Vec<Row>, String> = (0..grid.rows).map(row).collect();
+        Ok((grid, rows?))
+    }
+
+    fn solve(&self, rows: &[Row]) -> Result<Vec<Solved>, Failure> {
+        let bar = log::bar(self.level(), rows.len());
+        let solved = if self.is_continued { self.in_turn(rows, &bar) } else { self.in_parallel(rows, &bar) };
+        bar.finish_and_clear();
+        solved
+    }
+
+    fn level(&self) -> Level {
+        self.options.log.unwrap_or(Level::Short)
+    }
+
+    /// Each row from the last one that was solved.
+    fn in_turn(&self, rows: &[Row], bar: &ProgressBar) -> Result<Vec<Solved>, Failure> {
+        let mut all: Vec<Solved> = Vec::new();
+        for row in rows {
+            let before = all.iter().rev().find(|solved| solved.is_good());
+            let solved = self.one(row, before, bar)?;
+            all.push(solved);
+        }
+        Ok(all)
+    }
+
+    /// Each row for itself; which thread solves it makes no difference to the answer.
+    fn in_parallel(&self, rows: &[Row], bar: &ProgressBar) -> Result<Vec<Solved>, Failure> {
+        let processors = || std::thread::available_parallelism().map_or(1, |count| count.get());
+        let threads = self.jobs.map_or_else(processors, |jobs| jobs as usize).min(rows.len());
+        let (next, results) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+        let work = || {
+            while let Some(row) = rows.get(next.fetch_add(1, Ordering::Relaxed)) {
+                let solved = self.one(row, None, bar);
+                if solved.is_err() {
+                    // There will be no table, so no further row is begun.
+                    next.store(rows.len(), Ordering::Relaxed);
+                }
+                results.lock().expect("no thread panics with the lock").push((row.number, solved));
+            }
+        };
+        std::thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(work))));
+        let mut results = results.into_inner().expect("no thread panics with the lock");
+        results.sort_by_key(|(number, _)| *number);
+        results.into_iter().map(|(_, solved)| solved).collect()
+    }
+
+    fn one(&self, row: &Row, before: Option<&Solved>, bar: &ProgressBar) -> Result<Solved, Failure> {
+        let compiled = Compiled::new(&row.prepared, Instant::now())?;
+        let start = match before {
+            Some(before) => Some(warm::from_solved(before, &compiled.problem)),
+            None => compiled.first_start(&self.options)?,
+        };
+        let mut log = Log::of_row(self.level(), bar, row.number);
+        let solved = compiled.solve(start, &self.options, &mut log)?;
+        bar.inc(1);
+        if self.level() != Level::None {
+            let line = format!("row {} {}", row.number, solved.document.status.replace('_', " "));
+            bar.suspend(|| eprintln!("{line}  {} iterations", solved.document.iterations));
+        }
+        Ok(solved)
+    }
+
+    /// The files asked for, then the table or the JSON.
+    fn report(&self, grid: &Grid, solved: &[Solved]) -> Result<Exit, Failure> {
+        if let Some(folder) = &self.options.out {
+            for (index, Solved { document, .. }) in solved.iter().enumerate() {
+                files::write(document, folder, &format!("{}.{}", document.model, index + 1))?;
+            }
+        }
+        let swept: Vec<Named<String>> = (0..grid.rows).map(|index| grid.row(index)).collect();
+        let documents = swept.iter().zip(solved.iter().map(|solved| &solved.document));
+        let text = if self.options.json {
+            output::json(&documents.map(|(swept, document)| table::row(swept, document)).collect::<Vec<_>>())
+        } else {
+            table::table(documents)
+        };
+        output::print(&text);
+        Ok(solved.iter().map(Solved::exit).max().unwrap_or(Exit::Fine))
+    }
+}

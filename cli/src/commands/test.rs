@@ -1,0 +1,174 @@
+//! `fdcc test`: solves models and compares the solutions with their `expect` blocks.
+
+use super::Exit;
+use super::options::{Options, Prepared, prepare, show};
+use crate::expectations::{self, Checked, Outcome, Sides};
+use crate::log::{Level, Log};
+use crate::output::{self, files, number};
+use crate::solver::{Compiled, Failure, Solved};
+use crate::verdict;
+use crate::watch::catch_interrupts;
+use clap::Args;
+use serde::Serialize;
+use std::time::Instant;
+
+/// Solve models and check what their `expect` blocks say
+#[derive(Args)]
+pub struct Test {
+    /// Models; `-` is the standard input
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<String>,
+    #[command(flatten)]
+    options: Options,
+}
+
+/// What became of one model.
+#[derive(Serialize)]
+struct Tested {
+    file: String,
+    model: String,
+    /// The status of the solve; nothing where there was nothing to expect.
+    status: Option<String>,
+    expectations: Vec<Line>,
+}
+
+/// What became of one line of an `expect` block.
+#[derive(Serialize)]
+struct Line {
+    line: usize,
+    text: String,
+    outcome: Word,
+    left: Option<f64>,
+    right: Option<f64>,
+    tolerance: Option<f64>,
+}
+
+#[derive(Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Word {
+    Ok,
+    Failed,
+    Skipped,
+}
+
+impl Test {
+    /// Tests each file; an error in one does not keep the others from being tested.
+    pub fn run(self) -> Exit {
+        catch_interrupts();
+        let mut exit = Exit::Fine;
+        let mut all = Vec::new();
+        for file in &self.files {
+            match self.test(file) {
+                Ok(tested) => {
+                    exit = exit.max(tested.exit());
+                    if !self.options.json {
+                        output::print(&tested.lines());
+                    }
+                    all.push(tested);
+                }
+                Err(worse) => exit = exit.max(worse),
+            }
+        }
+        output::print(&if self.options.json { output::json(&all) } else { summary(&all) });
+        exit
+    }
+
+    fn test(&self, file: &str) -> Result<Tested, Exit> {
+        let begin = Instant::now();
+        let prepared = prepare(file, &self.options)?;
+        let model = prepared.model.name.clone();
+        if !expectations::has_any(&prepared.model) {
+            return Ok(Tested { file: file.into(), model, status: None, expectations: Vec::new() });
+        }
+        let solved = self.solve(&prepared, begin).map_err(|failure| failure.report(&prepared.source))?;
+        show(verdict::diagnostic(&solved.problem, &solved.outcome).iter(), &prepared.source);
+        let checked = expectations::evaluate(&prepared.model, &solved);
+        // What a solve did not reach is no news about the model.
+        let checked = checked.into_iter().filter(|_| solved.is_good());
+        let expectations = checked.map(|it| line(it, &prepared)).collect();
+        Ok(Tested { file: file.into(), model, status: Some(solved.document.status), expectations })
+    }
+
+    fn solve(&self, prepared: &Prepared, begin: Instant) -> Result<Solved, Failure> {
+        let compiled = Compiled::new(prepared, begin)?;
+        let start = compiled.first_start(&self.options)?;
+        let mut log = Log::new(self.options.log.unwrap_or(Level::None));
+        let solved = compiled.solve(start, &self.options, &mut log);
+        log.finish();
+        let solved = solved?;
+        if let Some(folder) = &self.options.out {
+            files::write(&solved.document, folder, &solved.document.model)?;
+        }
+        Ok(solved)
+    }
+}
+
+fn line(checked: Checked, prepared: &Prepared) -> Line {
+    let Checked { origin, outcome } = checked;
+    let line = prepared.source.line_column(origin.span.0).line;
+    let text = origin.label.to_string();
+    match outcome {
+        Outcome::NeedsSimulation => {
+            Line { line, text, outcome: Word::Skipped, left: None, right: None, tolerance: None }
+        }
+        Outcome::Compared(Sides { left, right, tolerance, holds }) => {
+            let outcome = if holds { Word::Ok } else { Word::Failed };
+            Line { line, text, outcome, left: Some(left), right: Some(right), tolerance: Some(tolerance) }
+        }
+    }
+}
+
+impl Tested {
+    fn is_solved(&self) -> bool {
+        self.status.as_deref().is_none_or(|status| matches!(status, "solved" | "acceptable"))
+    }
+
+    fn count(&self, outcome: Word) -> usize {
+        self.expectations.iter().filter(|it| it.outcome == outcome).count()
+    }
+
+    fn exit(&self) -> Exit {
+        if self.is_solved() && self.count(Word::Failed) == 0 { Exit::Fine } else { Exit::NotSolved }
+    }
+
+    /// One line for each expectation, or one that says why there is none.
+    fn lines(&self) -> String {
+        let file = &self.file;
+        match &self.status {
+            None => format!("{file}: nothing is expected\n"),
+            Some(status) if !self.is_solved() => format!("{file}: not solved: {}\n", status.replace('_', " ")),
+            _ => self.expectations.iter().map(|it| format!("{file}:{}: {}\n", it.line, it.words())).collect(),
+        }
+    }
+}
+
+impl Line {
+    /// `ok       x(end) == 1 within 1e-3   (1.0002, 1)`
+    fn words(&self) -> String {
+        let Line { text, .. } = self;
+        let digits = |value: Option<f64>| number::significant(value.unwrap_or(f64::NAN), 9);
+        let [left, right, tolerance] = [self.left, self.right, self.tolerance].map(digits);
+        match self.outcome {
+            Word::Ok => format!("ok       {text}   (left {left}, right {right})"),
+            Word::Failed => format!("FAILED   {text}   (left {left}, right {right}, tolerance {tolerance})"),
+            Word::Skipped => format!("skipped  {text}   (needs a simulation of the true system)"),
+        }
+    }
+}
+
+/// `3 ok, 1 failed, 2 skipped, 1 model not solved`
+fn summary(all: &[Tested]) -> String {
+    let count = |outcome| all.iter().map(|tested| tested.count(outcome)).sum::<usize>();
+    let unsolved = all.iter().filter(|tested| !tested.is_solved()).count();
+    let unsolved = match unsolved {
+        0 => String::new(),
+        1 => ", 1 model not solved".into(),
+        many => format!(", {many} models not solved"),
+    };
+    format!(
+        "{} ok, {} failed, {} skipped{unsolved}\n",
+        count(Word::Ok),
+        count(Word::Failed),
+        count(Word::Skipped)
+    )
+}

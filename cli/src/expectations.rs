@@ -1,0 +1,98 @@
+//! What a model expects of its solution, compared with the solution.
+//!
+//! Values of states are those at the ends of the trajectory; integrals are taken by the scheme's own quadrature.
+
+use crate::solver::Solved;
+use fdcc_compiler::model::Comparison;
+use fdcc_compiler::{Expected, Model, expectations};
+use fdcc_runtime::problem::{Columns, Origin};
+use fdcc_runtime::quadrature::integrals;
+
+/// One line of the `expect` block and what became of it.
+pub struct Checked {
+    /// The text and its place.
+    pub origin: Origin,
+    /// The comparison.
+    pub outcome: Outcome,
+}
+
+/// What became of an expectation.
+pub enum Outcome {
+    /// Both sides have values.
+    Compared(Sides),
+    /// Only a simulation of the true system can tell.
+    NeedsSimulation,
+}
+
+/// The numbers of a comparison.
+pub struct Sides {
+    /// Left side.
+    pub left: f64,
+    /// Right side.
+    pub right: f64,
+    /// By how much it may fail.
+    pub tolerance: f64,
+    /// Whether it holds; never if a side is not a number.
+    pub holds: bool,
+}
+
+/// Whether the model expects anything.
+pub fn has_any(model: &Model) -> bool {
+    !model.expectations.is_empty()
+}
+
+/// Evaluates all expectations at a solution.
+pub fn evaluate(model: &Model, solved: &Solved) -> Vec<Checked> {
+    let expectations = expectations(model);
+    let trajectory = &solved.outcome.trajectory;
+    let ends = |column: fn(&[f64]) -> f64| trajectory.states.iter().map(move |state| column(state));
+    let inputs: Vec<f64> = ends(|state| state[0]).chain(ends(|state| state[state.len() - 1])).collect();
+    let mut parameters = trajectory.parameters.clone();
+    parameters.extend(integrals(&solved.problem, trajectory, &*expectations.integrands));
+    let mut points = Columns::new(inputs.len(), 1);
+    inputs.iter().enumerate().for_each(|(i, value)| points.column_mut(i)[0] = *value);
+    let mut values = Columns::new(expectations.function.outputs(), 1);
+    expectations.function.value(&points, &parameters, &mut values);
+    expectations.list.iter().map(|expected| checked(expected, &values)).collect()
+}
+
+fn checked(expected: &Expected, values: &Columns) -> Checked {
+    let sides = |first: usize| {
+        let [left, right, tolerance] = [0, 1, 2].map(|i| values.column(first + i)[0]);
+        let holds = holds(expected.comparison, left, right, tolerance);
+        Outcome::Compared(Sides { left, right, tolerance, holds })
+    };
+    let outcome = expected.output.map_or(Outcome::NeedsSimulation, sides);
+    Checked { origin: expected.origin.clone(), outcome }
+}
+
+fn holds(comparison: Comparison, left: f64, right: f64, tolerance: f64) -> bool {
+    match comparison {
+        Comparison::Equal => (left - right).abs() <= tolerance,
+        Comparison::LessEqual => left <= right + tolerance,
+        Comparison::GreaterEqual => left >= right - tolerance,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_comparison_may_fail_by_its_tolerance_and_never_holds_for_nan() {
+        let cases = [
+            (Comparison::Equal, 1.0, 1.25, 0.25, true),
+            (Comparison::Equal, 1.0, 1.25, 0.125, false),
+            (Comparison::LessEqual, 1.25, 1.0, 0.25, true),
+            (Comparison::LessEqual, 1.25, 1.0, 0.125, false),
+            (Comparison::LessEqual, 0.0, 1.0, 0.0, true),
+            (Comparison::GreaterEqual, 0.75, 1.0, 0.25, true),
+            (Comparison::GreaterEqual, 0.75, 1.0, 0.125, false),
+            (Comparison::GreaterEqual, f64::NAN, 1.0, 0.25, false),
+            (Comparison::Equal, 1.0, f64::NAN, 0.25, false),
+        ];
+        for (comparison, left, right, tolerance, expected) in cases {
+            assert_eq!(holds(comparison, left, right, tolerance), expected, "{left} {comparison:?} {right}");
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! One solve: compile, choose the starting points, run the solver, keep the best outcome.
+
+use crate::commands::{Exit, Options, Prepared, show};
+use crate::log::Log;
+use crate::output;
+use crate::output::document::{Document, Seconds};
+use crate::warm;
+use crate::watch::Deadline;
+use fdcc_grammar::{Diagnostic, SourceFile};
+use fdcc_runtime::homotopy::{self, Outcome, Refusal};
+use fdcc_runtime::nlp::{Start, Status};
+use fdcc_runtime::problem::Problem;
+use fdcc_runtime::starts;
+use sha2::{Digest, Sha256};
+use std::time::Instant;
+
+/// A problem that is ready to be solved.
+pub struct Compiled {
+    pub problem: Problem,
+    source_sha256: String,
+    begin: Instant,
+    seconds: f64,
+}
+
+/// Everything that came out of a solve.
+pub struct Solved {
+    pub problem: Problem,
+    pub outcome: Outcome,
+    pub document: Document,
+}
+
+/// Why there was no solve at all.
+pub enum Failure {
+    /// The model has no meaning for the solver.
+    Model(Vec<Diagnostic>),
+    /// What was asked for cannot be done.
+    Usage(String),
+    /// A file cannot be used.
+    File(String),
+}
+
+impl Failure {
+    /// Says it on the standard error.
+    pub fn report(&self, source: &SourceFile) -> Exit {
+        match self {
+            Failure::Model(diagnostics) => {
+                show(diagnostics.iter(), source);
+                Exit::ModelError
+            }
+            Failure::Usage(message) => {
+                output::complain(message);
+                Exit::Usage
+            }
+            Failure::File(message) => {
+                output::complain(message);
+                Exit::File
+            }
+        }
+    }
+}
+
+impl Compiled {
+    /// Compiles a model; `begin` is when the work on it began.
+    pub fn new(prepared: &Prepared, begin: Instant) -> Result<Self, Failure> {
+        let problem = fdcc_compiler::compile(&prepared.model).map_err(Failure::Model)?;
+        let source_sha256 = sha256(&prepared.source.text);
+        Ok(Compiled { problem, source_sha256, begin, seconds: begin.elapsed().as_secs_f64() })
+    }
+
+    /// The start that `--warm` names, if any.
+    pub fn first_start(&self, options: &Options) -> Result<Option<Start>, Failure> {
+        options.warm.as_ref().map(|path| warm::from_file(path, &self.problem)).transpose()
+    }
+
+    /// Solves from `start`, or from the guess, and from variations of it if there are to be several starts.
+    pub fn solve(self, start: Option<Start>, options: &Options, log: &mut Log) -> Result<Solved, Failure> {
+        let problem = self.problem;
+        let deadline = Deadline::after(self.begin, options.time_limit);
+        let mut best: Option<Outcome> = None;
+        for index in 0..options.starts {
+            let start = variation(&problem, start.clone(), index);
+            let outcome = run(&problem, start, deadline, log)?;
+            if options.starts > 1 {
+                log.start(index, &outcome.solution, problem.sense);
+            }
+            let is_stopped = matches!(outcome.solution.status, Status::Interrupted | Status::TimeLimit);
+            if best.as_ref().is_none_or(|best| starts::is_better(&outcome.solution, &best.solution)) {
+                best = Some(outcome);
+            }
+            if is_stopped {
+                break;
+            }
+        }
+        let outcome = best.expect("there is at least one start");
+        let total = self.begin.elapsed().as_secs_f64();
+        let seconds = Seconds { compile: self.seconds, solve: total - self.seconds, total };
+        let document = Document::new(&problem, &outcome, &self.source_sha256, seconds);
+        Ok(Solved { problem, outcome, document })
+    }
+}
+
+impl Solved {
+    /// Whether the answer can be used.
+    pub fn is_good(&self) -> bool {
+        matches!(self.outcome.solution.status, Status::Solved | Status::Acceptable)
+    }
+
+    /// How a command with this solve ends.
+    pub fn exit(&self) -> Exit {
+        if self.is_good() { Exit::Fine } else { Exit::NotSolved }
+    }
+}
+
+/// The first start is as given; the others vary it.
+fn variation(problem: &Problem, start: Option<Start>, index: u32) -> Option<Start> {
+    match index {
+        0 => start,
+        _ => Some(starts::perturbed(problem, start.map(|start| start.v), index)),
+    }
+}
+
+fn run(
+    problem: &Problem,
+    start: Option<Start>,
+    deadline: Deadline,
+    log: &mut Log,
+) -> Result<Outcome, Failure> {
+    let outcome = homotopy::solve(problem, start, &mut |progress, sigma| {
+        log.iteration(progress, sigma);
+        deadline.check()
+    });
+    outcome.map_err(|Refusal::NotConvex| {
+        Failure::Usage(
+            "the discretised problem is not convex, so `solver = convex` cannot treat it; leave `solver` out"
+                .into(),
+        )
+    })
+}
+
+fn sha256(text: &str) -> String {
+    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+}

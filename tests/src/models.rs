@@ -1,0 +1,67 @@
+//! From the text of a model to a solved problem, in one call each.
+
+use std::ops::ControlFlow;
+
+use fdcc_compiler::Model;
+use fdcc_grammar::{Diagnostic, Severity, parse};
+use fdcc_runtime::homotopy::{self, Outcome, Refusal};
+use fdcc_runtime::problem::Problem;
+
+use crate::repository;
+
+/// Pairs of a name and its new value, as `--set` and `--method` take them.
+pub type Changes<'a> = &'a [(&'a str, &'a str)];
+
+/// The meaning of a model without errors.
+pub fn meaning(text: &str) -> Model {
+    let parsed = parse(text);
+    let checked = fdcc_compiler::check(&parsed.tree);
+    let mut found = parsed.diagnostics.into_iter().chain(checked.diagnostics);
+    if let Some(error) = found.find(|diagnostic| diagnostic.severity == Severity::Error) {
+        panic!("the model has an error: {error:#?}\n{text}");
+    }
+    checked.model.expect("a model without errors has a meaning")
+}
+
+/// The model of a text, with other parameters and settings.
+pub fn changed(text: &str, parameters: Changes, methods: Changes) -> Model {
+    let mut model = meaning(text);
+    for (name, value) in parameters {
+        model.set_param(name, value).expect("a parameter of the model");
+    }
+    for (key, value) in methods {
+        model.set_method(key, value).expect("a setting of the method");
+    }
+    model
+}
+
+/// The problem of a text.
+pub fn problem(text: &str, parameters: Changes, methods: Changes) -> Problem {
+    fdcc_compiler::compile(&changed(text, parameters, methods)).expect("the model can be solved")
+}
+
+/// The text of `models/NAME.fdc`.
+pub fn text_of(name: &str) -> String {
+    let path = repository().join("models").join(name).with_extension("fdc");
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// The problem of `models/NAME.fdc`.
+pub fn load(name: &str, parameters: Changes, methods: Changes) -> Problem {
+    problem(&text_of(name), parameters, methods)
+}
+
+/// What `compile` says about a model that it understands but cannot treat yet.
+pub fn refusal(text: &str) -> Option<Vec<Diagnostic>> {
+    fdcc_compiler::compile(&meaning(text)).err()
+}
+
+/// Solves from the model's own guess, however it ends.
+pub fn solve(problem: &Problem) -> Outcome {
+    try_solve(problem).expect("the problem is not refused")
+}
+
+/// Solves from the model's own guess, or is refused.
+pub fn try_solve(problem: &Problem) -> Result<Outcome, Refusal> {
+    homotopy::solve(problem, None, &mut |_, _| ControlFlow::Continue(()))
+}

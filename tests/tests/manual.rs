@@ -1,0 +1,203 @@
+//! The language reference is true and complete: `docs/reference/` as tests.
+//!
+//! A block tagged `fdc` is a model, `fdc more` is checked together with the first model of its page (items have no
+//! order). Each gives exactly the diagnostics that its comments claim, and compiles unless it claims an error.
+//! `later` in the tag says that `check` understands it and that `solve` answers FDC0603.
+
+use fdcc_compiler::builtins::{self, Domain, Notation, Row, Smoothness};
+use fdcc_compiler::{check, compile};
+use fdcc_grammar::{Code, Diagnostic, Severity, parse};
+use fdcc_tests::{blocks, documents, repository, unclaimed};
+use std::fs;
+
+/// A model of the reference.
+struct Example {
+    place: String,
+    text: String,
+    is_later: bool,
+}
+
+fn examples() -> Vec<Example> {
+    documents("docs/reference", "md").iter().flat_map(|(name, page)| examples_of(name, page)).collect()
+}
+
+fn examples_of(name: &str, page: &str) -> Vec<Example> {
+    let models: Vec<_> = blocks(page).into_iter().filter(|block| block.tag.starts_with("fdc")).collect();
+    let whole = models.iter().find(|block| !block.tag.contains("more")).map_or("", |block| &block.text).to_owned();
+    let example = |block: fdcc_tests::Block| Example {
+        place: format!("docs/reference/{name}.md:{}", block.line),
+        is_later: block.tag.contains("later"),
+        text: if block.tag.contains("more") { format!("{}\n{whole}", block.text) } else { block.text },
+    };
+    models.into_iter().map(example).collect()
+}
+
+fn diagnostics(text: &str) -> Vec<Diagnostic> {
+    let parsed = parse(text);
+    if parsed.diagnostics.is_empty() { check(&parsed.tree).diagnostics } else { parsed.diagnostics }
+}
+
+#[test]
+fn every_model_gives_exactly_the_diagnostics_it_claims() {
+    for example in examples() {
+        let problems = unclaimed(&example.text, &diagnostics(&example.text));
+        assert!(problems.is_empty(), "{}\n{}", example.place, problems.join("\n"));
+    }
+}
+
+#[test]
+fn models_compile_unless_the_page_says_that_they_cannot_be_solved_yet() {
+    for example in examples() {
+        if diagnostics(&example.text).iter().any(|it| it.severity == Severity::Error) {
+            continue;
+        }
+        let model = check(&parse(&example.text).tree).model.expect("a model without errors has a meaning");
+        let codes: Vec<Code> = compile(&model).err().unwrap_or_default().iter().map(|it| it.code).collect();
+        let expected: &[Code] = if example.is_later { &[Code::NotYet] } else { &[] };
+        assert_eq!(codes, expected, "{}", example.place);
+    }
+}
+
+/// Every variant and every optional part of the syntax tree occurs in some model.
+#[test]
+fn every_construct_of_the_tree_has_an_example() {
+    let trees: String = examples().iter().map(|example| format!("{:?}\n", parse(&example.text).tree)).collect();
+    let missing: Vec<String> = constructs().into_iter().filter(|construct| !trees.contains(construct)).collect();
+    assert!(missing.is_empty(), "write an example in docs/reference for {missing:?}");
+}
+
+/// `Variant`, or `part: Some(` for an optional part, as they are declared in the tree and print in `Debug`.
+fn constructs() -> Vec<String> {
+    let tree = fs::read_to_string(repository().join("grammar/src/ast.rs")).expect("the tree is there");
+    let (mut found, mut in_enum) = (Vec::new(), false);
+    for line in tree.lines() {
+        in_enum = line.starts_with("pub enum") || in_enum && line != "}";
+        let name: String = line.trim().trim_start_matches("pub ").chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+        if in_enum && line.starts_with("    ") && line.trim().starts_with(char::is_uppercase) && !line.starts_with("     ") {
+            found.push(name);
+        } else if line.contains(": Option<") {
+            found.push(format!("{name}: Some("));
+        }
+    }
+    assert!(found.len() > 50, "the tree is read: {found:?}");
+    found
+}
+
+/// Every keyword and every sign of the grammar occurs in some model.
+#[test]
+fn every_word_of_the_grammar_has_an_example() {
+    let grammar = fs::read_to_string(repository().join("grammar/src/fdc.pest")).expect("the grammar is there");
+    let texts: String = examples().iter().map(|example| without_comments(&example.text)).collect();
+    let words: Vec<&str> = texts.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+    let keywords: Vec<&str> = grammar.lines().filter(|line| line.starts_with("kw_")).filter_map(|line| line.split('"').nth(1)).collect();
+    assert!(keywords.len() > 40, "the grammar is read");
+    let missing: Vec<&&str> = keywords.iter().filter(|word| !words.contains(word)).collect();
+    assert!(missing.is_empty(), "write an example in docs/reference for {missing:?}");
+    let signs = ["<=", ">=", "==", "<", ">", "+", "-", "*", "/", "^", ":=", "->", "=>", "'", "[", "{", "("];
+    assert!(signs.iter().all(|sign| texts.contains(sign)));
+}
+
+fn without_comments(text: &str) -> String {
+    text.lines().map(|line| format!("{}\n", line.split('#').next().unwrap_or_default())).collect()
+}
+
+/// `UPDATE=1 cargo test -p fdcc-tests --test manual` writes the page anew.
+#[test]
+fn the_page_of_functions_is_that_of_the_table() {
+    let path = repository().join("docs/reference/functions.md");
+    let page = functions_page();
+    if std::env::var_os("UPDATE").is_some() {
+        fs::write(&path, &page).expect("the page can be written");
+    }
+    let written = fs::read_to_string(&path).unwrap_or_default();
+    assert_eq!(written, page, "docs/reference/functions.md is out of date: run with UPDATE=1");
+}
+
+const FUNCTIONS_HEAD: &str = "\
+# Operators and functions
+
+<!-- Written from the table in compiler/src/builtins.rs; change it there, then
+     `UPDATE=1 cargo test -p fdcc-tests --test manual`. -->
+
+Functions of numbers. `abs`, and all operators but `^`, take vectors as well, component by component; functions that are
+about vectors are in [expressions](expressions.md), sets in [surfaces](surfaces.md). Angles are in radians.
+
+";
+
+fn functions_page() -> String {
+    let rows = builtins::ALL.iter().map(|builtin| builtin.row()).filter(|row| row.notation != Notation::Internal);
+    let lines = rows.map(|row| format!("| `{}` | {} | {} | {} |\n", written(row), row.doc, domain(row), smoothness(row)));
+    let table: String = lines.collect();
+    format!("{FUNCTIONS_HEAD}| written | is | has a value for | derivatives |\n|---|---|---|---|\n{table}")
+}
+
+fn written(row: &Row) -> String {
+    match (row.notation, row.arity) {
+        (Notation::Infix(_), _) => format!("a {} b", row.name),
+        (Notation::Prefix, _) => format!("{}a", row.name),
+        (_, 1) => format!("{}(a)", row.name),
+        _ => format!("{}(a, b)", row.name),
+    }
+}
+
+fn domain(row: &Row) -> String {
+    let operand = |at: usize| ["a", "b"][at];
+    match row.domain {
+        Domain::All => "all numbers".into(),
+        Domain::NonNegative(at) => format!("{} >= 0", operand(at)),
+        Domain::Positive(at) => format!("{} > 0", operand(at)),
+        Domain::NonZero(at) => format!("{} not 0", operand(at)),
+        Domain::Unit(at) => format!("-1 <= {} <= 1", operand(at)),
+    }
+}
+
+fn smoothness(row: &Row) -> &'static str {
+    match row.smoothness {
+        Smoothness::Jump => "a jump",
+        Smoothness::Kink => "a kink",
+        Smoothness::Analytic => "all",
+    }
+}
+
+/// The examples in the table are equations between numbers, such as `sqrt(9) = 3`.
+#[test]
+fn examples_of_functions_are_true() {
+    let docs = builtins::ALL.iter().map(|builtin| builtin.row()).filter(|row| row.notation != Notation::Internal);
+    for row in docs {
+        let equation = row.doc.split('`').find(|text| text.contains(" = "));
+        let (left, right) = equation.and_then(|text| text.split_once(" = ")).expect("a row has an example");
+        let [left, right] = [left, right].map(value_of);
+        assert!((left - right).abs() <= 1e-15, "{}: {}: {left} is not {right}", row.name, row.doc);
+    }
+}
+
+fn value_of(expression: &str) -> f64 {
+    let text = format!("const value = {expression}\ntime t in [0, value + 1]\nstate x start 0\ndynamics {{ x' = 1 }}");
+    let model = check(&parse(&text).tree).model.unwrap_or_else(|| panic!("{expression} is understood"));
+    model.graph.as_number(model.interval[1]).expect("a constant is a number") - 1.0
+}
+
+/// The page of the command line names every command and every option that is declared in cli/src/commands.
+#[test]
+fn the_page_of_the_command_line_is_complete() {
+    let page = fs::read_to_string(repository().join("docs/reference/command-line.md")).expect("the page is there");
+    for (name, text) in documents("cli/src/commands", "rs").iter().filter(|(name, _)| name != "mod") {
+        let is_command = text.contains("pub fn run(self)");
+        assert!(!is_command || page.contains(&format!("\n## `fdcc {name}")), "command-line.md needs a section for `fdcc {name}`");
+        for option in options(text) {
+            assert!(page.contains(&format!("`{option}")), "command-line.md needs `{option}` of cli/src/commands/{name}.rs");
+        }
+    }
+}
+
+/// `--time-limit` for a field `time_limit` below `#[arg(long ...)]`.
+fn options(text: &str) -> Vec<String> {
+    let lines: Vec<&str> = text.lines().map(str::trim).collect();
+    let is_option = |pair: &&[&str]| pair[0].starts_with("#[arg(") && names_long(pair[0]);
+    let field = |line: &str| line.trim_start_matches("pub ").split(':').next().unwrap_or_default().replace('_', "-");
+    lines.windows(2).filter(is_option).map(|pair| format!("--{}", field(pair[1]))).collect()
+}
+
+fn names_long(attribute: &str) -> bool {
+    attribute.split(|c: char| !c.is_alphanumeric()).any(|word| word == "long")
+}

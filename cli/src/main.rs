@@ -1,7 +1,9 @@
 //! The command `fdcc`: reads the command line and hands over to one file for each command.
 
+mod bounds;
 mod commands;
 mod expectations;
+mod failure;
 mod log;
 mod model;
 mod output;

@@ -1,5 +1,6 @@
 //! One solve: compile, choose the starting points, run the solver, keep the best outcome.
 
+use crate::bounds;
 use crate::commands::{Exit, Options, Prepared, show};
 use crate::log::Log;
 use crate::output;
@@ -63,6 +64,9 @@ impl Compiled {
     /// Compiles a model; `begin` is when the work on it began.
     pub fn new(prepared: &Prepared, begin: Instant) -> Result<Self, Failure> {
         let problem = fdcc_compiler::compile(&prepared.model).map_err(Failure::Model)?;
+        if let Some(diagnostic) = bounds::empty(&problem) {
+            return Err(Failure::Model(vec![diagnostic]));
+        }
         let source_sha256 = sha256(&prepared.source.text);
         Ok(Compiled { problem, source_sha256, begin, seconds: begin.elapsed().as_secs_f64() })
     }

@@ -1,40 +1,25 @@
 //! The command from outside: what it prints, and how it ends.
 
-use std::fs;
-use std::io::Write;
-use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+mod common;
 
-/// A folder with the models that the cases are about.
-fn folder(name: &str) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-    fs::create_dir_all(&folder).expect("the folder for tests can be made");
-    let write = |file: &str, text: &[u8]| fs::write(folder.join(file), text).expect("a file can be written");
-    write("block.fdc", b"dynamics {\n  x' = v\n  v' = F m\n}\n");
-    write("end.fdc", b"param end = 4 [s]\ntime t in [0, end]\n");
-    write("clean.fdc", b"time t in [0, 1]\nstate x start 0\ndynamics { x' = 1 }\n");
-    write("empty.fdc", b"# nothing\n");
-    write("unused.fdc", b"time t in [0, 1]\nstate x start 0\ndynamics { x' = 1 }\nparam p = 1\n");
-    write(
+use common::stdout;
+use std::process::Output;
+
+const MODELS: &[(&str, &[u8])] = &[
+    ("block.fdc", b"dynamics {\n  x' = v\n  v' = F m\n}\n"),
+    ("end.fdc", b"param end = 4 [s]\ntime t in [0, end]\n"),
+    ("clean.fdc", b"time t in [0, 1]\nstate x start 0\ndynamics { x' = 1 }\n"),
+    ("empty.fdc", b"# nothing\n"),
+    ("unused.fdc", b"time t in [0, 1]\nstate x start 0\ndynamics { x' = 1 }\nparam p = 1\n"),
+    (
         "allowed.fdc",
         b"time t in [0, 1]\nstate x start 0\ndynamics { x' = 1 }\n# fdc: allow FDC0404\nparam p = 1\n",
-    );
-    write("latin.fdc", b"# caf\xe9\n");
-    folder
-}
+    ),
+    ("latin.fdc", b"# caf\xe9\n"),
+];
 
 fn fdcc(name: &str, arguments: &[&str], input: &str) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_fdcc"));
-    command.args(arguments).current_dir(folder(name));
-    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().expect("fdcc starts");
-    // A command that does not read its input may be gone already.
-    let _ = child.stdin.take().expect("the input is piped").write_all(input.as_bytes());
-    child.wait_with_output().expect("fdcc ends")
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).expect("fdcc prints text")
+    common::fdcc(&common::folder(name, MODELS), arguments, input)
 }
 
 #[test]
@@ -64,12 +49,7 @@ fn exit_codes_are_those_of_the_contract() {
     ];
     for (arguments, code) in cases {
         let output = fdcc("exit_codes", arguments, "");
-        assert_eq!(
-            output.status.code(),
-            Some(*code),
-            "{arguments:?}: {}",
-            String::from_utf8_lossy(&output.stderr)
-        );
+        common::expect_exit(&output, *code, &format!("{arguments:?}"));
     }
 }
 
@@ -154,6 +134,35 @@ fn sarif_names_rule_file_and_region() {
 #[test]
 fn unknown_codes_are_answered_with_their_group() {
     let output = fdcc("explain", &["explain", "FDC0199"], "");
-    let complaint = String::from_utf8(output.stderr).expect("fdcc prints text");
+    let complaint = common::stderr(&output);
     assert!(complaint.contains("FDC0101") && !complaint.contains("FDC0001"), "{complaint}");
+}
+
+#[test]
+fn every_code_has_a_page_with_a_wrong_and_a_right_model() {
+    for code in fdcc_grammar::Code::ALL {
+        let page = stdout(&fdcc("pages", &["explain", code.as_str()], ""));
+        let heading = format!("# {code}: {}", code.title());
+        assert!(page.starts_with(&heading), "{page}");
+        assert!(page.contains("## Wrong") && page.contains("## Right"), "{page}");
+    }
+}
+
+#[test]
+fn a_misspelt_command_is_recognised() {
+    let output = fdcc("misspelt", &["sovle"], "");
+    common::expect_exit(&output, 3, "sovle");
+    assert!(common::stderr(&output).contains("'solve'"));
+}
+
+#[test]
+fn help_explains_every_option_in_one_line() {
+    for command in ["check", "solve", "sweep", "test", "show", "explain"] {
+        let help = stdout(&fdcc("help", &[command, "--help"], ""));
+        let mut lines = help.lines().map(str::trim);
+        while let Some(line) = lines.next() {
+            let is_alone = line.starts_with("--") && !line.contains("  ");
+            assert!(!is_alone || lines.next().is_some_and(|text| !text.is_empty()), "{command}: {line}");
+        }
+    }
 }

@@ -170,6 +170,7 @@ impl Run<'_> {
     }
 
     fn interior_point(&mut self, nlp: &mut TranscribedNlp, start: &Start, watch: &mut Watch) -> Solution {
+        self.apply_sigma(nlp);
         let method = &self.problem.method;
         let options = Options { tol: method.tol, max_iter: method.max_iter, linear: method.linear };
         let sigma = &self.sigma;

@@ -40,7 +40,7 @@ pub fn residuals(problem: &Problem, outcome: &Outcome) -> Residuals {
     let from_bounds = of_variables.zip(lower.iter().zip(upper));
     Residuals {
         stationarity: largest(stationarity(&at, &solution.multipliers)),
-        feasibility: largest(bounds.map(|(bounds, value)| bounds.violation(*value))),
+        feasibility: largest(bounds.map(|(bounds, value)| outside(bounds, *value))),
         complementarity: largest(of_rows.map(|((bounds, row), lambda)| complementarity(bounds, *row, *lambda)))
             .max(largest(from_bounds.map(|((bounds, v), (lower, upper))| {
                 complementarity(bounds, *v, *upper).max(complementarity(bounds, *v, -lower))
@@ -55,6 +55,10 @@ fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     // Unlike `f64::max`, this does not overlook what is not a number.
     let maximum = |largest: f64, value: f64| if largest.is_nan() || value <= largest { largest } else { value };
     values.into_iter().fold(0.0, maximum)
+}
+
+fn outside(bounds: &Bounds, value: f64) -> f64 {
+    if value.is_nan() { value } else { bounds.violation(value) }
 }
 
 fn stationarity(at: &Transcribed, multipliers: &Multipliers) -> Vec<f64> {

@@ -27,7 +27,7 @@ fn examples_of(name: &str, page: &str) -> Vec<Example> {
     let example = |block: fdcc_tests::Block| Example {
         place: format!("docs/reference/{name}.md:{}", block.line),
         is_later: block.tag.contains("later"),
-        text: if block.tag.contains("more") { format!("{}\n{whole}", block.text) } else { block.text },
+        text: if block.tag.contains("more") { format!("{whole}\n{}", block.text) } else { block.text },
     };
     models.into_iter().map(example).collect()
 }
@@ -39,10 +39,12 @@ fn diagnostics(text: &str) -> Vec<Diagnostic> {
 
 #[test]
 fn every_model_gives_exactly_the_diagnostics_it_claims() {
-    for example in examples() {
+    let problems = examples().into_iter().flat_map(|example| {
         let problems = unclaimed(&example.text, &diagnostics(&example.text));
-        assert!(problems.is_empty(), "{}\n{}", example.place, problems.join("\n"));
-    }
+        problems.into_iter().map(move |problem| format!("{}: {problem}", example.place))
+    });
+    let problems: Vec<String> = problems.collect();
+    assert!(problems.is_empty(), "\n{}", problems.join("\n"));
 }
 
 #[test]
@@ -72,12 +74,11 @@ fn constructs() -> Vec<String> {
     let (mut found, mut in_enum) = (Vec::new(), false);
     for line in tree.lines() {
         in_enum = line.starts_with("pub enum") || in_enum && line != "}";
-        let name: String = line.trim().trim_start_matches("pub ").chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-        if in_enum && line.starts_with("    ") && line.trim().starts_with(char::is_uppercase) && !line.starts_with("     ") {
-            found.push(name);
-        } else if line.contains(": Option<") {
-            found.push(format!("{name}: Some("));
-        }
+        let variant = line.strip_prefix("    ").filter(|rest| in_enum && rest.starts_with(char::is_uppercase));
+        found.extend(variant.and_then(|rest| rest.split(|c: char| !c.is_alphanumeric()).next()).map(str::to_owned));
+        let optional = line.split(": Option<").collect::<Vec<_>>();
+        let names = optional[..optional.len() - 1].iter().filter_map(|before| before.split([' ', ',']).next_back());
+        found.extend(names.map(|name| format!("{name}: Some(")));
     }
     assert!(found.len() > 50, "the tree is read: {found:?}");
     found
@@ -119,8 +120,8 @@ const FUNCTIONS_HEAD: &str = "\
 <!-- Written from the table in compiler/src/builtins.rs; change it there, then
      `UPDATE=1 cargo test -p fdcc-tests --test manual`. -->
 
-Functions of numbers. `abs`, and all operators but `^`, take vectors as well, component by component; functions that are
-about vectors are in [expressions](expressions.md), sets in [surfaces](surfaces.md). Angles are in radians.
+All of them take numbers. `+`, `-` and `abs` take vectors as well, component by component, and `*` and `/` a vector with a
+number. What is about vectors stands in [expressions](expressions.md), sets in [surfaces](surfaces.md).
 
 ";
 
@@ -172,9 +173,9 @@ fn examples_of_functions_are_true() {
 }
 
 fn value_of(expression: &str) -> f64 {
-    let text = format!("const value = {expression}\ntime t in [0, value + 1]\nstate x start 0\ndynamics {{ x' = 1 }}");
+    let text = format!("param value = {expression}\ntime t in [0, 1]\nstate x start value\ndynamics {{ x' = 1 }}");
     let model = check(&parse(&text).tree).model.unwrap_or_else(|| panic!("{expression} is understood"));
-    model.graph.as_number(model.interval[1]).expect("a constant is a number") - 1.0
+    model.params[0].value.and_then(|value| model.graph.as_number(value)).expect("a constant is a number")
 }
 
 /// The page of the command line names every command and every option that is declared in cli/src/commands.
@@ -190,12 +191,13 @@ fn the_page_of_the_command_line_is_complete() {
     }
 }
 
-/// `--time-limit` for a field `time_limit` below `#[arg(long ...)]`.
+/// `--time-limit` for a field `time_limit` below `#[arg(long ...)]`, or the name that stands there.
 fn options(text: &str) -> Vec<String> {
     let lines: Vec<&str> = text.lines().map(str::trim).collect();
     let is_option = |pair: &&[&str]| pair[0].starts_with("#[arg(") && names_long(pair[0]);
     let field = |line: &str| line.trim_start_matches("pub ").split(':').next().unwrap_or_default().replace('_', "-");
-    lines.windows(2).filter(is_option).map(|pair| format!("--{}", field(pair[1]))).collect()
+    let given = |attribute: &str| Some(attribute.split_once("long = \"")?.1.split('"').next()?.to_owned());
+    lines.windows(2).filter(is_option).map(|pair| format!("--{}", given(pair[0]).unwrap_or_else(|| field(pair[1])))).collect()
 }
 
 fn names_long(attribute: &str) -> bool {

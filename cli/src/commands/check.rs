@@ -5,7 +5,7 @@ use fdcc_grammar::{Diagnostic, Severity, SourceFile};
 
 use super::Exit;
 use crate::model::Loaded;
-use crate::output::{self, diagnostics, sarif};
+use crate::output::{self, diagnostics, plural, sarif};
 use crate::render;
 
 /// Report everything that is wrong with models
@@ -112,8 +112,4 @@ fn summary(loaded: &[Loaded]) -> String {
     } else {
         format!("{found} in {}{shown}\n", plural(loaded.len(), "file"))
     }
-}
-
-fn plural(number: usize, noun: &str) -> String {
-    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }

@@ -5,8 +5,8 @@ use super::options::{Options, Prepared, prepare, show};
 use crate::log::{Level, Log};
 use crate::output::{self, files};
 use crate::solver::{Compiled, Failure, Solved};
-use crate::verdict;
 use crate::watch::catch_interrupts;
+use crate::{failure, verdict};
 use clap::Args;
 use std::time::Instant;
 
@@ -48,7 +48,7 @@ impl Solve {
     }
 
     fn report(&self, prepared: &Prepared, solved: &Solved) -> Exit {
-        show(verdict::diagnostic(&solved.problem, &solved.outcome).iter(), &prepared.source);
+        show(failure::diagnostic(&solved.problem, &solved.outcome).iter(), &prepared.source);
         let written = match &self.options.out {
             Some(folder) => files::write(&solved.document, folder, &solved.document.model),
             None => Ok(Vec::new()),
@@ -57,7 +57,7 @@ impl Solve {
         if self.options.json {
             output::print(&output::json(&solved.document));
         } else {
-            output::print(&verdict::verdict(&solved.document, &solved.outcome));
+            output::print(&verdict::verdict(solved));
         }
         match written {
             Ok(names) if names.is_empty() || self.options.json => solved.exit(),

@@ -3,10 +3,10 @@
 use super::Exit;
 use super::options::{Options, Prepared, prepare, show};
 use crate::expectations::{self, Checked, Outcome, Sides};
+use crate::failure;
 use crate::log::{Level, Log};
 use crate::output::{self, files, number};
 use crate::solver::{Compiled, Failure, Solved};
-use crate::verdict;
 use crate::watch::catch_interrupts;
 use clap::Args;
 use serde::Serialize;
@@ -81,7 +81,7 @@ impl Test {
             return Ok(Tested { file: file.into(), model, status: None, expectations: Vec::new() });
         }
         let solved = self.solve(&prepared, begin).map_err(|failure| failure.report(&prepared.source))?;
-        show(verdict::diagnostic(&solved.problem, &solved.outcome).iter(), &prepared.source);
+        show(failure::diagnostic(&solved.problem, &solved.outcome).iter(), &prepared.source);
         let checked = expectations::evaluate(&prepared.model, &solved);
         // What a solve did not reach is no news about the model.
         let checked = checked.into_iter().filter(|_| solved.is_good());
@@ -136,7 +136,9 @@ impl Tested {
         let file = &self.file;
         match &self.status {
             None => format!("{file}: nothing is expected\n"),
-            Some(status) if !self.is_solved() => format!("{file}: not solved: {}\n", status.replace('_', " ")),
+            Some(status) if !self.is_solved() => {
+                format!("{file}: not solved: {}\n", status.replace('_', " "))
+            }
             _ => self.expectations.iter().map(|it| format!("{file}:{}: {}\n", it.line, it.words())).collect(),
         }
     }

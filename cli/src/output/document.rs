@@ -1,11 +1,11 @@
 //! The JSON document of a solve: the contract that people script against.
 
 use super::named::Named;
+use super::number::significant;
 use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::modes::Mode;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Linear, Method, Problem, Scheme, Solver};
-use super::number::significant;
 use serde::Serialize;
 
 /// One solve. Numbers are written so that they read back to the same bits.
@@ -90,6 +90,9 @@ impl Document {
         let fixed = (0..problem.parameters.len()).filter(|i| !free.contains(i) && !widths.contains(i));
         let controls = problem.controls.iter().zip(&trajectory.controls);
         let counts = &solution.counts;
+        // Where an expression has no value, no error was measured.
+        let measured =
+            |error: f64| if matches!(solution.status, Status::NotFinite(_)) { f64::NAN } else { error };
         Document {
             fdcc: env!("CARGO_PKG_VERSION").to_string(),
             model: problem.name.clone(),
@@ -101,8 +104,8 @@ impl Document {
             params: fixed.map(named).collect(),
             method: MethodUsed::new(problem, outcome),
             iterations: counts.iterations,
-            kkt_error: solution.kkt_error,
-            constraint_violation: solution.constraint_violation,
+            kkt_error: measured(solution.kkt_error),
+            constraint_violation: measured(solution.constraint_violation),
             regularizations: counts.regularizations,
             counts: Counts {
                 factorizations: counts.factorizations,
@@ -177,7 +180,7 @@ pub fn status_name(status: &Status) -> &'static str {
 }
 
 /// The name of a mode in files and verdicts.
-pub fn mode_name(mode: Mode) -> &'static str {
+fn mode_name(mode: Mode) -> &'static str {
     match mode {
         Mode::Below => "below",
         Mode::Held => "held",

@@ -7,6 +7,7 @@ pub mod files;
 pub mod html;
 pub mod named;
 pub mod number;
+pub mod plot;
 pub mod sarif;
 pub mod table;
 
@@ -22,6 +23,11 @@ pub fn print(text: &str) {
 /// Says on the standard error why something was not done.
 pub fn complain(text: &str) {
     let _ = writeln!(std::io::stderr(), "fdcc: {text}");
+}
+
+/// `1 state`, `2 states`.
+pub fn plural(number: usize, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
 /// Indented JSON with a line end. A number that is not finite becomes `null`.

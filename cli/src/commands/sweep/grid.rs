@@ -41,7 +41,9 @@ impl Grid {
             } else if let Err(message) = model.set_method(name, value) {
                 let is_key = fdcc_compiler::is_method_key(name);
                 let no_param = model.set_param(name, "0").err().filter(|_| !is_key);
-                return Err(no_param.map_or(message.clone(), |no_param| format!("{no_param}\n      {message}")));
+                return Err(
+                    no_param.map_or(message.clone(), |no_param| format!("{no_param}\n      {message}"))
+                );
             }
         }
         Ok(())

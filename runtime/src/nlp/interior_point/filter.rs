@@ -78,7 +78,7 @@ pub(super) struct Accepted {
 
 /// Violation, barrier objective and slope at the iterate.
 #[derive(Clone, Copy)]
-struct Reference {
+pub(super) struct Reference {
     theta: f64,
     phi: f64,
     slope: f64,
@@ -87,11 +87,7 @@ struct Reference {
 impl Search<'_> {
     /// Backtracks from the longest step; `None` where the step has become too short.
     pub(super) fn run(&mut self, filter: &mut Filter, step: &mut Step, longest: f64) -> Option<Accepted> {
-        let from = Reference {
-            theta: self.values.violation(),
-            phi: self.barrier.value(self.space, self.values, &self.at.y),
-            slope: self.barrier.slope(self.space, self.at, self.slopes, step),
-        };
+        let from = self.reference(step);
         let smallest = self.smallest_step(filter, from);
         let (mut alpha, mut trials) = (longest, 0);
         while alpha >= smallest || trials == 0 {
@@ -112,6 +108,29 @@ impl Search<'_> {
             alpha *= 0.5;
         }
         None
+    }
+
+    /// What a step from here is compared with.
+    pub(super) fn reference(&self, step: &Step) -> Reference {
+        Reference {
+            theta: self.values.violation(),
+            phi: self.barrier.value(self.space, self.values, &self.at.y),
+            slope: self.barrier.slope(self.space, self.at, self.slopes, step),
+        }
+    }
+
+    /// The longest step, whether it is acceptable or not; `true` with it if it is acceptable to an earlier point.
+    pub(super) fn full(
+        &mut self,
+        filter: &mut Filter,
+        step: &Step,
+        longest: f64,
+        from: Reference,
+        alpha: f64,
+    ) -> Option<(Accepted, bool)> {
+        let (y, values) = self.trial(step, longest)?;
+        let acceptable = self.accept(filter, from, alpha, &y, &values);
+        Some((Accepted { y, values, alpha: longest, trials: 1 }, acceptable))
     }
 
     fn trial(&mut self, step: &Step, alpha: f64) -> Option<(Vec<f64>, Values)> {

@@ -25,6 +25,12 @@ const LARGEST_REGULARIZATION: f64 = 1e40;
 const FIRST_GROWTH: f64 = 100.0;
 const GROWTH: f64 = 8.0;
 const DECAY: f64 = 1.0 / 3.0;
+/// A line search that keeps less than the first fraction of a step raises the caution, one that keeps more than the
+/// second lowers it.
+const CUT_SHORT: f64 = 0.1;
+const NOT_CUT: f64 = 0.5;
+const CAUTION_GROWTH: f64 = 4.0;
+const MOST_CAUTION: f64 = 1.0;
 const ROW_REGULARIZATION: f64 = 1e-8;
 /// Refinement stops at this residual, relative to the right side.
 const REFINED: f64 = 1e-11;
@@ -48,6 +54,8 @@ pub(super) struct Kkt {
     last_regularization: f64,
     /// Whether the last factorisation had to raise its first guess of the regularisation.
     was_needed: bool,
+    /// Regularisation that is used even where the inertia does not ask for it.
+    caution: f64,
 }
 
 impl Kkt {
@@ -80,6 +88,7 @@ impl Kkt {
             regularization: 0.0,
             last_regularization: 0.0,
             was_needed: false,
+            caution: 0.0,
         }
     }
 
@@ -97,7 +106,8 @@ impl Kkt {
     /// Factors with the smallest regularisation that gives the right inertia; `false` if none does.
     pub(super) fn factor_with_inertia(&mut self, space: &Space, slopes: &Slopes, mu: f64, counts: &mut Counts) -> bool {
         // Curvature that was wrong a moment ago is likely to be wrong again: zero is tried only every other time.
-        self.regularization = if self.was_needed { self.smaller_regularization() } else { 0.0 };
+        let start = if self.was_needed { self.smaller_regularization() } else { 0.0 };
+        self.regularization = start.max(self.caution);
         let (first, mut rows) = (self.regularization, 0.0);
         loop {
             match self.factor_once(space, slopes, rows, counts) {
@@ -114,6 +124,17 @@ impl Kkt {
             self.last_regularization = self.regularization;
         }
         true
+    }
+
+    /// Learns from a line search: steps that are cut again and again often come from a nearly singular Hessian, and
+    /// are made shorter by regularising it although its inertia is right. Where that does not help it is given up.
+    pub(super) fn judge(&mut self, fraction: f64) {
+        if fraction < CUT_SHORT {
+            let raised = (CAUTION_GROWTH * self.caution).max(FIRST_REGULARIZATION);
+            self.caution = if raised > MOST_CAUTION { 0.0 } else { raised };
+        } else if fraction > NOT_CUT {
+            self.caution = if self.caution < FIRST_REGULARIZATION { 0.0 } else { self.caution / CAUTION_GROWTH };
+        }
     }
 
     fn smaller_regularization(&self) -> f64 {

@@ -13,17 +13,19 @@ mod restoration;
 mod space;
 #[cfg(test)]
 mod tests;
+mod watchdog;
 
 use super::scaling::Scaled;
 use super::{Counts, Multipliers, Nlp, Options, Progress, Solution, Start, Status, Stop, Watch};
 use barrier::Barrier;
-use filter::{Filter, Search};
+use filter::{Accepted, Filter, Search};
 use iterate::{Iterate, Slopes, Step, Values};
 use kkt::Kkt;
 use residuals::Residuals;
 use restoration::Restored;
 use space::Space;
 use std::ops::ControlFlow;
+use watchdog::Watchdog;
 
 const FIRST_MU: f64 = 0.1;
 const WARM_MU: f64 = 1e-4;
@@ -61,6 +63,7 @@ struct Algorithm {
     residuals: Residuals,
     acceptable: usize,
     tiny_steps: usize,
+    watchdog: Watchdog,
     /// Whether the derivatives belong to the iterate.
     fresh: bool,
 }
@@ -125,7 +128,7 @@ fn first_point(nlp: &mut dyn Nlp, space: &Space, start: &[f64], push: f64) -> Ve
     y
 }
 
-const WARM_MU: f64 = 1e-4;
+fn warm_multipliers(nlp: &Scaled, space: &Space, mut known: Multipliers, mu: f64, at: &mut Iterate) {
     nlp.scale(&mut known);
     at.lambda.copy_from_slice(&known.rows);
     let Iterate { y, lambda, lower, upper } = at;
@@ -154,6 +157,7 @@ impl Algorithm {
             residuals: Residuals::default(),
             acceptable: 0,
             tiny_steps: 0,
+            watchdog: Watchdog::default(),
             fresh: false,
             space,
             at,
@@ -195,6 +199,7 @@ impl Algorithm {
         }
         if self.barrier.update(&self.residuals) {
             self.filter.clear();
+            self.watchdog.end();
         }
         self.kkt.assemble(&self.space, &self.at, &self.slopes, &self.barrier);
         if !self.kkt.factor_with_inertia(&self.space, &self.slopes, self.barrier.mu, &mut self.counts) {
@@ -255,12 +260,38 @@ impl Algorithm {
             slopes: &self.slopes,
             counts: &mut self.counts,
         };
-        let Some(accepted) = search.run(&mut self.filter, &mut self.step, longest) else {
-            return Outcome::Blocked;
+        let accepted = if self.watchdog.is_due() {
+            let reference = search.reference(&self.step);
+            self.watchdog.begin(self.at.clone(), self.values.clone(), reference, longest);
+            search.full(&mut self.filter, &self.step, longest, reference, longest)
+        } else if let Some(saved) = &self.watchdog.saved {
+            search.full(&mut self.filter, &self.step, longest, saved.reference, saved.alpha)
+        } else {
+            let accepted = search.run(&mut self.filter, &mut self.step, longest);
+            let Some(accepted) = accepted else { return Outcome::Blocked };
+            Some((accepted, true))
         };
         self.tiny_steps = 0;
-        self.progress.trials = accepted.trials;
-        self.move_to(accepted.y, accepted.values, accepted.alpha, dual);
+        self.settle(accepted, longest, dual)
+    }
+
+    /// Takes an accepted step, or one on trust; or goes back to where the trust began.
+    fn settle(&mut self, accepted: Option<(Accepted, bool)>, longest: f64, dual: f64) -> Outcome {
+        match accepted {
+            Some((accepted, acceptable)) if acceptable || self.watchdog.trust() => {
+                if acceptable && self.watchdog.end().is_none() {
+                    self.kkt.judge(accepted.alpha / longest);
+                    self.watchdog.note(accepted.alpha / longest);
+                }
+                self.progress.trials = accepted.trials;
+                self.move_to(accepted.y, accepted.values, accepted.alpha, dual);
+            }
+            _ => {
+                let saved = self.watchdog.end().expect("only the watchdog refuses a step here");
+                (self.at, self.values, self.fresh) = (saved.at, saved.values, false);
+                self.counts.iterations += 1;
+            }
+        }
         Outcome::Continue
     }
 

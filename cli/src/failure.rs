@@ -1,0 +1,109 @@
+//! The diagnostics of a solve that failed, at the lines of the model: FDC0601 and FDC0602.
+
+use crate::output::number::{short, significant};
+use fdcc_grammar::{Code, Diagnostic, Span};
+use fdcc_runtime::homotopy::{Limiting, Outcome};
+use fdcc_runtime::nlp::{Place, Status};
+use fdcc_runtime::problem::{Problem, Variable};
+
+/// What a failed solve says, if it is about a line of the model.
+pub fn diagnostic(problem: &Problem, outcome: &Outcome) -> Option<Diagnostic> {
+    match &outcome.solution.status {
+        // The runtime may not know the place.
+        Status::NotFinite(place) if place.origin.label.is_empty() => None,
+        Status::NotFinite(place) => Some(not_finite(outcome, place)),
+        Status::Infeasible => {
+            outcome.limiting.as_ref().map(|limiting| infeasible(problem, outcome, limiting))
+        }
+        _ => None,
+    }
+}
+
+fn span((start, end): (u32, u32)) -> Span {
+    Span { start, end }
+}
+
+fn not_finite(outcome: &Outcome, place: &Place) -> Diagnostic {
+    let time = place.grid_point.and_then(|k| outcome.trajectory.time.get(k));
+    let when = time.map(|t| format!(" at t = {}", short(*t))).unwrap_or_default();
+    let message = format!("not a number{when}, iteration {}", outcome.solution.counts.iterations);
+    let label = format!("`{}` or one of its derivatives is infinite or undefined", place.origin.label);
+    Diagnostic::new(Code::NotFinite, message, span(place.origin.span), label).help(
+        "look for a division by 0, a `sqrt` or `log` at 0 or below, a power of a negative number. Keep the \
+         trajectory away from it by a bound, round it off as in `sqrt(e + 1e-6)`, or give a `guess` where \
+         everything has a value.",
+    )
+}
+
+fn infeasible(problem: &Problem, outcome: &Outcome, limiting: &Limiting) -> Diagnostic {
+    let Limiting { origin, violation, .. } = limiting;
+    let amount = significant(*violation, 3);
+    let when = limiting.time.map(|t| format!(" at t = {}", short(t))).unwrap_or_default();
+    let label = match is_equation(problem, limiting) {
+        _ if outcome.convex => format!("off by {amount}{when}, where the solver stopped"),
+        true => format!("worst{when}: it would have to be off by {amount} in one step"),
+        false => format!("worst{when}: off by {amount}"),
+    };
+    let message = if outcome.convex {
+        "there is no feasible trajectory".to_string()
+    } else {
+        format!("no feasible trajectory found: `{}` is violated by {amount} at best", origin.label)
+    };
+    let mut diagnostic = Diagnostic::new(Code::Infeasible, message, span(origin.span), label);
+    for (control, text) in saturated(problem, outcome, limiting) {
+        diagnostic = diagnostic.label(span(control.origin.span), text);
+    }
+    diagnostic.help(advice(outcome.convex))
+}
+
+/// A proof and a failed search want different words.
+fn advice(is_proved: bool) -> &'static str {
+    if is_proved {
+        "this is certain, because the problem is convex: no `guess` can help. Loosen a condition, widen the bounds of a \
+         control, or allow more time."
+    } else {
+        "no small change of the trajectory makes this better. Loosen a condition, widen the bounds of a control, allow \
+         more time, or start from another `guess` if you know that a solution exists."
+    }
+}
+
+/// Whether the worst row is a step of a differential equation rather than a condition.
+fn is_equation(problem: &Problem, limiting: &Limiting) -> bool {
+    (0..problem.layout.x).any(|row| problem.dynamics.origin(row) == limiting.origin)
+}
+
+/// How close to a bound counts as at the bound.
+const NEAR: f64 = 1e-3;
+
+/// Controls that are at a bound at the worst time, with the span of time over which they are.
+fn saturated<'p>(
+    problem: &'p Problem,
+    outcome: &Outcome,
+    limiting: &Limiting,
+) -> Vec<(&'p Variable, String)> {
+    let trajectory = &outcome.trajectory;
+    let worst = limiting.time.and_then(|t| trajectory.time.iter().position(|other| *other >= t));
+    let worst = worst.unwrap_or(trajectory.time.len() - 1).saturating_sub(1);
+    let controls = problem.controls.iter().zip(&trajectory.controls);
+    let mut found: Vec<(&Variable, String)> = controls
+        .filter_map(|(control, values)| {
+            let (bound, first, last) = stay(control, values, worst)?;
+            let [from, to] = [first, last + 1].map(|k| short(trajectory.time[k]));
+            Some((control, format!("`{}` is at {} from t = {from} to {to}", control.name, short(bound))))
+        })
+        .collect();
+    // The parts of a vector share one declaration, and one label there is enough.
+    found.dedup_by_key(|(control, _)| control.origin.span);
+    found
+}
+
+/// The bound at which a control is in an interval, with the first and last interval of that stay.
+fn stay(control: &Variable, values: &[f64], interval: usize) -> Option<(f64, usize, usize)> {
+    let bounds = control.bounds;
+    let is_near = |k: usize, bound: f64| (values[k] - bound).abs() <= NEAR * bound.abs().max(1.0);
+    let ends = [bounds.lower, bounds.upper].into_iter().filter(|bound| bound.is_finite());
+    let bound = ends.filter(|_| !bounds.is_equality()).find(|bound| is_near(interval, *bound))?;
+    let first = (0..=interval).rev().take_while(|k| is_near(*k, bound)).last()?;
+    let last = (interval..values.len()).take_while(|k| is_near(*k, bound)).last()?;
+    Some((bound, first, last))
+}

@@ -1,0 +1,110 @@
+//! One signal over time as an SVG figure, with the times at which a surface is held shaded.
+
+use super::document::Document;
+use super::number::significant;
+use std::fmt::Write;
+
+const WIDTH: f64 = 620.0;
+const HEIGHT: f64 = 150.0;
+const LEFT: f64 = 70.0;
+const RIGHT: f64 = WIDTH - 10.0;
+const TOP: f64 = 8.0;
+const BOTTOM: f64 = HEIGHT - 22.0;
+
+/// Where values are drawn.
+struct Axes {
+    time: [f64; 2],
+    value: [f64; 2],
+}
+
+impl Axes {
+    fn new(time: &[f64], values: &[f64]) -> Self {
+        Axes { time: range(time, 0.0), value: range(values, 0.05) }
+    }
+
+    fn x(&self, t: f64) -> f64 {
+        LEFT + (RIGHT - LEFT) * (t - self.time[0]) / (self.time[1] - self.time[0])
+    }
+
+    fn y(&self, value: f64) -> f64 {
+        TOP + (BOTTOM - TOP) * (self.value[1] - value) / (self.value[1] - self.value[0])
+    }
+}
+
+/// The range of the finite values, widened by a fraction of itself; never empty.
+fn range(values: &[f64], margin: f64) -> [f64; 2] {
+    let finite = values.iter().copied().filter(|value| value.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    match high - low {
+        width if width > 0.0 && width.is_finite() => [low - margin * width, high + margin * width],
+        _ if low.is_finite() => [low - low.abs().max(1.0), low + low.abs().max(1.0)],
+        _ => [-1.0, 1.0],
+    }
+}
+
+/// A figure with its caption.
+pub fn plot(document: &Document, name: &str, values: &[f64]) -> String {
+    let axes = Axes::new(&document.time, values);
+    format!(
+        "<figure><figcaption>{}</figcaption><svg width=\"{WIDTH}\" height=\"{HEIGHT}\">{}{}\
+         <path class=\"signal\" d=\"{}\"/></svg></figure>\n",
+        escape(name),
+        shades(document, &axes),
+        ticks(&axes),
+        path(&document.time, values, &axes)
+    )
+}
+
+fn shades(document: &Document, axes: &Axes) -> String {
+    let surfaces = document.surfaces.0.iter();
+    let spans = surfaces.flat_map(|(name, spans)| spans.iter().map(move |span| (name, span)));
+    let held = spans.filter(|(_, span)| span.mode == "held");
+    let shade = |(name, span): (&String, &super::document::Span)| {
+        let (x, width, height) = (axes.x(span.from), axes.x(span.to) - axes.x(span.from), BOTTOM - TOP);
+        let title = format!("<title>{} is held</title>", escape(name));
+        format!(
+            "<rect class=\"held\" x=\"{x:.1}\" y=\"{TOP}\" width=\"{width:.1}\" height=\"{height}\">{title}</rect>"
+        )
+    };
+    held.map(shade).collect()
+}
+
+fn ticks(axes: &Axes) -> String {
+    let three = |[low, high]: [f64; 2]| [low, 0.5 * (low + high), high];
+    let values = three(axes.value).map(|value| {
+        let (x, y, text) = (LEFT - 6.0, axes.y(value), significant(value, 3));
+        let line = format!("<path class=\"axis\" d=\"M{LEFT} {y:.1}H{RIGHT}\"/>");
+        format!("{line}<text x=\"{x}\" y=\"{:.1}\" text-anchor=\"end\">{text}</text>", y + 4.0)
+    });
+    let times = three(axes.time).map(|t| {
+        let (x, y, text) = (axes.x(t), HEIGHT - 6.0, significant(t, 4));
+        format!("<text x=\"{x:.1}\" y=\"{y}\" text-anchor=\"middle\">{text}</text>")
+    });
+    values.concat() + &times.concat()
+}
+
+/// A polyline through grid values; steps for a signal that has one value per interval. A value that is not finite
+/// leaves a gap.
+fn path(time: &[f64], values: &[f64], axes: &Axes) -> String {
+    let is_stepwise = values.len() < time.len();
+    let mut path = String::new();
+    let mut command = 'M';
+    for (k, value) in values.iter().enumerate() {
+        if !value.is_finite() || !time[k].is_finite() {
+            command = 'M';
+            continue;
+        }
+        let (x, y) = (axes.x(time[k]), axes.y(*value));
+        write!(path, "{command}{x:.1} {y:.1}").expect("a string takes everything");
+        if is_stepwise {
+            write!(path, "H{:.1}", axes.x(time[k + 1])).expect("a string takes everything");
+        }
+        command = 'L';
+    }
+    path
+}
+
+/// Text between tags.
+pub fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}

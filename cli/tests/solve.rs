@@ -1,0 +1,365 @@
+//! `fdcc solve`: what it answers, on which stream, and how it ends.
+
+mod common;
+
+use common::*;
+use serde_json::Value;
+use std::path::Path;
+
+fn ramp(test: &str) -> std::path::PathBuf {
+    folder(test, &[("ramp.fdc", RAMP.as_bytes())])
+}
+
+fn solved(folder: &Path, arguments: &[&str]) -> Value {
+    let output = fdcc(folder, &[&["solve", "--json", "--log", "none"], arguments].concat(), "");
+    expect_exit(&output, 0, &format!("{arguments:?}"));
+    json(&output)
+}
+
+#[test]
+fn the_document_has_the_fields_and_sizes_of_the_contract() {
+    let document = solved(&ramp("document"), &["ramp.fdc"]);
+    assert_eq!(document["fdcc"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(document["model"], "ramp");
+    assert_eq!(document["source_sha256"].as_str().map(str::len), Some(64));
+    assert_eq!(document["status"], "solved");
+    assert_eq!(document["params"], serde_json::json!({ "goal": 1.0 }));
+    assert_eq!(document["method"]["scheme"], "implicit_euler");
+    assert_eq!(document["method"]["N"], 4);
+    assert!(document.get("verification").is_none(), "nothing has been replayed");
+    for number in ["iterations", "kkt_error", "constraint_violation", "regularizations"] {
+        assert!(document[number].is_number(), "{number}");
+    }
+    for seconds in ["compile", "solve", "total"] {
+        assert!(number(&document["seconds"][seconds]) >= 0.0);
+    }
+    assert_eq!(column(&document["time"]), [0.0, 0.25, 0.5, 0.75, 1.0]);
+    let lengths = [("states", "x", 5), ("costates", "x", 5), ("controls", "u", 4), ("report", "double", 5)];
+    for (group, name, length) in lengths {
+        assert_eq!(column(&document[group][name]).len(), length, "{group}");
+    }
+}
+
+/// With `J(t, x) = (1 - x)^2 / (1 - t)`, `dJ/dx = -2` along `x = t`.
+#[test]
+fn the_answer_is_that_of_the_closed_form() {
+    for solver in ["convex", "interior_point"] {
+        let method = format!("solver={solver}");
+        let document = solved(&ramp(solver), &["ramp.fdc", "--method", &method]);
+        assert_eq!(document["method"]["solver"], *solver);
+        assert_eq!(document["global"], solver == "convex");
+        let close = |value: f64, expected: f64| {
+            assert!((value - expected).abs() < 1e-6, "{solver}: {value} is not {expected}");
+        };
+        close(number(&document["objective"]), 1.0);
+        let columns = |group: &str, name: &str| column(&document[group][name]);
+        columns("states", "x")
+            .iter()
+            .zip(columns("report", "double"))
+            .for_each(|(x, twice)| close(twice, 2.0 * x));
+        columns("states", "x").iter().zip(column(&document["time"])).for_each(|(x, t)| close(*x, t));
+        columns("controls", "u").iter().for_each(|u| close(*u, 1.0));
+        columns("costates", "x").iter().for_each(|costate| close(*costate, -2.0));
+    }
+}
+
+#[test]
+fn maximize_reports_the_objective_as_written() {
+    let text = RAMP.replace("minimize integral(u^2)", "maximize 3 - integral(u^2)");
+    let folder = folder("maximize", &[("ramp.fdc", text.as_bytes())]);
+    let document = solved(&folder, &["ramp.fdc"]);
+    assert!((number(&document["objective"]) - 2.0).abs() < 1e-6);
+    assert!((column(&document["costates"]["x"])[0] - 2.0).abs() < 1e-5);
+}
+
+#[test]
+fn two_runs_differ_in_seconds_only() {
+    let folder = folder("determinism", &[]);
+    let racecar = model("racecar");
+    for more in [&[][..], &["--starts", "3", "--seed", "7"]] {
+        let arguments = [&[racecar.as_str(), "--method", "N=40"], more].concat();
+        let [first, second] = [(); 2].map(|()| without_seconds(solved(&folder, &arguments)));
+        assert_eq!(first.to_string(), second.to_string());
+    }
+}
+
+#[test]
+fn the_three_files_hold_the_same_numbers_to_the_last_bit() {
+    let folder = folder("files", &[]);
+    let racecar = model("racecar");
+    let arguments = [racecar.as_str(), "--method", "N=40", "--out", "new/folder"];
+    let printed = solved(&folder, &arguments);
+    let read = |ending: &str| {
+        let path = folder.join(format!("new/folder/racecar.{ending}"));
+        std::fs::read_to_string(path).expect("the file was written")
+    };
+    let saved: Value = serde_json::from_str(&read("sol.json")).expect("a JSON file");
+    assert_eq!(saved, printed);
+    // Printing what was read gives the text again: no digit was lost or added.
+    assert_eq!(
+        serde_json::to_string_pretty(&saved).expect("JSON") + "\n",
+        reordered(&read("sol.json"), &saved)
+    );
+    let table = read("csv");
+    let mut lines = table.lines();
+    let names: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    assert_eq!(names[..3], ["t", "pos.x", "pos.y"]);
+    let rows: Vec<Vec<f64>> =
+        lines.map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect();
+    assert_eq!(rows.len(), 41);
+    for (at, name) in names.iter().enumerate() {
+        let groups = [&saved["states"][*name], &saved["controls"][*name], &saved["report"][*name]];
+        let expected = groups.into_iter().find(|value| value.is_array()).unwrap_or(&saved["time"]);
+        let expected = column(expected);
+        for (k, row) in rows.iter().enumerate() {
+            // A control has no value of its own at the end.
+            let expected = expected.get(k).or(expected.last()).expect("a value");
+            assert_eq!(row[at].to_bits(), expected.to_bits(), "{name} in row {k}");
+        }
+    }
+}
+
+/// A [`Value`] sorts its keys, the file has them in the order of the model; the numbers are compared in their own order.
+fn reordered(text: &str, value: &Value) -> String {
+    let mut sorted: Vec<&str> = text.lines().map(str::trim).collect();
+    let printed = serde_json::to_string_pretty(value).expect("JSON") + "\n";
+    let mut own: Vec<&str> = printed.lines().map(str::trim).collect();
+    let strip = |lines: &mut Vec<&str>| {
+        lines.iter_mut().for_each(|line| *line = line.trim_end_matches(','));
+        lines.sort_unstable();
+    };
+    strip(&mut sorted);
+    strip(&mut own);
+    assert_eq!(sorted, own);
+    printed
+}
+
+#[test]
+fn the_page_is_well_formed_and_needs_nothing_else() {
+    let folder = folder("page", &[]);
+    let block = model("block");
+    solved(&folder, &[&block, "--method", "N=40", "--out", "."]);
+    let page = std::fs::read_to_string(folder.join("block.html")).expect("the page was written");
+    for outside in ["http", "src=", "href=", "<script", "@import", "url(", "NaN", "inf"] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+    let mut open = Vec::new();
+    for tag in page.split('<').skip(1).map(|rest| rest.split('>').next().expect("a tag")) {
+        match tag.strip_prefix('/') {
+            Some(name) => assert_eq!(open.pop(), Some(name), "closed out of order"),
+            None if tag.starts_with('!') || tag.ends_with('/') => {}
+            None => open.push(tag.split(' ').next().expect("a name")),
+        }
+    }
+    assert!(open.is_empty(), "{open:?} is not closed");
+    assert!(page.contains("class=\"held\"") && page.contains("not replayed"));
+}
+
+#[test]
+fn parameters_take_units_and_settings_take_words() {
+    let folder = folder("overrides", &[]);
+    let block = model("block");
+    let arguments = [
+        block.as_str(),
+        "--set",
+        "m=200[g]",
+        "--set",
+        "mu = 0.2",
+        "--method",
+        "N=40",
+        "--method",
+        "scheme=midpoint",
+    ];
+    let document = solved(&folder, &arguments);
+    assert_eq!(document["params"], serde_json::json!({ "m": 0.2, "mu": 0.2 }));
+    assert_eq!((&document["method"]["N"], &document["method"]["scheme"]), (&40.into(), &"midpoint".into()));
+    let arguments = [block.as_str(), "--method", "sigma=0.05", "--method", "kernel=tanh", "--method", "N=40"];
+    let document = solved(&folder, &arguments);
+    assert_eq!(document["method"]["sigma"], 0.05);
+    assert_eq!(document["method"]["sigmas"], serde_json::json!({ "slip": 0.05 }));
+    assert_eq!(document["method"]["kernel"], "tanh");
+}
+
+/// The first line of the iteration table shows where the solve began: at the guess `T = 15`, or at the solution.
+#[test]
+fn a_warm_start_begins_at_the_earlier_solution_on_any_grid() {
+    let folder = folder("warm", &[]);
+    let turbo = model("turbo");
+    solved(&folder, &[&turbo, "--method", "N=40", "--method", "sigma=0.5", "--out", "."]);
+    let first_objective = |more: &[&str]| {
+        let output = fdcc(&folder, &[&["solve", turbo.as_str(), "--log", "full"], more].concat(), "");
+        expect_exit(&output, 0, &format!("{more:?}"));
+        let table = stderr(&output);
+        let line = table.lines().nth(1).expect("a first iteration");
+        line.split_whitespace().nth(1).expect("an objective").parse::<f64>().expect("a number")
+    };
+    assert_eq!(first_objective(&["--method", "N=40"]), 15.0);
+    let others = [&["--method", "N=40"], &["--method", "N=64"], &["--method", "scheme=trapezoid"]];
+    for other in others.into_iter().chain([&["--method", "sigma=0.2"]]) {
+        let begin = first_objective(&[&["--warm", "turbo.sol.json"][..], other].concat());
+        assert!((13.0..14.0).contains(&begin), "{other:?} begins at {begin}");
+    }
+}
+
+#[test]
+fn the_table_is_as_long_as_asked_for() {
+    let folder = folder("log", &[]);
+    let turbo = model("turbo");
+    let lines = |level: &str| {
+        let output = fdcc(&folder, &["solve", &turbo, "--log", level, "--method", "N=40"], "");
+        expect_exit(&output, 0, level);
+        assert!(stdout(&output).contains("local optimum"));
+        stderr(&output).lines().count()
+    };
+    let (none, short, full) = (lines("none"), lines("short"), lines("full"));
+    assert_eq!(none, 0);
+    assert!(0 < short && short < full, "{short} and {full} lines");
+}
+
+#[test]
+fn several_starts_are_listed_and_the_best_is_kept() {
+    let folder = folder("starts", &[]);
+    let turbo = model("turbo");
+    let arguments = ["solve", &turbo, "--method", "N=40", "--starts", "3", "--seed", "5", "--json"];
+    let output = fdcc(&folder, &arguments, "");
+    expect_exit(&output, 0, "starts");
+    let said = stderr(&output);
+    let objectives: Vec<f64> = said
+        .lines()
+        .filter(|line| line.trim_start().starts_with("start "))
+        .map(|line| line.split_whitespace().last().expect("an objective").parse().expect("a number"))
+        .collect();
+    assert_eq!(objectives.len(), 3, "{said}");
+    let best = objectives.iter().copied().fold(f64::INFINITY, f64::min);
+    let document = json(&output);
+    assert!((number(&document["objective"]) - best).abs() < 1e-6 * best);
+    assert_eq!(document["method"]["seed"], 5);
+}
+
+#[test]
+fn exit_codes_and_words_are_those_of_the_contract() {
+    let folder = folder(
+        "solve_exits",
+        &[
+            ("ramp.fdc", RAMP.as_bytes()),
+            ("static.fdc", b"param a = 1\n"),
+            ("timeless.fdc", b"state x start 0\ndynamics { x' = 1 }\n"),
+            ("still.fdc", b"time t in [0, 1]\n"),
+            ("free.fdc", b"param m\n"),
+            ("waits.fdc", RAMP.replace("goal = 1", "goal").as_bytes()),
+            ("other.sol.json", br#"{"states": {"y": [0, 1]}, "controls": {}, "free": {}}"#),
+            ("broken.sol.json", b"{"),
+        ],
+    );
+    let (bounce, racecar) = (model("bounce"), model("racecar"));
+    let cases: &[(&[&str], i32, &str)] = &[
+        (&["ramp.fdc"], 0, "global optimum of the discretised problem, not replayed on the true system"),
+        (&["ramp.fdc", "--method", "solver=interior_point"], 0, "local optimum"),
+        (&["static.fdc"], 1, "FDC0407"),
+        (&["timeless.fdc"], 1, "FDC0407"),
+        (&["waits.fdc"], 1, "FDC0408"),
+        (&["waits.fdc", "--set", "goal=1"], 0, "global optimum"),
+        (&[&bounce], 1, "FDC0603"),
+        (&[&racecar, "--set", "w=-1"], 1, "FDC0401"),
+        (&["ramp.fdc", "--set", "goal=5"], 2, "FDC0602"),
+        (&["ramp.fdc", "--set", "gaol=1"], 3, "did you mean `goal`?"),
+        (&["ramp.fdc", "--set", "goal"], 3, "NAME=VALUE"),
+        (&["ramp.fdc", "--set", "goal=far"], 3, "`far`"),
+        (&["ramp.fdc", "--method", "n=10"], 3, "did you mean `N`?"),
+        (&["ramp.fdc", "--method", "scheme=oiler"], 3, "did you mean `euler`?"),
+        (&[&racecar, "--method", "solver=convex"], 3, "not convex"),
+        (&["ramp.fdc", "--time-limit", "-1"], 3, "seconds"),
+        (&["ramp.fdc", "--starts", "0"], 3, "--starts"),
+        (&["ramp.fdc", "--out", "ramp.fdc"], 4, "cannot write"),
+        (&["ramp.fdc", "--warm", "missing.json"], 4, "missing.json cannot be read"),
+        (&["ramp.fdc", "--warm", "broken.sol.json"], 4, "is not a solution"),
+        (&["ramp.fdc", "--warm", "other.sol.json"], 4, "has no state or control of the model `ramp`"),
+        (&[&racecar, "--method", "N=40", "--method", "max_iter=3"], 2, "iteration limit"),
+        (&[&racecar, "--method", "N=40", "--time-limit", "1e-9"], 2, "time limit"),
+    ];
+    for (arguments, code, words) in cases {
+        let output = fdcc(&folder, &[&["solve", "--log", "none"], *arguments].concat(), "");
+        expect_exit(&output, *code, &format!("{arguments:?}"));
+        let all = stdout(&output) + &stderr(&output);
+        assert!(all.contains(words), "{arguments:?}: {all}");
+        assert!(!all.replace("optimality", "").contains("optimal "), "{all}");
+    }
+}
+
+#[test]
+fn nothing_but_json_is_on_the_standard_output() {
+    let folder = ramp("only_json");
+    let racecar = model("racecar");
+    let cases: &[(&[&str], i32, &str)] = &[
+        (&["ramp.fdc", "--log", "full", "--out", "."], 0, "solved"),
+        (&["ramp.fdc", "--set", "goal=5"], 2, "infeasible"),
+        (&[&racecar, "--method", "N=40", "--method", "max_iter=3"], 2, "iteration_limit"),
+        (&[&racecar, "--method", "N=40", "--time-limit", "1e-9"], 2, "time_limit"),
+    ];
+    for (arguments, code, status) in cases {
+        let output = fdcc(&folder, &[&["solve", "--json"], *arguments].concat(), "");
+        expect_exit(&output, *code, &format!("{arguments:?}"));
+        assert_eq!(json(&output)["status"], *status);
+    }
+}
+
+#[test]
+fn a_model_from_the_standard_input_is_solved() {
+    let output = fdcc(&ramp("standard_input"), &["solve", "-", "--json"], RAMP);
+    expect_exit(&output, 0, "-");
+    assert_eq!(json(&output)["model"], "ramp");
+}
+
+#[test]
+fn a_value_that_does_not_exist_is_shown_at_its_line_and_is_null_in_json() {
+    let text = RAMP.replace("x' = u", "x' = u * sqrt(x - 2)").replace("end x == goal\n", "");
+    let folder = folder("not_finite", &[("root.fdc", text.as_bytes())]);
+    let output = fdcc(&folder, &["solve", "root.fdc", "--json", "--out", "."], "");
+    expect_exit(&output, 2, "root");
+    let said = stderr(&output);
+    assert!(said.contains("FDC0601") && said.contains("root.fdc:6:"), "{said}");
+    assert!(said.contains("`x'` or one of its derivatives is infinite or undefined"), "{said}");
+    let document = json(&output);
+    assert_eq!(document["status"], "not_finite");
+    assert!(document["kkt_error"].is_null());
+    assert!(folder.join("ramp.html").exists(), "the files are written all the same");
+    let warm = fdcc(&folder, &["solve", "root.fdc", "--warm", "ramp.sol.json", "--log", "none"], "");
+    expect_exit(&warm, 2, "what could not be solved can still be a start");
+}
+
+#[test]
+fn an_infeasible_problem_names_the_condition_and_the_controls_at_their_bounds() {
+    let folder = ramp("infeasible");
+    let arguments = ["solve", "ramp.fdc", "--set", "goal=5", "--log", "none"];
+    let proved = stderr(&fdcc(&folder, &arguments, ""));
+    assert!(proved.contains("FDC0602") && proved.contains("ramp.fdc:7:"), "{proved}");
+    assert!(proved.contains("this is certain"), "{proved}");
+    let searched = fdcc(&folder, &[&arguments[..], &["--method", "solver=interior_point"]].concat(), "");
+    expect_exit(&searched, 2, "interior point");
+    let said = stderr(&searched);
+    assert!(said.contains("`u` is at 4 from t = 0 to 1"), "{said}");
+    assert!(said.contains("at best"), "{said}");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_stops_with_the_best_iterate_written() {
+    use std::io::{BufRead, BufReader};
+    let folder = folder("interrupt", &[]);
+    let racecar = model("racecar");
+    // Far more work than the test waits for.
+    let arguments = ["solve", &racecar, "--method", "N=40000", "--json", "--out", ".", "--log", "full"];
+    let mut child = start(&folder, &arguments);
+    let mut lines = BufReader::new(child.stderr.take().expect("piped")).lines();
+    let begun = lines.any(|line| line.expect("text").trim_start().starts_with("1 "));
+    assert!(begun, "the first iteration is shown");
+    let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(kill.expect("kill runs").success());
+    lines.for_each(drop);
+    let output = child.wait_with_output().expect("fdcc ends");
+    expect_exit(&output, 2, "interrupted");
+    assert_eq!(json(&output)["status"], "interrupted");
+    let saved = std::fs::read_to_string(folder.join("racecar.sol.json")).expect("the file was written");
+    let saved: Value = serde_json::from_str(&saved).expect("JSON");
+    assert_eq!(column(&saved["states"]["th"]).len(), 40_001);
+}

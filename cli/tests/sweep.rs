@@ -1,0 +1,151 @@
+//! `fdcc sweep`: one row per value, whatever the number of threads.
+
+mod common;
+
+use common::*;
+use serde_json::{Value, json};
+
+fn ramp(test: &str) -> std::path::PathBuf {
+    folder(test, &[("ramp.fdc", RAMP.as_bytes())])
+}
+
+#[test]
+fn the_table_has_a_row_per_value_and_a_column_per_name() {
+    let racecar = model("racecar");
+    let arguments = ["sweep", &racecar, "sigma=0.2,0.1", "N=40,50", "kernel=sqrt", "--log", "none"];
+    let output = fdcc(&folder("sweep_table", &[]), &arguments, "");
+    expect_exit(&output, 0, "sweep");
+    assert_eq!(stderr(&output), "");
+    let table = stdout(&output);
+    let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split_whitespace().collect()).collect();
+    let header = ["sigma", "N", "kernel", "objective", "T", "iterations", "seconds", "status"];
+    assert_eq!(rows[0], header);
+    assert_eq!(rows.len(), 3, "{table}");
+    assert_eq!(rows[1][..3], ["0.2", "40", "sqrt"]);
+    assert_eq!(rows[2][..3], ["0.1", "50", "sqrt"]);
+    assert!(rows[1..].iter().all(|row| row[7] == "solved"), "{table}");
+    let widths: Vec<usize> = table.lines().skip(1).map(str::len).collect();
+    assert_eq!(widths[0], widths[1], "the columns are aligned");
+}
+
+/// The least cost of reaching `goal` is `goal^2`, and out of reach beyond 4.
+#[test]
+fn rows_are_compact_json_in_the_order_of_the_values() {
+    let output = fdcc(&ramp("sweep_json"), &["sweep", "ramp.fdc", "goal=3,1,200[cm]", "N=8", "--json"], "");
+    expect_exit(&output, 0, "sweep");
+    let rows = json(&output);
+    let rows = rows.as_array().expect("an array");
+    let keys = |row: &Value| row.as_object().expect("an object").keys().cloned().collect::<Vec<_>>();
+    let mut contract = [
+        "swept",
+        "status",
+        "objective",
+        "free",
+        "iterations",
+        "kkt_error",
+        "constraint_violation",
+        "seconds",
+    ];
+    contract.sort_unstable();
+    for (row, goal) in rows.iter().zip([3.0, 1.0, 2.0]) {
+        assert_eq!(keys(row), contract);
+        assert_eq!(number(&row["swept"]["goal"]), goal);
+        assert_eq!(row["swept"]["N"], 8);
+        assert!((number(&row["objective"]) - goal * goal).abs() < 1e-5, "{row}");
+    }
+    assert_eq!(rows.len(), 3);
+}
+
+#[test]
+fn a_row_that_is_not_solved_changes_the_exit_code_and_no_other_row() {
+    let output = fdcc(&ramp("sweep_fails"), &["sweep", "ramp.fdc", "goal=1,9,2", "--json"], "");
+    expect_exit(&output, 2, "sweep");
+    let rows = json(&output);
+    let statuses: Vec<&Value> = rows.as_array().expect("an array").iter().map(|row| &row["status"]).collect();
+    assert_eq!(statuses, [&json!("solved"), &json!("infeasible"), &json!("solved")]);
+}
+
+#[test]
+fn the_answer_does_not_depend_on_the_number_of_threads() {
+    let folder = folder("sweep_jobs", &[]);
+    let racecar = model("racecar");
+    let rows = |jobs: &str| {
+        let arguments = ["sweep", &racecar, "N=30,40,50,60", "--json", "--jobs", jobs];
+        without_seconds(json(&fdcc(&folder, &arguments, ""))).to_string()
+    };
+    let one = rows("1");
+    assert_eq!(one, rows("2"));
+    assert_eq!(one, rows("4"));
+}
+
+#[test]
+fn a_row_is_what_solve_finds() {
+    let folder = folder("sweep_solve", &[]);
+    let racecar = model("racecar");
+    let swept = json(&fdcc(&folder, &["sweep", &racecar, "N=40", "w=0.4", "--json"], ""));
+    let arguments = ["solve", &racecar, "--method", "N=40", "--set", "w=0.4", "--json"];
+    let solved = json(&fdcc(&folder, &arguments, ""));
+    for field in ["status", "objective", "free", "iterations", "kkt_error", "constraint_violation"] {
+        assert_eq!(swept[0][field], solved[field], "{field}");
+    }
+}
+
+#[test]
+fn a_continued_sweep_starts_from_the_row_before() {
+    let folder = folder("sweep_continue", &[]);
+    let turbo = model("turbo");
+    let iterations = |more: &[&str]| {
+        let arguments =
+            [&["sweep", turbo.as_str(), "sigma=0.2,0.2,0.2", "N=40,40,60", "--json"], more].concat();
+        let output = fdcc(&folder, &arguments, "");
+        expect_exit(&output, 0, &format!("{more:?}"));
+        json(&output)
+            .as_array()
+            .expect("rows")
+            .iter()
+            .map(|row| number(&row["iterations"]))
+            .collect::<Vec<_>>()
+    };
+    let (apart, continued) = (iterations(&[]), iterations(&["--continue"]));
+    assert_eq!(apart[0], continued[0]);
+    assert!(continued[1] < apart[1] / 2.0, "the same problem again: {continued:?} and {apart:?}");
+}
+
+#[test]
+fn each_row_has_its_files() {
+    let folder = ramp("sweep_files");
+    expect_exit(&fdcc(&folder, &["sweep", "ramp.fdc", "goal=1,2", "--out", "all"], ""), 0, "sweep");
+    for row in 1..=2 {
+        let text = std::fs::read_to_string(folder.join(format!("all/ramp.{row}.sol.json"))).expect("a file");
+        let saved: Value = serde_json::from_str(&text).expect("JSON");
+        assert_eq!(number(&saved["params"]["goal"]), f64::from(row));
+        assert!(folder.join(format!("all/ramp.{row}.csv")).exists());
+        assert!(folder.join(format!("all/ramp.{row}.html")).exists());
+    }
+}
+
+#[test]
+fn wrong_lists_are_explained() {
+    let folder = ramp("sweep_usage");
+    let cases: &[(&[&str], i32, &str)] = &[
+        (&["goal=1,2,3", "N=4,5"], 3, "`goal` has 3, `N` has 2"),
+        (&["goal=1,2", "goal=3,4"], 3, "`goal` is swept twice"),
+        (&["goal"], 3, "NAME=V1,V2,..."),
+        (&["goal=1,,2"], 3, "value 2 of `goal` is empty"),
+        (&["goal=one"], 3, "`one`"),
+        (&["gaol=1"], 3, "did you mean `goal`?"),
+        (&["sigm=1"], 3, "did you mean `sigma`?"),
+        (&["scheme=oiler"], 3, "did you mean `euler`?"),
+        (&["N=0"], 3, "a whole number"),
+        (&[], 3, "required"),
+        (&["goal=1", "--jobs", "0"], 3, "--jobs"),
+        (&["goal=1", "--jobs", "2", "--continue"], 3, "cannot be used with"),
+        (&["goal=1,2", "--warm", "missing.json"], 4, "missing.json cannot be read"),
+    ];
+    for (lists, code, words) in cases {
+        let output = fdcc(&folder, &[&["sweep", "ramp.fdc"], *lists].concat(), "");
+        expect_exit(&output, *code, &format!("{lists:?}"));
+        assert!(stderr(&output).contains(words), "{lists:?}: {}", stderr(&output));
+        assert_eq!(stdout(&output), "", "{lists:?}");
+    }
+}

@@ -1,0 +1,65 @@
+//! The watchdog: after many shortened steps, full steps are tried without asking the filter.
+//!
+//! Where the rows are very nonlinear, as at the edge of a smoothed layer, the filter may force tiny steps although a
+//! full one would lead to a better region. A few full steps are taken on trust; if none of them is acceptable to the
+//! point where the trust began, the iteration returns to it (Waechter & Biegler 2006, section 3.2).
+
+use super::filter::Reference;
+use super::iterate::{Iterate, Values};
+
+/// So many shortened steps in a row start the watchdog.
+const PATIENCE: usize = 10;
+/// So many full steps are taken on trust.
+const TRUST: usize = 3;
+
+/// Where the trust began.
+pub(super) struct Saved {
+    pub(super) at: Iterate,
+    pub(super) values: Values,
+    pub(super) reference: Reference,
+    pub(super) alpha: f64,
+    left: usize,
+}
+
+/// Counts shortened steps, and keeps the point to return to.
+#[derive(Default)]
+pub(super) struct Watchdog {
+    shortened: usize,
+    pub(super) saved: Option<Saved>,
+}
+
+impl Watchdog {
+    /// Notes how much of a step was kept.
+    pub(super) fn note(&mut self, fraction: f64) {
+        self.shortened = if fraction < 0.9 { self.shortened + 1 } else { 0 };
+    }
+
+    /// Whether it is time to begin.
+    pub(super) fn is_due(&self) -> bool {
+        self.saved.is_none() && self.shortened >= PATIENCE
+    }
+
+    pub(super) fn begin(&mut self, at: Iterate, values: Values, reference: Reference, alpha: f64) {
+        self.saved = Some(Saved { at, values, reference, alpha, left: TRUST });
+    }
+
+    /// Uses up one step of trust; `false` if there is none left.
+    pub(super) fn trust(&mut self) -> bool {
+        match &mut self.saved {
+            Some(saved) if saved.left > 0 => {
+                saved.left -= 1;
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Ends it; the point to return to, if it did not succeed.
+    pub(super) fn end(&mut self) -> Option<Saved> {
+        let saved = self.saved.take();
+        if saved.is_some() {
+            self.shortened = 0;
+        }
+        saved
+    }
+}

@@ -1,0 +1,118 @@
+//! The measured order of every scheme, in states and in integrals, on problems whose answers are known.
+
+use fdcc_tests::{Solved, rate};
+
+/// Every scheme with its order.
+const SCHEMES: [(&str, f64); 5] = [
+    ("scheme euler", 1.0),
+    ("scheme implicit_euler", 1.0),
+    ("scheme implicit_euler lagged (x)", 1.0),
+    ("scheme midpoint", 2.0),
+    ("scheme trapezoid", 2.0),
+];
+const GRIDS: [f64; 4] = [20.0, 40.0, 80.0, 160.0];
+const TOLERANCE: f64 = 0.15;
+
+/// A quantity of a solution, by name, with its exact value.
+type Known = (&'static str, fn(&Solved) -> f64, f64);
+
+/// A model without a method block, and what is known of its solution.
+struct Case {
+    name: &'static str,
+    text: &'static str,
+    known: Vec<Known>,
+}
+
+fn check(case: &Case) {
+    for (scheme, order) in SCHEMES {
+        let runs = GRIDS.map(|n| Solved::new(&format!("{} method {{ grid N = {n} {scheme} }}", case.text), &[], &[]));
+        for (what, quantity, exact) in &case.known {
+            let errors: Vec<f64> = runs.iter().map(|run| (quantity(run) - exact).abs()).collect();
+            let measured = rate(&GRIDS.map(|n| 1.0 / n), &errors);
+            let report = format!("{}, {scheme}: {what} has order {measured:.3}, errors {errors:e?}", case.name);
+            assert!((measured - order).abs() < TOLERANCE, "{report}");
+            // A rate says nothing of the limit: so it must be the known value itself that is approached.
+            assert!(errors[3] < 0.02 * (1.0 + exact.abs()), "{report}");
+        }
+    }
+}
+
+/// `x = (3 e^-t + sin t - cos t)/2`, so that `x(2)` and the integral of `x^2 + t` follow.
+#[test]
+fn a_linear_equation_with_a_time_dependent_right_side() {
+    let t = 2.0f64;
+    let x = |t: f64| (3.0 * (-t).exp() + t.sin() - t.cos()) / 2.0;
+    check(&Case {
+        name: "linear",
+        text: "time t in [0, 2] state x start 1 dynamics { x' = -x + sin(t) } minimize integral(x + t)",
+        known: vec![
+            ("x(end)", |run| run.end("x"), x(t)),
+            // x' = -x + sin t, hence the integral of x is 1 - x(t) + 1 - cos t.
+            ("the integral", Solved::objective, 2.0 - x(t) - t.cos() + t * t / 2.0),
+        ],
+    });
+}
+
+/// `x = 1/(1 + t)`: the integral of `x^2` is `1 - x(T)`, that of `t x` is `T - log(1 + T)`.
+#[test]
+fn a_nonlinear_equation() {
+    check(&Case {
+        name: "nonlinear",
+        text: "time t in [0, 1] state x start 1 dynamics { x' = -x^2 } minimize integral(t*x)",
+        known: vec![
+            ("x(end)", |run| run.end("x"), 0.5),
+            ("the integral", Solved::objective, 1.0 - f64::ln(2.0)),
+        ],
+    });
+}
+
+/// Riccati: `J = tanh(1) x_0^2` with `u = -tanh(1 - t) x`, so `x(1) = x_0/cosh(1)`; the costate is `dJ/dx_0 = 2 tanh(1)`.
+#[test]
+fn a_linear_quadratic_optimal_control() {
+    check(&Case {
+        name: "linear quadratic",
+        text: "time t in [0, 1] state x start 1 control u dynamics { x' = u } minimize integral(x^2 + u^2)",
+        known: vec![
+            ("the objective", Solved::objective, f64::tanh(1.0)),
+            ("x(end)", |run| run.end("x"), 1.0 / f64::cosh(1.0)),
+            ("dJ/dx_0", |run| run.costate("x")[0], 2.0 * f64::tanh(1.0)),
+        ],
+    });
+}
+
+/// `x = 2 - cos t` reaches 5/2 at `t = 2 pi/3`; the integral of `x` until then is `2 T - sin T`.
+#[test]
+fn a_free_final_time_with_a_time_dependent_right_side() {
+    let end = 2.0 * std::f64::consts::PI / 3.0;
+    check(&Case {
+        name: "free final time",
+        text: "free T in [1, 3] guess 2 time t in [0, T] state x start 1 dynamics { x' = sin(t) } \
+               end x == 2.5 minimize integral(x)",
+        known: vec![("T", |run| run.value("T"), end), ("the integral", Solved::objective, 2.0 * end - end.sin())],
+    });
+}
+
+/// `x' = k x` with `k` free and `x(1) = 3`: `k = log 3`; the integral of `x` is `2/k`.
+#[test]
+fn an_unknown_in_the_right_side() {
+    let k = f64::ln(3.0);
+    check(&Case {
+        name: "unknown rate",
+        text: "free k in [0, 2] guess 0.5 time t in [0, 1] state x start 1 dynamics { x' = k*x } \
+               end x == 3 minimize integral(x)",
+        known: vec![("k", |run| run.value("k"), k), ("the integral", Solved::objective, 2.0 / k)],
+    });
+}
+
+/// Start time and duration that are no unit: `x = 1/t` on [1, 3] solves `x' = -x/t`.
+#[test]
+fn a_start_time_that_is_not_zero() {
+    check(&Case {
+        name: "late start",
+        text: "time t in [1, 3] state x start 1 dynamics { x' = -x/t } minimize integral(x^2) + 2*x(end)",
+        known: vec![
+            ("x(end)", |run| run.end("x"), 1.0 / 3.0),
+            ("the objective", Solved::objective, 2.0 / 3.0 + 2.0 / 3.0),
+        ],
+    });
+}

@@ -17,6 +17,8 @@ const LAST_FACTOR: f64 = 0.01;
 /// From one width to the next; after a failure the square root of it, and so on.
 const DECREASE: f64 = 0.3;
 const MOST_FAILURES: usize = 3;
+/// A step that takes longer than this is too long.
+const MOST_ITERATIONS: usize = 300;
 
 /// A solved (or not solved) problem.
 #[derive(Clone, Debug)]
@@ -130,7 +132,8 @@ impl Run<'_> {
             let before = self.sigma.clone();
             let next = (factor * decrease).max(LAST_FACTOR);
             self.set_relative(nlp, next, &best.v);
-            let solution = self.interior_point(nlp, &warm(&best), watch);
+            let limit = self.problem.method.max_iter.min(MOST_ITERATIONS);
+            let solution = self.interior_point(nlp, &warm(&best), limit, watch);
             if is_good(&solution.status) {
                 (factor, best) = (next, solution);
                 continue;
@@ -161,18 +164,25 @@ impl Run<'_> {
 
     /// One solve; a warm start that fails is repeated with fresh multipliers.
     fn solve_once(&mut self, nlp: &mut TranscribedNlp, start: &Start, watch: &mut Watch) -> Solution {
-        let solution = self.interior_point(nlp, start, watch);
+        let limit = self.problem.method.max_iter;
+        let solution = self.interior_point(nlp, start, limit, watch);
         let stopped = matches!(solution.status, Status::TimeLimit | Status::Interrupted);
         if is_good(&solution.status) || start.warm.is_none() || stopped {
             return solution;
         }
-        self.interior_point(nlp, &Start { v: start.v.clone(), warm: None }, watch)
+        self.interior_point(nlp, &Start { v: start.v.clone(), warm: None }, limit, watch)
     }
 
-    fn interior_point(&mut self, nlp: &mut TranscribedNlp, start: &Start, watch: &mut Watch) -> Solution {
+    fn interior_point(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        start: &Start,
+        max_iter: usize,
+        watch: &mut Watch,
+    ) -> Solution {
         self.apply_sigma(nlp);
         let method = &self.problem.method;
-        let options = Options { tol: method.tol, max_iter: method.max_iter, linear: method.linear };
+        let options = Options { tol: method.tol, max_iter, linear: method.linear };
         let sigma = &self.sigma;
         let before = self.counts.iterations;
         let mut solution = interior_point::solve(nlp, start, &options, &mut |progress| {

@@ -194,9 +194,9 @@ impl Bounds {
     pub fn is_equality(&self) -> bool {
         self.lower == self.upper
     }
-    /// How far `value` is outside; 0 inside.
+    /// How far `value` is outside; 0 inside, infinite for what is not a number.
     pub fn violation(&self, value: f64) -> f64 {
-        (self.lower - value).max(value - self.upper).max(0.0)
+        if value.is_nan() { f64::INFINITY } else { (self.lower - value).max(value - self.upper).max(0.0) }
     }
 }
 

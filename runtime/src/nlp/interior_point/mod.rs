@@ -38,6 +38,10 @@ const ACCEPTABLE_ITERATIONS: usize = 15;
 const DIVERGED: f64 = 1e10;
 /// A step this small, relative to the iterate, is rounding.
 const TINY_STEP: f64 = 10.0 * f64::EPSILON;
+/// So many steps of rounding in a row at the last barrier parameter end the solve.
+const MOST_TINY_STEPS: usize = 5;
+/// A restoration phase that is stuck is begun anew so many times.
+const MOST_RESTARTS: usize = 4;
 
 /// What one iteration led to.
 enum Outcome {
@@ -175,12 +179,24 @@ impl Algorithm {
                     if self.residuals.error(0.0) <= ACCEPTABLE_ERROR {
                         return Status::Acceptable;
                     }
-                    if let Restored::Stopped(status) = self.restore(nlp, watch) {
+                    if let Some(status) = self.restore_or_stop(nlp, watch) {
                         return status;
                     }
                 }
             }
         }
+    }
+
+    /// A restoration phase, begun anew from where it is if it gets stuck itself.
+    fn restore_or_stop(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Option<Status> {
+        for _ in 0..MOST_RESTARTS {
+            match self.restore(nlp, watch) {
+                Restored::Acceptable => return None,
+                Restored::Stopped(status) => return Some(status),
+                Restored::Blocked => {}
+            }
+        }
+        Some(Status::NumericalFailure)
     }
 
     /// One iteration: look, decide, step.
@@ -300,10 +316,11 @@ impl Algorithm {
         self.step.y.iter().zip(&self.at.y).all(small) && self.residuals.primal < ACCEPTABLE_ERROR
     }
 
-    /// A step that is rounding is taken without a search; twice in a row at the last barrier parameter ends the solve.
+    /// A step that is rounding is taken without a search, and lowers the barrier parameter; when that is as low as it
+    /// gets and the multipliers have settled as well, nothing more can be gained.
     fn accept_tiny(&mut self, nlp: &mut dyn Nlp, alpha: f64, dual: f64) -> Outcome {
-        self.tiny_steps += 1;
-        if self.tiny_steps > 2 && !self.barrier.lower() {
+        self.tiny_steps = if self.barrier.lower() { 0 } else { self.tiny_steps + 1 };
+        if self.tiny_steps > MOST_TINY_STEPS {
             let error = self.residuals.error(0.0);
             let status = if error <= ACCEPTABLE_ERROR { Status::Acceptable } else { Status::NumericalFailure };
             return Outcome::Done(status);

@@ -25,6 +25,8 @@ const LARGEST_BOUND_MULTIPLIER: f64 = 1e3;
 pub(super) enum Restored {
     /// The iterate is acceptable again.
     Acceptable,
+    /// Its own line search found no step.
+    Blocked,
     /// It ends the whole solve.
     Stopped(Status),
 }
@@ -119,28 +121,25 @@ impl Algorithm {
         let variables = self.at.y[..self.space.variables].to_vec();
         let mut proximity = Proximity::new(nlp, &variables, mu.sqrt());
         let mut inner = self.elastic(&mut proximity, mu);
-        let status = loop {
+        let restored = loop {
             let outcome = inner.iterate(&mut proximity, &mut |progress| {
                 watch(&Progress { restoration: true, ..*progress })
             });
             match outcome {
                 Outcome::Continue => {}
-                Outcome::Blocked => break Some(Status::NumericalFailure),
-                Outcome::Done(Status::Solved | Status::Acceptable) => break Some(Status::Infeasible),
-                Outcome::Done(status) => break Some(status),
+                Outcome::Blocked => break Restored::Blocked,
+                Outcome::Done(Status::Solved | Status::Acceptable) => break Restored::Stopped(Status::Infeasible),
+                Outcome::Done(status) => break Restored::Stopped(status),
             }
             if self.accepts(proximity.inner, &inner.at, violation) {
-                break None;
+                break Restored::Acceptable;
             }
         };
         self.take_over(proximity.inner, inner);
-        match status {
-            None => {
-                self.resume(proximity.inner);
-                Restored::Acceptable
-            }
-            Some(status) => Restored::Stopped(status),
+        if matches!(restored, Restored::Acceptable) {
+            self.resume(proximity.inner);
         }
+        restored
     }
 
     /// The restoration problem's own algorithm, at its start.

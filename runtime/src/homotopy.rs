@@ -80,6 +80,11 @@ pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Resu
     Ok(run.finish(&mut nlp, solution, false))
 }
 
+/// Whether another start may help: it was neither solved nor stopped.
+fn is_retried(status: &Status) -> bool {
+    !is_good(status) && !matches!(status, Status::TimeLimit | Status::Interrupted)
+}
+
 fn warm(solution: &Solution) -> Start {
     Start { v: solution.v.clone(), warm: Some(solution.multipliers.clone()) }
 }
@@ -125,13 +130,13 @@ impl Run<'_> {
     /// Solves with widths of our own choice, as small as can be solved.
     fn chosen(&mut self, nlp: &mut TranscribedNlp, start: Start, watch: &mut Watch) -> Solution {
         let mut factor = FIRST_FACTOR;
-        self.set_relative(nlp, factor, &start.v);
+        self.set_relative(nlp, &start.v);
         let mut best = self.solve_once(nlp, &start, watch);
         let (mut decrease, mut failures) = (DECREASE, 0);
         while is_good(&best.status) && factor > LAST_FACTOR && failures < MOST_FAILURES {
             let before = self.sigma.clone();
             let next = (factor * decrease).max(LAST_FACTOR);
-            self.set_relative(nlp, next, &best.v);
+            self.decrease(nlp, &best.v, next, next / factor);
             let limit = self.problem.method.max_iter.min(MOST_ITERATIONS);
             let solution = self.interior_point(nlp, &warm(&best), limit, watch);
             if is_good(&solution.status) {
@@ -150,9 +155,17 @@ impl Run<'_> {
     }
 
     /// Widths relative to the size of each switching function along `v`.
-    fn set_relative(&mut self, nlp: &TranscribedNlp, factor: f64, v: &[f64]) {
+    fn set_relative(&mut self, nlp: &TranscribedNlp, v: &[f64]) {
         for (sigma, size) in self.sigma.iter_mut().zip(nlp.guard_sizes(v)) {
-            *sigma = factor * if size > 0.0 { size } else { 1.0 };
+            *sigma = FIRST_FACTOR * if size > 0.0 { size } else { 1.0 };
+        }
+    }
+
+    /// Smaller widths, by the factor `decrease`; but not below `factor` times the size of the switching function. On a
+    /// held surface that size is the layer itself, and says nothing.
+    fn decrease(&mut self, nlp: &TranscribedNlp, v: &[f64], factor: f64, decrease: f64) {
+        for (sigma, size) in self.sigma.iter_mut().zip(nlp.guard_sizes(v)) {
+            *sigma = (factor * size).clamp(decrease * *sigma, *sigma);
         }
     }
 
@@ -166,8 +179,7 @@ impl Run<'_> {
     fn solve_once(&mut self, nlp: &mut TranscribedNlp, start: &Start, watch: &mut Watch) -> Solution {
         let limit = self.problem.method.max_iter;
         let solution = self.interior_point(nlp, start, limit, watch);
-        let stopped = matches!(solution.status, Status::TimeLimit | Status::Interrupted);
-        if is_good(&solution.status) || start.warm.is_none() || stopped {
+        if start.warm.is_none() || !is_retried(&solution.status) {
             return solution;
         }
         self.interior_point(nlp, &Start { v: start.v.clone(), warm: None }, limit, watch)

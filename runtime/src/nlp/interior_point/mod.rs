@@ -216,6 +216,7 @@ impl Algorithm {
         if self.barrier.update(&self.residuals) {
             self.filter.clear();
             self.watchdog.end();
+            self.tiny_steps = 0;
         }
         self.kkt.assemble(&self.space, &self.at, &self.slopes, &self.barrier);
         if !self.kkt.factor_with_inertia(&self.space, &self.slopes, self.barrier.mu, &mut self.counts) {

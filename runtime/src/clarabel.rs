@@ -99,9 +99,9 @@ pub(crate) fn solve_conic(program: ConicProgram, tolerance: f64, max_iterations:
         .tol_gap_rel(tolerance)
         .tol_feas(tolerance)
         .build();
-    let solver = settings.ok().and_then(|settings| {
-        DefaultSolver::new(&p.into_csc(), &q, &a.into_csc(), &b, &cones, settings).ok()
-    });
+    let solver = settings
+        .ok()
+        .and_then(|settings| DefaultSolver::new(&p.into_csc(), &q, &a.into_csc(), &b, &cones, settings).ok());
     let Some(mut solver) = solver else {
         return ConicSolution {
             status: ConicStatus::Failed,

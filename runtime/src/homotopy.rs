@@ -113,7 +113,13 @@ impl Run<'_> {
     }
 
     /// Solves with one given width after the other.
-    fn given(&mut self, nlp: &mut TranscribedNlp, mut start: Start, widths: &[f64], watch: &mut Watch) -> Solution {
+    fn given(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        mut start: Start,
+        widths: &[f64],
+        watch: &mut Watch,
+    ) -> Solution {
         let Some((last, before)) = widths.split_last() else { return self.solve_once(nlp, &start, watch) };
         for width in before {
             self.sigma.fill(*width);
@@ -214,7 +220,12 @@ impl Run<'_> {
     }
 }
 
-fn limiting(nlp: &mut TranscribedNlp, solution: &Solution, trajectory: &Trajectory, tol: f64) -> Option<Limiting> {
+fn limiting(
+    nlp: &mut TranscribedNlp,
+    solution: &Solution,
+    trajectory: &Trajectory,
+    tol: f64,
+) -> Option<Limiting> {
     let (row, violation) = crate::nlp::worst_row(nlp, &solution.v)?;
     if is_good(&solution.status) || violation <= tol {
         return None;

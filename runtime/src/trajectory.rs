@@ -65,7 +65,8 @@ struct Signals {
 
 impl Signals {
     fn new(stages: Stages, v: &[f64]) -> Self {
-        let column = |first: usize, count: usize| (0..count).map(|k| v[first + k * stages.variable_step()]).collect();
+        let column =
+            |first: usize, count: usize| (0..count).map(|k| v[first + k * stages.variable_step()]).collect();
         let states = (0..stages.states).map(|i| column(i, stages.intervals + 1)).collect();
         let controls = (0..stages.controls).map(|i| column(stages.states + i, stages.intervals)).collect();
         Signals { states, controls, intervals: stages.intervals }
@@ -127,7 +128,8 @@ fn costates(problem: &Problem, nlp: &mut TranscribedNlp, solution: &Solution) ->
         if variable >= stages.globals().start || i >= stages.states {
             continue;
         }
-        let from_here_on = if row >= stages.coupling().start { k == stages.intervals } else { row / stages.row_step() == k };
+        let from_here_on =
+            if row >= stages.coupling().start { k == stages.intervals } else { row / stages.row_step() == k };
         if from_here_on {
             costates[i][k] += value * rows[row];
         }

@@ -32,7 +32,13 @@ struct Case {
 
 impl Case {
     /// Full blocks; curvature of both signs, strong enough to matter if `indefinite`.
-    fn new(stages: Stages, coupled_ends: bool, penalised: bool, indefinite: bool, random: &mut Random) -> Self {
+    fn new(
+        stages: Stages,
+        coupled_ends: bool,
+        penalised: bool,
+        indefinite: bool,
+        random: &mut Random,
+    ) -> Self {
         let hessian = hessian_structure(stages, coupled_ends);
         let jacobian = jacobian_structure(stages);
         let scale = if indefinite { 1.0 } else { 0.05 };
@@ -95,7 +101,11 @@ impl Case {
             solution += DVector::from_vec(correction);
         }
         let residual = (&dense * &solution - &right).amax();
-        assert!(residual < 1e-9 * (1.0 + solution.amax()), "{name}: residual {residual} for {:?}", self.stages);
+        assert!(
+            residual < 1e-9 * (1.0 + solution.amax()),
+            "{name}: residual {residual} for {:?}",
+            self.stages
+        );
     }
 }
 
@@ -104,15 +114,33 @@ fn hessian_structure(stages: Stages, coupled_ends: bool) -> Triplets {
     let mut families = Vec::new();
     for i in 0..step + n {
         for j in 0..=i {
-            families.push(Family { row: i, column: j, row_step: step, column_step: step, count: stages.intervals });
+            families.push(Family {
+                row: i,
+                column: j,
+                row_step: step,
+                column_step: step,
+                count: stages.intervals,
+            });
         }
     }
     for g in globals.clone() {
         for j in 0..step + n {
-            families.push(Family { row: g, column: j, row_step: 0, column_step: step, count: stages.intervals });
+            families.push(Family {
+                row: g,
+                column: j,
+                row_step: 0,
+                column_step: step,
+                count: stages.intervals,
+            });
         }
         for other in globals.start..=g {
-            families.push(Family { row: g, column: other, row_step: 0, column_step: 0, count: stages.intervals });
+            families.push(Family {
+                row: g,
+                column: other,
+                row_step: 0,
+                column_step: 0,
+                count: stages.intervals,
+            });
         }
     }
     let ends: Vec<usize> = stages.state(stages.intervals).chain(globals).collect();
@@ -129,7 +157,13 @@ fn jacobian_structure(stages: Stages) -> Triplets {
     let (n, step) = (stages.states, stages.variable_step());
     let mut families = Vec::new();
     for row in 0..stages.row_step() {
-        let family = |column, column_step| Family { row, column, row_step: stages.row_step(), column_step, count: stages.intervals };
+        let family = |column, column_step| Family {
+            row,
+            column,
+            row_step: stages.row_step(),
+            column_step,
+            count: stages.intervals,
+        };
         families.extend((0..step + n).map(|column| family(column, step)));
         families.extend(stages.globals().map(|column| family(column, 0)));
     }
@@ -144,7 +178,9 @@ fn jacobian_structure(stages: Stages) -> Triplets {
 fn diagonally_dominant(jacobian: &Triplets, stages: Stages, random: &mut Random) -> Vec<f64> {
     let strong = |i: usize, j: usize| {
         let k = i / stages.row_step();
-        k < stages.intervals && i % stages.row_step() < stages.states && j == stages.state(k + 1).start + i % stages.row_step()
+        k < stages.intervals
+            && i % stages.row_step() < stages.states
+            && j == stages.state(k + 1).start + i % stages.row_step()
     };
     jacobian.entries().map(|(i, j)| 0.5 * random.next() + if strong(i, j) { 2.0 } else { 0.0 }).collect()
 }
@@ -174,7 +210,10 @@ fn both_factorisations_solve_their_system_and_know_its_inertia() {
         let mut ldl = SparseLdl::new(&case.hessian, &case.jacobian, &case.fixed, stages.rows());
         case.check("riccati", &mut riccati, 1, &mut random);
         case.check("sparse LDL", &mut ldl, 6, &mut random);
-        both[usize::from(riccati.factor(&case.hessian_values, &case.jacobian_values, &case.sigma, &case.d) == Inertia::Correct)] += 1;
+        both[usize::from(
+            riccati.factor(&case.hessian_values, &case.jacobian_values, &case.sigma, &case.d)
+                == Inertia::Correct,
+        )] += 1;
     }
     assert!(both[0] > 20 && both[1] > 100, "the cases must be of both kinds: {both:?}");
 }

@@ -14,14 +14,14 @@
 mod conformance;
 mod lu;
 pub mod riccati;
-mod stages;
 pub mod sparse_ldl;
+mod stages;
 mod symmetric;
 mod triplets;
 
 pub(crate) use lu::Lu;
-pub(crate) use symmetric::SymmetricFactor;
 pub use stages::Stages;
+pub(crate) use symmetric::SymmetricFactor;
 pub use triplets::{Family, Triplets};
 
 /// What a factorisation found.

@@ -27,7 +27,8 @@ impl SparseLdl {
     pub fn new(hessian: &Triplets, jacobian: &Triplets, fixed: &[bool], rows: usize) -> Self {
         let variables = fixed.len();
         let size = variables + rows;
-        let hessian_places = hessian.entries().map(|(i, j)| (!fixed[i] && !fixed[j]).then_some((i.min(j), i.max(j))));
+        let hessian_places =
+            hessian.entries().map(|(i, j)| (!fixed[i] && !fixed[j]).then_some((i.min(j), i.max(j))));
         let jacobian_places = jacobian.entries().map(|(i, j)| (!fixed[j]).then_some((j, variables + i)));
         let places: Vec<_> =
             hessian_places.chain(jacobian_places).chain((0..size).map(|i| Some((i, i)))).collect();
@@ -35,7 +36,15 @@ impl SparseLdl {
         let diagonal = targets.split_off(targets.len() - size).into_iter().flatten().collect();
         let jacobian = targets.split_off(hessian.len());
         let values = vec![0.0; pattern.values.len()];
-        SparseLdl { variables, fixed: fixed.to_vec(), ldl: Ldl::new(pattern), values, hessian: targets, jacobian, diagonal }
+        SparseLdl {
+            variables,
+            fixed: fixed.to_vec(),
+            ldl: Ldl::new(pattern),
+            values,
+            hessian: targets,
+            jacobian,
+            diagonal,
+        }
     }
 
     fn add_diagonal(&mut self, sigma: &[f64], d: &[f64]) {

@@ -65,7 +65,9 @@ impl SymmetricFactor {
     }
 
     fn largest_below(&self, column: usize, k: usize) -> (usize, f64) {
-        (k + 1..self.n).map(|i| (i, self.at(i, column).abs())).fold((k, 0.0), |a, b| if b.1 > a.1 { b } else { a })
+        (k + 1..self.n)
+            .map(|i| (i, self.at(i, column).abs()))
+            .fold((k, 0.0), |a, b| if b.1 > a.1 { b } else { a })
     }
 
     /// Largest entry of row/column `r` of the trailing matrix that begins at `k`, without its diagonal.
@@ -103,7 +105,7 @@ impl SymmetricFactor {
     fn pivot_one(&mut self, k: usize, tiny: f64) -> Option<usize> {
         let n = self.n;
         let pivot = self.at(k, k);
-        if !(pivot.abs() > tiny) {
+        if pivot.is_nan() || pivot.abs() <= tiny {
             return None;
         }
         for i in k + 1..n {
@@ -123,7 +125,7 @@ impl SymmetricFactor {
         self.blocks[k + 1] = 0;
         let (a, b, c) = (self.at(k, k), self.at(k + 1, k), self.at(k + 1, k + 1));
         let determinant = a * c - b * b;
-        if !(determinant.abs() > tiny * tiny) {
+        if determinant.is_nan() || determinant.abs() <= tiny * tiny {
             return None;
         }
         for i in k + 2..n {
@@ -137,7 +139,13 @@ impl SymmetricFactor {
             self.factors[i * n + k] = l1;
             self.factors[i * n + k + 1] = l2;
         }
-        Some(if determinant < 0.0 { 1 } else if a < 0.0 { 2 } else { 0 })
+        Some(if determinant < 0.0 {
+            1
+        } else if a < 0.0 {
+            2
+        } else {
+            0
+        })
     }
 
     fn times_block(&self, row: usize, k: usize, a: f64, b: f64, c: f64) -> (f64, f64) {

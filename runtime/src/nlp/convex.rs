@@ -76,7 +76,8 @@ fn is_semidefinite(hessian: &Columns) -> bool {
 /// All one-sided constraints, equalities (sign 0) first.
 fn sides(nlp: &dyn Nlp) -> Vec<Side> {
     let rows = nlp.row_bounds().iter().enumerate().map(|(i, bounds)| (Source::Row(i), *bounds));
-    let variables = nlp.variable_bounds().iter().enumerate().map(|(i, bounds)| (Source::Variable(i), *bounds));
+    let variables =
+        nlp.variable_bounds().iter().enumerate().map(|(i, bounds)| (Source::Variable(i), *bounds));
     let (mut sides, mut inequalities) = (Vec::new(), Vec::new());
     for (source, Bounds { lower, upper }) in rows.chain(variables) {
         if lower == upper {
@@ -111,7 +112,9 @@ fn constraint_columns(nlp: &dyn Nlp, jacobian: &[f64], sides: &[Side], variables
     for (i, side) in sides.iter().enumerate() {
         match side.source {
             Source::Variable(j) => entries.push((i, j, side.factor())),
-            Source::Row(row) => entries.extend(of_row[row].iter().map(|(j, value)| (i, *j, side.factor() * value))),
+            Source::Row(row) => {
+                entries.extend(of_row[row].iter().map(|(j, value)| (i, *j, side.factor() * value)))
+            }
         }
     }
     to_columns(entries, sides.len(), variables)
@@ -142,7 +145,8 @@ fn into_solution(nlp: &mut dyn Nlp, sides: &[Side], found: crate::clarabel::Coni
     let multipliers = multipliers(nlp, sides, &found.z);
     let mut rows = vec![0.0; nlp.row_bounds().len()];
     let objective = nlp.values(&v, &mut rows);
-    let counts = Counts { iterations: found.iterations, factorizations: found.iterations, ..Counts::default() };
+    let counts =
+        Counts { iterations: found.iterations, factorizations: found.iterations, ..Counts::default() };
     let constraint_violation = constraint_violation(nlp, &v);
     let kkt_error = stationarity(nlp, &v, &multipliers).max(constraint_violation);
     let global = status == Status::Solved;

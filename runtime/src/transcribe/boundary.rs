@@ -19,7 +19,12 @@ pub(super) struct Ends {
 }
 
 impl Ends {
-    pub(super) fn new(problem: &Problem, stages: Stages, jacobian: &mut Builder, hessian: &mut Builder) -> Self {
+    pub(super) fn new(
+        problem: &Problem,
+        stages: Stages,
+        jacobian: &mut Builder,
+        hessian: &mut Builder,
+    ) -> Self {
         let function = Arc::clone(&problem.boundary);
         let variable = |input: u32| Repeated { first: variable(problem, stages, input as usize), step: 0 };
         let (mut row_moves, mut gradient_moves, mut hessian_moves) = (Vec::new(), Vec::new(), Vec::new());
@@ -68,7 +73,13 @@ impl Ends {
         self.values.column(0)[0]
     }
 
-    pub(super) fn differentiate(&mut self, stages: Stages, parameters: &[f64], weight: f64, multipliers: &[f64]) {
+    pub(super) fn differentiate(
+        &mut self,
+        stages: Stages,
+        parameters: &[f64],
+        weight: f64,
+        multipliers: &[f64],
+    ) {
         self.multipliers.column_mut(0)[0] = weight;
         for (i, row) in stages.coupling().enumerate() {
             self.multipliers.column_mut(i + 1)[0] = multipliers[row];

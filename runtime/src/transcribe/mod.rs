@@ -50,7 +50,8 @@ impl<'p> TranscribedNlp<'p> {
         });
         let nodes = nodes.collect();
         let targets = (0..stages.local_rows).map(|i| Target::Row(stages.states + i, 1.0)).collect();
-        let path = Sampled::new(problem, &problem.path, 1.0, vec![1.0; stages.states], targets, &mut matrices);
+        let path =
+            Sampled::new(problem, &problem.path, 1.0, vec![1.0; stages.states], targets, &mut matrices);
         let Matrices { mut jacobian, mut hessian, .. } = matrices;
         let ends = Ends::new(problem, stages, &mut jacobian, &mut hessian);
         TranscribedNlp {

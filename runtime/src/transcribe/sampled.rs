@@ -140,7 +140,13 @@ impl Sampled {
             let next = v[step + state..].iter().step_by(step);
             for (value, (x, x_next)) in target.iter_mut().zip(here.zip(next)) {
                 // No arithmetic on the end that does not count: it might not be finite.
-                *value = if new == 0.0 { *x } else if old == 0.0 { *x_next } else { old * x + new * x_next };
+                *value = if new == 0.0 {
+                    *x
+                } else if old == 0.0 {
+                    *x_next
+                } else {
+                    old * x + new * x_next
+                };
             }
         }
         for control in 0..layout.u {
@@ -168,7 +174,13 @@ impl Sampled {
     }
 
     /// Evaluates all derivatives at the loaded points.
-    pub(super) fn differentiate(&mut self, stages: Stages, parameters: &[f64], weight: f64, multipliers: &[f64]) {
+    pub(super) fn differentiate(
+        &mut self,
+        stages: Stages,
+        parameters: &[f64],
+        weight: f64,
+        multipliers: &[f64],
+    ) {
         for (output, target) in self.targets.iter().enumerate() {
             let column = self.multipliers.column_mut(output);
             match *target {
@@ -216,9 +228,15 @@ impl Sampled {
     }
 
     /// The output and interval of the first value or derivative that is not finite.
-    pub(super) fn not_finite(&mut self, stages: Stages, parameters: &[f64], rows: usize) -> Option<(usize, usize)> {
+    pub(super) fn not_finite(
+        &mut self,
+        stages: Stages,
+        parameters: &[f64],
+        rows: usize,
+    ) -> Option<(usize, usize)> {
         self.differentiate(stages, parameters, 0.0, &vec![0.0; rows]);
-        let place = |table: &Columns, column: usize| table.column(column).iter().position(|value| !value.is_finite());
+        let place =
+            |table: &Columns, column: usize| table.column(column).iter().position(|value| !value.is_finite());
         let values = (0..self.values.columns()).filter_map(|i| Some((i, place(&self.values, i)?)));
         let pattern = &self.function.jacobian_pattern().entries;
         let slopes = pattern.iter().enumerate();

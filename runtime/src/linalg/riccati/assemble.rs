@@ -62,7 +62,9 @@ impl Assembly {
             None => self.defects.push(target(family.row)),
             Some(row) => self.local.push(target(row)),
         }
-        family.count == stages.intervals && family.row < stages.row_step() && (family.row_step == stages.row_step() || family.count == 1)
+        family.count == stages.intervals
+            && family.row < stages.row_step()
+            && (family.row_step == stages.row_step() || family.count == 1)
     }
 
     /// Fills the shared block with the values of interval `k`.

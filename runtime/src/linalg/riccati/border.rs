@@ -118,7 +118,8 @@ impl Border {
         let is_first = |end| matches!(end, End::First(_));
         let is_last = |end| matches!(end, End::Last(_));
         let at_start = (is_first(row) || is_first(column)) && !is_last(row) && !is_last(column);
-        let (list, size) = if at_start { (initial, self.size()) } else { (terminal, self.stages.states + self.theta()) };
+        let (list, size) =
+            if at_start { (initial, self.size()) } else { (terminal, self.stages.states + self.theta()) };
         let position = |end| if at_start { self.initial_position(end) } else { self.terminal_position(end) };
         let (i, j) = (position(row), position(column));
         list.push(Move { source, target: i * size + j });
@@ -150,7 +151,14 @@ impl Border {
     }
 
     /// The value function of `(x_N, theta)`; remembers what belongs to the first state.
-    pub(super) fn assemble(&mut self, hessian: &[f64], jacobian: &[f64], sigma: &[f64], d: &[f64], value: &mut [f64]) {
+    pub(super) fn assemble(
+        &mut self,
+        hessian: &[f64],
+        jacobian: &[f64],
+        sigma: &[f64],
+        d: &[f64],
+        value: &mut [f64],
+    ) {
         let stages = self.stages;
         let width = stages.states + self.theta();
         value.fill(0.0);
@@ -192,7 +200,12 @@ impl Border {
     }
 
     fn fixed_positions(&self) -> impl Iterator<Item = usize> + '_ {
-        self.fixed_first.iter().chain(&self.fixed_globals).enumerate().filter(|(_, fixed)| **fixed).map(|(i, _)| i)
+        self.fixed_first
+            .iter()
+            .chain(&self.fixed_globals)
+            .enumerate()
+            .filter(|(_, fixed)| **fixed)
+            .map(|(i, _)| i)
     }
 
     /// Gradient of the terminal value function.

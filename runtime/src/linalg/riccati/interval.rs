@@ -120,7 +120,14 @@ impl Interval {
     }
 
     /// Adds barrier terms and condenses the local rows: `H += J' diag(1/d) J`.
-    pub(super) fn add_diagonals(&mut self, block: &mut Block, stages: &Stages, k: usize, sigma: &[f64], d: &[f64]) {
+    pub(super) fn add_diagonals(
+        &mut self,
+        block: &mut Block,
+        stages: &Stages,
+        k: usize,
+        sigma: &[f64],
+        d: &[f64],
+    ) {
         let (n, m, all) = (self.sizes.n, self.sizes.m, self.sizes.all());
         let start = stages.state(k).start;
         for i in 0..n + m {

@@ -59,7 +59,8 @@ impl Riccati {
         }
         let border = Border::new(stages, hessian, jacobian, fixed);
         let sizes = Sizes { n: stages.states, m: stages.controls, q: border.theta() };
-        let assembly = Assembly::new(stages, sizes, hessian, jacobian).ok_or("entries couple distant stages")?;
+        let assembly =
+            Assembly::new(stages, sizes, hessian, jacobian).ok_or("entries couple distant stages")?;
         let interval =
             |k| Interval::new(sizes, stages.local_rows, stages.control(k).map(|i| fixed[i]).collect());
         let intervals = (0..stages.intervals).map(interval).collect();

@@ -88,7 +88,8 @@ impl Barrier {
             if towards * primal > tau * distance {
                 primal = tau * distance / towards;
             }
-            let (z, dz) = if direction > 0.0 { (at.lower[i], step.lower[i]) } else { (at.upper[i], step.upper[i]) };
+            let (z, dz) =
+                if direction > 0.0 { (at.lower[i], step.lower[i]) } else { (at.upper[i], step.upper[i]) };
             if -dz * dual > tau * z {
                 dual = tau * z / -dz;
             }

@@ -3,7 +3,7 @@
 
 use super::barrier::Barrier;
 use super::iterate::{Iterate, Slopes, Step, Values};
-use super::kkt::Kkt;
+use super::kkt::{Kkt, System};
 use super::space::Space;
 use crate::nlp::{Counts, Nlp};
 
@@ -144,7 +144,8 @@ impl Search<'_> {
         if from.slope < 0.0 {
             bound = bound.min(OBJECTIVE_MARGIN * from.theta / -from.slope);
             if from.theta <= filter.small {
-                let switch = SWITCH_FACTOR * from.theta.powf(VIOLATION_POWER) / (-from.slope).powf(SLOPE_POWER);
+                let switch =
+                    SWITCH_FACTOR * from.theta.powf(VIOLATION_POWER) / (-from.slope).powf(SLOPE_POWER);
                 bound = bound.min(switch);
             }
         }
@@ -190,11 +191,12 @@ impl Search<'_> {
             for (target, residual) in residuals.iter_mut().zip(&last.residuals) {
                 *target = factor * *target + residual;
             }
-            let (mu, at) = (self.barrier.mu, self.at);
-            if !self.kkt.step(self.nlp, self.space, at, self.slopes, mu, &residuals, &mut corrected) {
+            let (space, at, slopes, mu) = (self.space, self.at, self.slopes, self.barrier.mu);
+            let system = System { nlp: &*self.nlp, space, at, slopes, mu };
+            if !self.kkt.step(&system, &residuals, &mut corrected) {
                 return None;
             }
-            alpha = self.barrier.longest_steps(self.space, at, &corrected).0;
+            alpha = self.barrier.longest_steps(space, at, &corrected).0;
             let (y, values) = self.trial(&corrected, alpha)?;
             if self.accept(filter, from, alpha, &y, &values) {
                 *step = corrected;

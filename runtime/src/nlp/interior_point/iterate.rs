@@ -37,7 +37,12 @@ pub(super) struct Step {
 impl Step {
     pub(super) fn new(space: &Space) -> Self {
         let (length, rows) = (space.len(), space.target.len());
-        Step { y: vec![0.0; length], lambda: vec![0.0; rows], lower: vec![0.0; length], upper: vec![0.0; length] }
+        Step {
+            y: vec![0.0; length],
+            lambda: vec![0.0; rows],
+            lower: vec![0.0; length],
+            upper: vec![0.0; length],
+        }
     }
 }
 
@@ -50,7 +55,13 @@ pub(super) struct Values {
 
 impl Values {
     /// Evaluates at `y`; `false` if anything is not finite.
-    pub(super) fn evaluate(&mut self, nlp: &mut dyn Nlp, space: &Space, y: &[f64], counts: &mut Counts) -> bool {
+    pub(super) fn evaluate(
+        &mut self,
+        nlp: &mut dyn Nlp,
+        space: &Space,
+        y: &[f64],
+        counts: &mut Counts,
+    ) -> bool {
         counts.values += 1;
         self.residuals.resize(space.target.len(), 0.0);
         let objective = nlp.values(&y[..space.variables], &mut self.residuals);
@@ -78,7 +89,13 @@ impl Slopes {
     }
 
     /// Evaluates at the iterate; `false` if anything is not finite.
-    pub(super) fn evaluate(&mut self, nlp: &mut dyn Nlp, space: &Space, at: &Iterate, counts: &mut Counts) -> bool {
+    pub(super) fn evaluate(
+        &mut self,
+        nlp: &mut dyn Nlp,
+        space: &Space,
+        at: &Iterate,
+        counts: &mut Counts,
+    ) -> bool {
         counts.derivatives += 1;
         nlp.derivatives(&at.y[..space.variables], 1.0, &at.lambda, &mut self.derivatives);
         self.update_lagrangian(nlp, space, &at.lambda);

@@ -36,6 +36,16 @@ const ROW_REGULARIZATION: f64 = 1e-8;
 const REFINED: f64 = 1e-11;
 const MOST_REFINEMENTS: usize = 8;
 
+/// What the optimality conditions are linearised around.
+#[derive(Clone, Copy)]
+pub(super) struct System<'a> {
+    pub(super) nlp: &'a dyn Nlp,
+    pub(super) space: &'a Space,
+    pub(super) at: &'a Iterate,
+    pub(super) slopes: &'a Slopes,
+    pub(super) mu: f64,
+}
+
 /// The matrix, its factors and its memory.
 pub(super) struct Kkt {
     factor: Box<dyn Factor>,
@@ -104,7 +114,13 @@ impl Kkt {
     }
 
     /// Factors with the smallest regularisation that gives the right inertia; `false` if none does.
-    pub(super) fn factor_with_inertia(&mut self, space: &Space, slopes: &Slopes, mu: f64, counts: &mut Counts) -> bool {
+    pub(super) fn factor_with_inertia(
+        &mut self,
+        space: &Space,
+        slopes: &Slopes,
+        mu: f64,
+        counts: &mut Counts,
+    ) -> bool {
         // Curvature that was wrong a moment ago is likely to be wrong again: zero is tried only every other time.
         let start = if self.was_needed { self.smaller_regularization() } else { 0.0 };
         self.regularization = start.max(self.caution);
@@ -133,7 +149,8 @@ impl Kkt {
             let raised = (CAUTION_GROWTH * self.caution).max(FIRST_REGULARIZATION);
             self.caution = if raised > MOST_CAUTION { 0.0 } else { raised };
         } else if fraction > NOT_CUT {
-            self.caution = if self.caution < FIRST_REGULARIZATION { 0.0 } else { self.caution / CAUTION_GROWTH };
+            self.caution =
+                if self.caution < FIRST_REGULARIZATION { 0.0 } else { self.caution / CAUTION_GROWTH };
         }
     }
 
@@ -165,16 +182,8 @@ impl Kkt {
     }
 
     /// The Newton step that removes `residuals`; `false` if the linear system could not be solved accurately.
-    pub(super) fn step(
-        &mut self,
-        nlp: &dyn Nlp,
-        space: &Space,
-        at: &Iterate,
-        slopes: &Slopes,
-        mu: f64,
-        residuals: &[f64],
-        step: &mut Step,
-    ) -> bool {
+    pub(super) fn step(&mut self, system: &System, residuals: &[f64], step: &mut Step) -> bool {
+        let System { nlp, space, at, slopes, mu } = *system;
         self.fill_right_side(space, residuals);
         if !self.solve_refined(nlp, space, slopes) {
             return false;
@@ -188,7 +197,8 @@ impl Kkt {
         }
         let Step { y, lower, upper, .. } = step;
         space.for_each_bound(&at.y, |i, distance, direction| {
-            let (z, dz) = if direction > 0.0 { (at.lower[i], &mut lower[i]) } else { (at.upper[i], &mut upper[i]) };
+            let (z, dz) =
+                if direction > 0.0 { (at.lower[i], &mut lower[i]) } else { (at.upper[i], &mut upper[i]) };
             *dz = mu / distance - z - direction * z / distance * y[i];
         });
         true

@@ -48,7 +48,8 @@ impl Residuals {
     /// `E_mu`
     pub(super) fn error(&self, mu: f64) -> f64 {
         let no_bounds = self.largest_product == 0.0 && self.smallest_product == 0.0;
-        let products = if no_bounds { 0.0 } else { (self.largest_product - mu).max(mu - self.smallest_product) };
+        let products =
+            if no_bounds { 0.0 } else { (self.largest_product - mu).max(mu - self.smallest_product) };
         self.dual.max(self.primal).max(products / self.product_scale)
     }
 }

@@ -9,10 +9,11 @@
 //! (Waechter & Biegler 2006, section 3.3), until a point is acceptable to the filter it was called from. If it ends
 //! at an optimum of its own, the problem is locally infeasible: no small move reduces the violation.
 
+use super::algorithm::{Algorithm, Outcome};
 use super::filter::Filter;
 use super::iterate::{Iterate, Values};
 use super::space::Space;
-use super::{Algorithm, Outcome};
+
 use crate::linalg::{Family, Stages, Triplets};
 use crate::nlp::{Derivatives, Nlp, Place, Progress, Status, Watch};
 use crate::problem::Bounds;
@@ -122,13 +123,14 @@ impl Algorithm {
         let mut proximity = Proximity::new(nlp, &variables, mu.sqrt());
         let mut inner = self.elastic(&mut proximity, mu);
         let restored = loop {
-            let outcome = inner.iterate(&mut proximity, &mut |progress| {
-                watch(&Progress { restoration: true, ..*progress })
-            });
+            let outcome = inner
+                .iterate(&mut proximity, &mut |progress| watch(&Progress { restoration: true, ..*progress }));
             match outcome {
                 Outcome::Continue => {}
                 Outcome::Blocked => break Restored::Blocked,
-                Outcome::Done(Status::Solved | Status::Acceptable) => break Restored::Stopped(Status::Infeasible),
+                Outcome::Done(Status::Solved | Status::Acceptable) => {
+                    break Restored::Stopped(Status::Infeasible);
+                }
                 Outcome::Done(status) => break Restored::Stopped(status),
             }
             if self.accepts(proximity.inner, &inner.at, violation) {

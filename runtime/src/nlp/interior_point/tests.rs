@@ -91,9 +91,7 @@ fn hock_schittkowski_71() -> Dense {
     };
     let curvature: Curvature = |x, w, l, h| {
         let pair = |a: usize, b: usize| (0..4).filter(|i| *i != a && *i != b).map(|i| x[i]).product::<f64>();
-        let f = [
-            2.0 * x[3], x[3], 0.0, x[3], 0.0, 0.0, 2.0 * x[0] + x[1] + x[2], x[0], x[0], 0.0,
-        ];
+        let f = [2.0 * x[3], x[3], 0.0, x[3], 0.0, 0.0, 2.0 * x[0] + x[1] + x[2], x[0], x[0], 0.0];
         let mut place = 0;
         for i in 0..4 {
             for j in 0..=i {
@@ -102,7 +100,11 @@ fn hock_schittkowski_71() -> Dense {
             }
         }
     };
-    Dense::new(vec![between(1.0, 5.0); 4], vec![at_least(25.0), Bounds::fixed(40.0)], (values, slopes, curvature))
+    Dense::new(
+        vec![between(1.0, 5.0); 4],
+        vec![at_least(25.0), Bounds::fixed(40.0)],
+        (values, slopes, curvature),
+    )
 }
 
 #[test]
@@ -152,7 +154,8 @@ fn a_jammed_line_search_is_restored_to_the_smallest_violation_near_it() {
         h[0] = 2.0 * l[0];
     };
     let bounds = vec![Bounds::FREE, at_least(0.0), at_least(0.0)];
-    let solution = Dense::new(bounds, vec![Bounds::fixed(0.0); 2], (values, slopes, curvature)).solve(&[-4.0, 1.0, 1.0]);
+    let solution =
+        Dense::new(bounds, vec![Bounds::fixed(0.0); 2], (values, slopes, curvature)).solve(&[-4.0, 1.0, 1.0]);
     assert_eq!(solution.status, Status::Infeasible);
     assert!((solution.v[0] + 1.0).abs() < 1e-3 && solution.counts.restorations > 0, "{:?}", solution.v);
 }
@@ -163,7 +166,8 @@ fn an_unbounded_programme_is_recognised() {
     let values: Values = |x, _| x[0] + 0.5 * x[1] * x[1];
     let slopes: Slopes = |x, g, _| g.copy_from_slice(&[1.0, x[1]]);
     let curvature: Curvature = |_, w, _, h| h.copy_from_slice(&[0.0, 0.0, w]);
-    let solution = Dense::new(vec![Bounds::FREE; 2], Vec::new(), (values, slopes, curvature)).solve(&[0.0, 1.0]);
+    let solution =
+        Dense::new(vec![Bounds::FREE; 2], Vec::new(), (values, slopes, curvature)).solve(&[0.0, 1.0]);
     assert_eq!(solution.status, Status::Unbounded);
 }
 

@@ -1,0 +1,275 @@
+//! The loop: look, decide, step.
+
+use super::barrier::Barrier;
+use super::filter::{Accepted, Filter, Search};
+use super::iterate::{Iterate, Slopes, Step, Values};
+use super::kkt::{Kkt, System};
+use super::residuals::Residuals;
+use super::restoration::Restored;
+use super::space::Space;
+use super::watchdog::Watchdog;
+use crate::nlp::{Counts, Nlp, Options, Progress, Status, Stop, Watch};
+use std::ops::ControlFlow;
+
+/// An error this small for this many iterations is acceptable.
+const ACCEPTABLE_ERROR: f64 = 1e-6;
+const ACCEPTABLE_ITERATIONS: usize = 15;
+/// Variables beyond this, at a feasible point, have left the problem.
+const DIVERGED: f64 = 1e10;
+/// A step this small, relative to the iterate, is rounding.
+const TINY_STEP: f64 = 10.0 * f64::EPSILON;
+/// So many steps of rounding in a row at the last barrier parameter end the solve.
+const MOST_TINY_STEPS: usize = 5;
+/// A restoration phase that is stuck is begun anew so many times.
+const MOST_RESTARTS: usize = 4;
+
+/// What one iteration led to.
+pub(super) enum Outcome {
+    Continue,
+    /// The line search found no acceptable step.
+    Blocked,
+    Done(Status),
+}
+
+/// The state of a solve. It does not own the programme, so that a restoration phase can be run by another one.
+pub(super) struct Algorithm {
+    pub(super) space: Space,
+    pub(super) at: Iterate,
+    pub(super) values: Values,
+    pub(super) slopes: Slopes,
+    pub(super) barrier: Barrier,
+    pub(super) filter: Filter,
+    pub(super) kkt: Kkt,
+    pub(super) step: Step,
+    pub(super) options: Options,
+    pub(super) counts: Counts,
+    pub(super) progress: Progress,
+    pub(super) residuals: Residuals,
+    pub(super) acceptable: usize,
+    pub(super) tiny_steps: usize,
+    pub(super) watchdog: Watchdog,
+    /// Whether the derivatives belong to the iterate.
+    pub(super) fresh: bool,
+}
+
+impl Algorithm {
+    pub(super) fn new(nlp: &dyn Nlp, space: Space, at: Iterate, mu: f64, options: Options) -> Self {
+        Algorithm {
+            kkt: Kkt::new(nlp, &space, options.linear),
+            step: Step::new(&space),
+            slopes: Slopes::new(nlp, &space),
+            values: Values::default(),
+            barrier: Barrier::new(mu, options.tol),
+            filter: Filter::new(0.0),
+            counts: Counts::default(),
+            progress: Progress::default(),
+            residuals: Residuals::default(),
+            acceptable: 0,
+            tiny_steps: 0,
+            watchdog: Watchdog::default(),
+            fresh: false,
+            space,
+            at,
+            options,
+        }
+    }
+
+    /// Iterates to the end, with restoration phases where the line search is stuck.
+    pub(super) fn run(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Status {
+        loop {
+            match self.iterate(nlp, watch) {
+                Outcome::Continue => {}
+                Outcome::Done(status) => return status,
+                Outcome::Blocked => {
+                    if self.residuals.error(0.0) <= ACCEPTABLE_ERROR {
+                        return Status::Acceptable;
+                    }
+                    if let Some(status) = self.restore_or_stop(nlp, watch) {
+                        return status;
+                    }
+                }
+            }
+        }
+    }
+
+    /// A restoration phase, begun anew from where it is if it gets stuck itself.
+    fn restore_or_stop(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Option<Status> {
+        for _ in 0..MOST_RESTARTS {
+            match self.restore(nlp, watch) {
+                Restored::Acceptable => return None,
+                Restored::Stopped(status) => return Some(status),
+                Restored::Blocked => {}
+            }
+        }
+        Some(Status::NumericalFailure)
+    }
+
+    /// One iteration: look, decide, step.
+    pub(super) fn iterate(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Outcome {
+        if !self.fresh && !self.slopes.evaluate(nlp, &self.space, &self.at, &mut self.counts) {
+            let place = nlp.not_finite(&self.at.y[..self.space.variables]).unwrap_or_default();
+            return Outcome::Done(Status::NotFinite(place));
+        }
+        self.fresh = true;
+        self.residuals = Residuals::new(&self.space, &self.at, &self.values, &self.slopes);
+        if let ControlFlow::Break(stop) = watch(&self.report()) {
+            return Outcome::Done(if stop == Stop::TimeLimit {
+                Status::TimeLimit
+            } else {
+                Status::Interrupted
+            });
+        }
+        if let Some(status) = self.finished() {
+            return Outcome::Done(status);
+        }
+        if self.barrier.update(&self.residuals) {
+            self.filter.clear();
+            self.watchdog.end();
+            self.tiny_steps = 0;
+        }
+        self.kkt.assemble(&self.space, &self.at, &self.slopes, &self.barrier);
+        if !self.kkt.factor_with_inertia(&self.space, &self.slopes, self.barrier.mu, &mut self.counts) {
+            return Outcome::Blocked;
+        }
+        self.take_step(nlp)
+    }
+
+    fn report(&mut self) -> Progress {
+        self.progress = Progress {
+            iteration: self.counts.iterations,
+            objective: self.values.objective,
+            primal_infeasibility: self.residuals.primal,
+            dual_infeasibility: self.residuals.dual,
+            mu: self.barrier.mu,
+            ..self.progress
+        };
+        self.progress
+    }
+
+    fn finished(&mut self) -> Option<Status> {
+        let error = self.residuals.error(0.0);
+        self.acceptable = if error <= ACCEPTABLE_ERROR { self.acceptable + 1 } else { 0 };
+        if error <= self.options.tol {
+            Some(Status::Solved)
+        } else if self.acceptable >= ACCEPTABLE_ITERATIONS {
+            Some(Status::Acceptable)
+        } else if self.residuals.primal <= self.options.tol && self.has_diverged() {
+            Some(Status::Unbounded)
+        } else if self.counts.iterations >= self.options.max_iter {
+            Some(Status::IterationLimit)
+        } else {
+            None
+        }
+    }
+
+    fn has_diverged(&self) -> bool {
+        self.at.y[..self.space.variables].iter().any(|value| value.abs() > DIVERGED)
+    }
+
+    fn take_step(&mut self, nlp: &mut dyn Nlp) -> Outcome {
+        let space = &self.space;
+        let system = System { nlp, space, at: &self.at, slopes: &self.slopes, mu: self.barrier.mu };
+        if !self.kkt.step(&system, &self.values.residuals, &mut self.step) {
+            return Outcome::Blocked;
+        }
+        let (longest, dual) = self.barrier.longest_steps(space, &self.at, &self.step);
+        if self.is_tiny() {
+            return self.accept_tiny(nlp, longest, dual);
+        }
+        let mut search = Search {
+            nlp,
+            space,
+            barrier: &self.barrier,
+            kkt: &mut self.kkt,
+            at: &self.at,
+            values: &self.values,
+            slopes: &self.slopes,
+            counts: &mut self.counts,
+        };
+        let accepted = if self.watchdog.is_due() {
+            let reference = search.reference(&self.step);
+            self.watchdog.begin(self.at.clone(), self.values.clone(), reference, longest);
+            search.full(&mut self.filter, &self.step, longest, reference, longest)
+        } else if let Some(saved) = &self.watchdog.saved {
+            search.full(&mut self.filter, &self.step, longest, saved.reference, saved.alpha)
+        } else {
+            let accepted = search.run(&mut self.filter, &mut self.step, longest);
+            let Some(accepted) = accepted else { return Outcome::Blocked };
+            Some((accepted, true))
+        };
+        self.tiny_steps = 0;
+        self.settle(accepted, longest, dual)
+    }
+
+    /// Takes an accepted step, or one on trust; or goes back to where the trust began.
+    fn settle(&mut self, accepted: Option<(Accepted, bool)>, longest: f64, dual: f64) -> Outcome {
+        match accepted {
+            Some((accepted, acceptable)) if acceptable || self.watchdog.trust() => {
+                if acceptable && self.watchdog.end().is_none() {
+                    self.kkt.judge(accepted.alpha / longest);
+                    self.watchdog.note(accepted.alpha / longest);
+                }
+                self.progress.trials = accepted.trials;
+                self.move_to(accepted.y, accepted.values, accepted.alpha, dual);
+            }
+            _ => {
+                let saved = self.watchdog.end().expect("only the watchdog refuses a step here");
+                (self.at, self.values, self.fresh) = (saved.at, saved.values, false);
+                self.counts.iterations += 1;
+            }
+        }
+        Outcome::Continue
+    }
+
+    fn is_tiny(&self) -> bool {
+        let small = |(d, y): (&f64, &f64)| d.abs() <= TINY_STEP * (1.0 + y.abs());
+        self.step.y.iter().zip(&self.at.y).all(small) && self.residuals.primal < ACCEPTABLE_ERROR
+    }
+
+    /// A step that is rounding is taken without a search, and lowers the barrier parameter; when that is as low as it
+    /// gets and the multipliers have settled as well, nothing more can be gained.
+    fn accept_tiny(&mut self, nlp: &mut dyn Nlp, alpha: f64, dual: f64) -> Outcome {
+        self.tiny_steps = if self.barrier.lower() { 0 } else { self.tiny_steps + 1 };
+        if self.tiny_steps > MOST_TINY_STEPS {
+            let error = self.residuals.error(0.0);
+            let status =
+                if error <= ACCEPTABLE_ERROR { Status::Acceptable } else { Status::NumericalFailure };
+            return Outcome::Done(status);
+        }
+        let y: Vec<f64> = self.at.y.iter().zip(&self.step.y).map(|(y, d)| y + alpha * d).collect();
+        let mut values = Values::default();
+        if !values.evaluate(nlp, &self.space, &y, &mut self.counts) {
+            return Outcome::Blocked;
+        }
+        self.move_to(y, values, alpha, dual);
+        Outcome::Continue
+    }
+
+    fn move_to(&mut self, y: Vec<f64>, values: Values, alpha: f64, dual: f64) {
+        self.at.y = y;
+        self.values = values;
+        add_scaled(&mut self.at.lambda, &self.step.lambda, alpha);
+        add_scaled(&mut self.at.lower, &self.step.lower, dual);
+        add_scaled(&mut self.at.upper, &self.step.upper, dual);
+        self.barrier.correct_multipliers(&self.space, &mut self.at);
+        self.counts.iterations += 1;
+        self.fresh = false;
+        self.progress.step = self.step.y.iter().fold(0.0, |a, d| a.max(d.abs()));
+        self.progress.regularization = self.kkt.regularization;
+        self.progress.alpha_primal = alpha;
+        self.progress.alpha_dual = dual;
+    }
+
+    /// Row multipliers by least squares at the iterate.
+    pub(super) fn estimate_multipliers(&mut self, nlp: &mut dyn Nlp) {
+        self.at.lambda.fill(0.0);
+        if self.slopes.evaluate(nlp, &self.space, &self.at, &mut self.counts) {
+            self.kkt.estimate_multipliers(&self.space, &mut self.at, &self.slopes);
+        }
+        self.fresh = false;
+    }
+}
+
+fn add_scaled(target: &mut [f64], step: &[f64], factor: f64) {
+    target.iter_mut().zip(step).for_each(|(value, d)| *value += factor * d);
+}

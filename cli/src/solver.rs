@@ -34,6 +34,8 @@ pub struct Solved {
 pub enum Failure {
     /// The model has no meaning for the solver.
     Model(Vec<Diagnostic>),
+    /// There is nothing in the model that could be chosen.
+    Nothing,
     /// What was asked for cannot be done.
     Usage(String),
     /// A file cannot be used.
@@ -46,6 +48,13 @@ impl Failure {
         match self {
             Failure::Model(diagnostics) => {
                 show(diagnostics.iter(), source);
+                Exit::ModelError
+            }
+            Failure::Nothing => {
+                output::complain(&format!(
+                    "{}: nothing to solve: the model has no state, control or `free` unknown",
+                    source.name
+                ));
                 Exit::ModelError
             }
             Failure::Usage(message) => {
@@ -64,9 +73,7 @@ impl Compiled {
     /// Compiles a model; `begin` is when the work on it began.
     pub fn new(prepared: &Prepared, begin: Instant) -> Result<Self, Failure> {
         let problem = fdcc_compiler::compile(&prepared.model).map_err(Failure::Model)?;
-        if let Some(diagnostic) = bounds::empty(&problem) {
-            return Err(Failure::Model(vec![diagnostic]));
-        }
+        refuse_senseless(&problem)?;
         let source_sha256 = sha256(&prepared.source.text);
         Ok(Compiled { problem, source_sha256, begin, seconds: begin.elapsed().as_secs_f64() })
     }
@@ -113,6 +120,29 @@ impl Solved {
     pub fn exit(&self) -> Exit {
         if self.is_good() { Exit::Fine } else { Exit::NotSolved }
     }
+}
+
+/// More need more memory than computers have.
+const MOST_UNKNOWNS: usize = 20_000_000;
+
+/// What a solver cannot begin with.
+fn refuse_senseless(problem: &Problem) -> Result<(), Failure> {
+    if let Some(diagnostic) = bounds::empty(problem) {
+        return Err(Failure::Model(vec![diagnostic]));
+    }
+    match unknowns(problem) {
+        0 => Err(Failure::Nothing),
+        many if many > MOST_UNKNOWNS => {
+            Err(Failure::Usage(format!("{many} unknowns are too many; N = {}", problem.method.intervals)))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// How many numbers the optimiser chooses.
+pub fn unknowns(problem: &Problem) -> usize {
+    let (layout, intervals) = (problem.layout, problem.method.intervals);
+    intervals.saturating_mul(layout.x + layout.u).saturating_add(layout.x + problem.unknowns.len())
 }
 
 /// The first start is as given; the others vary it.

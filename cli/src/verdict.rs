@@ -3,15 +3,14 @@
 use crate::output::document::{Document, scheme_name, status_name, switching};
 use crate::output::number::{scientific, short, significant};
 use crate::output::plural;
-use crate::solver::Solved;
+use crate::solver::{Solved, unknowns};
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::Problem;
 
 /// One line: the size of the problem.
 pub fn headline(problem: &Problem) -> String {
     let shown = problem.states.iter().filter(|state| !state.hidden).count();
-    let (method, layout) = (&problem.method, problem.layout);
-    let variables = method.intervals * (layout.x + layout.u) + layout.x + problem.unknowns.len();
+    let method = &problem.method;
     format!(
         " {}   {}  {}  {}  {}  N {}  {}\n",
         problem.name,
@@ -20,7 +19,7 @@ pub fn headline(problem: &Problem) -> String {
         plural(problem.surfaces.len(), "surface"),
         scheme_name(method.scheme),
         method.intervals,
-        plural(variables, "unknown"),
+        plural(unknowns(problem), "unknown"),
     )
 }
 

@@ -135,7 +135,7 @@ fn wrong_lists_are_explained() {
         (&["goal=one"], 3, "`one`"),
         (&["gaol=1"], 3, "did you mean `goal`?"),
         (&["sigm=1"], 3, "did you mean `sigma`?"),
-        (&["scheme=oiler"], 3, "did you mean `euler`?"),
+        (&["scheme=eular"], 3, "did you mean `euler`?"),
         (&["N=0"], 3, "a whole number"),
         (&[], 3, "required"),
         (&["goal=1", "--jobs", "0"], 3, "--jobs"),

@@ -1,16 +1,20 @@
 //! The tests of fdcc live in `tests/`; this crate has no code of its own but what they share.
 
+pub mod expected;
 pub mod functions;
 pub mod models;
 pub mod optimality;
 pub mod random;
+pub mod sources;
 pub mod symbols;
 pub mod transcribed;
 
 mod claims;
 mod markdown;
+mod rate;
 mod solved;
 
 pub use claims::unclaimed;
 pub use markdown::{Block, blocks, documents, repository};
+pub use rate::rate;
 pub use solved::Solved;

@@ -40,6 +40,11 @@ pub fn problem(text: &str, parameters: Changes, methods: Changes) -> Problem {
     fdcc_compiler::compile(&changed(text, parameters, methods)).expect("the model can be solved")
 }
 
+/// Pairs as [`Changes`] want them.
+pub fn borrowed(pairs: &[(String, String)]) -> Vec<(&str, &str)> {
+    pairs.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect()
+}
+
 /// The text of `models/NAME.fdc`.
 pub fn text_of(name: &str) -> String {
     let path = repository().join("models").join(name).with_extension("fdc");

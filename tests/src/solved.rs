@@ -61,6 +61,16 @@ impl Solved {
         self.outcome.trajectory.parameters[index.expect("a parameter of the model")]
     }
 
+    /// A quantity by its name: `objective`, `STATE(start)`, `STATE(end)`, an unknown or a parameter.
+    pub fn quantity(&self, name: &str) -> f64 {
+        match name.trim_end_matches(')').split_once('(') {
+            Some((state, "start")) => self.state(state)[0],
+            Some((state, _)) => self.end(state),
+            None if name == "objective" => self.objective(),
+            None => self.value(name),
+        }
+    }
+
     fn index_of_state(&self, name: &str) -> usize {
         self.problem.states.iter().position(|state| state.name == name).expect("a state of the model")
     }

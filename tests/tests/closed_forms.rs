@@ -24,8 +24,8 @@ fn runs(name: &str, parameters: Changes, scheme: &str) -> Vec<Solved> {
 fn assert_first_order(what: &str, runs: &[Solved], quantity: impl Fn(&Solved) -> f64, exact: f64, last: f64) {
     let errors: Vec<f64> = runs.iter().map(|run| (quantity(run) - exact).abs()).collect();
     let measured = rate(&WIDTHS.map(|width| width.0), &errors);
-    assert!((measured - 1.0).abs() < 0.1, "{what}: rate {measured:.3}, errors {errors:e?}");
-    assert!(errors[WIDTHS.len() - 1] < last, "{what}: errors {errors:e?}");
+    assert!((measured - 1.0).abs() < 0.1, "{what}: rate {measured:.3}, errors {errors:?}");
+    assert!(errors[WIDTHS.len() - 1] < last, "{what}: errors {errors:?}");
 }
 
 /// `J(x0) = (x0 + 1)^2/9 - x0^3/9 + (x0 + 6)^3/81`: the closed form of `models/crossing.fdc` (alpha = 1).
@@ -51,7 +51,7 @@ fn the_bias_of_the_state_after_a_crossing_is_as_predicted() {
         let exact = 2.0 + run.value("x0") / 3.0;
         let bias = run.end("x") - exact;
         let predicted = sigma * f64::ln(3.0) / 3.0;
-        assert!((bias - predicted).abs() < 2e-3 * predicted, "sigma {sigma}: {bias:e}, predicted {predicted:e}");
+        assert!((bias - predicted).abs() < 5e-3 * predicted, "sigma {sigma}: {bias:e}, predicted {predicted:e}");
     }
 }
 
@@ -90,19 +90,18 @@ fn the_shortest_time_with_a_crossing() {
     assert!((run.state("x")[turn] + 0.2).abs() < 5e-3);
 }
 
-/// `lam_x = -2/3`; `lam_v` is -2/3 at the start, -2/5 before the crossing, -2/3 after it, 0 at 7/5 and 2/5 at the end.
+/// `lam_x = -2/3`; `lam_v` rises with slope 2/3 from -2/3 to -2/5, jumps back to -2/3 at the crossing, and rises again.
 #[test]
 fn costates_jump_where_the_surface_is_crossed() {
     let run = Solved::of(at("coulomb_reverse", &[], "implicit_euler", WIDTHS[3]));
-    let (lam_x, lam_v) = (run.costate("x"), run.costate("v"));
     let time = &run.outcome.trajectory.time;
-    let at = |t: f64| time.iter().position(|time| *time >= t).expect("a time of the run");
-    assert!(lam_x.iter().all(|lam| (lam + 2.0 / 3.0).abs() < 0.01), "lam_x {}", lam_x[0]);
-    for (t, exact) in [(0.0, -2.0 / 3.0), (0.39, -2.0 / 5.0 - 0.01 * 2.0 / 3.0), (0.42, -2.0 / 3.0 + 0.02 * 2.0 / 3.0), (1.4, 0.0), (1.98, 0.6 - 0.02 * 2.0 / 3.0 - 0.2)] {
-        println!("{t} {} {exact}", lam_v[at(t)]);
-    }
-    for (t, exact) in [(0.0, -2.0 / 3.0), (1.4, 0.0)] {
-        assert!((lam_v[at(t)] - exact).abs() < 0.02, "lam_v({t}) = {}, exact {exact}", lam_v[at(t)]);
+    let exact = |t: f64| if t < 0.4 { -2.0 / 3.0 + 2.0 / 3.0 * t } else { -2.0 / 3.0 + 2.0 / 3.0 * (t - 0.4) };
+    assert!(run.costate("x").iter().all(|lambda| (lambda + 2.0 / 3.0).abs() < 0.01));
+    for (t, lambda) in time.iter().zip(run.costate("v")) {
+        // Within the layer the costate is on its way from one value to the other.
+        if (t - 0.4).abs() > 0.02 && *t < 1.98 {
+            assert!((lambda - exact(*t)).abs() < 0.01, "lam_v({t}) = {lambda}, exact {}", exact(*t));
+        }
     }
 }
 

@@ -23,7 +23,8 @@ fn examples() -> Vec<Example> {
 
 fn examples_of(name: &str, page: &str) -> Vec<Example> {
     let models: Vec<_> = blocks(page).into_iter().filter(|block| block.tag.starts_with("fdc")).collect();
-    let whole = models.iter().find(|block| !block.tag.contains("more")).map_or("", |block| &block.text).to_owned();
+    let whole =
+        models.iter().find(|block| !block.tag.contains("more")).map_or("", |block| &block.text).to_owned();
     let example = |block: fdcc_tests::Block| Example {
         place: format!("docs/reference/{name}.md:{}", block.line),
         is_later: block.tag.contains("later"),
@@ -63,8 +64,10 @@ fn models_compile_unless_the_page_says_that_they_cannot_be_solved_yet() {
 /// Every variant and every optional part of the syntax tree occurs in some model.
 #[test]
 fn every_construct_of_the_tree_has_an_example() {
-    let trees: String = examples().iter().map(|example| format!("{:?}\n", parse(&example.text).tree)).collect();
-    let missing: Vec<String> = constructs().into_iter().filter(|construct| !trees.contains(construct)).collect();
+    let trees: String =
+        examples().iter().map(|example| format!("{:?}\n", parse(&example.text).tree)).collect();
+    let missing: Vec<String> =
+        constructs().into_iter().filter(|construct| !trees.contains(construct)).collect();
     assert!(missing.is_empty(), "write an example in docs/reference for {missing:?}");
 }
 
@@ -74,10 +77,14 @@ fn constructs() -> Vec<String> {
     let (mut found, mut in_enum) = (Vec::new(), false);
     for line in tree.lines() {
         in_enum = line.starts_with("pub enum") || in_enum && line != "}";
-        let variant = line.strip_prefix("    ").filter(|rest| in_enum && rest.starts_with(char::is_uppercase));
-        found.extend(variant.and_then(|rest| rest.split(|c: char| !c.is_alphanumeric()).next()).map(str::to_owned));
+        let variant =
+            line.strip_prefix("    ").filter(|rest| in_enum && rest.starts_with(char::is_uppercase));
+        found.extend(
+            variant.and_then(|rest| rest.split(|c: char| !c.is_alphanumeric()).next()).map(str::to_owned),
+        );
         let optional = line.split(": Option<").collect::<Vec<_>>();
-        let names = optional[..optional.len() - 1].iter().filter_map(|before| before.split([' ', ',']).next_back());
+        let names =
+            optional[..optional.len() - 1].iter().filter_map(|before| before.split([' ', ',']).next_back());
         found.extend(names.map(|name| format!("{name}: Some(")));
     }
     assert!(found.len() > 50, "the tree is read: {found:?}");
@@ -87,10 +94,15 @@ fn constructs() -> Vec<String> {
 /// Every keyword and every sign of the grammar occurs in some model.
 #[test]
 fn every_word_of_the_grammar_has_an_example() {
-    let grammar = fs::read_to_string(repository().join("grammar/src/fdc.pest")).expect("the grammar is there");
+    let grammar =
+        fs::read_to_string(repository().join("grammar/src/fdc.pest")).expect("the grammar is there");
     let texts: String = examples().iter().map(|example| without_comments(&example.text)).collect();
     let words: Vec<&str> = texts.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
-    let keywords: Vec<&str> = grammar.lines().filter(|line| line.starts_with("kw_")).filter_map(|line| line.split('"').nth(1)).collect();
+    let keywords: Vec<&str> = grammar
+        .lines()
+        .filter(|line| line.starts_with("kw_"))
+        .filter_map(|line| line.split('"').nth(1))
+        .collect();
     assert!(keywords.len() > 40, "the grammar is read");
     let missing: Vec<&&str> = keywords.iter().filter(|word| !words.contains(word)).collect();
     assert!(missing.is_empty(), "write an example in docs/reference for {missing:?}");
@@ -126,8 +138,10 @@ number. What is about vectors stands in [expressions](expressions.md), sets in [
 ";
 
 fn functions_page() -> String {
-    let rows = builtins::ALL.iter().map(|builtin| builtin.row()).filter(|row| row.notation != Notation::Internal);
-    let lines = rows.map(|row| format!("| `{}` | {} | {} | {} |\n", written(row), row.doc, domain(row), smoothness(row)));
+    let rows =
+        builtins::ALL.iter().map(|builtin| builtin.row()).filter(|row| row.notation != Notation::Internal);
+    let lines = rows
+        .map(|row| format!("| `{}` | {} | {} | {} |\n", written(row), row.doc, domain(row), smoothness(row)));
     let table: String = lines.collect();
     format!("{FUNCTIONS_HEAD}| written | is | has a value for | derivatives |\n|---|---|---|---|\n{table}")
 }
@@ -163,7 +177,8 @@ fn smoothness(row: &Row) -> &'static str {
 /// The examples in the table are equations between numbers, such as `sqrt(9) = 3`.
 #[test]
 fn examples_of_functions_are_true() {
-    let docs = builtins::ALL.iter().map(|builtin| builtin.row()).filter(|row| row.notation != Notation::Internal);
+    let docs =
+        builtins::ALL.iter().map(|builtin| builtin.row()).filter(|row| row.notation != Notation::Internal);
     for row in docs {
         let equation = row.doc.split('`').find(|text| text.contains(" = "));
         let (left, right) = equation.and_then(|text| text.split_once(" = ")).expect("a row has an example");
@@ -173,7 +188,8 @@ fn examples_of_functions_are_true() {
 }
 
 fn value_of(expression: &str) -> f64 {
-    let text = format!("param value = {expression}\ntime t in [0, 1]\nstate x start value\ndynamics {{ x' = 1 }}");
+    let text =
+        format!("param value = {expression}\ntime t in [0, 1]\nstate x start value\ndynamics {{ x' = 1 }}");
     let model = check(&parse(&text).tree).model.unwrap_or_else(|| panic!("{expression} is understood"));
     model.params[0].value.and_then(|value| model.graph.as_number(value)).expect("a constant is a number")
 }
@@ -181,12 +197,19 @@ fn value_of(expression: &str) -> f64 {
 /// The page of the command line names every command and every option that is declared in cli/src/commands.
 #[test]
 fn the_page_of_the_command_line_is_complete() {
-    let page = fs::read_to_string(repository().join("docs/reference/command-line.md")).expect("the page is there");
+    let page =
+        fs::read_to_string(repository().join("docs/reference/command-line.md")).expect("the page is there");
     for (name, text) in documents("cli/src/commands", "rs").iter().filter(|(name, _)| name != "mod") {
         let is_command = text.contains("pub fn run(self)");
-        assert!(!is_command || page.contains(&format!("\n## `fdcc {name}")), "command-line.md needs a section for `fdcc {name}`");
+        assert!(
+            !is_command || page.contains(&format!("\n## `fdcc {name}")),
+            "command-line.md needs a section for `fdcc {name}`"
+        );
         for option in options(text) {
-            assert!(page.contains(&format!("`{option}")), "command-line.md needs `{option}` of cli/src/commands/{name}.rs");
+            assert!(
+                page.contains(&format!("`{option}")),
+                "command-line.md needs `{option}` of cli/src/commands/{name}.rs"
+            );
         }
     }
 }
@@ -195,9 +218,14 @@ fn the_page_of_the_command_line_is_complete() {
 fn options(text: &str) -> Vec<String> {
     let lines: Vec<&str> = text.lines().map(str::trim).collect();
     let is_option = |pair: &&[&str]| pair[0].starts_with("#[arg(") && names_long(pair[0]);
-    let field = |line: &str| line.trim_start_matches("pub ").split(':').next().unwrap_or_default().replace('_', "-");
+    let field =
+        |line: &str| line.trim_start_matches("pub ").split(':').next().unwrap_or_default().replace('_', "-");
     let given = |attribute: &str| Some(attribute.split_once("long = \"")?.1.split('"').next()?.to_owned());
-    lines.windows(2).filter(is_option).map(|pair| format!("--{}", given(pair[0]).unwrap_or_else(|| field(pair[1])))).collect()
+    lines
+        .windows(2)
+        .filter(is_option)
+        .map(|pair| format!("--{}", given(pair[0]).unwrap_or_else(|| field(pair[1]))))
+        .collect()
 }
 
 fn names_long(attribute: &str) -> bool {

@@ -29,10 +29,10 @@ fn check(case: &Case) {
         for (what, quantity, exact) in &case.known {
             let errors: Vec<f64> = runs.iter().map(|run| (quantity(run) - exact).abs()).collect();
             let measured = rate(&GRIDS.map(|n| 1.0 / n), &errors);
-            let report = format!("{}, {scheme}: {what} has order {measured:.3}, errors {errors:e?}", case.name);
+            let report = format!("{}, {scheme}: {what} has order {measured:.3}, errors {errors:?}", case.name);
             assert!((measured - order).abs() < TOLERANCE, "{report}");
             // A rate says nothing of the limit: so it must be the known value itself that is approached.
-            assert!(errors[3] < 0.02 * (1.0 + exact.abs()), "{report}");
+            assert!(errors[3] < 0.03 * (1.0 + exact.abs()), "{report}");
         }
     }
 }
@@ -104,15 +104,13 @@ fn an_unknown_in_the_right_side() {
     });
 }
 
-/// Start time and duration that are no unit: `x = 1/t` on [1, 3] solves `x' = -x/t`.
+/// Start and duration that are no unit: `x = t e^(t - 1)` solves `x' = x (1 + 1/t)`; the integral of `x/t` is `e^(T - 1) - 1`.
 #[test]
 fn a_start_time_that_is_not_zero() {
+    let e = std::f64::consts::E;
     check(&Case {
         name: "late start",
-        text: "time t in [1, 3] state x start 1 dynamics { x' = -x/t } minimize integral(x^2) + 2*x(end)",
-        known: vec![
-            ("x(end)", |run| run.end("x"), 1.0 / 3.0),
-            ("the objective", Solved::objective, 2.0 / 3.0 + 2.0 / 3.0),
-        ],
+        text: "time t in [1, 2] state x start 1 dynamics { x' = x*(1 + 1/t) } minimize integral(x/t) + x(start)",
+        known: vec![("x(end)", |run| run.end("x"), 2.0 * e), ("the objective", Solved::objective, e)],
     });
 }

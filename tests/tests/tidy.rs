@@ -1,37 +1,10 @@
-//! The rules of ARCHITECTURE.md that a machine can watch. Each message says what to do.
+//! The rules of ARCHITECTURE.md for code that a machine can watch. Each message says what to do.
 //!
 //! Rules are tables: a new one is a row. Comments are taken off before code is looked at.
 
-use fdcc_tests::{blocks, repository};
+use fdcc_tests::repository;
+use fdcc_tests::sources::{Source, all_well, names, sources};
 use std::fs;
-use std::path::Path;
-
-/// A file of the repository: its path with `/`, and its text.
-struct Source {
-    path: String,
-    text: String,
-}
-
-/// Every text file that belongs to the repository, in alphabetical order.
-fn sources() -> Vec<Source> {
-    let mut found = Vec::new();
-    collect(&repository(), "", &mut found);
-    found.sort_by(|a, b| a.path.cmp(&b.path));
-    found
-}
-
-fn collect(folder: &Path, prefix: &str, found: &mut Vec<Source>) {
-    for entry in fs::read_dir(folder).expect("the folder can be read") {
-        let path = entry.expect("the folder can be read").path();
-        let name = path.file_name().expect("an entry has a name").to_string_lossy().into_owned();
-        let full = format!("{prefix}{name}");
-        if path.is_dir() && name != ".git" && name != "target" {
-            collect(&path, &format!("{full}/"), found);
-        } else if let Ok(text) = fs::read_to_string(&path) {
-            found.push(Source { path: full, text });
-        }
-    }
-}
 
 fn rust_sources() -> Vec<Source> {
     sources().into_iter().filter(|source| source.path.ends_with(".rs")).collect()
@@ -40,20 +13,6 @@ fn rust_sources() -> Vec<Source> {
 /// Lines of code with their numbers, without comments.
 fn code(text: &str) -> impl Iterator<Item = (usize, &str)> {
     text.lines().enumerate().map(|(at, line)| (at + 1, line.split("//").next().unwrap_or_default()))
-}
-
-/// Whether a word stands in a line, not as a part of a longer one.
-fn names(line: &str, word: &str) -> bool {
-    let joins = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
-    let (first, last) = (word.chars().next(), word.chars().next_back());
-    line.match_indices(word).any(|(at, _)| {
-        let (before, after) = (line[..at].chars().next_back(), line[at + word.len()..].chars().next());
-        !(joins(before) && joins(first)) && !(joins(after) && joins(last))
-    })
-}
-
-fn all_well(breaches: Vec<String>) {
-    assert!(breaches.is_empty(), "\n{}\n", breaches.join("\n"));
 }
 
 /// Which crates of ours a crate may depend on.
@@ -69,11 +28,17 @@ const CRATES: &[(&str, &[&str])] = &[
 fn crates_depend_on_each_other_as_drawn() {
     let mut breaches = Vec::new();
     for (folder, allowed) in CRATES {
-        let manifest = fs::read_to_string(repository().join(folder).join("Cargo.toml")).expect("a crate has a manifest");
-        let own = manifest.lines().skip_while(|line| *line != "[dependencies]").filter(|line| line.starts_with("fdcc"));
+        let manifest =
+            fs::read_to_string(repository().join(folder).join("Cargo.toml")).expect("a crate has a manifest");
+        let own = manifest
+            .lines()
+            .skip_while(|line| *line != "[dependencies]")
+            .filter(|line| line.starts_with("fdcc"));
         for name in own.filter_map(|line| line.split(['.', ' ', '=']).next()) {
             if !allowed.contains(&name) {
-                breaches.push(format!("{folder}/Cargo.toml: {folder} must not depend on {name}; see \"Dependency rules\""));
+                breaches.push(format!(
+                    "{folder}/Cargo.toml: {folder} must not depend on {name}; see \"Dependency rules\""
+                ));
             }
         }
     }
@@ -112,11 +77,16 @@ fn foreign_crates_are_named_in_one_place_each() {
     let mut breaches = Vec::new();
     for source in rust_sources() {
         for (name, places) in FOREIGN {
-            if places.iter().any(|place| source.path.starts_with(place)) || is_own_module(&source.path, name) {
+            if places.iter().any(|place| source.path.starts_with(place)) || is_own_module(&source.path, name)
+            {
                 continue;
             }
             for (line, _) in code(&source.text).filter(|(_, line)| names_crate(line, name)) {
-                breaches.push(format!("{}:{line}: `{name}` may be named only in {}", source.path, places.join(", ")));
+                breaches.push(format!(
+                    "{}:{line}: `{name}` may be named only in {}",
+                    source.path,
+                    places.join(", ")
+                ));
             }
         }
     }
@@ -127,7 +97,17 @@ fn foreign_crates_are_named_in_one_place_each() {
 const ABSENT: &[(&[&str], &[&str], &str)] = &[
     (
         &["grammar/src/", "compiler/src/", "runtime/src/"],
-        &["std::fs", "std::io", "std::net", "std::process", "std::env", "std::thread", "std::time", "Instant", "SystemTime"],
+        &[
+            "std::fs",
+            "std::io",
+            "std::net",
+            "std::process",
+            "std::env",
+            "std::thread",
+            "std::time",
+            "Instant",
+            "SystemTime",
+        ],
         "files, clocks, the environment and threads belong to cli",
     ),
     (
@@ -135,14 +115,26 @@ const ABSENT: &[(&[&str], &[&str], &str)] = &[
         &["print!", "println!", "eprint!", "eprintln!"],
         "only cli prints; hand the text or a `Progress` to the caller",
     ),
-    (&["grammar/src/", "compiler/src/", "runtime/src/"], &["Serialize", "Deserialize"], "file formats belong to cli/src/output/"),
-    (&["compiler/src/graph/"], &["crate::model", "crate::resolve", "crate::lower"], "the graph knows no models"),
+    (
+        &["grammar/src/", "compiler/src/", "runtime/src/"],
+        &["Serialize", "Deserialize"],
+        "file formats belong to cli/src/output/",
+    ),
+    (
+        &["compiler/src/graph/"],
+        &["crate::model", "crate::resolve", "crate::lower"],
+        "the graph knows no models",
+    ),
     (
         &["runtime/src/linalg/", "runtime/src/nlp/interior_point/"],
         &["crate::transcribe", "crate::trajectory", "crate::homotopy", "Problem"],
         "the solver has never heard of time: it sees an `Nlp`",
     ),
-    (&["runtime/src/transcribe/"], &["Inertia", "interior_point"], "the transcription has never heard of inertia"),
+    (
+        &["runtime/src/transcribe/"],
+        &["Inertia", "interior_point"],
+        "the transcription has never heard of inertia",
+    ),
 ];
 
 #[test]
@@ -168,7 +160,10 @@ fn the_compiler_sees_only_the_contract_of_the_runtime() {
     for source in rust_sources().iter().filter(|source| source.path.starts_with("compiler/")) {
         for (line, text) in code(&source.text) {
             if text.contains("fdcc_runtime") && !text.contains("fdcc_runtime::problem") {
-                breaches.push(format!("{}:{line}: the compiler may use `fdcc_runtime::problem` and nothing else", source.path));
+                breaches.push(format!(
+                    "{}:{line}: the compiler may use `fdcc_runtime::problem` and nothing else",
+                    source.path
+                ));
             }
         }
     }
@@ -180,7 +175,9 @@ fn unsafe_code_is_in_generate_and_says_why_it_is_sound() {
     let mut breaches = Vec::new();
     for source in rust_sources() {
         let lines: Vec<&str> = source.text.lines().collect();
-        for (line, _) in code(&source.text).filter(|(_, text)| names(text, "unsafe") && !text.contains("unsafe extern")) {
+        for (line, _) in
+            code(&source.text).filter(|(_, text)| names(text, "unsafe") && !text.contains("unsafe extern"))
+        {
             if source.path == "tests/tests/tidy.rs" {
                 continue;
             }
@@ -189,7 +186,10 @@ fn unsafe_code_is_in_generate_and_says_why_it_is_sound() {
             }
             let above = &lines[line.saturating_sub(6)..line - 1];
             if !above.iter().any(|line| line.contains("SAFETY:")) {
-                breaches.push(format!("{}:{line}: write `// SAFETY:` above, with the reason why this is sound", source.path));
+                breaches.push(format!(
+                    "{}:{line}: write `// SAFETY:` above, with the reason why this is sound",
+                    source.path
+                ));
             }
         }
     }
@@ -200,7 +200,8 @@ fn unsafe_code_is_in_generate_and_says_why_it_is_sound() {
 const MOST_LINES: usize = 400;
 
 /// Files that are longer, with their limit and the reason why they are still one idea.
-const LONGER: &[(&str, usize, &str)] = &[("compiler/src/builtins.rs", 700, "a table: one row for each builtin")];
+const LONGER: &[(&str, usize, &str)] =
+    &[("compiler/src/builtins.rs", 700, "a table: one row for each builtin")];
 
 #[test]
 fn files_are_short() {
@@ -210,7 +211,10 @@ fn files_are_short() {
         let exception = LONGER.iter().find(|row| row.0 == source.path);
         let most = exception.map_or(MOST_LINES, |row| row.1);
         if lines > most {
-            breaches.push(format!("{}: {lines} lines; split it at the seam between its ideas (at most {most})", source.path));
+            breaches.push(format!(
+                "{}: {lines} lines; split it at the seam between its ideas (at most {most})",
+                source.path
+            ));
         }
         if exception.is_some() && lines <= MOST_LINES {
             breaches.push(format!("{}: {lines} lines; take it off the list of longer files", source.path));
@@ -229,96 +233,26 @@ fn files_say_what_they_do() {
 #[test]
 fn nothing_is_left_over() {
     // Written in two halves, so that this file is not found.
-    let left_over = [("todo", "!("), ("unimplemented", "!("), ("dbg", "!("), ("#[ign", "ore"), ("/wo", "rk/"), ("/ro", "ot/"), ("/tm", "p/")];
+    let left_over = [
+        ("todo", "!("),
+        ("unimplemented", "!("),
+        ("dbg", "!("),
+        ("#[ign", "ore"),
+        ("/wo", "rk/"),
+        ("/ro", "ot/"),
+        ("/tm", "p/"),
+    ];
     let mut breaches = Vec::new();
     for source in sources() {
         for (at, line) in source.text.lines().enumerate() {
             for word in left_over.iter().map(|(a, b)| format!("{a}{b}")).filter(|word| line.contains(word)) {
-                breaches.push(format!("{}:{}: `{word}` must not stay: finish it, or make the path relative", source.path, at + 1));
+                breaches.push(format!(
+                    "{}:{}: `{word}` must not stay: finish it, or make the path relative",
+                    source.path,
+                    at + 1
+                ));
             }
         }
     }
     all_well(breaches);
-}
-
-#[test]
-fn the_map_is_short() {
-    let map = fs::read_to_string(repository().join("ARCHITECTURE.md")).expect("ARCHITECTURE.md is there");
-    let lines = map.lines().count();
-    assert!(lines <= 200, "ARCHITECTURE.md has {lines} lines; move details to docs/method or docs/decisions (at most 200)");
-}
-
-/// Documents that describe the code as it is. Decisions are not among them: they say what was so when they were taken.
-fn is_about_the_code(source: &Source) -> bool {
-    let path = &source.path;
-    path == "ARCHITECTURE.md" || path == "README.md" || path.starts_with("docs/method/") || path.starts_with("docs/recipes/")
-}
-
-/// The words in backquotes outside fenced blocks, with their lines; and the folder that the last heading named.
-fn quoted(text: &str) -> Vec<(usize, String, &str)> {
-    let (mut words, mut folder, mut fenced) = (Vec::new(), String::new(), false);
-    for (at, line) in text.lines().enumerate() {
-        fenced ^= line.trim_start().starts_with("```");
-        let inside = || line.split('`').skip(1).step_by(2);
-        if line.starts_with('#') {
-            folder = inside().find(|word| word.ends_with('/')).unwrap_or_default().to_owned();
-        }
-        if !fenced && !line.trim_start().starts_with("```") {
-            words.extend(inside().map(|word| (at + 1, folder.clone(), word)));
-        }
-    }
-    words
-}
-
-fn is_path(word: &str) -> bool {
-    let plain = word.chars().all(|c| c.is_alphanumeric() || "._-/".contains(c));
-    let ending = [".rs", ".md", ".pest", ".toml", ".fdc", ".json", ".yml", "/"].iter().any(|ending| word.ends_with(ending));
-    plain && ending && word.len() > 5 && !word.starts_with('.')
-}
-
-#[test]
-fn documents_name_only_what_exists() {
-    let all = sources();
-    let declares = |name: &str| {
-        let function = format!("fn {name}");
-        all.iter().any(|source| source.path.ends_with(".rs") && source.text.lines().any(|line| names(line, &function)))
-    };
-    let mut breaches = Vec::new();
-    for source in all.iter().filter(|source| is_about_the_code(source)) {
-        for (line, folder, word) in quoted(&source.text) {
-            let exists = || repository().join(word).exists() || repository().join(&folder).join(word).exists();
-            if is_path(word) && !exists() {
-                breaches.push(format!("{}:{line}: there is no file `{word}`; correct the name or the page", source.path));
-            }
-            if let Some(name) = word.strip_suffix("()")
-                && !declares(name.rsplit("::").next().unwrap_or(name))
-            {
-                breaches.push(format!("{}:{line}: there is no function `{word}`; correct the name or the page", source.path));
-            }
-        }
-    }
-    all_well(breaches);
-}
-
-#[test]
-fn every_page_about_the_method_names_its_files() {
-    let pages = sources().into_iter().filter(|source| source.path.starts_with("docs/method/"));
-    let names_none = |page: &Source| !quoted(&page.text).iter().any(|(_, _, word)| is_path(word));
-    all_well(pages.filter(names_none).map(|page| format!("{}: name the files that implement it", page.path)).collect());
-}
-
-/// The two commands of the README are the ones that CI runs.
-#[test]
-fn the_readme_and_ci_run_the_same_commands() {
-    let read = |path: &str| fs::read_to_string(repository().join(path)).expect("the file is there");
-    let (readme, ci) = (read("README.md"), read(".ci/run"));
-    let commands: Vec<String> = blocks(&readme)
-        .iter()
-        .filter(|block| block.tag == "sh" && block.text.starts_with("cargo "))
-        .flat_map(|block| block.text.lines().map(str::to_owned).collect::<Vec<_>>())
-        .collect();
-    assert_eq!(commands.len(), 2, "the README has exactly two commands for a fresh machine: {commands:?}");
-    for command in commands {
-        assert!(ci.contains(&command), ".ci/run must run the README's own `{command}`");
-    }
 }

@@ -58,7 +58,7 @@ pub struct Options {
     #[arg(long, value_enum)]
     pub log: Option<Level>,
     /// Stop each solve after this many seconds and keep its best iterate
-    #[arg(long, value_name = "S", value_parser = seconds)]
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub time_limit: Option<f64>,
     /// Seed of the random variations that `--starts` makes
     #[arg(long, value_name = "N")]

@@ -18,6 +18,10 @@ use std::time::Instant;
 mod grid;
 
 /// Solve once for each of several values, and print a table
+///
+/// With `--json` the rows are one array of objects with `swept` (what was swept, numbers in SI units), `status`,
+/// `objective`, `free`, `iterations`, `kkt_error`, `constraint_violation` and `seconds`, as in the document of
+/// `solve`. With `--out` the files are called MODEL.1.sol.json and so on, by row.
 #[derive(Args)]
 pub struct Sweep {
     /// The model; `-` is the standard input

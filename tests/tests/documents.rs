@@ -1,0 +1,117 @@
+//! Documents are true as far as a machine can tell: what they name exists, and CI does what the README says.
+
+use fdcc_tests::sources::{Source, all_well, names, sources};
+use fdcc_tests::{blocks, repository};
+use std::fs;
+
+#[test]
+fn the_map_is_short() {
+    let map = fs::read_to_string(repository().join("ARCHITECTURE.md")).expect("ARCHITECTURE.md is there");
+    let lines = map.lines().count();
+    assert!(
+        lines <= 200,
+        "ARCHITECTURE.md has {lines} lines; move details to docs/method or docs/decisions (at most 200)"
+    );
+}
+
+/// Documents that describe the code as it is. Decisions are not among them: they say what was so when they were taken.
+fn is_about_the_code(source: &Source) -> bool {
+    let path = &source.path;
+    path == "ARCHITECTURE.md"
+        || path == "README.md"
+        || path.starts_with("docs/method/")
+        || path.starts_with("docs/recipes/")
+}
+
+/// The words in backquotes outside fenced blocks, with their lines; and the folder that the last heading named.
+fn quoted(text: &str) -> Vec<(usize, String, &str)> {
+    let (mut words, mut folder, mut fenced) = (Vec::new(), String::new(), false);
+    for (at, line) in text.lines().enumerate() {
+        fenced ^= line.trim_start().starts_with("```");
+        let inside = || line.split('`').skip(1).step_by(2);
+        if line.starts_with('#') {
+            folder = inside().find(|word| word.ends_with('/')).unwrap_or_default().to_owned();
+        }
+        if !fenced && !line.trim_start().starts_with("```") {
+            words.extend(inside().map(|word| (at + 1, folder.clone(), word)));
+        }
+    }
+    words
+}
+
+fn is_path(word: &str) -> bool {
+    let plain = word.chars().all(|c| c.is_alphanumeric() || "._-/".contains(c));
+    let ending = [".rs", ".md", ".pest", ".toml", ".fdc", ".json", ".yml", "/"]
+        .iter()
+        .any(|ending| word.ends_with(ending));
+    plain && ending && word.len() > 5 && !word.starts_with('.')
+}
+
+#[test]
+fn documents_name_only_what_exists() {
+    let all = sources();
+    let declares = |name: &str| {
+        let function = format!("fn {name}");
+        all.iter().any(|source| {
+            source.path.ends_with(".rs") && source.text.lines().any(|line| names(line, &function))
+        })
+    };
+    let mut breaches = Vec::new();
+    for source in all.iter().filter(|source| is_about_the_code(source)) {
+        for (line, folder, word) in quoted(&source.text) {
+            let exists =
+                || repository().join(word).exists() || repository().join(&folder).join(word).exists();
+            if is_path(word) && !exists() {
+                breaches.push(format!(
+                    "{}:{line}: there is no file `{word}`; correct the name or the page",
+                    source.path
+                ));
+            }
+            if let Some(name) = word.strip_suffix("()")
+                && !declares(name.rsplit("::").next().unwrap_or(name))
+            {
+                breaches.push(format!(
+                    "{}:{line}: there is no function `{word}`; correct the name or the page",
+                    source.path
+                ));
+            }
+        }
+    }
+    all_well(breaches);
+}
+
+#[test]
+fn every_page_about_the_method_names_its_files() {
+    let pages = sources().into_iter().filter(|source| source.path.starts_with("docs/method/"));
+    let names_none = |page: &Source| !quoted(&page.text).iter().any(|(_, _, word)| is_path(word));
+    all_well(
+        pages
+            .filter(names_none)
+            .map(|page| format!("{}: name the files that implement it", page.path))
+            .collect(),
+    );
+}
+
+/// The two commands of the README are the ones that CI runs.
+#[test]
+fn the_readme_and_ci_run_the_same_commands() {
+    let read = |path: &str| fs::read_to_string(repository().join(path)).expect("the file is there");
+    let (readme, ci) = (read("README.md"), read(".ci/run"));
+    let commands: Vec<String> = blocks(&readme)
+        .iter()
+        .filter(|block| block.tag == "sh" && block.text.starts_with("cargo "))
+        .flat_map(|block| block.text.lines().map(str::to_owned).collect::<Vec<_>>())
+        .collect();
+    assert_eq!(commands.len(), 2, "the README has exactly two commands for a fresh machine: {commands:?}");
+    for command in commands {
+        assert!(ci.contains(&command), ".ci/run must run the README's own `{command}`");
+    }
+}
+
+#[test]
+fn the_model_in_the_readme_is_the_one_in_models() {
+    let read = |path: &str| fs::read_to_string(repository().join(path)).expect("the file is there");
+    let shown =
+        blocks(&read("README.md")).into_iter().find(|block| block.tag == "fdc").expect("a model is shown");
+    assert_eq!(shown.text, read("models/block.fdc"), "README.md: copy models/block.fdc again");
+}

@@ -1,0 +1,76 @@
+//! The work that every model costs, as a table under version control: a worse algorithm shows in its diff.
+//!
+//! `UPDATE=1 cargo test` rewrites the table. It is no reference for anything but itself.
+
+use std::fmt::Write;
+
+use fdcc_runtime::nlp::Nlp;
+use fdcc_runtime::transcribe::TranscribedNlp;
+use fdcc_tests::models::{Changes, problem, refusal, solve};
+use fdcc_tests::{documents, repository};
+
+const HEADINGS: [&str; 12] = [
+    "model", "status", "iterations", "factored", "regularised", "values", "derivatives", "restored", "variables", "rows",
+    "jacobian", "hessian",
+];
+
+/// Each model as it stands, and the rows of Table 7.1 that are hardest for their size.
+fn cases() -> Vec<(String, String, Changes<'static>)> {
+    let models = documents("models", "fdc").into_iter().filter(|(_, text)| refusal(text).is_none());
+    let mut cases: Vec<(String, String, Changes)> = models.map(|(name, text)| (name, text, &[] as Changes)).collect();
+    let race = fdcc_tests::models::text_of("racecar");
+    for (name, method) in [
+        ("racecar 0.05 500", &[("sigma", "0.05"), ("N", "500")]),
+        ("racecar 0.025 1000", &[("sigma", "0.025"), ("N", "1000")]),
+    ] {
+        cases.push((name.into(), race.clone(), method));
+    }
+    cases
+}
+
+fn row(name: &str, text: &str, methods: Changes) -> Vec<String> {
+    let problem = problem(text, &[], methods);
+    let solution = solve(&problem).solution;
+    let nlp = TranscribedNlp::new(&problem);
+    let counts = solution.counts;
+    let numbers = [
+        counts.iterations,
+        counts.factorizations,
+        counts.regularizations,
+        counts.values,
+        counts.derivatives,
+        counts.restorations,
+        nlp.variable_bounds().len(),
+        nlp.row_bounds().len(),
+        nlp.jacobian_structure().len(),
+        nlp.hessian_structure().len(),
+    ];
+    let words = [name.to_owned(), format!("{:?}", solution.status)];
+    words.into_iter().chain(numbers.iter().map(usize::to_string)).collect()
+}
+
+/// Right-aligned columns, but for the first two.
+fn table(rows: &[Vec<String>]) -> String {
+    let width = |column: usize| rows.iter().map(|row| row[column].len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for row in rows {
+        let cells = row.iter().enumerate().map(|(column, cell)| match column {
+            0 | 1 => format!("{cell:<width$}", width = width(column)),
+            _ => format!("{cell:>width$}", width = width(column)),
+        });
+        writeln!(text, "{}", cells.collect::<Vec<_>>().join("  ")).expect("a string takes everything");
+    }
+    text
+}
+
+#[test]
+fn the_work_is_what_it_was() {
+    let mut rows = vec![HEADINGS.map(String::from).to_vec()];
+    rows.extend(cases().iter().map(|(name, text, methods)| row(name, text, methods)));
+    let (found, path) = (table(&rows), repository().join("tests/snapshots/work.txt"));
+    if std::env::var_os("UPDATE").is_some() {
+        std::fs::write(&path, &found).expect("the snapshot can be written");
+    }
+    let before = std::fs::read_to_string(&path).expect("`UPDATE=1 cargo test` makes the snapshot");
+    assert!(before == found, "the work has changed; if for good reasons, run with UPDATE=1\n{before}\n{found}");
+}

@@ -3,6 +3,7 @@
 
 use crate::output::document::status_name;
 use crate::output::number::{scientific, significant};
+use crate::output::tell;
 use fdcc_runtime::nlp::{Progress, Solution};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
@@ -65,9 +66,9 @@ impl Log {
         self.lines += 1;
         self.bar.suspend(|| {
             if with_header {
-                eprintln!("{label}{HEADER}");
+                tell(&format!("{label}{HEADER}\n"));
             }
-            eprintln!("{label}{line}");
+            tell(&format!("{label}{line}\n"));
         });
     }
 
@@ -76,7 +77,8 @@ impl Log {
         if self.level != Level::None {
             let (label, status) = (&self.label, status_name(&solution.status));
             let objective = significant(sense * solution.objective, 9);
-            self.bar.suspend(|| eprintln!("{label} start {index:3}  {status:<18} objective {objective}"));
+            self.bar
+                .suspend(|| tell(&format!("{label} start {index:3}  {status:<18} objective {objective}\n")));
         }
         self.lines = 0;
     }

@@ -166,3 +166,13 @@ fn help_explains_every_option_in_one_line() {
         }
     }
 }
+
+/// As in `fdcc solve ... 2>&1 | head -1`.
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let mut child =
+        common::start(&common::folder("closed", &[]), &["solve", &common::model("turbo"), "--log", "full"]);
+    drop((child.stdout.take(), child.stderr.take()));
+    let status = child.wait().expect("fdcc ends");
+    assert_eq!(status.code(), Some(0));
+}

@@ -66,7 +66,10 @@ pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Resu
     let start = start.unwrap_or_else(|| Start { v: nlp.guess(), warm: None });
     if problem.method.solver != Solver::InteriorPoint && convex::is_quadratic_programme(problem) {
         let method = &problem.method;
-        if let Some(solution) = convex::solve(&mut nlp, &start, method.tol, method.max_iter) {
+        let solution = convex::solve(&mut nlp, &start, method.tol, method.max_iter);
+        // Where there is no optimum the interior point method has a best iterate, and a row to blame.
+        let has_word = |it: &Solution| it.status == Status::Solved || method.solver == Solver::Convex;
+        if let Some(solution) = solution.filter(has_word) {
             return Ok(run.finish(&mut nlp, solution, true));
         }
     }

@@ -23,7 +23,8 @@ struct Case {
 fn case(intervals: usize) -> Case {
     let stages = Stages { intervals, states: 5, controls: 2, globals: 1, local_rows: 1, coupling_rows: 0 };
     let (step, rows, t) = (7, 6, stages.globals().start);
-    let family = |row, column, row_step, column_step| Family { row, column, row_step, column_step, count: intervals };
+    let family =
+        |row, column, row_step, column_step| Family { row, column, row_step, column_step, count: intervals };
     let mut jacobian = Vec::new();
     for row in 0..5 {
         jacobian.push(family(row, row, rows, step));
@@ -36,17 +37,35 @@ fn case(intervals: usize) -> Case {
     jacobian.push(family(5, step + 1, rows, step));
     let mut hessian: Vec<Family> = (0..7).map(|i| family(i, i, step, step)).collect();
     hessian.extend([(4, 5), (4, 6)].map(|(a, b)| family(b, a, step, step)));
-    hessian.extend([family(step + 3, step + 2, step, step), family(t, step + 2, 0, step), family(step + 2, 4, step, step)]);
+    hessian.extend([
+        family(step + 3, step + 2, step, step),
+        family(t, step + 2, 0, step),
+        family(step + 2, 4, step, step),
+    ]);
     let (jacobian, hessian) = (Triplets { families: jacobian }, Triplets { families: hessian });
     let wave = |i: usize| ((i * 7919) % 1000) as f64 / 1000.0 - 0.5;
     let jacobian_values = jacobian.entries().enumerate().map(|(i, (r, c))| {
         let (k, i0) = (r / rows, r % rows);
-        if c == (k + 1) * step + i0 { 1.0 } else if c == k * step + i0 { -1.0 } else { 0.01 * wave(i) }
+        if c == (k + 1) * step + i0 {
+            1.0
+        } else if c == k * step + i0 {
+            -1.0
+        } else {
+            0.01 * wave(i)
+        }
     });
     let jacobian_values = jacobian_values.collect();
     let hessian_values = (0..hessian.len()).map(|i| 1e-3 * wave(i)).collect();
     let d = (0..stages.rows()).map(|row| if row % rows == 5 { 10.0 } else { 0.0 }).collect();
-    Case { sigma: vec![1.0; stages.variables()], stages, hessian, jacobian, hessian_values, jacobian_values, d }
+    Case {
+        sigma: vec![1.0; stages.variables()],
+        stages,
+        hessian,
+        jacobian,
+        hessian_values,
+        jacobian_values,
+        d,
+    }
 }
 
 fn run(bencher: Bencher, case: &Case, factor: &mut dyn Factor) {
@@ -63,8 +82,10 @@ fn run(bencher: Bencher, case: &Case, factor: &mut dyn Factor) {
 #[divan::bench(args = [1000, 4000])]
 fn riccati(bencher: Bencher, intervals: usize) {
     let case = case(intervals);
-    let (fixed, equality) = (vec![false; case.sigma.len()], case.d.iter().map(|d| *d == 0.0).collect::<Vec<_>>());
-    let mut factor = Riccati::new(case.stages, &case.hessian, &case.jacobian, &fixed, &equality).expect("a chain");
+    let (fixed, equality) =
+        (vec![false; case.sigma.len()], case.d.iter().map(|d| *d == 0.0).collect::<Vec<_>>());
+    let mut factor =
+        Riccati::new(case.stages, &case.hessian, &case.jacobian, &fixed, &equality).expect("a chain");
     run(bencher, &case, &mut factor);
 }
 

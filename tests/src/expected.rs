@@ -86,7 +86,9 @@ mod tests {
     #[test]
     fn a_number_without_a_source_is_refused() {
         assert!(Expected::read("objective = 1 tol 1e-6 from \"closed form\"").is_ok());
-        for text in ["objective = 1", "objective = 1 tol 1e-6", "objective = 1 tol 1e-6 from \"\"", "objective 1"] {
+        for text in
+            ["objective = 1", "objective = 1 tol 1e-6", "objective = 1 tol 1e-6 from \"\"", "objective 1"]
+        {
             Expected::read(text).expect_err(text);
         }
     }

@@ -41,10 +41,12 @@ pub fn residuals(problem: &Problem, outcome: &Outcome) -> Residuals {
     Residuals {
         stationarity: largest(stationarity(&at, &solution.multipliers)),
         feasibility: largest(bounds.map(|(bounds, value)| outside(bounds, *value))),
-        complementarity: largest(of_rows.map(|((bounds, row), lambda)| complementarity(bounds, *row, *lambda)))
-            .max(largest(from_bounds.map(|((bounds, v), (lower, upper))| {
-                complementarity(bounds, *v, *upper).max(complementarity(bounds, *v, -lower))
-            }))),
+        complementarity: largest(
+            of_rows.map(|((bounds, row), lambda)| complementarity(bounds, *row, *lambda)),
+        )
+        .max(largest(from_bounds.map(|((bounds, v), (lower, upper))| {
+            complementarity(bounds, *v, *upper).max(complementarity(bounds, *v, -lower))
+        }))),
         signs: largest(lower.iter().chain(upper).map(|z| (-z).max(0.0))),
         objective: (at.objective - solution.objective).abs(),
         multiplier: largest(rows.iter().chain(lower).chain(upper).map(|value| value.abs())),
@@ -53,7 +55,8 @@ pub fn residuals(problem: &Problem, outcome: &Outcome) -> Residuals {
 
 fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     // Unlike `f64::max`, this does not overlook what is not a number.
-    let maximum = |largest: f64, value: f64| if largest.is_nan() || value <= largest { largest } else { value };
+    let maximum =
+        |largest: f64, value: f64| if largest.is_nan() || value <= largest { largest } else { value };
     values.into_iter().fold(0.0, maximum)
 }
 

@@ -171,7 +171,8 @@ impl At<'_> {
 
     fn ends(&self) -> Sample {
         let (states, last) = (self.problem.layout.x, self.place(self.problem.method.intervals));
-        let point: Vec<f64> = [0, last].iter().flat_map(|first| &self.v[*first..first + states]).copied().collect();
+        let point: Vec<f64> =
+            [0, last].iter().flat_map(|first| &self.v[*first..first + states]).copied().collect();
         self.evaluate(&*self.problem.boundary, &point, |input| match input {
             i if i >= 2 * states => vec![(self.unknown(i - 2 * states), 1.0)],
             i if i >= states => vec![(last + i - states, 1.0)],
@@ -180,16 +181,24 @@ impl At<'_> {
     }
 
     /// `places` says where an input is among the variables of the programme, with factors.
-    fn evaluate(&self, function: &dyn Function, point: &[f64], places: impl Fn(usize) -> Vec<(usize, f64)>) -> Sample {
+    fn evaluate(
+        &self,
+        function: &dyn Function,
+        point: &[f64],
+        places: impl Fn(usize) -> Vec<(usize, f64)>,
+    ) -> Sample {
         let pattern = &function.jacobian_pattern().entries;
         let mut points = Columns::new(point.len(), 1);
         point.iter().enumerate().for_each(|(column, value)| points.column_mut(column)[0] = *value);
-        let (mut values, mut jacobian) = (Columns::new(function.outputs(), 1), Columns::new(pattern.len(), 1));
+        let (mut values, mut jacobian) =
+            (Columns::new(function.outputs(), 1), Columns::new(pattern.len(), 1));
         function.jacobian(&points, &self.parameters, &mut values, &mut jacobian);
         let mut slopes = Vec::new();
         for (entry, (row, input)) in pattern.iter().enumerate() {
             let slope = jacobian.column(entry)[0];
-            slopes.extend(places(*input as usize).iter().map(|(place, factor)| (*row as usize, *place, factor * slope)));
+            slopes.extend(
+                places(*input as usize).iter().map(|(place, factor)| (*row as usize, *place, factor * slope)),
+            );
         }
         Sample { values: (0..function.outputs()).map(|row| values.column(row)[0]).collect(), slopes }
     }

@@ -51,7 +51,10 @@ fn the_bias_of_the_state_after_a_crossing_is_as_predicted() {
         let exact = 2.0 + run.value("x0") / 3.0;
         let bias = run.end("x") - exact;
         let predicted = sigma * f64::ln(3.0) / 3.0;
-        assert!((bias - predicted).abs() < 5e-3 * predicted, "sigma {sigma}: {bias:e}, predicted {predicted:e}");
+        assert!(
+            (bias - predicted).abs() < 5e-3 * predicted,
+            "sigma {sigma}: {bias:e}, predicted {predicted:e}"
+        );
     }
 }
 
@@ -95,7 +98,8 @@ fn the_shortest_time_with_a_crossing() {
 fn costates_jump_where_the_surface_is_crossed() {
     let run = Solved::of(at("coulomb_reverse", &[], "implicit_euler", WIDTHS[3]));
     let time = &run.outcome.trajectory.time;
-    let exact = |t: f64| if t < 0.4 { -2.0 / 3.0 + 2.0 / 3.0 * t } else { -2.0 / 3.0 + 2.0 / 3.0 * (t - 0.4) };
+    let exact =
+        |t: f64| if t < 0.4 { -2.0 / 3.0 + 2.0 / 3.0 * t } else { -2.0 / 3.0 + 2.0 / 3.0 * (t - 0.4) };
     assert!(run.costate("x").iter().all(|lambda| (lambda + 2.0 / 3.0).abs() < 0.01));
     for (t, lambda) in time.iter().zip(run.costate("v")) {
         // Within the layer the costate is on its way from one value to the other.

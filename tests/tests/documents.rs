@@ -47,32 +47,32 @@ fn is_path(word: &str) -> bool {
     plain && ending && word.len() > 5 && !word.starts_with('.')
 }
 
+/// Whether a function is declared in one of the files, or anywhere if none is named.
+fn is_declared(name: &str, files: &[&str], all: &[Source]) -> bool {
+    let function = format!("fn {}", name.rsplit("::").next().unwrap_or(name));
+    let code = all.iter().filter(|source| source.path.ends_with(".rs"));
+    let mut code =
+        code.filter(|source| files.is_empty() || files.iter().any(|file| source.path.ends_with(file)));
+    code.any(|source| source.text.lines().any(|line| names(line, &function)))
+}
+
 #[test]
 fn documents_name_only_what_exists() {
     let all = sources();
-    let declares = |name: &str| {
-        let function = format!("fn {name}");
-        all.iter().any(|source| {
-            source.path.ends_with(".rs") && source.text.lines().any(|line| names(line, &function))
-        })
-    };
     let mut breaches = Vec::new();
-    for source in all.iter().filter(|source| is_about_the_code(source)) {
-        for (line, folder, word) in quoted(&source.text) {
-            let exists =
-                || repository().join(word).exists() || repository().join(&folder).join(word).exists();
+    for Source { path, text } in all.iter().filter(|source| is_about_the_code(source)) {
+        let quoted = quoted(text);
+        for (line, folder, word) in &quoted {
+            let exists = || repository().join(word).exists() || repository().join(folder).join(word).exists();
             if is_path(word) && !exists() {
-                breaches.push(format!(
-                    "{}:{line}: there is no file `{word}`; correct the name or the page",
-                    source.path
-                ));
+                breaches
+                    .push(format!("{path}:{line}: there is no file `{word}`; correct the name or the page"));
             }
-            if let Some(name) = word.strip_suffix("()")
-                && !declares(name.rsplit("::").next().unwrap_or(name))
-            {
+            let beside = quoted.iter().filter(|other| other.0 == *line && other.2.ends_with(".rs"));
+            let files: Vec<&str> = beside.map(|other| other.2).collect();
+            if word.strip_suffix("()").is_some_and(|name| !is_declared(name, &files, &all)) {
                 breaches.push(format!(
-                    "{}:{line}: there is no function `{word}`; correct the name or the page",
-                    source.path
+                    "{path}:{line}: there is no function `{word}` in {files:?}; correct the page"
                 ));
             }
         }

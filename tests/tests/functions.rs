@@ -9,11 +9,11 @@ use fdcc_compiler::lower::lower;
 use fdcc_compiler::program::Differentiated;
 use fdcc_compiler::{Model, compile};
 use fdcc_runtime::problem::{Columns, Function, Problem};
+use fdcc_tests::documents;
 use fdcc_tests::functions::{check_differences, check_machine_code};
 use fdcc_tests::models::{changed, refusal};
 use fdcc_tests::random::Random;
 use fdcc_tests::symbols::table;
-use fdcc_tests::documents;
 
 /// Kernels that are smooth everywhere; differences across a knot of the others would say nothing.
 const KERNELS: [&str; 2] = ["tanh", "sqrt"];

@@ -25,11 +25,13 @@ struct Case {
 
 fn check(case: &Case) {
     for (scheme, order) in SCHEMES {
-        let runs = GRIDS.map(|n| Solved::new(&format!("{} method {{ grid N = {n} {scheme} }}", case.text), &[], &[]));
+        let runs = GRIDS
+            .map(|n| Solved::new(&format!("{} method {{ grid N = {n} {scheme} }}", case.text), &[], &[]));
         for (what, quantity, exact) in &case.known {
             let errors: Vec<f64> = runs.iter().map(|run| (quantity(run) - exact).abs()).collect();
             let measured = rate(&GRIDS.map(|n| 1.0 / n), &errors);
-            let report = format!("{}, {scheme}: {what} has order {measured:.3}, errors {errors:?}", case.name);
+            let report =
+                format!("{}, {scheme}: {what} has order {measured:.3}, errors {errors:?}", case.name);
             assert!((measured - order).abs() < TOLERANCE, "{report}");
             // A rate says nothing of the limit: so it must be the known value itself that is approached.
             assert!(errors[3] < 0.03 * (1.0 + exact.abs()), "{report}");
@@ -88,7 +90,10 @@ fn a_free_final_time_with_a_time_dependent_right_side() {
         name: "free final time",
         text: "free T in [1, 3] guess 2 time t in [0, T] state x start 1 dynamics { x' = sin(t) } \
                end x == 2.5 minimize integral(x)",
-        known: vec![("T", |run| run.value("T"), end), ("the integral", Solved::objective, 2.0 * end - end.sin())],
+        known: vec![
+            ("T", |run| run.value("T"), end),
+            ("the integral", Solved::objective, 2.0 * end - end.sin()),
+        ],
     });
 }
 

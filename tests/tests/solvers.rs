@@ -20,7 +20,10 @@ fn assert_optimal(what: &str, found: &Residuals) {
         ("objective", found.objective, 1e-10),
     ] {
         // Written so that what is not a number fails.
-        assert!(matches!(residual.partial_cmp(&limit), Some(order) if order.is_le()), "{what}: {condition} {found:?}");
+        assert!(
+            matches!(residual.partial_cmp(&limit), Some(order) if order.is_le()),
+            "{what}: {condition} {found:?}"
+        );
     }
 }
 
@@ -132,12 +135,16 @@ fn bounds_on_a_convex_problem_are_kept_by_both_solvers() {
 
 #[test]
 fn the_conic_solver_refuses_what_is_not_convex() {
-    let concave = "time t in [0, 1] state x start 0 control u in [-1, 0] dynamics { x' = u } minimize integral(-u^2)";
+    let concave =
+        "time t in [0, 1] state x start 0 control u in [-1, 0] dynamics { x' = u } minimize integral(-u^2)";
     let curved = "time t in [0, 1] state x start 0 control u in [-1, 1] dynamics { x' = u*x + u } minimize (x(end) - 0.3)^2";
     for text in [concave, curved] {
         let refused = fdcc_tests::models::try_solve(&problem(text, &[], &[("solver", "convex")]));
         assert!(refused.is_err(), "{text}");
         let outcome = solve(&problem(text, &[], &[]));
-        assert!(!outcome.convex && !outcome.solution.global && outcome.solution.status == Status::Solved, "{text}");
+        assert!(
+            !outcome.convex && !outcome.solution.global && outcome.solution.status == Status::Solved,
+            "{text}"
+        );
     }
 }

@@ -5,9 +5,9 @@ use std::ops::ControlFlow;
 
 use fdcc_runtime::homotopy::{self, Outcome};
 use fdcc_runtime::nlp::{Status, Stop};
+use fdcc_tests::Solved;
 use fdcc_tests::models::{Changes, load, problem, solve};
 use fdcc_tests::optimality::residuals;
-use fdcc_tests::Solved;
 
 /// Solves a text with the interior point method, whatever it is.
 fn outcome(text: &str, methods: Changes) -> Outcome {
@@ -67,12 +67,20 @@ fn what_is_not_finite_is_blamed_on_its_line() {
     for (text, culprit) in [
         ("time t in [0, 1] state x start -1 dynamics { x' = sqrt(x) } minimize x(end)^2", "x' = sqrt(x)"),
         ("time t in [0, 1] state x start 0 dynamics { x' = log(x) } minimize x(end)^2", "x' = log(x)"),
-        ("time t in [0, 1] state x start 1 dynamics { x' = -x } path far: log(x - 2) <= 0 minimize x(end)^2", "log(x - 2)"),
-        ("time t in [0, 1] state x start 1 dynamics { x' = -x } end sqrt(-x^2) <= 1 minimize x(end)^2", "sqrt(-x^2) <= 1"),
+        (
+            "time t in [0, 1] state x start 1 dynamics { x' = -x } path far: log(x - 2) <= 0 minimize x(end)^2",
+            "log(x - 2)",
+        ),
+        (
+            "time t in [0, 1] state x start 1 dynamics { x' = -x } end sqrt(-x^2) <= 1 minimize x(end)^2",
+            "sqrt(-x^2) <= 1",
+        ),
         ("time t in [0, 1] state x start 1 dynamics { x' = -x } minimize log(-x(end)^2)", "log(-x(end)^2)"),
     ] {
         match outcome(text, &[("N", "5"), ("scheme", "euler")]).solution.status {
-            Status::NotFinite(place) => assert!(blamed(text, &place.origin).contains(culprit), "{text}: {place:?}"),
+            Status::NotFinite(place) => {
+                assert!(blamed(text, &place.origin).contains(culprit), "{text}: {place:?}")
+            }
             status => panic!("{text}: {status:?}"),
         }
     }
@@ -116,7 +124,10 @@ fn check(what: &str, text: &str, tolerance: f64, known: &[Known]) {
             assert!((got - exact).abs() <= tolerance, "{what}, {solver}: {name} = {got}, exact {exact}");
         }
         let residuals = residuals(&solved.problem, &solved.outcome);
-        assert!(residuals.stationarity < 1e-6 && residuals.feasibility < 1e-8, "{what}, {solver}: {residuals:?}");
+        assert!(
+            residuals.stationarity < 1e-6 && residuals.feasibility < 1e-8,
+            "{what}, {solver}: {residuals:?}"
+        );
     }
 }
 
@@ -181,7 +192,11 @@ fn several_unknowns() {
         "free a in [-9, 9] guess 0 free b in [-9, 9] guess 0 free c in [-9, 9] guess 0 \
          time t in [0, 1] state x start a dynamics { x' = b } start x == 1 end x == 3 minimize (c - a*b)^2",
         1e-6,
-        &[("a", |run| run.value("a"), 1.0), ("b", |run| run.value("b"), 2.0), ("c", |run| run.value("c"), 2.0)],
+        &[
+            ("a", |run| run.value("a"), 1.0),
+            ("b", |run| run.value("b"), 2.0),
+            ("c", |run| run.value("c"), 2.0),
+        ],
     );
 }
 
@@ -228,7 +243,10 @@ fn a_limit_on_an_integral() {
         "time t in [0, 1] state x start 0 control u in [-9, 9] guess 1 dynamics { x' = u } \
          end integral(u^2) <= 3 maximize x(end)",
         1e-6,
-        &[("x(end)", |run| run.end("x"), f64::sqrt(3.0)), ("the objective", Solved::objective, f64::sqrt(3.0))],
+        &[
+            ("x(end)", |run| run.end("x"), f64::sqrt(3.0)),
+            ("the objective", Solved::objective, f64::sqrt(3.0)),
+        ],
     );
 }
 

@@ -28,7 +28,8 @@ struct Row {
 
 fn rows() -> Vec<Row> {
     let path = repository().join("tests/reference/table-7.1.json");
-    let table: Value = serde_json::from_str(&std::fs::read_to_string(path).expect("the table is there")).expect("JSON");
+    let table: Value =
+        serde_json::from_str(&std::fs::read_to_string(path).expect("the table is there")).expect("JSON");
     let number = |row: &Value, key: &str| row[key].as_f64().expect("a number");
     let row = |row: &Value| Row {
         sigma: number(row, "sigma"),
@@ -110,7 +111,11 @@ fn check(row: &Row) {
     let what = format!("sigma {sigma}, N {steps}");
     assert_eq!(run.len(), row.steps + 1, "{what}");
     let (found, violation) = (objective(&run, duration), violation(&run, duration, row.sigma));
-    assert!((found - solved.objective()).abs() < 1e-10, "{what}: {found}, but it says {}", solved.objective());
+    assert!(
+        (found - solved.objective()).abs() < 1e-10,
+        "{what}: {found}, but it says {}",
+        solved.objective()
+    );
     assert!(found <= row.objective + 2e-5, "{what}: {found}, known {}", row.objective);
     assert!(violation <= 1e-8, "{what}: violated by {violation:e}");
 }

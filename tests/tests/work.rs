@@ -10,14 +10,25 @@ use fdcc_tests::models::{Changes, problem, refusal, solve};
 use fdcc_tests::{documents, repository};
 
 const HEADINGS: [&str; 12] = [
-    "model", "status", "iterations", "factored", "regularised", "values", "derivatives", "restored", "variables", "rows",
-    "jacobian", "hessian",
+    "model",
+    "status",
+    "iterations",
+    "factored",
+    "regularised",
+    "values",
+    "derivatives",
+    "restored",
+    "variables",
+    "rows",
+    "jacobian",
+    "hessian",
 ];
 
 /// Each model as it stands, and the rows of Table 7.1 that are hardest for their size.
 fn cases() -> Vec<(String, String, Changes<'static>)> {
     let models = documents("models", "fdc").into_iter().filter(|(_, text)| refusal(text).is_none());
-    let mut cases: Vec<(String, String, Changes)> = models.map(|(name, text)| (name, text, &[] as Changes)).collect();
+    let mut cases: Vec<(String, String, Changes)> =
+        models.map(|(name, text)| (name, text, &[] as Changes)).collect();
     let race = fdcc_tests::models::text_of("racecar");
     for (name, method) in [
         ("racecar 0.05 500", &[("sigma", "0.05"), ("N", "500")]),
@@ -72,5 +83,8 @@ fn the_work_is_what_it_was() {
         std::fs::write(&path, &found).expect("the snapshot can be written");
     }
     let before = std::fs::read_to_string(&path).expect("`UPDATE=1 cargo test` makes the snapshot");
-    assert!(before == found, "the work has changed; if for good reasons, run with UPDATE=1\n{before}\n{found}");
+    assert!(
+        before == found,
+        "the work has changed; if for good reasons, run with UPDATE=1\n{before}\n{found}"
+    );
 }

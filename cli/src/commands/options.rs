@@ -118,5 +118,5 @@ pub fn usage(message: &str) -> Exit {
 /// Prints diagnostics on the standard error.
 pub fn show<'d>(diagnostics: impl Iterator<Item = &'d Diagnostic>, source: &SourceFile) {
     let renderer = render::Renderer::for_stderr();
-    diagnostics.for_each(|diagnostic| eprint!("{}", renderer.render(diagnostic, source)));
+    diagnostics.for_each(|diagnostic| output::tell(&renderer.render(diagnostic, source)));
 }

@@ -4,7 +4,7 @@ use super::Exit;
 use super::options::{Options, Prepared, prepare, usage};
 use crate::log::{self, Level, Log};
 use crate::output::named::Named;
-use crate::output::{self, files, table};
+use crate::output::{self, files, plural, table};
 use crate::solver::{Compiled, Failure, Solved};
 use crate::warm;
 use crate::watch::catch_interrupts;
@@ -131,7 +131,8 @@ impl Sweep {
         bar.inc(1);
         if self.level() != Level::None {
             let line = format!("row {} {}", row.number, solved.document.status.replace('_', " "));
-            bar.suspend(|| eprintln!("{line}  {} iterations", solved.document.iterations));
+            let iterations = plural(solved.document.iterations, "iteration");
+            bar.suspend(|| output::tell(&format!("{line}  {iterations}\n")));
         }
         Ok(solved)
     }

@@ -20,9 +20,14 @@ pub fn print(text: &str) {
     let _ = std::io::stdout().write_all(text.as_bytes());
 }
 
+/// Prints to the standard error, which may have been closed just as well.
+pub fn tell(text: &str) {
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
 /// Says on the standard error why something was not done.
 pub fn complain(text: &str) {
-    let _ = writeln!(std::io::stderr(), "fdcc: {text}");
+    tell(&format!("fdcc: {text}\n"));
 }
 
 /// `1 state`, `2 states`.

@@ -7,7 +7,7 @@ use std::fmt::Write;
 const WIDTH: f64 = 620.0;
 const HEIGHT: f64 = 150.0;
 const LEFT: f64 = 70.0;
-const RIGHT: f64 = WIDTH - 10.0;
+const RIGHT: f64 = WIDTH - 20.0;
 const TOP: f64 = 8.0;
 const BOTTOM: f64 = HEIGHT - 22.0;
 
@@ -70,7 +70,11 @@ fn shades(document: &Document, axes: &Axes) -> String {
 }
 
 fn ticks(axes: &Axes) -> String {
-    let three = |[low, high]: [f64; 2]| [low, 0.5 * (low + high), high];
+    let three = |[low, high]: [f64; 2]| {
+        let middle = 0.5 * (low + high);
+        // Rounding is no value worth a label.
+        [low, if middle.abs() < 1e-6 * (high - low) { 0.0 } else { middle }, high]
+    };
     let values = three(axes.value).map(|value| {
         let (x, y, text) = (LEFT - 6.0, axes.y(value), significant(value, 3));
         let line = format!("<path class=\"axis\" d=\"M{LEFT} {y:.1}H{RIGHT}\"/>");

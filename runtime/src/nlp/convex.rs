@@ -38,6 +38,9 @@ struct Side {
 /// that it is quadratic.
 pub fn solve(nlp: &mut dyn Nlp, start: &Start, tolerance: f64, max_iterations: usize) -> Option<Solution> {
     let variables = start.v.len();
+    if variables == 0 {
+        return None;
+    }
     let mut derivatives = Derivatives::new(nlp);
     let multipliers = vec![0.0; nlp.row_bounds().len()];
     nlp.derivatives(&start.v, 1.0, &multipliers, &mut derivatives);
@@ -141,7 +144,8 @@ fn into_solution(nlp: &mut dyn Nlp, sides: &[Side], found: crate::clarabel::Coni
         ConicStatus::IterationLimit => Status::IterationLimit,
         ConicStatus::Failed => Status::NumericalFailure,
     };
-    let v = found.x;
+    let mut v = found.x;
+    clamp(nlp, &mut v);
     let multipliers = multipliers(nlp, sides, &found.z);
     let mut rows = vec![0.0; nlp.row_bounds().len()];
     let objective = nlp.values(&v, &mut rows);
@@ -151,6 +155,13 @@ fn into_solution(nlp: &mut dyn Nlp, sides: &[Side], found: crate::clarabel::Coni
     let kkt_error = stationarity(nlp, &v, &multipliers).max(constraint_violation);
     let global = status == Status::Solved;
     Solution { status, v, multipliers, objective, kkt_error, constraint_violation, global, counts }
+}
+
+/// The conic solver keeps bounds only to its tolerance.
+fn clamp(nlp: &dyn Nlp, v: &mut [f64]) {
+    for (value, bounds) in v.iter_mut().zip(nlp.variable_bounds()) {
+        *value = value.max(bounds.lower).min(bounds.upper);
+    }
 }
 
 fn multipliers(nlp: &dyn Nlp, sides: &[Side], z: &[f64]) -> Multipliers {

@@ -14,7 +14,7 @@ use std::ops::ControlFlow;
 /// An error this small for this many iterations is acceptable.
 const ACCEPTABLE_ERROR: f64 = 1e-6;
 const ACCEPTABLE_ITERATIONS: usize = 15;
-/// Variables beyond this, at a feasible point, have left the problem.
+/// Variables beyond this, at a point that is feasible relative to them, have left the problem.
 const DIVERGED: f64 = 1e10;
 /// A step this small, relative to the iterate, is rounding.
 const TINY_STEP: f64 = 10.0 * f64::EPSILON;
@@ -48,6 +48,8 @@ pub(super) struct Algorithm {
     pub(super) acceptable: usize,
     pub(super) tiny_steps: usize,
     pub(super) watchdog: Watchdog,
+    /// How often the filter was emptied at a feasible point.
+    pub(super) emptied: usize,
     /// Whether the derivatives belong to the iterate.
     pub(super) fresh: bool,
 }
@@ -67,6 +69,7 @@ impl Algorithm {
             acceptable: 0,
             tiny_steps: 0,
             watchdog: Watchdog::default(),
+            emptied: 0,
             fresh: false,
             space,
             at,
@@ -76,6 +79,9 @@ impl Algorithm {
 
     /// Iterates to the end, with restoration phases where the line search is stuck.
     pub(super) fn run(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Status {
+        if self.space.has_crossed_bounds() {
+            return Status::Infeasible;
+        }
         loop {
             match self.iterate(nlp, watch) {
                 Outcome::Continue => {}
@@ -92,13 +98,22 @@ impl Algorithm {
         }
     }
 
-    /// A restoration phase, begun anew from where it is if it gets stuck itself.
+    /// A restoration phase, begun anew from where it is if it gets stuck itself. It ends the solve if the smallest
+    /// violation near by is one; if it is none, the filter has become too strict and is emptied.
     fn restore_or_stop(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Option<Status> {
         for _ in 0..MOST_RESTARTS {
             match self.restore(nlp, watch) {
                 Restored::Acceptable => return None,
                 Restored::Stopped(status) => return Some(status),
                 Restored::Blocked => {}
+                Restored::Stationary if self.values.largest() > self.options.tol => {
+                    return Some(Status::Infeasible);
+                }
+                Restored::Stationary => {
+                    self.filter.clear();
+                    self.emptied += 1;
+                    return (self.emptied > MOST_RESTARTS).then_some(Status::NumericalFailure);
+                }
             }
         }
         Some(Status::NumericalFailure)
@@ -106,7 +121,9 @@ impl Algorithm {
 
     /// One iteration: look, decide, step.
     pub(super) fn iterate(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Outcome {
-        if !self.fresh && !self.slopes.evaluate(nlp, &self.space, &self.at, &mut self.counts) {
+        let is_finite = self.values.is_finite()
+            && (self.fresh || self.slopes.evaluate(nlp, &self.space, &self.at, &mut self.counts));
+        if !is_finite {
             let place = nlp.not_finite(&self.at.y[..self.space.variables]).unwrap_or_default();
             return Outcome::Done(Status::NotFinite(place));
         }
@@ -153,7 +170,7 @@ impl Algorithm {
             Some(Status::Solved)
         } else if self.acceptable >= ACCEPTABLE_ITERATIONS {
             Some(Status::Acceptable)
-        } else if self.residuals.primal <= self.options.tol && self.has_diverged() {
+        } else if self.has_diverged() {
             Some(Status::Unbounded)
         } else if self.counts.iterations >= self.options.max_iter {
             Some(Status::IterationLimit)
@@ -163,7 +180,8 @@ impl Algorithm {
     }
 
     fn has_diverged(&self) -> bool {
-        self.at.y[..self.space.variables].iter().any(|value| value.abs() > DIVERGED)
+        let largest = self.at.y[..self.space.variables].iter().fold(0.0, |a: f64, y| a.max(y.abs()));
+        largest > DIVERGED && self.residuals.primal <= self.options.tol * largest
     }
 
     fn take_step(&mut self, nlp: &mut dyn Nlp) -> Outcome {

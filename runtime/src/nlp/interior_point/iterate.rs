@@ -67,7 +67,17 @@ impl Values {
         let objective = nlp.values(&y[..space.variables], &mut self.residuals);
         self.objective = objective + space.attached_cost(y);
         space.residuals(y, &mut self.residuals);
+        self.is_finite()
+    }
+
+    /// Whether there is a number everywhere.
+    pub(super) fn is_finite(&self) -> bool {
         self.objective.is_finite() && self.violation().is_finite()
+    }
+
+    /// The largest residual.
+    pub(super) fn largest(&self) -> f64 {
+        self.residuals.iter().fold(0.0, |a, residual| a.max(residual.abs()))
     }
 
     /// `theta`: the 1-norm of the residuals.

@@ -38,7 +38,7 @@ impl Residuals {
         });
         Residuals {
             dual: dual / scale((bound_sum + row_sum) / (bounds + rows)),
-            primal: values.residuals.iter().fold(0.0, |a, r| a.max(r.abs())),
+            primal: values.largest(),
             largest_product: largest,
             smallest_product: if smallest.is_finite() { smallest } else { 0.0 },
             product_scale: scale(bound_sum / bounds),

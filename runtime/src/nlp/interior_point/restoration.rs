@@ -26,6 +26,8 @@ const LARGEST_BOUND_MULTIPLIER: f64 = 1e3;
 pub(super) enum Restored {
     /// The iterate is acceptable again.
     Acceptable,
+    /// It found the smallest violation near by.
+    Stationary,
     /// Its own line search found no step.
     Blocked,
     /// It ends the whole solve.
@@ -36,6 +38,8 @@ pub(super) enum Restored {
 pub(super) struct Proximity<'a> {
     inner: &'a mut dyn Nlp,
     reference: Vec<f64>,
+    zeta: f64,
+    /// The diagonal of `D^2`.
     weights: Vec<f64>,
     hessian: Triplets,
     /// The variable of each value that was appended to the Hessian.
@@ -45,14 +49,14 @@ pub(super) struct Proximity<'a> {
 
 impl<'a> Proximity<'a> {
     fn new(inner: &'a mut dyn Nlp, reference: &[f64], zeta: f64) -> Self {
-        let weight = |value: &f64| zeta * (1.0 / value.abs()).min(1.0).powi(2);
+        let weight = |value: &f64| (1.0 / value.abs()).min(1.0).powi(2);
         let appended = diagonal_families(inner.stages(), reference.len());
         let diagonal = Triplets { families: appended.clone() }.entries().map(|(i, _)| i).collect();
         let mut hessian = inner.hessian_structure().clone();
         hessian.families.extend(appended);
         let derivatives = Derivatives::new(inner);
         let weights = reference.iter().map(weight).collect();
-        Proximity { inner, reference: reference.to_vec(), weights, hessian, diagonal, derivatives }
+        Proximity { inner, reference: reference.to_vec(), zeta, weights, hessian, diagonal, derivatives }
     }
 }
 
@@ -89,18 +93,18 @@ impl Nlp for Proximity<'_> {
     fn values(&mut self, v: &[f64], rows: &mut [f64]) -> f64 {
         self.inner.values(v, rows);
         let distances = v.iter().zip(&self.reference).zip(&self.weights);
-        distances.map(|((v, r), w)| 0.5 * w * (v - r).powi(2)).sum()
+        0.5 * self.zeta * distances.map(|((v, r), w)| w * (v - r).powi(2)).sum::<f64>()
     }
     fn derivatives(&mut self, v: &[f64], weight: f64, multipliers: &[f64], out: &mut Derivatives) {
         self.inner.derivatives(v, 0.0, multipliers, &mut self.derivatives);
         for i in 0..v.len() {
-            out.gradient[i] = self.weights[i] * (v[i] - self.reference[i]);
+            out.gradient[i] = self.zeta * self.weights[i] * (v[i] - self.reference[i]);
         }
         out.jacobian.copy_from_slice(&self.derivatives.jacobian);
         let (inner, appended) = out.hessian.split_at_mut(self.derivatives.hessian.len());
         inner.copy_from_slice(&self.derivatives.hessian);
         for (target, i) in appended.iter_mut().zip(&self.diagonal) {
-            *target = weight * self.weights[*i];
+            *target = weight * self.zeta * self.weights[*i];
         }
     }
     fn row_place(&self, row: usize) -> Place {
@@ -117,8 +121,7 @@ impl Algorithm {
         let violation = self.values.violation();
         self.filter.add(violation, self.barrier.value(&self.space, &self.values, &self.at.y));
         self.counts.restorations += 1;
-        let largest = self.values.residuals.iter().fold(0.0f64, |a, r| a.max(r.abs()));
-        let mu = self.barrier.mu.max(largest.min(1.0));
+        let mu = self.barrier.mu.max(self.values.largest().min(1.0));
         let variables = self.at.y[..self.space.variables].to_vec();
         let mut proximity = Proximity::new(nlp, &variables, mu.sqrt());
         let mut inner = self.elastic(&mut proximity, mu);
@@ -128,17 +131,17 @@ impl Algorithm {
             match outcome {
                 Outcome::Continue => {}
                 Outcome::Blocked => break Restored::Blocked,
-                Outcome::Done(Status::Solved | Status::Acceptable) => {
-                    break Restored::Stopped(Status::Infeasible);
-                }
+                Outcome::Done(Status::Solved | Status::Acceptable) => break Restored::Stationary,
+
                 Outcome::Done(status) => break Restored::Stopped(status),
             }
             if self.accepts(proximity.inner, &inner.at, violation) {
                 break Restored::Acceptable;
             }
+            inner.loosen(&mut proximity);
         };
         self.take_over(proximity.inner, inner);
-        if matches!(restored, Restored::Acceptable) {
+        if matches!(restored, Restored::Acceptable | Restored::Stationary) {
             self.resume(proximity.inner);
         }
         restored
@@ -153,6 +156,18 @@ impl Algorithm {
         inner.filter = Filter::new(inner.values.violation());
         inner.counts = self.counts;
         inner
+    }
+
+    /// The wish to stay near weighs `zeta = sqrt(mu)` and vanishes with the barrier: it must not make a point look
+    /// infeasible that is merely far from a feasible one.
+    fn loosen(&mut self, proximity: &mut Proximity) {
+        let zeta = self.barrier.mu.sqrt();
+        if zeta < proximity.zeta {
+            proximity.zeta = zeta;
+            self.values.evaluate(proximity, &self.space, &self.at.y, &mut self.counts);
+            self.filter.clear();
+            self.fresh = false;
+        }
     }
 
     /// Whether the elastic iterate, without its elastic variables, satisfies the filter of this algorithm.

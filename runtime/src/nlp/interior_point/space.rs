@@ -88,6 +88,11 @@ impl Space {
         self.lower.len()
     }
 
+    /// Whether some lower bound is above its upper bound.
+    pub(super) fn has_crossed_bounds(&self) -> bool {
+        self.lower.iter().zip(&self.upper).any(|(lower, upper)| lower > upper)
+    }
+
     /// Turns row values into residuals, in place.
     pub(super) fn residuals(&self, y: &[f64], rows: &mut [f64]) {
         rows.iter_mut().zip(&self.target).for_each(|(row, target)| *row -= target);

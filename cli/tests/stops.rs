@@ -1,0 +1,64 @@
+//! Solves that do not end with a solution: what is said at which line, and what is written all the same.
+
+mod common;
+
+use common::*;
+use serde_json::Value;
+
+#[test]
+fn a_value_that_does_not_exist_is_shown_at_its_line_and_is_null_in_json() {
+    let text = RAMP.replace("x' = u", "x' = u * sqrt(x - 2)").replace("end x == goal\n", "");
+    let folder = folder("not_finite", &[("root.fdc", text.as_bytes())]);
+    let output = fdcc(&folder, &["solve", "root.fdc", "--json", "--out", "."], "");
+    expect_exit(&output, 2, "root");
+    let said = stderr(&output);
+    assert!(said.contains("FDC0601") && said.contains("root.fdc:6:"), "{said}");
+    assert!(said.contains("`x'` or one of its derivatives is infinite or undefined"), "{said}");
+    let document = json(&output);
+    assert_eq!(document["status"], "not_finite");
+    assert!(document["kkt_error"].is_null());
+    assert!(folder.join("ramp.html").exists(), "the files are written all the same");
+    let warm = fdcc(&folder, &["solve", "root.fdc", "--warm", "ramp.sol.json", "--log", "none"], "");
+    expect_exit(&warm, 2, "what could not be solved can still be a start");
+}
+
+#[test]
+fn an_infeasible_problem_names_the_condition_and_the_controls_at_their_bounds() {
+    let folder = folder("infeasible", &[("ramp.fdc", RAMP.as_bytes())]);
+    let solve = |solver: &str| {
+        let method = format!("solver={solver}");
+        fdcc(&folder, &["solve", "ramp.fdc", "--set", "goal=5", "--log", "none", "--method", &method], "")
+    };
+    let proved = stderr(&solve("convex"));
+    assert!(proved.contains("FDC0602") && proved.contains("ramp.fdc:7:"), "{proved}");
+    assert!(proved.contains("this is certain"), "{proved}");
+    let searched = solve("interior_point");
+    expect_exit(&searched, 2, "interior point");
+    let said = stderr(&searched);
+    assert!(said.contains("`u` is at 4 from t = 0 to 1"), "{said}");
+    assert!(said.contains("at best"), "{said}");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_stops_with_the_best_iterate_written() {
+    use std::io::{BufRead, BufReader};
+    let folder = folder("interrupt", &[]);
+    let racecar = model("racecar");
+    // Far more work than the test waits for.
+    let arguments = ["solve", &racecar, "--method", "N=10000", "--out", ".", "--log", "full"];
+    let mut child = start(&folder, &arguments);
+    let mut lines = BufReader::new(child.stderr.take().expect("piped")).lines();
+    let begun = lines.any(|line| line.expect("text").trim_start().starts_with("1 "));
+    assert!(begun, "the first iteration is shown");
+    let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(kill.expect("kill runs").success());
+    lines.for_each(drop);
+    let output = child.wait_with_output().expect("fdcc ends");
+    expect_exit(&output, 2, "interrupted");
+    assert!(stdout(&output).contains("NOT SOLVED, interrupted"));
+    let saved = std::fs::read_to_string(folder.join("racecar.sol.json")).expect("the file was written");
+    let saved: Value = serde_json::from_str(&saved).expect("JSON");
+    assert_eq!(saved["status"], "interrupted");
+    assert_eq!(column(&saved["states"]["th"]).len(), 10_001);
+}

@@ -36,20 +36,24 @@ fn not_finite(outcome: &Outcome, place: &Place) -> Diagnostic {
 }
 
 fn infeasible(problem: &Problem, outcome: &Outcome, limiting: &Limiting) -> Diagnostic {
-    let Limiting { origin, violation, .. } = limiting;
+    let Limiting { origin, condition, violation, .. } = limiting;
     let amount = significant(*violation, 3);
     let when = limiting.time.map(|t| format!(" at t = {}", short(t))).unwrap_or_default();
-    let label = match is_equation(problem, limiting) {
-        _ if outcome.convex => format!("off by {amount}{when}, where the solver stopped"),
-        true => format!("worst{when}: it would have to be off by {amount} in one step"),
-        false => format!("worst{when}: off by {amount}"),
+    let mut diagnostic = match condition {
+        Some(condition) => {
+            let message = format!("no feasible trajectory found: `{}` cannot be met", condition.label);
+            let label = "this stands against the equations most";
+            let worst = format!("worst{when}: off by {amount} in one step");
+            Diagnostic::new(Code::Infeasible, message, span(condition.span), label)
+                .label(span(origin.span), worst)
+        }
+        None => {
+            let message =
+                format!("no feasible trajectory found: `{}` is violated by {amount} at best", origin.label);
+            let label = format!("worst{when}: off by {amount}");
+            Diagnostic::new(Code::Infeasible, message, span(origin.span), label)
+        }
     };
-    let message = if outcome.convex {
-        "there is no feasible trajectory".to_string()
-    } else {
-        format!("no feasible trajectory found: `{}` is violated by {amount} at best", origin.label)
-    };
-    let mut diagnostic = Diagnostic::new(Code::Infeasible, message, span(origin.span), label);
     for (control, text) in saturated(problem, outcome, limiting) {
         diagnostic = diagnostic.label(span(control.origin.span), text);
     }
@@ -65,11 +69,6 @@ fn advice(is_proved: bool) -> &'static str {
         "no small change of the trajectory makes this better. Loosen a condition, widen the bounds of a control, allow \
          more time, or start from another `guess` if you know that a solution exists."
     }
-}
-
-/// Whether the worst row is a step of a differential equation rather than a condition.
-fn is_equation(problem: &Problem, limiting: &Limiting) -> bool {
-    (0..problem.layout.x).any(|row| problem.dynamics.origin(row) == limiting.origin)
 }
 
 /// How close to a bound counts as at the bound.

@@ -6,7 +6,7 @@
 
 use crate::modes::{Span, modes};
 use crate::nlp::{Counts, Nlp, Options, Progress, Solution, Start, Status, Stop, convex, interior_point};
-use crate::problem::{Problem, Solver};
+use crate::problem::{Origin, Problem, Solver};
 use crate::trajectory::Trajectory;
 use crate::transcribe::TranscribedNlp;
 use std::ops::ControlFlow;
@@ -41,7 +41,9 @@ pub struct Outcome {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limiting {
     /// Where it stands in the model.
-    pub origin: crate::problem::Origin,
+    pub origin: Origin,
+    /// Where it is a step of a differential equation: the condition that stands against the equations most.
+    pub condition: Option<Origin>,
     /// The time of its largest violation, if it belongs to one.
     pub time: Option<f64>,
     /// How far it is violated.
@@ -235,5 +237,14 @@ fn limiting(
     }
     let place = nlp.row_place(row);
     let time = place.grid_point.map(|k| trajectory.time[k]);
-    Some(Limiting { origin: place.origin, time, violation })
+    let condition = if nlp.is_defect(row) { strongest_condition(nlp, solution) } else { None };
+    Some(Limiting { origin: place.origin, condition, time, violation })
+}
+
+/// The path or boundary condition with the largest multiplier.
+fn strongest_condition(nlp: &TranscribedNlp, solution: &Solution) -> Option<Origin> {
+    let rows = solution.multipliers.rows.iter().enumerate();
+    let conditions = rows.filter(|(row, lambda)| !nlp.is_defect(*row) && **lambda != 0.0);
+    let strongest = conditions.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    Some(nlp.row_place(strongest.0).origin)
 }

@@ -78,9 +78,9 @@ fn stationarity(at: &Transcribed, multipliers: &Multipliers) -> Vec<f64> {
 
 /// A positive multiplier belongs to the upper bound, a negative one to the lower; infinite where that bound is not.
 fn complementarity(bounds: &Bounds, value: f64, multiplier: f64) -> f64 {
-    match multiplier {
-        _ if bounds.is_equality() || multiplier == 0.0 => 0.0,
-        m if m > 0.0 => m * (bounds.upper - value).abs(),
-        m => -m * (value - bounds.lower).abs(),
+    if bounds.is_equality() || multiplier == 0.0 {
+        return 0.0;
     }
+    let bound = if multiplier > 0.0 { bounds.upper } else { bounds.lower };
+    (multiplier * (bound - value)).abs()
 }

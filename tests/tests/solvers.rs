@@ -80,6 +80,8 @@ fn a_wrong_multiplier_or_a_wrong_variable_is_noticed() {
     assert!(spoilt(&|solution| solution.multipliers.rows[17] += 1e-3).stationarity > 1e-4);
     assert!(spoilt(&|solution| solution.v[31] += 1e-3).feasibility > 1e-4);
     assert!(spoilt(&|solution| solution.multipliers.upper[5] = -1e-3).signs > 1e-4);
+    let last = outcome.solution.v.len() - 1;
+    assert!(spoilt(&|solution| solution.multipliers.upper[last] = 1e-3).complementarity > 1e-4);
     assert!(spoilt(&|solution| solution.v[2] = f64::NAN).feasibility.is_nan());
     assert!(spoilt(&|solution| solution.objective += 1e-3).objective > 1e-4);
 }

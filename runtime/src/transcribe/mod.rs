@@ -121,6 +121,11 @@ impl<'p> TranscribedNlp<'p> {
         gradient
     }
 
+    /// Whether a row is a step of a differential equation.
+    pub fn is_defect(&self, row: usize) -> bool {
+        row < self.stages.coupling().start && row % self.stages.row_step() < self.stages.states
+    }
+
     /// The largest absolute value of each switching function along `v`.
     pub fn guard_sizes(&self, v: &[f64]) -> Vec<f64> {
         let guards = crate::trajectory::guards(self.problem, self.stages, v, &self.parameters_at(v));

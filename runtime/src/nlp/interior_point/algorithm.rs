@@ -110,6 +110,7 @@ impl Algorithm {
                     return Some(Status::Infeasible);
                 }
                 Restored::Stationary => {
+                    self.resume(nlp);
                     self.filter.clear();
                     self.emptied += 1;
                     return (self.emptied > MOST_RESTARTS).then_some(Status::NumericalFailure);

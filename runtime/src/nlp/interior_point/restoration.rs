@@ -141,7 +141,7 @@ impl Algorithm {
             inner.loosen(&mut proximity);
         };
         self.take_over(proximity.inner, inner);
-        if matches!(restored, Restored::Acceptable | Restored::Stationary) {
+        if matches!(restored, Restored::Acceptable) {
             self.resume(proximity.inner);
         }
         restored
@@ -182,12 +182,14 @@ impl Algorithm {
     fn take_over(&mut self, nlp: &mut dyn Nlp, inner: Algorithm) {
         self.counts = inner.counts;
         self.at.y.copy_from_slice(&inner.at.y[..self.space.len()]);
+        // At the smallest violation these say which rows stand against each other.
+        self.at.lambda = inner.at.lambda;
         self.values.evaluate(nlp, &self.space, &self.at.y, &mut self.counts);
         self.fresh = false;
     }
 
     /// Multipliers after a restoration phase: bounds from the barrier, rows by least squares.
-    fn resume(&mut self, nlp: &mut dyn Nlp) {
+    pub(super) fn resume(&mut self, nlp: &mut dyn Nlp) {
         let mu = self.barrier.mu;
         self.at.set_bound_multipliers(&self.space, |distance| (mu / distance).min(LARGEST_BOUND_MULTIPLIER));
         self.estimate_multipliers(nlp);

@@ -2,7 +2,6 @@
 //!
 //! ```text
 //! # a comment
-//! set mu = 0.2
 //! method sigma = 0.3
 //! objective = 59.8359878  tol 1e-5  from "where this number is from"
 //! x(end)    = 1           tol 1e-9  from "closed form: ..."
@@ -25,8 +24,6 @@ pub struct Value {
 /// The contents of such a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Expected {
-    /// Other values of parameters.
-    pub parameters: Vec<(String, String)>,
     /// Other settings.
     pub methods: Vec<(String, String)>,
     /// Values of the solution.
@@ -52,9 +49,7 @@ impl Expected {
             return Some(());
         }
         let (name, rest) = line.split_once('=').map(|(name, rest)| (name.trim(), rest.trim()))?;
-        if let Some(name) = name.strip_prefix("set ") {
-            self.parameters.push((name.into(), rest.into()));
-        } else if let Some(key) = name.strip_prefix("method ") {
+        if let Some(key) = name.strip_prefix("method ") {
             self.methods.push((key.into(), rest.into()));
         } else {
             self.values.push(value(name, rest)?);

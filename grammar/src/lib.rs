@@ -1,6 +1,6 @@
 //! The text of a model: from characters to a syntax tree and diagnostics.
 //!
-//! Parsing cannot fail: [`parse`] returns what it understood and what it did not.
+//! Parsing cannot fail: [`parse()`] returns what it understood and what it did not.
 
 pub mod ast;
 mod diagnostic;

@@ -5,11 +5,11 @@ use super::options::{Options, Prepared, prepare, show};
 use crate::expectations::{self, Checked, Outcome, Sides};
 use crate::failure;
 use crate::log::{Level, Log};
+use crate::output::tested::{Line, Tested, Word};
 use crate::output::{self, files, number};
 use crate::solver::{Compiled, Failure, Solved};
 use crate::watch::catch_interrupts;
 use clap::Args;
-use serde::Serialize;
 use std::time::Instant;
 
 /// Solve models and check what their `expect` blocks say
@@ -20,35 +20,6 @@ pub struct Test {
     files: Vec<String>,
     #[command(flatten)]
     options: Options,
-}
-
-/// What became of one model.
-#[derive(Serialize)]
-struct Tested {
-    file: String,
-    model: String,
-    /// The status of the solve; nothing where there was nothing to expect.
-    status: Option<String>,
-    expectations: Vec<Line>,
-}
-
-/// What became of one line of an `expect` block.
-#[derive(Serialize)]
-struct Line {
-    line: usize,
-    text: String,
-    outcome: Word,
-    left: Option<f64>,
-    right: Option<f64>,
-    tolerance: Option<f64>,
-}
-
-#[derive(Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "lowercase")]
-enum Word {
-    Ok,
-    Failed,
-    Skipped,
 }
 
 impl Test {

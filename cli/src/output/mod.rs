@@ -10,6 +10,7 @@ pub mod number;
 pub mod plot;
 pub mod sarif;
 pub mod table;
+pub mod tested;
 
 use std::io::Write;
 

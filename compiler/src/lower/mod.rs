@@ -95,7 +95,7 @@ pub fn lower(model: &Model) -> Program {
 }
 
 impl Program {
-    /// The functions that a problem compiles, in the order in which [`problem`] takes them back.
+    /// The functions that a problem compiles, in the order in which [`problem()`] takes them back.
     pub fn functions(&self) -> [&VectorFunction; 7] {
         [&self.dynamics, &self.path, &self.boundary, &self.guess, &self.interval, &self.guards, &self.report]
     }

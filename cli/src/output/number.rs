@@ -33,8 +33,11 @@ fn trim(text: String) -> String {
     format!("{number}{exponent}")
 }
 
-/// `1.2e-03`, always as wide as the number of decimals asks.
+/// `1.2e-03`, always as wide as the number of decimals asks; a dash where there is no number.
 pub fn scientific(value: f64, decimals: usize) -> String {
+    if !value.is_finite() {
+        return "-".to_owned();
+    }
     let text = format!("{value:.decimals$e}");
     match text.split_once('e') {
         Some((mantissa, exponent)) => match exponent.strip_prefix('-') {
@@ -59,5 +62,6 @@ mod tests {
         assert_eq!(aligned(5.5, 4), "5.500");
         assert_eq!(scientific(0.00123, 2), "1.23e-03");
         assert_eq!(scientific(12.0, 1), "1.2e+01");
+        assert_eq!(scientific(f64::NAN, 1), "-");
     }
 }

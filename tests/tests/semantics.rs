@@ -484,3 +484,16 @@ fn findings_are_in_the_order_of_the_text() {
     let lines: Vec<usize> = found.iter().map(|it| source.line_column(it.span().start).line).collect();
     assert!(lines.is_sorted(), "{lines:?}");
 }
+
+/// `f1(z) = f0(f0(z))` and so on is 2^n applications: refused at once, not after a night.
+#[test]
+fn functions_that_multiply_are_refused_at_once() {
+    let chain: String = (0..40).map(|i| format!("fn f{}(z) = f{i}(f{i}(z))\n", i + 1)).collect();
+    let text = format!(
+        "time t in [0, 1]\nstate x start 0\ndynamics {{ x' = 1 }}\nfn f0(z) = z + t\n{chain}report {{ y = f40(x) }}\n"
+    );
+    let parsed = fdcc_grammar::parse(&text);
+    let found = fdcc_compiler::check(&parsed.tree).diagnostics;
+    let codes: Vec<_> = found.iter().map(|it| it.code).collect();
+    assert_eq!(codes.iter().filter(|code| **code == fdcc_grammar::Code::TooDeep).count(), 1, "{codes:?}");
+}

@@ -9,6 +9,9 @@ use crate::graph::ExprId;
 use fdcc_grammar::ast::{Argument, Expr, ExprKind, Ident, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Span};
 
+/// No sensible model applies its functions so often to different arguments.
+const MOST_APPLICATIONS: usize = 50_000;
+
 /// Functions of vectors: name and number of arguments.
 const VECTOR_FUNCTIONS: &[(&str, usize)] = &[("dot", 2), ("norm", 1), ("normsq", 1), ("cross", 2)];
 
@@ -284,9 +287,25 @@ impl<'a> Elaborator<'a> {
         let fits = self.count_is(&name.name, formal.len(), arguments.len(), span, Some(name.span));
         let values = self.plain_arguments(arguments);
         let (true, Some(values), false) = (fits, values, self.circular[at]) else { return Value::default() };
+        if self.applied.len() > MOST_APPLICATIONS {
+            return self.too_much(span);
+        }
         let mut value = self.apply(at, formal, body, values);
         value.traits = value.traits.used_at(span);
         self.admit(&name.name, value, span)
+    }
+
+    /// Functions that call each other twice, and so on, would take for ever.
+    fn too_much(&mut self, span: Span) -> Value {
+        if !self.diagnostics.iter().any(|it| it.code == Code::TooDeep) {
+            let message =
+                format!("the functions of this model are applied more than {MOST_APPLICATIONS} times");
+            let found = Diagnostic::new(Code::TooDeep, message, span, "too much by here");
+            let help =
+                "functions that call each other several times multiply; write a loop-like chain as a formula";
+            self.diagnostics.push(found.help(help));
+        }
+        Value::default()
     }
 
     /// A function of the model for given arguments; remembered, because definitions build on each other.

@@ -181,7 +181,12 @@ impl<'a> Elaborator<'a> {
         if a.is_empty() || b.is_empty() {
             return None;
         }
-        if a.len() != b.len() && a.len() != 1 && b.len() != 1 {
+        // `pos == 0` speaks of all parts of `pos`; but one signal cannot equal several different numbers.
+        let is_lonely = |one: &Value, many: &Value| {
+            one.parts.as_slice().len() == 1 && !Self::is_constant(one) && Self::is_constant(many)
+        };
+        let is_mixed_up = is_lonely(&left.0, &right.0) || is_lonely(&right.0, &left.0);
+        if a.len() != b.len() && (is_mixed_up || a.len() != 1 && b.len() != 1) {
             let message = format!("comparing {} with {}", left.0.parts.describe(), right.0.parts.describe());
             let found = Diagnostic::new(Code::ShapeMismatch, message, left.1.span, left.0.parts.describe())
                 .label(right.1.span, right.0.parts.describe());

@@ -19,6 +19,9 @@ pub fn is_quadratic_programme(problem: &Problem) -> bool {
     dynamics && path && boundary && cost && problem.boundary.degree(0) <= Degree::Quadratic
 }
 
+/// A solution whose optimality error is above this, relative to its multipliers, is none.
+const CREDIBLE: f64 = 1e-6;
+
 /// A row of `A v + s = b`: coefficients come from a row of the programme or from one variable.
 #[derive(Clone, Copy)]
 enum Source {
@@ -57,7 +60,7 @@ pub fn solve(nlp: &mut dyn Nlp, start: &Start, tolerance: f64, max_iterations: u
         p: hessian,
         equalities,
     };
-    let found = solve_conic(program, tolerance.max(1e-10), max_iterations);
+    let found = solve_conic(program, (0.1 * tolerance).max(1e-10), max_iterations);
     Some(into_solution(nlp, &sides, found))
 }
 
@@ -153,6 +156,12 @@ fn into_solution(nlp: &mut dyn Nlp, sides: &[Side], found: crate::clarabel::Coni
         Counts { iterations: found.iterations, factorizations: found.iterations, ..Counts::default() };
     let constraint_violation = constraint_violation(nlp, &v);
     let kkt_error = stationarity(nlp, &v, &multipliers).max(constraint_violation);
+    // The conic solver measures its errors relative to numbers that may be huge: believe the conditions themselves.
+    let largest = multipliers.rows.iter().fold(1.0, |a: f64, lambda| a.max(lambda.abs()));
+    let status = match status {
+        Status::Solved if kkt_error > CREDIBLE * largest => Status::NumericalFailure,
+        status => status,
+    };
     let global = status == Status::Solved;
     Solution { status, v, multipliers, objective, kkt_error, constraint_violation, global, counts }
 }

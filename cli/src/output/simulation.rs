@@ -52,7 +52,8 @@ struct NotUnique {
 
 #[derive(Serialize)]
 struct Zeno {
-    jump: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    jump: Option<String>,
     surface: String,
     limit_time: f64,
 }
@@ -122,11 +123,11 @@ impl Document {
                 let candidates = candidates.iter().map(|it| candidate(system, it)).collect();
                 self.not_unique = Some(NotUnique { surface, time, state, candidates });
             }
-            Status::Zeno { jump, limit_time } => {
+            Status::Zeno { jump, surface, limit_time } => {
                 self.status = "zeno";
-                let jump = &system.jumps[*jump];
-                let surface = system.surfaces[jump.surface].name.clone();
-                self.zeno = Some(Zeno { jump: jump.name.clone(), surface, limit_time: *limit_time });
+                let jump = jump.map(|jump| system.jumps[jump].name.clone());
+                let surface = system.surfaces[*surface].name.clone();
+                self.zeno = Some(Zeno { jump, surface, limit_time: *limit_time });
             }
             Status::NotFinite(origin) => {
                 self.status = "not_finite";
@@ -182,12 +183,7 @@ impl Document {
                 why.surface,
                 why.candidates.join(" | ")
             ),
-            (_, Some(why), _) => format!(
-                "zeno: the jumps `{}` pile up at t = {}; say what follows with `then hold {}`",
-                why.jump,
-                significant(why.limit_time, 12),
-                why.surface
-            ),
+            (_, Some(why), _) => zeno(why),
             (_, _, Some(why)) => {
                 format!("not finite: `{}` (line {}) at t = {}", why.of, why.line, significant(why.time, 12))
             }
@@ -196,6 +192,18 @@ impl Document {
             }
             _ => format!("completed: {events}, {} steps", self.counts.steps),
         }
+    }
+}
+
+fn zeno(why: &Zeno) -> String {
+    let (time, surface) = (significant(why.limit_time, 12), &why.surface);
+    match &why.jump {
+        Some(jump) => {
+            format!(
+                "zeno: the jumps `{jump}` pile up at t = {time}; say what follows with `then hold {surface}`"
+            )
+        }
+        None => format!("zeno: `{surface}` is crossed infinitely often before t = {time}"),
     }
 }
 

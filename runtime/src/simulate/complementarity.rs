@@ -9,15 +9,22 @@ use nalgebra::{DMatrix, DVector};
 /// Beyond this many surfaces at a point principal minors are too many to look at.
 const MOST_MINORS: usize = 12;
 
+/// Minors below this part of what their size allows are 0 by rounding.
+const SINGULAR: f64 = 1e-13;
+
 /// Whether all principal minors are positive, as far as that can be told at bearable cost.
 pub(super) fn is_p_matrix(b: &DMatrix<f64>) -> bool {
     let size = b.nrows();
-    if (b + b.transpose()).cholesky().is_some() {
+    let least = SINGULAR * b.amax();
+    if !b.iter().all(|value| value.is_finite()) {
+        return false;
+    }
+    if (b + b.transpose() - DMatrix::from_diagonal_element(size, size, least)).cholesky().is_some() {
         return true;
     }
     let dominates = |i: usize| {
         let others: f64 = (0..size).filter(|&j| j != i).map(|j| b[(i, j)].abs()).sum();
-        b[(i, i)] > others
+        b[(i, i)] > others + least
     };
     (0..size).all(dominates) || size <= MOST_MINORS && minors_are_positive(b)
 }
@@ -25,7 +32,7 @@ pub(super) fn is_p_matrix(b: &DMatrix<f64>) -> bool {
 fn minors_are_positive(b: &DMatrix<f64>) -> bool {
     (1_u32..1 << b.nrows()).all(|subset| {
         let rows: Vec<usize> = (0..b.nrows()).filter(|i| subset & (1 << i) != 0).collect();
-        b.select_rows(&rows).select_columns(&rows).determinant() > 0.0
+        b.select_rows(&rows).select_columns(&rows).determinant() > SINGULAR * b.amax().powi(rows.len() as i32)
     })
 }
 
@@ -163,5 +170,10 @@ mod tests {
     fn repelling_surfaces_are_no_p_matrices() {
         assert!(!is_p_matrix(&DMatrix::from_element(1, 1, -1.0)));
         assert!(!is_p_matrix(&DMatrix::from_row_slice(2, 2, &[1.0, 3.0, 3.0, 1.0])));
+    }
+
+    #[test]
+    fn surfaces_of_which_one_follows_from_the_others_are_no_p_matrix() {
+        assert!(!is_p_matrix(&DMatrix::from_row_slice(3, 3, &[1.0, 0.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, 2.0])));
     }
 }

@@ -53,7 +53,7 @@ impl Run<'_> {
                 let mut x = std::mem::take(&mut self.x);
                 self.field.project(self.t, &mut x);
                 self.x = x;
-                return Ok(());
+                return self.end_of_crossings(&surfaces);
             };
             self.jump(jump)?;
             surfaces = self.surfaces_here();
@@ -61,6 +61,20 @@ impl Run<'_> {
         let jump =
             self.field.system.jumps.iter().position(|jump| surfaces.contains(&jump.surface)).unwrap_or(0);
         self.piled_up(jump, self.t)
+    }
+
+    /// A surface that is crossed ever faster ends the simulation like jumps that pile up.
+    fn end_of_crossings(&mut self, surfaces: &[usize]) -> Result<(), Status> {
+        let [first, last] = self.field.system.interval;
+        let here = self.record.events.iter().rev().take_while(|event| event.time == self.t);
+        let is_crossing = |event: &&Event| matches!(event.kind, Kind::CrossesUp | Kind::CrossesDown);
+        let crossed: Vec<usize> = here.filter(is_crossing).map(|event| event.surface).collect();
+        for &surface in surfaces.iter().filter(|surface| crossed.contains(surface)) {
+            if let Some(limit_time) = self.crossings[surface].limit(self.t, last - first) {
+                return Err(Status::Zeno { jump: None, surface, limit_time });
+            }
+        }
+        Ok(())
     }
 
     /// The jump of a surface that is about to be crossed.
@@ -115,7 +129,10 @@ impl Run<'_> {
     fn piled_up(&mut self, jump: usize, limit_time: f64) -> Result<(), Status> {
         let held =
             self.field.system.jumps[jump].then_hold.filter(|_| limit_time < self.field.system.interval[1]);
-        let Some(held) = held else { return Err(Status::Zeno { jump, limit_time }) };
+        let Some(held) = held else {
+            let surface = self.field.system.jumps[jump].surface;
+            return Err(Status::Zeno { jump: Some(jump), surface, limit_time });
+        };
         let rate = self.field.rate(self.t, &self.x);
         let rest = limit_time - self.t;
         self.x.iter_mut().zip(rate).for_each(|(x, rate)| *x += rest * rate);

@@ -74,10 +74,12 @@ pub enum Status {
         /// The continuations.
         candidates: Vec<Candidate>,
     },
-    /// Infinitely many jumps in finite time.
+    /// Infinitely many jumps or crossings in finite time.
     Zeno {
-        /// The jump.
-        jump: usize,
+        /// The jump; none if a surface is crossed ever faster.
+        jump: Option<usize>,
+        /// The surface.
+        surface: usize,
         /// When they pile up.
         limit_time: f64,
     },

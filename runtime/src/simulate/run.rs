@@ -22,6 +22,8 @@ pub(super) struct Run<'a> {
     pub jumps: Vec<usize>,
     /// The times of the last jumps of each kind.
     pub piles: Vec<Pile>,
+    /// The times of the last crossings of each surface.
+    pub crossings: Vec<Pile>,
     /// Whether the modes at the beginning are known.
     pub has_begun: bool,
     /// The next step.
@@ -32,7 +34,7 @@ pub(super) struct Run<'a> {
 /// Simulates a system from its start to its last time, or as far as its trajectory is unique.
 pub fn simulate(system: &System, controls: &Controls, options: &Options) -> Simulation {
     let mut run = Run::new(system, controls, options);
-    let status = run.to_the_end(controls).err().unwrap_or(Status::Completed);
+    let status = run.follow(controls).err().unwrap_or(Status::Completed);
     run.finish(status)
 }
 
@@ -48,13 +50,14 @@ impl<'a> Run<'a> {
             x: system.start.clone(),
             jumps: vec![0; system.jumps.len()],
             piles: vec![Pile::default(); system.jumps.len()],
+            crossings: vec![Pile::default(); system.surfaces.len()],
             has_begun: false,
             h: 1e-3 * (system.interval[1] - system.interval[0]),
             counts: Counts::default(),
         }
     }
 
-    fn to_the_end(&mut self, controls: &Controls) -> Result<(), Status> {
+    fn follow(&mut self, controls: &Controls) -> Result<(), Status> {
         let [first, last] = self.field.system.interval;
         self.record.point(self.t, &self.x);
         self.begin()?;

@@ -106,6 +106,7 @@ impl Run<'_> {
         let is_last = of.at_most.is_some_and(|limit| self.jumps[jump] as f64 >= limit);
         if let Some(held) = of.then_hold.filter(|_| is_last) {
             self.hold(jump, held);
+            self.record.point(self.t, &self.x);
         }
         let [first, last] = self.field.system.interval;
         match self.piles[jump].limit(self.t, last - first) {

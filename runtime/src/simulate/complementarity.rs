@@ -15,10 +15,12 @@ const SINGULAR: f64 = 1e-13;
 /// Whether all principal minors are positive, as far as that can be told at bearable cost.
 pub(super) fn is_p_matrix(b: &DMatrix<f64>) -> bool {
     let size = b.nrows();
-    let least = SINGULAR * b.amax();
     if !b.iter().all(|value| value.is_finite()) {
         return false;
     }
+    // Surfaces may have very different units; a positive factor of a row changes no sign of a minor.
+    let b = &row_scaled(b, b);
+    let least = SINGULAR * b.amax();
     if (b + b.transpose() - DMatrix::from_diagonal_element(size, size, least)).cholesky().is_some() {
         return true;
     }
@@ -27,6 +29,12 @@ pub(super) fn is_p_matrix(b: &DMatrix<f64>) -> bool {
         b[(i, i)] > others + least
     };
     (0..size).all(dominates) || size <= MOST_MINORS && minors_are_positive(b)
+}
+
+/// Rows divided by the largest entries of the rows of another matrix.
+fn row_scaled(matrix: &DMatrix<f64>, by: &DMatrix<f64>) -> DMatrix<f64> {
+    let scale = |i: usize| by.row(i).amax().max(f64::MIN_POSITIVE);
+    DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)] / scale(i))
 }
 
 fn minors_are_positive(b: &DMatrix<f64>) -> bool {
@@ -39,6 +47,8 @@ fn minors_are_positive(b: &DMatrix<f64>) -> bool {
 /// Selectors for the affine rates `a - B s`; `None` where the method ends on a ray.
 pub(super) fn selectors(a: &DVector<f64>, b: &DMatrix<f64>) -> Option<DVector<f64>> {
     let size = a.len();
+    let a = row_scaled(&DMatrix::from_column_slice(size, 1, a.as_slice()), b).column(0).into_owned();
+    let b = &row_scaled(b, b);
     let mut m = DMatrix::zeros(2 * size, 2 * size);
     m.view_mut((0, 0), (size, size)).copy_from(b);
     for i in 0..size {
@@ -138,6 +148,12 @@ mod tests {
     fn two_surfaces_slide_where_their_linear_system_says() {
         // 2 s1 + s2/2 = 3/10, -s1/2 + 2 s2 = 2/5 has the solution (8/85, 19/85).
         let s = solved(&[0.3, 0.4], &[2.0, 0.5, -0.5, 2.0]);
+        assert!((s[0] - 8.0 / 85.0).abs() < 1e-15 && (s[1] - 19.0 / 85.0).abs() < 1e-15, "{s:?}");
+    }
+
+    #[test]
+    fn the_units_of_the_surfaces_do_not_matter() {
+        let s = solved(&[0.3e-9, 0.4e9], &[2e-9, 0.5e-9, -0.5e9, 2e9]);
         assert!((s[0] - 8.0 / 85.0).abs() < 1e-15 && (s[1] - 19.0 / 85.0).abs() < 1e-15, "{s:?}");
     }
 

@@ -54,18 +54,18 @@ fn mode(side: i8) -> Mode {
 
 impl Corner<'_, '_> {
     /// Rates of the surfaces, `B`, and what counts as 0, for selectors of the surfaces.
-    fn rates(&mut self, s: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>, f64) {
+    fn rates(&mut self, s: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>, Vec<f64>) {
         let mut all = self.field.selectors.clone();
         self.surfaces.iter().zip(s.iter()).for_each(|(&i, s)| all[i] = *s);
         let (rate, by_selector) = self.field.with_selectors(self.t, self.x, &all);
         let (r, b) = surface_rates(&self.normals, &rate, &by_selector, self.surfaces);
-        let size = |i: &usize| {
+        let size = |at: usize, i: usize| {
             let terms =
-                self.normals.by_state.row(*i).iter().zip(&rate).map(|(d, f)| (d * f).abs()).sum::<f64>();
-            terms + self.normals.by_time[*i].abs()
+                self.normals.by_state.row(i).iter().zip(&rate).map(|(d, f)| (d * f).abs()).sum::<f64>();
+            TIE * (terms + self.normals.by_time[i].abs() + b.row(at).amax()).max(f64::MIN_POSITIVE)
         };
-        let scale = self.surfaces.iter().map(size).fold(b.amax(), f64::max);
-        (r, b, TIE * scale.max(f64::MIN_POSITIVE))
+        let ties = self.surfaces.iter().enumerate().map(|(at, &i)| size(at, i)).collect();
+        (r, b, ties)
     }
 
     /// The sides, if `B` is a P-matrix on the way to the solution.
@@ -78,7 +78,7 @@ impl Corner<'_, '_> {
             }
             let next = selectors(&(&r + &b * &s), &b)?;
             if (&next - &s).amax() <= 1e-13 {
-                return Some((0..s.len()).map(|i| side(next[i], r[i], tie)).collect());
+                return Some((0..s.len()).map(|i| side(next[i], r[i], tie[i])).collect());
             }
             s = next;
         }
@@ -115,12 +115,12 @@ impl Corner<'_, '_> {
         let (r, _, tie) = self.rates(&s);
         let fits = |i: usize| {
             if sides[i] == 0 {
-                s[i].abs() < 1.0 && r[i].abs() <= tie
+                s[i].abs() < 1.0 && r[i].abs() <= tie[i]
             } else {
-                f64::from(sides[i]) * r[i] >= -tie
+                f64::from(sides[i]) * r[i] >= -tie[i]
             }
         };
-        let is_tie = |i: usize| sides[i] != 0 && r[i].abs() <= tie;
+        let is_tie = |i: usize| sides[i] != 0 && r[i].abs() <= tie[i];
         (0..sides.len()).all(fits) && (!(0..sides.len()).any(is_tie) || self.goes_there(sides))
     }
 

@@ -20,6 +20,7 @@ pub use dump::{Stage, dump};
 use fdcc_grammar::ast::{self, Item, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Label, Severity, Span};
 use fdcc_runtime::problem::{Function, Problem};
+use fdcc_runtime::simulate::System;
 use graph::Graph;
 pub use lower::{Expectations, Expected, Program, expectations};
 use lower::{lower, numbers, problem};
@@ -117,9 +118,20 @@ pub fn compile(model: &Model) -> Result<Problem, Vec<Diagnostic>> {
     Ok(problem(model, &program, &numbers, functions))
 }
 
+/// Turns a model into the true system, for simulation; or says what cannot be simulated yet.
+pub fn compile_simulation(model: &Model) -> Result<System, Vec<Diagnostic>> {
+    model.not_yet.first().map_or(Ok(()), |first| Err(vec![first.clone()]))?;
+    let numbers = numbers(model)?;
+    let (graph, program) = lower::simulation(model);
+    let functions = machine_code(graph, program.functions.clone());
+    Ok(lower::system(model, &program, &numbers, functions))
+}
+
 /// The first construct that is understood but cannot be solved.
 fn not_yet(model: &Model) -> Result<(), Vec<Diagnostic>> {
-    model.not_yet.first().map_or(Ok(()), |first| Err(vec![first.clone()]))
+    let jump = model.jumps.first().map(|jump| resolve::not_yet(jump.place.span, "a model with jumps"));
+    let first = model.not_yet.first().cloned().into_iter().chain(jump).min_by_key(Diagnostic::span);
+    first.map_or(Ok(()), |first| Err(vec![first]))
 }
 
 /// Derivatives, then machine code.

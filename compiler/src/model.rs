@@ -5,6 +5,7 @@
 //! compiled functions want. Bounds and parameters stay expressions, so that the command line can change a number.
 
 use crate::graph::{ExprId, Graph};
+use fdcc_grammar::ast::Direction;
 use fdcc_grammar::{Diagnostic, Span};
 use fdcc_runtime::problem::{Linear, Method, Scheme, Solver};
 
@@ -112,6 +113,23 @@ pub struct Surface {
     pub psi: ExprId,
 }
 
+/// A reset of the state: `x+ = r(t, x-, p)` where a surface is crossed in one direction.
+#[derive(Clone, Debug)]
+pub struct Jump {
+    /// Its declaration.
+    pub place: Place,
+    /// The surface, as an index into [`Model::surfaces`].
+    pub surface: usize,
+    /// Which crossing resets.
+    pub direction: Direction,
+    /// How often at most, over parameters.
+    pub at_most: Option<ExprId>,
+    /// The surface that is held after the last one.
+    pub then_hold: Option<usize>,
+    /// States, as indices into [`Model::states`], with their values after the jump.
+    pub resets: Vec<(usize, ExprId)>,
+}
+
 /// A scalar row of a condition: `lower <= value <= upper`.
 #[derive(Clone, Debug)]
 pub struct Row {
@@ -184,6 +202,8 @@ pub struct Model {
     pub controls: Vec<Control>,
     /// Surfaces.
     pub surfaces: Vec<Surface>,
+    /// Resets of the state.
+    pub jumps: Vec<Jump>,
     /// First and last time, over parameters and unknowns.
     pub interval: [ExprId; 2],
     /// Conditions at all times.
@@ -223,6 +243,7 @@ impl Model {
             states: Vec::new(),
             controls: Vec::new(),
             surfaces: Vec::new(),
+            jumps: Vec::new(),
             interval,
             path: Vec::new(),
             boundary: Vec::new(),

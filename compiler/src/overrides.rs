@@ -26,6 +26,22 @@ impl Model {
         Ok(())
     }
 
+    /// Gives an unknown the value that a solution found.
+    pub fn set_free(&mut self, name: &str, value: f64) {
+        let value = self.graph.number(value);
+        for free in self.frees.iter_mut().filter(|free| free.place.name == name) {
+            free.guess = Some(value);
+        }
+    }
+
+    /// Gives a state whose start is open the one that a solution found.
+    pub fn set_open_start(&mut self, name: &str, value: f64) {
+        let value = self.graph.number(value);
+        for state in self.states.iter_mut().filter(|state| state.place.name == name) {
+            state.start = state.start.or(Some(value));
+        }
+    }
+
     /// Changes a setting, such as `sigma` to `0.01`; several values for `continue` are separated by commas.
     pub fn set_method(&mut self, key: &str, value: &str) -> Result<(), String> {
         match set(&mut self.method, key, &given(value)) {

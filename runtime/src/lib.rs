@@ -18,6 +18,8 @@ pub mod modes;
 pub mod quadrature;
 pub mod trajectory;
 
+pub mod simulate;
+
 pub mod starts;
 
 pub mod homotopy;

@@ -159,9 +159,11 @@ fn the_compiler_sees_only_the_contract_of_the_runtime() {
     let mut breaches = Vec::new();
     for source in rust_sources().iter().filter(|source| source.path.starts_with("compiler/")) {
         for (line, text) in code(&source.text) {
-            if text.contains("fdcc_runtime") && !text.contains("fdcc_runtime::problem") {
+            let is_contract =
+                ["fdcc_runtime::problem", "fdcc_runtime::simulate"].iter().any(|it| text.contains(it));
+            if text.contains("fdcc_runtime") && !is_contract {
                 breaches.push(format!(
-                    "{}:{line}: the compiler may use `fdcc_runtime::problem` and nothing else",
+                    "{}:{line}: the compiler may use `fdcc_runtime::problem`, the types of `fdcc_runtime::simulate` and nothing else",
                     source.path
                 ));
             }

@@ -4,6 +4,7 @@ mod check;
 mod explain;
 mod options;
 mod show;
+mod simulate;
 mod solve;
 mod sweep;
 mod test;
@@ -40,6 +41,7 @@ impl From<Exit> for ExitCode {
 pub enum Command {
     Check(check::Check),
     Solve(Box<solve::Solve>),
+    Simulate(Box<simulate::Simulate>),
     Sweep(Box<sweep::Sweep>),
     Test(Box<test::Test>),
     Show(show::Show),
@@ -52,6 +54,7 @@ impl Command {
         match self {
             Command::Check(check) => check.run(),
             Command::Solve(solve) => solve.run(),
+            Command::Simulate(simulate) => simulate.run(),
             Command::Sweep(sweep) => sweep.run(),
             Command::Test(test) => test.run(),
             Command::Show(show) => show.run(),

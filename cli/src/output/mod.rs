@@ -1,5 +1,6 @@
 //! Everything that leaves the program: types for JSON, and the two streams.
 
+pub mod control;
 pub mod csv;
 pub mod diagnostics;
 pub mod document;
@@ -9,6 +10,7 @@ pub mod named;
 pub mod number;
 pub mod plot;
 pub mod sarif;
+pub mod simulation;
 pub mod table;
 pub mod tested;
 

@@ -59,7 +59,7 @@ fn ends(model: &Model, graph: &mut Graph, index: usize, state: &State) -> [ExprI
 }
 
 /// The value in a condition such as `end x == 1`.
-fn fixed_by_a_row(model: &Model, graph: &mut Graph, symbol: Symbol) -> Option<ExprId> {
+pub(crate) fn fixed_by_a_row(model: &Model, graph: &mut Graph, symbol: Symbol) -> Option<ExprId> {
     let input = model.input_of(symbol)?;
     let symbol = graph.input(input);
     let row = model.boundary.iter().find(|row| row.value == symbol && row.range.lower == row.range.upper);

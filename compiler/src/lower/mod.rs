@@ -14,9 +14,11 @@ mod inputs;
 mod numbers;
 mod objective;
 mod problem;
+mod simulation;
 
 pub use expect::{Expectations, Expected, expectations};
 pub use problem::problem;
+pub(crate) use simulation::{simulation, system};
 
 use crate::graph::{ExprId, Graph};
 use crate::model::{Model, Place};

@@ -18,13 +18,13 @@ pub fn problem(
     let functions: [Arc<dyn Function>; 7] =
         functions.try_into().unwrap_or_else(|_| unreachable!("a program has seven functions"));
     let [dynamics, path, boundary, guess, interval, guards, report] = functions;
-    let parameters = parameters(model, program, numbers);
+    let parameters = parameters(model, program.flow.layout.p, numbers);
     let first_sigma = model.params.len() + model.frees.len();
     let layout: Layout = program.flow.layout;
     Problem {
         name: model.name.clone(),
         layout,
-        states: states(model, program, numbers),
+        states: states(model, &program.hidden, numbers),
         controls: controls(model, numbers),
         unknowns: unknowns(model, numbers),
         surfaces: surfaces(model, first_sigma),
@@ -62,14 +62,15 @@ fn row_bounds(
     Bounds { lower: value(row.range.lower), upper: value(row.range.upper) }
 }
 
-fn states(model: &Model, program: &Program, numbers: &Numbers) -> Vec<Variable> {
+/// The states of the model, then the integrals `hidden`.
+pub(super) fn states(model: &Model, hidden: &[usize], numbers: &Numbers) -> Vec<Variable> {
     let declared = model.states.iter().map(|state| Variable {
         name: state.place.name.clone(),
         bounds: numbers.bounds(model, state.range),
         origin: origin(&state.place),
         hidden: false,
     });
-    let hidden = program.hidden.iter().map(|&at| Variable {
+    let hidden = hidden.iter().map(|&at| Variable {
         name: model.integrals[at].place.name.clone(),
         bounds: Bounds::FREE,
         origin: origin(&model.integrals[at].place),
@@ -78,7 +79,7 @@ fn states(model: &Model, program: &Program, numbers: &Numbers) -> Vec<Variable> 
     declared.chain(hidden).collect()
 }
 
-fn controls(model: &Model, numbers: &Numbers) -> Vec<Variable> {
+pub(super) fn controls(model: &Model, numbers: &Numbers) -> Vec<Variable> {
     let variable = |control: &crate::model::Control| Variable {
         name: control.place.name.clone(),
         bounds: numbers.bounds(model, control.range),
@@ -88,7 +89,7 @@ fn controls(model: &Model, numbers: &Numbers) -> Vec<Variable> {
     model.controls.iter().map(variable).collect()
 }
 
-fn parameters(model: &Model, program: &Program, numbers: &Numbers) -> Vec<Parameter> {
+pub(super) fn parameters(model: &Model, count: usize, numbers: &Numbers) -> Vec<Parameter> {
     let parameter = |place: &Place, symbol| Parameter {
         name: place.name.clone(),
         value: numbers.of(model, symbol),
@@ -102,7 +103,7 @@ fn parameters(model: &Model, program: &Program, numbers: &Numbers) -> Vec<Parame
         let name = format!("sigma({})", surface.place.name);
         all.push(Parameter { name, value: width, origin: origin(&surface.place) });
     }
-    if all.len() < program.flow.layout.p {
+    if all.len() < count {
         all.push(Parameter { name: "sigma(abs)".into(), value: width, origin: Origin::default() });
     }
     all
@@ -121,7 +122,7 @@ fn unknowns(model: &Model, numbers: &Numbers) -> Vec<Unknown> {
     model.frees.iter().enumerate().map(unknown).collect()
 }
 
-fn surfaces(model: &Model, first_sigma: usize) -> Vec<Surface> {
+pub(super) fn surfaces(model: &Model, first_sigma: usize) -> Vec<Surface> {
     let surface = |(at, surface): (usize, &crate::model::Surface)| Surface {
         name: surface.place.name.clone(),
         origin: origin(&surface.place),

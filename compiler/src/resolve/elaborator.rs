@@ -105,6 +105,12 @@ pub(crate) struct Elaborator<'a> {
     pub not_yet: Vec<Diagnostic>,
 }
 
+/// "This is understood but cannot be solved yet."
+pub(crate) fn not_yet(span: Span, what: &str) -> Diagnostic {
+    let message = format!("{what} cannot be solved yet");
+    Diagnostic::new(Code::NotYet, message, span, "understood by `check`, not yet by `solve`")
+}
+
 impl<'a> Elaborator<'a> {
     /// Nothing evaluated yet.
     pub fn new(scope: Scope<'a>) -> Self {
@@ -165,9 +171,7 @@ impl<'a> Elaborator<'a> {
 
     /// Notes something that is understood but cannot be solved yet.
     pub fn not_yet(&mut self, span: Span, what: &str) {
-        let message = format!("{what} cannot be solved yet");
-        let found = Diagnostic::new(Code::NotYet, message, span, "understood by `check`, not yet by `solve`");
-        self.not_yet.push(found);
+        self.not_yet.push(not_yet(span, what));
     }
 
     /// Evaluates in another context.

@@ -7,7 +7,7 @@ use super::{scope, text};
 use crate::graph::ExprId;
 use crate::model::{Comparison, Expectation, Place, Report};
 use fdcc_grammar::ast::{
-    Assignment, Binding, Check, Equation, Expr, Ident, Interval, Item, ItemKind, Relation, Sense, Unit,
+    Binding, Check, Equation, Expr, Ident, Interval, Item, ItemKind, Relation, Sense, Unit,
 };
 use fdcc_grammar::{Code, Diagnostic, Span};
 
@@ -37,9 +37,7 @@ impl<'a> Elaborator<'a> {
             ItemKind::Metric { weights } => {
                 weights.iter().for_each(|(name, weight)| self.weight(name, weight))
             }
-            ItemKind::Jump { name, surface, at_most, then_hold, assignments, .. } => {
-                self.jump(name, [Some(surface), then_hold.as_ref()], at_most.as_ref(), assignments)
-            }
+            ItemKind::Jump { .. } => self.jump(item),
             ItemKind::Data { file_span, .. } => self.not_yet(*file_span, "a model with measured data"),
             _ => {}
         }
@@ -191,25 +189,5 @@ impl<'a> Elaborator<'a> {
     fn weight(&mut self, name: &'a Ident, weight: &'a Expr) {
         self.declared_as(name, "state", |kind| matches!(kind, ItemKind::State { .. }));
         self.evaluate_number("a weight", Context::NUMBER, weight);
-    }
-
-    fn jump(
-        &mut self,
-        name: &'a Ident,
-        surfaces: [Option<&'a Ident>; 2],
-        at_most: Option<&'a Expr>,
-        resets: &'a [Assignment],
-    ) {
-        for surface in surfaces.into_iter().flatten() {
-            self.declared_as(surface, "surface", |kind| matches!(kind, ItemKind::Surface { .. }));
-        }
-        if let Some(at_most) = at_most {
-            self.evaluate_number("a number of jumps", Context::NUMBER, at_most);
-        }
-        for reset in resets {
-            self.declared_as(&reset.name, "state", |kind| matches!(kind, ItemKind::State { .. }));
-            self.evaluate_in(Context::DYNAMICS, &reset.value);
-        }
-        self.not_yet(name.span, "a model with jumps");
     }
 }

@@ -1,0 +1,98 @@
+//! `fdcc simulate`: the true system, integrated from event to event.
+
+use super::Exit;
+use super::options::{Changes, Prepared, read, usage};
+use crate::output::control::{self, Replay};
+use crate::output::simulation::Document;
+use crate::output::{self, files};
+use crate::solver::Failure;
+use clap::Args;
+use fdcc_runtime::simulate::{Controls, Options, Status, simulate};
+use std::path::PathBuf;
+
+/// Simulate the true system, with every event located
+#[derive(Args)]
+pub struct Simulate {
+    /// The model; `-` is the standard input
+    #[arg(value_name = "FILE")]
+    file: String,
+    #[command(flatten)]
+    changes: Changes,
+    /// Controls: a .csv with the columns `t` and the controls, or the .sol.json of a solve; the guess if left out
+    #[arg(long, value_name = "FILE")]
+    control: Option<PathBuf>,
+    /// Report the states at these times instead of at all steps
+    #[arg(long, value_name = "T1,T2,...", value_delimiter = ',', allow_negative_numbers = true)]
+    times: Vec<f64>,
+    /// Print the result as one JSON document, and nothing else, on the standard output
+    #[arg(long)]
+    json: bool,
+    /// Write MODEL.sim.json and MODEL.sim.csv to this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+impl Simulate {
+    /// Simulates and reports.
+    pub fn run(self) -> Exit {
+        if self.times.iter().any(|time| !time.is_finite()) || !self.times.is_sorted() {
+            return usage("`--times` needs numbers in ascending order");
+        }
+        let mut prepared = match read(&self.file, &self.changes) {
+            Ok(prepared) => prepared,
+            Err(exit) => return exit,
+        };
+        match self.simulate(&mut prepared) {
+            Ok((document, exit)) => self.report(&document, exit, &prepared),
+            Err(failure) => failure.report(&prepared.source),
+        }
+    }
+
+    fn simulate(&self, prepared: &mut Prepared) -> Result<(Document, Exit), Failure> {
+        let controls = match &self.control {
+            Some(path) => control::read(path, &prepared.model)?,
+            None => Replay::default(),
+        };
+        controls.adapt(&mut prepared.model);
+        let system = fdcc_compiler::compile_simulation(&prepared.model).map_err(Failure::Model)?;
+        let [first, last] = system.interval;
+        if !(first.is_finite() && last.is_finite() && first <= last) {
+            return Err(Failure::Usage(format!(
+                "time runs from {first} to {last}; it must not run backwards"
+            )));
+        }
+        let options = Options { times: self.times.clone(), ..Options::default() };
+        if let Some(outside) = options.times.iter().find(|time| **time < first || **time > last) {
+            return Err(Failure::Usage(format!("`--times`: {outside} is not between {first} and {last}")));
+        }
+        let controls: Controls = controls.held().unwrap_or(Controls::Guess);
+        let simulation = simulate(&system, &controls, &options);
+        let is_complete = matches!(simulation.status, Status::Completed);
+        let document = Document::new(&system, &simulation, &prepared.source);
+        Ok((document, if is_complete { Exit::Fine } else { Exit::NotSolved }))
+    }
+
+    fn report(&self, document: &Document, exit: Exit, prepared: &Prepared) -> Exit {
+        let written = match &self.out {
+            Some(folder) => files::write_all(
+                folder,
+                &document.model,
+                &[("sim.json", output::json(document)), ("sim.csv", document.csv())],
+            ),
+            None => Ok(Vec::new()),
+        };
+        if self.json {
+            output::print(&output::json(document));
+        } else {
+            output::print(&document.words());
+        }
+        match written {
+            Ok(names) if names.is_empty() || self.json => exit,
+            Ok(names) => {
+                output::print(&format!(" wrote {}\n", names.join("  ")));
+                exit
+            }
+            Err(failure) => failure.report(&prepared.source),
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! `fdcc simulate` from outside: JSON, control files, exit codes.
+
+mod common;
+
+use common::{RAMP, expect_exit, fdcc, folder, json, model, number, stderr, stdout};
+
+/// `v' in u - Sgn(v)` from rest.
+const BLOCK: &str = "\
+model block
+param reach = 3
+time t in [0, reach]
+state v start 0
+control u in [-4, 4] guess 0
+surface slip = v
+dynamics { v' in u - Sgn(slip) }
+minimize integral(u^2)
+";
+
+const BALL: &str = "\
+model ball
+time t in [0, 2]
+state h start 1
+state v start 0
+surface ground = h
+dynamics {
+  h' = v
+  v' = -10
+}
+jump bounce on ground falling { v := -0.5*v }
+";
+
+fn near(value: &serde_json::Value, expected: f64) {
+    assert!((number(value) - expected).abs() <= 1e-9, "{value}, not {expected}");
+}
+
+/// Example (2.3) with its closed form: crosses 0 at 1/3, ends at 5/3, objective 134/81.
+#[test]
+fn the_document_is_the_one_that_is_promised() {
+    let folder = folder("simulate_document", &[]);
+    let output = fdcc(&folder, &["simulate", &model("crossing"), "--json", "--times", "0,1"], "");
+    expect_exit(&output, 0, "crossing");
+    let found = json(&output);
+    assert_eq!(found["status"], "completed");
+    assert_eq!(found["events"][0]["surface"], "zero");
+    assert_eq!(found["events"][0]["kind"], "crosses_up");
+    near(&found["events"][0]["time"], 1.0 / 3.0);
+    near(&found["events"][0]["state"]["x"], 0.0);
+    near(&found["events"][0]["margin"], 1.0);
+    near(&found["end"]["time"], 2.0);
+    near(&found["end"]["x"], 5.0 / 3.0);
+    near(&found["objective"], 134.0 / 81.0);
+    near(&found["states"]["x"][1], 2.0 / 3.0);
+    assert_eq!(found["time"].as_array().expect("times").len(), 2);
+}
+
+#[test]
+fn parameters_can_be_set_and_files_are_written() {
+    let folder = folder("simulate_files", &[("block.fdc", BLOCK.as_bytes())]);
+    let output = fdcc(&folder, &["simulate", "block.fdc", "--set", "reach=1", "--out", "out"], "");
+    expect_exit(&output, 0, "block");
+    assert!(stdout(&output).contains("starts sliding"), "{}", stdout(&output));
+    let table = std::fs::read_to_string(folder.join("out/block.sim.csv")).expect("the table is written");
+    assert!(table.starts_with("t,v\n0,0\n") && table.ends_with("1,0\n"), "{table}");
+    assert!(folder.join("out/block.sim.json").exists());
+}
+
+/// `u = 3` for a second gives `v = 2`, then friction stops the block within two more.
+#[test]
+fn a_table_of_controls_holds_each_row_to_the_next() {
+    let files: [(&str, &[u8]); 2] = [("block.fdc", BLOCK.as_bytes()), ("u.csv", b"t,u\n0,3\n1,0\n")];
+    let folder = folder("simulate_table", &files);
+    let output =
+        fdcc(&folder, &["simulate", "block.fdc", "--control", "u.csv", "--json", "--times", "1,2"], "");
+    expect_exit(&output, 0, "table");
+    let found = json(&output);
+    near(&found["states"]["v"][0], 2.0);
+    near(&found["states"]["v"][1], 1.0);
+    near(&found["objective"], 9.0);
+}
+
+/// With `u = 1` the solution is `x = t`; a smooth system has nothing to lose in the replay.
+#[test]
+fn a_solution_can_be_replayed() {
+    let folder = folder("simulate_replay", &[("ramp.fdc", RAMP.as_bytes())]);
+    expect_exit(&fdcc(&folder, &["solve", "ramp.fdc", "--out", "."], ""), 0, "solve");
+    let output = fdcc(&folder, &["simulate", "ramp.fdc", "--control", "ramp.sol.json", "--json"], "");
+    expect_exit(&output, 0, "replay");
+    assert!((number(&json(&output)["end"]["x"]) - 1.0).abs() < 1e-7);
+    let table = fdcc(&folder, &["simulate", "ramp.fdc", "--control", "ramp.csv"], "");
+    expect_exit(&table, 0, "the table of a solve can be replayed, too");
+}
+
+#[test]
+fn bad_control_files_say_what_is_wrong() {
+    let cases: [(&str, &str, &str); 9] = [
+        ("u.csv", "time,u\n0,1\n", "must be `t`"),
+        ("u.csv", "t,w\n0,1\n", "`w` is no control"),
+        ("u.csv", "t\n0\n", "no column for the control `u`"),
+        ("u.csv", "t,u\n0,1\n0.5\n", "line 3: 1 columns"),
+        ("u.csv", "t,u\n0,1\n1,nan\n", "line 3: `nan` of `u` is no number"),
+        ("u.csv", "t,u\n1,1\n0,1\n", "times must ascend"),
+        ("u.csv", "t,u\n", "no row of values"),
+        ("u.csv", "", "the file is empty"),
+        ("u.json", "{\"time\": 3}", "not a solution"),
+    ];
+    for (name, content, message) in cases {
+        let files: [(&str, &[u8]); 2] = [("block.fdc", BLOCK.as_bytes()), (name, content.as_bytes())];
+        let folder = folder("simulate_bad_controls", &files);
+        let output = fdcc(&folder, &["simulate", "block.fdc", "--control", name], "");
+        expect_exit(&output, 4, message);
+        assert!(stderr(&output).contains(message), "{message}: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn what_cannot_be_continued_says_why() {
+    let repelling = "time t in [0, 1]\nstate x start 0\nsurface edge = x\ndynamics { x' in 2*Sgn(edge) }\n";
+    let undefined = "time t in [0, 2]\nstate x start 1\ndynamics {\n  x' = -1/sqrt(x)\n}\n";
+    let at_once = "time t in [0, 2]\nstate x start 0\ndynamics {\n  x' = log(x - 1)\n}\n";
+    let files: [(&str, &[u8]); 4] = [
+        ("ball.fdc", BALL.as_bytes()),
+        ("repelling.fdc", repelling.as_bytes()),
+        ("undefined.fdc", undefined.as_bytes()),
+        ("at_once.fdc", at_once.as_bytes()),
+    ];
+    let folder = folder("simulate_refusals", &files);
+    let run = |file: &str| {
+        let output = fdcc(&folder, &["simulate", file, "--json"], "");
+        expect_exit(&output, 2, file);
+        json(&output)
+    };
+    let zeno = run("ball.fdc");
+    assert_eq!((zeno["status"].as_str(), zeno["zeno"]["jump"].as_str()), (Some("zeno"), Some("bounce")));
+    near(&zeno["zeno"]["limit_time"], 3.0 * 0.2_f64.sqrt());
+    let several = run("repelling.fdc");
+    assert_eq!(several["not_unique"]["candidates"], serde_json::json!(["up", "down", "slide"]));
+    assert_eq!(several["not_unique"]["surface"], "edge");
+    let undefined = run("undefined.fdc");
+    assert_eq!((&undefined["status"], &undefined["not_finite"]["line"]), (&"not_finite".into(), &4.into()));
+    near(&undefined["not_finite"]["time"], 2.0 / 3.0);
+    near(&run("at_once.fdc")["not_finite"]["time"], 0.0);
+}
+
+#[test]
+fn wrong_usage_is_told() {
+    let folder = folder("simulate_usage", &[("block.fdc", BLOCK.as_bytes())]);
+    for (arguments, code) in [
+        (vec!["--times", "2,1"], 3),
+        (vec!["--times", "7"], 3),
+        (vec!["--set", "reach=-1"], 3),
+        (vec!["--control", "absent.csv"], 4),
+    ] {
+        let output = fdcc(&folder, &[&["simulate", "block.fdc"], arguments.as_slice()].concat(), "");
+        expect_exit(&output, code, arguments[1]);
+    }
+}

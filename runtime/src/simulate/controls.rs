@@ -1,0 +1,38 @@
+//! The controls of a simulation: the model's guess, or values that are held from row to row.
+
+/// Where the controls come from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Controls {
+    /// The guess of the model.
+    Guess,
+    /// Row `i` holds from `times[i]` to the next; the first holds before, too.
+    Held {
+        /// Ascending.
+        times: Vec<f64>,
+        /// One row of controls for each time.
+        rows: Vec<Vec<f64>>,
+    },
+}
+
+impl Controls {
+    /// Where controls may jump strictly between two times.
+    pub(super) fn breaks(&self, first: f64, last: f64) -> Vec<f64> {
+        match self {
+            Controls::Guess => Vec::new(),
+            Controls::Held { times, .. } => {
+                times.iter().copied().filter(|time| *time > first && *time < last).collect()
+            }
+        }
+    }
+
+    /// The row that holds from a time on.
+    pub(super) fn row(&self, time: f64) -> Option<&[f64]> {
+        match self {
+            Controls::Guess => None,
+            Controls::Held { times, rows } => {
+                let after = times.partition_point(|other| *other <= time);
+                rows.get(after.saturating_sub(1)).map(Vec::as_slice)
+            }
+        }
+    }
+}

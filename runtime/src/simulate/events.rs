@@ -1,0 +1,219 @@
+//! What an event does: modes change, jumps reset the state, jumps that pile up end the run or hold a surface.
+
+use super::decide::decide;
+use super::field::Mode;
+use super::locate::{Condition, Found};
+use super::result::{Event, Kind, Status};
+use super::run::Run;
+
+/// More jumps than this at one time never end.
+const MOST_AT_ONCE: usize = 100;
+
+impl Run<'_> {
+    /// Goes to an event and beyond it.
+    pub fn handle(&mut self, found: Found) -> Result<(), Status> {
+        (self.t, self.x) = (found.time, found.state);
+        self.record.point(self.t, &self.x);
+        match found.condition {
+            Condition::Leaves(surface) => {
+                self.field.rate(self.t, &self.x.clone());
+                let mode = if self.field.selectors[surface] > 0.0 { Mode::Above } else { Mode::Below };
+                self.change(surface, mode);
+                Ok(())
+            }
+            Condition::Reaches(surface) => {
+                let mut surfaces = self.surfaces_here();
+                if !surfaces.contains(&surface) {
+                    surfaces.push(surface);
+                    surfaces.sort_unstable();
+                }
+                self.settle(surfaces)
+            }
+        }
+    }
+
+    /// The surfaces that the state is on.
+    pub fn surfaces_here(&mut self) -> Vec<usize> {
+        let normals = self.field.normals(self.t, &self.x);
+        let is_here = |i: &usize| match self.field.modes[*i] {
+            Mode::Sliding => true,
+            Mode::Held => false,
+            Mode::Below | Mode::Above => normals.psi[*i].abs() <= 10.0 * normals.noise(*i, &self.x),
+        };
+        (0..self.field.modes.len()).filter(is_here).collect()
+    }
+
+    /// Decides the modes at a point on some surfaces, with the jumps that follow.
+    pub fn settle(&mut self, mut surfaces: Vec<usize>) -> Result<(), Status> {
+        for _ in 0..MOST_AT_ONCE {
+            let modes = decide(&mut self.field, self.t, &self.x, &surfaces, self.options)?;
+            let jump = surfaces.iter().zip(&modes).find_map(|(&i, &mode)| self.jump_at(i, mode));
+            let Some(jump) = jump else {
+                surfaces.iter().zip(modes).for_each(|(&i, mode)| self.change(i, mode));
+                let mut x = std::mem::take(&mut self.x);
+                self.field.project(self.t, &mut x);
+                self.x = x;
+                return self.end_of_crossings(&surfaces);
+            };
+            self.jump(jump)?;
+            surfaces = self.surfaces_here();
+        }
+        let jump =
+            self.field.system.jumps.iter().position(|jump| surfaces.contains(&jump.surface)).unwrap_or(0);
+        self.piled_up(jump, self.t)
+    }
+
+    /// A surface that is crossed ever faster ends the simulation like jumps that pile up.
+    fn end_of_crossings(&mut self, surfaces: &[usize]) -> Result<(), Status> {
+        let [first, last] = self.field.system.interval;
+        let here = self.record.events.iter().rev().take_while(|event| event.time == self.t);
+        let is_crossing = |event: &&Event| matches!(event.kind, Kind::CrossesUp | Kind::CrossesDown);
+        let crossed: Vec<usize> = here.filter(is_crossing).map(|event| event.surface).collect();
+        for &surface in surfaces.iter().filter(|surface| crossed.contains(surface)) {
+            if let Some(limit_time) = self.crossings[surface].limit(self.t, last - first) {
+                return Err(Status::Zeno { jump: None, surface, limit_time });
+            }
+        }
+        Ok(())
+    }
+
+    /// The jump of a surface that is about to be crossed.
+    fn jump_at(&self, surface: usize, next: Mode) -> Option<usize> {
+        let is_falling = match (next, self.field.modes[surface], self.has_begun) {
+            (Mode::Below, Mode::Above, _) | (Mode::Below, _, false) => true,
+            (Mode::Above, Mode::Below, _) | (Mode::Above, _, false) => false,
+            _ => return None,
+        };
+        let jumps = self.field.system.jumps.iter().enumerate();
+        let mut fitting = jumps.filter(|(at, jump)| {
+            let is_left = jump.at_most.is_none_or(|limit| (self.jumps[*at] as f64) < limit);
+            jump.surface == surface && jump.is_falling == is_falling && is_left
+        });
+        fitting.next().map(|(at, _)| at)
+    }
+
+    /// Resets the state. Afterwards every surface that the state is not on has the side where the state is.
+    fn jump(&mut self, jump: usize) -> Result<(), Status> {
+        let of = &self.field.system.jumps[jump];
+        let surface = of.surface;
+        let margin = self.margin(surface);
+        self.x = self.field.reset(jump, self.t, &self.x);
+        self.jumps[jump] += 1;
+        let back = if of.is_falling { Mode::Above } else { Mode::Below };
+        self.field.set_mode(surface, back);
+        self.find_sides();
+        self.event(surface, Kind::Jump(jump), margin);
+        let is_last = of.at_most.is_some_and(|limit| self.jumps[jump] as f64 >= limit);
+        if let Some(held) = of.then_hold.filter(|_| is_last) {
+            self.hold(jump, held);
+            self.record.point(self.t, &self.x);
+        }
+        let [first, last] = self.field.system.interval;
+        match self.piles[jump].limit(self.t, last - first) {
+            Some(limit) => self.piled_up(jump, limit),
+            None => Ok(()),
+        }
+    }
+
+    /// Gives every surface that the state is not on the side of the state.
+    pub fn find_sides(&mut self) {
+        let normals = self.field.normals(self.t, &self.x);
+        for i in 0..self.field.modes.len() {
+            let is_off = normals.psi[i].abs() > 10.0 * normals.noise(i, &self.x);
+            if is_off && self.field.modes[i] != Mode::Held {
+                let mode = if normals.psi[i] > 0.0 { Mode::Above } else { Mode::Below };
+                self.field.set_mode(i, mode);
+            }
+        }
+    }
+
+    fn piled_up(&mut self, jump: usize, limit_time: f64) -> Result<(), Status> {
+        let held =
+            self.field.system.jumps[jump].then_hold.filter(|_| limit_time < self.field.system.interval[1]);
+        let Some(held) = held else {
+            let surface = self.field.system.jumps[jump].surface;
+            return Err(Status::Zeno { jump: Some(jump), surface, limit_time });
+        };
+        let rate = self.field.rate(self.t, &self.x);
+        let rest = limit_time - self.t;
+        self.x.iter_mut().zip(rate).for_each(|(x, rate)| *x += rest * rate);
+        self.t = limit_time;
+        self.hold(jump, held);
+        self.event(held, Kind::EntersSliding, 0.0);
+        Ok(())
+    }
+
+    /// Brings the state to rest on a surface: the states that the jump resets and that move the surface stand still from
+    /// now on.
+    fn hold(&mut self, jump: usize, surface: usize) {
+        let resets = self.field.system.jumps[jump].resets.clone();
+        let mut still: Vec<usize> = Vec::new();
+        for _ in 0..5 {
+            let normals = self.field.normals(self.t, &self.x);
+            let slope: Vec<f64> = normals.by_state.row(surface).iter().copied().collect();
+            correct(&mut self.x, &slope, normals.psi[surface]);
+            let rate = self.field.rate(self.t, &self.x);
+            let by_state = self.field.by_state(self.t, &self.x);
+            let mut pushes: Vec<f64> = (normals.by_state.row(surface) * by_state).iter().copied().collect();
+            (0..pushes.len()).filter(|i| !resets.contains(i)).for_each(|i| pushes[i] = 0.0);
+            correct(&mut self.x, &pushes, normals.rate(surface, &rate));
+            still = resets.iter().copied().filter(|&i| pushes[i] != 0.0 || slope[i] != 0.0).collect();
+        }
+        self.field.held.extend(still);
+        self.field.set_mode(surface, Mode::Held);
+    }
+
+    /// Changes a mode and notes the event.
+    fn change(&mut self, surface: usize, next: Mode) {
+        let before = self.field.modes[surface];
+        let kind = match (before, next) {
+            (_, Mode::Sliding) if !self.has_begun => Some(Kind::StartsSliding),
+            _ if !self.has_begun => None,
+            (Mode::Below, Mode::Above) => Some(Kind::CrossesUp),
+            (Mode::Above, Mode::Below) => Some(Kind::CrossesDown),
+            (Mode::Below | Mode::Above, Mode::Sliding) => Some(Kind::EntersSliding),
+            (Mode::Sliding, Mode::Above) => Some(Kind::LeavesUp),
+            (Mode::Sliding, Mode::Below) => Some(Kind::LeavesDown),
+            _ => None,
+        };
+        let margin = self.margin(surface);
+        self.field.set_mode(surface, next);
+        if let Some(kind) = kind {
+            self.event(surface, kind, margin);
+        }
+    }
+
+    fn event(&mut self, surface: usize, kind: Kind, margin: f64) {
+        let event = Event { time: self.t, surface, kind, margin, state: self.x.clone() };
+        self.record.events.push(event);
+        self.record.point(self.t, &self.x);
+    }
+
+    /// The least `|d f + psi_t| / (|d| |f| + |psi_t|)` of the fields on both sides; at an exit that of the side not taken,
+    /// for the other is tangent there.
+    fn margin(&mut self, surface: usize) -> f64 {
+        let normals = self.field.normals(self.t, &self.x);
+        let mut selectors = self.field.selectors.clone();
+        let own = selectors[surface];
+        let mut cosines = [-1.0, 1.0].map(|side| {
+            selectors[surface] = side;
+            let (rate, _) = self.field.with_selectors(self.t, &self.x, &selectors);
+            let shown = rate.iter().zip(&self.field.system.states).filter(|(_, state)| !state.hidden);
+            let size =
+                shown.map(|(rate, _)| rate * rate).sum::<f64>().sqrt() * normals.by_state.row(surface).norm();
+            let largest = size + normals.by_time[surface].abs();
+            if largest > 0.0 { normals.rate(surface, &rate).abs() / largest } else { 0.0 }
+        });
+        cosines.sort_by(f64::total_cmp);
+        let is_exit = self.field.modes[surface] == Mode::Sliding && own.abs() > 1.0 - 1e-6;
+        if is_exit { cosines[1] } else { cosines[0] }
+    }
+}
+
+/// One Newton step along a gradient.
+fn correct(x: &mut [f64], gradient: &[f64], value: f64) {
+    let square: f64 = gradient.iter().map(|g| g * g).sum();
+    if square > 0.0 {
+        x.iter_mut().zip(gradient).for_each(|(x, g)| *x -= value * g / square);
+    }
+}

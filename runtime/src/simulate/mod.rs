@@ -1,0 +1,27 @@
+//! Event-driven simulation of the true system: a Filippov system with selectors, resets and prescribed controls.
+//!
+//! ```text
+//! step (Dormand-Prince 5(4)) -> events inside it (locate) -> which modes follow (decide) -> step ...
+//! ```
+//!
+//! In every mode each selector is -1, +1 or an unknown that keeps its surface at 0 (sliding). [`simulate`] is the
+//! loop. Where the continuation is not unique it stops and says so; it never chooses.
+
+mod complementarity;
+mod controls;
+mod decide;
+mod events;
+mod field;
+mod locate;
+mod record;
+mod result;
+mod run;
+mod step;
+mod system;
+mod tableau;
+mod zeno;
+
+pub use controls::Controls;
+pub use result::{Candidate, Counts, Event, Kind, Options, Simulation, Status};
+pub use run::simulate;
+pub use system::{Jump, System};

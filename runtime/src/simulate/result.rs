@@ -1,0 +1,122 @@
+//! What a simulation is asked for and what it says: plain data.
+
+use crate::problem::Origin;
+
+/// How to simulate.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Relative tolerance of one step.
+    pub rtol: f64,
+    /// Absolute tolerance of one step.
+    pub atol: f64,
+    /// The most steps, rejected ones included.
+    pub max_steps: usize,
+    /// Times at which states are wanted, ascending; all steps and events if there are none.
+    pub times: Vec<f64>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { rtol: 1e-10, atol: 1e-12, max_steps: 1_000_000, times: Vec::new() }
+    }
+}
+
+/// What happens at an event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// From below a surface to above it.
+    CrossesUp,
+    /// From above a surface to below it.
+    CrossesDown,
+    /// The state reaches a surface and stays on it.
+    EntersSliding,
+    /// The state leaves a surface that it slid on, upwards.
+    LeavesUp,
+    /// The state leaves a surface that it slid on, downwards.
+    LeavesDown,
+    /// A reset; the index is that of the jump.
+    Jump(usize),
+    /// The state is on a surface at the beginning and stays on it.
+    StartsSliding,
+}
+
+/// An event.
+#[derive(Clone, Debug)]
+pub struct Event {
+    /// When.
+    pub time: f64,
+    /// At which surface.
+    pub surface: usize,
+    /// What.
+    pub kind: Kind,
+    /// How far from grazing: the cosine between a field and the normal of its surface, the least of those that meet.
+    pub margin: f64,
+    /// The state after it.
+    pub state: Vec<f64>,
+}
+
+/// One way to go on where there are several: the sides of the surfaces that meet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// A surface and its side: -1 below, 1 above, 0 sliding.
+    pub sides: Vec<(usize, i8)>,
+}
+
+/// How a simulation ended.
+#[derive(Clone, Debug)]
+pub enum Status {
+    /// The last time was reached.
+    Completed,
+    /// There are several continuations, or none that can be told.
+    NotUnique {
+        /// The surface.
+        surface: usize,
+        /// The continuations.
+        candidates: Vec<Candidate>,
+    },
+    /// Infinitely many jumps or crossings in finite time.
+    Zeno {
+        /// The jump; none if a surface is crossed ever faster.
+        jump: Option<usize>,
+        /// The surface.
+        surface: usize,
+        /// When they pile up.
+        limit_time: f64,
+    },
+    /// Something has no value, or grows beyond all bounds.
+    NotFinite(Origin),
+    /// Too many steps.
+    StepLimit,
+}
+
+/// Work done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Accepted steps.
+    pub steps: usize,
+    /// Rejected steps.
+    pub rejected: usize,
+    /// Evaluations of the right side.
+    pub evaluations: usize,
+}
+
+/// A simulation, as far as it came.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    /// How it ended.
+    pub status: Status,
+    /// Times of `states`; at a jump the same time twice.
+    pub time: Vec<f64>,
+    /// One column for each state, integrals last.
+    pub states: Vec<Vec<f64>>,
+    /// In the order of time.
+    pub events: Vec<Event>,
+    /// Last time that was reached.
+    pub end_time: f64,
+    /// State there, integrals last.
+    pub end: Vec<f64>,
+    /// The objective, if there is one and the last time was reached.
+    pub objective: Option<f64>,
+    /// Work done.
+    pub counts: Counts,
+}

@@ -1,0 +1,212 @@
+//! The loop: steps of bounded error, events inside them, controls that jump between them.
+
+use super::complementarity::is_p_matrix;
+use super::controls::Controls;
+use super::field::{Field, surface_rates};
+use super::locate;
+use super::record::Record;
+use super::result::{Counts, Options, Simulation, Status};
+use super::step::Step;
+use super::system::{System, value};
+use super::zeno::Pile;
+use crate::problem::Origin;
+
+/// A simulation on its way.
+pub(super) struct Run<'a> {
+    pub field: Field<'a>,
+    pub options: &'a Options,
+    pub record: Record,
+    pub t: f64,
+    pub x: Vec<f64>,
+    /// How often each jump has happened.
+    pub jumps: Vec<usize>,
+    /// The times of the last jumps of each kind.
+    pub piles: Vec<Pile>,
+    /// The times of the last crossings of each surface.
+    pub crossings: Vec<Pile>,
+    /// Whether the modes at the beginning are known.
+    pub has_begun: bool,
+    /// The next step.
+    h: f64,
+    counts: Counts,
+}
+
+/// Simulates a system from its start to its last time, or as far as its trajectory is unique.
+pub fn simulate(system: &System, controls: &Controls, options: &Options) -> Simulation {
+    let mut run = Run::new(system, controls, options);
+    let status = run.follow(controls).err().unwrap_or(Status::Completed);
+    run.finish(status)
+}
+
+impl<'a> Run<'a> {
+    fn new(system: &'a System, controls: &'a Controls, options: &'a Options) -> Self {
+        let mut field = Field::new(system, controls);
+        field.use_controls_of(system.interval[0]);
+        Run {
+            field,
+            options,
+            record: Record::new(options, system.layout.x),
+            t: system.interval[0],
+            x: system.start.clone(),
+            jumps: vec![0; system.jumps.len()],
+            piles: vec![Pile::default(); system.jumps.len()],
+            crossings: vec![Pile::default(); system.surfaces.len()],
+            has_begun: false,
+            h: 1e-3 * (system.interval[1] - system.interval[0]),
+            counts: Counts::default(),
+        }
+    }
+
+    fn follow(&mut self, controls: &Controls) -> Result<(), Status> {
+        let [first, last] = self.field.system.interval;
+        self.record.point(self.t, &self.x);
+        self.begin()?;
+        let mut stops = controls.breaks(first, last);
+        stops.push(last);
+        for stop in stops {
+            while self.t < stop {
+                self.advance(stop)?;
+            }
+            if stop < last {
+                self.change_controls(stop)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Finds the modes at the first time.
+    fn begin(&mut self) -> Result<(), Status> {
+        self.find_sides();
+        self.finite_here()?;
+        let surfaces = self.surfaces_here();
+        self.settle(surfaces)?;
+        self.has_begun = true;
+        Ok(())
+    }
+
+    fn change_controls(&mut self, time: f64) -> Result<(), Status> {
+        self.field.use_controls_of(time);
+        let surfaces = self.surfaces_here();
+        self.settle(surfaces)
+    }
+
+    /// One accepted step towards `stop`, or up to the first event in it.
+    fn advance(&mut self, stop: f64) -> Result<(), Status> {
+        let rest = stop - self.t;
+        let is_last = self.h >= rest * (1.0 - 1e-12);
+        let step = self.accepted(if is_last { rest } else { self.h })?;
+        let found = locate::first(&mut self.field, &step, self.options);
+        self.counts.steps += 1;
+        if let Some(found) = found {
+            self.record.inside(&step, found.time);
+            self.h = self.h.max(0.1 * step.h);
+            return self.handle(found);
+        }
+        if let Some(theta) = self.attraction_ends(&step) {
+            self.record.inside(&step, step.t + theta * step.h);
+            (self.t, self.x) = (step.t + theta * step.h, step.at(theta));
+            self.record.point(self.t, &self.x);
+            let surfaces = self.surfaces_here();
+            return self.settle(surfaces);
+        }
+        let reached = step.h >= rest * (1.0 - 1e-12);
+        let next = if reached { stop } else { step.t + step.h };
+        self.record.inside(&step, next);
+        (self.t, self.x) = (next, step.end);
+        self.field.project(self.t, &mut self.x);
+        self.record.point(self.t, &self.x);
+        Ok(())
+    }
+
+    /// A step whose error is small enough; chooses the length of the next.
+    fn accepted(&mut self, mut h: f64) -> Result<Step, Status> {
+        loop {
+            if self.counts.steps + self.counts.rejected >= self.options.max_steps {
+                return Err(Status::StepLimit);
+            }
+            let selectors = self.field.selectors.clone();
+            let step = Step::take(&mut self.field, self.t, &self.x, h, self.options);
+            let factor = if step.error.is_finite() { 0.9 * step.error.max(1e-10).powf(-0.2) } else { 0.1 };
+            let next = h * factor.clamp(0.1, 5.0);
+            if step.error <= 1.0 {
+                self.h = next;
+                return Ok(step);
+            }
+            self.field.selectors = selectors;
+            self.counts.rejected += 1;
+            h = next;
+            if h <= 4.0 * f64::EPSILON * self.t.abs().max(h * 1e3).max(f64::MIN_POSITIVE) {
+                return Err(self.stuck());
+            }
+        }
+    }
+
+    /// Why steps become too short: the sliding ends to be unique, or something grows beyond all bounds.
+    fn stuck(&mut self) -> Status {
+        let surfaces = self.surfaces_here();
+        if let Err(status) = self.settle(surfaces).and_then(|()| self.finite_here()) {
+            return status;
+        }
+        let rate = self.field.rate(self.t, &self.x);
+        let growth = |i: &usize| (rate[*i] / (1.0 + self.x[*i].abs())).abs();
+        let worst = (0..self.x.len()).max_by(|i, j| growth(i).total_cmp(&growth(j)));
+        Status::NotFinite(worst.map_or_else(Origin::default, |row| self.field.system.flow.origin(row)))
+    }
+
+    /// Where in a step the surfaces that the state slides on cease to attract, to rounding.
+    fn attraction_ends(&mut self, step: &Step) -> Option<f64> {
+        let is_sliding = !self.field.sliding().is_empty();
+        if !is_sliding || self.attracts(step, 1.0) || !self.attracts(step, 0.0) {
+            return None;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        while high - low > 2.0 * f64::EPSILON {
+            let middle = 0.5 * (low + high);
+            if self.attracts(step, middle) { low = middle } else { high = middle }
+        }
+        Some(high)
+    }
+
+    fn attracts(&mut self, step: &Step, theta: f64) -> bool {
+        let (t, x) = (step.t + theta * step.h, step.at(theta));
+        let sliding = self.field.sliding();
+        let normals = self.field.normals(t, &x);
+        let selectors = self.field.selectors.clone();
+        let (rate, by_selector) = self.field.with_selectors(t, &x, &selectors);
+        is_p_matrix(&surface_rates(&normals, &rate, &by_selector, &sliding).1)
+    }
+
+    /// Whether right side and surfaces have values.
+    fn finite_here(&mut self) -> Result<(), Status> {
+        let normals = self.field.normals(self.t, &self.x);
+        let is_bad = |values: &[f64]| values.iter().position(|value| !value.is_finite());
+        if let Some(surface) = is_bad(&normals.psi) {
+            return Err(Status::NotFinite(self.field.system.guards.origin(surface)));
+        }
+        let selectors = self.field.selectors.clone();
+        let (rate, _) = self.field.with_selectors(self.t, &self.x, &selectors);
+        match is_bad(&rate) {
+            Some(row) => Err(Status::NotFinite(self.field.system.flow.origin(row))),
+            None => Ok(()),
+        }
+    }
+
+    fn finish(mut self, status: Status) -> Simulation {
+        self.record.last(self.t, &self.x);
+        let system = self.field.system;
+        let ends: Vec<f64> = system.start.iter().chain(&self.x).copied().collect();
+        let objective = value(&*system.objective, &ends, &system.parameter_values());
+        let is_complete = matches!(status, Status::Completed);
+        self.counts.evaluations = self.field.evaluations;
+        Simulation {
+            status,
+            time: self.record.time,
+            states: self.record.states,
+            events: self.record.events,
+            end_time: self.t,
+            end: self.x,
+            objective: objective.first().copied().filter(|_| is_complete),
+            counts: self.counts,
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! The contract between symbols and the simulator: the true, unsmoothed system in real time.
+//!
+//! ```text
+//! x' = f(t, x, u, p, s),   s_i in Sgn(psi_i(t, x, p)),   x+ = r_j(t, x-, p) where psi is crossed
+//! ```
+//!
+//! The last states are the integrals of the model, which start at 0; so the objective is a function of both ends.
+
+use crate::problem::{Columns, Function, Layout, Origin, Parameter, Surface, Variable};
+use std::sync::Arc;
+
+/// A reset of the state.
+#[derive(Clone, Debug)]
+pub struct Jump {
+    /// Its name.
+    pub name: String,
+    /// Where it is declared.
+    pub origin: Origin,
+    /// The surface whose crossing resets.
+    pub surface: usize,
+    /// Whether the crossing is from above to below.
+    pub is_falling: bool,
+    /// How often at most.
+    pub at_most: Option<f64>,
+    /// The surface that is held after the last one.
+    pub then_hold: Option<usize>,
+    /// The states that it gives a value.
+    pub resets: Vec<usize>,
+}
+
+/// A system that can be simulated.
+#[derive(Clone)]
+pub struct System {
+    /// Name of the model.
+    pub name: String,
+    /// Sizes of `t x u p s`.
+    pub layout: Layout,
+    /// States, then integrals (hidden).
+    pub states: Vec<Variable>,
+    /// Controls.
+    pub controls: Vec<Variable>,
+    /// All of `p`, with values.
+    pub parameters: Vec<Parameter>,
+    /// Switching surfaces.
+    pub surfaces: Vec<Surface>,
+    /// Resets.
+    pub jumps: Vec<Jump>,
+    /// First and last time.
+    pub interval: [f64; 2],
+    /// The state at the first time.
+    pub start: Vec<f64>,
+    /// `f` over `[t | x | u | p | s]` in real time; differentiated by `x` and `s`.
+    pub flow: Arc<dyn Function>,
+    /// `psi`, with the inputs of `flow`; differentiated by `t` and `x`.
+    pub guards: Arc<dyn Function>,
+    /// `r`, with the inputs of `flow`, as many outputs as states for each jump; differentiated by `t` and `x`.
+    pub resets: Arc<dyn Function>,
+    /// The objective as written, over `[x(start), x(end) | p]`; no output if there is none.
+    pub objective: Arc<dyn Function>,
+    /// Guess of states, then controls, over normalised time `[tau | p]`.
+    pub guess: Arc<dyn Function>,
+}
+
+impl System {
+    /// The values of all parameters.
+    pub fn parameter_values(&self) -> Vec<f64> {
+        self.parameters.iter().map(|parameter| parameter.value).collect()
+    }
+
+    /// The guess of states, then controls, at a normalised time.
+    pub fn guessed(&self, tau: f64) -> Vec<f64> {
+        value(&*self.guess, &[tau], &self.parameter_values())
+    }
+}
+
+/// All outputs of a function at one point `[t | x | u | s]`.
+pub(super) fn value(function: &dyn Function, point: &[f64], parameters: &[f64]) -> Vec<f64> {
+    let mut points = Columns::new(point.len(), 1);
+    point.iter().enumerate().for_each(|(at, value)| points.column_mut(at)[0] = *value);
+    let mut values = Columns::new(function.outputs(), 1);
+    function.value(&points, parameters, &mut values);
+    (0..function.outputs()).map(|at| values.column(at)[0]).collect()
+}

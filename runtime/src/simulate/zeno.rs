@@ -1,0 +1,50 @@
+//! Jumps that pile up: intervals `d, d q, d q^2, ...` with `q < 1` end after `d q / (1 - q)`.
+
+/// What is left may be at most this part of the whole time before the limit is believed.
+const NEAR: f64 = 1e-6;
+
+/// How much two successive ratios may differ.
+const STEADY: f64 = 0.02;
+
+/// The times of the last jumps of one kind.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Pile {
+    last: Vec<f64>,
+}
+
+impl Pile {
+    /// Notes a jump; the limit time once the jumps pile up.
+    pub fn limit(&mut self, time: f64, span: f64) -> Option<f64> {
+        self.last.push(time);
+        if self.last.len() > 4 {
+            self.last.remove(0);
+        }
+        let [a, b, c, d] = *<&[f64; 4]>::try_from(self.last.as_slice()).ok()?;
+        let [first, second, third] = [b - a, c - b, d - c];
+        if third <= 0.0 {
+            return (third == 0.0 && second == 0.0).then_some(time);
+        }
+        let (before, ratio) = (second / first, third / second);
+        let rest = third * ratio / (1.0 - ratio);
+        let piles_up = ratio < 1.0 && (ratio - before).abs() <= STEADY * ratio && rest <= NEAR * span;
+        piles_up.then_some(time + rest)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Pile;
+
+    #[test]
+    fn halving_intervals_end_at_twice_the_first() {
+        let mut pile = Pile::default();
+        let limit = (0..40).find_map(|k| pile.limit(2.0 - 0.5_f64.powi(k), 1.0));
+        assert!((limit.expect("they pile up") - 2.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn regular_jumps_do_not_pile_up() {
+        let mut pile = Pile::default();
+        assert!((0..100).all(|k| pile.limit(1e-7 * f64::from(k), 1.0).is_none()));
+    }
+}

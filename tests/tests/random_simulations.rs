@@ -1,0 +1,122 @@
+//! Random systems with one to four surfaces against a simple, slow reference: implicit Euler with Gauss-Seidel.
+//!
+//! `x' = a + c cos(w t) - A x - B s`, `s_i in Sgn(x_i)`, `B` diagonally dominant, so the solution is unique. One step of the reference
+//! solves `x+ = x + h (a + c cos(w t+) - A x - B s)`, `s_i in Sgn(x+_i)`, surface by surface until nothing changes; its error is of
+//! order `h`.
+
+use fdcc_compiler::compile_simulation;
+use fdcc_runtime::simulate::{Controls, Kind, Options, Status, simulate};
+use fdcc_tests::models::meaning;
+use fdcc_tests::random::Random;
+use std::fmt::Write;
+
+const LAST: f64 = 4.0;
+const STEPS: usize = 40_000;
+
+struct Affine {
+    start: Vec<f64>,
+    constant: Vec<f64>,
+    swing: Vec<f64>,
+    frequency: f64,
+    damping: Vec<Vec<f64>>,
+    friction: Vec<Vec<f64>>,
+}
+
+fn matrix(random: &mut Random, size: usize, diagonal: [f64; 2], beside: f64) -> Vec<Vec<f64>> {
+    let mut rows = vec![vec![0.0; size]; size];
+    for (i, row) in rows.iter_mut().enumerate() {
+        for (j, entry) in row.iter_mut().enumerate() {
+            *entry = if i == j {
+                random.between(diagonal[0], diagonal[1])
+            } else {
+                random.between(-beside, beside)
+            };
+        }
+    }
+    rows
+}
+
+impl Affine {
+    fn new(random: &mut Random, size: usize) -> Self {
+        let mut vector = |most: f64| -> Vec<f64> { (0..size).map(|_| random.between(-most, most)).collect() };
+        let (start, constant, swing) = (vector(1.0), vector(0.5), vector(3.0));
+        Affine {
+            start,
+            constant,
+            swing,
+            frequency: random.between(1.0, 4.0),
+            damping: matrix(random, size, [0.0, 0.5], 0.3),
+            friction: matrix(random, size, [1.0, 2.0], 0.9 / size as f64),
+        }
+    }
+
+    fn text(&self) -> String {
+        let (mut states, mut equations) = (String::new(), String::new());
+        for i in 0..self.start.len() {
+            writeln!(states, "state x{i} start {}\nsurface p{i} = x{i}", self.start[i]).expect("text");
+            write!(equations, "x{i}' in {} + {}*cos({}*t)", self.constant[i], self.swing[i], self.frequency)
+                .expect("text");
+            for j in 0..self.start.len() {
+                let (damping, friction) = (self.damping[i][j], self.friction[i][j]);
+                write!(equations, " - ({damping})*x{j} - ({friction})*Sgn(p{j})").expect("text");
+            }
+            equations.push('\n');
+        }
+        format!("time t in [0, {LAST}]\n{states}dynamics {{\n{equations}}}\n")
+    }
+
+    fn rest(&self, i: usize, t: f64, x: &[f64]) -> f64 {
+        let damped: f64 = self.damping[i].iter().zip(x).map(|(a, x)| a * x).sum();
+        self.constant[i] + self.swing[i] * (self.frequency * t).cos() - damped
+    }
+
+    fn reference(&self) -> Vec<f64> {
+        let h = LAST / STEPS as f64;
+        let mut x = self.start.clone();
+        let mut s = vec![0.0; x.len()];
+        for k in 1..=STEPS {
+            let free: Vec<f64> = (0..x.len()).map(|i| x[i] + h * self.rest(i, k as f64 * h, &x)).collect();
+            for _ in 0..200 {
+                let before = s.clone();
+                for i in 0..x.len() {
+                    let others: f64 =
+                        (0..x.len()).filter(|&j| j != i).map(|j| self.friction[i][j] * s[j]).sum();
+                    s[i] = ((free[i] - h * others) / (h * self.friction[i][i])).clamp(-1.0, 1.0);
+                }
+                if before.iter().zip(&s).all(|(a, b)| (a - b).abs() < 1e-12) {
+                    break;
+                }
+            }
+            for i in 0..x.len() {
+                x[i] = free[i] - h * self.friction[i].iter().zip(&s).map(|(b, s)| b * s).sum::<f64>();
+            }
+        }
+        x
+    }
+}
+
+#[test]
+fn random_systems_end_where_implicit_euler_ends() {
+    let mut random = Random::new(7);
+    let (mut entries, mut exits) = (0, 0);
+    for case in 0..40 {
+        let system = Affine::new(&mut random, 1 + case % 4);
+        let text = system.text();
+        let compiled = compile_simulation(&meaning(&text)).expect("the model can be simulated");
+        let simulation = simulate(&compiled, &Controls::Guess, &Options::default());
+        assert!(matches!(simulation.status, Status::Completed), "{:?}\n{text}", simulation.status);
+        for (got, slow) in simulation.end.iter().zip(system.reference()) {
+            assert!((got - slow).abs() < 2e-3, "{got}, not {slow}\n{text}");
+        }
+        entries += simulation.events.iter().filter(|event| event.kind == Kind::EntersSliding).count();
+        exits += simulation
+            .events
+            .iter()
+            .filter(|it| matches!(it.kind, Kind::LeavesUp | Kind::LeavesDown))
+            .count();
+    }
+    assert!(
+        entries > 100 && exits > 50,
+        "the systems are worth their while: {entries} entries, {exits} exits"
+    );
+}

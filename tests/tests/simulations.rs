@@ -1,0 +1,164 @@
+//! Every model of `tests/simulations/` does what the file beside it says, to 1e-9, from a source that is not this program.
+//!
+//! ```text
+//! case WHAT, AND WHO SAYS SO
+//! set PARAM = VALUE
+//! event TIME SURFACE KIND          every event, in order
+//! status STATUS TIME               completed if left out; with the time where it ended
+//! STATE = VALUE                    at the end
+//! ```
+
+use fdcc_compiler::compile_simulation;
+use fdcc_runtime::simulate::{Controls, Kind, Options, Simulation, Status, System, simulate};
+use fdcc_tests::documents;
+use fdcc_tests::models::changed;
+
+const TOLERANCE: f64 = 1e-9;
+
+/// One case of a file.
+#[derive(Default)]
+struct Case<'t> {
+    title: &'t str,
+    set: Vec<(&'t str, &'t str)>,
+    events: Vec<(f64, &'t str, &'t str)>,
+    status: Option<(&'t str, f64)>,
+    end: Vec<(&'t str, f64)>,
+}
+
+fn cases(text: &str) -> Vec<Case<'_>> {
+    let mut cases: Vec<Case> = Vec::new();
+    for line in text.lines().filter(|line| !line.is_empty()) {
+        if let Some(title) = line.strip_prefix("case ") {
+            cases.push(Case { title, ..Case::default() });
+        } else {
+            read(line, cases.last_mut().expect("a file begins with a case")).expect(line);
+        }
+    }
+    cases
+}
+
+fn read<'t>(line: &'t str, case: &mut Case<'t>) -> Option<()> {
+    let words: Vec<&str> = line.split(' ').collect();
+    match *words.as_slice() {
+        ["set", name, "=", value] => case.set.push((name, value)),
+        ["event", time, surface, kind] => case.events.push((time.parse().ok()?, surface, kind)),
+        ["status", status, time] => case.status = Some((status, time.parse().ok()?)),
+        [name, "=", value] => case.end.push((name, value.parse().ok()?)),
+        _ => return None,
+    }
+    Some(())
+}
+
+fn kind(kind: Kind) -> &'static str {
+    match kind {
+        Kind::CrossesUp => "crosses_up",
+        Kind::CrossesDown => "crosses_down",
+        Kind::EntersSliding => "enters_sliding",
+        Kind::LeavesUp => "leaves_up",
+        Kind::LeavesDown => "leaves_down",
+        Kind::Jump(_) => "jump",
+        Kind::StartsSliding => "starts_sliding",
+    }
+}
+
+fn status(simulation: &Simulation) -> (&'static str, f64) {
+    let reached = simulation.end_time;
+    match &simulation.status {
+        Status::Completed => ("completed", reached),
+        Status::NotUnique { .. } => ("not_unique", reached),
+        Status::Zeno { limit_time, .. } => ("zeno", *limit_time),
+        Status::NotFinite(_) => ("not_finite", reached),
+        Status::StepLimit => ("step_limit", reached),
+    }
+}
+
+fn run(text: &str, set: &[(&str, &str)], controls: &Controls, options: &Options) -> (System, Simulation) {
+    let system = compile_simulation(&changed(text, set, &[])).expect("the model can be simulated");
+    let simulation = simulate(&system, controls, options);
+    (system, simulation)
+}
+
+fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= TOLERANCE * b.abs().max(1.0)
+}
+
+fn end(system: &System, simulation: &Simulation, name: &str) -> f64 {
+    let at = system.states.iter().position(|state| state.name == name).expect(name);
+    simulation.end[at]
+}
+
+fn check(name: &str, text: &str, case: &Case) {
+    let (system, simulation) = run(text, &case.set, &Controls::Guess, &Options::default());
+    let name = format!("{name}, {}", case.title);
+    let last = system.interval[1];
+    let (expected, got) = (case.status.unwrap_or(("completed", last)), status(&simulation));
+    assert!(expected.0 == got.0 && near(got.1, expected.1), "{name}: {got:?}, not {expected:?}");
+    let seen = simulation.events.iter();
+    let seen: Vec<_> =
+        seen.map(|it| (it.time, system.surfaces[it.surface].name.as_str(), kind(it.kind))).collect();
+    let is_listed = !case.events.is_empty() || simulation.events.is_empty();
+    let agrees =
+        |(a, b): (&(f64, &str, &str), &(f64, &str, &str))| near(a.0, b.0) && (a.1, a.2) == (b.1, b.2);
+    if is_listed {
+        assert!(
+            seen.len() == case.events.len() && seen.iter().zip(&case.events).all(agrees),
+            "{name}: {seen:?}"
+        );
+    }
+    for (state, value) in &case.end {
+        let got = end(&system, &simulation, state);
+        assert!(near(got, *value), "{name}: {state} = {got}, not {value}");
+    }
+}
+
+#[test]
+fn every_system_does_what_its_source_says() {
+    let models = documents("tests/simulations", "fdc");
+    let expected = documents("tests/simulations", "expected");
+    assert_eq!(models.len(), expected.len(), "each model has a file with what is expected");
+    for ((name, text), (other, expectation)) in models.iter().zip(&expected) {
+        assert_eq!(name, other);
+        cases(expectation).iter().for_each(|case| check(name, text, case));
+    }
+}
+
+fn text(name: &str) -> String {
+    let all = documents("tests/simulations", "fdc");
+    all.into_iter().find(|(own, _)| own == name).expect(name).1
+}
+
+/// `u = 2` drives with rate 1 for a second, `u = 0` stops within another, then the block sticks until `u = -3` moves it.
+#[test]
+fn held_controls_restart_the_integration_at_their_rows() {
+    let controls =
+        Controls::Held { times: vec![0.0, 1.0, 2.5], rows: vec![vec![2.0], vec![0.0], vec![-3.0]] };
+    let (system, simulation) = run(&text("sticks"), &[], &controls, &Options::default());
+    let events: Vec<_> = simulation.events.iter().map(|event| (event.time, kind(event.kind))).collect();
+    let expected = [(2.0, "enters_sliding"), (2.5, "leaves_down")];
+    assert!(events.len() == 2, "{events:?}");
+    assert!(events.iter().zip(expected).all(|(a, b)| near(a.0, b.0) && a.1 == b.1), "{events:?}");
+    assert!(near(end(&system, &simulation, "v"), -1.0));
+    assert!(near(end(&system, &simulation, "x"), 0.5 + 0.5 - 0.25));
+    assert!(near(simulation.objective.expect("the end is reached"), 4.0 + 0.5 * 9.0));
+}
+
+/// Example (2.3): `x = -1 + 3 t` until 1/3, then `x = t - 1/3`.
+#[test]
+fn states_are_given_at_the_times_asked_for() {
+    let text = fdcc_tests::models::text_of("crossing");
+    let times = vec![0.0, 0.25, 1.0 / 3.0, 1.0, 2.0];
+    let options = Options { times: times.clone(), ..Options::default() };
+    let (_, simulation) = run(&text, &[], &Controls::Guess, &options);
+    assert_eq!(simulation.time, times);
+    for (got, exact) in simulation.states[0].iter().zip([-1.0, -0.25, 0.0, 2.0 / 3.0, 5.0 / 3.0]) {
+        assert!(near(*got, exact), "{got}, not {exact}");
+    }
+    assert!(near(simulation.objective.expect("the end is reached"), 134.0 / 81.0));
+}
+
+#[test]
+fn too_many_steps_end_with_the_trajectory_so_far() {
+    let options = Options { max_steps: 10, ..Options::default() };
+    let (_, simulation) = run(&text("block_on_table"), &[], &Controls::Guess, &options);
+    assert!(matches!(simulation.status, Status::StepLimit) && simulation.time.len() > 5);
+}

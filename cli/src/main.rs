@@ -8,6 +8,7 @@ mod log;
 mod model;
 mod output;
 mod render;
+mod replay;
 mod solver;
 mod verdict;
 mod warm;

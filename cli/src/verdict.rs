@@ -39,6 +39,7 @@ pub fn verdict(solved: &Solved) -> String {
     let mut lines = vec![format!(" {word}  {}", how(solved)), format!("       {}", result.join("   "))];
     lines.push(format!("       {work}"));
     lines.extend(surfaces(document));
+    lines.extend(replayed(document));
     lines.join("\n") + "\n"
 }
 
@@ -66,15 +67,49 @@ fn how(solved: &Solved) -> String {
     let proof = if document.global || !problem.has_objective { "" } else { "; not proved global" };
     match status {
         Status::Solved => {
-            format!("{found} of the {of}, not replayed on the true system ({tolerance} met{proof})")
+            format!("{found} of the {of}, {} ({tolerance} met{proof})", on_the_true_system(document))
         }
         Status::Acceptable => {
             format!(
-                "{found} of the {of}, less accurate than asked for, not replayed on the true system ({tolerance} NOT met{proof})"
+                "{found} of the {of}, less accurate than asked for, {} ({tolerance} NOT met{proof})",
+                on_the_true_system(document)
             )
         }
         _ => format!("NOT SOLVED, {}: {}", status_name(status).replace('_', " "), why(solved)),
     }
+}
+
+/// Differences between a solution and its replay that are called confirmation.
+const CONFIRMED: f64 = 1e-3;
+
+/// What a replay says of the answer, in few words.
+pub fn on_the_true_system(document: &Document) -> String {
+    let Some(replay) = &document.verification else { return "not replayed on the true system".into() };
+    match (replay.state_gap, replay.constraint_violation) {
+        (Some(gap), Some(violation)) if gap <= CONFIRMED && violation <= CONFIRMED => {
+            format!("confirmed on the true system to {}", scientific(gap.max(violation), 1))
+        }
+        (Some(_), Some(_)) => "NOT CONFIRMED on the true system".into(),
+        _ => "and its replay on the true system does not reach the end".into(),
+    }
+}
+
+/// The replay in numbers.
+fn replayed(document: &Document) -> Option<String> {
+    let replay = document.verification.as_ref()?;
+    let (gap, violation) = (replay.state_gap?, replay.constraint_violation?);
+    let mut words = vec![" true  replayed:".to_owned()];
+    words.extend(replay.objective.map(|it| format!("objective {}", significant(it, 9))));
+    words.push(format!("differs by {}", short(gap)));
+    words.push(match &replay.worst {
+        Some(worst) => {
+            let when = worst.time.map(|t| format!(" at t = {}", short(t))).unwrap_or_default();
+            format!("`{}` off by {}{when}", worst.condition, short(violation))
+        }
+        None => "all conditions met".into(),
+    });
+    words.push(plural(replay.events, "event"));
+    Some(words.join("   ").replacen(":   ", ": ", 1))
 }
 
 /// What the status of a failed solve means.

@@ -4,6 +4,7 @@ use super::Exit;
 use super::options::{Options, Prepared, prepare, show};
 use crate::log::{Level, Log};
 use crate::output::{self, files};
+use crate::replay::replay;
 use crate::solver::{Compiled, Failure, Solved};
 use crate::watch::catch_interrupts;
 use crate::{failure, verdict};
@@ -18,6 +19,9 @@ pub struct Solve {
     file: String,
     #[command(flatten)]
     options: Options,
+    /// Do not replay the controls on the true system
+    #[arg(long)]
+    no_verify: bool,
 }
 
 impl Solve {
@@ -44,7 +48,11 @@ impl Solve {
         let mut log = Log::new(self.options.log.unwrap_or(Level::Short));
         let solved = compiled.solve(start, &self.options, &mut log);
         log.finish();
-        solved
+        let mut solved = solved?;
+        if solved.is_good() && !self.no_verify {
+            solved.document.verification = replay(&prepared.model, &solved);
+        }
+        Ok(solved)
     }
 
     fn report(&self, prepared: &Prepared, solved: &Solved) -> Exit {

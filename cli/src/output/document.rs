@@ -33,6 +33,34 @@ pub struct Document {
     pub costates: Named<Vec<f64>>,
     pub report: Named<Vec<f64>>,
     pub surfaces: Named<Vec<Span>>,
+    /// What the controls do on the true system; absent where they were not replayed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verification: Option<Verification>,
+}
+
+/// A replay of the controls on the true system, from event to event.
+#[derive(Clone, Debug, Serialize)]
+pub struct Verification {
+    /// Whether the replay reached the last time.
+    pub completed: bool,
+    /// The objective of the replay.
+    pub objective: Option<f64>,
+    /// The largest difference to the solution over states and grid points, in units of max(1, |x|).
+    pub state_gap: Option<f64>,
+    /// The largest violation of a bound, a path or an end condition.
+    pub constraint_violation: Option<f64>,
+    /// Where that is.
+    pub worst: Option<Worst>,
+    pub events: usize,
+}
+
+/// A condition that a replay violates.
+#[derive(Clone, Debug, Serialize)]
+pub struct Worst {
+    pub condition: String,
+    /// When; nothing for a condition on the ends.
+    pub time: Option<f64>,
+    pub violation: f64,
 }
 
 /// The method that was used, defaults and choices included.
@@ -120,6 +148,7 @@ impl Document {
             costates: shown(&trajectory.costates),
             report: problem.report_names.iter().cloned().zip(trajectory.report.iter().cloned()).collect(),
             surfaces: surfaces(problem, outcome),
+            verification: None,
         }
     }
 }

@@ -49,7 +49,14 @@ fn summary(document: &Document) -> String {
 fn rows(document: &Document) -> Vec<(String, String)> {
     let method = &document.method;
     let mut rows: Vec<(String, String)> = vec![
-        ("status".into(), document.status.replace('_', " ") + ", not replayed on the true system"),
+        (
+            "status".into(),
+            format!(
+                "{}, {}",
+                document.status.replace('_', " "),
+                crate::verdict::on_the_true_system(document)
+            ),
+        ),
         ("objective".into(), significant(document.objective, 10)),
     ];
     rows.extend(document.free.0.iter().map(|(name, value)| (name.clone(), significant(*value, 10))));

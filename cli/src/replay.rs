@@ -6,6 +6,10 @@ use fdcc_compiler::Model;
 use fdcc_runtime::problem::{Columns, Function, Problem};
 use fdcc_runtime::simulate::{Controls, Options, Simulation, Status, System, simulate};
 
+/// A replay that needs more steps, of a very stiff system, is given up: nobody waits for it.
+const FEWEST_STEPS: usize = 200_000;
+const STEPS_PER_INTERVAL: usize = 50;
+
 /// Replays a solution; nothing if its model cannot be simulated.
 pub fn replay(model: &Model, solved: &Solved) -> Option<Verification> {
     let system = fdcc_compiler::compile_simulation(&adapted(model, &solved.document)).ok()?;
@@ -15,7 +19,8 @@ pub fn replay(model: &Model, solved: &Solved) -> Option<Verification> {
     let row = |k: usize| document.controls.0.iter().map(|(_, column)| column[k]).collect();
     let controls =
         Controls::Held { times: times[..intervals].to_vec(), rows: (0..intervals).map(row).collect() };
-    let simulation = simulate(&system, &controls, &Options { times, ..Options::default() });
+    let max_steps = FEWEST_STEPS.max(STEPS_PER_INTERVAL * intervals);
+    let simulation = simulate(&system, &controls, &Options { times, max_steps, ..Options::default() });
     let is_whole = matches!(simulation.status, Status::Completed)
         && simulation.states.iter().all(|column| column.len() == intervals + 1);
     let worst = if is_whole { worst(&solved.problem, solved, &system, &simulation) } else { None };

@@ -1,18 +1,14 @@
 //! The ends of the trajectory: the Mayer objective and the boundary conditions.
 
 use super::assembly::{Builder, Contribution, Repeated};
+use super::tables::{Tables, scatter};
 use crate::linalg::Stages;
-use crate::problem::{Columns, Function, Problem};
+use crate::problem::{Columns, Problem};
 use std::sync::Arc;
 
 /// The boundary function with its tables. Output 0 is the objective, the others are coupling rows.
 pub(super) struct Ends {
-    function: Arc<dyn Function>,
-    points: Columns,
-    values: Columns,
-    jacobian: Columns,
-    hessian: Columns,
-    multipliers: Columns,
+    tables: Tables,
     row_moves: Vec<Contribution>,
     gradient_moves: Vec<Contribution>,
     hessian_moves: Vec<Contribution>,
@@ -43,34 +39,24 @@ impl Ends {
             let target = hessian.symmetric_place(variable(a), variable(b), 1);
             hessian_moves.push(Contribution { column, coefficient: 1.0, target });
         }
-        Ends {
-            points: Columns::new(function.layout().point_inputs(), 1),
-            values: Columns::new(function.outputs(), 1),
-            jacobian: Columns::new(function.jacobian_pattern().entries.len(), 1),
-            hessian: Columns::new(function.hessian_pattern().entries.len(), 1),
-            multipliers: Columns::new(function.outputs(), 1),
-            row_moves,
-            gradient_moves,
-            hessian_moves,
-            function,
-        }
+        Ends { tables: Tables::new(&function, 1), row_moves, gradient_moves, hessian_moves }
     }
 
     pub(super) fn load(&mut self, stages: Stages, v: &[f64]) {
-        let first = self.function.layout().states().start;
+        let first = self.tables.function.layout().states().start;
         let ends = stages.state(0).chain(stages.state(stages.intervals));
         for (i, variable) in ends.enumerate() {
-            self.points.column_mut(first + i)[0] = v[variable];
+            self.tables.points.column_mut(first + i)[0] = v[variable];
         }
     }
 
     /// Writes the coupling rows; returns the Mayer objective.
     pub(super) fn values(&mut self, stages: Stages, parameters: &[f64], rows: &mut [f64]) -> f64 {
-        self.function.value(&self.points, parameters, &mut self.values);
+        self.tables.evaluate(parameters);
         for (i, row) in stages.coupling().enumerate() {
-            rows[row] = self.values.column(i + 1)[0];
+            rows[row] = self.tables.values.column(i + 1)[0];
         }
-        self.values.column(0)[0]
+        self.tables.values.column(0)[0]
     }
 
     pub(super) fn differentiate(
@@ -80,38 +66,24 @@ impl Ends {
         weight: f64,
         multipliers: &[f64],
     ) {
-        self.multipliers.column_mut(0)[0] = weight;
+        self.tables.multipliers.column_mut(0)[0] = weight;
         for (i, row) in stages.coupling().enumerate() {
-            self.multipliers.column_mut(i + 1)[0] = multipliers[row];
+            self.tables.multipliers.column_mut(i + 1)[0] = multipliers[row];
         }
-        self.function.derivatives(
-            &self.points,
-            parameters,
-            &self.multipliers,
-            &mut self.values,
-            &mut self.jacobian,
-            &mut self.hessian,
-        );
+        self.tables.differentiate(parameters);
     }
 
     pub(super) fn scatter(&self, gradient: &mut [f64], jacobian: &mut [f64], hessian: &mut [f64]) {
-        let parts = [
-            (&self.jacobian, &self.gradient_moves, gradient),
-            (&self.jacobian, &self.row_moves, jacobian),
-            (&self.hessian, &self.hessian_moves, hessian),
-        ];
-        for (table, moves, values) in parts {
-            for entry in moves {
-                values[entry.target] += entry.coefficient * table.column(entry.column)[0];
-            }
-        }
+        scatter(&self.tables.jacobian, &self.gradient_moves, gradient);
+        scatter(&self.tables.jacobian, &self.row_moves, jacobian);
+        scatter(&self.tables.hessian, &self.hessian_moves, hessian);
     }
 
     /// The gradient by the last state only.
     pub(super) fn add_last_gradient(&self, stages: Stages, gradient: &mut [f64]) {
         let last = stages.state(stages.intervals);
         for entry in self.gradient_moves.iter().filter(|entry| last.contains(&entry.target)) {
-            gradient[entry.target] += entry.coefficient * self.jacobian.column(entry.column)[0];
+            gradient[entry.target] += entry.coefficient * self.tables.jacobian.column(entry.column)[0];
         }
     }
 
@@ -119,10 +91,11 @@ impl Ends {
     pub(super) fn not_finite(&mut self, stages: Stages, parameters: &[f64], rows: usize) -> Option<usize> {
         self.differentiate(stages, parameters, 1.0, &vec![1.0; rows]);
         let bad = |table: &Columns, column: usize| !table.column(column)[0].is_finite();
-        let values = (0..self.values.columns()).find(|i| bad(&self.values, *i));
-        let pattern = &self.function.jacobian_pattern().entries;
-        let slopes = || pattern.iter().enumerate().find(|(i, _)| bad(&self.jacobian, *i));
-        let curvature = || (0..self.hessian.columns()).any(|i| bad(&self.hessian, i)).then_some(0);
+        let values = (0..self.tables.values.columns()).find(|i| bad(&self.tables.values, *i));
+        let pattern = &self.tables.function.jacobian_pattern().entries;
+        let slopes = || pattern.iter().enumerate().find(|(i, _)| bad(&self.tables.jacobian, *i));
+        let curvature =
+            || (0..self.tables.hessian.columns()).any(|i| bad(&self.tables.hessian, i)).then_some(0);
         values.or_else(|| slopes().map(|(_, (row, _))| *row as usize)).or_else(curvature)
     }
 }

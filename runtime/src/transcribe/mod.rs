@@ -12,6 +12,7 @@ mod assembly;
 mod boundary;
 mod sampled;
 pub(crate) mod tableau;
+mod tables;
 
 use crate::linalg::{Stages, Triplets};
 use crate::nlp::{Derivatives, Nlp, Place};

@@ -4,6 +4,7 @@
 //! one by `x_k` with factor `1 - w` and one by `x_{k+1}` with factor `w`.
 
 use super::assembly::{Builder, Contribution, Repeated};
+use super::tables::{Tables, scatter};
 use crate::linalg::Stages;
 use crate::problem::{Columns, Function, Problem};
 use std::sync::Arc;
@@ -19,14 +20,9 @@ pub(super) enum Target {
 
 /// A function with its tables.
 pub(super) struct Sampled {
-    function: Arc<dyn Function>,
+    tables: Tables,
     blend: Vec<f64>,
     targets: Vec<Target>,
-    points: Columns,
-    values: Columns,
-    jacobian: Columns,
-    hessian: Columns,
-    multipliers: Columns,
     row_moves: Vec<Contribution>,
     /// Target: a variable of interval 0, and its step along the chain.
     gradient_moves: Vec<(Contribution, usize)>,
@@ -50,31 +46,19 @@ impl Sampled {
         matrices: &mut Matrices,
     ) -> Self {
         let intervals = matrices.stages.intervals;
-        let table = |columns| Columns::new(columns, intervals);
-        let mut points = table(function.layout().point_inputs());
-        for (k, tau) in points.column_mut(0).iter_mut().enumerate() {
+        let mut tables = Tables::new(function, intervals);
+        for (k, tau) in tables.points.column_mut(0).iter_mut().enumerate() {
             *tau = (k as f64 + time) / intervals as f64;
         }
-        let mut sampled = Sampled {
-            blend,
-            targets,
-            points,
-            values: table(function.outputs()),
-            jacobian: table(function.jacobian_pattern().entries.len()),
-            hessian: table(function.hessian_pattern().entries.len()),
-            multipliers: table(function.outputs()),
-            row_moves: Vec::new(),
-            gradient_moves: Vec::new(),
-            hessian_moves: Vec::new(),
-            function: Arc::clone(function),
-        };
+        let (row_moves, gradient_moves, hessian_moves) = (Vec::new(), Vec::new(), Vec::new());
+        let mut sampled = Sampled { tables, blend, targets, row_moves, gradient_moves, hessian_moves };
         sampled.map_jacobian(problem, matrices);
         sampled.map_hessian(problem, matrices);
         sampled
     }
 
     fn map_jacobian(&mut self, problem: &Problem, matrices: &mut Matrices) {
-        let (function, stages) = (Arc::clone(&self.function), matrices.stages);
+        let (function, stages) = (Arc::clone(&self.tables.function), matrices.stages);
         for (column, &(output, input)) in function.jacobian_pattern().entries.iter().enumerate() {
             for (variable, factor) in self.places(problem, stages, input as usize) {
                 match self.targets[output as usize] {
@@ -94,7 +78,7 @@ impl Sampled {
     }
 
     fn map_hessian(&mut self, problem: &Problem, matrices: &mut Matrices) {
-        let (function, stages) = (Arc::clone(&self.function), matrices.stages);
+        let (function, stages) = (Arc::clone(&self.tables.function), matrices.stages);
         for (column, &(a, b)) in function.hessian_pattern().entries.iter().enumerate() {
             let first = self.places(problem, stages, a as usize);
             let second = self.places(problem, stages, b as usize);
@@ -114,7 +98,7 @@ impl Sampled {
 
     /// The variables of the programme behind an input, with their factors.
     fn places(&self, problem: &Problem, stages: Stages, input: usize) -> Vec<(Repeated, f64)> {
-        let layout = self.function.layout();
+        let layout = self.tables.function.layout();
         let step = stages.variable_step();
         if let Some(parameter) = input.checked_sub(layout.parameters().start) {
             let unknown = problem.unknowns.iter().position(|unknown| unknown.parameter == parameter);
@@ -132,10 +116,10 @@ impl Sampled {
 
     /// Takes the states and controls from the variables of the programme.
     pub(super) fn load(&mut self, stages: Stages, v: &[f64]) {
-        let (layout, step) = (*self.function.layout(), stages.variable_step());
+        let (layout, step) = (*self.tables.function.layout(), stages.variable_step());
         for state in 0..layout.x {
             let (new, old) = (self.blend[state], 1.0 - self.blend[state]);
-            let target = self.points.column_mut(layout.t + state);
+            let target = self.tables.points.column_mut(layout.t + state);
             let here = v[state..].iter().step_by(step);
             let next = v[step + state..].iter().step_by(step);
             for (value, (x, x_next)) in target.iter_mut().zip(here.zip(next)) {
@@ -150,7 +134,7 @@ impl Sampled {
             }
         }
         for control in 0..layout.u {
-            let target = self.points.column_mut(layout.t + layout.x + control);
+            let target = self.tables.points.column_mut(layout.t + layout.x + control);
             let source = v[stages.states + control..].iter().step_by(step);
             target.iter_mut().zip(source).for_each(|(value, u)| *value = *u);
         }
@@ -158,10 +142,10 @@ impl Sampled {
 
     /// Adds the outputs to the rows; returns their part of the objective.
     pub(super) fn add_values(&mut self, stages: Stages, parameters: &[f64], rows: &mut [f64]) -> f64 {
-        self.function.value(&self.points, parameters, &mut self.values);
+        self.tables.evaluate(parameters);
         let mut objective = 0.0;
         for (output, target) in self.targets.iter().enumerate() {
-            let column = self.values.column(output);
+            let column = self.tables.values.column(output);
             match *target {
                 Target::Objective(scale) => objective += scale * column.iter().sum::<f64>(),
                 Target::Row(row, scale) => {
@@ -182,7 +166,7 @@ impl Sampled {
         multipliers: &[f64],
     ) {
         for (output, target) in self.targets.iter().enumerate() {
-            let column = self.multipliers.column_mut(output);
+            let column = self.tables.multipliers.column_mut(output);
             match *target {
                 Target::Objective(scale) => column.fill(weight * scale),
                 Target::Row(row, scale) => {
@@ -191,32 +175,18 @@ impl Sampled {
                 }
             }
         }
-        self.function.derivatives(
-            &self.points,
-            parameters,
-            &self.multipliers,
-            &mut self.values,
-            &mut self.jacobian,
-            &mut self.hessian,
-        );
+        self.tables.differentiate(parameters);
     }
 
     /// Adds the derivatives to the matrices of the programme.
     pub(super) fn scatter(&self, gradient: &mut [f64], jacobian: &mut [f64], hessian: &mut [f64]) {
-        for (table, moves, values) in
-            [(&self.jacobian, &self.row_moves, jacobian), (&self.hessian, &self.hessian_moves, hessian)]
-        {
-            for entry in moves {
-                let column = table.column(entry.column);
-                let target = &mut values[entry.target..][..column.len()];
-                target.iter_mut().zip(column).for_each(|(value, d)| *value += entry.coefficient * d);
-            }
-        }
+        scatter(&self.tables.jacobian, &self.row_moves, jacobian);
+        scatter(&self.tables.hessian, &self.hessian_moves, hessian);
         self.gradient_moves.iter().for_each(|entry| self.add_gradient(entry, gradient));
     }
 
     fn add_gradient(&self, (entry, step): &(Contribution, usize), gradient: &mut [f64]) {
-        for (k, d) in self.jacobian.column(entry.column).iter().enumerate() {
+        for (k, d) in self.tables.jacobian.column(entry.column).iter().enumerate() {
             gradient[entry.target + k * step] += entry.coefficient * d;
         }
     }
@@ -237,25 +207,22 @@ impl Sampled {
         self.differentiate(stages, parameters, 0.0, &vec![0.0; rows]);
         let place =
             |table: &Columns, column: usize| table.column(column).iter().position(|value| !value.is_finite());
-        let values = (0..self.values.columns()).filter_map(|i| Some((i, place(&self.values, i)?)));
-        let pattern = &self.function.jacobian_pattern().entries;
+        let values =
+            (0..self.tables.values.columns()).filter_map(|i| Some((i, place(&self.tables.values, i)?)));
+        let pattern = &self.tables.function.jacobian_pattern().entries;
         let slopes = pattern.iter().enumerate();
-        let slopes = slopes.filter_map(|(i, (row, _))| Some((*row as usize, place(&self.jacobian, i)?)));
+        let slopes =
+            slopes.filter_map(|(i, (row, _))| Some((*row as usize, place(&self.tables.jacobian, i)?)));
         if let Some(found) = values.chain(slopes).min_by_key(|(_, k)| *k) {
             return Some(found);
         }
         (0..self.targets.len()).find_map(|output| {
-            (0..self.targets.len()).for_each(|i| self.multipliers.column_mut(i).fill(0.0));
-            self.multipliers.column_mut(output).fill(1.0);
-            self.function.derivatives(
-                &self.points,
-                parameters,
-                &self.multipliers,
-                &mut self.values,
-                &mut self.jacobian,
-                &mut self.hessian,
-            );
-            (0..self.hessian.columns()).find_map(|i| place(&self.hessian, i)).map(|k| (output, k))
+            (0..self.targets.len()).for_each(|i| self.tables.multipliers.column_mut(i).fill(0.0));
+            self.tables.multipliers.column_mut(output).fill(1.0);
+            self.tables.differentiate(parameters);
+            (0..self.tables.hessian.columns())
+                .find_map(|i| place(&self.tables.hessian, i))
+                .map(|k| (output, k))
         })
     }
 }

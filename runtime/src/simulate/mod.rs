@@ -24,4 +24,4 @@ mod zeno;
 pub use controls::Controls;
 pub use result::{Candidate, Counts, Event, Kind, Options, Simulation, Status};
 pub use run::simulate;
-pub use system::{Jump, System};
+pub use system::{Jump, System, value};

@@ -4,6 +4,8 @@
 //! x' = f(t, x, u, p, s),   s_i in Sgn(psi_i(t, x, p)),   x+ = r_j(t, x-, p) where psi is crossed
 //! ```
 //!
+//! A system for sensitivities has the first and second derivatives of all functions by all their inputs, too.
+//!
 //! The last states are the integrals of the model, which start at 0; so the objective is a function of both ends.
 
 use crate::problem::{Columns, Function, Layout, Origin, Parameter, Surface, Variable};
@@ -51,6 +53,8 @@ pub struct System {
     pub start: Vec<f64>,
     /// `f` over `[t | x | u | p | s]` in real time; differentiated by `x` and `s`.
     pub flow: Arc<dyn Function>,
+    /// `psi' = psi_t + psi_x f`, with the inputs of `flow`; differentiated by `s`.
+    pub rates: Arc<dyn Function>,
     /// `psi`, with the inputs of `flow`; differentiated by `t` and `x`.
     pub guards: Arc<dyn Function>,
     /// `r`, with the inputs of `flow`, as many outputs as states for each jump; differentiated by `t` and `x`.
@@ -59,6 +63,10 @@ pub struct System {
     pub objective: Arc<dyn Function>,
     /// Guess of states, then controls, over normalised time `[tau | p]`.
     pub guess: Arc<dyn Function>,
+    /// First and last time over `[p]`.
+    pub interval_of: Arc<dyn Function>,
+    /// The state at the first time over `[p]`.
+    pub start_of: Arc<dyn Function>,
 }
 
 impl System {
@@ -74,7 +82,7 @@ impl System {
 }
 
 /// All outputs of a function at one point `[t | x | u | s]`.
-pub(super) fn value(function: &dyn Function, point: &[f64], parameters: &[f64]) -> Vec<f64> {
+pub fn value(function: &dyn Function, point: &[f64], parameters: &[f64]) -> Vec<f64> {
     let mut points = Columns::new(point.len(), 1);
     point.iter().enumerate().for_each(|(at, value)| points.column_mut(at)[0] = *value);
     let mut values = Columns::new(function.outputs(), 1);

@@ -2,7 +2,7 @@
 
 use super::decide::decide;
 use super::field::Mode;
-use super::locate::{Condition, Found};
+use super::locate::Condition;
 use super::result::{Event, Kind, Status};
 use super::run::Run;
 
@@ -10,11 +10,10 @@ use super::run::Run;
 const MOST_AT_ONCE: usize = 100;
 
 impl Run<'_> {
-    /// Goes to an event and beyond it.
-    pub fn handle(&mut self, found: Found) -> Result<(), Status> {
-        (self.t, self.x) = (found.time, found.state);
+    /// What follows where a condition ceases to hold.
+    pub fn handle(&mut self, condition: Condition) -> Result<(), Status> {
         self.record.point(self.t, &self.x);
-        match found.condition {
+        match condition {
             Condition::Leaves(surface) => {
                 self.field.rate(self.t, &self.x.clone());
                 let mode = if self.field.selectors[surface] > 0.0 { Mode::Above } else { Mode::Below };
@@ -185,6 +184,7 @@ impl Run<'_> {
 
     fn event(&mut self, surface: usize, kind: Kind, margin: f64) {
         let event = Event { time: self.t, surface, kind, margin, state: self.x.clone() };
+        self.tape.change(&mut self.field, &event);
         self.record.events.push(event);
         self.record.point(self.t, &self.x);
     }

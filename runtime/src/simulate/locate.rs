@@ -20,7 +20,8 @@ pub(super) enum Condition {
 /// An event, with the state there.
 pub(super) struct Found {
     pub condition: Condition,
-    pub time: f64,
+    /// How long the step is that ends there.
+    pub h: f64,
     pub state: Vec<f64>,
 }
 
@@ -186,5 +187,5 @@ fn refine(field: &mut Field, step: &Step, condition: Condition, theta: f64, opti
         (other, at_other) = (best, value);
         (best, state, value) = (next, next_state, next_value);
     }
-    Found { condition, time: step.t + best * step.h, state }
+    Found { condition, h: best * step.h, state }
 }

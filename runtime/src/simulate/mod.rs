@@ -19,9 +19,12 @@ mod run;
 mod step;
 mod system;
 mod tableau;
+mod tape;
 mod zeno;
 
 pub use controls::Controls;
-pub use result::{Candidate, Counts, Event, Kind, Options, Simulation, Status};
+pub use field::Mode;
+pub use result::{Candidate, Counts, Event, Kind, Method, Options, Simulation, Status};
 pub use run::simulate;
 pub use system::{Jump, System, value};
+pub use tape::{Cause, Change, Instant, Piece, Regime, Tape};

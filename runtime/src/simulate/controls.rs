@@ -26,7 +26,7 @@ impl Controls {
     }
 
     /// The place of the row that holds from a time on.
-    pub(super) fn index(&self, time: f64) -> Option<usize> {
+    pub(crate) fn index(&self, time: f64) -> Option<usize> {
         match self {
             Controls::Guess => None,
             Controls::Held { times, .. } => {
@@ -36,7 +36,7 @@ impl Controls {
     }
 
     /// A row.
-    pub(super) fn row(&self, index: Option<usize>) -> &[f64] {
+    pub(crate) fn row(&self, index: Option<usize>) -> &[f64] {
         match self {
             Controls::Guess => &[],
             Controls::Held { rows, .. } => index.and_then(|index| rows.get(index)).map_or(&[], Vec::as_slice),

@@ -18,10 +18,11 @@ mod result;
 mod run;
 mod step;
 mod system;
-mod tableau;
+pub(crate) mod tableau;
 mod tape;
 mod zeno;
 
+pub(crate) use complementarity::selectors;
 pub use controls::Controls;
 pub use field::Mode;
 pub use result::{Candidate, Counts, Event, Kind, Method, Options, Simulation, Status};

@@ -6,10 +6,11 @@
 //! set NAME = VALUE                  a `param` or a `free`
 //! of EXPRESSION                     the model's own objective if left out
 //! by PARAM = VALUE                  or STATE(start)
+//! second PARAM PARAM = VALUE        a second derivative
 //! ```
 
 use fdcc_compiler::compile_sensitivities;
-use fdcc_runtime::sensitivity::{Quantity, Sensitivity, gradient};
+use fdcc_runtime::sensitivity::{Quantity, Sensitivity, gradient, hessian};
 use fdcc_runtime::simulate::{Controls, Options, System};
 use fdcc_tests::documents;
 use fdcc_tests::models::meaning;
@@ -24,6 +25,7 @@ struct Case<'t> {
     set: Vec<(&'t str, &'t str)>,
     of: Option<&'t str>,
     by: Vec<(&'t str, f64)>,
+    second: Vec<([&'t str; 2], f64)>,
 }
 
 fn cases(text: &str) -> Vec<Case<'_>> {
@@ -44,6 +46,10 @@ fn read<'t>(line: &'t str, case: &mut Case<'t>) -> Option<()> {
         ("of", None) => case.of = Some(rest),
         ("set", Some(change)) => case.set.push(change),
         ("by", Some((name, value))) => case.by.push((name, value.parse().ok()?)),
+        ("second", Some((names, value))) => {
+            let (a, b) = names.split_once(' ')?;
+            case.second.push(([a, b], value.parse().ok()?));
+        }
         _ => return None,
     }
     Some(())
@@ -90,18 +96,25 @@ fn differentiated(text: &str, case: &Case) -> (System, Sensitivity) {
 /// A model has one objective: the last that is written.
 fn without_earlier_objective(text: &str) -> String {
     let is_objective = |line: &&str| line.starts_with("minimize ");
-    let last = text.lines().filter(is_objective).next_back().unwrap_or_default();
+    let last = text.lines().rfind(is_objective).unwrap_or_default();
     let kept = text.lines().filter(|line| !is_objective(line) || *line == last);
     kept.collect::<Vec<_>>().join("\n")
 }
 
 fn check(name: &str, text: &str, case: &Case) {
-    let (_, found) = differentiated(text, case);
+    let (system, found) = differentiated(text, case);
     let name = format!("{name}, {}", case.title);
     assert!(found.agreement <= AGREEMENT, "{name}: forward {:?}, adjoint {:?}", found.forward, found.adjoint);
     for ((by, expected), got) in case.by.iter().zip(&found.forward) {
         let error = (got - expected).abs();
         assert!(error <= TOLERANCE * expected.abs().max(1.0), "{name}: by {by} {got}, not {expected}");
+    }
+    for (names, expected) in &case.second {
+        let quantities = names.map(|name| quantity(&system, name));
+        let hessian = hessian(&system, &Controls::Guess, &found.simulation, &quantities);
+        let got = hessian.expect("it does not come to rest")[0][1];
+        let error = (got - expected).abs();
+        assert!(error <= TOLERANCE * expected.abs().max(1.0), "{name}: by {names:?} {got}, not {expected}");
     }
 }
 

@@ -7,11 +7,14 @@
 //! A step is differentiated as it was computed ([`step`](self)), an event by its saltation matrix, sliding with the oblique
 //! projection. [`gradient()`] is the entry.
 
+mod bend;
+mod curvature;
 mod first_order;
 mod gradient;
 mod linearization;
 mod quantity;
 mod reset;
+mod second_order;
 mod step;
 mod stop;
 mod surface;
@@ -19,3 +22,4 @@ mod sweep;
 
 pub use gradient::{Sensitivity, gradient};
 pub use quantity::Quantity;
+pub use second_order::hessian;

@@ -13,6 +13,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// The projection at one state.
 pub(super) struct Projection {
+    /// On which the state slides.
+    pub surfaces: Vec<usize>,
     /// `D (d D)^-1`.
     along: DMatrix<f64>,
     /// `d`.
@@ -38,11 +40,16 @@ impl Projection {
         let by_inputs = by.columns(1 + layout.x, layout.u + layout.p).into_owned();
         let directions = point.by_selectors.select_columns(&sliding);
         let inverse = (&normals * &directions).try_inverse()?;
-        Some(Projection { along: directions * inverse, normals, by_inputs })
+        Some(Projection { surfaces: sliding, along: directions * inverse, normals, by_inputs })
     }
 
     pub fn forward(&self, s: &DMatrix<f64>, w: &DMatrix<f64>) -> DMatrix<f64> {
         s - &self.along * (&self.normals * s + &self.by_inputs * w)
+    }
+
+    /// Moves a second derivative back to the surface, given `psi_zz` of the sliding surfaces along its pair of directions.
+    pub fn correct(&self, x: &DVector<f64>, bent: &DVector<f64>) -> DVector<f64> {
+        x - &self.along * (&self.normals * x + bent)
     }
 
     /// The adjoint before the projection and the derivative by `(u, p)`.

@@ -98,9 +98,13 @@ impl Run<'_> {
         let margin = self.margin(surface);
         self.x = self.field.reset(jump, self.t, &self.x);
         self.jumps[jump] += 1;
-        let back = if of.is_falling { Mode::Above } else { Mode::Below };
+        let sides = [Mode::Above, Mode::Below];
+        let [back, onward] = if of.is_falling { sides } else { [sides[1], sides[0]] };
         self.field.set_mode(surface, back);
         self.find_sides();
+        if self.goes_through(surface, onward) {
+            self.field.set_mode(surface, onward);
+        }
         self.event(surface, Kind::Jump(jump), margin);
         let is_last = of.at_most.is_some_and(|limit| self.jumps[jump] as f64 >= limit);
         if let Some(held) = of.then_hold.filter(|_| is_last) {
@@ -112,6 +116,20 @@ impl Run<'_> {
             Some(limit) => self.piled_up(jump, limit),
             None => Ok(()),
         }
+    }
+
+    /// Whether a state that is still on a surface after a reset moves on to the other side, whichever field acts.
+    fn goes_through(&mut self, surface: usize, onward: Mode) -> bool {
+        if !self.surfaces_here().contains(&surface) {
+            return false;
+        }
+        let normals = self.field.normals(self.t, &self.x);
+        let mut selectors = self.field.selectors.clone();
+        [-1.0, 1.0].into_iter().all(|side| {
+            selectors[surface] = side;
+            let (rate, _) = self.field.with_selectors(self.t, &self.x, &selectors);
+            onward.side() * normals.rate(surface, &rate) > 1e4 * normals.noise(surface, &rate)
+        })
     }
 
     /// Gives every surface that the state is not on the side of the state.

@@ -10,7 +10,7 @@ use super::quantity::{Directions, Gradient};
 use super::stop::Timing;
 use super::sweep::LinearPiece;
 use crate::problem::Columns;
-use crate::simulate::{Instant, Piece, Simulation, Tape};
+use crate::simulate::{Instant, Piece, Regime, Simulation, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 /// The objective at the ends of a simulation, linearised.
@@ -42,12 +42,7 @@ impl Objective {
 
 /// The last instant of a tape.
 pub(super) fn last_instant(tape: &Tape) -> Option<Instant> {
-    match tape.pieces.last()? {
-        Piece::Step { start, h, end, .. } => {
-            Some(Instant { time: start.time + h, state: end.clone(), ..start.clone() })
-        }
-        Piece::Stop { after, .. } => Some(after.clone()),
-    }
+    tape.pieces.last().map(Piece::end)
 }
 
 /// `dx(t0)` in each direction.
@@ -55,19 +50,13 @@ pub(super) fn start(linearizer: &Linearizer, directions: &Directions) -> DMatrix
     linearizer.start_by_parameters() * &directions.parameters + &directions.starts
 }
 
-/// `dx(T)` in each direction, along the tape; `visit` sees `S` after every piece.
-pub(super) fn forward(
-    linearizer: &Linearizer,
-    tape: &Tape,
-    directions: &Directions,
-    visit: &mut dyn FnMut(usize, &DMatrix<f64>),
-) -> DMatrix<f64> {
+/// `dx(T)` in each direction, along the tape.
+pub(super) fn forward(linearizer: &Linearizer, tape: &Tape, directions: &Directions) -> DMatrix<f64> {
     let mut s = start(linearizer, directions);
     for at in 0..tape.pieces.len() {
         s = LinearPiece::new(linearizer, tape, at).forward(&s, &|regime| directions.inputs(regime));
-        visit(at, &s);
     }
-    s + end_shift(linearizer, tape) * directions.parameters.clone()
+    s + end_shift(linearizer, tape) * &directions.parameters
 }
 
 /// `f T_p`: how the state at the end moves because the end does.
@@ -107,13 +96,13 @@ pub(super) fn size(
     sizes.iter().copied().fold(0.0, f64::max)
 }
 
-/// The whole gradient, backward; `visit` sees the adjoint before every piece.
+/// The whole gradient, backward; `visit` sees the adjoint at the end of every piece, then that at the first time.
 pub(super) fn adjoint(
     linearizer: &Linearizer,
     tape: &Tape,
     objective: &Objective,
     mut gradient: Gradient,
-    visit: &mut dyn FnMut(usize, &DVector<f64>),
+    visit: &mut dyn FnMut(Option<usize>, &DVector<f64>),
 ) -> Gradient {
     let controls = linearizer.system.layout.u;
     let mut lambda: DVector<f64> = objective.by_end.transpose();
@@ -121,11 +110,14 @@ pub(super) fn adjoint(
     gradient.parameters.iter_mut().zip(at_end.iter()).for_each(|(sum, value)| *sum += value);
     for at in (0..tape.pieces.len()).rev() {
         let piece = LinearPiece::new(linearizer, tape, at);
-        lambda = piece.adjoint(&lambda, &mut |regime, by| {
+        let mut add = |regime: &Regime, by: &DVector<f64>| {
             gradient.add_inputs(regime, controls, by.iter().copied());
-        });
-        visit(at, &lambda);
+        };
+        lambda = piece.unproject(lambda, &mut add);
+        visit(Some(at), &lambda);
+        lambda = piece.adjoint(&lambda, &mut add);
     }
+    visit(None, &lambda);
     let by_start = lambda + objective.by_start.transpose();
     gradient.starts.iter_mut().zip(by_start.iter()).for_each(|(sum, value)| *sum += value);
     let through_start = linearizer.start_by_parameters().tr_mul(&by_start);

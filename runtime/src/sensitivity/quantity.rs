@@ -2,6 +2,7 @@
 
 use crate::simulate::{Controls, Regime, System};
 use nalgebra::DMatrix;
+use std::collections::BTreeMap;
 
 /// A number that a derivative can be taken by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,44 +20,63 @@ pub enum Quantity {
     },
 }
 
-/// One column for each quantity.
-pub(super) struct Directions<'q> {
-    quantities: &'q [Quantity],
-    controls: usize,
+/// Directions in the space of all quantities, one column each.
+pub(super) struct Directions {
+    count: usize,
+    control_count: usize,
     /// `dp`.
     pub parameters: DMatrix<f64>,
     /// The part of `dx(t0)` that does not come from parameters.
     pub starts: DMatrix<f64>,
+    /// `(control, direction, amount)` for the rows in which some control moves.
+    controls: BTreeMap<usize, Vec<(usize, usize, f64)>>,
 }
 
-impl<'q> Directions<'q> {
-    pub fn new(system: &System, quantities: &'q [Quantity]) -> Self {
-        let mut parameters = DMatrix::zeros(system.layout.p, quantities.len());
-        let mut starts = DMatrix::zeros(system.layout.x, quantities.len());
-        for (column, quantity) in quantities.iter().enumerate() {
-            match *quantity {
-                Quantity::Parameter(at) => parameters[(at, column)] = 1.0,
-                Quantity::Start(at) => starts[(at, column)] = 1.0,
-                Quantity::Control { .. } => {}
+impl Directions {
+    /// Each quantity alone.
+    pub fn each(system: &System, quantities: &[Quantity]) -> Self {
+        Self::new(system, quantities, &DMatrix::identity(quantities.len(), quantities.len()))
+    }
+
+    /// Sums of the quantities, weighted by the columns of a matrix.
+    pub fn new(system: &System, quantities: &[Quantity], weights: &DMatrix<f64>) -> Self {
+        let count = weights.ncols();
+        let mut directions = Directions {
+            count,
+            control_count: system.layout.u,
+            parameters: DMatrix::zeros(system.layout.p, count),
+            starts: DMatrix::zeros(system.layout.x, count),
+            controls: BTreeMap::new(),
+        };
+        for (quantity, weights) in quantities.iter().zip(weights.row_iter()) {
+            for (column, &weight) in weights.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
+                directions.add(quantity, column, weight);
             }
         }
-        Directions { quantities, controls: system.layout.u, parameters, starts }
+        directions
+    }
+
+    fn add(&mut self, quantity: &Quantity, column: usize, weight: f64) {
+        match *quantity {
+            Quantity::Parameter(at) => self.parameters[(at, column)] += weight,
+            Quantity::Start(at) => self.starts[(at, column)] += weight,
+            Quantity::Control { row, control } => {
+                self.controls.entry(row).or_default().push((control, column, weight));
+            }
+        }
     }
 
     pub fn count(&self) -> usize {
-        self.quantities.len()
+        self.count
     }
 
     /// `d(u, p)` in a regime.
     pub fn inputs(&self, regime: &Regime) -> DMatrix<f64> {
-        let mut inputs = DMatrix::zeros(self.controls + self.parameters.nrows(), self.count());
-        inputs.rows_mut(self.controls, self.parameters.nrows()).copy_from(&self.parameters);
-        for (column, quantity) in self.quantities.iter().enumerate() {
-            if let Quantity::Control { row, control } = *quantity
-                && regime.row == Some(row)
-            {
-                inputs[(control, column)] = 1.0;
-            }
+        let mut inputs = DMatrix::zeros(self.control_count + self.parameters.nrows(), self.count);
+        inputs.rows_mut(self.control_count, self.parameters.nrows()).copy_from(&self.parameters);
+        let moved = regime.row.and_then(|row| self.controls.get(&row));
+        for &(control, column, weight) in moved.into_iter().flatten() {
+            inputs[(control, column)] += weight;
         }
         inputs
     }

@@ -37,7 +37,7 @@ pub fn hessian(
     let linearizer = Linearizer::new(system, controls);
     let tape = simulation.tape.as_ref().filter(|tape| !comes_to_rest(tape))?;
     let objective = Objective::new(&linearizer, simulation)?;
-    let directions = Directions::new(system, quantities);
+    let directions = Directions::each(system, quantities);
     let mut second = Second::new(&linearizer, tape, &directions);
     (0..tape.pieces.len()).for_each(|at| second.pass(at));
     let matrix = second.of_objective(&objective, simulation);
@@ -52,13 +52,13 @@ fn comes_to_rest(tape: &Tape) -> bool {
 struct Second<'t> {
     linearizer: &'t Linearizer<'t>,
     tape: &'t Tape,
-    directions: &'t Directions<'t>,
+    directions: &'t Directions,
     s: DMatrix<f64>,
     x: Pairs,
 }
 
 impl<'t> Second<'t> {
-    fn new(linearizer: &'t Linearizer<'t>, tape: &'t Tape, directions: &'t Directions<'t>) -> Self {
+    fn new(linearizer: &'t Linearizer<'t>, tape: &'t Tape, directions: &'t Directions) -> Self {
         let s = first_order::start(linearizer, directions);
         let parameters = |i: usize| directions.parameters.column(i).into_owned();
         let x =
@@ -92,7 +92,7 @@ impl<'t> Second<'t> {
             _ => unreachable!("a piece and its linear map are of the same kind"),
         }
         if let Some(projection) = &piece.projection {
-            let end = instant_after(&self.tape.pieces[at]);
+            let end = self.tape.pieces[at].end();
             self.project(projection, piece.regime_after, &end);
         }
     }
@@ -176,14 +176,5 @@ impl<'t> Second<'t> {
         let bend = Bend { linearizer: self.linearizer, tape: self.tape, stop: &stop, tau: &tau };
         let moved = bend.meet(&self.s, &self.x, &self.directions_at(regime, &self.s));
         (start, moved.s, moved.x)
-    }
-}
-
-fn instant_after(piece: &Piece) -> Instant {
-    match piece {
-        Piece::Step { start, h, end, .. } => {
-            Instant { time: start.time + h, state: end.clone(), ..start.clone() }
-        }
-        Piece::Stop { after, .. } => after.clone(),
     }
 }

@@ -30,15 +30,12 @@ impl<'t> LinearPiece<'t> {
     pub fn new(linearizer: &Linearizer, tape: &'t Tape, at: usize) -> Self {
         let regime = |instant: &Instant| &tape.regimes[instant.regime];
         match &tape.pieces[at] {
-            Piece::Step { start, h, end, .. } => {
-                let after = Instant { time: start.time + h, state: end.clone(), ..start.clone() };
-                LinearPiece {
-                    map: Map::Step(LinearStep::new(linearizer, regime(start), start, *h)),
-                    regime: regime(start),
-                    regime_after: regime(start),
-                    projection: Projection::new(linearizer, regime(start), &after),
-                }
-            }
+            Piece::Step { start, h, .. } => LinearPiece {
+                map: Map::Step(LinearStep::new(linearizer, regime(start), start, *h)),
+                regime: regime(start),
+                regime_after: regime(start),
+                projection: Projection::new(linearizer, regime(start), &tape.pieces[at].end()),
+            },
             Piece::Stop { cause, before, after, changes } => {
                 let stop = StopOnTape { cause: *cause, before, after, changes };
                 LinearPiece {
@@ -64,17 +61,24 @@ impl<'t> LinearPiece<'t> {
         }
     }
 
-    /// The adjoint before the piece; what the inputs contribute goes to `add`, with the regime in which they act.
+    /// The adjoint on the surfaces, in the canonical gauge, from the one after the piece. What inputs contribute goes to
+    /// `add`, with the regime in which they act.
+    pub fn unproject(
+        &self,
+        after: DVector<f64>,
+        add: &mut dyn FnMut(&Regime, &DVector<f64>),
+    ) -> DVector<f64> {
+        let Some(projection) = &self.projection else { return after };
+        let (before, inputs) = projection.adjoint(&after);
+        add(self.regime_after, &inputs);
+        before
+    }
+
+    /// The adjoint before the piece, from the one before the projection.
     pub fn adjoint(&self, after: &DVector<f64>, add: &mut dyn FnMut(&Regime, &DVector<f64>)) -> DVector<f64> {
-        let mut lambda = after.clone();
-        if let Some(projection) = &self.projection {
-            let (before, inputs) = projection.adjoint(&lambda);
-            add(self.regime_after, &inputs);
-            lambda = before;
-        }
         let (before, inputs) = match &self.map {
-            Map::Step(step) => step.adjoint(&lambda),
-            Map::Stop(stop) => stop.adjoint(&lambda),
+            Map::Step(step) => step.adjoint(after),
+            Map::Stop(stop) => stop.adjoint(after),
         };
         add(self.regime, &inputs);
         before

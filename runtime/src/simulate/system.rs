@@ -75,6 +75,15 @@ impl System {
         self.parameters.iter().map(|parameter| parameter.value).collect()
     }
 
+    /// The same system with other parameters, its interval and its start computed anew.
+    pub fn with_parameters(&self, values: &[f64]) -> Self {
+        let mut other = self.clone();
+        other.parameters.iter_mut().zip(values).for_each(|(parameter, value)| parameter.value = *value);
+        other.start = value(&*self.start_of, &[], values);
+        other.interval.copy_from_slice(&value(&*self.interval_of, &[], values));
+        other
+    }
+
     /// The guess of states, then controls, at a normalised time.
     pub fn guessed(&self, tau: f64) -> Vec<f64> {
         value(&*self.guess, &[tau], &self.parameter_values())

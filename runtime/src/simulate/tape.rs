@@ -68,6 +68,18 @@ pub enum Piece {
     },
 }
 
+impl Piece {
+    /// What comes after it.
+    pub fn end(&self) -> Instant {
+        match self {
+            Piece::Step { start, h, end, .. } => {
+                Instant { time: start.time + h, state: end.clone(), ..start.clone() }
+            }
+            Piece::Stop { after, .. } => after.clone(),
+        }
+    }
+}
+
 /// Why there is a stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {

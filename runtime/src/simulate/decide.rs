@@ -92,14 +92,23 @@ impl Corner<'_, '_> {
         let sides = |number: usize| -> Vec<i8> {
             (0..size).map(|at| [1, -1, 0][number / 3_usize.pow(at as u32) % 3]).collect()
         };
-        let mut found: Vec<Vec<i8>> =
-            (0..count).map(sides).filter(|sides| self.is_consistent(sides)).collect();
-        if let [only] = found.as_mut_slice() {
+        let found: Vec<Vec<i8>> = (0..count).map(sides).filter(|sides| self.is_consistent(sides)).collect();
+        if let [only] = found.as_slice()
+            && self.attracts(only)
+        {
             return Ok(only.iter().copied().map(mode).collect());
         }
         let named = |sides: Vec<i8>| Candidate { sides: self.surfaces.iter().copied().zip(sides).collect() };
         let candidates = found.into_iter().map(named).collect();
         Err(Status::NotUnique { surface: self.surfaces[0], candidates })
+    }
+
+    /// Whether the surfaces that are held attract. Where several are held and do not, the state may also leave on a spiral,
+    /// which is no combination of sides.
+    fn attracts(&mut self, sides: &[i8]) -> bool {
+        let held: Vec<usize> = (0..sides.len()).filter(|&i| sides[i] == 0).collect();
+        let s = DVector::from_iterator(sides.len(), sides.iter().map(|side| f64::from(*side)));
+        held.len() < 2 || is_p_matrix(&self.rates(&s).1.select_rows(&held).select_columns(&held))
     }
 
     /// Whether the state can go on with these sides.

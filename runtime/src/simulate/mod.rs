@@ -7,15 +7,19 @@
 //! In every mode each selector is -1, +1 or an unknown that keeps its surface at 0 (sliding). [`simulate`] is the
 //! loop. Where the continuation is not unique it stops and says so; it never chooses.
 
+mod advance;
 mod complementarity;
 mod controls;
 mod decide;
 mod events;
+mod explicit;
 mod field;
 mod locate;
+mod memory;
 mod record;
 mod result;
 mod run;
+mod samples;
 mod step;
 mod system;
 pub(crate) mod tableau;

@@ -19,10 +19,18 @@ pub struct Options {
 }
 
 /// A method for one step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
     /// The explicit pair of Dormand and Prince.
+    #[default]
     Explicit,
+}
+
+impl Options {
+    /// The tolerance of a component that is `before` and `after` a step.
+    pub(super) fn scale(&self, before: f64, after: f64) -> f64 {
+        self.atol + self.rtol * before.abs().max(after.abs())
+    }
 }
 
 impl Default for Options {

@@ -1,69 +1,84 @@
-//! One step of the Runge-Kutta pair, and the state at any time inside it.
+//! One step in one mode, and the state at any time inside it.
+//!
+//! ```text
+//! x(t + theta h) = x0 + theta (a + (1 - theta) (b + theta (c + (1 - theta) d)))
+//! ```
 
+use super::explicit::{self, STAGES};
 use super::field::Field;
-use super::result::Options;
-use super::tableau::{A, C, DENSE, ERROR, STAGES};
+use super::result::{Method, Options};
 
-/// A step from `t` to `t + h` in one mode.
+/// A step from `t` to `t + h`. Its memory is used again for the next.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Step {
     pub t: f64,
     pub h: f64,
     pub start: Vec<f64>,
     pub end: Vec<f64>,
+    pub method: Method,
     /// In units of the tolerance; infinite if something on the way has no value.
     pub error: f64,
-    /// Coefficients of the continuous extension.
-    dense: [Vec<f64>; 4],
+    /// Coefficients `a`, `b`, `c`, `d` of the continuous extension.
+    pub dense: [Vec<f64>; 4],
+    /// The right side at each stage; the first at the start.
+    pub stages: [Vec<f64>; STAGES],
+    /// Where the last stage but one is.
+    pub near_end: Vec<f64>,
 }
 
 impl Step {
-    /// Takes a step.
+    pub fn new(states: usize) -> Self {
+        let zeros = || vec![0.0; states];
+        Step {
+            t: 0.0,
+            h: 0.0,
+            start: zeros(),
+            end: zeros(),
+            method: Method::Explicit,
+            error: f64::INFINITY,
+            dense: std::array::from_fn(|_| zeros()),
+            stages: std::array::from_fn(|_| zeros()),
+            near_end: zeros(),
+        }
+    }
+
+    /// Takes a single step.
     pub fn take(field: &mut Field, t: f64, x: &[f64], h: f64, options: &Options) -> Self {
-        let stages = stages(field, t, x, h);
-        let end = combine(x, h, &stages, &A[STAGES - 1]);
-        let error = error(x, &end, h, &stages, options);
-        let dense = dense(x, &end, h, &stages);
-        Step { t, h, start: x.to_vec(), end, error, dense }
+        let mut step = Step::new(x.len());
+        step.begin(field, t, x);
+        step.attempt(field, h, options);
+        step
+    }
+
+    /// The next step starts anew.
+    pub fn begin(&mut self, field: &mut Field, t: f64, x: &[f64]) {
+        self.t = t;
+        self.start.copy_from_slice(x);
+        field.rate_into(t, x, &mut self.stages[0]);
+    }
+
+    /// The next step continues this one, whose last stage is its first.
+    pub fn follow(&mut self, t: f64, x: &[f64]) {
+        self.t = t;
+        self.start.copy_from_slice(x);
+        self.stages.swap(0, STAGES - 1);
+    }
+
+    /// Takes the step, with this length.
+    pub fn attempt(&mut self, field: &mut Field, h: f64, options: &Options) {
+        self.h = h;
+        explicit::attempt(self, field, options);
     }
 
     /// The state at `t + theta h`.
     pub fn at(&self, theta: f64) -> Vec<f64> {
+        (0..self.start.len()).map(|i| self.component(i, theta)).collect()
+    }
+
+    /// A component of the state at `t + theta h`.
+    pub fn component(&self, i: usize, theta: f64) -> f64 {
         let rest = 1.0 - theta;
         let [a, b, c, d] = &self.dense;
-        let value = |i: usize| self.start[i] + theta * (a[i] + rest * (b[i] + theta * (c[i] + rest * d[i])));
-        (0..self.start.len()).map(value).collect()
+        self.start[i] + theta * (a[i] + rest * (b[i] + theta * (c[i] + rest * d[i])))
     }
-}
-
-/// All stages; the last is at the end of the step.
-fn stages(field: &mut Field, t: f64, x: &[f64], h: f64) -> Vec<Vec<f64>> {
-    let mut stages: Vec<Vec<f64>> = Vec::with_capacity(STAGES);
-    for stage in 0..STAGES {
-        let at = combine(x, h, &stages, &A[stage]);
-        let rate = field.rate(t + C[stage] * h, &at);
-        stages.push(rate);
-    }
-    stages
-}
-
-fn combine(x: &[f64], h: f64, stages: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
-    let sum = |i: usize| stages.iter().zip(weights).map(|(stage, weight)| weight * stage[i]).sum::<f64>();
-    x.iter().enumerate().map(|(i, x)| x + h * sum(i)).collect()
-}
-
-/// The largest error of a component in units of its tolerance.
-fn error(x: &[f64], end: &[f64], h: f64, stages: &[Vec<f64>], options: &Options) -> f64 {
-    let error = combine(&vec![0.0; x.len()], h, stages, &ERROR);
-    let scaled = |i: usize| error[i].abs() / (options.atol + options.rtol * x[i].abs().max(end[i].abs()));
-    let is_finite = stages.iter().flatten().chain(end).all(|value| value.is_finite());
-    if is_finite { (0..x.len()).map(scaled).fold(0.0, f64::max) } else { f64::INFINITY }
-}
-
-fn dense(x: &[f64], end: &[f64], h: f64, stages: &[Vec<f64>]) -> [Vec<f64>; 4] {
-    let size = x.len();
-    let a: Vec<f64> = (0..size).map(|i| end[i] - x[i]).collect();
-    let b: Vec<f64> = (0..size).map(|i| h * stages[0][i] - a[i]).collect();
-    let c: Vec<f64> = (0..size).map(|i| a[i] - h * stages[STAGES - 1][i] - b[i]).collect();
-    let d = combine(&vec![0.0; size], h, stages, &DENSE);
-    [a, b, c, d]
 }

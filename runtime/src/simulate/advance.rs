@@ -3,7 +3,7 @@
 use super::complementarity::is_p_matrix;
 use super::field::surface_rates;
 use super::locate;
-use super::result::Status;
+use super::result::{Integrator, Method, Status};
 use super::run::Run;
 use super::step::Step;
 use super::tape::Cause;
@@ -15,13 +15,60 @@ pub(super) struct Pace {
     pub h: f64,
     /// Whether the next step continues the last one in the same mode.
     pub is_continued: bool,
+    /// Which method takes the next step.
+    method: Method,
+    /// How many steps of the explicit method in a row were as long as its stability allows, and how many not since.
+    at_border: usize,
+    off_border: usize,
     /// The last step.
     step: Step,
 }
 
+/// The explicit pair is stable up to about 3.3.
+const BORDER: f64 = 3.25;
+
+/// So many steps at the border, not interrupted by so many off it, make a system stiff.
+const STIFF_AFTER: usize = 15;
+const NOT_STIFF_AFTER: usize = 6;
+
+/// Below this the explicit pair takes steps of the same length without any doubt.
+const NOT_STIFF: f64 = 1.0;
+
 impl Pace {
-    pub fn new(states: usize) -> Self {
-        Pace { h: 0.0, is_continued: false, step: Step::new(states) }
+    pub fn new(states: usize, integrator: Integrator) -> Self {
+        let method = match integrator {
+            Integrator::Automatic | Integrator::Explicit => Method::Explicit,
+            Integrator::Stiff => Method::Stiff,
+        };
+        let step = Step::new(states);
+        Pace { h: 0.0, is_continued: false, method, at_border: 0, off_border: 0, step }
+    }
+
+    /// Chooses the method of the next step by what the last one says of stiffness.
+    fn choose(&mut self, step: &Step) {
+        let stiffness = step.stiffness();
+        let is_at_border = stiffness > BORDER;
+        self.at_border += usize::from(is_at_border);
+        self.off_border = if is_at_border { 0 } else { self.off_border + 1 };
+        match self.method {
+            Method::Explicit if self.off_border >= NOT_STIFF_AFTER => self.at_border = 0,
+            Method::Explicit if self.at_border >= STIFF_AFTER => self.method = Method::Stiff,
+            Method::Stiff if stiffness < NOT_STIFF => (self.method, self.at_border) = (Method::Explicit, 0),
+            Method::Explicit | Method::Stiff => {}
+        }
+    }
+}
+
+/// How much shorter or longer a step with some error should be.
+fn factor(step: &Step) -> f64 {
+    let order = match step.method {
+        Method::Explicit => 5.0,
+        Method::Stiff => 4.0,
+    };
+    if step.error.is_finite() {
+        (0.9 * step.error.max(1e-10).powf(-1.0 / order)).clamp(0.1, 5.0)
+    } else {
+        0.1
     }
 }
 
@@ -58,6 +105,10 @@ impl Run<'_> {
         let rest = stop - self.t;
         self.accepted(step, rest)?;
         self.counts.steps += 1;
+        self.counts.stiff += usize::from(step.method == Method::Stiff);
+        if self.options.integrator == Integrator::Automatic {
+            self.pace.choose(step);
+        }
         if let Some(found) = locate::first(&mut self.field, step, self.options) {
             self.go(step, [step.t + found.h, found.h], &found.state);
             return self.stop(found.condition.into(), |run| run.handle(found.condition));
@@ -80,7 +131,8 @@ impl Run<'_> {
 
     /// Goes to the state at a time, `h` after the beginning of a step.
     fn go(&mut self, step: &Step, [time, h]: [f64; 2], end: &[f64]) {
-        self.record.inside(step, time);
+        let (field, options) = (&mut self.field, self.options);
+        self.record.inside(time, &mut |wanted| step.exactly_at(field, (wanted - step.t).max(0.0), options));
         self.t = time;
         self.x.copy_from_slice(end);
         self.field.project(self.t, &mut self.x);
@@ -95,19 +147,14 @@ impl Run<'_> {
         // Two steps of equal length are better than a long and a very short one.
         let mut h = if wanted >= rest * (1.0 - 1e-12) { rest } else { wanted.min(0.5 * rest) };
         let mut is_short = h < wanted;
-        if self.pace.is_continued {
-            step.follow(self.t, &self.x);
-        } else {
-            step.begin(&mut self.field, self.t, &self.x);
-        }
+        step.begin(&mut self.field, self.t, &self.x, self.pace.method, self.pace.is_continued);
         let selectors = self.field.selectors.clone();
         loop {
             if self.counts.steps + self.counts.rejected >= self.options.max_steps {
                 return Err(Status::StepLimit);
             }
             step.attempt(&mut self.field, h, self.options);
-            let factor = if step.error.is_finite() { 0.9 * step.error.max(1e-10).powf(-0.2) } else { 0.1 };
-            let next = h * factor.clamp(0.1, 5.0);
+            let next = h * factor(step);
             if step.error <= 1.0 {
                 // A step that a stop made short says nothing against long ones.
                 self.pace.h = if is_short { next.max(wanted) } else { next };

@@ -45,7 +45,8 @@ fn error(step: &Step, options: &Options) -> f64 {
 
 /// The continuous extension.
 fn extend(step: &mut Step) {
-    let [a, b, c, d] = &mut step.dense;
+    step.extension.start.copy_from_slice(&step.start);
+    let [a, b, c, d] = &mut step.extension.dense;
     let (h, stages) = (step.h, &step.stages);
     for i in 0..step.start.len() {
         a[i] = step.end[i] - step.start[i];

@@ -197,6 +197,27 @@ impl<'a> Field<'a> {
         self.derivatives(t, x, &selectors, self.system.layout.states()).1
     }
 
+    /// The derivative of the right side in the current mode, in which the selectors of sliding surfaces follow the state:
+    /// `f_x + f_s s_x` with `psi'_s s_x = -psi'_x`.
+    pub fn jacobian_of_mode(&mut self, t: f64, x: &[f64]) -> DMatrix<f64> {
+        let (states, selectors) = (self.system.layout.states(), self.system.layout.selectors());
+        let now = self.selectors_at(t, x);
+        let (_, by_inputs) = self.derivatives(t, x, &now, 0..selectors.end);
+        let by_state = by_inputs.columns(states.start, states.len()).into_owned();
+        let sliding = self.sliding();
+        if sliding.is_empty() {
+            return by_state;
+        }
+        let (_, rates) = self.jacobian(&*self.system.rates, 0..selectors.end);
+        let rates = rates.select_rows(&sliding);
+        let places: Vec<usize> = sliding.iter().map(|&i| selectors.start + i).collect();
+        let follows = rates.select_columns(&places).lu().solve(&rates.columns(states.start, states.len()));
+        match follows {
+            Some(follows) => by_state - by_inputs.select_columns(&places) * follows,
+            None => by_state,
+        }
+    }
+
     fn derivatives(
         &mut self,
         t: f64,

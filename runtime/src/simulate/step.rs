@@ -6,7 +6,29 @@
 
 use super::explicit::{self, STAGES};
 use super::field::Field;
+use super::radau::{self, Newton};
 use super::result::{Method, Options};
+
+/// The state inside a step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Extension {
+    pub start: Vec<f64>,
+    /// Coefficients `a`, `b`, `c`, `d`.
+    pub dense: [Vec<f64>; 4],
+}
+
+impl Extension {
+    fn new(states: usize) -> Self {
+        Extension { start: vec![0.0; states], dense: std::array::from_fn(|_| vec![0.0; states]) }
+    }
+
+    /// A component at a part of the step, or beyond it.
+    pub fn component(&self, i: usize, theta: f64) -> f64 {
+        let rest = 1.0 - theta;
+        let [a, b, c, d] = &self.dense;
+        self.start[i] + theta * (a[i] + rest * (b[i] + theta * (c[i] + rest * d[i])))
+    }
+}
 
 /// A step from `t` to `t + h`. Its memory is used again for the next.
 #[derive(Clone, Debug, Default)]
@@ -18,12 +40,13 @@ pub(super) struct Step {
     pub method: Method,
     /// In units of the tolerance; infinite if something on the way has no value.
     pub error: f64,
-    /// Coefficients `a`, `b`, `c`, `d` of the continuous extension.
-    pub dense: [Vec<f64>; 4],
-    /// The right side at each stage; the first at the start.
+    pub extension: Extension,
+    /// The right side at each stage of the explicit pair; the first at the start.
     pub stages: [Vec<f64>; STAGES],
-    /// Where the last stage but one is.
+    /// Where its last stage but one is.
     pub near_end: Vec<f64>,
+    /// What the stiff method needs.
+    pub newton: Newton,
 }
 
 impl Step {
@@ -36,38 +59,44 @@ impl Step {
             end: zeros(),
             method: Method::Explicit,
             error: f64::INFINITY,
-            dense: std::array::from_fn(|_| zeros()),
+            extension: Extension::new(states),
             stages: std::array::from_fn(|_| zeros()),
             near_end: zeros(),
+            newton: Newton::default(),
         }
     }
 
     /// Takes a single step.
     pub fn take(field: &mut Field, t: f64, x: &[f64], h: f64, options: &Options) -> Self {
         let mut step = Step::new(x.len());
-        step.begin(field, t, x);
+        step.begin(field, t, x, Method::Explicit, false);
         step.attempt(field, h, options);
         step
     }
 
-    /// The next step starts anew.
-    pub fn begin(&mut self, field: &mut Field, t: f64, x: &[f64]) {
-        self.t = t;
+    /// Prepares for the next step, which may continue this one.
+    pub fn begin(&mut self, field: &mut Field, t: f64, x: &[f64], method: Method, is_continued: bool) {
+        let is_same = is_continued && self.method == method;
+        (self.t, self.method) = (t, method);
         self.start.copy_from_slice(x);
-        field.rate_into(t, x, &mut self.stages[0]);
-    }
-
-    /// The next step continues this one, whose last stage is its first.
-    pub fn follow(&mut self, t: f64, x: &[f64]) {
-        self.t = t;
-        self.start.copy_from_slice(x);
-        self.stages.swap(0, STAGES - 1);
+        if is_same && method == Method::Explicit {
+            self.stages.swap(0, STAGES - 1);
+        } else {
+            field.rate_into(t, x, &mut self.stages[0]);
+        }
+        if method == Method::Stiff {
+            let before = is_same.then(|| (self.extension.clone(), self.h));
+            self.newton.begin(field, t, x, before);
+        }
     }
 
     /// Takes the step, with this length.
     pub fn attempt(&mut self, field: &mut Field, h: f64, options: &Options) {
         self.h = h;
-        explicit::attempt(self, field, options);
+        match self.method {
+            Method::Explicit => explicit::attempt(self, field, options),
+            Method::Stiff => radau::attempt(self, field, options),
+        }
     }
 
     /// The state at `t + theta h`.
@@ -75,10 +104,26 @@ impl Step {
         (0..self.start.len()).map(|i| self.component(i, theta)).collect()
     }
 
+    /// The state after a part of the step, as exact as its end: the collocation polynomial is not.
+    pub fn exactly_at(&self, field: &mut Field, h: f64, options: &Options) -> Vec<f64> {
+        if self.method == Method::Explicit || h == 0.0 {
+            return self.at(h / self.h);
+        }
+        let mut shorter = self.clone();
+        shorter.attempt(field, h, options);
+        shorter.end
+    }
+
     /// A component of the state at `t + theta h`.
     pub fn component(&self, i: usize, theta: f64) -> f64 {
-        let rest = 1.0 - theta;
-        let [a, b, c, d] = &self.dense;
-        self.start[i] + theta * (a[i] + rest * (b[i] + theta * (c[i] + rest * d[i])))
+        self.extension.component(i, theta)
+    }
+
+    /// By how much it is stiff: `h` times the largest eigenvalue, as far as the method knows it.
+    pub fn stiffness(&self) -> f64 {
+        match self.method {
+            Method::Explicit => explicit::stiffness(self),
+            Method::Stiff => self.h * self.newton.stiffness(),
+        }
     }
 }

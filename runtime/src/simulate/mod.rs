@@ -7,15 +7,20 @@
 //! In every mode each selector is -1, +1 or an unknown that keeps its surface at 0 (sliding). [`simulate`] is the
 //! loop. Where the continuation is not unique it stops and says so; it never chooses.
 
+mod advance;
 mod complementarity;
 mod controls;
 mod decide;
 mod events;
+mod explicit;
 mod field;
 mod locate;
+mod memory;
+mod radau;
 mod record;
 mod result;
 mod run;
+mod samples;
 mod step;
 mod system;
 pub(crate) mod tableau;
@@ -25,7 +30,7 @@ mod zeno;
 pub(crate) use complementarity::selectors;
 pub use controls::Controls;
 pub use field::Mode;
-pub use result::{Candidate, Counts, Event, Kind, Method, Options, Simulation, Status};
+pub use result::{Candidate, Counts, Event, Integrator, Kind, Method, Options, Simulation, Status};
 pub use run::simulate;
 pub use system::{Jump, System, value};
 pub use tape::{Cause, Change, Instant, Piece, Regime, Tape};

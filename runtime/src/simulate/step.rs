@@ -1,69 +1,129 @@
-//! One step of the Runge-Kutta pair, and the state at any time inside it.
+//! One step in one mode, and the state at any time inside it.
+//!
+//! ```text
+//! x(t + theta h) = x0 + theta (a + (1 - theta) (b + theta (c + (1 - theta) d)))
+//! ```
 
+use super::explicit::{self, STAGES};
 use super::field::Field;
-use super::result::Options;
-use super::tableau::{A, C, DENSE, ERROR, STAGES};
+use super::radau::{self, Newton};
+use super::result::{Method, Options};
 
-/// A step from `t` to `t + h` in one mode.
+/// The state inside a step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Extension {
+    pub start: Vec<f64>,
+    /// Coefficients `a`, `b`, `c`, `d`.
+    pub dense: [Vec<f64>; 4],
+}
+
+impl Extension {
+    fn new(states: usize) -> Self {
+        Extension { start: vec![0.0; states], dense: std::array::from_fn(|_| vec![0.0; states]) }
+    }
+
+    /// A component at a part of the step, or beyond it.
+    pub fn component(&self, i: usize, theta: f64) -> f64 {
+        let rest = 1.0 - theta;
+        let [a, b, c, d] = &self.dense;
+        self.start[i] + theta * (a[i] + rest * (b[i] + theta * (c[i] + rest * d[i])))
+    }
+}
+
+/// A step from `t` to `t + h`. Its memory is used again for the next.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Step {
     pub t: f64,
     pub h: f64,
     pub start: Vec<f64>,
     pub end: Vec<f64>,
+    pub method: Method,
     /// In units of the tolerance; infinite if something on the way has no value.
     pub error: f64,
-    /// Coefficients of the continuous extension.
-    dense: [Vec<f64>; 4],
+    pub extension: Extension,
+    /// The right side at each stage of the explicit pair; the first at the start.
+    pub stages: [Vec<f64>; STAGES],
+    /// Where its last stage but one is.
+    pub near_end: Vec<f64>,
+    /// What the stiff method needs.
+    pub newton: Newton,
 }
 
 impl Step {
-    /// Takes a step.
+    pub fn new(states: usize) -> Self {
+        let zeros = || vec![0.0; states];
+        Step {
+            t: 0.0,
+            h: 0.0,
+            start: zeros(),
+            end: zeros(),
+            method: Method::Explicit,
+            error: f64::INFINITY,
+            extension: Extension::new(states),
+            stages: std::array::from_fn(|_| zeros()),
+            near_end: zeros(),
+            newton: Newton::default(),
+        }
+    }
+
+    /// Takes a single step.
     pub fn take(field: &mut Field, t: f64, x: &[f64], h: f64, options: &Options) -> Self {
-        let stages = stages(field, t, x, h);
-        let end = combine(x, h, &stages, &A[STAGES - 1]);
-        let error = error(x, &end, h, &stages, options);
-        let dense = dense(x, &end, h, &stages);
-        Step { t, h, start: x.to_vec(), end, error, dense }
+        let mut step = Step::new(x.len());
+        step.begin(field, t, x, Method::Explicit, false);
+        step.attempt(field, h, options);
+        step
+    }
+
+    /// Prepares for the next step, which may continue this one.
+    pub fn begin(&mut self, field: &mut Field, t: f64, x: &[f64], method: Method, is_continued: bool) {
+        let is_same = is_continued && self.method == method;
+        (self.t, self.method) = (t, method);
+        self.start.copy_from_slice(x);
+        if is_same && method == Method::Explicit {
+            self.stages.swap(0, STAGES - 1);
+        } else {
+            field.rate_into(t, x, &mut self.stages[0]);
+        }
+        if method == Method::Stiff {
+            let before = is_same.then(|| (self.extension.clone(), self.h));
+            self.newton.begin(field, t, x, before);
+        }
+    }
+
+    /// Takes the step, with this length.
+    pub fn attempt(&mut self, field: &mut Field, h: f64, options: &Options) {
+        self.h = h;
+        match self.method {
+            Method::Explicit => explicit::attempt(self, field, options),
+            Method::Stiff => radau::attempt(self, field, options),
+        }
     }
 
     /// The state at `t + theta h`.
     pub fn at(&self, theta: f64) -> Vec<f64> {
-        let rest = 1.0 - theta;
-        let [a, b, c, d] = &self.dense;
-        let value = |i: usize| self.start[i] + theta * (a[i] + rest * (b[i] + theta * (c[i] + rest * d[i])));
-        (0..self.start.len()).map(value).collect()
+        (0..self.start.len()).map(|i| self.component(i, theta)).collect()
     }
-}
 
-/// All stages; the last is at the end of the step.
-fn stages(field: &mut Field, t: f64, x: &[f64], h: f64) -> Vec<Vec<f64>> {
-    let mut stages: Vec<Vec<f64>> = Vec::with_capacity(STAGES);
-    for stage in 0..STAGES {
-        let at = combine(x, h, &stages, &A[stage]);
-        let rate = field.rate(t + C[stage] * h, &at);
-        stages.push(rate);
+    /// The state after a part of the step, as exact as its end: the collocation polynomial is not.
+    pub fn exactly_at(&self, field: &mut Field, h: f64, options: &Options) -> Vec<f64> {
+        if self.method == Method::Explicit || h == 0.0 {
+            return self.at(h / self.h);
+        }
+        let mut shorter = self.clone();
+        shorter.attempt(field, h, options);
+        shorter.end
     }
-    stages
-}
 
-fn combine(x: &[f64], h: f64, stages: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
-    let sum = |i: usize| stages.iter().zip(weights).map(|(stage, weight)| weight * stage[i]).sum::<f64>();
-    x.iter().enumerate().map(|(i, x)| x + h * sum(i)).collect()
-}
+    /// A component of the state at `t + theta h`.
+    pub fn component(&self, i: usize, theta: f64) -> f64 {
+        self.extension.component(i, theta)
+    }
 
-/// The largest error of a component in units of its tolerance.
-fn error(x: &[f64], end: &[f64], h: f64, stages: &[Vec<f64>], options: &Options) -> f64 {
-    let error = combine(&vec![0.0; x.len()], h, stages, &ERROR);
-    let scaled = |i: usize| error[i].abs() / (options.atol + options.rtol * x[i].abs().max(end[i].abs()));
-    let is_finite = stages.iter().flatten().chain(end).all(|value| value.is_finite());
-    if is_finite { (0..x.len()).map(scaled).fold(0.0, f64::max) } else { f64::INFINITY }
-}
-
-fn dense(x: &[f64], end: &[f64], h: f64, stages: &[Vec<f64>]) -> [Vec<f64>; 4] {
-    let size = x.len();
-    let a: Vec<f64> = (0..size).map(|i| end[i] - x[i]).collect();
-    let b: Vec<f64> = (0..size).map(|i| h * stages[0][i] - a[i]).collect();
-    let c: Vec<f64> = (0..size).map(|i| a[i] - h * stages[STAGES - 1][i] - b[i]).collect();
-    let d = combine(&vec![0.0; size], h, stages, &DENSE);
-    [a, b, c, d]
+    /// By how much it is stiff: `h` times the largest eigenvalue, as far as the method knows it.
+    pub fn stiffness(&self) -> f64 {
+        match self.method {
+            Method::Explicit => explicit::stiffness(self),
+            Method::Stiff => self.h * self.newton.stiffness(),
+        }
+    }
 }

@@ -5,40 +5,35 @@ use super::linearization::{Jacobian, Linearization, Linearizer};
 use super::stop::StopOnTape;
 use crate::problem::Columns;
 use crate::simulate::{Cause, Instant, Kind, Tape};
-use nalgebra::{DMatrix, DVector, RowDVector};
+use nalgebra::{DMatrix, DVector, DVectorView, RowDVector};
 
 /// One vector for each pair of directions.
 #[derive(Clone)]
 pub(super) struct Pairs {
     count: usize,
-    /// Pairs `(i, j)` with `j <= i`, row by row.
-    vectors: Vec<DVector<f64>>,
+    /// Columns are the pairs `(i, j)` with `j <= i`, row by row.
+    pub columns: DMatrix<f64>,
 }
 
 impl Pairs {
     pub fn new(count: usize, mut of: impl FnMut(usize, usize) -> DVector<f64>) -> Self {
         let pairs = (0..count).flat_map(|i| (0..=i).map(move |j| (i, j)));
-        Pairs { count, vectors: pairs.map(|(i, j)| of(i, j)).collect() }
+        let vectors: Vec<DVector<f64>> = pairs.map(|(i, j)| of(i, j)).collect();
+        Pairs { count, columns: DMatrix::from_columns(&vectors) }
     }
 
-    pub fn at(&self, i: usize, j: usize) -> &DVector<f64> {
+    pub fn at(&self, i: usize, j: usize) -> DVectorView<'_, f64> {
         let (i, j) = (i.max(j), i.min(j));
-        &self.vectors[i * (i + 1) / 2 + j]
+        self.columns.column(i * (i + 1) / 2 + j)
     }
 
-    pub fn map(&self, mut of: impl FnMut(usize, usize, &DVector<f64>) -> DVector<f64>) -> Self {
+    pub fn map(&self, mut of: impl FnMut(usize, usize, DVectorView<'_, f64>) -> DVector<f64>) -> Self {
         Pairs::new(self.count, |i, j| of(i, j, self.at(i, j)))
     }
 
-    /// `X + h sum_k a_k K_k`.
-    pub fn combined(&self, h: f64, slopes: &[Pairs], weights: &[f64]) -> Self {
-        self.map(|i, j, x| {
-            let mut sum = x.clone();
-            for (slope, weight) in slopes.iter().zip(weights) {
-                sum.axpy(h * weight, slope.at(i, j), 1.0);
-            }
-            sum
-        })
+    /// The same pairs with other vectors.
+    pub fn with(&self, columns: DMatrix<f64>) -> Self {
+        Pairs { count: self.count, columns }
     }
 }
 

@@ -18,12 +18,11 @@ use super::curvature::{Curvature, Hessians};
 use super::first_order::{self, Objective, last_instant};
 use super::linearization::Linearizer;
 use super::quantity::{Directions, Quantity};
-use super::step::{LinearStep, WEIGHTS};
+use super::step::LinearStep;
 use super::stop::{StopOnTape, Timing};
 use super::surface::Projection;
 use super::sweep::{LinearPiece, Map};
 use crate::problem::Columns;
-use crate::simulate::tableau::A;
 use crate::simulate::{Cause, Controls, Instant, Mode, Piece, Regime, Simulation, System, Tape};
 use nalgebra::{DMatrix, DVector};
 
@@ -98,19 +97,17 @@ impl<'t> Second<'t> {
     }
 
     fn step(&mut self, regime: &Regime, step: &LinearStep) {
-        let inputs = self.directions.inputs(regime);
-        let (at_stages, end) = step.forward(&self.s, &inputs);
-        let mut slopes: Vec<Pairs> = Vec::new();
-        for (stage, ((point, (time, state)), s)) in
-            step.stages.iter().zip(&step.points).zip(&at_stages).enumerate()
-        {
+        let forcing = step.forcing(&self.directions.inputs(regime));
+        let (at_stages, end) = step.forward(&self.s, &forcing);
+        let stages = step.stages.iter().zip(&step.points).zip(&at_stages);
+        let forcing = stages.map(|((point, (time, state)), s)| {
             let curvature = Curvature::new(self.linearizer, point, regime, *time, state);
             let whole: Vec<DVector<f64>> =
                 self.directions_at(regime, s).iter().map(|it| curvature.complete(it)).collect();
-            let x = self.x.combined(step.h, &slopes, &A[stage]);
-            slopes.push(x.map(|i, j, x| point.by_state() * x + curvature.along(&whole[i], &whole[j])));
-        }
-        self.x = self.x.combined(step.h, &slopes, &WEIGHTS);
+            self.x.map(|i, j, _| curvature.along(&whole[i], &whole[j])).columns
+        });
+        let forcing: Vec<DMatrix<f64>> = forcing.collect();
+        self.x = self.x.with(step.forward(&self.x.columns, &forcing).1);
         self.s = end;
     }
 

@@ -9,7 +9,7 @@
 
 use super::linearization::{Jacobian, Linearizer, sliding};
 use crate::simulate::{Instant, Regime};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, DVectorView};
 
 /// The projection at one state.
 pub(super) struct Projection {
@@ -48,7 +48,7 @@ impl Projection {
     }
 
     /// Moves a second derivative back to the surface, given `psi_zz` of the sliding surfaces along its pair of directions.
-    pub fn correct(&self, x: &DVector<f64>, bent: &DVector<f64>) -> DVector<f64> {
+    pub fn correct(&self, x: DVectorView<'_, f64>, bent: &DVector<f64>) -> DVector<f64> {
         x - &self.along * (&self.normals * x + bent)
     }
 

@@ -30,8 +30,8 @@ impl<'t> LinearPiece<'t> {
     pub fn new(linearizer: &Linearizer, tape: &'t Tape, at: usize) -> Self {
         let regime = |instant: &Instant| &tape.regimes[instant.regime];
         match &tape.pieces[at] {
-            Piece::Step { start, h, .. } => LinearPiece {
-                map: Map::Step(LinearStep::new(linearizer, regime(start), start, *h)),
+            Piece::Step { start, h, end, method } => LinearPiece {
+                map: Map::Step(LinearStep::new(linearizer, regime(start), start, *h, end, *method)),
                 regime: regime(start),
                 regime_after: regime(start),
                 projection: Projection::new(linearizer, regime(start), &tape.pieces[at].end()),
@@ -52,7 +52,7 @@ impl<'t> LinearPiece<'t> {
     pub fn forward(&self, s: &DMatrix<f64>, w: &dyn Fn(&Regime) -> DMatrix<f64>) -> DMatrix<f64> {
         let inputs = w(self.regime);
         let after = match &self.map {
-            Map::Step(step) => step.forward(s, &inputs).1,
+            Map::Step(step) => step.forward(s, &step.forcing(&inputs)).1,
             Map::Stop(stop) => stop.forward(s, &inputs),
         };
         match &self.projection {

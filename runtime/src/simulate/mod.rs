@@ -16,7 +16,7 @@ mod explicit;
 mod field;
 mod locate;
 mod memory;
-mod radau;
+pub(crate) mod radau;
 mod record;
 mod result;
 mod run;

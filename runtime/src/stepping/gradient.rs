@@ -11,11 +11,12 @@
 //! `t = t0(p) + tau (tf(p) - t0(p))`.
 
 use super::field::{Field, Jacobian};
+use super::linearized::Linearized;
 use super::rule::Grid;
 use super::run::{Failure, Stepped, ends};
-use super::step::{Step, weighted};
+use super::step::Step;
 use crate::simulate::{Controls, System};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 /// The derivative of the objective by everything there is.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,54 +86,54 @@ impl<'a> Adjoint<'a> {
     /// From the end of a step to its beginning.
     fn pass(&mut self, step: &Step) -> Result<(), Failure> {
         let (mu, new) = self.implicit_part(step)?;
+        let old = self.explicit_part(step, &mu);
         let layout = self.field.system.layout;
-        let mut old = DVector::zeros(layout.inputs());
-        if let Some(weight) = self.grid.explicit {
-            let flow = self.field.flow(&step.old);
-            old = flow.by.transpose() * &mu * (step.h * weight);
-            self.duration += weight * mu.dot(&flow.values) / self.grid.count() as f64;
-        }
-        self.state = mu + old.rows(1, layout.x);
-        if let Some(node) = &self.grid.implicit {
-            let stays = |i: usize| (1.0 - node.blend[i]) * new[1 + i];
-            self.state += DVector::from_fn(layout.x, |i, _| stays(i));
-        }
+        self.add_inputs(step, &(&old + &new));
         let by_selector = old.rows_range(layout.selectors());
         let carried = |i: usize| if step.carried[i] { by_selector[i] } else { 0.0 };
         self.selectors = DVector::from_fn(layout.s, |i, _| carried(i));
-        self.add_inputs(step, &(&old + &new));
-        self.first_time += old[0] + new[0];
-        let part = self.grid.implicit.as_ref().map_or(0.0, |node| node.time);
-        self.duration += self.grid.tau(step.index, 0.0) * old[0] + self.grid.tau(step.index, part) * new[0];
+        self.state = mu + old.rows_range(layout.states());
+        if let Some(node) = &self.grid.implicit {
+            let by_state = new.rows_range(layout.states());
+            self.state += DVector::from_fn(layout.x, |i, _| (1.0 - node.blend[i]) * by_state[i]);
+        }
         Ok(())
     }
 
-    /// `mu`, and the derivative by all inputs of the implicit part; by the step, too, which is the duration's.
+    /// `mu`, and the derivative by all inputs of the implicit part.
     fn implicit_part(&mut self, step: &Step) -> Result<(DVector<f64>, DVector<f64>), Failure> {
-        let layout = self.field.system.layout;
+        let (layout, free) = (self.field.system.layout, &step.free);
         let Some(node) = &self.grid.implicit else {
             return Ok((self.state.clone(), DVector::zeros(layout.inputs())));
         };
-        let (flow, guards) = (self.field.flow(&step.new), self.field.guards(&step.new));
-        let weight = step.h * node.weight;
-        let by_state = weighted(&flow.by.columns_range(layout.states()).into_owned(), node);
-        let normals = weighted(&guards.by.columns_range(layout.states()).into_owned(), node);
-        let (size, free) = (layout.x + step.free.len(), &step.free);
-        let mut matrix = DMatrix::zeros(size, size);
-        matrix
-            .view_mut((0, 0), (layout.x, layout.x))
-            .copy_from(&(DMatrix::identity(layout.x, layout.x) - weight * by_state));
-        let along = flow.by.columns_range(layout.selectors()).select_columns(free) * -weight;
-        matrix.view_mut((0, layout.x), (layout.x, free.len())).copy_from(&along);
-        matrix.view_mut((layout.x, 0), (free.len(), layout.x)).copy_from(&normals.select_rows(free));
+        let local = Linearized::new(self.field, node, step.h, &step.new);
         let known = self.state.iter().copied().chain(free.iter().map(|&i| self.selectors[i]));
-        let known = DVector::from_iterator(size, known);
-        let singular = Failure::Singular { step: step.index, time: step.new.t };
-        let solution = matrix.transpose().lu().solve(&known).ok_or(singular)?;
+        let known = DVector::from_iterator(layout.x + free.len(), known);
+        let solution = local.bordered(free).transpose().lu().solve(&known);
+        let solution = solution.filter(|solution| solution.iter().all(|value| value.is_finite()));
+        let solution = solution.ok_or(Failure::Singular { step: step.index, time: step.new.t })?;
         let (mu, nu) = (solution.rows(0, layout.x).into_owned(), solution.rows(layout.x, free.len()));
-        let new = flow.by.transpose() * &mu * weight - guards.by.select_rows(free).transpose() * nu;
-        self.duration += node.weight * mu.dot(&flow.values) / self.grid.count() as f64;
-        Ok((mu, new))
+        let by_flow = local.flow.by.tr_mul(&mu) * local.weight;
+        let by_all = by_flow - local.guards.by.select_rows(free).tr_mul(&nu);
+        self.add_times(step, node.time, by_all[0], node.weight * mu.dot(&local.flow.values));
+        Ok((mu, by_all))
+    }
+
+    /// The derivative by all inputs of the explicit part.
+    fn explicit_part(&mut self, step: &Step, mu: &DVector<f64>) -> DVector<f64> {
+        let Some(weight) = self.grid.explicit else {
+            return DVector::zeros(self.field.system.layout.inputs());
+        };
+        let flow = self.field.flow(&step.old);
+        let by_all = flow.by.tr_mul(mu) * (step.h * weight);
+        self.add_times(step, 0.0, by_all[0], weight * mu.dot(&flow.values));
+        by_all
+    }
+
+    /// Through the time of an evaluation, a part of a step after its beginning, and through the step.
+    fn add_times(&mut self, step: &Step, part: f64, by_time: f64, by_step: f64) {
+        self.first_time += by_time;
+        self.duration += self.grid.tau(step.index, part) * by_time + by_step / self.grid.count() as f64;
     }
 
     /// Parameters, and controls or what their guess is made of.

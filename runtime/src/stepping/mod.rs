@@ -9,6 +9,7 @@
 
 mod field;
 mod gradient;
+mod linearized;
 mod rule;
 mod run;
 mod step;

@@ -9,11 +9,12 @@
 //! Steps are shortened until `F` shrinks; where it cannot, because only the selectors were wrong, they are not.
 
 use super::field::{Field, Point};
+use super::linearized::Linearized;
 use super::rule::Grid;
 use super::run::Failure;
 use crate::simulate::selectors;
 use crate::transcribe::tableau::Node;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 const MOST_ITERATIONS: usize = 100;
 
@@ -49,25 +50,27 @@ impl Step {
         before: Option<&Step>,
     ) -> Result<Self, Failure> {
         let surfaces = field.system.surfaces.len();
+        let is_carried = |i| before.is_some_and(|step| step.free.contains(&i));
+        let carried: Vec<bool> = (0..surfaces).map(is_carried).collect();
         let s = before.map_or(DVector::zeros(surfaces), |step| step.new.s.clone());
         let u = field.control(grid.middle(index));
         let mut old = Point { t: field.time(grid.tau(index, 0.0)), x, u, s };
-        let carried: Vec<bool> =
-            (0..surfaces).map(|i| before.is_some_and(|step| step.free.contains(&i))).collect();
         let h = field.duration / grid.count() as f64;
         let mut fixed = old.x.clone();
         if let Some(weight) = grid.explicit {
             old.s = explicit_selectors(field, &old, &carried);
             fixed += h * weight * field.rate(&old);
-        }
-        let Some(node) = &grid.implicit else {
             finite(field, &old, &fixed)?;
-            return Ok(Step { index, h, new: old.clone(), old, carried, free: Vec::new(), end: fixed });
+        }
+        let (new, end) = match &grid.implicit {
+            None => (old.clone(), fixed),
+            Some(node) => {
+                let t = field.time(grid.tau(index, node.time));
+                Implicit { field, node, h, t, old: &old, fixed: &fixed, index }.solve()?
+            }
         };
-        let t = field.time(grid.tau(index, node.time));
-        let (end, s) = Implicit { field, node, h, t, old: &old, fixed: &fixed, index }.solve()?;
-        let new = Point { t, x: blended(node, &old.x, &end), u: old.u.clone(), s };
-        let free = (0..surfaces).filter(|&i| new.s[i].abs() < 1.0).collect();
+        let is_free = |i: &usize| grid.implicit.is_some() && new.s[*i].abs() < 1.0;
+        let free = (0..surfaces).filter(is_free).collect();
         Ok(Step { index, h, old, carried, new, free, end })
     }
 }
@@ -81,22 +84,12 @@ fn explicit_selectors(field: &Field, old: &Point, carried: &[bool]) -> DVector<f
     )
 }
 
-/// `z`
-fn blended(node: &Node, x: &DVector<f64>, end: &DVector<f64>) -> DVector<f64> {
-    DVector::from_fn(x.len(), |i, _| (1.0 - node.blend[i]) * x[i] + node.blend[i] * end[i])
-}
-
 /// Blames the first component that has no value.
 fn finite(field: &Field, at: &Point, values: &DVector<f64>) -> Result<(), Failure> {
     match values.iter().position(|value| !value.is_finite()) {
         Some(row) => Err(Failure::NotFinite { time: at.t, origin: field.system.flow.origin(row) }),
         None => Ok(()),
     }
-}
-
-/// `m` with each column multiplied by the blend of its state.
-pub(super) fn weighted(m: &DMatrix<f64>, node: &Node) -> DMatrix<f64> {
-    DMatrix::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)] * node.blend[j])
 }
 
 /// The implicit part of a step.
@@ -120,7 +113,8 @@ struct Change {
 }
 
 impl Implicit<'_> {
-    fn solve(&self) -> Result<(DVector<f64>, DVector<f64>), Failure> {
+    /// What the right side is evaluated at, and the end.
+    fn solve(&self) -> Result<(Point, DVector<f64>), Failure> {
         let (mut x, mut s) = (self.old.x.clone(), self.old.s.clone());
         for _ in 0..MOST_ITERATIONS {
             let change = self.change(&x, &s)?;
@@ -129,33 +123,31 @@ impl Implicit<'_> {
             x += part * change.x;
             s += part * change.s;
             if is_last {
-                return Ok((x, s.map(|s| if s.abs() > 1.0 - SIDE { s.signum() } else { s })));
+                s.apply(|s| *s = if s.abs() > 1.0 - SIDE { s.signum() } else { *s });
+                return Ok((self.point(&x, &s), x));
             }
         }
         Err(Failure::NotConverged { step: self.index, time: self.t })
     }
 
     fn point(&self, end: &DVector<f64>, s: &DVector<f64>) -> Point {
-        Point { t: self.t, x: blended(self.node, &self.old.x, end), u: self.old.u.clone(), s: s.clone() }
+        let (x, w) = (&self.old.x, &self.node.blend);
+        let x = DVector::from_fn(x.len(), |i, _| (1.0 - w[i]) * x[i] + w[i] * end[i]);
+        Point { t: self.t, x, u: self.old.u.clone(), s: s.clone() }
     }
 
     /// One linear complementarity problem.
     fn change(&self, x: &DVector<f64>, s: &DVector<f64>) -> Result<Change, Failure> {
-        let (point, layout) = (self.point(x, s), self.field.system.layout);
-        let (flow, guards) = (self.field.flow(&point), self.field.guards(&point));
-        let scale = self.h * self.node.weight;
-        let residual = x - self.fixed - scale * &flow.values;
+        let point = self.point(x, s);
+        let local = Linearized::new(self.field, self.node, self.h, &point);
+        let residual = x - self.fixed - local.weight * &local.flow.values;
         finite(self.field, &point, &residual)?;
-        let by_state = weighted(&flow.by.columns_range(layout.states()).into_owned(), self.node);
-        let singular = Failure::Singular { step: self.index, time: self.t };
-        let inverse = (DMatrix::identity(layout.x, layout.x) - scale * by_state).lu();
-        let along =
-            inverse.solve(&(scale * flow.by.columns_range(layout.selectors()))).ok_or(singular.clone())?;
-        let plain = -inverse.solve(&residual).ok_or(singular.clone())?;
-        let normals = weighted(&guards.by.columns_range(layout.states()).into_owned(), self.node);
-        let a = &guards.values + &normals * (&plain - &along * s);
-        let next = selectors(&a, &-(&normals * &along)).ok_or(singular)?;
-        let turned = next - s;
+        let singular = || Failure::Singular { step: self.index, time: self.t };
+        let inverse = local.by_end.lu();
+        let plain = -inverse.solve(&residual).ok_or_else(singular)?;
+        let along = -inverse.solve(&local.by_selectors).ok_or_else(singular)?;
+        let a = local.guards.values + &local.normals * (&plain - &along * s);
+        let turned = selectors(&a, &-(&local.normals * &along)).ok_or_else(singular)? - s;
         Ok(Change { x: plain + along * &turned, s: turned, residual: relative(&residual, x) })
     }
 

@@ -1,7 +1,9 @@
 //! What a model expects of its solution, compared with the solution.
 //!
-//! Values of states are those at the ends of the trajectory; integrals are taken by the scheme's own quadrature.
+//! Values of states are those at the ends of the trajectory; integrals are taken by the scheme's own quadrature. What only a
+//! simulation can tell is that of the replay on the true system.
 
+use crate::replayed::Replayed;
 use crate::solver::Solved;
 use fdcc_compiler::model::Comparison;
 use fdcc_compiler::{Expected, Model, expectations};
@@ -20,8 +22,8 @@ pub struct Checked {
 pub enum Outcome {
     /// Both sides have values.
     Compared(Sides),
-    /// Only a simulation of the true system can tell.
-    NeedsSimulation,
+    /// The true system does not tell, and why.
+    Untold(String),
 }
 
 /// The numbers of a comparison.
@@ -49,20 +51,23 @@ pub fn evaluate(model: &Model, solved: &Solved) -> Vec<Checked> {
     let inputs: Vec<f64> = ends(|state| state[0]).chain(ends(|state| state[state.len() - 1])).collect();
     let mut parameters = trajectory.parameters.clone();
     parameters.extend(integrals(&solved.problem, trajectory, &*expectations.integrands));
+    let replayed = Replayed::new(model, solved, &expectations.simulated);
+    parameters.extend(replayed.values());
     let mut points = Columns::new(inputs.len(), 1);
     inputs.iter().enumerate().for_each(|(i, value)| points.column_mut(i)[0] = *value);
     let mut values = Columns::new(expectations.function.outputs(), 1);
     expectations.function.value(&points, &parameters, &mut values);
-    expectations.list.iter().map(|expected| checked(expected, &values)).collect()
+    let list = expectations.list.iter().enumerate();
+    list.map(|(at, expected)| checked(expected, at, &values, &replayed)).collect()
 }
 
-fn checked(expected: &Expected, values: &Columns) -> Checked {
-    let sides = |first: usize| {
-        let [left, right, tolerance] = [0, 1, 2].map(|i| values.column(first + i)[0]);
-        let holds = holds(expected.comparison, left, right, tolerance);
-        Outcome::Compared(Sides { left, right, tolerance, holds })
+fn checked(expected: &Expected, at: usize, values: &Columns, replayed: &Replayed) -> Checked {
+    let [left, right, tolerance] = [0, 1, 2].map(|side| values.column(3 * at + side)[0]);
+    let holds = holds(expected.comparison, left, right, tolerance);
+    let outcome = match expected.simulated.iter().find_map(|&asked| replayed.why_not(asked)) {
+        Some(why) => Outcome::Untold(why),
+        None => Outcome::Compared(Sides { left, right, tolerance, holds }),
     };
-    let outcome = expected.output.map_or(Outcome::NeedsSimulation, sides);
     Checked { origin: expected.origin.clone(), outcome }
 }
 

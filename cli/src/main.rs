@@ -2,15 +2,22 @@
 
 mod bounds;
 mod commands;
+mod conditions;
+mod exact;
 mod expectations;
 mod failure;
+mod gradients;
 mod log;
 mod model;
 mod output;
+mod quantities;
 mod render;
 mod replay;
+mod replayed;
 mod solver;
+mod stays;
 mod verdict;
+mod verification;
 mod warm;
 mod watch;
 

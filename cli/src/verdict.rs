@@ -3,6 +3,7 @@
 use crate::output::document::{Document, scheme_name, status_name, switching};
 use crate::output::number::{scientific, short, significant};
 use crate::output::plural;
+use crate::output::verified::Verification;
 use crate::solver::{Solved, unknowns};
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::Problem;
@@ -79,19 +80,10 @@ fn how(solved: &Solved) -> String {
     }
 }
 
-/// Differences between a solution and its replay that are called confirmation.
-const CONFIRMED: f64 = 1e-3;
-
 /// What a replay says of the answer, in few words.
 pub fn on_the_true_system(document: &Document) -> String {
-    let Some(replay) = &document.verification else { return "not replayed on the true system".into() };
-    match (replay.state_gap, replay.constraint_violation) {
-        (Some(gap), Some(violation)) if gap <= CONFIRMED && violation <= CONFIRMED => {
-            format!("confirmed on the true system to {}", scientific(gap.max(violation), 1))
-        }
-        (Some(_), Some(_)) => "NOT CONFIRMED on the true system".into(),
-        _ => "and its replay on the true system does not reach the end".into(),
-    }
+    let replay = document.verification.as_ref();
+    replay.map_or("not replayed on the true system".into(), Verification::words)
 }
 
 /// The replay in numbers.

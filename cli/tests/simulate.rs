@@ -92,7 +92,17 @@ fn a_solution_can_be_replayed() {
 
 #[test]
 fn bad_control_files_say_what_is_wrong() {
-    let cases: [(&str, &str, &str); 9] = [
+    let solution = |times: &str, controls: &str| {
+        format!("{{\"free\": {{}}, \"states\": {{}}, \"time\": {times}, \"controls\": {controls}}}")
+    };
+    let [backwards, short, hole, other, empty] = [
+        solution("[0, 2, 1]", "{\"u\": [1, 1]}"),
+        solution("[0, 1, 2]", "{\"u\": [1]}"),
+        solution("[0, 1]", "{\"u\": [null]}"),
+        solution("[0, 1]", "{\"w\": [1]}"),
+        solution("[]", "{\"u\": []}"),
+    ];
+    let cases: [(&str, &str, &str); 20] = [
         ("u.csv", "time,u\n0,1\n", "must be `t`"),
         ("u.csv", "t,w\n0,1\n", "`w` is no control"),
         ("u.csv", "t\n0\n", "no column for the control `u`"),
@@ -101,6 +111,17 @@ fn bad_control_files_say_what_is_wrong() {
         ("u.csv", "t,u\n1,1\n0,1\n", "times must ascend"),
         ("u.csv", "t,u\n", "no row of values"),
         ("u.csv", "", "the file is empty"),
+        ("u.csv", "t;u\n0;1\n", "the first line looks like `t,u`"),
+        ("u.csv", "0,1\n1,1\n", "the first column is `0`, but must be `t`"),
+        ("u.csv", "t,u,u\n0,1,2\n", "two columns `u`"),
+        ("u.csv", "t,u\n0,1e400\n", "line 2: `1e400` of `u` is no number"),
+        ("u.csv", "t,u\n0,one\n", "line 2: `one` of `u` is no number"),
+        ("u.csv", "t,u\n0,1\n0,1\n", "times must ascend, but 0 follows 0"),
+        ("u.json", &backwards, "times must ascend, but 1 follows 2"),
+        ("u.json", &short, "`u` has 1 values for 2 intervals"),
+        ("u.json", &hole, "a value of `u` is no number"),
+        ("u.json", &other, "there is no control `u`"),
+        ("u.json", &empty, "there is no row of values"),
         ("u.json", "{\"time\": 3}", "not a solution"),
     ];
     for (name, content, message) in cases {
@@ -109,6 +130,63 @@ fn bad_control_files_say_what_is_wrong() {
         let output = fdcc(&folder, &["simulate", "block.fdc", "--control", name], "");
         expect_exit(&output, 4, message);
         assert!(stderr(&output).contains(message), "{message}: {}", stderr(&output));
+    }
+}
+
+/// What can be followed is followed, with a word about what is likely a slip.
+#[test]
+fn times_that_do_not_fit_are_told() {
+    let cases = [
+        ("t,u\n0,1\n3,2\n", ""),
+        ("t,u\n0,1\n4,2\n", "1 row begins after the last time, 3: not used"),
+        ("t,u\n0,1\n4,2\n5,2\n", "2 rows begin after the last time, 3: not used"),
+        ("t,u\n1,1\n", "the first row begins at 1: used from 0 on"),
+        ("\u{feff}t , u\r\n\r\n0 , 1\r\n", ""),
+    ];
+    for (content, message) in cases {
+        let files: [(&str, &[u8]); 2] = [("block.fdc", BLOCK.as_bytes()), ("u.csv", content.as_bytes())];
+        let folder = folder("simulate_times", &files);
+        let output = fdcc(&folder, &["simulate", "block.fdc", "--control", "u.csv"], "");
+        expect_exit(&output, 0, content);
+        let said = stderr(&output);
+        assert!(
+            if message.is_empty() { said.is_empty() } else { said.contains(message) },
+            "{content}: {said}"
+        );
+    }
+}
+
+/// The line and the name of what has no value, with the trajectory so far.
+#[test]
+fn a_value_that_does_not_exist_has_its_place() {
+    let start = "time t in [0, 1]\nstate x\n  start log(-1)\ndynamics { x' = 1 }\n";
+    let rate = "param c = -1\ntime t in [0, 1]\nstate x start 0\ndynamics {\n  x' = log(c) + x\n}\n";
+    let guess = "time t in [0, 1]\nstate x start 0\ncontrol u guess log(t - 0.5)\ndynamics {\n  x' = u\n}\n";
+    let surface =
+        "time t in [0, 1]\nstate x start 0.5\nsurface s = sqrt(x - 1)\ndynamics { x' in 1 - Sgn(s) }\n";
+    let growth = "time t in [0, 2]\nstate x start 1\ndynamics {\n  x' = x^2\n}\n";
+    let cases = [
+        (start, "x(start)", 2, 0.0),
+        (rate, "x'", 5, 0.0),
+        (guess, "x'", 5, 0.0),
+        (surface, "s", 3, 0.0),
+        (growth, "x'", 4, 1.0),
+    ];
+    for (text, of, line, time) in cases {
+        let folder = folder("simulate_place", &[("model.fdc", text.as_bytes())]);
+        let output = fdcc(&folder, &["simulate", "model.fdc", "--json"], "");
+        expect_exit(&output, 2, text);
+        let found = json(&output);
+        let why = &found["not_finite"];
+        assert_eq!(
+            (&found["status"], &why["of"], &why["line"]),
+            (&"not_finite".into(), &of.into(), &line.into())
+        );
+        assert!((number(&why["time"]) - time).abs() < 1e-6, "{text}: {why}");
+        assert!(!found["time"].as_array().expect("times").is_empty(), "{text}");
+        let grad = fdcc(&folder, &["grad", "model.fdc", "--of", "x(end)", "--wrt", "x(start)"], "");
+        expect_exit(&grad, 2, text);
+        assert!(stdout(&grad).contains("NO GRADIENT"), "{text}: {}", stdout(&grad));
     }
 }
 
@@ -148,6 +226,7 @@ fn wrong_usage_is_told() {
         (vec!["--times", "2,1"], 3),
         (vec!["--times", "7"], 3),
         (vec!["--set", "reach=-1"], 3),
+        (vec!["--set", "reach=1e999"], 3),
         (vec!["--control", "absent.csv"], 4),
     ] {
         let output = fdcc(&folder, &[&["simulate", "block.fdc"], arguments.as_slice()].concat(), "");

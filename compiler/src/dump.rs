@@ -57,7 +57,7 @@ fn symbol_name(model: &Model, symbol: Symbol) -> String {
         Symbol::AtStart(index) => format!("{}(start)", model.states[index].place.name),
         Symbol::AtEnd(index) => format!("{}(end)", model.states[index].place.name),
         Symbol::Integral(index) => model.integrals[index].place.name.clone(),
-        Symbol::Argument => "_".into(),
+        Symbol::Simulated(_) | Symbol::Argument => "_".into(),
     }
 }
 

@@ -1,5 +1,6 @@
 //! From the syntax tree to compiled functions.
 
+mod asked;
 pub mod builtins;
 mod check;
 pub mod differentiate;
@@ -14,6 +15,7 @@ mod resolve;
 pub mod smooth;
 pub mod units;
 
+pub use asked::check_with_objective;
 use check::Facts;
 use differentiate::differentiate;
 pub use dump::{Stage, dump};
@@ -27,6 +29,7 @@ use lower::{Purpose, lower, numbers, problem};
 pub use model::Model;
 pub use overrides::is_method_key;
 use program::VectorFunction;
+pub use resolve::closest;
 use resolve::resolve;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;

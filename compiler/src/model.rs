@@ -30,6 +30,8 @@ pub enum Symbol {
     AtEnd(usize),
     /// The integral over the whole time of [`Model::integrals`].
     Integral(usize),
+    /// A number that only a simulation can tell, one of [`Model::simulated`].
+    Simulated(usize),
     /// An argument of a function, while its body is examined by itself.
     Argument,
 }
@@ -177,8 +179,22 @@ pub struct Expectation {
     pub place: Place,
     /// The comparison.
     pub comparison: Comparison,
-    /// Left side, right side and tolerance; `None` if only a simulation can tell.
-    pub values: Option<[ExprId; 3]>,
+    /// Left side, right side and tolerance.
+    pub values: [ExprId; 3],
+}
+
+/// A number that only a simulation of the true system can tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Simulated {
+    /// For how long a surface is held.
+    Sliding(usize),
+    /// The derivative of a number.
+    Sensitivity {
+        /// Over the symbols that an objective may read.
+        of: ExprId,
+        /// A parameter, an unknown or a start.
+        by: Symbol,
+    },
 }
 
 /// A model whose text has no error.
@@ -218,6 +234,8 @@ pub struct Model {
     pub integrals: Vec<Integral>,
     /// What is reported.
     pub report: Vec<Report>,
+    /// What expectations ask of a simulation.
+    pub simulated: Vec<Simulated>,
     /// What is expected.
     pub expectations: Vec<Expectation>,
     /// How it is to be solved.
@@ -251,11 +269,18 @@ impl Model {
             sense: 1.0,
             integrals: Vec::new(),
             report: Vec::new(),
+            simulated: Vec::new(),
             expectations: Vec::new(),
             method: default_method(),
             smooth: false,
             not_yet: Vec::new(),
         }
+    }
+
+    /// The same model with another objective, over the symbols that an objective may read.
+    pub fn with_objective(&self, value: ExprId) -> Model {
+        let place = self.objective.as_ref().map(|(place, _)| place.clone()).unwrap_or_default();
+        Model { objective: Some((place, value)), sense: 1.0, ..self.clone() }
     }
 
     /// The graph input that is a symbol.

@@ -19,11 +19,29 @@ impl Model {
         if value < limits[0] || value > limits[1] {
             return Err(format!("`{name}` must be in [{}, {}]", number(limits[0]), number(limits[1])));
         }
+        self.give(index, value);
+        Ok(())
+    }
+
+    fn give(&mut self, index: usize, value: f64) {
         self.params[index].value = Some(self.graph.number(value));
         if !self.param_order.contains(&index) {
             self.param_order.insert(0, index);
         }
-        Ok(())
+    }
+
+    /// Gives parameters the values that a solution was made with. One that is computed from others and has that value
+    /// anyhow stays so.
+    pub fn restore_params(&mut self, values: &[(String, f64)]) {
+        let given = |name: &str| values.iter().find(|(own, _)| own == name).map(|(_, value)| *value);
+        let waiting = (0..self.params.len()).filter(|&at| self.params[at].value.is_none());
+        for index in waiting.chain(self.param_order.clone()).collect::<Vec<_>>() {
+            let Some(value) = given(&self.params[index].place.name) else { continue };
+            let now = self.params[index].value.map_or(f64::NAN, |value| self.of_params(value));
+            if now != value {
+                self.give(index, value);
+            }
+        }
     }
 
     /// Gives an unknown the value that a solution found.
@@ -72,11 +90,11 @@ impl Model {
         }
     }
 
-    /// A limit, which may use other parameters; NaN, which limits nothing, if one of them has no value yet.
-    fn of_params(&self, limit: crate::graph::ExprId) -> f64 {
+    /// A number, which may use other parameters; NaN, which limits nothing, if one of them has no value yet.
+    fn of_params(&self, value: crate::graph::ExprId) -> f64 {
         match crate::lower::numbers(self) {
-            Ok(numbers) => numbers.value(self, limit),
-            Err(_) => evaluate(&self.graph, &[limit], &vec![f64::NAN; self.symbols.len()], &[])[0],
+            Ok(numbers) => numbers.value(self, value),
+            Err(_) => evaluate(&self.graph, &[value], &vec![f64::NAN; self.symbols.len()], &[])[0],
         }
     }
 }

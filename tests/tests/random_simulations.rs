@@ -1,6 +1,6 @@
 //! Random systems with one to four surfaces against simple, slow references.
 //!
-//! Thousands that are affine in each mode, with starts on surfaces and with surfaces that move, against their exact solution: events,
+//! Many that are affine in each mode, with starts on surfaces and with surfaces that move, against a solution mode by mode: events,
 //! end, and every refusal. And a few against implicit Euler with Gauss-Seidel, which knows no events:
 //!
 //! `x' = a + c cos(w t) - A x - B s`, `s_i in Sgn(x_i)`, `B` diagonally dominant, so the solution is unique. One step of the reference
@@ -183,13 +183,12 @@ fn check_systems(surfaces: usize, count: usize) -> Seen {
             continue;
         }
         if let Some(difference) = difference(&simulation, &exact) {
-            eprintln!("DIFF system {}: {difference}\n{}", seen.systems, system.text());
+            panic!("system {}: {difference}\n{}", seen.systems, system.text());
         }
         seen.refused += usize::from(matches!(exact.ending, Ending::NotUnique(_)));
         seen.held_together += usize::from(exact.most_held > 1);
         seen.events += exact.events.len();
     }
-    eprintln!("STAT {seen:?}");
     assert!(seen.delicate * 12 < count && seen.refused * 30 > count && 2 * seen.events > count, "{seen:?}");
     seen
 }
@@ -201,15 +200,15 @@ fn random_affine_systems_with_a_surface_follow_their_exact_solution() {
 
 #[test]
 fn random_affine_systems_with_two_surfaces_follow_their_exact_solution() {
-    assert!(check_systems(2, 600).held_together > 100);
+    assert!(check_systems(2, 500).held_together > 100);
 }
 
 #[test]
 fn random_affine_systems_with_three_surfaces_follow_their_exact_solution() {
-    assert!(check_systems(3, 500).held_together > 150);
+    assert!(check_systems(3, 400).held_together > 150);
 }
 
 #[test]
 fn random_affine_systems_with_four_surfaces_follow_their_exact_solution() {
-    assert!(check_systems(4, 400).held_together > 150);
+    assert!(check_systems(4, 300).held_together > 120);
 }

@@ -388,19 +388,21 @@ dynamics { x' = u }
 minimize x(end)
 expect {
   integral(u^2) + x(end) == 3*x(start) within 1e-3
-  sliding(s) == 0
+  sliding(s) == sensitivity(x(end), x(start))
 }
 surface s = x
 path in_front: selected(Sgn(s)) <= 2";
     let expectations = expectations(&model(text));
-    let outputs: Vec<Option<usize>> = expectations.list.iter().map(|it| it.output).collect();
-    assert_eq!(outputs, [Some(0), None]);
+    let simulated: Vec<&[usize]> = expectations.list.iter().map(|it| it.simulated.as_slice()).collect();
+    assert_eq!(simulated, [&[][..], &[0, 1]]);
     let mut ends = Columns::new(2, 1);
     ends.column_mut(0)[0] = 1.0;
     ends.column_mut(1)[0] = 0.25;
-    let mut found = Columns::new(3, 1);
-    expectations.function.value(&ends, &[1.0, 2.5], &mut found); // p = [sigma(s), integral]
-    assert_eq!([found.column(0)[0], found.column(1)[0], found.column(2)[0]], [2.75, 3.0, 1e-3]);
+    let mut found = Columns::new(6, 1);
+    // p = [sigma(s), integral, sliding, sensitivity]
+    expectations.function.value(&ends, &[1.0, 2.5, 0.5, 0.75], &mut found);
+    assert_eq!([0, 1, 2].map(|i| found.column(i)[0]), [2.75, 3.0, 1e-3]);
+    assert_eq!([3, 4].map(|i| found.column(i)[0]), [0.5, 0.75]);
 }
 
 #[test]

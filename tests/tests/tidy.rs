@@ -52,8 +52,8 @@ const FOREIGN: &[(&str, &[&str])] = &[
     ("cranelift", &["compiler/src/generate/cranelift.rs", "compiler/src/generate/cranelift/"]),
     ("clarabel", &["runtime/src/clarabel.rs"]),
     ("miette", &["cli/src/render.rs"]),
-    ("serde", &["cli/src/output/", "cli/src/warm.rs"]),
-    ("serde_json", &["cli/src/output/", "cli/src/warm.rs", "cli/tests/", "tests/"]),
+    ("serde", &["cli/src/output/"]),
+    ("serde_json", &["cli/src/output/", "cli/tests/", "tests/"]),
 ];
 
 /// `pest::x` and `use pest`, but not our own modules of the same name: `crate::clarabel`, `super::cranelift`.

@@ -1,13 +1,17 @@
 //! The commands, one file each, and the exit codes that they share.
 
+mod accuracy;
 mod check;
+mod driven;
 mod explain;
+mod grad;
 mod options;
 mod show;
 mod simulate;
 mod solve;
 mod sweep;
 mod test;
+mod verify;
 
 pub use options::{Options, Prepared, show};
 
@@ -42,6 +46,8 @@ pub enum Command {
     Check(check::Check),
     Solve(Box<solve::Solve>),
     Simulate(Box<simulate::Simulate>),
+    Grad(Box<grad::Grad>),
+    Verify(verify::Verify),
     Sweep(Box<sweep::Sweep>),
     Test(Box<test::Test>),
     Show(show::Show),
@@ -55,6 +61,8 @@ impl Command {
             Command::Check(check) => check.run(),
             Command::Solve(solve) => solve.run(),
             Command::Simulate(simulate) => simulate.run(),
+            Command::Grad(grad) => grad.run(),
+            Command::Verify(verify) => verify.run(),
             Command::Sweep(sweep) => sweep.run(),
             Command::Test(test) => test.run(),
             Command::Show(show) => show.run(),

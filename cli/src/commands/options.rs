@@ -10,7 +10,7 @@ use fdcc_grammar::{Code, Diagnostic, Severity, SourceFile};
 use std::path::PathBuf;
 
 /// What may be changed without touching the model.
-#[derive(Args, Clone)]
+#[derive(Args, Clone, Default)]
 pub struct Changes {
     /// Give a `param` another value, such as `w=1` or `m=200[g]` (repeatable)
     #[arg(long, value_name = "NAME=VALUE")]
@@ -38,6 +38,21 @@ impl Changes {
 fn split<'t>(text: &'t str, form: &str) -> Result<(&'t str, &'t str), String> {
     let (name, value) = text.split_once('=').ok_or(format!("`{text}` is not of the form {form}"))?;
     Ok((name.trim(), value.trim()))
+}
+
+/// When a replay confirms a solution.
+#[derive(Args, Clone)]
+pub struct Gap {
+    /// The largest difference between solution and true system that is called confirmation
+    #[arg(long, value_name = "G", default_value_t = 1e-3, value_parser = difference, allow_negative_numbers = true)]
+    pub gap: f64,
+}
+
+fn difference(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value >= 0.0 => Ok(value),
+        _ => Err("it needs a number that is not negative".into()),
+    }
 }
 
 /// How to solve, and what to leave behind.

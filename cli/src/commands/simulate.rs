@@ -1,26 +1,20 @@
 //! `fdcc simulate`: the true system, integrated from event to event.
 
 use super::Exit;
-use super::options::{Changes, Prepared, read, usage};
-use crate::output::control::{self, Replay};
+use super::driven::Driven;
+use super::options::{Prepared, usage};
 use crate::output::simulation::Document;
 use crate::output::{self, files};
 use crate::solver::Failure;
 use clap::Args;
-use fdcc_runtime::simulate::{Controls, Options, Status, simulate};
+use fdcc_runtime::simulate::{Options, Status, simulate};
 use std::path::PathBuf;
 
 /// Simulate the true system, with every event located
 #[derive(Args)]
 pub struct Simulate {
-    /// The model; `-` is the standard input
-    #[arg(value_name = "FILE")]
-    file: String,
     #[command(flatten)]
-    changes: Changes,
-    /// Controls: a .csv with the columns `t` and the controls, or the .sol.json of a solve; the guess if left out
-    #[arg(long, value_name = "FILE")]
-    control: Option<PathBuf>,
+    driven: Driven,
     /// Report the states at these times instead of at all steps
     #[arg(long, value_name = "T1,T2,...", value_delimiter = ',', allow_negative_numbers = true)]
     times: Vec<f64>,
@@ -38,7 +32,7 @@ impl Simulate {
         if self.times.iter().any(|time| !time.is_finite()) || !self.times.is_sorted() {
             return usage("`--times` needs numbers in ascending order");
         }
-        let mut prepared = match read(&self.file, &self.changes) {
+        let mut prepared = match self.driven.read() {
             Ok(prepared) => prepared,
             Err(exit) => return exit,
         };
@@ -49,23 +43,14 @@ impl Simulate {
     }
 
     fn simulate(&self, prepared: &mut Prepared) -> Result<(Document, Exit), Failure> {
-        let controls = match &self.control {
-            Some(path) => control::read(path, &prepared.model)?,
-            None => Replay::default(),
-        };
-        controls.adapt(&mut prepared.model);
+        let replay = self.driven.adapt(prepared)?;
         let system = fdcc_compiler::compile_simulation(&prepared.model).map_err(Failure::Model)?;
+        let controls = self.driven.controls(replay, &system)?;
         let [first, last] = system.interval;
-        if !(first.is_finite() && last.is_finite() && first <= last) {
-            return Err(Failure::Usage(format!(
-                "time runs from {first} to {last}; it must not run backwards"
-            )));
-        }
-        let options = Options { times: self.times.clone(), ..Options::default() };
+        let options = Options { times: self.times.clone(), ..self.driven.accuracy.options() };
         if let Some(outside) = options.times.iter().find(|time| **time < first || **time > last) {
             return Err(Failure::Usage(format!("`--times`: {outside} is not between {first} and {last}")));
         }
-        let controls: Controls = controls.held().unwrap_or(Controls::Guess);
         let simulation = simulate(&system, &controls, &options);
         let is_complete = matches!(simulation.status, Status::Completed);
         let document = Document::new(&system, &simulation, &prepared.source);

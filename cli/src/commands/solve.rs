@@ -1,11 +1,13 @@
 //! `fdcc solve`: an optimal trajectory, a verdict, and the files asked for.
 
 use super::Exit;
-use super::options::{Options, Prepared, prepare, show};
+use super::options::{Gap, Options, Prepared, prepare, show};
 use crate::log::{Level, Log};
+use crate::output::saved::Saved;
+use crate::output::verified::Verification;
 use crate::output::{self, files};
-use crate::replay::replay;
 use crate::solver::{Compiled, Failure, Solved};
+use crate::verification::verify;
 use crate::watch::catch_interrupts;
 use crate::{failure, verdict};
 use clap::Args;
@@ -22,6 +24,8 @@ pub struct Solve {
     /// Do not replay the controls on the true system
     #[arg(long)]
     no_verify: bool,
+    #[command(flatten)]
+    gap: Gap,
 }
 
 impl Solve {
@@ -50,7 +54,10 @@ impl Solve {
         log.finish();
         let mut solved = solved?;
         if solved.is_good() && !self.no_verify {
-            solved.document.verification = replay(&prepared.model, &solved);
+            let saved = Saved::from(&solved.document);
+            // A model that cannot be simulated is solved all the same.
+            let verified = verify(&prepared.model, &solved.problem, &saved).ok();
+            solved.document.verification = verified.map(|it| Verification::new(&it, self.gap.gap));
         }
         Ok(solved)
     }

@@ -79,12 +79,19 @@ fn line(checked: Checked, prepared: &Prepared) -> Line {
     let line = prepared.source.line_column(origin.span.0).line;
     let text = origin.label.to_string();
     match outcome {
-        Outcome::NeedsSimulation => {
-            Line { line, text, outcome: Word::Skipped, left: None, right: None, tolerance: None }
-        }
+        Outcome::Untold(why) => Line {
+            line,
+            text,
+            outcome: Word::Failed,
+            left: None,
+            right: None,
+            tolerance: None,
+            why: Some(why),
+        },
         Outcome::Compared(Sides { left, right, tolerance, holds }) => {
             let outcome = if holds { Word::Ok } else { Word::Failed };
-            Line { line, text, outcome, left: Some(left), right: Some(right), tolerance: Some(tolerance) }
+            let [left, right, tolerance] = [left, right, tolerance].map(Some);
+            Line { line, text, outcome, left, right, tolerance, why: None }
         }
     }
 }
@@ -121,15 +128,17 @@ impl Line {
         let Line { text, .. } = self;
         let digits = |value: Option<f64>| number::significant(value.unwrap_or(f64::NAN), 9);
         let [left, right, tolerance] = [self.left, self.right, self.tolerance].map(digits);
-        match self.outcome {
-            Word::Ok => format!("ok       {text}   (left {left}, right {right})"),
-            Word::Failed => format!("FAILED   {text}   (left {left}, right {right}, tolerance {tolerance})"),
-            Word::Skipped => format!("skipped  {text}   (needs a simulation of the true system)"),
+        match (self.outcome, &self.why) {
+            (Word::Ok, _) => format!("ok       {text}   (left {left}, right {right})"),
+            (Word::Failed, None) => {
+                format!("FAILED   {text}   (left {left}, right {right}, tolerance {tolerance})")
+            }
+            (Word::Failed, Some(why)) => format!("FAILED   {text}   ({why})"),
         }
     }
 }
 
-/// `3 ok, 1 failed, 2 skipped, 1 model not solved`
+/// `3 ok, 1 failed, 1 model not solved`
 fn summary(all: &[Tested]) -> String {
     let count = |outcome| all.iter().map(|tested| tested.count(outcome)).sum::<usize>();
     let unsolved = all.iter().filter(|tested| !tested.is_solved()).count();
@@ -138,10 +147,5 @@ fn summary(all: &[Tested]) -> String {
         1 => ", 1 model not solved".into(),
         many => format!(", {many} models not solved"),
     };
-    format!(
-        "{} ok, {} failed, {} skipped{unsolved}\n",
-        count(Word::Ok),
-        count(Word::Failed),
-        count(Word::Skipped)
-    )
+    format!("{} ok, {} failed{unsolved}\n", count(Word::Ok), count(Word::Failed))
 }

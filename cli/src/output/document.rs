@@ -2,6 +2,7 @@
 
 use super::named::Named;
 use super::number::significant;
+use super::verified::Verification;
 use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::modes::Mode;
 use fdcc_runtime::nlp::Status;
@@ -36,31 +37,6 @@ pub struct Document {
     /// What the controls do on the true system; absent where they were not replayed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verification: Option<Verification>,
-}
-
-/// A replay of the controls on the true system, from event to event.
-#[derive(Clone, Debug, Serialize)]
-pub struct Verification {
-    /// Whether the replay reached the last time.
-    pub completed: bool,
-    /// The objective of the replay.
-    pub objective: Option<f64>,
-    /// The largest difference to the solution over states and grid points, in units of max(1, |x|).
-    pub state_gap: Option<f64>,
-    /// The largest violation of a bound, a path or an end condition.
-    pub constraint_violation: Option<f64>,
-    /// Where that is.
-    pub worst: Option<Worst>,
-    pub events: usize,
-}
-
-/// A condition that a replay violates.
-#[derive(Clone, Debug, Serialize)]
-pub struct Worst {
-    pub condition: String,
-    /// When; nothing for a condition on the ends.
-    pub time: Option<f64>,
-    pub violation: f64,
 }
 
 /// The method that was used, defaults and choices included.
@@ -209,7 +185,7 @@ pub fn status_name(status: &Status) -> &'static str {
 }
 
 /// The name of a mode in files and verdicts.
-fn mode_name(mode: Mode) -> &'static str {
+pub fn mode_name(mode: Mode) -> &'static str {
     match mode {
         Mode::Below => "below",
         Mode::Held => "held",

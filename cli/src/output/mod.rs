@@ -4,15 +4,20 @@ pub mod control;
 pub mod csv;
 pub mod diagnostics;
 pub mod document;
+pub mod ending;
 pub mod files;
+pub mod gradient;
+mod gradient_words;
 pub mod html;
 pub mod named;
 pub mod number;
 pub mod plot;
 pub mod sarif;
+pub mod saved;
 pub mod simulation;
 pub mod table;
 pub mod tested;
+pub mod verified;
 
 use std::io::Write;
 

@@ -1,9 +1,10 @@
 //! The JSON document of a simulation, its table, and its words for people.
 
+use super::ending::{Ending, EventEntry, events, state};
 use super::named::Named;
-use super::number::{short, significant};
+use super::number::significant;
 use fdcc_grammar::SourceFile;
-use fdcc_runtime::simulate::{Candidate, Event, Kind, Simulation, Status, System};
+use fdcc_runtime::simulate::{Simulation, System};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -12,7 +13,8 @@ use std::fmt::Write;
 pub struct Document {
     fdcc: String,
     pub model: String,
-    status: &'static str,
+    #[serde(flatten)]
+    ending: Ending,
     time: Vec<f64>,
     states: Named<Vec<f64>>,
     events: Vec<EventEntry>,
@@ -20,62 +22,14 @@ pub struct Document {
     end: Named<f64>,
     integrals: Named<f64>,
     objective: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    not_unique: Option<NotUnique>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    zeno: Option<Zeno>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    not_finite: Option<NotFinite>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    step_limit: Option<StepLimit>,
     counts: Counts,
-}
-
-#[derive(Serialize)]
-struct EventEntry {
-    time: f64,
-    surface: String,
-    kind: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    jump: Option<String>,
-    margin: f64,
-    state: Named<f64>,
-}
-
-#[derive(Serialize)]
-struct NotUnique {
-    surface: String,
-    time: f64,
-    state: Named<f64>,
-    candidates: Vec<String>,
-}
-
-#[derive(Serialize)]
-struct Zeno {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    jump: Option<String>,
-    surface: String,
-    limit_time: f64,
-}
-
-#[derive(Serialize)]
-struct NotFinite {
-    line: usize,
-    of: String,
-    time: f64,
-    state: Named<f64>,
-}
-
-#[derive(Serialize)]
-struct StepLimit {
-    time: f64,
-    state: Named<f64>,
 }
 
 #[derive(Serialize)]
 struct Counts {
     steps: usize,
     rejected: usize,
+    stiff: usize,
     evaluations: usize,
 }
 
@@ -87,57 +41,22 @@ impl Document {
         let mut end = vec![("time".to_string(), simulation.end_time)];
         end.extend(state(system, &simulation.end).0);
         let counts = simulation.counts;
-        let mut document = Document {
+        Document {
             fdcc: env!("CARGO_PKG_VERSION").to_string(),
             model: system.name.clone(),
-            status: "completed",
+            ending: Ending::new(system, simulation, source),
             time: simulation.time.clone(),
             states: columns.map(|(column, state)| (state.name.clone(), column.clone())).collect(),
-            events: simulation.events.iter().map(|event| entry(system, event)).collect(),
+            events: events(system, simulation),
             end: Named(end),
             integrals: integrals.map(|(value, state)| (state.name.clone(), *value)).collect(),
             objective: simulation.objective,
-            not_unique: None,
-            zeno: None,
-            not_finite: None,
-            step_limit: None,
             counts: Counts {
                 steps: counts.steps,
                 rejected: counts.rejected,
+                stiff: counts.stiff,
                 evaluations: counts.evaluations,
             },
-        };
-        document.explain(system, simulation, source);
-        document
-    }
-
-    /// The status, and the object that says why it is not `completed`.
-    fn explain(&mut self, system: &System, simulation: &Simulation, source: &SourceFile) {
-        let time = simulation.end_time;
-        let state = state(system, &simulation.end);
-        match &simulation.status {
-            Status::Completed => {}
-            Status::NotUnique { surface, candidates } => {
-                self.status = "not_unique";
-                let surface = system.surfaces[*surface].name.clone();
-                let candidates = candidates.iter().map(|it| candidate(system, it)).collect();
-                self.not_unique = Some(NotUnique { surface, time, state, candidates });
-            }
-            Status::Zeno { jump, surface, limit_time } => {
-                self.status = "zeno";
-                let jump = jump.map(|jump| system.jumps[jump].name.clone());
-                let surface = system.surfaces[*surface].name.clone();
-                self.zeno = Some(Zeno { jump, surface, limit_time: *limit_time });
-            }
-            Status::NotFinite(origin) => {
-                self.status = "not_finite";
-                let line = source.line_column(origin.span.0).line;
-                self.not_finite = Some(NotFinite { line, of: origin.label.to_string(), time, state });
-            }
-            Status::StepLimit => {
-                self.status = "step_limit";
-                self.step_limit = Some(StepLimit { time, state });
-            }
         }
     }
 
@@ -157,108 +76,26 @@ impl Document {
     pub fn words(&self) -> String {
         let mut text = String::new();
         for event in &self.events {
-            let what =
-                event.jump.as_deref().map_or(event.kind.replace('_', " "), |jump| format!("jump {jump}"));
-            let (time, surface) = (significant(event.time, 12), &event.surface);
-            let state = pairs(&event.state);
+            let (time, surface, what) = (significant(event.time, 12), &event.surface, event.what());
+            let state = pairs(&event.state, 12);
             writeln!(text, " {time:>16}  {surface:<10} {what:<16} {state}")
                 .expect("a string takes everything");
         }
-        let integrals = pairs(&self.integrals);
+        let integrals = pairs(&self.integrals, 12);
         let objective = self.objective.map(|value| format!("objective {}  ", significant(value, 12)));
-        let last = self.verdict();
-        text += &format!(" {last}\n end: {}\n", pairs(&self.end));
+        let events = super::plural(self.events.len(), "event");
+        let completed = format!("completed: {events}, {} steps", self.counts.steps);
+        let last = self.ending.why().unwrap_or(completed);
+        text += &format!(" {last}\n end: {}\n", pairs(&self.end, 12));
         if !integrals.is_empty() || objective.is_some() {
             text += &format!(" {}{integrals}\n", objective.unwrap_or_default());
         }
         text
     }
-
-    fn verdict(&self) -> String {
-        let events = super::plural(self.events.len(), "event");
-        match (&self.not_unique, &self.zeno, &self.not_finite) {
-            (Some(why), _, _) => format!(
-                "not unique: at t = {} on `{}` the state could go on in several ways or in none that can be told: {}",
-                short(why.time),
-                why.surface,
-                why.candidates.join(" | ")
-            ),
-            (_, Some(why), _) => zeno(why),
-            (_, _, Some(why)) => {
-                format!("not finite: `{}` (line {}) at t = {}", why.of, why.line, significant(why.time, 12))
-            }
-            _ if self.step_limit.is_some() => {
-                "step limit: the system may be stiff, or its events may pile up".into()
-            }
-            _ => format!("completed: {events}, {} steps", self.counts.steps),
-        }
-    }
-}
-
-fn zeno(why: &Zeno) -> String {
-    let (time, surface) = (significant(why.limit_time, 12), &why.surface);
-    match &why.jump {
-        Some(jump) => {
-            format!(
-                "zeno: the jumps `{jump}` pile up at t = {time}; say what follows with `then hold {surface}`"
-            )
-        }
-        None => format!("zeno: `{surface}` is crossed infinitely often before t = {time}"),
-    }
 }
 
 /// `x = 1  v = 0.5`
-fn pairs(values: &Named<f64>) -> String {
-    let pairs = values.0.iter().map(|(name, value)| format!("{name} = {}", significant(*value, 12)));
+pub fn pairs(values: &Named<f64>, digits: usize) -> String {
+    let pairs = values.0.iter().map(|(name, value)| format!("{name} = {}", significant(*value, digits)));
     pairs.collect::<Vec<_>>().join("  ")
-}
-
-/// The states without the integrals.
-fn state(system: &System, values: &[f64]) -> Named<f64> {
-    let shown = system.states.iter().zip(values).filter(|(state, _)| !state.hidden);
-    shown.map(|(state, value)| (state.name.clone(), *value)).collect()
-}
-
-fn entry(system: &System, event: &Event) -> EventEntry {
-    let jump = match event.kind {
-        Kind::Jump(jump) => Some(system.jumps[jump].name.clone()),
-        _ => None,
-    };
-    EventEntry {
-        time: event.time,
-        surface: system.surfaces[event.surface].name.clone(),
-        kind: kind_name(event.kind),
-        jump,
-        margin: event.margin,
-        state: state(system, &event.state),
-    }
-}
-
-fn kind_name(kind: Kind) -> &'static str {
-    match kind {
-        Kind::CrossesUp => "crosses_up",
-        Kind::CrossesDown => "crosses_down",
-        Kind::EntersSliding => "enters_sliding",
-        Kind::LeavesUp => "leaves_up",
-        Kind::LeavesDown => "leaves_down",
-        Kind::Jump(_) => "jump",
-        Kind::StartsSliding => "starts_sliding",
-    }
-}
-
-/// `up`, or `edge up, slip slide` where several surfaces meet.
-fn candidate(system: &System, candidate: &Candidate) -> String {
-    let word = |side: i8| match side {
-        1 => "up",
-        -1 => "down",
-        _ => "slide",
-    };
-    match candidate.sides.as_slice() {
-        [(_, side)] => word(*side).to_string(),
-        several => {
-            let named =
-                several.iter().map(|(i, side)| format!("{} {}", system.surfaces[*i].name, word(*side)));
-            named.collect::<Vec<_>>().join(", ")
-        }
-    }
 }

@@ -21,6 +21,9 @@ pub struct Line {
     pub left: Option<f64>,
     pub right: Option<f64>,
     pub tolerance: Option<f64>,
+    /// Why there are no values.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
 }
 
 #[derive(Clone, Copy, PartialEq, Serialize)]
@@ -28,5 +31,4 @@ pub struct Line {
 pub enum Word {
     Ok,
     Failed,
-    Skipped,
 }

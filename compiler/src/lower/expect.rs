@@ -1,11 +1,12 @@
 //! What a model expects of its solution, as a function that can be evaluated once there is one.
 //!
-//! Inputs `[x(start), x(end) | p, integrals]`; three outputs for each expectation: left side, right side, tolerance.
+//! Inputs `[x(start), x(end) | p, integrals, simulated]`; three outputs for each expectation: left side, right side,
+//! tolerance.
 
 use super::inputs::{self, Sizes};
 use super::{Objective, objective, origin};
-use crate::graph::ExprId;
-use crate::model::{Comparison, Model, Symbol};
+use crate::graph::{ExprId, Graph};
+use crate::model::{Comparison, Model, Simulated, Symbol};
 use crate::program::{Order, VectorFunction};
 use fdcc_runtime::problem::{Function, Layout, Origin};
 use std::sync::Arc;
@@ -17,16 +18,18 @@ pub struct Expected {
     pub origin: Origin,
     /// How the sides compare.
     pub comparison: Comparison,
-    /// The first of its three outputs; `None` if only a simulation can tell.
-    pub output: Option<usize>,
+    /// Which of [`Expectations::simulated`] it reads.
+    pub simulated: Vec<usize>,
 }
 
 /// All expectations of a model, compiled.
 pub struct Expectations {
     /// In the order of the text.
     pub list: Vec<Expected>,
-    /// Over `[x(start), x(end) | p, integrals]`, the states of [`Problem`](fdcc_runtime::problem::Problem) with
-    /// the hidden ones; values only.
+    /// What only a simulation can tell.
+    pub simulated: Vec<Simulated>,
+    /// Over `[x(start), x(end) | p, integrals, simulated]`, the states of
+    /// [`Problem`](fdcc_runtime::problem::Problem) with the hidden ones; values only.
     pub function: Arc<dyn Function>,
     /// The integrands over normalised time `[tau | x | u | p]`, times the duration; values only.
     pub integrands: Arc<dyn Function>,
@@ -40,12 +43,11 @@ pub fn expectations(model: &Model) -> Expectations {
     let mut list = Vec::new();
     let mut values: Vec<ExprId> = Vec::new();
     for expectation in &model.expectations {
-        let output = expectation.values.is_some().then_some(values.len());
-        values.extend(expectation.values.iter().flatten());
+        values.extend(expectation.values);
         list.push(Expected {
             origin: origin(&expectation.place),
             comparison: expectation.comparison,
-            output,
+            simulated: simulated_in(model, &graph, &expectation.values),
         });
     }
     let needed = objective::integrals_in(model, &graph, &values);
@@ -53,11 +55,14 @@ pub fn expectations(model: &Model) -> Expectations {
     let integrands: Vec<ExprId> = needed.iter().map(|&at| model.integrals[at].integrand).collect();
     let integrands = over_grid.apply(&mut graph, &integrands);
     let integrands = integrands.iter().map(|&it| graph.mul(over_grid.duration, it)).collect();
-    let layout = Layout { p: sizes.parameters + needed.len(), ..sizes.ends() };
+    let more = needed.len() + model.simulated.len();
+    let layout = Layout { p: sizes.parameters + more, ..sizes.ends() };
     let mut at_ends = inputs::at_ends(model, &mut graph, &layout, &[]);
-    for (position, &at) in needed.iter().enumerate() {
-        let place = graph.input((layout.parameters().end - needed.len() + position) as u32);
-        at_ends.replace(model, Symbol::Integral(at), place);
+    let integrals = needed.iter().map(|&at| Symbol::Integral(at));
+    let simulated = (0..model.simulated.len()).map(Symbol::Simulated);
+    for (position, symbol) in integrals.chain(simulated).enumerate() {
+        let place = graph.input((layout.parameters().end - more + position) as u32);
+        at_ends.replace(model, symbol, place);
     }
     let values = at_ends.apply(&mut graph, &values);
     let functions =
@@ -65,7 +70,16 @@ pub fn expectations(model: &Model) -> Expectations {
     let compiled = crate::machine_code(graph, functions.to_vec());
     let [function, integrands] =
         <[_; 2]>::try_from(compiled).unwrap_or_else(|_| unreachable!("two functions were given"));
-    Expectations { list, function, integrands }
+    Expectations { list, simulated: model.simulated.clone(), function, integrands }
+}
+
+fn simulated_in(model: &Model, graph: &Graph, roots: &[ExprId]) -> Vec<usize> {
+    let inputs = graph.inputs_of(roots);
+    let simulated = |input: u32| match model.symbols[input as usize] {
+        Symbol::Simulated(index) => Some(index),
+        _ => None,
+    };
+    inputs.into_iter().filter_map(simulated).collect()
 }
 
 fn values_only(name: &str, layout: Layout, outputs: Vec<ExprId>) -> VectorFunction {

@@ -40,6 +40,7 @@ impl Context {
     pub const AT_AN_END: Context = Context::new("a value at the start or the end", AT_AN_END);
     pub const BOUNDARY: Context = Context::new("a start or end condition", AT_AN_END.or(Reads::WHOLE));
     pub const OBJECTIVE: Context = Context::new("the objective", WHOLE);
+    pub const SENSITIVITY: Context = Context::new("a sensitivity", WHOLE);
     pub const EXPECT: Context = Context::new("an expectation", WHOLE.or(Reads::SIMULATION));
     pub const GUESS: Context =
         Context { name: "a guess", allowed: Reads::TIME.or(Reads::PARAM).or(Reads::FREE), is_guess: true };

@@ -6,7 +6,7 @@ use super::elaborator::{Elaborator, SurfaceEntry};
 use super::value::{Parts, Reads, SetUse, Traits, Value};
 use super::{scope, text};
 use crate::graph::{Expr as Node, ExprId};
-use crate::model::{Integral, Place, Symbol};
+use crate::model::{Integral, Place, Simulated, Symbol};
 use fdcc_grammar::ast::{Argument, Expr, ExprKind, Ident, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Span};
 
@@ -295,8 +295,14 @@ impl<'a> Elaborator<'a> {
     }
 
     fn sliding(&mut self, surface: &'a Expr, span: Span) -> Value {
-        let known = matches!(&surface.kind, ExprKind::Name(name) if self.surface_named(name).is_some());
-        if !known && self.evaluate(surface).parts != Parts::Unknown {
+        let known = match &surface.kind {
+            ExprKind::Name(name) => self.surface_named(name),
+            _ => None,
+        };
+        if let Some(at) = known {
+            return self.simulated("sliding", Simulated::Sliding(at), span);
+        }
+        if self.evaluate(surface).parts != Parts::Unknown {
             let found = Diagnostic::new(
                 Code::WrongKind,
                 "`sliding` is asked of a surface",
@@ -305,18 +311,47 @@ impl<'a> Elaborator<'a> {
             );
             self.diagnostics.push(found.help("declare one: `surface name = expression`"));
         }
-        self.simulated("sliding", span)
+        Value::default()
     }
 
     fn sensitivity(&mut self, of: &'a Expr, by: &'a Expr, span: Span) -> Value {
-        self.evaluate(of);
-        self.evaluate(by);
-        self.simulated("sensitivity", span)
+        let number = self.evaluate_in(Context::SENSITIVITY, of);
+        let direction = self.evaluate_in(Context::SENSITIVITY, by);
+        let number = self.expect_number(&number, of.span);
+        let direction = self.expect_number(&direction, by.span);
+        let (Some(number), Some(direction)) = (number, direction) else { return Value::default() };
+        let symbol = match self.graph.expr(direction) {
+            Node::Input(input) => Some(self.symbols[*input as usize]),
+            _ => None,
+        };
+        match symbol {
+            Some(by @ (Symbol::Param(_) | Symbol::Free(_) | Symbol::AtStart(_))) => {
+                self.simulated("sensitivity", Simulated::Sensitivity { of: number, by }, span)
+            }
+            _ => self.no_direction(by),
+        }
+    }
+
+    fn no_direction(&mut self, by: &'a Expr) -> Value {
+        let message = format!("a sensitivity cannot be taken by `{}`", text::expr(by));
+        let label = "not a parameter, an unknown or a start";
+        let found = Diagnostic::new(Code::NotAllowedHere, message, by.span, label);
+        self.fail(found.help("name a `param` or a `free`, or the start of a state, such as `x(start)`"))
     }
 
     /// Something that only a simulation can tell.
-    fn simulated(&mut self, name: &str, span: Span) -> Value {
-        self.admit(name, Value::unknown(Traits { reads: Reads::SIMULATION, ..Traits::default() }), span)
+    fn simulated(&mut self, name: &str, what: Simulated, span: Span) -> Value {
+        let known = self.model.simulated.iter().position(|other| *other == what);
+        let at = known.unwrap_or_else(|| {
+            self.model.simulated.push(what);
+            self.model.simulated.len() - 1
+        });
+        let part = match self.symbols.iter().position(|symbol| *symbol == Symbol::Simulated(at)) {
+            Some(input) => self.graph.input(input as u32),
+            None => self.symbol(Symbol::Simulated(at)),
+        };
+        let traits = Traits { reads: Reads::SIMULATION, ..Traits::default() };
+        self.admit(name, Value::scalar(part, traits), span)
     }
 }
 

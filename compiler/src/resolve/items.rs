@@ -2,7 +2,7 @@
 
 use super::context::Context;
 use super::elaborator::{Elaborator, Role};
-use super::value::{Reads, Value};
+use super::value::Value;
 use super::{scope, text};
 use crate::graph::ExprId;
 use crate::model::{Comparison, Expectation, Place, Report};
@@ -162,7 +162,6 @@ impl<'a> Elaborator<'a> {
             Some(within) => self.evaluate_number("a tolerance", Context::NUMBER, within),
             None => Some(self.graph.number(0.0)),
         };
-        let simulated = sides.iter().any(|side| side.traits.reads.has(Reads::SIMULATION));
         let [left, right] = [(&sides[0], check.left.span), (&sides[1], check.right.span)]
             .map(|(side, span)| self.expect_number(side, span));
         let values: Option<Vec<ExprId>> = [left, right, within].into_iter().collect();
@@ -177,12 +176,9 @@ impl<'a> Elaborator<'a> {
             text::relation(check.relation),
             text::expr(&check.right)
         );
-        let values = values.filter(|_| !simulated).and_then(|values| values.try_into().ok());
-        self.model.expectations.push(Expectation {
-            place: Place { name, span: check.span },
-            comparison,
-            values,
-        });
+        let values: Option<[ExprId; 3]> = values.and_then(|values| values.try_into().ok());
+        let place = Place { name, span: check.span };
+        self.model.expectations.extend(values.map(|values| Expectation { place, comparison, values }));
     }
 
     /// A weight of the metric: read, and used by the analysis of surfaces.

@@ -66,7 +66,7 @@ impl Elaborator<'_> {
 }
 
 /// The known name that is nearest to a misspelt one, if any is near.
-pub(crate) fn closest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
+pub fn closest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
     let limit = name.chars().count() / 3;
     let distance = |candidate: &str| {
         let exact = strsim::osa_distance(name, candidate);

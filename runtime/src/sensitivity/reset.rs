@@ -25,7 +25,13 @@ impl Reset {
             if let Kind::Jump(jump) = change.kind {
                 reset.then(&jump_slopes(linearizer, tape, from, jump));
             }
-            from = &change.after;
+            if change.after.time == stop.before.time {
+                from = &change.after;
+            }
+        }
+        let gap = stop.after.time - stop.before.time;
+        if gap > 0.0 {
+            reset.then(&straight_on(linearizer, tape, from, gap));
         }
         for slopes in rest_slopes(linearizer, tape, stop) {
             reset.then(&slopes);
@@ -48,6 +54,13 @@ fn jump_slopes(linearizer: &Linearizer, tape: &Tape, from: &Instant, jump: usize
     let states = from.state.len();
     let all = jacobian(linearizer, tape, from, &*linearizer.system.resets).by;
     all.view((jump * states, 0), (states, 1 + states + linearizer.inputs())).into_owned()
+}
+
+/// Where jumps pile up the state goes straight on until their limit: `x + gap f`.
+fn straight_on(linearizer: &Linearizer, tape: &Tape, from: &Instant, gap: f64) -> DMatrix<f64> {
+    let mut slopes = linearizer.at_instant(tape, from).by * gap;
+    (0..from.state.len()).for_each(|state| slopes[(state, 1 + state)] += 1.0);
+    slopes
 }
 
 /// Where the state comes to rest on a surface: the Newton steps on `psi` and on `psi'` that bring it there.

@@ -141,8 +141,12 @@ impl Affine {
     /// The model.
     pub fn text(&self) -> String {
         let names = |row: &[f64]| -> String {
-            let states = row[..self.size()].iter().enumerate().map(|(j, a)| format!("({a})*x{j} + "));
-            states.collect::<String>() + &format!("({})*t + ({})", row[self.size()], row[self.size() + 1])
+            let of = |(j, a): (usize, &f64)| {
+                if j < self.size() { format!("({a})*x{j} + ") } else { format!("({a})*t + ") }
+            };
+            let (constant, others) = row.split_last().expect("y ends with 1");
+            let terms = others.iter().enumerate().filter(|(_, a)| **a != 0.0).map(of);
+            terms.collect::<String>() + &format!("({constant})")
         };
         let mut text = format!("time t in [0, {LAST}]\n");
         let mut equations = String::new();

@@ -9,7 +9,7 @@ use crate::affine::{Affine, LAST, Matrix, dot, solve};
 use fdcc_runtime::simulate::Kind;
 
 /// A step of the search for events.
-const STEP: f64 = 0.02;
+const STEP: f64 = 0.04;
 
 /// The shortest step of the Runge-Kutta method.
 const SHORTEST: f64 = 1e-5;
@@ -60,7 +60,6 @@ struct Flow<'a> {
     system: &'a Affine,
     /// `M` without what is held.
     matrix: Matrix,
-    sides: Vec<i8>,
     held: Vec<usize>,
 }
 
@@ -76,7 +75,7 @@ impl<'a> Flow<'a> {
         matrix.extend([vec![0.0; width], vec![0.0; width]]);
         matrix[width - 2][width - 1] = 1.0;
         let held = (0..sides.len()).filter(|&i| sides[i] == 0).collect();
-        Flow { system, matrix, sides: sides.to_vec(), held }
+        Flow { system, matrix, held }
     }
 
     /// The selectors of what is held; none if they are not determined.
@@ -152,12 +151,12 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Where in a step a condition first becomes negative; an error if that is delicate.
-    fn first(&self, condition: Condition, y: &[f64], h: f64) -> Result<Option<f64>, ()> {
+    /// Where in a step to `end` a condition first becomes negative; an error if that is delicate.
+    fn first(&self, condition: Condition, y: &[f64], end: &[f64], h: f64) -> Result<Option<f64>, ()> {
         let value = |h: f64| self.value(condition, &self.after(y, h));
         let slope = |h: f64| self.slope(condition, &self.after(y, h));
-        let (at_start, at_end) = (self.value(condition, y), value(h));
-        let turns = self.slope(condition, y) * slope(h) < 0.0;
+        let (at_start, at_end) = (self.value(condition, y), self.value(condition, end));
+        let turns = self.slope(condition, y) * self.slope(condition, end) < 0.0;
         let extremum = if turns { root(&slope, 0.0, h) } else { h };
         let least = if turns { value(extremum) } else { at_end };
         let is_new = at_start < 1e-9;
@@ -225,16 +224,17 @@ impl Way<'_> {
         while self.time() < LAST {
             let flow = Flow::new(self.system, &self.sides);
             let h = STEP.min(LAST - self.time());
-            let event = self.first(&flow, h)?;
+            let end = flow.after(&self.y, h);
             // Beyond a singularity of the selectors nothing is known.
-            if flow.after(&self.y, h).iter().any(|value| value.is_nan()) {
+            if end.iter().any(|value| value.is_nan()) {
                 return Err(Ending::Delicate);
             }
+            let event = self.first(&flow, &end, h)?;
             if let Some(h) = self.attraction_ends(&flow, event.map_or(h, |(time, _)| time))? {
                 self.y = flow.after(&self.y, h);
                 return self.choose(&flow.held, false).and(Err(Ending::Delicate));
             }
-            self.y = flow.after(&self.y, event.map_or(h, |(time, _)| time));
+            self.y = event.map_or(end, |(time, _)| flow.after(&self.y, time));
             match event {
                 Some((_, surface)) => self.event(&flow, surface)?,
                 None if h < STEP => return Ok(()),
@@ -267,11 +267,11 @@ impl Way<'_> {
         self.sides.iter().enumerate().flat_map(of).collect()
     }
 
-    /// The first event of a step.
-    fn first(&self, flow: &Flow, h: f64) -> Result<Option<(f64, usize)>, Ending> {
+    /// The first event of a step to `end`.
+    fn first(&self, flow: &Flow, end: &[f64], h: f64) -> Result<Option<(f64, usize)>, Ending> {
         let mut found = Vec::new();
         for condition in self.conditions() {
-            let root = flow.first(condition, &self.y, h).map_err(|()| Ending::Delicate)?;
+            let root = flow.first(condition, &self.y, end, h).map_err(|()| Ending::Delicate)?;
             found.extend(root.map(|root| (root, condition.surface())));
         }
         found.sort_by(|a, b| a.0.total_cmp(&b.0));

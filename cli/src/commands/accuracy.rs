@@ -1,0 +1,50 @@
+//! How exactly a simulation integrates, and with which method: the options of every command that simulates.
+
+use clap::{Args, ValueEnum};
+use fdcc_runtime::simulate::{Integrator, Options};
+
+/// The options.
+#[derive(Args)]
+pub struct Accuracy {
+    /// Relative tolerance of one step
+    #[arg(long, value_name = "TOL", default_value = "1e-10", value_parser = relative)]
+    rtol: f64,
+    /// Absolute tolerance of one step
+    #[arg(long, value_name = "TOL", default_value = "1e-12", value_parser = absolute)]
+    atol: f64,
+    /// The method: explicit until a mode turns out to be stiff, or always the one named
+    #[arg(long, value_name = "METHOD", value_enum, default_value = "auto")]
+    integrator: Chosen,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Chosen {
+    Auto,
+    Explicit,
+    Stiff,
+}
+
+impl Accuracy {
+    /// The same as options of the runtime.
+    pub fn options(&self) -> Options {
+        let integrator = match self.integrator {
+            Chosen::Auto => Integrator::Automatic,
+            Chosen::Explicit => Integrator::Explicit,
+            Chosen::Stiff => Integrator::Stiff,
+        };
+        Options { rtol: self.rtol, atol: self.atol, integrator, ..Options::default() }
+    }
+}
+
+/// Below this rounding is larger than the tolerance.
+const LEAST: f64 = 1e-14;
+
+fn relative(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|value| (LEAST..1.0).contains(value));
+    value.ok_or_else(|| format!("a number from {LEAST:e} to 1 is needed"))
+}
+
+fn absolute(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|value: &f64| *value > 0.0 && value.is_finite());
+    value.ok_or_else(|| "a positive number is needed".to_string())
+}

@@ -1,0 +1,67 @@
+//! A model and the controls that drive it: what `simulate` and `grad` begin with.
+
+use super::Exit;
+use super::accuracy::Accuracy;
+use super::options::{Changes, Prepared, read};
+use crate::log::Level;
+use crate::output;
+use crate::output::control;
+use crate::replay::Replay;
+use crate::solver::Failure;
+use clap::Args;
+use fdcc_runtime::simulate::{Controls, System};
+use std::path::PathBuf;
+
+/// A model file and where its controls come from.
+#[derive(Args)]
+pub struct Driven {
+    /// The model; `-` is the standard input
+    #[arg(value_name = "FILE")]
+    file: String,
+    #[command(flatten)]
+    changes: Changes,
+    /// Controls: a .csv with the columns `t` and the controls, or the .sol.json of a solve; the guess if left out
+    #[arg(long, value_name = "FILE")]
+    control: Option<PathBuf>,
+    #[command(flatten)]
+    pub accuracy: Accuracy,
+    /// How much to tell on the standard error: with `none` nothing but what is wrong
+    #[arg(long, value_enum)]
+    log: Option<Level>,
+}
+
+impl Driven {
+    /// Reads and checks the model, without any changes.
+    pub fn read(&self) -> Result<Prepared, Exit> {
+        read(&self.file, &Changes::default())
+    }
+
+    /// Changes the model: what its solution says comes first, so that the command line has the last word.
+    pub fn adapt(&self, prepared: &mut Prepared) -> Result<Replay, Failure> {
+        let replay = match &self.control {
+            Some(path) => control::read(path, &prepared.model)?,
+            None => Replay::default(),
+        };
+        replay.adapt(&mut prepared.model);
+        self.changes.apply(&mut prepared.model).map_err(Failure::Usage)?;
+        Ok(replay)
+    }
+
+    /// The controls for a system. What is odd about them is said on the standard error.
+    pub fn controls(&self, replay: Replay, system: &System) -> Result<Controls, Failure> {
+        let [first, last] = system.interval;
+        let wrong = match (first.is_finite() && last.is_finite(), first <= last) {
+            (false, _) => Some("both must be numbers"),
+            (true, false) => Some("it must not run backwards"),
+            (true, true) => None,
+        };
+        if let Some(wrong) = wrong {
+            return Err(Failure::Usage(format!("time runs from {first} to {last}; {wrong}")));
+        }
+        let doubt = replay.doubts(system.interval).filter(|_| self.log != Some(Level::None));
+        if let (Some(doubt), Some(path)) = (doubt, &self.control) {
+            output::complain(&format!("{}: {doubt}", path.display()));
+        }
+        Ok(replay.held().unwrap_or(Controls::Guess))
+    }
+}

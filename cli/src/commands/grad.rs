@@ -1,0 +1,143 @@
+//! `fdcc grad`: the exact gradient of the true system, and what others would have computed instead.
+
+use super::Exit;
+use super::driven::Driven;
+use super::options::{Prepared, show, usage};
+use crate::exact::Exact;
+use crate::gradients::{discretised, smoothed};
+use crate::output::gradient::{Document, Found};
+use crate::output::{self, files};
+use crate::quantities::{By, everything, named};
+use crate::solver::Failure;
+use clap::Args;
+use fdcc_grammar::{Severity, SourceFile, parse};
+use fdcc_runtime::sensitivity::{Quantity, hessian};
+use fdcc_runtime::simulate::{Controls, System};
+use std::path::PathBuf;
+
+/// The exact gradient through all events, and whether it can be trusted
+#[derive(Args)]
+pub struct Grad {
+    #[command(flatten)]
+    driven: Driven,
+    /// What to differentiate: an expression with a value at the end, such as `x(end)`; the objective if left out
+    #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
+    of: Option<String>,
+    /// By what: params, free unknowns, starts such as `x(start)`, controls; all params and unknowns if left out
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
+    wrt: Vec<String>,
+    /// The second derivatives, too
+    #[arg(long)]
+    second: bool,
+    /// Print the result as one JSON document, and nothing else, on the standard output
+    #[arg(long)]
+    json: bool,
+    /// Write MODEL.grad.json to this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+impl Grad {
+    /// Differentiates and reports.
+    pub fn run(self) -> Exit {
+        let mut prepared = match self.driven.read().and_then(|prepared| self.asked(prepared)) {
+            Ok(prepared) => prepared,
+            Err(exit) => return exit,
+        };
+        match self.gradient(&mut prepared) {
+            Ok(document) => self.report(&document, &prepared),
+            Err(failure) => failure.report(&prepared.source),
+        }
+    }
+
+    /// The model with the objective that `--of` asks for. What is wrong with that is shown under its own name.
+    fn asked(&self, prepared: Prepared) -> Result<Prepared, Exit> {
+        let Some(of) = &self.of else { return Ok(prepared) };
+        if of.trim().is_empty() {
+            return Err(usage("`--of` needs an expression, such as `x(end)`"));
+        }
+        let tree = parse(&prepared.source.text).tree;
+        let checked = fdcc_compiler::check_with_objective(&tree, of);
+        let source = SourceFile::new("--of", of.as_str());
+        show(checked.diagnostics.iter().filter(|it| it.severity >= Severity::Warning), &source);
+        let model = checked.model.ok_or(Exit::Usage)?;
+        Ok(Prepared { model, ..prepared })
+    }
+
+    fn gradient(&self, prepared: &mut Prepared) -> Result<Document, Failure> {
+        let replay = self.driven.adapt(prepared)?;
+        let model = &prepared.model;
+        if model.objective.is_none() {
+            return Err(Failure::Usage(
+                "the model has no objective; `--of EXPR` says what to differentiate".into(),
+            ));
+        }
+        let system = fdcc_compiler::compile_sensitivities(model).map_err(Failure::Model)?;
+        let controls = self.driven.controls(replay, &system)?;
+        let by = self.by(&system, &controls, prepared)?;
+        let quantities: Vec<Quantity> = by.iter().flat_map(|by| by.quantities.iter().copied()).collect();
+        let of = self.of.as_deref().unwrap_or("objective");
+        let exact = match Exact::new(&system, &controls, &self.driven.accuracy.options(), &quantities) {
+            Ok(exact) => exact,
+            Err(simulation) => return Ok(Document::without(of, &system, &simulation, &prepared.source)),
+        };
+        // Neither knows jumps, and without surfaces there is nothing to smooth.
+        let (has_jumps, has_surfaces) = (!system.jumps.is_empty(), !system.surfaces.is_empty());
+        let smoothed = (has_surfaces && !has_jumps)
+            .then(|| smoothed(model, &system, &exact.found.simulation, &controls, &quantities));
+        let discretised = (!has_jumps).then(|| discretised(model, &system, &controls, &quantities));
+        let second = self.second(&by)?.then(|| {
+            let found = hessian(&system, &controls, &exact.found.simulation, &quantities);
+            found.ok_or_else(|| {
+                "there are no second derivatives where infinitely many jumps come to rest".to_string()
+            })
+        });
+        let (system, by, exact, method) = (&system, &by, &exact, &model.method);
+        let found = Found { of, system, by, exact, second, smoothed, discretised, method };
+        Ok(Document::new(found, &prepared.source))
+    }
+
+    /// Whether second derivatives are wanted; not of thousands of controls.
+    fn second(&self, by: &[By]) -> Result<bool, Failure> {
+        match by.iter().find(|by| by.is_control && self.second) {
+            Some(by) => Err(Failure::Usage(format!("--second: not by the control `{}`", by.name))),
+            None => Ok(self.second),
+        }
+    }
+
+    fn by(&self, system: &System, controls: &Controls, prepared: &Prepared) -> Result<Vec<By>, Failure> {
+        if self.wrt.is_empty() {
+            let all = everything(system, &prepared.model);
+            let nothing = "there is nothing to differentiate by; `--wrt x(start)` names the start of `x`";
+            return if all.is_empty() { Err(Failure::Usage(nothing.into())) } else { Ok(all) };
+        }
+        let mut all: Vec<By> = Vec::new();
+        for name in self.wrt.iter().map(|name| name.trim()) {
+            let found =
+                named(name, system, controls).map_err(|what| Failure::Usage(format!("--wrt: {what}")))?;
+            let is_new = |by: &By| all.iter().all(|known| known.name != by.name);
+            let new: Vec<By> = found.into_iter().filter(is_new).collect();
+            all.extend(new);
+        }
+        Ok(all)
+    }
+
+    fn report(&self, document: &Document, prepared: &Prepared) -> Exit {
+        let exit = if document.trusted { Exit::Fine } else { Exit::NotSolved };
+        let written = match &self.out {
+            Some(folder) => {
+                files::write_all(folder, &document.model, &[("grad.json", output::json(document))])
+            }
+            None => Ok(Vec::new()),
+        };
+        output::print(&if self.json { output::json(document) } else { document.words() });
+        match written {
+            Ok(names) if names.is_empty() || self.json => exit,
+            Ok(names) => {
+                output::print(&format!(" wrote {}\n", names.join("  ")));
+                exit
+            }
+            Err(failure) => failure.report(&prepared.source),
+        }
+    }
+}

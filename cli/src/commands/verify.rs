@@ -1,0 +1,86 @@
+//! `fdcc verify`: what the controls of a solution do on the true system.
+
+use super::Exit;
+use super::options::{Changes, Gap, Prepared, read};
+use crate::output;
+use crate::output::saved::Saved;
+use crate::output::verified::Document;
+use crate::solver::{Failure, sha256};
+use crate::verification::verify;
+use clap::Args;
+use fdcc_grammar::SourceFile;
+use std::path::{Path, PathBuf};
+
+/// Replay the controls of a solution on the true system
+#[derive(Args)]
+pub struct Verify {
+    /// The .sol.json of a solve
+    #[arg(value_name = "SOLUTION")]
+    solution: PathBuf,
+    /// Its model; if left out, NAME.fdc beside the solution or in the current folder
+    #[arg(value_name = "MODEL")]
+    model: Option<String>,
+    #[command(flatten)]
+    gap: Gap,
+    /// Print the result as one JSON document, and nothing else, on the standard output
+    #[arg(long)]
+    json: bool,
+}
+
+impl Verify {
+    /// Verifies and reports.
+    pub fn run(self) -> Exit {
+        let found = Saved::read(&self.solution).and_then(|saved| Ok((self.file(&saved)?, saved)));
+        let (file, saved) = match found {
+            Ok(found) => found,
+            Err(failure) => return failure.report(&SourceFile::new(self.solution.display().to_string(), "")),
+        };
+        let prepared = match read(&file, &Changes::default()) {
+            Ok(prepared) => prepared,
+            Err(exit) => return exit,
+        };
+        match self.verify(&saved, &prepared) {
+            Ok(document) => self.report(&document),
+            Err(failure) => failure.report(&prepared.source),
+        }
+    }
+
+    /// The file of the model.
+    fn file(&self, saved: &Saved) -> Result<String, Failure> {
+        if let Some(model) = &self.model {
+            return Ok(model.clone());
+        }
+        let name = format!("{}.fdc", saved.model);
+        let beside = self.solution.parent().unwrap_or(Path::new("")).join(&name);
+        let candidates = [beside, PathBuf::from(&name)];
+        let found = candidates.iter().find(|path| path.is_file());
+        found.map(|path| path.display().to_string()).ok_or_else(|| {
+            let solution = self.solution.display();
+            Failure::File(format!(
+                "{solution}: its model {name} is neither beside it nor here; name the file"
+            ))
+        })
+    }
+
+    fn verify(&self, saved: &Saved, prepared: &Prepared) -> Result<Document, Failure> {
+        let mut model = prepared.model.clone();
+        let numbers = saved.params.0.iter().filter_map(|(name, value)| Some((name.clone(), (*value)?)));
+        model.restore_params(&numbers.collect::<Vec<_>>());
+        let problem = fdcc_compiler::compile(&model).map_err(Failure::Model)?;
+        let verified = verify(&model, &problem, saved).map_err(|failure| match failure {
+            Failure::File(what) => Failure::File(format!("{}: {what}", self.solution.display())),
+            other => other,
+        })?;
+        let same_source = saved.source_sha256 == sha256(&prepared.source.text);
+        if !same_source {
+            let name = &prepared.source.name;
+            output::complain(&format!("{name} is not the text that was solved; it is taken all the same"));
+        }
+        Ok(Document::new(&verified, saved, &prepared.source, same_source, self.gap.gap))
+    }
+
+    fn report(&self, document: &Document) -> Exit {
+        output::print(&if self.json { output::json(document) } else { document.words() });
+        if document.is_confirmed() { Exit::Fine } else { Exit::NotSolved }
+    }
+}

@@ -1,0 +1,185 @@
+//! How a simulation ended, and the object that says why it did not reach the last time.
+
+use super::named::Named;
+use super::number::{short, significant};
+use fdcc_grammar::SourceFile;
+use fdcc_runtime::problem::Origin;
+use fdcc_runtime::simulate::{Candidate, Event, Kind, Simulation, Status, System};
+use serde::Serialize;
+
+/// The status, and one object that explains it unless it is `completed`.
+#[derive(Serialize)]
+pub struct Ending {
+    status: &'static str,
+    #[serde(flatten)]
+    why: Option<Why>,
+}
+
+/// Why a simulation ended early; the name of the variant is that of the object.
+#[derive(Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Why {
+    NotUnique {
+        surface: String,
+        time: f64,
+        state: Named<f64>,
+        candidates: Vec<String>,
+    },
+    Zeno {
+        #[serde(skip_serializing_if = "Option::is_none")]
+        jump: Option<String>,
+        surface: String,
+        limit_time: f64,
+    },
+    NotFinite {
+        line: usize,
+        of: String,
+        time: f64,
+        state: Named<f64>,
+    },
+    StepLimit {
+        time: f64,
+        state: Named<f64>,
+    },
+}
+
+impl Ending {
+    pub fn new(system: &System, simulation: &Simulation, source: &SourceFile) -> Self {
+        let time = simulation.end_time;
+        let state = state(system, &simulation.end);
+        let surface_name = |at: &usize| system.surfaces[*at].name.clone();
+        let (status, why) = match &simulation.status {
+            Status::Completed => return Ending { status: "completed", why: None },
+            Status::NotUnique { surface, candidates } => {
+                let candidates = candidates.iter().map(|it| candidate(system, it)).collect();
+                let surface = surface_name(surface);
+                ("not_unique", Why::NotUnique { surface, time, state, candidates })
+            }
+            Status::Zeno { jump, surface, limit_time } => {
+                let jump = jump.map(|jump| system.jumps[jump].name.clone());
+                ("zeno", Why::Zeno { jump, surface: surface_name(surface), limit_time: *limit_time })
+            }
+            Status::NotFinite(origin) => {
+                let (line, of) = place(system, simulation, origin, source);
+                ("not_finite", Why::NotFinite { line, of, time, state })
+            }
+            Status::StepLimit => ("step_limit", Why::StepLimit { time, state }),
+        };
+        Ending { status, why: Some(why) }
+    }
+
+    /// Why the last time was not reached, in words.
+    pub fn why(&self) -> Option<String> {
+        Some(match self.why.as_ref()? {
+            Why::NotUnique { surface, time, candidates, .. } => format!(
+                "not unique: at t = {} on `{surface}` the state could go on in several ways or in none that can be told: {}",
+                short(*time),
+                candidates.join(" | ")
+            ),
+            Why::Zeno { jump, surface, limit_time } => zeno(jump.as_deref(), surface, *limit_time),
+            Why::NotFinite { line, of, time, .. } => {
+                format!("not finite: `{of}` (line {line}) at t = {}", significant(*time, 12))
+            }
+            Why::StepLimit { .. } => {
+                "step limit: its events may pile up, its tolerances may be too small, or it is stiff and the method is explicit"
+                    .into()
+            },
+        })
+    }
+}
+
+/// The line and the name of what has no value; a start without one is to blame before all that is computed from it.
+fn place(system: &System, simulation: &Simulation, origin: &Origin, source: &SourceFile) -> (usize, String) {
+    let line = |origin: &Origin| source.line_column(origin.span.0).line;
+    let start = system.states.iter().zip(&system.start).find(|(_, start)| !start.is_finite());
+    match start.filter(|_| simulation.end_time == system.interval[0]) {
+        Some((state, _)) => (line(&state.origin), format!("{}(start)", state.name)),
+        None => (line(origin), origin.label.to_string()),
+    }
+}
+
+fn zeno(jump: Option<&str>, surface: &str, limit_time: f64) -> String {
+    let time = significant(limit_time, 12);
+    match jump {
+        Some(jump) => {
+            format!(
+                "zeno: the jumps `{jump}` pile up at t = {time}; say what follows with `then hold {surface}`"
+            )
+        }
+        None => format!("zeno: `{surface}` is crossed infinitely often before t = {time}"),
+    }
+}
+
+/// `up`, or `edge up, slip slide` where several surfaces meet.
+fn candidate(system: &System, candidate: &Candidate) -> String {
+    let word = |side: i8| match side {
+        1 => "up",
+        -1 => "down",
+        _ => "slide",
+    };
+    match candidate.sides.as_slice() {
+        [(_, side)] => word(*side).to_string(),
+        several => {
+            let named =
+                several.iter().map(|(i, side)| format!("{} {}", system.surfaces[*i].name, word(*side)));
+            named.collect::<Vec<_>>().join(", ")
+        }
+    }
+}
+
+/// An event.
+#[derive(Serialize)]
+pub struct EventEntry {
+    pub time: f64,
+    pub surface: String,
+    kind: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    jump: Option<String>,
+    pub margin: f64,
+    pub state: Named<f64>,
+}
+
+/// All events in the order of time.
+pub fn events(system: &System, simulation: &Simulation) -> Vec<EventEntry> {
+    simulation.events.iter().map(|event| entry(system, event)).collect()
+}
+
+impl EventEntry {
+    /// `crosses up`, or `jump bounce`.
+    pub fn what(&self) -> String {
+        self.jump.as_deref().map_or(self.kind.replace('_', " "), |jump| format!("jump {jump}"))
+    }
+}
+
+fn entry(system: &System, event: &Event) -> EventEntry {
+    let jump = match event.kind {
+        Kind::Jump(jump) => Some(system.jumps[jump].name.clone()),
+        _ => None,
+    };
+    EventEntry {
+        time: event.time,
+        surface: system.surfaces[event.surface].name.clone(),
+        kind: kind_name(event.kind),
+        jump,
+        margin: event.margin,
+        state: state(system, &event.state),
+    }
+}
+
+fn kind_name(kind: Kind) -> &'static str {
+    match kind {
+        Kind::CrossesUp => "crosses_up",
+        Kind::CrossesDown => "crosses_down",
+        Kind::EntersSliding => "enters_sliding",
+        Kind::LeavesUp => "leaves_up",
+        Kind::LeavesDown => "leaves_down",
+        Kind::Jump(_) => "jump",
+        Kind::StartsSliding => "starts_sliding",
+    }
+}
+
+/// The states without the integrals.
+pub fn state(system: &System, values: &[f64]) -> Named<f64> {
+    let shown = system.states.iter().zip(values).filter(|(state, _)| !state.hidden);
+    shown.map(|(state, value)| (state.name.clone(), *value)).collect()
+}

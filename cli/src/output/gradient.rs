@@ -1,0 +1,252 @@
+//! A gradient as a JSON document.
+
+use super::document::scheme_name;
+use super::ending::{Ending, EventEntry, events};
+use super::named::Named;
+use super::number::{scientific, significant};
+use crate::exact::Exact;
+use crate::gradients::Stepped;
+use crate::quantities::By;
+use fdcc_grammar::SourceFile;
+use fdcc_runtime::problem::Method;
+use fdcc_runtime::sensitivity::{Trouble, TroubleKind};
+use fdcc_runtime::simulate::{Simulation, System};
+use serde::Serialize;
+
+/// What `fdcc grad --json` prints.
+#[derive(Serialize)]
+pub struct Document {
+    fdcc: String,
+    pub model: String,
+    pub of: String,
+    #[serde(flatten)]
+    pub ending: Ending,
+    pub value: Option<f64>,
+    pub gradient: Named<Derivative>,
+    pub adjoint: Named<Derivative>,
+    pub agreement: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub second: Option<Named<Named<f64>>>,
+    pub compare: Compare,
+    pub differentiable: bool,
+    /// Whether it is differentiable and both ways to compute the gradient agree.
+    pub trusted: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub one_sided: Option<Named<Sides>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cause: Option<Reason>,
+    pub events: Vec<EventEntry>,
+    pub warnings: Vec<String>,
+}
+
+/// A number, or one for each row of a control.
+#[derive(Clone, Serialize)]
+#[serde(untagged)]
+pub enum Derivative {
+    Number(f64),
+    Rows(Vec<f64>),
+}
+
+/// Other gradients of the same.
+#[derive(Default, Serialize)]
+pub struct Compare {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smoothed: Option<Other>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub discretised: Option<Other>,
+}
+
+/// The gradient of what fixed steps compute.
+#[derive(Serialize)]
+pub struct Other {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sigma: Option<f64>,
+    pub scheme: &'static str,
+    #[serde(rename = "N")]
+    pub n: usize,
+    #[serde(flatten)]
+    pub gradient: Named<Derivative>,
+}
+
+/// The derivatives from both sides; nothing where a side has no trajectory to the end.
+#[derive(Clone, Copy, Serialize)]
+pub struct Sides {
+    pub below: Option<f64>,
+    pub above: Option<f64>,
+}
+
+/// What may keep a trajectory from having a derivative.
+#[derive(Serialize)]
+pub struct Reason {
+    kind: &'static str,
+    surface: String,
+    time: f64,
+}
+
+/// Everything that is known of a gradient.
+pub struct Found<'a> {
+    pub of: &'a str,
+    pub system: &'a System,
+    pub by: &'a [By],
+    pub exact: &'a Exact,
+    pub second: Option<Result<Vec<Vec<f64>>, String>>,
+    pub smoothed: Option<Result<Stepped, String>>,
+    pub discretised: Option<Result<Stepped, String>>,
+    pub method: &'a Method,
+}
+
+impl Document {
+    /// A gradient, or what there is instead of one.
+    pub fn new(found: Found, source: &SourceFile) -> Self {
+        let Found { of, system, by, exact, second, smoothed, discretised, method } = found;
+        let gradient = exact.gradient();
+        let mut warnings = doubts(system, exact);
+        let second = second.and_then(|found| found.map_err(|why| warnings.push(why)).ok());
+        let mut other = |what: &str, found: Result<Stepped, String>| match found {
+            Ok(stepped) => {
+                warnings.extend(trap(what, &stepped, gradient).filter(|_| exact.is_trusted()));
+                Some(Other::new(stepped, by, method))
+            }
+            Err(why) => {
+                warnings.push(format!("there is no {what} gradient to compare with: {why}"));
+                None
+            }
+        };
+        let smoothed = smoothed.and_then(|found| other("smoothed", found));
+        let discretised = discretised.and_then(|found| other("discretised", found));
+        let compare = Compare { smoothed, discretised };
+        let sides = exact.sides.iter().map(|&[below, above]| Sides { below, above });
+        let sides: Named<Sides> = by.iter().map(|by| by.name.clone()).zip(sides).collect();
+        let is_plain = exact.is_differentiable;
+        let first = exact.found.troubles.first().filter(|_| !is_plain);
+        Document {
+            value: Some(exact.found.value),
+            gradient: named(by, gradient),
+            adjoint: named(by, &exact.found.adjoint),
+            agreement: Some(exact.found.agreement),
+            second: second.map(|rows| square(by, &rows)),
+            compare,
+            differentiable: is_plain,
+            trusted: exact.is_trusted(),
+            one_sided: (!is_plain && !sides.0.is_empty()).then_some(sides),
+            cause: first.map(|trouble| Reason::new(system, trouble)),
+            warnings,
+            ..Document::without(of, system, &exact.found.simulation, source)
+        }
+    }
+
+    /// No gradient: the simulation does not reach the end.
+    pub fn without(of: &str, system: &System, simulation: &Simulation, source: &SourceFile) -> Self {
+        Document {
+            fdcc: env!("CARGO_PKG_VERSION").to_string(),
+            model: system.name.clone(),
+            of: of.to_string(),
+            ending: Ending::new(system, simulation, source),
+            value: None,
+            gradient: Named(Vec::new()),
+            adjoint: Named(Vec::new()),
+            agreement: None,
+            second: None,
+            compare: Compare::default(),
+            differentiable: false,
+            trusted: false,
+            one_sided: None,
+            cause: None,
+            events: events(system, simulation),
+            warnings: Vec::new(),
+        }
+    }
+}
+
+impl Reason {
+    fn new(system: &System, trouble: &Trouble) -> Self {
+        let surface = system.surfaces[trouble.surface].name.clone();
+        Reason { kind: kind_name(trouble.kind), surface, time: trouble.time }
+    }
+
+    /// `a grazing of \`zero\` at t = 1`
+    pub fn words(&self) -> String {
+        let Reason { kind, surface, time } = self;
+        let time = significant(*time, 9);
+        match *kind {
+            "grazing" => format!("`{surface}` is grazed at t = {time}"),
+            "corner" => format!("`{surface}` meets another surface at t = {time}"),
+            "coincident" => {
+                format!("`{surface}` is met at t = {time}, when the controls change or at the start")
+            }
+            _ => format!("`{surface}` is met at the end, t = {time}"),
+        }
+    }
+}
+
+fn kind_name(kind: TroubleKind) -> &'static str {
+    match kind {
+        TroubleKind::Grazing => "grazing",
+        TroubleKind::Corner => "corner",
+        TroubleKind::Coincident => "coincident",
+        TroubleKind::End => "end",
+    }
+}
+
+/// What else is to be said of an exact gradient.
+fn doubts(system: &System, exact: &Exact) -> Vec<String> {
+    let mut doubts = Vec::new();
+    if !exact.agrees() {
+        let agreement = scientific(exact.found.agreement, 1);
+        doubts.push(format!("forward and adjoint differ by {agreement}: do not trust this gradient"));
+    }
+    let mut agreed = exact.found.troubles.iter().filter(|_| exact.is_differentiable);
+    if let Some(first) = agreed.next() {
+        let others = agreed.count();
+        let others = if others > 0 { format!(" (and {others} more)") } else { String::new() };
+        let first = Reason::new(system, first).words();
+        doubts.push(format!("{first}{others}; the derivatives from both sides agree"));
+    }
+    doubts
+}
+
+impl Other {
+    fn new(stepped: Stepped, by: &[By], method: &Method) -> Self {
+        let scheme = scheme_name(method.scheme);
+        let gradient = named(by, &stepped.gradient);
+        Other { sigma: stepped.sigma, scheme, n: method.intervals, gradient }
+    }
+}
+
+/// Values in the order of the quantities of all names, under those names.
+fn named(by: &[By], values: &[f64]) -> Named<Derivative> {
+    let mut rest = values;
+    let mut next = |by: &By| {
+        let (own, others) = rest.split_at(by.quantities.len());
+        rest = others;
+        let derivative =
+            if by.is_control { Derivative::Rows(own.to_vec()) } else { Derivative::Number(own[0]) };
+        (by.name.clone(), derivative)
+    };
+    by.iter().map(&mut next).collect()
+}
+
+/// A difference by this part of the exact gradient is one that misleads an optimiser.
+const TRAP: f64 = 0.1;
+
+/// What is to be said where another gradient is far off.
+fn trap(what: &str, stepped: &Stepped, exact: &[f64]) -> Option<String> {
+    let largest =
+        |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most: f64, it| most.max(it.abs()));
+    let size = largest(&mut exact.iter().copied());
+    let error = largest(&mut stepped.gradient.iter().zip(exact).map(|(own, exact)| own - exact));
+    if size == 0.0 && error > 0.0 {
+        return Some(format!(
+            "the {what} gradient has entries of {}, the exact one is 0",
+            significant(error, 2)
+        ));
+    }
+    let percent = significant(100.0 * error / size, 2);
+    (error > TRAP * size).then(|| format!("the {what} gradient is off by {percent} % of the exact one"))
+}
+
+/// The Hessian under the names of both its directions.
+fn square(by: &[By], rows: &[Vec<f64>]) -> Named<Named<f64>> {
+    let names = || by.iter().map(|by| by.name.clone());
+    names().zip(rows.iter().map(|row| names().zip(row.iter().copied()).collect())).collect()
+}

@@ -1,0 +1,122 @@
+//! A gradient in words: the verdict, the derivatives beside those that others compute, the events.
+
+use super::gradient::{Derivative, Document, Reason};
+use super::named::Named;
+use super::number::{scientific, short, significant};
+use super::verified::table;
+
+/// Digits of derivatives and times.
+const DIGITS: usize = 9;
+
+impl Document {
+    /// A verdict, the derivatives, the events.
+    pub fn words(&self) -> String {
+        let Some(value) = self.value else {
+            let why = self.ending.why().unwrap_or_default();
+            return format!(" NO GRADIENT of {}: the simulation does not reach the end\n {why}\n", self.of);
+        };
+        let head = format!(" {} = {}   {}\n", self.of, significant(value, 12), self.verdict());
+        let warnings: String = self.warnings.iter().map(|warning| format!(" warning: {warning}\n")).collect();
+        let parts = [head + &warnings, self.derivatives(), self.second(), self.events()];
+        parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n")
+    }
+
+    fn verdict(&self) -> String {
+        let agreement = scientific(self.agreement.unwrap_or(f64::NAN), 1);
+        match (self.trusted, self.differentiable) {
+            (true, _) => format!("differentiable; forward and adjoint agree to {agreement}"),
+            (false, true) => format!("NOT TRUSTED: forward and adjoint differ by {agreement}"),
+            (false, false) => {
+                let why = self.cause.as_ref().map(Reason::words).unwrap_or_default();
+                format!("NOT DIFFERENTIABLE: {why}")
+            }
+        }
+    }
+
+    fn derivatives(&self) -> String {
+        let mut columns = self.own();
+        let mut add =
+            |head: String, column: &Named<Derivative>| columns.push((head, cells(column, &self.rows())));
+        if let Some(other) = &self.compare.smoothed {
+            let sigma = other.sigma.map_or(String::new(), |sigma| format!("sigma {}, ", short(sigma)));
+            add(format!("smoothed ({sigma}N {})", other.n), &other.gradient);
+        }
+        if let Some(other) = &self.compare.discretised {
+            add(format!("discretised ({}, N {})", other.scheme, other.n), &other.gradient);
+        }
+        let labels = self.gradient.0.iter().zip(self.rows()).map(|((name, it), row)| it.label(name, row));
+        let row = |(at, label): (usize, String)| {
+            std::iter::once(label).chain(columns.iter().map(|(_, cells)| cells[at].clone())).collect()
+        };
+        let rows = labels.enumerate().map(row).collect();
+        table(std::iter::once("by").chain(columns.iter().map(|(head, _)| head.as_str())).collect(), rows)
+    }
+
+    /// Both ways to compute it where there is a derivative, else both sides.
+    fn own(&self) -> Vec<(String, Vec<String>)> {
+        let rows = self.rows();
+        let Some(sides) = &self.one_sided else {
+            let both = [("exact", &self.gradient), ("adjoint", &self.adjoint)];
+            return both.map(|(head, column)| (head.to_string(), cells(column, &rows))).to_vec();
+        };
+        let digits = |side: Option<f64>| side.map_or("-".to_string(), |value| significant(value, DIGITS));
+        let below = sides.0.iter().map(|(_, sides)| digits(sides.below)).collect();
+        let above = sides.0.iter().map(|(_, sides)| digits(sides.above)).collect();
+        vec![("below".to_string(), below), ("above".to_string(), above)]
+    }
+
+    /// Of each derivative the row that is shown: the one where it is largest.
+    fn rows(&self) -> Vec<usize> {
+        self.gradient.0.iter().map(|(_, derivative)| derivative.largest()).collect()
+    }
+
+    fn second(&self) -> String {
+        let Some(second) = &self.second else { return String::new() };
+        let names = second.0.iter().map(|(name, _)| name.as_str());
+        let head = std::iter::once("by both").chain(names).collect();
+        let row = |(name, values): &(String, Named<f64>)| {
+            let values = values.0.iter().map(|(_, value)| significant(*value, DIGITS));
+            std::iter::once(name.clone()).chain(values).collect()
+        };
+        table(head, second.0.iter().map(row).collect())
+    }
+
+    fn events(&self) -> String {
+        let row = |it: &super::ending::EventEntry| {
+            vec![it.surface.clone(), it.what(), significant(it.time, DIGITS), short(it.margin)]
+        };
+        table(vec!["surface", "event", "at t", "margin"], self.events.iter().map(row).collect())
+    }
+}
+
+fn cells(column: &Named<Derivative>, rows: &[usize]) -> Vec<String> {
+    let cells = column.0.iter().zip(rows);
+    cells.map(|((_, derivative), row)| significant(derivative.at(*row), DIGITS)).collect()
+}
+
+impl Derivative {
+    /// The row of a control with the largest derivative.
+    fn largest(&self) -> usize {
+        match self {
+            Derivative::Number(_) => 0,
+            Derivative::Rows(rows) => {
+                (0..rows.len()).max_by(|i, j| rows[*i].abs().total_cmp(&rows[*j].abs())).unwrap_or(0)
+            }
+        }
+    }
+
+    fn at(&self, row: usize) -> f64 {
+        match self {
+            Derivative::Number(value) => *value,
+            Derivative::Rows(rows) => rows.get(row).copied().unwrap_or(f64::NAN),
+        }
+    }
+
+    /// `mu`, or the place of the largest of many: `u (largest: row 3 of 200)`.
+    fn label(&self, name: &str, row: usize) -> String {
+        match self {
+            Derivative::Number(_) => name.to_string(),
+            Derivative::Rows(rows) => format!("{name} (largest: row {} of {})", row + 1, rows.len()),
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! What is read of a `.sol.json`: to start from it, to replay it, to verify it.
+
+use super::document::{Document, MethodUsed};
+use super::named::Named;
+use crate::solver::Failure;
+use serde::Deserialize;
+use std::fs;
+use std::path::Path;
+
+/// A solution as its file has it. A number that was not finite is `null` there.
+#[derive(Deserialize)]
+pub struct Saved {
+    #[serde(default)]
+    pub model: String,
+    #[serde(default)]
+    pub source_sha256: String,
+    #[serde(default)]
+    pub objective: Option<f64>,
+    pub free: Named<Option<f64>>,
+    #[serde(default)]
+    pub params: Named<Option<f64>>,
+    #[serde(default)]
+    pub method: SavedMethod,
+    #[serde(default)]
+    pub time: Vec<Option<f64>>,
+    pub states: Named<Column>,
+    pub controls: Named<Column>,
+}
+
+/// A signal over time.
+pub type Column = Vec<Option<f64>>;
+
+/// How it was solved; nothing where the file does not say.
+#[derive(Default, Deserialize)]
+pub struct SavedMethod {
+    pub scheme: Option<String>,
+    #[serde(rename = "N")]
+    pub n: Option<u64>,
+    pub sigma: Option<f64>,
+    pub kernel: Option<String>,
+}
+
+impl Saved {
+    /// Reads a `.sol.json`.
+    pub fn read(path: &Path) -> Result<Saved, Failure> {
+        let failure = |what: String| Failure::File(format!("{}{what}", path.display()));
+        let text = fs::read_to_string(path).map_err(|error| failure(format!(" cannot be read: {error}")))?;
+        serde_json::from_str(&text).map_err(|error| failure(format!(" is not a solution: {error}")))
+    }
+}
+
+impl From<&Document> for Saved {
+    fn from(document: &Document) -> Self {
+        let MethodUsed { scheme, n, sigma, kernel, .. } = document.method.clone();
+        Saved {
+            model: document.model.clone(),
+            source_sha256: document.source_sha256.clone(),
+            objective: finite(document.objective),
+            free: numbers(&document.free),
+            params: numbers(&document.params),
+            method: SavedMethod { scheme: Some(scheme), n: Some(n as u64), sigma, kernel: Some(kernel) },
+            time: document.time.iter().copied().map(finite).collect(),
+            states: columns(&document.states),
+            controls: columns(&document.controls),
+        }
+    }
+}
+
+fn finite(value: f64) -> Option<f64> {
+    Some(value).filter(|value| value.is_finite())
+}
+
+fn numbers(of: &Named<f64>) -> Named<Option<f64>> {
+    of.0.iter().map(|(name, value)| (name.clone(), finite(*value))).collect()
+}
+
+fn columns(of: &Named<Vec<f64>>) -> Named<Column> {
+    of.0.iter().map(|(name, column)| (name.clone(), column.iter().copied().map(finite).collect())).collect()
+}

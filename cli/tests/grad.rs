@@ -1,0 +1,267 @@
+//! `fdcc grad` from outside: closed forms, what may be asked, and where there is no gradient.
+
+mod common;
+
+use common::{column, expect_exit, fdcc, folder, json, model, number, stderr, stdout};
+use serde_json::Value;
+
+/// Example (2.3): `x(end) = a(2 + x0/(2 + a))`, `J' = 2(x0 + 1)/9 - x0^2/3 + (x0 + 6)^2/27` for `a = 1`.
+const CROSSING: &str = "\
+model crossing
+param a = 1
+free x0 in [-1.5, -0.5] guess -1
+time t in [0, 2]
+state x start x0
+surface zero = x
+dynamics { x' in (1 + a) - Sgn(zero) }
+minimize (x(end) - 5/3)^2 + integral(x^2)
+method {
+  smooth sigma = 0.1 kernel tanh
+  grid N = 200 scheme implicit_euler
+}
+report {
+  height = a*x
+  rate = (1 + a) - selected(Sgn(zero))
+}
+";
+
+/// Grazing, example (g1): `y(end) = p - 1` for `p < 0`, and -1 for `p > 0`.
+const GRAZING: &str = "\
+model grazing
+param p = 0
+time t in [0, 2]
+state x start -1
+state y start -1 + p
+surface edge = y
+dynamics {
+  x' = 1
+  y' in match edge { below => -2*x, above => -2*x - 1 }
+}
+";
+
+/// `x(end) = x(0) + c*sum(h*u)`, `y(end)` is that of the other.
+const DRIVEN: &str = "\
+model driven
+param c = 2
+time t in [0, 1]
+state pos(x, y) start free in [-1, 1]
+control u in [-1, 1]
+dynamics { pos' = (c*u, 1) }
+maximize pos.x(end)^2
+";
+
+fn near(value: &Value, expected: f64) {
+    assert!((number(value) - expected).abs() <= 1e-9 * expected.abs().max(1.0), "{value}, not {expected}");
+}
+
+fn found(test: &str, text: &str, arguments: &[&str], code: i32) -> Value {
+    let folder = folder(test, &[("model.fdc", text.as_bytes()), ("u.csv", b"t,u\n0,1\n0.25,0.5\n")]);
+    let output = fdcc(&folder, &[&["grad", "model.fdc", "--json"], arguments].concat(), "");
+    expect_exit(&output, code, &format!("{arguments:?}"));
+    json(&output)
+}
+
+/// The smoothed number is that of an independent program (tanh, sigma = .1, h = .01, implicit Euler), whose integral is the
+/// trapezoidal sum; that of the language takes the right ends.
+#[test]
+fn the_document_is_the_one_that_is_promised() {
+    let found = found("grad_document", CROSSING, &[], 0);
+    assert_eq!((&found["of"], &found["status"]), (&"objective".into(), &"completed".into()));
+    near(&found["value"], 134.0 / 81.0);
+    for way in ["gradient", "adjoint"] {
+        near(&found[way]["x0"], 16.0 / 27.0);
+    }
+    assert!(number(&found["agreement"]) <= 1e-10, "{found}");
+    let (end, slope, h) = (1.6978505288978205, 0.3333333339424377, 0.01);
+    near(&found["compare"]["smoothed"]["x0"], 0.6483102710522225 + h * (end * slope + 1.0));
+    assert_eq!(
+        (&found["compare"]["smoothed"]["sigma"], &found["compare"]["smoothed"]["N"]),
+        (&0.1.into(), &200.into())
+    );
+    assert_eq!(found["compare"]["discretised"]["scheme"], "implicit_euler");
+    assert_eq!((&found["differentiable"], &found["trusted"]), (&true.into(), &true.into()));
+    assert_eq!(found["events"][0]["surface"], "zero");
+    near(&found["events"][0]["time"], 1.0 / 3.0);
+    near(&found["events"][0]["margin"], 1.0);
+    assert!(found.get("one_sided").is_none() && found.get("second").is_none(), "{found}");
+}
+
+/// Off the lattice the theta scheme has a closed form: -.33541 with the trapezoidal sum where the truth is .58881215.
+#[test]
+fn the_gradient_of_the_discretised_problem_is_the_trap_of_section_two() {
+    let text = CROSSING.replace("guess -1", "guess -1.003");
+    let found = found("grad_trap", &text, &["--wrt", "x0"], 0);
+    near(&found["gradient"]["x0"], 2.0 * -0.003 / 9.0 - 1.003f64.powi(2) / 3.0 + 4.997f64.powi(2) / 27.0);
+    near(&found["compare"]["discretised"]["x0"], -0.33541 + 0.01 * 1.003);
+    let warnings = found["warnings"].to_string();
+    assert!(warnings.contains("the discretised gradient is off by 155 %"), "{warnings}");
+}
+
+#[test]
+fn anything_with_a_value_at_the_end_can_be_differentiated() {
+    let (x0, a) = (-1.0, 1.0);
+    let end = a * (2.0 + x0 / (2.0 + a));
+    let cases = [
+        ("x(end)", end, 1.0 / 3.0, 16.0 / 9.0),
+        ("-x(end)", -end, -1.0 / 3.0, -16.0 / 9.0),
+        ("height(end)", a * end, 1.0 / 3.0, 16.0 / 9.0 + end),
+        ("a^2*x0", x0, 1.0, 2.0 * x0),
+        ("x(start)*x(end)", x0 * end, end + x0 / 3.0, x0 * 16.0 / 9.0),
+        ("integral(1) + 0*x0", 2.0, 0.0, 0.0),
+    ];
+    for (of, value, by_x0, by_a) in cases {
+        let found = found("grad_of", CROSSING, &["--of", of], 0);
+        assert_eq!(found["of"], of);
+        near(&found["value"], value);
+        near(&found["gradient"]["x0"], by_x0);
+        near(&found["gradient"]["a"], by_a);
+    }
+}
+
+/// `d2/dx0 da = 2/(2 + a)^2`, `d2/da2 = -4 x0/(2 + a)^3`.
+#[test]
+fn second_derivatives_are_those_of_the_closed_form() {
+    let found = found("grad_second", CROSSING, &["--of", "x(end)", "--second"], 0);
+    near(&found["second"]["a"]["x0"], 2.0 / 9.0);
+    near(&found["second"]["x0"]["a"], 2.0 / 9.0);
+    near(&found["second"]["a"]["a"], 4.0 / 27.0);
+    near(&found["second"]["x0"]["x0"], 0.0);
+}
+
+#[test]
+fn at_a_grazing_there_are_two_derivatives() {
+    let found = found("grad_grazing", GRAZING, &["--of", "y(end)"], 2);
+    assert_eq!((&found["differentiable"], &found["trusted"]), (&false.into(), &false.into()));
+    assert!((number(&found["one_sided"]["p"]["below"]) - 1.0).abs() < 1e-6, "{found}");
+    assert!(number(&found["one_sided"]["p"]["above"]).abs() < 1e-6, "{found}");
+    assert_eq!((&found["cause"]["kind"], &found["cause"]["surface"]), (&"grazing".into(), &"edge".into()));
+    near(&found["cause"]["time"], 1.0);
+    let folder = folder("grad_grazing_words", &[("model.fdc", GRAZING.as_bytes())]);
+    let said = stdout(&fdcc(&folder, &["grad", "model.fdc", "--of", "y(end)"], ""));
+    assert!(said.contains("NOT DIFFERENTIABLE: `edge` is grazed at t = 1"), "{said}");
+    assert!(said.contains("below") && said.contains("above"), "{said}");
+    let beside = fdcc(&folder, &["grad", "model.fdc", "--of", "y(end)", "--set", "p=0.01"], "");
+    expect_exit(&beside, 0, "off the grazing");
+}
+
+/// With `x(0) = 0` from the guess, `J = x(end)^2` and `x(end) = c(.25*1 + .75*.5)`: the rows count by their durations.
+#[test]
+fn starts_controls_and_maximize_are_as_written() {
+    let end = 2.0 * 0.625;
+    let all = found("grad_default", DRIVEN, &["--control", "u.csv"], 0);
+    let names: Vec<&String> = all["gradient"].as_object().expect("an object").keys().collect();
+    assert_eq!(names, ["c", "pos.x(start)", "pos.y(start)"]);
+    near(&all["value"], end * end);
+    near(&all["gradient"]["c"], 2.0 * end * 0.625);
+    let some = found("grad_some", DRIVEN, &["--control", "u.csv", "--wrt", "pos(start), u,u"], 0);
+    near(&some["gradient"]["pos.x(start)"], 2.0 * end);
+    near(&some["gradient"]["pos.y(start)"], 0.0);
+    let by_rows = column(&some["gradient"]["u"]);
+    assert_eq!(by_rows.len(), 2);
+    near(&some["gradient"]["u"][0], 2.0 * end * 2.0 * 0.25);
+    near(&some["gradient"]["u"][1], 2.0 * end * 2.0 * 0.75);
+}
+
+/// More than forward sensitivities are made for: the adjoint alone, checked along sums.
+#[test]
+fn many_control_values_are_done_by_the_adjoint() {
+    let rows: String = (0..200).map(|k| format!("{},0.5\n", k as f64 / 200.0)).collect();
+    let files = [("model.fdc", DRIVEN.as_bytes()), ("u.csv", b"")];
+    let folder = folder("grad_many", &files);
+    std::fs::write(folder.join("u.csv"), format!("t,u\n{rows}")).expect("a file can be written");
+    let output = fdcc(
+        &folder,
+        &["grad", "model.fdc", "--control", "u.csv", "--of", "pos.x(end)", "--wrt", "u", "--json"],
+        "",
+    );
+    expect_exit(&output, 0, "many");
+    let found = json(&output);
+    column(&found["gradient"]["u"]).iter().for_each(|value| assert!((value - 0.01).abs() < 1e-12, "{value}"));
+    assert_eq!(column(&found["gradient"]["u"]).len(), 200);
+    assert_eq!(found["trusted"], true);
+    let said = stdout(&fdcc(&folder, &["grad", "model.fdc", "--control", "u.csv", "--wrt", "u"], ""));
+    assert!(said.contains("of 200)"), "{said}");
+}
+
+/// The point of a solve: parameters, unknowns and method are those of its file unless the command line has others.
+#[test]
+fn a_solution_brings_its_parameters_and_its_method() {
+    let folder = folder("grad_solution", &[("model.fdc", CROSSING.as_bytes())]);
+    let solve = ["solve", "model.fdc", "--set", "a=2", "--method", "N=50", "--out", "."];
+    expect_exit(&fdcc(&folder, &solve, ""), 0, "solve");
+    let grad = ["grad", "model.fdc", "--control", "crossing.sol.json", "--of", "x(end)", "--json"];
+    let found = json(&fdcc(&folder, &grad, ""));
+    near(&found["gradient"]["x0"], 0.5);
+    assert_eq!(found["compare"]["smoothed"]["N"], 50);
+    let other = json(&fdcc(&folder, &[&grad[..], &["--set", "a=1", "--method", "N=60"]].concat(), ""));
+    near(&other["gradient"]["x0"], 1.0 / 3.0);
+    assert_eq!(other["compare"]["smoothed"]["N"], 60);
+}
+
+#[test]
+fn without_a_trajectory_there_is_no_gradient() {
+    let edge = "param a = 1\ntime t in [0, 1]\nstate x start 0\nsurface top = x\ndynamics { x' in a*x + 2*Sgn(top) }\n";
+    let stuck = found("grad_edge", edge, &["--of", "x(end)"], 2);
+    assert_eq!((&stuck["status"], &stuck["differentiable"]), (&"not_unique".into(), &false.into()));
+    assert_eq!(stuck["value"], Value::Null);
+    assert_eq!(stuck["not_unique"]["candidates"], serde_json::json!(["up", "down", "slide"]));
+    let folder = folder("grad_edge_words", &[("edge.fdc", edge.as_bytes())]);
+    let said = stdout(&fdcc(&folder, &["grad", "edge.fdc", "--of", "x(end)"], ""));
+    assert!(said.starts_with(" NO GRADIENT of x(end)") && said.contains("several ways"), "{said}");
+}
+
+#[test]
+fn what_cannot_be_asked_is_explained() {
+    let files = [
+        ("crossing.fdc", CROSSING.as_bytes()),
+        ("grazing.fdc", GRAZING.as_bytes()),
+        ("driven.fdc", DRIVEN.as_bytes()),
+        ("bare.fdc", b"time t in [0, 1]\nstate x start 0\ndynamics { x' = 1 }\nminimize x(end)\n" as &[u8]),
+        ("u.csv", b"t,u\n0,1\n"),
+    ];
+    let folder = folder("grad_usage", &files);
+    let cases: &[(&[&str], i32, &str)] = &[
+        (&["crossing.fdc", "--of", "x"], 3, "write `x(end)`, `x(start)` or `integral(x)`"),
+        (&["crossing.fdc", "--of", "heigth(end)"], 3, "change `heigth` to `height`"),
+        (&["crossing.fdc", "--of", "rate(end)"], 3, "depends on the side of a surface"),
+        (&["crossing.fdc", "--of", "x(end"], 3, "`(` is never closed"),
+        (&["crossing.fdc", "--of", "x(end) x0"], 3, "missing operator"),
+        (&["crossing.fdc", "--of", "x(end) minimize x0"], 3, "one expression is enough"),
+        (&["crossing.fdc", "--of", ""], 3, "`--of` needs an expression"),
+        (&["crossing.fdc", "--of", "sliding(zero)"], 3, "only a simulation can tell"),
+        (&["crossing.fdc", "--wrt", "x"], 3, "`x` is a state; write `x(start)`"),
+        (&["crossing.fdc", "--wrt", "x1"], 3, "there is a, x0"),
+        (&["crossing.fdc", "--wrt", "y(start)"], 3, "there is no state `y`; there is x"),
+        (&["driven.fdc", "--wrt", "poss(start)"], 3, "there is no state `poss`; there is pos.x, pos.y"),
+        (&["driven.fdc", "--wrt", "u"], 3, "`u` follows its guess"),
+        (&["driven.fdc", "--wrt", "u", "--control", "u.csv", "--second"], 3, "not by the control `u`"),
+        (&["grazing.fdc"], 3, "the model has no objective"),
+        (&["bare.fdc"], 3, "nothing to differentiate by"),
+        (&["crossing.fdc", "--set", "b=1"], 3, "there is no parameter `b`"),
+        (&["absent.fdc"], 4, "absent.fdc cannot be read"),
+        (&["crossing.fdc", "--control", "absent.csv"], 4, "absent.csv cannot be read"),
+        (&[], 3, ""),
+    ];
+    for (arguments, code, message) in cases {
+        let output = fdcc(&folder, &[&["grad"], *arguments].concat(), "");
+        expect_exit(&output, *code, &format!("{arguments:?}"));
+        assert!(stderr(&output).contains(message), "{arguments:?}: {}", stderr(&output));
+        assert_eq!(stdout(&output), "", "{arguments:?}");
+    }
+}
+
+#[test]
+fn what_is_wrong_with_the_expression_is_shown_under_its_own_name() {
+    let folder = folder("grad_place", &[("crossing.fdc", CROSSING.as_bytes())]);
+    let said = stderr(&fdcc(&folder, &["grad", "crossing.fdc", "--of", "2*x(end) + q"], ""));
+    assert!(said.contains("[--of:1:12]") && said.contains("2*x(end) + q"), "{said}");
+}
+
+#[test]
+fn the_file_is_the_document() {
+    let folder = folder("grad_file", &[]);
+    let output = fdcc(&folder, &["grad", &model("crossing"), "--json", "--out", "out"], "");
+    expect_exit(&output, 0, "crossing");
+    let written = std::fs::read_to_string(folder.join("out/crossing.grad.json")).expect("the file is there");
+    assert_eq!(written, stdout(&output));
+}

@@ -56,6 +56,7 @@ fn kind(kind: Kind) -> &'static str {
         Kind::EntersSliding => "enters_sliding",
         Kind::LeavesUp => "leaves_up",
         Kind::LeavesDown => "leaves_down",
+        Kind::Passes => "passes",
         Kind::Jump(_) => "jump",
         Kind::StartsSliding => "starts_sliding",
     }
@@ -94,8 +95,7 @@ fn check(name: &str, text: &str, case: &Case) {
     let (expected, got) = (case.status.unwrap_or(("completed", last)), status(&simulation));
     assert!(expected.0 == got.0 && near(got.1, expected.1), "{name}: {got:?}, not {expected:?}");
     let seen = simulation.events.iter();
-    let seen: Vec<_> =
-        seen.map(|it| (it.time, system.surfaces[it.surface].name.as_str(), kind(it.kind))).collect();
+    let seen: Vec<_> = seen.map(|it| (it.time, system.name_of(it.surface), kind(it.kind))).collect();
     let is_listed = !case.events.is_empty() || simulation.events.is_empty();
     let agrees =
         |(a, b): (&(f64, &str, &str), &(f64, &str, &str))| near(a.0, b.0) && (a.1, a.2) == (b.1, b.2);

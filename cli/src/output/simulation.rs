@@ -119,14 +119,14 @@ impl Document {
             Status::Completed => {}
             Status::NotUnique { surface, candidates } => {
                 self.status = "not_unique";
-                let surface = system.surfaces[*surface].name.clone();
+                let surface = system.name_of(*surface).to_owned();
                 let candidates = candidates.iter().map(|it| candidate(system, it)).collect();
                 self.not_unique = Some(NotUnique { surface, time, state, candidates });
             }
             Status::Zeno { jump, surface, limit_time } => {
                 self.status = "zeno";
                 let jump = jump.map(|jump| system.jumps[jump].name.clone());
-                let surface = system.surfaces[*surface].name.clone();
+                let surface = system.name_of(*surface).to_owned();
                 self.zeno = Some(Zeno { jump, surface, limit_time: *limit_time });
             }
             Status::NotFinite(origin) => {
@@ -226,7 +226,7 @@ fn entry(system: &System, event: &Event) -> EventEntry {
     };
     EventEntry {
         time: event.time,
-        surface: system.surfaces[event.surface].name.clone(),
+        surface: system.name_of(event.surface).to_owned(),
         kind: kind_name(event.kind),
         jump,
         margin: event.margin,
@@ -241,6 +241,7 @@ fn kind_name(kind: Kind) -> &'static str {
         Kind::EntersSliding => "enters_sliding",
         Kind::LeavesUp => "leaves_up",
         Kind::LeavesDown => "leaves_down",
+        Kind::Passes => "passes",
         Kind::Jump(_) => "jump",
         Kind::StartsSliding => "starts_sliding",
     }

@@ -13,7 +13,7 @@ use super::inputs::{self, Inputs, Sizes};
 use super::problem::{controls, parameters, states, surfaces};
 use super::{Numbers, guess, origin};
 use crate::graph::{ExprId, Graph};
-use crate::model::{Jump, Model, Symbol};
+use crate::model::{Ball, Jump, Model, Symbol};
 use crate::program::VectorFunction;
 use fdcc_grammar::ast::Direction;
 use fdcc_runtime::problem::{Function, Layout, Origin};
@@ -118,6 +118,7 @@ pub(crate) fn system(
         controls: controls(model, numbers),
         parameters: parameters(model, simulated.layout.p, numbers),
         surfaces: surfaces(model, first_sigma),
+        balls: model.balls.iter().map(ball).collect(),
         jumps: model.jumps.iter().map(|jump| lowered(model, numbers, jump)).collect(),
         interval: model.interval.map(|end| numbers.value(model, end)),
         start: Vec::new(),
@@ -129,6 +130,10 @@ pub(crate) fn system(
     };
     system.start = starts(model, numbers, &system);
     system
+}
+
+fn ball(ball: &Ball) -> simulate::Ball {
+    simulate::Ball { name: ball.place.name.clone(), surfaces: ball.surfaces.clone() }
 }
 
 fn lowered(model: &Model, numbers: &Numbers, jump: &Jump) -> simulate::Jump {

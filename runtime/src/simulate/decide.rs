@@ -1,13 +1,15 @@
 //! Which modes follow at a point on some surfaces: the mixed linear complementarity problem, or a refusal.
 //!
-//! The rates `r(s)` of the surfaces are linearised until nothing changes (selectors may multiply each other). If `B` is a P-matrix
-//! its solution is the only one. Otherwise all combinations of sides are tried, and only a single consistent one is taken.
+//! The rates `r(s)` of the surfaces are linearised until nothing changes (selectors may multiply each other). If `B` is a P-matrix,
+//! or positive definite where there are balls, the solution is the only one. Otherwise all combinations of sides are tried, and only a single consistent one is taken.
 
-use super::complementarity::{is_p_matrix, selectors};
+use super::ball::{blocks, is_unique, solution};
+use super::direction::length;
 use super::field::{Field, Mode, Normals, surface_rates};
 use super::result::{Candidate, Options, Status};
 use super::step::Step;
 use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
 
 /// Rates below this part of what they are made of are 0.
 const TIE: f64 = 1e-11;
@@ -22,6 +24,8 @@ struct Corner<'f, 'a> {
     x: &'f [f64],
     surfaces: &'f [usize],
     normals: Normals,
+    /// Where the balls stand among the surfaces.
+    balls: Vec<Range<usize>>,
     options: &'f Options,
 }
 
@@ -37,9 +41,11 @@ pub(super) fn decide(
         return Ok(Vec::new());
     }
     let normals = field.normals(t, x);
-    let mut corner = Corner { field, t, x, surfaces, normals, options };
+    field.follow_directions(t, x);
+    let balls = blocks(&field.system.balls, surfaces);
+    let mut corner = Corner { field, t, x, surfaces, normals, balls, options };
     match corner.unique() {
-        Some(sides) => Ok(sides.into_iter().map(mode).collect()),
+        Some(modes) => Ok(modes),
         None => corner.only_combination(),
     }
 }
@@ -68,27 +74,40 @@ impl Corner<'_, '_> {
         (r, b, ties)
     }
 
-    /// The sides, if `B` is a P-matrix on the way to the solution.
-    fn unique(&mut self) -> Option<Vec<i8>> {
+    /// The modes, if the linearised problem has one solution on the way to that of the whole.
+    fn unique(&mut self) -> Option<Vec<Mode>> {
         let mut s = DVector::zeros(self.surfaces.len());
         for _ in 0..50 {
             let (r, b, tie) = self.rates(&s);
-            if !is_p_matrix(&b) || !r.iter().all(|value| value.is_finite()) {
+            if !is_unique(&b, &self.balls) || !r.iter().all(|value| value.is_finite()) {
                 return None;
             }
-            let next = selectors(&(&r + &b * &s), &b)?;
+            let next = solution(&(&r + &b * &s), &b, &self.balls)?;
             if (&next - &s).amax() <= 1e-13 {
-                return Some((0..s.len()).map(|i| side(next[i], r[i], tie[i])).collect());
+                return Some(self.modes(&next, &r, &tie));
             }
             s = next;
         }
         None
     }
 
-    /// The only consistent combination of sides.
+    /// The modes that belong to selectors and rates.
+    fn modes(&mut self, s: &DVector<f64>, r: &DVector<f64>, tie: &[f64]) -> Vec<Mode> {
+        let mut modes: Vec<Mode> = (0..s.len()).map(|i| mode(side(s[i], r[i], tie[i]))).collect();
+        for ball in self.balls.clone() {
+            let (own, rate) = (&s.as_slice()[ball.clone()], &r.as_slice()[ball.clone()]);
+            let moves = length(own) >= 1.0 - 1e-12 && length(rate) > length(&tie[ball.clone()]);
+            modes[ball.clone()].fill(if moves { Mode::Moving } else { Mode::Sliding });
+            let surfaces = self.surfaces[ball.start]..self.surfaces[ball.start] + ball.len();
+            self.field.direction[surfaces].copy_from_slice(own);
+        }
+        modes
+    }
+
+    /// The only consistent combination of sides; none are told where a ball is among them.
     fn only_combination(&mut self) -> Result<Vec<Mode>, Status> {
         let size = self.surfaces.len();
-        let count = if size <= MOST_COMBINED { 3_usize.pow(size as u32) } else { 0 };
+        let count = if size <= MOST_COMBINED && self.balls.is_empty() { 3_usize.pow(size as u32) } else { 0 };
         let sides = |number: usize| -> Vec<i8> {
             (0..size).map(|at| [1, -1, 0][number / 3_usize.pow(at as u32) % 3]).collect()
         };

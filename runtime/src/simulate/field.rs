@@ -1,4 +1,4 @@
-//! The right side in a mode: every selector is given, or keeps its surface at 0.
+//! The right side in a mode: every selector is given, is a direction, or keeps its surface at 0.
 //!
 //! On the sliding surfaces `A` the selectors solve `r_A(s) = d_A f(t, x, s) + psi_t = 0` with `d = dpsi/dx`, by Newton's
 //! method on `B = -d_A df/ds_A`; one iteration where selectors do not multiply each other.
@@ -14,6 +14,8 @@ pub(super) enum Mode {
     Below,
     Above,
     Sliding,
+    /// A component of a ball that is not at 0, or leaves it.
+    Moving,
     /// Kept on the surface by what a jump says follows it.
     Held,
 }
@@ -24,7 +26,7 @@ impl Mode {
         match self {
             Mode::Below => -1.0,
             Mode::Above => 1.0,
-            Mode::Sliding | Mode::Held => 0.0,
+            Mode::Sliding | Mode::Moving | Mode::Held => 0.0,
         }
     }
 }
@@ -57,6 +59,10 @@ pub(super) struct Field<'a> {
     pub modes: Vec<Mode>,
     /// The last selectors; where the next sliding solve begins.
     pub selectors: Vec<f64>,
+    /// Of a ball that leaves 0, the direction in which it does.
+    pub direction: Vec<f64>,
+    /// When it leaves; NaN for what began off 0.
+    pub departure: Vec<f64>,
     /// States that stand still.
     pub held: Vec<usize>,
     pub evaluations: usize,
@@ -69,17 +75,21 @@ pub(super) struct Field<'a> {
 impl<'a> Field<'a> {
     pub fn new(system: &'a System, controls: &'a Controls) -> Self {
         let surfaces = system.surfaces.len();
-        Field {
+        let mut field = Field {
             system,
             modes: vec![Mode::Above; surfaces],
             selectors: vec![0.0; surfaces],
+            direction: vec![0.0; surfaces],
+            departure: vec![f64::NAN; surfaces],
             held: Vec::new(),
             evaluations: 0,
             controls,
             row: Vec::new(),
             parameters: system.parameter_values(),
             point: Columns::new(system.layout.point_inputs(), 1),
-        }
+        };
+        system.balls.iter().for_each(|ball| field.set_moving(ball));
+        field
     }
 
     /// From now on the controls of a time hold.
@@ -91,7 +101,7 @@ impl<'a> Field<'a> {
         self.modes[surface] = mode;
         match mode {
             Mode::Below | Mode::Above => self.selectors[surface] = mode.side(),
-            Mode::Sliding | Mode::Held => {}
+            Mode::Sliding | Mode::Moving | Mode::Held => {}
         }
     }
 
@@ -173,6 +183,11 @@ impl<'a> Field<'a> {
         self.derivatives(t, x, &selectors, self.system.layout.states()).1
     }
 
+    /// `f` and `df/dx` where all selectors are given.
+    pub fn by_state_with(&mut self, t: f64, x: &[f64], selectors: &[f64]) -> (Vec<f64>, DMatrix<f64>) {
+        self.derivatives(t, x, selectors, self.system.layout.states())
+    }
+
     fn derivatives(
         &mut self,
         t: f64,
@@ -192,6 +207,7 @@ impl<'a> Field<'a> {
 
     /// The right side in the current mode; not a number where sliding selectors cannot be found.
     pub fn rate(&mut self, t: f64, x: &[f64]) -> Vec<f64> {
+        self.follow_directions(t, x);
         let sliding = self.sliding();
         if !sliding.is_empty() {
             return self.sliding_rate(t, x, &sliding);

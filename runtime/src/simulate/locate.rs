@@ -4,6 +4,7 @@
 //! dense output, its interior minima are searched too, so that a dip between two samples is not missed. The
 //! root is refined on steps of the pair itself, so it is as accurate as the integration.
 
+use super::direction::length;
 use super::field::{Field, Mode};
 use super::result::Options;
 use super::step::Step;
@@ -58,8 +59,11 @@ pub(super) fn first(field: &mut Field, step: &Step, options: &Options) -> Option
 fn condition(field: &Field, surface: usize) -> Option<Condition> {
     match field.modes[surface] {
         Mode::Below | Mode::Above => Some(Condition::Reaches(surface)),
-        Mode::Sliding => Some(Condition::Leaves(surface)),
-        Mode::Held => None,
+        Mode::Sliding => {
+            let is_first = field.ball_of(surface).is_none_or(|ball| ball.surfaces.start == surface);
+            is_first.then_some(Condition::Leaves(surface))
+        }
+        Mode::Moving | Mode::Held => None,
     }
 }
 
@@ -70,7 +74,10 @@ fn values(field: &mut Field, conditions: &[Condition], t: f64, x: &[f64]) -> Vec
     }
     let value = |condition: &Condition| match *condition {
         Condition::Reaches(i) => field.modes[i].side() * psi[i],
-        Condition::Leaves(i) => 1.0 - field.selectors[i].abs(),
+        Condition::Leaves(i) => match field.ball_of(i) {
+            Some(ball) => 1.0 - length(&field.selectors[ball.surfaces.clone()]),
+            None => 1.0 - field.selectors[i].abs(),
+        },
     };
     conditions.iter().map(value).collect()
 }
@@ -133,7 +140,7 @@ fn root(g: &mut dyn FnMut(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
 }
 
 /// Bisection and the Illinois rule by turns.
-fn bisect(
+pub(super) fn bisect(
     g: &mut dyn FnMut(f64) -> f64,
     [mut low, mut at_low]: [f64; 2],
     [mut high, mut at_high]: [f64; 2],

@@ -4,18 +4,22 @@
 //! step (Dormand-Prince 5(4)) -> events inside it (locate) -> which modes follow (decide) -> step ...
 //! ```
 //!
-//! In every mode each selector is -1, +1 or an unknown that keeps its surface at 0 (sliding). [`simulate`] is the
-//! loop. Where the continuation is not unique it stops and says so; it never chooses.
+//! In every mode each selector is -1, +1 or an unknown that keeps its surface at 0 (sliding); those of a `Dir` are a
+//! direction or such unknowns. [`simulate`] is the loop. Where the continuation is not unique it stops and says so; it never chooses.
 
+mod ball;
 mod complementarity;
 mod controls;
 mod decide;
+mod direction;
 mod events;
 mod field;
+mod landing;
 mod locate;
 mod record;
 mod result;
 mod run;
+mod setting_out;
 mod step;
 mod system;
 mod tableau;
@@ -24,4 +28,4 @@ mod zeno;
 pub use controls::Controls;
 pub use result::{Candidate, Counts, Event, Kind, Options, Simulation, Status};
 pub use run::simulate;
-pub use system::{Jump, System};
+pub use system::{Ball, Jump, System};

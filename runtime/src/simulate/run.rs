@@ -1,6 +1,6 @@
 //! The loop: steps of bounded error, events inside them, controls that jump between them.
 
-use super::complementarity::is_p_matrix;
+use super::ball::{blocks, is_unique};
 use super::controls::Controls;
 use super::field::{Field, surface_rates};
 use super::locate;
@@ -10,6 +10,9 @@ use super::step::Step;
 use super::system::{System, value};
 use super::zeno::Pile;
 use crate::problem::Origin;
+
+/// The first step, and the one after a ball came to 0, as a part of the whole time.
+const FIRST_STEP: f64 = 1e-3;
 
 /// A simulation on its way.
 pub(super) struct Run<'a> {
@@ -52,7 +55,7 @@ impl<'a> Run<'a> {
             piles: vec![Pile::default(); system.jumps.len()],
             crossings: vec![Pile::default(); system.surfaces.len()],
             has_begun: false,
-            h: 1e-3 * (system.interval[1] - system.interval[0]),
+            h: FIRST_STEP * (system.interval[1] - system.interval[0]),
             counts: Counts::default(),
         }
     }
@@ -93,8 +96,14 @@ impl<'a> Run<'a> {
     /// One accepted step towards `stop`, or up to the first event in it.
     fn advance(&mut self, stop: f64) -> Result<(), Status> {
         let rest = stop - self.t;
-        let is_last = self.h >= rest * (1.0 - 1e-12);
-        let step = self.accepted(if is_last { rest } else { self.h })?;
+        let fall = self.field.fall(self.t, &self.x);
+        if let Some(fall) = fall.as_ref().filter(|fall| fall.is_near && fall.time <= rest) {
+            self.h = FIRST_STEP * (self.field.system.interval[1] - self.field.system.interval[0]);
+            return self.land(fall);
+        }
+        let longest = fall.map_or(rest, |fall| rest.min(0.9 * fall.time));
+        let is_longest = self.h >= longest * (1.0 - 1e-12);
+        let step = self.accepted(if is_longest { longest } else { self.h })?;
         let found = locate::first(&mut self.field, &step, self.options);
         self.counts.steps += 1;
         if let Some(found) = found {
@@ -171,13 +180,16 @@ impl<'a> Run<'a> {
         let (t, x) = (step.t + theta * step.h, step.at(theta));
         let sliding = self.field.sliding();
         let normals = self.field.normals(t, &x);
+        self.field.follow_directions(t, &x);
         let selectors = self.field.selectors.clone();
         let (rate, by_selector) = self.field.with_selectors(t, &x, &selectors);
-        is_p_matrix(&surface_rates(&normals, &rate, &by_selector, &sliding).1)
+        let b = surface_rates(&normals, &rate, &by_selector, &sliding).1;
+        is_unique(&b, &blocks(&self.field.system.balls, &sliding))
     }
 
     /// Whether right side and surfaces have values.
     fn finite_here(&mut self) -> Result<(), Status> {
+        self.field.follow_directions(self.t, &self.x);
         let normals = self.field.normals(self.t, &self.x);
         let is_bad = |values: &[f64]| values.iter().position(|value| !value.is_finite());
         if let Some(surface) = is_bad(&normals.psi) {

@@ -2,6 +2,7 @@
 
 use super::field::Field;
 use super::result::Options;
+use super::setting_out;
 use super::tableau::{A, C, DENSE, ERROR, STAGES};
 
 /// A step from `t` to `t + h` in one mode.
@@ -19,11 +20,38 @@ pub(super) struct Step {
 impl Step {
     /// Takes a step.
     pub fn take(field: &mut Field, t: f64, x: &[f64], h: f64, options: &Options) -> Self {
+        if field.sets_out(t) {
+            return setting_out::step(field, t, x, h, options);
+        }
         let stages = stages(field, t, x, h);
         let end = combine(x, h, &stages, &A[STAGES - 1]);
         let error = error(x, &end, h, &stages, options);
         let dense = dense(x, &end, h, &stages);
         Step { t, h, start: x.to_vec(), end, error, dense }
+    }
+
+    /// A step that cannot be taken.
+    pub fn refused(t: f64, x: &[f64], h: f64) -> Self {
+        let dense = std::array::from_fn(|_| vec![0.0; x.len()]);
+        Step { t, h, start: x.to_vec(), end: x.to_vec(), error: f64::INFINITY, dense }
+    }
+
+    /// A step along a curve that is known at its start, middle and end, with the rates at both ends.
+    pub fn smooth(
+        [t, h]: [f64; 2],
+        [start, middle, end]: [Vec<f64>; 3],
+        [first, last]: [Vec<f64>; 2],
+        error: f64,
+    ) -> Self {
+        let size = start.len();
+        let a: Vec<f64> = (0..size).map(|i| end[i] - start[i]).collect();
+        let b: Vec<f64> = (0..size).map(|i| h * first[i] - a[i]).collect();
+        let c: Vec<f64> = (0..size).map(|i| a[i] - h * last[i] - b[i]).collect();
+        let d: Vec<f64> = (0..size)
+            .map(|i| 2.0 * (2.0 * (2.0 * (2.0 * (middle[i] - start[i]) - a[i]) - b[i]) - c[i]))
+            .collect();
+        let dense = [a, b, c, d];
+        Step { t, h, start, end, error, dense }
     }
 
     /// The state at `t + theta h`.

@@ -1,0 +1,102 @@
+//! How a moving ball comes to 0. `|psi|` falls to 0 in finite time, and its direction may turn faster and faster on
+//! the way. So steps go nine tenths of the way that is left; the last `1e-12` of it is a straight line.
+
+use super::direction::length;
+use super::field::{Field, Mode};
+use super::result::{Kind, Status};
+use super::run::Run;
+use super::system::Ball;
+
+/// `|psi|` below this many times its rounding errors is as good as 0.
+const NEAR: f64 = 100.0;
+
+/// A ball on its way to 0.
+pub(super) struct Fall<'a> {
+    pub ball: &'a Ball,
+    /// How long at the present rate.
+    pub time: f64,
+    /// Whether what is left can be skipped.
+    pub is_near: bool,
+}
+
+impl<'a> Field<'a> {
+    /// The moving ball that is the first to reach 0, as things go at present.
+    pub fn fall(&mut self, t: f64, x: &[f64]) -> Option<Fall<'a>> {
+        let moving = self.moving();
+        if moving.is_empty() || self.sets_out(t) {
+            return None;
+        }
+        let rate = self.rate(t, x);
+        let normals = self.normals(t, x);
+        let fall = |ball: &'a Ball| {
+            let size = length(&normals.psi[ball.surfaces.clone()]);
+            let along = |i: usize| normals.psi[i] / size * normals.rate(i, &rate);
+            let time = -size / ball.surfaces.clone().map(along).sum::<f64>();
+            let noise = ball.surfaces.clone().map(|i| normals.noise(i, x)).fold(0.0, f64::max);
+            let is_near = size <= NEAR * noise || time <= 16.0 * f64::EPSILON * t.abs();
+            Fall { ball, time, is_near }
+        };
+        let falls = moving.into_iter().map(fall).filter(|fall| fall.time > 0.0);
+        falls.min_by(|a, b| a.time.total_cmp(&b.time))
+    }
+}
+
+impl Run<'_> {
+    /// Goes the rest of the way to 0 and decides what follows.
+    pub fn land(&mut self, fall: &Fall<'_>) -> Result<(), Status> {
+        let rate = self.field.rate(self.t, &self.x);
+        self.x.iter_mut().zip(rate).for_each(|(x, rate)| *x += fall.time * rate);
+        self.t += fall.time;
+        let mut surfaces = self.surfaces_here();
+        surfaces.extend(fall.ball.surfaces.clone());
+        surfaces.sort_unstable();
+        surfaces.dedup();
+        self.settle(surfaces)
+    }
+
+    /// A ball comes to rest or sets out; one event for all of its components.
+    pub fn change_ball(&mut self, ball: &Ball, next: Mode) {
+        let first = ball.surfaces.start;
+        let before = self.field.modes[first];
+        let sets_out_already = before == Mode::Moving && self.field.departure[first] == self.t;
+        let kind = match (before, next) {
+            (_, Mode::Sliding) if !self.has_begun => Some(Kind::StartsSliding),
+            _ if !self.has_begun || sets_out_already => None,
+            (Mode::Moving, Mode::Sliding) => Some(Kind::EntersSliding),
+            (Mode::Sliding, Mode::Moving) => Some(Kind::LeavesUp),
+            (Mode::Moving, Mode::Moving) => Some(Kind::Passes),
+            _ => None,
+        };
+        let margin = self.ball_margin(ball);
+        match next {
+            Mode::Moving => {
+                let direction = self.field.direction[ball.surfaces.clone()].to_vec();
+                self.field.set_out(ball, self.t, &direction);
+            }
+            _ => ball.surfaces.clone().for_each(|surface| self.field.set_mode(surface, next)),
+        }
+        if let Some(kind) = kind {
+            self.event(first, kind, margin);
+        }
+    }
+
+    /// How steeply `|psi|` falls: the cosine between the field and the way to 0, of the direction in which it moved or, at
+    /// rest, of the direction opposite to the selectors.
+    fn ball_margin(&mut self, ball: &Ball) -> f64 {
+        let mut selectors = self.field.selectors.clone();
+        let sign = if self.field.modes[ball.surfaces.start] == Mode::Moving { 1.0 } else { -1.0 };
+        let size = length(&selectors[ball.surfaces.clone()]);
+        if size == 0.0 {
+            return 1.0;
+        }
+        ball.surfaces.clone().for_each(|i| selectors[i] *= sign / size);
+        let normals = self.field.normals(self.t, &self.x);
+        let (rate, _) = self.field.with_selectors(self.t, &self.x, &selectors);
+        let shown = rate.iter().zip(&self.field.system.states).filter(|(_, state)| !state.hidden);
+        let speed = shown.map(|(rate, _)| rate * rate).sum::<f64>().sqrt();
+        let largest = |i: usize| speed * normals.by_state.row(i).norm() + normals.by_time[i].abs();
+        let largest = ball.surfaces.clone().map(largest).fold(0.0, f64::max);
+        let falls: f64 = ball.surfaces.clone().map(|i| selectors[i] * normals.rate(i, &rate)).sum();
+        if largest > 0.0 { falls.abs() / largest } else { 0.0 }
+    }
+}

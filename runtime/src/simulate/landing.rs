@@ -1,8 +1,14 @@
-//! How a moving ball comes to 0. `|psi|` falls to 0 in finite time, and its direction may turn faster and faster on
-//! the way. So steps go nine tenths of the way that is left; the last `1e-12` of it is a straight line.
+//! How a moving ball comes to 0, in finite time, while its direction may turn faster and faster:
+//!
+//! ```text
+//! |psi|' = s r,   |psi| s' = (I - s s') r,   r = dpsi/dx f + psi_t
+//! ```
+//!
+//! So no step goes more than nine tenths of the way that is left, nor farther than an explicit step is stable for
+//! `s' ~ -B s/|psi|`. Each takes a part of `|psi|`; the last `1e-12` of it is a straight line.
 
 use super::direction::length;
-use super::field::{Field, Mode};
+use super::field::{Field, Mode, surface_rates};
 use super::result::{Kind, Status};
 use super::run::Run;
 use super::system::Ball;
@@ -10,11 +16,16 @@ use super::system::Ball;
 /// `|psi|` below this many times its rounding errors is as good as 0.
 const NEAR: f64 = 100.0;
 
+/// A step is stable if it is no longer than this in units of `|psi|/|B|`.
+const STABLE: f64 = 3.0;
+
 /// A ball on its way to 0.
 pub(super) struct Fall<'a> {
     pub ball: &'a Ball,
     /// How long at the present rate.
     pub time: f64,
+    /// How far a step may go.
+    pub longest: f64,
     /// Whether what is left can be skipped.
     pub is_near: bool,
 }
@@ -26,7 +37,8 @@ impl<'a> Field<'a> {
         if moving.is_empty() || self.sets_out(t) {
             return None;
         }
-        let rate = self.rate(t, x);
+        let selectors = self.selectors_of(t, x);
+        let (rate, by_selector) = self.with_selectors(t, x, &selectors);
         let normals = self.normals(t, x);
         let fall = |ball: &'a Ball| {
             let size = length(&normals.psi[ball.surfaces.clone()]);
@@ -34,7 +46,9 @@ impl<'a> Field<'a> {
             let time = -size / ball.surfaces.clone().map(along).sum::<f64>();
             let noise = ball.surfaces.clone().map(|i| normals.noise(i, x)).fold(0.0, f64::max);
             let is_near = size <= NEAR * noise || time <= 16.0 * f64::EPSILON * t.abs();
-            Fall { ball, time, is_near }
+            let own: Vec<usize> = ball.surfaces.clone().collect();
+            let stable = STABLE * size / surface_rates(&normals, &rate, &by_selector, &own).1.norm();
+            Fall { ball, time, longest: stable.min(0.9 * time), is_near }
         };
         let falls = moving.into_iter().map(fall).filter(|fall| fall.time > 0.0);
         falls.min_by(|a, b| a.time.total_cmp(&b.time))
@@ -47,6 +61,12 @@ impl Run<'_> {
         let rate = self.field.rate(self.t, &self.x);
         self.x.iter_mut().zip(rate).for_each(|(x, rate)| *x += fall.time * rate);
         self.t += fall.time;
+        let surfaces = fall.ball.surfaces.clone();
+        surfaces.clone().for_each(|surface| self.field.set_mode(surface, Mode::Sliding));
+        let mut x = std::mem::take(&mut self.x);
+        self.field.project(self.t, &mut x);
+        self.x = x;
+        surfaces.for_each(|surface| self.field.set_mode(surface, Mode::Moving));
         let mut surfaces = self.surfaces_here();
         surfaces.extend(fall.ball.surfaces.clone());
         surfaces.sort_unstable();

@@ -101,7 +101,7 @@ impl<'a> Run<'a> {
             self.h = FIRST_STEP * (self.field.system.interval[1] - self.field.system.interval[0]);
             return self.land(fall);
         }
-        let longest = fall.map_or(rest, |fall| rest.min(0.9 * fall.time));
+        let longest = fall.map_or(rest, |fall| rest.min(fall.longest));
         let is_longest = self.h >= longest * (1.0 - 1e-12);
         let step = self.accepted(if is_longest { longest } else { self.h })?;
         let found = locate::first(&mut self.field, &step, self.options);

@@ -1,18 +1,18 @@
 //! The step in which a ball leaves 0. There `s = psi/|psi|` turns with a rate of order `1/|psi|`, which no explicit step
-//! can follow, but the solution is smooth. It is found by collocation at Radau points, with the selectors as unknowns:
+//! can follow, but the solution is smooth. It is found by collocation at Radau points, with selectors and lengths as unknowns:
 //!
 //! ```text
 //! X_i = x + h sum_j a_ij f(t_j, X_j, s_j)
-//! psi(X_i) = |psi(X_i)| s_i       the balls that move
-//! r(X_i, s_i) = 0                 the surfaces that are slid on
+//! psi(X_i) = q_i s_i,   |s_i| = 1,   q_i > 0      the balls that move
+//! r(X_i, s_i) = 0                                 the surfaces that are slid on
 //! ```
 //!
 //! by Newton's method, from the direction in which the ball sets out. Five points against four give the error.
 
-use super::direction::length;
 use super::field::Field;
 use super::result::Options;
 use super::step::Step;
+use super::system::Ball;
 use nalgebra::{DMatrix, DVector};
 
 const FINE: [f64; 5] = [
@@ -28,20 +28,31 @@ const COARSE: [f64; 4] = [0.088_587_959_512_703_95, 0.409_466_864_440_734_7, 0.7
 /// Newton's method is given up after so many iterations.
 const MOST_ITERATIONS: usize = 20;
 
-/// One point of the collocation: what is added to the start, and all selectors.
+/// One point: its state without the start, all selectors, the lengths of the moving balls.
+#[derive(Clone)]
 struct Node {
     added: Vec<f64>,
     selectors: Vec<f64>,
+    lengths: Vec<f64>,
 }
 
-/// The equations of one step.
+/// A right side with its derivatives by the state and the unknown selectors.
+struct Slope {
+    rate: Vec<f64>,
+    by_state: DMatrix<f64>,
+    by_selector: DMatrix<f64>,
+}
+
+/// The equations of one step. The unknowns of a point are its state, the selectors of the moving balls and of the sliding
+/// surfaces, and the lengths.
 struct Collocation<'f, 'a> {
     field: &'f mut Field<'a>,
     t: f64,
     x: &'f [f64],
     h: f64,
     options: &'f Options,
-    /// The selectors that are unknown: those of moving balls, then of sliding surfaces.
+    balls: Vec<&'a Ball>,
+    sliding: Vec<usize>,
     unknown: Vec<usize>,
     times: &'static [f64],
     weights: DMatrix<f64>,
@@ -50,129 +61,104 @@ struct Collocation<'f, 'a> {
 /// A step from `t` to `t + h`.
 pub(super) fn step(field: &mut Field, t: f64, x: &[f64], h: f64, options: &Options) -> Step {
     let first = field.rate(t, x);
-    let coarse = Collocation::new(field, t, x, h, options, &COARSE).nodes();
-    let fine = Collocation::new(field, t, x, h, options, &FINE).nodes();
+    let coarse = Collocation::new(field, [t, h], x, options, &COARSE).nodes();
+    let fine = Collocation::new(field, [t, h], x, options, &FINE).nodes();
     let (Some(coarse), Some(fine)) = (coarse, fine) else { return Step::refused(t, x, h) };
-    let [at_coarse, at_end] = [&coarse, &fine].map(|nodes| &nodes[nodes.len() - 1].added);
-    let error = options.error(x, at_coarse, at_end);
-    field.selectors = fine[fine.len() - 1].selectors.clone();
-    let at = |added: &[f64]| x.iter().zip(added).map(|(x, added)| x + added).collect::<Vec<f64>>();
-    let end = at(at_end);
-    let (last, _) = field.with_selectors(t + h, &end, &fine[fine.len() - 1].selectors);
-    let curve = |theta: f64| at(&interpolated(&fine, theta));
-    let mut step = Step::smooth([t, h], [x.to_vec(), curve(0.5), end], [first, last], error);
-    let dense = options.error(x, &step.at(0.25), &curve(0.25));
-    step.error = error.max(0.1 * dense);
+    let end = &fine[FINE.len() - 1];
+    let error = options.error(x, &coarse[COARSE.len() - 1].added, &end.added);
+    field.selectors.copy_from_slice(&end.selectors);
+    let at_end = sum(x, &end.added);
+    let last = field.with_selectors(t + h, &at_end, &end.selectors).0;
+    let curve = |theta: f64| sum(x, &interpolated(&fine, theta));
+    let mut step = Step::smooth([t, h], [x.to_vec(), curve(0.5), at_end], [first, last], error);
+    step.error = error.max(0.1 * options.error(x, &step.at(0.25), &curve(0.25)));
     step
 }
 
 impl<'f, 'a> Collocation<'f, 'a> {
     fn new(
         field: &'f mut Field<'a>,
-        t: f64,
+        [t, h]: [f64; 2],
         x: &'f [f64],
-        h: f64,
         options: &'f Options,
         times: &'static [f64],
     ) -> Self {
-        let balls = field.moving().into_iter().flat_map(|ball| ball.surfaces.clone());
-        let unknown = balls.chain(field.sliding()).collect();
-        Collocation { field, t, x, h, options, unknown, times, weights: weights(times) }
+        let (balls, sliding) = (field.moving(), field.sliding());
+        let unknown = balls.iter().flat_map(|ball| ball.surfaces.clone()).chain(sliding.clone()).collect();
+        Collocation { field, t, x, h, options, balls, sliding, unknown, times, weights: weights(times) }
+    }
+
+    /// How many unknowns a point has.
+    fn width(&self) -> usize {
+        self.x.len() + self.unknown.len() + self.balls.len()
     }
 
     /// The points; `None` where Newton's method does not converge.
     fn nodes(mut self) -> Option<Vec<Node>> {
-        let mut nodes = self.held_direction();
+        let mut nodes = self.in_one_direction();
         for _ in 0..MOST_ITERATIONS {
             let (residual, matrix) = self.linearised(&nodes);
-            let change =
-                matrix.lu().solve(&residual).filter(|it| it.iter().all(|value| value.is_finite()))?;
-            if self.subtract(&change, &mut nodes) <= 0.01 {
-                return Some(nodes);
+            let change = matrix.lu().solve(&residual)?;
+            let size = self.subtract(&change, &mut nodes);
+            if size <= 0.01 {
+                let are_positive = nodes.iter().flat_map(|node| &node.lengths).all(|length| *length > 0.0);
+                return are_positive.then_some(nodes);
+            } else if !size.is_finite() {
+                return None;
             }
         }
         None
     }
 
-    /// The solution if no selector changed, nearly.
-    fn held_direction(&mut self) -> Vec<Node> {
+    /// Nearly the solution if no selector changed.
+    fn in_one_direction(&mut self) -> Vec<Node> {
         let selectors = self.field.selectors.clone();
-        let node = |_| Node { added: vec![0.0; self.x.len()], selectors: selectors.clone() };
-        let mut nodes: Vec<Node> = (0..self.times.len()).map(node).collect();
+        let node = Node { added: vec![0.0; self.x.len()], selectors, lengths: vec![0.0; self.balls.len()] };
+        let mut nodes = vec![node; self.times.len()];
         for _ in 0..3 {
-            let rates: Vec<Vec<f64>> = (0..nodes.len())
-                .map(|j| {
-                    let (t, x) = self.point(j, &nodes[j]);
-                    self.field.with_selectors(t, &x, &selectors).0
-                })
-                .collect();
-            for (i, node) in nodes.iter_mut().enumerate() {
-                node.added = self.added(i, &rates);
-            }
+            let rates: Vec<Vec<f64>> = (0..nodes.len()).map(|j| self.rate(j, &nodes[j])).collect();
+            nodes.iter_mut().enumerate().for_each(|(i, node)| node.added = self.added(i, &rates));
+        }
+        for (j, node) in nodes.iter_mut().enumerate() {
+            let psi = self.field.psi(self.t + self.times[j] * self.h, &sum(self.x, &node.added));
+            let along = |i: usize| psi[i] * node.selectors[i];
+            let lengths = self.balls.iter().map(|ball| ball.surfaces.clone().map(along).sum());
+            node.lengths = lengths.collect();
         }
         nodes
     }
 
-    fn point(&self, j: usize, node: &Node) -> (f64, Vec<f64>) {
-        let x = self.x.iter().zip(&node.added).map(|(x, added)| x + added).collect();
-        (self.t + self.times[j] * self.h, x)
+    fn rate(&mut self, j: usize, node: &Node) -> Vec<f64> {
+        let t = self.t + self.times[j] * self.h;
+        self.field.with_selectors(t, &sum(self.x, &node.added), &node.selectors).0
     }
 
     /// `h sum_j a_ij f_j`.
     fn added(&self, i: usize, rates: &[Vec<f64>]) -> Vec<f64> {
-        let sum = |state: usize| {
-            rates.iter().enumerate().map(|(j, rate)| self.weights[(i, j)] * rate[state]).sum::<f64>()
-        };
-        (0..self.x.len()).map(|state| self.h * sum(state)).collect()
+        let weighted = |(j, rate): (usize, &Vec<f64>), state: usize| self.weights[(i, j)] * rate[state];
+        let total = |state: usize| rates.iter().enumerate().map(|it| weighted(it, state)).sum::<f64>();
+        (0..self.x.len()).map(|state| self.h * total(state)).collect()
     }
 
-    /// Residuals and their derivatives; in each point first the states, then the selectors.
+    /// Residuals and their derivatives, point after point.
     fn linearised(&mut self, nodes: &[Node]) -> (DVector<f64>, DMatrix<f64>) {
-        let (states, count) = (self.x.len(), self.unknown.len());
-        let width = states + count;
+        let (states, width) = (self.x.len(), self.width());
         let mut residual = DVector::zeros(nodes.len() * width);
         let mut matrix = DMatrix::zeros(nodes.len() * width, nodes.len() * width);
         let mut rates = Vec::new();
         for (j, node) in nodes.iter().enumerate() {
-            let (t, x) = self.point(j, node);
-            let (rate, by_state) = self.field.by_state_with(t, &x, &node.selectors);
-            let by_selector =
-                self.field.with_selectors(t, &x, &node.selectors).1.select_columns(&self.unknown);
+            let slope = self.slope(j, node);
             for i in 0..nodes.len() {
                 let weight = -self.h * self.weights[(i, j)];
-                matrix.view_mut((i * width, j * width), (states, states)).copy_from(&(&by_state * weight));
-                matrix
-                    .view_mut((i * width, j * width + states), (states, count))
-                    .copy_from(&(&by_selector * weight));
+                let mut block = matrix.view_mut((i * width, j * width), (states, width));
+                block.columns_mut(0, states).copy_from(&(&slope.by_state * weight));
+                block.columns_mut(states, self.unknown.len()).copy_from(&(&slope.by_selector * weight));
             }
-            let normals = self.field.normals(t, &x);
-            let own = j * width + states;
-            let mut rows = matrix.view_mut((own, j * width), (count, width));
-            for (at, &surface) in self.unknown.iter().enumerate() {
-                let gradient = normals.by_state.row(surface);
-                // Second derivatives of psi are left out: they only slow the convergence down.
-                rows.view_mut((at, 0), (1, states)).copy_from(&(gradient * &by_state));
-                rows.view_mut((at, states), (1, count)).copy_from(&(gradient * &by_selector));
-                residual[own + at] = normals.rate(surface, &rate);
-            }
-            for ball in self.field.moving() {
-                let psi = &normals.psi[ball.surfaces.clone()];
-                let size = length(psi).max(f64::MIN_POSITIVE);
-                let gradients = normals.by_state.rows(ball.surfaces.start, psi.len());
-                let along = DVector::from_iterator(psi.len(), psi.iter().map(|psi| psi / size)).transpose()
-                    * gradients;
-                for (i, surface) in ball.surfaces.clone().enumerate() {
-                    let at =
-                        self.unknown.iter().position(|it| *it == surface).expect("moving balls are unknown");
-                    let s = node.selectors[surface];
-                    let by_state = (gradients.row(i) - &along * s) / self.h;
-                    rows.row_mut(at).fill(0.0);
-                    rows.view_mut((at, 0), (1, states)).copy_from(&by_state);
-                    rows[(at, states + at)] = -size / self.h;
-                    residual[own + at] = (psi[i] - size * s) / self.h;
-                }
-            }
-            rates.push(rate);
+            let (from, height) = (j * width + states, width - states);
+            let (values, rows) = self.conditions(j, node, &slope);
+            residual.rows_mut(from, height).copy_from(&values);
+            matrix.view_mut((from, j * width), (height, width)).copy_from(&rows);
+            rates.push(slope.rate);
         }
         for (i, node) in nodes.iter().enumerate() {
             for (state, added) in self.added(i, &rates).into_iter().enumerate() {
@@ -183,20 +169,61 @@ impl<'f, 'a> Collocation<'f, 'a> {
         (residual, matrix)
     }
 
+    fn slope(&mut self, j: usize, node: &Node) -> Slope {
+        let (t, x) = (self.t + self.times[j] * self.h, sum(self.x, &node.added));
+        let (rate, by_state) = self.field.by_state_with(t, &x, &node.selectors);
+        let by_selector = self.field.with_selectors(t, &x, &node.selectors).1.select_columns(&self.unknown);
+        Slope { rate, by_state, by_selector }
+    }
+
+    /// What holds in one point, with its derivatives.
+    fn conditions(&mut self, j: usize, node: &Node, slope: &Slope) -> (DVector<f64>, DMatrix<f64>) {
+        let normals = self.field.normals(self.t + self.times[j] * self.h, &sum(self.x, &node.added));
+        let (states, count) = (self.x.len(), self.unknown.len());
+        let mut residual = DVector::zeros(count + self.balls.len());
+        let mut rows = DMatrix::zeros(residual.len(), self.width());
+        let mut at = 0;
+        for (k, (ball, length)) in self.balls.iter().zip(&node.lengths).enumerate() {
+            for i in ball.surfaces.clone() {
+                let s = node.selectors[i];
+                rows.view_mut((at, 0), (1, states)).copy_from(&(normals.by_state.row(i) / self.h));
+                rows[(at, states + at)] = -length / self.h;
+                rows[(at, states + count + k)] = -s / self.h;
+                residual[at] = (normals.psi[i] - length * s) / self.h;
+                rows[(count + k, states + at)] = s;
+                residual[count + k] += 0.5 * s * s;
+                at += 1;
+            }
+            residual[count + k] -= 0.5;
+        }
+        for (at, &i) in (at..).zip(&self.sliding) {
+            let gradient = normals.by_state.row(i);
+            // Second derivatives of psi are left out: that only slows the convergence down.
+            rows.view_mut((at, 0), (1, states)).copy_from(&(gradient * &slope.by_state));
+            rows.view_mut((at, states), (1, count)).copy_from(&(gradient * &slope.by_selector));
+            residual[at] = normals.rate(i, &slope.rate);
+        }
+        (residual, rows)
+    }
+
     /// A step of Newton's method; its size in units of the tolerance.
     fn subtract(&self, change: &DVector<f64>, nodes: &mut [Node]) -> f64 {
-        let width = self.x.len() + self.unknown.len();
         let mut largest: f64 = 0.0;
         for (j, node) in nodes.iter_mut().enumerate() {
-            let change = change.rows(j * width, width);
+            let mut change = change.rows(j * self.width(), self.width()).into_iter();
             let before = node.added.clone();
-            node.added.iter_mut().zip(change.iter()).for_each(|(added, change)| *added -= change);
-            let by_selector = change.iter().skip(self.x.len());
-            self.unknown.iter().zip(by_selector).for_each(|(&at, change)| node.selectors[at] -= change);
-            largest = largest.max(self.options.error(self.x, &before, &node.added));
+            node.added.iter_mut().zip(&mut change).for_each(|(value, change)| *value -= change);
+            self.unknown.iter().zip(&mut change).for_each(|(&at, change)| node.selectors[at] -= change);
+            node.lengths.iter_mut().zip(&mut change).for_each(|(value, change)| *value -= change);
+            let size = self.options.error(self.x, &before, &node.added);
+            largest = if size.is_nan() { f64::NAN } else { largest.max(size) };
         }
         largest
     }
+}
+
+fn sum(x: &[f64], added: &[f64]) -> Vec<f64> {
+    x.iter().zip(added).map(|(x, added)| x + added).collect()
 }
 
 /// `a_ij`, which integrates polynomials exactly: `sum_j a_ij c_j^(q-1) = c_i^q / q`.
@@ -213,7 +240,7 @@ fn interpolated(nodes: &[Node], theta: f64) -> Vec<f64> {
     let factor =
         |j: usize| others(j).fold(theta / FINE[j], |product, c| product * (theta - c) / (FINE[j] - c));
     let factors: Vec<f64> = (0..nodes.len()).map(factor).collect();
-    let sum =
+    let total =
         |state: usize| nodes.iter().zip(&factors).map(|(node, factor)| factor * node.added[state]).sum();
-    (0..nodes[0].added.len()).map(sum).collect()
+    (0..nodes[0].added.len()).map(total).collect()
 }

@@ -257,8 +257,7 @@ fn candidate(system: &System, candidate: &Candidate) -> String {
     match candidate.sides.as_slice() {
         [(_, side)] => word(*side).to_string(),
         several => {
-            let named =
-                several.iter().map(|(i, side)| format!("{} {}", system.surfaces[*i].name, word(*side)));
+            let named = several.iter().map(|(i, side)| format!("{} {}", system.name_of(*i), word(*side)));
             named.collect::<Vec<_>>().join(", ")
         }
     }

@@ -64,16 +64,22 @@ fn coupled(b: &DMatrix<f64>, units: &[Range<usize>]) -> Vec<Vec<usize>> {
     (0..size).map(|i| (i, group(i))).filter(|(i, group)| group[0] == *i).map(|(_, group)| group).collect()
 }
 
-/// Whether `D B` has a positive definite symmetric part, with the positive factors `D`, one for each unit, that come nearest to
-/// making `D B` symmetric.
+/// Whether `D B` has a positive definite symmetric part for positive factors `D`, one for each unit: those that come nearest to
+/// making `D B` symmetric, or those that make its diagonal 1.
 fn is_positive_definite(b: &DMatrix<f64>, sizes: &[usize]) -> bool {
     let firsts: Vec<usize> = (0..sizes.len()).map(|unit| sizes[..unit].iter().sum()).collect();
     let units: Vec<Range<usize>> =
         firsts.iter().zip(sizes).map(|(&first, size)| first..first + size).collect();
-    let weights = weights(b, &units);
+    let own = |unit: &Range<usize>| 1.0 / norm(b, unit, unit);
+    [symmetric_weights(b, &units), units.iter().map(own).collect()]
+        .iter()
+        .any(|weights| is_definite_with(b, &units, weights))
+}
+
+fn is_definite_with(b: &DMatrix<f64>, units: &[Range<usize>], weights: &[f64]) -> bool {
     let mut weighted = b.clone();
     for (unit, weight) in units.iter().zip(weights) {
-        weighted.rows_mut(unit.start, unit.len()).scale_mut(weight);
+        weighted.rows_mut(unit.start, unit.len()).scale_mut(*weight);
     }
     let symmetric = &weighted + weighted.transpose();
     let scale = symmetric.diagonal().map(|value| 1.0 / value.max(0.0).sqrt());
@@ -84,7 +90,7 @@ fn is_positive_definite(b: &DMatrix<f64>, sizes: &[usize]) -> bool {
     (scaled - DMatrix::from_diagonal_element(b.nrows(), b.nrows(), SINGULAR)).cholesky().is_some()
 }
 
-fn weights(b: &DMatrix<f64>, units: &[Range<usize>]) -> Vec<f64> {
+fn symmetric_weights(b: &DMatrix<f64>, units: &[Range<usize>]) -> Vec<f64> {
     let mut weights: Vec<Option<f64>> = vec![None; units.len()];
     weights[0] = Some(1.0);
     for _ in 1..units.len() {
@@ -97,8 +103,7 @@ fn weights(b: &DMatrix<f64>, units: &[Range<usize>]) -> Vec<f64> {
             }
         }
     }
-    let own = |i: usize| 1.0 / norm(b, &units[i], &units[i]);
-    weights.into_iter().enumerate().map(|(i, weight)| weight.unwrap_or_else(|| own(i))).collect()
+    weights.into_iter().map(|weight| weight.unwrap_or(1.0)).collect()
 }
 
 /// The selectors that solve the problem; `None` where they are not found.

@@ -29,7 +29,13 @@ struct Corner<'f, 'a> {
     options: &'f Options,
 }
 
-/// The modes of `surfaces` after a point that is on all of them.
+/// The modes of the surfaces, with the selectors that belong to them.
+struct Choice {
+    modes: Vec<Mode>,
+    s: DVector<f64>,
+}
+
+/// The modes of `surfaces` after a point that is on all of them. Balls that move from there find their direction in the field.
 pub(super) fn decide(
     field: &mut Field,
     t: f64,
@@ -44,10 +50,12 @@ pub(super) fn decide(
     field.follow_directions(t, x);
     let balls = blocks(&field.system.balls, surfaces);
     let mut corner = Corner { field, t, x, surfaces, normals, balls, options };
-    match corner.unique() {
-        Some(modes) => Ok(modes),
-        None => corner.only_combination(),
-    }
+    let choice = match corner.unique() {
+        Some(choice) => choice,
+        None => corner.only_combination()?,
+    };
+    choice.note_directions(field, surfaces);
+    Ok(choice.modes)
 }
 
 fn mode(side: i8) -> Mode {
@@ -75,7 +83,7 @@ impl Corner<'_, '_> {
     }
 
     /// The modes, if the linearised problem has one solution on the way to that of the whole.
-    fn unique(&mut self) -> Option<Vec<Mode>> {
+    fn unique(&mut self) -> Option<Choice> {
         let mut s = DVector::zeros(self.surfaces.len());
         for _ in 0..50 {
             let (r, b, tie) = self.rates(&s);
@@ -84,76 +92,132 @@ impl Corner<'_, '_> {
             }
             let next = solution(&(&r + &b * &s), &b, &self.balls)?;
             if (&next - &s).amax() <= 1e-13 {
-                return Some(self.modes(&next, &r, &tie));
+                let sides: Vec<i8> = (0..s.len()).map(|i| side(next[i], r[i], tie[i])).collect();
+                return Some(self.choice(&sides, next, &r, &tie));
             }
             s = next;
         }
         None
     }
 
-    /// The modes that belong to selectors and rates.
-    fn modes(&mut self, s: &DVector<f64>, r: &DVector<f64>, tie: &[f64]) -> Vec<Mode> {
-        let mut modes: Vec<Mode> = (0..s.len()).map(|i| mode(side(s[i], r[i], tie[i]))).collect();
+    /// Modes for sides, selectors and rates; a ball at the end of its selectors with no rate slides, too.
+    fn choice(&self, sides: &[i8], s: DVector<f64>, r: &DVector<f64>, tie: &[f64]) -> Choice {
+        let mut modes: Vec<Mode> = sides.iter().copied().map(mode).collect();
         for ball in self.balls.clone() {
-            let (own, rate) = (&s.as_slice()[ball.clone()], &r.as_slice()[ball.clone()]);
-            let moves = length(own) >= 1.0 - 1e-12 && length(rate) > length(&tie[ball.clone()]);
-            modes[ball.clone()].fill(if moves { Mode::Moving } else { Mode::Sliding });
-            let surfaces = self.surfaces[ball.start]..self.surfaces[ball.start] + ball.len();
-            self.field.direction[surfaces].copy_from_slice(own);
+            let [own, rate, tie] = [s.as_slice(), r.as_slice(), tie].map(|all| length(&all[ball.clone()]));
+            let moves = own >= 1.0 - 1e-12 && rate > tie;
+            modes[ball].fill(if moves { Mode::Moving } else { Mode::Sliding });
         }
-        modes
+        Choice { modes, s }
     }
 
-    /// The only consistent combination of sides; none are told where a ball is among them.
-    fn only_combination(&mut self) -> Result<Vec<Mode>, Status> {
+    fn is_in_ball(&self, at: usize) -> bool {
+        self.balls.iter().any(|ball| ball.contains(&at))
+    }
+
+    /// The only consistent combination of sides; what the balls do follows from them.
+    fn only_combination(&mut self) -> Result<Choice, Status> {
         let size = self.surfaces.len();
-        let count = if size <= MOST_COMBINED && self.balls.is_empty() { 3_usize.pow(size as u32) } else { 0 };
+        let alone: Vec<usize> = (0..size).filter(|&at| !self.is_in_ball(at)).collect();
+        let count = if alone.len() <= MOST_COMBINED { 3_usize.pow(alone.len() as u32) } else { 0 };
         let sides = |number: usize| -> Vec<i8> {
-            (0..size).map(|at| [1, -1, 0][number / 3_usize.pow(at as u32) % 3]).collect()
+            let mut sides = vec![0; size];
+            for (digit, &at) in alone.iter().enumerate() {
+                sides[at] = [1, -1, 0][number / 3_usize.pow(digit as u32) % 3];
+            }
+            sides
         };
-        let mut found: Vec<Vec<i8>> =
-            (0..count).map(sides).filter(|sides| self.is_consistent(sides)).collect();
-        if let [only] = found.as_mut_slice() {
-            return Ok(only.iter().copied().map(mode).collect());
+        let mut found: Vec<Choice> =
+            (0..count).filter_map(|number| self.consistent(&sides(number))).collect();
+        if found.len() == 1 {
+            return Ok(found.swap_remove(0));
         }
-        let named = |sides: Vec<i8>| Candidate { sides: self.surfaces.iter().copied().zip(sides).collect() };
-        let candidates = found.into_iter().map(named).collect();
+        let candidates = found.iter().map(|choice| self.candidate(choice)).collect();
         Err(Status::NotUnique { surface: self.surfaces[0], candidates })
     }
 
-    /// Whether the state can go on with these sides.
-    fn is_consistent(&mut self, sides: &[i8]) -> bool {
+    fn candidate(&self, choice: &Choice) -> Candidate {
+        let is_first = |at: &usize| self.balls.iter().all(|ball| !ball.contains(at) || ball.start == *at);
+        let side = |at: usize| match choice.modes[at] {
+            Mode::Above | Mode::Moving => 1,
+            Mode::Below => -1,
+            Mode::Sliding | Mode::Held => 0,
+        };
+        let firsts = (0..choice.modes.len()).filter(is_first);
+        Candidate { sides: firsts.map(|at| (self.surfaces[at], side(at))).collect() }
+    }
+
+    /// What happens if the state goes on with these sides, if it can.
+    fn consistent(&mut self, sides: &[i8]) -> Option<Choice> {
         let mut s = DVector::from_iterator(sides.len(), sides.iter().map(|side| f64::from(*side)));
-        let slides: Vec<usize> = (0..sides.len()).filter(|&i| sides[i] == 0).collect();
-        for _ in 0..if slides.is_empty() { 0 } else { 20 } {
+        let free: Vec<usize> = (0..sides.len()).filter(|&i| sides[i] == 0).collect();
+        for _ in 0..if free.is_empty() { 0 } else { 20 } {
             let (r, b, _) = self.rates(&s);
-            let b = b.select_rows(&slides).select_columns(&slides);
-            let Some(change) = b.lu().solve(&r.select_rows(&slides)) else { return false };
-            slides.iter().zip(change.iter()).for_each(|(&i, change)| s[i] += change);
+            let b = b.select_rows(&free).select_columns(&free);
+            let change = self.change(&s.select_rows(&free), &r.select_rows(&free), b, &free)?;
+            free.iter().zip(change.iter()).for_each(|(&i, change)| s[i] += change);
         }
         let (r, _, tie) = self.rates(&s);
         let fits = |i: usize| {
-            if sides[i] == 0 {
+            if self.is_in_ball(i) {
+                s[i].is_finite()
+            } else if sides[i] == 0 {
                 s[i].abs() < 1.0 && r[i].abs() <= tie[i]
             } else {
                 f64::from(sides[i]) * r[i] >= -tie[i]
             }
         };
         let is_tie = |i: usize| sides[i] != 0 && r[i].abs() <= tie[i];
-        (0..sides.len()).all(fits) && (!(0..sides.len()).any(is_tie) || self.goes_there(sides))
+        let (all_fit, has_tie) = ((0..sides.len()).all(fits), (0..sides.len()).any(is_tie));
+        let choice = self.choice(sides, s, &r, &tie);
+        (all_fit && (!has_tie || self.goes_there(sides, &choice))).then_some(choice)
+    }
+
+    /// By how much the free selectors change in one iteration; those of balls stay in them.
+    fn change(
+        &self,
+        s: &DVector<f64>,
+        r: &DVector<f64>,
+        b: DMatrix<f64>,
+        free: &[usize],
+    ) -> Option<DVector<f64>> {
+        if self.balls.is_empty() {
+            return b.lu().solve(r);
+        }
+        let surfaces: Vec<usize> = free.iter().map(|&at| self.surfaces[at]).collect();
+        let balls = blocks(&self.field.system.balls, &surfaces);
+        is_unique(&b, &balls).then(|| solution(&(r + &b * s), &b, &balls))?.map(|next| next - s)
     }
 
     /// Where rates vanish a short step tells on which side it ends.
-    fn goes_there(&mut self, sides: &[i8]) -> bool {
+    fn goes_there(&mut self, sides: &[i8], choice: &Choice) -> bool {
         let before = (self.field.modes.clone(), self.field.selectors.clone());
-        let modes: Vec<Mode> = sides.iter().copied().map(mode).collect();
-        self.surfaces.iter().zip(modes).for_each(|(&i, mode)| self.field.set_mode(i, mode));
+        let of_balls = (self.field.departure.clone(), self.field.direction.clone());
+        choice.begin(self.field, self.surfaces, self.t);
         let [first, last] = self.field.system.interval;
         let h = 1e-5 * (last - first);
         let end = Step::take(self.field, self.t, self.x, h, self.options).end;
         let psi = self.field.psi(self.t + h, &end);
         (self.field.modes, self.field.selectors) = before;
+        (self.field.departure, self.field.direction) = of_balls;
         self.surfaces.iter().zip(sides).all(|(&i, &side)| side == 0 || f64::from(side) * psi[i] > 0.0)
+    }
+}
+
+impl Choice {
+    /// Puts a field into these modes.
+    fn begin(&self, field: &mut Field, surfaces: &[usize], t: f64) {
+        self.note_directions(field, surfaces);
+        for (&surface, &mode) in surfaces.iter().zip(&self.modes) {
+            field.set_mode(surface, mode);
+            field.departure[surface] = t;
+        }
+    }
+
+    /// Notes in which direction balls set out.
+    fn note_directions(&self, field: &mut Field, surfaces: &[usize]) {
+        let moves = |at: &usize| self.modes[*at] == Mode::Moving;
+        (0..surfaces.len()).filter(moves).for_each(|at| field.direction[surfaces[at]] = self.s[at]);
     }
 }
 

@@ -63,6 +63,8 @@ pub(super) struct Field<'a> {
     pub direction: Vec<f64>,
     /// When it leaves; NaN for what began off 0.
     pub departure: Vec<f64>,
+    /// The longest explicit step that moving balls allow at the beginning of the next one.
+    pub stable: f64,
     /// States that stand still.
     pub held: Vec<usize>,
     pub evaluations: usize,
@@ -81,6 +83,7 @@ impl<'a> Field<'a> {
             selectors: vec![0.0; surfaces],
             direction: vec![0.0; surfaces],
             departure: vec![f64::NAN; surfaces],
+            stable: f64::INFINITY,
             held: Vec::new(),
             evaluations: 0,
             controls,

@@ -31,27 +31,31 @@ pub(super) struct Fall<'a> {
 }
 
 impl<'a> Field<'a> {
-    /// The moving ball that is the first to reach 0, as things go at present.
+    /// The moving ball that is the first to reach 0, as things go at present; notes which steps are stable.
     pub fn fall(&mut self, t: f64, x: &[f64]) -> Option<Fall<'a>> {
-        let moving = self.moving();
-        if moving.is_empty() || self.sets_out(t) {
+        self.stable = f64::INFINITY;
+        if self.moving().is_empty() || self.sets_out(t) {
             return None;
         }
         let selectors = self.selectors_of(t, x);
         let (rate, by_selector) = self.with_selectors(t, x, &selectors);
         let normals = self.normals(t, x);
-        let fall = |ball: &'a Ball| {
-            let size = length(&normals.psi[ball.surfaces.clone()]);
-            let along = |i: usize| normals.psi[i] / size * normals.rate(i, &rate);
-            let time = -size / ball.surfaces.clone().map(along).sum::<f64>();
-            let noise = ball.surfaces.clone().map(|i| normals.noise(i, x)).fold(0.0, f64::max);
-            let is_near = size <= NEAR * noise || time <= 16.0 * f64::EPSILON * t.abs();
+        let mut first: Option<Fall> = None;
+        for ball in self.moving() {
             let own: Vec<usize> = ball.surfaces.clone().collect();
-            let stable = STABLE * size / surface_rates(&normals, &rate, &by_selector, &own).1.norm();
-            Fall { ball, time, longest: stable.min(0.9 * time), is_near }
-        };
-        let falls = moving.into_iter().map(fall).filter(|fall| fall.time > 0.0);
-        falls.min_by(|a, b| a.time.total_cmp(&b.time))
+            let size = length(&normals.psi[ball.surfaces.clone()]);
+            let (r, b) = surface_rates(&normals, &rate, &by_selector, &own);
+            let stable = STABLE * size / b.norm();
+            self.stable = self.stable.min(stable);
+            let along = own.iter().zip(r.iter()).map(|(&i, r)| selectors[i] * r).sum::<f64>();
+            let time = -size / along;
+            if time > 0.0 && first.as_ref().is_none_or(|first| time < first.time) {
+                let noise = own.iter().map(|&i| normals.noise(i, x)).fold(0.0, f64::max);
+                let is_near = size <= NEAR * noise || time <= 16.0 * f64::EPSILON * t.abs();
+                first = Some(Fall { ball, time, longest: stable.min(0.9 * time), is_near });
+            }
+        }
+        first
     }
 }
 

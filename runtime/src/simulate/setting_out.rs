@@ -1,5 +1,5 @@
-//! The step in which a ball leaves 0. There `s = psi/|psi|` turns with a rate of order `1/|psi|`, which no explicit step
-//! can follow, but the solution is smooth. It is found by collocation at Radau points, with selectors and lengths as unknowns:
+//! A step in which a ball leaves 0 or is near it. There `s = psi/|psi|` turns with a rate of order `1/|psi|`, which no explicit
+//! step can follow, but the solution is smooth. It is found by collocation at Radau points, with selectors and lengths as unknowns:
 //!
 //! ```text
 //! X_i = x + h sum_j a_ij f(t_j, X_j, s_j)
@@ -7,7 +7,7 @@
 //! r(X_i, s_i) = 0                                 the surfaces that are slid on
 //! ```
 //!
-//! by Newton's method, from the direction in which the ball sets out. Five points against four give the error.
+//! by Newton's method, from the direction at the beginning. Five points against four give the error.
 
 use super::field::Field;
 use super::result::Options;
@@ -71,7 +71,7 @@ pub(super) fn step(field: &mut Field, t: f64, x: &[f64], h: f64, options: &Optio
     let last = field.with_selectors(t + h, &at_end, &end.selectors).0;
     let curve = |theta: f64| sum(x, &interpolated(&fine, theta));
     let mut step = Step::smooth([t, h], [x.to_vec(), curve(0.5), at_end], [first, last], error);
-    step.error = error.max(0.1 * options.error(x, &step.at(0.25), &curve(0.25)));
+    step.error = error.max(0.01 * options.error(x, &step.at(0.25), &curve(0.25)));
     step
 }
 

@@ -20,7 +20,7 @@ pub(super) struct Step {
 impl Step {
     /// Takes a step.
     pub fn take(field: &mut Field, t: f64, x: &[f64], h: f64, options: &Options) -> Self {
-        if field.sets_out(t) {
+        if field.sets_out(t) || h > field.stable {
             return setting_out::step(field, t, x, h, options);
         }
         let stages = stages(field, t, x, h);

@@ -85,8 +85,9 @@ impl<'a> Elaborator<'a> {
 
     /// The name itself, or numbered if surfaces of that name are there.
     pub fn free_name(&self, name: &str) -> String {
-        let surfaces = self.surfaces.iter().map(|surface| &surface.place.name);
-        let known = surfaces.chain(self.balls.iter().map(|ball| &ball.place.name));
+        let alone = (0..self.surfaces.len()).filter(|&at| !self.is_in_ball(at));
+        let known = alone.map(|at| &self.surfaces[at].place.name);
+        let known = known.chain(self.balls.iter().map(|ball| &ball.place.name));
         match known.filter(|known| known.split(" #").next() == Some(name)).count() {
             0 => name.to_string(),
             taken => format!("{name} #{}", taken + 1),

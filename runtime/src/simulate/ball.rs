@@ -228,7 +228,9 @@ mod tests {
     fn weights_of_the_kinetic_energy_are_found() {
         let b = DMatrix::from_row_slice(2, 2, &[30.0, -0.1, -30.0, 0.2]);
         assert!(is_unique(&b, &[0..1, 1..2]));
-        assert!(!is_unique(&DMatrix::from_row_slice(2, 2, &[1.0, 3.0, 3.0, 1.0]), &[0..2]));
-        assert!(!is_unique(&-DMatrix::identity(2, 2), &[0..2]));
+        let disc = 0..2;
+        let disc = std::slice::from_ref(&disc);
+        assert!(!is_unique(&DMatrix::from_row_slice(2, 2, &[1.0, 3.0, 3.0, 1.0]), disc));
+        assert!(!is_unique(&-DMatrix::identity(2, 2), disc));
     }
 }

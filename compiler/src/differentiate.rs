@@ -15,7 +15,7 @@ use fdcc_runtime::problem::{Degree, Pattern};
 
 use crate::builtins::Builtin;
 use crate::graph::{Expr, ExprId, Graph, Operands};
-use crate::program::{Differentiated, VectorFunction};
+use crate::program::{Differentiated, Order, VectorFunction};
 
 /// The derivative of `expr` by one input.
 pub fn derivative(graph: &mut Graph, expr: ExprId, input: u32) -> ExprId {
@@ -25,7 +25,10 @@ pub fn derivative(graph: &mut Graph, expr: ExprId, input: u32) -> ExprId {
 /// Adds the Jacobian, the Lagrangian Hessian and the degrees.
 pub fn differentiate(graph: &mut Graph, function: VectorFunction) -> Differentiated {
     let jacobian = jacobian(graph, &function);
-    let hessian = hessian(graph, &function);
+    let hessian = match function.order {
+        Order::First => (Pattern::default(), Vec::new()),
+        Order::Second => hessian(graph, &function),
+    };
     let degrees = degrees(graph, &function);
     Differentiated { function, jacobian, hessian, degrees }
 }

@@ -23,7 +23,7 @@ use fdcc_runtime::problem::{Function, Problem};
 use fdcc_runtime::simulate::System;
 use graph::Graph;
 pub use lower::{Expectations, Expected, Program, expectations};
-use lower::{lower, numbers, problem};
+use lower::{Purpose, lower, numbers, problem};
 pub use model::Model;
 pub use overrides::is_method_key;
 use program::VectorFunction;
@@ -120,9 +120,27 @@ pub fn compile(model: &Model) -> Result<Problem, Vec<Diagnostic>> {
 
 /// Turns a model into the true system, for simulation; or says what cannot be simulated yet.
 pub fn compile_simulation(model: &Model) -> Result<System, Vec<Diagnostic>> {
+    compile_system(model, Purpose::Simulation)
+}
+
+/// The true system with all its derivatives, to the second order, for sensitivities.
+pub fn compile_sensitivities(model: &Model) -> Result<System, Vec<Diagnostic>> {
+    compile_system(model, Purpose::Sensitivities)
+}
+
+/// The system as a solve smooths it, without surfaces, with all its derivatives; or says that jumps cannot be smoothed.
+pub fn compile_smoothed(model: &Model) -> Result<System, Vec<Diagnostic>> {
+    not_yet(model)?;
+    compile_system(model, Purpose::Smoothed)
+}
+
+fn compile_system(model: &Model, purpose: Purpose) -> Result<System, Vec<Diagnostic>> {
     model.not_yet.first().map_or(Ok(()), |first| Err(vec![first.clone()]))?;
+    if let (Purpose::Sensitivities, Some(ball)) = (purpose, model.balls.first()) {
+        return Err(vec![resolve::not_yet(ball.place.span, "the derivative of a simulation with `Dir`")]);
+    }
     let numbers = numbers(model)?;
-    let (graph, program) = lower::simulation(model);
+    let (graph, program) = lower::simulation(model, purpose);
     let functions = machine_code(graph, program.functions.clone());
     Ok(lower::system(model, &program, &numbers, functions))
 }

@@ -17,6 +17,17 @@ pub struct VectorFunction {
     pub origins: Vec<Origin>,
     /// The inputs to differentiate by, ascending; none if only values are needed.
     pub by: Vec<u32>,
+    /// The highest derivatives that are needed.
+    pub order: Order,
+}
+
+/// How far a function is differentiated by its inputs [`VectorFunction::by`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Order {
+    /// The Jacobian.
+    First,
+    /// The Jacobian and the Hessian.
+    Second,
 }
 
 /// A function with its derivatives.

@@ -19,6 +19,9 @@ pub mod quadrature;
 pub mod trajectory;
 
 pub mod simulate;
+pub mod stepping;
+
+pub mod sensitivity;
 
 pub mod starts;
 

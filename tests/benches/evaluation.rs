@@ -8,7 +8,7 @@ use divan::{Bencher, black_box, counter::ItemsCount};
 use fdcc_compiler::differentiate::differentiate;
 use fdcc_compiler::generate::generate;
 use fdcc_compiler::graph::{ExprId, Graph};
-use fdcc_compiler::program::{Differentiated, VectorFunction};
+use fdcc_compiler::program::{Differentiated, Order, VectorFunction};
 use fdcc_compiler::smooth;
 use fdcc_runtime::problem::{Columns, Function, Layout, Origin};
 
@@ -91,7 +91,14 @@ fn guards_and_report(g: &mut Graph) -> Vec<VectorFunction> {
 
 fn function(name: &str, outputs: Vec<ExprId>, by: &[u32]) -> VectorFunction {
     let origins = vec![Origin::default(); outputs.len()];
-    VectorFunction { name: name.into(), layout: LAYOUT, outputs, origins, by: by.to_vec() }
+    VectorFunction {
+        name: name.into(),
+        layout: LAYOUT,
+        outputs,
+        origins,
+        by: by.to_vec(),
+        order: Order::Second,
+    }
 }
 
 fn all_functions(graph: &mut Graph) -> Vec<Differentiated> {

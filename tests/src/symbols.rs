@@ -5,7 +5,7 @@ use std::sync::Arc;
 use fdcc_compiler::differentiate::differentiate;
 use fdcc_compiler::generate::generate;
 use fdcc_compiler::graph::{ExprId, Graph};
-use fdcc_compiler::program::{Differentiated, VectorFunction};
+use fdcc_compiler::program::{Differentiated, Order, VectorFunction};
 use fdcc_runtime::problem::{Columns, Function, Layout, Origin};
 
 use crate::random::Random;
@@ -14,7 +14,10 @@ use crate::random::Random;
 pub fn function(graph: &mut Graph, outputs: Vec<ExprId>, layout: Layout) -> Differentiated {
     let origins = vec![Origin::default(); outputs.len()];
     let by = (0..layout.inputs() as u32).collect();
-    differentiate(graph, VectorFunction { name: "test".into(), layout, outputs, origins, by })
+    differentiate(
+        graph,
+        VectorFunction { name: "test".into(), layout, outputs, origins, by, order: Order::Second },
+    )
 }
 
 /// Inputs that are `x` states and then `p` parameters.

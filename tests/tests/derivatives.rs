@@ -4,7 +4,7 @@ use fdcc_compiler::builtins::{self, Builtin, Domain, Notation, Smoothness};
 use fdcc_compiler::differentiate::differentiate;
 use fdcc_compiler::generate::clif;
 use fdcc_compiler::graph::{ExprId, Graph, evaluate, print, verify};
-use fdcc_compiler::program::{Differentiated, VectorFunction};
+use fdcc_compiler::program::{Differentiated, Order, VectorFunction};
 use fdcc_runtime::problem::{Columns, Degree, Layout, Origin};
 use fdcc_tests::functions::{check_differences, check_machine_code, derivatives};
 use fdcc_tests::random::Random;
@@ -369,7 +369,14 @@ fn degrees_are_those_of_polynomials_in_what_is_differentiated() {
     let origins = vec![Origin::default(); 5];
     let symbols = differentiate(
         &mut graph,
-        VectorFunction { name: "degrees".into(), layout, outputs, origins, by: vec![0, 1] },
+        VectorFunction {
+            name: "degrees".into(),
+            layout,
+            outputs,
+            origins,
+            by: vec![0, 1],
+            order: Order::Second,
+        },
     );
     use Degree::{Affine, Nonlinear, Quadratic};
     assert_eq!(symbols.degrees, [Affine, Quadratic, Affine, Nonlinear, Affine]);

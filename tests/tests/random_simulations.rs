@@ -1,11 +1,21 @@
-//! Random systems with one to four surfaces, or with a ball among them, against a simple, slow reference: implicit Euler with Gauss-Seidel.
+//! Random systems with one to four surfaces, or with a ball among them, against simple, slow references.
+//!
+//! Thousands that are affine in each mode, with starts on surfaces and with surfaces that move, against their exact solution: events,
+//! end, and every refusal. And a few against implicit Euler with Gauss-Seidel, which knows no events:
 //!
 //! `x' = a + c cos(w t) - A x - B s`, `s_i in Sgn(x_i)`, `B` diagonally dominant, so the solution is unique. One step of the reference
 //! solves `x+ = x + h (a + c cos(w t+) - A x - B s)`, `s_i in Sgn(x+_i)`, surface by surface until nothing changes; its error is of
 //! order `h`. The first components may form a ball, `s in Dir(x)`.
 
+#[path = "random_simulations/affine.rs"]
+mod affine;
+#[path = "random_simulations/exact.rs"]
+mod exact;
+
+use affine::Affine;
+use exact::{Ending, Exact, exact};
 use fdcc_compiler::compile_simulation;
-use fdcc_runtime::simulate::{Controls, Kind, Options, Status, simulate};
+use fdcc_runtime::simulate::{Controls, Kind, Options, Simulation, Status, simulate};
 use fdcc_tests::models::meaning;
 use fdcc_tests::random::Random;
 use std::fmt::Write;
@@ -13,7 +23,7 @@ use std::fmt::Write;
 const LAST: f64 = 4.0;
 const STEPS: usize = 40_000;
 
-struct Affine {
+struct Friction {
     /// How many of the first components form a ball.
     ball: usize,
     start: Vec<f64>,
@@ -38,11 +48,11 @@ fn matrix(random: &mut Random, size: usize, diagonal: [f64; 2], beside: f64) -> 
     rows
 }
 
-impl Affine {
+impl Friction {
     fn new(random: &mut Random, size: usize, ball: usize) -> Self {
         let mut vector = |most: f64| -> Vec<f64> { (0..size).map(|_| random.between(-most, most)).collect() };
         let (start, constant, swing) = (vector(1.0), vector(0.5), vector(3.0));
-        Affine {
+        Friction {
             ball,
             start,
             constant,
@@ -116,7 +126,7 @@ fn random_systems_end_where_implicit_euler_ends() {
     let mut random = Random::new(7);
     let (mut entries, mut exits) = (0, 0);
     for case in 0..40 {
-        let system = Affine::new(&mut random, 1 + case % 4, 0);
+        let system = Friction::new(&mut random, 1 + case % 4, 0);
         let text = system.text();
         let compiled = compile_simulation(&meaning(&text)).expect("the model can be simulated");
         let simulation = simulate(&compiled, &Controls::Guess, &Options::default());
@@ -144,7 +154,7 @@ fn random_systems_with_a_ball_end_where_implicit_euler_ends() {
     let (mut entries, mut exits) = (0, 0);
     for case in 0..40 {
         let ball = 2 + case % 2;
-        let mut system = Affine::new(&mut random, ball + case % 3, ball);
+        let mut system = Friction::new(&mut random, ball + case % 3, ball);
         let friction = system.friction[0][0];
         (0..ball).for_each(|i| system.friction[i][i] = friction);
         let text = system.text();
@@ -159,4 +169,85 @@ fn random_systems_with_a_ball_end_where_implicit_euler_ends() {
         exits += of_ball.filter(|event| event.kind == Kind::LeavesUp).count();
     }
     assert!(entries > 30 && exits > 20, "the balls stick and slip: {entries} entries, {exits} exits");
+}
+
+/// What the systems had in them.
+#[derive(Default, Debug)]
+struct Seen {
+    systems: usize,
+    delicate: usize,
+    refused: usize,
+    held_together: usize,
+    events: usize,
+}
+
+fn simulated(system: &Affine) -> Simulation {
+    let compiled = compile_simulation(&meaning(&system.text())).expect("the model can be simulated");
+    simulate(&compiled, &Controls::Guess, &Options { max_steps: 20_000, ..Options::default() })
+}
+
+/// How a simulation differs from the exact solution.
+fn difference(simulation: &Simulation, exact: &Exact) -> Option<String> {
+    let near = |a: f64, b: f64| (a - b).abs() <= 1e-7 * b.abs().max(1.0);
+    let events: Vec<_> = simulation.events.iter().map(|it| (it.time, it.surface, it.kind)).collect();
+    let agree = events.iter().zip(&exact.events).all(|(a, b)| near(a.0, b.0) && (a.1, a.2) == (b.1, b.2));
+    if !agree || events.len() != exact.events.len() {
+        return Some(format!("events {events:?}\n not {:?}", exact.events));
+    }
+    if !simulation.end.iter().zip(&exact.end).all(|(a, b)| near(*a, *b)) {
+        return Some(format!("end {:?}\n not {:?}", simulation.end, exact.end));
+    }
+    match (&simulation.status, &exact.ending) {
+        (Status::Completed, Ending::Completed) => None,
+        (Status::NotUnique { candidates, .. }, Ending::NotUnique(sides)) => {
+            let same =
+                candidates.len() == sides.len() && candidates.iter().all(|it| sides.contains(&it.sides));
+            (!same).then(|| format!("{candidates:?}\n not {sides:?}"))
+        }
+        (status, _) => Some(format!("status {status:?}")),
+    }
+}
+
+/// So many systems with a number of surfaces, each against its exact solution.
+fn check_systems(surfaces: usize, count: usize) -> Seen {
+    let mut random = Random::new(surfaces as u64);
+    let mut seen = Seen::default();
+    while seen.systems < count {
+        let Some(system) = Affine::new(&mut random, surfaces) else { continue };
+        let (simulation, exact) = (simulated(&system), exact(&system));
+        seen.systems += 1;
+        assert!(!matches!(simulation.status, Status::StepLimit), "no end\n{}", system.text());
+        if let Ending::Delicate = exact.ending {
+            seen.delicate += 1;
+            continue;
+        }
+        if let Some(difference) = difference(&simulation, &exact) {
+            panic!("system {}: {difference}\n{}", seen.systems, system.text());
+        }
+        seen.refused += usize::from(matches!(exact.ending, Ending::NotUnique(_)));
+        seen.held_together += usize::from(exact.most_held > 1);
+        seen.events += exact.events.len();
+    }
+    assert!(seen.delicate * 12 < count && seen.refused * 30 > count && 2 * seen.events > count, "{seen:?}");
+    seen
+}
+
+#[test]
+fn random_affine_systems_with_a_surface_follow_their_exact_solution() {
+    check_systems(1, 600);
+}
+
+#[test]
+fn random_affine_systems_with_two_surfaces_follow_their_exact_solution() {
+    assert!(check_systems(2, 600).held_together > 100);
+}
+
+#[test]
+fn random_affine_systems_with_three_surfaces_follow_their_exact_solution() {
+    assert!(check_systems(3, 500).held_together > 150);
+}
+
+#[test]
+fn random_affine_systems_with_four_surfaces_follow_their_exact_solution() {
+    assert!(check_systems(4, 400).held_together > 150);
 }

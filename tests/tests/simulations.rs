@@ -3,9 +3,11 @@
 //! ```text
 //! case WHAT, AND WHO SAYS SO
 //! set PARAM = VALUE
-//! event TIME SURFACE KIND          every event, in order
+//! control TIME VALUE               every control holds its value from TIME on; the guess if left out
+//! event TIME SURFACE KIND          every event, in order; `events many` if they are too many to list
 //! status STATUS TIME               completed if left out; with the time where it ended
-//! STATE = VALUE                    at the end
+//! at TIME STATE = VALUE            on the way
+//! STATE = VALUE                    at the end; also `objective = VALUE`
 //! ```
 
 use fdcc_compiler::compile_simulation;
@@ -20,7 +22,10 @@ const TOLERANCE: f64 = 1e-9;
 struct Case<'t> {
     title: &'t str,
     set: Vec<(&'t str, &'t str)>,
+    controls: Vec<(f64, f64)>,
     events: Vec<(f64, &'t str, &'t str)>,
+    has_many_events: bool,
+    at: Vec<(f64, &'t str, f64)>,
     status: Option<(&'t str, f64)>,
     end: Vec<(&'t str, f64)>,
 }
@@ -41,6 +46,9 @@ fn read<'t>(line: &'t str, case: &mut Case<'t>) -> Option<()> {
     let words: Vec<&str> = line.split(' ').collect();
     match *words.as_slice() {
         ["set", name, "=", value] => case.set.push((name, value)),
+        ["control", time, value] => case.controls.push((time.parse().ok()?, value.parse().ok()?)),
+        ["events", "many"] => case.has_many_events = true,
+        ["at", time, name, "=", value] => case.at.push((time.parse().ok()?, name, value.parse().ok()?)),
         ["event", time, surface, kind] => case.events.push((time.parse().ok()?, surface, kind)),
         ["status", status, time] => case.status = Some((status, time.parse().ok()?)),
         [name, "=", value] => case.end.push((name, value.parse().ok()?)),
@@ -83,27 +91,47 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= TOLERANCE * b.abs().max(1.0)
 }
 
+fn position(system: &System, name: &str) -> usize {
+    system.states.iter().position(|state| state.name == name).expect(name)
+}
+
 fn end(system: &System, simulation: &Simulation, name: &str) -> f64 {
-    let at = system.states.iter().position(|state| state.name == name).expect(name);
-    simulation.end[at]
+    match name {
+        "objective" => simulation.objective.expect("the end is reached"),
+        _ => simulation.end[position(system, name)],
+    }
+}
+
+/// What is wanted of a case: its held controls, and the states at its times.
+fn wanted(case: &Case) -> (Controls, Options) {
+    let (times, rows) = case.controls.iter().map(|(time, value)| (*time, vec![*value])).unzip();
+    let controls = if case.controls.is_empty() { Controls::Guess } else { Controls::Held { times, rows } };
+    let mut times: Vec<f64> = case.at.iter().map(|at| at.0).collect();
+    times.dedup();
+    (controls, Options { times, ..Options::default() })
+}
+
+fn check_events(name: &str, case: &Case, system: &System, simulation: &Simulation) {
+    let seen = simulation.events.iter();
+    let seen: Vec<_> = seen.map(|it| (it.time, system.name_of(it.surface), kind(it.kind))).collect();
+    let agrees =
+        |(a, b): (&(f64, &str, &str), &(f64, &str, &str))| near(a.0, b.0) && (a.1, a.2) == (b.1, b.2);
+    let are_expected = seen.len() == case.events.len() && seen.iter().zip(&case.events).all(agrees);
+    assert!(case.has_many_events || are_expected, "{name}: {seen:?}");
 }
 
 fn check(name: &str, text: &str, case: &Case) {
-    let (system, simulation) = run(text, &case.set, &Controls::Guess, &Options::default());
+    let (controls, options) = wanted(case);
+    let (system, simulation) = run(text, &case.set, &controls, &options);
     let name = format!("{name}, {}", case.title);
     let last = system.interval[1];
     let (expected, got) = (case.status.unwrap_or(("completed", last)), status(&simulation));
     assert!(expected.0 == got.0 && near(got.1, expected.1), "{name}: {got:?}, not {expected:?}");
-    let seen = simulation.events.iter();
-    let seen: Vec<_> = seen.map(|it| (it.time, system.name_of(it.surface), kind(it.kind))).collect();
-    let is_listed = !case.events.is_empty() || simulation.events.is_empty();
-    let agrees =
-        |(a, b): (&(f64, &str, &str), &(f64, &str, &str))| near(a.0, b.0) && (a.1, a.2) == (b.1, b.2);
-    if is_listed {
-        assert!(
-            seen.len() == case.events.len() && seen.iter().zip(&case.events).all(agrees),
-            "{name}: {seen:?}"
-        );
+    check_events(&name, case, &system, &simulation);
+    for (time, state, value) in &case.at {
+        let row = simulation.time.iter().position(|at| at == time).expect("the time is asked for");
+        let got = simulation.states[position(&system, state)][row];
+        assert!(near(got, *value), "{name}: {state}({time}) = {got}, not {value}");
     }
     for (state, value) in &case.end {
         let got = end(&system, &simulation, state);

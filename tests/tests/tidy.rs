@@ -105,7 +105,7 @@ const ABSENT: &[(&[&str], &[&str], &str)] = &[
             "std::env",
             "std::thread",
             "std::time",
-            "Instant",
+            "Instant::now",
             "SystemTime",
         ],
         "files, clocks, the environment and threads belong to cli",

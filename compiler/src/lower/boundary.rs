@@ -5,7 +5,7 @@ use super::objective::Objective;
 use super::{origin, smoothed};
 use crate::graph::{ExprId, Graph};
 use crate::model::{Model, Place, Range, State, Symbol};
-use crate::program::VectorFunction;
+use crate::program::{Order, VectorFunction};
 
 /// A row of the function but the first.
 pub(crate) struct Condition {
@@ -41,7 +41,10 @@ pub(crate) fn lower(
         .chain(conditions.iter().map(|it| origin(&it.place)))
         .collect();
     let by = solved_for(model, &layout);
-    (VectorFunction { name: "boundary".into(), layout, outputs, origins, by }, conditions)
+    (
+        VectorFunction { name: "boundary".into(), layout, outputs, origins, by, order: Order::Second },
+        conditions,
+    )
 }
 
 /// The row for a start that the optimiser has a say in.

@@ -6,7 +6,7 @@ use super::inputs::{self, Sizes};
 use super::{Objective, objective, origin};
 use crate::graph::ExprId;
 use crate::model::{Comparison, Model, Symbol};
-use crate::program::VectorFunction;
+use crate::program::{Order, VectorFunction};
 use fdcc_runtime::problem::{Function, Layout, Origin};
 use std::sync::Arc;
 
@@ -70,5 +70,5 @@ pub fn expectations(model: &Model) -> Expectations {
 
 fn values_only(name: &str, layout: Layout, outputs: Vec<ExprId>) -> VectorFunction {
     let origins = vec![Origin::default(); outputs.len()];
-    VectorFunction { name: name.into(), layout, outputs, origins, by: Vec::new() }
+    VectorFunction { name: name.into(), layout, outputs, origins, by: Vec::new(), order: Order::Second }
 }

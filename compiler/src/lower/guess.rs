@@ -7,7 +7,7 @@ use super::inputs::{Sizes, of_curve};
 use super::origin;
 use crate::graph::{ExprId, Graph};
 use crate::model::{Model, Range, State, Symbol};
-use crate::program::VectorFunction;
+use crate::program::{Order, VectorFunction};
 use fdcc_runtime::problem::Origin;
 
 /// Lowers all guesses; hidden states are guessed to be 0.
@@ -33,7 +33,17 @@ pub(crate) fn lower(model: &Model, graph: &mut Graph, sizes: &Sizes) -> VectorFu
         outputs.push(inputs.apply(graph, &[value])[0]);
         origins.push(origin(&control.place));
     }
-    VectorFunction { name: "guess".into(), layout, outputs, origins, by: Vec::new() }
+    VectorFunction { name: "guess".into(), layout, outputs, origins, by: Vec::new(), order: Order::Second }
+}
+
+/// The guess of all states at the start, over the parameters alone.
+pub(crate) fn at_start(model: &Model, graph: &mut Graph, sizes: &Sizes) -> Vec<ExprId> {
+    let states = &lower(model, graph, sizes).outputs[..sizes.states];
+    let zero = graph.number(0.0);
+    let parameters: Vec<ExprId> = (0..sizes.parameters).map(|at| graph.input(at as u32)).collect();
+    graph.substitute(states, &|input| {
+        input.checked_sub(1).map_or(Some(zero), |at| Some(parameters[at as usize]))
+    })
 }
 
 /// `a + tau (b - a)`.

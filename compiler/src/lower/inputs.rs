@@ -73,6 +73,27 @@ impl Inputs {
         self.set(model, |symbol| (symbol == wanted).then_some(place));
     }
 
+    /// Selectors as smoothed steps of their surfaces.
+    pub fn smooth_selectors(&mut self, model: &Model, graph: &mut Graph, layout: &Layout) {
+        let psis: Vec<ExprId> = model.surfaces.iter().map(|surface| surface.psi).collect();
+        let psis = self.apply(graph, &psis);
+        let first_sigma = layout.parameters().start + model.params.len() + model.frees.len();
+        let mut steps = psis.clone();
+        for (at, switch) in model.switches().into_iter().enumerate() {
+            let sigma = graph.input((first_sigma + at) as u32);
+            let psi = &psis[switch.surfaces.clone()];
+            let smoothed = match switch.is_ball {
+                true => smooth::direction(graph, kernel(model), psi, sigma),
+                false => vec![smooth::step(graph, kernel(model), psi[0], sigma)],
+            };
+            steps[switch.surfaces].copy_from_slice(&smoothed);
+        }
+        self.set(model, |symbol| match symbol {
+            Symbol::Selector(index) => Some(steps[index]),
+            _ => None,
+        });
+    }
+
     fn set(&mut self, model: &Model, choose: impl Fn(Symbol) -> Option<ExprId>) {
         for (slot, &symbol) in self.by_symbol.iter_mut().zip(&model.symbols) {
             *slot = choose(symbol).or(*slot);
@@ -107,32 +128,16 @@ pub(crate) fn of_curve(model: &Model, graph: &mut Graph, layout: &Layout) -> Inp
     inputs
 }
 
-/// Normalised time, states, controls and parameters; selectors as smoothed steps of their surfaces.
+/// Normalised time, states, controls and parameters; smoothed selectors.
 pub(crate) fn over_grid(model: &Model, graph: &mut Graph, sizes: &Sizes) -> Inputs {
     let layout = sizes.grid();
     let mut inputs = of_curve(model, graph, &layout);
     place_signals(model, graph, &layout, &mut inputs);
-    let psis: Vec<ExprId> = model.surfaces.iter().map(|surface| surface.psi).collect();
-    let psis = inputs.apply(graph, &psis);
-    let first_sigma = layout.parameters().start + model.params.len() + model.frees.len();
-    let mut steps = psis.clone();
-    for (at, switch) in model.switches().into_iter().enumerate() {
-        let sigma = graph.input((first_sigma + at) as u32);
-        let psi = &psis[switch.surfaces.clone()];
-        let smoothed = match switch.is_ball {
-            true => smooth::direction(graph, kernel(model), psi, sigma),
-            false => vec![smooth::step(graph, kernel(model), psi[0], sigma)],
-        };
-        steps[switch.surfaces].copy_from_slice(&smoothed);
-    }
-    inputs.set(model, |symbol| match symbol {
-        Symbol::Selector(index) => Some(steps[index]),
-        _ => None,
-    });
+    inputs.smooth_selectors(model, graph, &layout);
     inputs
 }
 
-/// Real time, states, controls, parameters and selectors.
+/// Real time, states, controls, parameters and as many selectors as the layout has.
 pub(crate) fn of_flow(model: &Model, graph: &mut Graph, layout: &Layout) -> Inputs {
     let mut inputs = of_parameters(model, graph, layout);
     place_signals(model, graph, layout, &mut inputs);
@@ -140,7 +145,7 @@ pub(crate) fn of_flow(model: &Model, graph: &mut Graph, layout: &Layout) -> Inpu
     let selectors: Vec<ExprId> = layout.selectors().map(|at| graph.input(at as u32)).collect();
     inputs.set(model, |symbol| match symbol {
         Symbol::Time => Some(time),
-        Symbol::Selector(index) => Some(selectors[index]),
+        Symbol::Selector(index) => selectors.get(index).copied(),
         _ => None,
     });
     inputs

@@ -8,6 +8,7 @@
 //! ```
 
 mod boundary;
+mod derived;
 mod expect;
 mod guess;
 mod inputs;
@@ -18,11 +19,11 @@ mod simulation;
 
 pub use expect::{Expectations, Expected, expectations};
 pub use problem::problem;
-pub(crate) use simulation::{simulation, system};
+pub(crate) use simulation::{Purpose, simulation, system};
 
 use crate::graph::{ExprId, Graph};
 use crate::model::{Model, Place, Switch};
-use crate::program::VectorFunction;
+use crate::program::{Order, VectorFunction};
 use crate::smooth;
 use fdcc_runtime::problem::{Layout, Origin};
 use inputs::Sizes;
@@ -137,7 +138,7 @@ impl OverGrid<'_> {
         let by = if is_solved { inputs::solved_for(self.model, &layout) } else { Vec::new() };
         let outputs =
             if is_solved { smoothed(self.model, graph, &outputs, self.sizes, &layout) } else { outputs };
-        VectorFunction { name: name.into(), layout, outputs, origins, by }
+        VectorFunction { name: name.into(), layout, outputs, origins, by, order: Order::Second }
     }
 
     fn dynamics(&self, graph: &mut Graph, objective: &Objective) -> VectorFunction {
@@ -163,7 +164,7 @@ fn flow(model: &Model, graph: &mut Graph, sizes: &Sizes, objective: &Objective) 
     let inputs = inputs::of_flow(model, graph, &layout);
     let (outputs, origins): (Vec<ExprId>, Vec<Origin>) = rates(model, objective).into_iter().unzip();
     let outputs = inputs.apply(graph, &outputs);
-    VectorFunction { name: "flow".into(), layout, outputs, origins, by: Vec::new() }
+    VectorFunction { name: "flow".into(), layout, outputs, origins, by: Vec::new(), order: Order::Second }
 }
 
 fn interval(model: &Model, graph: &mut Graph, sizes: &Sizes) -> VectorFunction {
@@ -171,7 +172,7 @@ fn interval(model: &Model, graph: &mut Graph, sizes: &Sizes) -> VectorFunction {
     let inputs = inputs::of_parameters(model, graph, &layout);
     let outputs = inputs.apply(graph, &model.interval);
     let origins = ["t0", "tf"].map(|label| Origin { label: label.into(), span: (0, 0) }).to_vec();
-    VectorFunction { name: "interval".into(), layout, outputs, origins, by: Vec::new() }
+    VectorFunction { name: "interval".into(), layout, outputs, origins, by: Vec::new(), order: Order::Second }
 }
 
 /// The outputs with `abs`, `min` and `max` rounded, where smoothing is on.

@@ -1,104 +1,202 @@
 //! The functions of the true system, in real time and with selectors as inputs.
 //!
 //! ```text
-//! flow      f(t, x, u, p, s), then the integrands      guards    psi(t, x, p)
-//! resets    r(t, x, p), one block for each jump        controls  their guess over normalised time
-//! objective M(x(start), x(end), p)                     interval  t0, tf
+//! flow      f(t, x, u, p, s), then the integrands      rates     psi' = psi_t + psi_x f(t, x, u, p, s)
+//! guards    psi(t, x, p)                               resets    r(t, x, p), one block for each jump
+//! objective M(x(start), x(end), p)                     guess     of states, then controls, at (tau, p)
+//! interval  t0(p), tf(p)                               start     x(start)(p)
 //! ```
 //!
-//! Every integral of the model is one more state, so the objective is a function of both ends.
+//! Every integral of the model is one more state, so the objective is a function of both ends. A simulation needs few
+//! derivatives, sensitivities need all of them, up to the second.
 
-use super::guess::fixed_by_a_row;
+use super::derived::write_out;
+use super::guess::{self, fixed_by_a_row};
 use super::inputs::{self, Inputs, Sizes};
 use super::problem::{controls, parameters, states, surfaces};
-use super::{Numbers, guess, origin};
+use super::{Numbers, interval, origin, smoothed};
+use crate::differentiate::derivative;
 use crate::graph::{ExprId, Graph};
 use crate::model::{Ball, Jump, Model, Symbol};
-use crate::program::VectorFunction;
+use crate::program::{Order, VectorFunction};
 use fdcc_grammar::ast::Direction;
 use fdcc_runtime::problem::{Function, Layout, Origin};
 use fdcc_runtime::simulate;
 use std::sync::Arc;
 
-/// The functions of a system, still expressions: flow, guards, resets, objective, guess.
+/// What a system is compiled for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// Events, sliding and resets.
+    Simulation,
+    /// Derivatives by everything, too.
+    Sensitivities,
+    /// The same, with the selectors smoothed as a solve smooths them; without surfaces.
+    Smoothed,
+}
+
+/// The functions of a system, still expressions, in the order of the list above.
 pub(crate) struct Simulated {
-    /// In this order.
+    /// In that order.
     pub functions: Vec<VectorFunction>,
     layout: Layout,
     hidden: Vec<usize>,
+    surfaces: usize,
 }
 
-/// Lowers a model for simulation.
-pub(crate) fn simulation(model: &Model) -> (Graph, Simulated) {
+/// Lowers a model.
+pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) {
     let mut graph = model.graph.clone();
     let hidden: Vec<usize> = (0..model.integrals.len()).collect();
     let sizes = Sizes::new(model, hidden.len());
-    let layout = sizes.flow();
-    let functions = vec![
-        flow(model, &mut graph, &sizes),
-        guards(model, &mut graph, &sizes),
-        resets(model, &mut graph, &sizes),
-        objective(model, &mut graph, &sizes, &hidden),
-        guess::lower(model, &mut graph, &sizes),
+    let surfaces = if purpose == Purpose::Smoothed { 0 } else { model.surfaces.len() };
+    let layout = Layout { s: surfaces, ..sizes.flow() };
+    let mut over = OverTime { model, graph: &mut graph, sizes: &sizes, layout, purpose };
+    let flow = over.flow();
+    let guards = over.guards();
+    let rates = over.rates(&flow, &guards);
+    let mut functions = vec![
+        flow,
+        rates,
+        guards,
+        over.resets(),
+        over.objective(&hidden),
+        guess::lower(model, over.graph, &sizes),
+        interval(model, over.graph, &sizes),
+        over.start(),
     ];
-    (graph, Simulated { functions, layout, hidden })
-}
-
-fn flow(model: &Model, graph: &mut Graph, sizes: &Sizes) -> VectorFunction {
-    let layout = sizes.flow();
-    let inputs = inputs::of_flow(model, graph, &layout);
-    let rates = model.states.iter().map(|state| (state.rate, origin(&state.equation)));
-    let integrals = model.integrals.iter().map(|integral| (integral.integrand, origin(&integral.place)));
-    let by = layout.states().chain(layout.selectors()).collect();
-    function(graph, &inputs, "flow", layout, rates.chain(integrals), by)
-}
-
-fn guards(model: &Model, graph: &mut Graph, sizes: &Sizes) -> VectorFunction {
-    let layout = sizes.flow();
-    let inputs = inputs::of_flow(model, graph, &layout);
-    let psis = model.surfaces.iter().map(|surface| (surface.psi, origin(&surface.place)));
-    let by = (0..layout.states().end).collect();
-    function(graph, &inputs, "guards", layout, psis, by)
-}
-
-/// What a jump does not name stays as it is.
-fn resets(model: &Model, graph: &mut Graph, sizes: &Sizes) -> VectorFunction {
-    let layout = sizes.flow();
-    let inputs = inputs::of_flow(model, graph, &layout);
-    let same: Vec<ExprId> = layout.states().map(|at| graph.input(at as u32)).collect();
-    let mut outputs = Vec::new();
-    for jump in &model.jumps {
-        let values: Vec<ExprId> = jump.resets.iter().map(|reset| reset.1).collect();
-        let mut after = same.clone();
-        for (value, reset) in inputs.apply(graph, &values).into_iter().zip(&jump.resets) {
-            after[reset.0] = value;
-        }
-        outputs.extend(after);
+    if purpose != Purpose::Simulation {
+        functions.iter_mut().for_each(|function| differentiable(model, &mut graph, function));
     }
-    let origins = model.jumps.iter().flat_map(|jump| vec![origin(&jump.place); layout.x]).collect();
-    let by = (0..layout.states().end).map(|at| at as u32).collect();
-    VectorFunction { name: "resets".into(), layout, outputs, origins, by }
+    (graph, Simulated { functions, layout, hidden, surfaces })
 }
 
-fn objective(model: &Model, graph: &mut Graph, sizes: &Sizes, hidden: &[usize]) -> VectorFunction {
-    let layout = sizes.ends();
-    let inputs = inputs::at_ends(model, graph, &layout, hidden);
-    let value = model.objective.as_ref().map(|(place, value)| (*value, origin(place)));
-    function(graph, &inputs, "objective", layout, value.into_iter(), Vec::new())
+/// By all inputs, to the second order.
+fn differentiable(model: &Model, graph: &mut Graph, function: &mut VectorFunction) {
+    write_out(model, graph, function);
+    function.by = (0..function.layout.inputs() as u32).collect();
+    function.order = Order::Second;
 }
 
-fn function(
-    graph: &mut Graph,
-    inputs: &Inputs,
-    name: &str,
+/// A model on its way to functions of real time.
+struct OverTime<'m> {
+    model: &'m Model,
+    graph: &'m mut Graph,
+    sizes: &'m Sizes,
     layout: Layout,
-    outputs: impl Iterator<Item = (ExprId, Origin)>,
-    by: Vec<usize>,
-) -> VectorFunction {
-    let (outputs, origins): (Vec<ExprId>, Vec<Origin>) = outputs.unzip();
-    let outputs = inputs.apply(graph, &outputs);
-    let by = by.into_iter().map(|at| at as u32).collect();
-    VectorFunction { name: name.into(), layout, outputs, origins, by }
+    purpose: Purpose,
+}
+
+impl OverTime<'_> {
+    fn inputs(&mut self) -> Inputs {
+        let mut inputs = inputs::of_flow(self.model, self.graph, &self.layout);
+        if self.purpose == Purpose::Smoothed {
+            inputs.smooth_selectors(self.model, self.graph, &self.layout);
+        }
+        inputs
+    }
+
+    /// A function whose outputs are given over the symbols of the model.
+    fn function(
+        &mut self,
+        name: &str,
+        outputs: impl Iterator<Item = (ExprId, Origin)>,
+        by: impl Iterator<Item = usize>,
+    ) -> VectorFunction {
+        let (outputs, origins): (Vec<ExprId>, Vec<Origin>) = outputs.unzip();
+        let outputs = self.inputs().apply(self.graph, &outputs);
+        self.over_inputs(name, outputs, origins, by)
+    }
+
+    fn over_inputs(
+        &self,
+        name: &str,
+        outputs: Vec<ExprId>,
+        origins: Vec<Origin>,
+        by: impl Iterator<Item = usize>,
+    ) -> VectorFunction {
+        let by = by.map(|at| at as u32).collect();
+        VectorFunction { name: name.into(), layout: self.layout, outputs, origins, by, order: Order::First }
+    }
+
+    fn flow(&mut self) -> VectorFunction {
+        let model = self.model;
+        let rates = model.states.iter().map(|state| (state.rate, origin(&state.equation)));
+        let integrals = model.integrals.iter().map(|integral| (integral.integrand, origin(&integral.place)));
+        let layout = self.layout;
+        let mut flow =
+            self.function("flow", rates.chain(integrals), layout.states().chain(layout.selectors()));
+        if self.purpose == Purpose::Smoothed {
+            flow.outputs = smoothed(model, self.graph, &flow.outputs, self.sizes, &layout);
+        }
+        flow
+    }
+
+    fn guards(&mut self) -> VectorFunction {
+        let model = self.model;
+        let surfaces = model.surfaces.iter().take(self.layout.s);
+        let psis = surfaces.map(|surface| (surface.psi, origin(&surface.place)));
+        self.function("guards", psis, 0..self.layout.states().end)
+    }
+
+    /// `psi'` along the flow.
+    fn rates(&mut self, flow: &VectorFunction, guards: &VectorFunction) -> VectorFunction {
+        let rates = guards.outputs.iter().map(|&psi| {
+            let mut terms = vec![derivative(self.graph, psi, 0)];
+            for (at, &rate) in self.layout.states().zip(&flow.outputs) {
+                let slope = derivative(self.graph, psi, at as u32);
+                terms.push(self.graph.mul(slope, rate));
+            }
+            self.graph.sum(&terms)
+        });
+        let rates = rates.collect();
+        self.over_inputs("rates", rates, guards.origins.clone(), self.layout.selectors())
+    }
+
+    /// What a jump does not name stays as it is.
+    fn resets(&mut self) -> VectorFunction {
+        let inputs = self.inputs();
+        let same: Vec<ExprId> = self.layout.states().map(|at| self.graph.input(at as u32)).collect();
+        let mut outputs = Vec::new();
+        for jump in &self.model.jumps {
+            let values: Vec<ExprId> = jump.resets.iter().map(|reset| reset.1).collect();
+            let mut after = same.clone();
+            for (value, reset) in inputs.apply(self.graph, &values).into_iter().zip(&jump.resets) {
+                after[reset.0] = value;
+            }
+            outputs.extend(after);
+        }
+        let jumps = self.model.jumps.iter();
+        let origins = jumps.flat_map(|jump| vec![origin(&jump.place); self.layout.x]).collect();
+        self.over_inputs("resets", outputs, origins, 0..self.layout.states().end)
+    }
+
+    fn objective(&mut self, hidden: &[usize]) -> VectorFunction {
+        let layout = self.sizes.ends();
+        let inputs = inputs::at_ends(self.model, self.graph, &layout, hidden);
+        let objective = self.model.objective.as_ref();
+        let (outputs, origins): (Vec<ExprId>, Vec<Origin>) =
+            objective.map(|(place, value)| (*value, origin(place))).into_iter().unzip();
+        let outputs = inputs.apply(self.graph, &outputs);
+        VectorFunction { layout, ..self.over_inputs("objective", outputs, origins, 0..0) }
+    }
+
+    /// What is declared, else what a condition such as `start x == 1` gives, else the guess; 0 for integrals.
+    fn start(&mut self) -> VectorFunction {
+        let layout = Layout { p: self.sizes.parameters, ..Layout::default() };
+        let inputs = inputs::of_parameters(self.model, self.graph, &layout);
+        let mut outputs = guess::at_start(self.model, self.graph, self.sizes);
+        for (index, state) in self.model.states.iter().enumerate() {
+            let row = fixed_by_a_row(self.model, self.graph, Symbol::AtStart(index));
+            if let Some(value) = state.start.or(row) {
+                outputs[index] = inputs.apply(self.graph, &[value])[0];
+            }
+        }
+        let places = self.model.states.iter().map(|state| origin(&state.place));
+        let integrals = self.model.integrals.iter().map(|integral| origin(&integral.place));
+        let origins = places.chain(integrals).collect();
+        VectorFunction { layout, ..self.over_inputs("start", outputs, origins, 0..0) }
+    }
 }
 
 /// Puts together what the simulator needs. `functions` are those of [`Simulated`], compiled.
@@ -108,28 +206,31 @@ pub(crate) fn system(
     numbers: &Numbers,
     functions: Vec<Arc<dyn Function>>,
 ) -> simulate::System {
-    let [flow, guards, resets, objective, guess]: [Arc<dyn Function>; 5] =
-        functions.try_into().unwrap_or_else(|_| unreachable!("a system has five functions"));
+    let [flow, rates, guards, resets, objective, guess, interval, start]: [Arc<dyn Function>; 8] =
+        functions.try_into().unwrap_or_else(|_| unreachable!("a system has eight functions"));
     let first_sigma = model.params.len() + model.frees.len();
-    let mut system = simulate::System {
+    let parameters = parameters(model, simulated.layout.p, numbers);
+    let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
+    simulate::System {
         name: model.name.clone(),
         layout: simulated.layout,
         states: states(model, &simulated.hidden, numbers),
         controls: controls(model, numbers),
-        parameters: parameters(model, simulated.layout.p, numbers),
-        surfaces: surfaces(model, first_sigma),
-        balls: model.balls.iter().map(ball).collect(),
+        surfaces: surfaces(model, first_sigma).into_iter().take(simulated.surfaces).collect(),
+        balls: model.balls.iter().filter(|_| simulated.surfaces > 0).map(ball).collect(),
         jumps: model.jumps.iter().map(|jump| lowered(model, numbers, jump)).collect(),
         interval: model.interval.map(|end| numbers.value(model, end)),
-        start: Vec::new(),
+        start: simulate::value(&*start, &[], &values),
+        parameters,
         flow,
+        rates,
         guards,
         resets,
         objective,
         guess,
-    };
-    system.start = starts(model, numbers, &system);
-    system
+        interval_of: interval,
+        start_of: start,
+    }
 }
 
 fn ball(ball: &Ball) -> simulate::Ball {
@@ -146,18 +247,4 @@ fn lowered(model: &Model, numbers: &Numbers, jump: &Jump) -> simulate::Jump {
         then_hold: jump.then_hold,
         resets: jump.resets.iter().map(|reset| reset.0).collect(),
     }
-}
-
-/// What is declared, else what a condition such as `start x == 1` gives, else the guess; 0 for integrals.
-fn starts(model: &Model, numbers: &Numbers, system: &simulate::System) -> Vec<f64> {
-    let mut graph = model.graph.clone();
-    let mut starts = system.guessed(0.0);
-    starts.truncate(system.layout.x);
-    for (index, state) in model.states.iter().enumerate() {
-        let row = || fixed_by_a_row(model, &mut graph, Symbol::AtStart(index));
-        if let Some(value) = state.start.or_else(row) {
-            starts[index] = numbers.value(model, value);
-        }
-    }
-    starts
 }

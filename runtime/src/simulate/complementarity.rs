@@ -2,7 +2,8 @@
 //!
 //! With `s = z - 1` and a multiplier `y` of `z <= 2` this is the linear complementarity problem
 //! `w = M (z, y) + q`, `M = [B I; -I 0]`, `q = (-B 1 - a, 2)`, solved by Lemke's method (R. W. Cottle, J.-S. Pang,
-//! R. E. Stone: The Linear Complementarity Problem, 4.4). If `B` is a P-matrix the solution is unique.
+//! R. E. Stone: The Linear Complementarity Problem, 4.4). If `B` is a P-matrix the solution is unique. With an artificial variable
+//! in the rows of `z` alone the method ends on no ray, whatever `B` is: along one neither `z` nor, by complementarity, `y` can grow.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -19,7 +20,7 @@ pub(super) fn is_p_matrix(b: &DMatrix<f64>) -> bool {
         return false;
     }
     // Surfaces may have very different units; a positive factor of a row changes no sign of a minor.
-    let b = &row_scaled(b, b);
+    let b = &row_scaled(b);
     let least = SINGULAR * b.amax();
     if (b + b.transpose() - DMatrix::from_diagonal_element(size, size, least)).cholesky().is_some() {
         return true;
@@ -31,9 +32,9 @@ pub(super) fn is_p_matrix(b: &DMatrix<f64>) -> bool {
     (0..size).all(dominates) || size <= MOST_MINORS && minors_are_positive(b)
 }
 
-/// Rows divided by the largest entries of the rows of another matrix.
-fn row_scaled(matrix: &DMatrix<f64>, by: &DMatrix<f64>) -> DMatrix<f64> {
-    let scale = |i: usize| by.row(i).amax().max(f64::MIN_POSITIVE);
+/// Rows divided by their largest entries.
+fn row_scaled(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    let scale = |i: usize| matrix.row(i).amax().max(f64::MIN_POSITIVE);
     DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)] / scale(i))
 }
 
@@ -44,11 +45,12 @@ fn minors_are_positive(b: &DMatrix<f64>) -> bool {
     })
 }
 
-/// Selectors for the affine rates `a - B s`; `None` where the method ends on a ray.
-pub(super) fn selectors(a: &DVector<f64>, b: &DMatrix<f64>) -> Option<DVector<f64>> {
+/// Selectors for the affine rates `a - B s`; some, if there are several. `None` if rounding leads the method astray.
+pub(crate) fn selectors(a: &DVector<f64>, b: &DMatrix<f64>) -> Option<DVector<f64>> {
     let size = a.len();
-    let a = row_scaled(&DMatrix::from_column_slice(size, 1, a.as_slice()), b).column(0).into_owned();
-    let b = &row_scaled(b, b);
+    let scale = |i: usize| b.row(i).amax().max(a[i].abs()).max(f64::MIN_POSITIVE);
+    let a = DVector::from_fn(size, |i, _| a[i] / scale(i));
+    let b = &DMatrix::from_fn(size, size, |i, j| b[(i, j)] / scale(i));
     let mut m = DMatrix::zeros(2 * size, 2 * size);
     m.view_mut((0, 0), (size, size)).copy_from(b);
     for i in 0..size {
@@ -93,7 +95,7 @@ impl Tableau {
         let entry = |i: usize, j: usize| match j {
             _ if j < size => f64::from(u8::from(i == j)),
             _ if j < 2 * size => -m[(i, j - size)],
-            _ if j == 2 * size => -1.0,
+            _ if j == 2 * size => f64::from(i >= size / 2) - 1.0,
             _ => q[i],
         };
         Tableau { rows: DMatrix::from_fn(size, 2 * size + 2, entry), basis: (0..size).collect() }
@@ -186,6 +188,15 @@ mod tests {
     fn repelling_surfaces_are_no_p_matrices() {
         assert!(!is_p_matrix(&DMatrix::from_element(1, 1, -1.0)));
         assert!(!is_p_matrix(&DMatrix::from_row_slice(2, 2, &[1.0, 3.0, 3.0, 1.0])));
+    }
+
+    #[test]
+    fn there_are_selectors_whatever_the_matrix_is() {
+        let a = DVector::from_column_slice(&[5.0, -5.0]);
+        let repelling = DMatrix::from_row_slice(2, 2, &[-1.0, 0.5, -0.5, -1.0]);
+        assert_eq!(selectors(&a, &repelling).expect("selectors").as_slice(), [1.0, -1.0]);
+        let none = selectors(&a, &DMatrix::zeros(2, 2)).expect("selectors");
+        assert_eq!(none.as_slice(), [1.0, -1.0]);
     }
 
     #[test]

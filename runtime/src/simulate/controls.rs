@@ -25,14 +25,21 @@ impl Controls {
         }
     }
 
-    /// The row that holds from a time on.
-    pub(super) fn row(&self, time: f64) -> Option<&[f64]> {
+    /// The place of the row that holds from a time on.
+    pub(crate) fn index(&self, time: f64) -> Option<usize> {
         match self {
             Controls::Guess => None,
-            Controls::Held { times, rows } => {
-                let after = times.partition_point(|other| *other <= time);
-                rows.get(after.saturating_sub(1)).map(Vec::as_slice)
+            Controls::Held { times, .. } => {
+                Some(times.partition_point(|other| *other <= time).saturating_sub(1))
             }
+        }
+    }
+
+    /// A row.
+    pub(crate) fn row(&self, index: Option<usize>) -> &[f64] {
+        match self {
+            Controls::Guess => &[],
+            Controls::Held { rows, .. } => index.and_then(|index| rows.get(index)).map_or(&[], Vec::as_slice),
         }
     }
 }

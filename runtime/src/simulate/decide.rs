@@ -129,7 +129,7 @@ impl Corner<'_, '_> {
         };
         let mut found: Vec<Choice> =
             (0..count).filter_map(|number| self.consistent(&sides(number))).collect();
-        if found.len() == 1 {
+        if found.len() == 1 && self.attracts(&found[0]) {
             return Ok(found.swap_remove(0));
         }
         let candidates = found.iter().map(|choice| self.candidate(choice)).collect();
@@ -145,6 +145,15 @@ impl Corner<'_, '_> {
         };
         let firsts = (0..choice.modes.len()).filter(is_first);
         Candidate { sides: firsts.map(|at| (self.surfaces[at], side(at))).collect() }
+    }
+
+    /// Whether the surfaces that are held attract. Where several are held and do not, the state may also leave on a spiral,
+    /// which is no combination of sides.
+    fn attracts(&mut self, choice: &Choice) -> bool {
+        let held: Vec<usize> = (0..choice.s.len()).filter(|&i| choice.modes[i] == Mode::Sliding).collect();
+        let surfaces: Vec<usize> = held.iter().map(|&at| self.surfaces[at]).collect();
+        let b = self.rates(&choice.s).1.select_rows(&held).select_columns(&held);
+        held.len() < 2 || is_unique(&b, &blocks(&self.field.system.balls, &surfaces))
     }
 
     /// What happens if the state goes on with these sides, if it can.

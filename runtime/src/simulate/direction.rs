@@ -6,7 +6,7 @@
 //! at rest    psi = 0 is kept: every component slides, and s solves the linear system of all sliding surfaces
 //! ```
 //!
-//! [`Field::selectors_of`] gives the selectors of every mode.
+//! [`Field::selectors_at`] gives the selectors of every mode.
 
 use super::field::{Field, Mode};
 use super::system::Ball;
@@ -66,11 +66,5 @@ impl<'a> Field<'a> {
                     if sets_out { self.direction[surface] } else { psi[surface] / size };
             }
         }
-    }
-
-    /// All selectors in the current mode: a side, a direction, or what keeps a surface.
-    pub fn selectors_of(&mut self, t: f64, x: &[f64]) -> Vec<f64> {
-        self.rate(t, x);
-        self.selectors.clone()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::decide::decide;
 use super::field::Mode;
-use super::locate::{Condition, Found};
+use super::locate::Condition;
 use super::result::{Event, Kind, Status};
 use super::run::Run;
 
@@ -10,13 +10,12 @@ use super::run::Run;
 const MOST_AT_ONCE: usize = 100;
 
 impl Run<'_> {
-    /// Goes to an event and beyond it.
-    pub fn handle(&mut self, found: Found) -> Result<(), Status> {
-        (self.t, self.x) = (found.time, found.state);
+    /// What follows where a condition ceases to hold.
+    pub fn handle(&mut self, condition: Condition) -> Result<(), Status> {
         self.record.point(self.t, &self.x);
-        match found.condition {
+        match condition {
             Condition::Leaves(surface) => {
-                let selectors = self.field.selectors_of(self.t, &self.x);
+                let selectors = self.field.selectors_at(self.t, &self.x);
                 if let Some(ball) = self.field.ball_of(surface) {
                     let range = ball.surfaces.clone();
                     self.field.direction[range.clone()].copy_from_slice(&selectors[range]);
@@ -107,9 +106,13 @@ impl Run<'_> {
         let margin = self.margin(surface);
         self.x = self.field.reset(jump, self.t, &self.x);
         self.jumps[jump] += 1;
-        let back = if of.is_falling { Mode::Above } else { Mode::Below };
+        let sides = [Mode::Above, Mode::Below];
+        let [back, onward] = if of.is_falling { sides } else { [sides[1], sides[0]] };
         self.field.set_mode(surface, back);
         self.find_sides();
+        if self.goes_through(surface, onward) {
+            self.field.set_mode(surface, onward);
+        }
         self.event(surface, Kind::Jump(jump), margin);
         let is_last = of.at_most.is_some_and(|limit| self.jumps[jump] as f64 >= limit);
         if let Some(held) = of.then_hold.filter(|_| is_last) {
@@ -121,6 +124,20 @@ impl Run<'_> {
             Some(limit) => self.piled_up(jump, limit),
             None => Ok(()),
         }
+    }
+
+    /// Whether a state that is still on a surface after a reset moves on to the other side, whichever field acts.
+    fn goes_through(&mut self, surface: usize, onward: Mode) -> bool {
+        if !self.surfaces_here().contains(&surface) {
+            return false;
+        }
+        let normals = self.field.normals(self.t, &self.x);
+        let mut selectors = self.field.selectors.clone();
+        [-1.0, 1.0].into_iter().all(|side| {
+            selectors[surface] = side;
+            let (rate, _) = self.field.with_selectors(self.t, &self.x, &selectors);
+            onward.side() * normals.rate(surface, &rate) > 1e4 * normals.noise(surface, &rate)
+        })
     }
 
     /// Gives every surface that the state is not on the side of the state.
@@ -200,6 +217,7 @@ impl Run<'_> {
 
     pub fn event(&mut self, surface: usize, kind: Kind, margin: f64) {
         let event = Event { time: self.t, surface, kind, margin, state: self.x.clone() };
+        self.tape.change(&mut self.field, &event);
         self.record.events.push(event);
         self.record.point(self.t, &self.x);
     }

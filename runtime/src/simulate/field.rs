@@ -10,9 +10,12 @@ use nalgebra::{DMatrix, DVector};
 
 /// Where the state is with respect to a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Mode {
+pub enum Mode {
+    /// The selector is -1.
     Below,
+    /// The selector is 1.
     Above,
+    /// The selector keeps the state on the surface.
     Sliding,
     /// A component of a ball that is not at 0, or leaves it.
     Moving,
@@ -22,7 +25,7 @@ pub(super) enum Mode {
 
 impl Mode {
     /// -1, 1, or 0 on the surface.
-    pub fn side(self) -> f64 {
+    pub(super) fn side(self) -> f64 {
         match self {
             Mode::Below => -1.0,
             Mode::Above => 1.0,
@@ -68,8 +71,9 @@ pub(super) struct Field<'a> {
     /// States that stand still.
     pub held: Vec<usize>,
     pub evaluations: usize,
+    /// Which row of the controls holds.
+    pub row: Option<usize>,
     controls: &'a Controls,
-    row: Vec<f64>,
     parameters: Vec<f64>,
     point: Columns,
 }
@@ -86,8 +90,8 @@ impl<'a> Field<'a> {
             stable: f64::INFINITY,
             held: Vec::new(),
             evaluations: 0,
+            row: None,
             controls,
-            row: Vec::new(),
             parameters: system.parameter_values(),
             point: Columns::new(system.layout.point_inputs(), 1),
         };
@@ -97,7 +101,7 @@ impl<'a> Field<'a> {
 
     /// From now on the controls of a time hold.
     pub fn use_controls_of(&mut self, time: f64) {
-        self.row = self.controls.row(time).unwrap_or_default().to_vec();
+        self.row = self.controls.index(time);
     }
 
     pub fn set_mode(&mut self, surface: usize, mode: Mode) {
@@ -115,7 +119,7 @@ impl<'a> Field<'a> {
     /// The values of the controls at a time.
     fn control(&self, t: f64) -> Vec<f64> {
         match self.controls {
-            Controls::Held { .. } => self.row.clone(),
+            Controls::Held { .. } => self.controls.row(self.row).to_vec(),
             Controls::Guess if self.system.layout.u == 0 => Vec::new(),
             Controls::Guess => {
                 let [first, last] = self.system.interval;
@@ -223,6 +227,16 @@ impl<'a> Field<'a> {
         let mut rate = column_values(&values);
         self.held.iter().for_each(|&state| rate[state] = 0.0);
         rate
+    }
+
+    /// The selectors of the current mode, each a side, part of a direction, or what keeps its surface; leaves everything as it is.
+    pub fn selectors_at(&mut self, t: f64, x: &[f64]) -> Vec<f64> {
+        let before = (self.selectors.clone(), self.evaluations);
+        if !self.sliding().is_empty() || !self.moving().is_empty() {
+            self.rate(t, x);
+        }
+        self.evaluations = before.1;
+        std::mem::replace(&mut self.selectors, before.0)
     }
 
     fn sliding_rate(&mut self, t: f64, x: &[f64], sliding: &[usize]) -> Vec<f64> {

@@ -11,7 +11,9 @@ use super::direction::length;
 use super::field::{Field, Mode, surface_rates};
 use super::result::{Kind, Status};
 use super::run::Run;
+use super::step::Step;
 use super::system::Ball;
+use super::tape::Cause;
 
 /// `|psi|` below this many times its rounding errors is as good as 0.
 const NEAR: f64 = 100.0;
@@ -37,7 +39,7 @@ impl<'a> Field<'a> {
         if self.moving().is_empty() || self.sets_out(t) {
             return None;
         }
-        let selectors = self.selectors_of(t, x);
+        let selectors = self.selectors_at(t, x);
         let (rate, by_selector) = self.with_selectors(t, x, &selectors);
         let normals = self.normals(t, x);
         let mut first: Option<Fall> = None;
@@ -62,20 +64,29 @@ impl<'a> Field<'a> {
 impl Run<'_> {
     /// Goes the rest of the way to 0 and decides what follows.
     pub fn land(&mut self, fall: &Fall<'_>) -> Result<(), Status> {
+        let h = fall.time;
         let rate = self.field.rate(self.t, &self.x);
-        self.x.iter_mut().zip(rate).for_each(|(x, rate)| *x += fall.time * rate);
-        self.t += fall.time;
-        let surfaces = fall.ball.surfaces.clone();
-        surfaces.clone().for_each(|surface| self.field.set_mode(surface, Mode::Sliding));
-        let mut x = std::mem::take(&mut self.x);
-        self.field.project(self.t, &mut x);
-        self.x = x;
-        surfaces.for_each(|surface| self.field.set_mode(surface, Mode::Moving));
-        let mut surfaces = self.surfaces_here();
-        surfaces.extend(fall.ball.surfaces.clone());
-        surfaces.sort_unstable();
-        surfaces.dedup();
-        self.settle(surfaces)
+        let point =
+            |theta: f64| self.x.iter().zip(&rate).map(|(x, rate)| x + theta * h * rate).collect::<Vec<f64>>();
+        let (middle, mut end) = (point(0.5), point(1.0));
+        self.project_to_zero(fall.ball, &mut end);
+        let points = [self.x.clone(), middle, end.clone()];
+        let step = Step::smooth([self.t, h], points, [rate.clone(), rate.clone()], 0.0);
+        self.go(&step, [self.t + h, h], end);
+        self.stop(Cause::Reaches(fall.ball.surfaces.start), |run| {
+            let mut surfaces = run.surfaces_here();
+            surfaces.extend(fall.ball.surfaces.clone());
+            surfaces.sort_unstable();
+            surfaces.dedup();
+            run.settle(surfaces)
+        })
+    }
+
+    /// Takes away what is left of a ball that is nearly 0.
+    fn project_to_zero(&mut self, ball: &Ball, x: &mut [f64]) {
+        ball.surfaces.clone().for_each(|surface| self.field.set_mode(surface, Mode::Sliding));
+        self.field.project(self.t, x);
+        ball.surfaces.clone().for_each(|surface| self.field.set_mode(surface, Mode::Moving));
     }
 
     /// A ball comes to rest or sets out; one event for all of its components.

@@ -21,7 +21,8 @@ pub(super) enum Condition {
 /// An event, with the state there.
 pub(super) struct Found {
     pub condition: Condition,
-    pub time: f64,
+    /// How long the step is that ends there.
+    pub h: f64,
     pub state: Vec<f64>,
 }
 
@@ -86,11 +87,11 @@ fn values(field: &mut Field, conditions: &[Condition], t: f64, x: &[f64]) -> Vec
 fn first_root(g: &mut dyn FnMut(f64) -> f64, thetas: &[f64], samples: &[f64], noise: f64) -> Option<f64> {
     for k in 1..samples.len() {
         if samples[k] < -noise {
-            return Some(root(g, thetas[k - 1], thetas[k]));
+            return Some(root(g, thetas[k - 1], thetas[k], noise));
         }
         let is_dip = k + 1 < samples.len() && samples[k] <= samples[k - 1] && samples[k] <= samples[k + 1];
         if is_dip && let Some(below) = dip(g, thetas[k - 1], thetas[k + 1], noise) {
-            return Some(root(g, thetas[k - 1].min(below), below));
+            return Some(root(g, thetas[k - 1].min(below), below, noise));
         }
     }
     None
@@ -118,19 +119,19 @@ fn dip(g: &mut dyn FnMut(f64) -> f64, mut low: f64, mut high: f64, noise: f64) -
 }
 
 /// The root between a time where `g` is positive, or 0 by rounding, and one where it is negative.
-fn root(g: &mut dyn FnMut(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+fn root(g: &mut dyn FnMut(f64) -> f64, mut low: f64, mut high: f64, noise: f64) -> f64 {
     let mut at_low = g(low);
     let mut at_high = g(high);
     let begin = low;
-    // A mode begins on its surface: the positive part may be shorter than any sample.
+    // A mode begins on its surface, as far as rounding can tell: the positive part may be shorter than any sample.
     let mut span = high - begin;
-    while at_low <= 0.0 {
+    while at_low <= noise {
         span *= 0.5;
         if span < 1e-12 {
             return begin;
         }
         let value = g(begin + span);
-        if value > 0.0 {
+        if value > noise {
             (low, at_low) = (begin + span, value);
         } else {
             (high, at_high) = (begin + span, value);
@@ -193,5 +194,5 @@ fn refine(field: &mut Field, step: &Step, condition: Condition, theta: f64, opti
         (other, at_other) = (best, value);
         (best, state, value) = (next, next_state, next_value);
     }
-    Found { condition, time: step.t + best * step.h, state }
+    Found { condition, h: best * step.h, state }
 }

@@ -22,10 +22,14 @@ mod run;
 mod setting_out;
 mod step;
 mod system;
-mod tableau;
+pub(crate) mod tableau;
+mod tape;
 mod zeno;
 
+pub(crate) use complementarity::selectors;
 pub use controls::Controls;
-pub use result::{Candidate, Counts, Event, Kind, Options, Simulation, Status};
+pub use field::Mode;
+pub use result::{Candidate, Counts, Event, Kind, Method, Options, Simulation, Status};
 pub use run::simulate;
-pub use system::{Ball, Jump, System};
+pub use system::{Ball, Jump, System, value};
+pub use tape::{Cause, Change, Instant, Piece, Regime, Tape};

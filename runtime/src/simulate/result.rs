@@ -1,5 +1,6 @@
 //! What a simulation is asked for and what it says: plain data.
 
+use super::tape::Tape;
 use crate::problem::Origin;
 
 /// How to simulate.
@@ -13,11 +14,20 @@ pub struct Options {
     pub max_steps: usize,
     /// Times at which states are wanted, ascending; all steps and events if there are none.
     pub times: Vec<f64>,
+    /// Whether to note what derivatives need.
+    pub tape: bool,
+}
+
+/// A method for one step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// The explicit pair of Dormand and Prince.
+    Explicit,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { rtol: 1e-10, atol: 1e-12, max_steps: 1_000_000, times: Vec::new() }
+        Options { rtol: 1e-10, atol: 1e-12, max_steps: 1_000_000, times: Vec::new(), tape: false }
     }
 }
 
@@ -130,4 +140,6 @@ pub struct Simulation {
     pub objective: Option<f64>,
     /// Work done.
     pub counts: Counts,
+    /// What derivatives need, if asked for; without the stop at which a simulation fails.
+    pub tape: Option<Tape>,
 }

@@ -8,6 +8,7 @@ use super::record::Record;
 use super::result::{Counts, Options, Simulation, Status};
 use super::step::Step;
 use super::system::{System, value};
+use super::tape::{Cause, Writer};
 use super::zeno::Pile;
 use crate::problem::Origin;
 
@@ -19,6 +20,7 @@ pub(super) struct Run<'a> {
     pub field: Field<'a>,
     pub options: &'a Options,
     pub record: Record,
+    pub tape: Writer,
     pub t: f64,
     pub x: Vec<f64>,
     /// How often each jump has happened.
@@ -49,6 +51,7 @@ impl<'a> Run<'a> {
             field,
             options,
             record: Record::new(options, system.layout.x),
+            tape: Writer::new(options.tape),
             t: system.interval[0],
             x: system.start.clone(),
             jumps: vec![0; system.jumps.len()],
@@ -81,16 +84,32 @@ impl<'a> Run<'a> {
     fn begin(&mut self) -> Result<(), Status> {
         self.find_sides();
         self.finite_here()?;
-        let surfaces = self.surfaces_here();
-        self.settle(surfaces)?;
+        self.stop(Cause::Start, |run| {
+            let surfaces = run.surfaces_here();
+            run.settle(surfaces)
+        })?;
         self.has_begun = true;
         Ok(())
     }
 
     fn change_controls(&mut self, time: f64) -> Result<(), Status> {
-        self.field.use_controls_of(time);
-        let surfaces = self.surfaces_here();
-        self.settle(surfaces)
+        self.stop(Cause::Controls, |run| {
+            run.field.use_controls_of(time);
+            let surfaces = run.surfaces_here();
+            run.settle(surfaces)
+        })
+    }
+
+    /// A stop, with what happens there.
+    pub fn stop(
+        &mut self,
+        cause: Cause,
+        happens: impl FnOnce(&mut Self) -> Result<(), Status>,
+    ) -> Result<(), Status> {
+        self.tape.open(cause, &mut self.field, self.t, &self.x);
+        happens(self)?;
+        self.tape.close(&mut self.field, self.t, &self.x);
+        Ok(())
     }
 
     /// One accepted step towards `stop`, or up to the first event in it.
@@ -107,24 +126,33 @@ impl<'a> Run<'a> {
         let found = locate::first(&mut self.field, &step, self.options);
         self.counts.steps += 1;
         if let Some(found) = found {
-            self.record.inside(&step, found.time);
+            self.go(&step, [step.t + found.h, found.h], found.state);
             self.h = self.h.max(0.1 * step.h);
-            return self.handle(found);
+            return self.stop(found.condition.into(), |run| run.handle(found.condition));
         }
         if let Some(theta) = self.attraction_ends(&step) {
-            self.record.inside(&step, step.t + theta * step.h);
-            (self.t, self.x) = (step.t + theta * step.h, step.at(theta));
+            let h = theta * step.h;
+            self.go(&step, [step.t + h, h], step.at(theta));
             self.record.point(self.t, &self.x);
-            let surfaces = self.surfaces_here();
-            return self.settle(surfaces);
+            return self.stop(Cause::Repels, |run| {
+                let surfaces = run.surfaces_here();
+                run.settle(surfaces)
+            });
         }
-        let reached = step.h >= rest * (1.0 - 1e-12);
-        let next = if reached { stop } else { step.t + step.h };
-        self.record.inside(&step, next);
-        (self.t, self.x) = (next, step.end);
-        self.field.project(self.t, &mut self.x);
+        let time = if step.h >= rest * (1.0 - 1e-12) { stop } else { step.t + step.h };
+        self.go(&step, [time, step.h], step.end.clone());
         self.record.point(self.t, &self.x);
         Ok(())
+    }
+
+    /// Goes to the state at a time, `h` after the beginning of a step.
+    pub fn go(&mut self, step: &Step, [time, h]: [f64; 2], end: Vec<f64>) {
+        self.record.inside(step, time);
+        (self.t, self.x) = (time, end);
+        self.field.project(self.t, &mut self.x);
+        if h > 0.0 {
+            self.tape.step(&mut self.field, step, h, &self.x);
+        }
     }
 
     /// A step whose error is small enough; chooses the length of the next.
@@ -219,6 +247,7 @@ impl<'a> Run<'a> {
             end: self.x,
             objective: objective.first().copied().filter(|_| is_complete),
             counts: self.counts,
+            tape: self.tape.finish(),
         }
     }
 }

@@ -4,6 +4,8 @@
 //! x' = f(t, x, u, p, s),   s in Sgn(psi(t, x, p)) or Dir(psi),   x+ = r_j(t, x-, p) where psi is crossed
 //! ```
 //!
+//! A system for sensitivities has the first and second derivatives of all functions by all their inputs, too.
+//!
 //! The last states are the integrals of the model, which start at 0; so the objective is a function of both ends.
 
 use crate::problem::{Columns, Function, Layout, Origin, Parameter, Surface, Variable};
@@ -63,6 +65,8 @@ pub struct System {
     pub start: Vec<f64>,
     /// `f` over `[t | x | u | p | s]` in real time; differentiated by `x` and `s`.
     pub flow: Arc<dyn Function>,
+    /// `psi' = psi_t + psi_x f`, with the inputs of `flow`; differentiated by `s`.
+    pub rates: Arc<dyn Function>,
     /// `psi`, with the inputs of `flow`; differentiated by `t` and `x`.
     pub guards: Arc<dyn Function>,
     /// `r`, with the inputs of `flow`, as many outputs as states for each jump; differentiated by `t` and `x`.
@@ -71,6 +75,10 @@ pub struct System {
     pub objective: Arc<dyn Function>,
     /// Guess of states, then controls, over normalised time `[tau | p]`.
     pub guess: Arc<dyn Function>,
+    /// First and last time over `[p]`.
+    pub interval_of: Arc<dyn Function>,
+    /// The state at the first time over `[p]`.
+    pub start_of: Arc<dyn Function>,
 }
 
 impl System {
@@ -87,6 +95,15 @@ impl System {
         }
     }
 
+    /// The same system with other parameters, its interval and its start computed anew.
+    pub fn with_parameters(&self, values: &[f64]) -> Self {
+        let mut other = self.clone();
+        other.parameters.iter_mut().zip(values).for_each(|(parameter, value)| parameter.value = *value);
+        other.start = value(&*self.start_of, &[], values);
+        other.interval.copy_from_slice(&value(&*self.interval_of, &[], values));
+        other
+    }
+
     /// The guess of states, then controls, at a normalised time.
     pub fn guessed(&self, tau: f64) -> Vec<f64> {
         value(&*self.guess, &[tau], &self.parameter_values())
@@ -94,7 +111,7 @@ impl System {
 }
 
 /// All outputs of a function at one point `[t | x | u | s]`.
-pub(super) fn value(function: &dyn Function, point: &[f64], parameters: &[f64]) -> Vec<f64> {
+pub fn value(function: &dyn Function, point: &[f64], parameters: &[f64]) -> Vec<f64> {
     let mut points = Columns::new(point.len(), 1);
     point.iter().enumerate().for_each(|(at, value)| points.column_mut(at)[0] = *value);
     let mut values = Columns::new(function.outputs(), 1);

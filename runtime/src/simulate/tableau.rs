@@ -4,13 +4,13 @@
 //! dense output: E. Hairer, S. P. Norsett, G. Wanner: Solving Ordinary Differential Equations I, 2nd ed., II.6.
 
 /// Number of stages; the last is the first of the next step.
-pub(super) const STAGES: usize = 7;
+pub(crate) const STAGES: usize = 7;
 
 /// When the stages are.
-pub(super) const C: [f64; STAGES] = [0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0, 1.0];
+pub(crate) const C: [f64; STAGES] = [0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0, 1.0];
 
 /// How stages build on those before; the last row holds the weights of order 5.
-pub(super) const A: [[f64; 6]; STAGES] = [
+pub(crate) const A: [[f64; 6]; STAGES] = [
     [0.0; 6],
     [1.0 / 5.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],

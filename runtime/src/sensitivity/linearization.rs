@@ -1,0 +1,250 @@
+//! The right side in a regime with its derivatives by everything, selectors eliminated.
+//!
+//! With `w = (t, x, u, p)` and `r = psi'` on the sliding surfaces `A`, the selectors solve `r_A(w, s_A) = 0`, so
+//!
+//! ```text
+//! s_w = -r_s^-1 r_w,      f*_w = f_w + f_s s_w
+//! ```
+//!
+//! Controls that follow the guess are functions of time and parameters, `u = g(tau(t, p), p)`; their derivatives are
+//! folded into those by `t` and `p`.
+
+use crate::problem::{Columns, Function};
+use crate::simulate::{Controls, Mode, Regime, System};
+use nalgebra::{DMatrix, DVector};
+
+/// Right side and derivatives at one point.
+pub(super) struct Linearization {
+    /// `f*`.
+    pub rate: DVector<f64>,
+    /// `f*_w`, with the columns `[t | x | u | p]`.
+    pub by: DMatrix<f64>,
+    /// All selectors.
+    pub selectors: Vec<f64>,
+    /// `s_w`, one row for each selector.
+    pub selectors_by: DMatrix<f64>,
+    /// `f_s`.
+    pub by_selectors: DMatrix<f64>,
+    states: usize,
+}
+
+impl Linearization {
+    /// `f*_x`.
+    pub fn by_state(&self) -> nalgebra::DMatrixView<'_, f64> {
+        self.by.columns(1, self.states)
+    }
+
+    /// `f*_(u, p)`.
+    pub fn by_inputs(&self) -> nalgebra::DMatrixView<'_, f64> {
+        self.by.columns(1 + self.states, self.by.ncols() - 1 - self.states)
+    }
+}
+
+/// Evaluates right sides and guards of one system.
+pub(super) struct Linearizer<'a> {
+    pub system: &'a System,
+    pub parameters: Vec<f64>,
+    controls: &'a Controls,
+}
+
+impl<'a> Linearizer<'a> {
+    pub fn new(system: &'a System, controls: &'a Controls) -> Self {
+        Linearizer { system, parameters: system.parameter_values(), controls }
+    }
+
+    /// How many of `[u | p]` there are.
+    pub fn inputs(&self) -> usize {
+        self.system.layout.u + self.system.layout.p
+    }
+
+    /// The right side at a point of a regime; sliding selectors are searched from `near` on.
+    pub fn at(&self, regime: &Regime, near: &[f64], t: f64, x: &DVector<f64>) -> Linearization {
+        let mut table = self.table(regime, near, t, x);
+        let sliding = sliding(regime);
+        let rates = (!sliding.is_empty()).then(|| self.solve(&mut table, &sliding, regime));
+        let mut point = self.free(&table, regime);
+        if let Some(rates) = &rates {
+            self.eliminate(&mut point, &rates.by, &sliding);
+        }
+        self.fold_guess(&mut point, t);
+        point
+    }
+
+    /// The columns `[t | x | u | s]`.
+    pub fn table(&self, regime: &Regime, near: &[f64], t: f64, x: &DVector<f64>) -> Columns {
+        let control = self.control(regime, t);
+        let values = std::iter::once(&t).chain(x.iter()).chain(&control).chain(near);
+        let mut table = Columns::new(self.system.layout.point_inputs(), 1);
+        values.enumerate().for_each(|(column, value)| table.column_mut(column)[0] = *value);
+        table
+    }
+
+    /// The controls that act.
+    fn control(&self, regime: &Regime, t: f64) -> Vec<f64> {
+        match (self.controls, regime.row) {
+            (Controls::Held { rows, .. }, Some(row)) => rows[row].clone(),
+            _ if self.system.layout.u == 0 => Vec::new(),
+            _ => self.system.guessed(self.tau(t))[self.system.layout.x..].to_vec(),
+        }
+    }
+
+    pub fn is_guessed(&self) -> bool {
+        *self.controls == Controls::Guess && self.system.layout.u > 0
+    }
+
+    /// Normalised time.
+    pub fn tau(&self, t: f64) -> f64 {
+        let [first, last] = self.system.interval;
+        if last > first { (t - first) / (last - first) } else { 0.0 }
+    }
+
+    /// Newton's method for the sliding selectors; the derivatives of the rates at the solution.
+    fn solve(&self, table: &mut Columns, sliding: &[usize], regime: &Regime) -> Jacobian {
+        let first = table.columns() - self.system.layout.s;
+        for _ in 0..30 {
+            let rates = self.rates(table, regime);
+            let by = self.by_selectors(&rates.by).select_columns(sliding).select_rows(sliding);
+            let r = DVector::from_iterator(sliding.len(), sliding.iter().map(|&i| rates.values[i]));
+            let Some(change) = by.lu().solve(&r) else { break };
+            for (&i, change) in sliding.iter().zip(change.iter()) {
+                table.column_mut(first + i)[0] -= change;
+            }
+            if change.amax() <= 1e-13 {
+                break;
+            }
+        }
+        self.rates(table, regime)
+    }
+
+    /// `psi'` with its derivatives; states that stand still do not move the surfaces.
+    fn rates(&self, table: &Columns, regime: &Regime) -> Jacobian {
+        let rates = Jacobian::of(&*self.system.rates, table, &self.parameters);
+        if regime.held.is_empty() {
+            return rates;
+        }
+        let flow = Jacobian::of(&*self.system.flow, table, &self.parameters);
+        let guards = Jacobian::of(&*self.system.guards, table, &self.parameters);
+        rates.without_motion(&flow, &guards, &regime.held)
+    }
+
+    fn by_selectors<'m>(&self, by: &'m DMatrix<f64>) -> nalgebra::DMatrixView<'m, f64> {
+        by.columns(self.system.layout.selectors().start, self.system.layout.s)
+    }
+
+    /// The right side with all selectors given.
+    fn free(&self, table: &Columns, regime: &Regime) -> Linearization {
+        let layout = self.system.layout;
+        let Jacobian { values: mut rate, mut by } = Jacobian::of(&*self.system.flow, table, &self.parameters);
+        for &state in &regime.held {
+            rate[state] = 0.0;
+            by.row_mut(state).fill(0.0);
+        }
+        let first = table.columns() - layout.s;
+        let selectors = (first..table.columns()).map(|column| table.column(column)[0]).collect();
+        let by_selectors = self.by_selectors(&by).into_owned();
+        let by = by.columns(0, layout.selectors().start).into_owned();
+        let selectors_by = DMatrix::zeros(layout.s, by.ncols());
+        Linearization { rate, by, selectors, selectors_by, by_selectors, states: layout.x }
+    }
+
+    /// Sliding selectors are functions of the rest.
+    fn eliminate(&self, point: &mut Linearization, rates: &DMatrix<f64>, sliding: &[usize]) {
+        let by_selectors = self.by_selectors(rates).select_columns(sliding).select_rows(sliding);
+        let by_rest = rates.columns(0, point.by.ncols()).select_rows(sliding);
+        let Some(slope) = by_selectors.lu().solve(&-by_rest) else { return };
+        point.by += point.by_selectors.select_columns(sliding) * &slope;
+        for (row, &i) in sliding.iter().enumerate() {
+            point.selectors_by.row_mut(i).copy_from(&slope.row(row));
+        }
+    }
+
+    fn fold_guess(&self, point: &mut Linearization, t: f64) {
+        if !self.is_guessed() {
+            return;
+        }
+        let guess = self.guess_slopes(t);
+        let Linearization { by, selectors_by, .. } = point;
+        for matrix in [by, selectors_by] {
+            let through = self.by_controls(matrix) * &guess;
+            let (first, count) = (self.system.layout.parameters().start, self.system.layout.p);
+            let mut by_time = matrix.column_mut(0);
+            by_time += through.column(0);
+            let mut by_parameters = matrix.columns_mut(first, count);
+            by_parameters += through.columns(1, count);
+        }
+    }
+
+    fn by_controls(&self, by: &DMatrix<f64>) -> DMatrix<f64> {
+        by.columns(self.system.layout.controls().start, self.system.layout.u).into_owned()
+    }
+
+    /// `du/d[t | p]` of guessed controls.
+    pub fn guess_slopes(&self, t: f64) -> DMatrix<f64> {
+        let tau = self.tau(t);
+        let mut table = Columns::new(1, 1);
+        table.column_mut(0)[0] = tau;
+        let by = Jacobian::of(&*self.system.guess, &table, &self.parameters).by;
+        let mut by = by.rows(self.system.layout.x, self.system.layout.u).into_owned();
+        let [first, last] = self.system.interval;
+        let duration = last - first;
+        let ends = self.interval_by_parameters();
+        let by_tau = by.column(0) / if duration > 0.0 { duration } else { f64::INFINITY };
+        by.column_mut(0).copy_from(&by_tau);
+        for parameter in 0..self.system.layout.p {
+            let moved = (1.0 - tau) * ends[(0, parameter)] + tau * ends[(1, parameter)];
+            let mut column = by.column_mut(1 + parameter);
+            column -= &by_tau * moved;
+        }
+        by
+    }
+
+    /// `d(t0, tf)/dp`.
+    pub fn interval_by_parameters(&self) -> DMatrix<f64> {
+        Jacobian::of(&*self.system.interval_of, &Columns::new(0, 1), &self.parameters).by
+    }
+
+    /// `dx(t0)/dp`.
+    pub fn start_by_parameters(&self) -> DMatrix<f64> {
+        Jacobian::of(&*self.system.start_of, &Columns::new(0, 1), &self.parameters).by
+    }
+}
+
+/// The surfaces that a regime slides on.
+pub(super) fn sliding(regime: &Regime) -> Vec<usize> {
+    (0..regime.modes.len()).filter(|&i| regime.modes[i] == Mode::Sliding).collect()
+}
+
+/// Values and first derivatives of a function at one point.
+pub(super) struct Jacobian {
+    pub values: DVector<f64>,
+    pub by: DMatrix<f64>,
+}
+
+impl Jacobian {
+    pub fn of(function: &dyn Function, point: &Columns, parameters: &[f64]) -> Self {
+        let pattern = function.jacobian_pattern();
+        let mut values = Columns::new(function.outputs(), 1);
+        let mut entries = Columns::new(pattern.entries.len(), 1);
+        function.jacobian(point, parameters, &mut values, &mut entries);
+        let mut by = DMatrix::zeros(function.outputs(), function.layout().inputs());
+        for (entry, &(row, column)) in pattern.entries.iter().enumerate() {
+            by[(row as usize, column as usize)] = entries.column(entry)[0];
+        }
+        let values = DVector::from_fn(function.outputs(), |row, _| values.column(row)[0]);
+        Jacobian { values, by }
+    }
+
+    /// Takes the motion of some states out of `psi'`. (Second derivatives of `psi` by a state that stands still are not
+    /// taken out of the slopes; surfaces that are curved there would need them.)
+    fn without_motion(mut self, flow: &Jacobian, guards: &Jacobian, states: &[usize]) -> Self {
+        for surface in 0..self.values.len() {
+            for &state in states {
+                let normal = guards.by[(surface, 1 + state)];
+                self.values[surface] -= normal * flow.values[state];
+                let row = self.by.row(surface) - normal * flow.by.row(state);
+                self.by.row_mut(surface).copy_from(&row);
+            }
+        }
+        self
+    }
+}

@@ -1,0 +1,180 @@
+//! Second derivatives through events: second-order saltation, one pair of directions at a time.
+//!
+//! Between events `X_ij' = f*_x X_ij + f*_ww[W_i, W_j]`, differentiated step by step as the first order is. At a stop, with
+//! `a = f-`, `b = f+`, `y` the state at the moved time and `z = r(t, y, p)`
+//!
+//! ```text
+//! y_i = S_i + a tau_i        y_ij = X_ij + a_i tau_j + a_j tau_i + a_t tau_i tau_j + a tau_ij
+//! 0 = psi_x y_ij + psi_t tau_ij + psi_zz[Y_i, Y_j],  Y_i = (tau_i, y_i, p_i)
+//! z_ij = r_x y_ij + r_t tau_ij + r_zz[Y_i, Y_j]
+//! S+_i = z_i - b tau_i       X+_ij = z_ij - (b_i tau_j + b_j tau_i + b_t tau_i tau_j + b tau_ij)
+//! ```
+//!
+//! which is the rule of section 5 of `method/beyond-the-paper.md` where nothing depends on time and parameters. At an exit `a = b`
+//! and `tau` is that of the selector that reaches its end.
+
+use super::bend::{Bend, Pairs};
+use super::curvature::{Curvature, Hessians};
+use super::first_order::{self, Objective, last_instant};
+use super::linearization::Linearizer;
+use super::quantity::{Directions, Quantity};
+use super::step::{LinearStep, WEIGHTS};
+use super::stop::{StopOnTape, Timing};
+use super::surface::Projection;
+use super::sweep::{LinearPiece, Map};
+use crate::problem::Columns;
+use crate::simulate::tableau::A;
+use crate::simulate::{Cause, Controls, Instant, Mode, Piece, Regime, Simulation, System, Tape};
+use nalgebra::{DMatrix, DVector};
+
+/// The Hessian of the objective by some quantities; nothing where the state comes to rest after infinitely many jumps.
+pub fn hessian(
+    system: &System,
+    controls: &Controls,
+    simulation: &Simulation,
+    quantities: &[Quantity],
+) -> Option<Vec<Vec<f64>>> {
+    let linearizer = Linearizer::new(system, controls);
+    let tape = simulation.tape.as_ref().filter(|tape| !comes_to_rest(tape))?;
+    let objective = Objective::new(&linearizer, simulation)?;
+    let directions = Directions::each(system, quantities);
+    let mut second = Second::new(&linearizer, tape, &directions);
+    (0..tape.pieces.len()).for_each(|at| second.pass(at));
+    let matrix = second.of_objective(&objective, simulation);
+    Some(matrix.row_iter().map(|row| row.iter().copied().collect()).collect())
+}
+
+fn comes_to_rest(tape: &Tape) -> bool {
+    tape.regimes.iter().any(|regime| regime.modes.contains(&Mode::Held))
+}
+
+/// First and second derivatives on their way along a tape.
+struct Second<'t> {
+    linearizer: &'t Linearizer<'t>,
+    tape: &'t Tape,
+    directions: &'t Directions,
+    s: DMatrix<f64>,
+    x: Pairs,
+}
+
+impl<'t> Second<'t> {
+    fn new(linearizer: &'t Linearizer<'t>, tape: &'t Tape, directions: &'t Directions) -> Self {
+        let s = first_order::start(linearizer, directions);
+        let parameters = |i: usize| directions.parameters.column(i).into_owned();
+        let x =
+            Pairs::new(directions.count(), |i, j| linearizer.start_curvature(&parameters(i), &parameters(j)));
+        Second { linearizer, tape, directions, s, x }
+    }
+
+    fn regime(&self, at: &Instant) -> &'t Regime {
+        &self.tape.regimes[at.regime]
+    }
+
+    /// The directions `(t, x, u, p)` at a fixed time, one for each quantity.
+    fn directions_at(&self, regime: &Regime, s: &DMatrix<f64>) -> Vec<DVector<f64>> {
+        let inputs = self.directions.inputs(regime);
+        let one = |i: usize| {
+            let parts = std::iter::once(0.0).chain(s.column(i).iter().copied().collect::<Vec<_>>());
+            let all: Vec<f64> = parts.chain(inputs.column(i).iter().copied()).collect();
+            DVector::from_vec(all)
+        };
+        (0..self.directions.count()).map(one).collect()
+    }
+
+    fn pass(&mut self, at: usize) {
+        let piece = LinearPiece::new(self.linearizer, self.tape, at);
+        match (&self.tape.pieces[at], &piece.map) {
+            (Piece::Step { start, .. }, Map::Step(step)) => self.step(self.regime(start), step),
+            (Piece::Stop { cause, before, after, changes }, Map::Stop(stop)) => {
+                let on_tape = StopOnTape { cause: *cause, before, after, changes };
+                self.stop(&on_tape, &stop.timing);
+            }
+            _ => unreachable!("a piece and its linear map are of the same kind"),
+        }
+        if let Some(projection) = &piece.projection {
+            let end = self.tape.pieces[at].end();
+            self.project(projection, piece.regime_after, &end);
+        }
+    }
+
+    fn step(&mut self, regime: &Regime, step: &LinearStep) {
+        let inputs = self.directions.inputs(regime);
+        let (at_stages, end) = step.forward(&self.s, &inputs);
+        let mut slopes: Vec<Pairs> = Vec::new();
+        for (stage, ((point, (time, state)), s)) in
+            step.stages.iter().zip(&step.points).zip(&at_stages).enumerate()
+        {
+            let curvature = Curvature::new(self.linearizer, point, regime, *time, state);
+            let whole: Vec<DVector<f64>> =
+                self.directions_at(regime, s).iter().map(|it| curvature.complete(it)).collect();
+            let x = self.x.combined(step.h, &slopes, &A[stage]);
+            slopes.push(x.map(|i, j, x| point.by_state() * x + curvature.along(&whole[i], &whole[j])));
+        }
+        self.x = self.x.combined(step.h, &slopes, &WEIGHTS);
+        self.s = end;
+    }
+
+    fn stop(&mut self, stop: &StopOnTape, timing: &Timing) {
+        let regime = self.regime(stop.before);
+        let tau = timing.of(&self.s, &self.directions.inputs(regime));
+        let directions = self.directions_at(regime, &self.s);
+        let bend = Bend { linearizer: self.linearizer, tape: self.tape, stop, tau: &tau };
+        let moved = bend.reset(bend.meet(&self.s, &self.x, &directions), &directions);
+        let onward = self.linearizer.at_instant(self.tape, stop.after);
+        self.s = &moved.s - &onward.rate * &tau;
+        let directions = self.directions_at(self.regime(stop.after), &self.s);
+        self.x = bend.leave(&onward, &moved, &directions);
+    }
+
+    /// Back to the surfaces: rounding and what a start on a surface brings with it.
+    fn project(&mut self, projection: &Projection, regime: &Regime, at: &Instant) {
+        self.s = projection.forward(&self.s, &self.directions.inputs(regime));
+        let state = DVector::from_column_slice(&at.state);
+        let table = self.linearizer.table(regime, &at.selectors, at.time, &state);
+        let hessians = Hessians::of(&*self.linearizer.system.guards, &table, &self.linearizer.parameters);
+        let inputs = self.linearizer.system.layout.inputs();
+        let whole = self.directions_at(regime, &self.s);
+        let whole: Vec<_> = whole.into_iter().map(|it| it.resize_vertically(inputs, 0.0)).collect();
+        self.x = self.x.map(|i, j, x| {
+            let bent = hessians.along(&whole[i], &whole[j]);
+            projection.correct(x, &bent.select_rows(&projection.surfaces))
+        });
+    }
+
+    /// `J_ij = J_z Z_ij + J_zz[Z_i, Z_j]` with `Z = (x(t0), x(T), p)`.
+    fn of_objective(&self, objective: &Objective, simulation: &Simulation) -> DMatrix<f64> {
+        let system = self.linearizer.system;
+        let (start, end, bent_end) = self.at_end();
+        let mut point = Columns::new(2 * system.layout.x, 1);
+        for (at, value) in system.start.iter().chain(&simulation.end).enumerate() {
+            point.column_mut(at)[0] = *value;
+        }
+        let hessians = Hessians::of(&*system.objective, &point, &self.linearizer.parameters);
+        let parameters = |i: usize| self.directions.parameters.column(i);
+        let whole = |i: usize| {
+            let ends = start.column(i).iter().chain(end.column(i).iter()).copied().collect::<Vec<_>>();
+            let all: Vec<f64> = ends.into_iter().chain(parameters(i).iter().copied()).collect();
+            DVector::from_vec(all)
+        };
+        DMatrix::from_fn(self.directions.count(), self.directions.count(), |i, j| {
+            let bent_start =
+                self.linearizer.start_curvature(&parameters(i).into_owned(), &parameters(j).into_owned());
+            (&objective.by_start * bent_start)[0]
+                + (&objective.by_end * bent_end.at(i, j))[0]
+                + hessians.along(&whole(i), &whole(j))[0]
+        })
+    }
+
+    /// First derivatives of both ends, second ones of the last: the end of the interval moves, too.
+    fn at_end(&self) -> (DMatrix<f64>, DMatrix<f64>, Pairs) {
+        let start = first_order::start(self.linearizer, self.directions);
+        let Some(last) = last_instant(self.tape) else { return (start.clone(), start, self.x.clone()) };
+        let stop = StopOnTape { cause: Cause::Controls, before: &last, after: &last, changes: &[] };
+        let timing = Timing::of_clock(self.linearizer, self.linearizer.system.interval[1]);
+        let regime = self.regime(&last);
+        let tau = timing.of(&self.s, &self.directions.inputs(regime));
+        let bend = Bend { linearizer: self.linearizer, tape: self.tape, stop: &stop, tau: &tau };
+        let moved = bend.meet(&self.s, &self.x, &self.directions_at(regime, &self.s));
+        (start, moved.s, moved.x)
+    }
+}

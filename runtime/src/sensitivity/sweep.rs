@@ -1,0 +1,86 @@
+//! The tape, linearised piece by piece.
+//!
+//! Each piece is a linear map `S+ = M S + N W`, with `W` the directions of `(u, p)` that act in it; forward sensitivities
+//! apply the maps in order, the adjoint applies their transposes in reverse.
+
+use super::linearization::Linearizer;
+use super::step::LinearStep;
+use super::stop::{LinearStop, StopOnTape};
+use super::surface::Projection;
+use crate::simulate::{Instant, Piece, Regime, Tape};
+use nalgebra::{DMatrix, DVector};
+
+/// A piece as a linear map, followed by the projection to the surfaces on which the state slides after it.
+pub(super) struct LinearPiece<'t> {
+    pub map: Map,
+    /// Whose controls act before the projection.
+    pub regime: &'t Regime,
+    /// Whose controls act in the projection.
+    pub regime_after: &'t Regime,
+    pub projection: Option<Projection>,
+}
+
+/// What happens before the projection.
+pub(super) enum Map {
+    Step(LinearStep),
+    Stop(LinearStop),
+}
+
+impl<'t> LinearPiece<'t> {
+    pub fn new(linearizer: &Linearizer, tape: &'t Tape, at: usize) -> Self {
+        let regime = |instant: &Instant| &tape.regimes[instant.regime];
+        match &tape.pieces[at] {
+            Piece::Step { start, h, .. } => LinearPiece {
+                map: Map::Step(LinearStep::new(linearizer, regime(start), start, *h)),
+                regime: regime(start),
+                regime_after: regime(start),
+                projection: Projection::new(linearizer, regime(start), &tape.pieces[at].end()),
+            },
+            Piece::Stop { cause, before, after, changes } => {
+                let stop = StopOnTape { cause: *cause, before, after, changes };
+                LinearPiece {
+                    map: Map::Stop(LinearStop::new(linearizer, tape, &stop)),
+                    regime: regime(before),
+                    regime_after: regime(after),
+                    projection: Projection::new(linearizer, regime(after), after),
+                }
+            }
+        }
+    }
+
+    /// `S+`, given the directions of `(u, p)` in a regime.
+    pub fn forward(&self, s: &DMatrix<f64>, w: &dyn Fn(&Regime) -> DMatrix<f64>) -> DMatrix<f64> {
+        let inputs = w(self.regime);
+        let after = match &self.map {
+            Map::Step(step) => step.forward(s, &inputs).1,
+            Map::Stop(stop) => stop.forward(s, &inputs),
+        };
+        match &self.projection {
+            Some(projection) => projection.forward(&after, &w(self.regime_after)),
+            None => after,
+        }
+    }
+
+    /// The adjoint on the surfaces, in the canonical gauge, from the one after the piece. What inputs contribute goes to
+    /// `add`, with the regime in which they act.
+    pub fn unproject(
+        &self,
+        after: DVector<f64>,
+        add: &mut dyn FnMut(&Regime, &DVector<f64>),
+    ) -> DVector<f64> {
+        let Some(projection) = &self.projection else { return after };
+        let (before, inputs) = projection.adjoint(&after);
+        add(self.regime_after, &inputs);
+        before
+    }
+
+    /// The adjoint before the piece, from the one before the projection.
+    pub fn adjoint(&self, after: &DVector<f64>, add: &mut dyn FnMut(&Regime, &DVector<f64>)) -> DVector<f64> {
+        let (before, inputs) = match &self.map {
+            Map::Step(step) => step.adjoint(after),
+            Map::Stop(stop) => stop.adjoint(after),
+        };
+        add(self.regime, &inputs);
+        before
+    }
+}

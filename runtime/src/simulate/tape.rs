@@ -1,0 +1,190 @@
+//! What a simulation did, piece by piece, so that it can be differentiated: steps, and stops between them.
+//!
+//! Between two stops the modes, the states that stand still and the row of the controls do not change; that is a [`Regime`].
+//! A stop is an event, a change of the controls, or both ends of the simulation's first instant.
+
+use super::field::{Field, Mode};
+use super::locate::Condition;
+use super::result::{Event, Kind, Method};
+use super::step::Step;
+
+/// Steps and stops in the order of time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tape {
+    /// What the pieces refer to.
+    pub regimes: Vec<Regime>,
+    /// In the order of time; without gaps.
+    pub pieces: Vec<Piece>,
+}
+
+/// What does not change between two stops.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Regime {
+    /// One for each surface.
+    pub modes: Vec<Mode>,
+    /// States that stand still.
+    pub held: Vec<usize>,
+    /// Which row of the controls holds; none where controls are the guess.
+    pub row: Option<usize>,
+}
+
+/// An instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instant {
+    /// When.
+    pub time: f64,
+    /// The state, integrals last.
+    pub state: Vec<f64>,
+    /// All selectors; those of sliding surfaces keep the state there.
+    pub selectors: Vec<f64>,
+    /// The place of the regime in [`Tape::regimes`].
+    pub regime: usize,
+}
+
+/// One piece of a simulation.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Piece {
+    /// A step of a method; one that meets an event ends there.
+    Step {
+        /// Before the step.
+        start: Instant,
+        /// Its length.
+        h: f64,
+        /// The state after it, projected to the sliding surfaces.
+        end: Vec<f64>,
+        /// Which method.
+        method: Method,
+    },
+    /// What happens at one time.
+    Stop {
+        /// Why.
+        cause: Cause,
+        /// Before it.
+        before: Instant,
+        /// After it; later than `before` where jumps pile up and the model says what follows.
+        after: Instant,
+        /// What happens, in this order.
+        changes: Vec<Change>,
+    },
+}
+
+impl Piece {
+    /// What comes after it.
+    pub fn end(&self) -> Instant {
+        match self {
+            Piece::Step { start, h, end, .. } => {
+                Instant { time: start.time + h, state: end.clone(), ..start.clone() }
+            }
+            Piece::Stop { after, .. } => after.clone(),
+        }
+    }
+}
+
+/// Why there is a stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// The first time.
+    Start,
+    /// The next row of the controls.
+    Controls,
+    /// The state reaches a surface.
+    Reaches(usize),
+    /// The selector of a sliding surface reaches the end of its interval.
+    Leaves(usize),
+    /// The surfaces that the state slides on cease to attract.
+    Repels,
+}
+
+impl From<Condition> for Cause {
+    fn from(condition: Condition) -> Self {
+        match condition {
+            Condition::Reaches(surface) => Cause::Reaches(surface),
+            Condition::Leaves(surface) => Cause::Leaves(surface),
+        }
+    }
+}
+
+/// One change at a stop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    /// At which surface.
+    pub surface: usize,
+    /// What.
+    pub kind: Kind,
+    /// How far from grazing.
+    pub margin: f64,
+    /// After it.
+    pub after: Instant,
+}
+
+/// A tape on its way; without a tape nothing is noted.
+pub(super) struct Writer {
+    tape: Option<Tape>,
+    stop: Option<(Cause, Instant)>,
+    changes: Vec<Change>,
+}
+
+impl Writer {
+    pub fn new(is_wanted: bool) -> Self {
+        Writer { tape: is_wanted.then(Tape::default), stop: None, changes: Vec::new() }
+    }
+
+    pub fn finish(self) -> Option<Tape> {
+        self.tape
+    }
+
+    /// The place of the regime of a field; a new one only where something has changed.
+    fn regime(&mut self, field: &Field) -> usize {
+        let Some(tape) = &mut self.tape else { return 0 };
+        let row = field.row;
+        let is_last = |last: &Regime| last.modes == field.modes && last.held == field.held && last.row == row;
+        if !tape.regimes.last().is_some_and(is_last) {
+            tape.regimes.push(Regime { modes: field.modes.clone(), held: field.held.clone(), row });
+        }
+        tape.regimes.len() - 1
+    }
+
+    fn instant(&mut self, field: &mut Field, time: f64, state: &[f64]) -> Instant {
+        let regime = self.regime(field);
+        Instant { time, state: state.to_vec(), selectors: field.selectors_at(time, state), regime }
+    }
+
+    fn push(&mut self, piece: Piece) {
+        if let Some(tape) = &mut self.tape {
+            tape.pieces.push(piece);
+        }
+    }
+
+    /// A step, or its beginning of length `h`.
+    pub fn step(&mut self, field: &mut Field, step: &Step, h: f64, end: &[f64]) {
+        if self.tape.is_some() {
+            let start = self.instant(field, step.t, &step.start);
+            self.push(Piece::Step { start, h, end: end.to_vec(), method: Method::Explicit });
+        }
+    }
+
+    /// A stop begins.
+    pub fn open(&mut self, cause: Cause, field: &mut Field, time: f64, state: &[f64]) {
+        if self.tape.is_some() {
+            self.stop = Some((cause, self.instant(field, time, state)));
+        }
+    }
+
+    /// Something happens at the stop.
+    pub fn change(&mut self, field: &mut Field, event: &Event) {
+        if self.tape.is_some() {
+            let after = self.instant(field, event.time, &event.state);
+            let Event { surface, kind, margin, .. } = *event;
+            self.changes.push(Change { surface, kind, margin, after });
+        }
+    }
+
+    /// The stop ends.
+    pub fn close(&mut self, field: &mut Field, time: f64, state: &[f64]) {
+        if let Some((cause, before)) = self.stop.take() {
+            let after = self.instant(field, time, state);
+            let changes = std::mem::take(&mut self.changes);
+            self.push(Piece::Stop { cause, before, after, changes });
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Where there is no derivative the result says so, why, and what the derivatives of both sides are; all in closed form.
+
+use fdcc_compiler::compile_sensitivities;
+use fdcc_runtime::sensitivity::{Quantity, TroubleKind, gradient, one_sided};
+use fdcc_runtime::simulate::{Controls, Options, System};
+use fdcc_tests::models::meaning;
+
+struct Kink {
+    text: &'static str,
+    trouble: Option<(TroubleKind, f64)>,
+    by: &'static str,
+    sides: [f64; 2],
+}
+
+/// The first derivative of each model is by the parameter named.
+const KINKS: [Kink; 8] = [
+    Kink {
+        // x(T) = (x0 - T)+
+        text: "param x0 = 1  time t in [0, 1]  state x start x0  surface zero = x
+            dynamics { x' in -Sgn(zero) }  minimize x(end)",
+        trouble: Some((TroubleKind::End, 1.0)),
+        by: "x0",
+        sides: [0.0, 1.0],
+    },
+    Kink {
+        // the same before and after the kink
+        text: "param x0 = 1.5  time t in [0, 1]  state x start x0  surface zero = x
+            dynamics { x' in -Sgn(zero) }  minimize x(end)",
+        trouble: None,
+        by: "x0",
+        sides: [1.0, 1.0],
+    },
+    Kink {
+        // example (g1) of the references: y(2) = p - 1 for p < 0, -1 for p > 0
+        text: "param p = 0  time t in [0, 2]  state x start -1  state y start -1 + p  surface edge = y
+            dynamics { x' = 1  y' in match edge { below => -2*x, above => -2*x - 1 } }  minimize y(end)",
+        trouble: Some((TroubleKind::Grazing, 1.0)),
+        by: "p",
+        sides: [1.0, 0.0],
+    },
+    Kink {
+        // two surfaces at once: z(2) = 2 - 2 |x0 + 1|
+        text: "param x0 = -1  time t in [0, 2]  state x start x0  state y start -1  state z start 0
+            surface first = x  surface second = y
+            dynamics { x' = 1  y' = 1  z' in Sgn(first)*Sgn(second) }  minimize z(end)",
+        trouble: Some((TroubleKind::Corner, 1.0)),
+        by: "x0",
+        sides: [2.0, -2.0],
+    },
+    Kink {
+        // a start on a surface that is left: x(1) = x0 + 2 from above, and (x0 + 1/3) * ... from below
+        text: "param x0 = 0  time t in [0, 1]  state x start x0  surface zero = x
+            dynamics { x' in match zero { below => 1, above => 2 } }  minimize x(end)",
+        trouble: Some((TroubleKind::Coincident, 0.0)),
+        by: "x0",
+        sides: [2.0, 1.0],
+    },
+    Kink {
+        // a parameter that moves nothing at that start: x(1) = 2 a
+        text: "param a = 1  time t in [0, 1]  state x start 0  surface zero = x
+            dynamics { x' in match zero { below => 1, above => 2*a } }  minimize x(end)",
+        trouble: Some((TroubleKind::Coincident, 0.0)),
+        by: "a",
+        sides: [2.0, 2.0],
+    },
+    Kink {
+        // one that ends sliding is differentiable
+        text: "param x0 = 0.5  time t in [0, 1]  state x start x0  surface zero = x
+            dynamics { x' in -Sgn(zero) }  minimize x(end)",
+        trouble: None,
+        by: "x0",
+        sides: [0.0, 0.0],
+    },
+    Kink {
+        // a reset that is grazed: h = (t - 1)^2 + c bounces only if c < 0, then h(2) = 2 sqrt(-c) + 1 + ...
+        text: "param c = 0.01  time t in [0, 2]  state h start 1 + c  state v start -2  surface floor = h
+            dynamics { h' = v  v' = 2 }  jump bounce on floor falling { v := -v }  minimize h(end)",
+        trouble: None,
+        by: "c",
+        sides: [1.0, 1.0],
+    },
+];
+
+fn parameter(system: &System, name: &str) -> Quantity {
+    Quantity::Parameter(system.parameters.iter().position(|it| it.name == name).expect("a parameter"))
+}
+
+#[test]
+fn a_kink_is_found_with_its_reason_and_both_derivatives() {
+    for Kink { text, trouble, by, sides } in KINKS {
+        let system = compile_sensitivities(&meaning(text)).expect("it can be simulated");
+        let quantities = [parameter(&system, by)];
+        let options = Options::default();
+        let found = gradient(&system, &Controls::Guess, &options, &quantities).expect("it reaches the end");
+        let named = found.troubles.first().map(|it| (it.kind, it.time));
+        match (named, trouble) {
+            (None, None) => {}
+            (Some((kind, time)), Some((expected, at))) => {
+                assert!(kind == expected && (time - at).abs() < 1e-6, "{text}: {kind:?} at {time}");
+            }
+            _ => panic!("{text}: {:?}", found.troubles),
+        }
+        let got = one_sided(&system, &Controls::Guess, &options, &quantities)[0];
+        for (got, expected) in got.iter().zip(sides) {
+            let got = got.expect("both sides reach the end");
+            assert!((got - expected).abs() < 1e-3, "{text}: {got}, not {expected}");
+        }
+    }
+}

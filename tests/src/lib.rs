@@ -4,8 +4,11 @@ pub mod expected;
 pub mod functions;
 pub mod models;
 pub mod optimality;
+pub mod pages;
 pub mod random;
+pub mod section_two;
 pub mod sources;
+pub mod svg;
 pub mod symbols;
 pub mod transcribed;
 

@@ -150,7 +150,8 @@ impl OverTime<'_> {
             self.graph.sum(&terms)
         });
         let rates = rates.collect();
-        self.over_inputs("rates", rates, guards.origins.clone(), self.layout.selectors())
+        let by = self.layout.states().chain(self.layout.selectors());
+        self.over_inputs("rates", rates, guards.origins.clone(), by)
     }
 
     /// What a jump does not name stays as it is.

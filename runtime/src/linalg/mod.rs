@@ -12,7 +12,7 @@
 
 #[cfg(test)]
 mod conformance;
-mod lu;
+pub(crate) mod lu;
 pub mod riccati;
 pub mod sparse_ldl;
 mod stages;

@@ -4,6 +4,8 @@
 //! method on `B = -d_A df/ds_A`; one iteration where selectors do not multiply each other.
 
 use super::controls::Controls;
+use super::memory::Memory;
+use super::step::Step;
 use super::system::System;
 use crate::problem::{Columns, Function};
 use nalgebra::{DMatrix, DVector};
@@ -74,8 +76,11 @@ pub(super) struct Field<'a> {
     /// Which row of the controls holds.
     pub row: Option<usize>,
     controls: &'a Controls,
+    /// The values of the controls at the last point.
+    control: Vec<f64>,
     parameters: Vec<f64>,
     point: Columns,
+    memory: Memory,
 }
 
 impl<'a> Field<'a> {
@@ -92,8 +97,10 @@ impl<'a> Field<'a> {
             evaluations: 0,
             row: None,
             controls,
+            control: vec![0.0; system.layout.u],
             parameters: system.parameter_values(),
             point: Columns::new(system.layout.point_inputs(), 1),
+            memory: Memory::new(system),
         };
         system.balls.iter().for_each(|ball| field.set_moving(ball));
         field
@@ -102,6 +109,8 @@ impl<'a> Field<'a> {
     /// From now on the controls of a time hold.
     pub fn use_controls_of(&mut self, time: f64) {
         self.row = self.controls.index(time);
+        let row = self.controls.row(self.row);
+        self.control[..row.len()].copy_from_slice(row);
     }
 
     pub fn set_mode(&mut self, surface: usize, mode: Mode) {
@@ -116,25 +125,26 @@ impl<'a> Field<'a> {
         (0..self.modes.len()).filter(|&i| self.modes[i] == Mode::Sliding).collect()
     }
 
-    /// The values of the controls at a time.
-    fn control(&self, t: f64) -> Vec<f64> {
-        match self.controls {
-            Controls::Held { .. } => self.controls.row(self.row).to_vec(),
-            Controls::Guess if self.system.layout.u == 0 => Vec::new(),
-            Controls::Guess => {
-                let [first, last] = self.system.interval;
-                let tau = if last > first { (t - first) / (last - first) } else { 0.0 };
-                self.system.guessed(tau)[self.system.layout.x..].to_vec()
-            }
+    /// Guessed controls change all the time.
+    fn follow_guess(&mut self, t: f64) {
+        if matches!(self.controls, Controls::Guess) && self.system.layout.u > 0 {
+            let [first, last] = self.system.interval;
+            let tau = if last > first { (t - first) / (last - first) } else { 0.0 };
+            self.control.copy_from_slice(&self.system.guessed(tau)[self.system.layout.x..]);
         }
     }
 
-    fn set_point(&mut self, t: f64, x: &[f64], selectors: &[f64]) {
-        let control = self.control(t);
-        let values = std::iter::once(&t).chain(x).chain(&control).chain(selectors);
-        for (column, value) in values.enumerate() {
-            self.point.column_mut(column)[0] = *value;
-        }
+    /// The next point; with the selectors of the mode if no others are given.
+    fn set_point(&mut self, t: f64, x: &[f64], selectors: Option<&[f64]>) {
+        self.follow_guess(t);
+        let selectors = selectors.unwrap_or(&self.selectors);
+        let values = std::iter::once(&t).chain(x).chain(&self.control).chain(selectors);
+        let stride = self.point.stride();
+        self.point
+            .as_mut_slice()
+            .chunks_exact_mut(stride)
+            .zip(values)
+            .for_each(|(column, value)| column[0] = *value);
     }
 
     /// Values and the derivatives by one kind of inputs, as a dense matrix.
@@ -154,17 +164,28 @@ impl<'a> Field<'a> {
 
     /// The functions of the surfaces.
     pub fn psi(&mut self, t: f64, x: &[f64]) -> Vec<f64> {
-        let selectors = self.selectors.clone();
-        self.set_point(t, x, &selectors);
+        self.set_point(t, x, None);
         let mut values = Columns::new(self.modes.len(), 1);
         self.system.guards.value(&self.point, &self.parameters, &mut values);
         column_values(&values)
     }
 
+    /// The functions of the surfaces at several times of a step.
+    pub fn psi_along(&mut self, step: &Step, thetas: &[f64], psi: &mut Columns) {
+        let layout = self.system.layout;
+        let mut points = Columns::new(layout.point_inputs(), thetas.len());
+        let times = points.column_mut(0).iter_mut().zip(thetas);
+        times.for_each(|(time, theta)| *time = step.t + theta * step.h);
+        for i in 0..layout.x {
+            let values = points.column_mut(1 + i).iter_mut().zip(thetas);
+            values.for_each(|(value, theta)| *value = step.component(i, *theta));
+        }
+        self.system.guards.value(&points, &self.parameters, psi);
+    }
+
     /// The functions of the surfaces with their derivatives.
     pub fn normals(&mut self, t: f64, x: &[f64]) -> Normals {
-        let selectors = self.selectors.clone();
-        self.set_point(t, x, &selectors);
+        self.set_point(t, x, None);
         let (psi, matrix) = self.jacobian(&*self.system.guards, 0..1 + x.len());
         let by_time = matrix.column(0).iter().copied().collect();
         Normals { psi, by_time, by_state: matrix.columns(1, x.len()).into_owned() }
@@ -172,8 +193,7 @@ impl<'a> Field<'a> {
 
     /// The state after a jump.
     pub fn reset(&mut self, jump: usize, t: f64, x: &[f64]) -> Vec<f64> {
-        let selectors = self.selectors.clone();
-        self.set_point(t, x, &selectors);
+        self.set_point(t, x, None);
         let mut values = Columns::new(self.system.resets.outputs(), 1);
         self.system.resets.value(&self.point, &self.parameters, &mut values);
         column_values(&values)[jump * x.len()..][..x.len()].to_vec()
@@ -195,6 +215,27 @@ impl<'a> Field<'a> {
         self.derivatives(t, x, selectors, self.system.layout.states())
     }
 
+    /// The derivative of the right side in the current mode, in which the selectors of sliding surfaces follow the state:
+    /// `f_x + f_s s_x` with `psi'_s s_x = -psi'_x`.
+    pub fn jacobian_of_mode(&mut self, t: f64, x: &[f64]) -> DMatrix<f64> {
+        let (states, selectors) = (self.system.layout.states(), self.system.layout.selectors());
+        let now = self.selectors_at(t, x);
+        let (_, by_inputs) = self.derivatives(t, x, &now, 0..selectors.end);
+        let by_state = by_inputs.columns(states.start, states.len()).into_owned();
+        let sliding = self.sliding();
+        if sliding.is_empty() {
+            return by_state;
+        }
+        let (_, rates) = self.jacobian(&*self.system.rates, 0..selectors.end);
+        let rates = rates.select_rows(&sliding);
+        let places: Vec<usize> = sliding.iter().map(|&i| selectors.start + i).collect();
+        let follows = rates.select_columns(&places).lu().solve(&rates.columns(states.start, states.len()));
+        match follows {
+            Some(follows) => by_state - by_inputs.select_columns(&places) * follows,
+            None => by_state,
+        }
+    }
+
     fn derivatives(
         &mut self,
         t: f64,
@@ -203,7 +244,7 @@ impl<'a> Field<'a> {
         by: std::ops::Range<usize>,
     ) -> (Vec<f64>, DMatrix<f64>) {
         self.evaluations += 1;
-        self.set_point(t, x, selectors);
+        self.set_point(t, x, Some(selectors));
         let (mut rate, mut matrix) = self.jacobian(&*self.system.flow, by);
         for &state in &self.held {
             rate[state] = 0.0;
@@ -214,19 +255,23 @@ impl<'a> Field<'a> {
 
     /// The right side in the current mode; not a number where sliding selectors cannot be found.
     pub fn rate(&mut self, t: f64, x: &[f64]) -> Vec<f64> {
+        let mut rate = vec![0.0; x.len()];
+        self.rate_into(t, x, &mut rate);
+        rate
+    }
+
+    /// The same, into memory that is there.
+    pub fn rate_into(&mut self, t: f64, x: &[f64], rate: &mut [f64]) {
         self.follow_directions(t, x);
-        let sliding = self.sliding();
-        if !sliding.is_empty() {
-            return self.sliding_rate(t, x, &sliding);
+        if self.modes.contains(&Mode::Sliding) {
+            return self.sliding_rate(t, x, rate);
         }
         self.evaluations += 1;
-        let selectors = self.selectors.clone();
-        self.set_point(t, x, &selectors);
-        let mut values = Columns::new(x.len(), 1);
-        self.system.flow.value(&self.point, &self.parameters, &mut values);
-        let mut rate = column_values(&values);
+        self.set_point(t, x, None);
+        let values = &mut self.memory.flow;
+        self.system.flow.value(&self.point, &self.parameters, values);
+        read(values, rate);
         self.held.iter().for_each(|&state| rate[state] = 0.0);
-        rate
     }
 
     /// The selectors of the current mode, each a side, part of a direction, or what keeps its surface; leaves everything as it is.
@@ -239,21 +284,32 @@ impl<'a> Field<'a> {
         std::mem::replace(&mut self.selectors, before.0)
     }
 
-    fn sliding_rate(&mut self, t: f64, x: &[f64], sliding: &[usize]) -> Vec<f64> {
-        let normals = self.normals(t, x);
-        let mut selectors = self.selectors.clone();
+    fn sliding_rate(&mut self, t: f64, x: &[f64], rate: &mut [f64]) {
+        self.set_point(t, x, None);
+        let Field { system, point, parameters, memory, .. } = self;
+        memory.slide_on(&self.modes);
+        system.guards.jacobian(point, parameters, &mut memory.psi, &mut memory.normals);
+        let first = system.layout.selectors().start - system.layout.p;
         for _ in 0..30 {
-            let (rate, by_selector) = self.with_selectors(t, x, &selectors);
-            let (r, b) = surface_rates(&normals, &rate, &by_selector, sliding);
-            let Some(change) = b.lu().solve(&r) else { break };
-            sliding.iter().zip(change.iter()).for_each(|(&i, change)| selectors[i] += change);
-            if change.amax() <= 1e-13 * (1.0 + DVector::from_column_slice(&selectors).amax()) {
-                let moved = by_selector.select_columns(sliding) * change;
-                self.selectors = selectors;
-                return rate.iter().zip(moved.iter()).map(|(rate, moved)| rate + moved).collect();
+            self.evaluations += 1;
+            system.flow.jacobian(point, parameters, &mut memory.flow, &mut memory.by_inputs);
+            read(&memory.flow, rate);
+            self.held.iter().for_each(|&state| rate[state] = 0.0);
+            if !memory.solve(system, rate, &self.held) {
+                break;
+            }
+            let mut is_solved = true;
+            for (&surface, change) in memory.sliding.iter().zip(&memory.change) {
+                let selector = &mut point.column_mut(first + surface)[0];
+                *selector += change;
+                is_solved &= change.abs() <= 1e-13 * (1.0 + selector.abs());
+            }
+            if is_solved {
+                memory.sliding.iter().for_each(|&i| self.selectors[i] = point.column(first + i)[0]);
+                return memory.follow(rate, &self.held);
             }
         }
-        vec![f64::NAN; x.len()]
+        rate.fill(f64::NAN);
     }
 
     /// Newton's steps along `df/ds` back to the sliding surfaces.
@@ -261,6 +317,9 @@ impl<'a> Field<'a> {
         let sliding = self.sliding();
         for _ in 0..if sliding.is_empty() { 0 } else { 3 } {
             let normals = self.normals(t, x);
+            if sliding.iter().all(|&i| normals.psi[i].abs() <= 0.1 * normals.noise(i, x)) {
+                return;
+            }
             let selectors = self.selectors.clone();
             let (_, by_selector) = self.with_selectors(t, x, &selectors);
             let directions = by_selector.select_columns(&sliding);
@@ -286,6 +345,11 @@ pub(super) fn surface_rates(
     let r = DVector::from_iterator(surfaces.len(), surfaces.iter().map(|&i| normals.rate(i, rate)));
     let b = -(normals.by_state.select_rows(surfaces) * by_selector.select_columns(surfaces));
     (r, b)
+}
+
+fn read(table: &Columns, values: &mut [f64]) {
+    let columns = table.as_slice().chunks_exact(table.stride());
+    values.iter_mut().zip(columns).for_each(|(value, column)| *value = column[0]);
 }
 
 fn column_values(table: &Columns) -> Vec<f64> {

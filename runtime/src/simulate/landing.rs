@@ -9,7 +9,7 @@
 
 use super::direction::length;
 use super::field::{Field, Mode, surface_rates};
-use super::result::{Kind, Status};
+use super::result::{Kind, Method, Status};
 use super::run::Run;
 use super::step::Step;
 use super::system::Ball;
@@ -64,15 +64,17 @@ impl<'a> Field<'a> {
 impl Run<'_> {
     /// Goes the rest of the way to 0 and decides what follows.
     pub fn land(&mut self, fall: &Fall<'_>) -> Result<(), Status> {
-        let h = fall.time;
-        let rate = self.field.rate(self.t, &self.x);
+        let mut step = Step::new(self.x.len());
+        step.begin(&mut self.field, self.t, &self.x, Method::Explicit, false);
+        step.h = fall.time;
+        let (rate, h) = (step.stages[0].clone(), step.h);
         let point =
             |theta: f64| self.x.iter().zip(&rate).map(|(x, rate)| x + theta * h * rate).collect::<Vec<f64>>();
         let (middle, mut end) = (point(0.5), point(1.0));
         self.project_to_zero(fall.ball, &mut end);
-        let points = [self.x.clone(), middle, end.clone()];
-        let step = Step::smooth([self.t, h], points, [rate.clone(), rate.clone()], 0.0);
-        self.go(&step, [self.t + h, h], end);
+        step.end_smoothly(&middle, &end, &rate);
+        self.go(&step, [self.t + h, h], &end);
+        self.pace.h = self.first_length();
         self.stop(Cause::Reaches(fall.ball.surfaces.start), |run| {
             let mut surfaces = run.surfaces_here();
             surfaces.extend(fall.ball.surfaces.clone());

@@ -5,8 +5,9 @@
 //! root is refined on steps of the pair itself, so it is as accurate as the integration.
 
 use super::direction::length;
-use super::field::{Field, Mode};
+use super::field::Field;
 use super::result::Options;
+use super::samples::{self, Samples};
 use super::step::Step;
 
 /// What may end a mode.
@@ -26,71 +27,63 @@ pub(super) struct Found {
     pub state: Vec<f64>,
 }
 
-const SAMPLES: usize = 8;
-
 /// The first event of a step.
 pub(super) fn first(field: &mut Field, step: &Step, options: &Options) -> Option<Found> {
-    let conditions: Vec<Condition> = (0..field.modes.len()).filter_map(|i| condition(field, i)).collect();
-    if conditions.is_empty() {
-        return None;
-    }
-    let thetas: Vec<f64> = (0..=SAMPLES).map(|k| k as f64 / SAMPLES as f64).collect();
-    let table: Vec<Vec<f64>> = thetas
-        .iter()
-        .map(|&theta| values(field, &conditions, step.t + theta * step.h, &step.at(theta)))
-        .collect();
-    let normals = field.normals(step.t, &step.start);
+    let besides = samples::besides(field, step);
+    let slidings = samples::slidings(field, step);
+    let found = [first_of(field, step, &besides), first_of(field, step, &slidings)];
+    let (theta, condition) = found.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(refine(field, step, condition, theta, options))
+}
+
+/// The first condition that ends, and when.
+fn first_of(field: &mut Field, step: &Step, sampled: &[Samples]) -> Option<(f64, Condition)> {
     let mut first: Option<(f64, Condition)> = None;
-    for (at, &condition) in conditions.iter().enumerate() {
+    for samples in sampled.iter().filter(|samples| samples.may_end()) {
+        let condition = samples.condition;
         let noise = match condition {
-            Condition::Reaches(i) => normals.noise(i, &step.start),
+            Condition::Reaches(i) => field.normals(step.t, &step.start).noise(i, &step.start),
             Condition::Leaves(_) => 1e-12,
         };
-        let samples: Vec<f64> = table.iter().map(|row| row[at]).collect();
-        let mut g = |theta: f64| values(field, &[condition], step.t + theta * step.h, &step.at(theta))[0];
-        if let Some(theta) = first_root(&mut g, &thetas, &samples, noise)
+        let mut g = |theta: f64| value(field, condition, step.t + theta * step.h, &step.at(theta));
+        if let Some(theta) = first_root(&mut g, samples, noise)
             && first.is_none_or(|(best, _)| theta < best)
         {
             first = Some((theta, condition));
         }
     }
-    first.map(|(theta, condition)| refine(field, step, condition, theta, options))
+    first
 }
 
-fn condition(field: &Field, surface: usize) -> Option<Condition> {
-    match field.modes[surface] {
-        Mode::Below | Mode::Above => Some(Condition::Reaches(surface)),
-        Mode::Sliding => {
-            let is_first = field.ball_of(surface).is_none_or(|ball| ball.surfaces.start == surface);
-            is_first.then_some(Condition::Leaves(surface))
+/// `1 - |s|` of a sliding surface or of a ball at rest.
+pub(super) fn reserve(field: &Field, surface: usize) -> f64 {
+    match field.ball_of(surface) {
+        Some(ball) => 1.0 - length(&field.selectors[ball.surfaces.clone()]),
+        None => 1.0 - field.selectors[surface].abs(),
+    }
+}
+
+/// What is not negative before a condition ends.
+fn value(field: &mut Field, condition: Condition, t: f64, x: &[f64]) -> f64 {
+    match condition {
+        Condition::Reaches(i) => field.modes[i].side() * field.psi(t, x)[i],
+        Condition::Leaves(i) => {
+            field.rate(t, x);
+            reserve(field, i)
         }
-        Mode::Moving | Mode::Held => None,
     }
-}
-
-fn values(field: &mut Field, conditions: &[Condition], t: f64, x: &[f64]) -> Vec<f64> {
-    let psi = field.psi(t, x);
-    if conditions.iter().any(|condition| matches!(condition, Condition::Leaves(_))) {
-        field.rate(t, x);
-    }
-    let value = |condition: &Condition| match *condition {
-        Condition::Reaches(i) => field.modes[i].side() * psi[i],
-        Condition::Leaves(i) => match field.ball_of(i) {
-            Some(ball) => 1.0 - length(&field.selectors[ball.surfaces.clone()]),
-            None => 1.0 - field.selectors[i].abs(),
-        },
-    };
-    conditions.iter().map(value).collect()
 }
 
 /// Where `g` first becomes negative.
-fn first_root(g: &mut dyn FnMut(f64) -> f64, thetas: &[f64], samples: &[f64], noise: f64) -> Option<f64> {
-    for k in 1..samples.len() {
-        if samples[k] < -noise {
+fn first_root(g: &mut dyn FnMut(f64) -> f64, samples: &Samples, noise: f64) -> Option<f64> {
+    let Samples { thetas, values, .. } = samples;
+    for k in 1..values.len() {
+        if values[k] < -noise {
             return Some(root(g, thetas[k - 1], thetas[k], noise));
         }
-        let is_dip = k + 1 < samples.len() && samples[k] <= samples[k - 1] && samples[k] <= samples[k + 1];
-        if is_dip && let Some(below) = dip(g, thetas[k - 1], thetas[k + 1], noise) {
+        if samples.is_dip(k)
+            && let Some(below) = dip(g, thetas[k - 1], thetas[k + 1], noise)
+        {
             return Some(root(g, thetas[k - 1].min(below), below, noise));
         }
     }
@@ -168,13 +161,15 @@ pub(super) fn bisect(
 
 /// The secant method on steps that end at the event.
 fn refine(field: &mut Field, step: &Step, condition: Condition, theta: f64, options: &Options) -> Found {
+    let mut trial = step.clone();
     let mut end = |theta: f64| {
         let state = if theta == 0.0 {
             step.start.clone()
         } else {
-            Step::take(field, step.t, &step.start, theta * step.h, options).end
+            trial.attempt(field, theta * step.h, options);
+            trial.end.clone()
         };
-        let value = values(field, &[condition], step.t + theta * step.h, &state)[0];
+        let value = value(field, condition, step.t + theta * step.h, &state);
         (state, value)
     };
     let (mut state, mut value) = end(theta);

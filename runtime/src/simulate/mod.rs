@@ -7,18 +7,23 @@
 //! In every mode each selector is -1, +1 or an unknown that keeps its surface at 0 (sliding); those of a `Dir` are a
 //! direction or such unknowns. [`simulate`] is the loop. Where the continuation is not unique it stops and says so; it never chooses.
 
+mod advance;
 mod ball;
 mod complementarity;
 mod controls;
 mod decide;
 mod direction;
 mod events;
+mod explicit;
 mod field;
 mod landing;
 mod locate;
+mod memory;
+mod radau;
 mod record;
 mod result;
 mod run;
+mod samples;
 mod setting_out;
 mod step;
 mod system;
@@ -29,7 +34,7 @@ mod zeno;
 pub(crate) use complementarity::selectors;
 pub use controls::Controls;
 pub use field::Mode;
-pub use result::{Candidate, Counts, Event, Kind, Method, Options, Simulation, Status};
+pub use result::{Candidate, Counts, Event, Integrator, Kind, Method, Options, Simulation, Status};
 pub use run::simulate;
 pub use system::{Ball, Jump, System, value};
 pub use tape::{Cause, Change, Instant, Piece, Regime, Tape};

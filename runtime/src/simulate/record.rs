@@ -1,7 +1,6 @@
 //! The trajectory while it is made: all steps, or the times asked for.
 
 use super::result::{Event, Options};
-use super::step::Step;
 
 /// Times and states so far.
 pub(super) struct Record {
@@ -38,11 +37,10 @@ impl Record {
         }
     }
 
-    /// The wanted times inside a step, up to the time where it ends.
-    pub fn inside(&mut self, step: &Step, until: f64) {
+    /// The wanted times before a time, with the states that are given for them.
+    pub fn inside(&mut self, until: f64, state: &mut dyn FnMut(f64) -> Vec<f64>) {
         while let Some(&wanted) = self.wanted.get(self.past).filter(|wanted| **wanted < until) {
-            let theta = ((wanted - step.t) / step.h).max(0.0);
-            self.push(wanted, &step.at(theta));
+            self.push(wanted, &state(wanted));
             self.past += 1;
         }
     }

@@ -10,6 +10,8 @@ pub struct Options {
     pub rtol: f64,
     /// Absolute tolerance of one step.
     pub atol: f64,
+    /// Which method takes the steps.
+    pub integrator: Integrator,
     /// The most steps, rejected ones included.
     pub max_steps: usize,
     /// Times at which states are wanted, ascending; all steps and events if there are none.
@@ -19,15 +21,44 @@ pub struct Options {
 }
 
 /// A method for one step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
     /// The explicit pair of Dormand and Prince.
+    #[default]
     Explicit,
+    /// The implicit method Radau IIA of order 5, for stiff systems.
+    Stiff,
+}
+
+/// Which method takes the steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Integrator {
+    /// The explicit one until a mode turns out to be stiff.
+    #[default]
+    Automatic,
+    /// Always the explicit one.
+    Explicit,
+    /// Always the stiff one.
+    Stiff,
+}
+
+impl Options {
+    /// The tolerance of a component that is `before` and `after` a step.
+    pub(super) fn scale(&self, before: f64, after: f64) -> f64 {
+        self.atol + self.rtol * before.abs().max(after.abs())
+    }
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { rtol: 1e-10, atol: 1e-12, max_steps: 1_000_000, times: Vec::new(), tape: false }
+        Options {
+            rtol: 1e-10,
+            atol: 1e-12,
+            integrator: Integrator::Automatic,
+            max_steps: 1_000_000,
+            times: Vec::new(),
+            tape: false,
+        }
     }
 }
 
@@ -117,6 +148,8 @@ pub struct Counts {
     pub steps: usize,
     /// Rejected steps.
     pub rejected: usize,
+    /// Steps of the stiff method among the accepted ones.
+    pub stiff: usize,
     /// Evaluations of the right side.
     pub evaluations: usize,
 }

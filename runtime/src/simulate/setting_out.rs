@@ -58,21 +58,22 @@ struct Collocation<'f, 'a> {
     weights: DMatrix<f64>,
 }
 
-/// A step from `t` to `t + h`.
-pub(super) fn step(field: &mut Field, t: f64, x: &[f64], h: f64, options: &Options) -> Step {
-    let first = field.rate(t, x);
-    let coarse = Collocation::new(field, [t, h], x, options, &COARSE).nodes();
-    let fine = Collocation::new(field, [t, h], x, options, &FINE).nodes();
-    let (Some(coarse), Some(fine)) = (coarse, fine) else { return Step::refused(t, x, h) };
+/// Takes a step that has begun.
+pub(super) fn attempt(step: &mut Step, field: &mut Field, options: &Options) {
+    let (t, h, x) = (step.t, step.h, step.start.clone());
+    field.follow_directions(t, &x);
+    let coarse = Collocation::new(field, [t, h], &x, options, &COARSE).nodes();
+    let fine = Collocation::new(field, [t, h], &x, options, &FINE).nodes();
+    step.error = f64::INFINITY;
+    let (Some(coarse), Some(fine)) = (coarse, fine) else { return };
     let end = &fine[FINE.len() - 1];
-    let error = options.error(x, &coarse[COARSE.len() - 1].added, &end.added);
     field.selectors.copy_from_slice(&end.selectors);
-    let at_end = sum(x, &end.added);
+    let at_end = sum(&x, &end.added);
     let last = field.with_selectors(t + h, &at_end, &end.selectors).0;
-    let curve = |theta: f64| sum(x, &interpolated(&fine, theta));
-    let mut step = Step::smooth([t, h], [x.to_vec(), curve(0.5), at_end], [first, last], error);
-    step.error = error.max(0.01 * options.error(x, &step.at(0.25), &curve(0.25)));
-    step
+    let curve = |theta: f64| sum(&x, &interpolated(&fine, theta));
+    step.end_smoothly(&curve(0.5), &at_end, &last);
+    let error = options.error(&x, &coarse[COARSE.len() - 1].added, &end.added);
+    step.error = error.max(0.01 * options.error(&x, &step.at(0.25), &curve(0.25)));
 }
 
 impl<'f, 'a> Collocation<'f, 'a> {

@@ -1,97 +1,152 @@
-//! One step of the Runge-Kutta pair, and the state at any time inside it.
+//! One step in one mode, and the state at any time inside it.
+//!
+//! ```text
+//! x(t + theta h) = x0 + theta (a + (1 - theta) (b + theta (c + (1 - theta) d)))
+//! ```
 
+use super::explicit::{self, STAGES};
 use super::field::Field;
-use super::result::Options;
+use super::radau::{self, Newton};
+use super::result::{Method, Options};
 use super::setting_out;
-use super::tableau::{A, C, DENSE, ERROR, STAGES};
 
-/// A step from `t` to `t + h` in one mode.
+/// The state inside a step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Extension {
+    pub start: Vec<f64>,
+    /// Coefficients `a`, `b`, `c`, `d`.
+    pub dense: [Vec<f64>; 4],
+}
+
+impl Extension {
+    fn new(states: usize) -> Self {
+        Extension { start: vec![0.0; states], dense: std::array::from_fn(|_| vec![0.0; states]) }
+    }
+
+    /// A component at a part of the step, or beyond it.
+    pub fn component(&self, i: usize, theta: f64) -> f64 {
+        let rest = 1.0 - theta;
+        let [a, b, c, d] = &self.dense;
+        self.start[i] + theta * (a[i] + rest * (b[i] + theta * (c[i] + rest * d[i])))
+    }
+}
+
+/// A step from `t` to `t + h`. Its memory is used again for the next.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Step {
     pub t: f64,
     pub h: f64,
     pub start: Vec<f64>,
     pub end: Vec<f64>,
+    pub method: Method,
     /// In units of the tolerance; infinite if something on the way has no value.
     pub error: f64,
-    /// Coefficients of the continuous extension.
-    dense: [Vec<f64>; 4],
+    pub extension: Extension,
+    /// The right side at each stage of the explicit pair; the first at the start.
+    pub stages: [Vec<f64>; STAGES],
+    /// Where its last stage but one is.
+    pub near_end: Vec<f64>,
+    /// What the stiff method needs.
+    pub newton: Newton,
 }
 
 impl Step {
-    /// Takes a step.
-    pub fn take(field: &mut Field, t: f64, x: &[f64], h: f64, options: &Options) -> Self {
-        if field.sets_out(t) || h > field.stable {
-            return setting_out::step(field, t, x, h, options);
+    pub fn new(states: usize) -> Self {
+        let zeros = || vec![0.0; states];
+        Step {
+            t: 0.0,
+            h: 0.0,
+            start: zeros(),
+            end: zeros(),
+            method: Method::Explicit,
+            error: f64::INFINITY,
+            extension: Extension::new(states),
+            stages: std::array::from_fn(|_| zeros()),
+            near_end: zeros(),
+            newton: Newton::default(),
         }
-        let stages = stages(field, t, x, h);
-        let end = combine(x, h, &stages, &A[STAGES - 1]);
-        let error = error(x, &end, h, &stages, options);
-        let dense = dense(x, &end, h, &stages);
-        Step { t, h, start: x.to_vec(), end, error, dense }
     }
 
-    /// A step that cannot be taken.
-    pub fn refused(t: f64, x: &[f64], h: f64) -> Self {
-        let dense = std::array::from_fn(|_| vec![0.0; x.len()]);
-        Step { t, h, start: x.to_vec(), end: x.to_vec(), error: f64::INFINITY, dense }
+    /// Takes a single step.
+    pub fn take(field: &mut Field, t: f64, x: &[f64], h: f64, options: &Options) -> Self {
+        let mut step = Step::new(x.len());
+        step.begin(field, t, x, Method::Explicit, false);
+        step.attempt(field, h, options);
+        step
     }
 
-    /// A step along a curve that is known at its start, middle and end, with the rates at both ends.
-    pub fn smooth(
-        [t, h]: [f64; 2],
-        [start, middle, end]: [Vec<f64>; 3],
-        [first, last]: [Vec<f64>; 2],
-        error: f64,
-    ) -> Self {
-        let size = start.len();
-        let a: Vec<f64> = (0..size).map(|i| end[i] - start[i]).collect();
-        let b: Vec<f64> = (0..size).map(|i| h * first[i] - a[i]).collect();
-        let c: Vec<f64> = (0..size).map(|i| a[i] - h * last[i] - b[i]).collect();
-        let d: Vec<f64> = (0..size)
-            .map(|i| 2.0 * (2.0 * (2.0 * (2.0 * (middle[i] - start[i]) - a[i]) - b[i]) - c[i]))
-            .collect();
-        let dense = [a, b, c, d];
-        Step { t, h, start, end, error, dense }
+    /// Prepares for the next step, which may continue this one.
+    pub fn begin(&mut self, field: &mut Field, t: f64, x: &[f64], method: Method, is_continued: bool) {
+        let is_same = is_continued && self.method == method;
+        (self.t, self.method) = (t, method);
+        self.start.copy_from_slice(x);
+        if is_same && method == Method::Explicit {
+            self.stages.swap(0, STAGES - 1);
+        } else {
+            field.rate_into(t, x, &mut self.stages[0]);
+        }
+        if method == Method::Stiff {
+            let before = is_same.then(|| (self.extension.clone(), self.h));
+            self.newton.begin(field, t, x, before);
+        }
+    }
+
+    /// Takes the step, with this length.
+    pub fn attempt(&mut self, field: &mut Field, h: f64, options: &Options) {
+        self.h = h;
+        match self.method {
+            Method::Explicit if field.sets_out(self.t) || h > field.stable => {
+                setting_out::attempt(self, field, options)
+            }
+            Method::Explicit => explicit::attempt(self, field, options),
+            Method::Stiff => radau::attempt(self, field, options),
+        }
+    }
+
+    /// Ends the step along a curve that is known in its middle and at its end, with the rate there; that at the start is known.
+    pub fn end_smoothly(&mut self, middle: &[f64], end: &[f64], last: &[f64]) {
+        for i in 0..end.len() {
+            let (start, first) = (self.start[i], self.stages[0][i]);
+            let a = end[i] - start;
+            let b = self.h * first - a;
+            let c = a - self.h * last[i] - b;
+            let d = 2.0 * (2.0 * (2.0 * (2.0 * (middle[i] - start) - a) - b) - c);
+            self.extension.start[i] = start;
+            [a, b, c, d]
+                .into_iter()
+                .zip(&mut self.extension.dense)
+                .for_each(|(value, dense)| dense[i] = value);
+        }
+        self.end.copy_from_slice(end);
+        self.near_end.copy_from_slice(end);
+        self.stages[STAGES - 1].copy_from_slice(last);
     }
 
     /// The state at `t + theta h`.
     pub fn at(&self, theta: f64) -> Vec<f64> {
-        let rest = 1.0 - theta;
-        let [a, b, c, d] = &self.dense;
-        let value = |i: usize| self.start[i] + theta * (a[i] + rest * (b[i] + theta * (c[i] + rest * d[i])));
-        (0..self.start.len()).map(value).collect()
+        (0..self.start.len()).map(|i| self.component(i, theta)).collect()
     }
-}
 
-/// All stages; the last is at the end of the step.
-fn stages(field: &mut Field, t: f64, x: &[f64], h: f64) -> Vec<Vec<f64>> {
-    let mut stages: Vec<Vec<f64>> = Vec::with_capacity(STAGES);
-    for stage in 0..STAGES {
-        let at = combine(x, h, &stages, &A[stage]);
-        let rate = field.rate(t + C[stage] * h, &at);
-        stages.push(rate);
+    /// The state after a part of the step, as exact as its end: the collocation polynomial is not.
+    pub fn exactly_at(&self, field: &mut Field, h: f64, options: &Options) -> Vec<f64> {
+        if self.method == Method::Explicit || h == 0.0 {
+            return self.at(h / self.h);
+        }
+        let mut shorter = self.clone();
+        shorter.attempt(field, h, options);
+        shorter.end
     }
-    stages
-}
 
-fn combine(x: &[f64], h: f64, stages: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
-    let sum = |i: usize| stages.iter().zip(weights).map(|(stage, weight)| weight * stage[i]).sum::<f64>();
-    x.iter().enumerate().map(|(i, x)| x + h * sum(i)).collect()
-}
+    /// A component of the state at `t + theta h`.
+    pub fn component(&self, i: usize, theta: f64) -> f64 {
+        self.extension.component(i, theta)
+    }
 
-/// The largest error of a component in units of its tolerance.
-fn error(x: &[f64], end: &[f64], h: f64, stages: &[Vec<f64>], options: &Options) -> f64 {
-    let error = combine(&vec![0.0; x.len()], h, stages, &ERROR);
-    let scaled = |i: usize| error[i].abs() / (options.atol + options.rtol * x[i].abs().max(end[i].abs()));
-    let is_finite = stages.iter().flatten().chain(end).all(|value| value.is_finite());
-    if is_finite { (0..x.len()).map(scaled).fold(0.0, f64::max) } else { f64::INFINITY }
-}
-
-fn dense(x: &[f64], end: &[f64], h: f64, stages: &[Vec<f64>]) -> [Vec<f64>; 4] {
-    let size = x.len();
-    let a: Vec<f64> = (0..size).map(|i| end[i] - x[i]).collect();
-    let b: Vec<f64> = (0..size).map(|i| h * stages[0][i] - a[i]).collect();
-    let c: Vec<f64> = (0..size).map(|i| a[i] - h * stages[STAGES - 1][i] - b[i]).collect();
-    let d = combine(&vec![0.0; size], h, stages, &DENSE);
-    [a, b, c, d]
+    /// By how much it is stiff: `h` times the largest eigenvalue, as far as the method knows it.
+    pub fn stiffness(&self) -> f64 {
+        match self.method {
+            Method::Explicit => explicit::stiffness(self),
+            Method::Stiff => self.h * self.newton.stiffness(),
+        }
+    }
 }

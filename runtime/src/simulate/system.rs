@@ -65,7 +65,7 @@ pub struct System {
     pub start: Vec<f64>,
     /// `f` over `[t | x | u | p | s]` in real time; differentiated by `x` and `s`.
     pub flow: Arc<dyn Function>,
-    /// `psi' = psi_t + psi_x f`, with the inputs of `flow`; differentiated by `s`.
+    /// `psi' = psi_t + psi_x f`, with the inputs of `flow`; differentiated by `x` and `s`.
     pub rates: Arc<dyn Function>,
     /// `psi`, with the inputs of `flow`; differentiated by `t` and `x`.
     pub guards: Arc<dyn Function>,

@@ -159,7 +159,7 @@ impl Writer {
     pub fn step(&mut self, field: &mut Field, step: &Step, h: f64, end: &[f64]) {
         if self.tape.is_some() {
             let start = self.instant(field, step.t, &step.start);
-            self.push(Piece::Step { start, h, end: end.to_vec(), method: Method::Explicit });
+            self.push(Piece::Step { start, h, end: end.to_vec(), method: step.method });
         }
     }
 

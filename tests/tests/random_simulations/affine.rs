@@ -1,10 +1,11 @@
 //! Random systems that are affine on each side of their surfaces:
 //!
 //! ```text
-//! x' = A x + a + B s,   s_i in Sgn(psi_i),   psi_i = c_i x + e_i t - d_i,   C B = -D
+//! x' = A x + a + sum_i s_i (A_i x + b_i),   s_i in Sgn(psi_i),   psi_i = c_i x + e_i t - d_i,   c_i b_j = -D_ij
 //! ```
 //!
-//! `D` decides what the surfaces do: where it is a P-matrix the solution is unique. It need not be one.
+//! `D` decides what the surfaces do, with the `A_i` where they are not 0: where it is a P-matrix the solution is unique. It
+//! need not be one, and need not remain one.
 
 use fdcc_tests::random::Random;
 use std::fmt::Write;
@@ -19,8 +20,8 @@ pub struct Affine {
     pub start: Vec<f64>,
     /// `A` and `a`.
     pub drift: Matrix,
-    /// One row for each surface: the column of `B`.
-    pub push: Matrix,
+    /// `A_i` and `b_i` of each surface.
+    pub push: Vec<Matrix>,
     /// One row for each surface: `psi`.
     pub normal: Matrix,
     /// The surfaces that the start is on.
@@ -92,7 +93,15 @@ impl Affine {
         let d = random_attraction(random, surfaces);
         let missing = table(surfaces, surfaces, |i, j| -d[i][j] - dot(&rows[i], &ahead[j]));
         let push = shortest(&rows, missing)?;
-        let push = table(surfaces, size, |j, i| ahead[j][i] + push[j][i]);
+        let slope = [0.0, 0.4][random.below(2)];
+        let mut push_of = |k: usize| {
+            table(size, size + 2, |i, j| match j {
+                _ if j < size => random.between(-slope, slope),
+                _ if j == size => 0.0,
+                _ => ahead[k][i] + push[k][i],
+            })
+        };
+        let push = (0..surfaces).map(&mut push_of).collect();
         let drift = table(size, size + 2, |i, j| match j {
             _ if j == i => random.between(-1.5, 0.0),
             _ if j == size => 0.0,
@@ -116,9 +125,12 @@ impl Affine {
         Some(Affine { start, drift, push, normal, begins_on })
     }
 
-    /// `-C B` of some surfaces: how they attract, themselves and each other.
-    pub fn attraction(&self, of: &[usize]) -> Matrix {
-        of.iter().map(|&i| of.iter().map(|&j| -dot(&self.normal[i], &self.push[j])).collect()).collect()
+    /// How some surfaces attract, themselves and each other: `-c_i (A_j x + b_j)`.
+    pub fn attraction(&self, y: &[f64], of: &[usize]) -> Matrix {
+        let pushed = |i: usize, j: usize| -> f64 {
+            self.normal[i].iter().zip(&self.push[j]).map(|(c, row)| c * dot(row, y)).sum()
+        };
+        of.iter().map(|&i| of.iter().map(|&j| -pushed(i, j)).collect()).collect()
     }
 
     /// The number of states.
@@ -137,9 +149,9 @@ impl Affine {
         for (i, row) in self.drift.iter().enumerate() {
             writeln!(text, "state x{i} start {}", self.start[i]).expect("text");
             write!(equations, "x{i}' in {}", names(row)).expect("text");
-            self.push.iter().enumerate().for_each(|(k, push)| {
-                write!(equations, " + ({})*Sgn(p{k})", push[i]).expect("text");
-            });
+            for (k, push) in self.push.iter().enumerate() {
+                write!(equations, " + ({})*Sgn(p{k})", names(&push[i])).expect("text");
+            }
             equations.push('\n');
         }
         for (k, row) in self.normal.iter().enumerate() {

@@ -1,0 +1,215 @@
+//! One step forward: its length, the method that takes it, and where in it the mode ends.
+
+use super::ball::{blocks, is_unique};
+use super::field::surface_rates;
+use super::locate;
+use super::result::{Integrator, Method, Status};
+use super::run::Run;
+use super::step::Step;
+use super::tape::Cause;
+use crate::problem::Origin;
+
+/// What a step leaves for the next.
+pub(super) struct Pace {
+    /// The length to be tried.
+    pub h: f64,
+    /// Whether the next step continues the last one in the same mode.
+    pub is_continued: bool,
+    /// Which method takes the next step.
+    method: Method,
+    /// How many steps of the explicit method in a row were as long as its stability allows, and how many not since.
+    at_border: usize,
+    off_border: usize,
+    /// The last step.
+    step: Step,
+}
+
+/// The explicit pair is stable up to about 3.3.
+const BORDER: f64 = 3.25;
+
+/// So many steps at the border, not interrupted by so many off it, make a system stiff.
+const STIFF_AFTER: usize = 15;
+const NOT_STIFF_AFTER: usize = 6;
+
+/// Below this the explicit pair takes steps of the same length without any doubt.
+const NOT_STIFF: f64 = 1.0;
+
+impl Pace {
+    pub fn new(states: usize, integrator: Integrator) -> Self {
+        let method = match integrator {
+            Integrator::Automatic | Integrator::Explicit => Method::Explicit,
+            Integrator::Stiff => Method::Stiff,
+        };
+        let step = Step::new(states);
+        Pace { h: 0.0, is_continued: false, method, at_border: 0, off_border: 0, step }
+    }
+
+    /// Chooses the method of the next step by what the last one says of stiffness.
+    fn choose(&mut self, step: &Step) {
+        let stiffness = step.stiffness();
+        let is_at_border = stiffness > BORDER;
+        self.at_border += usize::from(is_at_border);
+        self.off_border = if is_at_border { 0 } else { self.off_border + 1 };
+        match self.method {
+            Method::Explicit if self.off_border >= NOT_STIFF_AFTER => self.at_border = 0,
+            Method::Explicit if self.at_border >= STIFF_AFTER => self.method = Method::Stiff,
+            Method::Stiff if stiffness < NOT_STIFF => (self.method, self.at_border) = (Method::Explicit, 0),
+            Method::Explicit | Method::Stiff => {}
+        }
+    }
+}
+
+/// How much shorter or longer a step with some error should be.
+fn factor(step: &Step) -> f64 {
+    let order = match step.method {
+        Method::Explicit => 5.0,
+        Method::Stiff => 4.0,
+    };
+    if step.error.is_finite() {
+        (0.9 * step.error.max(1e-10).powf(-1.0 / order)).clamp(0.1, 5.0)
+    } else {
+        0.1
+    }
+}
+
+impl Run<'_> {
+    /// A first length: E. Hairer, S. P. Norsett, G. Wanner: Solving Ordinary Differential Equations I, 2nd ed., II.4.
+    pub fn first_length(&mut self) -> f64 {
+        let span = self.field.system.interval[1] - self.t;
+        let x = self.x.clone();
+        let size = |values: &[f64]| {
+            let scaled = values.iter().zip(&x).map(|(value, x)| (value / self.options.scale(*x, *x)).abs());
+            scaled.fold(0.0, f64::max)
+        };
+        let rate = self.field.rate(self.t, &x);
+        let (at, slope) = (size(&x), size(&rate));
+        let short = if at < 1e-5 || slope < 1e-5 { 1e-6 * span } else { (0.01 * at / slope).min(span) };
+        let next: Vec<f64> = x.iter().zip(&rate).map(|(x, rate)| x + short * rate).collect();
+        let after = self.field.rate(self.t + short, &next);
+        let change: Vec<f64> = after.iter().zip(&rate).map(|(after, rate)| (after - rate) / short).collect();
+        let bend = slope.max(size(&change));
+        let long = if bend > 1e-15 { (0.01 / bend).powf(0.2) } else { span };
+        let length = long.min(100.0 * short).min(span);
+        if length > 0.0 { length } else { 1e-6 * span }
+    }
+
+    /// One accepted step towards `stop`, or up to the first event in it.
+    pub fn advance(&mut self, stop: f64) -> Result<(), Status> {
+        let mut step = std::mem::take(&mut self.pace.step);
+        let result = self.advance_by(&mut step, stop);
+        self.pace.step = step;
+        result
+    }
+
+    fn advance_by(&mut self, step: &mut Step, stop: f64) -> Result<(), Status> {
+        let rest = stop - self.t;
+        let fall = self.field.fall(self.t, &self.x);
+        if let Some(fall) = fall.as_ref().filter(|fall| fall.is_near && fall.time <= rest) {
+            return self.land(fall);
+        }
+        self.accepted(step, rest, fall.map_or(f64::INFINITY, |fall| fall.longest))?;
+        self.counts.steps += 1;
+        self.counts.stiff += usize::from(step.method == Method::Stiff);
+        if self.options.integrator == Integrator::Automatic && self.field.moving().is_empty() {
+            self.pace.choose(step);
+        }
+        if let Some(found) = locate::first(&mut self.field, step, self.options) {
+            self.go(step, [step.t + found.h, found.h], &found.state);
+            return self.stop(found.condition.into(), |run| run.handle(found.condition));
+        }
+        if let Some(theta) = self.attraction_ends(step) {
+            step.attempt(&mut self.field, theta * step.h, self.options);
+            self.go(step, [step.t + step.h, step.h], &step.end);
+            self.record.point(self.t, &self.x);
+            return self.stop(Cause::Repels, |run| {
+                let surfaces = run.surfaces_here();
+                run.settle(surfaces)
+            });
+        }
+        let time = if step.h >= rest { stop } else { step.t + step.h };
+        self.go(step, [time, step.h], &step.end);
+        self.record.point(self.t, &self.x);
+        self.pace.is_continued = true;
+        Ok(())
+    }
+
+    /// Goes to the state at a time, `h` after the beginning of a step.
+    pub fn go(&mut self, step: &Step, [time, h]: [f64; 2], end: &[f64]) {
+        let (field, options) = (&mut self.field, self.options);
+        self.record.inside(time, &mut |wanted| step.exactly_at(field, (wanted - step.t).max(0.0), options));
+        self.t = time;
+        self.x.copy_from_slice(end);
+        self.field.project(self.t, &mut self.x);
+        if h > 0.0 {
+            self.tape.step(&mut self.field, step, h, &self.x);
+        }
+    }
+
+    /// Takes a step whose error is small enough, to the stop at most and no longer than a fall allows; chooses the length of the next.
+    fn accepted(&mut self, step: &mut Step, rest: f64, longest: f64) -> Result<(), Status> {
+        let wanted = self.pace.h;
+        // Two steps of equal length are better than a long and a very short one.
+        let mut h = if wanted >= rest * (1.0 - 1e-12) { rest } else { wanted.min(0.5 * rest) };
+        h = h.min(longest);
+        let mut is_short = h < wanted;
+        // Near 0 the direction of a ball is stiff in a way of its own.
+        let method = if self.field.moving().is_empty() { self.pace.method } else { Method::Explicit };
+        step.begin(&mut self.field, self.t, &self.x, method, self.pace.is_continued);
+        let selectors = self.field.selectors.clone();
+        loop {
+            if self.counts.steps + self.counts.rejected >= self.options.max_steps {
+                return Err(Status::StepLimit);
+            }
+            step.attempt(&mut self.field, h, self.options);
+            let next = h * factor(step);
+            if step.error <= 1.0 {
+                // A step that a stop made short says nothing against long ones.
+                self.pace.h = if is_short { next.max(wanted) } else { next };
+                return Ok(());
+            }
+            self.field.selectors.copy_from_slice(&selectors);
+            self.counts.rejected += 1;
+            (h, is_short) = (next, false);
+            if h <= 4.0 * f64::EPSILON * self.t.abs().max(h * 1e3).max(f64::MIN_POSITIVE) {
+                return Err(self.stuck());
+            }
+        }
+    }
+
+    /// Why steps become too short: the sliding ends to be unique, or something grows beyond all bounds.
+    fn stuck(&mut self) -> Status {
+        let surfaces = self.surfaces_here();
+        if let Err(status) = self.settle(surfaces).and_then(|()| self.finite_here()) {
+            return status;
+        }
+        let rate = self.field.rate(self.t, &self.x);
+        let growth = |i: &usize| (rate[*i] / (1.0 + self.x[*i].abs())).abs();
+        let worst = (0..self.x.len()).max_by(|i, j| growth(i).total_cmp(&growth(j)));
+        Status::NotFinite(worst.map_or_else(Origin::default, |row| self.field.system.flow.origin(row)))
+    }
+
+    /// Where in a step the surfaces that the state slides on cease to attract, to rounding.
+    fn attraction_ends(&mut self, step: &Step) -> Option<f64> {
+        let is_sliding = !self.field.sliding().is_empty();
+        if !is_sliding || self.attracts(step, 1.0) || !self.attracts(step, 0.0) {
+            return None;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        while high - low > 2.0 * f64::EPSILON {
+            let middle = 0.5 * (low + high);
+            if self.attracts(step, middle) { low = middle } else { high = middle }
+        }
+        Some(high)
+    }
+
+    fn attracts(&mut self, step: &Step, theta: f64) -> bool {
+        let (t, x) = (step.t + theta * step.h, step.at(theta));
+        let sliding = self.field.sliding();
+        let normals = self.field.normals(t, &x);
+        self.field.follow_directions(t, &x);
+        let selectors = self.field.selectors.clone();
+        let (rate, by_selector) = self.field.with_selectors(t, &x, &selectors);
+        let b = surface_rates(&normals, &rate, &by_selector, &sliding).1;
+        is_unique(&b, &blocks(&self.field.system.balls, &sliding))
+    }
+}

@@ -1,0 +1,178 @@
+//! One step: an explicit part, and a mixed complementarity problem for the end and the selectors of the implicit part.
+//!
+//! ```text
+//! F(x+, s) = x+ - x - h [b0 f(t, x, s0) + b f(t + c h, z, s)] = 0,    s in Sgn(psi(t + c h, z))
+//! ```
+//!
+//! Newton's method with the inclusion kept as it is: with `d = -F_x^-1 F` and `D = -F_x^-1 F_s` the end moves by
+//! `d + D (s' - s)`, the guards by `psi_x w` times that, and the new selectors `s'` solve a linear complementarity problem.
+//! Steps are shortened until `F` shrinks; where it cannot, because only the selectors were wrong, they are not.
+
+use super::field::{Field, Point};
+use super::rule::Grid;
+use super::run::Failure;
+use crate::simulate::selectors;
+use crate::transcribe::tableau::Node;
+use nalgebra::{DMatrix, DVector};
+
+const MOST_ITERATIONS: usize = 100;
+
+/// A change of the end and an error of `F` below this part of the end are the last: what is left after it is their square.
+/// Selectors are not asked, because they may be many for one end.
+const LAST_CHANGE: f64 = 1e-10;
+
+/// Selectors closer to 1 than this are 1.
+const SIDE: f64 = 1e-12;
+
+/// A step with all that it was computed from.
+pub(super) struct Step {
+    pub index: usize,
+    pub h: f64,
+    /// What the explicit part was evaluated at.
+    pub old: Point,
+    /// Selectors of the explicit part that the step before determined.
+    pub carried: Vec<bool>,
+    /// What the implicit part was evaluated at.
+    pub new: Point,
+    /// Selectors of the implicit part that keep their guards at 0.
+    pub free: Vec<usize>,
+    pub end: DVector<f64>,
+}
+
+impl Step {
+    /// The step with an index from a state; `before` is the step that ended there.
+    pub fn take(
+        field: &Field,
+        grid: &Grid,
+        index: usize,
+        x: DVector<f64>,
+        before: Option<&Step>,
+    ) -> Result<Self, Failure> {
+        let surfaces = field.system.surfaces.len();
+        let s = before.map_or(DVector::zeros(surfaces), |step| step.new.s.clone());
+        let u = field.control(grid.middle(index));
+        let mut old = Point { t: field.time(grid.tau(index, 0.0)), x, u, s };
+        let carried: Vec<bool> =
+            (0..surfaces).map(|i| before.is_some_and(|step| step.free.contains(&i))).collect();
+        let h = field.duration / grid.count() as f64;
+        let mut fixed = old.x.clone();
+        if let Some(weight) = grid.explicit {
+            old.s = explicit_selectors(field, &old, &carried);
+            fixed += h * weight * field.rate(&old);
+        }
+        let Some(node) = &grid.implicit else {
+            finite(field, &old, &fixed)?;
+            return Ok(Step { index, h, new: old.clone(), old, carried, free: Vec::new(), end: fixed });
+        };
+        let t = field.time(grid.tau(index, node.time));
+        let (end, s) = Implicit { field, node, h, t, old: &old, fixed: &fixed, index }.solve()?;
+        let new = Point { t, x: blended(node, &old.x, &end), u: old.u.clone(), s };
+        let free = (0..surfaces).filter(|&i| new.s[i].abs() < 1.0).collect();
+        Ok(Step { index, h, old, carried, new, free, end })
+    }
+}
+
+/// On a surface the selector that the step before ended with (0 before the first), else the side.
+fn explicit_selectors(field: &Field, old: &Point, carried: &[bool]) -> DVector<f64> {
+    let psi = field.psi(old);
+    DVector::from_fn(
+        carried.len(),
+        |i, _| if carried[i] || psi[i] == 0.0 { old.s[i] } else { psi[i].signum() },
+    )
+}
+
+/// `z`
+fn blended(node: &Node, x: &DVector<f64>, end: &DVector<f64>) -> DVector<f64> {
+    DVector::from_fn(x.len(), |i, _| (1.0 - node.blend[i]) * x[i] + node.blend[i] * end[i])
+}
+
+/// Blames the first component that has no value.
+fn finite(field: &Field, at: &Point, values: &DVector<f64>) -> Result<(), Failure> {
+    match values.iter().position(|value| !value.is_finite()) {
+        Some(row) => Err(Failure::NotFinite { time: at.t, origin: field.system.flow.origin(row) }),
+        None => Ok(()),
+    }
+}
+
+/// `m` with each column multiplied by the blend of its state.
+pub(super) fn weighted(m: &DMatrix<f64>, node: &Node) -> DMatrix<f64> {
+    DMatrix::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)] * node.blend[j])
+}
+
+/// The implicit part of a step.
+struct Implicit<'s> {
+    field: &'s Field<'s>,
+    node: &'s Node,
+    h: f64,
+    t: f64,
+    old: &'s Point,
+    /// The old state after the explicit part.
+    fixed: &'s DVector<f64>,
+    index: usize,
+}
+
+/// How far a Newton step goes.
+struct Change {
+    x: DVector<f64>,
+    s: DVector<f64>,
+    /// The size of `F` before it.
+    residual: f64,
+}
+
+impl Implicit<'_> {
+    fn solve(&self) -> Result<(DVector<f64>, DVector<f64>), Failure> {
+        let (mut x, mut s) = (self.old.x.clone(), self.old.s.clone());
+        for _ in 0..MOST_ITERATIONS {
+            let change = self.change(&x, &s)?;
+            let is_last = relative(&change.x, &x).max(change.residual) <= LAST_CHANGE;
+            let part = if is_last { 1.0 } else { self.damping(&x, &s, &change) };
+            x += part * change.x;
+            s += part * change.s;
+            if is_last {
+                return Ok((x, s.map(|s| if s.abs() > 1.0 - SIDE { s.signum() } else { s })));
+            }
+        }
+        Err(Failure::NotConverged { step: self.index, time: self.t })
+    }
+
+    fn point(&self, end: &DVector<f64>, s: &DVector<f64>) -> Point {
+        Point { t: self.t, x: blended(self.node, &self.old.x, end), u: self.old.u.clone(), s: s.clone() }
+    }
+
+    /// One linear complementarity problem.
+    fn change(&self, x: &DVector<f64>, s: &DVector<f64>) -> Result<Change, Failure> {
+        let (point, layout) = (self.point(x, s), self.field.system.layout);
+        let (flow, guards) = (self.field.flow(&point), self.field.guards(&point));
+        let scale = self.h * self.node.weight;
+        let residual = x - self.fixed - scale * &flow.values;
+        finite(self.field, &point, &residual)?;
+        let by_state = weighted(&flow.by.columns_range(layout.states()).into_owned(), self.node);
+        let singular = Failure::Singular { step: self.index, time: self.t };
+        let inverse = (DMatrix::identity(layout.x, layout.x) - scale * by_state).lu();
+        let along =
+            inverse.solve(&(scale * flow.by.columns_range(layout.selectors()))).ok_or(singular.clone())?;
+        let plain = -inverse.solve(&residual).ok_or(singular.clone())?;
+        let normals = weighted(&guards.by.columns_range(layout.states()).into_owned(), self.node);
+        let a = &guards.values + &normals * (&plain - &along * s);
+        let next = selectors(&a, &-(&normals * &along)).ok_or(singular)?;
+        let turned = next - s;
+        Ok(Change { x: plain + along * &turned, s: turned, residual: relative(&residual, x) })
+    }
+
+    /// The largest of 1, 1/2, 1/4 ... that makes `F` smaller; 1 if none does.
+    fn damping(&self, x: &DVector<f64>, s: &DVector<f64>, change: &Change) -> f64 {
+        let residual = |part: f64| {
+            let (x, s) = (x + part * &change.x, s + part * &change.s);
+            let rate = self.field.rate(&self.point(&x, &s));
+            relative(&(&x - self.fixed - self.h * self.node.weight * rate), &x)
+        };
+        let parts = (0..24).map(|halvings| 0.5_f64.powi(halvings));
+        parts.into_iter().find(|&part| residual(part) < change.residual).unwrap_or(1.0)
+    }
+}
+
+/// The largest component in units of what it changes.
+fn relative(change: &DVector<f64>, x: &DVector<f64>) -> f64 {
+    let part = change.iter().zip(x.iter()).map(|(change, x)| change.abs() / (1.0 + x.abs()));
+    part.fold(0.0, |largest, part| if part > largest || part.is_nan() { part } else { largest })
+}

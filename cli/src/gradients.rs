@@ -1,10 +1,20 @@
 //! Beside the exact gradient: those that a user may be computing otherwise, of the smoothed and of the discretised problem.
 
+use crate::quantities::By;
 use fdcc_compiler::Model;
 use fdcc_runtime::problem::Columns;
-use fdcc_runtime::sensitivity::Quantity;
+use fdcc_runtime::sensitivity::{Quantity, hessian};
 use fdcc_runtime::simulate::{Controls, Simulation, System};
 use fdcc_runtime::stepping::{self, Failure, Grid, step_through};
+
+/// What is to be differentiated by what.
+pub struct Question<'a> {
+    pub model: &'a Model,
+    /// For sensitivities, compiled from the model.
+    pub system: System,
+    pub controls: Controls,
+    pub by: Vec<By>,
+}
 
 /// The gradient of what fixed steps compute.
 pub struct Stepped {
@@ -17,57 +27,56 @@ pub struct Stepped {
 /// Where the method names no width: this part of the largest value of a switching function.
 const RELATIVE_WIDTH: f64 = 0.01;
 
-/// The gradient of the true system, discretised; or why there is none.
-pub fn discretised(
-    model: &Model,
-    system: &System,
-    controls: &Controls,
-    quantities: &[Quantity],
-) -> Result<Stepped, String> {
-    Ok(Stepped { sigma: None, gradient: stepped(model, system, controls, quantities)? })
-}
-
-/// The same with the surfaces smoothed, as a solve has it. `simulation` is of the true system.
-pub fn smoothed(
-    model: &Model,
-    system: &System,
-    simulation: &Simulation,
-    controls: &Controls,
-    quantities: &[Quantity],
-) -> Result<Stepped, String> {
-    let refused = |_| "a jump cannot be smoothed".to_string();
-    let mut smooth = fdcc_compiler::compile_smoothed(model).map_err(refused)?;
-    if model.method.sigma.is_none() && model.method.continuation.is_empty() {
-        let sizes = sizes(system, simulation);
-        for (surface, size) in system.surfaces.iter().zip(sizes) {
-            smooth.parameters[surface.sigma].value = RELATIVE_WIDTH * if size > 0.0 { size } else { 1.0 };
-        }
+impl Question<'_> {
+    /// All numbers to differentiate by, in the order of their names.
+    pub fn quantities(&self) -> Vec<Quantity> {
+        self.by.iter().flat_map(|by| by.quantities.iter().copied()).collect()
     }
-    let sigma = system.surfaces.first().map(|surface| smooth.parameters[surface.sigma].value);
-    Ok(Stepped { sigma, gradient: stepped(model, &smooth, controls, quantities)? })
-}
 
-fn stepped(
-    model: &Model,
-    system: &System,
-    controls: &Controls,
-    quantities: &[Quantity],
-) -> Result<Vec<f64>, String> {
-    let grid = Grid::new(system, &model.method);
-    let found = step_through(system, controls, &grid)
-        .and_then(|stepped| stepping::gradient(system, controls, &grid, &stepped));
-    let whole = found.map_err(|failure| why(&failure))?;
-    let by = |quantity: &Quantity| match *quantity {
-        Quantity::Parameter(at) => whole.parameters[at],
-        Quantity::Start(at) => whole.starts[at],
-        Quantity::Control { row, control } => whole.controls[row][control],
-    };
-    Ok(quantities.iter().map(by).collect())
+    /// The gradient of the true system, discretised, or why there is none; fixed steps know no jumps.
+    pub fn discretised(&self) -> Option<Result<Stepped, String>> {
+        let stepped = || Ok(Stepped { sigma: None, gradient: self.stepped(&self.system)? });
+        self.system.jumps.is_empty().then(stepped)
+    }
+
+    /// The same with the surfaces smoothed, as a solve has it. `simulation` is of the true system.
+    pub fn smoothed(&self, simulation: &Simulation) -> Option<Result<Stepped, String>> {
+        let mut smooth = fdcc_compiler::compile_smoothed(self.model).ok()?;
+        let first = self.system.surfaces.first()?;
+        if self.model.method.sigma.is_none() && self.model.method.continuation.is_empty() {
+            let sizes = sizes(&self.system, simulation);
+            for (surface, size) in self.system.surfaces.iter().zip(sizes) {
+                smooth.parameters[surface.sigma].value = RELATIVE_WIDTH * if size > 0.0 { size } else { 1.0 };
+            }
+        }
+        let sigma = Some(smooth.parameters[first.sigma].value);
+        Some(self.stepped(&smooth).map(|gradient| Stepped { sigma, gradient }))
+    }
+
+    /// The second derivatives, or why there are none.
+    pub fn second(&self, simulation: &Simulation) -> Result<Vec<Vec<f64>>, String> {
+        let found = hessian(&self.system, &self.controls, simulation, &self.quantities());
+        found.ok_or("there are no second derivatives where infinitely many jumps come to rest".to_string())
+    }
+
+    fn stepped(&self, system: &System) -> Result<Vec<f64>, String> {
+        let grid = Grid::new(system, &self.model.method);
+        let found = step_through(system, &self.controls, &grid)
+            .and_then(|stepped| stepping::gradient(system, &self.controls, &grid, &stepped));
+        let whole = found.map_err(|failure| why(&failure))?;
+        let by = |quantity: Quantity| match quantity {
+            Quantity::Parameter(at) => whole.parameters[at],
+            Quantity::Start(at) => whole.starts[at],
+            Quantity::Control { row, control } => whole.controls[row][control],
+        };
+        Ok(self.quantities().into_iter().map(by).collect())
+    }
 }
 
 fn why(failure: &Failure) -> String {
     match failure {
         Failure::Jumps => "fixed steps know no jumps".into(),
+        Failure::Directions => "fixed steps know no `Dir`".into(),
         Failure::NoObjective => "there is nothing to differentiate".into(),
         Failure::NotFinite { time, origin } => format!("`{}` has no value at t = {time}", origin.label),
         Failure::NotConverged { time, .. } => {

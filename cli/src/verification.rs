@@ -4,9 +4,8 @@ use crate::conditions::{Condition, Conditions};
 use crate::output::saved::Saved;
 use crate::replay::Replay;
 use crate::solver::Failure;
-use crate::stays::stays;
+use crate::stays::{Stay, stays};
 use fdcc_compiler::Model;
-use fdcc_runtime::modes::Span;
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::simulate::{Controls, Options, Simulation, Status, System, simulate};
 
@@ -28,7 +27,7 @@ pub struct Verified {
     /// Bounds of states that are violated; all path and end conditions.
     pub conditions: Vec<Condition>,
     /// For each surface.
-    pub stays: Vec<Vec<Span>>,
+    pub stays: Vec<Vec<Stay>>,
 }
 
 /// The largest difference of a state over the grid, in units of max(1, |x|).

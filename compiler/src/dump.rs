@@ -53,11 +53,19 @@ fn symbol_name(model: &Model, symbol: Symbol) -> String {
         Symbol::Control(index) => model.controls[index].place.name.clone(),
         Symbol::Param(index) => model.params[index].place.name.clone(),
         Symbol::Free(index) => model.frees[index].place.name.clone(),
-        Symbol::Selector(index) => format!("Sgn({})", model.surfaces[index].place.name),
+        Symbol::Selector(index) => selector_name(model, index),
         Symbol::AtStart(index) => format!("{}(start)", model.states[index].place.name),
         Symbol::AtEnd(index) => format!("{}(end)", model.states[index].place.name),
         Symbol::Integral(index) => model.integrals[index].place.name.clone(),
         Symbol::Simulated(_) | Symbol::Argument => "_".into(),
+    }
+}
+
+/// `Sgn(slip)`, `Dir(vel)[1]`.
+fn selector_name(model: &Model, index: usize) -> String {
+    match model.balls.iter().find(|ball| ball.surfaces.contains(&index)) {
+        Some(ball) => format!("Dir({})[{}]", ball.place.name, index - ball.surfaces.start + 1),
+        None => format!("Sgn({})", model.surfaces[index].place.name),
     }
 }
 
@@ -98,9 +106,9 @@ fn input_names(model: &Model, program: &Program, layout: &Layout) -> Vec<String>
     names.extend(model.controls.iter().take(layout.u).map(|it| it.place.name.clone()));
     names.extend(model.params.iter().map(|it| it.place.name.clone()));
     names.extend(model.frees.iter().map(|it| it.place.name.clone()));
-    names.extend(model.surfaces.iter().map(|it| format!("sigma({})", it.place.name)));
+    names.extend(model.switches().iter().map(|it| format!("sigma({})", it.place.name)));
     names.resize(layout.parameters().end, "sigma(abs)".into());
-    names.extend(model.surfaces.iter().take(layout.s).map(|it| format!("Sgn({})", it.place.name)));
+    names.extend((0..layout.s).map(|index| selector_name(model, index)));
     names
 }
 

@@ -115,6 +115,25 @@ pub struct Surface {
     pub psi: ExprId,
 }
 
+/// The vector of a `Dir`: the length of `s` is at most 1, and `s = psi/|psi|` off 0.
+#[derive(Clone, Debug)]
+pub struct Ball {
+    /// Its first use, named by the text of the vector.
+    pub place: Place,
+    /// Its components, as indices into [`Model::surfaces`].
+    pub surfaces: std::ops::Range<usize>,
+}
+
+/// What is smoothed with one width: a surface by itself, or the components of a [`Ball`].
+pub struct Switch<'m> {
+    /// The surface or the ball.
+    pub place: &'m Place,
+    /// Indices into [`Model::surfaces`].
+    pub surfaces: std::ops::Range<usize>,
+    /// Whether it is a ball.
+    pub is_ball: bool,
+}
+
 /// A reset of the state: `x+ = r(t, x-, p)` where a surface is crossed in one direction.
 #[derive(Clone, Debug)]
 pub struct Jump {
@@ -218,6 +237,8 @@ pub struct Model {
     pub controls: Vec<Control>,
     /// Surfaces.
     pub surfaces: Vec<Surface>,
+    /// Which of them are the components of a `Dir`.
+    pub balls: Vec<Ball>,
     /// Resets of the state.
     pub jumps: Vec<Jump>,
     /// First and last time, over parameters and unknowns.
@@ -261,6 +282,7 @@ impl Model {
             states: Vec::new(),
             controls: Vec::new(),
             surfaces: Vec::new(),
+            balls: Vec::new(),
             jumps: Vec::new(),
             interval,
             path: Vec::new(),
@@ -281,6 +303,19 @@ impl Model {
     pub fn with_objective(&self, value: ExprId) -> Model {
         let place = self.objective.as_ref().map(|(place, _)| place.clone()).unwrap_or_default();
         Model { objective: Some((place, value)), sense: 1.0, ..self.clone() }
+    }
+
+    /// The surfaces, with those of a ball taken together.
+    pub fn switches<'m>(&'m self) -> Vec<Switch<'m>> {
+        let is_alone = |at: &usize| self.balls.iter().all(|ball| !ball.surfaces.contains(at));
+        let alone =
+            |at: usize| Switch { place: &self.surfaces[at].place, surfaces: at..at + 1, is_ball: false };
+        let mut all: Vec<Switch<'m>> = (0..self.surfaces.len()).filter(is_alone).map(alone).collect();
+        let of =
+            |ball: &'m Ball| Switch { place: &ball.place, surfaces: ball.surfaces.clone(), is_ball: true };
+        all.extend(self.balls.iter().map(of));
+        all.sort_by_key(|switch| switch.surfaces.start);
+        all
     }
 
     /// The graph input that is a symbol.

@@ -5,6 +5,7 @@
 //! ```text
 //! Sgn_sigma(z)    = S(z / sigma)
 //! |z|_sigma       = sigma A(z / sigma)      with A' = S, A even, A(u) - |u| -> 0
+//! Dir_sigma(z)    = S(|z| / sigma) z / |z|
 //! max_sigma(a, b) = (a + b + |a - b|_sigma) / 2,   min_sigma(a, b) = (a + b - |a - b|_sigma) / 2
 //! ```
 
@@ -23,6 +24,8 @@ pub struct Kernel {
     pub compact: bool,
     step: fn(&mut Graph, ExprId) -> ExprId,
     absolute: fn(&mut Graph, ExprId) -> ExprId,
+    /// `S(u) / u` over `u^2`, in which it is smooth at 0.
+    ratio: fn(&mut Graph, ExprId) -> ExprId,
 }
 
 /// All kernels.
@@ -39,6 +42,7 @@ pub static KERNELS: [Kernel; 5] = [
             let shift = g.number(std::f64::consts::LN_2);
             g.add(shifted, shift)
         },
+        ratio: ratio_of_tanh,
     },
     Kernel {
         name: "sqrt",
@@ -50,6 +54,12 @@ pub static KERNELS: [Kernel; 5] = [
             g.div(u, root)
         },
         absolute: hyperbola,
+        ratio: |g, square| {
+            let one = g.number(1.0);
+            let sum = g.add(square, one);
+            let root = g.sqrt(sum);
+            g.reciprocal(root)
+        },
     },
     Kernel {
         name: "linear",
@@ -59,6 +69,7 @@ pub static KERNELS: [Kernel; 5] = [
         step: |_, u| u,
         // (u^2 + 1) / 2
         absolute: |g, u| polynomial_of_square(g, u, &[0.5, 0.5]),
+        ratio: |g, _| g.number(1.0),
     },
     Kernel {
         name: "cubic",
@@ -68,6 +79,7 @@ pub static KERNELS: [Kernel; 5] = [
         step: |g, u| odd_polynomial(g, u, &[1.5, -0.5]),
         // (3 + 6 u^2 - u^4) / 8
         absolute: |g, u| polynomial_of_square(g, u, &[0.375, 0.75, -0.125]),
+        ratio: |g, square| polynomial(g, square, &[1.5, -0.5]),
     },
     Kernel {
         name: "quintic",
@@ -77,6 +89,7 @@ pub static KERNELS: [Kernel; 5] = [
         step: |g, u| odd_polynomial(g, u, &[1.875, -1.25, 0.375]),
         // (5 + 15 u^2 - 5 u^4 + u^6) / 16
         absolute: |g, u| polynomial_of_square(g, u, &[0.3125, 0.9375, -0.3125, 0.0625]),
+        ratio: |g, square| polynomial(g, square, &[1.875, -1.25, 0.375]),
     },
 ];
 
@@ -92,6 +105,52 @@ pub fn step(graph: &mut Graph, kernel: &Kernel, z: ExprId, sigma: ExprId) -> Exp
     let (minus, plus) = (graph.number(-1.0), graph.number(1.0));
     if kernel.compact { outside(graph, u, [minus, inside, plus]) } else { inside }
 }
+
+/// `Dir_sigma(z)`: `S(u)/u z/sigma` with `u = |z|/sigma`, all through `u^2`, so that nothing is singular at 0.
+pub fn direction(graph: &mut Graph, kernel: &Kernel, z: &[ExprId], sigma: ExprId) -> Vec<ExprId> {
+    let scaled: Vec<ExprId> = z.iter().map(|&z| graph.div(z, sigma)).collect();
+    let squares: Vec<ExprId> = scaled.iter().map(|&u| graph.square(u)).collect();
+    let square = graph.sum(&squares);
+    let inside = (kernel.ratio)(graph, square);
+    let ratio = if kernel.compact { beyond_one(graph, square, inside) } else { inside };
+    scaled.into_iter().map(|u| graph.mul(ratio, u)).collect()
+}
+
+/// `inside` for u <= 1, 1/u beyond; each branch has a value on both sides.
+fn beyond_one(graph: &mut Graph, square: ExprId, inside: ExprId) -> ExprId {
+    let one = graph.number(1.0);
+    let clamped = graph.select_le(square, one, one, square);
+    let root = graph.sqrt(clamped);
+    let outside = graph.reciprocal(root);
+    graph.select_le(square, one, inside, outside)
+}
+
+/// tanh(u)/u: near 0 its Taylor polynomial, which is exact to rounding there.
+fn ratio_of_tanh(graph: &mut Graph, square: ExprId) -> ExprId {
+    let series = polynomial(graph, square, &TANH);
+    let limit = graph.number(TANH_LIMIT);
+    let clamped = graph.select_le(square, limit, limit, square);
+    let u = graph.sqrt(clamped);
+    let tanh = graph.tanh(u);
+    let far = graph.div(tanh, u);
+    graph.select_le(square, limit, series, far)
+}
+
+/// tanh(u)/u as a polynomial in u^2.
+const TANH: [f64; 9] = [
+    1.0,
+    -1.0 / 3.0,
+    2.0 / 15.0,
+    -17.0 / 315.0,
+    62.0 / 2835.0,
+    -1382.0 / 155_925.0,
+    21_844.0 / 6_081_075.0,
+    -929_569.0 / 638_512_875.0,
+    6_404_582.0 / 10_854_718_875.0,
+];
+
+/// Up to here in u^2 the polynomial and its first two derivatives are exact to rounding.
+const TANH_LIMIT: f64 = 0.02;
 
 /// `|z|_sigma`.
 pub fn absolute(graph: &mut Graph, kernel: &Kernel, z: ExprId, sigma: ExprId) -> ExprId {
@@ -142,9 +201,14 @@ fn hyperbola(graph: &mut Graph, u: ExprId) -> ExprId {
 /// c0 + c1 u^2 + c2 u^4 + ...
 fn polynomial_of_square(graph: &mut Graph, u: ExprId, coefficients: &[f64]) -> ExprId {
     let square = graph.square(u);
+    polynomial(graph, square, coefficients)
+}
+
+/// c0 + c1 q + c2 q^2 + ...
+fn polynomial(graph: &mut Graph, q: ExprId, coefficients: &[f64]) -> ExprId {
     let zero = graph.number(0.0);
     coefficients.iter().rev().fold(zero, |sum, &coefficient| {
-        let product = graph.mul(sum, square);
+        let product = graph.mul(sum, q);
         let coefficient = graph.number(coefficient);
         graph.add(coefficient, product)
     })

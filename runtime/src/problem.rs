@@ -233,7 +233,7 @@ pub struct Unknown {
     pub bounds: Bounds,
 }
 
-/// A switching surface, the zero set of output `i` of [`Problem::guards`].
+/// A switching surface, the zero set of output `i` of the guards; in a [`Problem`] also a whole `Dir`, with `|psi|`.
 #[derive(Clone, Debug)]
 pub struct Surface {
     /// Its name.
@@ -325,7 +325,7 @@ pub struct Problem {
     pub unknowns: Vec<Unknown>,
     /// Switching surfaces.
     pub surfaces: Vec<Surface>,
-    /// The smoothed right side over normalised time: `(tf - t0) * f(t, x, u, p, s = Sgn_sigma(psi))`, one output
+    /// The smoothed right side over normalised time: `(tf - t0) * f(t, x, u, p, s = Sgn_sigma(psi) or Dir_sigma(psi))`, one output
     /// per state; then, if [`Problem::running_cost`], one more: `(tf - t0) *` the integrand of the objective.
     /// Differentiated by `x`, `u` and the unknowns.
     pub dynamics: Arc<dyn Function>,
@@ -350,7 +350,7 @@ pub struct Problem {
     pub guess: Arc<dyn Function>,
     /// Inputs `[p]`; outputs `t0, tf`.
     pub interval: Arc<dyn Function>,
-    /// `psi`, one output per surface, over normalised time.
+    /// `psi`, or `|psi|` of a `Dir`, one output per surface, over normalised time.
     pub guards: Arc<dyn Function>,
     /// Names of the outputs of `report`.
     pub report_names: Vec<String>,

@@ -1,16 +1,18 @@
-//! Random systems with one to four surfaces against simple, slow references.
+//! Random systems with one to four surfaces, or with a ball among them, against simple, slow references.
 //!
 //! Many that are affine in each mode, with starts on surfaces and with surfaces that move, against a solution mode by mode: events,
 //! end, and every refusal. And a few against implicit Euler with Gauss-Seidel, which knows no events:
 //!
 //! `x' = a + c cos(w t) - A x - B s`, `s_i in Sgn(x_i)`, `B` diagonally dominant, so the solution is unique. One step of the reference
 //! solves `x+ = x + h (a + c cos(w t+) - A x - B s)`, `s_i in Sgn(x+_i)`, surface by surface until nothing changes; its error is of
-//! order `h`.
+//! order `h`. The first components may form a ball, `s in Dir(x)`.
 
 #[path = "random_simulations/affine.rs"]
 mod affine;
 #[path = "random_simulations/exact.rs"]
 mod exact;
+#[path = "random_simulations/flow.rs"]
+mod flow;
 
 use affine::Affine;
 use exact::{Ending, Exact, exact};
@@ -24,6 +26,8 @@ const LAST: f64 = 4.0;
 const STEPS: usize = 40_000;
 
 struct Friction {
+    /// How many of the first components form a ball.
+    ball: usize,
     start: Vec<f64>,
     constant: Vec<f64>,
     swing: Vec<f64>,
@@ -47,10 +51,11 @@ fn matrix(random: &mut Random, size: usize, diagonal: [f64; 2], beside: f64) -> 
 }
 
 impl Friction {
-    fn new(random: &mut Random, size: usize) -> Self {
+    fn new(random: &mut Random, size: usize, ball: usize) -> Self {
         let mut vector = |most: f64| -> Vec<f64> { (0..size).map(|_| random.between(-most, most)).collect() };
         let (start, constant, swing) = (vector(1.0), vector(0.5), vector(3.0));
         Friction {
+            ball,
             start,
             constant,
             swing,
@@ -63,14 +68,22 @@ impl Friction {
     fn text(&self) -> String {
         let (mut states, mut equations) = (String::new(), String::new());
         for i in 0..self.start.len() {
-            writeln!(states, "state x{i} start {}\nsurface p{i} = x{i}", self.start[i]).expect("text");
+            writeln!(states, "state x{i} start {}", self.start[i]).expect("text");
+            if i >= self.ball {
+                writeln!(states, "surface p{i} = x{i}").expect("text");
+            }
             write!(equations, "x{i}' in {} + {}*cos({}*t)", self.constant[i], self.swing[i], self.frequency)
                 .expect("text");
             for j in 0..self.start.len() {
                 let (damping, friction) = (self.damping[i][j], self.friction[i][j]);
-                write!(equations, " - ({damping})*x{j} - ({friction})*Sgn(p{j})").expect("text");
+                let set = if j < self.ball { format!("Dir(ball)[{}]", j + 1) } else { format!("Sgn(p{j})") };
+                write!(equations, " - ({damping})*x{j} - ({friction})*{set}").expect("text");
             }
             equations.push('\n');
+        }
+        if self.ball > 0 {
+            let names: Vec<String> = (0..self.ball).map(|i| format!("x{i}")).collect();
+            writeln!(states, "let ball = ({})", names.join(", ")).expect("text");
         }
         format!("time t in [0, {LAST}]\n{states}dynamics {{\n{equations}}}\n")
     }
@@ -88,10 +101,15 @@ impl Friction {
             let free: Vec<f64> = (0..x.len()).map(|i| x[i] + h * self.rest(i, k as f64 * h, &x)).collect();
             for _ in 0..200 {
                 let before = s.clone();
-                for i in 0..x.len() {
-                    let others: f64 =
-                        (0..x.len()).filter(|&j| j != i).map(|j| self.friction[i][j] * s[j]).sum();
-                    s[i] = ((free[i] - h * others) / (h * self.friction[i][i])).clamp(-1.0, 1.0);
+                let wanted = |i: usize, s: &[f64]| {
+                    let all: f64 = self.friction[i].iter().zip(s).map(|(b, s)| b * s).sum();
+                    s[i] + (free[i] - h * all) / (h * self.friction[i][i])
+                };
+                let ball: Vec<f64> = (0..self.ball).map(|i| wanted(i, &s)).collect();
+                let size = ball.iter().map(|s| s * s).sum::<f64>().sqrt().max(1.0);
+                ball.iter().enumerate().for_each(|(i, value)| s[i] = value / size);
+                for i in self.ball..x.len() {
+                    s[i] = wanted(i, &s).clamp(-1.0, 1.0);
                 }
                 if before.iter().zip(&s).all(|(a, b)| (a - b).abs() < 1e-12) {
                     break;
@@ -110,7 +128,7 @@ fn random_systems_end_where_implicit_euler_ends() {
     let mut random = Random::new(7);
     let (mut entries, mut exits) = (0, 0);
     for case in 0..40 {
-        let system = Friction::new(&mut random, 1 + case % 4);
+        let system = Friction::new(&mut random, 1 + case % 4, 0);
         let text = system.text();
         let compiled = compile_simulation(&meaning(&text)).expect("the model can be simulated");
         let simulation = simulate(&compiled, &Controls::Guess, &Options::default());
@@ -129,6 +147,30 @@ fn random_systems_end_where_implicit_euler_ends() {
         entries > 100 && exits > 50,
         "the systems are worth their while: {entries} entries, {exits} exits"
     );
+}
+
+/// Each component of a ball has the same friction, on which the others act.
+#[test]
+fn random_systems_with_a_ball_end_where_implicit_euler_ends() {
+    let mut random = Random::new(11);
+    let (mut entries, mut exits) = (0, 0);
+    for case in 0..40 {
+        let ball = 2 + case % 2;
+        let mut system = Friction::new(&mut random, ball + case % 3, ball);
+        let friction = system.friction[0][0];
+        (0..ball).for_each(|i| system.friction[i][i] = friction);
+        let text = system.text();
+        let compiled = compile_simulation(&meaning(&text)).expect("the model can be simulated");
+        let simulation = simulate(&compiled, &Controls::Guess, &Options::default());
+        assert!(matches!(simulation.status, Status::Completed), "{:?}\n{text}", simulation.status);
+        for (got, slow) in simulation.end.iter().zip(system.reference()) {
+            assert!((got - slow).abs() < 2e-3, "{got}, not {slow}\n{text}");
+        }
+        let of_ball = simulation.events.iter().filter(|event| event.surface == 0);
+        entries += of_ball.clone().filter(|event| event.kind == Kind::EntersSliding).count();
+        exits += of_ball.filter(|event| event.kind == Kind::LeavesUp).count();
+    }
+    assert!(entries > 30 && exits > 20, "the balls stick and slip: {entries} entries, {exits} exits");
 }
 
 /// What the systems had in them.

@@ -4,7 +4,7 @@
 use fdcc_compiler::graph::evaluate;
 use fdcc_compiler::lower::lower;
 use fdcc_compiler::program::VectorFunction;
-use fdcc_compiler::{Model, Program, check, compile, expectations};
+use fdcc_compiler::{Model, Program, check, compile, compile_simulation, expectations};
 use fdcc_grammar::{Code, Diagnostic, Severity, SourceFile, parse};
 use fdcc_runtime::problem::{Bounds, Columns, Degree};
 use fdcc_tests::{blocks, documents, repository, unclaimed};
@@ -341,6 +341,44 @@ minimize x(end)";
     let names: Vec<&str> = problem.surfaces.iter().map(|surface| surface.name.as_str()).collect();
     assert_eq!(names, ["x - y", "y"]);
     assert_eq!(problem.parameters[1].name, "sigma(y)");
+}
+
+/// One width for the vector, one guard, and the same vector known again; a component by itself is another surface.
+#[test]
+fn a_direction_is_one_surface_named_by_the_text_of_its_vector() {
+    let text = "
+time t in [0, 1]
+state v(x, y) start (1, 0)
+state w start 1
+dynamics {
+  v' in -Dir(v - (w, 0)) - 2*Dir(v)
+  w' in -Sgn(v.x) - Dir(v).y - Dir(w)
+}
+minimize w(end)";
+    let problem = compile(&model(text)).expect("it can be solved");
+    let names: Vec<&str> = problem.surfaces.iter().map(|surface| surface.name.as_str()).collect();
+    assert_eq!(names, ["v - (w, 0)", "v", "v.x", "w"]);
+    assert_eq!(problem.guards.outputs(), 4);
+    let system = compile_simulation(&model(text)).expect("it can be simulated");
+    let names: Vec<&str> = system.surfaces.iter().map(|surface| surface.name.as_str()).collect();
+    assert_eq!(names, ["(v - (w, 0)).x", "(v - (w, 0)).y", "v.x", "v.y", "v.x", "w"]);
+    assert_eq!(system.balls[1].surfaces, 2..4);
+    assert_eq!((system.name_of(3), system.name_of(4)), ("v", "v.x"));
+}
+
+/// sqrt kernel: psi/sqrt(|psi|^2 + sigma^2); the guard is |psi|.
+#[test]
+fn a_direction_is_smoothed_by_the_length_of_its_vector() {
+    let text = "
+time t in [0, 1]
+state v(x, y) start (1, 0)
+dynamics { v' in -Dir(v) }
+minimize v.x(end)
+method { smooth sigma = 0.5 kernel sqrt }";
+    let program = lower(&model(text));
+    let root = 0.5_f64.sqrt();
+    assert_close(&values(&program, &program.dynamics, &[0.0, 0.3, -0.4, 0.5]), &[-0.3 / root, 0.4 / root]);
+    assert_close(&values(&program, &program.guards, &[0.0, 0.3, -0.4, 0.5]), &[0.5]);
 }
 
 /// sqrt kernel: |z| becomes sqrt(z^2 + sigma^2), with the width of the surface.

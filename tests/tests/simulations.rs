@@ -64,6 +64,7 @@ fn kind(kind: Kind) -> &'static str {
         Kind::EntersSliding => "enters_sliding",
         Kind::LeavesUp => "leaves_up",
         Kind::LeavesDown => "leaves_down",
+        Kind::Passes => "passes",
         Kind::Jump(_) => "jump",
         Kind::StartsSliding => "starts_sliding",
     }
@@ -112,8 +113,7 @@ fn wanted(case: &Case) -> (Controls, Options) {
 
 fn check_events(name: &str, case: &Case, system: &System, simulation: &Simulation) {
     let seen = simulation.events.iter();
-    let seen: Vec<_> =
-        seen.map(|it| (it.time, system.surfaces[it.surface].name.as_str(), kind(it.kind))).collect();
+    let seen: Vec<_> = seen.map(|it| (it.time, system.name_of(it.surface), kind(it.kind))).collect();
     let agrees =
         |(a, b): (&(f64, &str, &str), &(f64, &str, &str))| near(a.0, b.0) && (a.1, a.2) == (b.1, b.2);
     let are_expected = seen.len() == case.events.len() && seen.iter().zip(&case.events).all(agrees);

@@ -57,6 +57,32 @@ fn every_step_is_odd_rises_to_one_and_is_the_slope_of_its_absolute_value() {
     }
 }
 
+/// `S(|z|/sigma) z/|z|` off 0, and through 0 with exact first and second derivatives.
+#[test]
+fn every_direction_is_the_step_along_its_vector() {
+    for kernel in &KERNELS {
+        let mut graph = Graph::new();
+        let (x, y, sigma) = (graph.input(0), graph.input(1), graph.input(2));
+        let direction = smooth::direction(&mut graph, kernel, &[x, y], sigma);
+        let step = smooth::step(&mut graph, kernel, x, sigma);
+        for length in [0.01, 0.13, 0.15, 0.7, 0.99, 1.01, 3.0] {
+            let along = evaluate(&graph, &[step], &[0.2 * length, 0.0, 0.2], &[])[0];
+            let values = evaluate(&graph, &direction, &[0.12 * length, -0.16 * length, 0.2], &[]);
+            let error = (values[0] - 0.6 * along).hypot(values[1] + 0.8 * along);
+            assert!(error < 1e-15, "{}: {values:?} at {length}", kernel.name);
+        }
+        let symbols = function(&mut graph, direction, states_and_parameters(2, 1));
+        let compiled = compile(&graph, &symbols);
+        let mut points = Columns::new(2, 6);
+        points.column_mut(0).copy_from_slice(&[0.0, 0.2, -0.15, 0.5, 1.9, 0.0]);
+        points.column_mut(1).copy_from_slice(&[0.0, 0.1, 0.14, -0.6, 0.3, 0.4]);
+        let multipliers = table(&mut Random::new(9), 2, 6, -1.0, 1.0);
+        check_machine_code(&graph, &symbols, &*compiled, &points, &[1.5], &multipliers, 1e-13)
+            .and_then(|()| check_differences(&*compiled, &[0, 1, 2], &points, &[1.5], &multipliers, 1e-8))
+            .unwrap_or_else(|error| panic!("{}: {error}", kernel.name));
+    }
+}
+
 /// The distance to the sign at a fixed z shrinks with sigma as fast as each formula says.
 #[test]
 fn every_step_approaches_the_sign_at_its_own_order() {

@@ -4,14 +4,13 @@ use super::Exit;
 use super::driven::Driven;
 use super::options::{Prepared, show, usage};
 use crate::exact::Exact;
-use crate::gradients::{discretised, smoothed};
+use crate::gradients::Question;
 use crate::output::gradient::{Document, Found};
 use crate::output::{self, files};
 use crate::quantities::{By, everything, named};
 use crate::solver::Failure;
 use clap::Args;
 use fdcc_grammar::{Severity, SourceFile, parse};
-use fdcc_runtime::sensitivity::{Quantity, hessian};
 use fdcc_runtime::simulate::{Controls, System};
 use std::path::PathBuf;
 
@@ -66,35 +65,32 @@ impl Grad {
 
     fn gradient(&self, prepared: &mut Prepared) -> Result<Document, Failure> {
         let replay = self.driven.adapt(prepared)?;
-        let model = &prepared.model;
-        if model.objective.is_none() {
+        if prepared.model.objective.is_none() {
             return Err(Failure::Usage(
                 "the model has no objective; `--of EXPR` says what to differentiate".into(),
             ));
         }
-        let system = fdcc_compiler::compile_sensitivities(model).map_err(Failure::Model)?;
+        let system = fdcc_compiler::compile_sensitivities(&prepared.model).map_err(Failure::Model)?;
         let controls = self.driven.controls(replay, &system)?;
         let by = self.by(&system, &controls, prepared)?;
-        let quantities: Vec<Quantity> = by.iter().flat_map(|by| by.quantities.iter().copied()).collect();
+        self.answer(&Question { model: &prepared.model, system, controls, by }, &prepared.source)
+    }
+
+    fn answer(&self, question: &Question, source: &SourceFile) -> Result<Document, Failure> {
+        let Question { model, system, controls, by } = question;
+        let has_second = self.second(by)?;
         let of = self.of.as_deref().unwrap_or("objective");
-        let exact = match Exact::new(&system, &controls, &self.driven.accuracy.options(), &quantities) {
+        let options = self.driven.accuracy.options();
+        let exact = match Exact::new(system, controls, &options, &question.quantities()) {
             Ok(exact) => exact,
-            Err(simulation) => return Ok(Document::without(of, &system, &simulation, &prepared.source)),
+            Err(simulation) => return Ok(Document::without(of, system, &simulation, source)),
         };
-        // Neither knows jumps, and without surfaces there is nothing to smooth.
-        let (has_jumps, has_surfaces) = (!system.jumps.is_empty(), !system.surfaces.is_empty());
-        let smoothed = (has_surfaces && !has_jumps)
-            .then(|| smoothed(model, &system, &exact.found.simulation, &controls, &quantities));
-        let discretised = (!has_jumps).then(|| discretised(model, &system, &controls, &quantities));
-        let second = self.second(&by)?.then(|| {
-            let found = hessian(&system, &controls, &exact.found.simulation, &quantities);
-            found.ok_or_else(|| {
-                "there are no second derivatives where infinitely many jumps come to rest".to_string()
-            })
-        });
-        let (system, by, exact, method) = (&system, &by, &exact, &model.method);
+        let simulation = &exact.found.simulation;
+        let second = has_second.then(|| question.second(simulation));
+        let (smoothed, discretised) = (question.smoothed(simulation), question.discretised());
+        let (exact, method) = (&exact, &model.method);
         let found = Found { of, system, by, exact, second, smoothed, discretised, method };
-        Ok(Document::new(found, &prepared.source))
+        Ok(Document::new(found, source))
     }
 
     /// Whether second derivatives are wanted; not of thousands of controls.

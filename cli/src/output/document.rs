@@ -185,7 +185,7 @@ pub fn status_name(status: &Status) -> &'static str {
 }
 
 /// The name of a mode in files and verdicts.
-pub fn mode_name(mode: Mode) -> &'static str {
+fn mode_name(mode: Mode) -> &'static str {
     match mode {
         Mode::Below => "below",
         Mode::Held => "held",

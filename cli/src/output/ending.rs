@@ -47,7 +47,7 @@ impl Ending {
     pub fn new(system: &System, simulation: &Simulation, source: &SourceFile) -> Self {
         let time = simulation.end_time;
         let state = state(system, &simulation.end);
-        let surface_name = |at: &usize| system.surfaces[*at].name.clone();
+        let surface_name = |at: &usize| system.name_of(*at).to_owned();
         let (status, why) = match &simulation.status {
             Status::Completed => return Ending { status: "completed", why: None },
             Status::NotUnique { surface, candidates } => {
@@ -120,8 +120,7 @@ fn candidate(system: &System, candidate: &Candidate) -> String {
     match candidate.sides.as_slice() {
         [(_, side)] => word(*side).to_string(),
         several => {
-            let named =
-                several.iter().map(|(i, side)| format!("{} {}", system.surfaces[*i].name, word(*side)));
+            let named = several.iter().map(|(i, side)| format!("{} {}", system.name_of(*i), word(*side)));
             named.collect::<Vec<_>>().join(", ")
         }
     }
@@ -158,7 +157,7 @@ fn entry(system: &System, event: &Event) -> EventEntry {
     };
     EventEntry {
         time: event.time,
-        surface: system.surfaces[event.surface].name.clone(),
+        surface: system.name_of(event.surface).to_owned(),
         kind: kind_name(event.kind),
         jump,
         margin: event.margin,
@@ -173,6 +172,7 @@ fn kind_name(kind: Kind) -> &'static str {
         Kind::EntersSliding => "enters_sliding",
         Kind::LeavesUp => "leaves_up",
         Kind::LeavesDown => "leaves_down",
+        Kind::Passes => "passes",
         Kind::Jump(_) => "jump",
         Kind::StartsSliding => "starts_sliding",
     }

@@ -160,7 +160,7 @@ impl Document {
 
 impl Reason {
     fn new(system: &System, trouble: &Trouble) -> Self {
-        let surface = system.surfaces[trouble.surface].name.clone();
+        let surface = system.name_of(trouble.surface).to_owned();
         Reason { kind: kind_name(trouble.kind), surface, time: trouble.time }
     }
 

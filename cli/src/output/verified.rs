@@ -1,16 +1,16 @@
 //! A replay of a solution on the true system: the short form in every solve, the document and the words of `fdcc verify`.
 
-use super::document::{Span, mode_name};
+use super::document::Span;
 use super::ending::{Ending, EventEntry, events, state};
 use super::named::Named;
 use super::number::{scientific, short, significant};
 use super::saved::Saved;
 use super::simulation::pairs;
 use crate::conditions::Condition;
+use crate::stays::{Stay, name};
 use crate::verification::Verified;
 use comfy_table::{CellAlignment, Table, presets};
 use fdcc_grammar::SourceFile;
-use fdcc_runtime::modes;
 use serde::Serialize;
 
 /// What a replay says of a solution.
@@ -131,13 +131,12 @@ impl Document {
             let time = it.point.map(|point| simulation.time[point]);
             (it.label.clone(), ConditionEntry { violation: it.violation, time })
         });
-        let span = |stay: &modes::Span| Span {
-            mode: mode_name(stay.mode).to_string(),
-            from: stay.from,
-            to: stay.to,
-        };
-        let surfaces = system.surfaces.iter().zip(stays);
-        let surfaces = surfaces.map(|(it, stays)| (it.name.clone(), stays.iter().map(span).collect()));
+        let span = |stay: &Stay| Span { mode: name(stay.mode).to_string(), from: stay.from, to: stay.to };
+        let surfaces = stays.iter().enumerate().map(|(at, stays)| (system.name_of(at).to_string(), stays));
+        let mut surfaces: Vec<(String, Vec<Span>)> =
+            surfaces.map(|(name, stays)| (name, stays.iter().map(span).collect())).collect();
+        // The components of a ball are one surface.
+        surfaces.dedup_by(|later, first| later.0 == first.0);
         Document {
             fdcc: env!("CARGO_PKG_VERSION").to_string(),
             model: system.name.clone(),
@@ -148,7 +147,7 @@ impl Document {
             state_gaps: gaps.collect(),
             conditions: conditions.collect(),
             events: events(system, simulation),
-            surfaces: surfaces.collect(),
+            surfaces: Named(surfaces),
         }
     }
 

@@ -4,7 +4,7 @@
 use super::Facts;
 use crate::resolve::elaborator::Role;
 use crate::resolve::text;
-use crate::resolve::value::SetUse;
+use crate::resolve::value::{SetForm, SetUse};
 use fdcc_grammar::ast::{Equation, EquationRelation};
 use fdcc_grammar::{Code, Diagnostic};
 
@@ -28,14 +28,15 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
 
 fn equality(equation: &Equation, set: &SetUse) -> Diagnostic {
     let surface = &set.surface;
-    let label = match set.is_sgn {
-        true => format!("a single value when {surface} != 0, the interval [-1, 1] when {surface} == 0"),
-        false => format!("a single value when {surface} != 0, anything between the two when {surface} == 0"),
+    let at_zero = match set.form {
+        SetForm::Sgn => "the interval [-1, 1]",
+        SetForm::Dir => "the unit ball",
+        SetForm::Match => "anything between the two",
     };
-    let why = if set.is_sgn {
-        "\nWhen the block sticks, the friction force is whatever keeps it still."
-    } else {
-        ""
+    let label = format!("a single value when {surface} != 0, {at_zero} when {surface} == 0");
+    let why = match set.form {
+        SetForm::Match => "",
+        _ => "\nWhen the block sticks, the friction force is whatever keeps it still.",
     };
     Diagnostic::new(
         Code::SetEquality,
@@ -63,7 +64,7 @@ fn no_set(equation: &Equation) -> Diagnostic {
         equation.relation_span,
         "`=` says the same",
     )
-    .help(format!("write `{repaired}`: without `Sgn` or `match` there is one value"))
+    .help(format!("write `{repaired}`: without `Sgn`, `Dir` or `match` there is one value"))
 }
 
 fn needs_a_value(facts: &Facts<'_, '_>, role: &Role<'_>, set: &SetUse) -> Diagnostic {
@@ -78,10 +79,13 @@ fn needs_a_value(facts: &Facts<'_, '_>, role: &Role<'_>, set: &SetUse) -> Diagno
         Some(fdcc_grammar::ast::ItemKind::Surface { value, .. }) => text::expr(value),
         _ => set.surface.to_string(),
     };
-    let whole =
-        if set.is_sgn { format!("Sgn({})", set.surface) } else { format!("match {} {{ ... }}", set.surface) };
+    let (whole, size) = match set.form {
+        SetForm::Sgn => (format!("Sgn({})", set.surface), "abs"),
+        SetForm::Dir => (format!("Dir({})", set.surface), "norm"),
+        SetForm::Match => (format!("match {} {{ ... }}", set.surface), "abs"),
+    };
     found.help(format!(
-        "for friction work write `integral(mu * N * abs({psi}))`: the same number, and continuous\n\
+        "for friction work write `integral(mu * N * {size}({psi}))`: the same number, and continuous\n\
          for the friction force that acts, name it: `let f = selected({whole})`"
     ))
 }

@@ -1,6 +1,6 @@
 //! Where the symbols of a model stand among the inputs of its functions.
 //!
-//! `p = [params | unknowns | sigma(surface)... | sigma(abs)]`; the last only where `abs`, `min` and `max` are
+//! `p = [params | unknowns | sigma(switch)... | sigma(abs)]`, a width for each surface or `Dir`; the last only where `abs`, `min` and `max` are
 //! smoothed and there is no surface to share a width with.
 
 use super::kernel;
@@ -26,13 +26,13 @@ pub(crate) struct Sizes {
 impl Sizes {
     pub fn new(model: &Model, hidden: usize) -> Self {
         let chosen = model.params.len() + model.frees.len();
-        let surfaces = model.surfaces.len();
-        let sigmas = if surfaces == 0 { model.smooth as usize } else { surfaces };
+        let switches = model.switches().len();
+        let sigmas = if switches == 0 { model.smooth as usize } else { switches };
         Sizes {
             states: model.states.len() + hidden,
             controls: model.controls.len(),
             parameters: chosen + sigmas,
-            surfaces,
+            surfaces: model.surfaces.len(),
             sigma_of_abs: (sigmas > 0).then_some(chosen),
         }
     }
@@ -78,11 +78,16 @@ impl Inputs {
         let psis: Vec<ExprId> = model.surfaces.iter().map(|surface| surface.psi).collect();
         let psis = self.apply(graph, &psis);
         let first_sigma = layout.parameters().start + model.params.len() + model.frees.len();
-        let mut step = |(at, psi): (usize, &ExprId)| {
+        let mut steps = psis.clone();
+        for (at, switch) in model.switches().into_iter().enumerate() {
             let sigma = graph.input((first_sigma + at) as u32);
-            smooth::step(graph, kernel(model), *psi, sigma)
-        };
-        let steps: Vec<ExprId> = psis.iter().enumerate().map(&mut step).collect();
+            let psi = &psis[switch.surfaces.clone()];
+            let smoothed = match switch.is_ball {
+                true => smooth::direction(graph, kernel(model), psi, sigma),
+                false => vec![smooth::step(graph, kernel(model), psi[0], sigma)],
+            };
+            steps[switch.surfaces].copy_from_slice(&smoothed);
+        }
         self.set(model, |symbol| match symbol {
             Symbol::Selector(index) => Some(steps[index]),
             _ => None,

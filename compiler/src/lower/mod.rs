@@ -22,7 +22,7 @@ pub use problem::problem;
 pub(crate) use simulation::{Purpose, simulation, system};
 
 use crate::graph::{ExprId, Graph};
-use crate::model::{Model, Place};
+use crate::model::{Model, Place, Switch};
 use crate::program::{Order, VectorFunction};
 use crate::smooth;
 use fdcc_runtime::problem::{Layout, Origin};
@@ -72,8 +72,9 @@ pub fn lower(model: &Model) -> Program {
         model.path.iter().map(|row| (row.value, origin(&row.place))),
         true,
     );
-    let guards = model.surfaces.iter().map(|surface| (surface.psi, origin(&surface.place)));
-    let guards = over_grid.function(&mut graph, "guards", guards, false);
+    let guards: Vec<_> =
+        model.switches().iter().map(|it| (size(&mut graph, model, it), origin(it.place))).collect();
+    let guards = over_grid.function(&mut graph, "guards", guards.into_iter(), false);
     let report = model.report.iter().map(|report| (report.value, origin(&report.place)));
     let report = over_grid.function(&mut graph, "report", report, false);
     let (boundary, boundary_rows) = boundary::lower(model, &mut graph, &sizes, &objective);
@@ -102,6 +103,17 @@ impl Program {
     pub fn functions(&self) -> [&VectorFunction; 7] {
         [&self.dynamics, &self.path, &self.boundary, &self.guess, &self.interval, &self.guards, &self.report]
     }
+}
+
+/// `psi` of a surface, `|psi|` of a ball.
+fn size(graph: &mut Graph, model: &Model, switch: &Switch) -> ExprId {
+    let psis: Vec<ExprId> = model.surfaces[switch.surfaces.clone()].iter().map(|it| it.psi).collect();
+    if !switch.is_ball {
+        return psis[0];
+    }
+    let squares: Vec<ExprId> = psis.iter().map(|&psi| graph.square(psi)).collect();
+    let sum = graph.sum(&squares);
+    graph.sqrt(sum)
 }
 
 /// Functions over normalised time, states, controls and parameters.

@@ -2,7 +2,7 @@
 
 use super::boundary::is_fixed;
 use super::{Numbers, Program, origin};
-use crate::model::{Model, Place, Symbol};
+use crate::model::{Model, Place, Switch, Symbol};
 use fdcc_runtime::problem::{
     Bounds, Function, Layout, Method, Origin, Parameter, Problem, Surface, Unknown, Variable,
 };
@@ -27,7 +27,7 @@ pub fn problem(
         states: states(model, &program.hidden, numbers),
         controls: controls(model, numbers),
         unknowns: unknowns(model, numbers),
-        surfaces: surfaces(model, first_sigma),
+        surfaces: switches(model, first_sigma),
         parameters,
         dynamics,
         running_cost: program.running_cost,
@@ -99,9 +99,9 @@ pub(super) fn parameters(model: &Model, count: usize, numbers: &Numbers) -> Vec<
     let frees = model.frees.iter().enumerate().map(|(at, it)| parameter(&it.place, Symbol::Free(at)));
     let mut all: Vec<Parameter> = params.chain(frees).collect();
     let width = width(&model.method);
-    for surface in &model.surfaces {
-        let name = format!("sigma({})", surface.place.name);
-        all.push(Parameter { name, value: width, origin: origin(&surface.place) });
+    for switch in model.switches() {
+        let name = format!("sigma({})", switch.place.name);
+        all.push(Parameter { name, value: width, origin: origin(switch.place) });
     }
     if all.len() < count {
         all.push(Parameter { name: "sigma(abs)".into(), value: width, origin: Origin::default() });
@@ -122,13 +122,26 @@ fn unknowns(model: &Model, numbers: &Numbers) -> Vec<Unknown> {
     model.frees.iter().enumerate().map(unknown).collect()
 }
 
-pub(super) fn surfaces(model: &Model, first_sigma: usize) -> Vec<Surface> {
-    let surface = |(at, surface): (usize, &crate::model::Surface)| Surface {
-        name: surface.place.name.clone(),
-        origin: origin(&surface.place),
+/// What has a width: each surface, and each `Dir` as a whole.
+fn switches(model: &Model, first_sigma: usize) -> Vec<Surface> {
+    let surface = |(at, switch): (usize, Switch)| Surface {
+        name: switch.place.name.clone(),
+        origin: origin(switch.place),
         sigma: first_sigma + at,
     };
-    model.surfaces.iter().enumerate().map(surface).collect()
+    model.switches().into_iter().enumerate().map(surface).collect()
+}
+
+/// Every surface, also those that are the components of a `Dir`.
+pub(super) fn surfaces(model: &Model, first_sigma: usize) -> Vec<Surface> {
+    let switches = model.switches().into_iter().enumerate();
+    let each = switches.flat_map(|(at, switch)| switch.surfaces.map(move |surface| (surface, at)));
+    let surface = |(surface, at): (usize, usize)| Surface {
+        name: model.surfaces[surface].place.name.clone(),
+        origin: origin(&model.surfaces[surface].place),
+        sigma: first_sigma + at,
+    };
+    each.map(surface).collect()
 }
 
 fn starts(model: &Model, program: &Program, numbers: &Numbers) -> Vec<Option<f64>> {

@@ -17,7 +17,7 @@ use super::problem::{controls, parameters, states, surfaces};
 use super::{Numbers, interval, origin, smoothed};
 use crate::differentiate::derivative;
 use crate::graph::{ExprId, Graph};
-use crate::model::{Jump, Model, Symbol};
+use crate::model::{Ball, Jump, Model, Symbol};
 use crate::program::{Order, VectorFunction};
 use fdcc_grammar::ast::Direction;
 use fdcc_runtime::problem::{Function, Layout, Origin};
@@ -218,6 +218,7 @@ pub(crate) fn system(
         states: states(model, &simulated.hidden, numbers),
         controls: controls(model, numbers),
         surfaces: surfaces(model, first_sigma).into_iter().take(simulated.surfaces).collect(),
+        balls: model.balls.iter().filter(|_| simulated.surfaces > 0).map(ball).collect(),
         jumps: model.jumps.iter().map(|jump| lowered(model, numbers, jump)).collect(),
         interval: model.interval.map(|end| numbers.value(model, end)),
         start: simulate::value(&*start, &[], &values),
@@ -231,6 +232,10 @@ pub(crate) fn system(
         interval_of: interval,
         start_of: start,
     }
+}
+
+fn ball(ball: &Ball) -> simulate::Ball {
+    simulate::Ball { name: ball.place.name.clone(), surfaces: ball.surfaces.clone() }
 }
 
 fn lowered(model: &Model, numbers: &Numbers, jump: &Jump) -> simulate::Jump {

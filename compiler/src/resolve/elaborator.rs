@@ -7,7 +7,7 @@ use super::scope::Scope;
 use super::value::{Parts, Reads, Traits, Value};
 use crate::graph::evaluate;
 use crate::graph::{ExprId, Graph};
-use crate::model::{Integral, Model, Place, Symbol};
+use crate::model::{Ball, Integral, Model, Place, Symbol};
 use fdcc_grammar::ast;
 use fdcc_grammar::{Code, Diagnostic, Span};
 use std::collections::HashMap;
@@ -75,6 +75,8 @@ pub(crate) struct Elaborator<'a> {
     pub sums: usize,
     /// Surfaces, declared and unnamed.
     pub surfaces: Vec<SurfaceEntry>,
+    /// The vectors of every `Dir`.
+    pub balls: Vec<Ball>,
     /// The surface of a declaration.
     pub surface_of: HashMap<usize, usize>,
     /// Integrals.
@@ -132,6 +134,7 @@ impl<'a> Elaborator<'a> {
             examining: false,
             sums: 0,
             surfaces: Vec::new(),
+            balls: Vec::new(),
             surface_of: HashMap::new(),
             integrals: Vec::new(),
             integral_inputs: Vec::new(),

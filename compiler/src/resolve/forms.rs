@@ -3,7 +3,7 @@
 use super::calls::argument_span;
 use super::context::Context;
 use super::elaborator::{Elaborator, SurfaceEntry};
-use super::value::{Parts, Reads, SetUse, Traits, Value};
+use super::value::{Parts, Reads, SetForm, SetUse, Traits, Value};
 use super::{scope, text};
 use crate::graph::{Expr as Node, ExprId};
 use crate::model::{Integral, Place, Simulated, Symbol};
@@ -43,7 +43,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// `Sgn(surface)`, or of an expression that then is a surface named by its text.
-    fn sgn(&mut self, psi: &'a Expr, span: Span) -> Value {
+    pub fn sgn(&mut self, psi: &'a Expr, span: Span) -> Value {
         let name = text::expr(psi);
         let known = match &psi.kind {
             ExprKind::Name(name) => self.surface_named(name),
@@ -53,12 +53,12 @@ impl<'a> Elaborator<'a> {
         let set = SetUse {
             surface: entry.map_or(name, |at| self.surfaces[at].place.name.clone()).into(),
             span,
-            is_sgn: true,
+            form: SetForm::Sgn,
         };
         self.selector(entry, set)
     }
 
-    fn surface_named(&mut self, name: &str) -> Option<usize> {
+    pub fn surface_named(&mut self, name: &str) -> Option<usize> {
         let is_local = self.locals[self.frame..].iter().any(|local| local.0 == name);
         if is_local { None } else { self.surface_of.get(&self.scope.find(name)?).copied() }
     }
@@ -75,16 +75,23 @@ impl<'a> Elaborator<'a> {
             return None;
         }
         let part = self.expect_number(&value, psi.span)?;
-        if let Some(known) = self.surfaces.iter().position(|surface| surface.psi == Some(part)) {
+        let is_known = |&at: &usize| self.surfaces[at].psi == Some(part) && !self.is_in_ball(at);
+        if let Some(known) = (0..self.surfaces.len()).find(is_known) {
             return Some(known);
         }
-        let taken = self
-            .surfaces
-            .iter()
-            .filter(|surface| surface.place.name.split(" #").next() == Some(name))
-            .count();
-        let name = if taken == 0 { name.to_string() } else { format!("{name} #{}", taken + 1) };
+        let name = self.free_name(name);
         Some(self.add_surface(Place { name, span: psi.span }, Some(part)))
+    }
+
+    /// The name itself, or numbered if surfaces of that name are there.
+    pub fn free_name(&self, name: &str) -> String {
+        let alone = (0..self.surfaces.len()).filter(|&at| !self.is_in_ball(at));
+        let known = alone.map(|at| &self.surfaces[at].place.name);
+        let known = known.chain(self.balls.iter().map(|ball| &ball.place.name));
+        match known.filter(|known| known.split(" #").next() == Some(name)).count() {
+            0 => name.to_string(),
+            taken => format!("{name} #{}", taken + 1),
+        }
     }
 
     /// Makes a surface and its selector.
@@ -102,14 +109,6 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn direction(&mut self, vector: &'a Expr, span: Span) -> Value {
-        let value = self.evaluate(vector);
-        self.single_valued(&value.traits.sets, vector.span, "the argument of `Dir`");
-        self.not_yet(span, "isotropic friction with `Dir`");
-        let set = SetUse { surface: text::expr(vector).into(), span, is_sgn: false };
-        Value::unknown(Traits { reads: value.traits.reads, sets: vec![set], knots: value.traits.knots })
-    }
-
     /// The value that acts: a single one, so it may stand anywhere.
     fn selected(&mut self, set: &'a Expr, span: Span) -> Value {
         let mut value = self.evaluate(set);
@@ -121,7 +120,7 @@ impl<'a> Elaborator<'a> {
     pub fn matched(&mut self, expr: &'a Expr, surface: &'a Ident, below: &'a Expr, above: &'a Expr) -> Value {
         let (a, b) = (self.evaluate(below), self.evaluate(above));
         let at = self.match_surface(surface);
-        let set = SetUse { surface: surface.name.as_str().into(), span: expr.span, is_sgn: false };
+        let set = SetUse { surface: surface.name.as_str().into(), span: expr.span, form: SetForm::Match };
         let inner: Vec<SetUse> = a.traits.sets.iter().chain(&b.traits.sets).cloned().collect();
         if !self.product_of_sets(std::slice::from_ref(&set), &inner, expr.span) {
             return Value::default();

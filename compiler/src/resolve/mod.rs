@@ -7,6 +7,7 @@ mod calls;
 mod conditions;
 mod context;
 mod declare;
+mod direction;
 pub(crate) mod elaborator;
 mod expression;
 mod forms;
@@ -55,6 +56,7 @@ impl Elaborator<'_> {
         Model {
             smooth: self.model.smooth || !surfaces.is_empty(),
             surfaces,
+            balls: self.balls,
             graph: self.graph,
             symbols: self.symbols,
             integrals: self.integrals,

@@ -77,11 +77,12 @@ impl<'a> Elaborator<'a> {
     /// Reports sets where only a single value can stand.
     pub fn single_valued(&mut self, sets: &[SetUse], span: Span, place: &str) -> bool {
         let Some(set) = sets.first() else { return true };
-        let message = format!("{place} is set-valued, so the right side is not affine in `Sgn`");
+        let message =
+            format!("{place} is set-valued, so the right side is not affine in `{}`", set.form.name());
         let label = format!("a set while `{}` is held at 0", set.surface);
         let found = Diagnostic::new(Code::NotAffine, message, span, label);
         self.diagnostics.push(found.help(
-            "a set may be added, and multiplied by what has a single value. For the value that acts write `selected(Sgn(...))`",
+            "a set may be added, and multiplied by what has a single value. For the value that acts write `selected(...)`",
         ));
         false
     }
@@ -91,12 +92,13 @@ impl<'a> Elaborator<'a> {
         let (Some(first), Some(second)) = (a.first(), b.first()) else { return true };
         if let Some(same) = a.iter().find(|it| b.iter().any(|other| other.surface == it.surface)) {
             let message = format!(
-                "`{}` is multiplied by itself, so the right side is not affine in `Sgn`",
-                same.surface
+                "`{}` is multiplied by itself, so the right side is not affine in `{}`",
+                same.surface,
+                same.form.name()
             );
             let found = Diagnostic::new(Code::NotAffine, message, span, "twice the same set");
             self.diagnostics.push(
-                found.help("off the surface `Sgn(s)^2` is 1: leave it out, or multiply by a single value"),
+                found.help("off the surface `Sgn(s)^2` is 1, and so is `normsq(Dir(v))`: leave it out, or multiply by a single value"),
             );
             return false;
         }

@@ -84,15 +84,34 @@ impl Reads {
     }
 }
 
-/// A `Sgn` or `match` inside a value.
+/// How a set is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum SetForm {
+    Sgn,
+    Dir,
+    Match,
+}
+
+impl SetForm {
+    /// The word of the language.
+    pub fn name(self) -> &'static str {
+        match self {
+            SetForm::Sgn => "Sgn",
+            SetForm::Dir => "Dir",
+            SetForm::Match => "match",
+        }
+    }
+}
+
+/// A `Sgn`, `Dir` or `match` inside a value.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct SetUse {
-    /// The name of its surface.
+    /// The name of its surface, or the text of the vector of a `Dir`.
     pub surface: Rc<str>,
     /// The call or the whole `match`, or the use of the definition that holds it.
     pub span: Span,
-    /// `Sgn` rather than `match`.
-    pub is_sgn: bool,
+    /// What it is.
+    pub form: SetForm,
 }
 
 /// A `piecewise` inside a value.

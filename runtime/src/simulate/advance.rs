@@ -1,6 +1,6 @@
 //! One step forward: its length, the method that takes it, and where in it the mode ends.
 
-use super::complementarity::is_p_matrix;
+use super::ball::{blocks, is_unique};
 use super::field::surface_rates;
 use super::locate;
 use super::result::{Integrator, Method, Status};
@@ -103,10 +103,14 @@ impl Run<'_> {
 
     fn advance_by(&mut self, step: &mut Step, stop: f64) -> Result<(), Status> {
         let rest = stop - self.t;
-        self.accepted(step, rest)?;
+        let fall = self.field.fall(self.t, &self.x);
+        if let Some(fall) = fall.as_ref().filter(|fall| fall.is_near && fall.time <= rest) {
+            return self.land(fall);
+        }
+        self.accepted(step, rest, fall.map_or(f64::INFINITY, |fall| fall.longest))?;
         self.counts.steps += 1;
         self.counts.stiff += usize::from(step.method == Method::Stiff);
-        if self.options.integrator == Integrator::Automatic {
+        if self.options.integrator == Integrator::Automatic && self.field.moving().is_empty() {
             self.pace.choose(step);
         }
         if let Some(found) = locate::first(&mut self.field, step, self.options) {
@@ -130,7 +134,7 @@ impl Run<'_> {
     }
 
     /// Goes to the state at a time, `h` after the beginning of a step.
-    fn go(&mut self, step: &Step, [time, h]: [f64; 2], end: &[f64]) {
+    pub fn go(&mut self, step: &Step, [time, h]: [f64; 2], end: &[f64]) {
         let (field, options) = (&mut self.field, self.options);
         self.record.inside(time, &mut |wanted| step.exactly_at(field, (wanted - step.t).max(0.0), options));
         self.t = time;
@@ -141,13 +145,16 @@ impl Run<'_> {
         }
     }
 
-    /// Takes a step whose error is small enough, to the stop at most; chooses the length of the next.
-    fn accepted(&mut self, step: &mut Step, rest: f64) -> Result<(), Status> {
+    /// Takes a step whose error is small enough, to the stop at most and no longer than a fall allows; chooses the length of the next.
+    fn accepted(&mut self, step: &mut Step, rest: f64, longest: f64) -> Result<(), Status> {
         let wanted = self.pace.h;
         // Two steps of equal length are better than a long and a very short one.
         let mut h = if wanted >= rest * (1.0 - 1e-12) { rest } else { wanted.min(0.5 * rest) };
+        h = h.min(longest);
         let mut is_short = h < wanted;
-        step.begin(&mut self.field, self.t, &self.x, self.pace.method, self.pace.is_continued);
+        // Near 0 the direction of a ball is stiff in a way of its own.
+        let method = if self.field.moving().is_empty() { self.pace.method } else { Method::Explicit };
+        step.begin(&mut self.field, self.t, &self.x, method, self.pace.is_continued);
         let selectors = self.field.selectors.clone();
         loop {
             if self.counts.steps + self.counts.rejected >= self.options.max_steps {
@@ -199,8 +206,10 @@ impl Run<'_> {
         let (t, x) = (step.t + theta * step.h, step.at(theta));
         let sliding = self.field.sliding();
         let normals = self.field.normals(t, &x);
+        self.field.follow_directions(t, &x);
         let selectors = self.field.selectors.clone();
         let (rate, by_selector) = self.field.with_selectors(t, &x, &selectors);
-        is_p_matrix(&surface_rates(&normals, &rate, &by_selector, &sliding).1)
+        let b = surface_rates(&normals, &rate, &by_selector, &sliding).1;
+        is_unique(&b, &blocks(&self.field.system.balls, &sliding))
     }
 }

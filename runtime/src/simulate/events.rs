@@ -15,8 +15,14 @@ impl Run<'_> {
         self.record.point(self.t, &self.x);
         match condition {
             Condition::Leaves(surface) => {
-                self.field.rate(self.t, &self.x.clone());
-                let mode = if self.field.selectors[surface] > 0.0 { Mode::Above } else { Mode::Below };
+                let selectors = self.field.selectors_at(self.t, &self.x);
+                if let Some(ball) = self.field.ball_of(surface) {
+                    let range = ball.surfaces.clone();
+                    self.field.direction[range.clone()].copy_from_slice(&selectors[range]);
+                    self.change_ball(ball, Mode::Moving);
+                    return Ok(());
+                }
+                let mode = if selectors[surface] > 0.0 { Mode::Above } else { Mode::Below };
                 self.change(surface, mode);
                 Ok(())
             }
@@ -34,10 +40,12 @@ impl Run<'_> {
     /// The surfaces that the state is on.
     pub fn surfaces_here(&mut self) -> Vec<usize> {
         let normals = self.field.normals(self.t, &self.x);
+        let is_zero = |i: usize| normals.psi[i].abs() <= 10.0 * normals.noise(i, &self.x);
         let is_here = |i: &usize| match self.field.modes[*i] {
             Mode::Sliding => true,
             Mode::Held => false,
-            Mode::Below | Mode::Above => normals.psi[*i].abs() <= 10.0 * normals.noise(*i, &self.x),
+            Mode::Below | Mode::Above => is_zero(*i),
+            Mode::Moving => self.field.ball_of(*i).is_some_and(|ball| ball.surfaces.clone().all(is_zero)),
         };
         (0..self.field.modes.len()).filter(is_here).collect()
     }
@@ -137,7 +145,9 @@ impl Run<'_> {
         let normals = self.field.normals(self.t, &self.x);
         for i in 0..self.field.modes.len() {
             let is_off = normals.psi[i].abs() > 10.0 * normals.noise(i, &self.x);
-            if is_off && self.field.modes[i] != Mode::Held {
+            if let Some(ball) = self.field.ball_of(i).filter(|_| is_off) {
+                self.field.set_moving(ball);
+            } else if is_off && self.field.modes[i] != Mode::Held {
                 let mode = if normals.psi[i] > 0.0 { Mode::Above } else { Mode::Below };
                 self.field.set_mode(i, mode);
             }
@@ -182,6 +192,11 @@ impl Run<'_> {
 
     /// Changes a mode and notes the event.
     fn change(&mut self, surface: usize, next: Mode) {
+        if let Some(ball) = self.field.ball_of(surface) {
+            return if surface == ball.surfaces.start {
+                self.change_ball(ball, next)
+            };
+        }
         let before = self.field.modes[surface];
         let kind = match (before, next) {
             (_, Mode::Sliding) if !self.has_begun => Some(Kind::StartsSliding),
@@ -200,7 +215,7 @@ impl Run<'_> {
         }
     }
 
-    fn event(&mut self, surface: usize, kind: Kind, margin: f64) {
+    pub fn event(&mut self, surface: usize, kind: Kind, margin: f64) {
         let event = Event { time: self.t, surface, kind, margin, state: self.x.clone() };
         self.tape.change(&mut self.field, &event);
         self.record.events.push(event);

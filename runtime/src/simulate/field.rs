@@ -1,4 +1,4 @@
-//! The right side in a mode: every selector is given, or keeps its surface at 0.
+//! The right side in a mode: every selector is given, is a direction, or keeps its surface at 0.
 //!
 //! On the sliding surfaces `A` the selectors solve `r_A(s) = d_A f(t, x, s) + psi_t = 0` with `d = dpsi/dx`, by Newton's
 //! method on `B = -d_A df/ds_A`; one iteration where selectors do not multiply each other.
@@ -19,6 +19,8 @@ pub enum Mode {
     Above,
     /// The selector keeps the state on the surface.
     Sliding,
+    /// A component of a ball that is not at 0, or leaves it.
+    Moving,
     /// Kept on the surface by what a jump says follows it.
     Held,
 }
@@ -29,7 +31,7 @@ impl Mode {
         match self {
             Mode::Below => -1.0,
             Mode::Above => 1.0,
-            Mode::Sliding | Mode::Held => 0.0,
+            Mode::Sliding | Mode::Moving | Mode::Held => 0.0,
         }
     }
 }
@@ -62,6 +64,12 @@ pub(super) struct Field<'a> {
     pub modes: Vec<Mode>,
     /// The last selectors; where the next sliding solve begins.
     pub selectors: Vec<f64>,
+    /// Of a ball that leaves 0, the direction in which it does.
+    pub direction: Vec<f64>,
+    /// When it leaves; NaN for what began off 0.
+    pub departure: Vec<f64>,
+    /// The longest explicit step that moving balls allow at the beginning of the next one.
+    pub stable: f64,
     /// States that stand still.
     pub held: Vec<usize>,
     pub evaluations: usize,
@@ -78,10 +86,13 @@ pub(super) struct Field<'a> {
 impl<'a> Field<'a> {
     pub fn new(system: &'a System, controls: &'a Controls) -> Self {
         let surfaces = system.surfaces.len();
-        Field {
+        let mut field = Field {
             system,
             modes: vec![Mode::Above; surfaces],
             selectors: vec![0.0; surfaces],
+            direction: vec![0.0; surfaces],
+            departure: vec![f64::NAN; surfaces],
+            stable: f64::INFINITY,
             held: Vec::new(),
             evaluations: 0,
             row: None,
@@ -90,7 +101,9 @@ impl<'a> Field<'a> {
             parameters: system.parameter_values(),
             point: Columns::new(system.layout.point_inputs(), 1),
             memory: Memory::new(system),
-        }
+        };
+        system.balls.iter().for_each(|ball| field.set_moving(ball));
+        field
     }
 
     /// From now on the controls of a time hold.
@@ -104,7 +117,7 @@ impl<'a> Field<'a> {
         self.modes[surface] = mode;
         match mode {
             Mode::Below | Mode::Above => self.selectors[surface] = mode.side(),
-            Mode::Sliding | Mode::Held => {}
+            Mode::Sliding | Mode::Moving | Mode::Held => {}
         }
     }
 
@@ -197,6 +210,11 @@ impl<'a> Field<'a> {
         self.derivatives(t, x, &selectors, self.system.layout.states()).1
     }
 
+    /// `f` and `df/dx` where all selectors are given.
+    pub fn by_state_with(&mut self, t: f64, x: &[f64], selectors: &[f64]) -> (Vec<f64>, DMatrix<f64>) {
+        self.derivatives(t, x, selectors, self.system.layout.states())
+    }
+
     /// The derivative of the right side in the current mode, in which the selectors of sliding surfaces follow the state:
     /// `f_x + f_s s_x` with `psi'_s s_x = -psi'_x`.
     pub fn jacobian_of_mode(&mut self, t: f64, x: &[f64]) -> DMatrix<f64> {
@@ -244,6 +262,7 @@ impl<'a> Field<'a> {
 
     /// The same, into memory that is there.
     pub fn rate_into(&mut self, t: f64, x: &[f64], rate: &mut [f64]) {
+        self.follow_directions(t, x);
         if self.modes.contains(&Mode::Sliding) {
             return self.sliding_rate(t, x, rate);
         }
@@ -255,10 +274,10 @@ impl<'a> Field<'a> {
         self.held.iter().for_each(|&state| rate[state] = 0.0);
     }
 
-    /// The selectors of the current mode; leaves everything as it is.
+    /// The selectors of the current mode, each a side, part of a direction, or what keeps its surface; leaves everything as it is.
     pub fn selectors_at(&mut self, t: f64, x: &[f64]) -> Vec<f64> {
         let before = (self.selectors.clone(), self.evaluations);
-        if !self.sliding().is_empty() {
+        if !self.sliding().is_empty() || !self.moving().is_empty() {
             self.rate(t, x);
         }
         self.evaluations = before.1;

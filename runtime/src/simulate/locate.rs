@@ -4,6 +4,7 @@
 //! dense output, its interior minima are searched too, so that a dip between two samples is not missed. The
 //! root is refined on steps of the pair itself, so it is as accurate as the integration.
 
+use super::direction::length;
 use super::field::Field;
 use super::result::Options;
 use super::samples::{self, Samples};
@@ -54,13 +55,21 @@ fn first_of(field: &mut Field, step: &Step, sampled: &[Samples]) -> Option<(f64,
     first
 }
 
+/// `1 - |s|` of a sliding surface or of a ball at rest.
+pub(super) fn reserve(field: &Field, surface: usize) -> f64 {
+    match field.ball_of(surface) {
+        Some(ball) => 1.0 - length(&field.selectors[ball.surfaces.clone()]),
+        None => 1.0 - field.selectors[surface].abs(),
+    }
+}
+
 /// What is not negative before a condition ends.
 fn value(field: &mut Field, condition: Condition, t: f64, x: &[f64]) -> f64 {
     match condition {
         Condition::Reaches(i) => field.modes[i].side() * field.psi(t, x)[i],
         Condition::Leaves(i) => {
             field.rate(t, x);
-            1.0 - field.selectors[i].abs()
+            reserve(field, i)
         }
     }
 }
@@ -125,7 +134,7 @@ fn root(g: &mut dyn FnMut(f64) -> f64, mut low: f64, mut high: f64, noise: f64) 
 }
 
 /// Bisection and the Illinois rule by turns.
-fn bisect(
+pub(super) fn bisect(
     g: &mut dyn FnMut(f64) -> f64,
     [mut low, mut at_low]: [f64; 2],
     [mut high, mut at_high]: [f64; 2],

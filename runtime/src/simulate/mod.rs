@@ -4,16 +4,19 @@
 //! step (Dormand-Prince 5(4)) -> events inside it (locate) -> which modes follow (decide) -> step ...
 //! ```
 //!
-//! In every mode each selector is -1, +1 or an unknown that keeps its surface at 0 (sliding). [`simulate`] is the
-//! loop. Where the continuation is not unique it stops and says so; it never chooses.
+//! In every mode each selector is -1, +1 or an unknown that keeps its surface at 0 (sliding); those of a `Dir` are a
+//! direction or such unknowns. [`simulate`] is the loop. Where the continuation is not unique it stops and says so; it never chooses.
 
 mod advance;
+mod ball;
 mod complementarity;
 mod controls;
 mod decide;
+mod direction;
 mod events;
 mod explicit;
 mod field;
+mod landing;
 mod locate;
 mod memory;
 pub(crate) mod radau;
@@ -21,6 +24,7 @@ mod record;
 mod result;
 mod run;
 mod samples;
+mod setting_out;
 mod step;
 mod system;
 pub(crate) mod tableau;
@@ -32,5 +36,5 @@ pub use controls::Controls;
 pub use field::Mode;
 pub use result::{Candidate, Counts, Event, Integrator, Kind, Method, Options, Simulation, Status};
 pub use run::simulate;
-pub use system::{Jump, System, value};
+pub use system::{Ball, Jump, System, value};
 pub use tape::{Cause, Change, Instant, Piece, Regime, Tape};

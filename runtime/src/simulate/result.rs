@@ -62,6 +62,15 @@ impl Default for Options {
     }
 }
 
+impl Options {
+    /// The largest difference of two states near `x` in units of the tolerance.
+    pub(super) fn error(&self, x: &[f64], one: &[f64], other: &[f64]) -> f64 {
+        let scaled = |i: usize| (one[i] - other[i]).abs() / (self.atol + self.rtol * x[i].abs());
+        let all = (0..x.len()).map(scaled);
+        all.fold(0.0, |largest, value| if value > largest || value.is_nan() { value } else { largest })
+    }
+}
+
 /// What happens at an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -75,6 +84,8 @@ pub enum Kind {
     LeavesUp,
     /// The state leaves a surface that it slid on, downwards.
     LeavesDown,
+    /// A `Dir` goes through 0 without coming to rest.
+    Passes,
     /// A reset; the index is that of the jump.
     Jump(usize),
     /// The state is on a surface at the beginning and stays on it.

@@ -110,6 +110,7 @@ impl<'a> Run<'a> {
 
     /// Whether right side and surfaces have values.
     pub fn finite_here(&mut self) -> Result<(), Status> {
+        self.field.follow_directions(self.t, &self.x);
         let normals = self.field.normals(self.t, &self.x);
         let is_bad = |values: &[f64]| values.iter().position(|value| !value.is_finite());
         if let Some(surface) = is_bad(&normals.psi) {

@@ -4,7 +4,7 @@
 //! surfaces each need a linear system; where three samples tell that they stay off their ends, there are no more.
 
 use super::field::{Field, Mode};
-use super::locate::Condition;
+use super::locate::{Condition, reserve};
 use super::step::Step;
 use crate::problem::Columns;
 
@@ -51,9 +51,10 @@ pub(super) fn besides(field: &mut Field, step: &Step) -> Vec<Samples> {
     surfaces.map(of).collect()
 }
 
-/// Samples of `1 - |s|` for every sliding surface.
+/// Samples of `1 - |s|` for every sliding surface, and every ball at rest.
 pub(super) fn slidings(field: &mut Field, step: &Step) -> Vec<Samples> {
-    let sliding = field.sliding();
+    let is_first = |i: &usize| field.ball_of(*i).is_none_or(|ball| ball.surfaces.start == *i);
+    let sliding: Vec<usize> = field.sliding().into_iter().filter(is_first).collect();
     if sliding.is_empty() {
         return Vec::new();
     }
@@ -83,7 +84,7 @@ fn selectors_along(
     for theta in thetas {
         field.rate_into(step.t + theta * step.h, &step.at(*theta), &mut rate);
         for (samples, &i) in all.iter_mut().zip(sliding) {
-            samples.values.push(1.0 - field.selectors[i].abs());
+            samples.values.push(reserve(field, i));
         }
     }
     all

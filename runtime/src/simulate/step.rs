@@ -8,6 +8,7 @@ use super::explicit::{self, STAGES};
 use super::field::Field;
 use super::radau::{self, Newton};
 use super::result::{Method, Options};
+use super::setting_out;
 
 /// The state inside a step.
 #[derive(Clone, Debug, Default)]
@@ -94,9 +95,31 @@ impl Step {
     pub fn attempt(&mut self, field: &mut Field, h: f64, options: &Options) {
         self.h = h;
         match self.method {
+            Method::Explicit if field.sets_out(self.t) || h > field.stable => {
+                setting_out::attempt(self, field, options)
+            }
             Method::Explicit => explicit::attempt(self, field, options),
             Method::Stiff => radau::attempt(self, field, options),
         }
+    }
+
+    /// Ends the step along a curve that is known in its middle and at its end, with the rate there; that at the start is known.
+    pub fn end_smoothly(&mut self, middle: &[f64], end: &[f64], last: &[f64]) {
+        for i in 0..end.len() {
+            let (start, first) = (self.start[i], self.stages[0][i]);
+            let a = end[i] - start;
+            let b = self.h * first - a;
+            let c = a - self.h * last[i] - b;
+            let d = 2.0 * (2.0 * (2.0 * (2.0 * (middle[i] - start) - a) - b) - c);
+            self.extension.start[i] = start;
+            [a, b, c, d]
+                .into_iter()
+                .zip(&mut self.extension.dense)
+                .for_each(|(value, dense)| dense[i] = value);
+        }
+        self.end.copy_from_slice(end);
+        self.near_end.copy_from_slice(end);
+        self.stages[STAGES - 1].copy_from_slice(last);
     }
 
     /// The state at `t + theta h`.

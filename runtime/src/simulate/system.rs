@@ -1,7 +1,7 @@
 //! The contract between symbols and the simulator: the true, unsmoothed system in real time.
 //!
 //! ```text
-//! x' = f(t, x, u, p, s),   s_i in Sgn(psi_i(t, x, p)),   x+ = r_j(t, x-, p) where psi is crossed
+//! x' = f(t, x, u, p, s),   s in Sgn(psi(t, x, p)) or Dir(psi),   x+ = r_j(t, x-, p) where psi is crossed
 //! ```
 //!
 //! A system for sensitivities has the first and second derivatives of all functions by all their inputs, too.
@@ -9,6 +9,7 @@
 //! The last states are the integrals of the model, which start at 0; so the objective is a function of both ends.
 
 use crate::problem::{Columns, Function, Layout, Origin, Parameter, Surface, Variable};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A reset of the state.
@@ -30,6 +31,15 @@ pub struct Jump {
     pub resets: Vec<usize>,
 }
 
+/// The vector of a `Dir`: `s = psi/|psi|`, and any `|s| <= 1` where `psi = 0`.
+#[derive(Clone, Debug)]
+pub struct Ball {
+    /// Its name.
+    pub name: String,
+    /// Its components, as indices into [`System::surfaces`].
+    pub surfaces: Range<usize>,
+}
+
 /// A system that can be simulated.
 #[derive(Clone)]
 pub struct System {
@@ -45,6 +55,8 @@ pub struct System {
     pub parameters: Vec<Parameter>,
     /// Switching surfaces.
     pub surfaces: Vec<Surface>,
+    /// Which of them are the components of a `Dir`.
+    pub balls: Vec<Ball>,
     /// Resets.
     pub jumps: Vec<Jump>,
     /// First and last time.
@@ -73,6 +85,14 @@ impl System {
     /// The values of all parameters.
     pub fn parameter_values(&self) -> Vec<f64> {
         self.parameters.iter().map(|parameter| parameter.value).collect()
+    }
+
+    /// The name of a surface, or of the ball that it is a component of.
+    pub fn name_of(&self, surface: usize) -> &str {
+        match self.balls.iter().find(|ball| ball.surfaces.contains(&surface)) {
+            Some(ball) => &ball.name,
+            None => &self.surfaces[surface].name,
+        }
     }
 
     /// The same system with other parameters, its interval and its start computed anew.

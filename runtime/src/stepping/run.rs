@@ -12,6 +12,8 @@ use nalgebra::DVector;
 pub enum Failure {
     /// A rule of fixed steps knows no resets.
     Jumps,
+    /// The complementarity problem of a step knows intervals, not the ball of a `Dir`.
+    Directions,
     /// There is nothing to differentiate.
     NoObjective,
     /// Something has no value.
@@ -61,6 +63,9 @@ impl Stepped {
 pub fn step_through(system: &System, controls: &Controls, grid: &Grid) -> Result<Stepped, Failure> {
     if !system.jumps.is_empty() {
         return Err(Failure::Jumps);
+    }
+    if !system.balls.is_empty() {
+        return Err(Failure::Directions);
     }
     let field = Field::new(system, controls);
     let start = field.start();

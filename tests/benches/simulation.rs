@@ -44,22 +44,24 @@ fn compiled(text: &str) -> System {
     compile_simulation(&meaning(text)).expect("the model can be simulated")
 }
 
-fn bench(bencher: Bencher, system: &System, controls: &Controls) {
+/// The end is that of `tests/peers/solve_ivp.py`, to 1e-9.
+fn bench(bencher: Bencher, system: &System, controls: &Controls, end: &[f64]) {
     let options = Options::default();
     let simulation = simulate(system, controls, &options);
     assert!(matches!(simulation.status, Status::Completed));
-    println!("{:?}, {} events, end {:?}", simulation.counts, simulation.events.len(), simulation.end);
+    assert!(end.iter().zip(&simulation.end).all(|(a, b)| (a - b).abs() < 1e-9), "{:?}", simulation.end);
     bencher.bench_local(|| simulate(system, controls, &options));
 }
 
 #[divan::bench]
 fn belt(bencher: Bencher) {
-    bench(bencher, &compiled(BELT), &Controls::Guess);
+    bench(bencher, &compiled(BELT), &Controls::Guess, &[0.770205160072, 0.2]);
 }
 
 #[divan::bench]
 fn three_blocks(bencher: Bencher) {
-    bench(bencher, &compiled(THREE_BLOCKS), &Controls::Guess);
+    let end = [0.995087486661, 0.148262802897, -0.481028802150];
+    bench(bencher, &compiled(THREE_BLOCKS), &Controls::Guess, &end);
 }
 
 /// The controls of the solution of `models/racecar.fdc`, 1000 intervals, on the true system.
@@ -72,5 +74,5 @@ fn race_car_replay(bencher: Bencher) {
     times.pop();
     let rows = (0..times.len()).map(|k| trajectory.controls.iter().map(|column| column[k]).collect());
     let controls = Controls::Held { rows: rows.collect(), times };
-    bench(bencher, &compile_simulation(&model).expect("it can be simulated"), &controls);
+    bench(bencher, &compile_simulation(&model).expect("it can be simulated"), &controls, &[]);
 }

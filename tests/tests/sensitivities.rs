@@ -75,7 +75,8 @@ fn quantity(system: &System, name: &str) -> Quantity {
 }
 
 fn text_of(name: &str) -> String {
-    let own = ["tests/gradients", "tests/simulations"].into_iter().flat_map(|folder| documents(folder, "fdc"));
+    let own =
+        ["tests/gradients", "tests/simulations"].into_iter().flat_map(|folder| documents(folder, "fdc"));
     match { own }.find(|(other, _)| other == name) {
         Some((_, text)) => text,
         None => fdcc_tests::models::text_of(name),

@@ -43,6 +43,14 @@ pub enum Integrator {
 }
 
 impl Options {
+    /// The method of the first step.
+    pub(super) fn method(&self) -> Method {
+        match self.integrator {
+            Integrator::Automatic | Integrator::Explicit => Method::Explicit,
+            Integrator::Stiff => Method::Stiff,
+        }
+    }
+
     /// The tolerance of a component that is `before` and `after` a step.
     pub(super) fn scale(&self, before: f64, after: f64) -> f64 {
         self.atol + self.rtol * before.abs().max(after.abs())

@@ -52,7 +52,7 @@ impl<'a> Run<'a> {
             piles: vec![Pile::default(); system.jumps.len()],
             crossings: vec![Pile::default(); system.surfaces.len()],
             has_begun: false,
-            pace: Pace::new(system.layout.x, options.integrator),
+            pace: Pace::new(system.layout.x, options.method()),
             counts: Counts::default(),
         }
     }

@@ -35,7 +35,15 @@ fn every_command_answers_every_file() {
         ("missing.fdc", 4, "missing.fdc cannot be read"),
     ];
     for (file, code, words) in files {
-        for command in [&["solve", file][..], &["sweep", file, "N=1,2"], &["show", file], &["test", file]] {
+        let commands = [
+            &["solve", file][..],
+            &["sweep", file, "N=1,2"],
+            &["show", file],
+            &["test", file],
+            &["simulate", file],
+            &["grad", file],
+        ];
+        for command in commands {
             let begin = Instant::now();
             let output = fdcc(&folder, command, "");
             assert!(begin.elapsed() < LIMIT, "{command:?} takes {:?}", begin.elapsed());

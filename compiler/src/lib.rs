@@ -139,9 +139,6 @@ pub fn compile_smoothed(model: &Model) -> Result<System, Vec<Diagnostic>> {
 
 fn compile_system(model: &Model, purpose: Purpose) -> Result<System, Vec<Diagnostic>> {
     model.not_yet.first().map_or(Ok(()), |first| Err(vec![first.clone()]))?;
-    if let (Purpose::Sensitivities, Some(ball)) = (purpose, model.balls.first()) {
-        return Err(vec![resolve::not_yet(ball.place.span, "the derivative of a simulation with `Dir`")]);
-    }
     let numbers = numbers(model)?;
     let (graph, program) = lower::simulation(model, purpose);
     let functions = machine_code(graph, program.functions.clone());

@@ -5,6 +5,7 @@ pub mod functions;
 pub mod models;
 pub mod optimality;
 pub mod pages;
+pub mod planar;
 pub mod random;
 pub mod section_two;
 pub mod sources;

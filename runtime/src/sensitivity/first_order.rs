@@ -50,11 +50,17 @@ pub(super) fn start(linearizer: &Linearizer, directions: &Directions) -> DMatrix
     linearizer.start_by_parameters() * &directions.parameters + &directions.starts
 }
 
-/// `dx(T)` in each direction, along the tape.
-pub(super) fn forward(linearizer: &Linearizer, tape: &Tape, directions: &Directions) -> DMatrix<f64> {
+/// `dx(T)` in each direction, along the tape; `visit` sees `S` at the end of every piece.
+pub(super) fn forward(
+    linearizer: &Linearizer,
+    tape: &Tape,
+    directions: &Directions,
+    visit: &mut dyn FnMut(usize, &DMatrix<f64>),
+) -> DMatrix<f64> {
     let mut s = start(linearizer, directions);
     for at in 0..tape.pieces.len() {
         s = LinearPiece::new(linearizer, tape, at).forward(&s, &|regime| directions.inputs(regime));
+        visit(at, &s);
     }
     s + end_shift(linearizer, tape) * &directions.parameters
 }

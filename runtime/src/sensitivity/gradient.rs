@@ -10,6 +10,9 @@ use nalgebra::DMatrix;
 /// With more quantities than this, forward sensitivities are computed along a few sums of them only.
 const MOST_FORWARD: usize = 64;
 
+/// What decays to this part of the sizes it could have is as good as 0, and so is its rounding.
+const FORGOTTEN: f64 = 1e-12;
+
 /// That many sums.
 const PROBES: usize = 2;
 
@@ -24,8 +27,8 @@ pub struct Sensitivity {
     pub forward: Vec<f64>,
     /// By each quantity, from the adjoint.
     pub adjoint: Vec<f64>,
-    /// The largest difference between the two, relative to the largest sum of the sizes that a derivative is made of.
-    /// Where `forward` is empty, along random sums of the quantities.
+    /// The largest difference between the two, relative to the largest sum of the sizes that a derivative is made of, at
+    /// the end or on the way, `sum |lambda_i| |dx_i|`. Where `forward` is empty, along random sums of the quantities.
     pub agreement: f64,
     /// The derivative of each state at the end by each quantity; empty like `forward`.
     pub end: Vec<Vec<f64>>,
@@ -42,6 +45,20 @@ pub struct Costates {
     pub time: Vec<f64>,
     /// One column for each state, integrals last.
     pub columns: Vec<Vec<f64>>,
+}
+
+impl Costates {
+    fn largest(&self) -> f64 {
+        self.columns.iter().flatten().fold(0.0, |largest, value| largest.max(value.abs()))
+    }
+
+    /// The largest `sum_i |lambda_i| |dx_i|` over some directions `dx`.
+    fn pairing(&self, at: usize, dx: &DMatrix<f64>) -> f64 {
+        let sum = |column: nalgebra::DVectorView<'_, f64>| -> f64 {
+            self.columns.iter().zip(column.iter()).map(|(lambda, dx)| (lambda[at] * dx).abs()).sum()
+        };
+        dx.column_iter().map(sum).fold(0.0, f64::max)
+    }
 }
 
 /// Differentiates; nothing but the simulation where it does not reach the end or there is no objective.
@@ -64,10 +81,15 @@ pub fn gradient(
     let weights =
         if is_each { DMatrix::identity(adjoint.len(), adjoint.len()) } else { probes(adjoint.len()) };
     let directions = Directions::new(system, quantities, &weights);
-    let end = first_order::forward(&linearizer, tape, &directions);
+    let (mut on_the_way, mut largest): (f64, f64) = (0.0, 0.0);
+    let end = first_order::forward(&linearizer, tape, &directions, &mut |at, s| {
+        on_the_way = on_the_way.max(costates.pairing(at + 1, s));
+        largest = largest.max(s.amax());
+    });
+    let all = on_the_way.max(FORGOTTEN * largest * costates.largest());
     let forward = first_order::along(&linearizer, &objective, &directions, &end);
     let along = weights.tr_mul(&DMatrix::from_column_slice(adjoint.len(), 1, &adjoint));
-    let size = first_order::size(&linearizer, &objective, &directions, &end);
+    let size = first_order::size(&linearizer, &objective, &directions, &end).max(all);
     Ok(Sensitivity {
         value: objective.value,
         agreement: agreement(&forward, along.as_slice(), size),

@@ -10,8 +10,11 @@
 //! folded into those by `t` and `p`.
 
 use crate::problem::{Columns, Function};
-use crate::simulate::{Controls, Mode, Regime, System};
+use crate::simulate::{Ball, Controls, Mode, Regime, System};
 use nalgebra::{DMatrix, DVector};
+
+/// A vector below this many times what it is made of is 0, as for the simulator.
+const AT_ZERO: f64 = 1e-12;
 
 /// Right side and derivatives at one point.
 pub(super) struct Linearization {
@@ -60,9 +63,14 @@ impl<'a> Linearizer<'a> {
     /// The right side at a point of a regime; sliding selectors are searched from `near` on.
     pub fn at(&self, regime: &Regime, near: &[f64], t: f64, x: &DVector<f64>) -> Linearization {
         let mut table = self.table(regime, near, t, x);
+        let directions = self.follow_directions(&mut table, regime, x);
         let sliding = sliding(regime);
         let rates = (!sliding.is_empty()).then(|| self.solve(&mut table, &sliding, regime));
         let mut point = self.free(&table, regime);
+        if let Some(slopes) = directions {
+            point.by += &point.by_selectors * &slopes;
+            point.selectors_by = slopes;
+        }
         if let Some(rates) = &rates {
             self.eliminate(&mut point, &rates.by, &sliding);
         }
@@ -96,6 +104,35 @@ impl<'a> Linearizer<'a> {
     pub fn tau(&self, t: f64) -> f64 {
         let [first, last] = self.system.interval;
         if last > first { (t - first) / (last - first) } else { 0.0 }
+    }
+
+    /// Gives the selectors of moving balls their values, `psi/|psi|`; their slopes, `(I - s s')/|psi| psi_w`. At 0, where a ball sets
+    /// out or lands, they are those that the table has, and constant.
+    fn follow_directions(
+        &self,
+        table: &mut Columns,
+        regime: &Regime,
+        x: &DVector<f64>,
+    ) -> Option<DMatrix<f64>> {
+        let is_moving = |ball: &&Ball| regime.modes[ball.surfaces.start] == Mode::Moving;
+        let moving: Vec<&Ball> = self.system.balls.iter().filter(is_moving).collect();
+        let layout = self.system.layout;
+        let mut slopes = (!moving.is_empty()).then(|| DMatrix::zeros(layout.s, layout.selectors().start))?;
+        let guards = Jacobian::of(&*self.system.guards, table, &self.parameters);
+        let first = table.columns() - layout.s;
+        for ball in moving {
+            let (at, count) = (ball.surfaces.start, ball.surfaces.len());
+            let psi = guards.values.rows(at, count);
+            let by = guards.by.view((at, 0), (count, slopes.ncols()));
+            let noise = (by.columns(1, layout.x).abs() * x.abs()).amax();
+            if psi.norm() <= AT_ZERO * (1.0 + noise) {
+                continue;
+            }
+            let s = psi / psi.norm();
+            ball.surfaces.clone().zip(s.iter()).for_each(|(i, s)| table.column_mut(first + i)[0] = *s);
+            slopes.rows_mut(at, count).copy_from(&((by - &s * s.tr_mul(&by)) / psi.norm()));
+        }
+        Some(slopes)
     }
 
     /// Newton's method for the sliding selectors; the derivatives of the rates at the solution.
@@ -150,7 +187,8 @@ impl<'a> Linearizer<'a> {
     /// Sliding selectors are functions of the rest.
     fn eliminate(&self, point: &mut Linearization, rates: &DMatrix<f64>, sliding: &[usize]) {
         let by_selectors = self.by_selectors(rates).select_columns(sliding).select_rows(sliding);
-        let by_rest = rates.columns(0, point.by.ncols()).select_rows(sliding);
+        let by_rest = rates.columns(0, point.by.ncols()) + self.by_selectors(rates) * &point.selectors_by;
+        let by_rest = by_rest.select_rows(sliding);
         let Some(slope) = by_selectors.lu().solve(&-by_rest) else { return };
         point.by += point.by_selectors.select_columns(sliding) * &slope;
         for (row, &i) in sliding.iter().enumerate() {

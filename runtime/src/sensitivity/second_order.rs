@@ -26,7 +26,8 @@ use crate::problem::Columns;
 use crate::simulate::{Cause, Controls, Instant, Mode, Piece, Regime, Simulation, System, Tape};
 use nalgebra::{DMatrix, DVector};
 
-/// The Hessian of the objective by some quantities; nothing where the state comes to rest after infinitely many jumps.
+/// The Hessian of the objective by some quantities; nothing where the state comes to rest after infinitely many jumps, and
+/// nothing yet where a `Dir` moves.
 pub fn hessian(
     system: &System,
     controls: &Controls,
@@ -34,7 +35,7 @@ pub fn hessian(
     quantities: &[Quantity],
 ) -> Option<Vec<Vec<f64>>> {
     let linearizer = Linearizer::new(system, controls);
-    let tape = simulation.tape.as_ref().filter(|tape| !comes_to_rest(tape))?;
+    let tape = simulation.tape.as_ref().filter(|tape| !has_no_second_order(tape))?;
     let objective = Objective::new(&linearizer, simulation)?;
     let directions = Directions::each(system, quantities);
     let mut second = Second::new(&linearizer, tape, &directions);
@@ -43,8 +44,10 @@ pub fn hessian(
     Some(matrix.row_iter().map(|row| row.iter().copied().collect()).collect())
 }
 
-fn comes_to_rest(tape: &Tape) -> bool {
-    tape.regimes.iter().any(|regime| regime.modes.contains(&Mode::Held))
+/// Whether the state comes to rest after infinitely many jumps, or something moves in a direction that is not fixed.
+fn has_no_second_order(tape: &Tape) -> bool {
+    let lacks = |mode: &Mode| matches!(mode, Mode::Held | Mode::Moving);
+    tape.regimes.iter().any(|regime| regime.modes.iter().any(lacks))
 }
 
 /// First and second derivatives on their way along a tape.

@@ -12,13 +12,13 @@
 //! `mu_j` that of its transpose.
 
 use super::linearization::{Linearization, Linearizer};
-use crate::simulate::{Instant, Method, Regime, radau, tableau};
+use crate::simulate::{Instant, Regime, Rule, radau, setting_out, tableau};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 /// Newton's steps for the stages of an implicit method.
 const MOST_ITERATIONS: usize = 20;
 
-/// Nodes and weights of the stages that enter the end of a step.
+/// Nodes and weights of the stages that enter the end of a step; none for a straight line, which is shorter than rounding.
 struct Tableau {
     c: Vec<f64>,
     a: Vec<Vec<f64>>,
@@ -26,19 +26,17 @@ struct Tableau {
 }
 
 impl Tableau {
-    /// In both methods the last row of weights is that of the end.
-    fn of(method: Method) -> Self {
-        let rows: Vec<Vec<f64>> = match method {
-            Method::Explicit => tableau::A.iter().map(|row| row.to_vec()).collect(),
-            Method::Stiff => radau::A.iter().map(|row| row.to_vec()).collect(),
+    /// In all methods the last row of weights is that of the end.
+    fn of(rule: Rule) -> Self {
+        let (c, a): (&[f64], Vec<Vec<f64>>) = match rule {
+            Rule::Explicit => (&tableau::C, tableau::A.iter().map(|row| row.to_vec()).collect()),
+            Rule::Radau => (&radau::C, radau::A.iter().map(|row| row.to_vec()).collect()),
+            Rule::Collocation => (&setting_out::FINE, rows(&setting_out::weights(&setting_out::FINE))),
+            Rule::Straight => (&[], Vec::new()),
         };
-        let c: Vec<f64> = match method {
-            Method::Explicit => tableau::C.to_vec(),
-            Method::Stiff => radau::C.to_vec(),
-        };
-        let b = rows[rows.len() - 1].clone();
+        let b = a.last().cloned().unwrap_or_default();
         let used = b.len();
-        Tableau { c: c[..used].to_vec(), a: rows[..used].to_vec(), b }
+        Tableau { c: c[..used].to_vec(), a: a[..used].to_vec(), b }
     }
 }
 
@@ -52,6 +50,8 @@ pub(super) struct LinearStep {
     pub points: Vec<(f64, DVector<f64>)>,
     /// `I - h a_ij A_i` of an implicit method.
     implicit: Option<LU<f64, Dyn, Dyn>>,
+    /// How many of `(u, p)` there are.
+    inputs: usize,
 }
 
 impl LinearStep {
@@ -61,19 +61,20 @@ impl LinearStep {
         regime: &Regime,
         start: &Instant,
         h: f64,
-        end: &[f64],
-        method: Method,
+        stages: &[Vec<f64>],
+        rule: Rule,
     ) -> Self {
         let mut step = LinearStep {
-            tableau: Tableau::of(method),
+            tableau: Tableau::of(rule),
             h,
             stages: Vec::new(),
             points: Vec::new(),
             implicit: None,
+            inputs: linearizer.inputs(),
         };
-        match method {
-            Method::Explicit => step.take_explicit(linearizer, regime, start),
-            Method::Stiff => step.take_implicit(linearizer, regime, start, end),
+        match rule {
+            Rule::Explicit | Rule::Straight => step.take_explicit(linearizer, regime, start),
+            Rule::Radau | Rule::Collocation => step.take_implicit(linearizer, regime, start, stages),
         }
         step
     }
@@ -93,11 +94,17 @@ impl LinearStep {
         }
     }
 
-    /// Newton's method from the straight line to the end, with the exact Jacobian of each stage.
-    fn take_implicit(&mut self, linearizer: &Linearizer, regime: &Regime, start: &Instant, end: &[f64]) {
+    /// Newton's method from the stages that are known, with the exact Jacobian of each.
+    fn take_implicit(
+        &mut self,
+        linearizer: &Linearizer,
+        regime: &Regime,
+        start: &Instant,
+        stages: &[Vec<f64>],
+    ) {
         let x = DVector::from_column_slice(&start.state);
-        let rise = DVector::from_column_slice(end) - &x;
-        self.points = self.tableau.c.iter().map(|c| (start.time + c * self.h, &x + &rise * *c)).collect();
+        let times = self.tableau.c.iter().map(|c| start.time + c * self.h);
+        self.points = times.zip(stages.iter().map(|stage| DVector::from_column_slice(stage))).collect();
         for _ in 0..MOST_ITERATIONS {
             let evaluate =
                 |(time, at): &(f64, DVector<f64>)| linearizer.at(regime, &start.selectors, *time, at);
@@ -201,11 +208,11 @@ impl LinearStep {
             None => self.pulled_in_order(after),
             Some(system) => self.pulled_at_once(after, system),
         };
-        let mut inputs = DVector::zeros(self.stages[0].by_inputs().ncols());
+        let mut inputs = DVector::zeros(self.inputs);
         for (stage, point) in self.stages.iter().enumerate() {
             inputs.gemv_tr(1.0, &point.by_inputs(), &self.kappa(after, &pulled, stage), 1.0);
         }
-        (after + pulled.iter().sum::<DVector<f64>>(), inputs)
+        (pulled.iter().fold(after.clone(), |sum, mu| sum + mu), inputs)
     }
 
     /// `kappa_j`, from the `mu_i` that are known.
@@ -235,6 +242,10 @@ impl LinearStep {
         solve_transposed(system, &mut right);
         (0..self.stages.len()).map(|stage| right.rows(stage * n, n).into_owned()).collect()
     }
+}
+
+fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
 }
 
 /// With `P M = L U` the transposed system is `U^T L^T P mu = right`.

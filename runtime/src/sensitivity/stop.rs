@@ -85,8 +85,8 @@ impl Timing {
                 let x = DVector::from_column_slice(&stop.before.state);
                 let table = linearizer.table(regime, &reached.selectors, stop.before.time, &x);
                 let guards = Jacobian::of(&*linearizer.system.guards, &table, &linearizer.parameters);
-                let slopes = guards.by.row(surface).columns(0, reached.by.ncols()).into_owned();
-                Timing::implicit(&slopes, &reached.rate)
+                let slopes = normal(linearizer, &guards.by, &reached.selectors, surface);
+                Timing::implicit(&slopes.columns(0, reached.by.ncols()).into_owned(), &reached.rate)
             }
             Cause::Leaves(surface) => {
                 Timing::implicit(&reached.selectors_by.row(surface).into_owned(), &reached.rate)
@@ -117,6 +117,17 @@ impl Timing {
         let factor = if speed == 0.0 { 0.0 } else { -1.0 / speed };
         let rest = slopes.columns(1 + states, slopes.len() - 1 - states);
         Timing { by_state: normal * factor, by_inputs: rest * factor }
+    }
+}
+
+/// `psi_z` of a surface; of a ball that comes to 0, that of its length.
+fn normal(linearizer: &Linearizer, by: &DMatrix<f64>, selectors: &[f64], surface: usize) -> RowDVector<f64> {
+    match linearizer.system.balls.iter().find(|ball| ball.surfaces.contains(&surface)) {
+        Some(ball) => {
+            let zero = RowDVector::zeros(by.ncols());
+            ball.surfaces.clone().fold(zero, |sum, i| sum + by.row(i) * selectors[i])
+        }
+        None => by.row(surface).into_owned(),
     }
 }
 

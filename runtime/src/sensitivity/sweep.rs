@@ -30,8 +30,8 @@ impl<'t> LinearPiece<'t> {
     pub fn new(linearizer: &Linearizer, tape: &'t Tape, at: usize) -> Self {
         let regime = |instant: &Instant| &tape.regimes[instant.regime];
         match &tape.pieces[at] {
-            Piece::Step { start, h, end, method } => LinearPiece {
-                map: Map::Step(LinearStep::new(linearizer, regime(start), start, *h, end, *method)),
+            Piece::Step { start, h, stages, rule, .. } => LinearPiece {
+                map: Map::Step(LinearStep::new(linearizer, regime(start), start, *h, stages, *rule)),
                 regime: regime(start),
                 regime_after: regime(start),
                 projection: Projection::new(linearizer, regime(start), &tape.pieces[at].end()),

@@ -13,7 +13,7 @@ use super::result::{Kind, Method, Status};
 use super::run::Run;
 use super::step::Step;
 use super::system::Ball;
-use super::tape::Cause;
+use super::tape::{Cause, Rule};
 
 /// `|psi|` below this many times its rounding errors is as good as 0.
 const NEAR: f64 = 100.0;
@@ -64,9 +64,12 @@ impl<'a> Field<'a> {
 impl Run<'_> {
     /// Goes the rest of the way to 0 and decides what follows.
     pub fn land(&mut self, fall: &Fall<'_>) -> Result<(), Status> {
+        // At 0 there is no other direction than the one in which it came.
+        let arriving = self.field.selectors_at(self.t, &self.x);
+        fall.ball.surfaces.clone().for_each(|i| self.field.direction[i] = arriving[i]);
         let mut step = Step::new(self.x.len());
         step.begin(&mut self.field, self.t, &self.x, Method::Explicit, false);
-        step.h = fall.time;
+        (step.h, step.rule) = (fall.time, Rule::Straight);
         let (rate, h) = (step.stages[0].clone(), step.h);
         let point =
             |theta: f64| self.x.iter().zip(&rate).map(|(x, rate)| x + theta * h * rate).collect::<Vec<f64>>();

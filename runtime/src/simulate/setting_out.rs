@@ -15,7 +15,8 @@ use super::step::Step;
 use super::system::Ball;
 use nalgebra::{DMatrix, DVector};
 
-const FINE: [f64; 5] = [
+/// The points of the solution.
+pub(crate) const FINE: [f64; 5] = [
     0.057_104_196_114_517_68,
     0.276_843_013_638_123_8,
     0.583_590_432_368_916_8,
@@ -228,7 +229,7 @@ fn sum(x: &[f64], added: &[f64]) -> Vec<f64> {
 }
 
 /// `a_ij`, which integrates polynomials exactly: `sum_j a_ij c_j^(q-1) = c_i^q / q`.
-fn weights(times: &[f64]) -> DMatrix<f64> {
+pub(crate) fn weights(times: &[f64]) -> DMatrix<f64> {
     let size = times.len();
     let powers = DMatrix::from_fn(size, size, |j, q| times[j].powi(q as i32));
     let integrals = DMatrix::from_fn(size, size, |i, q| times[i].powi(q as i32 + 1) / (q + 1) as f64);

@@ -9,6 +9,7 @@ use super::field::Field;
 use super::radau::{self, Newton};
 use super::result::{Method, Options};
 use super::setting_out;
+use super::tape::Rule;
 
 /// The state inside a step.
 #[derive(Clone, Debug, Default)]
@@ -39,6 +40,8 @@ pub(super) struct Step {
     pub start: Vec<f64>,
     pub end: Vec<f64>,
     pub method: Method,
+    /// How it was taken in the end.
+    pub rule: Rule,
     /// In units of the tolerance; infinite if something on the way has no value.
     pub error: f64,
     pub extension: Extension,
@@ -59,6 +62,7 @@ impl Step {
             start: zeros(),
             end: zeros(),
             method: Method::Explicit,
+            rule: Rule::Explicit,
             error: f64::INFINITY,
             extension: Extension::new(states),
             stages: std::array::from_fn(|_| zeros()),
@@ -96,10 +100,17 @@ impl Step {
         self.h = h;
         match self.method {
             Method::Explicit if field.sets_out(self.t) || h > field.stable => {
-                setting_out::attempt(self, field, options)
+                self.rule = Rule::Collocation;
+                setting_out::attempt(self, field, options);
             }
-            Method::Explicit => explicit::attempt(self, field, options),
-            Method::Stiff => radau::attempt(self, field, options),
+            Method::Explicit => {
+                self.rule = Rule::Explicit;
+                explicit::attempt(self, field, options);
+            }
+            Method::Stiff => {
+                self.rule = Rule::Radau;
+                radau::attempt(self, field, options);
+            }
         }
     }
 

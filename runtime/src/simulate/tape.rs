@@ -5,8 +5,9 @@
 
 use super::field::{Field, Mode};
 use super::locate::Condition;
-use super::result::{Event, Kind, Method};
+use super::result::{Event, Kind};
 use super::step::Step;
+use super::{radau, setting_out};
 
 /// Steps and stops in the order of time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -52,8 +53,10 @@ pub enum Piece {
         h: f64,
         /// The state after it, projected to the sliding surfaces.
         end: Vec<f64>,
-        /// Which method.
-        method: Method,
+        /// How it was taken.
+        rule: Rule,
+        /// The states at the stages of an implicit rule, nearly.
+        stages: Vec<Vec<f64>>,
     },
     /// What happens at one time.
     Stop {
@@ -76,6 +79,31 @@ impl Piece {
                 Instant { time: start.time + h, state: end.clone(), ..start.clone() }
             }
             Piece::Stop { after, .. } => after.clone(),
+        }
+    }
+}
+
+/// How a step was taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Rule {
+    /// The explicit pair of Dormand and Prince.
+    #[default]
+    Explicit,
+    /// Radau IIA of order 5.
+    Radau,
+    /// Collocation at five Radau points, near the 0 of a ball.
+    Collocation,
+    /// The last of the way of a ball to 0, shorter than rounding.
+    Straight,
+}
+
+impl Rule {
+    /// The nodes of an implicit rule.
+    fn implicit_nodes(self) -> &'static [f64] {
+        match self {
+            Rule::Explicit | Rule::Straight => &[],
+            Rule::Radau => &radau::C,
+            Rule::Collocation => &setting_out::FINE,
         }
     }
 }
@@ -159,7 +187,9 @@ impl Writer {
     pub fn step(&mut self, field: &mut Field, step: &Step, h: f64, end: &[f64]) {
         if self.tape.is_some() {
             let start = self.instant(field, step.t, &step.start);
-            self.push(Piece::Step { start, h, end: end.to_vec(), method: step.method });
+            let at = |c: &f64| step.at(c * h / step.h);
+            let stages = step.rule.implicit_nodes().iter().map(at).collect();
+            self.push(Piece::Step { start, h, end: end.to_vec(), rule: step.rule, stages });
         }
     }
 

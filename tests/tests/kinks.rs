@@ -1,7 +1,7 @@
 //! Where there is no derivative the result says so, why, and what the derivatives of both sides are; all in closed form.
 
 use fdcc_compiler::compile_sensitivities;
-use fdcc_runtime::sensitivity::{Quantity, TroubleKind, gradient, one_sided};
+use fdcc_runtime::sensitivity::{Quantity, TroubleKind, gradient, hessian, one_sided};
 use fdcc_runtime::simulate::{Controls, Options, System};
 use fdcc_tests::models::meaning;
 
@@ -106,4 +106,20 @@ fn a_kink_is_found_with_its_reason_and_both_derivatives() {
             assert!((got - expected).abs() < 1e-3, "{text}: {got}, not {expected}");
         }
     }
+}
+
+/// A start on a surface that is held: by a direction that leaves it there is no second derivative.
+#[test]
+fn a_start_that_slides_has_second_derivatives_along_the_surface_only() {
+    let text = "param c = 1  time t in [0, 1]  state x start 0  state y start 1  surface zero = x
+        dynamics { x' in -Sgn(zero)  y' = c*c*y }  minimize y(end) + x(end)";
+    let system = compile_sensitivities(&meaning(text)).expect("it can be simulated");
+    let options = Options::default();
+    let by_c = [parameter(&system, "c")];
+    let found = gradient(&system, &Controls::Guess, &options, &by_c).expect("it reaches the end");
+    let second =
+        hessian(&system, &Controls::Guess, &found.simulation, &by_c).expect("it stays on the surface")[0][0];
+    // d2/dc2 exp(c^2) = (2 + 4 c^2) exp(c^2)
+    assert!((second - 6.0 * 1.0_f64.exp()).abs() < 1e-7, "{second}");
+    assert!(hessian(&system, &Controls::Guess, &found.simulation, &[Quantity::Start(0)]).is_none());
 }

@@ -140,9 +140,9 @@ impl Linearizer<'_> {
         let [first, last] = self.system.interval;
         let (tau, duration) = (self.tau(time), last - first);
         let parameters = |whole: &DVector<f64>| whole.rows(layout.parameters().start, layout.p).into_owned();
-        let ends = self.interval_by_parameters();
+        let ends = &self.ends_by;
         let slopes = |whole: &DVector<f64>| {
-            let ends = &ends * parameters(whole);
+            let ends = ends * parameters(whole);
             let stretch = ends[1] - ends[0];
             ((whole[0] - ends[0] - tau * stretch) / duration, stretch)
         };

@@ -8,7 +8,7 @@
 use super::linearization::{Jacobian, Linearizer};
 use super::quantity::{Directions, Gradient};
 use super::stop::Timing;
-use super::sweep::LinearPiece;
+use super::sweep::LinearTape;
 use crate::problem::Columns;
 use crate::simulate::{Instant, Piece, Regime, Simulation, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
@@ -52,14 +52,14 @@ pub(super) fn start(linearizer: &Linearizer, directions: &Directions) -> DMatrix
 
 /// `dx(T)` in each direction, along the tape; `visit` sees `S` at the end of every piece.
 pub(super) fn forward(
-    linearizer: &Linearizer,
-    tape: &Tape,
+    pieces: &LinearTape,
     directions: &Directions,
     visit: &mut dyn FnMut(usize, &DMatrix<f64>),
 ) -> DMatrix<f64> {
+    let LinearTape { linearizer, tape, .. } = *pieces;
     let mut s = start(linearizer, directions);
     for at in 0..tape.pieces.len() {
-        s = LinearPiece::new(linearizer, tape, at).forward(&s, &|regime| directions.inputs(regime));
+        s = pieces.with(at, |piece| piece.forward(&s, &|regime| directions.inputs(regime)));
         visit(at, &s);
     }
     s + end_shift(linearizer, tape) * &directions.parameters
@@ -104,24 +104,25 @@ pub(super) fn size(
 
 /// The whole gradient, backward; `visit` sees the adjoint at the end of every piece, then that at the first time.
 pub(super) fn adjoint(
-    linearizer: &Linearizer,
-    tape: &Tape,
+    pieces: &LinearTape,
     objective: &Objective,
     mut gradient: Gradient,
     visit: &mut dyn FnMut(Option<usize>, &DVector<f64>),
 ) -> Gradient {
+    let LinearTape { linearizer, tape, .. } = *pieces;
     let controls = linearizer.system.layout.u;
     let mut lambda: DVector<f64> = objective.by_end.transpose();
     let at_end = end_shift(linearizer, tape).tr_mul(&lambda) + objective.by_parameters.transpose();
     gradient.parameters.iter_mut().zip(at_end.iter()).for_each(|(sum, value)| *sum += value);
     for at in (0..tape.pieces.len()).rev() {
-        let piece = LinearPiece::new(linearizer, tape, at);
         let mut add = |regime: &Regime, by: &DVector<f64>| {
             gradient.add_inputs(regime, controls, by.iter().copied());
         };
-        lambda = piece.unproject(lambda, &mut add);
-        visit(Some(at), &lambda);
-        lambda = piece.adjoint(&lambda, &mut add);
+        lambda = pieces.with(at, |piece| {
+            let on_surfaces = piece.unproject(lambda, &mut add);
+            visit(Some(at), &on_surfaces);
+            piece.adjoint(&on_surfaces, &mut add)
+        });
     }
     visit(None, &lambda);
     let by_start = lambda + objective.by_start.transpose();

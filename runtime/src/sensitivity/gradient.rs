@@ -3,8 +3,9 @@
 use super::first_order::{self, Objective};
 use super::linearization::Linearizer;
 use super::quantity::{Directions, Gradient, Quantity};
+use super::sweep::LinearTape;
 use super::trouble::{Trouble, troubles};
-use crate::simulate::{Controls, Options, Simulation, Status, System, Tape, simulate};
+use crate::simulate::{Controls, Options, Simulation, Status, System, simulate};
 use nalgebra::DMatrix;
 
 /// With more quantities than this, forward sensitivities are computed along a few sums of them only.
@@ -75,14 +76,15 @@ pub fn gradient(
     else {
         return Err(Box::new(simulation));
     };
-    let (whole, costates) = backward(&linearizer, tape, &objective, Gradient::zero(system, controls));
+    let pieces = LinearTape::new(&linearizer, tape);
+    let (whole, costates) = backward(&pieces, &objective, Gradient::zero(system, controls));
     let adjoint: Vec<f64> = quantities.iter().map(|quantity| whole.by(quantity)).collect();
     let is_each = quantities.len() <= MOST_FORWARD;
     let weights =
         if is_each { DMatrix::identity(adjoint.len(), adjoint.len()) } else { probes(adjoint.len()) };
     let directions = Directions::new(system, quantities, &weights);
     let (mut on_the_way, mut largest): (f64, f64) = (0.0, 0.0);
-    let end = first_order::forward(&linearizer, tape, &directions, &mut |at, s| {
+    let end = first_order::forward(&pieces, &directions, &mut |at, s| {
         on_the_way = on_the_way.max(costates.pairing(at + 1, s));
         largest = largest.max(s.amax());
     });
@@ -97,20 +99,16 @@ pub fn gradient(
         forward: if is_each { forward } else { Vec::new() },
         adjoint,
         costates,
-        troubles: troubles(&linearizer, tape),
+        troubles: troubles(&pieces),
         simulation,
     })
 }
 
-fn backward(
-    linearizer: &Linearizer,
-    tape: &Tape,
-    objective: &Objective,
-    zero: Gradient,
-) -> (Gradient, Costates) {
+fn backward(pieces: &LinearTape, objective: &Objective, zero: Gradient) -> (Gradient, Costates) {
+    let LinearTape { linearizer, tape, .. } = *pieces;
     let mut seen: Vec<(f64, Vec<f64>)> = Vec::new();
     let first = linearizer.system.interval[0];
-    let gradient = first_order::adjoint(linearizer, tape, objective, zero, &mut |at, lambda| {
+    let gradient = first_order::adjoint(pieces, objective, zero, &mut |at, lambda| {
         let time = at.map_or(first, |at| tape.pieces[at].end().time);
         seen.push((time, lambda.iter().copied().collect()));
     });

@@ -47,12 +47,16 @@ impl Linearization {
 pub(super) struct Linearizer<'a> {
     pub system: &'a System,
     pub parameters: Vec<f64>,
+    /// `d(t0, tf)/dp`.
+    pub ends_by: DMatrix<f64>,
     controls: &'a Controls,
 }
 
 impl<'a> Linearizer<'a> {
     pub fn new(system: &'a System, controls: &'a Controls) -> Self {
-        Linearizer { system, parameters: system.parameter_values(), controls }
+        let parameters = system.parameter_values();
+        let ends_by = Jacobian::of(&*system.interval_of, &Columns::new(0, 1), &parameters).by;
+        Linearizer { system, parameters, ends_by, controls }
     }
 
     /// How many of `[u | p]` there are.
@@ -76,6 +80,17 @@ impl<'a> Linearizer<'a> {
         }
         self.fold_guess(&mut point, t);
         point
+    }
+
+    /// The right side alone.
+    pub fn rate(&self, regime: &Regime, near: &[f64], t: f64, x: &DVector<f64>) -> DVector<f64> {
+        let is_given = |mode: &Mode| matches!(mode, Mode::Below | Mode::Above);
+        if !regime.modes.iter().all(is_given) {
+            return self.at(regime, near, t, x).rate;
+        }
+        let mut values = Columns::new(self.system.layout.x, 1);
+        self.system.flow.value(&self.table(regime, near, t, x), &self.parameters, &mut values);
+        DVector::from_fn(self.system.layout.x, |row, _| values.column(row)[0])
     }
 
     /// The columns `[t | x | u | s]`.
@@ -225,7 +240,7 @@ impl<'a> Linearizer<'a> {
         let mut by = by.rows(self.system.layout.x, self.system.layout.u).into_owned();
         let [first, last] = self.system.interval;
         let duration = last - first;
-        let ends = self.interval_by_parameters();
+        let ends = &self.ends_by;
         let by_tau = by.column(0) / if duration > 0.0 { duration } else { f64::INFINITY };
         by.column_mut(0).copy_from(&by_tau);
         for parameter in 0..self.system.layout.p {
@@ -234,11 +249,6 @@ impl<'a> Linearizer<'a> {
             column -= &by_tau * moved;
         }
         by
-    }
-
-    /// `d(t0, tf)/dp`.
-    pub fn interval_by_parameters(&self) -> DMatrix<f64> {
-        Jacobian::of(&*self.system.interval_of, &Columns::new(0, 1), &self.parameters).by
     }
 
     /// `dx(t0)/dp`.

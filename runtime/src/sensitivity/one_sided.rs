@@ -7,6 +7,7 @@ use super::first_order::{self, Objective};
 use super::linearization::Linearizer;
 use super::perturbed::perturbed;
 use super::quantity::{Gradient, Quantity};
+use super::sweep::LinearTape;
 use crate::simulate::{Controls, Options, Status, System, simulate};
 
 /// The largest of the three distances, relative to `max(1, |q|)`.
@@ -46,7 +47,8 @@ fn derivative(system: &System, controls: &Controls, options: &Options, quantity:
     let objective = Objective::new(&linearizer, &simulation)?;
     let tape = simulation.tape.as_ref().filter(|_| matches!(simulation.status, Status::Completed))?;
     let zero = Gradient::zero(system, controls);
-    let gradient = first_order::adjoint(&linearizer, tape, &objective, zero, &mut |_, _| ());
+    let gradient =
+        first_order::adjoint(&LinearTape::new(&linearizer, tape), &objective, zero, &mut |_, _| ());
     Some(gradient.by(quantity)).filter(|value| value.is_finite())
 }
 

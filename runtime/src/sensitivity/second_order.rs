@@ -27,7 +27,7 @@ use crate::simulate::{Cause, Controls, Instant, Mode, Piece, Regime, Simulation,
 use nalgebra::{DMatrix, DVector};
 
 /// The Hessian of the objective by some quantities; nothing where the state comes to rest after infinitely many jumps, and
-/// nothing yet where a `Dir` moves.
+/// nothing yet where a `Dir` moves. Nor is there one by a direction that leaves a surface on which the state starts and slides.
 pub fn hessian(
     system: &System,
     controls: &Controls,
@@ -40,6 +40,9 @@ pub fn hessian(
     let directions = Directions::each(system, quantities);
     let mut second = Second::new(&linearizer, tape, &directions);
     (0..tape.pieces.len()).for_each(|at| second.pass(at));
+    if second.leaves_at_start {
+        return None;
+    }
     let matrix = second.of_objective(&objective, simulation);
     Some(matrix.row_iter().map(|row| row.iter().copied().collect()).collect())
 }
@@ -57,6 +60,8 @@ struct Second<'t> {
     directions: &'t Directions,
     s: DMatrix<f64>,
     x: Pairs,
+    /// Whether a direction leaves a surface on which the state starts and slides.
+    leaves_at_start: bool,
 }
 
 impl<'t> Second<'t> {
@@ -65,7 +70,7 @@ impl<'t> Second<'t> {
         let parameters = |i: usize| directions.parameters.column(i).into_owned();
         let x =
             Pairs::new(directions.count(), |i, j| linearizer.start_curvature(&parameters(i), &parameters(j)));
-        Second { linearizer, tape, directions, s, x }
+        Second { linearizer, tape, directions, s, x, leaves_at_start: false }
     }
 
     fn regime(&self, at: &Instant) -> &'t Regime {
@@ -128,7 +133,11 @@ impl<'t> Second<'t> {
 
     /// Back to the surfaces: rounding and what a start on a surface brings with it.
     fn project(&mut self, projection: &Projection, regime: &Regime, at: &Instant) {
-        self.s = projection.forward(&self.s, &self.directions.inputs(regime));
+        let projected = projection.forward(&self.s, &self.directions.inputs(regime));
+        let moved = (&projected - &self.s).amax();
+        let is_start = at.time == self.linearizer.system.interval[0];
+        self.leaves_at_start |= is_start && moved > 1e-9 * (1.0 + projected.amax());
+        self.s = projected;
         let state = DVector::from_column_slice(&at.state);
         let table = self.linearizer.table(regime, &at.selectors, at.time, &state);
         let hessians = Hessians::of(&*self.linearizer.system.guards, &table, &self.linearizer.parameters);

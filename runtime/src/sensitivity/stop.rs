@@ -13,7 +13,7 @@
 
 use super::linearization::{Jacobian, Linearization, Linearizer};
 use super::reset::Reset;
-use crate::simulate::{Cause, Change, Instant, Regime, Tape};
+use crate::simulate::{Cause, Change, Instant, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 /// A stop, linearised.
@@ -45,15 +45,13 @@ pub(super) struct StopOnTape<'t> {
 impl LinearStop {
     pub fn new(linearizer: &Linearizer, tape: &Tape, stop: &StopOnTape) -> Self {
         let StopOnTape { before, after, .. } = *stop;
-        let reached = linearizer.at_instant(tape, before);
         let Reset { by_state, by_time, by_inputs } = Reset::new(linearizer, tape, stop);
-        let onward = linearizer.at_instant(tape, after);
         let arriving = match stop.cause {
-            Cause::Start => DVector::zeros(reached.rate.len()),
-            _ => &by_state * &reached.rate,
+            Cause::Start => DVector::zeros(before.state.len()),
+            _ => &by_state * linearizer.rate_at_instant(tape, before),
         };
-        let shift = arriving + by_time - &onward.rate;
-        let timing = Timing::new(linearizer, &tape.regimes[before.regime], stop, &reached);
+        let shift = arriving + by_time - linearizer.rate_at_instant(tape, after);
+        let timing = Timing::new(linearizer, tape, stop);
         LinearStop { by_state, by_inputs, shift, timing }
     }
 
@@ -78,9 +76,13 @@ impl Timing {
         &self.by_state * s + &self.by_inputs * w
     }
 
-    fn new(linearizer: &Linearizer, regime: &Regime, stop: &StopOnTape, reached: &Linearization) -> Self {
+    fn new(linearizer: &Linearizer, tape: &Tape, stop: &StopOnTape) -> Self {
+        if matches!(stop.cause, Cause::Start | Cause::Controls) {
+            return Timing::of_clock(linearizer, stop.before.time);
+        }
+        let regime = &tape.regimes[stop.before.regime];
+        let reached = linearizer.at_instant(tape, stop.before);
         match stop.cause {
-            Cause::Start | Cause::Controls => Timing::of_clock(linearizer, stop.before.time),
             Cause::Reaches(surface) => {
                 let x = DVector::from_column_slice(&stop.before.state);
                 let table = linearizer.table(regime, &reached.selectors, stop.before.time, &x);
@@ -91,10 +93,7 @@ impl Timing {
             Cause::Leaves(surface) => {
                 Timing::implicit(&reached.selectors_by.row(surface).into_owned(), &reached.rate)
             }
-            Cause::Repels => {
-                let zero = RowDVector::zeros(reached.by.ncols());
-                Timing::implicit(&zero, &reached.rate)
-            }
+            _ => Timing::implicit(&RowDVector::zeros(reached.by.ncols()), &reached.rate),
         }
     }
 
@@ -102,7 +101,7 @@ impl Timing {
     pub fn of_clock(linearizer: &Linearizer, time: f64) -> Self {
         let layout = linearizer.system.layout;
         let tau = linearizer.tau(time);
-        let ends = linearizer.interval_by_parameters();
+        let ends = &linearizer.ends_by;
         let moved = ends.row(0) * (1.0 - tau) + ends.row(1) * tau;
         let mut by_inputs = RowDVector::zeros(layout.u + layout.p);
         by_inputs.columns_mut(layout.u, layout.p).copy_from(&moved);
@@ -132,6 +131,11 @@ fn normal(linearizer: &Linearizer, by: &DMatrix<f64>, selectors: &[f64], surface
 }
 
 impl Linearizer<'_> {
+    pub fn rate_at_instant(&self, tape: &Tape, at: &Instant) -> DVector<f64> {
+        let x = DVector::from_column_slice(&at.state);
+        self.rate(&tape.regimes[at.regime], &at.selectors, at.time, &x)
+    }
+
     pub fn at_instant(&self, tape: &Tape, at: &Instant) -> Linearization {
         let x = DVector::from_column_slice(&at.state);
         self.at(&tape.regimes[at.regime], &at.selectors, at.time, &x)

@@ -10,6 +10,32 @@ use super::surface::Projection;
 use crate::simulate::{Instant, Piece, Regime, Tape};
 use nalgebra::{DMatrix, DVector};
 
+/// More pieces than this are linearised anew for each sweep, so that memory does not grow with the length of a tape.
+const MOST_KEPT: usize = 20_000;
+
+/// All pieces of a tape.
+pub(super) struct LinearTape<'t> {
+    pub linearizer: &'t Linearizer<'t>,
+    pub tape: &'t Tape,
+    kept: Vec<LinearPiece<'t>>,
+}
+
+impl<'t> LinearTape<'t> {
+    pub fn new(linearizer: &'t Linearizer<'t>, tape: &'t Tape) -> Self {
+        let count = if tape.pieces.len() <= MOST_KEPT { tape.pieces.len() } else { 0 };
+        let kept = (0..count).map(|at| LinearPiece::new(linearizer, tape, at)).collect();
+        LinearTape { linearizer, tape, kept }
+    }
+
+    /// Does something with one piece.
+    pub fn with<R>(&self, at: usize, visit: impl FnOnce(&LinearPiece<'t>) -> R) -> R {
+        match self.kept.get(at) {
+            Some(piece) => visit(piece),
+            None => visit(&LinearPiece::new(self.linearizer, self.tape, at)),
+        }
+    }
+}
+
 /// A piece as a linear map, followed by the projection to the surfaces on which the state slides after it.
 pub(super) struct LinearPiece<'t> {
     pub map: Map,

@@ -4,6 +4,7 @@
 //! change or when it starts, it meets one at the end. All are suspicions; [`one_sided()`](super::one_sided()) decides.
 
 use super::linearization::{Jacobian, Linearizer};
+use super::sweep::LinearTape;
 use crate::simulate::{Cause, Instant, Mode, Piece, Tape};
 use nalgebra::DVector;
 
@@ -41,13 +42,25 @@ pub struct Trouble {
 }
 
 /// All suspicions, in the order of time.
-pub(super) fn troubles(linearizer: &Linearizer, tape: &Tape) -> Vec<Trouble> {
+pub(super) fn troubles(pieces: &LinearTape) -> Vec<Trouble> {
+    let LinearTape { linearizer, tape, .. } = *pieces;
     let watch = Watch { linearizer, tape };
     let mut found = Vec::new();
+    // The end of a step is the beginning of the next.
+    let mut last: Option<Distances> = None;
     for (at, piece) in tape.pieces.iter().enumerate() {
         match piece {
-            Piece::Step { start, .. } => watch.touches(start, &piece.end(), &mut found),
-            Piece::Stop { .. } => watch.stop(at, &mut found),
+            Piece::Step { start, .. } => {
+                let first = last.take().unwrap_or_else(|| watch.distances(start));
+                let end = piece.end();
+                let reached = watch.distances(&end);
+                watch.touches(start, end.time - start.time, [&first, &reached], &mut found);
+                last = Some(reached);
+            }
+            Piece::Stop { .. } => {
+                watch.stop(at, &mut found);
+                last = None;
+            }
         }
     }
     if let Some(last) = tape.pieces.last() {
@@ -73,6 +86,10 @@ struct Distances {
 }
 
 impl Distances {
+    fn is_tangent(&self, surface: usize) -> bool {
+        self.rate[surface].abs() <= TANGENT * self.speed[surface]
+    }
+
     fn touches(&self, surface: usize) -> bool {
         self.value[surface].abs() <= TOUCHING * (1.0 + self.size[surface])
     }
@@ -80,21 +97,21 @@ impl Distances {
 
 impl Watch<'_> {
     fn distances(&self, at: &Instant) -> Distances {
-        let point = self.linearizer.at_instant(self.tape, at);
+        let flow = self.linearizer.rate_at_instant(self.tape, at);
         let state = DVector::from_column_slice(&at.state);
         let regime = &self.tape.regimes[at.regime];
-        let table = self.linearizer.table(regime, &point.selectors, at.time, &state);
+        let table = self.linearizer.table(regime, &at.selectors, at.time, &state);
         let system = self.linearizer.system;
         let Jacobian { values, by } = Jacobian::of(&*system.guards, &table, &self.linearizer.parameters);
         let normals = by.columns(1, state.len());
-        let visible = system.states.iter().zip(point.rate.iter()).filter(|(state, _)| !state.hidden);
-        let flow = visible.map(|(_, rate)| rate * rate).sum::<f64>().sqrt();
+        let visible = system.states.iter().zip(flow.iter()).filter(|(state, _)| !state.hidden);
+        let size = visible.map(|(_, rate)| rate * rate).sum::<f64>().sqrt();
         let (surfaces, by_time) = (0..values.len(), by.column(0));
         Distances {
             value: values.iter().copied().collect(),
-            rate: (normals * &point.rate + by_time).iter().copied().collect(),
+            rate: (normals * &flow + by_time).iter().copied().collect(),
             size: (normals.abs() * state.abs()).iter().copied().collect(),
-            speed: surfaces.map(|i| normals.row(i).norm() * flow + by_time[i].abs()).collect(),
+            speed: surfaces.map(|i| normals.row(i).norm() * size + by_time[i].abs()).collect(),
         }
     }
 
@@ -108,18 +125,15 @@ impl Watch<'_> {
     }
 
     /// Surfaces that come nearest inside a step, almost at distance 0; by the cubic through both ends.
-    fn touches(&self, start: &Instant, end: &Instant, found: &mut Vec<Trouble>) {
-        let h = end.time - start.time;
-        let mut watched = self.beside(start).peekable();
-        if watched.peek().is_none() || h <= 0.0 {
-            return;
-        }
-        let [first, last] = [start, end].map(|at| self.distances(at));
-        for surface in watched {
-            if first.rate[surface] * last.rate[surface] >= 0.0 {
+    fn touches(&self, start: &Instant, h: f64, ends: [&Distances; 2], found: &mut Vec<Trouble>) {
+        let [first, last] = ends;
+        for surface in self.beside(start) {
+            // A surface that has just been left is still near: its rate is 0 up to rounding.
+            let is_left = first.touches(surface) && first.is_tangent(surface);
+            if first.rate[surface] * last.rate[surface] >= 0.0 || is_left {
                 continue;
             }
-            let [a, b] = [&first, &last].map(|it| (it.value[surface], h * it.rate[surface]));
+            let [a, b] = ends.map(|it| (it.value[surface], h * it.rate[surface]));
             let (part, nearest) = extremum(a, b);
             let size = 1.0 + first.size[surface].max(last.size[surface]);
             if nearest.abs() <= TOUCHING * size {
@@ -137,7 +151,7 @@ impl Watch<'_> {
         let met: Vec<usize> = self.beside(before).filter(|&i| distances.touches(i)).collect();
         match *cause {
             Cause::Reaches(surface) => {
-                if distances.rate[surface].abs() <= TANGENT * distances.speed[surface] {
+                if distances.is_tangent(surface) {
                     note(TroubleKind::Grazing, surface);
                 }
                 if met.iter().any(|&other| other != surface)

@@ -6,6 +6,7 @@ pub mod models;
 pub mod optimality;
 pub mod pages;
 pub mod planar;
+pub mod race;
 pub mod random;
 pub mod section_two;
 pub mod sources;

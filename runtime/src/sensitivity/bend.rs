@@ -105,11 +105,11 @@ impl Bend<'_> {
         point: &Linearization,
         directions: &[DVector<f64>],
     ) -> impl Fn(usize, usize) -> DVector<f64> {
-        let mut along_flow = DVector::zeros(point.by.ncols());
+        let mut along_flow = DVector::zeros(point.by().ncols());
         along_flow[0] = 1.0;
         along_flow.rows_mut(1, point.rate.len()).copy_from(&point.rate);
-        let by_flow = &point.by * along_flow;
-        let by_direction: Vec<DVector<f64>> = directions.iter().map(|it| &point.by * it).collect();
+        let by_flow = point.by() * along_flow;
+        let by_direction: Vec<DVector<f64>> = directions.iter().map(|it| point.by() * it).collect();
         let tau = self.tau.clone();
         move |i, j| &by_direction[i] * tau[j] + &by_direction[j] * tau[i] + &by_flow * (tau[i] * tau[j])
     }

@@ -88,8 +88,10 @@ impl<'l, 'a> Curvature<'l, 'a> {
             let moved = slopes.column(0) * direction[0] + slopes.columns(1, layout.p) * parameters;
             whole.rows_mut(layout.controls().start, layout.u).copy_from(&moved);
         }
-        let selectors = &self.point.selectors_by * direction;
-        whole.rows_mut(layout.selectors().start, layout.s).copy_from(&selectors);
+        if !self.point.selectors_by.is_empty() {
+            let selectors = &self.point.selectors_by * direction;
+            whole.rows_mut(layout.selectors().start, layout.s).copy_from(&selectors);
+        }
         whole
     }
 
@@ -101,7 +103,8 @@ impl<'l, 'a> Curvature<'l, 'a> {
         }
         if self.linearizer.is_guessed() {
             let layout = self.linearizer.system.layout;
-            let by_controls = self.point.by.columns(layout.controls().start, layout.u);
+            let by = self.point.by();
+            let by_controls = by.columns(layout.controls().start, layout.u);
             sum += by_controls * self.linearizer.guess_curvature(self.time, a, b);
         }
         sum
@@ -118,7 +121,7 @@ fn rates(
     let by = Jacobian::of(&*system.rates, table, &linearizer.parameters).by;
     let by_selectors = by.columns(system.layout.selectors().start, system.layout.s);
     let inverse = by_selectors.select_columns(&sliding).select_rows(&sliding).try_inverse()?;
-    let push = -(point.by_selectors.select_columns(&sliding) * inverse);
+    let push = -(point.by_selectors().select_columns(&sliding) * inverse);
     let hessians = Hessians::of(&*system.rates, table, &linearizer.parameters);
     Some((hessians, sliding, push))
 }

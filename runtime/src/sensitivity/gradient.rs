@@ -109,7 +109,7 @@ fn backward(pieces: &LinearTape, objective: &Objective, zero: Gradient) -> (Grad
     let mut seen: Vec<(f64, Vec<f64>)> = Vec::new();
     let first = linearizer.system.interval[0];
     let gradient = first_order::adjoint(pieces, objective, zero, &mut |at, lambda| {
-        let time = at.map_or(first, |at| tape.pieces[at].end().time);
+        let time = at.map_or(first, |at| tape.pieces[at].end_time());
         seen.push((time, lambda.iter().copied().collect()));
     });
     seen.reverse();

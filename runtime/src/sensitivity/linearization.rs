@@ -9,9 +9,11 @@
 //! Controls that follow the guess are functions of time and parameters, `u = g(tau(t, p), p)`; their derivatives are
 //! folded into those by `t` and `p`.
 
-use crate::problem::{Columns, Function};
+use crate::problem::{Columns, Function, Layout};
 use crate::simulate::{Ball, Controls, Mode, Regime, System};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DMatrixView, DVector};
+use std::borrow::Cow;
+use std::cell::RefCell;
 
 /// A vector below this many times what it is made of is 0, as for the simulator.
 const AT_ZERO: f64 = 1e-12;
@@ -20,26 +22,47 @@ const AT_ZERO: f64 = 1e-12;
 pub(super) struct Linearization {
     /// `f*`.
     pub rate: DVector<f64>,
-    /// `f*_w`, with the columns `[t | x | u | p]`.
-    pub by: DMatrix<f64>,
     /// All selectors.
     pub selectors: Vec<f64>,
-    /// `s_w`, one row for each selector.
+    /// `s_w`, one row for each selector; no rows where all are constant.
     pub selectors_by: DMatrix<f64>,
-    /// `f_s`.
-    pub by_selectors: DMatrix<f64>,
-    states: usize,
+    /// `f*_w`, then `f_s`: `[t | x | u | p | s]`.
+    whole: DMatrix<f64>,
+    layout: Layout,
 }
 
 impl Linearization {
+    /// `f*_w`, with the columns `[t | x | u | p]`.
+    pub fn by(&self) -> DMatrixView<'_, f64> {
+        self.whole.columns(0, self.layout.selectors().start)
+    }
+
     /// `f*_x`.
-    pub fn by_state(&self) -> nalgebra::DMatrixView<'_, f64> {
-        self.by.columns(1, self.states)
+    pub fn by_state(&self) -> DMatrixView<'_, f64> {
+        self.whole.columns(1, self.layout.x)
     }
 
     /// `f*_(u, p)`.
-    pub fn by_inputs(&self) -> nalgebra::DMatrixView<'_, f64> {
-        self.by.columns(1 + self.states, self.by.ncols() - 1 - self.states)
+    pub fn by_inputs(&self) -> DMatrixView<'_, f64> {
+        self.whole.columns(1 + self.layout.x, self.layout.u + self.layout.p)
+    }
+
+    /// `f_s`.
+    pub fn by_selectors(&self) -> DMatrixView<'_, f64> {
+        self.whole.columns(self.layout.selectors().start, self.layout.s)
+    }
+
+    /// Adds what the right side gains through selectors with these slopes.
+    fn add_through(&mut self, surfaces: &[usize], slopes: &DMatrix<f64>) {
+        let through = self.by_selectors().select_columns(surfaces) * slopes;
+        let mut by = self.whole.columns_mut(0, self.layout.selectors().start);
+        by += through;
+        if self.selectors_by.is_empty() {
+            self.selectors_by = DMatrix::zeros(self.layout.s, slopes.ncols());
+        }
+        for (row, &i) in surfaces.iter().enumerate() {
+            self.selectors_by.row_mut(i).copy_from(&slopes.row(row));
+        }
     }
 }
 
@@ -50,13 +73,17 @@ pub(super) struct Linearizer<'a> {
     /// `d(t0, tf)/dp`.
     pub ends_by: DMatrix<f64>,
     controls: &'a Controls,
+    /// Values and derivatives of the right side as its function gives them, again and again in the same memory.
+    results: RefCell<[Columns; 2]>,
 }
 
 impl<'a> Linearizer<'a> {
     pub fn new(system: &'a System, controls: &'a Controls) -> Self {
         let parameters = system.parameter_values();
         let ends_by = Jacobian::of(&*system.interval_of, &Columns::new(0, 1), &parameters).by;
-        Linearizer { system, parameters, ends_by, controls }
+        let entries = system.flow.jacobian_pattern().entries.len();
+        let results = RefCell::new([Columns::new(system.layout.x, 1), Columns::new(entries, 1)]);
+        Linearizer { system, parameters, ends_by, controls, results }
     }
 
     /// How many of `[u | p]` there are.
@@ -72,8 +99,7 @@ impl<'a> Linearizer<'a> {
         let rates = (!sliding.is_empty()).then(|| self.solve(&mut table, &sliding, regime));
         let mut point = self.free(&table, regime);
         if let Some(slopes) = directions {
-            point.by += &point.by_selectors * &slopes;
-            point.selectors_by = slopes;
+            point.add_through(&(0..self.system.layout.s).collect::<Vec<_>>(), &slopes);
         }
         if let Some(rates) = &rates {
             self.eliminate(&mut point, &rates.by, &sliding);
@@ -96,18 +122,18 @@ impl<'a> Linearizer<'a> {
     /// The columns `[t | x | u | s]`.
     pub fn table(&self, regime: &Regime, near: &[f64], t: f64, x: &DVector<f64>) -> Columns {
         let control = self.control(regime, t);
-        let values = std::iter::once(&t).chain(x.iter()).chain(&control).chain(near);
+        let values = std::iter::once(&t).chain(x.iter()).chain(control.iter()).chain(near);
         let mut table = Columns::new(self.system.layout.point_inputs(), 1);
         values.enumerate().for_each(|(column, value)| table.column_mut(column)[0] = *value);
         table
     }
 
     /// The controls that act.
-    fn control(&self, regime: &Regime, t: f64) -> Vec<f64> {
+    fn control(&self, regime: &Regime, t: f64) -> Cow<'a, [f64]> {
         match (self.controls, regime.row) {
-            (Controls::Held { rows, .. }, Some(row)) => rows[row].clone(),
-            _ if self.system.layout.u == 0 => Vec::new(),
-            _ => self.system.guessed(self.tau(t))[self.system.layout.x..].to_vec(),
+            (Controls::Held { rows, .. }, Some(row)) => Cow::Borrowed(&rows[row]),
+            _ if self.system.layout.u == 0 => Cow::Borrowed(&[]),
+            _ => Cow::Owned(self.system.guessed(self.tau(t))[self.system.layout.x..].to_vec()),
         }
     }
 
@@ -186,29 +212,27 @@ impl<'a> Linearizer<'a> {
     /// The right side with all selectors given.
     fn free(&self, table: &Columns, regime: &Regime) -> Linearization {
         let layout = self.system.layout;
-        let Jacobian { values: mut rate, mut by } = Jacobian::of(&*self.system.flow, table, &self.parameters);
+        let results = &mut *self.results.borrow_mut();
+        let Jacobian { values: mut rate, mut by } =
+            Jacobian::in_memory(&*self.system.flow, table, &self.parameters, results);
         for &state in &regime.held {
             rate[state] = 0.0;
             by.row_mut(state).fill(0.0);
         }
         let first = table.columns() - layout.s;
         let selectors = (first..table.columns()).map(|column| table.column(column)[0]).collect();
-        let by_selectors = self.by_selectors(&by).into_owned();
-        let by = by.columns(0, layout.selectors().start).into_owned();
-        let selectors_by = DMatrix::zeros(layout.s, by.ncols());
-        Linearization { rate, by, selectors, selectors_by, by_selectors, states: layout.x }
+        Linearization { rate, selectors, selectors_by: DMatrix::zeros(0, 0), whole: by, layout }
     }
 
     /// Sliding selectors are functions of the rest.
     fn eliminate(&self, point: &mut Linearization, rates: &DMatrix<f64>, sliding: &[usize]) {
         let by_selectors = self.by_selectors(rates).select_columns(sliding).select_rows(sliding);
-        let by_rest = rates.columns(0, point.by.ncols()) + self.by_selectors(rates) * &point.selectors_by;
-        let by_rest = by_rest.select_rows(sliding);
-        let Some(slope) = by_selectors.lu().solve(&-by_rest) else { return };
-        point.by += point.by_selectors.select_columns(sliding) * &slope;
-        for (row, &i) in sliding.iter().enumerate() {
-            point.selectors_by.row_mut(i).copy_from(&slope.row(row));
+        let mut by_rest = rates.columns(0, self.system.layout.selectors().start).into_owned();
+        if !point.selectors_by.is_empty() {
+            by_rest += self.by_selectors(rates) * &point.selectors_by;
         }
+        let Some(slopes) = by_selectors.lu().solve(&-by_rest.select_rows(sliding)) else { return };
+        point.add_through(sliding, &slopes);
     }
 
     fn fold_guess(&self, point: &mut Linearization, t: f64) {
@@ -216,8 +240,8 @@ impl<'a> Linearizer<'a> {
             return;
         }
         let guess = self.guess_slopes(t);
-        let Linearization { by, selectors_by, .. } = point;
-        for matrix in [by, selectors_by] {
+        let Linearization { whole, selectors_by, .. } = point;
+        for matrix in [whole, selectors_by].into_iter().filter(|matrix| !matrix.is_empty()) {
             let through = self.by_controls(matrix) * &guess;
             let (first, count) = (self.system.layout.parameters().start, self.system.layout.p);
             let mut by_time = matrix.column_mut(0);
@@ -270,10 +294,20 @@ pub(super) struct Jacobian {
 
 impl Jacobian {
     pub fn of(function: &dyn Function, point: &Columns, parameters: &[f64]) -> Self {
+        let entries = function.jacobian_pattern().entries.len();
+        let mut results = [Columns::new(function.outputs(), 1), Columns::new(entries, 1)];
+        Self::in_memory(function, point, parameters, &mut results)
+    }
+
+    /// The same with memory for the columns of values and entries.
+    fn in_memory(
+        function: &dyn Function,
+        point: &Columns,
+        parameters: &[f64],
+        [values, entries]: &mut [Columns; 2],
+    ) -> Self {
         let pattern = function.jacobian_pattern();
-        let mut values = Columns::new(function.outputs(), 1);
-        let mut entries = Columns::new(pattern.entries.len(), 1);
-        function.jacobian(point, parameters, &mut values, &mut entries);
+        function.jacobian(point, parameters, values, entries);
         let mut by = DMatrix::zeros(function.outputs(), function.layout().inputs());
         for (entry, &(row, column)) in pattern.entries.iter().enumerate() {
             by[(row as usize, column as usize)] = entries.column(entry)[0];

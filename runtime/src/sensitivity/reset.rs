@@ -58,7 +58,7 @@ fn jump_slopes(linearizer: &Linearizer, tape: &Tape, from: &Instant, jump: usize
 
 /// Where jumps pile up the state goes straight on until their limit: `x + gap f`.
 fn straight_on(linearizer: &Linearizer, tape: &Tape, from: &Instant, gap: f64) -> DMatrix<f64> {
-    let mut slopes = linearizer.at_instant(tape, from).by * gap;
+    let mut slopes = linearizer.at_instant(tape, from).by() * gap;
     (0..from.state.len()).for_each(|state| slopes[(state, 1 + state)] += 1.0);
     slopes
 }

@@ -14,6 +14,7 @@
 use super::linearization::{Linearization, Linearizer};
 use crate::simulate::{Instant, Regime, Rule, radau, setting_out, tableau};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
+use std::sync::LazyLock;
 
 /// Newton's steps for the stages of an implicit method.
 const MOST_ITERATIONS: usize = 20;
@@ -25,24 +26,36 @@ struct Tableau {
     b: Vec<f64>,
 }
 
+static EXPLICIT: LazyLock<Tableau> = LazyLock::new(|| Tableau::new(&tableau::C, tableau::A));
+static RADAU: LazyLock<Tableau> = LazyLock::new(|| Tableau::new(&radau::C, radau::A));
+static COLLOCATION: LazyLock<Tableau> = LazyLock::new(|| {
+    let weights = setting_out::weights(&setting_out::FINE);
+    Tableau::new(&setting_out::FINE, weights.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()))
+});
+static STRAIGHT: LazyLock<Tableau> = LazyLock::new(|| Tableau::new(&[], [[0.0; 0]; 0]));
+
 impl Tableau {
+    fn of(rule: Rule) -> &'static Self {
+        match rule {
+            Rule::Explicit => &EXPLICIT,
+            Rule::Radau => &RADAU,
+            Rule::Collocation => &COLLOCATION,
+            Rule::Straight => &STRAIGHT,
+        }
+    }
+
     /// In all methods the last row of weights is that of the end.
-    fn of(rule: Rule) -> Self {
-        let (c, a): (&[f64], Vec<Vec<f64>>) = match rule {
-            Rule::Explicit => (&tableau::C, tableau::A.iter().map(|row| row.to_vec()).collect()),
-            Rule::Radau => (&radau::C, radau::A.iter().map(|row| row.to_vec()).collect()),
-            Rule::Collocation => (&setting_out::FINE, rows(&setting_out::weights(&setting_out::FINE))),
-            Rule::Straight => (&[], Vec::new()),
-        };
+    fn new<R: AsRef<[f64]>>(c: &[f64], rows: impl IntoIterator<Item = R>) -> Self {
+        let mut a: Vec<Vec<f64>> = rows.into_iter().map(|row| row.as_ref().to_vec()).collect();
         let b = a.last().cloned().unwrap_or_default();
-        let used = b.len();
-        Tableau { c: c[..used].to_vec(), a: a[..used].to_vec(), b }
+        a.truncate(b.len());
+        Tableau { c: c[..b.len()].to_vec(), a, b }
     }
 }
 
 /// A step, linearised.
 pub(super) struct LinearStep {
-    tableau: Tableau,
+    tableau: &'static Tableau,
     h: f64,
     /// The right side at the stages.
     pub stages: Vec<Linearization>,
@@ -204,15 +217,20 @@ impl LinearStep {
 
     /// The adjoint before the step and the derivative by `(u, p)`.
     pub fn adjoint(&self, after: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
-        let pulled = match &self.implicit {
-            None => self.pulled_in_order(after),
+        let mut pulled = match &self.implicit {
+            None => vec![DVector::zeros(0); self.stages.len()],
             Some(system) => self.pulled_at_once(after, system),
         };
-        let mut inputs = DVector::zeros(self.inputs);
-        for (stage, point) in self.stages.iter().enumerate() {
-            inputs.gemv_tr(1.0, &point.by_inputs(), &self.kappa(after, &pulled, stage), 1.0);
+        let (mut before, mut inputs) = (after.clone(), DVector::zeros(self.inputs));
+        for (stage, point) in self.stages.iter().enumerate().rev() {
+            let kappa = self.kappa(after, &pulled, stage);
+            if self.implicit.is_none() {
+                pulled[stage] = point.by_state().tr_mul(&kappa);
+            }
+            before += &pulled[stage];
+            inputs.gemv_tr(1.0, &point.by_inputs(), &kappa, 1.0);
         }
-        (pulled.iter().fold(after.clone(), |sum, mu| sum + mu), inputs)
+        (before, inputs)
     }
 
     /// `kappa_j`, from the `mu_i` that are known.
@@ -222,14 +240,6 @@ impl LinearStep {
             kappa.axpy(self.h * row[stage], mu, 1.0);
         }
         kappa
-    }
-
-    fn pulled_in_order(&self, after: &DVector<f64>) -> Vec<DVector<f64>> {
-        let mut pulled = vec![DVector::zeros(after.len()); self.stages.len()];
-        for stage in (0..self.stages.len()).rev() {
-            pulled[stage] = self.stages[stage].by_state().tr_mul(&self.kappa(after, &pulled, stage));
-        }
-        pulled
     }
 
     fn pulled_at_once(&self, after: &DVector<f64>, system: &LU<f64, Dyn, Dyn>) -> Vec<DVector<f64>> {
@@ -242,10 +252,6 @@ impl LinearStep {
         solve_transposed(system, &mut right);
         (0..self.stages.len()).map(|stage| right.rows(stage * n, n).into_owned()).collect()
     }
-}
-
-fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
-    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
 }
 
 /// With `P M = L U` the transposed system is `U^T L^T P mu = right`.

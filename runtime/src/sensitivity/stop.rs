@@ -88,12 +88,12 @@ impl Timing {
                 let table = linearizer.table(regime, &reached.selectors, stop.before.time, &x);
                 let guards = Jacobian::of(&*linearizer.system.guards, &table, &linearizer.parameters);
                 let slopes = normal(linearizer, &guards.by, &reached.selectors, surface);
-                Timing::implicit(&slopes.columns(0, reached.by.ncols()).into_owned(), &reached.rate)
+                Timing::implicit(&slopes.columns(0, reached.by().ncols()).into_owned(), &reached.rate)
             }
             Cause::Leaves(surface) => {
                 Timing::implicit(&reached.selectors_by.row(surface).into_owned(), &reached.rate)
             }
-            _ => Timing::implicit(&RowDVector::zeros(reached.by.ncols()), &reached.rate),
+            _ => Timing::implicit(&RowDVector::zeros(reached.by().ncols()), &reached.rate),
         }
     }
 

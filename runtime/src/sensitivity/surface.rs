@@ -38,7 +38,7 @@ impl Projection {
         let by = guards.by.select_rows(&sliding);
         let normals = by.columns(1, layout.x).into_owned();
         let by_inputs = by.columns(1 + layout.x, layout.u + layout.p).into_owned();
-        let directions = point.by_selectors.select_columns(&sliding);
+        let directions = point.by_selectors().select_columns(&sliding);
         let inverse = (&normals * &directions).try_inverse()?;
         Some(Projection { surfaces: sliding, along: directions * inverse, normals, by_inputs })
     }

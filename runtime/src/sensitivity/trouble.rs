@@ -5,6 +5,7 @@
 
 use super::linearization::{Jacobian, Linearizer};
 use super::sweep::LinearTape;
+use crate::problem::Columns;
 use crate::simulate::{Cause, Instant, Mode, Piece, Tape};
 use nalgebra::DVector;
 
@@ -46,21 +47,10 @@ pub(super) fn troubles(pieces: &LinearTape) -> Vec<Trouble> {
     let LinearTape { linearizer, tape, .. } = *pieces;
     let watch = Watch { linearizer, tape };
     let mut found = Vec::new();
-    // The end of a step is the beginning of the next.
-    let mut last: Option<Distances> = None;
     for (at, piece) in tape.pieces.iter().enumerate() {
         match piece {
-            Piece::Step { start, .. } => {
-                let first = last.take().unwrap_or_else(|| watch.distances(start));
-                let end = piece.end();
-                let reached = watch.distances(&end);
-                watch.touches(start, end.time - start.time, [&first, &reached], &mut found);
-                last = Some(reached);
-            }
-            Piece::Stop { .. } => {
-                watch.stop(at, &mut found);
-                last = None;
-            }
+            Piece::Step { start, h, end, .. } => watch.touches(start, *h, end, &mut found),
+            Piece::Stop { .. } => watch.stop(at, &mut found),
         }
     }
     if let Some(last) = tape.pieces.last() {
@@ -115,6 +105,19 @@ impl Watch<'_> {
         }
     }
 
+    /// `psi'` at both ends of a step, at the selectors of its start.
+    fn rates(&self, start: &Instant, h: f64, end: &[f64]) -> [DVector<f64>; 2] {
+        let regime = &self.tape.regimes[start.regime];
+        [(start.time, start.state.as_slice()), (start.time + h, end)].map(|(time, state)| {
+            let state = DVector::from_column_slice(state);
+            let table = self.linearizer.table(regime, &start.selectors, time, &state);
+            let rates = &self.linearizer.system.rates;
+            let mut values = Columns::new(rates.outputs(), 1);
+            rates.value(&table, &self.linearizer.parameters, &mut values);
+            DVector::from_fn(rates.outputs(), |row, _| values.column(row)[0])
+        })
+    }
+
     fn is_beside(&self, at: &Instant, surface: usize) -> bool {
         matches!(self.tape.regimes[at.regime].modes[surface], Mode::Below | Mode::Above)
     }
@@ -125,15 +128,17 @@ impl Watch<'_> {
     }
 
     /// Surfaces that come nearest inside a step, almost at distance 0; by the cubic through both ends.
-    fn touches(&self, start: &Instant, h: f64, ends: [&Distances; 2], found: &mut Vec<Trouble>) {
-        let [first, last] = ends;
-        for surface in self.beside(start) {
+    fn touches(&self, start: &Instant, h: f64, end: &[f64], found: &mut Vec<Trouble>) {
+        let turns = |at: &usize, [first, last]: &[DVector<f64>; 2]| first[*at] * last[*at] < 0.0;
+        let rates = self.rates(start, h, end);
+        for surface in self.beside(start).filter(|at| turns(at, &rates)) {
+            let end = Instant { time: start.time + h, state: end.to_vec(), ..start.clone() };
+            let [first, last] = [start, &end].map(|at| self.distances(at));
             // A surface that has just been left is still near: its rate is 0 up to rounding.
-            let is_left = first.touches(surface) && first.is_tangent(surface);
-            if first.rate[surface] * last.rate[surface] >= 0.0 || is_left {
+            if first.touches(surface) && first.is_tangent(surface) {
                 continue;
             }
-            let [a, b] = ends.map(|it| (it.value[surface], h * it.rate[surface]));
+            let [a, b] = [&first, &last].map(|it| (it.value[surface], h * it.rate[surface]));
             let (part, nearest) = extremum(a, b);
             let size = 1.0 + first.size[surface].max(last.size[surface]);
             if nearest.abs() <= TOUCHING * size {

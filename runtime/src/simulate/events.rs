@@ -77,7 +77,7 @@ impl Run<'_> {
         let is_crossing = |event: &&Event| matches!(event.kind, Kind::CrossesUp | Kind::CrossesDown);
         let crossed: Vec<usize> = here.filter(is_crossing).map(|event| event.surface).collect();
         for &surface in surfaces.iter().filter(|surface| crossed.contains(surface)) {
-            if let Some(limit_time) = self.crossings[surface].limit(self.t, last - first) {
+            if let Some(limit_time) = self.crossings[surface].limit(self.t, last - first, false) {
                 return Err(Status::Zeno { jump: None, surface, limit_time });
             }
         }
@@ -120,10 +120,19 @@ impl Run<'_> {
             self.record.point(self.t, &self.x);
         }
         let [first, last] = self.field.system.interval;
-        match self.piles[jump].limit(self.t, last - first) {
+        let is_small = self.is_small(jump, surface);
+        match self.piles[jump].limit(self.t, last - first, is_small) {
             Some(limit) => self.piled_up(jump, limit),
             None => Ok(()),
         }
+    }
+
+    /// Whether the state goes so little away from the surface between two jumps that rounding will soon hide it.
+    fn is_small(&mut self, jump: usize, surface: usize) -> bool {
+        let normals = self.field.normals(self.t, &self.x);
+        let rate = self.field.rate(self.t, &self.x);
+        let way = normals.rate(surface, &rate).abs() * self.piles[jump].since_last(self.t);
+        way <= 1e3 * normals.noise(surface, &self.x)
     }
 
     /// Whether a state that is still on a surface after a reset moves on to the other side, whichever field acts.
@@ -244,7 +253,7 @@ impl Run<'_> {
 }
 
 /// One Newton step along a gradient.
-fn correct(x: &mut [f64], gradient: &[f64], value: f64) {
+pub(super) fn correct(x: &mut [f64], gradient: &[f64], value: f64) {
     let square: f64 = gradient.iter().map(|g| g * g).sum();
     if square > 0.0 {
         x.iter_mut().zip(gradient).for_each(|(x, g)| *x -= value * g / square);

@@ -42,6 +42,8 @@ pub(super) struct Normals {
     pub by_time: Vec<f64>,
     /// One row for each surface.
     pub by_state: DMatrix<f64>,
+    /// What rounding may make of 0.
+    floor: f64,
 }
 
 impl Normals {
@@ -54,7 +56,7 @@ impl Normals {
     /// What rounding may make of `psi = 0`.
     pub fn noise(&self, surface: usize, x: &[f64]) -> f64 {
         let size: f64 = self.by_state.row(surface).iter().zip(x).map(|(d, x)| (d * x).abs()).sum();
-        1e-14 * (1.0 + size)
+        self.floor + 1e-14 * size
     }
 }
 
@@ -72,6 +74,8 @@ pub(super) struct Field<'a> {
     pub stable: f64,
     /// States that stand still.
     pub held: Vec<usize>,
+    /// Distances from a surface below this are 0.
+    pub floor: f64,
     pub evaluations: usize,
     /// Which row of the controls holds.
     pub row: Option<usize>,
@@ -94,6 +98,7 @@ impl<'a> Field<'a> {
             departure: vec![f64::NAN; surfaces],
             stable: f64::INFINITY,
             held: Vec::new(),
+            floor: 1e-14,
             evaluations: 0,
             row: None,
             controls,
@@ -188,7 +193,7 @@ impl<'a> Field<'a> {
         self.set_point(t, x, None);
         let (psi, matrix) = self.jacobian(&*self.system.guards, 0..1 + x.len());
         let by_time = matrix.column(0).iter().copied().collect();
-        Normals { psi, by_time, by_state: matrix.columns(1, x.len()).into_owned() }
+        Normals { psi, by_time, by_state: matrix.columns(1, x.len()).into_owned(), floor: self.floor }
     }
 
     /// The state after a jump.

@@ -5,6 +5,7 @@
 //! root is refined on steps of the pair itself, so it is as accurate as the integration.
 
 use super::direction::length;
+use super::events::correct;
 use super::field::Field;
 use super::result::Options;
 use super::samples::{self, Samples};
@@ -189,5 +190,18 @@ fn refine(field: &mut Field, step: &Step, condition: Condition, theta: f64, opti
         (other, at_other) = (best, value);
         (best, state, value) = (next, next_state, next_value);
     }
-    Found { condition, h: best * step.h, state }
+    let h = best * step.h;
+    if let Condition::Reaches(surface) = condition {
+        bring_to(field, surface, step.t + h, &mut state);
+    }
+    Found { condition, h, state }
+}
+
+/// Newton's steps onto a surface that is reached but for rounding, which is as large as the state was on the way.
+fn bring_to(field: &mut Field, surface: usize, t: f64, state: &mut [f64]) {
+    for _ in 0..2 {
+        let normals = field.normals(t, state);
+        let slope: Vec<f64> = normals.by_state.row(surface).iter().copied().collect();
+        correct(state, &slope, normals.psi[surface]);
+    }
 }

@@ -40,6 +40,7 @@ pub fn simulate(system: &System, controls: &Controls, options: &Options) -> Simu
 impl<'a> Run<'a> {
     fn new(system: &'a System, controls: &'a Controls, options: &'a Options) -> Self {
         let mut field = Field::new(system, controls);
+        field.floor = field.floor.min(0.01 * options.atol);
         field.use_controls_of(system.interval[0]);
         Run {
             field,

@@ -72,6 +72,14 @@ pub enum Piece {
 }
 
 impl Piece {
+    /// When it ends.
+    pub fn end_time(&self) -> f64 {
+        match self {
+            Piece::Step { start, h, .. } => start.time + h,
+            Piece::Stop { after, .. } => after.time,
+        }
+    }
+
     /// What comes after it.
     pub fn end(&self) -> Instant {
         match self {

@@ -13,8 +13,13 @@ pub(super) struct Pile {
 }
 
 impl Pile {
-    /// Notes a jump; the limit time once the jumps pile up.
-    pub fn limit(&mut self, time: f64, span: f64) -> Option<f64> {
+    /// The time since the last jump.
+    pub fn since_last(&self, time: f64) -> f64 {
+        self.last.last().map_or(f64::INFINITY, |last| time - last)
+    }
+
+    /// Notes a jump; the limit time once the jumps pile up. Jumps so small that rounding will soon hide them are believed at once.
+    pub fn limit(&mut self, time: f64, span: f64, is_small: bool) -> Option<f64> {
         self.last.push(time);
         if self.last.len() > 4 {
             self.last.remove(0);
@@ -26,8 +31,8 @@ impl Pile {
         }
         let (before, ratio) = (second / first, third / second);
         let rest = third * ratio / (1.0 - ratio);
-        let piles_up = ratio < 1.0 && (ratio - before).abs() <= STEADY * ratio && rest <= NEAR * span;
-        piles_up.then_some(time + rest)
+        let is_steady = ratio < 1.0 && (ratio - before).abs() <= STEADY * ratio;
+        (is_steady && (is_small || rest <= NEAR * span)).then_some(time + rest)
     }
 }
 
@@ -38,13 +43,13 @@ mod tests {
     #[test]
     fn halving_intervals_end_at_twice_the_first() {
         let mut pile = Pile::default();
-        let limit = (0..40).find_map(|k| pile.limit(2.0 - 0.5_f64.powi(k), 1.0));
+        let limit = (0..40).find_map(|k| pile.limit(2.0 - 0.5_f64.powi(k), 1.0, false));
         assert!((limit.expect("they pile up") - 2.0).abs() < 1e-14);
     }
 
     #[test]
     fn regular_jumps_do_not_pile_up() {
         let mut pile = Pile::default();
-        assert!((0..100).all(|k| pile.limit(1e-7 * f64::from(k), 1.0).is_none()));
+        assert!((0..100).all(|k| pile.limit(1e-7 * f64::from(k), 1.0, false).is_none()));
     }
 }

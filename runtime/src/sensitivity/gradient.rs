@@ -15,7 +15,7 @@ const MOST_FORWARD: usize = 64;
 const FORGOTTEN: f64 = 1e-12;
 
 /// That many sums.
-const PROBES: usize = 2;
+const PROBES: usize = 1;
 
 /// The gradient of the objective of a system.
 #[derive(Clone, Debug)]

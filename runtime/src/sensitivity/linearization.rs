@@ -74,7 +74,7 @@ pub(super) struct Linearizer<'a> {
     pub ends_by: DMatrix<f64>,
     controls: &'a Controls,
     /// Values and derivatives of the right side as its function gives them, again and again in the same memory.
-    results: RefCell<[Columns; 2]>,
+    pub results: RefCell<[Columns; 2]>,
 }
 
 impl<'a> Linearizer<'a> {

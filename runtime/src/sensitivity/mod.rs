@@ -17,6 +17,7 @@ mod perturbed;
 mod quantity;
 mod reset;
 mod second_order;
+mod sparse_step;
 mod step;
 mod stop;
 mod surface;

@@ -21,7 +21,6 @@ use super::quantity::{Directions, Quantity};
 use super::step::LinearStep;
 use super::stop::{StopOnTape, Timing};
 use super::surface::Projection;
-use super::sweep::{LinearPiece, Map};
 use crate::problem::Columns;
 use crate::simulate::{Cause, Controls, Instant, Mode, Piece, Regime, Simulation, System, Tape};
 use nalgebra::{DMatrix, DVector};
@@ -89,18 +88,20 @@ impl<'t> Second<'t> {
     }
 
     fn pass(&mut self, at: usize) {
-        let piece = LinearPiece::new(self.linearizer, self.tape, at);
-        match (&self.tape.pieces[at], &piece.map) {
-            (Piece::Step { start, .. }, Map::Step(step)) => self.step(self.regime(start), step),
-            (Piece::Stop { cause, before, after, changes }, Map::Stop(stop)) => {
-                let on_tape = StopOnTape { cause: *cause, before, after, changes };
-                self.stop(&on_tape, &stop.timing);
+        let piece = &self.tape.pieces[at];
+        match piece {
+            Piece::Step { start, h, stages, rule, .. } => {
+                let regime = self.regime(start);
+                self.step(regime, &LinearStep::new(self.linearizer, regime, start, *h, stages, *rule));
             }
-            _ => unreachable!("a piece and its linear map are of the same kind"),
+            Piece::Stop { cause, before, after, changes } => {
+                let stop = StopOnTape { cause: *cause, before, after, changes };
+                self.stop(&stop, &Timing::new(self.linearizer, self.tape, &stop));
+            }
         }
-        if let Some(projection) = &piece.projection {
-            let end = self.tape.pieces[at].end();
-            self.project(projection, piece.regime_after, &end);
+        let end = piece.end();
+        if let Some(projection) = Projection::new(self.linearizer, self.regime(&end), &end) {
+            self.project(&projection, self.regime(&end), &end);
         }
     }
 

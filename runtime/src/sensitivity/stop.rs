@@ -76,7 +76,7 @@ impl Timing {
         &self.by_state * s + &self.by_inputs * w
     }
 
-    fn new(linearizer: &Linearizer, tape: &Tape, stop: &StopOnTape) -> Self {
+    pub fn new(linearizer: &Linearizer, tape: &Tape, stop: &StopOnTape) -> Self {
         if matches!(stop.cause, Cause::Start | Cause::Controls) {
             return Timing::of_clock(linearizer, stop.before.time);
         }

@@ -4,6 +4,7 @@
 //! apply the maps in order, the adjoint applies their transposes in reverse.
 
 use super::linearization::Linearizer;
+use super::sparse_step::SparseStep;
 use super::step::LinearStep;
 use super::stop::{LinearStop, StopOnTape};
 use super::surface::Projection;
@@ -38,7 +39,7 @@ impl<'t> LinearTape<'t> {
 
 /// A piece as a linear map, followed by the projection to the surfaces on which the state slides after it.
 pub(super) struct LinearPiece<'t> {
-    pub map: Map,
+    pub map: Map<'t>,
     /// Whose controls act before the projection.
     pub regime: &'t Regime,
     /// Whose controls act in the projection.
@@ -47,15 +48,24 @@ pub(super) struct LinearPiece<'t> {
 }
 
 /// What happens before the projection.
-pub(super) enum Map {
+pub(super) enum Map<'t> {
+    Sparse(SparseStep<'t>),
     Step(LinearStep),
     Stop(LinearStop),
 }
 
 impl<'t> LinearPiece<'t> {
-    pub fn new(linearizer: &Linearizer, tape: &'t Tape, at: usize) -> Self {
+    pub fn new(linearizer: &Linearizer<'t>, tape: &'t Tape, at: usize) -> Self {
         let regime = |instant: &Instant| &tape.regimes[instant.regime];
         match &tape.pieces[at] {
+            Piece::Step { start, h, rule, .. } if SparseStep::fits(linearizer, regime(start), *rule) => {
+                LinearPiece {
+                    map: Map::Sparse(SparseStep::new(linearizer, regime(start), start, *h)),
+                    regime: regime(start),
+                    regime_after: regime(start),
+                    projection: None,
+                }
+            }
             Piece::Step { start, h, stages, rule, .. } => LinearPiece {
                 map: Map::Step(LinearStep::new(linearizer, regime(start), start, *h, stages, *rule)),
                 regime: regime(start),
@@ -78,6 +88,7 @@ impl<'t> LinearPiece<'t> {
     pub fn forward(&self, s: &DMatrix<f64>, w: &dyn Fn(&Regime) -> DMatrix<f64>) -> DMatrix<f64> {
         let inputs = w(self.regime);
         let after = match &self.map {
+            Map::Sparse(step) => step.forward(s, &inputs),
             Map::Step(step) => step.forward(s, &step.forcing(&inputs)).1,
             Map::Stop(stop) => stop.forward(s, &inputs),
         };
@@ -103,6 +114,7 @@ impl<'t> LinearPiece<'t> {
     /// The adjoint before the piece, from the one before the projection.
     pub fn adjoint(&self, after: &DVector<f64>, add: &mut dyn FnMut(&Regime, &DVector<f64>)) -> DVector<f64> {
         let (before, inputs) = match &self.map {
+            Map::Sparse(step) => step.adjoint(after),
             Map::Step(step) => step.adjoint(after),
             Map::Stop(stop) => stop.adjoint(after),
         };

@@ -6,7 +6,7 @@ use fdcc_runtime::simulate::{Controls, Options, Simulation, System};
 /// Forward sensitivities and adjoint that differ by more are not trusted.
 const AGREEMENT: f64 = 1e-10;
 
-/// Derivatives from two sides that differ by more are two.
+/// Derivatives from two sides that differ by more, relative to what they are the sums of, are two.
 const SIDES: f64 = 1e-5;
 
 /// For more quantities nobody waits for the derivatives from both sides.
@@ -36,8 +36,9 @@ impl Exact {
         } else {
             Vec::new()
         };
-        let is_differentiable = !is_doubtful
-            || !sides.is_empty() && sides.iter().zip(best(&found)).all(|(it, own)| is_one(*it, *own));
+        let is_one =
+            |(at, sides): (usize, &[Option<f64>; 2])| is_one(*sides, best(&found)[at], terms(&found, at));
+        let is_differentiable = !is_doubtful || !sides.is_empty() && sides.iter().enumerate().all(is_one);
         Ok(Exact { found, sides, is_differentiable })
     }
 
@@ -62,9 +63,17 @@ fn best(found: &Sensitivity) -> &[f64] {
     if found.forward.is_empty() { &found.adjoint } else { &found.forward }
 }
 
-/// Whether both sides have the derivative that was found.
-fn is_one(sides: [Option<f64>; 2], own: f64) -> bool {
-    sides.iter().all(|side| side.is_some_and(|side| (side - own).abs() <= SIDES * own.abs().max(1.0)))
+/// How large the terms at the end are that a derivative is the sum of: it may be small because they cancel.
+fn terms(found: &Sensitivity, quantity: usize) -> f64 {
+    let last = found.costates.columns.iter().map(|column| column.last().copied().unwrap_or(0.0));
+    last.zip(&found.end).map(|(costate, by)| (costate * by[quantity]).abs()).sum()
+}
+
+/// Whether both sides have the derivative that was found. Nothing here is absolute: derivatives have units.
+fn is_one(sides: [Option<f64>; 2], own: f64, terms: f64) -> bool {
+    let [Some(below), Some(above)] = sides else { return false };
+    let size = [below, above, own].iter().fold(terms, |size, value| size.max(value.abs()));
+    [below, above].iter().all(|side| (side - own).abs() <= SIDES * size)
 }
 
 #[cfg(test)]
@@ -74,15 +83,18 @@ mod tests {
     #[test]
     fn a_derivative_is_the_same_from_both_sides() {
         let cases = [
-            ([Some(1.0), Some(1.0)], 1.0, true),
-            ([Some(1000.0), Some(1000.001)], 1000.0, true),
-            ([Some(0.0), Some(1.0)], 1.0, false),
-            ([Some(1.0), Some(0.0)], 1.0, false),
-            ([Some(1.0), None], 1.0, false),
-            ([Some(f64::NAN), Some(1.0)], 1.0, false),
+            ([Some(1.0), Some(1.0)], 1.0, 0.0, true),
+            ([Some(1000.0), Some(1000.001)], 1000.0, 0.0, true),
+            ([Some(0.0), Some(0.0)], 0.0, 0.0, true),
+            ([Some(0.0), Some(1.0)], 1.0, 0.0, false),
+            ([Some(1.0), Some(0.0)], 1.0, 0.0, false),
+            ([Some(1e-9), Some(0.0)], 1e-9, 1e-9, false),
+            ([Some(1e-9), Some(-1e-9)], 0.0, 1.0, true),
+            ([Some(1.0), None], 1.0, 0.0, false),
+            ([Some(f64::NAN), Some(1.0)], 1.0, 0.0, false),
         ];
-        for (sides, own, expected) in cases {
-            assert_eq!(is_one(sides, own), expected, "{sides:?} {own}");
+        for (sides, own, terms, expected) in cases {
+            assert_eq!(is_one(sides, own, terms), expected, "{sides:?} {own} {terms}");
         }
     }
 }

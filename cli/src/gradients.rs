@@ -56,7 +56,9 @@ impl Question<'_> {
     /// The second derivatives, or why there are none.
     pub fn second(&self, simulation: &Simulation) -> Result<Vec<Vec<f64>>, String> {
         let found = hessian(&self.system, &self.controls, simulation, &self.quantities());
-        found.ok_or("there are no second derivatives where infinitely many jumps come to rest".to_string())
+        let why = "there are no second derivatives here: none are known where infinitely many jumps come to rest, \
+                   where a `Dir` moves, and by a start that leaves a surface on which it slides";
+        found.ok_or(why.to_string())
     }
 
     fn stepped(&self, system: &System) -> Result<Vec<f64>, String> {

@@ -18,7 +18,8 @@ pub struct By {
 
 /// Everything that a model can be differentiated by on its own: parameters, unknowns, starts that are free.
 pub fn everything(system: &System, model: &Model) -> Vec<By> {
-    let parameters = system.parameters.iter().enumerate().filter(|(_, it)| !is_width(it));
+    let is_own = |it: &Parameter| !is_width(it) && !is_computed(&it.name, model);
+    let parameters = system.parameters.iter().enumerate().filter(|(_, it)| is_own(it));
     let parameters = parameters.map(|(at, it)| single(it.name.clone(), Quantity::Parameter(at)));
     let open = model.states.iter().enumerate().filter(|(_, state)| state.start_range.is_some());
     let open = open.map(|(at, state)| single(format!("{}(start)", state.place.name), Quantity::Start(at)));
@@ -26,12 +27,18 @@ pub fn everything(system: &System, model: &Model) -> Vec<By> {
 }
 
 /// What a name asks for: `mu`, `x(start)`, all parts of `pos(start)`, or a control.
-pub fn named(name: &str, system: &System, controls: &Controls) -> Result<Vec<By>, String> {
+pub fn named(name: &str, system: &System, controls: &Controls, model: &Model) -> Result<Vec<By>, String> {
     if let Some(state) = name.strip_suffix("(start)").map(str::trim) {
         return starts(name, state, system);
     }
     let parameters = system.parameters.iter().filter(|it| !is_width(it));
     if let Some(at) = parameters.clone().position(|it| it.name == name) {
+        if is_computed(name, model) {
+            let value = system.parameters[at].value;
+            return Err(format!(
+                "`{name}` is computed from other parameters; `--set {name}={value}` makes it one of its own"
+            ));
+        }
         return Ok(vec![single(name.into(), Quantity::Parameter(at))]);
     }
     let parts = parts(name, system.controls.iter().map(|control| control.name.as_str()));
@@ -86,6 +93,12 @@ fn unknown(what: &str, name: &str, known: Vec<&str>) -> String {
 
 fn single(name: String, quantity: Quantity) -> By {
     By { name, quantities: vec![quantity], is_control: false }
+}
+
+/// Whether the formula of a parameter stands wherever the parameter does, so that nothing depends on the parameter itself.
+pub fn is_computed(name: &str, model: &Model) -> bool {
+    let value = model.params.iter().find(|param| param.place.name == name).and_then(|param| param.value);
+    value.is_some_and(|value| model.graph.as_number(value).is_none())
 }
 
 /// Smoothing widths stand behind the parameters and unknowns.

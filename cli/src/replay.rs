@@ -3,6 +3,7 @@
 
 use crate::output::named::Named;
 use crate::output::saved::{Column, Saved, SavedMethod};
+use crate::solver::sha256;
 use fdcc_compiler::Model;
 use fdcc_runtime::simulate::Controls;
 
@@ -17,6 +18,7 @@ pub struct Replay {
     free: Vec<(String, f64)>,
     start: Vec<(String, f64)>,
     method: Vec<(&'static str, String)>,
+    source_sha256: String,
 }
 
 impl Replay {
@@ -39,6 +41,7 @@ impl Replay {
             free: numbers(&saved.free),
             start: saved.states.0.iter().filter_map(first).collect(),
             method: settings(&saved.method),
+            source_sha256: saved.source_sha256.clone(),
         })
     }
 
@@ -48,6 +51,11 @@ impl Replay {
             return Err("there is no row of values".into());
         }
         ascend(&self.times)
+    }
+
+    /// Whether it is the solution of another text than this; a table is of none.
+    pub fn is_of_another(&self, text: &str) -> bool {
+        !self.source_sha256.is_empty() && self.source_sha256 != sha256(text)
     }
 
     /// Gives the model the parameters, unknowns and method of the solution, and the start of states that the model leaves
@@ -80,8 +88,10 @@ impl Replay {
 }
 
 fn ascend(times: &[f64]) -> Result<(), String> {
-    let found = times.windows(2).find(|pair| pair[0] >= pair[1]);
-    found.map_or(Ok(()), |pair| Err(format!("times must ascend, but {} follows {}", pair[1], pair[0])))
+    let found = times.windows(2).position(|pair| pair[0] >= pair[1]);
+    found.map_or(Ok(()), |at| {
+        Err(format!("times must ascend, but {} follows {} in row {}", times[at + 1], times[at], at + 2))
+    })
 }
 
 /// The values of a control, one for each interval.
@@ -90,8 +100,10 @@ fn held(saved: &Saved, name: &str, intervals: usize) -> Result<Vec<f64>, String>
     if column.len() != intervals {
         return Err(format!("`{name}` has {} values for {intervals} intervals", column.len()));
     }
-    let values: Option<Vec<f64>> = column.iter().copied().collect();
-    values.ok_or(format!("a value of `{name}` is no number"))
+    let number = |(at, value): (usize, &Option<f64>)| {
+        value.ok_or(format!("value {} of `{name}` is no number", at + 1))
+    };
+    column.iter().enumerate().map(number).collect()
 }
 
 /// As settings of the `method` block.

@@ -3,6 +3,7 @@
 
 use crate::exact::Exact;
 use crate::output::saved::Saved;
+use crate::quantities::is_computed;
 use crate::replay::Replay;
 use crate::solver::{Failure, Solved};
 use crate::stays::held;
@@ -68,6 +69,9 @@ fn sensitivity(model: &Model, saved: &Saved, of: ExprId, by: Symbol) -> Result<f
     let compiled = fdcc_compiler::compile_sensitivities(&model);
     let system = compiled.map_err(|diagnostics| in_words(Failure::Model(diagnostics)))?;
     let quantity = match by {
+        Symbol::Param(at) if is_computed(&model.params[at].place.name, &model) => {
+            return Err(format!("`{}` is computed from other parameters", model.params[at].place.name));
+        }
         Symbol::Param(at) => Quantity::Parameter(at),
         Symbol::Free(at) => Quantity::Parameter(model.params.len() + at),
         Symbol::AtStart(at) => Quantity::Start(at),

@@ -26,7 +26,8 @@ pub fn stays(tape: &Tape, surface: usize) -> Vec<Stay> {
 
 /// For how long a surface is held.
 pub fn held(stays: &[Stay]) -> f64 {
-    stays.iter().filter(|stay| name(stay.mode) == "held").map(|stay| stay.to - stay.from).sum()
+    let held = stays.iter().filter(|stay| name(stay.mode) == "held");
+    held.fold(0.0, |sum, stay| sum + stay.to - stay.from) // `sum()` of nothing is -0
 }
 
 /// The name of a mode in files and tables.

@@ -158,6 +158,18 @@ fn what_the_true_system_does_not_tell_fails_with_its_reason() {
     assert_eq!(told[0]["expectations"][0]["why"], "the replay on the true system ends at t = 0");
 }
 
+/// Its formula stands wherever it does: a derivative of 0 would be a lie.
+#[test]
+fn there_is_no_sensitivity_by_a_parameter_that_is_computed() {
+    let text = THROWN.replace("param mu = 0.5", "param m = 0.5\nparam mu = m");
+    let folder = folder("sensitivity_computed", &[("thrown.fdc", text.as_bytes())]);
+    let output = fdcc(&folder, &["test", "thrown.fdc"], "");
+    expect_exit(&output, 2, "computed");
+    assert!(stdout(&output).contains("`mu` is computed from other parameters"), "{}", stdout(&output));
+    let given = fdcc(&folder, &["test", "thrown.fdc", "--set", "mu=0.5"], "");
+    expect_exit(&given, 0, "given");
+}
+
 #[test]
 fn a_sensitivity_is_taken_by_a_parameter_an_unknown_or_a_start() {
     for (by, words) in [

@@ -50,6 +50,27 @@ dynamics { pos' = (c*u, 1) }
 maximize pos.x(end)^2
 ";
 
+/// `N` is computed: where it stands, its formula does.
+const WEIGHED: &str = "\
+model weighed
+param m = 2
+param N = 3*m
+time t in [0, 1]
+state x start 0
+dynamics { x' = N + m }
+minimize x(end)
+";
+
+/// A model that is understood and cannot be simulated yet; its objective is there.
+const PHASES: &str = "\
+phase first {
+  time t in [0, 1]
+  state x start 0
+  dynamics { x' = 1 }
+}
+maximize first.x(end)
+";
+
 fn near(value: &Value, expected: f64) {
     assert!((number(value) - expected).abs() <= 1e-9 * expected.abs().max(1.0), "{value}, not {expected}");
 }
@@ -144,6 +165,26 @@ fn at_a_grazing_there_are_two_derivatives() {
     expect_exit(&beside, 0, "off the grazing");
 }
 
+/// Whether two derivatives are one does not depend on the unit of what is differentiated.
+#[test]
+fn small_derivatives_are_two_as_well_as_large_ones() {
+    for of in ["1e-12*y(end)", "1e-6*y(end)", "1e6*y(end)"] {
+        let found = found("grad_scaled", GRAZING, &["--of", of], 2);
+        assert_eq!((&found["differentiable"], &found["trusted"]), (&false.into(), &false.into()), "{of}");
+    }
+}
+
+/// `x(end) = N + m` with `N = 3m`; nothing depends on `N` until it has a value of its own.
+#[test]
+fn a_parameter_that_is_computed_is_none_to_differentiate_by() {
+    let all = found("grad_computed", WEIGHED, &[], 0);
+    assert_eq!(all["gradient"].as_object().expect("an object").len(), 1);
+    near(&all["gradient"]["m"], 4.0);
+    let given = found("grad_computed", WEIGHED, &["--set", "N=6"], 0);
+    near(&given["gradient"]["m"], 1.0);
+    near(&given["gradient"]["N"], 1.0);
+}
+
 /// With `x(0) = 0` from the guess, `J = x(end)^2` and `x(end) = c(.25*1 + .75*.5)`: the rows count by their durations.
 #[test]
 fn starts_controls_and_maximize_are_as_written() {
@@ -216,6 +257,8 @@ fn what_cannot_be_asked_is_explained() {
         ("crossing.fdc", CROSSING.as_bytes()),
         ("grazing.fdc", GRAZING.as_bytes()),
         ("driven.fdc", DRIVEN.as_bytes()),
+        ("weighed.fdc", WEIGHED.as_bytes()),
+        ("phases.fdc", PHASES.as_bytes()),
         ("bare.fdc", b"time t in [0, 1]\nstate x start 0\ndynamics { x' = 1 }\nminimize x(end)\n" as &[u8]),
         ("u.csv", b"t,u\n0,1\n"),
     ];
@@ -235,6 +278,9 @@ fn what_cannot_be_asked_is_explained() {
         (&["driven.fdc", "--wrt", "poss(start)"], 3, "there is no state `poss`; there is pos.x, pos.y"),
         (&["driven.fdc", "--wrt", "u"], 3, "`u` follows its guess"),
         (&["driven.fdc", "--wrt", "u", "--control", "u.csv", "--second"], 3, "not by the control `u`"),
+        (&["weighed.fdc", "--wrt", "N"], 3, "`--set N=6` makes it one of its own"),
+        (&["phases.fdc"], 1, "FDC0603"),
+        (&["crossing.fdc", "--rtol", "-1"], 3, "a number from 1e-14 to 1 is needed"),
         (&["grazing.fdc"], 3, "the model has no objective"),
         (&["bare.fdc"], 3, "nothing to differentiate by"),
         (&["crossing.fdc", "--set", "b=1"], 3, "there is no parameter `b`"),

@@ -86,8 +86,13 @@ fn a_solution_can_be_replayed() {
     let output = fdcc(&folder, &["simulate", "ramp.fdc", "--control", "ramp.sol.json", "--json"], "");
     expect_exit(&output, 0, "replay");
     assert!((number(&json(&output)["end"]["x"]) - 1.0).abs() < 1e-7);
+    assert_eq!(stderr(&output), "");
     let table = fdcc(&folder, &["simulate", "ramp.fdc", "--control", "ramp.csv"], "");
     expect_exit(&table, 0, "the table of a solve can be replayed, too");
+    std::fs::write(folder.join("ramp.fdc"), format!("{RAMP}# changed\n")).expect("a file can be written");
+    let other = fdcc(&folder, &["simulate", "ramp.fdc", "--control", "ramp.sol.json"], "");
+    expect_exit(&other, 0, "a solution of another text is taken");
+    assert!(stderr(&other).contains("not the text that was solved"), "{}", stderr(&other));
 }
 
 #[test]
@@ -108,7 +113,7 @@ fn bad_control_files_say_what_is_wrong() {
         ("u.csv", "t\n0\n", "no column for the control `u`"),
         ("u.csv", "t,u\n0,1\n0.5\n", "line 3: 1 columns"),
         ("u.csv", "t,u\n0,1\n1,nan\n", "line 3: `nan` of `u` is no number"),
-        ("u.csv", "t,u\n1,1\n0,1\n", "times must ascend"),
+        ("u.csv", "t,u\n1,1\n0,1\n", "times must ascend, but 0 follows 1 in row 2"),
         ("u.csv", "t,u\n", "no row of values"),
         ("u.csv", "", "the file is empty"),
         ("u.csv", "t;u\n0;1\n", "the first line looks like `t,u`"),
@@ -119,7 +124,7 @@ fn bad_control_files_say_what_is_wrong() {
         ("u.csv", "t,u\n0,1\n0,1\n", "times must ascend, but 0 follows 0"),
         ("u.json", &backwards, "times must ascend, but 1 follows 2"),
         ("u.json", &short, "`u` has 1 values for 2 intervals"),
-        ("u.json", &hole, "a value of `u` is no number"),
+        ("u.json", &hole, "value 1 of `u` is no number"),
         ("u.json", &other, "there is no control `u`"),
         ("u.json", &empty, "there is no row of values"),
         ("u.json", "{\"time\": 3}", "not a solution"),
@@ -225,6 +230,8 @@ fn wrong_usage_is_told() {
     for (arguments, code) in [
         (vec!["--times", "2,1"], 3),
         (vec!["--times", "7"], 3),
+        (vec!["--times", "-1,0"], 3),
+        (vec!["--atol", "-1"], 3),
         (vec!["--set", "reach=-1"], 3),
         (vec!["--set", "reach=1e999"], 3),
         (vec!["--control", "absent.csv"], 4),

@@ -7,10 +7,10 @@ use fdcc_runtime::simulate::{Integrator, Options};
 #[derive(Args)]
 pub struct Accuracy {
     /// Relative tolerance of one step
-    #[arg(long, value_name = "TOL", default_value = "1e-10", value_parser = relative)]
+    #[arg(long, value_name = "TOL", default_value = "1e-10", value_parser = relative, allow_negative_numbers = true)]
     rtol: f64,
     /// Absolute tolerance of one step
-    #[arg(long, value_name = "TOL", default_value = "1e-12", value_parser = absolute)]
+    #[arg(long, value_name = "TOL", default_value = "1e-12", value_parser = absolute, allow_negative_numbers = true)]
     atol: f64,
     /// The method: explicit until a mode turns out to be stiff, or always the one named
     #[arg(long, value_name = "METHOD", value_enum, default_value = "auto")]

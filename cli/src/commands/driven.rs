@@ -42,6 +42,12 @@ impl Driven {
             Some(path) => control::read(path, &prepared.model)?,
             None => Replay::default(),
         };
+        if replay.is_of_another(&prepared.source.text) && self.log != Some(Level::None) {
+            let name = &prepared.source.name;
+            output::complain(&format!(
+                "{name} is not the text that was solved; the controls are taken all the same"
+            ));
+        }
         replay.adapt(&mut prepared.model);
         self.changes.apply(&mut prepared.model).map_err(Failure::Usage)?;
         Ok(replay)

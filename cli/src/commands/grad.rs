@@ -10,6 +10,7 @@ use crate::output::{self, files};
 use crate::quantities::{By, everything, named};
 use crate::solver::Failure;
 use clap::Args;
+use fdcc_compiler::Model;
 use fdcc_grammar::{Severity, SourceFile, parse};
 use fdcc_runtime::simulate::{Controls, System};
 use std::path::PathBuf;
@@ -65,14 +66,14 @@ impl Grad {
 
     fn gradient(&self, prepared: &mut Prepared) -> Result<Document, Failure> {
         let replay = self.driven.adapt(prepared)?;
+        let system = fdcc_compiler::compile_sensitivities(&prepared.model).map_err(Failure::Model)?;
         if prepared.model.objective.is_none() {
             return Err(Failure::Usage(
                 "the model has no objective; `--of EXPR` says what to differentiate".into(),
             ));
         }
-        let system = fdcc_compiler::compile_sensitivities(&prepared.model).map_err(Failure::Model)?;
         let controls = self.driven.controls(replay, &system)?;
-        let by = self.by(&system, &controls, prepared)?;
+        let by = self.by(&system, &controls, &prepared.model)?;
         self.answer(&Question { model: &prepared.model, system, controls, by }, &prepared.source)
     }
 
@@ -101,16 +102,16 @@ impl Grad {
         }
     }
 
-    fn by(&self, system: &System, controls: &Controls, prepared: &Prepared) -> Result<Vec<By>, Failure> {
+    fn by(&self, system: &System, controls: &Controls, model: &Model) -> Result<Vec<By>, Failure> {
         if self.wrt.is_empty() {
-            let all = everything(system, &prepared.model);
+            let all = everything(system, model);
             let nothing = "there is nothing to differentiate by; `--wrt x(start)` names the start of `x`";
             return if all.is_empty() { Err(Failure::Usage(nothing.into())) } else { Ok(all) };
         }
         let mut all: Vec<By> = Vec::new();
         for name in self.wrt.iter().map(|name| name.trim()) {
-            let found =
-                named(name, system, controls).map_err(|what| Failure::Usage(format!("--wrt: {what}")))?;
+            let found = named(name, system, controls, model);
+            let found = found.map_err(|what| Failure::Usage(format!("--wrt: {what}")))?;
             let is_new = |by: &By| all.iter().all(|known| known.name != by.name);
             let new: Vec<By> = found.into_iter().filter(is_new).collect();
             all.extend(new);

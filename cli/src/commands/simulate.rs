@@ -16,7 +16,7 @@ pub struct Simulate {
     #[command(flatten)]
     driven: Driven,
     /// Report the states at these times instead of at all steps
-    #[arg(long, value_name = "T1,T2,...", value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(long, value_name = "T1,T2,...", value_delimiter = ',', allow_hyphen_values = true)]
     times: Vec<f64>,
     /// Print the result as one JSON document, and nothing else, on the standard output
     #[arg(long)]

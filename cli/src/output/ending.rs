@@ -71,11 +71,7 @@ impl Ending {
     /// Why the last time was not reached, in words.
     pub fn why(&self) -> Option<String> {
         Some(match self.why.as_ref()? {
-            Why::NotUnique { surface, time, candidates, .. } => format!(
-                "not unique: at t = {} on `{surface}` the state could go on in several ways or in none that can be told: {}",
-                short(*time),
-                candidates.join(" | ")
-            ),
+            Why::NotUnique { surface, time, candidates, .. } => not_unique(surface, *time, candidates),
             Why::Zeno { jump, surface, limit_time } => zeno(jump.as_deref(), surface, *limit_time),
             Why::NotFinite { line, of, time, .. } => {
                 format!("not finite: `{of}` (line {line}) at t = {}", significant(*time, 12))
@@ -96,6 +92,15 @@ fn place(system: &System, simulation: &Simulation, origin: &Origin, source: &Sou
         Some((state, _)) => (line(&state.origin), format!("{}(start)", state.name)),
         None => (line(origin), origin.label.to_string()),
     }
+}
+
+fn not_unique(surface: &str, time: f64, candidates: &[String]) -> String {
+    let ways = match candidates {
+        [] => "in no single way that can be told".to_string(),
+        [only] => format!("like this, but perhaps also otherwise: {only}"),
+        several => format!("in several ways: {}", several.join(" | ")),
+    };
+    format!("not unique: at t = {} on `{surface}` the state could go on {ways}", short(time))
 }
 
 fn zeno(jump: Option<&str>, surface: &str, limit_time: f64) -> String {

@@ -19,6 +19,10 @@ pub struct Exact {
     pub sides: Vec<[Option<f64>; 2]>,
     /// Whether there is a derivative.
     pub is_differentiable: bool,
+    /// By each quantity.
+    pub gradient: Vec<f64>,
+    /// The same from the adjoint.
+    pub adjoint: Vec<f64>,
 }
 
 impl Exact {
@@ -36,15 +40,18 @@ impl Exact {
         } else {
             Vec::new()
         };
-        let is_one =
-            |(at, sides): (usize, &[Option<f64>; 2])| is_one(*sides, best(&found)[at], terms(&found, at));
-        let is_differentiable = !is_doubtful || !sides.is_empty() && sides.iter().enumerate().all(is_one);
-        Ok(Exact { found, sides, is_differentiable })
-    }
-
-    /// By each quantity.
-    pub fn gradient(&self) -> &[f64] {
-        best(&self.found)
+        let common: Vec<Option<f64>> = sides
+            .iter()
+            .enumerate()
+            .map(|(at, sides)| common(*sides, best(&found)[at], terms(&found, at)))
+            .collect();
+        let is_differentiable = !is_doubtful || !common.is_empty() && common.iter().all(Option::is_some);
+        let settled = |own: &[f64]| -> Vec<f64> {
+            let common = common.iter().copied().chain(std::iter::repeat(None));
+            own.iter().zip(common).map(|(own, common)| common.unwrap_or(*own)).collect()
+        };
+        let (gradient, adjoint) = (settled(best(&found)), settled(&found.adjoint));
+        Ok(Exact { found, sides, is_differentiable, gradient, adjoint })
     }
 
     /// Whether there is a derivative and both ways to compute it agree.
@@ -69,11 +76,16 @@ fn terms(found: &Sensitivity, quantity: usize) -> f64 {
     last.zip(&found.end).map(|(costate, by)| (costate * by[quantity]).abs()).sum()
 }
 
-/// Whether both sides have the derivative that was found. Nothing here is absolute: derivatives have units.
-fn is_one(sides: [Option<f64>; 2], own: f64, terms: f64) -> bool {
-    let [Some(below), Some(above)] = sides else { return false };
+/// The derivative that both sides have: the one that was found, if it is theirs. Where several events meet it may be neither's,
+/// though there is one. Nothing here is absolute: derivatives have units.
+fn common(sides: [Option<f64>; 2], own: f64, terms: f64) -> Option<f64> {
+    let [Some(below), Some(above)] = sides else { return None };
     let size = [below, above, own].iter().fold(terms, |size, value| size.max(value.abs()));
-    [below, above].iter().all(|side| (side - own).abs() <= SIDES * size)
+    let is_near = |a: f64, b: f64| (a - b).abs() <= SIDES * size;
+    match is_near(below, own) && is_near(above, own) {
+        true => Some(own),
+        false => is_near(below, above).then_some(0.5 * (below + above)),
+    }
 }
 
 #[cfg(test)]
@@ -83,18 +95,19 @@ mod tests {
     #[test]
     fn a_derivative_is_the_same_from_both_sides() {
         let cases = [
-            ([Some(1.0), Some(1.0)], 1.0, 0.0, true),
-            ([Some(1000.0), Some(1000.001)], 1000.0, 0.0, true),
-            ([Some(0.0), Some(0.0)], 0.0, 0.0, true),
-            ([Some(0.0), Some(1.0)], 1.0, 0.0, false),
-            ([Some(1.0), Some(0.0)], 1.0, 0.0, false),
-            ([Some(1e-9), Some(0.0)], 1e-9, 1e-9, false),
-            ([Some(1e-9), Some(-1e-9)], 0.0, 1.0, true),
-            ([Some(1.0), None], 1.0, 0.0, false),
-            ([Some(f64::NAN), Some(1.0)], 1.0, 0.0, false),
+            ([Some(1.0), Some(1.0)], 1.0, 0.0, Some(1.0)),
+            ([Some(1000.0), Some(1000.001)], 1000.0, 0.0, Some(1000.0)),
+            ([Some(0.0), Some(0.0)], 0.0, 0.0, Some(0.0)),
+            ([Some(0.0), Some(1.0)], 1.0, 0.0, None),
+            ([Some(1.0), Some(0.0)], 1.0, 0.0, None),
+            ([Some(1e-9), Some(0.0)], 1e-9, 1e-9, None),
+            ([Some(1e-9), Some(-1e-9)], 0.0, 1.0, Some(0.0)),
+            ([Some(1.0), None], 1.0, 0.0, None),
+            ([Some(f64::NAN), Some(1.0)], 1.0, 0.0, None),
+            ([Some(4.0), Some(4.0)], 0.0, 0.0, Some(4.0)),
         ];
         for (sides, own, terms, expected) in cases {
-            assert_eq!(is_one(sides, own, terms), expected, "{sides:?} {own} {terms}");
+            assert_eq!(common(sides, own, terms), expected, "{sides:?} {own} {terms}");
         }
     }
 }

@@ -81,7 +81,7 @@ fn sensitivity(model: &Model, saved: &Saved, of: ExprId, by: Symbol) -> Result<f
     let exact = Exact::new(&system, &controls, &Options::default(), &[quantity]);
     let exact = exact.map_err(|it| format!("the replay on the true system ends at t = {}", it.end_time))?;
     if exact.is_trusted() {
-        Ok(exact.gradient()[0])
+        Ok(exact.gradient[0])
     } else {
         Err("there is no derivative that can be trusted".into())
     }

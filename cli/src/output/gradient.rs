@@ -99,7 +99,7 @@ impl Document {
     /// A gradient, or what there is instead of one.
     pub fn new(found: Found, source: &SourceFile) -> Self {
         let Found { of, system, by, exact, second, smoothed, discretised, method } = found;
-        let gradient = exact.gradient();
+        let gradient = &exact.gradient;
         let mut warnings = doubts(system, exact);
         let second = second.and_then(|found| found.map_err(|why| warnings.push(why)).ok());
         let mut other = |what: &str, found: Result<Stepped, String>| match found {
@@ -122,7 +122,7 @@ impl Document {
         Document {
             value: Some(exact.found.value),
             gradient: named(by, gradient),
-            adjoint: named(by, &exact.found.adjoint),
+            adjoint: named(by, &exact.adjoint),
             agreement: Some(exact.found.agreement),
             second: second.map(|rows| square(by, &rows)),
             compare,

@@ -6,7 +6,7 @@ use super::locate::Condition;
 use super::result::{Event, Kind, Status};
 use super::run::Run;
 
-/// More jumps than this at one time never end.
+/// More jumps than this at one time never end, nor does what reaches a surface so often without leaving it.
 const MOST_AT_ONCE: usize = 100;
 
 impl Run<'_> {
@@ -32,7 +32,15 @@ impl Run<'_> {
                     surfaces.push(surface);
                     surfaces.sort_unstable();
                 }
-                self.settle(surfaces)
+                let before = self.record.events.len();
+                self.settle(surfaces)?;
+                self.idle = if self.record.events.len() == before { self.idle + 1 } else { 0 };
+                let jump = self.field.system.jumps.iter().position(|jump| jump.surface == surface);
+                // It jumps, but less than rounding shows.
+                match jump.filter(|_| self.idle > MOST_AT_ONCE) {
+                    Some(jump) => self.piled_up(jump, self.t),
+                    None => Ok(()),
+                }
             }
         }
     }
@@ -118,6 +126,9 @@ impl Run<'_> {
         if let Some(held) = of.then_hold.filter(|_| is_last) {
             self.hold(jump, held);
             self.record.point(self.t, &self.x);
+        }
+        if is_last {
+            return Ok(());
         }
         let [first, last] = self.field.system.interval;
         let is_small = self.is_small(jump, surface);

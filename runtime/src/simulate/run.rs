@@ -25,6 +25,8 @@ pub(super) struct Run<'a> {
     pub crossings: Vec<Pile>,
     /// Whether the modes at the beginning are known.
     pub has_begun: bool,
+    /// How often in a row a surface was reached and nothing happened.
+    pub idle: usize,
     /// How it goes on.
     pub pace: Pace,
     pub counts: Counts,
@@ -53,6 +55,7 @@ impl<'a> Run<'a> {
             piles: vec![Pile::default(); system.jumps.len()],
             crossings: vec![Pile::default(); system.surfaces.len()],
             has_begun: false,
+            idle: 0,
             pace: Pace::new(system.layout.x, options.method()),
             counts: Counts::default(),
         }

@@ -24,7 +24,9 @@ impl Pile {
         if self.last.len() > 4 {
             self.last.remove(0);
         }
-        let [a, b, c, d] = *<&[f64; 4]>::try_from(self.last.as_slice()).ok()?;
+        let Ok([a, b, c, d]) = <[f64; 4]>::try_from(self.last.as_slice()) else {
+            return is_small.then_some(time);
+        };
         let [first, second, third] = [b - a, c - b, d - c];
         if third <= 0.0 {
             return (third == 0.0 && second == 0.0).then_some(time);

@@ -311,3 +311,11 @@ fn the_file_is_the_document() {
     let written = std::fs::read_to_string(folder.join("out/crossing.grad.json")).expect("the file is there");
     assert_eq!(written, stdout(&output));
 }
+
+#[test]
+fn a_kink_that_is_no_surface_is_named() {
+    let text =
+        "param p = 1  time t in [0, 2]  state x start -1\ndynamics { x' = 1 + p*abs(x) }\nminimize x(end)\n";
+    let warnings = found("grad_kink", text, &[], 0)["warnings"].to_string();
+    assert!(warnings.contains("`x'` (line 2) has a kink"), "{warnings}");
+}

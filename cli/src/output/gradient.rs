@@ -8,7 +8,7 @@ use crate::exact::Exact;
 use crate::gradients::Stepped;
 use crate::quantities::By;
 use fdcc_grammar::SourceFile;
-use fdcc_runtime::problem::Method;
+use fdcc_runtime::problem::{Method, Origin};
 use fdcc_runtime::sensitivity::{Trouble, TroubleKind};
 use fdcc_runtime::simulate::{Simulation, System};
 use serde::Serialize;
@@ -101,6 +101,7 @@ impl Document {
         let Found { of, system, by, exact, second, smoothed, discretised, method } = found;
         let gradient = &exact.gradient;
         let mut warnings = doubts(system, exact);
+        warnings.extend(system.kinks.first().map(|kink| bent(kink, source)));
         let second = second.and_then(|found| found.map_err(|why| warnings.push(why)).ok());
         let mut other = |what: &str, found: Result<Stepped, String>| match found {
             Ok(stepped) => {
@@ -203,6 +204,16 @@ fn doubts(system: &System, exact: &Exact) -> Vec<String> {
         doubts.push(format!("{first}{others}; the derivatives from both sides agree"));
     }
     doubts
+}
+
+/// What is to be known of a right side with a kink.
+fn bent(kink: &Origin, source: &SourceFile) -> String {
+    let line = source.line_column(kink.span.0).line;
+    format!(
+        "`{}` (line {line}) has a kink (`abs`, `min` or `max`), which is not located: where it is crossed, derivatives are as exact as the step and \
+         second ones miss it; a `surface` with `match` is located",
+        kink.label
+    )
 }
 
 impl Other {

@@ -15,6 +15,7 @@ use super::guess::{self, fixed_by_a_row};
 use super::inputs::{self, Inputs, Sizes};
 use super::problem::{controls, parameters, states, surfaces};
 use super::{Numbers, interval, origin, smoothed};
+use crate::builtins::Builtin;
 use crate::differentiate::derivative;
 use crate::graph::{ExprId, Graph};
 use crate::model::{Ball, Jump, Model, Symbol};
@@ -229,6 +230,7 @@ pub(crate) fn system(
         resets,
         objective,
         guess,
+        kinks: kinks(model),
         interval_of: interval,
         start_of: start,
     }
@@ -236,6 +238,19 @@ pub(crate) fn system(
 
 fn ball(ball: &Ball) -> simulate::Ball {
     simulate::Ball { name: ball.place.name.clone(), surfaces: ball.surfaces.clone() }
+}
+
+/// The right sides in which `abs`, `min` or `max` depends on a state.
+fn kinks(model: &Model) -> Vec<Origin> {
+    let graph = &model.graph;
+    let moves = |input: &u32| matches!(model.symbols[*input as usize], Symbol::State(_));
+    let bends = |id: &ExprId| {
+        let is_bent =
+            [Builtin::Abs, Builtin::Min, Builtin::Max].iter().any(|it| graph.as_call(*id, *it).is_some());
+        is_bent && graph.inputs_of(&[*id]).iter().any(moves)
+    };
+    let has_kink = |rate: ExprId| graph.reachable(&[rate]).iter().any(bends);
+    model.states.iter().filter(|state| has_kink(state.rate)).map(|state| origin(&state.equation)).collect()
 }
 
 fn lowered(model: &Model, numbers: &Numbers, jump: &Jump) -> simulate::Jump {

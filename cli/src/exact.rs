@@ -54,9 +54,9 @@ impl Exact {
         Ok(Exact { found, sides, is_differentiable, gradient, adjoint })
     }
 
-    /// Whether there is a derivative and both ways to compute it agree.
+    /// Whether there is a derivative, both ways to compute it agree, and no kink on the way makes both inexact.
     pub fn is_trusted(&self) -> bool {
-        self.is_differentiable && self.agrees()
+        self.is_differentiable && self.agrees() && self.found.kink.is_none()
     }
 
     /// Whether both ways to compute it agree.

@@ -313,9 +313,13 @@ fn the_file_is_the_document() {
 }
 
 #[test]
-fn a_kink_that_is_no_surface_is_named() {
+fn a_kink_that_is_crossed_and_no_surface_is_not_trusted() {
     let text =
         "param p = 1  time t in [0, 2]  state x start -1\ndynamics { x' = 1 + p*abs(x) }\nminimize x(end)\n";
-    let warnings = found("grad_kink", text, &[], 0)["warnings"].to_string();
+    let crossed = found("grad_kink", text, &[], 2);
+    assert_eq!((&crossed["trusted"], &crossed["differentiable"]), (&false.into(), &true.into()));
+    let warnings = crossed["warnings"].to_string();
     assert!(warnings.contains("`x'` (line 2) has a kink"), "{warnings}");
+    let beside = found("grad_no_kink", &text.replace("start -1", "start 1"), &[], 0);
+    assert_eq!(beside["trusted"], true);
 }

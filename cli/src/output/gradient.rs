@@ -3,13 +3,13 @@
 use super::document::scheme_name;
 use super::ending::{Ending, EventEntry, events};
 use super::named::Named;
-use super::number::{scientific, significant};
+use super::number::{scientific, short, significant};
 use crate::exact::Exact;
 use crate::gradients::Stepped;
 use crate::quantities::By;
 use fdcc_grammar::SourceFile;
-use fdcc_runtime::problem::{Method, Origin};
-use fdcc_runtime::sensitivity::{Trouble, TroubleKind};
+use fdcc_runtime::problem::Method;
+use fdcc_runtime::sensitivity::{Kink, Trouble, TroubleKind};
 use fdcc_runtime::simulate::{Simulation, System};
 use serde::Serialize;
 
@@ -29,8 +29,11 @@ pub struct Document {
     pub second: Option<Named<Named<f64>>>,
     pub compare: Compare,
     pub differentiable: bool,
-    /// Whether it is differentiable and both ways to compute the gradient agree.
+    /// Whether it is differentiable, both ways to compute the gradient agree, and no kink makes both inexact.
     pub trusted: bool,
+    /// Whether a kink is crossed that is not located.
+    #[serde(skip)]
+    pub is_bent: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub one_sided: Option<Named<Sides>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -101,7 +104,7 @@ impl Document {
         let Found { of, system, by, exact, second, smoothed, discretised, method } = found;
         let gradient = &exact.gradient;
         let mut warnings = doubts(system, exact);
-        warnings.extend(system.kinks.first().map(|kink| bent(kink, source)));
+        warnings.extend(exact.found.kink.as_ref().map(|kink| bent(kink, source)));
         let second = second.and_then(|found| found.map_err(|why| warnings.push(why)).ok());
         let mut other = |what: &str, found: Result<Stepped, String>| match found {
             Ok(stepped) => {
@@ -129,6 +132,7 @@ impl Document {
             compare,
             differentiable: is_plain,
             trusted: exact.is_trusted(),
+            is_bent: exact.found.kink.is_some(),
             one_sided: (!is_plain && !sides.0.is_empty()).then_some(sides),
             cause: first.map(|trouble| Reason::new(system, trouble)),
             warnings,
@@ -151,6 +155,7 @@ impl Document {
             compare: Compare::default(),
             differentiable: false,
             trusted: false,
+            is_bent: false,
             one_sided: None,
             cause: None,
             events: events(system, simulation),
@@ -206,13 +211,14 @@ fn doubts(system: &System, exact: &Exact) -> Vec<String> {
     doubts
 }
 
-/// What is to be known of a right side with a kink.
-fn bent(kink: &Origin, source: &SourceFile) -> String {
-    let line = source.line_column(kink.span.0).line;
+/// What is to be known of a kink that is crossed.
+fn bent(kink: &Kink, source: &SourceFile) -> String {
+    let line = source.line_column(kink.of.span.0).line;
     format!(
-        "`{}` (line {line}) has a kink (`abs`, `min` or `max`), which is not located: where it is crossed, derivatives are as exact as the step and \
-         second ones miss it; a `surface` with `match` is located",
-        kink.label
+        "`{}` (line {line}) has a kink (`abs`, `min` or `max`) that is crossed near t = {} and not located: the derivatives are only as exact \
+         as that step, and second ones miss it; a `surface` with `match` is located",
+        kink.of.label,
+        short(kink.time)
     )
 }
 

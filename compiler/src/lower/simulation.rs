@@ -5,6 +5,7 @@
 //! guards    psi(t, x, p)                               resets    r(t, x, p), one block for each jump
 //! objective M(x(start), x(end), p)                     guess     of states, then controls, at (tau, p)
 //! interval  t0(p), tf(p)                               start     x(start)(p)
+//! kinks     e of abs(e), a - b of min(a, b) and max(a, b) in the flow
 //! ```
 //!
 //! Every integral of the model is one more state, so the objective is a function of both ends. A simulation needs few
@@ -69,7 +70,33 @@ pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) 
     if purpose != Purpose::Simulation {
         functions.iter_mut().for_each(|function| differentiable(model, &mut graph, function));
     }
+    let kinks = kinks(&mut graph, &functions[0]);
+    functions.push(kinks);
     (graph, Simulated { functions, layout, hidden, surfaces })
+}
+
+/// Where `abs(e)`, `min(a, b)` and `max(a, b)` of the right sides have their kinks if a state moves them: the zeros of `e` and `a - b`.
+fn kinks(graph: &mut Graph, flow: &VectorFunction) -> VectorFunction {
+    let states = flow.layout.states();
+    let mut found: Vec<(ExprId, Origin)> = Vec::new();
+    for (&rate, origin) in flow.outputs.iter().zip(&flow.origins) {
+        for id in graph.reachable(&[rate]) {
+            let bent =
+                [Builtin::Abs, Builtin::Min, Builtin::Max].iter().find_map(|it| graph.as_call(id, *it));
+            let zero = match bent {
+                Some(&[a]) => a,
+                Some(&[a, b]) => graph.sub(a, b),
+                _ => continue,
+            };
+            let moves = graph.inputs_of(&[zero]).iter().any(|input| states.contains(&(*input as usize)));
+            if moves && found.iter().all(|(known, _)| *known != zero) {
+                found.push((zero, origin.clone()));
+            }
+        }
+    }
+    let (outputs, origins) = found.into_iter().unzip();
+    let layout = flow.layout;
+    VectorFunction { name: "kinks".into(), layout, outputs, origins, by: Vec::new(), order: Order::First }
 }
 
 /// By all inputs, to the second order.
@@ -208,8 +235,8 @@ pub(crate) fn system(
     numbers: &Numbers,
     functions: Vec<Arc<dyn Function>>,
 ) -> simulate::System {
-    let [flow, rates, guards, resets, objective, guess, interval, start]: [Arc<dyn Function>; 8] =
-        functions.try_into().unwrap_or_else(|_| unreachable!("a system has eight functions"));
+    let [flow, rates, guards, resets, objective, guess, interval, start, kinks]: [Arc<dyn Function>; 9] =
+        functions.try_into().unwrap_or_else(|_| unreachable!("a system has nine functions"));
     let first_sigma = model.params.len() + model.frees.len();
     let parameters = parameters(model, simulated.layout.p, numbers);
     let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
@@ -230,7 +257,7 @@ pub(crate) fn system(
         resets,
         objective,
         guess,
-        kinks: kinks(model),
+        kinks,
         interval_of: interval,
         start_of: start,
     }
@@ -238,19 +265,6 @@ pub(crate) fn system(
 
 fn ball(ball: &Ball) -> simulate::Ball {
     simulate::Ball { name: ball.place.name.clone(), surfaces: ball.surfaces.clone() }
-}
-
-/// The right sides in which `abs`, `min` or `max` depends on a state.
-fn kinks(model: &Model) -> Vec<Origin> {
-    let graph = &model.graph;
-    let moves = |input: &u32| matches!(model.symbols[*input as usize], Symbol::State(_));
-    let bends = |id: &ExprId| {
-        let is_bent =
-            [Builtin::Abs, Builtin::Min, Builtin::Max].iter().any(|it| graph.as_call(*id, *it).is_some());
-        is_bent && graph.inputs_of(&[*id]).iter().any(moves)
-    };
-    let has_kink = |rate: ExprId| graph.reachable(&[rate]).iter().any(bends);
-    model.states.iter().filter(|state| has_kink(state.rate)).map(|state| origin(&state.equation)).collect()
 }
 
 fn lowered(model: &Model, numbers: &Numbers, jump: &Jump) -> simulate::Jump {

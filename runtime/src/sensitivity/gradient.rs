@@ -1,6 +1,7 @@
 //! The entry: a simulation, its gradient in both ways, and what they say of each other.
 
 use super::first_order::{self, Objective};
+use super::kink::{Kink, first_kink};
 use super::linearization::Linearizer;
 use super::quantity::{Directions, Gradient, Quantity};
 use super::sweep::LinearTape;
@@ -8,14 +9,11 @@ use super::trouble::{Trouble, troubles};
 use crate::simulate::{Controls, Options, Simulation, Status, System, simulate};
 use nalgebra::DMatrix;
 
-/// With more quantities than this, forward sensitivities are computed along a few sums of them only.
+/// With more quantities than this, forward sensitivities are computed along one sum of them only.
 const MOST_FORWARD: usize = 64;
 
 /// What decays to this part of the sizes it could have is as good as 0, and so is its rounding.
 const FORGOTTEN: f64 = 1e-12;
-
-/// That many sums.
-const PROBES: usize = 1;
 
 /// The gradient of the objective of a system.
 #[derive(Clone, Debug)]
@@ -29,7 +27,7 @@ pub struct Sensitivity {
     /// By each quantity, from the adjoint.
     pub adjoint: Vec<f64>,
     /// The largest difference between the two, relative to the largest sum of the sizes that a derivative is made of, at
-    /// the end or on the way, `sum |lambda_i| |dx_i|`. Where `forward` is empty, along random sums of the quantities.
+    /// the end or on the way, `sum |lambda_i| |dx_i|`. Where `forward` is empty, along a sum of the quantities with mixed signs.
     pub agreement: f64,
     /// The derivative of each state at the end by each quantity; empty like `forward`.
     pub end: Vec<Vec<f64>>,
@@ -37,6 +35,8 @@ pub struct Sensitivity {
     pub costates: Costates,
     /// Where the trajectory may have no derivative.
     pub troubles: Vec<Trouble>,
+    /// A kink that is crossed and not located: then the derivatives are not those of the true system to the tolerance.
+    pub kink: Option<Kink>,
 }
 
 /// `dJ/dx(t)`, in the canonical gauge on sliding arcs (`lambda . df/ds = 0`); two entries at one time where it jumps.
@@ -81,7 +81,7 @@ pub fn gradient(
     let adjoint: Vec<f64> = quantities.iter().map(|quantity| whole.by(quantity)).collect();
     let is_each = quantities.len() <= MOST_FORWARD;
     let weights =
-        if is_each { DMatrix::identity(adjoint.len(), adjoint.len()) } else { probes(adjoint.len()) };
+        if is_each { DMatrix::identity(adjoint.len(), adjoint.len()) } else { signs(adjoint.len()) };
     let directions = Directions::new(system, quantities, &weights);
     let (mut on_the_way, mut largest): (f64, f64) = (0.0, 0.0);
     let end = first_order::forward(&pieces, &directions, &mut |at, s| {
@@ -100,6 +100,7 @@ pub fn gradient(
         adjoint,
         costates,
         troubles: troubles(&pieces),
+        kink: first_kink(&linearizer, tape),
         simulation,
     })
 }
@@ -118,10 +119,10 @@ fn backward(pieces: &LinearTape, objective: &Objective, zero: Gradient) -> (Grad
     (gradient, Costates { time: seen.iter().map(|entry| entry.0).collect(), columns })
 }
 
-/// Sums with signs from a fixed sequence of bits (the golden ratio's multiples).
-fn probes(count: usize) -> DMatrix<f64> {
-    DMatrix::from_fn(count, PROBES, |row, column| {
-        let turn = (row * PROBES + column + 1) as f64 * 0.618_033_988_749_894_9;
+/// A sum with signs from a fixed sequence of bits (the golden ratio's multiples).
+fn signs(count: usize) -> DMatrix<f64> {
+    DMatrix::from_fn(count, 1, |row, _| {
+        let turn = (row + 1) as f64 * 0.618_033_988_749_894_9;
         if turn.fract() < 0.5 { -1.0 } else { 1.0 }
     })
 }

@@ -11,6 +11,7 @@ mod bend;
 mod curvature;
 mod first_order;
 mod gradient;
+mod kink;
 mod linearization;
 mod one_sided;
 mod perturbed;
@@ -25,6 +26,7 @@ mod sweep;
 mod trouble;
 
 pub use gradient::{Costates, Sensitivity, gradient};
+pub use kink::Kink;
 pub use one_sided::one_sided;
 pub use perturbed::perturbed;
 pub use quantity::Quantity;

@@ -75,8 +75,8 @@ pub struct System {
     pub objective: Arc<dyn Function>,
     /// Guess of states, then controls, over normalised time `[tau | p]`.
     pub guess: Arc<dyn Function>,
-    /// Right sides with a kink that is no surface, such as that of `abs`: none of them is located.
-    pub kinks: Vec<Origin>,
+    /// Over the inputs of `flow`, what is 0 where `flow` has a kink that is no surface, such as that of `abs`; not located.
+    pub kinks: Arc<dyn Function>,
     /// First and last time over `[p]`.
     pub interval_of: Arc<dyn Function>,
     /// The state at the first time over `[p]`.

@@ -4,7 +4,7 @@
 //! stand first and then with a prefix taken off, so `min` is a minute and `mm` a millimetre.
 
 use fdcc_grammar::ast::Unit;
-use fdcc_grammar::{Code, Diagnostic};
+use fdcc_grammar::{Code, Diagnostic, Fix};
 use std::f64::consts::PI;
 
 /// Name, SI value, and whether prefixes such as `k` may stand in front.
@@ -102,7 +102,9 @@ fn unknown(name: &str, span: fdcc_grammar::Span) -> Diagnostic {
     let found =
         Diagnostic::new(Code::UnknownUnit, format!("`{name}` is no unit known here"), span, "not a unit");
     match crate::resolve::closest(name, UNITS.iter().map(|row| row.0)) {
-        Some(near) => found.help(format!("did you mean `[{near}]`?")),
+        Some(near) => found
+            .help(format!("did you mean `[{near}]`?"))
+            .fix(Fix::likely(format!("change `{name}` to `{near}`")).replace(span, near)),
         None => found
             .help("SI units with their prefixes, and `deg rpm min h bar L ft mi mph lb`; write `[kg m/s^2]`"),
     }

@@ -305,6 +305,8 @@ pub struct Arm {
     pub left: Expr,
     /// Comparison; `<` is read as `<=`, `>` as `>=`.
     pub relation: Relation,
+    /// Where the comparison stands.
+    pub relation_span: Span,
     /// Right side of the guard.
     pub right: Expr,
     /// The guard, without `=>`.

@@ -3,7 +3,7 @@
 //! A diagnostic holds no source text; whoever shows it joins it with its [`SourceFile`](crate::SourceFile).
 //! The first label is *the* place. Every message says what, where, why and what to do.
 
-use crate::Span;
+use crate::{Fix, Span};
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -38,13 +38,21 @@ pub struct Diagnostic {
     pub labels: Vec<Label>,
     /// What to do about it, if that can be said.
     pub help: Option<String>,
+    /// Ways to repair the text, the best one first.
+    pub fixes: Vec<Fix>,
 }
 
 impl Diagnostic {
     /// A finding at a place, with the severity its code usually has.
     pub fn new(code: Code, message: impl Into<String>, span: Span, label: impl Into<String>) -> Self {
-        let labels = vec![Label { span, text: label.into() }];
-        Diagnostic { code, severity: code.severity(), message: message.into(), labels, help: None }
+        Diagnostic {
+            code,
+            severity: code.severity(),
+            message: message.into(),
+            labels: vec![Label { span, text: label.into() }],
+            help: None,
+            fixes: Vec::new(),
+        }
     }
 
     /// Adds a further place.
@@ -56,6 +64,12 @@ impl Diagnostic {
     /// Says what to do.
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.help = Some(text.into());
+        self
+    }
+
+    /// Says how to change the text.
+    pub fn fix(mut self, fix: Fix) -> Self {
+        self.fixes.push(fix);
         self
     }
 

@@ -4,10 +4,12 @@
 
 pub mod ast;
 mod diagnostic;
+pub mod fix;
 mod parse;
 mod source;
 
 pub use diagnostic::{Code, Diagnostic, Label, Severity};
+pub use fix::{Edit, Fix};
 pub use parse::parse;
 pub use source::{LineColumn, SourceFile, Span};
 

@@ -1,6 +1,6 @@
 //! Diagnostics as JSON. Lines and columns count from 1, columns in characters; an end is one past the last character.
 
-use fdcc_grammar::{Diagnostic, Severity, SourceFile, Span};
+use fdcc_grammar::{Diagnostic, Edit, Fix, Severity, SourceFile, Span};
 use serde::Serialize;
 
 /// One diagnostic.
@@ -14,8 +14,21 @@ pub struct Entry<'d> {
     place: Place,
     labels: Vec<LabelEntry<'d>>,
     help: Option<&'d str>,
-    /// Repairs that are certain; `fdcc fix` will apply them.
-    fixes: [(); 0],
+    fixes: Vec<FixEntry<'d>>,
+}
+
+#[derive(Serialize)]
+struct FixEntry<'d> {
+    title: &'d str,
+    /// Whether `fdcc fix` applies it without `--unsafe`.
+    certain: bool,
+    edits: Vec<EditEntry<'d>>,
+}
+
+#[derive(Serialize)]
+struct EditEntry<'d> {
+    span: Place,
+    replacement: &'d str,
 }
 
 #[derive(Serialize)]
@@ -46,8 +59,13 @@ pub fn entry<'d>((source, diagnostic): (&'d SourceFile, &'d Diagnostic)) -> Entr
             .map(|label| LabelEntry { span: place(source, label.span), text: &label.text })
             .collect(),
         help: diagnostic.help.as_deref(),
-        fixes: [],
+        fixes: diagnostic.fixes.iter().map(|fix| fix_entry(source, fix)).collect(),
     }
+}
+
+fn fix_entry<'d>(source: &SourceFile, fix: &'d Fix) -> FixEntry<'d> {
+    let edit = |edit: &'d Edit| EditEntry { span: place(source, edit.span), replacement: &edit.replacement };
+    FixEntry { title: &fix.title, certain: fix.certain, edits: fix.edits.iter().map(edit).collect() }
 }
 
 fn place(source: &SourceFile, span: Span) -> Place {

@@ -1,6 +1,6 @@
 //! Diagnostics in SARIF 2.1.0, the format of code scanning services.
 
-use fdcc_grammar::{Code, Diagnostic, Severity, SourceFile, Span};
+use fdcc_grammar::{Code, Diagnostic, Edit, Fix, Severity, SourceFile, Span};
 use serde_json::{Value, json};
 
 /// One run of `fdcc check`.
@@ -26,25 +26,36 @@ fn result(source: &SourceFile, diagnostic: &Diagnostic) -> Value {
         place
     };
     let help = diagnostic.help.as_ref().map_or(String::new(), |help| format!("\n{help}"));
-    json!({
+    let mut result = json!({
         "ruleId": diagnostic.code.as_str(),
         "level": level(diagnostic.severity),
         "message": { "text": format!("{}{help}", diagnostic.message) },
         "locations": [location(source, diagnostic.span())],
         "relatedLocations": diagnostic.labels.iter().map(related).collect::<Vec<_>>(),
+    });
+    if !diagnostic.fixes.is_empty() {
+        result["fixes"] = diagnostic.fixes.iter().map(|it| fix(source, it)).collect();
+    }
+    result
+}
+
+fn fix(source: &SourceFile, fix: &Fix) -> Value {
+    let replacement = |edit: &Edit| json!({ "deletedRegion": region(source, edit.span), "insertedContent": { "text": edit.replacement } });
+    let replacements: Vec<Value> = fix.edits.iter().map(replacement).collect();
+    json!({
+        "description": { "text": fix.title },
+        "artifactChanges": [{ "artifactLocation": { "uri": source.name }, "replacements": replacements }],
     })
 }
 
 fn location(source: &SourceFile, span: Span) -> Value {
+    let artifact = json!({ "uri": source.name });
+    json!({ "physicalLocation": { "artifactLocation": artifact, "region": region(source, span) } })
+}
+
+fn region(source: &SourceFile, span: Span) -> Value {
     let (start, end) = (source.line_column(span.start), source.line_column(span.end));
-    json!({
-        "physicalLocation": {
-            "artifactLocation": { "uri": source.name },
-            "region": {
-                "startLine": start.line, "startColumn": start.column, "endLine": end.line, "endColumn": end.column,
-            },
-        },
-    })
+    json!({ "startLine": start.line, "startColumn": start.column, "endLine": end.line, "endColumn": end.column })
 }
 
 fn level(severity: Severity) -> &'static str {

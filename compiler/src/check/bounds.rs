@@ -5,46 +5,53 @@ use crate::model::Range;
 use crate::resolve::elaborator::Elaborator;
 use crate::resolve::text;
 use fdcc_grammar::ast::{Interval, Item, ItemKind, Start};
-use fdcc_grammar::{Code, Diagnostic, Label, Span};
+use fdcc_grammar::{Code, Diagnostic, Edit, Fix, Label, Span};
 
 /// Reports all of them together: they have one cause, a slip of the pen, and one repair.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
-    let mut labels = Vec::new();
-    let mut repairs = Vec::new();
+    let mut slips = Slips { labels: Vec::new(), repairs: Vec::new(), swap: Fix::certain("swap the bounds") };
     for item in &facts.items {
-        look(facts.meaning, item, &mut labels, &mut repairs);
+        look(facts.meaning, item, &mut slips);
     }
-    rows(facts.meaning, &mut labels, &mut repairs);
-    let mut labels = labels.into_iter();
+    rows(facts.meaning, &mut slips);
+    let mut labels = slips.labels.into_iter();
     if let Some(first) = labels.next() {
         let mut diagnostic =
             Diagnostic::new(Code::EmptyBounds, "these bounds leave no room", first.span, first.text);
         diagnostic.labels.extend(labels);
-        found.push(diagnostic.help(repairs.join("\n")));
+        diagnostic.fixes.extend(Some(slips.swap).filter(|swap| !swap.edits.is_empty()));
+        found.push(diagnostic.help(slips.repairs.join("\n")));
     }
 }
 
-fn look(meaning: &Elaborator<'_>, item: &Item, labels: &mut Vec<Label>, repairs: &mut Vec<String>) {
+/// What has been found so far, as one diagnostic will say it.
+struct Slips {
+    labels: Vec<Label>,
+    repairs: Vec<String>,
+    swap: Fix,
+}
+
+fn look(meaning: &Elaborator<'_>, item: &Item, slips: &mut Slips) {
     let first = crate::resolve::scope::declared(item).and_then(|name| meaning.scope.find(&name.name));
     let Some(index) = first.filter(|&at| std::ptr::eq(meaning.scope.declarations[at].item, item)) else {
         return;
     };
     if let ItemKind::Time { interval, .. } = &item.kind {
-        return backwards(meaning, interval, labels, repairs);
+        return backwards(meaning, interval, slips);
     }
     let Some(index) = meaning.index_of(index) else { return };
     match &item.kind {
         ItemKind::Control { name, bounds: Some(bounds), parts, .. } => {
             let ranges = meaning.model.controls[index..].iter().take(parts.len().max(1)).map(|it| it.range);
-            reversed(meaning, &format!("control {}", name.name), bounds, ranges, labels, repairs)
+            reversed(meaning, &format!("control {}", name.name), bounds, ranges, slips)
         }
         ItemKind::Free { name, bounds: Some(bounds), .. } => {
             let range = meaning.model.frees[index].range;
-            reversed(meaning, &format!("free {}", name.name), bounds, [range], labels, repairs)
+            reversed(meaning, &format!("free {}", name.name), bounds, [range], slips)
         }
         ItemKind::Param { name, value, bounds: Some(bounds), .. } => {
             let range = meaning.model.params[index].range;
-            reversed(meaning, &format!("param {}", name.name), bounds, [range], labels, repairs);
+            reversed(meaning, &format!("param {}", name.name), bounds, [range], slips);
             if let Some(value) = value {
                 let given = meaning.param_values[index];
                 outside(
@@ -52,8 +59,7 @@ fn look(meaning: &Elaborator<'_>, item: &Item, labels: &mut Vec<Label>, repairs:
                     Subject { name: &name.name, verb: "is", span: value.span },
                     given,
                     range,
-                    labels,
-                    repairs,
+                    slips,
                 );
             }
         }
@@ -65,15 +71,14 @@ fn look(meaning: &Elaborator<'_>, item: &Item, labels: &mut Vec<Label>, repairs:
                     &format!("state {}", name.name),
                     bounds,
                     states().map(|it| it.range),
-                    labels,
-                    repairs,
+                    slips,
                 );
             }
             if let Some(Start::Value(value)) = start {
                 for state in states() {
                     let given = state.start.map_or(f64::NAN, |start| meaning.numeric(start));
                     let subject = Subject { name: &state.place.name, verb: "starts", span: value.span };
-                    outside(meaning, subject, given, state.range, labels, repairs);
+                    outside(meaning, subject, given, state.range, slips);
                 }
             }
         }
@@ -90,16 +95,17 @@ fn reversed(
     declaration: &str,
     bounds: &Interval,
     ranges: impl IntoIterator<Item = Range>,
-    labels: &mut Vec<Label>,
-    repairs: &mut Vec<String>,
+    slips: &mut Slips,
 ) {
     let bad = ranges.into_iter().map(|range| numbers(meaning, range)).find(|[lower, upper]| lower > upper);
     if let Some([lower, upper]) = bad {
         let text =
             format!("lower bound {} is above upper bound {}", text::number(lower), text::number(upper));
-        labels.push(Label { span: bounds.span, text });
+        slips.labels.push(Label { span: bounds.span, text });
         let (lower, upper) = (text::expr(&bounds.lower), text::expr(&bounds.upper));
-        repairs.push(format!("swap them: `{declaration} in [{upper}, {lower}]`"));
+        slips.repairs.push(format!("swap them: `{declaration} in [{upper}, {lower}]`"));
+        let ends = [(bounds.lower.span, upper), (bounds.upper.span, lower)];
+        slips.swap.edits.extend(ends.map(|(span, replacement)| Edit { span, replacement }));
     }
 }
 
@@ -110,14 +116,7 @@ struct Subject<'a> {
     span: Span,
 }
 
-fn outside(
-    meaning: &Elaborator<'_>,
-    subject: Subject<'_>,
-    given: f64,
-    range: Range,
-    labels: &mut Vec<Label>,
-    repairs: &mut Vec<String>,
-) {
+fn outside(meaning: &Elaborator<'_>, subject: Subject<'_>, given: f64, range: Range, slips: &mut Slips) {
     let [lower, upper] = numbers(meaning, range);
     let (side, change, limit) = match () {
         _ if lower > upper => return,
@@ -126,34 +125,31 @@ fn outside(
         _ => return,
     };
     let (limit, given) = (text::number(limit), text::number(given));
-    labels.push(Label { span: subject.span, text: format!("{} {side} {limit}", subject.verb) });
+    slips.labels.push(Label { span: subject.span, text: format!("{} {side} {limit}", subject.verb) });
     let other = if subject.verb == "starts" { "start at" } else { "give it" };
-    repairs.push(format!("for `{}`, {change} the bound to {given} or {other} {limit}", subject.name));
+    slips.repairs.push(format!("for `{}`, {change} the bound to {given} or {other} {limit}", subject.name));
 }
 
-fn backwards(
-    meaning: &Elaborator<'_>,
-    interval: &Interval,
-    labels: &mut Vec<Label>,
-    repairs: &mut Vec<String>,
-) {
+fn backwards(meaning: &Elaborator<'_>, interval: &Interval, slips: &mut Slips) {
     let [first, last] = meaning.interval.map(|end| meaning.numeric(end));
     if first >= last {
         let text = format!("ends at {}, but starts at {}", text::number(last), text::number(first));
-        labels.push(Label { span: interval.span, text });
-        repairs.push("give time a first value below its last".into());
+        slips.labels.push(Label { span: interval.span, text });
+        slips.repairs.push("give time a first value below its last".into());
     }
 }
 
 /// Conditions between constants that exclude each other.
-fn rows(meaning: &Elaborator<'_>, labels: &mut Vec<Label>, repairs: &mut Vec<String>) {
+fn rows(meaning: &Elaborator<'_>, slips: &mut Slips) {
     for row in meaning.model.path.iter().chain(&meaning.model.boundary) {
         let [lower, upper] = numbers(meaning, row.range);
         if lower > upper {
             let text =
                 format!("no number is both above {} and below {}", text::number(lower), text::number(upper));
-            labels.push(Label { span: row.place.span, text });
-            repairs.push(format!("for `{}`, the left limit must be below the right one", row.place.name));
+            slips.labels.push(Label { span: row.place.span, text });
+            slips
+                .repairs
+                .push(format!("for `{}`, the left limit must be below the right one", row.place.name));
         }
     }
 }

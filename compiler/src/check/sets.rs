@@ -6,7 +6,7 @@ use crate::resolve::elaborator::Role;
 use crate::resolve::text;
 use crate::resolve::value::{SetForm, SetUse};
 use fdcc_grammar::ast::{Equation, EquationRelation};
-use fdcc_grammar::{Code, Diagnostic};
+use fdcc_grammar::{Code, Diagnostic, Fix};
 
 /// Reports sets where a value is needed, and `in` where there is no set.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
@@ -46,6 +46,7 @@ fn equality(equation: &Equation, set: &SetUse) -> Diagnostic {
     )
     .label(set.span, label)
     .help(format!("write `{} in {}`{why}", left_side(equation), text::expr(&equation.right)))
+    .fix(Fix::certain("write `in`").replace(equation.relation_span, "in"))
 }
 
 /// `m * v'`.
@@ -65,6 +66,7 @@ fn no_set(equation: &Equation) -> Diagnostic {
         "`=` says the same",
     )
     .help(format!("write `{repaired}`: without `Sgn`, `Dir` or `match` there is one value"))
+    .fix(Fix::certain("write `=`").replace(equation.relation_span, "="))
 }
 
 fn needs_a_value(facts: &Facts<'_, '_>, role: &Role<'_>, set: &SetUse) -> Diagnostic {

@@ -7,7 +7,7 @@
 use crate::resolve::scope::{declared, kind_word};
 use crate::resolve::walk;
 use fdcc_grammar::ast::{self, Item, ItemKind};
-use fdcc_grammar::{Code, Diagnostic};
+use fdcc_grammar::{Code, Diagnostic, Fix};
 use std::collections::{HashMap, HashSet};
 
 /// Reports unused names of the whole file.
@@ -24,7 +24,14 @@ pub(crate) fn check(tree: &ast::Model) -> Vec<Diagnostic> {
                 | ItemKind::Method { .. }
         )
     });
-    items.iter().filter_map(|item| unused(item, &anywhere, &problem)).collect()
+    let mut written = HashSet::new();
+    for item in &items {
+        mentioned(item, &mut |name| {
+            written.insert(name);
+        });
+    }
+    let found = items.iter().filter_map(|item| Some((item, unused(item, &anywhere, &problem)?)));
+    found.map(|(item, diagnostic)| with_fix(item, diagnostic, &written)).collect()
 }
 
 fn unused(item: &Item, anywhere: &HashSet<&str>, problem: &HashSet<&str>) -> Option<Diagnostic> {
@@ -54,6 +61,16 @@ fn unused(item: &Item, anywhere: &HashSet<&str>, problem: &HashSet<&str>) -> Opt
         label,
     );
     Some(found.help(format!("remove it, or name it `_{name_}` to keep it.{why}")))
+}
+
+/// The new name, where nothing has to follow it: a guess or another unused definition may use the old one.
+fn with_fix(item: &Item, found: Diagnostic, written: &HashSet<&str>) -> Diagnostic {
+    match declared(item).filter(|name| !written.contains(name.name.as_str())) {
+        Some(name) => {
+            found.fix(Fix::likely(format!("name it `_{}`", name.name)).insert(name.span.start, "_"))
+        }
+        None => found,
+    }
 }
 
 /// The items of the file and of its phases.

@@ -6,7 +6,7 @@ use super::text;
 use super::value::{KnotUse, Parts, Traits, Value};
 use crate::graph::ExprId;
 use fdcc_grammar::ast::{Arm, Expr, Relation};
-use fdcc_grammar::{Code, Diagnostic};
+use fdcc_grammar::{Code, Diagnostic, Fix};
 
 impl<'a> Elaborator<'a> {
     /// The value of a piecewise definition.
@@ -75,5 +75,6 @@ fn equality(arm: &Arm) -> Diagnostic {
         arm.guard_span,
         "true at a single point only, so this arm never matters",
     )
+    .fix(Fix::likely("write `<=`").replace(arm.relation_span, "<="))
     .help(format!("an arm needs a range: write `{repaired}`\n`==` is for conditions such as `end v == 0`"))
 }

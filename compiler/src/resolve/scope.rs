@@ -2,7 +2,7 @@
 
 use super::closest;
 use fdcc_grammar::ast::{self, Ident, Item, ItemKind};
-use fdcc_grammar::{Code, Diagnostic, Span};
+use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 use std::cell::Cell;
 use std::collections::HashMap;
 
@@ -74,7 +74,8 @@ impl<'a> Scope<'a> {
             Some(at) => found.label(self.declarations[at].name.span, format!("did you mean `{near}`?")),
             None => found,
         };
-        found.help(format!("change `{name}` to `{near}`"))
+        let change = format!("change `{name}` to `{near}`");
+        found.help(&change).fix(Fix::likely(change).replace(span, near))
     }
 }
 

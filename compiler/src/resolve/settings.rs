@@ -6,7 +6,7 @@ use super::{closest, text};
 use crate::smooth;
 use crate::units;
 use fdcc_grammar::ast::{Expr, ExprKind, Ident, ItemKind, Setting, SettingValue};
-use fdcc_grammar::{Code, Diagnostic, Span};
+use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 use fdcc_runtime::problem::{Linear, Method, Scheme, Solver};
 
 /// The keys, each with what it takes.
@@ -232,7 +232,7 @@ impl<'a> Elaborator<'a> {
         let message = format!("the method has no setting `{}`", key.name);
         let found = Diagnostic::new(Code::UnknownSetting, message, key.span, "not a setting");
         self.diagnostics.push(match nearest_key(&key.name) {
-            Some(near) => found.help(format!("did you mean `{near}`?")),
+            Some(near) => meant(found, key.span, near),
             None => found.help(format!("the settings are {}", keys())),
         });
     }
@@ -242,7 +242,7 @@ impl<'a> Elaborator<'a> {
         let message = format!("`{}` cannot be `{shown}`", key.name);
         let found = Diagnostic::new(Code::UnknownSetting, message, span, format!("needs {expected}"));
         self.diagnostics.push(match nearest_word(expected, &shown) {
-            Some(near) if matches!(given, Given::Word(_)) => found.help(format!("did you mean `{near}`?")),
+            Some(near) if matches!(given, Given::Word(_)) => meant(found, span, near),
             _ => found.help(format!("give it {expected}")),
         });
     }
@@ -264,4 +264,10 @@ impl<'a> Elaborator<'a> {
             }
         }
     }
+}
+
+/// A setting is one of few words, so the nearest is the one that was meant.
+fn meant(found: Diagnostic, span: Span, near: &str) -> Diagnostic {
+    let fix = Fix::certain(format!("write `{near}`")).replace(span, near);
+    found.help(format!("did you mean `{near}`?")).fix(fix)
 }

@@ -4,7 +4,7 @@ use super::Rule;
 use super::messages::Place;
 use super::tokens::{Kind, Token};
 use super::words;
-use crate::{Code, Diagnostic};
+use crate::{Code, Diagnostic, Fix, Span};
 
 /// FDC0001, if two values stand side by side on one line.
 pub(super) fn missing_operator(place: &Place<'_, '_>) -> Option<Diagnostic> {
@@ -19,7 +19,9 @@ pub(super) fn missing_operator(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let message = format!("missing operator between `{left}` and `{right}`");
     let help = format!("write `{left} * {right}` or `{left} / {right}`; fdc has no implicit multiplication");
     let span = first.span().to(last.span());
-    Some(Diagnostic::new(Code::MissingOperator, message, span, "two values side by side").help(help))
+    let between = Span { start: previous.span().end, end: next.span().start };
+    let fix = Fix::likely("write `*`").replace(between, " * ");
+    Some(Diagnostic::new(Code::MissingOperator, message, span, "two values side by side").help(help).fix(fix))
 }
 
 fn begins_value(token: &Token<'_>) -> bool {

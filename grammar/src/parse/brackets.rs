@@ -2,7 +2,7 @@
 
 use super::messages::Place;
 use super::tokens::{Kind, Token};
-use crate::{Code, Diagnostic};
+use crate::{Code, Diagnostic, Fix, Span};
 
 /// FDC0006, if a bracket of the piece has no partner.
 pub(super) fn unbalanced(place: &Place<'_, '_>) -> Option<Diagnostic> {
@@ -18,13 +18,20 @@ pub(super) fn unbalanced(place: &Place<'_, '_>) -> Option<Diagnostic> {
             _ => {}
         }
     }
-    open.last().map(|opener| unclosed(opener))
+    open.last().map(|opener| unclosed(opener, place.tokens[place.piece.end - 1].span()))
 }
 
-fn unclosed(opener: &Token<'_>) -> Diagnostic {
+fn unclosed(opener: &Token<'_>, last: Span) -> Diagnostic {
     let message = format!("`{}` is never closed", opener.text);
     Diagnostic::new(Code::Unclosed, message, opener.span(), "opened here")
         .help(format!("add `{}` where it should end", opener.closer()))
+        .fix(closed(opener, last.end))
+}
+
+/// The bracket that is missing, at the latest place where it can stand.
+fn closed(opener: &Token<'_>, at: u32) -> Fix {
+    let line = if opener.text == "{" { "\n" } else { "" };
+    Fix::likely(format!("add `{}`", opener.closer())).insert(at, format!("{line}{}", opener.closer()))
 }
 
 fn mismatched(opener: &Token<'_>, closer: &Token<'_>) -> Diagnostic {
@@ -32,10 +39,12 @@ fn mismatched(opener: &Token<'_>, closer: &Token<'_>) -> Diagnostic {
     Diagnostic::new(Code::Unclosed, message, opener.span(), "opened here")
         .label(closer.span(), format!("`{}` should come first", opener.closer()))
         .help(format!("add `{}` where it should end", opener.closer()))
+        .fix(Fix::likely(format!("add `{}`", opener.closer())).insert(closer.span().start, opener.closer()))
 }
 
 fn unopened(closer: &Token<'_>) -> Diagnostic {
     let message = format!("`{}` closes nothing", closer.text);
     Diagnostic::new(Code::Unclosed, message, closer.span(), "nothing is open here")
         .help("remove it, or open its partner before")
+        .fix(Fix::likely("remove it").remove(closer.span()))
 }

@@ -213,10 +213,10 @@ impl Reader<'_> {
         let mut sides = children(&guard, Rule::expression);
         let mut next = || sides.next().expect("a guard has two sides");
         let (left, right) = (side(self, next()), side(self, next()));
-        let relation =
-            child(&guard, Rule::guard_relation).map_or(Relation::Equal, |sign| relation(sign.as_str()));
+        let sign = child(&guard, Rule::guard_relation).expect("a guard compares");
+        let (relation, relation_span) = (relation(sign.as_str()), self.span(&sign));
         let value = side(self, child(pair, Rule::expression).expect("an arm has a value"));
-        Arm { left, relation, right, guard_span: self.span(&guard), value }
+        Arm { left, relation, relation_span, right, guard_span: self.span(&guard), value }
     }
 
     fn switch(&mut self, pair: &Pair<'_, Rule>, span: Span) -> Tree {

@@ -4,7 +4,7 @@ use super::Rule;
 use super::messages::Place;
 use super::tokens::{Kind, Token};
 use super::words;
-use crate::{Code, Diagnostic};
+use crate::{Code, Diagnostic, Fix, Span};
 
 /// FDC0005: a line that begins with a word which introduces nothing.
 pub(super) fn unknown_item(place: &Place<'_, '_>) -> Option<Diagnostic> {
@@ -20,29 +20,31 @@ pub(super) fn unknown_item(place: &Place<'_, '_>) -> Option<Diagnostic> {
             .help(format!("write `dynamics {{ {}' = ... }}`", first.text)),
         (_, "=") => diagnostic("which kind of item is it?".to_owned())
             .help(format!("write `let {0} = ...` for an expression, `param {0} = ...` for a number", first.text)),
-        (Some(meant), _) => diagnostic(format!("did you mean `{meant}`?")).help(format!("change `{}` to `{meant}`", first.text)),
+        (Some(meant), _) => diagnostic(format!("did you mean `{meant}`?")).help(format!("change `{}` to `{meant}`", first.text))
+            .fix(Fix::certain(format!("write `{meant}`")).replace(first.span(), meant)),
         _ => diagnostic("no item begins with this word".to_owned())
             .help("an item begins with a word such as `param`, `state`, `control`, `dynamics`, `path` or `minimize`"),
     })
 }
 
-/// Characters that other languages have, and what stands for them here.
-const FOREIGN: &[(&str, &str)] = &[
-    (";", "leave it out: an item ends where the next one begins"),
-    ("−", "write `-`"),
-    ("·", "write `*`"),
-    ("×", "write `*`"),
-    ("÷", "write `/`"),
-    ("≤", "write `<=`"),
-    ("≥", "write `>=`"),
-    ("²", "write `^2`"),
-    ("³", "write `^3`"),
-    ("√", "write `sqrt(...)`"),
-    ("∈", "write `in`"),
-    ("’", "write `'` for a derivative"),
-    ("′", "write `'` for a derivative"),
-    ("%", "a comment begins with `#`"),
-    ("\"", "text stands in a pair of quotes on one line, and only after `csv`"),
+/// Characters that other languages have, what stands for them here, and how to say so.
+#[rustfmt::skip]
+const FOREIGN: &[(&str, Option<&str>, &str)] = &[
+    (";", Some(""), "leave it out: an item ends where the next one begins"),
+    ("−", Some("-"), "write `-`"),
+    ("·", Some("*"), "write `*`"),
+    ("×", Some("*"), "write `*`"),
+    ("÷", Some("/"), "write `/`"),
+    ("≤", Some("<="), "write `<=`"),
+    ("≥", Some(">="), "write `>=`"),
+    ("²", Some("^2"), "write `^2`"),
+    ("³", Some("^3"), "write `^3`"),
+    ("√", None, "write `sqrt(...)`"),
+    ("∈", Some(" in "), "write `in`"),
+    ("’", Some("'"), "write `'` for a derivative"),
+    ("′", Some("'"), "write `'` for a derivative"),
+    ("%", None, "a comment begins with `#`"),
+    ("\"", None, "text stands in a pair of quotes on one line, and only after `csv`"),
 ];
 
 /// A character that the language does not use.
@@ -51,10 +53,15 @@ pub(super) fn foreign_character(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let visible = token.text.chars().all(|c| !c.is_whitespace() && c.escape_debug().count() == 1 || c == '"');
     let shown = if visible { token.text.to_owned() } else { token.text.escape_unicode().to_string() };
     let message = format!("`{shown}` has no meaning in fdc");
-    let help = FOREIGN.iter().find(|(character, _)| *character == token.text).map(|(_, help)| *help);
+    let known = FOREIGN.iter().find(|(character, ..)| *character == token.text);
+    let (instead, help) = known.map_or((None, "remove it"), |(_, instead, help)| (*instead, *help));
     let diagnostic =
-        Diagnostic::new(Code::Unfinished, message, token.span(), "no item contains this character");
-    Some(diagnostic.help(help.unwrap_or("remove it")))
+        Diagnostic::new(Code::Unfinished, message, token.span(), "no item contains this character")
+            .help(help);
+    Some(match instead {
+        Some(sign) => diagnostic.fix(Fix::certain(help).replace(token.span(), sign)),
+        None => diagnostic,
+    })
 }
 
 /// Items whose word is followed by a name.
@@ -80,8 +87,22 @@ pub(super) fn reserved_name(place: &Place<'_, '_>) -> Option<Diagnostic> {
     };
     let message = format!("`{}` is a reserved word and cannot name {noun}", token.text);
     let label = format!("reserved: it {}", word.role);
-    let help = format!("rename it, for example `{}`{}", word.instead, other_uses(place.tokens, token.text));
-    Some(Diagnostic::new(Code::ReservedWord, message, token.span(), label).help(help))
+    let uses = uses(place.tokens, place.at);
+    let others =
+        if uses.len() > 1 { format!("\n`fdcc fix` renames all {} uses", uses.len()) } else { String::new() };
+    let help = format!("rename it, for example `{}`{others}", word.instead);
+    let found = Diagnostic::new(Code::ReservedWord, message, token.span(), label).help(help);
+    Some(found.fix(rename(place.tokens, &uses, word.instead)))
+}
+
+/// The new name at all uses; with `_` behind it where it is taken.
+fn rename(tokens: &[Token<'_>], uses: &[usize], instead: &str) -> Fix {
+    let mut new = instead.to_owned();
+    while tokens.iter().any(|token| token.text == new) {
+        new.push('_');
+    }
+    let fix = Fix::certain(format!("rename it `{new}`"));
+    uses.iter().fold(fix, |fix, at| fix.replace(tokens[*at].span(), new.as_str()))
 }
 
 /// Whether a token stands where a declaration has its name.
@@ -96,8 +117,9 @@ pub(super) fn is_renamed_elsewhere(tokens: &[Token<'_>], token: &Token<'_>) -> b
         && (0..tokens.len()).any(|at| tokens[at].text == token.text && is_declared(tokens, at))
 }
 
-/// A line of help that counts the declaration and the uses of a reserved word as a value.
-fn other_uses(tokens: &[Token<'_>], word: &str) -> String {
+/// The place of a reserved word, its declaration, and its uses as a value.
+fn uses(tokens: &[Token<'_>], place: usize) -> Vec<usize> {
+    let word = tokens[place].text;
     let is_use = |at: usize| {
         let after = tokens.get(at + 1).map_or("", |token| token.text);
         let before = &tokens[at - 1];
@@ -112,8 +134,7 @@ fn other_uses(tokens: &[Token<'_>], word: &str) -> String {
         };
         as_value || is_declared(tokens, at)
     };
-    let uses = (1..tokens.len()).filter(|at| tokens[*at].text == word && is_use(*at)).count();
-    if uses > 1 { format!("\n`fdcc fix` renames all {uses} uses") } else { String::new() }
+    (1..tokens.len()).filter(|at| tokens[*at].text == word && (*at == place || is_use(*at))).collect()
 }
 
 /// `=` for `==`, `==` for `=`, and comparisons that conditions do not have.
@@ -148,7 +169,27 @@ pub(super) fn wrong_sign(place: &Place<'_, '_>) -> Option<Diagnostic> {
         ),
         _ => return None,
     };
-    Some(Diagnostic::new(Code::Unfinished, message, token.span(), label).help(help))
+    let diagnostic = Diagnostic::new(Code::Unfinished, message, token.span(), label).help(help);
+    Some(match right_sign(place, token) {
+        Some((span, sign)) => diagnostic.fix(Fix::certain(format!("write `{sign}`")).replace(span, sign)),
+        None => diagnostic,
+    })
+}
+
+/// The sign that a wrong one stands for, and where it goes.
+fn right_sign(place: &Place<'_, '_>, token: &Token<'_>) -> Option<(Span, &'static str)> {
+    let compares = place.expects(&[Rule::relation, Rule::guard_relation]);
+    let before = place.previous().map_or(token.span(), Token::span);
+    Some(match token.text {
+        "=" if compares => (token.span(), "=="),
+        "=" => (token.span(), ":="),
+        "==" | ":=" => (token.span(), "="),
+        "<" => (token.span(), "<="),
+        ">" => (token.span(), ">="),
+        "**" => (token.span(), "^"),
+        "*" => (before.to(token.span()), "^"),
+        _ => return None,
+    })
 }
 
 /// A word that is nearly one of those that the item goes on with: `smooth sigma = 0.1 kernl tanh`.
@@ -161,7 +202,8 @@ pub(super) fn misspelt_word(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let message = format!("`{}` is not a word of {}", token.text, place.form?.noun);
     let diagnostic =
         Diagnostic::new(Code::Unfinished, message, token.span(), format!("did you mean `{meant}`?"));
-    Some(diagnostic.help(format!("change `{}` to `{meant}`", token.text)))
+    let fix = Fix::certain(format!("write `{meant}`")).replace(token.span(), meant);
+    Some(diagnostic.help(format!("change `{}` to `{meant}`", token.text)).fix(fix))
 }
 
 /// `x'' = ...`

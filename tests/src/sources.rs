@@ -25,7 +25,11 @@ fn collect(folder: &Path, prefix: &str, found: &mut Vec<Source>) {
         let path = entry.expect("the folder can be read").path();
         let name = path.file_name().expect("an entry has a name").to_string_lossy().into_owned();
         let full = format!("{prefix}{name}");
-        if path.is_dir() && name != ".git" && name != "target" {
+        // In a worktree `.git` is a file.
+        if name == ".git" || name == "target" {
+            continue;
+        }
+        if path.is_dir() {
             collect(&path, &format!("{full}/"), found);
         } else if let Ok(text) = fs::read_to_string(&path) {
             found.push(Source { path: full, text });

@@ -68,7 +68,9 @@ impl SourceFile {
     pub fn line_column(&self, offset: u32) -> LineColumn {
         let line = self.line_starts.partition_point(|&start| start <= offset);
         let start = self.line_starts[line - 1] as usize;
-        let column = self.text[start..(offset as usize).min(self.text.len())].chars().count() + 1;
+        let before = &self.text[start..(offset as usize).min(self.text.len())];
+        // No editor shows a byte-order mark.
+        let column = before.trim_start_matches('\u{FEFF}').chars().count() + 1;
         LineColumn { line, column }
     }
 }

@@ -43,6 +43,29 @@ fn line_ends_tabs_and_byte_order_marks_change_nothing() {
     }
 }
 
+/// The same mistakes are found at the same lines and columns, counted in characters, however the lines end.
+#[test]
+fn columns_count_characters() {
+    let text = "param μ_θ = 1 2\n\tstate größe start\n  end ψ == (α + β γ)\r\nparam ok = 1\n";
+    let places = |text: &str| {
+        let source = SourceFile::new("model.fdc", text);
+        let place = |found: &Diagnostic| source.line_column(found.span().start);
+        let places =
+            parse(text).diagnostics.iter().map(|found| (place(found).line, place(found).column)).collect();
+        let places: Vec<(usize, usize)> = places;
+        places
+    };
+    let expected = [(1, 13), (2, 14), (3, 17)];
+    for variant in [
+        text.to_owned(),
+        text.replace("\r\n", "\n"),
+        text.replace("\r\n", "\n").replace('\n', "\r\n"),
+        format!("\u{FEFF}{text}"),
+    ] {
+        assert_eq!(places(&variant), expected, "{variant:?}");
+    }
+}
+
 /// The cases of group 00 in the table of messages: message, severity, places, texts and help.
 #[test]
 fn messages_are_those_of_the_table() {

@@ -10,14 +10,17 @@ use crate::{Code, Diagnostic, Fix, Span};
 pub(super) fn missing_operator(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let (previous, next) = (place.previous()?, place.next()?);
     let in_range = place.expects(&[Rule::comma]) && place.innermost_bracket() == Some("[");
-    if !place.after_operand() || next.begins_line || !begins_value(next) || in_range {
+    let before_derivative = place.expects(&[Rule::prime]) && place.text(place.at + 1) == "'";
+    if !(place.after_operand() || before_derivative) || next.begins_line || !begins_value(next) || in_range {
         return None;
     }
     let (left, right) = (value_before(place), value_after(place));
     let (first, last) = (&place.tokens[left], &place.tokens[right]);
     let [left, right] = [short(place, left, place.at - 1, previous), short(place, place.at, right, next)];
     let message = format!("missing operator between `{left}` and `{right}`");
-    let help = format!("write `{left} * {right}` or `{left} / {right}`; fdc has no implicit multiplication");
+    let comma = if place.innermost_bracket() == Some("(") { "; a comma parts two values" } else { "" };
+    let help =
+        format!("write `{left} * {right}` or `{left} / {right}`; fdc has no implicit multiplication{comma}");
     let span = first.span().to(last.span());
     let between = Span { start: previous.span().end, end: next.span().start };
     let fix = Fix::likely("write `*`").replace(between, " * ");

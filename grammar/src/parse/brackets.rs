@@ -1,7 +1,9 @@
 //! Brackets without a partner: FDC0006.
 
+use super::Rule;
 use super::messages::Place;
 use super::tokens::{Kind, Token};
+use super::words;
 use crate::{Code, Diagnostic, Fix, Span};
 
 /// FDC0006, if a bracket of the piece has no partner.
@@ -19,6 +21,30 @@ pub(super) fn unbalanced(place: &Place<'_, '_>) -> Option<Diagnostic> {
         }
     }
     open.last().map(|opener| unclosed(opener, place.tokens[place.piece.end - 1].span()))
+}
+
+/// FDC0006, if a bracket closes behind the piece what was not opened in it: `state v m] start 0`.
+pub(super) fn unopened_after(place: &Place<'_, '_>) -> Option<Diagnostic> {
+    let closer = place.closer?;
+    let opens = match closer.text {
+        "}" => &[Rule::left_brace][..],
+        ")" => &[Rule::left_parenthesis, Rule::names],
+        _ => &[],
+    };
+    if place.expects(opens) && !place.expects(&[Rule::EOI]) {
+        return None;
+    }
+    let begins = |token: &&Token<'_>| match token.kind {
+        Kind::Word => words::reserved(token.text).is_none(),
+        Kind::Number => true,
+        _ => token.text == "-",
+    };
+    let Some(first) = place.next().filter(begins) else { return Some(unopened(closer)) };
+    let opener = closer.opener();
+    let message = format!("`{opener}` is missing before `{}`", first.text);
+    let found =
+        Diagnostic::new(Code::Unclosed, message, first.span(), format!("`{opener}` should stand here"));
+    Some(found.label(closer.span(), "this closes it").help(format!("add `{opener}` before `{}`", first.text)))
 }
 
 fn unclosed(opener: &Token<'_>, last: Span) -> Diagnostic {

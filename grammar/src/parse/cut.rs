@@ -48,6 +48,12 @@ impl<'t> SoFar<'_, 't> {
         words::form(self.tokens[at].text).is_some() || is_misspelt_item(self, at)
     }
 
+    /// Whether the piece is a block of entries whose `{` has not come yet.
+    fn lacks_brace(&self, at: usize) -> bool {
+        let has_brace = self.tokens[self.head..at].iter().any(|token| token.text == "{");
+        words::entry_form(self.word()).is_some() && !has_brace
+    }
+
     /// Keeps account of the open brackets. A closer also closes what was left open inside its pair.
     fn track(&mut self, at: usize) {
         let token = &self.tokens[at];
@@ -85,6 +91,7 @@ fn begins_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     let outside = so_far.open.is_empty();
     match (token.kind, words::reserved(token.text)) {
         (Kind::Close, _) => outside,
+        (Kind::Open, _) if token.text == "{" && outside => is_nameless_block(so_far, at),
         (Kind::Word, Some(word)) if word.item.is_some() => {
             if so_far.in_phase() {
                 return token.begins_line && matches!(token.text, "phase" | "link");
@@ -120,7 +127,7 @@ fn continues_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     // A misspelt item may be any.
     let item = |words: &[&str]| words.contains(&so_far.word()) || words::reserved(so_far.word()).is_none();
     match so_far.tokens[at].text {
-        "free" => so_far.tokens[at - 1].text == "start",
+        "free" => so_far.tokens[at - 1].text == "start" || (item(&["state"]) && ["", "in"].contains(&next)),
         "guess" => item(&["free", "control"]) && next != "{",
         "start" => (item(&["state"]) && !has_relation(so_far, at)) || next == ")",
         "end" => next == ")",
@@ -146,15 +153,21 @@ fn is_misspelt_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
         && words::closest_item(token.text).is_some()
 }
 
-/// Whether a line begins like an item, but with a word that introduces none: `unit v`, `dynamcs {`, `m = 2`.
+/// Whether a line begins with a name behind a text that is complete: no item goes on like that. `unit v`, `dynamcs {`,
+/// `m = 2`, `x >= 0`.
 fn is_unknown_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
-    let Some(next) = so_far.tokens[..so_far.end].get(at + 1) else { return false };
-    let follows = next.kind == Kind::Word || ["{", "=", ":", "'"].contains(&next.text);
     so_far.tokens[at].begins_line
-        && !next.begins_line
-        && follows
         && can_end(&so_far.tokens[at - 1])
         && !words::inner_words(so_far.word()).contains(&so_far.tokens[at].text)
+        && !so_far.lacks_brace(at)
+}
+
+/// Whether a line begins with the brace of a block that has lost its word.
+fn is_nameless_block(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let before = &so_far.tokens[at - 1];
+    let is_block = words::entry_form(so_far.word()).is_some() || matches!(so_far.word(), "phase");
+    let is_switch = at.checked_sub(2).is_some_and(|at| so_far.tokens[at].text == "match");
+    so_far.tokens[at].begins_line && can_end(before) && !is_switch && (!is_block || before.text == "}")
 }
 
 fn begins_entry(so_far: &SoFar<'_, '_>, at: usize, block: &str) -> bool {
@@ -163,7 +176,19 @@ fn begins_entry(so_far: &SoFar<'_, '_>, at: usize, block: &str) -> bool {
     if looks_like_entry(so_far, at, block) && (token.begins_line || (complete && so_far.open.is_empty())) {
         return true;
     }
-    token.begins_line && so_far.open.is_empty() && complete && token.kind != Kind::Sign
+    let is_next = token.kind != Kind::Sign || loses_its_name(so_far, at);
+    token.begins_line && so_far.open.is_empty() && complete && is_next
+}
+
+/// Whether a sign at the beginning of a line belongs to an entry without a name: `' = v` or, behind an entry that has
+/// one, `= 2`.
+fn loses_its_name(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let defines = |text: &str| matches!(text, "=" | ":=" | "in");
+    let has_sign = so_far.tokens[so_far.head..at].iter().any(|token| defines(token.text));
+    match so_far.tokens[at].text {
+        "'" => true,
+        sign => has_sign && defines(sign),
+    }
 }
 
 /// Whether an entry of the block certainly begins here.
@@ -176,7 +201,10 @@ fn looks_like_entry(so_far: &SoFar<'_, '_>, at: usize, block: &str) -> bool {
         }
         "guess" | "report" => is_name && second == "=",
         "jump" | "link" => is_name && second == ":=",
-        "method" => ["smooth", "grid", "continue"].contains(&first) && third == "=",
+        "method" => {
+            let is_key = is_name && second == "=" && so_far.tokens[at].begins_line;
+            is_key || (["smooth", "grid", "continue"].contains(&first) && third == "=")
+        }
         _ => false,
     }
 }

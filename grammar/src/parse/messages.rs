@@ -7,7 +7,7 @@ use super::cut::Piece;
 use super::limits::{Failure, MOST_BRACKETS, MOST_LETTERS, MOST_TOKENS};
 use super::tokens::{Kind, Token};
 use super::words::{self, Form};
-use super::{Rule, adjacent, brackets, slips};
+use super::{Rule, adjacent, brackets, doubled, forgotten, slips, unknown};
 use crate::{Code, Diagnostic, Span};
 
 /// The place where the grammar gave up.
@@ -24,6 +24,8 @@ pub(super) struct Place<'p, 't> {
     pub at: usize,
     /// What the grammar would have gone on with.
     pub expected: &'p [Rule],
+    /// A closing bracket behind the piece that closes nothing.
+    pub closer: Option<&'p Token<'t>>,
 }
 
 impl<'t> Place<'_, 't> {
@@ -35,6 +37,16 @@ impl<'t> Place<'_, 't> {
     /// The last token that was.
     pub fn previous(&self) -> Option<&Token<'t>> {
         (self.at > self.piece.start).then(|| &self.tokens[self.at - 1])
+    }
+
+    /// The text of a token, inside the piece or beside it.
+    pub fn text(&self, at: usize) -> &'t str {
+        self.tokens.get(at).map_or("", |token| token.text)
+    }
+
+    /// The tokens of the piece that stand before the place.
+    pub fn before(&self) -> &[Token<'t>] {
+        &self.tokens[self.piece.start..self.at]
     }
 
     /// Whether the grammar would have gone on with one of these.
@@ -77,7 +89,8 @@ impl<'t> Place<'_, 't> {
 const OPERANDS: &[Rule] =
     &[Rule::expression, Rule::operand, Rule::negation, Rule::argument, Rule::factor, Rule::arm];
 
-const PIECEWISE: &str = "a piecewise looks like this: `piecewise { x <= 1 => 0  otherwise => x - 1 }`";
+pub(super) const PIECEWISE: &str =
+    "a piecewise looks like this: `piecewise { x <= 1 => 0  otherwise => x - 1 }`";
 const MATCH: &str = "a match looks like this: `match boost { below => u, above => 3*u }`";
 
 /// What can be missing, in the order in which it is looked for, and help where it is not the item's own form.
@@ -93,19 +106,19 @@ const MISSING: &[(&[Rule], &str, Option<&str>)] = &[
     (&[Rule::kw_otherwise], "`otherwise => ...`", Some(PIECEWISE)),
     (&[Rule::kw_below], "`below => ...`", Some(MATCH)),
     (&[Rule::kw_above], "`above => ...`", Some(MATCH)),
-    (&[Rule::kw_on], "`on` and a surface", None),
+    (&[Rule::kw_on], "`on`", None),
     (&[Rule::direction], "`falling` or `rising`", None),
     (&[Rule::kw_most], "`most`", None),
     (&[Rule::kw_hold], "`hold`", None),
     (&[Rule::kw_csv], "`csv(\"...\")`", None),
-    (&[Rule::kw_columns], "`columns` and their names", None),
+    (&[Rule::kw_columns], "`columns`", None),
     (&[Rule::kw_sigma], "`sigma`", Some("only the smoothing is continued: `continue sigma = 0.1, 0.05, 0.025`")),
     (&[Rule::string], "a file name in quotes", None),
     (&[Rule::interval], "a range `[from, to]`", None),
     (OPERANDS, "a value", None),
     (&[Rule::derivative], "a derivative such as `x'`", None),
     (&[Rule::unit_factor, Rule::unit_name], "a unit", None),
-    (&[Rule::exponent], "a whole number", None),
+    (&[Rule::digits, Rule::exponent], "a whole number", None),
     (&[Rule::colon], "`:`", None),
     (&[Rule::comma], "`,`", None),
     (&[Rule::prime], "the `'` of a derivative", None),
@@ -124,6 +137,7 @@ pub(super) fn explain(
     piece: &Piece,
     block: Option<&str>,
     failure: &Failure,
+    closer: Option<&Token<'_>>,
 ) -> Option<Diagnostic> {
     let (stopped, expected) = match failure {
         Failure::TooDeep(bracket) => return Some(too_many_brackets(&tokens[*bracket])),
@@ -134,21 +148,33 @@ pub(super) fn explain(
     let word = block.unwrap_or(tokens[piece.start].text);
     let form = block.map_or_else(|| words::form(word), words::entry_form);
     let at = piece.start + tokens[piece.clone()].partition_point(|token| token.end() <= stopped);
-    let place = Place { tokens, piece, word, form, at, expected };
+    let place = Place { tokens, piece, word, form, at, expected, closer };
     if place.next().is_some_and(|token| slips::is_renamed_elsewhere(tokens, token)) {
         return slips::reserved_name(&place);
     }
     let reasons: &[fn(&Place<'_, '_>) -> Option<Diagnostic>] = &[
-        slips::unknown_item,
+        unknown::unknown_item,
+        unknown::nameless_entry,
         slips::foreign_character,
-        slips::reserved_name,
+        brackets::unopened_after,
+        slips::second_derivative,
+        doubled::doubled,
         slips::wrong_sign,
+        slips::reserved_name,
+        forgotten::before_ends,
         brackets::unbalanced,
         slips::misspelt_word,
+        forgotten::in_header,
+        forgotten::of_range,
+        forgotten::of_value,
+        forgotten::of_switch,
+        forgotten::comparison,
+        forgotten::comma,
         adjacent::missing_operator,
-        slips::second_derivative,
         slips::wrong_range,
         slips::wrong_vector,
+        slips::second_equation,
+        slips::second_value,
         slips::misplaced_item,
     ];
     let reason = reasons.iter().find_map(|reason| reason(&place));
@@ -188,7 +214,11 @@ fn missing(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let message = format!("{thing} is missing after `{}`", previous.text);
     let diagnostic =
         Diagnostic::new(Code::Unfinished, message, previous.span(), format!("{thing} should follow"));
+    let before_previous = place.at.checked_sub(2).map_or("", |at| place.text(at));
     Some(match help {
+        _ if matches!(previous.text, "below" | "above" | "match") => diagnostic.help(MATCH),
+        _ if before_previous == "match" => diagnostic.help(MATCH),
+        _ if previous.text == "piecewise" => diagnostic.help(PIECEWISE),
         Some(help) => diagnostic.help(*help),
         None => place.example(diagnostic),
     })

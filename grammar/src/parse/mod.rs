@@ -6,13 +6,16 @@ mod adjacent;
 mod blocks;
 mod brackets;
 mod cut;
+mod doubled;
 mod expressions;
+mod forgotten;
 mod items;
 mod limits;
 mod messages;
 mod recover;
 mod slips;
 mod tokens;
+mod unknown;
 mod words;
 
 use pest::Parser as _;

@@ -6,7 +6,7 @@
 
 use super::cut::{self, Piece};
 use super::limits::{self, Failure};
-use super::tokens::{Token, tokens};
+use super::tokens::{Kind, Token, tokens};
 use super::{Rule, items, messages, pairs};
 use crate::{Diagnostic, Parse};
 
@@ -16,7 +16,14 @@ const MOST_DIAGNOSTICS: usize = 100;
 /// Everything readable in a text that cannot be read as a whole.
 pub(super) fn recover(text: &str) -> Parse {
     let tokens = tokens(text);
-    let mut recovery = Recovery { tokens: &tokens, rest: text.to_owned(), diagnostics: Vec::new() };
+    let mut recovery = Recovery {
+        tokens: &tokens,
+        rest: text.to_owned(),
+        diagnostics: Vec::new(),
+        unopened: 0,
+        explained: 0,
+        until: tokens.len(),
+    };
     let mut parse = Parse::default();
     for piece in cut::items(&tokens, 0..tokens.len()) {
         let is_model_line = piece.start == 0 && tokens[0].text == "model";
@@ -36,6 +43,12 @@ struct Recovery<'t> {
     /// The text, with blanks in place of what was wrong.
     rest: String,
     diagnostics: Vec<Diagnostic>,
+    /// Where the file, phase or block ends that is being mended.
+    until: usize,
+    /// Blocks whose `{` was missed, so that their `}` needs no message of its own.
+    unopened: usize,
+    /// Tokens before this one belong to a mistake that has been told.
+    explained: usize,
 }
 
 impl<'t> Recovery<'t> {
@@ -49,12 +62,49 @@ impl<'t> Recovery<'t> {
             if reported && self.read(piece, rule).is_ok() {
                 return true;
             }
-            if !reported {
-                self.diagnostics.extend(messages::explain(self.tokens, piece, block, &failure));
+            if !reported && !self.is_consequence(piece) {
+                self.explain(piece, block, &failure);
             }
         }
         self.paint_over(piece);
         false
+    }
+
+    fn explain(&mut self, piece: &Piece, block: Option<&'t str>, failure: &Failure) {
+        let closer = self.closer_behind(piece);
+        self.diagnostics.extend(messages::explain(self.tokens, piece, block, failure, closer));
+        let tokens = &self.tokens[piece.clone()];
+        let braces = |text| tokens.iter().filter(|token| token.text == text).count();
+        let head = tokens.split(|token| matches!(token.text, "=" | "'" | ":=")).next().unwrap_or(tokens);
+        let has_brace = head.iter().any(|token| token.text == "{");
+        let lacks_brace =
+            matches!(failure, Failure::Stopped(_, expected) if expected.contains(&Rule::left_brace));
+        self.unopened += usize::from(lacks_brace && !has_brace) + braces("{").saturating_sub(braces("}"));
+        self.explained = piece.end + usize::from(closer.is_some());
+    }
+
+    /// A bracket that closes nothing, on the line where the piece ends.
+    fn closer_behind(&self, piece: &Piece) -> Option<&'t Token<'t>> {
+        self.tokens[..self.until]
+            .get(piece.end)
+            .filter(|token| token.kind == Kind::Close && !token.begins_line && self.is_unopened(piece))
+    }
+
+    /// Whether the brackets of a piece are in order, so that one behind it closes nothing.
+    fn is_unopened(&self, piece: &Piece) -> bool {
+        let count = |kind| self.tokens[piece.clone()].iter().filter(|token| token.kind == kind).count();
+        count(Kind::Open) == count(Kind::Close)
+    }
+
+    /// Whether a piece is what follows from a mistake that has been told: a bracket whose partner was missed.
+    fn is_consequence(&mut self, piece: &Piece) -> bool {
+        let first = &self.tokens[piece.start];
+        if first.kind != Kind::Close {
+            return false;
+        }
+        let is_brace = first.text == "}" && self.unopened > 0;
+        self.unopened -= usize::from(is_brace);
+        is_brace || piece.start < self.explained
     }
 
     /// Mends the items of a phase or the entries of a block, if the piece is one.
@@ -63,17 +113,23 @@ impl<'t> Recovery<'t> {
         let is_phase = word == "phase";
         let Some(inside) = self.inside(piece) else { return };
         let Some(rule) = entry_rule(word) else { return };
+        let end = inside.end;
         let cut =
             if is_phase { cut::items(self.tokens, inside) } else { cut::entries(self.tokens, inside, word) };
+        let until = std::mem::replace(&mut self.until, end);
         for entry in cut {
             self.mend(&entry, rule, (!is_phase).then_some(word));
         }
+        self.until = until;
     }
 
-    /// What stands between the first `{` of a piece and its last `}`.
+    /// What stands between the `{` behind the head of a block and its last `}`.
     fn inside(&self, piece: &Piece) -> Option<Piece> {
         let tokens = &self.tokens[piece.clone()];
         let first = tokens.iter().position(|token| token.text == "{")? + 1;
+        if tokens[..first].iter().any(|token| matches!(token.text, "=" | "'" | "in" | ":=")) {
+            return None;
+        }
         let last = tokens.iter().rposition(|token| token.text == "}").unwrap_or(tokens.len());
         (first < last).then_some(piece.start + first..piece.start + last)
     }

@@ -6,27 +6,6 @@ use super::tokens::{Kind, Token};
 use super::words;
 use crate::{Code, Diagnostic, Fix, Span};
 
-/// FDC0005: a line that begins with a word which introduces nothing.
-pub(super) fn unknown_item(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let first = &place.tokens[place.piece.start];
-    if place.form.is_some() || first.kind != Kind::Word || place.at != place.piece.start {
-        return None;
-    }
-    let next = place.tokens[..place.piece.end].get(place.piece.start + 1).map_or("", |token| token.text);
-    let message = format!("`{}` does not begin an item", first.text);
-    let diagnostic = |label: String| Diagnostic::new(Code::UnknownItem, message.clone(), first.span(), label);
-    Some(match (words::closest_item(first.text), next) {
-        (_, "'") => diagnostic("an equation outside `dynamics`".to_owned())
-            .help(format!("write `dynamics {{ {}' = ... }}`", first.text)),
-        (_, "=") => diagnostic("which kind of item is it?".to_owned())
-            .help(format!("write `let {0} = ...` for an expression, `param {0} = ...` for a number", first.text)),
-        (Some(meant), _) => diagnostic(format!("did you mean `{meant}`?")).help(format!("change `{}` to `{meant}`", first.text))
-            .fix(Fix::certain(format!("write `{meant}`")).replace(first.span(), meant)),
-        _ => diagnostic("no item begins with this word".to_owned())
-            .help("an item begins with a word such as `param`, `state`, `control`, `dynamics`, `path` or `minimize`"),
-    })
-}
-
 /// Characters that other languages have, what stands for them here, and how to say so.
 #[rustfmt::skip]
 const FOREIGN: &[(&str, Option<&str>, &str)] = &[
@@ -77,6 +56,9 @@ pub(super) fn reserved_name(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let previous = place.previous()?;
     let declares = is_declared(place.tokens, place.at);
     let parameter = place.expects(&[Rule::name]) && matches!(previous.text, "(" | "," | ".");
+    if plays_its_part(place.tokens, place.at) {
+        return None;
+    }
     if !declares && (is_renamed_elsewhere(place.tokens, token) || !(parameter || place.expects_operand())) {
         return None;
     }
@@ -105,10 +87,24 @@ fn rename(tokens: &[Token<'_>], uses: &[usize], instead: &str) -> Fix {
     uses.iter().fold(fix, |fix, at| fix.replace(tokens[*at].span(), new.as_str()))
 }
 
+/// Whether a reserved word is used as it should be, so that something is missing before it: `time in [0, 1]`.
+fn plays_its_part(tokens: &[Token<'_>], at: usize) -> bool {
+    let text = |at: usize| tokens.get(at).map_or("", |token| token.text);
+    let (before, after) = (at.checked_sub(1).map_or("", text), text(at + 1));
+    match text(at) {
+        "in" => after == "[" || matches!(before, "(" | "="),
+        "otherwise" | "below" | "above" => after == "=>",
+        "within" => tokens.get(at + 1).is_some_and(|next| next.kind == Kind::Number),
+        "start" if before == "state" => !["=", "[", "(", "in", "start", ""].contains(&after),
+        _ => before == "(" && after == ")",
+    }
+}
+
 /// Whether a token stands where a declaration has its name.
 fn is_declared(tokens: &[Token<'_>], at: usize) -> bool {
     let before = |back: usize| at.checked_sub(back).map_or("", |at| tokens[at].text);
-    DECLARATIONS.contains(&before(1)) && !tokens[at].begins_line && before(2) != "start"
+    let follows = DECLARATIONS.contains(&before(1)) && !tokens[at].begins_line && before(2) != "start";
+    follows && !plays_its_part(tokens, at)
 }
 
 /// Whether a reserved word is used as a value because it has been declared as a name; the declaration is reported.
@@ -229,9 +225,38 @@ pub(super) fn wrong_range(place: &Place<'_, '_>) -> Option<Diagnostic> {
 /// `x' = [v, w]`
 pub(super) fn wrong_vector(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let next = place.next().filter(|next| next.text == "[" && place.expects_operand())?;
+    let inside = place.tokens[place.at..place.piece.end].split(|token| token.text == "]").next()?;
+    if !inside.iter().any(|token| token.text == ",") {
+        return None;
+    }
     let message = "a vector is written in parentheses";
     let diagnostic = Diagnostic::new(Code::Unfinished, message, next.span(), "`(` should stand here");
     Some(diagnostic.help("write `(a, b)`; brackets are for units, ranges and parts"))
+}
+
+/// `x' = v * v' in F`: the second of two equations has lost its beginning.
+pub(super) fn second_equation(place: &Place<'_, '_>) -> Option<Diagnostic> {
+    let next = place.next().filter(|next| matches!(next.text, "=" | "in"))?;
+    if place.word != "dynamics" || !place.before().iter().any(|token| matches!(token.text, "=" | "in")) {
+        return None;
+    }
+    let message = "an equation has one `=` or `in`";
+    let diagnostic = Diagnostic::new(Code::Unfinished, message, next.span(), "this is the second one");
+    Some(diagnostic.help("an equation begins with a state or a factor, as in `x' = v` and `m * v' = F`"))
+}
+
+/// `sigma = 0.1, 0.05`
+pub(super) fn second_value(place: &Place<'_, '_>) -> Option<Diagnostic> {
+    let next = place.next().filter(|next| next.text == "," && place.after_operand())?;
+    if place.word != "method" {
+        return None;
+    }
+    let diagnostic =
+        Diagnostic::new(Code::Unfinished, "a setting has one value", next.span(), "a second value follows");
+    Some(
+        diagnostic
+            .help("several widths are gone through one after the other with `continue sigma = 0.1, 0.05`"),
+    )
 }
 
 /// Items that have one place only: `model` at the head, phases and links outside phases.

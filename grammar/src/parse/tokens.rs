@@ -39,6 +39,15 @@ impl Token<'_> {
         Span::new(self.start, self.end())
     }
 
+    /// The bracket that this one would close.
+    pub fn opener(&self) -> &'static str {
+        match self.text {
+            ")" => "(",
+            "]" => "[",
+            _ => "{",
+        }
+    }
+
     /// The bracket that would close this one.
     pub fn closer(&self) -> &'static str {
         match self.text {

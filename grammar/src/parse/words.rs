@@ -108,9 +108,32 @@ pub(super) fn inner_words(item: &str) -> &'static [&'static str] {
     }
 }
 
-/// The item word that a word is nearly.
+/// What other languages call an item.
+const ELSEWHERE: &[(&str, &str)] = &[
+    ("parameter", "param"),
+    ("constant", "const"),
+    ("variable", "state"),
+    ("var", "state"),
+    ("input", "control"),
+    ("function", "fn"),
+    ("def", "fn"),
+    ("min", "minimize"),
+    ("max", "maximize"),
+    ("objective", "minimize"),
+    ("constraint", "path"),
+    ("initial", "start"),
+    ("final", "end"),
+    ("equations", "dynamics"),
+    ("ode", "dynamics"),
+    ("output", "report"),
+    ("options", "method"),
+];
+
+/// The item word that a word is nearly, or that it stands for elsewhere.
 pub(super) fn closest_item(word: &str) -> Option<&'static str> {
-    closest(word, WORDS.iter().filter(|known| known.item.is_some()).map(|known| known.text))
+    let items = WORDS.iter().filter(|known| known.item.is_some()).map(|known| known.text);
+    let elsewhere = || ELSEWHERE.iter().find(|(other, _)| *other == word).map(|(_, meant)| *meant);
+    elsewhere().or_else(|| closest(word, items))
 }
 
 /// The word of a list that is most like another, if it is like enough to have been meant.

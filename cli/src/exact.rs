@@ -54,7 +54,7 @@ impl Exact {
         Ok(Exact { found, sides, is_differentiable, gradient, adjoint })
     }
 
-    /// Whether there is a derivative, both ways to compute it agree, and no kink on the way makes both inexact.
+    /// Whether there is a derivative, both ways to compute it agree, and the trajectory stays on no kink.
     pub fn is_trusted(&self) -> bool {
         self.is_differentiable && self.agrees() && self.found.kink.is_none()
     }

@@ -56,8 +56,8 @@ impl Question<'_> {
     /// The second derivatives, or why there are none.
     pub fn second(&self, simulation: &Simulation) -> Result<Vec<Vec<f64>>, String> {
         let found = hessian(&self.system, &self.controls, simulation, &self.quantities());
-        let why = "there are no second derivatives here: none are known where infinitely many jumps come to rest, \
-                   where a `Dir` moves, and by a start that leaves a surface on which it slides";
+        let why = "there are no second derivatives here: none are known where infinitely many jumps come to rest, where a `Dir` \
+                   moves, by a start that leaves a surface on which it slides, and where a kink is met together with something else";
         found.ok_or(why.to_string())
     }
 

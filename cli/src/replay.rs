@@ -83,7 +83,12 @@ impl Replay {
 
     /// The controls, if a file was given.
     pub fn held(self) -> Option<Controls> {
-        (!self.times.is_empty()).then_some(Controls::Held { times: self.times, rows: self.rows })
+        let is_stretched = !self.source_sha256.is_empty();
+        (!self.times.is_empty()).then_some(Controls::Held {
+            times: self.times,
+            rows: self.rows,
+            is_stretched,
+        })
     }
 }
 

@@ -60,7 +60,7 @@ pub fn verify(model: &Model, problem: &Problem, saved: &Saved) -> Result<Verifie
     fits(saved, &system).map_err(Failure::File)?;
     let intervals = replay.times.len();
     let points = Points::new(saved, replay, system.interval);
-    let controls = Controls::Held { times: points.starts(), rows: points.rows.clone() };
+    let controls = Controls::Held { times: points.starts(), rows: points.rows.clone(), is_stretched: true };
     let max_steps = FEWEST_STEPS.max(STEPS_PER_INTERVAL * intervals);
     let options = Options { times: points.times.clone(), max_steps, tape: true, ..Options::default() };
     let simulation = simulate(&system, &controls, &options);

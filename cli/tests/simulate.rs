@@ -225,6 +225,21 @@ fn what_cannot_be_continued_says_why() {
 }
 
 #[test]
+fn a_time_limit_keeps_the_trajectory_so_far() {
+    let text =
+        "time t in [0, 1e6]  state x start 1  state y start 0\ndynamics { x' = 1000*y  y' = -1000*x }\n";
+    let folder = folder("simulate_time_limit", &[("fast.fdc", text.as_bytes())]);
+    let output =
+        fdcc(&folder, &["simulate", "fast.fdc", "--json", "--time-limit", "0.05", "--starts", "3"], "");
+    expect_exit(&output, 2, "the time is up");
+    let found = json(&output);
+    assert_eq!(found["status"], "time_limit");
+    let reached = found["time_limit"]["time"].as_f64().expect("a time");
+    assert!(reached > 0.0 && reached < 1e6, "{reached}");
+    assert!(stderr(&output).contains("a simulation searches nothing"), "{}", stderr(&output));
+}
+
+#[test]
 fn wrong_usage_is_told() {
     let folder = folder("simulate_usage", &[("block.fdc", BLOCK.as_bytes())]);
     for (arguments, code) in [

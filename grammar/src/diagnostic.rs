@@ -135,6 +135,7 @@ codes! {
     NoSet = "FDC0204", Advice, "`in` without a set";
     NotAffine = "FDC0205", Error, "a right side that is not affine in `Sgn`";
     SetProduct = "FDC0206", Warning, "a product of two set-valued functions";
+    IdleJump = "FDC0311", Warning, "a jump that never acts";
     EmptyBounds = "FDC0401", Error, "bounds that leave no room";
     NoDuration = "FDC0402", Error, "a free time without lower bound";
     NoBoundary = "FDC0403", Error, "a state without start or end condition";

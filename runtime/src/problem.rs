@@ -21,7 +21,7 @@ pub struct Layout {
     pub u: usize,
     /// Parameters: the `param`s, the `free` unknowns and the smoothing widths.
     pub p: usize,
-    /// Selectors, one per surface.
+    /// Selectors, one per surface; in a simulation, then one for each kink of the right side.
     pub s: usize,
 }
 

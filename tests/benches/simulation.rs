@@ -73,6 +73,6 @@ fn race_car_replay(bencher: Bencher) {
     model.set_free("T", times[times.len() - 1]);
     times.pop();
     let rows = (0..times.len()).map(|k| trajectory.controls.iter().map(|column| column[k]).collect());
-    let controls = Controls::Held { rows: rows.collect(), times };
+    let controls = Controls::Held { rows: rows.collect(), times, is_stretched: true };
     bench(bencher, &compile_simulation(&model).expect("it can be simulated"), &controls, &[]);
 }

@@ -86,7 +86,7 @@ pub fn derivative(system: &System) -> Matrix {
 pub fn costates(system: &System, times: &[f64]) -> Costates {
     let times = [&[system.interval[0]], times].concat();
     let rows = vec![Vec::new(); times.len()];
-    differentiated(system, &Controls::Held { times, rows }).costates
+    differentiated(system, &Controls::Held { times, rows, is_stretched: true }).costates
 }
 
 fn differentiated(system: &System, controls: &Controls) -> Sensitivity {

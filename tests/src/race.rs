@@ -145,7 +145,7 @@ fn replay(solved: &Solved) -> Simulation {
     let rows = solved.control("a").iter().zip(solved.control("s")).map(|(a, s)| vec![*a, *s]).collect();
     let points = (0..=STEPS * POINTS).map(|k| at(k, STEPS * POINTS)).collect();
     let options = Options { times: points, tape: true, ..Options::default() };
-    let found = simulate(&system, &Controls::Held { times, rows }, &options);
+    let found = simulate(&system, &Controls::Held { times, rows, is_stretched: true }, &options);
     assert!(matches!(found.status, Status::Completed), "{:?}", found.status);
     found
 }

@@ -138,7 +138,8 @@ fn least_time() -> Costates {
     let mut model = changed(&text, &[], &[]);
     model.set_free("T", 2.0);
     let system = compile_sensitivities(&model).expect("the model can be simulated");
-    let controls = Controls::Held { times: vec![0.0, 1.4], rows: vec![vec![2.0], vec![-2.0]] };
+    let controls =
+        Controls::Held { times: vec![0.0, 1.4], rows: vec![vec![2.0], vec![-2.0]], is_stretched: true };
     gradient(&system, &controls, &Options::default(), &[]).expect("it reaches the end").costates
 }
 

@@ -5,6 +5,7 @@
 //! case WHAT, AND WHO SAYS SO
 //! set NAME = VALUE                  a `param` or a `free`
 //! control TIME VALUE                the control holds its value from TIME on; the guess if left out
+//! fixed times                       these TIMEs do not move with the end of the interval
 //! of EXPRESSION                     the model's own objective if left out
 //! by PARAM = VALUE                  or STATE(start), or CONTROL[ROW]
 //! second A B = VALUE                a second derivative, by two of these
@@ -26,6 +27,7 @@ struct Case<'t> {
     title: &'t str,
     set: Vec<(&'t str, &'t str)>,
     controls: Vec<[f64; 2]>,
+    is_fixed: bool,
     of: Option<&'t str>,
     by: Vec<(&'t str, f64)>,
     second: Vec<([&'t str; 2], f64)>,
@@ -50,6 +52,7 @@ fn read<'t>(line: &'t str, case: &mut Case<'t>) -> Option<()> {
             let (time, value) = rest.split_once(' ')?;
             case.controls.push([time.parse().ok()?, value.parse().ok()?]);
         }
+        ("fixed", None) => case.is_fixed = true,
         ("of", None) => case.of = Some(rest),
         ("set", Some(change)) => case.set.push(change),
         ("by", Some((name, value))) => case.by.push((name, value.parse().ok()?)),
@@ -103,7 +106,8 @@ impl Case<'_> {
             return Controls::Guess;
         }
         let times = self.controls.iter().map(|row| row[0]).collect();
-        Controls::Held { times, rows: self.controls.iter().map(|row| vec![row[1]]).collect() }
+        let rows = self.controls.iter().map(|row| vec![row[1]]).collect();
+        Controls::Held { times, rows, is_stretched: !self.is_fixed }
     }
 }
 

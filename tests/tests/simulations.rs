@@ -78,6 +78,7 @@ fn status(simulation: &Simulation) -> (&'static str, f64) {
         Status::Zeno { limit_time, .. } => ("zeno", *limit_time),
         Status::NotFinite(_) => ("not_finite", reached),
         Status::StepLimit => ("step_limit", reached),
+        Status::Stopped(_) => ("stopped", reached),
     }
 }
 
@@ -105,7 +106,11 @@ fn end(system: &System, simulation: &Simulation, name: &str) -> f64 {
 /// What is wanted of a case: its held controls, and the states at its times.
 fn wanted(case: &Case) -> (Controls, Options) {
     let (times, rows) = case.controls.iter().map(|(time, value)| (*time, vec![*value])).unzip();
-    let controls = if case.controls.is_empty() { Controls::Guess } else { Controls::Held { times, rows } };
+    let controls = if case.controls.is_empty() {
+        Controls::Guess
+    } else {
+        Controls::Held { times, rows, is_stretched: true }
+    };
     let mut times: Vec<f64> = case.at.iter().map(|at| at.0).collect();
     times.dedup();
     (controls, Options { times, ..Options::default() })
@@ -158,8 +163,11 @@ fn text(name: &str) -> String {
 /// `u = 2` drives with rate 1 for a second, `u = 0` stops within another, then the block sticks until `u = -3` moves it.
 #[test]
 fn held_controls_restart_the_integration_at_their_rows() {
-    let controls =
-        Controls::Held { times: vec![0.0, 1.0, 2.5], rows: vec![vec![2.0], vec![0.0], vec![-3.0]] };
+    let controls = Controls::Held {
+        times: vec![0.0, 1.0, 2.5],
+        rows: vec![vec![2.0], vec![0.0], vec![-3.0]],
+        is_stretched: true,
+    };
     let (system, simulation) = run(&text("sticks"), &[], &controls, &Options::default());
     let events: Vec<_> = simulation.events.iter().map(|event| (event.time, kind(event.kind))).collect();
     let expected = [(2.0, "enters_sliding"), (2.5, "leaves_down")];

@@ -116,7 +116,7 @@ fn the_gradient_is_the_derivative_of_what_the_steps_compute() {
 fn the_gradient_by_held_controls_is_that_of_their_rows() {
     let times: Vec<f64> = (0..10).map(|row| 0.2 + 0.21 * f64::from(row)).collect();
     let rows = times.iter().map(|t| vec![0.7 * t]).collect();
-    for (title, mut case) in cases(&Controls::Held { times, rows }) {
+    for (title, mut case) in cases(&Controls::Held { times, rows, is_stretched: true }) {
         let gradient = case.gradient();
         for row in 0..10 {
             let difference = case.difference(|case, step| match &mut case.controls {

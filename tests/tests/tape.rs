@@ -64,7 +64,7 @@ fn the_changes_of_a_tape_are_the_events() {
 fn regimes_name_the_row_of_the_controls() {
     let text = documents("tests/simulations", "fdc").into_iter().find(|(name, _)| name == "sticks");
     let rows = vec![vec![2.0], vec![0.0], vec![-3.0]];
-    let controls = Controls::Held { times: vec![0.0, 1.0, 2.5], rows };
+    let controls = Controls::Held { times: vec![0.0, 1.0, 2.5], rows, is_stretched: true };
     let (_, tape) = taped(&text.expect("a model").1, &controls);
     let mut rows: Vec<_> = tape.regimes.iter().map(|regime| regime.row).collect();
     rows.dedup();

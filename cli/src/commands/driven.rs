@@ -2,15 +2,17 @@
 
 use super::Exit;
 use super::accuracy::Accuracy;
-use super::options::{Changes, Prepared, read};
+use super::options::{Changes, Prepared, read, seconds};
 use crate::log::Level;
 use crate::output;
 use crate::output::control;
 use crate::replay::Replay;
 use crate::solver::Failure;
+use crate::watch::{Deadline, catch_interrupts};
 use clap::Args;
-use fdcc_runtime::simulate::{Controls, System};
+use fdcc_runtime::simulate::{Controls, Options, System, Watch};
 use std::path::PathBuf;
+use std::time::Instant;
 
 /// A model file and where its controls come from.
 #[derive(Args)]
@@ -23,8 +25,20 @@ pub struct Driven {
     /// Controls: a .csv with the columns `t` and the controls, or the .sol.json of a solve; the guess if left out
     #[arg(long, value_name = "FILE")]
     control: Option<PathBuf>,
+    /// Take the unknowns, parameters and open starts of an earlier .sol.json, but not its controls
+    #[arg(long, value_name = "FILE")]
+    warm: Option<PathBuf>,
     #[command(flatten)]
-    pub accuracy: Accuracy,
+    accuracy: Accuracy,
+    /// Stop after this many seconds and keep the trajectory so far
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    time_limit: Option<f64>,
+    /// Shared with the commands that search; here there is nothing to vary
+    #[arg(long, value_name = "N", hide = true)]
+    seed: Option<u64>,
+    /// Shared with the commands that search; here there is one start
+    #[arg(long, value_name = "K", hide = true)]
+    starts: Option<u32>,
     /// How much to tell on the standard error: with `none` nothing but what is wrong
     #[arg(long, value_enum)]
     log: Option<Level>,
@@ -33,7 +47,18 @@ pub struct Driven {
 impl Driven {
     /// Reads and checks the model, without any changes.
     pub fn read(&self) -> Result<Prepared, Exit> {
+        let is_search = self.seed.is_some() || self.starts.is_some_and(|starts| starts > 1);
+        if is_search && self.log != Some(Level::None) {
+            output::complain("`--seed` and `--starts` change nothing here: a simulation searches nothing");
+        }
         read(&self.file, &Changes::default())
+    }
+
+    /// How exactly to simulate, and until when; Ctrl-C stops it.
+    pub fn options(&self) -> Options {
+        catch_interrupts();
+        let deadline = Deadline::after(Instant::now(), self.time_limit);
+        Options { watch: Watch::new(move || deadline.check()), ..self.accuracy.options() }
     }
 
     /// Changes the model: what its solution says comes first, so that the command line has the last word.
@@ -47,6 +72,9 @@ impl Driven {
             output::complain(&format!(
                 "{name} is not the text that was solved; the controls are taken all the same"
             ));
+        }
+        if let Some(path) = &self.warm {
+            control::read(path, &prepared.model)?.adapt(&mut prepared.model);
         }
         replay.adapt(&mut prepared.model);
         self.changes.apply(&mut prepared.model).map_err(Failure::Usage)?;

@@ -80,6 +80,7 @@ pages! {
     NoSet "FDC0204"
     NotAffine "FDC0205"
     SetProduct "FDC0206"
+    IdleJump "FDC0311"
     EmptyBounds "FDC0401"
     NoDuration "FDC0402"
     NoBoundary "FDC0403"

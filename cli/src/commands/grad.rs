@@ -37,6 +37,9 @@ pub struct Grad {
     out: Option<PathBuf>,
 }
 
+/// By more numbers than this a matrix of second derivatives is nothing to look at.
+const MOST_SECOND: usize = 64;
+
 impl Grad {
     /// Differentiates and reports.
     pub fn run(self) -> Exit {
@@ -81,7 +84,7 @@ impl Grad {
         let Question { model, system, controls, by } = question;
         let has_second = self.second(by)?;
         let of = self.of.as_deref().unwrap_or("objective");
-        let options = self.driven.accuracy.options();
+        let options = self.driven.options();
         let exact = match Exact::new(system, controls, &options, &question.quantities()) {
             Ok(exact) => exact,
             Err(simulation) => return Ok(Document::without(of, system, &simulation, source)),
@@ -94,11 +97,14 @@ impl Grad {
         Ok(Document::new(found, source))
     }
 
-    /// Whether second derivatives are wanted; not of thousands of controls.
+    /// Whether second derivatives are wanted; not by thousands of rows of controls.
     fn second(&self, by: &[By]) -> Result<bool, Failure> {
-        match by.iter().find(|by| by.is_control && self.second) {
-            Some(by) => Err(Failure::Usage(format!("--second: not by the control `{}`", by.name))),
-            None => Ok(self.second),
+        let count: usize = by.iter().map(|by| by.quantities.len()).sum();
+        match self.second && count > MOST_SECOND {
+            true => {
+                Err(Failure::Usage(format!("--second: by {MOST_SECOND} numbers at most, not by {count}")))
+            }
+            false => Ok(self.second),
         }
     }
 

@@ -83,7 +83,8 @@ pub struct Options {
     pub starts: u32,
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
+/// A number of seconds for a time limit.
+pub fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 => Ok(value),
         _ => Err("it needs a number of seconds above 0".into()),

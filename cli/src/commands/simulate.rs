@@ -47,7 +47,7 @@ impl Simulate {
         let system = fdcc_compiler::compile_simulation(&prepared.model).map_err(Failure::Model)?;
         let controls = self.driven.controls(replay, &system)?;
         let [first, last] = system.interval;
-        let options = Options { times: self.times.clone(), ..self.driven.accuracy.options() };
+        let options = Options { times: self.times.clone(), ..self.driven.options() };
         if let Some(outside) = options.times.iter().find(|time| **time < first || **time > last) {
             return Err(Failure::Usage(format!("`--times`: {outside} is not between {first} and {last}")));
         }

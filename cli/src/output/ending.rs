@@ -3,6 +3,7 @@
 use super::named::Named;
 use super::number::{short, significant};
 use fdcc_grammar::SourceFile;
+use fdcc_runtime::nlp::Stop;
 use fdcc_runtime::problem::Origin;
 use fdcc_runtime::simulate::{Candidate, Event, Kind, Simulation, Status, System};
 use serde::Serialize;
@@ -41,6 +42,14 @@ enum Why {
         time: f64,
         state: Named<f64>,
     },
+    TimeLimit {
+        time: f64,
+        state: Named<f64>,
+    },
+    Interrupted {
+        time: f64,
+        state: Named<f64>,
+    },
 }
 
 impl Ending {
@@ -64,6 +73,8 @@ impl Ending {
                 ("not_finite", Why::NotFinite { line, of, time, state })
             }
             Status::StepLimit => ("step_limit", Why::StepLimit { time, state }),
+            Status::Stopped(Stop::TimeLimit) => ("time_limit", Why::TimeLimit { time, state }),
+            Status::Stopped(Stop::Interrupted) => ("interrupted", Why::Interrupted { time, state }),
         };
         Ending { status, why: Some(why) }
     }
@@ -80,6 +91,8 @@ impl Ending {
                 "step limit: its events may pile up, its tolerances may be too small, or it is stiff and the method is explicit"
                     .into()
             },
+            Why::TimeLimit { time, .. } => format!("time limit: it came to t = {}", short(*time)),
+            Why::Interrupted { time, .. } => format!("interrupted at t = {}", short(*time)),
         })
     }
 }

@@ -29,9 +29,9 @@ pub struct Document {
     pub second: Option<Named<Named<f64>>>,
     pub compare: Compare,
     pub differentiable: bool,
-    /// Whether it is differentiable, both ways to compute the gradient agree, and no kink makes both inexact.
+    /// Whether it is differentiable, both ways to compute the gradient agree, and the trajectory stays on no kink.
     pub trusted: bool,
-    /// Whether a kink is crossed that is not located.
+    /// Whether it stays on a kink.
     #[serde(skip)]
     pub is_bent: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -211,14 +211,14 @@ fn doubts(system: &System, exact: &Exact) -> Vec<String> {
     doubts
 }
 
-/// What is to be known of a kink that is crossed.
+/// What is to be known of a kink that the trajectory stays on.
 fn bent(kink: &Kink, source: &SourceFile) -> String {
     let line = source.line_column(kink.of.span.0).line;
     format!(
-        "`{}` (line {line}) has a kink (`abs`, `min` or `max`) that is crossed near t = {} and not located: the derivatives are only as exact \
-         as that step, and second ones miss it; a `surface` with `match` is located",
-        kink.of.label,
-        short(kink.time)
+        "from t = {} on the state stays on a kink of `{}` (line {line}: `abs`, `min`, `max` or a knot of `piecewise`): the derivatives are \
+         those of one side of it",
+        short(kink.time),
+        kink.of.label
     )
 }
 
@@ -264,6 +264,11 @@ fn trap(what: &str, stepped: &Stepped, exact: &[f64]) -> Option<String> {
 
 /// The Hessian under the names of both its directions.
 fn square(by: &[By], rows: &[Vec<f64>]) -> Named<Named<f64>> {
-    let names = || by.iter().map(|by| by.name.clone());
+    let one = |by: &By| match by.is_control {
+        true => (1..=by.quantities.len()).map(|row| format!("{}[{row}]", by.name)).collect(),
+        false => vec![by.name.clone()],
+    };
+    let all: Vec<String> = by.iter().flat_map(one).collect();
+    let names = || all.iter().cloned();
     names().zip(rows.iter().map(|row| names().zip(row.iter().copied()).collect())).collect()
 }

@@ -5,6 +5,7 @@ mod duration;
 mod ends;
 mod equations;
 mod hidden_jump;
+mod idle_jump;
 mod links;
 mod needs_time;
 mod sets;
@@ -37,6 +38,7 @@ const OF_A_PHASE: &[Check] = &[
     duration::check,
     sets::check,
     hidden_jump::check,
+    idle_jump::check,
     smoothness::check,
     bounds::check,
     values::check,

@@ -12,6 +12,7 @@ mod derived;
 mod expect;
 mod guess;
 mod inputs;
+mod kinks;
 mod numbers;
 mod objective;
 mod problem;

@@ -5,7 +5,7 @@
 //! guards    psi(t, x, p)                               resets    r(t, x, p), one block for each jump
 //! objective M(x(start), x(end), p)                     guess     of states, then controls, at (tau, p)
 //! interval  t0(p), tf(p)                               start     x(start)(p)
-//! kinks     e of abs(e), a - b of min(a, b) and max(a, b) in the flow
+//! kinks     e(t, x, u, p) of abs(e), a - b of min(a, b) and max(a, b) in the flow
 //! ```
 //!
 //! Every integral of the model is one more state, so the objective is a function of both ends. A simulation needs few
@@ -14,9 +14,9 @@
 use super::derived::write_out;
 use super::guess::{self, fixed_by_a_row};
 use super::inputs::{self, Inputs, Sizes};
+use super::kinks::{Kinks, take_out};
 use super::problem::{controls, parameters, states, surfaces};
 use super::{Numbers, interval, origin, smoothed};
-use crate::builtins::Builtin;
 use crate::differentiate::derivative;
 use crate::graph::{ExprId, Graph};
 use crate::model::{Ball, Jump, Model, Symbol};
@@ -53,8 +53,9 @@ pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) 
     let sizes = Sizes::new(model, hidden.len());
     let surfaces = if purpose == Purpose::Smoothed { 0 } else { model.surfaces.len() };
     let layout = Layout { s: surfaces, ..sizes.flow() };
-    let mut over = OverTime { model, graph: &mut graph, sizes: &sizes, layout, purpose };
-    let flow = over.flow();
+    let mut over = OverTime { model, graph: &mut graph, sizes: &sizes, layout, purpose, surfaces };
+    let mut flow = over.flow();
+    let kinks = over.kinks(&mut flow);
     let guards = over.guards();
     let rates = over.rates(&flow, &guards);
     let mut functions = vec![
@@ -66,37 +67,13 @@ pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) 
         guess::lower(model, over.graph, &sizes),
         interval(model, over.graph, &sizes),
         over.start(),
+        kinks,
     ];
+    let layout = over.layout;
     if purpose != Purpose::Simulation {
         functions.iter_mut().for_each(|function| differentiable(model, &mut graph, function));
     }
-    let kinks = kinks(&mut graph, &functions[0]);
-    functions.push(kinks);
     (graph, Simulated { functions, layout, hidden, surfaces })
-}
-
-/// Where `abs(e)`, `min(a, b)` and `max(a, b)` of the right sides have their kinks if a state moves them: the zeros of `e` and `a - b`.
-fn kinks(graph: &mut Graph, flow: &VectorFunction) -> VectorFunction {
-    let states = flow.layout.states();
-    let mut found: Vec<(ExprId, Origin)> = Vec::new();
-    for (&rate, origin) in flow.outputs.iter().zip(&flow.origins) {
-        for id in graph.reachable(&[rate]) {
-            let bent =
-                [Builtin::Abs, Builtin::Min, Builtin::Max].iter().find_map(|it| graph.as_call(id, *it));
-            let zero = match bent {
-                Some(&[a]) => a,
-                Some(&[a, b]) => graph.sub(a, b),
-                _ => continue,
-            };
-            let moves = graph.inputs_of(&[zero]).iter().any(|input| states.contains(&(*input as usize)));
-            if moves && found.iter().all(|(known, _)| *known != zero) {
-                found.push((zero, origin.clone()));
-            }
-        }
-    }
-    let (outputs, origins) = found.into_iter().unzip();
-    let layout = flow.layout;
-    VectorFunction { name: "kinks".into(), layout, outputs, origins, by: Vec::new(), order: Order::First }
 }
 
 /// By all inputs, to the second order.
@@ -113,6 +90,7 @@ struct OverTime<'m> {
     sizes: &'m Sizes,
     layout: Layout,
     purpose: Purpose,
+    surfaces: usize,
 }
 
 impl OverTime<'_> {
@@ -162,9 +140,24 @@ impl OverTime<'_> {
 
     fn guards(&mut self) -> VectorFunction {
         let model = self.model;
-        let surfaces = model.surfaces.iter().take(self.layout.s);
+        let surfaces = model.surfaces.iter().take(self.surfaces);
         let psis = surfaces.map(|surface| (surface.psi, origin(&surface.place)));
         self.function("guards", psis, 0..self.layout.states().end)
+    }
+
+    /// Gives the kinks of the flow selectors; where a solve smooths, there are none.
+    fn kinks(&mut self, flow: &mut VectorFunction) -> VectorFunction {
+        let mut kinks = Kinks::default();
+        if self.purpose != Purpose::Smoothed {
+            let guards = self.guards().outputs;
+            let is_alone = |at: usize| self.model.balls.iter().all(|ball| !ball.surfaces.contains(&at));
+            let guards: Vec<Option<ExprId>> =
+                guards.into_iter().enumerate().map(|(at, psi)| is_alone(at).then_some(psi)).collect();
+            kinks = take_out(self.graph, flow, &guards);
+        }
+        self.layout.s += kinks.zeros.len();
+        flow.layout = self.layout;
+        self.over_inputs("kinks", kinks.zeros, kinks.origins, 0..self.layout.states().end)
     }
 
     /// `psi'` along the flow.

@@ -122,16 +122,23 @@ impl Bend<'_> {
         x: &Pairs,
         directions: &[DVector<f64>],
     ) -> Pairs {
-        let Cause::Reaches(surface) = self.stop.cause else { return self.clock(directions) };
         let system = self.linearizer.system;
+        let (function, row) = match self.stop.cause {
+            Cause::Reaches(surface) => (&system.guards, surface),
+            Cause::Bends(kink) => (&system.kinks, kink),
+            Cause::Controls if !self.linearizer.is_stretched() => {
+                return Pairs::new(directions.len(), |_, _| DVector::zeros(1));
+            }
+            _ => return self.clock(directions),
+        };
         let table = self.table(self.stop.before);
-        let by = Jacobian::of(&*system.guards, &table, &self.linearizer.parameters).by;
-        let (normal, by_time) = (by.row(surface).columns(1, system.layout.x).into_owned(), by[(surface, 0)]);
+        let by = Jacobian::of(&**function, &table, &self.linearizer.parameters).by;
+        let (normal, by_time) = (by.row(row).columns(1, system.layout.x).into_owned(), by[(row, 0)]);
         let speed = (&normal * &arriving.rate)[0] + by_time;
-        let hessians = Hessians::of(&*system.guards, &table, &self.linearizer.parameters);
+        let hessians = Hessians::of(&**function, &table, &self.linearizer.parameters);
         let whole = self.moved(directions, s);
         x.map(|i, j, x| {
-            let bent = hessians.along(&whole[i], &whole[j])[surface];
+            let bent = hessians.along(&whole[i], &whole[j])[row];
             DVector::from_element(1, -((&normal * x)[0] + bent) / speed)
         })
     }

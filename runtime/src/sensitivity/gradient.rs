@@ -35,7 +35,7 @@ pub struct Sensitivity {
     pub costates: Costates,
     /// Where the trajectory may have no derivative.
     pub troubles: Vec<Trouble>,
-    /// A kink that is crossed and not located: then the derivatives are not those of the true system to the tolerance.
+    /// A kink that the trajectory stays on: then the derivatives are those of one side of it.
     pub kink: Option<Kink>,
 }
 

@@ -141,6 +141,11 @@ impl<'a> Linearizer<'a> {
         *self.controls == Controls::Guess && self.system.layout.u > 0
     }
 
+    /// Whether the times of control rows move with the interval.
+    pub fn is_stretched(&self) -> bool {
+        matches!(self.controls, Controls::Held { is_stretched: true, .. })
+    }
+
     /// Normalised time.
     pub fn tau(&self, t: f64) -> f64 {
         let [first, last] = self.system.interval;

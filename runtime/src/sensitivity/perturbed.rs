@@ -34,7 +34,7 @@ pub fn perturbed(
 }
 
 fn stretch(controls: &mut Controls, [old_first, old_last]: [f64; 2], [first, last]: [f64; 2]) {
-    let Controls::Held { times, .. } = controls else { return };
+    let Controls::Held { times, is_stretched: true, .. } = controls else { return };
     if (old_first, old_last) != (first, last) && old_last > old_first {
         let factor = (last - first) / (old_last - old_first);
         times.iter_mut().for_each(|time| *time = first + factor * (*time - old_first));

@@ -16,6 +16,7 @@
 use super::bend::{Bend, Pairs};
 use super::curvature::{Curvature, Hessians};
 use super::first_order::{self, Objective, last_instant};
+use super::kink::is_doubtful;
 use super::linearization::Linearizer;
 use super::quantity::{Directions, Quantity};
 use super::step::LinearStep;
@@ -26,7 +27,8 @@ use crate::simulate::{Cause, Controls, Instant, Mode, Piece, Regime, Simulation,
 use nalgebra::{DMatrix, DVector};
 
 /// The Hessian of the objective by some quantities; nothing where the state comes to rest after infinitely many jumps, and
-/// nothing yet where a `Dir` moves. Nor is there one by a direction that leaves a surface on which the state starts and slides.
+/// nothing yet where a `Dir` moves. Nor is there one by a direction that leaves a surface on which the state starts and slides, nor
+/// where a kink is met together with something else.
 pub fn hessian(
     system: &System,
     controls: &Controls,
@@ -39,7 +41,7 @@ pub fn hessian(
     let directions = Directions::each(system, quantities);
     let mut second = Second::new(&linearizer, tape, &directions);
     (0..tape.pieces.len()).for_each(|at| second.pass(at));
-    if second.leaves_at_start {
+    if second.leaves_at_start || (0..tape.pieces.len()).any(|at| is_doubtful(&linearizer, tape, at)) {
         return None;
     }
     let matrix = second.of_objective(&objective, simulation);
@@ -179,7 +181,8 @@ impl<'t> Second<'t> {
     fn at_end(&self) -> (DMatrix<f64>, DMatrix<f64>, Pairs) {
         let start = first_order::start(self.linearizer, self.directions);
         let Some(last) = last_instant(self.tape) else { return (start.clone(), start, self.x.clone()) };
-        let stop = StopOnTape { cause: Cause::Controls, before: &last, after: &last, changes: &[] };
+        // The cause is of no matter: nothing but the clock moves the end.
+        let stop = StopOnTape { cause: Cause::Repels, before: &last, after: &last, changes: &[] };
         let timing = Timing::of_clock(self.linearizer, self.linearizer.system.interval[1]);
         let regime = self.regime(&last);
         let tau = timing.of(&self.s, &self.directions.inputs(regime));

@@ -7,12 +7,13 @@
 //! S+ = r_x S + r_p P + c tau,     c = r_x f- + r_t - f+
 //! ```
 //!
-//! At crossings this is (3.6) in either direction, at entries into sliding (3.5), at exits the identity, because `f- = f+`
+//! At crossings this is (3.6) in either direction, at entries into sliding (3.5), at exits and kinks the identity, because `f- = f+`
 //! there. Transposed: `lambda- = r_x^T lambda+ + (c^T lambda+) tau_x^T`. Where a change of controls or an end of the interval moves
 //! with parameters, `tau` is its derivative.
 
 use super::linearization::{Jacobian, Linearization, Linearizer};
 use super::reset::Reset;
+use crate::problem::Function;
 use crate::simulate::{Cause, Change, Instant, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
@@ -50,7 +51,10 @@ impl LinearStop {
             Cause::Start => DVector::zeros(before.state.len()),
             _ => &by_state * linearizer.rate_at_instant(tape, before),
         };
-        let shift = arriving + by_time - linearizer.rate_at_instant(tape, after);
+        let shift = match stop.cause {
+            Cause::Bends(_) => DVector::zeros(arriving.len()),
+            _ => arriving + by_time - linearizer.rate_at_instant(tape, after),
+        };
         let timing = Timing::new(linearizer, tape, stop);
         LinearStop { by_state, by_inputs, shift, timing }
     }
@@ -77,18 +81,28 @@ impl Timing {
     }
 
     pub fn new(linearizer: &Linearizer, tape: &Tape, stop: &StopOnTape) -> Self {
-        if matches!(stop.cause, Cause::Start | Cause::Controls) {
-            return Timing::of_clock(linearizer, stop.before.time);
+        match stop.cause {
+            Cause::Controls if !linearizer.is_stretched() => return Timing::fixed(linearizer),
+            Cause::Start | Cause::Controls => return Timing::of_clock(linearizer, stop.before.time),
+            _ => {}
         }
         let regime = &tape.regimes[stop.before.regime];
         let reached = linearizer.at_instant(tape, stop.before);
+        let slopes_of = |function: &dyn Function| {
+            let x = DVector::from_column_slice(&stop.before.state);
+            let table = linearizer.table(regime, &reached.selectors, stop.before.time, &x);
+            let by = Jacobian::of(function, &table, &linearizer.parameters).by;
+            by.columns(0, reached.by().ncols()).into_owned()
+        };
         match stop.cause {
             Cause::Reaches(surface) => {
-                let x = DVector::from_column_slice(&stop.before.state);
-                let table = linearizer.table(regime, &reached.selectors, stop.before.time, &x);
-                let guards = Jacobian::of(&*linearizer.system.guards, &table, &linearizer.parameters);
-                let slopes = normal(linearizer, &guards.by, &reached.selectors, surface);
-                Timing::implicit(&slopes.columns(0, reached.by().ncols()).into_owned(), &reached.rate)
+                let by = slopes_of(&*linearizer.system.guards);
+                let slopes = normal(linearizer, &by, &reached.selectors, surface);
+                Timing::implicit(&slopes, &reached.rate)
+            }
+            Cause::Bends(kink) => {
+                let by = slopes_of(&*linearizer.system.kinks);
+                Timing::implicit(&by.row(kink).into_owned(), &reached.rate)
             }
             Cause::Leaves(surface) => {
                 Timing::implicit(&reached.selectors_by.row(surface).into_owned(), &reached.rate)
@@ -97,15 +111,22 @@ impl Timing {
         }
     }
 
+    /// A time that does not move.
+    fn fixed(linearizer: &Linearizer) -> Self {
+        let layout = linearizer.system.layout;
+        let by_inputs = RowDVector::zeros(layout.u + layout.p);
+        Timing { by_state: RowDVector::zeros(layout.x), by_inputs }
+    }
+
     /// A time that is a fixed part of the interval.
     pub fn of_clock(linearizer: &Linearizer, time: f64) -> Self {
         let layout = linearizer.system.layout;
         let tau = linearizer.tau(time);
         let ends = &linearizer.ends_by;
         let moved = ends.row(0) * (1.0 - tau) + ends.row(1) * tau;
-        let mut by_inputs = RowDVector::zeros(layout.u + layout.p);
-        by_inputs.columns_mut(layout.u, layout.p).copy_from(&moved);
-        Timing { by_state: RowDVector::zeros(layout.x), by_inputs }
+        let mut timing = Timing::fixed(linearizer);
+        timing.by_inputs.columns_mut(layout.u, layout.p).copy_from(&moved);
+        timing
     }
 
     /// The time at which `g = 0`, from `g_(t | x | u | p)`; it does not move if nothing moves `g`.

@@ -10,10 +10,10 @@ use crate::simulate::{Cause, Instant, Mode, Piece, Tape};
 use nalgebra::DVector;
 
 /// Cosines between a field and a normal below this are grazing.
-const TANGENT: f64 = 1e-6;
+pub(super) const TANGENT: f64 = 1e-6;
 
 /// Distances from a surface, relative to what `psi` is made of, below this are 0.
-const TOUCHING: f64 = 1e-9;
+pub(super) const TOUCHING: f64 = 1e-9;
 
 /// Differences of times, relative to the interval, below this are 0.
 const TOGETHER: f64 = 1e-10;
@@ -174,7 +174,7 @@ impl Watch<'_> {
                 .for_each(|surface| note(TroubleKind::Coincident, surface)),
             Cause::Controls => met.into_iter().for_each(|surface| note(TroubleKind::Coincident, surface)),
             Cause::Repels => note(TroubleKind::Grazing, changes.first().map_or(0, |it| it.surface)),
-            Cause::Leaves(_) => {}
+            Cause::Leaves(_) | Cause::Bends(_) => {}
         }
     }
 
@@ -187,7 +187,7 @@ impl Watch<'_> {
         };
         let own = time_of(&self.tape.pieces[at]);
         let is_near = |piece: &&Piece| (time_of(piece) - own).abs() <= TOGETHER * (last - first);
-        let is_other = |piece: &&Piece| matches!(piece, Piece::Stop { cause, .. } if is_it(cause) && !matches!(cause, Cause::Start | Cause::Leaves(_)));
+        let is_other = |piece: &&Piece| matches!(piece, Piece::Stop { cause, .. } if is_it(cause) && !matches!(cause, Cause::Start | Cause::Leaves(_) | Cause::Bends(_)));
         let before = self.tape.pieces[..at].iter().rev().take_while(is_near).any(|it| is_other(&it));
         before || self.tape.pieces[at + 1..].iter().take_while(is_near).any(|it| is_other(&it))
     }

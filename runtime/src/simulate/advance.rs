@@ -2,7 +2,7 @@
 
 use super::ball::{blocks, is_unique};
 use super::field::surface_rates;
-use super::locate;
+use super::locate::{self, Condition};
 use super::result::{Integrator, Method, Status};
 use super::run::Run;
 use super::step::Step;
@@ -20,6 +20,8 @@ pub(super) struct Pace {
     /// How many steps of the explicit method in a row were as long as its stability allows, and how many not since.
     at_border: usize,
     off_border: usize,
+    /// How many kinks in a row were met at one time.
+    bends: usize,
     /// The last step.
     step: Step,
 }
@@ -33,13 +35,16 @@ const SMALL_BORDER: f64 = 1.0;
 const STIFF_AFTER: usize = 15;
 const NOT_STIFF_AFTER: usize = 6;
 
+/// After so many kinks at one time the next step passes over them: what stays on a kink but for rounding crosses it for ever.
+const MOST_BENDS: usize = 8;
+
 /// Below this the explicit pair takes steps of the same length without any doubt.
 const NOT_STIFF: f64 = 0.5;
 
 impl Pace {
     pub fn new(states: usize, method: Method) -> Self {
         let step = Step::new(states);
-        Pace { h: 0.0, is_continued: false, method, at_border: 0, off_border: 0, step }
+        Pace { h: 0.0, is_continued: false, method, at_border: 0, off_border: 0, bends: 0, step }
     }
 
     /// Chooses the method of the next step by what the last one says of stiffness.
@@ -100,6 +105,7 @@ impl Run<'_> {
     }
 
     fn advance_by(&mut self, step: &mut Step, stop: f64) -> Result<(), Status> {
+        self.options.watch.ask()?;
         let rest = stop - self.t;
         let fall = self.field.fall(self.t, &self.x);
         if let Some(fall) = fall.as_ref().filter(|fall| fall.is_near && fall.time <= rest) {
@@ -111,7 +117,12 @@ impl Run<'_> {
         if self.options.integrator == Integrator::Automatic && self.field.moving().is_empty() {
             self.pace.choose(step, self.options.rtol);
         }
-        if let Some(found) = locate::first(&mut self.field, step, self.options) {
+        self.field.is_blind = self.pace.bends > MOST_BENDS;
+        let found = locate::first(&mut self.field, step, self.options);
+        let is_bend = found.as_ref().is_some_and(|it| matches!(it.condition, Condition::Bends(_)));
+        let is_there = found.as_ref().is_some_and(|it| it.h <= 4.0 * f64::EPSILON * step.t.abs());
+        self.pace.bends = if is_bend && is_there { self.pace.bends + 1 } else { 0 };
+        if let Some(found) = found {
             self.go(step, [step.t + found.h, found.h], &found.state);
             return self.stop(found.condition.into(), |run| run.handle(found.condition));
         }

@@ -11,6 +11,8 @@ pub enum Controls {
         times: Vec<f64>,
         /// One row of controls for each time.
         rows: Vec<Vec<f64>>,
+        /// Whether the times are parts of the interval and move with its ends, as those of a solution; else they stand still.
+        is_stretched: bool,
     },
 }
 

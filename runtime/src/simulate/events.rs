@@ -26,6 +26,10 @@ impl Run<'_> {
                 self.change(surface, mode);
                 Ok(())
             }
+            Condition::Bends(kink) => {
+                self.field.bend(kink);
+                Ok(())
+            }
             Condition::Reaches(surface) => {
                 let mut surfaces = self.surfaces_here();
                 if !surfaces.contains(&surface) {
@@ -118,6 +122,7 @@ impl Run<'_> {
         let [back, onward] = if of.is_falling { sides } else { [sides[1], sides[0]] };
         self.field.set_mode(surface, back);
         self.find_sides();
+        self.field.find_sides_of_kinks(self.t, &self.x);
         if self.goes_through(surface, onward) {
             self.field.set_mode(surface, onward);
         }

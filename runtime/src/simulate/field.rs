@@ -6,7 +6,7 @@
 use super::controls::Controls;
 use super::memory::Memory;
 use super::step::Step;
-use super::system::System;
+use super::system::{System, value};
 use crate::problem::{Columns, Function};
 use nalgebra::{DMatrix, DVector};
 
@@ -74,6 +74,8 @@ pub(super) struct Field<'a> {
     pub stable: f64,
     /// States that stand still.
     pub held: Vec<usize>,
+    /// Whether kinks are passed over, because too many are met at one time.
+    pub is_blind: bool,
     /// Distances from a surface below this are 0.
     pub floor: f64,
     pub evaluations: usize,
@@ -93,11 +95,12 @@ impl<'a> Field<'a> {
         let mut field = Field {
             system,
             modes: vec![Mode::Above; surfaces],
-            selectors: vec![0.0; surfaces],
+            selectors: vec![0.0; system.layout.s],
             direction: vec![0.0; surfaces],
             departure: vec![f64::NAN; surfaces],
             stable: f64::INFINITY,
             held: Vec::new(),
+            is_blind: false,
             floor: 1e-14,
             evaluations: 0,
             row: None,
@@ -190,8 +193,17 @@ impl<'a> Field<'a> {
 
     /// The functions of the surfaces with their derivatives.
     pub fn normals(&mut self, t: f64, x: &[f64]) -> Normals {
+        self.normals_of(&*self.system.guards, t, x)
+    }
+
+    /// What is 0 at the kinks, with its derivatives.
+    pub fn bends(&mut self, t: f64, x: &[f64]) -> Normals {
+        self.normals_of(&*self.system.kinks, t, x)
+    }
+
+    fn normals_of(&mut self, function: &dyn Function, t: f64, x: &[f64]) -> Normals {
         self.set_point(t, x, None);
-        let (psi, matrix) = self.jacobian(&*self.system.guards, 0..1 + x.len());
+        let (psi, matrix) = self.jacobian(function, 0..1 + x.len());
         let by_time = matrix.column(0).iter().copied().collect();
         Normals { psi, by_time, by_state: matrix.columns(1, x.len()).into_owned(), floor: self.floor }
     }
@@ -276,7 +288,17 @@ impl<'a> Field<'a> {
         let values = &mut self.memory.flow;
         self.system.flow.value(&self.point, &self.parameters, values);
         read(values, rate);
+        if self.system.kinks.outputs() > 0 && rate.iter().any(|value| !value.is_finite()) {
+            self.rate_on_its_side(rate);
+        }
         self.held.iter().for_each(|&state| rate[state] = 0.0);
+    }
+
+    /// The right side of the last point with the sides of that point: beyond a kink the one of before may have no value.
+    fn rate_on_its_side(&mut self, rate: &mut [f64]) {
+        let mut point = column_values(&self.point);
+        self.system.choose_sides(&mut point, &self.parameters);
+        rate.copy_from_slice(&value(&*self.system.flow, &point, &self.parameters));
     }
 
     /// The selectors of the current mode, each a side, part of a direction, or what keeps its surface; leaves everything as it is.

@@ -1,6 +1,6 @@
 //! The first event inside a step.
 //!
-//! Every condition is a function `g >= 0` of time: `side * psi` beside a surface, `1 - |s|` on it. It is sampled along the
+//! Every condition is a function `g >= 0` of time: `side * psi` beside a surface or a kink, `1 - |s|` on a surface. It is sampled along the
 //! dense output, its interior minima are searched too, so that a dip between two samples is not missed. The
 //! root is refined on steps of the pair itself, so it is as accurate as the integration.
 
@@ -18,6 +18,8 @@ pub(super) enum Condition {
     Reaches(usize),
     /// The selector of a sliding surface reaches the end of its interval.
     Leaves(usize),
+    /// The state reaches a kink of the right side.
+    Bends(usize),
 }
 
 /// An event, with the state there.
@@ -32,7 +34,8 @@ pub(super) struct Found {
 pub(super) fn first(field: &mut Field, step: &Step, options: &Options) -> Option<Found> {
     let besides = samples::besides(field, step);
     let slidings = samples::slidings(field, step);
-    let found = [first_of(field, step, &besides), first_of(field, step, &slidings)];
+    let kinks = samples::kinks(field, step);
+    let found = [besides, slidings, kinks].map(|samples| first_of(field, step, &samples));
     let (theta, condition) = found.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(refine(field, step, condition, theta, options))
 }
@@ -45,6 +48,7 @@ fn first_of(field: &mut Field, step: &Step, sampled: &[Samples]) -> Option<(f64,
         let noise = match condition {
             Condition::Reaches(i) => field.normals(step.t, &step.start).noise(i, &step.start),
             Condition::Leaves(_) => 1e-12,
+            Condition::Bends(k) => field.bends(step.t, &step.start).noise(k, &step.start),
         };
         let mut g = |theta: f64| value(field, condition, step.t + theta * step.h, &step.at(theta));
         if let Some(theta) = first_root(&mut g, samples, noise)
@@ -72,6 +76,7 @@ fn value(field: &mut Field, condition: Condition, t: f64, x: &[f64]) -> f64 {
             field.rate(t, x);
             reserve(field, i)
         }
+        Condition::Bends(k) => field.side_of(k) * field.bends(t, x).psi[k],
     }
 }
 

@@ -1,7 +1,11 @@
 //! What a simulation is asked for and what it says: plain data.
 
 use super::tape::Tape;
+use crate::nlp::Stop;
 use crate::problem::Origin;
+use std::fmt;
+use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// How to simulate.
 #[derive(Clone, Debug)]
@@ -18,6 +22,32 @@ pub struct Options {
     pub times: Vec<f64>,
     /// Whether to note what derivatives need.
     pub tape: bool,
+    /// Who may stop it.
+    pub watch: Watch,
+}
+
+/// Asked before each step whether to go on; by default nobody is.
+#[derive(Clone, Default)]
+pub struct Watch(Option<Arc<dyn Fn() -> ControlFlow<Stop> + Send + Sync>>);
+
+impl Watch {
+    /// A watch that asks this.
+    pub fn new(ask: impl Fn() -> ControlFlow<Stop> + Send + Sync + 'static) -> Self {
+        Watch(Some(Arc::new(ask)))
+    }
+
+    pub(super) fn ask(&self) -> Result<(), Status> {
+        match self.0.as_ref().map(|ask| ask()) {
+            Some(ControlFlow::Break(stop)) => Err(Status::Stopped(stop)),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl fmt::Debug for Watch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.0.is_some() { "Watch(..)" } else { "Watch" })
+    }
 }
 
 /// A method for one step.
@@ -66,6 +96,7 @@ impl Default for Options {
             max_steps: 1_000_000,
             times: Vec::new(),
             tape: false,
+            watch: Watch::default(),
         }
     }
 }
@@ -147,6 +178,8 @@ pub enum Status {
     NotFinite(Origin),
     /// Too many steps.
     StepLimit,
+    /// The caller stopped it.
+    Stopped(Stop),
 }
 
 /// Work done.

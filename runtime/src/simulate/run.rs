@@ -81,6 +81,7 @@ impl<'a> Run<'a> {
     /// Finds the modes at the first time.
     fn begin(&mut self) -> Result<(), Status> {
         self.find_sides();
+        self.field.find_sides_of_kinks(self.t, &self.x);
         self.finite_here()?;
         self.stop(Cause::Start, |run| {
             let surfaces = run.surfaces_here();
@@ -94,6 +95,7 @@ impl<'a> Run<'a> {
     fn change_controls(&mut self, time: f64) -> Result<(), Status> {
         self.stop(Cause::Controls, |run| {
             run.field.use_controls_of(time);
+            run.field.find_sides_of_kinks(run.t, &run.x);
             let surfaces = run.surfaces_here();
             run.settle(surfaces)
         })
@@ -108,6 +110,9 @@ impl<'a> Run<'a> {
         self.tape.open(cause, &mut self.field, self.t, &self.x);
         self.pace.is_continued = false;
         happens(self)?;
+        if !matches!(cause, Cause::Bends(_)) {
+            self.field.find_sides_of_kinks(self.t, &self.x);
+        }
         self.tape.close(&mut self.field, self.t, &self.x);
         Ok(())
     }

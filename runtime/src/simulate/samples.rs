@@ -51,6 +51,22 @@ pub(super) fn besides(field: &mut Field, step: &Step) -> Vec<Samples> {
     surfaces.map(of).collect()
 }
 
+/// Samples of `side e` for every kink.
+pub(super) fn kinks(field: &mut Field, step: &Step) -> Vec<Samples> {
+    let count = field.system.kinks.outputs();
+    if count == 0 || field.is_blind {
+        return Vec::new();
+    }
+    let rows: Vec<Vec<f64>> =
+        THETAS.iter().map(|theta| field.bends(step.t + theta * step.h, &step.at(*theta)).psi).collect();
+    let of = |k: usize| Samples {
+        condition: Condition::Bends(k),
+        thetas: &THETAS,
+        values: rows.iter().map(|row| field.side_of(k) * row[k]).collect(),
+    };
+    (0..count).map(of).collect()
+}
+
 /// Samples of `1 - |s|` for every sliding surface, and every ball at rest.
 pub(super) fn slidings(field: &mut Field, step: &Step) -> Vec<Samples> {
     let is_first = |i: &usize| field.ball_of(*i).is_none_or(|ball| ball.surfaces.start == *i);

@@ -75,7 +75,8 @@ pub struct System {
     pub objective: Arc<dyn Function>,
     /// Guess of states, then controls, over normalised time `[tau | p]`.
     pub guess: Arc<dyn Function>,
-    /// Over the inputs of `flow`, what is 0 where `flow` has a kink that is no surface, such as that of `abs`; not located.
+    /// Over the inputs of `flow`, what is 0 where `flow` has a kink that is no surface, such as that of `abs`; the selectors behind those of
+    /// the surfaces say on which side of each the state is. Kinks inside others come first; differentiated by `t` and `x`.
     pub kinks: Arc<dyn Function>,
     /// First and last time over `[p]`.
     pub interval_of: Arc<dyn Function>,
@@ -84,6 +85,23 @@ pub struct System {
 }
 
 impl System {
+    /// The inputs that are selectors of surfaces.
+    pub fn surface_selectors(&self) -> Range<usize> {
+        let first = self.layout.selectors().start;
+        first..first + self.surfaces.len()
+    }
+
+    /// Ends a point `[t | x | u | s]` with the side of each kink that it is on, below where it is on the kink itself.
+    pub fn choose_sides(&self, point: &mut [f64], parameters: &[f64]) {
+        let first = point.len() - self.kinks.outputs();
+        // Each pass is right for one more kink inside others.
+        for _ in first..point.len() {
+            let zeros = value(&*self.kinks, point, parameters);
+            let sides = zeros.iter().map(|zero| if *zero > 0.0 { 1.0 } else { -1.0 });
+            point[first..].iter_mut().zip(sides).for_each(|(side, now)| *side = now);
+        }
+    }
+
     /// The values of all parameters.
     pub fn parameter_values(&self) -> Vec<f64> {
         self.parameters.iter().map(|parameter| parameter.value).collect()

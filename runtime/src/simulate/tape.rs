@@ -129,6 +129,8 @@ pub enum Cause {
     Leaves(usize),
     /// The surfaces that the state slides on cease to attract.
     Repels,
+    /// The state crosses a kink of the right side.
+    Bends(usize),
 }
 
 impl From<Condition> for Cause {
@@ -136,6 +138,7 @@ impl From<Condition> for Cause {
         match condition {
             Condition::Reaches(surface) => Cause::Reaches(surface),
             Condition::Leaves(surface) => Cause::Leaves(surface),
+            Condition::Bends(kink) => Cause::Bends(kink),
         }
     }
 }

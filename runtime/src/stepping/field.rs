@@ -46,18 +46,20 @@ pub(super) struct Point {
     pub s: DVector<f64>,
 }
 
-impl Point {
-    fn inputs(&self) -> Vec<f64> {
-        let states = std::iter::once(&self.t).chain(self.x.iter());
-        states.chain(&self.u).chain(self.s.iter()).copied().collect()
-    }
-}
-
 impl<'a> Field<'a> {
     pub fn new(system: &'a System, controls: &'a Controls) -> Self {
         let parameters = system.parameter_values();
         let ends = value(&*system.interval_of, &[], &parameters);
         Field { system, first_time: ends[0], duration: ends[1] - ends[0], parameters, controls }
+    }
+
+    /// `[t | x | u | s]`, on the sides of kinks where the point is.
+    fn inputs(&self, point: &Point) -> Vec<f64> {
+        let states = std::iter::once(&point.t).chain(point.x.iter());
+        let mut inputs: Vec<f64> = states.chain(&point.u).chain(point.s.iter()).copied().collect();
+        inputs.resize(self.system.layout.point_inputs(), -1.0);
+        self.system.choose_sides(&mut inputs, &self.parameters);
+        inputs
     }
 
     pub fn start(&self) -> DVector<f64> {
@@ -83,18 +85,18 @@ impl<'a> Field<'a> {
     }
 
     pub fn rate(&self, point: &Point) -> DVector<f64> {
-        DVector::from_vec(value(&*self.system.flow, &point.inputs(), &self.parameters))
+        DVector::from_vec(value(&*self.system.flow, &self.inputs(point), &self.parameters))
     }
 
     pub fn flow(&self, point: &Point) -> Jacobian {
-        Jacobian::of(&*self.system.flow, &point.inputs(), &self.parameters)
+        Jacobian::of(&*self.system.flow, &self.inputs(point), &self.parameters)
     }
 
     pub fn psi(&self, point: &Point) -> DVector<f64> {
-        DVector::from_vec(value(&*self.system.guards, &point.inputs(), &self.parameters))
+        DVector::from_vec(value(&*self.system.guards, &self.inputs(point), &self.parameters))
     }
 
     pub fn guards(&self, point: &Point) -> Jacobian {
-        Jacobian::of(&*self.system.guards, &point.inputs(), &self.parameters)
+        Jacobian::of(&*self.system.guards, &self.inputs(point), &self.parameters)
     }
 }

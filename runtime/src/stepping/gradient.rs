@@ -75,7 +75,7 @@ impl<'a> Adjoint<'a> {
             field,
             grid,
             state: objective.rows(layout.x, layout.x).into_owned(),
-            selectors: DVector::zeros(layout.s),
+            selectors: DVector::zeros(field.system.surfaces.len()),
             parameters: objective.rows(2 * layout.x, layout.p).into_owned(),
             controls: vec![vec![0.0; layout.u]; rows],
             first_time: 0.0,
@@ -89,9 +89,9 @@ impl<'a> Adjoint<'a> {
         let old = self.explicit_part(step, &mu);
         let layout = self.field.system.layout;
         self.add_inputs(step, &(&old + &new));
-        let by_selector = old.rows_range(layout.selectors());
+        let by_selector = old.rows_range(self.field.system.surface_selectors());
         let carried = |i: usize| if step.carried[i] { by_selector[i] } else { 0.0 };
-        self.selectors = DVector::from_fn(layout.s, |i, _| carried(i));
+        self.selectors = DVector::from_fn(step.carried.len(), |i, _| carried(i));
         self.state = mu + old.rows_range(layout.states());
         if let Some(node) = &self.grid.implicit {
             let by_state = new.rows_range(layout.states());

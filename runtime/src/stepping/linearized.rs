@@ -30,7 +30,7 @@ impl Linearized {
             DMatrix::from_fn(by.nrows(), layout.x, |i, j| by[(i, layout.states().start + j)] * node.blend[j])
         };
         let by_end = DMatrix::identity(layout.x, layout.x) - weight * blended(&flow.by);
-        let by_selectors = -weight * flow.by.columns_range(layout.selectors());
+        let by_selectors = -weight * flow.by.columns_range(field.system.surface_selectors());
         let normals = blended(&guards.by);
         Linearized { flow, guards, weight, by_end, by_selectors, normals }
     }

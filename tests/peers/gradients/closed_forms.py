@@ -5,7 +5,7 @@ Prints the cases of all files, or of those that are named.
 
 import sys
 
-from sympy import N, Rational, diff, integrate, simplify, solve, sqrt, symbols
+from sympy import N, Rational, atan, cosh, diff, exp, integrate, log, pi, simplify, sin, solve, sqrt, symbols
 
 
 def rows(title, of, output, values, seconds=(), given=(), zeros=()):
@@ -80,6 +80,46 @@ def stacked_blocks():
         rows(f'{name}(T), polynomials in t from slip to slip', f'{name}(end)', simplify(output), values, 'all')
 
 
+def drag():
+    """Up like a tangent, down from the top like a hyperbolic cosine."""
+    g, c, v0 = symbols('g c v0')
+    top = log(1 + c * v0**2 / g) / (2 * c)
+    turn = atan(v0 * sqrt(c / g)) / sqrt(g * c)
+    down = log(cosh(sqrt(g * c) * (2 - turn))) / c
+    values = {'g': 10, 'c': Rational(2, 5), 'v0': 8}
+    rows('a tangent, then a hyperbolic cosine', None, top - down, values, 'all')
+
+
+def two_springs():
+    """Half a swing on each side, then a part of the third."""
+    soft, stiff, v0, last = symbols('soft stiff v0 T')
+    both = pi / sqrt(soft) + pi / sqrt(stiff)
+    x = v0 * sin(sqrt(stiff) * (last - pi / sqrt(soft))) / -sqrt(stiff)
+    values = {'soft': 1, 'stiff': 9, 'v0': Rational(3, 2), 'T': 4}
+    rows('the soft spring, then the stiff one', None, x, values, 'all')
+    x = v0 * sin(sqrt(soft) * (last - both)) / sqrt(soft)
+    rows('both, then the soft one again', None, x, values | {'T': 5}, 'all', ['set T = 5'])
+
+
+def saturated():
+    """Two parabolas, then an exponential beyond b."""
+    a, b, k, t = symbols('a b k t')
+    # x = a^2/2 + a s + k s^2/2 with s = t - a reaches b at s1; then y = x - b solves y' = y + a + k s
+    s1 = (-a + sqrt(a**2 + 2 * k * (b - a**2 / 2))) / k
+    s, s2 = symbols('s s2')
+    y = (a + k * s1 + k) * exp(s2 - s1) - (a + k * s2 + k)
+    values = {'a': Rational(1, 2), 'b': 2, 'k': 3}
+    rows('parabolas, then an exponential', None, b + y.subs(s2, 2 - a), values, 'all')
+
+
+def friction_work():
+    """A triangle above and one below."""
+    mu, v0, force = symbols('mu v0 F')
+    turn = v0 / (force + mu)
+    work = mu * (v0 * turn + (force - mu) * (3 - turn) ** 2)
+    rows('two triangles', None, work, {'mu': 2, 'v0': 4, 'F': 3}, 'all')
+
+
 def both_held():
     """Example (f): x is held from t1 on, y from t2 on; the product of the selectors by moments."""
     a, b, c, d, x0, y0, last = symbols('a b c d x0 y0 T')
@@ -110,6 +150,10 @@ def pushed():
     given = ['control 0 1.5', 'control 1 -0.5', 'control 2 0.25', 'control 3 3']
     rows('x(T), parabolas; the force jumps at rest', 'x(end)', x, values, 'all', given)
     rows('with the selector u/mu at rest', 'x(end) + work(end)', x + cost, values, 'all', given)
+    v1 = v0 + u[0] - mu
+    rest = v1 / (mu - u[1])
+    x = (v0 + v1) / 2 + v1 * rest / 2 + (u[3] - mu) * (last - 3) ** 2 / 2
+    rows('the same force, which jumps at 1, 2 and 3 whenever the end is', 'x(end)', x, values, 'all', [*given, 'fixed times'])
 
 
 def comes_to_rest():
@@ -159,8 +203,8 @@ def friction_wall():
 
 
 if __name__ == '__main__':
-    cases = [drift, circle, floor_ball, stacked_blocks, both_held, pushed, comes_to_rest, energy, bang_bang, breaks_away]
-    for case in [*cases, friction_wall]:
+    cases = [drift, circle, floor_ball, stacked_blocks, drag, two_springs, saturated, friction_work, both_held, pushed]
+    for case in [*cases, comes_to_rest, energy, bang_bang, breaks_away, friction_wall]:
         if case.__name__ in (sys.argv[1:] or case.__name__):
             print('==', case.__name__)
             case()

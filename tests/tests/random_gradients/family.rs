@@ -158,6 +158,6 @@ impl Family {
         let system = self.system.with_parameters(&values);
         let times = (0..ROWS).map(|row| system.interval[1] * row as f64 / ROWS as f64).collect();
         let rows = (0..ROWS).map(|_| vec![random.between(-1.0, 1.0)]).collect();
-        Case { system, controls: Controls::Held { times, rows } }
+        Case { system, controls: Controls::Held { times, rows, is_stretched: true } }
     }
 }

@@ -1,0 +1,86 @@
+//! Kinks of the right side that are no surfaces: of `abs`, `min`, `max`, and the knots of `piecewise`.
+//!
+//! ```text
+//! |e| = -e, e     min(a, b) = a, b     max(a, b) = b, a     select_le(a, b, x, y) = x, y     where e = a - b is below, above 0
+//! ```
+//!
+//! Each `e` that time, a state or a control moves gets a selector behind those of the surfaces, which says on which side of 0 it is. So the right side is
+//! smooth on each side and goes on smoothly beyond, and what crosses a kink can be found and differentiated like what crosses a surface.
+//! Where `e` is the function of a surface, the selector of that surface says it already.
+
+use crate::builtins::Builtin;
+use crate::graph::{ExprId, Graph};
+use crate::program::VectorFunction;
+use fdcc_runtime::problem::Origin;
+
+/// The kinks of a function, each after those inside it.
+#[derive(Default)]
+pub(super) struct Kinks {
+    /// What is 0 there.
+    pub zeros: Vec<ExprId>,
+    /// Where each comes from.
+    pub origins: Vec<Origin>,
+}
+
+/// Takes the kinks out of a function whose layout has the selectors of the surfaces last. `guards` are the functions of
+/// the surfaces that stand alone; others have none.
+pub(super) fn take_out(graph: &mut Graph, flow: &mut VectorFunction, guards: &[Option<ExprId>]) -> Kinks {
+    let mut kinks = Kinks::default();
+    let mut rewritten = Vec::new();
+    for (&output, origin) in flow.outputs.iter().zip(&flow.origins) {
+        let root = graph.rewrite(&[output], |graph, original, rebuilt| {
+            let Some((zero, [below, above])) = sides(graph, original, rebuilt) else { return rebuilt };
+            match side_of(graph, zero, flow, guards, (&mut kinks, origin)) {
+                Some(selector) => {
+                    let middle = graph.number(0.0);
+                    graph.select_le(selector, middle, below, above)
+                }
+                None => rebuilt,
+            }
+        });
+        rewritten.extend(root);
+    }
+    flow.outputs = rewritten;
+    kinks
+}
+
+/// What is 0 at the kink of a node, and what the node is below and above.
+fn sides(graph: &mut Graph, original: ExprId, rebuilt: ExprId) -> Option<(ExprId, [ExprId; 2])> {
+    let bent = [Builtin::Abs, Builtin::Min, Builtin::Max, Builtin::SelectLe];
+    let builtin = bent
+        .into_iter()
+        .find(|it| graph.as_call(original, *it).is_some() && graph.as_call(rebuilt, *it).is_some())?;
+    let operands = graph.operands(rebuilt).to_vec();
+    Some(match (builtin, &operands[..]) {
+        (Builtin::Min, &[a, b]) => (graph.sub(a, b), [a, b]),
+        (Builtin::Max, &[a, b]) => (graph.sub(a, b), [b, a]),
+        (Builtin::SelectLe, &[a, b, below, above]) => (graph.sub(a, b), [below, above]),
+        _ => (operands[0], [graph.neg(operands[0]), operands[0]]),
+    })
+}
+
+/// The selector of a kink; none if nothing moves it.
+fn side_of(
+    graph: &mut Graph,
+    zero: ExprId,
+    flow: &VectorFunction,
+    guards: &[Option<ExprId>],
+    (kinks, origin): (&mut Kinks, &Origin),
+) -> Option<ExprId> {
+    let layout = flow.layout;
+    let first = layout.selectors().start;
+    let is_moved = |input: &u32| !layout.parameters().contains(&(*input as usize));
+    if !graph.inputs_of(&[zero]).iter().any(is_moved) {
+        return None;
+    }
+    if let Some(surface) = guards.iter().position(|guard| *guard == Some(zero)) {
+        return Some(graph.input((first + surface) as u32));
+    }
+    let known = kinks.zeros.iter().position(|known| *known == zero);
+    let place = known.unwrap_or_else(|| {
+        kinks.zeros.push(zero);
+        kinks.origins.push(origin.clone());
+        kinks.zeros.len() - 1
+    });
+    Some(graph.input((first + guards.len() + place) as u32))
+}

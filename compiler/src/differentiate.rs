@@ -96,7 +96,7 @@ impl Matrix {
 }
 
 /// The derivatives of one expression by several inputs (reverse mode).
-fn gradient(graph: &mut Graph, output: ExprId, by: &[u32]) -> Vec<ExprId> {
+pub(crate) fn gradient(graph: &mut Graph, output: ExprId, by: &[u32]) -> Vec<ExprId> {
     let active = active(graph, &[output], by);
     let one = graph.number(1.0);
     let mut adjoints: HashMap<ExprId, ExprId> = HashMap::from([(output, one)]);

@@ -6,6 +6,7 @@ use crate::lower::{Numbers, Program, lower, numbers};
 use crate::model::{Model, Symbol};
 use crate::program::{Differentiated, VectorFunction};
 use crate::resolve::text::number;
+use crate::surfaces::{SurfaceReport, surfaces};
 use crate::{generate, not_yet};
 use fdcc_grammar::Diagnostic;
 use fdcc_runtime::problem::{Bounds, Layout};
@@ -31,7 +32,10 @@ pub fn dump(model: &Model, stage: Stage) -> Result<String, Vec<Diagnostic>> {
     if stage == Stage::Model {
         return Ok(symbols(model));
     }
-    not_yet(model)?;
+    // Jumps can be shown, though not solved.
+    if stage != Stage::Summary || !model.not_yet.is_empty() {
+        not_yet(model)?;
+    }
     let numbers = numbers(model)?;
     let program = lower(model);
     Ok(match stage {
@@ -178,9 +182,7 @@ fn summary(model: &Model, program: &Program, numbers: &Numbers) -> String {
     let params = params
         .map(|(at, it)| format!("{} = {}", it.place.name, number(numbers.of(model, Symbol::Param(at)))));
     section(&mut text, "params", params);
-    let surfaces: Vec<(String, ExprId)> =
-        model.surfaces.iter().map(|it| (it.place.name.clone(), it.psi)).collect();
-    section(&mut text, "surfaces", over_symbols(model, &surfaces).lines().map(str::to_string));
+    section(&mut text, "surfaces", surfaces(model, numbers).iter().flat_map(surface_lines));
     let path = model.path.iter().map(|it| bounded(&it.place.name, numbers.bounds(model, it.range)));
     section(&mut text, "path", path);
     section(&mut text, "boundary", model.boundary.iter().map(|it| it.place.name.clone()));
@@ -189,6 +191,19 @@ fn summary(model: &Model, program: &Program, numbers: &Numbers) -> String {
     section(&mut text, "objective", over_symbols(model, &objective).lines().map(str::to_string));
     section(&mut text, "functions", differentiated(program).1.iter().map(sizes));
     text
+}
+
+/// What is known about a surface, a line for each.
+fn surface_lines(surface: &SurfaceReport) -> Vec<String> {
+    let mut lines = vec![format!("{} = {}", surface.place.name, surface.function)];
+    let mut line = |title: &str, text: &str| lines.push(format!("  {title:<9}{text}"));
+    if !surface.gradient.is_empty() {
+        line("gradient", &surface.gradient.join(", "));
+        line("jump", &surface.jump);
+    }
+    line("class", &surface.class);
+    surface.holding.iter().for_each(|condition| line("held if", condition));
+    lines
 }
 
 fn section(text: &mut String, title: &str, lines: impl Iterator<Item = String>) {

@@ -7,12 +7,15 @@ pub mod differentiate;
 mod dump;
 pub mod generate;
 pub mod graph;
+pub mod interval;
 pub mod lower;
 pub mod model;
 mod overrides;
+mod polynomial;
 pub mod program;
 mod resolve;
 pub mod smooth;
+mod surfaces;
 pub mod units;
 
 pub use asked::check_with_objective;
@@ -33,11 +36,12 @@ pub use resolve::closest;
 use resolve::resolve;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
+pub use surfaces::SurfaceReport;
 pub use units::parse_quantity;
 
 /// What a syntax tree means, and what is wrong with it.
 pub struct Checked {
-    /// Present if there is no error, but for parameters that wait for a value.
+    /// Present if there is no error, but for parameters that wait for a value and trajectories that are not unique.
     pub model: Option<Model>,
     /// In the order of the text.
     pub diagnostics: Vec<Diagnostic>,
@@ -60,7 +64,9 @@ pub fn check(tree: &ast::Model) -> Checked {
     sort(&mut diagnostics);
     let diagnostics = without_echoes(diagnostics);
     sort(&mut whole.not_yet);
-    let fatal = |it: &Diagnostic| it.severity == Severity::Error && it.code != Code::NoValue;
+    // What waits for a value, and what has no unique trajectory, has a meaning all the same: a simulation tells more.
+    let has_meaning = |code: Code| matches!(code, Code::NoValue | Code::Repelling | Code::EndlessJumps);
+    let fatal = |it: &Diagnostic| it.severity == Severity::Error && !has_meaning(it.code);
     let name = tree.name.as_ref().map_or("model", |name| &name.name);
     let model = (!diagnostics.iter().any(fatal)).then(|| Model { name: name.into(), ..whole.into_model() });
     Checked { model, diagnostics }
@@ -109,6 +115,11 @@ fn without_echoes(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     }
     kept.retain(|it| it.code != Code::Unused || !meant.contains(&it.span()));
     kept
+}
+
+/// What is known about every surface of a model, or which parameters it waits for.
+pub fn surfaces(model: &Model) -> Result<Vec<SurfaceReport>, Vec<Diagnostic>> {
+    Ok(surfaces::surfaces(model, &numbers(model)?))
 }
 
 /// Turns a model into an optimal control problem with compiled functions; or says what cannot be solved yet.

@@ -259,6 +259,8 @@ pub struct Model {
     pub simulated: Vec<Simulated>,
     /// What is expected.
     pub expectations: Vec<Expectation>,
+    /// Expressions that have a name in the text: definitions and reports.
+    pub names: Vec<(String, ExprId)>,
     /// How it is to be solved.
     pub method: Method,
     /// Whether `abs`, `min` and `max` are smoothed: there is a surface, or the model says `smooth`.
@@ -293,6 +295,7 @@ impl Model {
             report: Vec::new(),
             simulated: Vec::new(),
             expectations: Vec::new(),
+            names: Vec::new(),
             method: default_method(),
             smooth: false,
             not_yet: Vec::new(),

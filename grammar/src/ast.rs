@@ -78,6 +78,7 @@ pub enum ItemKind {
         name: Ident,
         surface: Ident,
         direction: Direction,
+        direction_span: Span,
         at_most: Option<Expr>,
         then_hold: Option<Ident>,
         assignments: Vec<Assignment>,
@@ -294,8 +295,8 @@ pub enum ExprKind {
     Tuple(Vec<Expr>),
     /// `piecewise { x <= 1 => a  otherwise => b }`
     Piecewise { arms: Vec<Arm>, otherwise: Box<Expr> },
-    /// `match surface { below => a, above => b }`
-    Match { surface: Ident, below: Box<Expr>, above: Box<Expr> },
+    /// `match surface { below => a, above => b }`; `sides` is what stands between the braces
+    Match { surface: Ident, sides: Span, below: Box<Expr>, above: Box<Expr> },
 }
 
 /// `left <= right => value`

@@ -135,6 +135,12 @@ codes! {
     NoSet = "FDC0204", Advice, "`in` without a set";
     NotAffine = "FDC0205", Error, "a right side that is not affine in `Sgn`";
     SetProduct = "FDC0206", Warning, "a product of two set-valued functions";
+    VanishingGradient = "FDC0301", Error, "a surface whose gradient vanishes on it";
+    Repelling = "FDC0302", Error, "a surface that pushes solutions away on both sides";
+    NotContracting = "FDC0304", Warning, "a crossed surface that is not one-sided Lipschitz";
+    StartOnSurface = "FDC0305", Advice, "a start that lies on a surface";
+    ControlJumps = "FDC0306", Warning, "a control that acts differently on the two sides of a surface";
+    EndlessJumps = "FDC0310", Error, "jumps that can fire without end";
     IdleJump = "FDC0311", Warning, "a jump that never acts";
     EmptyBounds = "FDC0401", Error, "bounds that leave no room";
     NoDuration = "FDC0402", Error, "a free time without lower bound";

@@ -152,7 +152,7 @@ fn written_out(expr: &Expr) -> String {
             };
             format!("{{{}{}}}", arms.iter().map(arm).collect::<String>(), written_out(otherwise))
         }
-        ExprKind::Match { surface, below, above } => {
+        ExprKind::Match { surface, below, above, .. } => {
             format!("{}?{}:{}", surface.name, written_out(below), written_out(above))
         }
     }

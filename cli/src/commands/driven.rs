@@ -2,7 +2,7 @@
 
 use super::Exit;
 use super::accuracy::Accuracy;
-use super::options::{Changes, Prepared, read, seconds};
+use super::options::{Changes, Prepared, read_at_any_rate, seconds};
 use crate::log::Level;
 use crate::output;
 use crate::output::control;
@@ -51,7 +51,7 @@ impl Driven {
         if is_search && self.log != Some(Level::None) {
             output::complain("`--seed` and `--starts` change nothing here: a simulation searches nothing");
         }
-        read(&self.file, &Changes::default())
+        read_at_any_rate(&self.file, &Changes::default())
     }
 
     /// How exactly to simulate, and until when; Ctrl-C stops it.

@@ -107,13 +107,23 @@ pub fn prepare(file: &str, options: &Options) -> Result<Prepared, Exit> {
 
 /// Reads and checks a model and applies the changes. What is wrong with it is shown on the standard error.
 pub fn read(file: &str, changes: &Changes) -> Result<Prepared, Exit> {
+    load(file, changes, false)
+}
+
+/// The same, also if it has no unique trajectory: a simulation finds out where, and `show` says why.
+pub fn read_at_any_rate(file: &str, changes: &Changes) -> Result<Prepared, Exit> {
+    load(file, changes, true)
+}
+
+fn load(file: &str, changes: &Changes, at_any_rate: bool) -> Result<Prepared, Exit> {
     let loaded = Loaded::read(file).map_err(|error| {
         output::complain(&format!("{file} cannot be read: {error}"));
         Exit::File
     })?;
     let Loaded { source, model, diagnostics } = loaded;
     // A parameter that waits for a value may get it from the changes; compiling finds out.
-    let waits = |it: &Diagnostic| model.is_some() && it.code == Code::NoValue;
+    let has_model = model.is_some();
+    let waits = |it: &Diagnostic| has_model && it.code == Code::NoValue;
     show(diagnostics.iter().filter(|it| it.severity >= Severity::Warning && !waits(it)), &source);
     let Some(mut model) = model else {
         if diagnostics.iter().all(|it| it.severity < Severity::Error) {
@@ -121,6 +131,9 @@ pub fn read(file: &str, changes: &Changes) -> Result<Prepared, Exit> {
         }
         return Err(Exit::ModelError);
     };
+    if !at_any_rate && diagnostics.iter().any(|it| it.severity == Severity::Error && !waits(it)) {
+        return Err(Exit::ModelError);
+    }
     changes.apply(&mut model).map_err(|message| usage(&message))?;
     Ok(Prepared { source, model })
 }

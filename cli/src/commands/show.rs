@@ -1,7 +1,7 @@
 //! `fdcc show`: a model as the compiler understands it, at any stage.
 
 use super::Exit;
-use super::options::{Changes, read, show};
+use super::options::{Changes, read_at_any_rate, show};
 use crate::output;
 use clap::{Args, ValueEnum};
 
@@ -33,7 +33,7 @@ enum Stage {
 impl Show {
     /// Prints it.
     pub fn run(self) -> Exit {
-        let prepared = match read(&self.file, &self.changes) {
+        let prepared = match read_at_any_rate(&self.file, &self.changes) {
             Ok(prepared) => prepared,
             Err(exit) => return exit,
         };

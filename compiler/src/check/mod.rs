@@ -10,6 +10,7 @@ mod links;
 mod needs_time;
 mod sets;
 mod smoothness;
+mod surfaces;
 mod unused;
 mod values;
 
@@ -40,6 +41,7 @@ const OF_A_PHASE: &[Check] = &[
     hidden_jump::check,
     idle_jump::check,
     smoothness::check,
+    surfaces::check,
     bounds::check,
     values::check,
 ];

@@ -168,6 +168,35 @@ impl Graph {
         })
     }
 
+    /// Copies expressions of another graph, at a cost that depends on them alone. `inputs` gives each input its meaning here.
+    pub fn import(
+        &mut self,
+        from: &Graph,
+        roots: &[ExprId],
+        known: &mut HashMap<ExprId, ExprId>,
+        inputs: &mut dyn FnMut(&mut Graph, u32) -> ExprId,
+    ) -> Vec<ExprId> {
+        let mut stack = roots.to_vec();
+        while let Some(&id) = stack.last() {
+            let before = stack.len();
+            stack.extend(from.operands(id).iter().filter(|it| !known.contains_key(it)));
+            if stack.len() == before {
+                stack.pop();
+                known.entry(id).or_insert_with(|| match from.expr(id) {
+                    Expr::Input(position) => inputs(self, *position),
+                    Expr::Call(..) => id,
+                    leaf => self.intern(leaf.clone()),
+                });
+                if let Expr::Call(builtin, operands) = from.expr(id) {
+                    let operands: Operands = operands.iter().map(|operand| known[operand]).collect();
+                    let copy = self.call(*builtin, &operands);
+                    known.insert(id, copy);
+                }
+            }
+        }
+        roots.iter().map(|root| known[root]).collect()
+    }
+
     /// The roots rebuilt bottom up. `replace` is given each node as it was and as it is with its operands replaced; the
     /// latter may have collapsed to something that was replaced already, so it must ask the former what to do.
     pub fn rewrite(

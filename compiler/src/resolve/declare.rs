@@ -115,12 +115,23 @@ impl<'a> Elaborator<'a> {
                 let scale = self.scale_of(value, unit.as_ref());
                 let value = self.evaluate_in(Context::DEFINITION, value);
                 self.values[at] = self.map(value, |graph, part| graph.scale(scale, part));
+                self.name_parts(at);
             }
             ItemKind::Param { value: Some(value), unit, .. } => self.define_param(at, value, unit.as_ref()),
             ItemKind::Surface { value, name } => self.define_surface(at, name, value),
             ItemKind::Fn { name: _, arguments, body } => self.examine(at, arguments, body),
             _ => {}
         }
+    }
+
+    /// Notes what the components of a definition are called.
+    fn name_parts(&mut self, at: usize) {
+        let value = &self.values[at];
+        let name = &self.scope.declarations[at].name.name;
+        let parts = value.parts.as_slice().iter().enumerate();
+        let named = parts.map(|(part, &id)| (self.component(name, value, part), id));
+        let named: Vec<(String, ExprId)> = named.collect();
+        self.model.names.extend(named);
     }
 
     fn define_param(&mut self, at: usize, value: &'a Expr, unit: Option<&Unit>) {

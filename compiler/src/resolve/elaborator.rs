@@ -10,7 +10,7 @@ use crate::graph::{ExprId, Graph};
 use crate::model::{Ball, Integral, Model, Place, Symbol};
 use fdcc_grammar::ast;
 use fdcc_grammar::{Code, Diagnostic, Span};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// How deep definitions and expressions may be nested in each other.
 pub(crate) const DEEPEST: usize = 256;
@@ -93,6 +93,8 @@ pub(crate) struct Elaborator<'a> {
     pub sites: HashMap<Span, super::knots::Site<'a>>,
     /// Stand-ins for the arguments of functions that are examined by themselves.
     pub arguments: Vec<ExprId>,
+    /// The states whose equations are understood.
+    pub known_rates: HashSet<usize>,
     /// What has been resolved so far; graph, symbols, surfaces and integrals are moved in at the end.
     pub model: Model,
     /// Whether each boundary row of the model is at the end; its symbols are those of any time until all are known.
@@ -143,6 +145,7 @@ impl<'a> Elaborator<'a> {
             applied: HashMap::new(),
             sites: HashMap::new(),
             arguments: Vec::new(),
+            known_rates: HashSet::new(),
             model: Model::empty(),
             at_end: Vec::new(),
             pieces: Vec::new(),

@@ -38,7 +38,7 @@ impl<'a> Elaborator<'a> {
             ExprKind::Prime(base) => self.prime(base, expr.span),
             ExprKind::Tuple(parts) => self.tuple(parts),
             ExprKind::Piecewise { arms, otherwise } => self.piecewise(expr, arms, otherwise),
-            ExprKind::Match { surface, below, above } => self.matched(expr, surface, below, above),
+            ExprKind::Match { surface, below, above, .. } => self.matched(expr, surface, below, above),
         }
     }
 

@@ -97,6 +97,7 @@ impl<'a> Elaborator<'a> {
             self.model.states[first + part].equation.span = equation.span;
             if let Some(&rate) = parts.get(part) {
                 self.model.states[first + part].rate = rate;
+                self.known_rates.insert(first + part);
             }
         }
     }
@@ -140,6 +141,7 @@ impl<'a> Elaborator<'a> {
         let parts = value.parts.as_slice().to_vec();
         for (at, &part) in parts.iter().enumerate() {
             let name = self.component(&binding.name.name, &value, at);
+            self.model.names.push((name.clone(), part));
             self.model.report.push(Report { place: Place { name, span: binding.name.span }, value: part });
         }
     }

@@ -9,7 +9,8 @@ use fdcc_grammar::ast::{Assignment, Ident, Item, ItemKind};
 impl<'a> Elaborator<'a> {
     /// Resolves a jump; one with a mistake in it is told and left out.
     pub fn jump(&mut self, item: &'a Item) {
-        let ItemKind::Jump { name, surface, direction, at_most, then_hold, assignments } = &item.kind else {
+        let ItemKind::Jump { name, surface, direction, at_most, then_hold, assignments, .. } = &item.kind
+        else {
             return;
         };
         let surface = self.jump_surface(surface);

@@ -166,7 +166,7 @@ impl Printer {
                 self.out.push(')');
             }
             ExprKind::Piecewise { .. } => self.out.push_str("piecewise { ... }"),
-            ExprKind::Match { surface, below, above } => {
+            ExprKind::Match { surface, below, above, .. } => {
                 self.out.push_str(&format!("match {} {{ below => ", surface.name));
                 self.write(below, 0);
                 self.out.push_str(", above => ");

@@ -224,9 +224,11 @@ impl Reader<'_> {
         let mut side = || self.tree(sides.next().expect("a match has two sides"));
         let (below, above) = (side(), side());
         let surface = ident(self, pair);
+        let first = child(pair, Rule::kw_below).expect("a match begins below");
+        let sides = self.span(&first).to(above.expr.span);
         let levels = below.levels.max(above.levels);
         let (below, above) = (Box::new(below.expr), Box::new(above.expr));
-        self.node(span, levels, || ExprKind::Match { surface, below, above })
+        self.node(span, levels, || ExprKind::Match { surface, sides, below, above })
     }
 
     /// One more level. Where that is one too many, the place is reported once and the branch ends in a number.

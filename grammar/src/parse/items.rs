@@ -153,6 +153,7 @@ impl Reader<'_> {
             name,
             surface,
             direction: if direction.as_str() == "falling" { Direction::Falling } else { Direction::Rising },
+            direction_span: self.span(&direction),
             at_most: child(pair, Rule::at_most).map(|limit| self.one(&limit)),
             then_hold: child(pair, Rule::then_hold).map(|hold| ident(self, &hold)),
             assignments: self.assignments(pair),

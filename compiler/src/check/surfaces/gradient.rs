@@ -1,0 +1,49 @@
+//! FDC0301: the gradient of a surface vanishes on the surface itself.
+
+use super::Subject;
+use crate::resolve::text;
+use crate::surfaces::degenerate::Degenerate;
+use fdcc_grammar::ast::{BinaryOperator, Expr, ExprKind};
+use fdcc_grammar::{Code, Diagnostic};
+
+impl Subject<'_, '_, '_> {
+    /// What is wrong with it, and what to write instead.
+    pub(super) fn vanishing(&mut self, trouble: &Degenerate) -> Diagnostic {
+        let name = self.name().to_string();
+        let written = self.written();
+        let function = written.map_or_else(|| name.clone(), text::expr);
+        let (state, slope) = self.local.gradient[0];
+        let (state, slope) = (self.view.states[state].place.name.clone(), self.text(slope));
+        let label = format!("d/d{state} = {slope}, which is 0 wherever {function} == 0");
+        let message = format!("the gradient of surface `{name}` vanishes on the surface itself");
+        let base = match (written.and_then(base_of), trouble.base) {
+            (Some(base), _) => Some(text::expr(base)),
+            (None, Some(base)) => Some(self.text(base)),
+            (None, None) => None,
+        };
+        let instead = match (base, written) {
+            (Some(base), Some(_)) => format!(" Write `surface {name} = {base}`."),
+            (Some(base), None) => format!(" Write `Sgn({base})`."),
+            (None, _) => " A surface has two sides: write what changes its sign there.".into(),
+        };
+        let side = match trouble.never {
+            Some(sign) => {
+                let side = if sign < 0.0 { "below" } else { "above" };
+                format!(
+                    "\nNote that `{function}` never changes sign: as written this switch can never go {side}."
+                )
+            }
+            None => String::new(),
+        };
+        let help = format!("Lemma 3.1 needs a nonzero gradient where the surface is zero.{instead}{side}");
+        Diagnostic::new(Code::VanishingGradient, message, self.function(), label).help(help)
+    }
+}
+
+/// The base of a written power.
+fn base_of(value: &Expr) -> Option<&Expr> {
+    match &value.kind {
+        ExprKind::Binary(BinaryOperator::Power, base, _) => Some(base),
+        _ => None,
+    }
+}

@@ -1,0 +1,125 @@
+//! What a surface does to trajectories that meet it, proved over the bounds or said to be unknown.
+//!
+//! ```text
+//! below > 0 > above        held           below, above > 0 (or both < 0)     crossed
+//! below < 0 < above        repelling      jump < 0 everywhere                never repelling
+//! ```
+
+use super::local::Local;
+use super::sample;
+use crate::graph::{ExprId, evaluate};
+use crate::interval::{Claim, Interval};
+use crate::model::Symbol;
+
+/// What is proved about a surface, over all states on it within their bounds.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Class {
+    /// The bounds keep every state away from it.
+    Apart,
+    /// The rates on both sides have one sign; strictly, if neither can vanish.
+    Crossed { strictly: bool },
+    /// Both sides push onto it, whatever the control.
+    Held,
+    /// The sides never push away from it; which of held and crossed it is depends on state and control.
+    Attracting,
+    /// Both sides push away from it, whatever the control.
+    Repelling,
+    /// Both sides push away from it for some controls.
+    RepellingFor(Choice),
+    /// None of these could be proved; whether there are states for which both sides push away.
+    Unknown { mixed: bool },
+}
+
+/// Values for controls and unknowns.
+pub(crate) type Choice = Vec<(Symbol, f64)>;
+
+/// Finds the class. What a few points contradict is not even tried to be proved.
+pub(crate) fn classify(local: &mut Local) -> Class {
+    use Claim::{Negative, NotNegative, Positive};
+    let [below, above, jump] = [local.below, local.above, local.jump];
+    let product = local.graph.mul(below, above);
+    let product = local.normal(product);
+    let points = sample::points(local);
+    if points.is_empty() && local.prover().proves(&local.graph, &[(local.psi, Claim::Nowhere)]) {
+        return Class::Apart;
+    }
+    let local = &*local;
+    let proves = |claims: &[(ExprId, Claim)]| {
+        points.iter().all(|point| is_true(local, claims, point))
+            && local.prover().proves(&local.graph, claims)
+    };
+    if proves(&[(below, Positive), (above, Positive)]) || proves(&[(below, Negative), (above, Negative)]) {
+        return Class::Crossed { strictly: true };
+    }
+    if proves(&[(below, Positive), (above, Negative)]) {
+        return Class::Held;
+    }
+    if below == above || proves(&[(product, NotNegative)]) {
+        return Class::Crossed { strictly: false };
+    }
+    if proves(&[(jump, Negative)]) {
+        return Class::Attracting;
+    }
+    // From here on the surface is accused of something, so there must be a point on it.
+    let away = [(below, Negative), (above, Positive)];
+    match () {
+        _ if points.is_empty() => Class::Unknown { mixed: false },
+        _ if proves(&away) => Class::Repelling,
+        _ => for_some(local, &away).map_or_else(|| unknown(local, &points), Class::RepellingFor),
+    }
+}
+
+/// Whether some of the points are pushed away from, by more than rounding.
+fn unknown(local: &Local, points: &[Vec<f64>]) -> Class {
+    let pushes_away = |point: &Vec<f64>| {
+        let rates = evaluate(&local.graph, &[local.below, local.above], point, &[]);
+        rates[0] < -1e-6 && rates[1] > 1e-6
+    };
+    Class::Unknown { mixed: points.iter().any(pushes_away) }
+}
+
+/// Whether claims are true at a point, as far as numbers can tell.
+fn is_true(local: &Local, claims: &[(ExprId, Claim)], point: &[f64]) -> bool {
+    let roots: Vec<ExprId> = claims.iter().map(|it| it.0).collect();
+    let values = evaluate(&local.graph, &roots, point, &[]);
+    values.iter().zip(claims).all(|(value, claim)| value.is_nan() || claim.1.is_true(*value))
+}
+
+/// Values of the controls for which claims hold for all states on the surface.
+pub(crate) fn for_some(local: &Local, claims: &[(ExprId, Claim)]) -> Option<Choice> {
+    let roots: Vec<ExprId> = claims.iter().map(|it| it.0).collect();
+    let free = local.graph.inputs_of(&roots).into_iter();
+    let chosen = |at: &u32| matches!(local.symbols[*at as usize], Symbol::Control(_) | Symbol::Free(_));
+    let inputs: Vec<u32> = free.filter(chosen).collect();
+    if inputs.is_empty() {
+        return None;
+    }
+    let mut prover = local.prover();
+    let choices = candidates(&inputs.iter().map(|&at| local.domain[at as usize]).collect::<Vec<_>>());
+    choices.into_iter().find_map(|values| {
+        let fixed: Vec<(u32, Interval)> =
+            inputs.iter().zip(&values).map(|(&at, &value)| (at, Interval::point(value))).collect();
+        let holds = prover.within(&fixed, |prover| prover.proves(&local.graph, claims));
+        let named = inputs.iter().zip(values).map(|(&at, value)| (local.symbols[at as usize], value));
+        holds.then(|| named.collect())
+    })
+}
+
+/// Ends and middles: all combinations of a few, and those of one kind for many.
+fn candidates(domains: &[Interval]) -> Vec<Vec<f64>> {
+    let values: Vec<[f64; 3]> = domains
+        .iter()
+        .map(|it| {
+            let end = |end: f64, other: f64| if end.is_finite() { end } else { other };
+            [end(it.upper, it.lower.max(-1.0) + 2.0), end(it.lower, it.upper.min(1.0) - 2.0), it.middle()]
+        })
+        .collect();
+    if values.len() > 3 {
+        return (0..3).map(|kind| values.iter().map(|it| it[kind]).collect()).collect();
+    }
+    let mut all: Vec<Vec<f64>> = vec![Vec::new()];
+    for choice in values {
+        all = all.iter().flat_map(|it| choice.map(|value| [it.as_slice(), &[value]].concat())).collect();
+    }
+    all
+}

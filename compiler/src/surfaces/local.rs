@@ -1,0 +1,279 @@
+//! One surface by itself: a small graph with its function, its gradient and the rates on both sides.
+//!
+//! ```text
+//! below = psi_t + psi_x f(s = -1),   above = psi_t + psi_x f(s = +1),   jump = above - below
+//! ```
+//!
+//! Where `psi` is affine in a state with a constant factor, that state is replaced by what it is on the surface, so that
+//! all of these hold there and nowhere else. The selectors of other surfaces may be anything in [-1, 1].
+
+use super::view::View;
+use super::words::Words;
+use crate::differentiate::gradient;
+use crate::graph::{Expr, ExprId, Graph};
+use crate::interval::{Interval, Prover};
+use crate::model::Symbol;
+use crate::polynomial::{NormalForms, Polynomial};
+use std::collections::HashMap;
+
+/// Path constraints beyond these are not looked at.
+const MOST_ROWS: usize = 40;
+/// Names beyond these are not looked for in texts.
+const MOST_NAMES: usize = 200;
+
+/// A surface and what happens on it.
+pub(crate) struct Local {
+    /// Its own graph; inputs are positions in `symbols`.
+    pub graph: Graph,
+    /// What the inputs are.
+    pub symbols: Vec<Symbol>,
+    /// Where they may lie.
+    pub domain: Vec<Interval>,
+    /// Its function, as written.
+    pub psi: ExprId,
+    /// Its derivative by time.
+    pub in_time: ExprId,
+    /// Its derivatives by states, those that are not 0.
+    pub gradient: Vec<(usize, ExprId)>,
+    /// The rate of `psi` on both sides, on the surface, and their difference.
+    pub below: ExprId,
+    pub above: ExprId,
+    pub jump: ExprId,
+    /// The first two as they came out, not expanded.
+    pub written: [ExprId; 2],
+    /// The jump of every rate that the selector moves: its state, and below and above.
+    pub sides: Vec<(usize, [ExprId; 2])>,
+    /// What lies where on the surface.
+    pub constraints: Vec<(ExprId, Interval)>,
+    /// Replaced on the surface: a state's input and its value.
+    pub replaced: Option<(u32, ExprId)>,
+    known: HashMap<ExprId, ExprId>,
+    forms: NormalForms,
+}
+
+impl Local {
+    /// The surface `at` of a model; nothing if its function or a rate it needs is unknown.
+    pub fn new(view: &View<'_>, at: usize) -> Option<Local> {
+        let psi = view.surfaces[at].1?;
+        let mut graph = Graph::new();
+        let zero = graph.number(0.0);
+        let mut local = Local {
+            graph,
+            symbols: Vec::new(),
+            domain: Vec::new(),
+            psi: zero,
+            in_time: zero,
+            gradient: Vec::new(),
+            below: zero,
+            above: zero,
+            jump: zero,
+            written: [zero; 2],
+            sides: Vec::new(),
+            constraints: Vec::new(),
+            replaced: None,
+            known: HashMap::new(),
+            forms: NormalForms::default(),
+        };
+        local.psi = local.import(view, psi);
+        local.differentiate();
+        Some(local)
+    }
+
+    /// Adds what happens on the surface; says whether all rates that matter are known.
+    pub fn add_rates(&mut self, view: &View<'_>, at: usize) -> bool {
+        if self.gradient.iter().any(|it| !view.has_rate[it.0]) {
+            return false;
+        }
+        self.replace_a_state(view);
+        self.rates(view, at);
+        self.rows(view);
+        true
+    }
+
+    /// A copy of an expression of the model.
+    pub fn import(&mut self, view: &View<'_>, expr: ExprId) -> ExprId {
+        let Local { graph, symbols, domain, known, .. } = self;
+        let mut input = |graph: &mut Graph, position: u32| {
+            let symbol = view.symbols[position as usize];
+            symbols.push(symbol);
+            domain.push(view.domain(symbol));
+            graph.input(symbols.len() as u32 - 1)
+        };
+        graph.import(view.graph, &[expr], known, &mut input)[0]
+    }
+
+    /// The input of a symbol, if it occurs.
+    pub fn input_of(&self, symbol: Symbol) -> Option<u32> {
+        self.symbols.iter().position(|it| *it == symbol).map(|at| at as u32)
+    }
+
+    /// The normal form of an expression, as an expression.
+    pub fn normal(&mut self, expr: ExprId) -> ExprId {
+        self.forms.expr(&mut self.graph, expr)
+    }
+
+    /// The normal form of an expression.
+    pub fn form(&mut self, expr: ExprId) -> Polynomial {
+        self.forms.of(&mut self.graph, expr)
+    }
+
+    /// Proofs about what happens on the surface.
+    pub fn prover(&self) -> Prover {
+        Prover::new(self.domain.clone(), self.constraints.clone())
+    }
+
+    fn differentiate(&mut self) {
+        let (mut inputs, mut states) = (Vec::new(), Vec::new());
+        for (at, symbol) in self.symbols.iter().enumerate() {
+            match symbol {
+                Symbol::State(state) => {
+                    inputs.push(at as u32);
+                    states.push(*state);
+                }
+                Symbol::Time => inputs.insert(0, at as u32),
+                _ => {}
+            }
+        }
+        let mut slopes = gradient(&mut self.graph, self.psi, &inputs);
+        self.in_time = match slopes.len() > states.len() {
+            true => slopes.remove(0),
+            false => self.graph.number(0.0),
+        };
+        let mut found: Vec<(usize, ExprId)> = Vec::new();
+        for (state, slope) in states.into_iter().zip(slopes) {
+            let slope = self.normal(slope);
+            if self.graph.as_number(slope) != Some(0.0) {
+                found.push((state, slope));
+            }
+        }
+        found.sort_by_key(|it| it.0);
+        self.gradient = found;
+    }
+
+    /// Finds a state that `psi = c x + rest` gives, with a number or parameters for `c`.
+    fn replace_a_state(&mut self, view: &View<'_>) {
+        let psi = self.form(self.psi);
+        for &(state, slope) in &self.gradient.clone() {
+            let input = self.input_of(Symbol::State(state)).expect("psi depends on it");
+            let factor = self.form(slope);
+            let is_constant = self.graph.inputs_of(&[slope]).iter().all(
+                |&it| matches!(self.symbols[it as usize], Symbol::Param(at) if view.values[at].is_finite()),
+            );
+            let Some((monomial, _)) = factor.as_term().filter(|_| is_constant) else { continue };
+            let nonzero = monomial.iter().all(|power| match self.graph.expr(power.0) {
+                Expr::Input(at) => !self.domain[*at as usize].contains(0.0),
+                _ => false,
+            });
+            if nonzero {
+                let state = self.graph.input(input);
+                let moved = Polynomial::atom(state).times(&factor).expect("a single product");
+                let rest = psi.plus(-1.0, &moved).to_expr(&mut self.graph);
+                let quotient = self.graph.div(rest, slope);
+                let value = self.graph.neg(quotient);
+                let value = self.normal(value);
+                self.constraints.push((value, self.domain[input as usize]));
+                self.replaced = Some((input, value));
+                return;
+            }
+        }
+        self.constraints.push((self.psi, Interval::point(0.0)));
+    }
+
+    /// An expression with the replaced state as it is on the surface, in normal form.
+    pub fn on_surface(&mut self, expr: ExprId) -> ExprId {
+        let on_it = self.substituted(expr);
+        let form = self.form(on_it);
+        let zero = self.form(self.psi);
+        let reduced = if self.replaced.is_none() { form.reduced(&zero) } else { None };
+        reduced.unwrap_or(form).to_expr(&mut self.graph)
+    }
+
+    fn substituted(&mut self, expr: ExprId) -> ExprId {
+        match self.replaced {
+            Some((input, value)) => {
+                self.graph.substitute(&[expr], &|position| (position == input).then_some(value))[0]
+            }
+            None => expr,
+        }
+    }
+
+    /// An expression with the surface's selector at one of its ends.
+    fn on_side(&mut self, expr: ExprId, selector: Option<u32>, side: f64) -> ExprId {
+        let end = self.graph.number(side);
+        self.graph.substitute(&[expr], &|position| (Some(position) == selector).then_some(end))[0]
+    }
+
+    fn rates(&mut self, view: &View<'_>, at: usize) {
+        let gradient = self.gradient.clone();
+        let rates: Vec<ExprId> =
+            gradient.iter().map(|&(state, _)| self.import(view, view.states[state].rate)).collect();
+        let selector = self.input_of(Symbol::Selector(at));
+        let ends = [-1.0, 1.0].map(|side| {
+            let mut terms = vec![self.in_time];
+            for (&rate, &(_, slope)) in rates.iter().zip(&gradient) {
+                let rate = self.on_side(rate, selector, side);
+                terms.push(self.graph.mul(slope, rate));
+            }
+            let sum = self.graph.sum(&terms);
+            self.substituted(sum)
+        });
+        self.written = ends;
+        [self.below, self.above] = ends.map(|end| self.on_surface(end));
+        let jump = self.graph.sub(self.above, self.below);
+        self.jump = self.on_surface(jump);
+    }
+
+    /// The rates of all states that the selector moves, for those who ask for more than `psi`.
+    pub fn add_sides(&mut self, view: &View<'_>, at: usize) {
+        for &state in view.moved[at].iter().filter(|&&state| view.has_rate[state]) {
+            let rate = self.import(view, view.states[state].rate);
+            let selector = self.input_of(Symbol::Selector(at));
+            let sides = [-1.0, 1.0].map(|side| {
+                let end = self.on_side(rate, selector, side);
+                self.on_surface(end)
+            });
+            self.sides.push((state, sides));
+        }
+    }
+
+    /// Path constraints over what occurs here: outside them nothing is asked.
+    fn rows(&mut self, view: &View<'_>) {
+        for row in view.path.iter().take(MOST_ROWS) {
+            let before = self.symbols.len();
+            let value = self.import(view, row.value);
+            if self.symbols.len() == before {
+                let value = self.on_surface(value);
+                self.constraints.push((value, view.bounds(row.range)));
+            }
+        }
+    }
+
+    /// Runs something that needs names for inputs and for expressions that occur in the text.
+    pub fn in_words<R>(&mut self, view: &View<'_>, run: impl FnOnce(&mut Local, &Words<'_>) -> R) -> R {
+        let symbols = self.symbols.clone();
+        let input = |position: u32| view.name(symbols[position as usize]);
+        let named = self.named(view);
+        run(self, &Words { input: &input, named })
+    }
+
+    /// An expression as text; nothing if nobody would read it.
+    pub fn text(&mut self, view: &View<'_>, expr: ExprId) -> Option<String> {
+        self.in_words(view, |local, words| words.of(&mut local.graph, expr))
+    }
+
+    /// The named expressions that are made of what occurs here.
+    fn named(&mut self, view: &View<'_>) -> Vec<(String, Polynomial)> {
+        let mut forms = NormalForms::with_squares();
+        let mut named = Vec::new();
+        for (name, id) in view.names.iter().take(MOST_NAMES) {
+            let known = |input: u32| self.symbols.contains(&view.symbols[input as usize]);
+            let inputs = view.graph.inputs_of(&[*id]);
+            if !inputs.is_empty() && inputs.into_iter().all(known) {
+                let copy = self.import(view, *id);
+                let copy = self.substituted(copy);
+                named.push((name.clone(), forms.of(&mut self.graph, copy)));
+            }
+        }
+        named
+    }
+}

@@ -1,0 +1,19 @@
+//! What a surface does to the trajectories that meet it, before anything runs.
+//!
+//! Each surface is taken out of the model by itself ([`local`]), its class is proved over the bounds of states and controls
+//! ([`class`]), with parameters at their values; what cannot be proved is called unknown.
+
+pub(crate) mod class;
+pub(crate) mod degenerate;
+pub(crate) mod endless;
+mod holding;
+pub(crate) mod local;
+mod report;
+mod sample;
+pub(crate) mod view;
+pub(crate) mod words;
+
+pub(crate) use local::Local;
+pub use report::SurfaceReport;
+pub(crate) use report::surfaces;
+pub(crate) use view::View;

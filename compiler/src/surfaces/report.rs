@@ -1,0 +1,109 @@
+//! What is known about every surface of a model, as text: for `fdcc show` and for editors.
+
+use super::class::{Class, classify};
+use super::degenerate::degenerate;
+use super::holding::holding;
+use super::local::Local;
+use super::view::View;
+use crate::lower::Numbers;
+use crate::model::{Model, Place, Symbol};
+use fdcc_grammar::ast::Direction;
+
+/// One surface in words.
+#[derive(Clone, Debug)]
+pub struct SurfaceReport {
+    /// Its name and where it is declared, or used first.
+    pub place: Place,
+    /// Its function.
+    pub function: String,
+    /// Its derivatives by the states it depends on, and by time: `d/dv = 1`.
+    pub gradient: Vec<String>,
+    /// By how much its rate is larger above than below.
+    pub jump: String,
+    /// What it does to the trajectories that meet it.
+    pub class: String,
+    /// When it is held, if it ever is.
+    pub holding: Option<String>,
+}
+
+/// All surfaces of a model, with its parameters at these values; the components of a `Dir` are one, its vector.
+pub(crate) fn surfaces(model: &Model, numbers: &Numbers) -> Vec<SurfaceReport> {
+    let values = (0..model.params.len()).map(|at| numbers.of(model, Symbol::Param(at))).collect();
+    let view = View::of_model(model, values);
+    let switches = model.switches().into_iter();
+    let reports = switches.map(|switch| match switch.is_ball {
+        true => ball(switch.place),
+        false => report(&view, switch.surfaces.start, model),
+    });
+    reports.collect()
+}
+
+fn ball(place: &Place) -> SurfaceReport {
+    let class = "the direction of a vector: held at 0 up to a limit in every direction";
+    SurfaceReport {
+        place: place.clone(),
+        function: format!("Dir({})", place.name),
+        gradient: Vec::new(),
+        jump: String::new(),
+        class: class.into(),
+        holding: None,
+    }
+}
+
+fn report(view: &View<'_>, at: usize, model: &Model) -> SurfaceReport {
+    let place = view.surfaces[at].0.clone();
+    let mut local = Local::new(view, at).expect("a model without errors knows its surfaces");
+    let text = |local: &mut Local, expr| local.text(view, expr).unwrap_or_else(|| "...".into());
+    let psi = local.psi;
+    let function = text(&mut local, psi);
+    let mut gradient: Vec<String> = Vec::new();
+    for (state, slope) in local.gradient.clone() {
+        gradient.push(format!("d/d{} = {}", view.states[state].place.name, text(&mut local, slope)));
+    }
+    if local.graph.as_number(local.in_time) != Some(0.0) {
+        let slope = local.in_time;
+        gradient.push(format!("d/dt = {}", text(&mut local, slope)));
+    }
+    let is_degenerate = degenerate(&mut local).is_some();
+    local.add_rates(view, at);
+    let (class, holding) = match is_degenerate {
+        true => ("the gradient vanishes on it".into(), None),
+        false => in_words(&mut local, view),
+    };
+    let jumps = model.jumps.iter().filter(|jump| jump.surface == at);
+    let resets = jumps.map(|jump| {
+        let way = if jump.direction == Direction::Falling { "falling" } else { "rising" };
+        format!("; {way}, `{}` resets the state", jump.place.name)
+    });
+    let class = std::iter::once(class).chain(resets).collect();
+    let jump = local.jump;
+    let jump = text(&mut local, jump);
+    SurfaceReport { place, function, gradient, jump, class, holding }
+}
+
+/// The class, and when it is held.
+fn in_words(local: &mut Local, view: &View<'_>) -> (String, Option<String>) {
+    let values = |choice: &[(Symbol, f64)]| {
+        let value =
+            |it: &(Symbol, f64)| format!("{} = {}", view.name(it.0), crate::resolve::text::number(it.1));
+        choice.iter().map(value).collect::<Vec<_>>().join(", ")
+    };
+    match classify(local) {
+        Class::Apart => ("out of reach: the bounds keep every state away from it".into(), None),
+        Class::Crossed { strictly: true } => ("crossed".into(), None),
+        Class::Crossed { strictly: false } => ("crossed, or touched where both rates are 0".into(), None),
+        Class::Held => ("held, whatever the controls".into(), Some("always".into())),
+        Class::Attracting => {
+            let condition = holding(local, view);
+            ("held or crossed, never repelling".into(), condition)
+        }
+        Class::Repelling => ("repelling: pushes away on both sides".into(), None),
+        Class::RepellingFor(choice) => {
+            (format!("repelling for some controls: pushes away on both sides at {}", values(&choice)), None)
+        }
+        Class::Unknown { mixed: true } => ("repelling for some states within their bounds".into(), None),
+        Class::Unknown { mixed: false } => {
+            ("unknown: nothing is proved for all states within their bounds".into(), None)
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Points on a surface, found by trial: what is accused of something must exist.
+
+use super::local::Local;
+use crate::differentiate::gradient;
+use crate::graph::{ExprId, evaluate};
+use crate::interval::Interval;
+use crate::model::Symbol;
+
+const TRIALS: u64 = 24;
+const STEPS: usize = 30;
+
+/// Points within the bounds and path constraints at which `psi` is 0 to the last digits.
+pub(crate) fn points(local: &Local) -> Vec<Vec<f64>> {
+    let found = (0..TRIALS).filter_map(|trial| {
+        let mut point: Vec<f64> =
+            local.domain.iter().enumerate().map(|(at, domain)| inside(*domain, trial, at as u64)).collect();
+        onto_surface(local, &mut point).then_some(point)
+    });
+    found.collect()
+}
+
+/// Whether an expression of states and time can be 0 within their bounds.
+pub(crate) fn zero(local: &mut Local, expr: ExprId) -> bool {
+    let inputs: Vec<u32> = local.graph.inputs_of(&[expr]);
+    let slopes = gradient(&mut local.graph, expr, &inputs);
+    let roots: Vec<ExprId> = std::iter::once(expr).chain(slopes).collect();
+    let moves = |at: u32| matches!(local.symbols[at as usize], Symbol::State(_) | Symbol::Time);
+    let movable: Vec<u32> = inputs.iter().copied().filter(|&at| moves(at)).collect();
+    (0..TRIALS).any(|trial| {
+        let mut point: Vec<f64> =
+            local.domain.iter().enumerate().map(|(at, domain)| inside(*domain, trial, at as u64)).collect();
+        for _ in 0..STEPS {
+            let values = evaluate(&local.graph, &roots, &point, &[]);
+            if values[0].abs() <= 1e-12 {
+                return point.iter().zip(&local.domain).all(|(value, domain)| near(*value, *domain));
+            }
+            let slope =
+                |at: &u32| values[1 + inputs.iter().position(|it| it == at).expect("it is one of them")];
+            let size: f64 = movable.iter().map(|at| slope(at) * slope(at)).sum();
+            movable.iter().for_each(|at| point[*at as usize] -= values[0] * slope(at) / size);
+        }
+        false
+    })
+}
+
+/// A number in an interval that depends on nothing but the trial.
+fn inside(domain: Interval, trial: u64, at: u64) -> f64 {
+    let mut state = trial.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ (at + 1).wrapping_mul(0xD1B5_4A32_D192_ED03);
+    state ^= state >> 32;
+    state = state.wrapping_mul(0xD6E8_FEB8_6659_FD93);
+    state ^= state >> 32;
+    let part = if trial == 0 { 0.5 } else { (state >> 11) as f64 / (1u64 << 53) as f64 };
+    match (domain.lower.is_finite(), domain.upper.is_finite()) {
+        (true, true) => domain.lower + part * (domain.upper - domain.lower),
+        (true, false) => domain.lower + 2.0 * part,
+        (false, true) => domain.upper - 2.0 * part,
+        (false, false) => 4.0 * part - 2.0,
+    }
+}
+
+/// Moves the states along the gradient until `psi` vanishes; says whether that worked within all bounds.
+fn onto_surface(local: &Local, point: &mut [f64]) -> bool {
+    if let Some((input, value)) = local.replaced {
+        point[input as usize] = evaluate(&local.graph, &[value], point, &[])[0];
+        return is_allowed(local, point);
+    }
+    let inputs: Vec<usize> = local
+        .gradient
+        .iter()
+        .filter_map(|it| local.input_of(Symbol::State(it.0)))
+        .map(|it| it as usize)
+        .collect();
+    let roots: Vec<ExprId> = std::iter::once(local.psi).chain(local.gradient.iter().map(|it| it.1)).collect();
+    for _ in 0..STEPS {
+        let values = evaluate(&local.graph, &roots, point, &[]);
+        let size: f64 = values[1..].iter().map(|slope| slope * slope).sum();
+        if values[0].abs() <= 1e-12 {
+            return size > 0.0 && is_allowed(local, point);
+        }
+        for (&input, slope) in inputs.iter().zip(&values[1..]) {
+            point[input] -= values[0] * slope / size;
+        }
+    }
+    false
+}
+
+fn is_allowed(local: &Local, point: &[f64]) -> bool {
+    let roots: Vec<ExprId> = local.constraints.iter().map(|it| it.0).collect();
+    let values = evaluate(&local.graph, &roots, point, &[]);
+    let inside = local.domain.iter().zip(point).all(|(domain, value)| near(*value, *domain));
+    inside && values.iter().zip(&local.constraints).all(|(value, it)| near(*value, it.1))
+}
+
+/// Within a range, but for rounding.
+fn near(value: f64, range: Interval) -> bool {
+    let slack = 1e-9 * (1.0 + value.abs());
+    range.lower - slack <= value && value <= range.upper + slack
+}

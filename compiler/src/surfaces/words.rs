@@ -79,12 +79,13 @@ impl Words<'_> {
             power += 1;
         }
         let text = if power == 1 { name.to_string() } else { format!("{name}^{power}") };
-        let before = self.polynomial(graph, &rest, depth + 1);
-        Some(match &*before {
-            "1" => text,
-            "-1" => format!("-{text}"),
-            _ if rest.terms.len() > 1 => format!("({before})*{text}"),
-            _ => format!("{before}*{text}"),
+        let single = rest.as_term().map(|(monomial, factor)| (monomial.clone(), factor));
+        Some(match single {
+            Some((monomial, factor)) => {
+                let sign = if factor < 0.0 { "-" } else { "" };
+                sign.to_string() + &self.product(graph, &monomial, factor.abs(), Some(text), depth)
+            }
+            None => format!("({})*{text}", self.polynomial(graph, &rest, depth + 1)),
         })
     }
 
@@ -103,14 +104,21 @@ impl Words<'_> {
             text += sign;
             let term = Polynomial::default().plus(factor.abs(), &Polynomial::product(monomial.clone()));
             text += &match form.terms.len() {
-                1 => self.product(graph, monomial, factor.abs(), depth),
+                1 => self.product(graph, monomial, factor.abs(), None, depth),
                 _ => self.polynomial(graph, &term, depth + 1),
             };
         }
         if text.is_empty() { "0".into() } else { text }
     }
 
-    fn product(&self, graph: &mut Graph, monomial: &Monomial, factor: f64, depth: usize) -> String {
+    fn product(
+        &self,
+        graph: &mut Graph,
+        monomial: &Monomial,
+        factor: f64,
+        named: Option<String>,
+        depth: usize,
+    ) -> String {
         let mut above: Vec<String> = Vec::new();
         let mut below: Vec<String> = Vec::new();
         for &(atom, power) in monomial {
@@ -118,6 +126,7 @@ impl Words<'_> {
             let side = if power > 0 { &mut above } else { &mut below };
             side.push(if power.abs() == 1 { text } else { format!("{text}^{}", power.abs()) });
         }
+        above.extend(named);
         if factor != 1.0 || above.is_empty() {
             above.insert(0, number(tidy(factor)));
         }

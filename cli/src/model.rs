@@ -79,11 +79,12 @@ fn is_second_word(text: &str, name: &str) -> bool {
     text.lines().any(second)
 }
 
-/// Whether the line above says `# fdc: allow FDC0404`. Errors cannot be allowed.
+/// Whether the line above says `# fdc: allow FDC0404`, perhaps with other codes. Errors cannot be allowed.
 fn is_allowed(text: &str, diagnostic: &Diagnostic) -> bool {
     let before = text[..diagnostic.span().start as usize].trim_end_matches(|c| c != '\n');
     let above = before.trim_end().rsplit('\n').next().unwrap_or_default();
-    let allowed =
-        above.rsplit_once("# fdc: allow ").is_some_and(|(_, code)| code.trim() == diagnostic.code.as_str());
+    let allowed = above
+        .rsplit_once("# fdc: allow ")
+        .is_some_and(|(_, codes)| codes.split_whitespace().any(|code| code == diagnostic.code.as_str()));
     allowed && diagnostic.severity != Severity::Error
 }

@@ -143,8 +143,8 @@ fn what_is_simulated_is_the_true_system() {
 /// The smoothed problem has a solution; on the edge of the true system there are three ways on.
 #[test]
 fn what_the_true_system_does_not_tell_fails_with_its_reason() {
-    let text = "model edge\nfree a in [0, 2] guess 1\ntime t in [0, 1]\nstate x start 0\nsurface top = x\n\
-                dynamics { x' in a*x + 2*Sgn(top) }\nminimize (a - 0.75)^2\n\
+    let text = "model edge\nfree a in [0, 2] guess 1\ntime t in [0, 1]\nstate x start 0\nstate y start 2\nsurface top = x\n\
+                dynamics {\n  x' in a*x + y*Sgn(top)\n  y' = 0\n}\nminimize (a - 0.75)^2\n\
                 method { smooth sigma = 0.1 grid N = 10 }\n\
                 expect {\n  sliding(top) == 0\n  sensitivity(x(end), a) == 0\n  a == 0.75 within 1e-6\n}\n";
     let folder = folder("untold", &[("edge.fdc", text.as_bytes())]);

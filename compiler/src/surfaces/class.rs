@@ -36,9 +36,10 @@ pub(crate) type Choice = Vec<(Symbol, f64)>;
 /// Finds the class. What a few points contradict is not even tried to be proved.
 pub(crate) fn classify(local: &mut Local) -> Class {
     use Claim::{Negative, NotNegative, Positive};
-    let [below, above, jump] = [local.below, local.above, local.jump];
+    let [below, above] = [local.below, local.above];
     let product = local.graph.mul(below, above);
     let product = local.normal(product);
+    let fall = local.graph.neg(local.jump);
     let points = sample::points(local);
     if points.is_empty() && local.prover().proves(&local.graph, &[(local.psi, Claim::Nowhere)]) {
         return Class::Apart;
@@ -57,7 +58,7 @@ pub(crate) fn classify(local: &mut Local) -> Class {
     if below == above || proves(&[(product, NotNegative)]) {
         return Class::Crossed { strictly: false };
     }
-    if proves(&[(jump, Negative)]) {
+    if proves(&[(fall, NotNegative)]) {
         return Class::Attracting;
     }
     // From here on the surface is accused of something, so there must be a point on it.

@@ -1,7 +1,7 @@
 //! Resets that can pile up: `psi` stays 0, its rate is turned round and shrinks, and the flow brings it back.
 //!
 //! ```text
-//! psi(r(x)) = 0,   psi'(r(x)) = -e psi'(x) with 0 <= e < 1,   psi'' < 0 where psi' = 0      (falling)
+//! psi(r(x)) = 0,   psi'(r(x)) = -e psi'(x) with 0 < e < 1,   psi'' < 0 where psi' = 0      (falling)
 //! ```
 //!
 //! The times between such resets shrink by `e`, so their sum is finite.
@@ -35,7 +35,8 @@ pub(crate) fn restitution(local: &mut Local, view: &View<'_>, jump: &Jump) -> Op
     };
     let is_constant = !local.graph.inputs_of(&[factor]).iter().any(moves);
     let range = local.prover().range(&local.graph, factor);
-    let shrinks = is_constant && range.lower >= 0.0 && range.lower < 1.0 && range.upper <= 1.0;
+    let shrinks =
+        is_constant && range.lower >= 0.0 && range.lower < 1.0 && 0.0 < range.upper && range.upper <= 1.0;
     (shrinks && returns(local, view, incoming, jump.direction)).then_some(factor)
 }
 

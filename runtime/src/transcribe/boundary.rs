@@ -3,7 +3,7 @@
 use super::assembly::{Builder, Contribution, Repeated};
 use super::tables::{Tables, scatter};
 use crate::linalg::Stages;
-use crate::problem::{Columns, Problem};
+use crate::problem::{Bounds, Columns, Degree, Problem};
 use std::sync::Arc;
 
 /// The boundary function with its tables. Output 0 is the objective, the others are coupling rows.
@@ -98,6 +98,30 @@ impl Ends {
             || (0..self.tables.hessian.columns()).any(|i| bad(&self.tables.hessian, i)).then_some(0);
         values.or_else(|| slopes().map(|(_, (row, _))| *row as usize)).or_else(curvature)
     }
+}
+
+/// The last states that a condition by itself gives a value, such as `end x == 1`, with that value.
+pub(super) fn given_at_the_end(problem: &Problem, stages: Stages) -> Vec<(usize, f64)> {
+    let function = &problem.boundary;
+    let layout = function.layout();
+    let entries = &function.jacobian_pattern().entries;
+    let mut points = Columns::new(layout.point_inputs(), 1);
+    points.as_mut_slice().fill(0.0);
+    let parameters: Vec<f64> = problem.parameters.iter().map(|parameter| parameter.value).collect();
+    let mut values = Columns::new(function.outputs(), 1);
+    let mut slopes = Columns::new(entries.len(), 1);
+    function.jacobian(&points, &parameters, &mut values, &mut slopes);
+    let last = stages.state(stages.intervals);
+    let given = |(row, bounds): (usize, &Bounds)| {
+        let output = row + 1;
+        let mut own = entries.iter().enumerate().filter(|(_, entry)| entry.0 as usize == output);
+        let ((place, entry), None) = (own.next()?, own.next()) else { return None };
+        let target = variable(problem, stages, entry.1 as usize);
+        let (slope, at_zero) = (slopes.column(place)[0], values.column(output)[0]);
+        let is_simple = bounds.is_equality() && function.degree(output) == Degree::Affine && slope != 0.0;
+        (is_simple && last.contains(&target)).then(|| (target, (bounds.lower - at_zero) / slope))
+    };
+    problem.boundary_bounds.iter().enumerate().filter_map(given).collect()
 }
 
 /// The variable of the programme behind an input.

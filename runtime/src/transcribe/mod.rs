@@ -195,6 +195,12 @@ fn variable_bounds(problem: &Problem, stages: Stages) -> Vec<Bounds> {
     for (variable, unknown) in stages.globals().zip(&problem.unknowns) {
         bounds[variable] = unknown.bounds;
     }
+    for (variable, value) in boundary::given_at_the_end(problem, stages) {
+        // On its bound the state would have no interior.
+        if bounds[variable].violation(value) == 0.0 {
+            bounds[variable] = Bounds::FREE;
+        }
+    }
     bounds
 }
 

@@ -50,6 +50,10 @@ pub(super) struct Algorithm {
     pub(super) watchdog: Watchdog,
     /// How often the filter was emptied at a feasible point.
     pub(super) emptied: usize,
+    /// Whether rows were given the values that they have, because a violation below the acceptable one could not be mended.
+    pub(super) is_relaxed: bool,
+    /// Whether bounds were moved outwards by the tolerance.
+    pub(super) is_widened: bool,
     /// Whether the derivatives belong to the iterate.
     pub(super) fresh: bool,
 }
@@ -70,6 +74,8 @@ impl Algorithm {
             tiny_steps: 0,
             watchdog: Watchdog::default(),
             emptied: 0,
+            is_relaxed: false,
+            is_widened: false,
             fresh: false,
             space,
             at,
@@ -107,17 +113,44 @@ impl Algorithm {
                 Restored::Stopped(status) => return Some(status),
                 Restored::Blocked => {}
                 Restored::Stationary if self.values.largest() > self.options.tol => {
-                    return Some(Status::Infeasible);
+                    return self.relax(nlp).then_some(Status::Infeasible);
                 }
                 Restored::Stationary => {
-                    self.resume(nlp);
-                    self.filter.clear();
+                    self.begin_anew(nlp);
                     self.emptied += 1;
-                    return (self.emptied > MOST_RESTARTS).then_some(Status::NumericalFailure);
+                    return if self.emptied > MOST_RESTARTS { self.widen(nlp) } else { None };
                 }
             }
         }
-        Some(Status::NumericalFailure)
+        self.widen(nlp)
+    }
+
+    /// From here on with new multipliers and an empty filter.
+    fn begin_anew(&mut self, nlp: &mut dyn Nlp) {
+        self.resume(nlp);
+        self.filter.clear();
+    }
+
+    /// Moves all bounds outwards by the tolerance, once: what they enclose may have no interior.
+    fn widen(&mut self, nlp: &mut dyn Nlp) -> Option<Status> {
+        if std::mem::replace(&mut self.is_widened, true) {
+            return Some(Status::NumericalFailure);
+        }
+        self.space.widen(self.options.tol);
+        self.begin_anew(nlp);
+        None
+    }
+
+    /// Accepts the smallest violation near by, if it is acceptable, as none: a smoothed block comes to rest only in the limit. Then
+    /// an optimum is no more than acceptable either. `true` if the violation is too large, or this was done before.
+    fn relax(&mut self, nlp: &mut dyn Nlp) -> bool {
+        if self.is_relaxed || self.values.largest() > ACCEPTABLE_ERROR {
+            return true;
+        }
+        self.is_relaxed = true;
+        self.space.relax(&mut self.values.residuals);
+        self.begin_anew(nlp);
+        false
     }
 
     /// One iteration: look, decide, step.
@@ -146,10 +179,16 @@ impl Algorithm {
             self.tiny_steps = 0;
         }
         self.kkt.assemble(&self.space, &self.at, &self.slopes, &self.barrier);
-        if !self.kkt.factor_with_inertia(&self.space, &self.slopes, self.barrier.mu, &mut self.counts) {
-            return Outcome::Blocked;
-        }
-        self.take_step(nlp)
+        let has_step = self.find_step(nlp) || (self.kkt.fall_back(nlp, &self.space) && self.find_step(nlp));
+        if has_step { self.take_step(nlp) } else { Outcome::Blocked }
+    }
+
+    /// The Newton step with the right inertia; `false` if the linear system could not be solved.
+    fn find_step(&mut self, nlp: &dyn Nlp) -> bool {
+        let Algorithm { space, at, slopes, kkt, counts, step, values, .. } = self;
+        let mu = self.barrier.mu;
+        let system = System { nlp, space, at, slopes, mu };
+        kkt.factor_with_inertia(space, slopes, mu, counts) && kkt.step(&system, &values.residuals, step)
     }
 
     fn report(&mut self) -> Progress {
@@ -168,7 +207,7 @@ impl Algorithm {
         let error = self.residuals.error(0.0);
         self.acceptable = if error <= ACCEPTABLE_ERROR { self.acceptable + 1 } else { 0 };
         if error <= self.options.tol {
-            Some(Status::Solved)
+            Some(if self.is_relaxed { Status::Acceptable } else { Status::Solved })
         } else if self.acceptable >= ACCEPTABLE_ITERATIONS {
             Some(Status::Acceptable)
         } else if self.has_diverged() {
@@ -187,10 +226,6 @@ impl Algorithm {
 
     fn take_step(&mut self, nlp: &mut dyn Nlp) -> Outcome {
         let space = &self.space;
-        let system = System { nlp, space, at: &self.at, slopes: &self.slopes, mu: self.barrier.mu };
-        if !self.kkt.step(&system, &self.values.residuals, &mut self.step) {
-            return Outcome::Blocked;
-        }
         let (longest, dual) = self.barrier.longest_steps(space, &self.at, &self.step);
         if self.is_tiny() {
             return self.accept_tiny(nlp, longest, dual);

@@ -49,6 +49,8 @@ pub(super) struct System<'a> {
 /// The matrix, its factors and its memory.
 pub(super) struct Kkt {
     factor: Box<dyn Factor>,
+    /// Whether the factorisation is the recursion, which has no pivoting.
+    is_recursion: bool,
     /// `z / distance` over `y`.
     sigma: Vec<f64>,
     /// Diagonals of the factored matrix.
@@ -80,6 +82,7 @@ impl Kkt {
             (_, Some(stages)) => Riccati::new(stages, hessian, jacobian, &space.fixed, &equality).ok(),
         };
         let rows = space.target.len();
+        let is_recursion = recursion.is_some();
         let factor: Box<dyn Factor> = match recursion {
             Some(recursion) => Box::new(recursion),
             None => Box::new(SparseLdl::new(hessian, jacobian, &space.fixed, rows)),
@@ -88,6 +91,7 @@ impl Kkt {
         let size = space.variables + rows;
         Kkt {
             factor,
+            is_recursion,
             sigma: zeros(space.len()),
             diagonal: zeros(space.variables),
             d: zeros(rows),
@@ -100,6 +104,17 @@ impl Kkt {
             was_needed: false,
             caution: 0.0,
         }
+    }
+
+    /// Goes over from the recursion to the sparse factorisation, which loses fewer digits where a state has almost no room;
+    /// `false` if it is there already.
+    pub(super) fn fall_back(&mut self, nlp: &dyn Nlp, space: &Space) -> bool {
+        let was_recursion = std::mem::take(&mut self.is_recursion);
+        if was_recursion {
+            let (hessian, jacobian) = (nlp.hessian_structure(), nlp.jacobian_structure());
+            self.factor = Box::new(SparseLdl::new(hessian, jacobian, &space.fixed, space.target.len()));
+        }
+        was_recursion
     }
 
     /// Computes the diagonals that belong to the iterate.
@@ -201,7 +216,7 @@ impl Kkt {
                 if direction > 0.0 { (at.lower[i], &mut lower[i]) } else { (at.upper[i], &mut upper[i]) };
             *dz = mu / distance - z - direction * z / distance * y[i];
         });
-        true
+        [&*y, lower, upper].into_iter().flatten().all(|value| value.is_finite())
     }
 
     fn fill_right_side(&mut self, space: &Space, residuals: &[f64]) {
@@ -235,7 +250,7 @@ impl Kkt {
             before = now;
         }
         let size = largest(&self.right).max(largest(&self.solution));
-        largest(&self.residual) <= 1e-5 * size
+        size.is_finite() && largest(&self.residual) <= 1e-5 * size
     }
 
     fn compute_residual(&mut self, nlp: &dyn Nlp, space: &Space, slopes: &Slopes) {

@@ -18,11 +18,25 @@ mod tests;
 mod watchdog;
 
 use super::scaling::Scaled;
-use super::{Multipliers, Nlp, Options, Progress, Solution, Start, Watch};
+use super::{Multipliers, Nlp, Options, Progress, Solution, Start, Status, Watch};
+use crate::problem::Linear;
 use algorithm::Algorithm;
 
-/// Solves the programme from `start`. Progress is reported unscaled, once per iteration.
+/// Solves the programme from `start`. Progress is reported unscaled, once per iteration. Where the recursion ends without a solution, the sparse
+/// factorisation is asked, whose other rounding and regularisation lead along another path: nobody is told "infeasible" for want of luck.
 pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watch) -> Solution {
+    let first = attempt(nlp, start, options, watch);
+    let is_lost = matches!(first.status, Status::Infeasible | Status::NumericalFailure);
+    if !is_lost || options.linear != Linear::Automatic || nlp.stages().is_none() {
+        return first;
+    }
+    let second = attempt(nlp, start, &Options { linear: Linear::SparseLdl, ..*options }, watch);
+    let (mut counts, is_found) = (first.counts, matches!(second.status, Status::Solved | Status::Acceptable));
+    counts.add(&second.counts);
+    Solution { counts, ..if is_found { second } else { first } }
+}
+
+fn attempt(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watch) -> Solution {
     let mut scaled = Scaled::new(nlp, &start.v);
     let objective_scale = scaled.objective;
     let mut watch = |progress: &Progress| {

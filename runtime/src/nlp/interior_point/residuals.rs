@@ -29,12 +29,12 @@ impl Residuals {
         let scale = |average: f64| average.max(NORMAL_MULTIPLIER) / NORMAL_MULTIPLIER;
         let mut dual = 0.0f64;
         for i in 0..space.len() {
-            dual = dual.max((slopes.lagrangian[i] - at.lower[i] + at.upper[i]).abs());
+            dual = larger(dual, (slopes.lagrangian[i] - at.lower[i] + at.upper[i]).abs());
         }
         let (mut largest, mut smallest) = (0.0f64, f64::INFINITY);
         space.for_each_bound(&at.y, |i, distance, direction| {
             let product = distance * if direction > 0.0 { at.lower[i] } else { at.upper[i] };
-            (largest, smallest) = (largest.max(product), smallest.min(product));
+            (largest, smallest) = (larger(largest, product), smallest.min(product));
         });
         Residuals {
             dual: dual / scale((bound_sum + row_sum) / (bounds + rows)),
@@ -50,6 +50,11 @@ impl Residuals {
         let no_bounds = self.largest_product == 0.0 && self.smallest_product == 0.0;
         let products =
             if no_bounds { 0.0 } else { (self.largest_product - mu).max(mu - self.smallest_product) };
-        self.dual.max(self.primal).max(products / self.product_scale)
+        larger(larger(self.dual, self.primal), products / self.product_scale)
     }
+}
+
+/// The larger of two; what is not a number is larger than all numbers.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }

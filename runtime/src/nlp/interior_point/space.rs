@@ -93,6 +93,18 @@ impl Space {
         self.lower.iter().zip(&self.upper).any(|(lower, upper)| lower > upper)
     }
 
+    /// Moves all bounds outwards, relative to their size where that is more than 1.
+    pub(super) fn widen(&mut self, by: f64) {
+        self.lower.iter_mut().for_each(|lower| *lower -= by * lower.abs().max(1.0));
+        self.upper.iter_mut().for_each(|upper| *upper += by * upper.abs().max(1.0));
+    }
+
+    /// Moves the right-hand sides so that these residuals become none.
+    pub(super) fn relax(&mut self, residuals: &mut [f64]) {
+        self.target.iter_mut().zip(&*residuals).for_each(|(target, residual)| *target += residual);
+        residuals.fill(0.0);
+    }
+
     /// Turns row values into residuals, in place.
     pub(super) fn residuals(&self, y: &[f64], rows: &mut [f64]) {
         rows.iter_mut().zip(&self.target).for_each(|(row, target)| *row -= target);

@@ -17,7 +17,7 @@ pub struct Earlier {
 
 /// The earlier solution on the grid of the problem; what it lacks comes from the guess.
 pub fn resample(problem: &Problem, earlier: &Earlier) -> Vec<f64> {
-    let nlp = TranscribedNlp::new(problem);
+    let mut nlp = TranscribedNlp::new(problem);
     let stages = nlp.chain();
     let mut v = nlp.guess();
     for k in 0..=stages.intervals {
@@ -57,7 +57,7 @@ const VARIATION: f64 = 0.3;
 
 /// The guess (or `base`) with smooth random variations of every signal; the same for the same seed and index.
 pub fn perturbed(problem: &Problem, base: Option<Vec<f64>>, index: u32) -> Start {
-    let nlp = TranscribedNlp::new(problem);
+    let mut nlp = TranscribedNlp::new(problem);
     let stages = nlp.chain();
     let mut v = base.unwrap_or_else(|| nlp.guess());
     let mut random = Random::new(problem.method.seed, index);

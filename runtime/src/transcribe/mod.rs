@@ -90,8 +90,26 @@ impl<'p> TranscribedNlp<'p> {
         parameters
     }
 
-    /// The model's guess on the grid.
-    pub fn guess(&self) -> Vec<f64> {
+    /// The model's guess on the grid; running integrals are those of the guess.
+    pub fn guess(&mut self) -> Vec<f64> {
+        let mut v = self.guessed();
+        let hidden: Vec<usize> = (0..self.stages.states).filter(|&i| self.problem.states[i].hidden).collect();
+        if !hidden.is_empty() {
+            let mut rows = vec![0.0; self.row_bounds.len()];
+            self.values(&v, &mut rows);
+            for k in 0..self.stages.intervals {
+                for &i in &hidden {
+                    let defect = rows[self.stages.defects(k).start + i];
+                    let next =
+                        v[self.stages.state(k).start + i] - if defect.is_finite() { defect } else { 0.0 };
+                    v[self.stages.state(k + 1).start + i] = next;
+                }
+            }
+        }
+        v
+    }
+
+    fn guessed(&self) -> Vec<f64> {
         let (stages, problem) = (self.stages, self.problem);
         let mut points = Columns::new(problem.guess.layout().point_inputs(), stages.intervals + 1);
         for (k, tau) in points.column_mut(0).iter_mut().enumerate() {

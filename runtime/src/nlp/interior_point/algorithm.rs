@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 
 /// An error this small for this many iterations is acceptable.
 const ACCEPTABLE_ERROR: f64 = 1e-6;
-const ACCEPTABLE_ITERATIONS: usize = 15;
+const ACCEPTABLE_ITERATIONS: usize = 100;
 /// Variables beyond this, at a point that is feasible relative to them, have left the problem.
 const DIVERGED: f64 = 1e10;
 /// A step this small, relative to the iterate, is rounding.

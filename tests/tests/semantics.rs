@@ -27,7 +27,8 @@ fn documents_claim_every_diagnostic() {
 
 #[test]
 fn models_give_neither_errors_nor_warnings() {
-    for (name, text) in documents("models", "fdc") {
+    let folders = ["models", "tests/right", "tests/classics"];
+    for (name, text) in folders.iter().flat_map(|folder| documents(folder, "fdc")) {
         let mut found = diagnostics(&text);
         let allowed = |it: &Diagnostic| {
             text.lines().any(|line| line.contains("# fdc: allow") && line.contains(it.code.as_str()))

@@ -3,6 +3,7 @@
 mod bounds;
 mod commands;
 mod conditions;
+mod difference;
 mod exact;
 mod expectations;
 mod failure;
@@ -14,6 +15,7 @@ mod quantities;
 mod render;
 mod replay;
 mod replayed;
+mod rewrite;
 mod solver;
 mod stays;
 mod verdict;

@@ -1,4 +1,4 @@
-//! When to stop a solve: Ctrl-C and the time limit.
+//! When to stop: Ctrl-C and the time limit.
 
 use fdcc_runtime::nlp::Stop;
 use std::ops::ControlFlow;
@@ -20,6 +20,11 @@ pub fn catch_interrupts() {
     });
 }
 
+/// Whether Ctrl-C has been pressed.
+pub fn is_interrupted() -> bool {
+    INTERRUPTED.load(Ordering::Relaxed)
+}
+
 /// The moment at which a solve has to stop.
 #[derive(Clone, Copy, Debug)]
 pub struct Deadline(Option<Instant>);
@@ -33,7 +38,7 @@ impl Deadline {
 
     /// Whether to go on.
     pub fn check(&self) -> ControlFlow<Stop> {
-        if INTERRUPTED.load(Ordering::Relaxed) {
+        if is_interrupted() {
             return ControlFlow::Break(Stop::Interrupted);
         }
         match self.0 {

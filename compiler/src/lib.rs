@@ -1,5 +1,6 @@
 //! From the syntax tree to compiled functions.
 
+mod allow;
 mod asked;
 pub mod builtins;
 mod check;
@@ -13,7 +14,9 @@ pub mod model;
 mod overrides;
 mod polynomial;
 pub mod program;
+mod repair;
 mod resolve;
+mod review;
 pub mod smooth;
 mod surfaces;
 pub mod units;
@@ -32,8 +35,10 @@ use lower::{Purpose, lower, numbers, problem};
 pub use model::Model;
 pub use overrides::is_method_key;
 use program::VectorFunction;
+pub use repair::repair;
 pub use resolve::closest;
 use resolve::resolve;
+pub use review::{Reviewed, review};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 pub use surfaces::SurfaceReport;

@@ -118,6 +118,7 @@ codes! {
     NotText = "FDC0007", Error, "not a text file";
     EmptyModel = "FDC0008", Warning, "a file without any item";
     TooLarge = "FDC0009", Error, "a file that is too large to be a model";
+    UselessAllow = "FDC0010", Warning, "an `allow` that silences nothing";
     UnknownName = "FDC0101", Error, "an unknown name";
     DuplicateName = "FDC0102", Error, "a name declared twice";
     WrongKind = "FDC0103", Error, "a name of the wrong kind";

@@ -5,12 +5,14 @@
 pub mod ast;
 mod diagnostic;
 pub mod fix;
+mod format;
 mod parse;
 mod source;
 
 pub use diagnostic::{Code, Diagnostic, Label, Severity};
 pub use fix::{Edit, Fix};
-pub use parse::parse;
+pub use format::format;
+pub use parse::{comments, parse};
 pub use source::{LineColumn, SourceFile, Span};
 
 /// What a text holds: the items that could be read, and what is wrong with the rest.

@@ -60,5 +60,5 @@ fn check(text: &str) -> Vec<Diagnostic> {
     if !parsed.diagnostics.is_empty() {
         return parsed.diagnostics;
     }
-    fdcc_compiler::check(&parsed.tree).diagnostics
+    fdcc_compiler::review(text).diagnostics
 }

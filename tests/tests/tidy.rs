@@ -52,6 +52,7 @@ const FOREIGN: &[(&str, &[&str])] = &[
     ("cranelift", &["compiler/src/generate/cranelift.rs", "compiler/src/generate/cranelift/"]),
     ("clarabel", &["runtime/src/clarabel.rs"]),
     ("miette", &["cli/src/render.rs"]),
+    ("similar", &["cli/src/difference.rs"]),
     ("serde", &["cli/src/output/"]),
     ("serde_json", &["cli/src/output/", "cli/tests/", "tests/"]),
 ];

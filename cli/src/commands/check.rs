@@ -6,7 +6,8 @@ use fdcc_grammar::{Diagnostic, Severity, SourceFile};
 use super::Exit;
 use crate::model::Loaded;
 use crate::output::{self, diagnostics, plural, sarif};
-use crate::render;
+use crate::{render, watch};
+use std::time::Duration;
 
 /// Report everything that is wrong with models
 #[derive(Args)]
@@ -20,10 +21,16 @@ pub struct Check {
     /// Treat warnings as errors
     #[arg(long, value_name = "WHAT")]
     deny: Option<Deny>,
+    /// Check again whenever one of the files changes, until Ctrl-C
+    #[arg(long)]
+    watch: bool,
 }
 
 /// More drawings than this nobody looks at; the summary counts all, and the other formats list them.
 const MOST_DRAWN: usize = 100;
+
+/// Short enough to feel immediate.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(150);
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Format {
@@ -45,6 +52,33 @@ enum Deny {
 impl Check {
     /// Checks each file and prints what was found.
     pub fn run(self) -> Exit {
+        if !self.watch {
+            return self.once();
+        }
+        if self.files.iter().any(|file| file == "-") {
+            output::complain("the standard input cannot be watched; name a file");
+            return Exit::Usage;
+        }
+        self.whenever_files_change();
+        Exit::Fine
+    }
+
+    /// Looks at the files several times a second: they are small, and every system can do it.
+    fn whenever_files_change(&self) {
+        watch::catch_interrupts();
+        let mut before = None;
+        while !watch::is_interrupted() {
+            let now: Vec<Option<Vec<u8>>> = self.files.iter().map(|file| std::fs::read(file).ok()).collect();
+            if before.as_ref() != Some(&now) {
+                output::clear_terminal();
+                self.once();
+                before = Some(now);
+            }
+            std::thread::sleep(BETWEEN_LOOKS);
+        }
+    }
+
+    fn once(&self) -> Exit {
         let mut exit = Exit::Fine;
         let mut loaded = Vec::new();
         for file in &self.files {

@@ -63,6 +63,7 @@ pages! {
     NotText "FDC0007"
     EmptyModel "FDC0008"
     TooLarge "FDC0009"
+    UselessAllow "FDC0010"
     UnknownName "FDC0101"
     DuplicateName "FDC0102"
     WrongKind "FDC0103"

@@ -4,6 +4,8 @@ mod accuracy;
 mod check;
 mod driven;
 mod explain;
+mod fix;
+mod fmt;
 mod grad;
 mod options;
 mod show;
@@ -51,6 +53,8 @@ pub enum Command {
     Sweep(Box<sweep::Sweep>),
     Test(Box<test::Test>),
     Show(show::Show),
+    Fix(fix::Fix),
+    Fmt(fmt::Fmt),
     Explain(explain::Explain),
 }
 
@@ -66,6 +70,8 @@ impl Command {
             Command::Sweep(sweep) => sweep.run(),
             Command::Test(test) => test.run(),
             Command::Show(show) => show.run(),
+            Command::Fix(fix) => fix.run(),
+            Command::Fmt(fmt) => fmt.run(),
             Command::Explain(explain) => explain.run(),
         }
     }

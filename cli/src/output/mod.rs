@@ -19,7 +19,7 @@ pub mod table;
 pub mod tested;
 pub mod verified;
 
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 
 use serde::Serialize;
 
@@ -31,6 +31,13 @@ pub fn print(text: &str) {
 /// Prints to the standard error, which may have been closed just as well.
 pub fn tell(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+/// Begins a new screen where the standard output is a terminal.
+pub fn clear_terminal() {
+    if std::io::stdout().is_terminal() {
+        print("\x1b[2J\x1b[3J\x1b[H");
+    }
 }
 
 /// Says on the standard error why something was not done.

@@ -12,17 +12,21 @@ mod forgotten;
 mod items;
 mod limits;
 mod messages;
+mod outline;
 mod recover;
 mod slips;
 mod tokens;
 mod unknown;
 mod words;
 
+pub(crate) use outline::{Column, Leaf, Part, Row, outline};
 use pest::Parser as _;
 use pest::error::{ErrorVariant, InputLocation};
 use pest::iterators::Pairs;
 
 use crate::{Code, Diagnostic, Parse, Span};
+
+pub use tokens::comments;
 
 /// The generated parser.
 #[derive(pest_derive::Parser)]

@@ -19,7 +19,7 @@ const FOREIGN: &[(&str, Option<&str>, &str)] = &[
     ("²", Some("^2"), "write `^2`"),
     ("³", Some("^3"), "write `^3`"),
     ("√", None, "write `sqrt(...)`"),
-    ("∈", Some(" in "), "write `in`"),
+    ("∈", Some("in"), "write `in`"),
     ("’", Some("'"), "write `'` for a derivative"),
     ("′", Some("'"), "write `'` for a derivative"),
     ("%", None, "a comment begins with `#`"),
@@ -38,9 +38,19 @@ pub(super) fn foreign_character(place: &Place<'_, '_>) -> Option<Diagnostic> {
         Diagnostic::new(Code::Unfinished, message, token.span(), "no item contains this character")
             .help(help);
     Some(match instead {
-        Some(sign) => diagnostic.fix(Fix::certain(help).replace(token.span(), sign)),
+        Some(sign) => diagnostic.fix(Fix::certain(help).replace(token.span(), apart(place, sign))),
         None => diagnostic,
     })
+}
+
+/// A sign, or a word with blanks where its neighbours touch it.
+fn apart(place: &Place<'_, '_>, sign: &str) -> String {
+    let is_word = sign.starts_with(char::is_alphabetic);
+    let end = place.tokens[place.at].end();
+    let before = place.previous().is_some_and(|before| before.end() == place.tokens[place.at].start);
+    let after = place.tokens.get(place.at + 1).is_some_and(|after| after.start == end);
+    let blank = |touches: bool| if is_word && touches { " " } else { "" };
+    format!("{}{sign}{}", blank(before), blank(after))
 }
 
 /// Items whose word is followed by a name.

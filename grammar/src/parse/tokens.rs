@@ -82,6 +82,21 @@ pub(super) fn tokens(text: &str) -> Vec<Token<'_>> {
     tokens
 }
 
+/// The places of all comments, from `#` to the end of the line.
+pub fn comments(text: &str) -> Vec<Span> {
+    let mut found = Vec::new();
+    let mut from = 0;
+    let ends = tokens(text).into_iter().map(|token| (token.start, token.end()));
+    for (start, end) in ends.chain([(text.len(), text.len())]) {
+        while let Some(at) = text[from..start].find('#').map(|at| from + at) {
+            from = text[at..start].find(['\n', '\r']).map_or(start, |length| at + length);
+            found.push(Span::new(at, at + text[at..from].trim_end().len()));
+        }
+        from = end;
+    }
+    found
+}
+
 /// What the grammar calls WHITESPACE.
 fn is_blank(character: char) -> bool {
     matches!(character, ' ' | '\t' | '\n' | '\r' | '\u{FEFF}' | '\u{A0}')

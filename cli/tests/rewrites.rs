@@ -2,14 +2,12 @@
 
 mod common;
 
-use common::{expect_exit, fdcc, folder, start, stderr, stdout};
+use common::*;
 use std::fs;
-use std::io::{BufRead, BufReader};
-use std::process::Command;
 
 const WIDE: &str = "param a=1\nparam  bb = 2\n";
 const TIDY: &str = "param a  = 1\nparam bb = 2\n";
-const BROKEN: &str = "param a = = 1\n";
+const BROKEN: &str = "param a =\n";
 const EQUATION: &str = "time t in [0, 1]\nstate v start 0\ndynamics { v' = -Sgn(v) }\n";
 const INCLUSION: &str = "time t in [0, 1]\nstate v start 0\ndynamics { v' in -Sgn(v) }\n";
 
@@ -58,8 +56,10 @@ fn fix_repairs_what_is_certain_and_prints_the_difference() {
     expect_exit(&fdcc(&place, &["fix", "broken.fdc"], ""), 1, "an error is left");
 }
 
+#[cfg(unix)]
 #[test]
 fn watching_checks_again_when_a_file_changes_and_ends_with_ctrl_c() {
+    use std::io::{BufRead, BufReader};
     let place = folder("watch", &[("model.fdc", EQUATION.as_bytes())]);
     let mut child = start(&place, &["check", "--watch", "--format", "short", "model.fdc"]);
     let mut lines = BufReader::new(child.stdout.take().expect("the output is piped")).lines();
@@ -67,8 +67,10 @@ fn watching_checks_again_when_a_file_changes_and_ends_with_ctrl_c() {
     assert!(next().contains("error[FDC0201]"));
     fs::write(place.join("model.fdc"), INCLUSION.replace("time", "tme")).expect("the file can be written");
     assert!(next().contains("error[FDC0005]"));
-    let interrupted =
-        Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");
+    let interrupted = std::process::Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .expect("kill runs");
     assert!(interrupted.success());
     assert_eq!(child.wait().expect("it ends").code(), Some(0));
     expect_exit(&fdcc(&place, &["check", "--watch", "-"], ""), 3, "the standard input");

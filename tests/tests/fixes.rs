@@ -49,7 +49,7 @@ fn each_repair_is_one() {
                 let single = Diagnostic { fixes: vec![repair.clone()], ..found.clone() };
                 let repaired = fix::apply(&text, &[single], true).expect("a repair changes something");
                 assert!(!repair.title.is_empty());
-                let is_still_there = review(&repaired).diagnostics.iter().any(|it| *it == found);
+                let is_still_there = review(&repaired).diagnostics.contains(&found);
                 assert!(!is_still_there, "{found:#?}\n{text}\n---\n{repaired}");
             }
         }

@@ -29,7 +29,7 @@ fn place_to_break(line: &Line<'_>) -> Option<usize> {
     let places = willingness(line);
     let fitting = || places.iter().filter(|(at, _)| line.width_before(*at) <= WIDTH);
     let best = fitting().map(|(_, level)| level).min();
-    let last = fitting().filter(|(_, level)| Some(level) == best).next_back();
+    let last = fitting().rfind(|(_, level)| Some(level) == best);
     last.or(places.first()).map(|(at, _)| *at)
 }
 

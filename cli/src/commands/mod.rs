@@ -7,6 +7,7 @@ mod explain;
 mod fix;
 mod fmt;
 mod grad;
+mod new;
 mod options;
 mod show;
 mod simulate;
@@ -55,6 +56,7 @@ pub enum Command {
     Show(show::Show),
     Fix(fix::Fix),
     Fmt(fmt::Fmt),
+    New(new::New),
     Explain(explain::Explain),
 }
 
@@ -72,6 +74,7 @@ impl Command {
             Command::Show(show) => show.run(),
             Command::Fix(fix) => fix.run(),
             Command::Fmt(fmt) => fmt.run(),
+            Command::New(new) => new.run(),
             Command::Explain(explain) => explain.run(),
         }
     }

@@ -7,7 +7,7 @@ use crate::resolve::text::{self, Style};
 use crate::resolve::value::KnotUse;
 use crate::resolve::walk;
 use fdcc_grammar::ast::{Argument, BinaryOperator, Equation, Expr, ExprKind, ItemKind, Relation};
-use fdcc_grammar::{Code, Diagnostic, Span};
+use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 
 /// Reports jumps in everything that the problem is made of; reports and guesses may jump.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
@@ -19,7 +19,8 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
         for knot_use in &piece.traits.knots {
             let Some(site) = meaning.sites.get(&knot_use.site) else { continue };
             if let Some(knot) = site.knots.iter().find(|knot| knot.order == 0) {
-                found.push(jump(meaning, site, knot, knot_use, &piece.role));
+                let item = facts.items.iter().map(|item| item.span).find(|span| holds(*span, knot_use.used));
+                found.push(jump(meaning, site, knot, knot_use, &piece.role, item));
             }
         }
     }
@@ -31,6 +32,7 @@ fn jump(
     knot: &Knot<'_>,
     place: &KnotUse,
     role: &Role<'_>,
+    item: Option<Span>,
 ) -> Diagnostic {
     let name = owner(meaning, site).map_or("this `piecewise`".into(), |name| format!("`{name}`"));
     let size = text::number((knot.limits[1] - knot.limits[0]).abs());
@@ -43,7 +45,22 @@ fn jump(
         true => found,
         false => found.label(place.used, format!("used in {}", role.describe())),
     };
-    found.help(repair(meaning, site, knot, place, role))
+    let surface =
+        ["boost", "switch", "switching"].into_iter().find(|name| meaning.scope.find(name).is_none());
+    let surface = surface.unwrap_or("switch_");
+    let written = match role {
+        Role::Equation(equation) => rewritten(meaning, site, knot, place, equation).map(|it| (*equation, it)),
+        _ => None,
+    };
+    let found = found.help(repair(surface, knot, written.as_ref()));
+    match (written, item) {
+        (Some((equation, written)), Some(item)) => found.fix(as_switch(surface, equation, &written, item)),
+        _ => found,
+    }
+}
+
+fn holds(item: Span, place: Span) -> bool {
+    item.start <= place.start && place.end <= item.end
 }
 
 /// `v == 10`.
@@ -56,25 +73,14 @@ pub(super) fn owner<'a>(meaning: &Elaborator<'a>, site: &Site<'_>) -> Option<&'a
     site.owner.map(|at| meaning.scope.declarations[at].name.name.as_str())
 }
 
+/// A surface and the right sides below and above it.
+type Switch = (String, [String; 2]);
+
 /// The same with a surface, written out where that is simple.
-fn repair(
-    meaning: &Elaborator<'_>,
-    site: &Site<'_>,
-    knot: &Knot<'_>,
-    place: &KnotUse,
-    role: &Role<'_>,
-) -> String {
+fn repair(surface: &str, knot: &Knot<'_>, written: Option<&(&Equation, Switch)>) -> String {
     let head = "declare the switch so that fdcc can treat it:";
-    let surface =
-        ["boost", "switch", "switching"].into_iter().find(|name| meaning.scope.find(name).is_none());
-    let surface = surface.unwrap_or("switch_");
-    let written = match role {
-        Role::Equation(equation) => rewritten(meaning, site, knot, place, equation),
-        _ => None,
-    };
     match written {
-        Some((psi, [below, above])) => {
-            let Role::Equation(equation) = role else { return head.into() };
+        Some((equation, (psi, [below, above]))) => {
             let left = sets::left_side(equation);
             format!(
                 "{head}\n  surface {surface} = {psi}\n  {left} in match {surface} {{ below => {below}, above => {above} }}"
@@ -89,6 +95,14 @@ fn repair(
     }
 }
 
+/// The surface before the item of the equation, and the match in the place of its right side.
+fn as_switch(surface: &str, equation: &Equation, (psi, [below, above]): &Switch, item: Span) -> Fix {
+    let right = Span { start: equation.relation_span.start, end: equation.right.span.end };
+    let choice = format!("in match {surface} {{ below => {below}, above => {above} }}");
+    let fix = Fix::likely(format!("declare the surface `{surface}`"));
+    fix.insert(item.start, format!("surface {surface} = {psi}\n")).replace(right, choice)
+}
+
 /// Longer right sides are not written out, in nodes.
 const LONGEST_REPAIR: usize = 100;
 
@@ -99,7 +113,7 @@ fn rewritten(
     knot: &Knot<'_>,
     place: &KnotUse,
     equation: &Equation,
-) -> Option<(String, [String; 2])> {
+) -> Option<Switch> {
     let ExprKind::Piecewise { arms, otherwise } = &site.expr.kind else { return None };
     let [arm] = &arms[..] else { return None };
     let mut size = 0;

@@ -14,6 +14,8 @@ mod limits;
 mod messages;
 mod outline;
 mod recover;
+#[cfg(test)]
+mod rules;
 mod slips;
 mod tokens;
 mod unknown;

@@ -1,0 +1,108 @@
+//! `fdcc new`: a commented model to start from. Never overwrites.
+
+use clap::{Args, ValueEnum};
+use fdcc_grammar::parse;
+use std::fs::OpenOptions;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use super::Exit;
+use crate::output;
+
+/// Write a commented model to start from
+#[derive(Args)]
+pub struct New {
+    /// What it is about
+    #[arg(value_enum)]
+    template: Template,
+    /// The file, or a folder for it; TEMPLATE.fdc if left out
+    path: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Template {
+    /// A block with dry friction, moved with the least effort
+    Friction,
+    /// A race car on an S-bend, in the shortest time
+    Racecar,
+    /// An engine that changes at a speed, in the shortest time
+    Switched,
+    /// A ball that bounces, for `fdcc simulate`
+    Bounce,
+    /// A friction coefficient from measurements
+    Fit,
+}
+
+impl Template {
+    fn name(self) -> &'static str {
+        match self {
+            Template::Friction => "friction",
+            Template::Racecar => "racecar",
+            Template::Switched => "switched",
+            Template::Bounce => "bounce",
+            Template::Fit => "fit",
+        }
+    }
+
+    fn text(self) -> &'static str {
+        match self {
+            Template::Friction => include_str!("../../templates/friction.fdc"),
+            Template::Racecar => include_str!("../../templates/racecar.fdc"),
+            Template::Switched => include_str!("../../templates/switched.fdc"),
+            Template::Bounce => include_str!("../../templates/bounce.fdc"),
+            Template::Fit => include_str!("../../templates/fit.fdc"),
+        }
+    }
+
+    /// What to do with the model.
+    fn verb(self) -> &'static str {
+        match self {
+            Template::Bounce => "simulate",
+            _ => "solve",
+        }
+    }
+}
+
+impl New {
+    /// Writes the file and says what to do next.
+    pub fn run(self) -> Exit {
+        let path = self.file();
+        match write(&path, &named_after(&path, self.template)) {
+            Ok(()) => {
+                let (path, verb) = (path.display(), self.template.verb());
+                output::print(&format!("wrote {path}\n\nnext:\n  fdcc check {path}\n  fdcc {verb} {path}\n"));
+                Exit::Fine
+            }
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                output::complain(&format!("{} exists already; name another file", path.display()));
+                Exit::File
+            }
+            Err(error) => {
+                output::complain(&format!("{} cannot be written: {error}", path.display()));
+                Exit::File
+            }
+        }
+    }
+
+    fn file(&self) -> PathBuf {
+        let usual = format!("{}.fdc", self.template.name());
+        match &self.path {
+            Some(folder) if folder.is_dir() => folder.join(usual),
+            Some(file) => file.clone(),
+            None => usual.into(),
+        }
+    }
+}
+
+fn write(path: &Path, text: &str) -> io::Result<()> {
+    OpenOptions::new().write(true).create_new(true).open(path)?.write_all(text.as_bytes())
+}
+
+/// The template with the file's name for the model, if that can be a name.
+fn named_after(path: &Path, template: Template) -> String {
+    let (name, text) = (template.name(), template.text());
+    let Some(stem) = path.file_stem().and_then(|stem| stem.to_str()) else { return text.to_owned() };
+    let named = text.replace(&format!("model {name}\n"), &format!("model {stem}\n"));
+    let named = named.replace(&format!("{name}.fdc"), &format!("{stem}.fdc"));
+    if parse(&named).diagnostics.is_empty() { named } else { text.to_owned() }
+}

@@ -1,0 +1,43 @@
+//! `fdcc new` from outside: every template is right, in the canonical layout, and can be solved or simulated.
+
+mod common;
+
+use common::*;
+use std::fs;
+
+#[test]
+fn templates_are_models_that_work() {
+    for template in ["friction", "racecar", "switched", "fit", "bounce"] {
+        let place = folder(&format!("new_{template}"), &[]);
+        let file = format!("{template}.fdc");
+        let written = fdcc(&place, &["new", template], "");
+        expect_exit(&written, 0, template);
+        assert!(stdout(&written).contains(&format!("fdcc check {file}")), "it says what to do next");
+        expect_exit(&fdcc(&place, &["check", "--deny", "warnings", &file], ""), 0, template);
+        expect_exit(&fdcc(&place, &["fmt", "--check", &file], ""), 0, template);
+        let (verb, status) =
+            if template == "bounce" { ("simulate", "completed") } else { ("solve", "solved") };
+        let result = fdcc(&place, &[verb, &file, "--json", "--log", "none"], "");
+        expect_exit(&result, 0, template);
+        assert_eq!(json(&result)["status"], status, "{template}");
+    }
+}
+
+#[test]
+fn a_model_is_called_after_its_file_and_nothing_is_overwritten() {
+    let place = folder("new_name", &[("taken.fdc", b"param a = 1\n")]);
+    fs::create_dir(place.join("folder")).expect("a folder can be made");
+    let read = |name: &str| fs::read_to_string(place.join(name)).expect("it is there");
+    expect_exit(&fdcc(&place, &["new", "friction", "sled.fdc"], ""), 0, "a file");
+    assert!(read("sled.fdc").contains("\nmodel sled\n") && read("sled.fdc").contains("fdcc solve sled.fdc"));
+    expect_exit(&fdcc(&place, &["new", "friction", "my sled.fdc"], ""), 0, "no name of a model");
+    assert!(read("my sled.fdc").contains("\nmodel friction\n"));
+    expect_exit(&fdcc(&place, &["new", "fit", "folder"], ""), 0, "a folder");
+    assert!(read("folder/fit.fdc").contains("\nmodel fit\n"));
+    let refused = fdcc(&place, &["new", "friction", "taken.fdc"], "");
+    expect_exit(&refused, 4, "taken");
+    assert!(stderr(&refused).contains("taken.fdc exists already"));
+    assert_eq!(read("taken.fdc"), "param a = 1\n");
+    expect_exit(&fdcc(&place, &["new", "friction", "nowhere/x.fdc"], ""), 4, "no such folder");
+    expect_exit(&fdcc(&place, &["new", "sandwich"], ""), 3, "no such template");
+}

@@ -19,6 +19,17 @@ fn pages_have_the_title_of_their_diagnostic() {
     }
 }
 
+/// Why comes first, in more than a line, then the wrong model and the right one.
+#[test]
+fn pages_say_why_and_show_both_models() {
+    for (name, page) in documents("docs/diagnostics", "md") {
+        let headings: Vec<&str> = page.lines().filter_map(|line| line.strip_prefix("## ")).collect();
+        assert_eq!(headings, ["Wrong", "Right"], "{name}");
+        let why = page.split("\n## ").next().unwrap_or_default();
+        assert!(why.split_whitespace().count() > 25, "{name}: say why");
+    }
+}
+
 #[test]
 fn wrong_models_give_their_diagnostic_and_right_models_give_none() {
     for (name, page) in documents("docs/diagnostics", "md") {

@@ -128,7 +128,7 @@ fn short(source: &SourceFile, diagnostic: &Diagnostic) -> String {
     format!("{}:{}:{}: {severity}[{code}]: {message}\n", source.name, place.line, place.column)
 }
 
-/// `2 errors, 1 warning in 3 files`
+/// `2 errors, 1 warning in 3 files; `fdcc fix` repairs 1`
 fn summary(loaded: &[Loaded]) -> String {
     let count = |severity| {
         let all = loaded.iter().flat_map(|it| &it.diagnostics);
@@ -141,9 +141,12 @@ fn summary(loaded: &[Loaded]) -> String {
     let found = if found.is_empty() { "nothing wrong".to_owned() } else { found.join(", ") };
     let all: usize = loaded.iter().map(|it| it.diagnostics.len()).sum();
     let shown = if all > MOST_DRAWN { format!("; the first {MOST_DRAWN} are shown") } else { String::new() };
+    let is_certain = |it: &&Diagnostic| it.fixes.iter().any(|fix| fix.certain);
+    let certain = loaded.iter().flat_map(|it| &it.diagnostics).filter(is_certain).count();
+    let repairs = if certain > 0 { format!("; `fdcc fix` repairs {certain}") } else { String::new() };
     if loaded.is_empty() {
         String::new()
     } else {
-        format!("{found} in {}{shown}\n", plural(loaded.len(), "file"))
+        format!("{found} in {}{shown}{repairs}\n", plural(loaded.len(), "file"))
     }
 }

@@ -1,38 +1,32 @@
 //! Every rule of the grammar is used by some example of the language reference.
 
 use std::collections::BTreeSet;
-use std::fs;
-use std::path::Path;
 
 use pest::RuleType;
 
 use super::{Rule, pairs};
 
-/// The text of a file of the repository.
-fn read(path: &Path) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path);
-    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+/// Pages of the reference, read when the tests are built.
+macro_rules! pages {
+    ($($name:literal)*) => { [$(include_str!(concat!("../../../docs/reference/", $name, ".md"))),*] };
 }
 
-/// The models on the pages of the reference.
-fn examples() -> Vec<String> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/reference");
-    let pages = fs::read_dir(folder).expect("the reference is there");
-    let pages = pages.map(|page| read(&page.expect("a page can be read").path()));
-    let models = |page: String| page.split("\n```fdc").skip(1).filter_map(model).collect::<Vec<_>>();
-    pages.flat_map(models).collect()
-}
+const PAGES: &[&str] = &pages! {
+    "models" "numbers" "expressions" "piecewise" "dynamics" "surfaces" "conditions" "objective" "guess" "method"
+    "report-and-expect" "simulate" "gradient" "not-yet"
+};
+
+const GRAMMAR: &str = include_str!("../fdc.pest");
 
 /// The model of a block, whose tag goes on to the end of the line.
-fn model(block: &str) -> Option<String> {
+fn model(block: &str) -> Option<&str> {
     let (text, _) = block.split_once('\n')?.1.split_once("\n```")?;
-    Some(text.to_owned())
+    Some(text)
 }
 
 /// The rules that leave no pair: silent ones, lookahead, and entries for recovery.
 fn leave_no_pair() -> BTreeSet<String> {
-    let grammar = read(Path::new("grammar/src/fdc.pest"));
-    let silent = grammar.lines().filter_map(|line| line.split_once("= _{"));
+    let silent = GRAMMAR.lines().filter_map(|line| line.split_once("= _{"));
     let silent = silent.map(|(name, _)| name.trim().to_owned());
     silent.chain(["reserved".to_owned()]).collect()
 }
@@ -40,8 +34,8 @@ fn leave_no_pair() -> BTreeSet<String> {
 #[test]
 fn every_rule_is_used_by_an_example() {
     let mut used = BTreeSet::new();
-    for example in examples() {
-        for pair in pairs(Rule::file, &example).into_iter().flat_map(|pairs| pairs.flatten()) {
+    for example in PAGES.iter().flat_map(|page| page.split("\n```fdc").skip(1).filter_map(model)) {
+        for pair in pairs(Rule::file, example).into_iter().flat_map(|pairs| pairs.flatten()) {
             used.insert(format!("{:?}", pair.as_rule()));
         }
     }

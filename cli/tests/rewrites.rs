@@ -8,8 +8,8 @@ use std::fs;
 const WIDE: &str = "param a=1\nparam  bb = 2\n";
 const TIDY: &str = "param a  = 1\nparam bb = 2\n";
 const BROKEN: &str = "param a =\n";
-const EQUATION: &str = "time t in [0, 1]\nstate v start 0\ndynamics { v' = -Sgn(v) }\n";
-const INCLUSION: &str = "time t in [0, 1]\nstate v start 0\ndynamics { v' in -Sgn(v) }\n";
+const EQUATION: &str = "time t in [0, 1]\nstate v start 1\ndynamics { v' = -Sgn(v) }\n";
+const INCLUSION: &str = "time t in [0, 1]\nstate v start 1\ndynamics { v' in -Sgn(v) }\n";
 
 #[test]
 fn fmt_writes_the_canonical_layout() {

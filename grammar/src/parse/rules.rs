@@ -2,8 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use pest::RuleType;
-
 use super::{Rule, pairs};
 
 /// Pages of the reference, read when the tests are built.

@@ -18,18 +18,20 @@ pub fn check_with_objective(tree: &ast::Model, of: &str) -> Checked {
     let first = (start + WORD.len()) as u32;
     let mut diagnostics = parsed.diagnostics;
     let mut model = None;
+    let mut units = Vec::new();
     match parsed.tree.items.as_slice() {
         _ if !diagnostics.is_empty() => {}
         [asked @ Item { kind: ItemKind::Objective { value, .. }, .. }] => {
             let checked = check(&with_objective(tree, asked, value));
             model = checked.model;
             diagnostics = checked.diagnostics;
+            units = checked.units;
         }
         items => diagnostics.push(superfluous(items)),
     }
     diagnostics.retain(|it| it.span().start >= first);
     diagnostics.iter_mut().for_each(|it| moved(it, first));
-    Checked { model, diagnostics }
+    Checked { model, diagnostics, units }
 }
 
 fn with_objective(tree: &ast::Model, asked: &Item, value: &ast::Expr) -> ast::Model {

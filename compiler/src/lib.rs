@@ -42,7 +42,7 @@ pub use review::{Reviewed, review};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 pub use surfaces::SurfaceReport;
-pub use units::parse_quantity;
+pub use units::{NamedUnit, parse_quantity};
 
 /// What a syntax tree means, and what is wrong with it.
 pub struct Checked {
@@ -50,6 +50,8 @@ pub struct Checked {
     pub model: Option<Model>,
     /// In the order of the text.
     pub diagnostics: Vec<Diagnostic>,
+    /// The unit of each name, if the text uses units; for hover and hints.
+    pub units: Vec<NamedUnit>,
 }
 
 /// Finds out what a syntax tree means. Never fails: it reports everything that is wrong, each mistake once.
@@ -66,6 +68,8 @@ pub fn check(tree: &ast::Model) -> Checked {
         whole.not_yet.append(&mut part.not_yet);
     }
     diagnostics.extend(check::unused(tree));
+    let units = units::infer(tree);
+    diagnostics.extend(units.diagnostics);
     sort(&mut diagnostics);
     let diagnostics = without_echoes(diagnostics);
     sort(&mut whole.not_yet);
@@ -73,8 +77,12 @@ pub fn check(tree: &ast::Model) -> Checked {
     let has_meaning = |code: Code| matches!(code, Code::NoValue | Code::Repelling | Code::EndlessJumps);
     let fatal = |it: &Diagnostic| it.severity == Severity::Error && !has_meaning(it.code);
     let name = tree.name.as_ref().map_or("model", |name| &name.name);
-    let model = (!diagnostics.iter().any(fatal)).then(|| Model { name: name.into(), ..whole.into_model() });
-    Checked { model, diagnostics }
+    let model = (!diagnostics.iter().any(fatal)).then(|| Model {
+        name: name.into(),
+        units: units.names.clone(),
+        ..whole.into_model()
+    });
+    Checked { model, diagnostics, units: units.names }
 }
 
 fn phase(item: &Item) -> Option<(&ast::Ident, &[Item])> {

@@ -5,6 +5,7 @@
 //! compiled functions want. Bounds and parameters stay expressions, so that the command line can change a number.
 
 use crate::graph::{ExprId, Graph};
+use crate::units::NamedUnit;
 use fdcc_grammar::ast::Direction;
 use fdcc_grammar::{Diagnostic, Span};
 use fdcc_runtime::problem::{Linear, Method, Scheme, Solver};
@@ -267,6 +268,8 @@ pub struct Model {
     pub smooth: bool,
     /// What is understood but cannot be solved yet, in the order of the text.
     pub not_yet: Vec<Diagnostic>,
+    /// The unit of each name, if the text uses units.
+    pub units: Vec<NamedUnit>,
 }
 
 impl Model {
@@ -299,6 +302,7 @@ impl Model {
             method: default_method(),
             smooth: false,
             not_yet: Vec::new(),
+            units: Vec::new(),
         }
     }
 

@@ -10,7 +10,7 @@ use crate::units::parse_quantity;
 impl Model {
     /// Gives a parameter another value, such as `0.2` or `200[g]`.
     pub fn set_param(&mut self, name: &str, value: &str) -> Result<(), String> {
-        let value = parse_quantity(value)?;
+        let value = parse_quantity(value)?.value;
         let Some(index) = self.params.iter().position(|param| param.place.name == name) else {
             return Err(self.no_param(name));
         };
@@ -106,7 +106,8 @@ pub fn is_method_key(name: &str) -> bool {
 
 fn given(value: &str) -> Given {
     let parts: Vec<&str> = value.split(',').collect();
-    let numbers: Option<Vec<f64>> = parts.iter().map(|part| parse_quantity(part).ok()).collect();
+    let numbers: Option<Vec<f64>> =
+        parts.iter().map(|part| parse_quantity(part).ok().map(|it| it.value)).collect();
     match numbers.as_deref() {
         Some([number]) => Given::Number(*number),
         Some(numbers) => Given::List(numbers.to_vec()),

@@ -22,6 +22,15 @@ pub struct Model {
     pub name: Option<Ident>,
     /// All items that could be read, in the order of the text.
     pub items: Vec<Item>,
+    /// Where each line of the text begins, so that a message can speak of another line.
+    pub line_starts: Vec<u32>,
+}
+
+impl Model {
+    /// The line of a byte, counted from 1.
+    pub fn line_of(&self, offset: u32) -> usize {
+        self.line_starts.partition_point(|&start| start <= offset)
+    }
 }
 
 /// One item.

@@ -154,6 +154,9 @@ codes! {
     NotFinite = "FDC0601", Error, "not a number while solving";
     Infeasible = "FDC0602", Error, "no feasible trajectory found";
     NotYet = "FDC0603", Error, "a construct that `solve` cannot treat yet";
+    UnitMismatch = "FDC0701", Error, "units that do not fit together";
+    UnitHere = "FDC0702", Error, "a unit where a plain number is needed";
+    UnitOfPower = "FDC0703", Error, "a power whose unit is not fixed";
 }
 
 impl std::fmt::Display for Code {

@@ -54,8 +54,7 @@ impl SourceFile {
     /// Takes the text and finds its lines.
     pub fn new(name: impl Into<String>, text: impl Into<Arc<str>>) -> Self {
         let text = text.into();
-        let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at as u32 + 1));
-        let line_starts = starts.collect();
+        let line_starts = line_starts(&text).collect();
         SourceFile { name: name.into(), text, line_starts }
     }
 
@@ -73,4 +72,9 @@ impl SourceFile {
         let column = before.trim_start_matches('\u{FEFF}').chars().count() + 1;
         LineColumn { line, column }
     }
+}
+
+/// Where each line of a text begins.
+pub(crate) fn line_starts(text: &str) -> impl Iterator<Item = u32> {
+    std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at as u32 + 1))
 }

@@ -38,15 +38,15 @@ fn models_give_neither_errors_nor_warnings() {
     }
 }
 
-/// The cases of the groups 01 to 04 in the table of messages. They are fragments, so other findings may stand
-/// beside the one that is meant; those about surfaces are completed, because nothing follows from unknown names.
+/// The cases of the groups 01 to 04 and 07 in the table of messages. They are fragments, so other findings may stand
+/// beside the one that is meant; those about surfaces and units are completed, because nothing follows from unknown names.
 #[test]
 fn messages_are_those_of_the_table() {
     let path = repository().join("tests/reference/diagnostics.json");
     let table = std::fs::read_to_string(path).expect("the table is there");
     let cases: serde_json::Value = serde_json::from_str(&table).expect("the table is JSON");
     let is_ours =
-        |code: &str| ["FDC01", "FDC02", "FDC03", "FDC04"].iter().any(|group| code.starts_with(group));
+        |code: &str| ["FDC01", "FDC02", "FDC03", "FDC04", "FDC07"].iter().any(|group| code.starts_with(group));
     let mut count = 0;
     for case in cases
         .as_array()
@@ -60,7 +60,7 @@ fn messages_are_those_of_the_table() {
         assert!(found.iter().any(|it| matches(it, case, source)), "{code}: {found:#?}");
         count += 1;
     }
-    assert!(count >= 17);
+    assert!(count >= 19);
 }
 
 /// What a fragment leaves out.
@@ -72,6 +72,10 @@ fn completion(code: &str) -> &'static str {
         "FDC0310" => {
             "param e = 0.8\nstate h start 1\nstate v start 0\nsurface ground = h\ntime t in [0, 1]\n\
              dynamics {\n  h' = v\n  v' = -9.81\n}\nminimize v(end)\n"
+        }
+        "FDC0701" => {
+            "param m = 1 [kg]\nparam mu = 0.3\nconst N = 9.81 [N]\ntime t in [0, 1] [s]\n\
+             state x [m] start 0\nstate v [m/s] start 0\nsurface slip = v\n"
         }
         _ => "",
     }
@@ -329,7 +333,7 @@ time t in [0, 2] [min]
 state v [km/h] in [-36, 72] start 18
 state phi [deg] start 90
 dynamics {
-  v' = m + pressure * 1 [1/s]
+  v' = 3 [m/s^2] + 1 [m/kg/s^2] * m + pressure * 2 [m^2/kg]
   phi' = 30 [rpm]
 }
 end v <= 54
@@ -345,7 +349,7 @@ minimize v(end)";
     assert_close(&values(&program, &program.interval, &[0.2, 2e5]), &[0.0, 120.0]);
     assert_close(
         &values(&program, &program.dynamics, &[0.0, 1.0, 1.0, 0.2, 2e5]),
-        &[120.0 * 200_000.2, 120.0 * PI],
+        &[120.0 * 400_003.2, 120.0 * PI],
     );
 }
 

@@ -99,4 +99,7 @@ pages! {
     NotFinite "FDC0601"
     Infeasible "FDC0602"
     NotYet "FDC0603"
+    UnitMismatch "FDC0701"
+    UnitHere "FDC0702"
+    UnitOfPower "FDC0703"
 }

@@ -45,7 +45,7 @@ pub fn row<'d>(swept: &'d Named<String>, document: &'d Document) -> Row<'d> {
 fn value(text: &str) -> Value<'_> {
     match (text.parse(), fdcc_compiler::parse_quantity(text)) {
         (Ok(whole), _) => Value::Whole(whole),
-        (_, Ok(number)) => Value::Number(number),
+        (_, Ok(quantity)) => Value::Number(quantity.value),
         _ => Value::Word(text),
     }
 }

@@ -16,7 +16,7 @@ mod items;
 mod jumps;
 pub(crate) mod knots;
 mod operators;
-mod order;
+pub(crate) mod order;
 mod piecewise;
 pub(crate) mod scope;
 pub(crate) mod settings;

@@ -26,6 +26,7 @@ use pest::Parser as _;
 use pest::error::{ErrorVariant, InputLocation};
 use pest::iterators::Pairs;
 
+use crate::source::line_starts;
 use crate::{Code, Diagnostic, Parse, Span};
 
 pub use tokens::comments;
@@ -45,6 +46,7 @@ pub fn parse(text: &str) -> Parse {
     }
     let mut parse = read_whole(text).unwrap_or_else(|| recover::recover(text));
     parse.tree.docs = doc_lines(text);
+    parse.tree.line_starts = line_starts(text).collect();
     if parse.tree.items.is_empty() && parse.diagnostics.is_empty() {
         parse.diagnostics.push(empty_model());
     }

@@ -1,0 +1,181 @@
+//! What the items demand of units: equations, conditions, resets, links, settings and the rest.
+
+use super::dimension::Dimension;
+use super::inference::{Inference, Operand, named, side};
+use super::requirement::Reason;
+use super::value::{Part, Value, pairwise};
+use crate::resolve::scope::{Declaration, Scope};
+use fdcc_grammar::Span;
+use fdcc_grammar::ast::{
+    Assignment, Check, Condition, Equation, Expr, Ident, Item, ItemKind, Setting, SettingValue,
+};
+
+impl<'a> Inference<'a> {
+    /// Everything that is not a declaration: first what a unit is most surely found from, settings last, when all that
+    /// switches is known.
+    pub fn items(&mut self, items: &[&'a Item]) {
+        let mut sorted: Vec<&'a Item> = items.to_vec();
+        sorted.sort_by_key(|item| authority(&item.kind));
+        sorted.into_iter().for_each(|item| self.item(item));
+    }
+
+    fn item(&mut self, item: &'a Item) {
+        match &item.kind {
+            ItemKind::Dynamics { equations } => equations.iter().for_each(|it| self.equation(it)),
+            ItemKind::Start { condition }
+            | ItemKind::End { condition }
+            | ItemKind::Path { condition, .. } => {
+                self.condition(condition);
+            }
+            ItemKind::Objective { value, .. } => drop(self.evaluate(value)),
+            ItemKind::Guess { bindings } => bindings.iter().for_each(|it| self.guess(&it.name, &it.value)),
+            ItemKind::Report { bindings } => bindings.iter().for_each(|it| {
+                let value = self.evaluate(&it.value);
+                self.values.insert(it.name.span, value);
+            }),
+            ItemKind::Expect { checks } => checks.iter().for_each(|it| self.check(it)),
+            ItemKind::Metric { weights } => self.metric(weights),
+            ItemKind::Jump { assignments, .. } => assignments.iter().for_each(|it| self.reset(it)),
+            ItemKind::Link { from, to, assignments } => {
+                assignments.iter().for_each(|it| self.handed_over(from, to, it))
+            }
+            ItemKind::Method { settings } => settings.iter().for_each(|it| self.setting(it)),
+            _ => {}
+        }
+    }
+
+    /// `m * x' = e`: both sides in the unit of `m x / t`.
+    fn equation(&mut self, equation: &'a Equation) {
+        let right = self.operand(&equation.right);
+        let factor = equation.factor.as_ref().map(|factor| self.evaluate(factor));
+        let Some(state) = self.declared(&equation.state) else { return };
+        let rate = pairwise(&self.subject(state).0, &self.time(), Part::over);
+        let left = match factor {
+            Some(factor) => pairwise(&factor, &rate, Part::times),
+            None => rate,
+        };
+        // The prime stands behind the name.
+        let end = (equation.state.span.end + 1).min(equation.relation_span.start);
+        let span = Span { start: equation.span.start, end };
+        self.equal(Reason::Equation(&equation.state), &(left, named(span)), &right);
+    }
+
+    fn declared(&self, name: &Ident) -> Option<Declaration<'a>> {
+        self.scope.find(&name.name).map(|at| self.scope.declarations[at])
+    }
+
+    fn condition(&mut self, condition: &'a Condition) {
+        let mut left = self.operand(&condition.first);
+        for (_, next) in &condition.rest {
+            let right = self.operand(next);
+            self.compare(Reason::Comparison, &left, &right);
+            left = right;
+        }
+    }
+
+    fn check(&mut self, check: &'a Check) {
+        let (left, right) = (self.operand(&check.left), self.operand(&check.right));
+        self.compare(Reason::Comparison, &left, &right);
+        if let Some(within) = &check.within {
+            let within = self.operand(within);
+            self.compare(Reason::Comparison, &left, &within);
+        }
+    }
+
+    /// A value for a name in a block.
+    fn assigned(&mut self, what: &'static str, name: &'a Ident, value: &'a Expr) {
+        match self.declared(name) {
+            Some(it) => self.value_for(what, name, &(self.subject(it).0, named(name.span)), value),
+            None => drop(self.evaluate(value)),
+        }
+    }
+
+    fn guess(&mut self, name: &'a Ident, curve: &'a Expr) {
+        let (value, text) = self.operand(curve);
+        let Some(it) = self.declared(name) else { return };
+        let subject = (self.subject(it).0, named(name.span));
+        let value = self.stretched(&value, &subject.0);
+        self.compare(Reason::Given("the guess", name), &subject, &(value, text));
+    }
+
+    fn reset(&mut self, reset: &'a Assignment) {
+        self.assigned("the new value", &reset.name, &reset.value);
+    }
+
+    /// A link reads its right side in the phase before it, and gives it to a state of the phase after it.
+    fn handed_over(&mut self, from: &Ident, to: &Ident, assignment: &'a Assignment) {
+        let target = self.phases.get(to.name.as_str());
+        let target = target.and_then(|scope| Some(scope.declarations[scope.find(&assignment.name.name)?]));
+        let Some(source) = self.phases.remove(from.name.as_str()) else { return };
+        let outer: Scope<'a> = std::mem::replace(&mut self.scope, source);
+        let given = self.operand(&assignment.value);
+        if let Some(target) = target {
+            let subject = (self.subject(target).0, named(assignment.name.span));
+            self.compare(Reason::Given("the new value", &assignment.name), &subject, &given);
+        }
+        let source = std::mem::replace(&mut self.scope, outer);
+        let name = self.phase_name(from);
+        self.phases.extend(name.map(|name| (name, source)));
+    }
+
+    fn phase_name(&self, name: &Ident) -> Option<&'a str> {
+        self.declared(name).map(|it| it.name.name.as_str())
+    }
+
+    /// Weights make squares of states comparable: `w_1 x_1^2 + w_2 x_2^2 + ...`.
+    fn metric(&mut self, weights: &'a [(Ident, Expr)]) {
+        let mut first: Option<Operand<'a>> = None;
+        for (name, weight) in weights {
+            let value = self.evaluate(weight);
+            let Some(state) = self.declared(name).map(|it| self.subject(it).0) else { continue };
+            if value.iter().any(|part| part.plain) {
+                continue;
+            }
+            let squares = pairwise(&state, &state, Part::times);
+            let term = (pairwise(&value, &squares, Part::times), side(weight));
+            let one = first.get_or_insert_with(|| term.clone()).clone();
+            self.equal(Reason::Together("metric"), &one, &term);
+        }
+    }
+
+    /// `smooth sigma = 5 [m/s]` is a width of what switches; a plain number is one of every surface.
+    fn setting(&mut self, setting: &'a Setting) {
+        let widths: Vec<&'a Expr> = match &setting.value {
+            SettingValue::Expr(value) => vec![value],
+            SettingValue::List(values) => values.iter().collect(),
+            SettingValue::Scheme { .. } => return,
+        };
+        if !matches!(setting.key.name.as_str(), "sigma" | "continue") {
+            return;
+        }
+        let unit = setting.unit.as_ref().map(super::expression::written);
+        for width in widths {
+            let (value, side) = self.operand(width);
+            let value = unit.clone().map_or(value, |unit| vec![unit]);
+            self.width(&setting.key, (value, side));
+        }
+    }
+
+    fn width(&mut self, key: &'a Ident, width: Operand<'a>) {
+        // Where surfaces differ, one number cannot have the unit of all.
+        let Some(first) = self.switches.first().cloned() else { return };
+        let is_same = |part: &Part| part.dimension == first.dimension;
+        if self.switches.iter().all(is_same)
+            && first.dimension.as_ref().is_some_and(|it| *it != Dimension::none())
+        {
+            let surface: Value = vec![Part { plain: false, ..first }];
+            self.compare(Reason::Given("the width", key), &(surface, named(key.span)), &width);
+        }
+    }
+}
+
+/// Equations are right more often than the lines that were written to look at the result.
+fn authority(kind: &ItemKind) -> u8 {
+    match kind {
+        ItemKind::Dynamics { .. } => 0,
+        ItemKind::Start { .. } | ItemKind::End { .. } | ItemKind::Path { .. } | ItemKind::Jump { .. } => 1,
+        ItemKind::Method { .. } => 4,
+        ItemKind::Guess { .. } | ItemKind::Report { .. } | ItemKind::Expect { .. } => 3,
+        _ => 2,
+    }
+}

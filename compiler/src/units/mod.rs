@@ -1,0 +1,124 @@
+//! Units: gradual, inferred, checked.
+//!
+//! A text without any unit is never bothered. As soon as one is written, every name has a dimension, written or to be found:
+//! each sum, comparison and equation is a linear equation between exponents of units, and [`solve`] finds what follows.
+//! A number without a unit has none, except where it stands alone against something that has one: in a bound, a start, a
+//! guess or a comparison it takes the unit of the other side.
+
+mod calls;
+mod declare;
+mod dimension;
+mod expression;
+mod inference;
+mod items;
+mod messages;
+mod mistake;
+mod names;
+mod notation;
+mod quantity;
+mod ratio;
+mod repairs;
+mod requirement;
+mod solve;
+mod table;
+mod value;
+
+use crate::resolve::scope::Scope;
+use dimension::Atom;
+pub use dimension::Dimension;
+use fdcc_grammar::ast::{self, Item, ItemKind, Unit};
+use fdcc_grammar::{Diagnostic, Span};
+use inference::Inference;
+use messages::Speaker;
+use mistake::Mistake;
+pub use names::NamedUnit;
+use notation::Notation;
+pub use quantity::{Quantity, parse_quantity};
+use requirement::Requirement;
+use solve::Solution;
+use std::collections::HashSet;
+pub(crate) use table::scale;
+
+/// Whoever has so many mistakes does not read on.
+const MOST_MISTAKES: usize = 20;
+
+/// What the text says about units.
+#[derive(Default)]
+pub(crate) struct Units {
+    /// Every mistake once.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The unit of each name, where it is known.
+    pub names: Vec<NamedUnit>,
+}
+
+/// Finds the unit of every name, and every place where units do not fit together.
+pub(crate) fn infer(tree: &ast::Model) -> Units {
+    let mut written: Vec<&Unit> = Vec::new();
+    tree.items.iter().for_each(|item| declare::units_in(item, &mut written));
+    if written.is_empty() {
+        return Units::default();
+    }
+    let speaker = Speaker { tree, notation: Notation::new(&written) };
+    let mut mistakes: Vec<Mistake<'_>> = Vec::new();
+    loop {
+        let (inference, solution, contradiction) = walked(tree, wrong(&mistakes), false);
+        match contradiction {
+            Some(at) if mistakes.len() < MOST_MISTAKES => {
+                mistakes.push(Mistake::new(&inference.requirements[at], &inference, &solution));
+            }
+            _ => {
+                let names = names::names(&tree.items, &inference, &solution, &speaker.notation);
+                return Units { diagnostics: told(&speaker, &mistakes), names };
+            }
+        }
+    }
+}
+
+/// The texts that count as unknown from now on.
+fn wrong(mistakes: &[Mistake<'_>]) -> HashSet<Span> {
+    mistakes.iter().map(|it| it.requirement.site).collect()
+}
+
+/// All findings. A last walk asks what the surroundings of each wrong text need.
+fn told<'a>(speaker: &Speaker<'a>, mistakes: &[Mistake<'a>]) -> Vec<Diagnostic> {
+    if mistakes.is_empty() {
+        return Vec::new();
+    }
+    let (inference, solution, _) = walked(speaker.tree, wrong(mistakes), true);
+    let wanted = |it: &Requirement<'a>| {
+        let freed = inference.freed.get(&it.site);
+        let needed = freed.and_then(|&at| solution.settled(&Dimension::atom(Atom::Unknown(at))));
+        needed.is_some_and(|needed| needed == it.left.dimension)
+    };
+    mistakes.iter().map(|it| speaker.diagnostic(it, wanted(&it.requirement))).collect()
+}
+
+/// One walk over the whole text: what it demands, what follows, and the first demand that cannot be met.
+fn walked(
+    tree: &ast::Model,
+    wrong: HashSet<Span>,
+    listening: bool,
+) -> (Inference<'_>, Solution, Option<usize>) {
+    let mut inference = Inference { listening, ..Inference::new(wrong) };
+    let outer: Vec<&Item> = tree.items.iter().collect();
+    inference.enter(Scope::new(&outer, &mut Vec::new()));
+    for item in &tree.items {
+        let ItemKind::Phase { name, items } = &item.kind else { continue };
+        let inner: Vec<&Item> = items.iter().collect();
+        let all: Vec<&Item> = outer.iter().chain(&inner).copied().collect();
+        inference.enter(Scope::new(&all, &mut Vec::new()));
+        inference.items(&inner);
+        let scope = std::mem::take(&mut inference.scope);
+        inference.phases.insert(&name.name, scope);
+    }
+    if !inference.phases.is_empty() {
+        inference.enter(Scope::new(&outer, &mut Vec::new()));
+    }
+    inference.items(&outer);
+    let places = inference.numbers.iter().map(|it| it.1.clone()).collect();
+    let mut solution = Solution::new(inference.unknowns, places);
+    let differences: Vec<Dimension> =
+        inference.requirements.iter().map(|it| it.difference().unwrap_or_default()).collect();
+    let contradiction = solution.first_contradiction(&differences);
+    (inference, solution, contradiction)
+}

@@ -14,6 +14,15 @@ use std::collections::{HashMap, HashSet};
 /// An operand: its value and the text of it.
 pub(crate) type Operand<'a> = (Value, Side<'a>);
 
+/// A name that was given as a plain number, or the stretch of a guessed curve.
+#[derive(Clone)]
+pub(crate) struct PlainNumber<'a> {
+    /// The name with its item.
+    pub declared: Option<(&'a Ident, &'a Item)>,
+    /// The unit that its place gives it.
+    pub place: Option<Dimension>,
+}
+
 /// Everything that is known while the text is walked.
 pub(crate) struct Inference<'a> {
     /// The names in scope.
@@ -24,8 +33,8 @@ pub(crate) struct Inference<'a> {
     pub values: HashMap<Span, Value>,
     /// How many names, or parts of them, have no unit.
     pub unknowns: usize,
-    /// What was given as a plain number: the name with its item, if it has one, and the unit of its place.
-    pub numbers: Vec<(Option<(&'a Ident, &'a Item)>, Option<Dimension>)>,
+    /// What was given as a plain number.
+    pub numbers: Vec<PlainNumber<'a>>,
     /// Arguments of the function we are in, from `frame` on.
     pub locals: Vec<(&'a str, Value)>,
     /// Where the visible locals begin.
@@ -93,7 +102,7 @@ impl<'a> Inference<'a> {
 
     /// The unit of a name that is given as a plain number.
     pub fn number(&mut self, name: &'a Ident, item: &'a Item) -> Part {
-        self.numbers.push((Some((name, item)), None));
+        self.numbers.push(PlainNumber { declared: Some((name, item)), place: None });
         let atom = Atom::Number(self.numbers.len() as u32 - 1);
         Part { dimension: Some(Dimension::atom(atom)), plain: true }
     }
@@ -101,7 +110,7 @@ impl<'a> Inference<'a> {
     /// A curve such as `t/T` may be guessed for a length: it goes up to 1 in the unit of what is guessed.
     pub fn stretched(&mut self, curve: &[Part], subject: &[Part]) -> Value {
         pairwise(curve, subject, |curve, subject| {
-            self.numbers.push((None, subject.dimension.clone()));
+            self.numbers.push(PlainNumber { declared: None, place: subject.dimension.clone() });
             let atom = Atom::Number(self.numbers.len() as u32 - 1);
             let dimension = curve.dimension.as_ref().and_then(|it| it.times(&Dimension::atom(atom)));
             Part { dimension, plain: curve.plain }
@@ -135,7 +144,7 @@ impl<'a> Inference<'a> {
 
     fn place(&mut self, number: &Part, other: &Part) {
         if let (Some(at), Some(dimension), false) = (number.as_number(), &other.dimension, other.plain) {
-            self.numbers[at as usize].1.get_or_insert_with(|| dimension.clone());
+            self.numbers[at as usize].place.get_or_insert_with(|| dimension.clone());
         }
     }
 

@@ -38,7 +38,7 @@ impl<'a> Mistake<'a> {
 /// The side without what stretches a guessed curve.
 fn without_stretch<'a>(side: &Side<'a>, inference: &Inference<'a>) -> Side<'a> {
     let is_stretch =
-        |atom: Atom| matches!(atom, Atom::Number(at) if inference.numbers[at as usize].0.is_none());
+        |atom: Atom| matches!(atom, Atom::Number(at) if inference.numbers[at as usize].declared.is_none());
     let stretch = side.dimension.factors().iter().map(|it| it.0).find(|&atom| is_stretch(atom));
     let rest = stretch.and_then(|atom| side.dimension.substituted(atom, &Dimension::none()));
     Side { dimension: rest.unwrap_or_else(|| side.dimension.clone()), ..side.clone() }
@@ -46,9 +46,9 @@ fn without_stretch<'a>(side: &Side<'a>, inference: &Inference<'a>) -> Side<'a> {
 
 fn found<'a>(side: &Side<'a>, solution: &Solution) -> Side<'a> {
     let dimension = solution.settled(&side.dimension).unwrap_or_default();
-    let open = dimension.factors().iter().filter(|it| !matches!(it.0, Atom::Base(_)));
+    let mut open = dimension.factors().iter().filter(|it| !matches!(it.0, Atom::Base(_)));
     let known =
-        open.fold(Some(dimension.clone()), |known, &(atom, _)| known?.substituted(atom, &Dimension::none()));
+        open.try_fold(dimension.clone(), |known, &(atom, _)| known.substituted(atom, &Dimension::none()));
     Side { dimension: known.unwrap_or_default(), ..side.clone() }
 }
 
@@ -56,7 +56,7 @@ fn culprits<'a>(side: &Dimension, inference: &Inference<'a>, solution: &Solution
     let form = solution.reduced(side).unwrap_or_default();
     let culprit = |&(atom, power): &(Atom, Ratio)| match atom {
         Atom::Number(at) if solution.is_plain(at) => {
-            inference.numbers[at as usize].0.map(|(name, item)| Culprit { name, item, power })
+            inference.numbers[at as usize].declared.map(|(name, item)| Culprit { name, item, power })
         }
         _ => None,
     };

@@ -115,7 +115,7 @@ fn walked(
         inference.enter(Scope::new(&outer, &mut Vec::new()));
     }
     inference.items(&outer);
-    let places = inference.numbers.iter().map(|it| it.1.clone()).collect();
+    let places = inference.numbers.iter().map(|it| it.place.clone()).collect();
     let mut solution = Solution::new(inference.unknowns, places);
     let differences: Vec<Dimension> =
         inference.requirements.iter().map(|it| it.difference().unwrap_or_default()).collect();

@@ -5,6 +5,7 @@ use crate::commands::{Exit, Options, Prepared, show};
 use crate::log::Log;
 use crate::output;
 use crate::output::document::{Document, Seconds};
+use crate::output::units::Units;
 use crate::warm;
 use crate::watch::Deadline;
 use fdcc_grammar::{Diagnostic, SourceFile};
@@ -19,6 +20,7 @@ use std::time::Instant;
 pub struct Compiled {
     pub problem: Problem,
     source_sha256: String,
+    units: Units,
     begin: Instant,
     seconds: f64,
 }
@@ -75,7 +77,8 @@ impl Compiled {
         let problem = fdcc_compiler::compile(&prepared.model).map_err(Failure::Model)?;
         refuse_senseless(&problem)?;
         let source_sha256 = sha256(&prepared.source.text);
-        Ok(Compiled { problem, source_sha256, begin, seconds: begin.elapsed().as_secs_f64() })
+        let units = Units::from(&prepared.model);
+        Ok(Compiled { problem, source_sha256, units, begin, seconds: begin.elapsed().as_secs_f64() })
     }
 
     /// The start that `--warm` names, if any.
@@ -106,6 +109,7 @@ impl Compiled {
         let total = self.begin.elapsed().as_secs_f64();
         let seconds = Seconds { compile: self.seconds, solve: total - self.seconds, total };
         let document = Document::new(&problem, &outcome, &self.source_sha256, seconds);
+        let document = Document { units: self.units, ..document };
         Ok(Solved { problem, outcome, document })
     }
 }

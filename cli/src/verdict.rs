@@ -1,7 +1,7 @@
 //! What is said at the end of a solve: how it ended, what was found, what each surface did.
 
 use crate::output::document::{Document, scheme_name, status_name, switching};
-use crate::output::number::{scientific, short, significant};
+use crate::output::number::{scientific, short};
 use crate::output::plural;
 use crate::output::verified::Verification;
 use crate::solver::{Solved, unknowns};
@@ -27,8 +27,9 @@ pub fn headline(problem: &Problem) -> String {
 /// The verdict for people.
 pub fn verdict(solved: &Solved) -> String {
     let document = &solved.document;
-    let mut result = vec![format!("objective {}", significant(document.objective, 9))];
-    result.extend(document.free.0.iter().map(|(name, value)| format!("{name} {}", significant(*value, 9))));
+    let named = |name: &str, value: f64| format!("{name} {}", document.units.value(name, value, 9));
+    let mut result = vec![named("objective", document.objective)];
+    result.extend(document.free.0.iter().map(|(name, value)| named(name, *value)));
     let work = format!(
         "{}   optimality error {}   constraint violation {}   {:.3} s",
         plural(document.iterations, "iteration"),
@@ -91,11 +92,13 @@ fn replayed(document: &Document) -> Option<String> {
     let replay = document.verification.as_ref()?;
     let (gap, violation) = (replay.state_gap?, replay.constraint_violation?);
     let mut words = vec![" true  replayed:".to_owned()];
-    words.extend(replay.objective.map(|it| format!("objective {}", significant(it, 9))));
+    words
+        .extend(replay.objective.map(|it| format!("objective {}", document.units.value("objective", it, 9))));
     words.push(format!("differs by {}", short(gap)));
     words.push(match &replay.worst {
         Some(worst) => {
-            let when = worst.time.map(|t| format!(" at t = {}", short(t))).unwrap_or_default();
+            let when = worst.time.map(|t| format!(" at t = {}", document.units.value("time", t, 6)));
+            let when = when.unwrap_or_default();
             format!("`{}` off by {}{when}", worst.condition, short(violation))
         }
         None => "all conditions met".into(),

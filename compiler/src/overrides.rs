@@ -5,15 +5,16 @@ use crate::model::Model;
 use crate::resolve::closest;
 use crate::resolve::settings::{Given, Refused, is_key, keys, nearest_key, nearest_word, set};
 use crate::resolve::text::number;
-use crate::units::parse_quantity;
+use crate::units::{Quantity, parse_quantity};
 
 impl Model {
     /// Gives a parameter another value, such as `0.2` or `200[g]`.
     pub fn set_param(&mut self, name: &str, value: &str) -> Result<(), String> {
-        let value = parse_quantity(value)?.value;
+        let given = parse_quantity(value)?;
         let Some(index) = self.params.iter().position(|param| param.place.name == name) else {
             return Err(self.no_param(name));
         };
+        let value = self.fitting(name, value, given)?;
         let range = self.params[index].range;
         let limits = [range.lower, range.upper].map(|limit| self.of_params(limit));
         if value < limits[0] || value > limits[1] {
@@ -21,6 +22,19 @@ impl Model {
         }
         self.give(index, value);
         Ok(())
+    }
+
+    /// The value in SI, if its unit measures what the parameter does; a number without a unit is in SI already.
+    fn fitting(&self, name: &str, text: &str, given: Quantity) -> Result<f64, String> {
+        let span = self.params.iter().find(|param| param.place.name == name).map(|param| param.place.span);
+        let own = self.units.iter().find(|own| Some(own.span) == span);
+        match own.zip(given.dimension) {
+            Some((own, dimension)) if own.dimension != dimension => {
+                let unit = if own.unit.is_empty() { "no unit".into() } else { format!("`[{}]`", own.unit) };
+                Err(format!("`{name}` has {unit}, so it cannot be `{}`", text.trim()))
+            }
+            _ => Ok(given.value),
+        }
     }
 
     fn give(&mut self, index: usize, value: f64) {

@@ -157,6 +157,7 @@ codes! {
     UnitMismatch = "FDC0701", Error, "units that do not fit together";
     UnitHere = "FDC0702", Error, "a unit where a plain number is needed";
     UnitOfPower = "FDC0703", Error, "a power whose unit is not fixed";
+    BareNumber = "FDC0704", Warning, "a plain number read in SI";
 }
 
 impl std::fmt::Display for Code {

@@ -102,4 +102,5 @@ pages! {
     UnitMismatch "FDC0701"
     UnitHere "FDC0702"
     UnitOfPower "FDC0703"
+    BareNumber "FDC0704"
 }

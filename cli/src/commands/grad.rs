@@ -48,7 +48,7 @@ impl Grad {
             Err(exit) => return exit,
         };
         match self.gradient(&mut prepared) {
-            Ok(document) => self.report(&document, &prepared),
+            Ok(document) => self.report(&document.in_units((&prepared.model).into()), &prepared),
             Err(failure) => failure.report(&prepared.source),
         }
     }

@@ -53,7 +53,7 @@ impl Simulate {
         }
         let simulation = simulate(&system, &controls, &options);
         let is_complete = matches!(simulation.status, Status::Completed);
-        let document = Document::new(&system, &simulation, &prepared.source);
+        let document = Document::new(&system, &simulation, &prepared.source, (&prepared.model).into());
         Ok((document, if is_complete { Exit::Fine } else { Exit::NotSolved }))
     }
 

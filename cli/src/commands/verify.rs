@@ -76,7 +76,8 @@ impl Verify {
             let name = &prepared.source.name;
             output::complain(&format!("{name} is not the text that was solved; it is taken all the same"));
         }
-        Ok(Document::new(&verified, saved, &prepared.source, same_source, self.gap.gap))
+        let document = Document::new(&verified, saved, &prepared.source, same_source, self.gap.gap);
+        Ok(document.in_units((&prepared.model).into()))
     }
 
     fn report(&self, document: &Document) -> Exit {

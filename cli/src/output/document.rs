@@ -2,6 +2,7 @@
 
 use super::named::Named;
 use super::number::significant;
+use super::units::Units;
 use super::verified::Verification;
 use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::modes::Mode;
@@ -34,6 +35,9 @@ pub struct Document {
     pub costates: Named<Vec<f64>>,
     pub report: Named<Vec<f64>>,
     pub surfaces: Named<Vec<Span>>,
+    /// The units of the values; absent where the model has none.
+    #[serde(skip_serializing_if = "Units::is_empty")]
+    pub units: Units,
     /// What the controls do on the true system; absent where they were not replayed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verification: Option<Verification>,
@@ -124,6 +128,7 @@ impl Document {
             costates: shown(&trajectory.costates),
             report: problem.report_names.iter().cloned().zip(trajectory.report.iter().cloned()).collect(),
             surfaces: surfaces(problem, outcome),
+            units: Units::default(),
             verification: None,
         }
     }

@@ -4,6 +4,7 @@ use super::document::scheme_name;
 use super::ending::{Ending, EventEntry, events};
 use super::named::Named;
 use super::number::{scientific, short, significant};
+use super::units::Units;
 use crate::exact::Exact;
 use crate::gradients::Stepped;
 use crate::quantities::By;
@@ -40,6 +41,9 @@ pub struct Document {
     pub cause: Option<Reason>,
     pub events: Vec<EventEntry>,
     pub warnings: Vec<String>,
+    /// The units of names, not of derivatives.
+    #[serde(skip_serializing_if = "Units::is_empty")]
+    pub units: Units,
 }
 
 /// A number, or one for each row of a control.
@@ -140,6 +144,11 @@ impl Document {
         }
     }
 
+    /// The same with the units of its values.
+    pub fn in_units(self, units: Units) -> Self {
+        Document { units, ..self }
+    }
+
     /// No gradient: the simulation does not reach the end.
     pub fn without(of: &str, system: &System, simulation: &Simulation, source: &SourceFile) -> Self {
         Document {
@@ -160,6 +169,7 @@ impl Document {
             cause: None,
             events: events(system, simulation),
             warnings: Vec::new(),
+            units: Units::default(),
         }
     }
 }

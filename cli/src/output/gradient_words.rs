@@ -15,7 +15,8 @@ impl Document {
             let why = self.ending.why().unwrap_or_default();
             return format!(" NO GRADIENT of {}: the simulation does not reach the end\n {why}\n", self.of);
         };
-        let head = format!(" {} = {}   {}\n", self.of, significant(value, 12), self.verdict());
+        let head =
+            format!(" {} = {}   {}\n", self.of, self.units.value("objective", value, 12), self.verdict());
         let warnings: String = self.warnings.iter().map(|warning| format!(" warning: {warning}\n")).collect();
         let parts = [head + &warnings, self.derivatives(), self.second(), self.events()];
         parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n")
@@ -84,7 +85,7 @@ impl Document {
 
     fn events(&self) -> String {
         let row = |it: &super::ending::EventEntry| {
-            vec![it.surface.clone(), it.what(), significant(it.time, DIGITS), short(it.margin)]
+            vec![it.surface.clone(), it.what(), self.units.value("time", it.time, DIGITS), short(it.margin)]
         };
         table(vec!["surface", "event", "at t", "margin"], self.events.iter().map(row).collect())
     }

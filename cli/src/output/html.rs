@@ -1,8 +1,9 @@
 //! One HTML page per solution: a summary and a plot per signal, as inline SVG. No script, no network.
 
 use super::document::{Document, switching};
-use super::number::{scientific, short, significant};
+use super::number::{scientific, short};
 use super::plot::{escape, plot};
+use super::units::Units;
 
 const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;max-width:1300px;margin:2em auto;padding:0 1em;color:#222}\
 h1{font-size:1.5em}h2{font-size:1.15em;margin-top:1.6em}table{border-collapse:collapse}\
@@ -14,15 +15,18 @@ svg text{font:11px system-ui,sans-serif;fill:#666}.held{fill:#f4b942;fill-opacit
 /// The text of `MODEL.html`.
 pub fn html(document: &Document) -> String {
     let sections = [
-        ("States", &document.states),
-        ("Controls (constant on each interval)", &document.controls),
-        ("Report", &document.report),
-        ("Costates (dJ/dx)", &document.costates),
+        ("States", &document.states, &document.units),
+        ("Controls (constant on each interval)", &document.controls, &document.units),
+        ("Report", &document.report, &document.units),
+        ("Costates (dJ/dx)", &document.costates, &Units::default()),
     ];
-    let sections = sections.into_iter().filter(|(_, signals)| !signals.0.is_empty());
+    let sections = sections.into_iter().filter(|(_, signals, _)| !signals.0.is_empty());
     let sections: String = sections
-        .map(|(title, signals)| {
-            let plots = signals.0.iter().map(|(name, values)| plot(document, name, values));
+        .map(|(title, signals, units)| {
+            let plots = signals.0.iter().map(|(name, values)| {
+                let values: Vec<f64> = values.iter().map(|value| units.scaled(name, *value)).collect();
+                plot(document, &units.title(name), &values)
+            });
             format!("<h2>{title}</h2>\n<div class=\"plots\">\n{}</div>\n", plots.collect::<String>())
         })
         .collect();
@@ -57,9 +61,11 @@ fn rows(document: &Document) -> Vec<(String, String)> {
                 crate::verdict::on_the_true_system(document)
             ),
         ),
-        ("objective".into(), significant(document.objective, 10)),
+        ("objective".into(), document.units.value("objective", document.objective, 10)),
     ];
-    rows.extend(document.free.0.iter().map(|(name, value)| (name.clone(), significant(*value, 10))));
+    rows.extend(
+        document.free.0.iter().map(|(name, value)| (name.clone(), document.units.value(name, *value, 10))),
+    );
     rows.push(("iterations".into(), document.iterations.to_string()));
     rows.push(("constraint violation".into(), scientific(document.constraint_violation, 1)));
     rows.push(("optimality error".into(), scientific(document.kkt_error, 1)));
@@ -68,7 +74,13 @@ fn rows(document: &Document) -> Vec<(String, String)> {
     rows.extend(surfaces.map(|((name, spans), (_, sigma))| {
         (format!("surface {name}"), format!("{} (sigma {})", switching(spans), short(*sigma)))
     }));
-    rows.extend(document.params.0.iter().map(|(name, value)| (format!("param {name}"), short(*value))));
+    rows.extend(
+        document
+            .params
+            .0
+            .iter()
+            .map(|(name, value)| (format!("param {name}"), document.units.value(name, *value, 6))),
+    );
     rows.push(("seed".into(), method.seed.to_string()));
     rows.push(("model".into(), format!("sha256 {}", document.source_sha256)));
     rows.push(("fdcc".into(), document.fdcc.clone()));

@@ -17,6 +17,7 @@ pub mod saved;
 pub mod simulation;
 pub mod table;
 pub mod tested;
+pub mod units;
 pub mod verified;
 
 use std::io::{IsTerminal, Write};

@@ -2,7 +2,7 @@
 
 use super::ending::{Ending, EventEntry, events, state};
 use super::named::Named;
-use super::number::significant;
+use super::units::Units;
 use fdcc_grammar::SourceFile;
 use fdcc_runtime::simulate::{Simulation, System};
 use serde::Serialize;
@@ -23,6 +23,8 @@ pub struct Document {
     integrals: Named<f64>,
     objective: Option<f64>,
     counts: Counts,
+    #[serde(skip_serializing_if = "Units::is_empty")]
+    units: Units,
 }
 
 #[derive(Serialize)]
@@ -34,7 +36,7 @@ struct Counts {
 }
 
 impl Document {
-    pub fn new(system: &System, simulation: &Simulation, source: &SourceFile) -> Self {
+    pub fn new(system: &System, simulation: &Simulation, source: &SourceFile, units: Units) -> Self {
         let ends = simulation.end.iter().zip(&system.states);
         let integrals = ends.filter(|(_, state)| state.hidden);
         let columns = simulation.states.iter().zip(&system.states).filter(|(_, state)| !state.hidden);
@@ -57,6 +59,7 @@ impl Document {
                 stiff: counts.stiff,
                 evaluations: counts.evaluations,
             },
+            units,
         }
     }
 
@@ -76,26 +79,22 @@ impl Document {
     pub fn words(&self) -> String {
         let mut text = String::new();
         for event in &self.events {
-            let (time, surface, what) = (significant(event.time, 12), &event.surface, event.what());
-            let state = pairs(&event.state, 12);
+            let time = self.units.value("time", event.time, 12);
+            let (surface, what) = (&event.surface, event.what());
+            let state = self.units.pairs(&event.state, 12);
             writeln!(text, " {time:>16}  {surface:<10} {what:<16} {state}")
                 .expect("a string takes everything");
         }
-        let integrals = pairs(&self.integrals, 12);
-        let objective = self.objective.map(|value| format!("objective {}  ", significant(value, 12)));
+        let integrals = self.units.pairs(&self.integrals, 12);
+        let value = |value: f64| self.units.value("objective", value, 12);
+        let objective = self.objective.map(|it| format!("objective {}  ", value(it)));
         let events = super::plural(self.events.len(), "event");
         let completed = format!("completed: {events}, {} steps", self.counts.steps);
         let last = self.ending.why().unwrap_or(completed);
-        text += &format!(" {last}\n end: {}\n", pairs(&self.end, 12));
+        text += &format!(" {last}\n end: {}\n", self.units.pairs(&self.end, 12));
         if !integrals.is_empty() || objective.is_some() {
             text += &format!(" {}{integrals}\n", objective.unwrap_or_default());
         }
         text
     }
-}
-
-/// `x = 1  v = 0.5`
-pub fn pairs(values: &Named<f64>, digits: usize) -> String {
-    let pairs = values.0.iter().map(|(name, value)| format!("{name} = {}", significant(*value, digits)));
-    pairs.collect::<Vec<_>>().join("  ")
 }

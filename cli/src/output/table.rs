@@ -59,9 +59,10 @@ pub fn table<'d>(rows: impl Iterator<Item = (&'d Named<String>, &'d Document)>) 
     table.load_style(presets::NOTHING);
     for (swept, document) in rows {
         let names = swept.0.iter().map(|(name, _)| name.as_str());
-        let free = document.free.0.iter().map(|(name, _)| name.as_str());
+        let found = ["objective"].into_iter().chain(document.free.0.iter().map(|(name, _)| name.as_str()));
+        let found = found.map(|name| document.units.title(name));
         let results = ["iterations", "seconds", "status"];
-        table.set_header(names.chain(["objective"]).chain(free).chain(results));
+        table.set_header(names.map(str::to_string).chain(found).chain(results.map(str::to_string)));
         table.add_row(cells(swept, document));
     }
     let last = table.column_count().saturating_sub(1);
@@ -72,7 +73,8 @@ pub fn table<'d>(rows: impl Iterator<Item = (&'d Named<String>, &'d Document)>) 
 
 fn cells(swept: &Named<String>, document: &Document) -> Vec<String> {
     let values = swept.0.iter().map(|(_, value)| value.clone());
-    let free = document.free.0.iter().map(|(_, value)| aligned(*value, DIGITS));
+    let free =
+        document.free.0.iter().map(|(name, value)| aligned(document.units.scaled(name, *value), DIGITS));
     let rest = [
         document.iterations.to_string(),
         format!("{:.3}", document.seconds.total),

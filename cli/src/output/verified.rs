@@ -3,9 +3,9 @@
 use super::document::Span;
 use super::ending::{Ending, EventEntry, events, state};
 use super::named::Named;
-use super::number::{scientific, short, significant};
+use super::number::{scientific, short};
 use super::saved::Saved;
-use super::simulation::pairs;
+use super::units::Units;
 use crate::conditions::Condition;
 use crate::stays::{Stay, name};
 use crate::verification::Verified;
@@ -103,6 +103,8 @@ pub struct Document {
     conditions: Named<ConditionEntry>,
     events: Vec<EventEntry>,
     surfaces: Named<Vec<Span>>,
+    #[serde(skip_serializing_if = "Units::is_empty")]
+    units: Units,
 }
 
 #[derive(Serialize)]
@@ -148,7 +150,13 @@ impl Document {
             conditions: conditions.collect(),
             events: events(system, simulation),
             surfaces: Named(surfaces),
+            units: Units::default(),
         }
+    }
+
+    /// The same with the units of its values.
+    pub fn in_units(self, units: Units) -> Self {
+        Document { units, ..self }
     }
 
     /// Whether the solution is confirmed.
@@ -184,13 +192,15 @@ impl Document {
         };
         let place = worst.as_ref().filter(|worst| worst.time.is_some());
         let place = place.map(|it| {
-            format!(" worst at t = {}: {}\n", short(it.time.unwrap_or(f64::NAN)), pairs(&it.state, 6))
+            let time = self.units.value("time", it.time.unwrap_or(f64::NAN), 6);
+            format!(" worst at t = {time}: {}\n", self.units.pairs(&it.state, 6))
         });
         first + &place.unwrap_or_default()
     }
 
     fn numbers(&self) -> String {
-        let of = |value: Option<f64>| value.map_or("-".to_string(), |value| significant(value, 9));
+        let text = |value: f64| self.units.value("objective", value, 9);
+        let of = |value: Option<f64>| value.map_or("-".to_string(), text);
         match (self.objective, self.verification.objective) {
             (_, None) => String::new(),
             (own, replayed) => format!(" objective {}   of the solution {}\n", of(replayed), of(own)),
@@ -199,12 +209,15 @@ impl Document {
 
     fn states(&self) -> String {
         let rows = self.state_gaps.0.iter();
-        let rows = rows.map(|(name, it)| vec![name.clone(), short(it.gap), short(it.time)]).collect();
+        let rows = rows.map(|(name, it)| {
+            vec![name.clone(), self.units.value(name, it.gap, 6), self.units.value("time", it.time, 6)]
+        });
+        let rows = rows.collect();
         table(["state", "differs by", "at t"].to_vec(), rows)
     }
 
     fn met(&self) -> String {
-        let time = |time: Option<f64>| time.map(short).unwrap_or_default();
+        let time = |time: Option<f64>| time.map(|it| self.units.value("time", it, 6)).unwrap_or_default();
         let rows = self.conditions.0.iter();
         let rows = rows.map(|(name, it)| vec![name.clone(), short(it.violation), time(it.time)]).collect();
         table(["condition", "violated by", "at t"].to_vec(), rows)
@@ -212,7 +225,7 @@ impl Document {
 
     fn modes(&self) -> String {
         let rows = self.surfaces.0.iter().flat_map(|(name, spans)| {
-            let digits = |time: f64| significant(time, 9);
+            let digits = |time: f64| self.units.value("time", time, 9);
             spans.iter().map(move |it| vec![name.clone(), it.mode.clone(), digits(it.from), digits(it.to)])
         });
         table(["surface", "mode", "from", "to"].to_vec(), rows.collect())

@@ -215,32 +215,31 @@ impl<'a> Elaborator<'a> {
 
     /// The SI value of the declared unit of what an expression measures, as far as that can be read off.
     fn unit_of(&mut self, expr: &Expr) -> f64 {
-        match &expr.kind {
-            ExprKind::Name(name) => {
-                let item = self.scope.find(name).map(|at| self.scope.declarations[at].item);
-                // Mistakes in the unit are told at the declaration.
-                item.and_then(scope::unit).map_or(1.0, |unit| units::scale(unit, &mut Vec::new()))
-            }
-            ExprKind::Negate(inner) | ExprKind::Part(inner, _) | ExprKind::Index(inner, _) => {
-                self.unit_of(inner)
-            }
-            ExprKind::Call(callee, arguments) => match &arguments[..] {
-                [Argument::Start(_) | Argument::End(_)] => self.unit_of(callee),
-                _ => inside_abs(expr).map_or(1.0, |inner| self.unit_of(inner)),
-            },
-            ExprKind::Binary(..) => self.unit_of_sum(expr),
-            _ => 1.0,
-        }
+        let at = measured(expr).and_then(|name| self.scope.find(name));
+        let item = at.map(|at| self.scope.declarations[at].item);
+        // Mistakes in the unit are told at the declaration.
+        item.and_then(scope::unit).map_or(1.0, |unit| units::scale(unit, &mut Vec::new()))
     }
+}
 
-    /// The unit of the first term that has one.
-    fn unit_of_sum(&mut self, sum: &Expr) -> f64 {
-        let (first, links) = walk::spine(sum);
-        if !links.iter().all(|link| matches!(link.1, BinaryOperator::Add | BinaryOperator::Subtract)) {
-            return 1.0;
+/// The name in whose unit a plain number on the other side is read: that of the expression, or of the first term of a sum
+/// that is no plain number. None for a formula, beside which a plain number is in SI.
+pub(crate) fn measured(expr: &Expr) -> Option<&str> {
+    match &expr.kind {
+        ExprKind::Name(name) => Some(name),
+        ExprKind::Negate(inner) | ExprKind::Part(inner, _) | ExprKind::Index(inner, _) => measured(inner),
+        ExprKind::Call(callee, arguments) => match &arguments[..] {
+            [Argument::Start(_) | Argument::End(_)] => measured(callee),
+            _ => inside_abs(expr).and_then(measured),
+        },
+        ExprKind::Binary(..) => {
+            let (first, links) = walk::spine(expr);
+            let is_sum =
+                |link: &walk::Link<'_>| matches!(link.1, BinaryOperator::Add | BinaryOperator::Subtract);
+            let mut terms = std::iter::once(first).chain(links.iter().map(|link| link.2));
+            terms.find(|term| !is_plain(term)).filter(|_| links.iter().all(is_sum)).and_then(measured)
         }
-        let mut terms = std::iter::once(first).chain(links.iter().map(|link| link.2));
-        terms.find(|term| !is_plain(term)).map_or(1.0, |term| self.unit_of(term))
+        _ => None,
     }
 }
 

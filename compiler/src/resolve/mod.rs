@@ -4,12 +4,12 @@
 //! unknown value, from which nothing follows: so several mistakes are told at once, and none because of another.
 
 mod calls;
-mod conditions;
+pub(crate) mod conditions;
 mod context;
 mod declare;
 mod direction;
 pub(crate) mod elaborator;
-mod expression;
+pub(crate) mod expression;
 mod forms;
 mod guess;
 mod items;

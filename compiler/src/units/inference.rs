@@ -3,6 +3,7 @@
 //! One walk over the text collects [`Requirement`]s; solving them comes afterwards. A text that was found wrong is passed
 //! over in the next walk and counts as unknown: so a mistake is told once, and nothing follows from it.
 
+use super::bare::Bare;
 use super::dimension::{Atom, Dimension};
 use super::requirement::{Call, Reason, Requirement, Side};
 use super::value::{Part, Value, pairwise};
@@ -51,6 +52,8 @@ pub(crate) struct Inference<'a> {
     pub switches: Vec<Part>,
     /// The names of each phase.
     pub phases: HashMap<&'a str, Scope<'a>>,
+    /// Plain numbers beside formulas.
+    pub bare: Vec<Bare<'a>>,
     /// What must hold.
     pub requirements: Vec<Requirement<'a>>,
     /// What is known to be wrong.
@@ -78,6 +81,7 @@ impl<'a> Inference<'a> {
             depth: 0,
             switches: Vec::new(),
             phases: HashMap::new(),
+            bare: Vec::new(),
             requirements: Vec::new(),
             wrong,
             listening: false,

@@ -27,7 +27,10 @@ impl<'a> Inference<'a> {
             | ItemKind::Path { condition, .. } => {
                 self.condition(condition);
             }
-            ItemKind::Objective { value, .. } => drop(self.evaluate(value)),
+            ItemKind::Objective { keyword, value, .. } => {
+                let value = self.evaluate(value);
+                self.values.insert(*keyword, value);
+            }
             ItemKind::Guess { bindings } => bindings.iter().for_each(|it| self.guess(&it.name, &it.value)),
             ItemKind::Report { bindings } => bindings.iter().for_each(|it| {
                 let value = self.evaluate(&it.value);
@@ -48,7 +51,8 @@ impl<'a> Inference<'a> {
     fn equation(&mut self, equation: &'a Equation) {
         let right = self.operand(&equation.right);
         let factor = equation.factor.as_ref().map(|factor| self.evaluate(factor));
-        let Some(state) = self.declared(&equation.state) else { return };
+        let is_state = |it: &Declaration<'a>| matches!(it.item.kind, ItemKind::State { .. });
+        let Some(state) = self.declared(&equation.state).filter(is_state) else { return };
         let rate = pairwise(&self.subject(state).0, &self.time(), Part::over);
         let left = match factor {
             Some(factor) => pairwise(&factor, &rate, Part::times),
@@ -65,17 +69,19 @@ impl<'a> Inference<'a> {
     }
 
     fn condition(&mut self, condition: &'a Condition) {
-        let mut left = self.operand(&condition.first);
+        let (mut left, mut text) = (self.operand(&condition.first), &condition.first);
         for (_, next) in &condition.rest {
             let right = self.operand(next);
             self.compare(Reason::Comparison, &left, &right);
-            left = right;
+            self.note_bare([(text, left.0.first()), (next, right.0.first())]);
+            (left, text) = (right, next);
         }
     }
 
     fn check(&mut self, check: &'a Check) {
         let (left, right) = (self.operand(&check.left), self.operand(&check.right));
         self.compare(Reason::Comparison, &left, &right);
+        self.note_bare([(&check.left, left.0.first()), (&check.right, right.0.first())]);
         if let Some(within) = &check.within {
             let within = self.operand(within);
             self.compare(Reason::Comparison, &left, &within);

@@ -28,8 +28,13 @@ impl<'a> Speaker<'a> {
             _ => self.two_sided(it, blame.as_ref()),
         };
         let found = self.called(found, it);
-        match repairs.help(blame) {
+        let fix = repairs.fix(blame.as_ref());
+        let found = match repairs.help(blame) {
             Some(help) => found.help(help),
+            None => found,
+        };
+        match fix {
+            Some(fix) => found.fix(fix),
             None => found,
         }
     }

@@ -5,6 +5,7 @@
 //! A number without a unit has none, except where it stands alone against something that has one: in a bound, a start, a
 //! guess or a comparison it takes the unit of the other side.
 
+mod bare;
 mod calls;
 mod declare;
 mod dimension;
@@ -31,6 +32,7 @@ use fdcc_grammar::{Diagnostic, Span};
 use inference::Inference;
 use messages::Speaker;
 use mistake::Mistake;
+use names::Findings;
 pub use names::NamedUnit;
 use notation::Notation;
 pub use quantity::{Quantity, parse_quantity};
@@ -67,8 +69,11 @@ pub(crate) fn infer(tree: &ast::Model) -> Units {
                 mistakes.push(Mistake::new(&inference.requirements[at], &inference, &solution));
             }
             _ => {
-                let names = names::names(&tree.items, &inference, &solution, &speaker.notation);
-                return Units { diagnostics: told(&speaker, &mistakes), names };
+                let notation = &speaker.notation;
+                let findings = Findings { inference: &inference, solution: &solution, notation };
+                let mut diagnostics = told(&speaker, &mistakes);
+                diagnostics.extend(bare::found(&inference, &solution, notation));
+                return Units { names: findings.names(&tree.items), diagnostics };
             }
         }
     }

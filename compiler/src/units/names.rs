@@ -1,5 +1,6 @@
 //! The unit of every declared name, written or found: for tables, hover and hints.
 
+use super::dimension::Dimension;
 use super::inference::Inference;
 use super::messages::unit_of;
 use super::notation::{Notation, written};
@@ -8,12 +9,12 @@ use super::table;
 use super::value::Part;
 use crate::resolve::scope;
 use fdcc_grammar::Span;
-use fdcc_grammar::ast::{Binding, Ident, Item, ItemKind};
+use fdcc_grammar::ast::{Item, ItemKind};
 
 /// The unit of a declared name, or of one part of it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct NamedUnit {
-    /// As in results: `v`, `pos.x`.
+    /// As in results: `v`, `pos.x`; `objective` for what is minimised.
     pub name: String,
     /// The name where it is declared.
     pub span: Span,
@@ -21,76 +22,83 @@ pub struct NamedUnit {
     pub unit: String,
     /// How many SI units one of them is.
     pub scale: f64,
+    /// The same in SI.
+    pub si: String,
+    /// What it measures.
+    pub dimension: Dimension,
     /// Whether the text says so; found from the equations otherwise.
     pub written: bool,
+    /// Whether it is the time.
+    pub is_time: bool,
 }
 
-/// All names whose units are known, in the order of the text.
-pub(crate) fn names(
-    items: &[Item],
-    inference: &Inference<'_>,
-    solution: &Solution,
-    notation: &Notation,
-) -> Vec<NamedUnit> {
-    let mut all = Vec::new();
-    for item in items {
-        match &item.kind {
-            ItemKind::Phase { items, .. } => all.extend(names(items, inference, solution, notation)),
-            ItemKind::Report { bindings } => {
-                all.extend(bindings.iter().flat_map(|it| of_report(it, inference, solution, notation)))
+/// What a walk has found out.
+pub(crate) struct Findings<'f, 'a> {
+    /// What each name measures, with unknowns in it.
+    pub inference: &'f Inference<'a>,
+    /// What the unknowns are.
+    pub solution: &'f Solution,
+    /// How units are written in this model.
+    pub notation: &'f Notation,
+}
+
+impl Findings<'_, '_> {
+    /// All names whose units are known, in the order of the text.
+    pub fn names(&self, items: &[Item]) -> Vec<NamedUnit> {
+        let mut all = Vec::new();
+        for item in items {
+            match &item.kind {
+                ItemKind::Phase { items, .. } => all.extend(self.names(items)),
+                ItemKind::Report { bindings } => {
+                    all.extend(bindings.iter().filter_map(|it| self.single(it.name.span, &it.name.name)))
+                }
+                ItemKind::Objective { keyword, .. } => all.extend(self.single(*keyword, "objective")),
+                _ => all.extend(self.of_item(item)),
             }
-            _ => all.extend(of_item(item, inference, solution, notation)),
+        }
+        all
+    }
+
+    fn value(&self, span: Span) -> &[Part] {
+        self.inference.values.get(&span).map_or(&[][..], Vec::as_slice)
+    }
+
+    /// The unit of a number. The parts of a vector in a report have names that are not known here.
+    fn single(&self, span: Span, name: &str) -> Option<NamedUnit> {
+        match self.value(span) {
+            [part] => self.found(span, name.into(), part),
+            _ => None,
         }
     }
-    all
-}
 
-fn of_report(
-    binding: &Binding,
-    inference: &Inference<'_>,
-    solution: &Solution,
-    notation: &Notation,
-) -> Vec<NamedUnit> {
-    let value = inference.values.get(&binding.name.span).map_or(&[][..], Vec::as_slice);
-    // The parts of a report are named after those of what it is made of, which is not known here.
-    let [part] = value else { return Vec::new() };
-    found(&binding.name, binding.name.name.clone(), part, solution, notation).into_iter().collect()
-}
+    fn of_item(&self, item: &Item) -> Vec<NamedUnit> {
+        let Some(name) = scope::declared(item) else { return Vec::new() };
+        let parts = scope::parts(item);
+        let named = |at: usize| match parts.get(at) {
+            Some(part) => format!("{}.{}", name.name, part.name),
+            None => name.name.clone(),
+        };
+        let unit = unit_of(item).filter(|unit| table::dimension(unit).is_some());
+        let is_time = matches!(item.kind, ItemKind::Time { .. });
+        let entry = |(at, part): (usize, &Part)| {
+            let found = self.found(name.span, named(at), part)?;
+            Some(match unit {
+                Some(unit) => NamedUnit {
+                    unit: written(unit),
+                    scale: table::scale(unit, &mut Vec::new()),
+                    written: true,
+                    is_time,
+                    ..found
+                },
+                None => NamedUnit { is_time, ..found },
+            })
+        };
+        self.value(name.span).iter().enumerate().filter_map(entry).collect()
+    }
 
-fn of_item(
-    item: &Item,
-    inference: &Inference<'_>,
-    solution: &Solution,
-    notation: &Notation,
-) -> Vec<NamedUnit> {
-    let Some(name) = scope::declared(item) else { return Vec::new() };
-    let value = inference.values.get(&name.span).map_or(&[][..], Vec::as_slice);
-    let parts = scope::parts(item);
-    let named = |at: usize| match parts.get(at) {
-        Some(part) => format!("{}.{}", name.name, part.name),
-        None => name.name.clone(),
-    };
-    let unit = unit_of(item).filter(|unit| table::dimension(unit).is_some());
-    let entry = |(at, part): (usize, &Part)| match unit {
-        Some(unit) => Some(NamedUnit {
-            name: named(at),
-            span: name.span,
-            unit: written(unit),
-            scale: table::scale(unit, &mut Vec::new()),
-            written: true,
-        }),
-        None => found(name, named(at), part, solution, notation),
-    };
-    value.iter().enumerate().filter_map(entry).collect()
-}
-
-fn found(
-    place: &Ident,
-    name: String,
-    part: &Part,
-    solution: &Solution,
-    notation: &Notation,
-) -> Option<NamedUnit> {
-    let dimension = solution.settled(part.dimension.as_ref()?).filter(|it| it.is_known())?;
-    Some(NamedUnit { name, span: place.span, unit: notation.unit(&dimension), scale: 1.0, written: false })
+    fn found(&self, span: Span, name: String, part: &Part) -> Option<NamedUnit> {
+        let dimension = self.solution.settled(part.dimension.as_ref()?).filter(Dimension::is_known)?;
+        let unit = self.notation.unit(&dimension);
+        Some(NamedUnit { name, span, si: unit.clone(), unit, scale: 1.0, dimension, ..NamedUnit::default() })
+    }
 }

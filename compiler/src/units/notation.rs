@@ -123,7 +123,7 @@ fn short(dimension: &Dimension) -> Factors {
         let rest = dimension.combined(&table::named(name)?.1, power.negative()?)?;
         let mut factors = vec![(name.to_string(), power)];
         factors.extend(base(&rest));
-        (factors.len() == 2).then_some(factors)
+        (factors.len() <= 2).then_some(factors)
     };
     if plain.len() < 3 { plain } else { all.into_iter().find_map(with).unwrap_or(plain) }
 }

@@ -8,6 +8,7 @@ use super::ratio::Ratio;
 use super::requirement::{Reason, Side};
 use super::table;
 use crate::resolve::{scope, text, walk};
+use fdcc_grammar::Fix;
 use fdcc_grammar::ast::{BinaryOperator, Expr, ExprKind, ItemKind};
 
 /// A mistake and all that its repair may look at.
@@ -64,17 +65,39 @@ impl<'a> Repairs<'_, 'a> {
         }
     }
 
-    /// The declaration of a name with the unit that would make both sides equal.
-    fn unit_for_a_name(&self, blame: &Blame<'a>) -> Option<String> {
+    /// A change of the text: the unit behind the declaration, or behind the number.
+    pub fn fix(&self, blame: Option<&Blame<'a>>) -> Option<Fix> {
+        match blame {
+            Some(blame) => {
+                let (name, unit) = (blame.culprit.name, self.unit_of(blame));
+                let title = format!("give `{}` the unit `[{unit}]`", name.name);
+                let at = unit_place(&blame.culprit)?;
+                Some(Fix::likely(title).insert(at, format!(" [{unit}]")))
+            }
+            None => {
+                let (number, unit) = self.bare_number()?;
+                let end = number.expr.filter(|it| matches!(it.kind, ExprKind::Number(_)))?.span.end;
+                Some(Fix::likely("give the number its unit").insert(end, format!(" [{unit}]")))
+            }
+        }
+    }
+
+    /// The unit that would make both sides equal.
+    fn unit_of(&self, blame: &Blame<'a>) -> String {
         let (own, other) = self.sides(blame.side);
         let notation = &self.speaker.notation;
-        let unit = if blame.culprit.power == Ratio::ONE {
+        if blame.culprit.power == Ratio::ONE {
             notation.quotient(&other.dimension, &own.dimension)
         } else if blame.culprit.power == Ratio::whole(-1) {
             notation.quotient(&own.dimension, &other.dimension)
         } else {
             notation.unit(&blame.needed)
-        };
+        }
+    }
+
+    /// The declaration of a name with that unit.
+    fn unit_for_a_name(&self, blame: &Blame<'a>) -> Option<String> {
+        let unit = self.unit_of(blame);
         let declaration = with_unit(&blame.culprit, &unit)?;
         Some(match notation::noun(&blame.needed) {
             Some(noun) => format!("{noun} would be `{declaration}`"),
@@ -82,8 +105,8 @@ impl<'a> Repairs<'_, 'a> {
         })
     }
 
-    /// A plain number beside something with a unit: `1 [m]`.
-    fn unit_for_a_number(&self) -> Option<String> {
+    /// A plain number beside something with a unit, and that unit.
+    fn bare_number(&self) -> Option<(&Side<'a>, String)> {
         let it = &self.mistake.requirement;
         let is_number = |side: &Side<'a>| side.plain && side.dimension.is_none();
         let (number, other) = match (is_number(&it.left), is_number(&it.right)) {
@@ -91,7 +114,12 @@ impl<'a> Repairs<'_, 'a> {
             (_, true) => (&it.right, &it.left),
             _ => return None,
         };
-        let unit = self.speaker.notation.unit(&other.dimension);
+        Some((number, self.speaker.notation.unit(&other.dimension)))
+    }
+
+    /// `1 [m]`
+    fn unit_for_a_number(&self) -> Option<String> {
+        let (number, unit) = self.bare_number()?;
         match &number.expr?.kind {
             ExprKind::Number(value) => {
                 Some(format!("give the number its unit: `{} [{unit}]`", text::number(*value)))
@@ -196,6 +224,16 @@ impl<'a> Repairs<'_, 'a> {
     fn unused(&self, name: &str) -> String {
         let is_taken = self.speaker.tree.items.iter().filter_map(scope::declared).any(|it| it.name == name);
         if is_taken { format!("{name}_0") } else { name.into() }
+    }
+}
+
+/// Where the unit of a plain number would stand: behind its value, or behind the name of a `let`.
+fn unit_place(culprit: &Culprit<'_>) -> Option<u32> {
+    match &culprit.item.kind {
+        ItemKind::Param { value: Some(value), .. } | ItemKind::Const { value, .. } => Some(value.span.end),
+        ItemKind::Let { .. } => Some(culprit.name.span.end),
+        ItemKind::Free { bounds: Some(bounds), .. } => Some(bounds.span.end),
+        _ => None,
     }
 }
 

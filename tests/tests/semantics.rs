@@ -45,8 +45,9 @@ fn messages_are_those_of_the_table() {
     let path = repository().join("tests/reference/diagnostics.json");
     let table = std::fs::read_to_string(path).expect("the table is there");
     let cases: serde_json::Value = serde_json::from_str(&table).expect("the table is JSON");
-    let is_ours =
-        |code: &str| ["FDC01", "FDC02", "FDC03", "FDC04", "FDC07"].iter().any(|group| code.starts_with(group));
+    let is_ours = |code: &str| {
+        ["FDC01", "FDC02", "FDC03", "FDC04", "FDC07"].iter().any(|group| code.starts_with(group))
+    };
     let mut count = 0;
     for case in cases
         .as_array()

@@ -3,7 +3,7 @@
 use crate::differentiate::differentiate;
 use crate::graph::{ExprId, Graph, print};
 use crate::lower::{Numbers, Program, lower, numbers};
-use crate::model::{Model, Symbol};
+use crate::model::{Model, Place, Range, Symbol};
 use crate::program::{Differentiated, VectorFunction};
 use crate::resolve::text::number;
 use crate::surfaces::{SurfaceReport, surfaces};
@@ -169,18 +169,21 @@ fn summary(model: &Model, program: &Program, numbers: &Numbers) -> String {
     let mut text = format!("model {}\n", model.name);
     let ends = over_symbols(model, &[("t0".into(), model.interval[0]), ("tf".into(), model.interval[1])]);
     section(&mut text, "time", ends.lines().map(str::to_string));
-    let states = model.states.iter().map(|it| bounded(&it.place.name, numbers.bounds(model, it.range)));
-    section(&mut text, "states", states);
-    let controls = model.controls.iter().map(|it| bounded(&it.place.name, numbers.bounds(model, it.range)));
+    let named = |place: &Place, range: Range| in_units(model, &place.name, numbers.bounds(model, range));
+    section(&mut text, "states", model.states.iter().map(|it| named(&it.place, it.range)));
+    let controls = model.controls.iter().map(|it| named(&it.place, it.range));
     section(&mut text, "controls", controls);
     let frees = model.frees.iter().enumerate().map(|(at, it)| {
-        let guess = number(numbers.of(model, Symbol::Free(at)));
-        format!("{} guess {guess}", bounded(&it.place.name, numbers.bounds(model, it.range)))
+        let guess = numbers.of(model, Symbol::Free(at)) / scale(model, &it.place.name);
+        format!("{} guess {}", named(&it.place, it.range), short(guess))
     });
     section(&mut text, "free", frees);
     let params = model.params.iter().enumerate();
-    let params = params
-        .map(|(at, it)| format!("{} = {}", it.place.name, number(numbers.of(model, Symbol::Param(at)))));
+    let params = params.map(|(at, it)| {
+        let value = short(numbers.of(model, Symbol::Param(at)) / scale(model, &it.place.name));
+        let unit = model.unit_of(&it.place.name).map_or("", |it| &it.unit);
+        format!("{} = {value} {unit}", it.place.name).trim_end().to_string()
+    });
     section(&mut text, "params", params);
     section(&mut text, "surfaces", surfaces(model, numbers).iter().flat_map(surface_lines));
     let path = model.path.iter().map(|it| bounded(&it.place.name, numbers.bounds(model, it.range)));
@@ -212,6 +215,30 @@ fn section(text: &mut String, title: &str, lines: impl Iterator<Item = String>) 
         writeln!(text, "{title:<10} {line}").expect("writing to a string cannot fail");
         title = "";
     }
+}
+
+/// `v [km/h] in [0, 100]`
+fn in_units(model: &Model, name: &str, bounds: Bounds) -> String {
+    let scale = scale(model, name);
+    let [lower, upper] = [bounds.lower / scale, bounds.upper / scale].map(rounded);
+    match model.unit_of(name).filter(|it| !it.unit.is_empty()) {
+        Some(it) => bounded(&format!("{name} [{}]", it.unit), Bounds { lower, upper }),
+        None => bounded(name, Bounds { lower, upper }),
+    }
+}
+
+/// How many SI units one of the units is in which a name is declared.
+fn scale(model: &Model, name: &str) -> f64 {
+    model.unit_of(name).map_or(1.0, |it| it.scale)
+}
+
+/// Without the digits that going to SI and back leaves behind.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.13e}").parse().unwrap_or(value)
+}
+
+fn short(value: f64) -> String {
+    number(rounded(value))
 }
 
 fn bounded(name: &str, bounds: Bounds) -> String {

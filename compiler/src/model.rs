@@ -325,6 +325,11 @@ impl Model {
         all
     }
 
+    /// The unit of a name, if the text uses units and it could be found.
+    pub fn unit_of(&self, name: &str) -> Option<&NamedUnit> {
+        self.units.iter().find(|it| it.name == name)
+    }
+
     /// The graph input that is a symbol.
     pub fn input_of(&self, symbol: Symbol) -> Option<u32> {
         self.symbols.iter().position(|&known| known == symbol).map(|at| at as u32)

@@ -30,8 +30,9 @@ impl Model {
         let own = self.units.iter().find(|own| Some(own.span) == span);
         match own.zip(given.dimension) {
             Some((own, dimension)) if own.dimension != dimension => {
-                let unit = if own.unit.is_empty() { "no unit".into() } else { format!("`[{}]`", own.unit) };
-                Err(format!("`{name}` has {unit}, so it cannot be `{}`", text.trim()))
+                let unit =
+                    if own.unit.is_empty() { "has no unit".into() } else { format!("is in {}", own.unit) };
+                Err(format!("`{name}` {unit}, so it cannot be `{}`", text.trim()))
             }
             _ => Ok(given.value),
         }

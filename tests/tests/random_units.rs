@@ -8,7 +8,7 @@ use fdcc_tests::random::Random;
 /// Powers of m, s, kg.
 type Powers = [i32; 3];
 
-/// Names and what they measure; those without a unit are found from the conditions.
+/// Names and what they measure; that of `open` is found from its start.
 const NAMES: &[(&str, Powers)] = &[
     ("x", [1, 0, 0]),
     ("v", [1, -1, 0]),
@@ -22,7 +22,7 @@ const NAMES: &[(&str, Powers)] = &[
 ];
 
 const HEAD: &str = "
-param m = 2 [kg] 
+param m = 2 [kg]
 param mu = 0.3
 param k = 3 [N/m]
 const later = 9.81 [m/s^2]
@@ -32,9 +32,8 @@ fn bump(e) = piecewise { e <= 1 => e^2  otherwise => 2*e }
 time t in [0, 1] [min]
 state x [cm] start 1
 state v [km/h] start 1
-state open start 1
+state open start 1 [J]
 control F [kN] in [-1, 1]
-path open <= 3 [J]
 ";
 
 /// A formula as it grows; with a metre too many at one of its leaves, if it is to be wrong.

@@ -53,6 +53,11 @@ impl Dimension {
         self.0.iter().all(|(atom, _)| matches!(atom, Atom::Base(_)))
     }
 
+    /// Whether it is that of one name by itself, and not known yet.
+    pub(crate) fn is_unknown(&self) -> bool {
+        matches!(self.0[..], [(Atom::Unknown(_), Ratio::ONE)])
+    }
+
     pub(crate) fn has_number(&self) -> bool {
         self.0.iter().any(|(atom, _)| matches!(atom, Atom::Number(_)))
     }

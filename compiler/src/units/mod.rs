@@ -37,7 +37,7 @@ pub use names::NamedUnit;
 use notation::Notation;
 pub use quantity::{Quantity, parse_quantity};
 use requirement::Requirement;
-use solve::Solution;
+use solve::{Rank, Solution};
 use std::collections::HashSet;
 pub(crate) use table::scale;
 
@@ -122,8 +122,8 @@ fn walked(
     inference.items(&outer);
     let places = inference.numbers.iter().map(|it| it.place.clone()).collect();
     let mut solution = Solution::new(inference.unknowns, places);
-    let differences: Vec<Dimension> =
-        inference.requirements.iter().map(|it| it.difference().unwrap_or_default()).collect();
+    let differences: Vec<(Rank, Dimension)> =
+        inference.requirements.iter().map(Requirement::equation).collect();
     let contradiction = solution.first_contradiction(&differences);
     (inference, solution, contradiction)
 }

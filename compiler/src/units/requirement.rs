@@ -1,6 +1,7 @@
 //! What the text demands of units: two sides that must be equal, with all that a message needs to say about them.
 
 use super::dimension::Dimension;
+use super::solve::Rank;
 use fdcc_grammar::Span;
 use fdcc_grammar::ast::{BinaryOperator, Expr, Ident};
 
@@ -69,8 +70,15 @@ pub(crate) struct Requirement<'a> {
 }
 
 impl Requirement<'_> {
-    /// What must be no unit; `None` if that cannot be said.
-    pub fn difference(&self) -> Option<Dimension> {
-        self.left.dimension.over(&self.right.dimension)
+    /// What must be no unit, and how sure it is that it must.
+    pub fn equation(&self) -> (Rank, Dimension) {
+        let difference = self.left.dimension.over(&self.right.dimension).unwrap_or_default();
+        let is_given = matches!(self.reason, Reason::Given(..));
+        let rank = match (is_given && self.left.dimension.is_unknown(), difference.has_number()) {
+            (_, true) => Rank::Doubtful,
+            (true, _) => Rank::Direct,
+            _ => Rank::Formula,
+        };
+        (rank, difference)
     }
 }

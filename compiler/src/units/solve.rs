@@ -1,13 +1,24 @@
 //! Linear equations between dimensions, solved one after another: each holds already, or tells one unknown, or is wrong.
 //!
-//! Two passes: first the equations without names that were given as plain numbers, so that a wrong guess about such a
-//! name never spoils what the declared units say.
+//! What is as good as a declaration comes first, and equations with names that were given as plain numbers come last: so a
+//! mistake never spoils what the declared units say.
 
 use super::dimension::{Atom, Dimension};
 use super::ratio::Ratio;
 
 /// Formulas have few plain numbers that also have a place with a unit.
 const MOST_CHOICES: usize = 64;
+
+/// Which equations are solved first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(crate) enum Rank {
+    /// The bound, start or guess of a name without a unit: as good as a declaration.
+    Direct,
+    /// Any other without plain numbers.
+    Formula,
+    /// With names that were given as plain numbers.
+    Doubtful,
+}
 
 /// What is known about the atoms.
 #[derive(Default)]
@@ -25,10 +36,10 @@ impl Solution {
     }
 
     /// Makes all differences vanish as far as that can be done; the first that cannot.
-    pub fn first_contradiction(&mut self, differences: &[Dimension]) -> Option<usize> {
-        let (late, early): (Vec<usize>, Vec<usize>) =
-            (0..differences.len()).partition(|&at| differences[at].has_number());
-        early.into_iter().chain(late).find(|&at| !self.make_none(&differences[at]))
+    pub fn first_contradiction(&mut self, differences: &[(Rank, Dimension)]) -> Option<usize> {
+        let mut order: Vec<usize> = (0..differences.len()).collect();
+        order.sort_by_key(|&at| differences[at].0);
+        order.into_iter().find(|&at| !self.make_none(&differences[at].1))
     }
 
     fn make_none(&mut self, difference: &Dimension) -> bool {
@@ -120,6 +131,7 @@ mod tests {
         let product = unknown(0).times(&unknown(1)).and_then(|it| it.over(&base(1))).expect("small");
         let square = unknown(1).power(Ratio::whole(2)).and_then(|it| it.over(&base(2))).expect("small");
         for equations in [[product.clone(), square.clone()], [square, product]] {
+            let equations = equations.map(|it| (Rank::Formula, it));
             let mut solution = Solution::new(2, Vec::new());
             assert_eq!(solution.first_contradiction(&equations), None);
             let half = Ratio::from_decimal(0.5).expect("a fraction");
@@ -132,8 +144,9 @@ mod tests {
     fn a_plain_number_is_none_or_has_the_unit_of_its_place() {
         let number = Dimension::atom(Atom::Number(0));
         let metre = |form: &Dimension| form.over(&base(1)).expect("small");
-        let contradiction =
-            |place, form| Solution::new(0, vec![place]).first_contradiction(&[form]).is_some();
+        let contradiction = |place, form| {
+            Solution::new(0, vec![place]).first_contradiction(&[(Rank::Doubtful, form)]).is_some()
+        };
         assert!(contradiction(None, metre(&number)));
         assert!(!contradiction(Some(base(1)), metre(&number)));
         assert!(!contradiction(Some(base(1)), number));

@@ -124,6 +124,25 @@ fn walked(
     let mut solution = Solution::new(inference.unknowns, places);
     let differences: Vec<(Rank, Dimension)> =
         inference.requirements.iter().map(Requirement::equation).collect();
-    let contradiction = solution.first_contradiction(&differences);
-    (inference, solution, contradiction)
+    let contradictions = solution.contradictions(&differences);
+    let first = innermost(&inference.requirements, &contradictions);
+    (inference, solution, first)
+}
+
+/// The first contradiction, or one inside it, or in a function that is called inside it, from which it may follow.
+fn innermost(requirements: &[Requirement<'_>], contradictions: &[usize]) -> Option<usize> {
+    let mut first = *contradictions.first()?;
+    for _ in contradictions {
+        let outer = requirements[first].site;
+        let is_inside = |place: Span| outer.start <= place.start && place.end <= outer.end && place != outer;
+        let is_inner = |&&at: &&usize| {
+            let it = &requirements[at];
+            is_inside(it.site) || it.calls.iter().any(|call| is_inside(call.span))
+        };
+        match contradictions.iter().find(is_inner) {
+            Some(&inner) => first = inner,
+            None => break,
+        }
+    }
+    Some(first)
 }

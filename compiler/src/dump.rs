@@ -6,7 +6,7 @@ use crate::lower::{Numbers, Program, lower, numbers};
 use crate::model::{Model, Place, Range, Symbol};
 use crate::program::{Differentiated, VectorFunction};
 use crate::resolve::text::number;
-use crate::surfaces::{SurfaceReport, surfaces};
+use crate::surfaces::{Order, Smoothness, SurfaceReport, smoothness, surfaces};
 use crate::{generate, not_yet};
 use fdcc_grammar::Diagnostic;
 use fdcc_runtime::problem::{Bounds, Layout};
@@ -186,6 +186,8 @@ fn summary(model: &Model, program: &Program, numbers: &Numbers) -> String {
     });
     section(&mut text, "params", params);
     section(&mut text, "surfaces", surfaces(model, numbers).iter().flat_map(surface_lines));
+    let rough = smoothness(model, numbers).into_iter().filter(|it| it.order != Order::Always);
+    section(&mut text, "smoothness", rough.map(smoothness_line));
     let path = model.path.iter().map(|it| bounded(&it.place.name, numbers.bounds(model, it.range)));
     section(&mut text, "path", path);
     section(&mut text, "boundary", model.boundary.iter().map(|it| it.place.name.clone()));
@@ -204,9 +206,14 @@ fn surface_lines(surface: &SurfaceReport) -> Vec<String> {
         line("gradient", &surface.gradient.join(", "));
         line("jump", &surface.jump);
     }
-    line("class", &surface.class);
+    line("class", &surface.meaning);
     surface.holding.iter().for_each(|condition| line("held if", condition));
     lines
+}
+
+/// `y_cl is C^2 at x == pi`.
+fn smoothness_line(it: Smoothness) -> String {
+    format!("{} {} at {}", it.name, it.order, it.knots.join(", "))
 }
 
 fn section(text: &mut String, title: &str, lines: impl Iterator<Item = String>) {

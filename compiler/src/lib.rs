@@ -41,7 +41,7 @@ use resolve::resolve;
 pub use review::{Reviewed, review};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
-pub use surfaces::SurfaceReport;
+pub use surfaces::{Order, Smoothness, SurfaceClass, SurfaceReport};
 pub use units::{NamedUnit, parse_quantity};
 
 /// What a syntax tree means, and what is wrong with it.
@@ -133,6 +133,11 @@ fn without_echoes(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
 /// What is known about every surface of a model, or which parameters it waits for.
 pub fn surfaces(model: &Model) -> Result<Vec<SurfaceReport>, Vec<Diagnostic>> {
     Ok(surfaces::surfaces(model, &numbers(model)?))
+}
+
+/// How smooth everything is that has a name in a model, or which parameters it waits for.
+pub fn smoothness(model: &Model) -> Result<Vec<Smoothness>, Vec<Diagnostic>> {
+    Ok(surfaces::smoothness(model, &numbers(model)?))
 }
 
 /// Turns a model into an optimal control problem with compiled functions; or says what cannot be solved yet.

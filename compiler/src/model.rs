@@ -260,6 +260,8 @@ pub struct Model {
     pub simulated: Vec<Simulated>,
     /// What is expected.
     pub expectations: Vec<Expectation>,
+    /// Weights of states in the inner product in which the model is one-sided Lipschitz.
+    pub metric: Vec<(usize, ExprId)>,
     /// Expressions that have a name in the text: definitions and reports.
     pub names: Vec<(String, ExprId)>,
     /// How it is to be solved.
@@ -298,6 +300,7 @@ impl Model {
             report: Vec::new(),
             simulated: Vec::new(),
             expectations: Vec::new(),
+            metric: Vec::new(),
             names: Vec::new(),
             method: default_method(),
             smooth: false,

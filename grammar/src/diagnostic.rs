@@ -138,6 +138,7 @@ codes! {
     SetProduct = "FDC0206", Warning, "a product of two set-valued functions";
     VanishingGradient = "FDC0301", Error, "a surface whose gradient vanishes on it";
     Repelling = "FDC0302", Error, "a surface that pushes solutions away on both sides";
+    OtherCoordinates = "FDC0303", Advice, "a surface that is one-sided Lipschitz in other coordinates";
     NotContracting = "FDC0304", Warning, "a crossed surface that is not one-sided Lipschitz";
     StartOnSurface = "FDC0305", Advice, "a start that lies on a surface";
     ControlJumps = "FDC0306", Warning, "a control that acts differently on the two sides of a surface";

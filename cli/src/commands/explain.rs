@@ -83,6 +83,7 @@ pages! {
     SetProduct "FDC0206"
     VanishingGradient "FDC0301"
     Repelling "FDC0302"
+    OtherCoordinates "FDC0303"
     NotContracting "FDC0304"
     StartOnSurface "FDC0305"
     ControlJumps "FDC0306"

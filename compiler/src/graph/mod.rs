@@ -179,7 +179,7 @@ impl Graph {
         let mut stack = roots.to_vec();
         while let Some(&id) = stack.last() {
             let before = stack.len();
-            stack.extend(from.operands(id).iter().filter(|it| !known.contains_key(it)));
+            stack.extend(from.operands(id).iter().rev().filter(|it| !known.contains_key(it)));
             if stack.len() == before {
                 stack.pop();
                 known.entry(id).or_insert_with(|| match from.expr(id) {

@@ -93,6 +93,8 @@ pub(crate) struct Elaborator<'a> {
     pub sites: HashMap<Span, super::knots::Site<'a>>,
     /// Stand-ins for the arguments of functions that are examined by themselves.
     pub arguments: Vec<ExprId>,
+    /// Calls outside functions, as they were written, with their values.
+    pub written: Vec<(&'a ast::Expr, ExprId)>,
     /// The states whose equations are understood.
     pub known_rates: HashSet<usize>,
     /// What has been resolved so far; graph, symbols, surfaces and integrals are moved in at the end.
@@ -145,6 +147,7 @@ impl<'a> Elaborator<'a> {
             applied: HashMap::new(),
             sites: HashMap::new(),
             arguments: Vec::new(),
+            written: Vec::new(),
             known_rates: HashSet::new(),
             model: Model::empty(),
             at_end: Vec::new(),

@@ -16,6 +16,11 @@ impl<'a> Elaborator<'a> {
         self.depth += 1;
         let value = self.evaluate_kind(expr);
         self.depth -= 1;
+        if let (ExprKind::Call(..), Parts::Scalar(part), true) =
+            (&expr.kind, &value.parts, self.owner.is_none())
+        {
+            self.written.push((expr, *part));
+        }
         value
     }
 

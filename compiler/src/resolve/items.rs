@@ -183,9 +183,14 @@ impl<'a> Elaborator<'a> {
         self.model.expectations.extend(values.map(|values| Expectation { place, comparison, values }));
     }
 
-    /// A weight of the metric: read, and used by the analysis of surfaces.
+    /// A weight of the metric; a vector has it in all its components.
     fn weight(&mut self, name: &'a Ident, weight: &'a Expr) {
-        self.declared_as(name, "state", |kind| matches!(kind, ItemKind::State { .. }));
-        self.evaluate_number("a weight", Context::NUMBER, weight);
+        let state = self.declared_as(name, "state", |kind| matches!(kind, ItemKind::State { .. }));
+        let weight = self.evaluate_number("a weight", Context::NUMBER, weight);
+        let (Some(at), Some(weight)) = (state, weight) else { return };
+        if let Some(first) = self.index_of(at) {
+            let size = self.values[at].parts.as_slice().len();
+            self.model.metric.extend((first..first + size).map(|state| (state, weight)));
+        }
     }
 }

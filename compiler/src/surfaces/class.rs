@@ -13,13 +13,18 @@ use crate::model::Symbol;
 
 /// What is proved about a surface, over all states on it within their bounds.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Class {
+pub enum Class {
     /// The bounds keep every state away from it.
     Apart,
     /// The rates on both sides have one sign; strictly, if neither can vanish.
-    Crossed { strictly: bool },
+    Crossed {
+        /// Neither rate is ever 0.
+        strictly: bool,
+    },
     /// Both sides push onto it, whatever the control.
     Held,
+    /// Its gradient vanishes on it, so nothing is decided there.
+    Degenerate,
     /// The sides never push away from it; which of held and crossed it is depends on state and control.
     Attracting,
     /// Both sides push away from it, whatever the control.
@@ -27,11 +32,14 @@ pub(crate) enum Class {
     /// Both sides push away from it for some controls.
     RepellingFor(Choice),
     /// None of these could be proved; whether there are states for which both sides push away.
-    Unknown { mixed: bool },
+    Unknown {
+        /// There are such states.
+        mixed: bool,
+    },
 }
 
 /// Values for controls and unknowns.
-pub(crate) type Choice = Vec<(Symbol, f64)>;
+pub type Choice = Vec<(Symbol, f64)>;
 
 /// Finds the class. What a few points contradict is not even tried to be proved.
 pub(crate) fn classify(local: &mut Local) -> Class {

@@ -16,8 +16,8 @@ use crate::model::Symbol;
 use crate::polynomial::{Monomial, NormalForms, Polynomial};
 use std::collections::BTreeMap;
 
-/// The condition; nothing if it would be too long to read.
-pub(crate) fn holding(local: &mut Local, view: &View<'_>) -> Option<String> {
+/// The condition, with names that are made up for it; nothing if it would be too long to read.
+pub(crate) fn holding(local: &mut Local, view: &View<'_>, own: &[(String, ExprId)]) -> Option<String> {
     let [below, above] = local.written;
     let sum = local.graph.add(below, above);
     let mut forms = NormalForms::with_squares();
@@ -32,7 +32,7 @@ pub(crate) fn holding(local: &mut Local, view: &View<'_>) -> Option<String> {
     let factor = common_denominator(local, [&mean, &half]);
     let number = mean.as_term().map_or(1.0, |term| 1.0 / term.1.abs());
     let (mean, half) = (mean.scaled(number, &factor), half.scaled(number, &factor));
-    local.in_words(view, |local, words| {
+    local.in_words(view, own, |local, words| {
         let left = absolute(local, words, &mean);
         let right = words.polynomial(&mut local.graph, &half, 0);
         let text = format!("{left} <= {right}");

@@ -52,12 +52,11 @@ pub(crate) struct Local {
 }
 
 impl Local {
-    /// The surface `at` of a model; nothing if its function or a rate it needs is unknown.
-    pub fn new(view: &View<'_>, at: usize) -> Option<Local> {
-        let psi = view.surfaces[at].1?;
+    /// Nothing but an empty graph, for expressions that are no surfaces.
+    pub fn empty() -> Local {
         let mut graph = Graph::new();
         let zero = graph.number(0.0);
-        let mut local = Local {
+        Local {
             graph,
             symbols: Vec::new(),
             domain: Vec::new(),
@@ -73,10 +72,23 @@ impl Local {
             replaced: None,
             known: HashMap::new(),
             forms: NormalForms::default(),
-        };
+        }
+    }
+
+    /// The surface `at` of a model; nothing if its function is unknown.
+    pub fn new(view: &View<'_>, at: usize) -> Option<Local> {
+        let psi = view.surfaces[at].1?;
+        let mut local = Local::empty();
         local.psi = local.import(view, psi);
         local.differentiate();
         Some(local)
+    }
+
+    /// One more input, of no meaning to the model.
+    pub fn add_input(&mut self) -> ExprId {
+        self.symbols.push(Symbol::Argument);
+        self.domain.push(Interval::ALL);
+        self.graph.input(self.symbols.len() as u32 - 1)
     }
 
     /// Adds what happens on the surface; says whether all rates that matter are known.
@@ -249,16 +261,28 @@ impl Local {
     }
 
     /// Runs something that needs names for inputs and for expressions that occur in the text.
-    pub fn in_words<R>(&mut self, view: &View<'_>, run: impl FnOnce(&mut Local, &Words<'_>) -> R) -> R {
+    pub fn in_words<R>(
+        &mut self,
+        view: &View<'_>,
+        own: &[(String, ExprId)],
+        run: impl FnOnce(&mut Local, &Words<'_>) -> R,
+    ) -> R {
         let symbols = self.symbols.clone();
         let input = |position: u32| view.name(symbols[position as usize]);
-        let named = self.named(view);
+        let mut named: Vec<(String, Polynomial)> = Vec::new();
+        let mut forms = NormalForms::with_squares();
+        for (name, expr) in own {
+            named.push((name.clone(), forms.of(&mut self.graph, *expr)));
+        }
+        if own.is_empty() {
+            named = self.named(view);
+        }
         run(self, &Words { input: &input, named })
     }
 
     /// An expression as text; nothing if nobody would read it.
     pub fn text(&mut self, view: &View<'_>, expr: ExprId) -> Option<String> {
-        self.in_words(view, |local, words| words.of(&mut local.graph, expr))
+        self.in_words(view, &[], |local, words| words.of(&mut local.graph, expr))
     }
 
     /// The named expressions that are made of what occurs here.

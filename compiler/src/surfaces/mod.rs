@@ -4,16 +4,21 @@
 //! ([`class`]), with parameters at their values; what cannot be proved is called unknown.
 
 pub(crate) mod class;
+pub(crate) mod coordinates;
 pub(crate) mod degenerate;
 pub(crate) mod endless;
-mod holding;
+pub(crate) mod holding;
 pub(crate) mod local;
 mod report;
 mod sample;
+mod smoothness;
 pub(crate) mod view;
 pub(crate) mod words;
 
+pub use class::Class as SurfaceClass;
 pub(crate) use local::Local;
 pub use report::SurfaceReport;
 pub(crate) use report::surfaces;
+pub(crate) use smoothness::smoothness;
+pub use smoothness::{Order, Smoothness};
 pub(crate) use view::View;

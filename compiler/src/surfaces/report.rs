@@ -20,8 +20,10 @@ pub struct SurfaceReport {
     pub gradient: Vec<String>,
     /// By how much its rate is larger above than below.
     pub jump: String,
+    /// What is proved about it.
+    pub class: Class,
     /// What it does to the trajectories that meet it.
-    pub class: String,
+    pub meaning: String,
     /// When it is held, if it ever is.
     pub holding: Option<String>,
 }
@@ -45,7 +47,8 @@ fn ball(place: &Place) -> SurfaceReport {
         function: format!("Dir({})", place.name),
         gradient: Vec::new(),
         jump: String::new(),
-        class: class.into(),
+        class: Class::Unknown { mixed: false },
+        meaning: class.into(),
         holding: None,
     }
 }
@@ -66,44 +69,40 @@ fn report(view: &View<'_>, at: usize, model: &Model) -> SurfaceReport {
     }
     let is_degenerate = degenerate(&mut local).is_some();
     local.add_rates(view, at);
-    let (class, holding) = match is_degenerate {
-        true => ("the gradient vanishes on it".into(), None),
-        false => in_words(&mut local, view),
+    let class = if is_degenerate { Class::Degenerate } else { classify(&mut local) };
+    let holding = match class {
+        Class::Held => Some("always".into()),
+        Class::Attracting => holding(&mut local, view, &[]),
+        _ => None,
     };
     let jumps = model.jumps.iter().filter(|jump| jump.surface == at);
     let resets = jumps.map(|jump| {
         let way = if jump.direction == Direction::Falling { "falling" } else { "rising" };
         format!("; {way}, `{}` resets the state", jump.place.name)
     });
-    let class = std::iter::once(class).chain(resets).collect();
+    let meaning = std::iter::once(in_words(&class, view)).chain(resets).collect();
     let jump = local.jump;
     let jump = text(&mut local, jump);
-    SurfaceReport { place, function, gradient, jump, class, holding }
+    SurfaceReport { place, function, gradient, jump, class, meaning, holding }
 }
 
-/// The class, and when it is held.
-fn in_words(local: &mut Local, view: &View<'_>) -> (String, Option<String>) {
-    let values = |choice: &[(Symbol, f64)]| {
-        let value =
-            |it: &(Symbol, f64)| format!("{} = {}", view.name(it.0), crate::resolve::text::number(it.1));
-        choice.iter().map(value).collect::<Vec<_>>().join(", ")
-    };
-    match classify(local) {
-        Class::Apart => ("out of reach: the bounds keep every state away from it".into(), None),
-        Class::Crossed { strictly: true } => ("crossed".into(), None),
-        Class::Crossed { strictly: false } => ("crossed, or touched where both rates are 0".into(), None),
-        Class::Held => ("held, whatever the controls".into(), Some("always".into())),
-        Class::Attracting => {
-            let condition = holding(local, view);
-            ("held or crossed, never repelling".into(), condition)
-        }
-        Class::Repelling => ("repelling: pushes away on both sides".into(), None),
+/// The class in words.
+fn in_words(class: &Class, view: &View<'_>) -> String {
+    let value = |it: &(Symbol, f64)| format!("{} = {}", view.name(it.0), crate::resolve::text::number(it.1));
+    let text = match class {
+        Class::Apart => "out of reach: the bounds keep every state away from it",
+        Class::Crossed { strictly: true } => "crossed",
+        Class::Crossed { strictly: false } => "crossed, or touched where both rates are 0",
+        Class::Held => "held, whatever the controls",
+        Class::Attracting => "held or crossed, never repelling",
+        Class::Degenerate => "degenerate: its gradient vanishes on it",
+        Class::Repelling => "repelling: pushes away on both sides",
         Class::RepellingFor(choice) => {
-            (format!("repelling for some controls: pushes away on both sides at {}", values(&choice)), None)
+            let values = choice.iter().map(value).collect::<Vec<_>>().join(", ");
+            return format!("repelling for some controls: pushes away on both sides at {values}");
         }
-        Class::Unknown { mixed: true } => ("repelling for some states within their bounds".into(), None),
-        Class::Unknown { mixed: false } => {
-            ("unknown: nothing is proved for all states within their bounds".into(), None)
-        }
-    }
+        Class::Unknown { mixed: true } => "repelling for some states within their bounds",
+        Class::Unknown { mixed: false } => "unknown: nothing is proved for all states within their bounds",
+    };
+    text.into()
 }

@@ -19,28 +19,35 @@ pub(crate) fn points(local: &Local) -> Vec<Vec<f64>> {
     found.collect()
 }
 
-/// Whether an expression of states and time can be 0 within their bounds.
+/// Whether an expression can be 0 within the bounds.
 pub(crate) fn zero(local: &mut Local, expr: ExprId) -> bool {
+    !zeros(local, expr).is_empty()
+}
+
+/// Points within the bounds at which an expression is 0; parameters keep their values.
+pub(crate) fn zeros(local: &mut Local, expr: ExprId) -> Vec<Vec<f64>> {
     let inputs: Vec<u32> = local.graph.inputs_of(&[expr]);
     let slopes = gradient(&mut local.graph, expr, &inputs);
     let roots: Vec<ExprId> = std::iter::once(expr).chain(slopes).collect();
-    let moves = |at: u32| matches!(local.symbols[at as usize], Symbol::State(_) | Symbol::Time);
-    let movable: Vec<u32> = inputs.iter().copied().filter(|&at| moves(at)).collect();
-    (0..TRIALS).any(|trial| {
+    let is_fixed = |at: u32| matches!(local.symbols[at as usize], Symbol::Param(_));
+    let moves: Vec<bool> = inputs.iter().map(|&at| !is_fixed(at)).collect();
+    let found = (0..TRIALS).filter_map(|trial| {
         let mut point: Vec<f64> =
             local.domain.iter().enumerate().map(|(at, domain)| inside(*domain, trial, at as u64)).collect();
         for _ in 0..STEPS {
             let values = evaluate(&local.graph, &roots, &point, &[]);
             if values[0].abs() <= 1e-12 {
-                return point.iter().zip(&local.domain).all(|(value, domain)| near(*value, *domain));
+                let is_inside = point.iter().zip(&local.domain).all(|(value, domain)| near(*value, *domain));
+                return is_inside.then_some(point);
             }
-            let slope =
-                |at: &u32| values[1 + inputs.iter().position(|it| it == at).expect("it is one of them")];
-            let size: f64 = movable.iter().map(|at| slope(at) * slope(at)).sum();
-            movable.iter().for_each(|at| point[*at as usize] -= values[0] * slope(at) / size);
+            let steps: Vec<(u32, f64)> =
+                (0..inputs.len()).filter(|&at| moves[at]).map(|at| (inputs[at], values[1 + at])).collect();
+            let size: f64 = steps.iter().map(|step| step.1 * step.1).sum();
+            steps.iter().for_each(|(at, slope)| point[*at as usize] -= values[0] * slope / size);
         }
-        false
-    })
+        None
+    });
+    found.collect()
 }
 
 /// A number in an interval that depends on nothing but the trial.

@@ -27,6 +27,8 @@ pub(crate) struct View<'m> {
     pub has_rate: Vec<bool>,
     /// The states whose rates the selector of each surface enters.
     pub moved: Vec<Vec<usize>>,
+    /// Weights that the model declares for its states.
+    pub metric: &'m [(usize, ExprId)],
     /// Texts for expressions that have a name or were written out.
     pub names: &'m [(String, ExprId)],
 }
@@ -48,6 +50,7 @@ impl<'m> View<'m> {
             values,
             has_rate: vec![true; model.states.len()],
             moved: moved(&model.graph, &model.symbols, &model.states, model.surfaces.len()),
+            metric: &model.metric,
             names: &model.names,
         }
     }

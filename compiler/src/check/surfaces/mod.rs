@@ -1,6 +1,7 @@
 //! FDC03xx: what the surfaces of a model do, told where it matters.
 
 mod controls;
+mod coordinates;
 mod crossing;
 mod endless;
 mod gradient;
@@ -14,7 +15,7 @@ use crate::surfaces::class::{Class, classify};
 use crate::surfaces::degenerate::degenerate;
 use crate::surfaces::{Local, View, view};
 use fdcc_grammar::ast::{Expr, Interval, ItemKind, Start};
-use fdcc_grammar::{Diagnostic, Span};
+use fdcc_grammar::{Diagnostic, Severity, Span};
 use uses::{Use, uses};
 
 /// Models with more surfaces than these are not examined: nobody would read it.
@@ -59,6 +60,12 @@ impl<'a> Subject<'_, 'a, '_> {
             _ => {}
         }
         self.local.add_sides(self.view, self.at);
+        // A fact that interests nobody while something is wrong.
+        let is_wrong =
+            self.facts.meaning.diagnostics.iter().chain(&*found).any(|it| it.severity == Severity::Error);
+        if matches!(class, Class::Held | Class::Attracting) && !is_wrong {
+            found.extend(self.other_coordinates());
+        }
         found.extend(self.control_jumps());
         found.extend(self.endless());
     }
@@ -131,6 +138,7 @@ fn view_of<'m>(meaning: &'m Elaborator<'_>) -> View<'m> {
         values: meaning.param_values.clone(),
         has_rate: (0..states.len()).map(|at| meaning.known_rates.contains(&at)).collect(),
         moved: view::moved(&meaning.graph, &meaning.symbols, states, meaning.surfaces.len()),
+        metric: &meaning.model.metric,
         names: &meaning.model.names,
     }
 }

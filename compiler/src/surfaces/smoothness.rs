@@ -1,0 +1,277 @@
+//! How smooth an expression is: the largest k for which it is C^k, and the places where that ends.
+//!
+//! ```text
+//! e = P for g <= 0, Q for g >= 0:     e is C^k across g = 0  if and only if  Q - P and its derivatives to the k-th vanish there
+//! e = P + Q sqrt(a):                  e is C^m at a = 0, where Q vanishes to the m-th order
+//! ```
+//!
+//! Both are decided for the whole expression, so `x*abs(x)` is C^1 and `max(x, 0)^3` is C^2. Knots that the bounds keep out of
+//! reach do not count. Where no point of `g = 0` is found, what the single function promises is what is said.
+
+use super::local::Local;
+use super::sample;
+use super::view::View;
+use crate::builtins::Builtin;
+use crate::differentiate::derivative;
+use crate::graph::{Expr, ExprId, Operands, evaluate};
+use crate::interval::{Claim, Prover};
+use crate::lower::Numbers;
+use crate::model::{Model, Symbol};
+use crate::polynomial::Polynomial;
+use std::collections::BTreeMap;
+
+/// How often an expression can be differentiated continuously.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Order {
+    /// It jumps.
+    Jumps,
+    /// So many times.
+    Times(u32),
+    /// As often as one likes.
+    Always,
+}
+
+/// Derivatives beyond this are not looked at: what is that smooth is called so.
+const HIGHEST: u32 = 4;
+/// Points of a knot that are looked at, and how far its sides are from it.
+const MOST_POINTS: usize = 6;
+const NUDGE: f64 = 1e-6;
+
+impl std::fmt::Display for Order {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Order::Jumps => f.write_str("jumps"),
+            Order::Times(HIGHEST) => write!(f, "C^{HIGHEST} or smoother"),
+            Order::Times(times) => write!(f, "C^{times}"),
+            Order::Always => f.write_str("C^infinity"),
+        }
+    }
+}
+
+/// The smoothness of something that has a name.
+#[derive(Clone, Debug)]
+pub struct Smoothness {
+    /// A definition, a report, an equation, a constraint, a surface or the objective.
+    pub name: String,
+    /// How smooth it is, apart from the selectors of surfaces.
+    pub order: Order,
+    /// Where that ends: `x == 1`.
+    pub knots: Vec<String>,
+}
+
+/// Of everything that has a name in a model, with its parameters at their values.
+pub(crate) fn smoothness(model: &Model, numbers: &Numbers) -> Vec<Smoothness> {
+    let values = (0..model.params.len()).map(|at| numbers.of(model, Symbol::Param(at))).collect();
+    let view = View::of_model(model, values);
+    let named = model.names.iter().map(|(name, id)| (name.as_str(), *id));
+    let surfaces = model.surfaces.iter().map(|it| (it.place.name.as_str(), it.psi));
+    let equations = model.states.iter().map(|it| (it.equation.name.as_str(), it.rate));
+    let path = model.path.iter().map(|it| (it.place.name.as_str(), it.value));
+    let objective = model.objective.iter().map(|it| (it.0.name.as_str(), it.1));
+    let all = named.chain(surfaces).chain(equations).chain(path).chain(objective);
+    all.map(|(name, id)| of_expression(&view, name, id)).collect()
+}
+
+fn of_expression(view: &View<'_>, name: &str, id: ExprId) -> Smoothness {
+    let mut local = Local::empty();
+    let root = local.import(view, id);
+    let mut found = knots(&mut local, root);
+    found.sort_by_key(|knot| knot.0);
+    let order = found.first().map_or(Order::Always, |knot| knot.0);
+    let worst: Vec<Polynomial> =
+        found.into_iter().filter(|knot| knot.0 == order).map(|knot| knot.1).collect();
+    let mut knots: Vec<String> = worst.iter().map(|zero| equation(&mut local, view, zero)).collect();
+    knots.sort();
+    knots.dedup();
+    Smoothness { name: name.into(), order, knots }
+}
+
+/// `x == 1` for `x - 1`.
+fn equation(local: &mut Local, view: &View<'_>, zero: &Polynomial) -> String {
+    let side = |sign: f64| {
+        let terms = zero.terms.iter().filter(|it| it.1.signum() == sign);
+        Polynomial { terms: terms.map(|(it, factor)| (it.clone(), factor.abs())).collect() }
+    };
+    let [left, right] = [side(1.0), side(-1.0)].map(|form| {
+        let expr = form.to_expr(&mut local.graph);
+        local.text(view, expr).unwrap_or_else(|| "...".into())
+    });
+    if left == "0" { format!("{right} == 0") } else { format!("{left} == {right}") }
+}
+
+/// Every function whose zero set may be a knot, in normal form, with the order there.
+fn knots(local: &mut Local, root: ExprId) -> Vec<(Order, Polynomial)> {
+    let mut zeros: BTreeMap<ExprId, bool> = BTreeMap::new();
+    let mut found = Vec::new();
+    for node in local.graph.reachable(&[root]) {
+        let Expr::Call(builtin, operands) = local.graph.expr(node).clone() else { continue };
+        match builtin {
+            Builtin::Abs => note(local, &mut zeros, operands[0], false),
+            Builtin::Min | Builtin::Max | Builtin::SelectLe => {
+                let gap = local.graph.sub(operands[0], operands[1]);
+                note(local, &mut zeros, gap, builtin == Builtin::SelectLe);
+            }
+            Builtin::Sqrt => found.extend(at_root(local, root, node, operands[0])),
+            Builtin::Pow => found.extend(at_power(local, operands[0], operands[1])),
+            _ => {}
+        }
+    }
+    for (zero, may_jump) in zeros {
+        found.extend(across(local, root, zero, may_jump).map(|order| (order, local.form(zero))));
+    }
+    found
+}
+
+/// Adds a function where something switches, and whether that may jump; multiples of a function are the same.
+fn note(local: &mut Local, zeros: &mut BTreeMap<ExprId, bool>, gap: ExprId, may_jump: bool) {
+    let form = local.form(gap);
+    let Some((_, lead)) = form.terms.iter().find(|term| !term.0.is_empty()) else { return };
+    let zero = form.scaled(1.0 / lead, &Vec::new()).to_expr(&mut local.graph);
+    *zeros.entry(zero).or_default() |= may_jump;
+}
+
+/// Whether a function has a zero within the bounds, as far as can be proved.
+fn may_vanish(local: &Local, function: ExprId) -> bool {
+    let mut prover = Prover::new(local.domain.clone(), Vec::new());
+    !prover.proves(&local.graph, &[(function, Claim::Positive)])
+        && !prover.proves(&local.graph, &[(function, Claim::Negative)])
+}
+
+/// The order across `zero`: the first derivative in which the two sides differ, at some points of it.
+fn across(local: &mut Local, root: ExprId, zero: ExprId, may_jump: bool) -> Option<Order> {
+    if !may_vanish(local, zero) {
+        return None;
+    }
+    let mut points = sample::zeros(local, zero);
+    points.truncate(MOST_POINTS);
+    if points.is_empty() {
+        return Some(if may_jump { Order::Jumps } else { Order::Times(0) });
+    }
+    let varying = steepest(local, zero, &points);
+    let orders = points.iter().zip(varying).filter_map(|(point, input)| at_point(local, root, point, input));
+    orders.min()
+}
+
+/// The order at one point, in the direction of one input.
+fn at_point(local: &mut Local, root: ExprId, point: &[f64], input: u32) -> Option<Order> {
+    let mut sides = [-1.0, 1.0].map(|side| {
+        let mut near = point.to_vec();
+        near[input as usize] += side * NUDGE * (1.0 + point[input as usize].abs());
+        on_side(local, root, &near)
+    });
+    if sides.map(|side| local.form(side).to_expr(&mut local.graph)).windows(2).all(|pair| pair[0] == pair[1])
+    {
+        return None;
+    }
+    for times in 0..=HIGHEST {
+        let values = evaluate(&local.graph, &sides, point, &[]);
+        if (values[0] - values[1]).abs() > 1e-7 * (1.0 + values[0].abs().max(values[1].abs())) {
+            return Some(if times == 0 { Order::Jumps } else { Order::Times(times - 1) });
+        }
+        sides = sides.map(|side| derivative(&mut local.graph, side, input));
+    }
+    Some(Order::Times(HIGHEST))
+}
+
+/// The derivative of some order by one input.
+fn along(local: &mut Local, expr: ExprId, input: u32, times: u32) -> ExprId {
+    (0..times).fold(expr, |expr, _| derivative(&mut local.graph, expr, input))
+}
+
+/// The expression with every switch replaced by the branch that is taken near a point.
+fn on_side(local: &mut Local, root: ExprId, near: &[f64]) -> ExprId {
+    let nodes = local.graph.reachable(&[root]);
+    let values = evaluate(&local.graph, &nodes, near, &[]);
+    let value: BTreeMap<ExprId, f64> = nodes.iter().copied().zip(values).collect();
+    let mut copies: BTreeMap<ExprId, ExprId> = BTreeMap::new();
+    for id in nodes {
+        let copy = match local.graph.expr(id).clone() {
+            Expr::Call(builtin, operands) => {
+                let now: Operands = operands.iter().map(|operand| copies[operand]).collect();
+                let is_less = operands.len() > 1 && value[&operands[0]] <= value[&operands[1]];
+                match (builtin, is_less) {
+                    (Builtin::Abs, _) if value[&operands[0]] < 0.0 => local.graph.neg(now[0]),
+                    (Builtin::Abs, _) | (Builtin::Min, true) | (Builtin::Max, false) => now[0],
+                    (Builtin::Min, false) | (Builtin::Max, true) => now[1],
+                    (Builtin::SelectLe, true) => now[2],
+                    (Builtin::SelectLe, false) => now[3],
+                    _ => local.graph.call(builtin, &now),
+                }
+            }
+            _ => id,
+        };
+        copies.insert(id, copy);
+    }
+    copies[&root]
+}
+
+/// For each point the input by which a function changes most.
+fn steepest(local: &mut Local, zero: ExprId, points: &[Vec<f64>]) -> Vec<u32> {
+    let inputs = local.graph.inputs_of(&[zero]);
+    let movable = inputs.into_iter().filter(|&at| !matches!(local.symbols[at as usize], Symbol::Param(_)));
+    let movable: Vec<u32> = movable.collect();
+    let slopes: Vec<ExprId> = movable.iter().map(|&at| derivative(&mut local.graph, zero, at)).collect();
+    let steepest = |point: &Vec<f64>| {
+        let values = evaluate(&local.graph, &slopes, point, &[]);
+        let best = (0..movable.len()).max_by(|&a, &b| values[a].abs().total_cmp(&values[b].abs()));
+        movable[best.expect("a function with a zero depends on something")]
+    };
+    points.iter().map(steepest).collect()
+}
+
+/// A square root at 0: the order to which its factor vanishes there.
+fn at_root(local: &mut Local, root: ExprId, node: ExprId, operand: ExprId) -> Option<(Order, Polynomial)> {
+    if !may_vanish(local, operand) {
+        return None;
+    }
+    let points = sample::zeros(local, operand);
+    let form = local.form(operand);
+    if points.is_empty() || form.as_number().is_some() {
+        return None;
+    }
+    let order = factor(local, root, node, operand)
+        .map_or(Order::Times(0), |factor| vanishing(local, factor, operand, &points));
+    Some((order, form))
+}
+
+/// `Q` of `P + Q sqrt(a)`, if the expression is of that form.
+fn factor(local: &mut Local, root: ExprId, node: ExprId, operand: ExprId) -> Option<ExprId> {
+    let symbol = local.add_input();
+    let negative = local.graph.neg(symbol);
+    let [plus, minus] = [symbol, negative].map(|with| {
+        local.graph.rewrite(&[root], |_, original, rebuilt| if original == node { with } else { rebuilt })[0]
+    });
+    let difference = local.graph.sub(plus, minus);
+    let odd = local.form(difference).divided(&Polynomial::atom(symbol))?;
+    // What is left has even powers of the root, which are powers of what it is taken of.
+    let root = local.graph.sqrt(operand);
+    let Expr::Input(position) = *local.graph.expr(symbol) else { return None };
+    let even = odd.to_expr(&mut local.graph);
+    let even = local.graph.substitute(&[even], &|input| (input == position).then_some(root))[0];
+    let even = local.normal(even);
+    (!local.graph.reachable(&[even]).contains(&root)).then_some(even)
+}
+
+/// To which order a factor vanishes where another function does, with a gradient that does not.
+fn vanishing(local: &mut Local, factor: ExprId, zero: ExprId, points: &[Vec<f64>]) -> Order {
+    let varying = steepest(local, zero, points);
+    for times in 0..=HIGHEST {
+        let vanishes = points.iter().zip(&varying).all(|(point, input)| {
+            let roots = [along(local, factor, *input, times), derivative(&mut local.graph, zero, *input)];
+            let values = evaluate(&local.graph, &roots, point, &[]);
+            values[0].abs() <= 1e-9 && values[1].abs() > 1e-6
+        });
+        if !vanishes {
+            return Order::Times(times);
+        }
+    }
+    Order::Times(HIGHEST)
+}
+
+/// `a^p` at 0, for a power that is no whole number.
+fn at_power(local: &mut Local, base: ExprId, exponent: ExprId) -> Option<(Order, Polynomial)> {
+    let power = local.graph.as_number(exponent).filter(|power| power.fract() != 0.0 && *power > 0.0)?;
+    let reached = may_vanish(local, base) && !sample::zeros(local, base).is_empty();
+    let order = (power.floor() as u32).min(HIGHEST);
+    reached.then(|| (Order::Times(order), local.form(base)))
+}

@@ -64,7 +64,7 @@ fn expression(random: &mut Random, depth: usize) -> String {
 
 /// The size of the worst jump of a function between two grid points, found by halving towards it.
 fn worst_jump(value: &dyn Fn(f64) -> f64) -> f64 {
-    let grid: Vec<f64> = (0..=400).map(|at| -3.0 + 6.0 * (f64::from(at) + 0.3) / 401.0).collect();
+    let grid: Vec<f64> = (0..=120).map(|at| -3.0 + 6.0 * (f64::from(at) + 0.3) / 121.0).collect();
     let jumps = grid.windows(2).map(|pair| {
         let (mut low, mut high) = (pair[0], pair[1]);
         for _ in 0..36 {
@@ -81,7 +81,7 @@ fn worst_jump(value: &dyn Fn(f64) -> f64) -> f64 {
 fn no_derivative_jumps_that_is_called_continuous() {
     let mut random = Random::new(11);
     let (mut smooth, mut rough) = (0, 0);
-    for _ in 0..600 {
+    for _ in 0..250 {
         let text = expression(&mut random, 3);
         let model = model("", &text);
         let claimed = of(&model);
@@ -109,5 +109,5 @@ fn no_derivative_jumps_that_is_called_continuous() {
             root = derivative(&mut graph, root, input);
         }
     }
-    assert!(smooth > 50 && rough > 50, "{smooth} and {rough}");
+    assert!(smooth > 30 && rough > 30, "{smooth} and {rough}");
 }

@@ -5,7 +5,7 @@
 //! e = P + Q sqrt(a):                  e is C^m at a = 0, where Q vanishes to the m-th order
 //! ```
 //!
-//! Both are decided for the whole expression, so `x*abs(x)` is C^1 and `max(x, 0)^3` is C^2. Knots that the bounds keep out of
+//! What is said is proved, or is what the single functions promise. Both are decided for the whole expression, so `x*abs(x)` is C^1 and `max(x, 0)^3` is C^2. Knots that the bounds keep out of
 //! reach do not count. Where no point of `g = 0` is found, what the single function promises is what is said.
 
 use super::local::Local;
@@ -116,8 +116,9 @@ fn knots(local: &mut Local, root: ExprId) -> Vec<(Order, Polynomial)> {
             _ => {}
         }
     }
+    let all: Vec<ExprId> = zeros.keys().copied().collect();
     for (zero, may_jump) in zeros {
-        found.extend(across(local, root, zero, may_jump).map(|order| (order, local.form(zero))));
+        found.extend(across(local, root, zero, may_jump, &all).map(|order| (order, local.form(zero))));
     }
     found
 }
@@ -138,27 +139,86 @@ fn may_vanish(local: &Local, function: ExprId) -> bool {
 }
 
 /// The order across `zero`: the first derivative in which the two sides differ, at some points of it.
-fn across(local: &mut Local, root: ExprId, zero: ExprId, may_jump: bool) -> Option<Order> {
+fn across(local: &mut Local, root: ExprId, zero: ExprId, may_jump: bool, all: &[ExprId]) -> Option<Order> {
     if !may_vanish(local, zero) {
         return None;
     }
     let mut points = sample::zeros(local, zero);
     points.truncate(MOST_POINTS);
+    let promised = if may_jump { Order::Jumps } else { Order::Times(0) };
     if points.is_empty() {
-        return Some(if may_jump { Order::Jumps } else { Order::Times(0) });
+        return Some(promised);
     }
     let varying = steepest(local, zero, &points);
     let orders = points.iter().zip(varying).filter_map(|(point, input)| at_point(local, root, point, input));
-    orders.min()
+    let found = orders.min();
+    let is_alone = all.len() == 1 || all.iter().all(|other| same_inputs(local, zero, *other));
+    match found {
+        Some(order) if order <= promised => found,
+        _ if is_alone && is_affine(local, zero) => found,
+        _ if all.len() == 1 => by_division(local, root, zero, &points[0], promised),
+        _ => Some(promised),
+    }
+}
+
+/// Whether two functions depend on the same single input: then the knots of one are single places for the other.
+fn same_inputs(local: &Local, zero: ExprId, other: ExprId) -> bool {
+    let varying = |id: ExprId| {
+        let inputs = local.graph.inputs_of(&[id]).into_iter();
+        inputs.filter(|&at| !matches!(local.symbols[at as usize], Symbol::Param(_))).collect::<Vec<u32>>()
+    };
+    let own = varying(zero);
+    own.len() == 1 && varying(other) == own
+}
+
+/// Whether a function is affine in some input, with a constant factor: then a few places stand for all of its zeros.
+fn is_affine(local: &mut Local, zero: ExprId) -> bool {
+    let mut inputs = local.graph.inputs_of(&[zero]);
+    inputs.retain(|&at| !matches!(local.symbols[at as usize], Symbol::Param(_)));
+    inputs.into_iter().any(|input| {
+        let slope = derivative(&mut local.graph, zero, input);
+        let slope = local.normal(slope);
+        let varies = |&at: &u32| !matches!(local.symbols[at as usize], Symbol::Param(_));
+        let is_constant = !local.graph.inputs_of(&[slope]).iter().any(varies);
+        is_constant && !may_vanish(local, slope)
+    })
+}
+
+/// The order by how often the difference of both sides can be divided by the function.
+fn by_division(
+    local: &mut Local,
+    root: ExprId,
+    zero: ExprId,
+    point: &[f64],
+    promised: Order,
+) -> Option<Order> {
+    let input = steepest(local, zero, &[point.to_vec()])[0];
+    let [below, above] = sides(local, root, point, input);
+    let difference = local.graph.sub(above, below);
+    let (mut rest, by) = (local.form(difference), local.form(zero));
+    if rest.is_zero() {
+        return None;
+    }
+    let mut times = 0;
+    while let Some(next) = rest.divided(&by).filter(|_| times <= HIGHEST) {
+        rest = next;
+        times += 1;
+    }
+    Some(if times == 0 { promised } else { Order::Times((times - 1).min(HIGHEST)) })
+}
+
+/// The expression as it is on both sides of a point.
+fn sides(local: &mut Local, root: ExprId, point: &[f64], input: u32) -> [ExprId; 2] {
+    [-1.0, 1.0].map(|side| {
+        let mut near = point.to_vec();
+        near[input as usize] += side * NUDGE * (1.0 + point[input as usize].abs());
+        on_side(local, root, &near)
+    })
 }
 
 /// The order at one point, in the direction of one input.
 fn at_point(local: &mut Local, root: ExprId, point: &[f64], input: u32) -> Option<Order> {
-    let mut sides = [-1.0, 1.0].map(|side| {
-        let mut near = point.to_vec();
-        near[input as usize] += side * NUDGE * (1.0 + point[input as usize].abs());
-        on_side(local, root, &near)
-    });
+    let mut sides = sides(local, root, point, input);
     if sides.map(|side| local.form(side).to_expr(&mut local.graph)).windows(2).all(|pair| pair[0] == pair[1])
     {
         return None;
@@ -226,11 +286,12 @@ fn at_root(local: &mut Local, root: ExprId, node: ExprId, operand: ExprId) -> Op
     }
     let points = sample::zeros(local, operand);
     let form = local.form(operand);
-    if points.is_empty() || form.as_number().is_some() {
-        return None;
-    }
-    let order = factor(local, root, node, operand)
-        .map_or(Order::Times(0), |factor| vanishing(local, factor, operand, &points));
+    let order = match factor(local, root, node, operand) {
+        Some(factor) if !points.is_empty() && is_affine(local, operand) => {
+            vanishing(local, factor, operand, &points)
+        }
+        _ => Order::Times(0),
+    };
     Some((order, form))
 }
 
@@ -271,7 +332,7 @@ fn vanishing(local: &mut Local, factor: ExprId, zero: ExprId, points: &[Vec<f64>
 /// `a^p` at 0, for a power that is no whole number.
 fn at_power(local: &mut Local, base: ExprId, exponent: ExprId) -> Option<(Order, Polynomial)> {
     let power = local.graph.as_number(exponent).filter(|power| power.fract() != 0.0 && *power > 0.0)?;
-    let reached = may_vanish(local, base) && !sample::zeros(local, base).is_empty();
+    let reached = may_vanish(local, base);
     let order = (power.floor() as u32).min(HIGHEST);
     reached.then(|| (Order::Times(order), local.form(base)))
 }

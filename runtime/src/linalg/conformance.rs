@@ -195,20 +195,22 @@ fn both_factorisations_solve_their_system_and_know_its_inertia() {
     let mut random = Random(7);
     let mut both = [0, 0];
     for case in 0..240 {
-        let stages = Stages {
-            intervals: 1 + case % 5,
-            states: 1 + case % 3,
-            controls: case % 4,
-            globals: case % 3,
-            local_rows: (case / 2) % 3,
-            coupling_rows: if case % 4 == 0 { 0 } else { (case / 3) % 2 },
+        // Sizes that are compiled as constants, and any.
+        let (states, controls, globals, coupling_rows) = match case % 10 {
+            7 => (5, 2, 1, 0),
+            8 => (4, 1, 1, 2),
+            _ => (1 + case % 3, case % 4, case % 3, if case % 4 == 0 { 0 } else { (case / 3) % 2 }),
         };
+        let (intervals, local_rows) = (1 + (case / 10) % 5, (case / 2) % 3);
+        let stages = Stages { intervals, states, controls, globals, local_rows, coupling_rows };
         let case = Case::new(stages, case % 5 == 0, case % 7 == 0, case % 2 == 0, &mut random);
         let equality: Vec<bool> = case.d.iter().map(|d| *d == 0.0).collect();
-        let mut riccati =
-            Riccati::new(stages, &case.hessian, &case.jacobian, &case.fixed, &equality).expect("a chain");
+        let riccati =
+            || Riccati::new(stages, &case.hessian, &case.jacobian, &case.fixed, &equality).expect("a chain");
+        let (mut plain, mut riccati) = (riccati().without_fused(), riccati());
         let mut ldl = SparseLdl::new(&case.hessian, &case.jacobian, &case.fixed, stages.rows());
         case.check("riccati", &mut riccati, 1, &mut random);
+        case.check("riccati on an older machine", &mut plain, 1, &mut random);
         case.check("sparse LDL", &mut ldl, 6, &mut random);
         both[usize::from(
             riccati.factor(&case.hessian_values, &case.jacobian_values, &case.sigma, &case.d)

@@ -19,7 +19,6 @@ mod stages;
 mod symmetric;
 mod triplets;
 
-pub(crate) use lu::Lu;
 pub use stages::Stages;
 pub(crate) use symmetric::SymmetricFactor;
 pub use triplets::{Family, Triplets};

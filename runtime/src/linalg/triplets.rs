@@ -3,6 +3,9 @@
 //! A family stands for the entries `(row + k row_step, column + k column_step)`, `k = 0 .. count`. A transcribed
 //! problem has a few dozen families, whatever the length of its grid. Entries at the same place are added.
 
+/// How many stages of a chain are passed over at a time.
+const STRETCH: usize = 128;
+
 /// Entries that repeat with constant steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Family {
@@ -52,7 +55,7 @@ impl Triplets {
 
     /// `y += A x`
     pub fn multiply_add(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
-        self.for_each_family(values, |family, values| {
+        self.for_each_stretch(values, |family, values| {
             let (mut row, mut column) = (family.row, family.column);
             for value in values {
                 y[row] += value * x[column];
@@ -64,7 +67,7 @@ impl Triplets {
 
     /// `y += A' x`
     pub fn transposed_multiply_add(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
-        self.for_each_family(values, |family, values| {
+        self.for_each_stretch(values, |family, values| {
             let (mut row, mut column) = (family.row, family.column);
             for value in values {
                 y[column] += value * x[row];
@@ -74,12 +77,33 @@ impl Triplets {
         });
     }
 
-    /// `y += A x` where only the lower triangle of the symmetric `A` is stored.
-    pub fn symmetric_multiply_add(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
-        self.multiply_add(values, x, y);
-        self.for_each_family(values, |family, values| {
+    /// `y += A x` and `z += A' w`: each value is read once.
+    pub fn multiply_add_both(
+        &self,
+        values: &[f64],
+        (x, y): (&[f64], &mut [f64]),
+        (w, z): (&[f64], &mut [f64]),
+    ) {
+        // Equal lengths, so that one check of an index serves two.
+        let (x, y) = (&x[..z.len()], &mut y[..w.len()]);
+        self.for_each_stretch(values, |family, values| {
             let (mut row, mut column) = (family.row, family.column);
             for value in values {
+                y[row] += value * x[column];
+                z[column] += value * w[row];
+                row += family.row_step;
+                column += family.column_step;
+            }
+        });
+    }
+
+    /// `y += A x` where only the lower triangle of the symmetric `A` is stored.
+    pub fn symmetric_multiply_add(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+        let x = &x[..y.len()];
+        self.for_each_stretch(values, |family, values| {
+            let (mut row, mut column) = (family.row, family.column);
+            for value in values {
+                y[row] += value * x[column];
                 if row != column {
                     y[column] += value * x[row];
                 }
@@ -89,12 +113,21 @@ impl Triplets {
         });
     }
 
-    fn for_each_family<'v>(&self, values: &'v [f64], mut action: impl FnMut(&Family, &'v [f64])) {
-        let mut rest = values;
-        for family in &self.families {
-            let (mine, others) = rest.split_at(family.count);
-            action(family, mine);
-            rest = others;
+    /// Calls `action` with every family and its values, stretch by stretch of the chain: what belongs to a stretch stays in
+    /// the fastest memory while all families pass over it.
+    fn for_each_stretch<'v>(&self, values: &'v [f64], mut action: impl FnMut(Family, &'v [f64])) {
+        let longest = self.families.iter().map(|family| family.count).max().unwrap_or(0);
+        for start in (0..longest).step_by(STRETCH) {
+            let mut first = 0;
+            for family in &self.families {
+                let end = family.count.min(start + STRETCH);
+                if start < end {
+                    let (row, column) =
+                        (family.row + start * family.row_step, family.column + start * family.column_step);
+                    action(Family { row, column, ..*family }, &values[first + start..first + end]);
+                }
+                first += family.count;
+            }
         }
     }
 }

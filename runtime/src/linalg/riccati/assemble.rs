@@ -2,32 +2,42 @@
 //!
 //! Local positions of an interval are those of `(x_k, u_k, theta, x_{k+1})`.
 
-use super::interval::{Block, Sizes};
+use super::interval::Sizes;
 use crate::linalg::{Family, Stages, Triplets};
 
-/// Where one value of an interval goes: `block[target] += values[source + k]`.
+/// Where one value of an interval goes: `target += values[source + k]`.
 #[derive(Clone, Copy, Debug)]
 struct Move {
     source: u32,
     target: u32,
 }
 
-/// For each dense block, what is gathered into it.
+/// A value of a local row, and the position of its variable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LocalEntry {
+    pub(super) row: usize,
+    pub(super) position: usize,
+}
+
+/// What is gathered where.
 pub(super) struct Assembly {
-    /// The scratch block that all intervals share.
-    pub(super) block: Block,
     hessian: Vec<Move>,
     defects: Vec<Move>,
     local: Vec<Move>,
+    /// The values that a local row has, row by row.
+    pub(super) local_entries: Vec<LocalEntry>,
+    /// Products of two values of a local row, and where they go when the row is condensed.
+    products: Vec<(u32, u32, u32)>,
 }
 
 impl Assembly {
     pub(super) fn new(stages: Stages, sizes: Sizes, hessian: &Triplets, jacobian: &Triplets) -> Option<Self> {
         let mut assembly = Assembly {
-            block: Block::new(sizes, stages.local_rows),
             hessian: Vec::new(),
             defects: Vec::new(),
             local: Vec::new(),
+            local_entries: Vec::new(),
+            products: Vec::new(),
         };
         each_family(hessian, |family, source| {
             is_coupling(&stages, family) || assembly.add_hessian(stages, sizes, family, source)
@@ -35,6 +45,7 @@ impl Assembly {
         each_family(jacobian, |family, source| {
             family.row >= stages.coupling().start || assembly.add_row(stages, sizes, family, source)
         })?;
+        assembly.list_products(sizes);
         Some(assembly)
     }
 
@@ -45,42 +56,91 @@ impl Assembly {
         ) else {
             return false;
         };
-        let width = sizes.all();
-        self.hessian.push(Move { source, target: (row * width + column) as u32 });
-        if row != column {
-            self.hessian.push(Move { source, target: (column * width + row) as u32 });
-        }
+        self.hessian.push(Move { source, target: sizes.hessian_place(row, column) as u32 });
         family.count == stages.intervals
     }
 
     fn add_row(&mut self, stages: Stages, sizes: Sizes, family: &Family, source: u32) -> bool {
-        let Some(column) = local_position(stages, sizes, family.column, family.column_step) else {
+        let Some(position) = local_position(stages, sizes, family.column, family.column_step) else {
             return false;
         };
-        let target = |row: usize| Move { source, target: (row * sizes.all() + column) as u32 };
         match family.row.checked_sub(stages.states) {
-            None => self.defects.push(target(family.row)),
-            Some(row) => self.local.push(target(row)),
+            None => {
+                let target = sizes.defect_place(family.row, position) as u32;
+                self.defects.push(Move { source, target });
+            }
+            Some(row) => {
+                let target = self.local_place(LocalEntry { row, position }) as u32;
+                self.local.push(Move { source, target });
+            }
         }
         family.count == stages.intervals
             && family.row < stages.row_step()
             && (family.row_step == stages.row_step() || family.count == 1)
     }
 
-    /// Fills the shared block with the values of interval `k`.
-    pub(super) fn gather(&mut self, k: usize, hessian: &[f64], jacobian: &[f64]) -> &mut Block {
-        let block = &mut self.block;
-        scatter(&self.hessian, k, hessian, &mut block.hessian);
-        scatter(&self.defects, k, jacobian, &mut block.defects);
-        scatter(&self.local, k, jacobian, &mut block.local);
-        block
+    /// The place of a value among the local values of an interval, made if needed.
+    fn local_place(&mut self, entry: LocalEntry) -> usize {
+        let entries = &mut self.local_entries;
+        entries.iter().position(|other| *other == entry).unwrap_or_else(|| {
+            entries.push(entry);
+            entries.len() - 1
+        })
+    }
+
+    fn list_products(&mut self, sizes: Sizes) {
+        for (i, a) in self.local_entries.iter().enumerate() {
+            for (j, b) in self.local_entries.iter().enumerate() {
+                if a.row == b.row && a.position >= b.position {
+                    let target = sizes.hessian_place(a.position, b.position);
+                    self.products.push((i as u32, j as u32, target as u32));
+                }
+            }
+        }
+    }
+
+    /// Fills the dense blocks, and the local values, of the intervals from `k` on.
+    #[inline(always)]
+    pub(super) fn gather(
+        &self,
+        sizes: Sizes,
+        k: usize,
+        (hessian, jacobian): (&[f64], &[f64]),
+        blocks: &mut [f64],
+        local: &mut [f64],
+    ) {
+        let (length, local_length) = (sizes.gathered(), self.local_entries.len());
+        let count = blocks.len() / length;
+        blocks.fill(0.0);
+        add_moves(&self.hessian, (k, count), hessian, (blocks, length));
+        add_moves(&self.defects, (k, count), jacobian, (blocks, length));
+        local.fill(0.0);
+        add_moves(&self.local, (k, count), jacobian, (local, local_length));
+    }
+
+    /// Condenses the local rows: `H += J' diag(weights) J`.
+    #[inline(always)]
+    pub(super) fn condense(&self, local: &[f64], weights: &[f64], gathered: &mut [f64]) {
+        for &(i, j, target) in &self.products {
+            let weight = weights[self.local_entries[i as usize].row];
+            gathered[target as usize] += weight * local[i as usize] * local[j as usize];
+        }
     }
 }
 
-fn scatter(moves: &[Move], k: usize, values: &[f64], block: &mut [f64]) {
-    block.fill(0.0);
+/// Adds the values of `count` intervals to their blocks of this length.
+#[inline(always)]
+fn add_moves(
+    moves: &[Move],
+    (k, count): (usize, usize),
+    values: &[f64],
+    (blocks, length): (&mut [f64], usize),
+) {
     for entry in moves {
-        block[entry.target as usize] += values[entry.source as usize + k];
+        let (values, target) = (&values[entry.source as usize + k..][..count], entry.target as usize);
+        for (block, value) in blocks.chunks_exact_mut(length).zip(values) {
+            block[target] += value;
+        }
     }
 }
 

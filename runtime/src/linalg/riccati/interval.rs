@@ -1,18 +1,27 @@
 //! One step of the recursion.
 //!
-//! With `w = (x, u, theta)`, defects `R w + E x+ = b` and next value function `V+ = (P, Lambda, Theta)`:
+//! With `w = (x, u, theta)`, defects `R w + E x+ - D lambda = b`, next value function `V+ = (P, Lambda, Theta)` and
+//! `pull`, the gradient by `x+` that a right side brings, the next state and the multipliers are removed together:
 //!
 //! ```text
-//!     M = H_{++} + P          N = H_{+w} + [0 0 Lambda']         T = -E^-1 R
-//!     Q = H_ww + Theta + T'(M T + N) + N' T
-//!     gain = -Q_uu^-1 Q_uz,   V = Q_zz + Q_zu gain               z = (x, theta)
+//!     M = H_{++} + P      N = H_{+w} + [0 0 Lambda']       S = [ M  E' ]    S^-1 = [ A  F ]
+//!                                                              [ E  -D ]           [ F' C ]
+//!     [ x+     ] = S^-1 [ -N w - pull ] = [ T  F ] [ w ] - [ A  ] pull
+//!     [ lambda ]        [  b - R w    ]   [ L  C ] [ b ]   [ F' ]
+//!
+//!     Q = H_ww + Theta + [N; R]' [T; L]
+//!     gain = -Q_uu^-1 Q_uz,     V = Q_zz + Q_zu gain       z = (x, theta)
 //! ```
 //!
-//! Where the defects are penalised (`d > 0`: restoration), `x+` and the multipliers are removed together by the
-//! factors of `S = [M E'; E -d]`, and `[T; L] = -S^-1 [N; R]` gives `Q = H_ww + Theta + [N; R]' [T; L]`.
+//! Rows without penalty (`D = 0`, always but in restoration) need nothing of size `2n`:
+//!
+//! ```text
+//!     [T F] = E^-1 [-R I]       [L C] = -F' ([N 0] + M [T F])       A = 0
+//! ```
 
-use super::kernels::{add_outer_product, add_product, add_symmetric_product, add_transposed_product};
-use crate::linalg::{Lu, Stages, SymmetricFactor};
+use super::factors::Factors;
+use super::kernels::{View, add_lower_product, add_product, divide, invert_positive};
+use crate::linalg::SymmetricFactor;
 
 /// Sizes of states, controls and border.
 #[derive(Clone, Copy, Debug)]
@@ -24,272 +33,286 @@ pub(super) struct Sizes {
 
 impl Sizes {
     /// `(x, u, theta)`
+    #[inline(always)]
     pub(super) fn reduced(&self) -> usize {
         self.n + self.m + self.q
     }
-    /// `(x, u, theta, x+)`
+    /// `(x, u, theta, x+)`, and also `(x, u, theta, b)`
+    #[inline(always)]
     pub(super) fn all(&self) -> usize {
         self.reduced() + self.n
     }
     /// `(x, theta)`
+    #[inline(always)]
     pub(super) fn kept(&self) -> usize {
         self.n + self.q
     }
+    /// Where entry `i` of `(x, theta)` stands in `(x, u, theta)`.
+    #[inline(always)]
+    pub(super) fn position(&self, i: usize) -> usize {
+        if i < self.n { i } else { i + self.m }
+    }
+    /// Lengths of `H_ww`, `[N; R]`, `M` and `E`, the parts of what is gathered.
+    #[inline(always)]
+    fn parts(&self) -> [usize; 4] {
+        let (n, w) = (self.n, self.reduced());
+        [w * w, 2 * n * w, n * n, n * n]
+    }
+    /// Length of what is gathered for an interval.
+    #[inline(always)]
+    pub(super) fn gathered(&self) -> usize {
+        self.parts().iter().sum()
+    }
+    /// Where the Hessian entry of two positions in `(x, u, theta, x+)` is gathered: lower triangles only.
+    pub(super) fn hessian_place(&self, a: usize, b: usize) -> usize {
+        let ([square, coupling, ..], w) = (self.parts(), self.reduced());
+        let (row, column) = (a.max(b), a.min(b));
+        match (row.checked_sub(w), column.checked_sub(w)) {
+            (None, _) => row * w + column,
+            (Some(row), None) => square + row * w + column,
+            (Some(row), Some(column)) => square + coupling + row * self.n + column,
+        }
+    }
+    /// Where an entry of a defect is gathered.
+    pub(super) fn defect_place(&self, row: usize, position: usize) -> usize {
+        let ([square, coupling, next, _], w) = (self.parts(), self.reduced());
+        match position.checked_sub(w) {
+            None => square + (self.n + row) * w + position,
+            Some(column) => square + coupling + next + row * self.n + column,
+        }
+    }
 }
 
-/// Dense matrices of one interval, shared scratch: Hessian and rows over `(x, u, theta, x+)`.
+/// Working memory of one step.
 pub(super) struct Block {
-    pub(super) hessian: Vec<f64>,
-    pub(super) defects: Vec<f64>,
-    pub(super) local: Vec<f64>,
-    /// `d` of the defects.
-    penalties: Vec<f64>,
-    /// `E`, `N + M T / 2`, `Q`, `Q_uz`, `Q_uu` and `S`.
-    e: Vec<f64>,
-    y: Vec<f64>,
-    q: Vec<f64>,
+    /// `[N 0] + M [T F]`
+    costate: Vec<f64>,
+    /// `Q_uz`, and `Q_uu` twice.
     side: Vec<f64>,
     uu: Vec<f64>,
+    uu_copy: Vec<f64>,
+    uu_factor: SymmetricFactor,
+    /// `S` and its factors.
     s: Vec<f64>,
+    s_factor: SymmetricFactor,
 }
 
 impl Block {
-    pub(super) fn new(sizes: Sizes, local_rows: usize) -> Self {
+    pub(super) fn new(sizes: Sizes) -> Self {
         let Sizes { n, m, .. } = sizes;
-        let (w, all) = (sizes.reduced(), sizes.all());
         let zeros = |length: usize| vec![0.0; length];
         Block {
-            hessian: zeros(all * all),
-            defects: zeros(n * all),
-            local: zeros(local_rows * all),
-            penalties: zeros(n),
-            e: zeros(n * n),
-            y: zeros(n * w),
-            q: zeros(w * w),
+            costate: zeros(n * sizes.all()),
             side: zeros(m * sizes.kept()),
             uu: zeros(m * m),
+            uu_copy: zeros(m * m),
+            uu_factor: SymmetricFactor::new(m),
             s: zeros(4 * n * n),
-        }
-    }
-}
-
-/// What one interval keeps for the solves that follow a factorisation.
-pub(super) struct Interval {
-    pub(super) sizes: Sizes,
-    pub(super) fixed: Vec<bool>,
-    /// Local rows over `(x, u, theta, x+)` and `1 / d` of each.
-    pub(super) local: Vec<f64>,
-    pub(super) weights: Vec<f64>,
-    pub(super) m: Vec<f64>,
-    /// `[N; R]`, `2n x w`; only `N` is used unless the defects are penalised.
-    pub(super) coupling: Vec<f64>,
-    /// `[T; L]`, `2n x w`.
-    pub(super) response: Vec<f64>,
-    pub(super) e: Lu,
-    pub(super) s: SymmetricFactor,
-    pub(super) penalised: bool,
-    pub(super) uu: SymmetricFactor,
-    pub(super) gain: Vec<f64>,
-    /// From the backward to the forward pass: `x+` (and multipliers) at `w = 0`, pull on `x+`, `u` at `z = 0`.
-    pub(super) offset: Vec<f64>,
-    pub(super) pull: Vec<f64>,
-    pub(super) feed_forward: Vec<f64>,
-}
-
-impl Interval {
-    pub(super) fn new(sizes: Sizes, local_rows: usize, fixed: Vec<bool>) -> Self {
-        let Sizes { n, m, .. } = sizes;
-        let zeros = |length: usize| vec![0.0; length];
-        Interval {
-            sizes,
-            fixed,
-            local: zeros(local_rows * sizes.all()),
-            weights: zeros(local_rows),
-            m: zeros(n * n),
-            coupling: zeros(2 * n * sizes.reduced()),
-            response: zeros(2 * n * sizes.reduced()),
-            e: Lu::new(n),
-            s: SymmetricFactor::new(2 * n),
-            penalised: false,
-            uu: SymmetricFactor::new(m),
-            gain: zeros(m * sizes.kept()),
-            offset: zeros(2 * n),
-            pull: zeros(n),
-            feed_forward: zeros(m),
+            s_factor: SymmetricFactor::new(2 * n),
         }
     }
 
-    /// Adds barrier terms and condenses the local rows: `H += J' diag(1/d) J`.
-    pub(super) fn add_diagonals(
+    /// Factors what was gathered for interval `k`: `H_ww`, `[N; R]`, `M` and `E`, which are destroyed. `value` comes in as `V_{k+1}` and leaves as `V_k`; `penalties` are
+    /// `D`, empty where there are none. Returns how many negative eigenvalues there are beyond one per row, or `None` at
+    /// a zero pivot.
+    #[inline(always)]
+    pub(super) fn factor<const FUSED: bool>(
         &mut self,
-        block: &mut Block,
-        stages: &Stages,
-        k: usize,
-        sigma: &[f64],
-        d: &[f64],
-    ) {
-        let (n, m, all) = (self.sizes.n, self.sizes.m, self.sizes.all());
-        let start = stages.state(k).start;
-        for i in 0..n + m {
-            block.hessian[i * all + i] += sigma[start + i];
-        }
-        block.penalties.copy_from_slice(&d[stages.defects(k)]);
-        self.penalised = block.penalties.iter().any(|&penalty| penalty > 0.0);
-        self.local.copy_from_slice(&block.local);
-        for (i, row) in stages.local(k).enumerate() {
-            self.weights[i] = 1.0 / d[row];
-            add_outer_product(&mut block.hessian, &self.local[i * all..][..all], self.weights[i]);
-        }
+        sizes: Sizes,
+        gathered: &mut [f64],
+        factors: &mut Factors,
+        (k, fixed, penalties): (usize, &[bool], &[f64]),
+        value: &mut [f64],
+    ) -> Option<usize> {
+        // Slices of known lengths need no checks of their indices.
+        let value = &mut value[..sizes.kept() * sizes.kept()];
+        join_next(sizes, gathered, value);
+        let removed = if penalties.is_empty() {
+            self.remove_next::<FUSED>(sizes, gathered, factors.response_mut(sizes, k))?
+        } else {
+            self.remove_penalised(sizes, gathered, factors, (k, penalties))?
+        };
+        let (w, all) = (sizes.reduced(), sizes.all());
+        let [q, coupling, ..] = parts(sizes, gathered);
+        let (coupling, response) = (View::rows(coupling, w), View::rows(factors.response(sizes, k), all));
+        add_lower_product::<FUSED>(coupling.transposed(), response, 2 * sizes.n, (q, w));
+        fix_controls(sizes, fixed, q);
+        Some(removed + self.remove_controls::<FUSED>(sizes, &gathered[..w * w], factors, (k, value))?)
     }
 
-    /// Factors the interval. `value` comes in as `V_{k+1}` and leaves as `V_k`. Returns how many negative
-    /// eigenvalues there are beyond one per row, or `None` at a zero pivot.
-    pub(super) fn factor(&mut self, block: &mut Block, value: &mut [f64]) -> Option<usize> {
-        // Common sizes as constants: the compiler unrolls and vectorises their loops.
-        match self.sizes {
-            Sizes { n: 5, m: 2, q: 1 } => self.factor_sized(Sizes { n: 5, m: 2, q: 1 }, block, value),
-            Sizes { n: 2, m: 1, q: 2 } => self.factor_sized(Sizes { n: 2, m: 1, q: 2 }, block, value),
-            Sizes { n: 2, m: 1, q: 3 } => self.factor_sized(Sizes { n: 2, m: 1, q: 3 }, block, value),
-            Sizes { n: 4, m: 1, q: 3 } => self.factor_sized(Sizes { n: 4, m: 1, q: 3 }, block, value),
-            sizes => self.factor_sized(sizes, block, value),
-        }
-    }
-
+    /// `[T F]` and `[L C]`.
     #[inline(always)]
-    fn factor_sized(&mut self, sizes: Sizes, block: &mut Block, value: &mut [f64]) -> Option<usize> {
-        self.join_next(sizes, block, value);
-        let removed =
-            if self.penalised { self.remove_penalised(block)? } else { self.remove_next(sizes, block)? };
-        self.reduce(sizes, block);
-        self.add_theta(sizes, block, value);
-        Some(removed + self.remove_controls(sizes, block, value)?)
-    }
-
-    /// `M` and `N`.
-    #[inline(always)]
-    fn join_next(&mut self, sizes: Sizes, block: &mut Block, value: &[f64]) {
-        let Sizes { n, m, q } = sizes;
-        let (all, w, kept) = (sizes.all(), sizes.reduced(), sizes.kept());
-        for i in 0..n {
-            let hessian = &block.hessian[(w + i) * all..][..all];
-            let next = &value[i * kept..][..kept];
-            for j in 0..n {
-                self.m[i * n + j] = hessian[w + j] + next[j];
-            }
-            let row = &mut self.coupling[i * w..][..w];
-            row.copy_from_slice(&hessian[..w]);
-            for j in 0..q {
-                row[n + m + j] += next[n + j];
-            }
-        }
-    }
-
-    /// `T = -E^-1 R`
-    #[inline(always)]
-    fn remove_next(&mut self, sizes: Sizes, block: &mut Block) -> Option<usize> {
+    fn remove_next<const FUSED: bool>(
+        &mut self,
+        sizes: Sizes,
+        gathered: &mut [f64],
+        response: &mut [f64],
+    ) -> Option<usize> {
         let (n, w, all) = (sizes.n, sizes.reduced(), sizes.all());
+        let [_, coupling, m, e] = parts(sizes, gathered);
+        let costate = &mut self.costate[..n * all];
+        let (next, multipliers) = response.split_at_mut(n * all);
         for i in 0..n {
-            let defect = &block.defects[i * all..][..all];
+            let (rows, values) = (&mut next[i * all..][..all], &coupling[(n + i) * w..][..w]);
             for j in 0..w {
-                self.response[i * w + j] = -defect[j];
+                rows[j] = -values[j];
             }
-            block.e[i * n..][..n].copy_from_slice(&defect[w..]);
+            rows[w..].fill(0.0);
+            rows[w + i] = 1.0;
+            costate[i * all..][..w].copy_from_slice(&coupling[i * w..][..w]);
+            costate[i * all + w..][..n].fill(0.0);
         }
-        if !self.e.factor(n, &block.e) {
-            return None;
-        }
-        self.e.solve(n, &mut self.response[..n * w], w);
-        Some(0)
+        let regular = divide::<FUSED>(n, e, next, all);
+        add_product::<FUSED>(1.0, View::rows(m, n), View::rows(next, all), n, (costate, all));
+        multipliers.fill(0.0);
+        let f = View { values: &next[w..], row: all, column: 1 };
+        add_product::<FUSED>(-1.0, f.transposed(), View::rows(costate, all), n, (multipliers, all));
+        regular.then_some(0)
     }
 
-    /// `[T; L] = -S^-1 [N; R]`
-    fn remove_penalised(&mut self, block: &mut Block) -> Option<usize> {
-        let (n, w, all) = (self.sizes.n, self.sizes.reduced(), self.sizes.all());
-        block.s.fill(0.0);
+    /// The same, and `A`, by the factors of `S`.
+    fn remove_penalised(
+        &mut self,
+        sizes: Sizes,
+        gathered: &mut [f64],
+        factors: &mut Factors,
+        (k, penalties): (usize, &[f64]),
+    ) -> Option<usize> {
+        let (n, w, all) = (sizes.n, sizes.reduced(), sizes.all());
+        let [_, coupling, m, e] = parts(sizes, gathered);
+        let s = &mut self.s;
+        s.fill(0.0);
         for i in 0..n {
-            let defect = &block.defects[i * all..][..all];
-            block.s[i * 2 * n..][..n].copy_from_slice(&self.m[i * n..][..n]);
-            block.s[(n + i) * 2 * n..][..n].copy_from_slice(&defect[w..]);
-            block.s[(n + i) * 2 * n + n + i] = -block.penalties[i];
-            self.coupling[(n + i) * w..][..w].copy_from_slice(&defect[..w]);
+            s[i * 2 * n..][..n].copy_from_slice(&m[i * n..][..n]);
+            s[(n + i) * 2 * n..][..n].copy_from_slice(&e[i * n..][..n]);
+            s[(n + i) * 2 * n + n + i] = -penalties[i];
         }
-        let negative = self.s.factor(&block.s)?;
-        for (response, coupling) in self.response.iter_mut().zip(&self.coupling) {
-            *response = -coupling;
+        let response = factors.response_mut(sizes, k);
+        response.fill(0.0);
+        for i in 0..2 * n {
+            for j in 0..w {
+                response[i * all + j] = -coupling[i * w + j];
+            }
         }
-        self.s.solve(&mut self.response, w);
+        for i in 0..n {
+            response[(n + i) * all + w + i] = 1.0;
+        }
+        let negative = self.s_factor.factor(s)?;
+        self.s_factor.solve(response, all);
+        // [A; F'] = S^-1 [I; 0]
+        let half = &mut s[..2 * n * n];
+        half.fill(0.0);
+        (0..n).for_each(|i| half[i * n + i] = 1.0);
+        self.s_factor.solve(half, n);
+        factors.keep_compliance(n, k, &half[..n * n]);
         // A block with too few negative eigenvalues has a wrong sign just as well: count it as one.
         Some(negative.abs_diff(n))
     }
 
-    /// The lower triangle of `Q` without `Theta`; with `Z = N + M T / 2` it is `H_ww + T'Z + Z'T`.
-    #[inline(always)]
-    fn reduce(&mut self, sizes: Sizes, block: &mut Block) {
-        let (n, w, all) = (sizes.n, sizes.reduced(), sizes.all());
-        for i in 0..w {
-            block.q[i * w..][..w].copy_from_slice(&block.hessian[i * all..][..w]);
-        }
-        if self.penalised {
-            add_transposed_product(&self.coupling, &self.response, &mut block.q, 2 * n, w);
-            return;
-        }
-        let response = &self.response[..n * w];
-        block.y.copy_from_slice(&self.coupling[..n * w]);
-        add_product(0.5, &self.m, response, &mut block.y, n, w);
-        add_symmetric_product(response, &block.y, &mut block.q, n, w);
-    }
-
-    #[inline(always)]
-    fn add_theta(&self, sizes: Sizes, block: &mut Block, value: &[f64]) {
-        let Sizes { n, m, q } = sizes;
-        let (w, kept) = (sizes.reduced(), sizes.kept());
-        for i in 0..q {
-            for j in 0..q {
-                block.q[(n + m + i) * w + n + m + j] += value[(n + i) * kept + n + j];
-            }
-        }
-    }
-
     /// Removes `u_k`; writes `V_k` to `value`.
     #[inline(always)]
-    fn remove_controls(&mut self, sizes: Sizes, block: &mut Block, value: &mut [f64]) -> Option<usize> {
+    fn remove_controls<const FUSED: bool>(
+        &mut self,
+        sizes: Sizes,
+        q: &[f64],
+        factors: &mut Factors,
+        (k, value): (usize, &mut [f64]),
+    ) -> Option<usize> {
         let Sizes { n, m, .. } = sizes;
         let (w, kept) = (sizes.reduced(), sizes.kept());
-        let position = |i: usize| if i < n { i } else { i + m };
-        self.fix_controls(&mut block.q);
+        let (side, uu) = (&mut self.side[..m * kept], &mut self.uu[..m * m]);
         for i in 0..kept {
             for j in 0..=i {
-                let entry = block.q[position(i) * w + position(j)];
-                value[i * kept + j] = entry;
-                value[j * kept + i] = entry;
+                value[i * kept + j] = q[sizes.position(i) * w + sizes.position(j)];
             }
-        }
-        if m == 0 {
-            return Some(0);
         }
         for i in 0..m {
             for j in 0..kept {
                 // Only the lower triangle of Q is filled.
-                let (row, column) = if j < n { (n + i, j) } else { (position(j), n + i) };
-                block.side[i * kept + j] = block.q[row * w + column];
-                self.gain[i * kept + j] = -block.side[i * kept + j];
+                let (row, column) = if j < n { (n + i, j) } else { (j + m, n + i) };
+                side[i * kept + j] = q[row * w + column];
             }
-            block.uu[i * m..][..m].copy_from_slice(&block.q[(n + i) * w + n..][..m]);
+            for j in 0..=i {
+                uu[i * m + j] = q[(n + i) * w + n + j];
+                uu[j * m + i] = q[(n + i) * w + n + j];
+            }
         }
-        let negative = self.uu.factor(&block.uu)?;
-        self.uu.solve(&mut self.gain, kept);
-        add_transposed_product(&block.side, &self.gain, value, m, kept);
+        let negative = self.invert_controls::<FUSED>(m)?;
+        let (inverse, gain) = factors.controls_mut(sizes, k);
+        inverse.copy_from_slice(&self.uu[..m * m]);
+        gain.fill(0.0);
+        let side = View::rows(&self.side[..m * kept], kept);
+        add_product::<FUSED>(-1.0, View::rows(inverse, m), side, m, (gain, kept));
+        add_lower_product::<FUSED>(side.transposed(), View::rows(gain, kept), m, (value, kept));
+        for i in 0..kept {
+            for j in 0..i {
+                value[j * kept + i] = value[i * kept + j];
+            }
+        }
         Some(negative)
     }
 
-    fn fix_controls(&self, q: &mut [f64]) {
-        let (n, w) = (self.sizes.n, self.sizes.reduced());
-        for (i, _) in self.fixed.iter().enumerate().filter(|(_, fixed)| **fixed) {
-            for j in 0..w {
-                q[(n + i) * w + j] = 0.0;
-                q[j * w + n + i] = 0.0;
-            }
-            q[(n + i) * w + n + i] = 1.0;
+    /// Inverts `Q_uu` and counts its negative eigenvalues. Near a solution it is positive definite.
+    #[inline(always)]
+    fn invert_controls<const FUSED: bool>(&mut self, m: usize) -> Option<usize> {
+        let uu = &mut self.uu[..m * m];
+        self.uu_copy.copy_from_slice(uu);
+        if invert_positive::<FUSED>(m, uu) { Some(0) } else { self.invert_indefinite(m) }
+    }
+
+    #[cold]
+    fn invert_indefinite(&mut self, m: usize) -> Option<usize> {
+        let negative = self.uu_factor.factor(&self.uu_copy)?;
+        self.uu.fill(0.0);
+        (0..m).for_each(|i| self.uu[i * m + i] = 1.0);
+        self.uu_factor.solve(&mut self.uu, m);
+        Some(negative)
+    }
+}
+
+/// `M`, `N`, and `Theta` added to `H_ww`.
+#[inline(always)]
+fn join_next(sizes: Sizes, gathered: &mut [f64], value: &[f64]) {
+    let Sizes { n, m, q } = sizes;
+    let (w, kept) = (sizes.reduced(), sizes.kept());
+    let [h, coupling, next, _] = parts(sizes, gathered);
+    for i in 0..n {
+        let value = &value[i * kept..][..kept];
+        for j in 0..=i {
+            let entry = next[i * n + j] + value[j];
+            next[i * n + j] = entry;
+            next[j * n + i] = entry;
         }
+        for j in 0..q {
+            coupling[i * w + n + m + j] += value[n + j];
+        }
+    }
+    for i in 0..q {
+        for j in 0..=i {
+            h[(n + m + i) * w + n + m + j] += value[(n + i) * kept + n + j];
+        }
+    }
+}
+
+/// `H_ww`, `[N; R]`, `M` and `E`.
+#[inline(always)]
+fn parts(sizes: Sizes, gathered: &mut [f64]) -> [&mut [f64]; 4] {
+    let [square, coupling, next, last] = sizes.parts();
+    let (h, rest) = gathered.split_at_mut(square);
+    let (coupling, rest) = rest.split_at_mut(coupling);
+    let (m, e) = rest.split_at_mut(next);
+    [h, coupling, m, &mut e[..last]]
+}
+
+/// Takes fixed controls out of the lower triangle of `Q`.
+#[inline(always)]
+fn fix_controls(sizes: Sizes, fixed: &[bool], q: &mut [f64]) {
+    let (n, w) = (sizes.n, sizes.reduced());
+    for i in (0..sizes.m).filter(|i| fixed[*i]) {
+        for j in 0..w {
+            q[(n + i) * w + j] = 0.0;
+            q[j * w + n + i] = 0.0;
+        }
+        q[(n + i) * w + n + i] = 1.0;
     }
 }

@@ -10,12 +10,14 @@
 //! ```
 //!
 //! Going backward, [`interval`] puts the Hessian over `(x_k, u_k, theta, x_{k+1})` together with `V_{k+1}`, removes
-//! `x_{k+1}` by the linearised defects and then `u_k` by its own block. What is left at `k = 0` is one small dense
-//! symmetric system in `(x_0, theta)`: [`border`]. Signs of all pivots give the inertia exactly (Haynsworth), so a
-//! control block may be indefinite as long as the whole is right.
+//! `x_{k+1}` by the linearised defects and then `u_k` by its own block; [`solve`] uses what is kept of that
+//! ([`factors`]). What is left at `k = 0` is one small dense symmetric system in `(x_0, theta)`: [`border`]. Signs of
+//! all pivots give the inertia exactly (Haynsworth), so a control block may be indefinite as long as the whole is right.
 
 mod assemble;
 mod border;
+mod chain;
+mod factors;
 mod interval;
 mod kernels;
 mod solve;
@@ -23,21 +25,27 @@ mod solve;
 use super::{Factor, Inertia, Stages, Triplets};
 use assemble::Assembly;
 use border::Border;
-use interval::{Interval, Sizes};
+use chain::{BATCH, Matrix};
+use factors::Factors;
+use interval::{Block, Sizes};
+use solve::Travel;
 
 /// The recursion, with all its memory.
 pub struct Riccati {
     stages: Stages,
+    sizes: Sizes,
+    /// Whether the machine multiplies and adds in one instruction.
+    fused: bool,
+    fixed: Vec<bool>,
     assembly: Assembly,
-    intervals: Vec<Interval>,
     border: Border,
+    block: Block,
+    /// Dense blocks of a batch of intervals.
+    gathered: Vec<f64>,
+    factors: Factors,
     /// `[P Lambda; Lambda' Theta]` of the stage being left.
     value: Vec<f64>,
-    /// `[v_x; v_theta]` of the stage being left.
-    gradient: Vec<f64>,
-    theta: Vec<f64>,
-    x: Vec<f64>,
-    scratch: Vec<f64>,
+    travel: Travel,
 }
 
 impl Riccati {
@@ -61,32 +69,39 @@ impl Riccati {
         let sizes = Sizes { n: stages.states, m: stages.controls, q: border.theta() };
         let assembly =
             Assembly::new(stages, sizes, hessian, jacobian).ok_or("entries couple distant stages")?;
-        let interval =
-            |k| Interval::new(sizes, stages.local_rows, stages.control(k).map(|i| fixed[i]).collect());
-        let intervals = (0..stages.intervals).map(interval).collect();
-        let kept = sizes.kept();
-        let (value, gradient, theta) = (vec![0.0; kept * kept], vec![0.0; kept], vec![0.0; sizes.q]);
-        let (x, scratch) = (vec![0.0; sizes.n], vec![0.0; sizes.all()]);
-        Ok(Riccati { stages, assembly, intervals, border, value, gradient, theta, x, scratch })
+        let local_values = assembly.local_entries.len();
+        Ok(Riccati {
+            stages,
+            sizes,
+            fused: chain::is_fused(),
+            fixed: fixed.to_vec(),
+            border,
+            block: Block::new(sizes),
+            gathered: vec![0.0; BATCH * sizes.gathered()],
+            factors: Factors::new(sizes, stages.intervals, stages.local_rows, local_values),
+            assembly,
+            value: vec![0.0; sizes.kept() * sizes.kept()],
+            travel: Travel::new(sizes),
+        })
+    }
+}
+
+#[cfg(test)]
+impl Riccati {
+    /// As on a machine that cannot multiply and add in one instruction.
+    pub(crate) fn without_fused(self) -> Self {
+        Riccati { fused: false, ..self }
     }
 }
 
 impl Factor for Riccati {
     fn factor(&mut self, hessian: &[f64], jacobian: &[f64], sigma: &[f64], d: &[f64]) -> Inertia {
         self.border.assemble(hessian, jacobian, sigma, d, &mut self.value);
-        let mut negative = 0;
-        for (k, interval) in self.intervals.iter_mut().enumerate().rev() {
-            let block = self.assembly.gather(k, hessian, jacobian);
-            interval.add_diagonals(block, &self.stages, k, sigma, d);
-            match interval.factor(block, &mut self.value) {
-                Some(count) => negative += count,
-                None => return Inertia::Wrong,
-            }
-            // The border cannot have fewer than no negative eigenvalues.
-            if negative > self.border.rows() {
-                return Inertia::Wrong;
-            }
-        }
+        let mut intervals = 0..self.stages.intervals;
+        self.factors.penalised = intervals.any(|k| d[self.stages.defects(k)].iter().any(|d| *d > 0.0));
+        let Some(negative) = self.factor_chain(Matrix { hessian, jacobian, sigma, d }) else {
+            return Inertia::Wrong;
+        };
         match self.border.factor(&self.value) {
             None => Inertia::Singular,
             Some(count) if count + negative == self.border.rows() => Inertia::Correct,
@@ -96,15 +111,11 @@ impl Factor for Riccati {
 
     fn solve(&mut self, right_side: &mut [f64]) {
         let (a, b) = right_side.split_at_mut(self.stages.variables());
-        self.border.terminal_gradient(a, b, &mut self.gradient);
-        for (k, interval) in self.intervals.iter_mut().enumerate().rev() {
-            interval.backward(&self.stages, k, (a, b), &mut self.gradient, &mut self.scratch);
-        }
-        self.border.solve(&self.gradient, &mut self.x, &mut self.theta);
-        for (k, interval) in self.intervals.iter_mut().enumerate() {
-            interval.forward(&self.stages, k, (a, b), (&mut self.x, &self.theta), &mut self.scratch);
-        }
-        a[self.stages.state(self.stages.intervals)].copy_from_slice(&self.x);
-        self.border.finish(&self.theta, a, b);
+        let mut travel = std::mem::take(&mut self.travel);
+        self.border.terminal_gradient(a, b, &mut travel.gradient);
+        self.solve_chain(&mut travel, a, b);
+        a[self.stages.state(self.stages.intervals)].copy_from_slice(&travel.x);
+        self.border.finish(&travel.theta, a, b);
+        self.travel = travel;
     }
 }

@@ -1,132 +1,168 @@
-//! The backward and forward passes of a solve, through one interval.
+//! The backward and forward passes of a solve, through one interval; the names are those of [`super::interval`].
 //!
 //! ```text
-//!     backward    x+_0 = E^-1 b        y = M x+_0 + pull       g = g_w + T'y + N' x+_0 + v_theta
-//!     forward     u = gain z + u_0     x+ = T w + x+_0         lambda = -E^-T (M x+ + N w + pull)
+//!     backward    pull = v_x + g_+        g = g_w + v_theta + T' pull - L' b
+//!                 u_0 = -Q_uu^-1 g_u      v = g_z + gain' g_u
+//!     forward     u = gain z + u_0        x+ = [T F] [w; b] - A pull      lambda = [L C] [w; b] - F' pull
 //! ```
+//!
+//! From one pass to the other, `pull` waits in the place of `x+` and `u_0` in that of `u`.
 
-use super::interval::{Interval, Sizes};
-use super::kernels::{add_scaled, dot};
-use crate::linalg::Stages;
+use super::Riccati;
+use super::interval::Sizes;
+use super::kernels::{View, add_row_product, dot, multiply_add};
 
-impl Interval {
-    /// Backward: `gradient` is that of `V_{k+1}` and becomes that of `V_k`. `g` is scratch of size `all`.
-    pub(super) fn backward(
-        &mut self,
-        stages: &Stages,
+/// The vectors that travel along the chain.
+#[derive(Default)]
+pub(super) struct Travel {
+    /// `[v_x; v_theta]`, the gradient of the value function of the stage being left.
+    pub(super) gradient: Vec<f64>,
+    pub(super) theta: Vec<f64>,
+    pub(super) x: Vec<f64>,
+    /// Scratch over `(x, u, theta, x+)`, and `[pull; -b]`.
+    all: Vec<f64>,
+    push: Vec<f64>,
+}
+
+impl Travel {
+    pub(super) fn new(sizes: Sizes) -> Self {
+        let zeros = |length: usize| vec![0.0; length];
+        Travel {
+            gradient: zeros(sizes.kept()),
+            theta: zeros(sizes.q),
+            x: zeros(sizes.n),
+            all: zeros(sizes.all()),
+            push: zeros(2 * sizes.n),
+        }
+    }
+}
+
+impl Riccati {
+    /// Backward: the gradient is that of `V_{k+1}` and becomes that of `V_k`.
+    #[inline(always)]
+    pub(super) fn backward<const FUSED: bool>(
+        &self,
+        sizes: Sizes,
         k: usize,
-        (a, b): (&[f64], &[f64]),
-        gradient: &mut [f64],
-        g: &mut [f64],
+        travel: &mut Travel,
+        (a, b): (&mut [f64], &[f64]),
     ) {
-        let Sizes { n, m, q } = self.sizes;
-        let w = self.sizes.reduced();
-        g.fill(0.0);
-        self.local_gradient(&b[stages.local(k)], g);
-        for (g, a) in g.iter_mut().zip(&a[stages.state(k).start..stages.control(k).end]) {
-            *g -= a;
+        let Sizes { n, m, q } = sizes;
+        let (w, all) = (sizes.reduced(), sizes.all());
+        let Travel { gradient, all: g, push, .. } = travel;
+        let (gradient, g, push) = (&mut gradient[..n + q], &mut g[..all], &mut push[..2 * n]);
+        let first = k * (n + m);
+        let a = &mut a[first..first + n + m + n];
+        let defects = &b[self.stages.defects(k).start..][..n];
+        for i in 0..n + m {
+            g[i] = -a[i];
         }
+        g[n + m..w].copy_from_slice(&gradient[n..]);
+        g[w..].copy_from_slice(&gradient[..n]);
+        self.add_local_gradient(k, b, g);
         for i in 0..n {
-            self.pull[i] = gradient[i] + g[w + i];
+            push[i] = g[w + i];
+            push[n + i] = -defects[i];
         }
-        for i in 0..q {
-            g[n + m + i] += gradient[n + i];
-        }
-        self.eliminate_next(&b[stages.defects(k)], &mut g[..w]);
-        self.eliminate_controls(g, gradient);
+        a[n + m..].copy_from_slice(&g[w..]);
+        let response = View::rows(self.factors.response(sizes, k), all);
+        add_row_product::<FUSED>(1.0, (View::rows(push, 2 * n), 0), response, 2 * n, &mut g[..w]);
+        self.eliminate_controls::<FUSED>(sizes, k, g, (gradient, &mut a[n..n + m]));
     }
 
     /// Local rows: `g -= J' diag(1/d) b`
-    fn local_gradient(&self, b: &[f64], g: &mut [f64]) {
-        let all = self.sizes.all();
-        for (i, value) in b.iter().enumerate() {
-            let factor = -self.weights[i] * value;
-            for j in 0..all {
-                g[j] += factor * self.local[i * all + j];
-            }
+    #[inline(always)]
+    fn add_local_gradient(&self, k: usize, b: &[f64], g: &mut [f64]) {
+        let entries = &self.assembly.local_entries;
+        let (values, weights) = self.factors.local(k);
+        let b = &b[self.stages.local(k)];
+        for (entry, value) in entries.iter().zip(values) {
+            g[entry.position] -= weights[entry.row] * b[entry.row] * value;
         }
     }
 
-    fn eliminate_next(&mut self, b: &[f64], g: &mut [f64]) {
-        let (n, w) = (self.sizes.n, self.sizes.reduced());
-        if self.penalised {
-            for i in 0..n {
-                self.offset[i] = -self.pull[i];
-                self.offset[n + i] = b[i];
-            }
-            self.s.solve(&mut self.offset, 1);
-            for i in 0..2 * n {
-                add_scaled(g, &self.coupling[i * w..][..w], self.offset[i]);
-            }
-            return;
-        }
-        self.offset[..n].copy_from_slice(b);
-        self.e.solve(n, &mut self.offset[..n], 1);
-        for i in 0..n {
-            let m_row = &self.m[i * n..][..n];
-            let y = self.pull[i] + dot(m_row, &self.offset[..n]);
-            add_scaled(g, &self.response[i * w..][..w], y);
-            add_scaled(g, &self.coupling[i * w..][..w], self.offset[i]);
-        }
-    }
-
-    fn eliminate_controls(&mut self, g: &mut [f64], gradient: &mut [f64]) {
-        let (n, m, kept) = (self.sizes.n, self.sizes.m, self.sizes.kept());
-        for i in 0..m {
-            if self.fixed[i] {
-                g[n + i] = 0.0;
-            }
-            self.feed_forward[i] = -g[n + i];
-        }
-        for i in 0..kept {
-            gradient[i] = g[if i < n { i } else { i + m }];
-        }
-        for i in 0..m {
-            add_scaled(gradient, &self.gain[i * kept..][..kept], g[n + i]);
-        }
-        self.uu.solve(&mut self.feed_forward, 1);
-    }
-
-    /// Forward: `x` is `x_k` and becomes `x_{k+1}`. `all` is scratch of size `all`.
-    pub(super) fn forward(
-        &mut self,
-        stages: &Stages,
+    #[inline(always)]
+    fn eliminate_controls<const FUSED: bool>(
+        &self,
+        sizes: Sizes,
         k: usize,
-        (a, b): (&mut [f64], &mut [f64]),
-        (x, theta): (&mut [f64], &[f64]),
-        all: &mut [f64],
+        g: &mut [f64],
+        (gradient, feed_forward): (&mut [f64], &mut [f64]),
     ) {
-        let Sizes { n, m, q } = self.sizes;
-        let (w, kept, width) = (self.sizes.reduced(), self.sizes.kept(), self.sizes.all());
-        all[..n].copy_from_slice(x);
-        all[n + m..n + m + q].copy_from_slice(theta);
-        for i in 0..m {
-            let gain = &self.gain[i * kept..][..kept];
-            all[n + i] = self.feed_forward[i] + dot(&gain[..n], x) + dot(&gain[n..], theta);
+        let Sizes { n, m, .. } = sizes;
+        let kept = sizes.kept();
+        for i in 0..kept {
+            gradient[i] = g[sizes.position(i)];
         }
-        for i in 0..n {
-            all[w + i] = self.offset[i] + dot(&self.response[i * w..][..w], &all[..w]);
+        let fixed = &self.fixed[k * (n + m) + n..][..m];
+        let g = &mut g[n..n + m];
+        for i in (0..m).filter(|i| fixed[*i]) {
+            g[i] = 0.0;
         }
-        a[stages.state(k).start..stages.control(k).end].copy_from_slice(&all[..n + m]);
-        self.defect_multipliers(all, &mut b[stages.defects(k)]);
-        for (i, row) in stages.local(k).enumerate() {
-            b[row] = self.weights[i] * (dot(&self.local[i * width..][..width], all) - b[row]);
-        }
-        x.copy_from_slice(&all[w..]);
+        let (inverse, gain) = self.factors.controls(sizes, k);
+        let g = View::rows(g, m);
+        feed_forward.fill(0.0);
+        add_row_product::<FUSED>(-1.0, (g, 0), View::rows(inverse, m), m, feed_forward);
+        add_row_product::<FUSED>(1.0, (g, 0), View::rows(gain, kept), m, gradient);
     }
 
-    fn defect_multipliers(&self, all: &[f64], multipliers: &mut [f64]) {
-        let (n, w) = (self.sizes.n, self.sizes.reduced());
+    /// Forward: `x` is `x_k` and becomes `x_{k+1}`.
+    #[inline(always)]
+    pub(super) fn forward<const FUSED: bool>(
+        &self,
+        sizes: Sizes,
+        k: usize,
+        travel: &mut Travel,
+        (a, b): (&mut [f64], &mut [f64]),
+    ) {
+        let Sizes { n, m, q } = sizes;
+        let (w, kept, all) = (sizes.reduced(), sizes.kept(), sizes.all());
+        let Travel { theta, x, all: known, push, .. } = travel;
+        let (x, theta, known, push) = (&mut x[..n], &theta[..q], &mut known[..all], &mut push[..2 * n]);
+        let first = k * (n + m);
+        let a = &mut a[first..first + n + m + n];
+        let (start, local_start) = (self.stages.defects(k).start, self.stages.local(k).start);
+        let (_, gain) = self.factors.controls(sizes, k);
+        known[..n].copy_from_slice(x);
+        known[n + m..w].copy_from_slice(theta);
+        for i in 0..m {
+            let gain = &gain[i * kept..][..kept];
+            known[n + i] = a[n + i] + dot::<FUSED>(&gain[..n], x) + dot::<FUSED>(&gain[n..], theta);
+        }
+        a[..n + m].copy_from_slice(&known[..n + m]);
+        known[w..].copy_from_slice(&b[start..start + n]);
+        let response = self.factors.response(sizes, k);
+        for i in 0..2 * n {
+            push[i] = dot::<FUSED>(&response[i * all..][..all], known);
+        }
+        let pull = &a[n + m..];
         for i in 0..n {
-            multipliers[i] = if self.penalised {
-                self.offset[n + i] + dot(&self.response[(n + i) * w..][..w], &all[..w])
-            } else {
-                let from_next = dot(&self.m[i * n..][..n], &all[w..]);
-                -(self.pull[i] + from_next + dot(&self.coupling[i * w..][..w], &all[..w]))
-            };
+            // -F' pull
+            for l in 0..n {
+                push[n + i] = multiply_add::<FUSED>(-response[l * all + w + i], pull[l], push[n + i]);
+            }
         }
-        if !self.penalised {
-            self.e.solve_transposed(multipliers);
+        if self.factors.penalised {
+            let compliance = self.factors.compliance(n, k);
+            for i in 0..n {
+                push[i] -= dot::<FUSED>(&compliance[i * n..][..n], pull);
+            }
         }
+        x.copy_from_slice(&push[..n]);
+        b[start..start + n].copy_from_slice(&push[n..]);
+        known[w..].copy_from_slice(x);
+        self.local_multipliers(k, known, &mut b[local_start..][..self.stages.local_rows]);
+    }
+
+    /// `lambda = (J v - b) / d`
+    #[inline(always)]
+    fn local_multipliers(&self, k: usize, known: &[f64], multipliers: &mut [f64]) {
+        let entries = &self.assembly.local_entries;
+        let (values, weights) = self.factors.local(k);
+        multipliers.iter_mut().for_each(|value| *value = -*value);
+        for (entry, value) in entries.iter().zip(values) {
+            multipliers[entry.row] += value * known[entry.position];
+        }
+        multipliers.iter_mut().zip(weights).for_each(|(value, weight)| *value *= weight);
     }
 }

@@ -214,7 +214,7 @@ impl Kkt {
         space.for_each_bound(&at.y, |i, distance, direction| {
             let (z, dz) =
                 if direction > 0.0 { (at.lower[i], &mut lower[i]) } else { (at.upper[i], &mut upper[i]) };
-            *dz = mu / distance - z - direction * z / distance * y[i];
+            *dz = (mu - direction * z * y[i]) / distance - z;
         });
         [&*y, lower, upper].into_iter().flatten().all(|value| value.is_finite())
     }
@@ -237,20 +237,20 @@ impl Kkt {
     fn solve_refined(&mut self, nlp: &dyn Nlp, space: &Space, slopes: &Slopes) -> bool {
         self.solution.fill(0.0);
         self.residual.copy_from_slice(&self.right);
-        let goal = REFINED * largest(&self.right);
-        let mut before = f64::INFINITY;
+        let right = largest(&self.right);
+        let (mut before, mut now) = (f64::INFINITY, f64::INFINITY);
         for _ in 0..MOST_REFINEMENTS {
             self.factor.solve(&mut self.residual);
             self.solution.iter_mut().zip(&self.residual).for_each(|(x, correction)| *x += correction);
             self.compute_residual(nlp, space, slopes);
-            let now = largest(&self.residual);
-            if now <= goal || now > 0.5 * before {
+            now = largest(&self.residual);
+            if now <= REFINED * right || now > 0.5 * before {
                 break;
             }
             before = now;
         }
-        let size = largest(&self.right).max(largest(&self.solution));
-        size.is_finite() && largest(&self.residual) <= 1e-5 * size
+        let size = right.max(largest(&self.solution));
+        size.is_finite() && now <= 1e-5 * size
     }
 
     fn compute_residual(&mut self, nlp: &dyn Nlp, space: &Space, slopes: &Slopes) {
@@ -265,8 +265,7 @@ impl Kkt {
             *target = -self.d[i] * dl[i];
         }
         hessian.symmetric_multiply_add(&slopes.derivatives.hessian, dv, a);
-        jacobian.transposed_multiply_add(&slopes.derivatives.jacobian, dl, a);
-        jacobian.multiply_add(&slopes.derivatives.jacobian, dv, b);
+        jacobian.multiply_add_both(&slopes.derivatives.jacobian, (dv, b), (dl, a));
         for (residual, right) in self.residual.iter_mut().zip(&self.right) {
             *residual = right - *residual;
         }
@@ -308,6 +307,7 @@ impl Kkt {
     }
 }
 
+/// The largest absolute value. Numbers without sign are ordered as their bits are, and what is not a number comes last.
 fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |a, value| if value.abs() > a || value.is_nan() { value.abs() } else { a })
+    f64::from_bits(values.iter().fold(0, |a, value| a.max(value.abs().to_bits())))
 }

@@ -33,6 +33,9 @@ pub(super) struct Space {
     /// Bounds of `y`; infinite for fixed variables.
     pub(super) lower: Vec<f64>,
     pub(super) upper: Vec<f64>,
+    /// Which of them are finite.
+    bounded_below: Vec<u32>,
+    bounded_above: Vec<u32>,
     /// Right-hand sides of the rows.
     pub(super) target: Vec<f64>,
     pub(super) fixed: Vec<bool>,
@@ -51,6 +54,8 @@ impl Space {
             slacks: 0,
             lower: Vec::new(),
             upper: Vec::new(),
+            bounded_below: Vec::new(),
+            bounded_above: Vec::new(),
             target: rows.iter().map(|b| if b.is_equality() { b.lower } else { 0.0 }).collect(),
             fixed,
             equality,
@@ -79,6 +84,13 @@ impl Space {
     }
 
     fn push_bounds(&mut self, bounds: Bounds) {
+        let index = self.len() as u32;
+        if bounds.lower > f64::NEG_INFINITY {
+            self.bounded_below.push(index);
+        }
+        if bounds.upper < f64::INFINITY {
+            self.bounded_above.push(index);
+        }
         self.lower.push(bounds.lower);
         self.upper.push(bounds.upper);
     }
@@ -135,14 +147,13 @@ impl Space {
     }
 
     /// Calls `action(i, distance, direction)` for every finite bound: `direction` is +1 for a lower bound, -1 for an upper.
+    #[inline]
     pub(super) fn for_each_bound(&self, y: &[f64], mut action: impl FnMut(usize, f64, f64)) {
-        for i in 0..self.len() {
-            if self.lower[i] > f64::NEG_INFINITY {
-                action(i, y[i] - self.lower[i], 1.0);
-            }
-            if self.upper[i] < f64::INFINITY {
-                action(i, self.upper[i] - y[i], -1.0);
-            }
+        for i in self.bounded_below.iter().map(|i| *i as usize) {
+            action(i, y[i] - self.lower[i], 1.0);
+        }
+        for i in self.bounded_above.iter().map(|i| *i as usize) {
+            action(i, self.upper[i] - y[i], -1.0);
         }
     }
 }

@@ -1,0 +1,134 @@
+//! The recursion along the chain, compiled several times: for common sizes as constants, whose loops unroll, and for
+//! machines with and without fused multiply-add and registers of four numbers.
+
+use super::Riccati;
+use super::interval::Sizes;
+use super::solve::Travel;
+
+/// **The table** of sizes that are compiled as constants: states, controls, border.
+macro_rules! with_constant_sizes {
+    ($given:expr, $sizes:ident => $body:expr) => {
+        with_constant_sizes!($given, $sizes => $body, (5, 2, 1) (2, 1, 2) (2, 1, 3) (4, 1, 3))
+    };
+    ($given:expr, $sizes:ident => $body:expr, $(($n:literal, $m:literal, $q:literal))*) => {
+        match $given {
+            $(Sizes { n: $n, m: $m, q: $q } => {
+                let $sizes = Sizes { n: $n, m: $m, q: $q };
+                $body
+            })*
+            $sizes => $body,
+        }
+    };
+}
+
+/// So many intervals are gathered at a time: the families are read where they are contiguous.
+pub(super) const BATCH: usize = 8;
+
+/// The values that are factored.
+#[derive(Clone, Copy)]
+pub(super) struct Matrix<'a> {
+    pub(super) hessian: &'a [f64],
+    pub(super) jacobian: &'a [f64],
+    pub(super) sigma: &'a [f64],
+    pub(super) d: &'a [f64],
+}
+
+impl Riccati {
+    /// Factors all intervals; returns how many negative eigenvalues there are beyond one per row, or `None` at a zero pivot
+    /// or when the border cannot make up for them.
+    pub(super) fn factor_chain(&mut self, matrix: Matrix) -> Option<usize> {
+        #[cfg(target_arch = "x86_64")]
+        if self.fused {
+            // SAFETY: `fused` is set only if this machine has both features.
+            #[allow(unsafe_code)]
+            return unsafe { self.factor_fused(matrix) };
+        }
+        with_constant_sizes!(self.sizes, sizes => self.factor_intervals::<false>(sizes, matrix))
+    }
+
+    /// Goes backward, solves for the border, and goes forward.
+    pub(super) fn solve_chain(&self, travel: &mut Travel, a: &mut [f64], b: &mut [f64]) {
+        #[cfg(target_arch = "x86_64")]
+        if self.fused {
+            // SAFETY: `fused` is set only if this machine has both features.
+            #[allow(unsafe_code)]
+            return unsafe { self.solve_fused(travel, a, b) };
+        }
+        with_constant_sizes!(self.sizes, sizes => self.solve_intervals::<false>(sizes, travel, a, b))
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn factor_fused(&mut self, matrix: Matrix) -> Option<usize> {
+        with_constant_sizes!(self.sizes, sizes => self.factor_intervals::<true>(sizes, matrix))
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn solve_fused(&self, travel: &mut Travel, a: &mut [f64], b: &mut [f64]) {
+        with_constant_sizes!(self.sizes, sizes => self.solve_intervals::<true>(sizes, travel, a, b))
+    }
+
+    #[inline(always)]
+    fn factor_intervals<const FUSED: bool>(&mut self, sizes: Sizes, matrix: Matrix) -> Option<usize> {
+        let Riccati { stages, assembly, fixed, border, factors, block, gathered, value, .. } = self;
+        let Matrix { hessian, jacobian, sigma, d } = matrix;
+        let length = sizes.gathered();
+        let mut negative = 0;
+        for k in (0..stages.intervals).rev() {
+            let first = k - k % BATCH;
+            if k + 1 == stages.intervals || k + 1 == first + BATCH {
+                let local = factors.local_from(first, k + 1);
+                assembly.gather(
+                    sizes,
+                    first,
+                    (hessian, jacobian),
+                    &mut gathered[..(k + 1 - first) * length],
+                    local,
+                );
+            }
+            let gathered = &mut gathered[(k - first) * length..][..length];
+            for (i, sigma) in sigma[stages.state(k).start..][..sizes.n + sizes.m].iter().enumerate() {
+                gathered[i * sizes.reduced() + i] += sigma;
+            }
+            let (local, weights) = factors.local_mut(k);
+            for (weight, d) in weights.iter_mut().zip(&d[stages.local(k)]) {
+                *weight = 1.0 / d;
+            }
+            assembly.condense(local, weights, gathered);
+            let penalties = if factors.penalised { &d[stages.defects(k)] } else { &[] };
+            let fixed = &fixed[stages.control(k)];
+            negative += block.factor::<FUSED>(sizes, gathered, factors, (k, fixed, penalties), value)?;
+            // The border cannot have fewer than no negative eigenvalues.
+            if negative > border.rows() {
+                return None;
+            }
+        }
+        Some(negative)
+    }
+
+    #[inline(always)]
+    fn solve_intervals<const FUSED: bool>(
+        &self,
+        sizes: Sizes,
+        travel: &mut Travel,
+        a: &mut [f64],
+        b: &mut [f64],
+    ) {
+        for k in (0..self.stages.intervals).rev() {
+            self.backward::<FUSED>(sizes, k, travel, (a, b));
+        }
+        self.border.solve(&travel.gradient, &mut travel.x, &mut travel.theta);
+        for k in 0..self.stages.intervals {
+            self.forward::<FUSED>(sizes, k, travel, (a, b));
+        }
+    }
+}
+
+/// Whether this machine has what the fused loops need.
+pub(super) fn is_fused() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma");
+    #[cfg(not(target_arch = "x86_64"))]
+    false
+}

@@ -1,6 +1,7 @@
 //! A point of the primal-dual iteration and what is known there.
 
 use super::space::Space;
+use super::vectors::{are_finite, largest, sum_of_sizes};
 use crate::nlp::{Counts, Derivatives, Nlp};
 
 /// Primal and dual variables.
@@ -77,12 +78,12 @@ impl Values {
 
     /// The largest residual.
     pub(super) fn largest(&self) -> f64 {
-        self.residuals.iter().fold(0.0, |a, residual| a.max(residual.abs()))
+        largest(self.residuals.iter().copied())
     }
 
     /// `theta`: the 1-norm of the residuals.
     pub(super) fn violation(&self) -> f64 {
-        self.residuals.iter().map(|residual| residual.abs()).sum()
+        sum_of_sizes(&self.residuals)
     }
 }
 
@@ -127,9 +128,4 @@ impl Slopes {
             *value = attached.cost + attached.sign * lambda[attached.row];
         }
     }
-}
-
-/// Whether all are numbers. Short sums, because the additions of a long one would wait for each other.
-fn are_finite(values: &[f64]) -> bool {
-    values.chunks(16).all(|chunk| chunk.iter().map(|value| value * 0.0).sum::<f64>() == 0.0)
 }

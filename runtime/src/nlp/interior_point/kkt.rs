@@ -13,6 +13,7 @@
 use super::barrier::Barrier;
 use super::iterate::{Iterate, Slopes, Step};
 use super::space::Space;
+use super::vectors::largest;
 use crate::linalg::riccati::Riccati;
 use crate::linalg::sparse_ldl::SparseLdl;
 use crate::linalg::{Factor, Inertia};
@@ -237,19 +238,19 @@ impl Kkt {
     fn solve_refined(&mut self, nlp: &dyn Nlp, space: &Space, slopes: &Slopes) -> bool {
         self.solution.fill(0.0);
         self.residual.copy_from_slice(&self.right);
-        let right = largest(&self.right);
+        let right = largest(self.right.iter().copied());
         let (mut before, mut now) = (f64::INFINITY, f64::INFINITY);
         for _ in 0..MOST_REFINEMENTS {
             self.factor.solve(&mut self.residual);
             self.solution.iter_mut().zip(&self.residual).for_each(|(x, correction)| *x += correction);
             self.compute_residual(nlp, space, slopes);
-            now = largest(&self.residual);
+            now = largest(self.residual.iter().copied());
             if now <= REFINED * right || now > 0.5 * before {
                 break;
             }
             before = now;
         }
-        let size = right.max(largest(&self.solution));
+        let size = right.max(largest(self.solution.iter().copied()));
         size.is_finite() && now <= 1e-5 * size
     }
 
@@ -301,13 +302,8 @@ impl Kkt {
         }
         self.factor.solve(&mut self.right);
         let estimate = &self.right[space.variables..];
-        if largest(estimate) <= HUGE {
+        if largest(estimate.iter().copied()) <= HUGE {
             at.lambda.copy_from_slice(estimate);
         }
     }
-}
-
-/// The largest absolute value. Numbers without sign are ordered as their bits are, and what is not a number comes last.
-fn largest(values: &[f64]) -> f64 {
-    f64::from_bits(values.iter().fold(0, |a, value| a.max(value.abs().to_bits())))
 }

@@ -15,6 +15,7 @@ mod space;
 mod start;
 #[cfg(test)]
 mod tests;
+mod vectors;
 mod watchdog;
 
 use super::scaling::Scaled;

@@ -6,6 +6,7 @@
 
 use super::iterate::{Iterate, Slopes, Values};
 use super::space::Space;
+use super::vectors::{largest, sum_of_sizes};
 
 /// Multipliers of this average size are considered normal.
 const NORMAL_MULTIPLIER: f64 = 100.0;
@@ -23,24 +24,22 @@ pub(super) struct Residuals {
 
 impl Residuals {
     pub(super) fn new(space: &Space, at: &Iterate, values: &Values, slopes: &Slopes) -> Self {
-        let bound_sum: f64 = at.lower.iter().chain(&at.upper).sum();
-        let row_sum: f64 = at.lambda.iter().map(|value| value.abs()).sum();
+        let bound_sum = sum_of_sizes(&at.lower) + sum_of_sizes(&at.upper);
+        let row_sum = sum_of_sizes(&at.lambda);
         let (bounds, rows) = ((2 * space.len()).max(1) as f64, at.lambda.len() as f64);
         let scale = |average: f64| average.max(NORMAL_MULTIPLIER) / NORMAL_MULTIPLIER;
-        let mut dual = 0.0f64;
-        for i in 0..space.len() {
-            dual = larger(dual, (slopes.lagrangian[i] - at.lower[i] + at.upper[i]).abs());
-        }
-        let (mut largest, mut smallest) = (0.0f64, f64::INFINITY);
+        let gradients = slopes.lagrangian.iter().zip(&at.lower).zip(&at.upper);
+        let dual = largest(gradients.map(|((gradient, lower), upper)| gradient - lower + upper));
+        let (mut most, mut least) = (0.0f64, f64::INFINITY);
         space.for_each_bound(&at.y, |i, distance, direction| {
             let product = distance * if direction > 0.0 { at.lower[i] } else { at.upper[i] };
-            (largest, smallest) = (larger(largest, product), smallest.min(product));
+            (most, least) = (larger(most, product), least.min(product));
         });
         Residuals {
             dual: dual / scale((bound_sum + row_sum) / (bounds + rows)),
             primal: values.largest(),
-            largest_product: largest,
-            smallest_product: if smallest.is_finite() { smallest } else { 0.0 },
+            largest_product: most,
+            smallest_product: if least.is_finite() { least } else { 0.0 },
             product_scale: scale(bound_sum / bounds),
         }
     }

@@ -1,0 +1,19 @@
+//! What is asked of long vectors at every iteration, so that no operation has to wait for the one before.
+
+/// Numbers of a stretch whose sum is independent of those of other stretches.
+const STRETCH: usize = 16;
+
+/// The largest absolute value. Numbers without sign are ordered as their bits are, and what is not a number comes last.
+pub(super) fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    f64::from_bits(values.into_iter().fold(0, |largest, value| largest.max(value.abs().to_bits())))
+}
+
+/// The sum of the absolute values.
+pub(super) fn sum_of_sizes(values: &[f64]) -> f64 {
+    values.chunks(STRETCH).map(|stretch| stretch.iter().map(|value| value.abs()).sum::<f64>()).sum()
+}
+
+/// Whether all are numbers.
+pub(super) fn are_finite(values: &[f64]) -> bool {
+    values.chunks(STRETCH).all(|stretch| stretch.iter().map(|value| value * 0.0).sum::<f64>() == 0.0)
+}

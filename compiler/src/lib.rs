@@ -14,6 +14,7 @@ pub mod model;
 mod overrides;
 mod polynomial;
 pub mod program;
+mod rehearsal;
 mod repair;
 mod resolve;
 mod review;
@@ -82,6 +83,10 @@ pub fn check(tree: &ast::Model) -> Checked {
         units: units.names.clone(),
         ..whole.into_model()
     });
+    if let Some(model) = &model {
+        diagnostics.extend(rehearsal::check(model, tree));
+        sort(&mut diagnostics);
+    }
     Checked { model, diagnostics, units: units.names }
 }
 

@@ -217,6 +217,17 @@ pub enum Simulated {
     },
 }
 
+/// A line of the `sweep` block.
+#[derive(Clone, Debug)]
+pub struct Swept {
+    /// The name of a parameter or of a setting.
+    pub place: Place,
+    /// Its values as the command line takes them.
+    pub values: Vec<String>,
+    /// Where the values stand.
+    pub values_span: Span,
+}
+
 /// A model whose text has no error.
 #[derive(Clone)]
 pub struct Model {
@@ -266,6 +277,8 @@ pub struct Model {
     pub names: Vec<(String, ExprId)>,
     /// How it is to be solved.
     pub method: Method,
+    /// The lists of the `sweep` block.
+    pub sweep: Vec<Swept>,
     /// Whether `abs`, `min` and `max` are smoothed: there is a surface, or the model says `smooth`.
     pub smooth: bool,
     /// What is understood but cannot be solved yet, in the order of the text.
@@ -303,6 +316,7 @@ impl Model {
             metric: Vec::new(),
             names: Vec::new(),
             method: default_method(),
+            sweep: Vec::new(),
             smooth: false,
             not_yet: Vec::new(),
             units: Vec::new(),

@@ -93,6 +93,16 @@ pub static KERNELS: [Kernel; 5] = [
     },
 ];
 
+impl Kernel {
+    /// `S'(0)`: how steep the step is.
+    pub fn slope(&self) -> f64 {
+        let mut graph = Graph::new();
+        let zero = graph.number(0.0);
+        let slope = (self.ratio)(&mut graph, zero);
+        crate::graph::evaluate(&graph, &[slope], &[], &[])[0]
+    }
+}
+
 /// The kernel of that name.
 pub fn find(name: &str) -> Option<&'static Kernel> {
     KERNELS.iter().find(|kernel| kernel.name == name)

@@ -108,6 +108,8 @@ pub enum ItemKind {
     Link { from: Ident, to: Ident, assignments: Vec<Assignment> },
     /// `method { settings }`
     Method { settings: Vec<Setting> },
+    /// `sweep { name = expr, expr }`
+    Sweep { lists: Vec<Swept> },
     /// `report { name = expr }`
     Report { bindings: Vec<Binding> },
     /// `expect { expr == expr within expr }`
@@ -231,6 +233,15 @@ pub struct Setting {
     pub value: SettingValue,
     /// Unit after the value.
     pub unit: Option<Unit>,
+}
+
+/// A line of a `sweep` block.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Swept {
+    /// A parameter or a key of the method.
+    pub name: Ident,
+    /// Its values, one for each run.
+    pub values: Vec<Expr>,
 }
 
 /// The value of a setting.

@@ -152,6 +152,11 @@ codes! {
     NotSmooth = "FDC0406", Warning, "a constraint that is not twice differentiable";
     NoTime = "FDC0407", Error, "a model without time";
     NoValue = "FDC0408", Error, "a parameter without a value";
+    GuessOutside = "FDC0409", Warning, "a guess outside its bounds";
+    LongStep = "FDC0501", Warning, "a step too long for the smoothed layer";
+    SweepTooSlow = "FDC0502", Warning, "a sweep that refines the grid too slowly";
+    NoRoom = "FDC0503", Warning, "a smoothing width without room";
+    Scales = "FDC0504", Advice, "states of very different sizes";
     NotFinite = "FDC0601", Error, "not a number while solving";
     Infeasible = "FDC0602", Error, "no feasible trajectory found";
     NotYet = "FDC0603", Error, "a construct that `solve` cannot treat yet";

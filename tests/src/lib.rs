@@ -2,6 +2,7 @@
 
 pub mod expected;
 pub mod functions;
+pub mod fuzzed;
 pub mod models;
 pub mod optimality;
 pub mod pages;

@@ -28,7 +28,9 @@ pub struct Sweep {
     #[arg(value_name = "FILE")]
     file: String,
     /// A `param` or a key of the `method` block, with its values; several lists go together row by row
-    #[arg(value_name = "NAME=V1,V2,...", required = true)]
+    ///
+    /// Without any, the lists of the `sweep` block of the model.
+    #[arg(value_name = "NAME=V1,V2,...")]
     lists: Vec<String>,
     /// Start each solve from the solution before it, one after the other
     #[arg(long = "continue", conflicts_with = "jobs")]
@@ -67,7 +69,7 @@ impl Sweep {
 
     /// The values, and the model with each of them.
     fn rows(&self, prepared: &Prepared) -> Result<(Grid, Vec<Row>), String> {
-        let grid = Grid::read(&self.lists)?;
+        let grid = if self.lists.is_empty() { Grid::of(&prepared.model)? } else { Grid::read(&self.lists)? };
         let row = |index: usize| {
             let mut prepared = prepared.clone();
             grid.apply(index, &mut prepared.model)?;

@@ -20,6 +20,7 @@ pub(crate) fn check(tree: &ast::Model) -> Vec<Diagnostic> {
             kind,
             ItemKind::Guess { .. }
                 | ItemKind::Report { .. }
+                | ItemKind::Sweep { .. }
                 | ItemKind::Expect { .. }
                 | ItemKind::Method { .. }
         )

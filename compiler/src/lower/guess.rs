@@ -24,7 +24,8 @@ pub(crate) fn lower(model: &Model, graph: &mut Graph, sizes: &Sizes) -> VectorFu
             None => {
                 let ends = ends(model, graph, index, state);
                 let ends = inputs.apply(graph, &ends);
-                line(graph, [ends[0], ends[1]])
+                let tau = graph.input(0);
+                line(graph, tau, [ends[0], ends[1]])
             }
         };
     }
@@ -34,6 +35,36 @@ pub(crate) fn lower(model: &Model, graph: &mut Graph, sizes: &Sizes) -> VectorFu
         origins.push(origin(&control.place));
     }
     VectorFunction { name: "guess".into(), layout, outputs, origins, by: Vec::new(), order: Order::Second }
+}
+
+/// The guess of all states and controls over real time, parameters and unknowns, and the input that each stands for.
+pub(crate) fn over_time(
+    model: &Model,
+    graph: &mut Graph,
+    first: f64,
+    duration: f64,
+) -> (Vec<ExprId>, Vec<u32>) {
+    let now = match model.input_of(Symbol::Time) {
+        Some(time) => graph.input(time),
+        None => graph.number(first),
+    };
+    let start = graph.number(first);
+    let passed = graph.sub(now, start);
+    let tau = graph.scale(1.0 / duration, passed);
+    let mut guessed = (Vec::new(), Vec::new());
+    for (index, state) in model.states.iter().enumerate() {
+        let value = state.guess.unwrap_or_else(|| {
+            let ends = ends(model, graph, index, state);
+            line(graph, tau, ends)
+        });
+        guessed.0.push(value);
+        guessed.1.extend(model.input_of(Symbol::State(index)));
+    }
+    for (index, control) in model.controls.iter().enumerate() {
+        guessed.0.push(control.guess.unwrap_or_else(|| middle(graph, control.range)));
+        guessed.1.extend(model.input_of(Symbol::Control(index)));
+    }
+    guessed
 }
 
 /// The guess of all states at the start, over the parameters alone.
@@ -47,8 +78,7 @@ pub(crate) fn at_start(model: &Model, graph: &mut Graph, sizes: &Sizes) -> Vec<E
 }
 
 /// `a + tau (b - a)`.
-fn line(graph: &mut Graph, [a, b]: [ExprId; 2]) -> ExprId {
-    let tau = graph.input(0);
+fn line(graph: &mut Graph, tau: ExprId, [a, b]: [ExprId; 2]) -> ExprId {
     let rise = graph.sub(b, a);
     let risen = graph.mul(tau, rise);
     graph.add(a, risen)

@@ -19,6 +19,7 @@ mod problem;
 mod simulation;
 
 pub use expect::{Expectations, Expected, expectations};
+pub(crate) use guess::over_time as guessed;
 pub use problem::problem;
 pub(crate) use simulation::{Purpose, simulation, system};
 

@@ -32,6 +32,7 @@ impl<'a> Elaborator<'a> {
             ItemKind::Objective { sense, keyword, value } => self.objective(*sense, *keyword, value),
             ItemKind::Guess { bindings } => self.guess(bindings),
             ItemKind::Method { settings } => self.settings(settings),
+            ItemKind::Sweep { lists } => self.sweep(lists),
             ItemKind::Report { bindings } => bindings.iter().for_each(|binding| self.report(binding)),
             ItemKind::Expect { checks } => checks.iter().for_each(|check| self.expectation(check)),
             ItemKind::Metric { weights } => {

@@ -20,6 +20,7 @@ pub(crate) mod order;
 mod piecewise;
 pub(crate) mod scope;
 pub(crate) mod settings;
+mod sweep;
 pub(crate) mod text;
 pub(crate) mod value;
 pub(crate) mod walk;

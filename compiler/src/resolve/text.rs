@@ -205,11 +205,14 @@ impl Printer {
     }
 }
 
-/// A unit with its brackets.
+/// A unit with its brackets: `[kg m/s^2]`, `[1/s]`.
 pub(crate) fn unit(unit: &Unit) -> String {
-    let factor = |(name, power): &(fdcc_grammar::ast::Ident, i32)| match power {
-        1 => name.name.clone(),
-        _ => format!("{}^{power}", name.name),
-    };
-    format!("[{}]", unit.factors.iter().map(factor).collect::<Vec<_>>().join(" "))
+    let factor = |name: &str, power: u32| if power == 1 { name.into() } else { format!("{name}^{power}") };
+    let above = unit.factors.iter().filter(|(_, power)| *power >= 0);
+    let above: Vec<String> = above.map(|(name, power)| factor(&name.name, power.unsigned_abs())).collect();
+    let below = unit.factors.iter().filter(|(_, power)| *power < 0);
+    let below: String =
+        below.map(|(name, power)| format!("/{}", factor(&name.name, power.unsigned_abs()))).collect();
+    let above = if above.is_empty() { "1".into() } else { above.join(" ") };
+    format!("[{above}{below}]")
 }

@@ -129,6 +129,7 @@ pub(crate) fn expressions(item: &Item) -> Vec<&Expr> {
             ast::SettingValue::List(values) => all.extend(values),
             ast::SettingValue::Scheme { .. } => {}
         }),
+        ItemKind::Sweep { lists } => all.extend(lists.iter().flat_map(|list| &list.values)),
         ItemKind::Expect { checks } => checks.iter().for_each(|it| {
             all.extend([&it.left, &it.right]);
             all.extend(&it.within);

@@ -18,7 +18,11 @@ pub(super) fn missing_operator(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let (first, last) = (&place.tokens[left], &place.tokens[right]);
     let [left, right] = [short(place, left, place.at - 1, previous), short(place, place.at, right, next)];
     let message = format!("missing operator between `{left}` and `{right}`");
-    let comma = if place.innermost_bracket() == Some("(") { "; a comma parts two values" } else { "" };
+    let comma = if place.innermost_bracket() == Some("(") || place.word == "sweep" {
+        "; a comma parts two values"
+    } else {
+        ""
+    };
     let help =
         format!("write `{left} * {right}` or `{left} / {right}`; fdc has no implicit multiplication{comma}");
     let span = first.span().to(last.span());

@@ -116,6 +116,12 @@ impl Reader<'_> {
         children(block, Rule::binding).map(read).collect()
     }
 
+    /// The lists of a `sweep` block.
+    pub(super) fn swept(&mut self, block: &Pair<'_, Rule>) -> Vec<Swept> {
+        let read = |pair| Swept { name: ident(self, &pair), values: self.expressions_in(&pair) };
+        children(block, Rule::swept).map(read).collect()
+    }
+
     /// The checks of an `expect` block.
     pub(super) fn checks(&mut self, block: &Pair<'_, Rule>) -> Vec<Check> {
         children(block, Rule::check).map(|pair| self.check(&pair)).collect()

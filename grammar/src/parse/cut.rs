@@ -199,7 +199,7 @@ fn looks_like_entry(so_far: &SoFar<'_, '_>, at: usize, block: &str) -> bool {
         "dynamics" => {
             is_name && so_far.text(at - 1) != "*" && (second == "'" || (second == "*" && fourth == "'"))
         }
-        "guess" | "report" => is_name && second == "=",
+        "guess" | "report" | "sweep" => is_name && second == "=",
         "jump" | "link" => is_name && second == ":=",
         "method" => {
             let is_key = is_name && second == "=" && so_far.tokens[at].begins_line;

@@ -67,6 +67,7 @@ impl Reader<'_> {
             Rule::guess => ItemKind::Guess { bindings: self.bindings(pair) },
             Rule::report => ItemKind::Report { bindings: self.bindings(pair) },
             Rule::method => ItemKind::Method { settings: self.settings(pair) },
+            Rule::sweep => ItemKind::Sweep { lists: self.swept(pair) },
             Rule::expect => ItemKind::Expect { checks: self.checks(pair) },
             Rule::metric => ItemKind::Metric { weights: self.weights(pair) },
             Rule::start => ItemKind::Start { condition: self.condition(pair) },

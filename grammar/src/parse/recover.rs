@@ -170,6 +170,7 @@ fn entry_rule(word: &str) -> Option<Rule> {
         "jump" | "link" => Rule::only_assignment,
         "method" => Rule::only_setting,
         "expect" => Rule::only_check,
+        "sweep" => Rule::only_swept,
         _ => return None,
     })
 }

@@ -60,6 +60,7 @@ pub(super) const WORDS: &[Word] = &[
     item("phase", "introduces a phase", "stage", "a phase", "phase boost { time t in [0, 1]  state h start 0 }"),
     item("link", "connects two phases", "joint", "a link", "link boost -> coast { h := h }"),
     item("method", "says how to solve", "how", "a method block", "method { grid N = 100 scheme implicit_euler }"),
+    item("sweep", "lists values for several runs", "strokes", "a sweep", "sweep { sigma = 0.1, 0.05  N = 1000, 8000 }"),
     item("report", "lists curves to write out", "output", "a report", "report { power = F * v }"),
     item("expect", "lists what the answer must satisfy", "expected", "an expect block", "expect { x(end) == 1 within 1e-6 }"),
     inner("in", "introduces a range or a set", "inside"),
@@ -86,6 +87,7 @@ pub(super) fn entry_form(block: &str) -> Option<&'static Form> {
     match block {
         "dynamics" => Some(&Form { noun: "an equation", example: "x' = v" }),
         "guess" => Some(&Form { noun: "a guess", example: "x = t/T" }),
+        "sweep" => Some(&Form { noun: "a list of values", example: "sigma = 0.1, 0.05" }),
         "report" => Some(&Form { noun: "a report", example: "power = F * v" }),
         "jump" | "link" => Some(&Form { noun: "an assignment", example: "v := -e * v" }),
         "method" => Some(&Form { noun: "a setting", example: "grid N = 100 scheme implicit_euler" }),

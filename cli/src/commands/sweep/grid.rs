@@ -13,7 +13,18 @@ pub struct Grid {
 impl Grid {
     /// Reads `NAME=V1,V2,...`.
     pub fn read(texts: &[String]) -> Result<Self, String> {
-        let lists: Vec<_> = texts.iter().map(|text| list(text)).collect::<Result<_, String>>()?;
+        Self::new(texts.iter().map(|text| list(text)).collect::<Result<_, String>>()?)
+    }
+
+    /// The lists of the model's own `sweep` block.
+    pub fn of(model: &Model) -> Result<Self, String> {
+        if model.sweep.is_empty() {
+            return Err("nothing is swept: give NAME=V1,V2,... or write a `sweep` block in the model".into());
+        }
+        Self::new(model.sweep.iter().map(|swept| (swept.place.name.clone(), swept.values.clone())).collect())
+    }
+
+    fn new(lists: Vec<(String, Vec<String>)>) -> Result<Self, String> {
         for (at, (name, _)) in lists.iter().enumerate() {
             if lists[..at].iter().any(|(earlier, _)| earlier == name) {
                 return Err(format!("`{name}` is swept twice; write all its values in one list"));

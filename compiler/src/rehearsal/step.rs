@@ -1,0 +1,69 @@
+//! FDC0501: an explicit step that is too long for the smoothed layer.
+//!
+//! With the slope `L` of the layer, an Euler step of length `h` multiplies the distance to the surface by `1 - h L`: beyond
+//! `h L = 1` it lands on the other side, beyond 2 it moves away.
+
+use super::layer::{Layer, short};
+use super::{Rehearsal, Sigma, span};
+use crate::graph::Expr;
+use crate::model::Symbol;
+use crate::resolve::text::number;
+use fdcc_grammar::{Code, Diagnostic};
+use fdcc_runtime::problem::Scheme;
+
+/// Reports the steepest layer that the step does not resolve.
+pub(super) fn check(rehearsal: &mut Rehearsal<'_>, found: &mut Vec<Diagnostic>) {
+    let method = &rehearsal.model.method;
+    let (Some(sigma), Scheme::Euler) = (rehearsal.sigma(), method.scheme) else { return };
+    let step = rehearsal.duration / (method.intervals * method.steps) as f64;
+    let factor = rehearsal.kernel_slope();
+    let Some(layer) = rehearsal.layers().into_iter().next() else { return };
+    let slope = factor * layer.jump / sigma.width;
+    if step * slope > 1.0 {
+        found.push(too_long(rehearsal, &layer, &sigma, step, slope));
+    }
+}
+
+fn too_long(rehearsal: &Rehearsal<'_>, layer: &Layer, sigma: &Sigma, step: f64, slope: f64) -> Diagnostic {
+    let shown = |value: f64| number(short(value));
+    let message = format!("the step is too long for the smoothed layer of `{}`", layer.name);
+    let label = format!("layer slope L = {} = {}", layer.slope_text(rehearsal.kernel_slope()), shown(slope));
+    let found = Diagnostic::new(Code::LongStep, message, sigma.span, label);
+    let length = format!("{}, so h*L = {}", rehearsal.step_text(step), shown(step * slope));
+    let found = match rehearsal.setting("N").or(rehearsal.setting("scheme")) {
+        Some(setting) => found.label(span(setting), length),
+        None => found,
+    };
+    found.help(format!(
+        "Euler overshoots the layer when h*L > 1 and oscillates when h*L > 2.\n\
+         use N >= {} for sigma = {}, or sigma >= {} for N = {}, or `scheme implicit_euler`\n\
+         (the implicit scheme removes the oscillation, not the gradient error: still keep h small)",
+        number((rehearsal.duration * slope).ceil()),
+        number(sigma.width),
+        shown(slope * sigma.width * step),
+        rehearsal.model.method.intervals
+    ))
+}
+
+impl Rehearsal<'_> {
+    /// `h = T/N = 0.012 at T = 6`, where the duration is one unknown; `h = 4/500 = 0.008` where it is a number.
+    fn step_text(&self, step: f64) -> String {
+        let (duration, step) = (number(short(self.duration)), number(short(step)));
+        match self.free_duration() {
+            Some(name) => format!("h = {name}/N = {step} at {name} = {duration}"),
+            None => format!("h = {duration}/N = {step}"),
+        }
+    }
+
+    /// The unknown that the duration is.
+    pub(super) fn free_duration(&self) -> Option<&str> {
+        let [first, last] = self.model.interval;
+        let is_zero = self.model.graph.as_number(first) == Some(0.0);
+        let input = |index: usize| self.model.input_of(Symbol::Free(index));
+        let is_it = |index: &usize| {
+            input(*index).is_some_and(|input| *self.model.graph.expr(last) == Expr::Input(input))
+        };
+        let index = (0..self.model.frees.len()).find(is_it).filter(|_| is_zero)?;
+        Some(&self.model.frees[index].place.name)
+    }
+}

@@ -1,0 +1,7 @@
+//! Texts chosen by coverage, through parse, check and repair: `tests/src/fuzzed.rs` says what must hold.
+//!
+//! How to run it is told in `README.md` beside this folder.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|text: &str| fdcc_tests::fuzzed::understand(text));

@@ -11,8 +11,11 @@ use miette::{
     SourceCode, SourceSpan, SpanContents,
 };
 
-/// Where no terminal says how wide it is.
+/// Where neither a terminal nor `COLUMNS` says how wide it is.
 const WIDTH: usize = 100;
+
+/// Words have to fit into a line.
+const NARROWEST: usize = 40;
 
 /// A longer line is not shown: no person has written it, and nobody wants a megabyte on the screen.
 const LONGEST_LINE: usize = 500;
@@ -39,15 +42,33 @@ impl Renderer {
     fn new(is_terminal: bool) -> Self {
         let no_color = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
         let options = MietteHandlerOpts::new().unicode(true).context_lines(1).color(is_terminal && !no_color);
-        let options = if is_terminal { options } else { options.width(WIDTH).terminal_links(false) };
+        let columns = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+        let width = columns.unwrap_or(WIDTH).max(NARROWEST);
+        let options = if is_terminal { options } else { options.width(width).terminal_links(false) };
         Renderer { handler: options.build() }
     }
 
     /// The diagnostic with the lines that it is about, and an empty line behind it.
     pub fn render(&self, diagnostic: &Diagnostic, source: &SourceFile) -> String {
-        let report = Report { diagnostic, source };
-        format!("{}\n", Drawing { handler: &self.handler, report: &report })
+        let whole = Diagnostic {
+            message: unbroken(&diagnostic.message),
+            help: diagnostic.help.as_deref().map(unbroken),
+            ..diagnostic.clone()
+        };
+        let report = Report { diagnostic: &whole, source };
+        format!("{}\n", Drawing { handler: &self.handler, report: &report }).replace(NO_BREAK, " ")
     }
+}
+
+/// A blank at which no line breaks.
+const NO_BREAK: char = '\u{A0}';
+
+/// A text in which no line breaks inside of `code`.
+fn unbroken(text: &str) -> String {
+    let part = |(at, part): (usize, &str)| {
+        if at % 2 == 1 && !part.contains('\n') { part.replace(' ', "\u{A0}") } else { part.to_owned() }
+    };
+    text.split('`').enumerate().map(part).collect::<Vec<_>>().join("`")
 }
 
 /// miette draws into a formatter only.

@@ -124,6 +124,20 @@ fn each_row_has_its_files() {
     }
 }
 
+/// The lists of the model, in the unit that stands behind the last number.
+#[test]
+fn the_lists_may_stand_in_the_model() {
+    let text = format!("{RAMP}sweep {{ goal = 100, 200 [cm]  N = 4 }}\n");
+    let folder = common::folder("sweep_in_model", &[("ramp.fdc", text.as_bytes())]);
+    let rows = json(&fdcc(&folder, &["sweep", "ramp.fdc", "--json"], ""));
+    let goals: Vec<&str> = [0, 1].map(|row| rows[row]["swept"]["goal"].as_str().unwrap_or_default()).to_vec();
+    let objectives = [0, 1].map(|row| number(&rows[row]["objective"]));
+    assert!(
+        (objectives[0] - 1.0).abs() < 1e-6 && (objectives[1] - 4.0).abs() < 1e-6,
+        "{goals:?} {objectives:?}"
+    );
+}
+
 #[test]
 fn wrong_lists_are_explained() {
     let folder = ramp("sweep_usage");
@@ -137,7 +151,7 @@ fn wrong_lists_are_explained() {
         (&["sigm=1"], 3, "did you mean `sigma`?"),
         (&["scheme=eular"], 3, "did you mean `euler`?"),
         (&["N=0"], 3, "a whole number"),
-        (&[], 3, "required"),
+        (&[], 3, "write a `sweep` block"),
         (&["goal=1", "--jobs", "0"], 3, "--jobs"),
         (&["goal=1", "--jobs", "2", "--continue"], 3, "cannot be used with"),
         (&["goal=1,2", "--warm", "missing.json"], 4, "missing.json cannot be read"),

@@ -31,6 +31,8 @@ pub fn check_with_objective(tree: &ast::Model, of: &str) -> Checked {
     }
     diagnostics.retain(|it| it.span().start >= first);
     diagnostics.iter_mut().for_each(|it| moved(it, first));
+    // Nobody has written an objective.
+    diagnostics.iter_mut().for_each(|it| it.message = it.message.replace(" in the objective", " here"));
     Checked { model, diagnostics, units }
 }
 

@@ -6,6 +6,7 @@ pub mod builtins;
 mod check;
 pub mod differentiate;
 mod dump;
+mod gaps;
 pub mod generate;
 pub mod graph;
 pub mod interval;
@@ -72,7 +73,7 @@ pub fn check(tree: &ast::Model) -> Checked {
     let units = units::infer(tree);
     diagnostics.extend(units.diagnostics);
     sort(&mut diagnostics);
-    let diagnostics = without_echoes(diagnostics);
+    let mut diagnostics = without_echoes(diagnostics);
     sort(&mut whole.not_yet);
     // What waits for a value, and what has no unique trajectory, has a meaning all the same: a simulation tells more.
     let has_meaning = |code: Code| matches!(code, Code::NoValue | Code::Repelling | Code::EndlessJumps);
@@ -132,6 +133,13 @@ fn without_echoes(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
         kept.push(found);
     }
     kept.retain(|it| it.code != Code::Unused || !meant.contains(&it.span()));
+    let twice: Vec<String> =
+        kept.iter().filter(|it| it.code == Code::DuplicateName).filter_map(quoted).collect();
+    let follows = |it: &Diagnostic| {
+        matches!(it.code, Code::WrongKind | Code::Unused)
+            && quoted(it).is_some_and(|name| twice.contains(&name))
+    };
+    kept.retain(|it| !follows(it));
     kept
 }
 
@@ -143,6 +151,11 @@ pub fn surfaces(model: &Model) -> Result<Vec<SurfaceReport>, Vec<Diagnostic>> {
 /// How smooth everything is that has a name in a model, or which parameters it waits for.
 pub fn smoothness(model: &Model) -> Result<Vec<Smoothness>, Vec<Diagnostic>> {
     Ok(surfaces::smoothness(model, &numbers(model)?))
+}
+
+/// The name that a message speaks of.
+fn quoted(found: &Diagnostic) -> Option<String> {
+    found.message.split('`').nth(1).map(str::to_owned)
 }
 
 /// Turns a model into an optimal control problem with compiled functions; or says what cannot be solved yet.

@@ -1,7 +1,8 @@
 //! A text, read and checked in one go: all that commands and editors show of it.
 
+use crate::gaps::Gaps;
 use crate::{Model, allow, check};
-use fdcc_grammar::{Code, Diagnostic, parse};
+use fdcc_grammar::{Diagnostic, SourceFile, parse};
 
 /// What a text means, and what is to be said about it.
 pub struct Reviewed {
@@ -20,28 +21,12 @@ pub fn review(text: &str) -> Reviewed {
         let is_broken = !diagnostics.is_empty();
         let checked = check(&parsed.tree);
         model = checked.model.filter(|_| !is_broken);
-        let trusted = |it: &Diagnostic| !is_broken || !is_about_absence(text, it);
+        let source = SourceFile::new("", text);
+        let gaps = Gaps::new(&source, &diagnostics, &parsed.lost);
+        let trusted = |it: &Diagnostic| !is_broken || !gaps.may_be_behind(it);
         diagnostics.extend(checked.diagnostics.into_iter().filter(trusted));
     }
     let mut diagnostics = allow::apply(text, diagnostics);
     diagnostics.sort_by_key(Diagnostic::span);
     Reviewed { model, diagnostics }
-}
-
-/// Whether a finding says that something is not there, though it may be in the part of the text that cannot be read.
-fn is_about_absence(text: &str, diagnostic: &Diagnostic) -> bool {
-    match diagnostic.code {
-        Code::UnknownName => is_second_word(text, &text[diagnostic.span().range()]),
-        code => matches!(code, Code::NoBoundary | Code::NoEquation | Code::NoTime | Code::Unused),
-    }
-}
-
-/// Whether a line has a name where a declaration has it.
-fn is_second_word(text: &str, name: &str) -> bool {
-    let second = |line: &str| {
-        let mut words =
-            line.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty());
-        words.nth(1) == Some(name)
-    };
-    text.lines().any(second)
 }

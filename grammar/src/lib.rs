@@ -22,4 +22,6 @@ pub struct Parse {
     pub tree: ast::Model,
     /// In the order of the text.
     pub diagnostics: Vec<Diagnostic>,
+    /// Items that could not be read; what they declare may be used elsewhere.
+    pub lost: Vec<Span>,
 }

@@ -13,13 +13,14 @@ pub fn understand(text: &str) {
     }
 }
 
-/// Like `fdcc check`: the meaning is looked at where the syntax is right.
+/// Like `fdcc check`: the meaning of everything that could be read is looked at.
 fn diagnostics(text: &str) -> Vec<Diagnostic> {
     let parsed = parse(text);
-    if !parsed.diagnostics.is_empty() {
-        return parsed.diagnostics;
+    let mut found = parsed.diagnostics;
+    if !parsed.tree.items.is_empty() {
+        found.extend(fdcc_compiler::check(&parsed.tree).diagnostics);
     }
-    fdcc_compiler::check(&parsed.tree).diagnostics
+    found
 }
 
 fn assert_sound(found: &Diagnostic, text: &str) {

@@ -87,7 +87,7 @@ struct Answer {
 fn answer(slip: &Slip) -> Answer {
     let before = if slip.text.trim_start().starts_with("model") { "" } else { BEFORE };
     let text = format!("{before}{}{AFTER}", slip.text);
-    let Parse { tree, diagnostics } = parse(&text);
+    let Parse { tree, diagnostics, .. } = parse(&text);
     let is_neighbour = |span: &str| span == BEFORE.trim_end() || span == AFTER.trim_end();
     let neighbours =
         all(&tree.items).into_iter().filter(|item| is_neighbour(&text[item.span.range()])).count();

@@ -33,7 +33,7 @@ fn models_parse_without_a_word() {
 fn line_ends_tabs_and_byte_order_marks_change_nothing() {
     for (name, text) in documents("models", "fdc") {
         let counts = |text: &str| {
-            let Parse { tree, diagnostics } = parse(text);
+            let Parse { tree, diagnostics, .. } = parse(text);
             (tree.docs, tree.items.len(), diagnostics)
         };
         let expected = counts(&text);
@@ -106,7 +106,7 @@ fn expected_labels(case: &serde_json::Value) -> Vec<(String, String)> {
 #[test]
 fn a_broken_piece_costs_only_itself() {
     let text = "param a = 1\nparam b =\nstate x start\nstat y start 0\ndynamics {\n  x' = a b\n  y' = 1\n}\nend x == 1\n";
-    let Parse { tree, diagnostics } = parse(text);
+    let Parse { tree, diagnostics, .. } = parse(text);
     let codes: Vec<Code> = diagnostics.iter().map(|diagnostic| diagnostic.code).collect();
     assert_eq!(codes, [Code::Unfinished, Code::Unfinished, Code::UnknownItem, Code::MissingOperator]);
     let kinds: Vec<String> = tree.items.iter().map(|item| format!("{:?}", item.kind)).collect();
@@ -188,7 +188,7 @@ fn operators_bind_as_on_paper() {
     ];
     for (text, expected) in cases {
         let model = format!("minimize {text}");
-        let Parse { tree, diagnostics } = parse(&model);
+        let Parse { tree, diagnostics, .. } = parse(&model);
         assert!(diagnostics.is_empty(), "{text}: {diagnostics:#?}");
         let [Item { kind: ItemKind::Objective { value, .. }, .. }] = &tree.items[..] else {
             panic!("{text}: {tree:#?}")

@@ -39,10 +39,19 @@ pub fn folder(test: &str, files: &[(&str, &[u8])]) -> PathBuf {
 
 /// Starts `fdcc` in a folder, all its streams piped.
 pub fn start(folder: &Path, arguments: &[&str]) -> Child {
+    command(folder, arguments).spawn().expect("fdcc starts")
+}
+
+fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_fdcc"));
-    command.args(arguments).current_dir(folder);
+    command.args(arguments).current_dir(folder).env_remove("COLUMNS");
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command.spawn().expect("fdcc starts")
+    command
+}
+
+/// Runs `fdcc` in a folder with variables of the environment.
+pub fn fdcc_with(folder: &Path, arguments: &[&str], variables: &[(&str, &str)]) -> Output {
+    command(folder, arguments).envs(variables.iter().copied()).output().expect("fdcc runs")
 }
 
 /// Runs `fdcc` in a folder to its end.

@@ -240,7 +240,12 @@ impl<'a> Elaborator<'a> {
     fn wrong_value(&mut self, key: &Ident, given: &Given, expected: &'static str, span: Span) {
         let shown = shown(given);
         let message = format!("`{}` cannot be `{shown}`", key.name);
-        let found = Diagnostic::new(Code::UnknownSetting, message, span, format!("needs {expected}"));
+        let label = if expected.starts_with("one of") {
+            "not a word it takes".into()
+        } else {
+            format!("needs {expected}")
+        };
+        let found = Diagnostic::new(Code::UnknownSetting, message, span, label);
         self.diagnostics.push(match nearest_word(expected, &shown) {
             Some(near) if matches!(given, Given::Word(_)) => meant(found, span, near),
             _ => found.help(format!("give it {expected}")),

@@ -6,6 +6,7 @@ use super::Rule;
 use super::expressions::relation;
 use super::items::Reader;
 use crate::ast::*;
+use crate::{Code, Diagnostic, Span};
 
 /// The first pair of a rule directly below a pair.
 pub(super) fn child<'p>(pair: &Pair<'p, Rule>, rule: Rule) -> Option<Pair<'p, Rule>> {
@@ -83,6 +84,11 @@ impl Reader<'_> {
             children(&pair, Rule::relation).map(|sign| relation(sign.as_str())).collect();
         let mut sides = self.expressions_in(&pair).into_iter();
         let first = sides.next().expect("a condition has a left side");
+        if let [one, other] = relations[..]
+            && one != other
+        {
+            self.report(crossed_chain(self.span(&pair)));
+        }
         Condition { first, rest: relations.into_iter().zip(sides).collect(), span: self.span(&pair) }
     }
 
@@ -172,4 +178,11 @@ impl Reader<'_> {
         let Ident { name, span } = ident(self, pair);
         Expr { kind: ExprKind::Name(name), span }
     }
+}
+
+/// FDC0109: `1 <= x >= 0` is no range.
+fn crossed_chain(span: Span) -> Diagnostic {
+    let message = "the two comparisons of a condition point different ways";
+    let found = Diagnostic::new(Code::NotAllowedHere, message, span, "not a range");
+    found.help("write `a <= x <= b`, or two conditions")
 }

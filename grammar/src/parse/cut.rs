@@ -48,10 +48,12 @@ impl<'t> SoFar<'_, 't> {
         words::form(self.tokens[at].text).is_some() || is_misspelt_item(self, at)
     }
 
-    /// Whether the piece is a block of entries whose `{` has not come yet.
+    /// Whether the piece is a block, or holds a `piecewise`, whose `{` has not come yet.
     fn lacks_brace(&self, at: usize) -> bool {
-        let has_brace = self.tokens[self.head..at].iter().any(|token| token.text == "{");
-        words::entry_form(self.word()).is_some() && !has_brace
+        let before = &self.tokens[self.head..at];
+        let has = |word: &str| before.iter().any(|token| token.text == word);
+        let needs_brace = words::entry_form(self.word()).is_some() || has("piecewise") || has("match");
+        needs_brace && !has("{")
     }
 
     /// Keeps account of the open brackets. A closer also closes what was left open inside its pair.

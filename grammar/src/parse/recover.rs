@@ -8,7 +8,7 @@ use super::cut::{self, Piece};
 use super::limits::{self, Failure};
 use super::tokens::{Kind, Token, tokens};
 use super::{Rule, items, messages, pairs};
-use crate::{Diagnostic, Parse};
+use crate::{Diagnostic, Parse, Span};
 
 /// Nobody reads more errors than this, so nothing behind them is tried.
 const MOST_DIAGNOSTICS: usize = 100;
@@ -23,6 +23,7 @@ pub(super) fn recover(text: &str) -> Parse {
         unopened: 0,
         explained: 0,
         until: tokens.len(),
+        lost: Vec::new(),
     };
     let mut parse = Parse::default();
     for piece in cut::items(&tokens, 0..tokens.len()) {
@@ -35,6 +36,7 @@ pub(super) fn recover(text: &str) -> Parse {
         }
     }
     parse.diagnostics.append(&mut recovery.diagnostics);
+    parse.lost = recovery.lost;
     parse
 }
 
@@ -43,6 +45,8 @@ struct Recovery<'t> {
     /// The text, with blanks in place of what was wrong.
     rest: String,
     diagnostics: Vec<Diagnostic>,
+    /// Items that were given up.
+    lost: Vec<Span>,
     /// Where the file, phase or block ends that is being mended.
     until: usize,
     /// Blocks whose `{` was missed, so that their `}` needs no message of its own.
@@ -65,6 +69,9 @@ impl<'t> Recovery<'t> {
             if !reported && !self.is_consequence(piece) {
                 self.explain(piece, block, &failure);
             }
+        }
+        if block.is_none() {
+            self.lost.push(Span::new(self.bytes(piece).start, self.bytes(piece).end));
         }
         self.paint_over(piece);
         false

@@ -119,7 +119,10 @@ fn token_at(text: &str, first: char) -> (Kind, usize) {
 }
 
 fn word_length(text: &str) -> usize {
-    text.find(|c: char| !c.is_alphabetic() && !c.is_ascii_digit() && c != '_').unwrap_or(text.len())
+    // Letters, digits and the accents that follow a letter.
+    let continues =
+        |c: char| c.is_alphabetic() || c.is_ascii_digit() || c == '_' || ('\u{300}'..='\u{36F}').contains(&c);
+    text.find(|c: char| !continues(c)).unwrap_or(text.len())
 }
 
 /// The length of a string with its quotes, if it ends on its line.

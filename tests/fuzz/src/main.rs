@@ -1,6 +1,6 @@
 //! Texts chosen by coverage, through parse, check and repair: `tests/src/fuzzed.rs` says what must hold.
 //!
-//! How to run it is told in `README.md` beside this folder.
+//! How to run it is told in `docs/recipes/fuzz.md`.
 
 #![no_main]
 

@@ -36,6 +36,9 @@ impl<'t> Gaps<'t> {
             // A guess that is not there: its line is broken.
             Code::NotAllowedHere => self.lines.iter().any(|line| self.may_guess(*line, name)),
             Code::NoDuration => !self.lost.is_empty(),
+            Code::UnitMismatch | Code::UnitHere | Code::UnitOfPower | Code::BareNumber => {
+                self.is_built_on_sand(found)
+            }
             code => matches!(code, Code::NoBoundary | Code::NoEquation | Code::NoTime | Code::Unused),
         };
         is_absence || self.lines.contains(&self.source.line_column(found.span().start).line)
@@ -43,11 +46,24 @@ impl<'t> Gaps<'t> {
 }
 
 impl Gaps<'_> {
+    /// Whether a finding speaks of a name that a broken line declares.
+    fn is_built_on_sand(&self, found: &Diagnostic) -> bool {
+        let lines = self.lines.iter().filter_map(|line| self.source.text.lines().nth(line - 1));
+        let declared: Vec<&str> = lines.filter_map(|line| words(line).nth(1)).collect();
+        let spoken_of = found.labels.iter().flat_map(|label| words(self.source.slice(label.span)));
+        spoken_of.into_iter().any(|word| declared.contains(&word))
+    }
+
     /// Whether a line may be the guess of a name.
     fn may_guess(&self, line: usize, name: &str) -> bool {
         let text = self.source.text.lines().nth(line - 1).unwrap_or_default().trim_start();
         text.starts_with(name) || text.starts_with('=')
     }
+}
+
+/// Names and other words of a text.
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty())
 }
 
 /// Words that stand behind a name and not for one.

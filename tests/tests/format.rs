@@ -90,7 +90,8 @@ fn check(text: &str) {
 
 /// The tree without places.
 fn meaning(text: &str) -> String {
-    let tree = format!("{:?}", parse(text).tree);
+    let tree = parse(text).tree;
+    let tree = format!("{:?}", fdcc_grammar::ast::Model { line_starts: Vec::new(), ..tree });
     let mut parts = tree.split("Span { start: ");
     let first = parts.next().unwrap_or_default().to_owned();
     parts.fold(first, |sum, part| sum + part.split_once(" }").map_or(part, |(_, rest)| rest))

@@ -2,6 +2,7 @@
 
 mod allow;
 mod asked;
+mod blend;
 pub mod builtins;
 mod check;
 pub mod differentiate;

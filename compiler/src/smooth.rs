@@ -86,7 +86,7 @@ pub static KERNELS: [Kernel; 5] = [
         formula: "(15 u - 10 u^3 + 3 u^5) / 8",
         continuity: Some(2),
         compact: true,
-        step: |g, u| odd_polynomial(g, u, &[1.875, -1.25, 0.375]),
+        step: quintic,
         // (5 + 15 u^2 - 5 u^4 + u^6) / 16
         absolute: |g, u| polynomial_of_square(g, u, &[0.3125, 0.9375, -0.3125, 0.0625]),
         ratio: |g, square| polynomial(g, square, &[1.875, -1.25, 0.375]),
@@ -101,6 +101,11 @@ impl Kernel {
         let slope = (self.ratio)(&mut graph, zero);
         crate::graph::evaluate(&graph, &[slope], &[], &[])[0]
     }
+}
+
+/// `(15 u - 10 u^3 + 3 u^5) / 8`, between -1 and 1.
+pub(crate) fn quintic(graph: &mut Graph, u: ExprId) -> ExprId {
+    odd_polynomial(graph, u, &[1.875, -1.25, 0.375])
 }
 
 /// The kernel of that name.
@@ -196,7 +201,7 @@ fn extremum(graph: &mut Graph, kernel: &Kernel, operands: &[ExprId], sigma: Expr
 }
 
 /// `below` for u <= -1, `inside`, `above` for u >= 1.
-fn outside(graph: &mut Graph, u: ExprId, [below, inside, above]: [ExprId; 3]) -> ExprId {
+pub(crate) fn outside(graph: &mut Graph, u: ExprId, [below, inside, above]: [ExprId; 3]) -> ExprId {
     let (minus, plus) = (graph.number(-1.0), graph.number(1.0));
     let right = graph.select_le(plus, u, above, inside);
     graph.select_le(u, minus, below, right)

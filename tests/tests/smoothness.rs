@@ -111,3 +111,66 @@ fn no_derivative_jumps_that_is_called_continuous() {
     }
     assert!(smooth > 30 && rough > 30, "{smooth} and {rough}");
 }
+
+/// Rounded expressions, with the width and the gaps of their guards.
+const ROUNDED: &[(&str, f64, &str)] = &[
+    ("abs(x)", 0.2, "x"),
+    ("max(x, x^2)", 0.3, "x - x^2"),
+    ("min(2*x, sin(x))", 0.1, "2*x - sin(x)"),
+    ("piecewise { x <= 1 => x^2  otherwise => 2*x - 1 }", 0.05, "x - 1"),
+    ("piecewise { x <= 0 => 0  x < 1 => 3*x  otherwise => 2 - x }", 0.4, "x, x - 1"),
+    ("exp(-abs(x))*max(x - 1, 0)", 0.5, "x, x - 1"),
+];
+
+/// The function of `x` and its first two derivatives.
+fn derivatives(text: &str) -> Vec<Box<dyn Fn(f64) -> f64>> {
+    let model = model("", text);
+    let input = model.input_of(Symbol::State(0)).expect("x is a state");
+    let mut graph = model.graph.clone();
+    let mut roots = vec![model.report[0].value];
+    (0..2).for_each(|at| roots.push(derivative(&mut graph, roots[at], input)));
+    let value = |root| {
+        let (graph, point) = (graph.clone(), vec![2.0; model.symbols.len()]);
+        Box::new(move |x: f64| {
+            let mut point = point.clone();
+            point[input as usize] = x;
+            evaluate(&graph, &[root], &point, &[])[0]
+        }) as Box<dyn Fn(f64) -> f64>
+    };
+    roots.into_iter().map(value).collect()
+}
+
+#[test]
+fn what_is_rounded_has_two_continuous_derivatives() {
+    for (text, width, _) in ROUNDED {
+        for (times, value) in derivatives(&format!("blend({text}, {width})")).iter().enumerate() {
+            let jump = worst_jump(value);
+            assert!(jump <= 1e-4, "derivative {times} of {text} jumps by {jump}");
+        }
+        let sharp = derivatives(text).iter().map(|value| worst_jump(value)).fold(0.0, f64::max);
+        assert!(sharp > 0.1, "{text} is smooth already");
+    }
+}
+
+#[test]
+fn beyond_the_width_nothing_is_changed() {
+    for (text, width, gaps) in ROUNDED {
+        let (rounded, sharp) = (derivatives(&format!("blend({text}, {width})")), derivatives(text));
+        let gaps: Vec<_> = gaps.split(", ").map(|gap| derivatives(gap).swap_remove(0)).collect();
+        let points = (0..4001).map(|at| -3.0 + 0.0015 * f64::from(at));
+        let (near, far): (Vec<f64>, Vec<f64>) =
+            points.partition(|x| gaps.iter().any(|gap| gap(*x).abs() < 0.5 * width));
+        let differs = |x: &f64| rounded.iter().zip(&sharp).any(|(new, old)| new(*x) != old(*x));
+        assert_eq!(far.iter().copied().find(differs), None, "{text}");
+        assert!(near.iter().any(differs), "{text} is not rounded at all");
+    }
+}
+
+/// The smoothstep `6 q^5 - 15 q^4 + 10 q^3` at q = 3/4 is 0.896484375.
+#[test]
+fn the_rounding_is_the_quintic_smoothstep() {
+    let value = &derivatives("blend(abs(x), 0.2)")[0];
+    assert!((value(0.05) - 0.05 * (2.0 * 0.896_484_375 - 1.0)).abs() <= 1e-16);
+    let value = &derivatives("blend(piecewise { x <= 1 => 5  otherwise => 7 }, 4)")[0];
+    assert!((value(2.0) - (5.0 + 2.0 * 0.896_484_375)).abs() <= 1e-14);
+}

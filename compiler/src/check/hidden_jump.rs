@@ -1,11 +1,12 @@
 //! FDC0203: a `piecewise` that jumps, used as if it were an ordinary function.
 
-use super::{Facts, sets};
+use super::{Facts, joints, sets};
 use crate::resolve::elaborator::{Elaborator, Role};
 use crate::resolve::knots::{Knot, Site};
 use crate::resolve::text::{self, Style};
 use crate::resolve::value::KnotUse;
 use crate::resolve::walk;
+use crate::surfaces::Order;
 use fdcc_grammar::ast::{Argument, BinaryOperator, Equation, Expr, ExprKind, ItemKind, Relation};
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 
@@ -18,7 +19,10 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
         }
         for knot_use in &piece.traits.knots {
             let Some(site) = meaning.sites.get(&knot_use.site) else { continue };
-            if let Some(knot) = site.knots.iter().find(|knot| knot.order == 0) {
+            let jumps = |knot: &&Knot<'_>| {
+                knot.order == 0 && joints::order(meaning, piece, site, knot) == Order::Jumps
+            };
+            if let Some(knot) = site.knots.iter().find(jumps) {
                 let item = facts.items.iter().map(|item| item.span).find(|span| holds(*span, knot_use.used));
                 found.push(jump(meaning, site, knot, knot_use, &piece.role, item));
             }

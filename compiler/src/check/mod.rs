@@ -6,6 +6,7 @@ mod ends;
 mod equations;
 mod hidden_jump;
 mod idle_jump;
+mod joints;
 mod links;
 mod needs_time;
 mod sets;

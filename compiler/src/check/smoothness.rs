@@ -1,12 +1,13 @@
 //! FDC0406: constraints and objectives should be twice continuously differentiable.
 
-use super::{Facts, hidden_jump};
+use super::{Facts, hidden_jump, joints};
 use crate::resolve::elaborator::{Elaborator, Role};
 use crate::resolve::knots::{Knot, Site};
 use crate::resolve::value::KnotUse;
 use crate::resolve::{text, walk};
-use fdcc_grammar::ast::{Condition, ExprKind, ItemKind};
-use fdcc_grammar::{Code, Diagnostic};
+use crate::surfaces::Order;
+use fdcc_grammar::ast::{Condition, ExprKind};
+use fdcc_grammar::{Code, Diagnostic, Fix};
 
 /// Reports the worst knot of each `piecewise` in a path constraint, an end condition or the objective.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
@@ -17,41 +18,45 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
         }
         for place in &piece.traits.knots {
             let Some(site) = meaning.sites.get(&place.site) else { continue };
-            let worst = site.knots.iter().min_by_key(|knot| knot.order);
-            if let Some(knot) = worst.filter(|knot| knot.order > 0) {
-                found.push(kink(meaning, site, knot, place, &piece.role));
+            let orders = site.knots.iter().map(|knot| (joints::order(meaning, piece, site, knot), knot));
+            if let Some((Order::Times(times @ 0..2), knot)) = orders.min_by_key(|it| it.0) {
+                found.push(Kink { site, knot, times, place, role: &piece.role }.told(meaning));
             }
         }
     }
 }
 
-fn kink(
-    meaning: &Elaborator<'_>,
-    site: &Site<'_>,
-    knot: &Knot<'_>,
-    place: &KnotUse,
-    role: &Role<'_>,
-) -> Diagnostic {
-    let message = format!("{} is C^{} but not C^{}", role.describe(), knot.order - 1, knot.order);
-    let derivative = if knot.order == 1 { "first" } else { "second" };
-    let [left, right] = knot.limits.map(text::number);
-    let at = hidden_jump::knot_text(knot);
-    let label = format!("{derivative} derivative jumps from {left} to {right} at {at}");
-    let found = Diagnostic::new(Code::NotSmooth, message, knot.arm.guard_span, label);
-    let found = if place.used == place.site { found } else { found.label(place.used, "used here") };
-    let join = format!("Newton steps lose speed near {at}. Join the pieces with a cubic");
-    let blend = match function(meaning, site) {
-        Some(name) => format!(", or write\n`blend({name}, 0.05)` to round the knot over a width of 0.05."),
-        None => ".".into(),
-    };
-    found.help(format!("{join}{blend}{}", about_abs(role)))
+/// A knot in something that should be smooth, which is `times` times continuously differentiable there.
+struct Kink<'k, 'a> {
+    site: &'k Site<'a>,
+    knot: &'k Knot<'a>,
+    times: u32,
+    place: &'k KnotUse,
+    role: &'k Role<'a>,
 }
 
-/// The function that holds the pieces, if it is one.
-fn function<'a>(meaning: &Elaborator<'a>, site: &Site<'_>) -> Option<&'a str> {
-    let item = meaning.scope.declarations[site.owner?].item;
-    matches!(item.kind, ItemKind::Fn { .. }).then(|| hidden_jump::owner(meaning, site)).flatten()
+impl Kink<'_, '_> {
+    fn told(&self, meaning: &Elaborator<'_>) -> Diagnostic {
+        let Kink { site, knot, times, place, role } = self;
+        let message = format!("{} is C^{times} but not C^{}", role.describe(), times + 1);
+        let what = ["value", "first derivative", "second derivative"][knot.order];
+        let [left, right] = knot.limits.map(text::number);
+        let at = hidden_jump::knot_text(knot);
+        let label = format!("{what} jumps from {left} to {right} at {at}");
+        let found = Diagnostic::new(Code::NotSmooth, message, knot.arm.guard_span, label);
+        let found = if place.used == site.expr.span { found } else { found.label(place.used, "used here") };
+        let name = hidden_jump::owner(meaning, site).unwrap_or("piecewise { ... }");
+        let fix = Fix::likely("round the knot").insert(place.used.start, "blend(");
+        found.fix(fix.insert(place.used.end, format!(", {WIDTH})"))).help(format!(
+            "Newton steps lose speed near {at}. Join the pieces with a cubic, or write\n\
+             `blend({name}, {WIDTH})` to round the knot over a width of {WIDTH}.{}",
+            about_abs(role)
+        ))
+    }
 }
+
+/// The width that is proposed.
+const WIDTH: f64 = 0.05;
 
 /// Those who know that `abs` has a kink may suspect it.
 fn about_abs(role: &Role<'_>) -> &'static str {

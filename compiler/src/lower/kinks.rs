@@ -8,7 +8,7 @@
 //! smooth on each side and goes on smoothly beyond, and what crosses a kink can be found and differentiated like what crosses a surface.
 //! Where `e` is the function of a surface, the selector of that surface says it already.
 
-use crate::builtins::Builtin;
+use crate::blend::sides;
 use crate::graph::{ExprId, Graph};
 use crate::program::VectorFunction;
 use fdcc_runtime::problem::Origin;
@@ -42,21 +42,6 @@ pub(super) fn take_out(graph: &mut Graph, flow: &mut VectorFunction, guards: &[O
     }
     flow.outputs = rewritten;
     kinks
-}
-
-/// What is 0 at the kink of a node, and what the node is below and above.
-fn sides(graph: &mut Graph, original: ExprId, rebuilt: ExprId) -> Option<(ExprId, [ExprId; 2])> {
-    let bent = [Builtin::Abs, Builtin::Min, Builtin::Max, Builtin::SelectLe];
-    let builtin = bent
-        .into_iter()
-        .find(|it| graph.as_call(original, *it).is_some() && graph.as_call(rebuilt, *it).is_some())?;
-    let operands = graph.operands(rebuilt).to_vec();
-    Some(match (builtin, &operands[..]) {
-        (Builtin::Min, &[a, b]) => (graph.sub(a, b), [a, b]),
-        (Builtin::Max, &[a, b]) => (graph.sub(a, b), [b, a]),
-        (Builtin::SelectLe, &[a, b, below, above]) => (graph.sub(a, b), [below, above]),
-        _ => (operands[0], [graph.neg(operands[0]), operands[0]]),
-    })
 }
 
 /// The selector of a kink; none if nothing moves it.

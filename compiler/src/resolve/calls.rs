@@ -51,7 +51,7 @@ impl<'a> Elaborator<'a> {
             return self.at_an_end(callee, &arguments[0], expr.span);
         }
         let ExprKind::Name(name) = &callee.kind else {
-            return self.call_of_value(callee, arguments, expr.span);
+            return self.call_of_value(expr, callee, arguments);
         };
         let declared = self.scope.find(name).map(|at| (at, self.scope.declarations[at].item));
         match declared {
@@ -82,14 +82,22 @@ impl<'a> Elaborator<'a> {
     }
 
     /// `blend(f, width)(x)`; nothing else gives a function.
-    fn call_of_value(&mut self, callee: &'a Expr, arguments: &'a [Argument], span: Span) -> Value {
-        self.plain_arguments(arguments);
-        if let ExprKind::Call(inner, _) = &callee.kind
+    fn call_of_value(&mut self, expr: &'a Expr, callee: &'a Expr, arguments: &'a [Argument]) -> Value {
+        if let ExprKind::Call(inner, given) = &callee.kind
             && matches!(&inner.kind, ExprKind::Name(name) if name == "blend")
         {
-            return self.evaluate(callee);
+            let [Argument::Expr(function), Argument::Expr(width)] = &given[..] else {
+                if self.count_is("blend", 2, given.len(), callee.span, None) {
+                    self.plain_arguments(given);
+                }
+                return Value::default();
+            };
+            let value = self.call(expr, function, arguments);
+            return self.rounded(value, function.span, width, callee.span);
         }
-        let found = Diagnostic::new(Code::WrongKind, "only a function can be called", span, "called here");
+        self.plain_arguments(arguments);
+        let found =
+            Diagnostic::new(Code::WrongKind, "only a function can be called", expr.span, "called here");
         self.fail(found.help("for a product write `*`; fdc has no implicit multiplication"))
     }
 

@@ -27,6 +27,7 @@ impl Context {
 
     pub const DEFINITION: Context = Context::new("a definition", Reads::ALL);
     pub const NUMBER: Context = Context::new("a constant", Reads::PARAM);
+    pub const WIDTH: Context = Context::new("a width", Reads::PARAM);
     pub const BOUND: Context = Context::new("a bound", Reads::PARAM);
     pub const SETTING: Context = Context::new("a setting", Reads::PARAM);
     pub const TIME: Context = Context::new("the bounds of time", Reads::PARAM.or(Reads::FREE));

@@ -1,7 +1,7 @@
 //! Declarations: each name gets its symbols, then definitions, bounds and starts their values.
 
 use super::context::Context;
-use super::elaborator::{Elaborator, Piece, Role};
+use super::elaborator::{Elaborator, Role};
 use super::expression::is_plain;
 use super::value::{Parts, Reads, Traits, Value};
 use super::{order, scope};
@@ -145,7 +145,7 @@ impl<'a> Elaborator<'a> {
 
     fn define_surface(&mut self, at: usize, name: &'a Ident, value: &'a Expr) {
         let value_of = self.evaluate_in(Context::SURFACE, value);
-        self.pieces.push(Piece { role: Role::Surface(name), traits: value_of.traits.clone() });
+        self.note(Role::Surface(name), &value_of);
         let part = self.expect_number(&value_of, value.span);
         if let Some(&surface) = self.surface_of.get(&at) {
             self.surfaces[surface].psi = part;

@@ -29,6 +29,8 @@ pub(crate) struct SurfaceEntry {
 pub(crate) struct Piece<'a> {
     /// What it is used for.
     pub role: Role<'a>,
+    /// The value.
+    pub parts: Parts,
     /// What it is made of.
     pub traits: Traits,
 }
@@ -194,8 +196,13 @@ impl<'a> Elaborator<'a> {
     /// Evaluates for a purpose, which the checks will look at.
     pub fn evaluate_for(&mut self, role: Role<'a>, context: Context, expr: &'a ast::Expr) -> Value {
         let value = self.evaluate_in(context, expr);
-        self.pieces.push(Piece { role, traits: value.traits.clone() });
+        self.note(role, &value);
         value
+    }
+
+    /// Notes a value and its purpose.
+    pub fn note(&mut self, role: Role<'a>, value: &Value) {
+        self.pieces.push(Piece { role, parts: value.parts.clone(), traits: value.traits.clone() });
     }
 
     /// A number that depends on parameters alone.

@@ -266,33 +266,6 @@ impl<'a> Elaborator<'a> {
         Value::unknown(value.traits)
     }
 
-    fn blend(&mut self, function: &'a Expr, width: &'a Expr, span: Span) -> Value {
-        self.evaluate_in(Context::NUMBER, width);
-        let is_fn = |name: &str| {
-            self.scope
-                .find(name)
-                .is_some_and(|at| matches!(self.scope.declarations[at].item.kind, ItemKind::Fn { .. }))
-        };
-        match &function.kind {
-            ExprKind::Name(name) if is_fn(name) => self.not_yet(span, "rounding knots with `blend`"),
-            ExprKind::Name(name) if self.scope.find(name).is_none() => {
-                let found = self.scope.unknown(name, function.span, &[], &format!("fn {name}(x) = x"));
-                self.diagnostics.push(found);
-            }
-            _ => {
-                let found = Diagnostic::new(
-                    Code::WrongKind,
-                    "`blend` rounds a function",
-                    function.span,
-                    "not a function",
-                );
-                self.diagnostics
-                    .push(found.help("write `blend(f, width)` with an `fn f(x) = piecewise { ... }`"));
-            }
-        }
-        Value::default()
-    }
-
     fn sliding(&mut self, surface: &'a Expr, span: Span) -> Value {
         let known = match &surface.kind {
             ExprKind::Name(name) => self.surface_named(name),

@@ -11,6 +11,7 @@ use crate::graph::ExprId;
 use crate::graph::evaluate;
 use crate::model::Symbol;
 use fdcc_grammar::ast::{Arm, Expr};
+use std::collections::BTreeSet;
 
 /// The guard of an arm: it holds where `smaller <= larger`.
 pub(crate) struct Guard<'a> {
@@ -28,12 +29,16 @@ pub(crate) struct Site<'a> {
     pub owner: Option<usize>,
     /// Where it is less than C^2.
     pub knots: Vec<Knot<'a>>,
+    /// The two sides of each guard, by its arm, for all arguments that the definition was evaluated with.
+    pub guards: BTreeSet<(usize, [ExprId; 2])>,
 }
 
 /// A place where two pieces meet less smoothly than C^2.
 pub(crate) struct Knot<'a> {
     /// The arm whose guard changes there.
     pub arm: &'a Arm,
+    /// Which of the arms that is.
+    pub at: usize,
     /// The lowest derivative that jumps: 0 is the value itself.
     pub order: usize,
     /// That derivative on both sides, left first.
@@ -44,13 +49,15 @@ pub(crate) struct Knot<'a> {
 const SAMPLES: usize = 3;
 
 impl<'a> Elaborator<'a> {
-    /// Examines a definition once, at its first evaluation.
+    /// Examines a definition at its first evaluation, and keeps its guards at each.
     pub fn find_knots(&mut self, expr: &'a Expr, guards: &[Guard<'a>], arms: &[&[ExprId]]) {
-        if self.sites.contains_key(&expr.span) {
-            return;
+        if !self.sites.contains_key(&expr.span) {
+            let knots = (0..guards.len()).filter_map(|at| self.knot(at, guards, arms)).collect();
+            let site = Site { expr, owner: self.owner, knots, guards: BTreeSet::new() };
+            self.sites.insert(expr.span, site);
         }
-        let knots = (0..guards.len()).filter_map(|at| self.knot(at, guards, arms)).collect();
-        self.sites.insert(expr.span, Site { expr, owner: self.owner, knots });
+        let sides = guards.iter().enumerate().map(|(at, guard)| (at, [guard.smaller, guard.larger]));
+        self.sites.get_mut(&expr.span).expect("it is there by now").guards.extend(sides);
     }
 
     fn knot(&mut self, at: usize, guards: &[Guard<'a>], arms: &[&[ExprId]]) -> Option<Knot<'a>> {
@@ -107,7 +114,12 @@ impl<'a> Elaborator<'a> {
         }
         let found = (0..arms[0].len()).filter_map(|part| {
             let sides = active.map(|arm| arms[arm][part]);
-            self.first_jump(sides, &meeting).map(|(order, limits)| Knot { arm, order, limits })
+            self.first_jump(sides, &meeting).map(|(order, limits)| Knot {
+                arm,
+                at: meeting.at,
+                order,
+                limits,
+            })
         });
         found.min_by_key(|knot| knot.order)
     }

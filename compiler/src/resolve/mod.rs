@@ -3,6 +3,7 @@
 //! One walk evaluates every expression straight into the graph. A mistake is told where it is and gives the
 //! unknown value, from which nothing follows: so several mistakes are told at once, and none because of another.
 
+mod blend;
 mod calls;
 pub(crate) mod conditions;
 mod context;

@@ -19,6 +19,6 @@ pub use class::Class as SurfaceClass;
 pub(crate) use local::Local;
 pub use report::SurfaceReport;
 pub(crate) use report::surfaces;
-pub(crate) use smoothness::smoothness;
 pub use smoothness::{Order, Smoothness};
+pub(crate) use smoothness::{at_guards, smoothness};
 pub(crate) use view::View;

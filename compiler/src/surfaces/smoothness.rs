@@ -72,6 +72,40 @@ pub(crate) fn smoothness(model: &Model, numbers: &Numbers) -> Vec<Smoothness> {
     all.map(|(name, id)| of_expression(&view, name, id)).collect()
 }
 
+/// How smooth expressions are where guards change, as far as a place within the bounds shows it.
+pub(crate) fn at_guards(view: &View<'_>, exprs: &[ExprId], guards: &[[ExprId; 2]]) -> Order {
+    let mut local = Local::empty();
+    let gap = |[smaller, larger]: &[ExprId; 2]| {
+        let [smaller, larger] = [*smaller, *larger].map(|side| local.import(view, side));
+        local.graph.sub(smaller, larger)
+    };
+    let gaps: Vec<ExprId> = guards.iter().map(gap).collect();
+    let roots: Vec<ExprId> = exprs.iter().map(|expr| local.import(view, *expr)).collect();
+    gaps.into_iter().map(|gap| at_places(&mut local, &roots, gap)).min().unwrap_or(Order::Always)
+}
+
+fn at_places(local: &mut Local, roots: &[ExprId], gap: ExprId) -> Order {
+    let mut worst = Order::Always;
+    if !varies(local, gap) || !may_vanish(local, gap) {
+        return worst;
+    }
+    let mut points = sample::zeros(local, gap);
+    points.truncate(MOST_POINTS);
+    for (point, input) in points.iter().zip(steepest(local, gap, &points)) {
+        for root in roots {
+            let sides = sides(local, *root, point, input);
+            worst = worst.min(first_difference(local, sides, point, input));
+        }
+    }
+    worst
+}
+
+/// Whether an expression depends on more than parameters.
+fn varies(local: &Local, expr: ExprId) -> bool {
+    let inputs = local.graph.inputs_of(&[expr]);
+    inputs.into_iter().any(|at| !matches!(local.symbols[at as usize], Symbol::Param(_)))
+}
+
 fn of_expression(view: &View<'_>, name: &str, id: ExprId) -> Smoothness {
     let mut local = Local::empty();
     let root = local.import(view, id);
@@ -152,7 +186,7 @@ fn across(local: &mut Local, root: ExprId, zero: ExprId, may_jump: bool, all: &[
     let varying = steepest(local, zero, &points);
     let orders = points.iter().zip(varying).filter_map(|(point, input)| at_point(local, root, point, input));
     let found = orders.min();
-    let is_alone = all.len() == 1 || all.iter().all(|other| same_inputs(local, zero, *other));
+    let is_alone = all.iter().all(|other| same_inputs(local, zero, *other) || apart(local, zero, *other));
     match found {
         Some(order) if order <= promised => found,
         _ if is_alone && is_affine(local, zero) => found,
@@ -169,6 +203,12 @@ fn same_inputs(local: &Local, zero: ExprId, other: ExprId) -> bool {
     };
     let own = varying(zero);
     own.len() == 1 && varying(other) == own
+}
+
+/// Whether two functions differ by a number, so that they are never 0 together; or are the same.
+fn apart(local: &mut Local, zero: ExprId, other: ExprId) -> bool {
+    let difference = local.form(zero).plus(-1.0, &local.form(other)).to_expr(&mut local.graph);
+    local.graph.as_number(difference).is_some()
 }
 
 /// Whether a function is affine in some input, with a constant factor: then a few places stand for all of its zeros.
@@ -218,19 +258,24 @@ fn sides(local: &mut Local, root: ExprId, point: &[f64], input: u32) -> [ExprId;
 
 /// The order at one point, in the direction of one input.
 fn at_point(local: &mut Local, root: ExprId, point: &[f64], input: u32) -> Option<Order> {
-    let mut sides = sides(local, root, point, input);
+    let sides = sides(local, root, point, input);
     if sides.map(|side| local.form(side).to_expr(&mut local.graph)).windows(2).all(|pair| pair[0] == pair[1])
     {
         return None;
     }
+    Some(first_difference(local, sides, point, input))
+}
+
+/// What two sides of a place are together: the order before the first derivative in which they differ.
+fn first_difference(local: &mut Local, mut sides: [ExprId; 2], point: &[f64], input: u32) -> Order {
     for times in 0..=HIGHEST {
         let values = evaluate(&local.graph, &sides, point, &[]);
         if (values[0] - values[1]).abs() > 1e-7 * (1.0 + values[0].abs().max(values[1].abs())) {
-            return Some(if times == 0 { Order::Jumps } else { Order::Times(times - 1) });
+            return if times == 0 { Order::Jumps } else { Order::Times(times - 1) };
         }
         sides = sides.map(|side| derivative(&mut local.graph, side, input));
     }
-    Some(Order::Times(HIGHEST))
+    Order::Times(HIGHEST)
 }
 
 /// The derivative of some order by one input.

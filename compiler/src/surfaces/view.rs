@@ -77,7 +77,7 @@ impl<'m> View<'m> {
     pub fn domain(&self, symbol: Symbol) -> Interval {
         match symbol {
             Symbol::Time => Interval::new(self.number(self.interval[0]), self.end()),
-            Symbol::State(at) => self.bounds(self.states[at].range),
+            Symbol::State(at) | Symbol::AtStart(at) | Symbol::AtEnd(at) => self.bounds(self.states[at].range),
             Symbol::Control(at) => self.bounds(self.controls[at].range),
             Symbol::Free(at) => self.bounds(self.frees[at].range),
             Symbol::Param(at) => Interval::point(self.values[at]),

@@ -20,6 +20,12 @@ impl<'a> Inference<'a> {
         if let [Argument::End(_) | Argument::Start(_)] = arguments {
             return self.evaluate(callee);
         }
+        if let ExprKind::Call(_, given) = &callee.kind
+            && let Some(Argument::Expr(function)) = given.first()
+        {
+            // `blend(f, width)(x)` measures what `f(x)` does.
+            return self.call(expr, function, arguments);
+        }
         let ExprKind::Name(name) = &callee.kind else { return Value::new() };
         let declared = self.scope.find(name);
         let Some(at) = declared.filter(|_| !is_function(name)) else {
@@ -81,6 +87,7 @@ impl<'a> Inference<'a> {
         let given = self.given(arguments);
         match (name, &given[..]) {
             ("abs" | "selected", [only]) => only.0.clone(),
+            ("blend", [inner, _]) => inner.0.clone(),
             ("sqrt", [only]) => self.powers(&only.0, Ratio::from_decimal(0.5)),
             ("min" | "max", [a, b]) => self.equal(Reason::Together(name), a, b),
             ("atan2", [a, b]) => {

@@ -4,7 +4,7 @@ use super::Subject;
 use crate::resolve::text;
 use crate::surfaces::degenerate::Degenerate;
 use fdcc_grammar::ast::{BinaryOperator, Expr, ExprKind};
-use fdcc_grammar::{Code, Diagnostic};
+use fdcc_grammar::{Code, Diagnostic, Fix};
 
 impl Subject<'_, '_, '_> {
     /// What is wrong with it, and what to write instead.
@@ -36,7 +36,24 @@ impl Subject<'_, '_, '_> {
             None => String::new(),
         };
         let help = format!("Lemma 3.1 needs a nonzero gradient where the surface is zero.{instead}{side}");
-        Diagnostic::new(Code::VanishingGradient, message, self.function(), label).help(help)
+        let found = Diagnostic::new(Code::VanishingGradient, message, self.function(), label).help(help);
+        match written.and_then(|value| Some((value, root_of(value)?))) {
+            Some((value, root)) => {
+                let root = text::expr(root);
+                found.fix(Fix::certain(format!("write `{root}`")).replace(value.span, root))
+            }
+            None => found,
+        }
+    }
+}
+
+/// The base of a written square: it is what was meant, because a square never changes its sign.
+fn root_of(value: &Expr) -> Option<&Expr> {
+    match &value.kind {
+        ExprKind::Binary(BinaryOperator::Power, base, power) if power.kind == ExprKind::Number(2.0) => {
+            Some(base)
+        }
+        _ => None,
     }
 }
 

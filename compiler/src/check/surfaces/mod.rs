@@ -122,7 +122,7 @@ impl<'a> Subject<'_, 'a, '_> {
 }
 
 /// The model so far.
-fn view_of<'m>(meaning: &'m Elaborator<'_>) -> View<'m> {
+pub(super) fn view_of<'m>(meaning: &'m Elaborator<'_>) -> View<'m> {
     let states = &meaning.model.states;
     View {
         graph: &meaning.graph,

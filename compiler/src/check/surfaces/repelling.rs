@@ -28,8 +28,9 @@ impl Subject<'_, '_, '_> {
         let span = self.place.map_or(self.declared(), |place| place.term.span);
         let mut found = Diagnostic::new(Code::Repelling, message, span, label);
         found = self.about_controls(found, choice);
-        if !choice.is_empty() {
-            found.severity = Severity::Warning;
+        match choice.is_empty() {
+            true => found.fixes.extend(self.place.and_then(|place| place.flip())),
+            false => found.severity = Severity::Warning,
         }
         found.help(self.repair())
     }

@@ -3,8 +3,8 @@
 use crate::check::Facts;
 use crate::resolve::text::{self, Style};
 use crate::resolve::walk;
-use fdcc_grammar::Span;
 use fdcc_grammar::ast::{Argument, BinaryOperator, Equation, Expr, ExprKind, ItemKind};
+use fdcc_grammar::{Fix, Span};
 
 /// The first use of a surface in an equation, or in a definition.
 pub(super) struct Use<'a> {
@@ -70,10 +70,22 @@ fn surface_of(set: &Expr) -> Option<(String, Span)> {
 impl Use<'_> {
     /// The equation with the other sign before its term.
     pub fn flipped(&self) -> Option<String> {
+        let (equation, right) = self.turned()?;
+        let left = crate::check::sets::left_side(equation);
+        Some(format!("{left} in {right}"))
+    }
+
+    /// The change that makes it so.
+    pub fn flip(&self) -> Option<Fix> {
+        let (equation, right) = self.turned()?;
+        Some(Fix::likely("turn the sign around").replace(equation.right.span, right))
+    }
+
+    /// The equation, and its right side with the other sign.
+    fn turned(&self) -> Option<(&Equation, String)> {
         let equation = self.equation?;
         let right = flip(&equation.right, self.term)?;
-        let left = crate::check::sets::left_side(equation);
-        Some(format!("{left} in {}", text::styled(&right, Style::AsWritten)))
+        Some((equation, text::styled(&right, Style::AsWritten)))
     }
 }
 

@@ -1,0 +1,53 @@
+//! Knots and kinks rounded over a width.
+//!
+//! What switches where a gap `g` changes its sign, from `below` to `above`, changes over on `|g| < w/2` instead:
+//!
+//! ```text
+//! (1 - q) below + q above,   q = (1 + S(2 g/w))/2,   S(u) = (15 u - 10 u^3 + 3 u^5)/8
+//! ```
+//!
+//! `S` is -1 and 1 at the ends of the zone with two derivatives that vanish, so that the whole is C^2 if both sides are.
+//! Beyond the zone the sides stay as they are, to the last bit.
+
+use crate::builtins::Builtin;
+use crate::graph::{ExprId, Graph};
+use crate::smooth;
+
+/// The roots with every switch in them rounded, from the inside out; nothing if nothing switches.
+pub(crate) fn rounded(graph: &mut Graph, roots: &[ExprId], width: ExprId) -> Option<Vec<ExprId>> {
+    let mut is_any = false;
+    let rounded = graph.rewrite(roots, |graph, original, rebuilt| match sides(graph, original, rebuilt) {
+        Some((gap, sides)) => {
+            is_any = true;
+            crossover(graph, gap, sides, width)
+        }
+        None => rebuilt,
+    });
+    is_any.then_some(rounded)
+}
+
+/// What is 0 where a node switches, and what the node is below and above.
+pub(crate) fn sides(graph: &mut Graph, original: ExprId, rebuilt: ExprId) -> Option<(ExprId, [ExprId; 2])> {
+    let bent = [Builtin::Abs, Builtin::Min, Builtin::Max, Builtin::SelectLe];
+    let builtin = bent
+        .into_iter()
+        .find(|it| graph.as_call(original, *it).is_some() && graph.as_call(rebuilt, *it).is_some())?;
+    let operands = graph.operands(rebuilt).to_vec();
+    Some(match (builtin, &operands[..]) {
+        (Builtin::Min, &[a, b]) => (graph.sub(a, b), [a, b]),
+        (Builtin::Max, &[a, b]) => (graph.sub(a, b), [b, a]),
+        (Builtin::SelectLe, &[a, b, below, above]) => (graph.sub(a, b), [below, above]),
+        _ => (operands[0], [graph.neg(operands[0]), operands[0]]),
+    })
+}
+
+fn crossover(graph: &mut Graph, gap: ExprId, [below, above]: [ExprId; 2], width: ExprId) -> ExprId {
+    let half = graph.scale(0.5, width);
+    let u = graph.div(gap, half);
+    let share = smooth::quintic(graph, u);
+    let (sum, jump) = (graph.add(below, above), graph.sub(above, below));
+    let change = graph.mul(share, jump);
+    let twice = graph.add(sum, change);
+    let inside = graph.scale(0.5, twice);
+    smooth::outside(graph, u, [below, inside, above])
+}

@@ -1,26 +1,31 @@
-//! What must hold of any text: it is read, checked and repaired without a panic, and every place that is named lies in it.
+//! What must hold of any text: it is read, checked, laid out and repaired without a panic, and every place that is named
+//! lies in it.
 
-use fdcc_grammar::{Diagnostic, fix, parse};
+use fdcc_compiler::{repair, review};
+use fdcc_grammar::{Diagnostic, parse};
 
-/// Reads, checks and repairs a text, and panics if something does not hold.
+use crate::layout::assert_only_the_layout_changes;
+
+/// Reads, checks, lays out and repairs a text, and panics if something does not hold.
 pub fn understand(text: &str) {
-    let found = diagnostics(text);
-    found.iter().for_each(|one| assert_sound(one, text));
+    review(text).diagnostics.iter().for_each(|one| assert_sound(one, text));
+    assert_only_the_layout_changes(text);
+    assert_repairs_end(text);
+}
+
+/// Repairs a text, once with what is certain only, and panics if the result can be repaired again or is harder to read.
+pub fn assert_repairs_end(text: &str) {
     for unsafely in [false, true] {
-        if let Some(repaired) = fix::apply(text, &found, unsafely) {
-            diagnostics(&repaired).iter().for_each(|one| assert_sound(one, &repaired));
-        }
+        let repaired = repair(text, unsafely);
+        assert!(repair(&repaired, unsafely) == repaired, "repaired again:\n{text}\n---\n{repaired}");
+        assert!(mistakes(&repaired) <= mistakes(text), "harder to read:\n{text}\n---\n{repaired}");
+        review(&repaired).diagnostics.iter().for_each(|one| assert_sound(one, &repaired));
     }
 }
 
-/// Like `fdcc check`: the meaning of everything that could be read is looked at.
-fn diagnostics(text: &str) -> Vec<Diagnostic> {
-    let parsed = parse(text);
-    let mut found = parsed.diagnostics;
-    if !parsed.tree.items.is_empty() {
-        found.extend(fdcc_compiler::check(&parsed.tree).diagnostics);
-    }
-    found
+/// How many pieces cannot be read.
+fn mistakes(text: &str) -> usize {
+    parse(text).diagnostics.len()
 }
 
 fn assert_sound(found: &Diagnostic, text: &str) {

@@ -4,6 +4,7 @@ pub mod expected;
 pub mod functions;
 pub mod fuzzed;
 pub mod large;
+pub mod layout;
 pub mod models;
 pub mod optimality;
 pub mod pages;

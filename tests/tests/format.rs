@@ -1,7 +1,8 @@
 //! The canonical layout: what it looks like (`tests/tests/format/`), and that it changes nothing but blanks, over every
 //! model of the repository and over random layouts of them.
 
-use fdcc_grammar::{comments, format, parse};
+use fdcc_grammar::{comments, format};
+use fdcc_tests::layout::assert_only_the_layout_changes;
 use fdcc_tests::random::Random;
 use fdcc_tests::{Block, blocks, documents};
 
@@ -48,7 +49,7 @@ fn line_ends_are_kept_and_a_byte_order_mark_is_not() {
 
 #[test]
 fn formatting_changes_only_the_layout() {
-    texts().iter().for_each(|text| check(text));
+    texts().iter().for_each(|text| assert_only_the_layout_changes(text));
 }
 
 #[test]
@@ -56,7 +57,7 @@ fn random_layouts_come_out_with_the_same_meaning() {
     let mut random = Random::new(7);
     for text in texts().iter().filter(|text| text.len() < 5_000) {
         for _ in 0..10 {
-            check(&shaken(text, &mut random));
+            assert_only_the_layout_changes(&shaken(text, &mut random));
         }
     }
 }
@@ -73,32 +74,6 @@ fn texts() -> Vec<String> {
     let of_folder = |folder| documents(folder, "md").into_iter().flat_map(|(_, document)| blocks(&document));
     let in_documents = folders.into_iter().flat_map(of_folder).map(|block| block.text);
     documents("models", "fdc").into_iter().map(|(_, text)| text).chain(in_documents).collect()
-}
-
-/// Same tree, same comments, and stable; a text that cannot be read is refused.
-fn check(text: &str) {
-    let Ok(formatted) = format(text) else { return };
-    assert!(
-        meaning(&formatted) == meaning(text),
-        "the meaning has changed:\n{text}\n--- became\n{formatted}"
-    );
-    assert_eq!(remarks(&formatted), remarks(text), "{text}\n--- became\n{formatted}");
-    let again = format(&formatted).expect("what is formatted can be read");
-    assert!(again == formatted, "not stable:\n{text}\n--- became\n{formatted}\n--- and then\n{again}");
-    assert!(formatted.lines().all(|line| line == line.trim_end()));
-}
-
-/// The tree without places.
-fn meaning(text: &str) -> String {
-    let tree = parse(text).tree;
-    let tree = format!("{:?}", fdcc_grammar::ast::Model { line_starts: Vec::new(), ..tree });
-    let mut parts = tree.split("Span { start: ");
-    let first = parts.next().unwrap_or_default().to_owned();
-    parts.fold(first, |sum, part| sum + part.split_once(" }").map_or(part, |(_, rest)| rest))
-}
-
-fn remarks(text: &str) -> Vec<&str> {
-    comments(text).into_iter().map(|span| &text[span.range()]).collect()
 }
 
 /// The same words with other blanks, line breaks and comments between them.

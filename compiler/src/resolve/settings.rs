@@ -202,7 +202,8 @@ impl<'a> Elaborator<'a> {
                 _ => self.setting_number(expr).map(|value| (Given::Number(value * scale), expr.span)),
             },
             SettingValue::List(list) => {
-                let numbers: Option<Vec<f64>> = list.iter().map(|expr| self.setting_number(expr)).collect();
+                let number = |expr| Some(units::list_scale(list, expr) * self.setting_number(expr)?);
+                let numbers: Option<Vec<f64>> = list.iter().map(number).collect();
                 let span =
                     list.first().map_or(setting.key.span, |first| first.span.to(list[list.len() - 1].span));
                 numbers

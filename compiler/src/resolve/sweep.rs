@@ -28,28 +28,20 @@ impl<'a> Elaborator<'a> {
             self.unknown_swept(list);
             return None;
         }
-        let scale = unit_of_all(list).map_or(1.0, |unit| units::scale(unit, &mut Vec::new()));
         let values: Option<Vec<String>> =
-            list.values.iter().map(|value| self.swept_value(list, is_param, value, scale)).collect();
+            list.values.iter().map(|value| self.swept_value(list, is_param, value)).collect();
         let place = Place { name: name.clone(), span: list.name.span };
         Some(Swept { place, values: values?, values_span: span_of(&list.values) })
     }
 
     /// A value as the command line takes it: a number in SI, or a word.
-    fn swept_value(
-        &mut self,
-        list: &ast::Swept,
-        is_param: bool,
-        expr: &'a Expr,
-        scale: f64,
-    ) -> Option<String> {
+    fn swept_value(&mut self, list: &ast::Swept, is_param: bool, expr: &'a Expr) -> Option<String> {
         let given = match &expr.kind {
             ExprKind::Name(word) if !is_param && self.scope.find(word).is_none() => Given::Word(word.clone()),
             _ => {
                 let value = self.evaluate_for(Role::Number("a sweep"), Context::SETTING, expr);
                 let part = self.expect_number(&value, expr.span)?;
-                let scale = if matches!(expr.kind, ExprKind::Number(_)) { scale } else { 1.0 };
-                Given::Number(scale * self.numeric(part))
+                Given::Number(units::list_scale(&list.values, expr) * self.numeric(part))
             }
         };
         if !is_param && let Err(refused) = set(&mut self.model.method.clone(), &list.name.name, &given) {
@@ -97,14 +89,6 @@ impl<'a> Elaborator<'a> {
         let found = found.label(span_of(&first.values), label(first));
         self.diagnostics
             .push(found.help("the lists go together row by row: give all the same length, or one value"));
-    }
-}
-
-/// The unit behind the last number is that of all plain numbers before it.
-fn unit_of_all(list: &ast::Swept) -> Option<&ast::Unit> {
-    match &list.values.last()?.kind {
-        ExprKind::Quantity(_, unit) => Some(unit),
-        _ => None,
     }
 }
 

@@ -7,7 +7,7 @@ use super::value::{Part, Value, pairwise};
 use crate::resolve::scope::{Declaration, Scope};
 use fdcc_grammar::Span;
 use fdcc_grammar::ast::{
-    Assignment, Check, Condition, Equation, Expr, Ident, Item, ItemKind, Setting, SettingValue,
+    Assignment, Check, Condition, Equation, Expr, Ident, Item, ItemKind, Setting, SettingValue, Swept,
 };
 
 impl<'a> Inference<'a> {
@@ -43,6 +43,7 @@ impl<'a> Inference<'a> {
                 assignments.iter().for_each(|it| self.handed_over(from, to, it))
             }
             ItemKind::Method { settings } => settings.iter().for_each(|it| self.setting(it)),
+            ItemKind::Sweep { lists } => lists.iter().for_each(|it| self.swept(it)),
             _ => {}
         }
     }
@@ -162,6 +163,18 @@ impl<'a> Inference<'a> {
         }
     }
 
+    /// `sigma = 10, 5 [cm/s]` is a list of widths; any other list is one of values for what it names.
+    fn swept(&mut self, list: &'a Swept) {
+        for value in &list.values {
+            if list.name.name == "sigma" && self.declared(&list.name).is_none() {
+                let width = self.operand(value);
+                self.width(&list.name, width);
+            } else {
+                self.assigned("a value of the sweep", &list.name, value);
+            }
+        }
+    }
+
     fn width(&mut self, key: &'a Ident, width: Operand<'a>) {
         // Where surfaces differ, one number cannot have the unit of all.
         let Some(first) = self.switches.first().cloned() else { return };
@@ -180,7 +193,7 @@ fn authority(kind: &ItemKind) -> u8 {
     match kind {
         ItemKind::Dynamics { .. } => 0,
         ItemKind::Start { .. } | ItemKind::End { .. } | ItemKind::Path { .. } | ItemKind::Jump { .. } => 1,
-        ItemKind::Method { .. } => 4,
+        ItemKind::Method { .. } | ItemKind::Sweep { .. } => 4,
         ItemKind::Guess { .. } | ItemKind::Report { .. } | ItemKind::Expect { .. } => 3,
         _ => 2,
     }

@@ -39,7 +39,7 @@ pub use quantity::{Quantity, parse_quantity};
 use requirement::Requirement;
 use solve::{Rank, Solution};
 use std::collections::HashSet;
-pub(crate) use table::scale;
+pub(crate) use table::{list_scale, scale};
 
 /// Whoever has so many mistakes does not read on.
 const MOST_MISTAKES: usize = 20;

@@ -148,7 +148,7 @@ impl Marks {
             Rule::control => Row::Item("control"),
             Rule::free => Row::Item("free"),
             Rule::equation if starts_with(pair, Rule::derivative) => Row::Equation,
-            Rule::binding | Rule::assignment => Row::Binding,
+            Rule::binding | Rule::assignment | Rule::swept => Row::Binding,
             Rule::arm => Row::Arm,
             Rule::model_line
             | Rule::data
@@ -164,6 +164,7 @@ impl Marks {
             | Rule::phase
             | Rule::link
             | Rule::method
+            | Rule::sweep
             | Rule::report
             | Rule::expect
             | Rule::equation

@@ -41,3 +41,13 @@ fn a_model_is_called_after_its_file_and_nothing_is_overwritten() {
     expect_exit(&fdcc(&place, &["new", "friction", "nowhere/x.fdc"], ""), 4, "no such folder");
     expect_exit(&fdcc(&place, &["new", "sandwich"], ""), 3, "no such template");
 }
+
+#[test]
+fn without_a_template_they_are_listed() {
+    let place = folder("new_list", &[]);
+    let listed = fdcc(&place, &["new"], "");
+    expect_exit(&listed, 3, "no template");
+    for line in ["  friction  A block with dry friction", "  bounce    A ball that bounces"] {
+        assert!(stderr(&listed).contains(line), "{}", stderr(&listed));
+    }
+}

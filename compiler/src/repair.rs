@@ -4,48 +4,67 @@
 //! else fewer errors, or else fewer findings. Each of these can only shrink, so repairing ends, and repairing the
 //! result changes nothing.
 
-use crate::review;
-use fdcc_grammar::{Severity, fix, parse};
+use crate::review::reviewed;
+use fdcc_grammar::{Diagnostic, Parse, Severity, fix, parse};
 
 /// The text with all certain repairs, and with those that are likely if asked for.
 pub fn repair(text: &str, unsafely: bool) -> String {
-    let mut text = text.to_owned();
-    let mut badness = Badness::of(&text);
-    while let Some((better, less)) = improved(&text, &badness, unsafely) {
-        (text, badness) = (better, less);
+    let parsed = parse(text);
+    let mut draft = Draft::new(text.to_owned(), Unreadable::of(text, &parsed), parsed);
+    while let Some(better) = draft.improved(unsafely) {
+        draft = better;
     }
-    text
+    draft.text
 }
 
-/// All repairs at once, or the first one that helps.
-fn improved(text: &str, badness: &Badness, unsafely: bool) -> Option<(String, Badness)> {
-    let found = review(text).diagnostics;
-    let all = fix::apply(text, &found, unsafely);
-    let single = found.iter().filter_map(|it| fix::apply(text, std::slice::from_ref(it), unsafely));
-    let tried = all.into_iter().chain(single).map(|text| (Badness::of(&text), text));
-    tried.filter(|(new, _)| new < badness).map(|(new, text)| (text, new)).next()
+/// A text with all that is to be said about it.
+struct Draft {
+    text: String,
+    found: Vec<Diagnostic>,
+    unreadable: Unreadable,
 }
 
-/// How bad a text is, the worst first.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct Badness {
-    /// Mistakes of syntax.
-    unreadable: usize,
+/// Mistakes of syntax.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Unreadable {
+    count: usize,
     /// How far before the end they stand, all together.
     before_the_end: usize,
-    errors: usize,
-    findings: usize,
 }
 
-impl Badness {
-    fn of(text: &str) -> Badness {
-        let unreadable = parse(text).diagnostics;
-        let found = review(text).diagnostics;
-        Badness {
-            unreadable: unreadable.len(),
-            before_the_end: unreadable.iter().map(|it| text.len() - it.span().start as usize).sum(),
-            errors: found.iter().filter(|it| it.severity == Severity::Error).count(),
-            findings: found.len(),
+impl Unreadable {
+    fn of(text: &str, parsed: &Parse) -> Self {
+        let places = parsed.diagnostics.iter().map(|it| text.len() - it.span().start as usize);
+        Unreadable { count: parsed.diagnostics.len(), before_the_end: places.sum() }
+    }
+}
+
+impl Draft {
+    fn new(text: String, unreadable: Unreadable, parsed: Parse) -> Self {
+        Draft { found: reviewed(&text, parsed).diagnostics, text, unreadable }
+    }
+
+    /// All repairs at once, or the first one that helps.
+    fn improved(&self, unsafely: bool) -> Option<Draft> {
+        let apply = |found: &[Diagnostic]| fix::apply(&self.text, found, unsafely);
+        let single = self.found.iter().filter_map(|it| apply(std::slice::from_ref(it)));
+        apply(&self.found).into_iter().chain(single).find_map(|text| self.better(text))
+    }
+
+    /// The text, if it is better than this one. What is harder to read is not looked at any further.
+    fn better(&self, text: String) -> Option<Draft> {
+        let parsed = parse(&text);
+        let unreadable = Unreadable::of(&text, &parsed);
+        if unreadable > self.unreadable {
+            return None;
         }
+        let other = Draft::new(text, unreadable, parsed);
+        (other.badness() < self.badness()).then_some(other)
+    }
+
+    /// How bad the text is, the worst first: mistakes of syntax, errors, findings.
+    fn badness(&self) -> (Unreadable, usize, usize) {
+        let errors = self.found.iter().filter(|it| it.severity == Severity::Error).count();
+        (self.unreadable, errors, self.found.len())
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::gaps::Gaps;
 use crate::{Model, allow, check};
-use fdcc_grammar::{Diagnostic, SourceFile, parse};
+use fdcc_grammar::{Diagnostic, Parse, SourceFile, parse};
 
 /// What a text means, and what is to be said about it.
 pub struct Reviewed {
@@ -14,7 +14,11 @@ pub struct Reviewed {
 
 /// Reads and checks a text.
 pub fn review(text: &str) -> Reviewed {
-    let parsed = parse(text);
+    reviewed(text, parse(text))
+}
+
+/// Checks a text that has been read.
+pub(crate) fn reviewed(text: &str, parsed: Parse) -> Reviewed {
     let mut diagnostics = parsed.diagnostics;
     let mut model = None;
     if !parsed.tree.items.is_empty() {

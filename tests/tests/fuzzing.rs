@@ -1,4 +1,4 @@
-//! Texts that a search by coverage has found, and mutations of them: none is too much for parse, check and repair.
+//! Texts that a search by coverage has found, and mutations of them: none is too much for parse, check, layout and repair.
 //!
 //! The long search is told in `docs/recipes/fuzz.md`; this is the short one, the same on every run.
 
@@ -12,7 +12,7 @@ use fdcc_tests::repository;
 const LIMIT: Duration = Duration::from_secs(5);
 
 /// Mutations that are tried, a few seconds' worth.
-const MUTATIONS: usize = 1500;
+const MUTATIONS: usize = 500;
 
 fn corpus() -> Vec<String> {
     let text = std::fs::read_to_string(repository().join("tests/fuzz/corpus.txt"));

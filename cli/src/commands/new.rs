@@ -12,9 +12,9 @@ use crate::output;
 /// Write a commented model to start from
 #[derive(Args)]
 pub struct New {
-    /// What it is about
+    /// What it is about; without it, the templates are listed
     #[arg(value_enum)]
-    template: Template,
+    template: Option<Template>,
     /// The file, or a folder for it; TEMPLATE.fdc if left out
     path: Option<PathBuf>,
 }
@@ -66,10 +66,14 @@ impl Template {
 impl New {
     /// Writes the file and says what to do next.
     pub fn run(self) -> Exit {
-        let path = self.file();
-        match write(&path, &named_after(&path, self.template)) {
+        let Some(template) = self.template else {
+            output::tell(&templates());
+            return Exit::Usage;
+        };
+        let path = file(self.path, template);
+        match write(&path, &named_after(&path, template)) {
             Ok(()) => {
-                let (path, verb) = (path.display(), self.template.verb());
+                let (path, verb) = (path.display(), template.verb());
                 output::print(&format!("wrote {path}\n\nnext:\n  fdcc check {path}\n  fdcc {verb} {path}\n"));
                 Exit::Fine
             }
@@ -83,14 +87,25 @@ impl New {
             }
         }
     }
+}
 
-    fn file(&self) -> PathBuf {
-        let usual = format!("{}.fdc", self.template.name());
-        match &self.path {
-            Some(folder) if folder.is_dir() => folder.join(usual),
-            Some(file) => file.clone(),
-            None => usual.into(),
-        }
+/// A line for each template.
+fn templates() -> String {
+    let line = |template: &Template| {
+        let described = template.to_possible_value()?.get_help()?.to_string();
+        Some(format!("  {:<10}{described}\n", template.name()))
+    };
+    let lines: String = Template::value_variants().iter().filter_map(line).collect();
+    format!("name a template, as in `fdcc new friction`:\n{lines}")
+}
+
+/// Where the model goes.
+fn file(path: Option<PathBuf>, template: Template) -> PathBuf {
+    let usual = format!("{}.fdc", template.name());
+    match path {
+        Some(folder) if folder.is_dir() => folder.join(usual),
+        Some(file) => file,
+        None => usual.into(),
     }
 }
 

@@ -102,7 +102,10 @@ impl<'a> Elaborator<'a> {
     }
 
     fn not_a_function(&mut self, name: &str, kind: &str, span: Span, arguments: &'a [Argument]) -> Value {
+        // The names inside are used, but what is said of them may follow from there being no function.
+        let told = self.diagnostics.len();
         self.plain_arguments(arguments);
+        self.diagnostics.truncate(told);
         let message = format!("`{name}` is a {kind}, not a function");
         let found = Diagnostic::new(Code::WrongKind, message, span, format!("a {kind}"));
         let help = match kind {

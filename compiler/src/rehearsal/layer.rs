@@ -81,8 +81,13 @@ impl Rehearsal<'_> {
         let mut drifts: Vec<ExprId> =
             time.map(|time| derivative(&mut self.graph, psi, time)).into_iter().collect();
         let mut forces = Vec::new();
+        // A large model has many states, and a surface depends on few of them.
+        let inputs = self.graph.inputs_of(&[psi]);
         for (index, state) in self.model.states.iter().enumerate() {
             let input = self.model.input_of(Symbol::State(index))?;
+            if inputs.binary_search(&input).is_err() {
+                continue;
+            }
             let gradient = derivative(&mut self.graph, psi, input);
             if self.graph.as_number(gradient) != Some(0.0) {
                 let force = derivative(&mut self.graph, state.rate, selector);

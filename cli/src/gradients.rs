@@ -2,7 +2,7 @@
 
 use crate::quantities::By;
 use fdcc_compiler::Model;
-use fdcc_runtime::problem::Columns;
+use fdcc_runtime::problem::{Columns, Scheme};
 use fdcc_runtime::sensitivity::{Quantity, hessian};
 use fdcc_runtime::simulate::{Controls, Simulation, System};
 use fdcc_runtime::stepping::{self, Failure, Grid, step_through};
@@ -62,6 +62,9 @@ impl Question<'_> {
     }
 
     fn stepped(&self, system: &System) -> Result<Vec<f64>, String> {
+        if self.model.method.scheme == Scheme::RungeKutta4 {
+            return Err("fixed steps of `rk4` do not go through a set".into());
+        }
         let grid = Grid::new(system, &self.model.method);
         let found = step_through(system, &self.controls, &grid)
             .and_then(|stepped| stepping::gradient(system, &self.controls, &grid, &stepped));

@@ -255,6 +255,8 @@ pub enum Scheme {
     Midpoint,
     /// Trapezoidal rule with a constant control on each interval.
     Trapezoid,
+    /// The classical Runge-Kutta scheme; [`Problem::dynamics`] has its increment, of which it is an explicit Euler step.
+    RungeKutta4,
 }
 
 /// Which solver treats the transcribed problem.

@@ -38,7 +38,7 @@ struct Node {
 fn nodes(problem: &Problem) -> Vec<Node> {
     let node = |weight, time| Node { weight, time, share: vec![time; problem.layout.x] };
     match problem.method.scheme {
-        Scheme::Euler => vec![node(1.0, 0.0)],
+        Scheme::Euler | Scheme::RungeKutta4 => vec![node(1.0, 0.0)],
         Scheme::Midpoint => vec![node(1.0, 0.5)],
         Scheme::Trapezoid => vec![node(0.5, 0.0), node(0.5, 1.0)],
         Scheme::ImplicitEuler => {

@@ -205,6 +205,7 @@ pub fn scheme_name(scheme: Scheme) -> &'static str {
         Scheme::ImplicitEuler => "implicit_euler",
         Scheme::Midpoint => "midpoint",
         Scheme::Trapezoid => "trapezoid",
+        Scheme::RungeKutta4 => "rk4",
     }
 }
 

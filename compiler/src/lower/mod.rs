@@ -8,6 +8,7 @@
 //! ```
 
 mod boundary;
+mod composed;
 mod derived;
 mod expect;
 mod guess;
@@ -146,9 +147,9 @@ impl OverGrid<'_> {
     fn dynamics(&self, graph: &mut Graph, objective: &Objective) -> VectorFunction {
         let outputs = rates(self.model, objective);
         let mut function = self.function(graph, "dynamics", outputs.into_iter(), true);
-        for output in &mut function.outputs {
-            *output = graph.mul(self.inputs.duration, *output);
-        }
+        let outputs = function.outputs.iter().map(|&output| graph.mul(self.inputs.duration, output));
+        let rates: Vec<ExprId> = outputs.collect();
+        function.outputs = composed::compose(graph, &self.model.method, &function.layout, rates);
         function
     }
 }

@@ -29,8 +29,8 @@ const KEYS: &[(&str, &str)] = &[
 
 /// Schemes and solvers that are understood but do not exist yet.
 const NOT_YET: &[&str] = &[
-    "rk4", "radau1", "radau2", "radau3", "radau4", "radau5", "gauss1", "gauss2", "gauss3", "gauss4",
-    "gauss5", "fesd", "sqp",
+    "radau1", "radau2", "radau3", "radau4", "radau5", "gauss1", "gauss2", "gauss3", "gauss4", "gauss5",
+    "fesd", "sqp",
 ];
 
 /// A value of a setting.
@@ -97,6 +97,7 @@ fn scheme(word: &str) -> Option<Scheme> {
         "implicit_euler" => Scheme::ImplicitEuler,
         "midpoint" => Scheme::Midpoint,
         "trapezoid" => Scheme::Trapezoid,
+        "rk4" => Scheme::RungeKutta4,
         _ => return None,
     })
 }

@@ -26,7 +26,7 @@ pub(crate) struct Node {
 pub(crate) fn nodes(method: &Method, states: usize) -> Vec<Node> {
     let node = |weight, time, blend| Node { weight, time, blend: vec![blend; states] };
     match method.scheme {
-        Scheme::Euler => vec![node(1.0, 0.0, 0.0)],
+        Scheme::Euler | Scheme::RungeKutta4 => vec![node(1.0, 0.0, 0.0)],
         Scheme::ImplicitEuler => {
             let mut implicit = node(1.0, 1.0, 1.0);
             method.lagged.iter().for_each(|state| implicit.blend[*state] = 0.0);

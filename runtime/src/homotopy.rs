@@ -1,7 +1,8 @@
 //! Solving a problem: choose the solver, and drive the smoothing widths down where the model leaves them open.
 //!
-//! Widths the model names are used as they are. Otherwise each surface gets a fraction of the size its switching
-//! function has along the trajectory found so far, one solve after another, each started from the one before. Where
+//! A width that the model names is approached: from twice that width first; where this takes too long, from half the size of the switching function on,
+//! halved from solve to solve; where that fails, too, at once and with all patience. Solves on the way are rough. Where the model names none, each surface gets a fraction of the size
+//! its switching function has along the trajectory found so far, one solve after another, each started from the one before. Where
 //! a step is too long it is halved; where even short steps fail, the last width that could be solved is the answer.
 
 use crate::modes::{Span, modes};
@@ -19,6 +20,14 @@ const DECREASE: f64 = 0.3;
 const MOST_FAILURES: usize = 3;
 /// A step that takes longer than this is too long.
 const MOST_ITERATIONS: usize = 300;
+/// A width that is named is approached from twice this width, with at most so many iterations for each of the two; else by halving
+/// from half the size of the switching function on.
+const ABOVE: f64 = 2.0;
+const QUICK: usize = 150;
+const WIDE: f64 = 0.5;
+const MOST_HALVINGS: i32 = 12;
+/// The next solve begins at a barrier parameter of this size; more is not asked of a solve on the way.
+const ROUGH: f64 = 1e-4;
 
 /// A solved (or not solved) problem.
 #[derive(Clone, Debug)]
@@ -78,9 +87,12 @@ pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Resu
     if problem.method.solver == Solver::Convex {
         return Err(Refusal::NotConvex);
     }
-    let solution = match run.widths() {
-        Some(widths) => run.given(&mut nlp, start, &widths, watch),
-        None => run.chosen(&mut nlp, start, watch),
+    let solution = match (run.widths(), problem.method.sigma) {
+        (Some(widths), Some(sigma)) if widths.len() == 1 && run.may_approach(&start) => {
+            run.approach(&mut nlp, start, sigma, watch)
+        }
+        (Some(widths), _) => run.given(&mut nlp, start, &widths, watch),
+        (None, _) => run.chosen(&mut nlp, start, watch),
     };
     Ok(run.finish(&mut nlp, solution, false))
 }
@@ -117,39 +129,83 @@ impl Run<'_> {
         (!is_ours).then_some(widths)
     }
 
+    /// Whether there are surfaces, and nothing better to start from than a guess.
+    fn may_approach(&self, start: &Start) -> bool {
+        !self.problem.surfaces.is_empty() && start.warm.is_none()
+    }
+
+    /// Solves with the one width that the model names.
+    fn approach(&mut self, nlp: &mut TranscribedNlp, start: Start, sigma: f64, watch: &mut Watch) -> Solution {
+        let most = self.problem.method.max_iter;
+        let quick = self.pass(nlp, start.clone(), &[ABOVE * sigma, sigma], QUICK.min(most), watch);
+        if !is_retried(&quick.status) || most <= QUICK {
+            return quick;
+        }
+        let halvings = self.halvings(nlp, [&start.v, &quick.v], sigma);
+        let widths: Vec<f64> = (0..=halvings).rev().map(|k| sigma * 2.0_f64.powi(k)).collect();
+        let slow = self.pass(nlp, start.clone(), &widths, MOST_ITERATIONS.min(most), watch);
+        if !is_retried(&slow.status) {
+            return slow;
+        }
+        self.sigma.fill(sigma);
+        self.solve_once(nlp, &start, most, watch)
+    }
+
+    /// How often half the size of a switching function can be halved until it is a width.
+    fn halvings(&self, nlp: &TranscribedNlp, known: [&Vec<f64>; 2], sigma: f64) -> i32 {
+        let sizes = known.into_iter().flat_map(|v| nlp.guard_sizes(v));
+        let size = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
+        let most = f64::from(MOST_HALVINGS);
+        (WIDE * size / sigma).log2().ceil().clamp(1.0, most) as i32
+    }
+
     /// Solves with one given width after the other.
     fn given(
         &mut self,
         nlp: &mut TranscribedNlp,
-        mut start: Start,
+        start: Start,
         widths: &[f64],
         watch: &mut Watch,
     ) -> Solution {
-        let Some((last, before)) = widths.split_last() else { return self.solve_once(nlp, &start, watch) };
+        self.pass(nlp, start, widths, self.problem.method.max_iter, watch)
+    }
+
+    /// The same with a limit on the iterations of each solve.
+    fn pass(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        mut start: Start,
+        widths: &[f64],
+        limit: usize,
+        watch: &mut Watch,
+    ) -> Solution {
+        let Some((last, before)) = widths.split_last() else {
+            return self.solve_once(nlp, &start, limit, watch);
+        };
         for width in before {
             self.sigma.fill(*width);
-            let solution = self.solve_once(nlp, &start, watch);
+            let solution = self.roughly(nlp, &start, limit, watch);
             if !is_good(&solution.status) {
                 return solution;
             }
             start = warm(&solution);
         }
         self.sigma.fill(*last);
-        self.solve_once(nlp, &start, watch)
+        self.solve_once(nlp, &start, limit, watch)
     }
 
     /// Solves with widths of our own choice, as small as can be solved.
     fn chosen(&mut self, nlp: &mut TranscribedNlp, start: Start, watch: &mut Watch) -> Solution {
         let mut factor = FIRST_FACTOR;
         self.set_relative(nlp, &start.v);
-        let mut best = self.solve_once(nlp, &start, watch);
+        let mut best = self.solve_once(nlp, &start, self.problem.method.max_iter, watch);
         let (mut decrease, mut failures) = (DECREASE, 0);
         while is_good(&best.status) && factor > LAST_FACTOR && failures < MOST_FAILURES {
             let before = self.sigma.clone();
             let next = (factor * decrease).max(LAST_FACTOR);
             self.decrease(nlp, &best.v, next, next / factor);
             let limit = self.problem.method.max_iter.min(MOST_ITERATIONS);
-            let solution = self.interior_point(nlp, &warm(&best), limit, watch);
+            let solution = self.interior_point(nlp, &warm(&best), limit, self.problem.method.tol, watch);
             if is_good(&solution.status) {
                 (factor, best) = (next, solution);
                 continue;
@@ -186,14 +242,42 @@ impl Run<'_> {
         }
     }
 
+    /// One solve to the tolerance of the model.
+    fn solve_once(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        start: &Start,
+        limit: usize,
+        watch: &mut Watch,
+    ) -> Solution {
+        self.warmly(nlp, start, limit, self.problem.method.tol, watch)
+    }
+
+    /// One solve on the way.
+    fn roughly(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        start: &Start,
+        limit: usize,
+        watch: &mut Watch,
+    ) -> Solution {
+        self.warmly(nlp, start, limit, self.problem.method.tol.max(ROUGH), watch)
+    }
+
     /// One solve; a warm start that fails is repeated with fresh multipliers.
-    fn solve_once(&mut self, nlp: &mut TranscribedNlp, start: &Start, watch: &mut Watch) -> Solution {
-        let limit = self.problem.method.max_iter;
-        let solution = self.interior_point(nlp, start, limit, watch);
+    fn warmly(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        start: &Start,
+        limit: usize,
+        tol: f64,
+        watch: &mut Watch,
+    ) -> Solution {
+        let solution = self.interior_point(nlp, start, limit, tol, watch);
         if start.warm.is_none() || !is_retried(&solution.status) {
             return solution;
         }
-        self.interior_point(nlp, &Start { v: start.v.clone(), warm: None }, limit, watch)
+        self.interior_point(nlp, &Start { v: start.v.clone(), warm: None }, limit, tol, watch)
     }
 
     fn interior_point(
@@ -201,11 +285,11 @@ impl Run<'_> {
         nlp: &mut TranscribedNlp,
         start: &Start,
         max_iter: usize,
+        tol: f64,
         watch: &mut Watch,
     ) -> Solution {
         self.apply_sigma(nlp);
-        let method = &self.problem.method;
-        let options = Options { tol: method.tol, max_iter, linear: method.linear };
+        let options = Options { tol, max_iter, linear: self.problem.method.linear };
         let sigma = &self.sigma;
         let before = self.counts.iterations;
         let mut solution = interior_point::solve(nlp, start, &options, &mut |progress| {

@@ -8,6 +8,8 @@ use super::space::Space;
 const ACCURACY: f64 = 4.0;
 const LINEAR_DECREASE: f64 = 0.2;
 const SUPERLINEAR_DECREASE: f64 = 1.2;
+/// A parameter within this factor of the last is the last.
+const CLOSE: f64 = 10.0;
 const SMALLEST_FRACTION: f64 = 0.99;
 /// Bound multipliers stay within this factor of `mu / distance`.
 const MULTIPLIER_CORRIDOR: f64 = 1e10;
@@ -39,7 +41,9 @@ impl Barrier {
 
     /// Lowers `mu` by one step; `false` if it is as low as it gets.
     pub(super) fn lower(&mut self) -> bool {
-        let next = (LINEAR_DECREASE * self.mu).min(self.mu.powf(SUPERLINEAR_DECREASE)).max(self.smallest);
+        let next = (LINEAR_DECREASE * self.mu).min(self.mu.powf(SUPERLINEAR_DECREASE));
+        // The tolerance would be met between the last two: the objective would be as far off as chance has it.
+        let next = if next < CLOSE * self.smallest { self.smallest } else { next };
         let lowered = next < self.mu;
         self.mu = next.min(self.mu);
         lowered

@@ -135,7 +135,13 @@ impl Run<'_> {
     }
 
     /// Solves with the one width that the model names.
-    fn approach(&mut self, nlp: &mut TranscribedNlp, start: Start, sigma: f64, watch: &mut Watch) -> Solution {
+    fn approach(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        start: Start,
+        sigma: f64,
+        watch: &mut Watch,
+    ) -> Solution {
         let most = self.problem.method.max_iter;
         let quick = self.pass(nlp, start.clone(), &[ABOVE * sigma, sigma], QUICK.min(most), watch);
         if !is_retried(&quick.status) || most <= QUICK {

@@ -4,6 +4,7 @@
 //! # a comment
 //! method sigma = 0.3
 //! objective = 59.8359878  tol 1e-5  from "where this number is from"
+//! objective <= 128.296842   tol 1e-5  from "one of several local minima"
 //! x(end)    = 1           tol 1e-9  from "closed form: ..."
 //! error FDC0603 "what the message begins with"
 //! ```
@@ -17,6 +18,8 @@ pub struct Value {
     pub value: f64,
     /// How far the solution may be from it.
     pub tolerance: f64,
+    /// Whether less is as good.
+    pub is_limit: bool,
     /// Who says so.
     pub source: String,
 }
@@ -49,6 +52,10 @@ impl Expected {
             return Some(());
         }
         let (name, rest) = line.split_once('=').map(|(name, rest)| (name.trim(), rest.trim()))?;
+        if let Some(name) = name.strip_suffix('<') {
+            self.values.push(Value { is_limit: true, ..value(name.trim(), rest)? });
+            return Some(());
+        }
         if let Some(key) = name.strip_prefix("method ") {
             self.methods.push((key.into(), rest.into()));
         } else {
@@ -66,6 +73,7 @@ fn value(name: &str, text: &str) -> Option<Value> {
         value: number.trim().parse().ok()?,
         tolerance: tolerance.trim().parse().ok()?,
         source: quoted(source)?,
+        is_limit: false,
     })
 }
 

@@ -135,7 +135,7 @@ fn crossing_widths() -> Rows {
 /// (e1): the least time as a function of the state, `-2/3 dx + 2/5 dv` at its end, along the optimal run.
 fn least_time() -> Costates {
     let text =
-        text_of("coulomb_reverse").replace("minimize T ", "minimize -2/3 [s/m]*x(end) + 2/5 [s^2/m]*v(end) ");
+        text_of("coulomb_reverse").replace("minimize T ", "minimize -2 [s/m]/3*x(end) + 2 [s^2/m]/5*v(end) ");
     let mut model = changed(&text, &[], &[]);
     model.set_free("T", 2.0);
     let system = compile_sensitivities(&model).expect("the model can be simulated");

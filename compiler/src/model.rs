@@ -265,6 +265,8 @@ pub struct Model {
     pub sense: f64,
     /// Every `integral` of the objective, of conditions and of expectations.
     pub integrals: Vec<Integral>,
+    /// The width of every `blend`, where it is written and over parameters.
+    pub widths: Vec<(Span, ExprId)>,
     /// What is reported.
     pub report: Vec<Report>,
     /// What expectations ask of a simulation.
@@ -310,6 +312,7 @@ impl Model {
             objective: None,
             sense: 1.0,
             integrals: Vec::new(),
+            widths: Vec::new(),
             report: Vec::new(),
             simulated: Vec::new(),
             expectations: Vec::new(),

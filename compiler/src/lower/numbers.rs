@@ -3,6 +3,7 @@
 use crate::check::missing_value;
 use crate::graph::{ExprId, evaluate};
 use crate::model::{Model, Range, Symbol};
+use crate::resolve::no_width;
 use fdcc_grammar::Diagnostic;
 use fdcc_runtime::problem::Bounds;
 
@@ -13,7 +14,8 @@ pub struct Numbers {
     inputs: Vec<f64>,
 }
 
-/// Computes parameters in their order, then the guesses of the unknowns.
+/// Computes parameters in their order, then the guesses of the unknowns. Says which parameters have no value, and which
+/// widths those of the command line leave no room.
 pub fn numbers(model: &Model) -> Result<Numbers, Vec<Diagnostic>> {
     let missing = model.params.iter().filter(|param| param.value.is_none());
     let missing: Vec<Diagnostic> =
@@ -27,7 +29,10 @@ pub fn numbers(model: &Model) -> Result<Numbers, Vec<Diagnostic>> {
         numbers.set(model, Symbol::Param(index), value);
     }
     numbers.guess_unknowns(model);
-    Ok(numbers)
+    let widths = model.widths.iter().map(|&(place, width)| (place, numbers.value(model, width)));
+    let gone: Vec<Diagnostic> =
+        widths.filter(|it| it.1 <= 0.0).map(|(place, width)| no_width(place, width)).collect();
+    if gone.is_empty() { Ok(numbers) } else { Err(gone) }
 }
 
 impl Numbers {

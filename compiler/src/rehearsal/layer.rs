@@ -9,32 +9,25 @@
 
 use super::Rehearsal;
 use crate::differentiate::derivative;
-use crate::graph::ExprId;
+use crate::graph::{ExprId, evaluate};
 use crate::model::Symbol;
 use crate::resolve::text;
 use crate::smooth;
 
 /// A surface that attracts along the guess.
 pub(super) struct Layer {
-    /// The name of the surface.
+    /// The surface.
+    pub surface: usize,
+    /// Its name.
     pub name: String,
     /// The largest `J` along the guess.
     pub jump: f64,
-    /// `J` in the words of the model, if it is one parameter.
-    jump_text: Option<String>,
-    /// Whether the jump outweighs the drift `grad psi . a + dpsi/dt` at some time of the guess: there it can be held.
+    /// `J` as an expression.
+    force: ExprId,
+    /// Whether the jump outweighs the drift `grad psi . a + dpsi/dt` at some time of the guess.
     pub is_held: bool,
-}
-
-impl Layer {
-    /// `muN/sigma`, or with the slope of the kernel, `1.5*muN/sigma`.
-    pub fn slope_text(&self, factor: f64) -> String {
-        match &self.jump_text {
-            Some(jump) if factor == 1.0 => format!("{jump}/sigma"),
-            Some(jump) => format!("{}*{jump}/sigma", text::number(factor)),
-            None => format!("{}/sigma", text::number(short(factor * self.jump))),
-        }
-    }
+    /// Whether that is proved, not read off the guess.
+    pub is_proved: bool,
 }
 
 /// Three digits are enough for a message.
@@ -54,23 +47,35 @@ impl Rehearsal<'_> {
         smooth::find(&self.model.method.kernel).map_or(1.0, smooth::Kernel::slope)
     }
 
+    /// `muN/sigma`, or with the slope of the kernel, `1.5*muN/sigma`.
+    pub(super) fn slope_text(&self, layer: &Layer) -> String {
+        let factor = self.kernel_slope();
+        match self.parameter_behind(layer) {
+            Some(jump) if factor == 1.0 => format!("{jump}/sigma"),
+            Some(jump) => format!("{}*{jump}/sigma", text::number(factor)),
+            None => format!("{}/sigma", text::number(short(factor * layer.jump))),
+        }
+    }
+
     /// The surfaces by themselves that attract somewhere along the guess, steepest first.
     pub(super) fn layers(&mut self) -> Vec<Layer> {
         let alone: Vec<usize> =
             self.model.switches().iter().filter(|it| !it.is_ball).map(|it| it.surfaces.start).collect();
-        let mut layers: Vec<Layer> = alone.into_iter().filter_map(|surface| self.layer(surface)).collect();
+        let known = |surface| Some((surface, self.force_and_drift(surface)?));
+        let known: Vec<(usize, [ExprId; 2])> = alone.into_iter().filter_map(known).collect();
+        let roots: Vec<ExprId> = known.iter().flat_map(|it| it.1).collect();
+        let points: Vec<Vec<f64>> =
+            self.points.iter().map(|at| evaluate(&self.graph, &roots, at, &[])).collect();
+        let layer = |(at, (surface, [force, _])): (usize, (usize, [ExprId; 2]))| {
+            let values = || points.iter().map(|values| (values[2 * at], values[2 * at + 1]));
+            let jump = values().map(|it| it.0).filter(|force| force.is_finite()).fold(0.0, f64::max);
+            let is_held = values().any(|(force, drift)| drift.abs() < force);
+            let name = self.model.surfaces[surface].place.name.clone();
+            (jump > 0.0).then_some(Layer { surface, name, jump, force, is_held, is_proved: false })
+        };
+        let mut layers: Vec<Layer> = known.into_iter().enumerate().filter_map(layer).collect();
         layers.sort_by(|a, b| b.jump.total_cmp(&a.jump));
         layers
-    }
-
-    fn layer(&mut self, surface: usize) -> Option<Layer> {
-        let [force, drift] = self.force_and_drift(surface)?;
-        let (forces, drifts) = (self.along(force), self.along(drift));
-        let jump = forces.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max);
-        let name = self.model.surfaces[surface].place.name.clone();
-        let jump_text = self.parameter_behind(force, jump);
-        let is_held = forces.iter().zip(&drifts).any(|(force, drift)| drift.abs() < *force);
-        (jump > 0.0).then_some(Layer { name, jump, jump_text, is_held })
     }
 
     /// `-grad psi . b` and `grad psi . (a + b s) + dpsi/dt`.
@@ -83,11 +88,9 @@ impl Rehearsal<'_> {
         let mut forces = Vec::new();
         // A large model has many states, and a surface depends on few of them.
         let inputs = self.graph.inputs_of(&[psi]);
-        for (index, state) in self.model.states.iter().enumerate() {
-            let input = self.model.input_of(Symbol::State(index))?;
-            if inputs.binary_search(&input).is_err() {
-                continue;
-            }
+        for input in inputs {
+            let Symbol::State(index) = self.model.symbols[input as usize] else { continue };
+            let state = &self.model.states[index];
             let gradient = derivative(&mut self.graph, psi, input);
             if self.graph.as_number(gradient) != Some(0.0) {
                 let force = derivative(&mut self.graph, state.rate, selector);
@@ -100,22 +103,20 @@ impl Rehearsal<'_> {
     }
 
     /// The parameter that the jump is: its value all along the guess, and doubled with it.
-    fn parameter_behind(&self, force: ExprId, jump: f64) -> Option<String> {
+    fn parameter_behind(&self, layer: &Layer) -> Option<&str> {
         let is_close = |a: f64, b: f64| (a - b).abs() <= 1e-9 * b.abs();
-        let equals = |value: f64, inputs: &[f64]| {
-            is_close(crate::graph::evaluate(&self.graph, &[force], inputs, &[])[0], value)
+        let force = |inputs: &[f64]| evaluate(&self.graph, &[layer.force], inputs, &[])[0];
+        let doubles = |inputs: &Vec<f64>, input: usize| {
+            let mut doubled = inputs.clone();
+            doubled[input] *= 2.0;
+            is_close(force(inputs), inputs[input]) && is_close(force(&doubled), doubled[input])
         };
-        let is_it = |index: usize| {
-            let input = self.model.input_of(Symbol::Param(index)).map_or(usize::MAX, |input| input as usize);
-            self.points.iter().filter_map(|inputs| Some((inputs, *inputs.get(input)?))).all(
-                |(inputs, value)| {
-                    let mut doubled = inputs.clone();
-                    doubled[input] *= 2.0;
-                    is_close(value, jump) && equals(value, inputs) && equals(2.0 * value, &doubled)
-                },
-            )
+        let is_it = |index: &usize| {
+            let Some(input) = self.model.input_of(Symbol::Param(*index)) else { return false };
+            let input = input as usize;
+            self.points.iter().all(|inputs| is_close(inputs[input], layer.jump) && doubles(inputs, input))
         };
-        let index = (0..self.model.params.len()).find(|&index| is_it(index))?;
-        Some(self.model.params[index].place.name.clone())
+        let index = (0..self.model.params.len()).find(is_it)?;
+        Some(&self.model.params[index].place.name)
     }
 }

@@ -27,7 +27,7 @@ pub(super) fn check(rehearsal: &mut Rehearsal<'_>, found: &mut Vec<Diagnostic>) 
 fn too_long(rehearsal: &Rehearsal<'_>, layer: &Layer, sigma: &Sigma, step: f64, slope: f64) -> Diagnostic {
     let shown = |value: f64| number(short(value));
     let message = format!("the step is too long for the smoothed layer of `{}`", layer.name);
-    let label = format!("layer slope L = {} = {}", layer.slope_text(rehearsal.kernel_slope()), shown(slope));
+    let label = format!("layer slope L = {} = {}", rehearsal.slope_text(layer), shown(slope));
     let found = Diagnostic::new(Code::LongStep, message, sigma.span, label);
     let length = format!("{}, so h*L = {}", rehearsal.step_text(step), shown(step * slope));
     let found = match rehearsal.setting("N").or(rehearsal.setting("scheme")) {

@@ -1,12 +1,15 @@
 //! FDC0502: a sweep that does not take the step to 0 fast enough against the width of the layer.
 //!
 //! Gradients of a smoothed model converge to the true ones where `h/sigma -> 0` if surfaces are only crossed
-//! (Theorem 5.2), and where `h/sigma^2 -> 0` if one is held (Theorem 6.1).
+//! (Theorem 5.2), and where `h/sigma^2 -> 0` if one is held (Theorem 6.1). Which of them a surface is, is proved where that can
+//! be; otherwise the guess shows it.
 
 use super::Rehearsal;
 use super::layer::{Layer, short};
 use crate::model::Swept;
 use crate::resolve::text::number;
+use crate::surfaces::View;
+use crate::surfaces::class::{Class, class};
 use fdcc_grammar::{Code, Diagnostic};
 
 /// The lists that matter, and what the ratio is made of.
@@ -24,7 +27,14 @@ pub(super) fn check(rehearsal: &mut Rehearsal<'_>, found: &mut Vec<Diagnostic>) 
     if !falls || rehearsal.points.is_empty() {
         return;
     }
-    let layers = rehearsal.layers();
+    let mut layers = rehearsal.layers();
+    let view = View::of_model(rehearsal.model, &rehearsal.numbers);
+    // What is proved about a surface goes before what the guess shows.
+    layers.iter_mut().for_each(|layer| match class(&view, layer.surface) {
+        Some(Class::Held) => (layer.is_held, layer.is_proved) = (true, true),
+        Some(Class::Crossed { .. } | Class::Apart) => (layer.is_held, layer.is_proved) = (false, true),
+        _ => {}
+    });
     let Some(layer) = layers.iter().find(|it| it.is_held).or(layers.first()) else { return };
     let step = |row: usize| rehearsal.duration / lists.intervals(rehearsal, row);
     let ratios: Vec<f64> =
@@ -74,12 +84,12 @@ fn too_slow(rehearsal: &Rehearsal<'_>, layer: &Layer, lists: &Lists<'_>, ratios:
     let first = lists.intervals(rehearsal, 0);
     let better = lists.sigma.iter().map(|sigma| (first * (lists.sigma[0] / sigma).powi(power)).round());
     let better = better.map(number).collect::<Vec<_>>().join(", ");
-    let why = match layer.is_held {
-        true => {
-            format!("`{}` is held for part of the run, and Theorem 6.1 asks for h = o(sigma^2).", layer.name)
-        }
-        false => format!("`{}` is crossed, and Theorem 5.2 asks for h = o(sigma).", layer.name),
+    let what = match (layer.is_held, layer.is_proved) {
+        (true, true) => "held wherever it is met, and Theorem 6.1 asks for h = o(sigma^2)",
+        (true, false) => "held for part of the run, and Theorem 6.1 asks for h = o(sigma^2)",
+        (false, _) => "crossed, and Theorem 5.2 asks for h = o(sigma)",
     };
+    let why = format!("`{}` is {what}.", layer.name);
     let otherwise = match layer.is_held {
         true => "\nFor surfaces that are only crossed, h = o(sigma) is enough (Theorem 5.2).",
         false => "",

@@ -38,7 +38,10 @@ impl<'a> Elaborator<'a> {
             return Value::unknown(traits);
         };
         if self.numeric(size) <= 0.0 {
-            return self.fail(no_width(width, self.numeric(size)));
+            return self.fail(no_width(width.span, self.numeric(size)));
+        }
+        if !self.examining {
+            self.model.widths.push((width.span, size));
         }
         match rounded(&mut self.graph, value.parts.as_slice(), size) {
             Some(parts) => Value { parts: Parts::from_list(&parts), traits, named: value.named },
@@ -53,9 +56,10 @@ impl<'a> Elaborator<'a> {
     }
 }
 
-fn no_width(width: &Expr, size: f64) -> Diagnostic {
+/// The width of a `blend` that is not above 0.
+pub(crate) fn no_width(width: Span, size: f64) -> Diagnostic {
     let message = format!("a width of {} rounds nothing", text::number(size));
-    Diagnostic::new(Code::NotAllowedHere, message, width.span, "must be above 0")
+    Diagnostic::new(Code::NotAllowedHere, message, width, "must be above 0")
         .help("write over which width each knot is to be rounded, in the unit of its guard, for example 0.05")
 }
 

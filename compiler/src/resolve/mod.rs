@@ -27,6 +27,7 @@ pub(crate) mod value;
 pub(crate) mod walk;
 
 use crate::model::{Model, Surface};
+pub(crate) use blend::no_width;
 pub(crate) use calls::is_function;
 use elaborator::Elaborator;
 pub(crate) use elaborator::not_yet;
@@ -71,15 +72,17 @@ impl Elaborator<'_> {
 
 /// The known name that is nearest to a misspelt one, if any is near.
 pub fn closest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
-    let limit = name.chars().count() / 3;
-    let distance = |candidate: &str| {
-        let exact = strsim::osa_distance(name, candidate);
+    let (length, lower) = (name.chars().count(), name.to_lowercase());
+    let distance = |candidate: &'n str| {
+        let resized = length.abs_diff(candidate.chars().count());
+        // What differs in length alone by more is not worth a comparison: large models have thousands of names.
+        if candidate == name || resized > length / 3 {
+            return None;
+        }
         // `mun` for `muN` is nearer than `mu`.
-        let folded = strsim::osa_distance(&name.to_lowercase(), &candidate.to_lowercase());
-        let resized = name.chars().count().abs_diff(candidate.chars().count());
-        (folded, exact, resized)
+        let folded = strsim::osa_distance(&lower, &candidate.to_lowercase());
+        let exact = || strsim::osa_distance(name, candidate);
+        (folded <= length / 3).then(|| ((folded, exact(), resized), candidate))
     };
-    let near = known.filter(|candidate| *candidate != name).map(|candidate| (distance(candidate), candidate));
-    let best = near.filter(|(distance, _)| distance.0 <= limit).min_by_key(|(distance, _)| *distance);
-    best.map(|(_, candidate)| candidate)
+    known.filter_map(distance).min_by_key(|it| it.0).map(|(_, candidate)| candidate)
 }

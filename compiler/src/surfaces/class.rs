@@ -5,8 +5,10 @@
 //! below < 0 < above        repelling      jump < 0 everywhere                never repelling
 //! ```
 
+use super::degenerate::degenerate;
 use super::local::Local;
 use super::sample;
+use super::view::View;
 use crate::graph::{ExprId, evaluate};
 use crate::interval::{Claim, Interval};
 use crate::model::Symbol;
@@ -40,6 +42,15 @@ pub enum Class {
 
 /// Values for controls and unknowns.
 pub type Choice = Vec<(Symbol, f64)>;
+
+/// The class of a surface by itself, if everything about it is known.
+pub(crate) fn class(view: &View<'_>, at: usize) -> Option<Class> {
+    let mut local = Local::new(view, at)?;
+    if degenerate(&mut local).is_some() {
+        return Some(Class::Degenerate);
+    }
+    local.add_rates(view, at).then(|| classify(&mut local))
+}
 
 /// Finds the class. What a few points contradict is not even tried to be proved.
 pub(crate) fn classify(local: &mut Local) -> Class {

@@ -30,8 +30,7 @@ pub struct SurfaceReport {
 
 /// All surfaces of a model, with its parameters at these values; the components of a `Dir` are one, its vector.
 pub(crate) fn surfaces(model: &Model, numbers: &Numbers) -> Vec<SurfaceReport> {
-    let values = (0..model.params.len()).map(|at| numbers.of(model, Symbol::Param(at))).collect();
-    let view = View::of_model(model, values);
+    let view = View::of_model(model, numbers);
     let switches = model.switches().into_iter();
     let reports = switches.map(|switch| match switch.is_ball {
         true => ball(switch.place),

@@ -61,8 +61,7 @@ pub struct Smoothness {
 
 /// Of everything that has a name in a model, with its parameters at their values.
 pub(crate) fn smoothness(model: &Model, numbers: &Numbers) -> Vec<Smoothness> {
-    let values = (0..model.params.len()).map(|at| numbers.of(model, Symbol::Param(at))).collect();
-    let view = View::of_model(model, values);
+    let view = View::of_model(model, numbers);
     let named = model.names.iter().map(|(name, id)| (name.as_str(), *id));
     let surfaces = model.surfaces.iter().map(|it| (it.place.name.as_str(), it.psi));
     let equations = model.states.iter().map(|it| (it.equation.name.as_str(), it.rate));

@@ -2,6 +2,7 @@
 
 use crate::graph::{Expr, ExprId, Graph, evaluate};
 use crate::interval::Interval;
+use crate::lower::Numbers;
 use crate::model::{Ball, Control, Free, Model, Param, Place, Range, Row, State, Symbol};
 use std::collections::HashMap;
 
@@ -34,8 +35,9 @@ pub(crate) struct View<'m> {
 }
 
 impl<'m> View<'m> {
-    /// Of a model that has no error, with values for its parameters.
-    pub fn of_model(model: &'m Model, values: Vec<f64>) -> Self {
+    /// Of a model that has no error, with its parameters at these values.
+    pub fn of_model(model: &'m Model, numbers: &Numbers) -> Self {
+        let values = (0..model.params.len()).map(|at| numbers.of(model, Symbol::Param(at))).collect();
         View {
             graph: &model.graph,
             symbols: &model.symbols,

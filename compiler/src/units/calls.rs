@@ -1,7 +1,7 @@
 //! What a call measures: the builtin functions, the special forms, and the model's own functions, each time anew.
 
 use super::dimension::Dimension;
-use super::inference::{Inference, Operand};
+use super::inference::{Inference, Operand, side};
 use super::ratio::Ratio;
 use super::requirement::{Call, Reason};
 use super::value::{Part, Value, pairwise};
@@ -24,7 +24,7 @@ impl<'a> Inference<'a> {
             && let Some(Argument::Expr(function)) = given.first()
         {
             // `blend(f, width)(x)` measures what `f(x)` does.
-            return self.call(expr, function, arguments);
+            return self.blended(function, given.get(1), |it| it.call(expr, function, arguments));
         }
         let ExprKind::Name(name) = &callee.kind else { return Value::new() };
         let declared = self.scope.find(name);
@@ -61,9 +61,10 @@ impl<'a> Inference<'a> {
 
     /// A function of the model for these arguments; remembered, because functions build on each other.
     fn apply(&mut self, call: Call<'a>, values: Vec<Value>) -> Value {
-        let key = (call.name.span, values);
-        if let Some(known) = self.applied.get(&key) {
-            return known.clone();
+        let key = (call.name.span, values, self.gaps.is_some());
+        if let Some((value, gaps)) = self.applied.get(&key).cloned() {
+            gaps.into_iter().for_each(|gap| self.gap(&gap));
+            return value;
         }
         if self.calls.len() > DEEPEST_CALL || self.applied.len() > MOST_APPLICATIONS {
             return Value::new();
@@ -72,11 +73,41 @@ impl<'a> Inference<'a> {
         let names = call.arguments.iter().map(|name| name.name.as_str());
         self.locals.extend(names.zip(key.1.clone()));
         self.calls.push(call);
+        let around = self.gaps.clone();
+        self.gaps = around.as_ref().map(|_| Value::new());
         let value = self.evaluate(call.body);
+        let gaps = std::mem::replace(&mut self.gaps, around).unwrap_or_default();
         self.calls.pop();
         self.locals.truncate(self.frame);
         self.frame = outer;
-        self.applied.insert(key, value.clone());
+        gaps.iter().for_each(|gap| self.gap(gap));
+        self.applied.insert(key, (value.clone(), gaps));
+        value
+    }
+
+    /// Something changes sides where this is 0.
+    pub fn gap(&mut self, gap: &Part) {
+        if let Some(gaps) = self.gaps.as_mut().filter(|gaps| !gaps.contains(gap)) {
+            gaps.push(gap.clone());
+        }
+    }
+
+    /// What `blend` rounds: its width is one of every gap in it.
+    fn blended(
+        &mut self,
+        inner: &'a Expr,
+        width: Option<&'a Argument>,
+        evaluate: impl FnOnce(&mut Self) -> Value,
+    ) -> Value {
+        let around = self.gaps.replace(Value::new());
+        let value = evaluate(self);
+        let gaps = std::mem::replace(&mut self.gaps, around).unwrap_or_default();
+        if let Some(Argument::Expr(width)) = width {
+            let width = self.operand(width);
+            for gap in gaps {
+                self.compare(Reason::Blend, &(vec![gap], side(inner)), &width);
+            }
+        }
         value
     }
 
@@ -84,10 +115,15 @@ impl<'a> Inference<'a> {
         if let [Argument::Iteration(row, data), Argument::Expr(term)] = arguments {
             return self.sum(row, data, term);
         }
+        if let ("blend", [Argument::Expr(inner), width]) = (name, arguments) {
+            return self.blended(inner, Some(width), |it| it.evaluate(inner));
+        }
         let given = self.given(arguments);
+        if let ("abs" | "min" | "max", Some(first)) = (name, given.first()) {
+            first.0.iter().for_each(|part| self.gap(part));
+        }
         match (name, &given[..]) {
             ("abs" | "selected", [only]) => only.0.clone(),
-            ("blend", [inner, _]) => inner.0.clone(),
             ("sqrt", [only]) => self.powers(&only.0, Ratio::from_decimal(0.5)),
             ("min" | "max", [a, b]) => self.equal(Reason::Together(name), a, b),
             ("atan2", [a, b]) => {

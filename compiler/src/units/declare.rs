@@ -74,13 +74,20 @@ impl<'a> Inference<'a> {
     /// A definition has the unit that is written after its name, or that of its value. A plain number is a name for it.
     fn defined(&mut self, it: Declaration<'a>, value: &'a Expr, unit: Option<&Unit>) -> Value {
         let given = self.operand(value);
-        if let Some(unit) = unit {
+        let own: Value = if let Some(unit) = unit {
             let declared = (vec![written(unit)], named(it.name.span));
             self.compare(Reason::Given("its value", it.name), &declared, &given);
-            return given.0.iter().map(|_| written(unit)).collect();
+            given.0.iter().map(|_| written(unit)).collect()
+        } else {
+            let own = |part: &Part| if part.plain { self.number(it.name, it.item) } else { part.clone() };
+            given.0.iter().map(own).collect()
+        };
+        if !self.suspects.contains(&it.name.span) {
+            return own;
         }
-        let named = |part: &Part| if part.plain { self.number(it.name, it.item) } else { part.clone() };
-        given.0.iter().map(named).collect()
+        let used: Value = own.iter().map(|_| self.unknown()).collect();
+        self.equal(Reason::Uses(it.name), &(used.clone(), named(it.name.span)), &(own, given.1));
+        used
     }
 
     /// Bounds, starts and guesses have the unit of the name.

@@ -44,8 +44,10 @@ pub(crate) struct Inference<'a> {
     pub rows: Vec<(&'a str, &'a Item)>,
     /// The functions we are in.
     pub calls: Vec<Call<'a>>,
-    /// Results of functions, by function and arguments.
-    pub applied: HashMap<(Span, Vec<Value>), Value>,
+    /// Results of functions, by function, arguments and whether their gaps are asked for, with these.
+    pub applied: HashMap<(Span, Vec<Value>, bool), (Value, Value)>,
+    /// What is 0 where something within a `blend` has a knot or a kink; none outside of one.
+    pub gaps: Option<Value>,
     /// How deep we are.
     pub depth: usize,
     /// What switches, for the width of smoothing.
@@ -58,6 +60,8 @@ pub(crate) struct Inference<'a> {
     pub requirements: Vec<Requirement<'a>>,
     /// What is known to be wrong.
     pub wrong: HashSet<Span>,
+    /// The names whose unit is that of their uses.
+    pub suspects: HashSet<Span>,
     /// Whether this walk is to find out what the surroundings of the wrong texts need.
     pub listening: bool,
     /// The unknowns that stand for them then.
@@ -66,7 +70,7 @@ pub(crate) struct Inference<'a> {
 
 impl<'a> Inference<'a> {
     /// Nothing known but what is wrong.
-    pub fn new(wrong: HashSet<Span>) -> Self {
+    pub fn new(wrong: HashSet<Span>, suspects: HashSet<Span>, listening: bool) -> Self {
         Inference {
             scope: Scope::default(),
             circular: Vec::new(),
@@ -78,13 +82,15 @@ impl<'a> Inference<'a> {
             rows: Vec::new(),
             calls: Vec::new(),
             applied: HashMap::new(),
+            gaps: None,
             depth: 0,
             switches: Vec::new(),
             phases: HashMap::new(),
             bare: Vec::new(),
             requirements: Vec::new(),
             wrong,
-            listening: false,
+            suspects,
+            listening,
             freed: HashMap::new(),
         }
     }

@@ -7,10 +7,29 @@ use super::value::{Part, Value, pairwise};
 use crate::resolve::scope::{Declaration, Scope};
 use fdcc_grammar::Span;
 use fdcc_grammar::ast::{
-    Assignment, Check, Condition, Equation, Expr, Ident, Item, ItemKind, Setting, SettingValue, Swept,
+    self, Assignment, Check, Condition, Equation, Expr, Ident, Item, ItemKind, Setting, SettingValue, Swept,
 };
 
 impl<'a> Inference<'a> {
+    /// The whole text: the phases, and what stands outside of them.
+    pub fn model(&mut self, tree: &'a ast::Model) {
+        let outer: Vec<&'a Item> = tree.items.iter().collect();
+        self.enter(Scope::new(&outer, &mut Vec::new()));
+        for item in &tree.items {
+            let ItemKind::Phase { name, items } = &item.kind else { continue };
+            let inner: Vec<&'a Item> = items.iter().collect();
+            let all: Vec<&'a Item> = outer.iter().chain(&inner).copied().collect();
+            self.enter(Scope::new(&all, &mut Vec::new()));
+            self.items(&inner);
+            let scope = std::mem::take(&mut self.scope);
+            self.phases.insert(&name.name, scope);
+        }
+        if !self.phases.is_empty() {
+            self.enter(Scope::new(&outer, &mut Vec::new()));
+        }
+        self.items(&outer);
+    }
+
     /// Everything that is not a declaration: first what a unit is most surely found from, settings last, when all that
     /// switches is known.
     pub fn items(&mut self, items: &[&'a Item]) {

@@ -48,8 +48,14 @@ impl<'a> Speaker<'a> {
     }
 
     fn two_sided(&self, it: &Requirement<'a>, blame: Option<&Blame<'a>>) -> Diagnostic {
-        let of = |side: usize| blame.filter(|blame| blame.side == side);
-        let [left, right] = [self.label(&it.left, of(0)), self.label(&it.right, of(1))];
+        let is_use = matches!(it.reason, Reason::Uses(_));
+        let of = |side: usize| blame.filter(|blame| blame.side == side && !(is_use && it.right.plain));
+        let [mut left, right] = [self.label(&it.left, of(0)), self.label(&it.right, of(1))];
+        left += match it.reason {
+            Reason::Uses(_) => ", where it is used",
+            Reason::Blend => ", where it changes sides",
+            _ => "",
+        };
         Diagnostic::new(self.code(it.reason), self.message(it), it.left.span, left)
             .label(it.right.span, right)
     }
@@ -95,6 +101,8 @@ impl<'a> Speaker<'a> {
             Reason::Together(name) => format!("`{name}` of {a} and {b}"),
             Reason::Given("the width", name) => format!("`{}` is a width of {a}, not {b}", name.name),
             Reason::Given(what, name) => format!("`{}` is {a}, but {what} is {b}", name.name),
+            Reason::Blend => format!("`blend` rounds over {a}, but its width is {b}"),
+            Reason::Uses(name) => format!("`{}` is used as {a}, but its value is {b}", name.name),
             Reason::NoUnit(name) => format!("`{name}` of {a}"),
             Reason::Exponent => format!("an exponent that is {a}"),
             Reason::FixedPower => format!("a power of {a} whose exponent is not a fixed number"),

@@ -7,6 +7,7 @@
 
 mod bare;
 mod calls;
+mod common;
 mod declare;
 mod dimension;
 mod expression;
@@ -24,10 +25,9 @@ mod solve;
 mod table;
 mod value;
 
-use crate::resolve::scope::Scope;
 use dimension::Atom;
 pub use dimension::Dimension;
-use fdcc_grammar::ast::{self, Item, ItemKind, Unit};
+use fdcc_grammar::ast::{self, Unit};
 use fdcc_grammar::{Diagnostic, Span};
 use inference::Inference;
 use messages::Speaker;
@@ -61,35 +61,45 @@ pub(crate) fn infer(tree: &ast::Model) -> Units {
         return Units::default();
     }
     let speaker = Speaker { tree, notation: Notation::new(&written) };
+    let mut known = Known::default();
     let mut mistakes: Vec<Mistake<'_>> = Vec::new();
     loop {
-        let (inference, solution, contradiction) = walked(tree, wrong(&mistakes), false);
-        match contradiction {
-            Some(at) if mistakes.len() < MOST_MISTAKES => {
-                mistakes.push(Mistake::new(&inference.requirements[at], &inference, &solution));
+        let mut walk = Walk::new(tree, known.clone(), false);
+        if let Some((name, blamed)) = common::blamed(tree, &known, &walk) {
+            known.suspects.insert(name);
+            walk = blamed;
+        }
+        match walk.mistake() {
+            Some(mistake) if mistakes.len() < MOST_MISTAKES => {
+                known.wrong.insert(mistake.requirement.site);
+                mistakes.push(mistake);
             }
             _ => {
-                let notation = &speaker.notation;
-                let findings = Findings { inference: &inference, solution: &solution, notation };
-                let mut diagnostics = told(&speaker, &mistakes);
-                diagnostics.extend(bare::found(&inference, &solution, notation));
+                let (inference, solution, notation) = (&walk.inference, &walk.solution, &speaker.notation);
+                let findings = Findings { inference, solution, notation };
+                let mut diagnostics = told(&speaker, known, &mistakes);
+                diagnostics.extend(bare::found(inference, solution, notation));
                 return Units { names: findings.names(&tree.items), diagnostics };
             }
         }
     }
 }
 
-/// The texts that count as unknown from now on.
-fn wrong(mistakes: &[Mistake<'_>]) -> HashSet<Span> {
-    mistakes.iter().map(|it| it.requirement.site).collect()
+/// What earlier walks found out.
+#[derive(Clone, Default)]
+struct Known {
+    /// The texts that count as unknown from now on.
+    wrong: HashSet<Span>,
+    /// The names whose unit is that of their uses.
+    suspects: HashSet<Span>,
 }
 
 /// All findings. A last walk asks what the surroundings of each wrong text need.
-fn told<'a>(speaker: &Speaker<'a>, mistakes: &[Mistake<'a>]) -> Vec<Diagnostic> {
+fn told<'a>(speaker: &Speaker<'a>, known: Known, mistakes: &[Mistake<'a>]) -> Vec<Diagnostic> {
     if mistakes.is_empty() {
         return Vec::new();
     }
-    let (inference, solution, _) = walked(speaker.tree, wrong(mistakes), true);
+    let Walk { inference, solution, .. } = Walk::new(speaker.tree, known, true);
     let wanted = |it: &Requirement<'a>| {
         let freed = inference.freed.get(&it.site);
         let needed = freed.and_then(|&at| solution.settled(&Dimension::atom(Atom::Unknown(at))));
@@ -98,35 +108,33 @@ fn told<'a>(speaker: &Speaker<'a>, mistakes: &[Mistake<'a>]) -> Vec<Diagnostic> 
     mistakes.iter().map(|it| speaker.diagnostic(it, wanted(&it.requirement))).collect()
 }
 
-/// One walk over the whole text: what it demands, what follows, and the first demand that cannot be met.
-fn walked(
-    tree: &ast::Model,
-    wrong: HashSet<Span>,
-    listening: bool,
-) -> (Inference<'_>, Solution, Option<usize>) {
-    let mut inference = Inference { listening, ..Inference::new(wrong) };
-    let outer: Vec<&Item> = tree.items.iter().collect();
-    inference.enter(Scope::new(&outer, &mut Vec::new()));
-    for item in &tree.items {
-        let ItemKind::Phase { name, items } = &item.kind else { continue };
-        let inner: Vec<&Item> = items.iter().collect();
-        let all: Vec<&Item> = outer.iter().chain(&inner).copied().collect();
-        inference.enter(Scope::new(&all, &mut Vec::new()));
-        inference.items(&inner);
-        let scope = std::mem::take(&mut inference.scope);
-        inference.phases.insert(&name.name, scope);
+/// One walk over the whole text: what it demands, and what follows.
+struct Walk<'a> {
+    inference: Inference<'a>,
+    solution: Solution,
+    /// The demands that cannot be met.
+    contradictions: Vec<usize>,
+    /// The one to be told.
+    first: Option<usize>,
+}
+
+impl<'a> Walk<'a> {
+    fn new(tree: &'a ast::Model, known: Known, listening: bool) -> Self {
+        let mut inference = Inference::new(known.wrong, known.suspects, listening);
+        inference.model(tree);
+        let places = inference.numbers.iter().map(|it| it.place.clone()).collect();
+        let mut solution = Solution::new(inference.unknowns, places);
+        let differences: Vec<(Rank, Dimension)> =
+            inference.requirements.iter().map(Requirement::equation).collect();
+        let contradictions = solution.contradictions(&differences);
+        let first = innermost(&inference.requirements, &contradictions);
+        Walk { inference, solution, contradictions, first }
     }
-    if !inference.phases.is_empty() {
-        inference.enter(Scope::new(&outer, &mut Vec::new()));
+
+    fn mistake(&self) -> Option<Mistake<'a>> {
+        let requirement = &self.inference.requirements[self.first?];
+        Some(Mistake::new(requirement, &self.inference, &self.solution))
     }
-    inference.items(&outer);
-    let places = inference.numbers.iter().map(|it| it.place.clone()).collect();
-    let mut solution = Solution::new(inference.unknowns, places);
-    let differences: Vec<(Rank, Dimension)> =
-        inference.requirements.iter().map(Requirement::equation).collect();
-    let contradictions = solution.contradictions(&differences);
-    let first = innermost(&inference.requirements, &contradictions);
-    (inference, solution, first)
 }
 
 /// The first contradiction, or one inside it, or in a function that is called inside it, from which it may follow.

@@ -82,7 +82,9 @@ impl Notation {
     /// The unit of a factor that is missing between two others: `N/m` between a length and a force.
     pub fn quotient(&self, above: &Dimension, below: &Dimension) -> String {
         let Some(quotient) = above.over(below) else { return String::new() };
-        if quotient.factors().len() < 2
+        let both_named = [above, below].into_iter().all(|it| table::derived(it).is_some());
+        if both_named
+            || quotient.factors().len() < 2
             || self.seen.contains_key(&quotient)
             || table::derived(&quotient).is_some()
         {
@@ -114,9 +116,12 @@ impl Notation {
     }
 }
 
-/// In base units, or shorter with a power of a derived one: `N^2 s`.
+/// In base units, or shorter with a power of a derived one: `N^2 s`. Nobody writes `kg/s^2` for `N/m`.
 fn short(dimension: &Dimension) -> Factors {
     let plain = base(dimension);
+    if noun(dimension) == Some("a spring constant") {
+        return vec![("N".into(), Ratio::ONE), ("m".into(), Ratio::whole(-1))];
+    }
     let powers = [1, -1, 2, -2].map(Ratio::whole);
     let all = ["N", "J", "W", "Pa", "V"].into_iter().flat_map(|name| powers.map(|power| (name, power)));
     let with = |(name, power): (&str, Ratio)| {

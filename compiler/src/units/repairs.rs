@@ -8,8 +8,8 @@ use super::ratio::Ratio;
 use super::requirement::{Reason, Side};
 use super::table;
 use crate::resolve::{scope, text, walk};
-use fdcc_grammar::Fix;
 use fdcc_grammar::ast::{BinaryOperator, Expr, ExprKind, ItemKind};
+use fdcc_grammar::{Fix, Span};
 
 /// A mistake and all that its repair may look at.
 pub(crate) struct Repairs<'s, 'a> {
@@ -61,7 +61,12 @@ impl<'a> Repairs<'_, 'a> {
                 "the unit of the power would change with the exponent: write the exponent as a number or a `const`, or divide the base by {}",
                 self.scale().0
             )),
-            _ => self.unit_for_a_number().or_else(|| self.known_factor()).or_else(|| self.missing_factor()),
+            _ => self
+                .other_unit()
+                .map(|(_, text)| format!("its uses would fit `{text}`"))
+                .or_else(|| self.unit_for_a_number())
+                .or_else(|| self.known_factor())
+                .or_else(|| self.missing_factor()),
         }
     }
 
@@ -73,6 +78,10 @@ impl<'a> Repairs<'_, 'a> {
                 let title = format!("give `{}` the unit `[{unit}]`", name.name);
                 let at = unit_place(&blame.culprit)?;
                 Some(Fix::likely(title).insert(at, format!(" [{unit}]")))
+            }
+            None if self.other_unit().is_some() => {
+                let (span, text) = self.other_unit()?;
+                Some(Fix::likely(format!("change the unit: `{text}`")).replace(span, text))
             }
             None => {
                 let (number, unit) = self.bare_number()?;
@@ -103,6 +112,15 @@ impl<'a> Repairs<'_, 'a> {
             Some(noun) => format!("{noun} would be `{declaration}`"),
             None => format!("`{}` needs a unit: `{declaration}`", blame.culprit.name.name),
         })
+    }
+
+    /// The defined number with the unit that its uses need.
+    fn other_unit(&self) -> Option<(Span, String)> {
+        let it = &self.mistake.requirement;
+        let value = it.right.expr.filter(|_| matches!(it.reason, Reason::Uses(_)))?;
+        let ExprKind::Quantity(number, _) = &value.kind else { return None };
+        let unit = self.speaker.notation.unit(&it.left.dimension);
+        Some((value.span, format!("{} [{unit}]", text::number(*number))))
     }
 
     /// A plain number beside something with a unit, and that unit.

@@ -20,6 +20,10 @@ pub(crate) enum Reason<'a> {
     Together(&'a str),
     /// A value for a declared name: `the start`, `a bound`, and the name.
     Given(&'static str, &'a Ident),
+    /// A definition whose uses do not fit its value: the name.
+    Uses(&'a Ident),
+    /// `blend(a, b)`: what is 0 where something within `a` changes sides, and the width `b`.
+    Blend,
     /// The argument of `sin`: the right side is no unit.
     NoUnit(&'a str),
     /// `a ^ b` where `b` has a unit: the right side is no unit.
@@ -73,10 +77,10 @@ impl Requirement<'_> {
     /// What must be no unit, and how sure it is that it must.
     pub fn equation(&self) -> (Rank, Dimension) {
         let difference = self.left.dimension.over(&self.right.dimension).unwrap_or_default();
-        let is_given = matches!(self.reason, Reason::Given(..));
-        let rank = match (is_given && self.left.dimension.is_unknown(), difference.has_number()) {
-            (_, true) => Rank::Doubtful,
-            (true, _) => Rank::Direct,
+        let rank = match self.reason {
+            Reason::Uses(_) => Rank::Suspect,
+            _ if difference.has_number() => Rank::Doubtful,
+            Reason::Given(..) if self.left.dimension.is_unknown() => Rank::Direct,
             _ => Rank::Formula,
         };
         (rank, difference)

@@ -18,6 +18,8 @@ pub(crate) enum Rank {
     Formula,
     /// With names that were given as plain numbers.
     Doubtful,
+    /// The value of a definition that its uses seem to contradict.
+    Suspect,
 }
 
 /// What is known about the atoms.

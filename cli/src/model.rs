@@ -26,7 +26,7 @@ impl Loaded {
         if let Some(diagnostic) = not_text {
             return Ok(Loaded { source, model: None, diagnostics: vec![diagnostic] });
         }
-        let Reviewed { model, diagnostics } = review(&source.text);
+        let Reviewed { model, diagnostics, .. } = review(&source.text);
         Ok(Loaded { source, model, diagnostics })
     }
 }

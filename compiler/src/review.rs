@@ -1,15 +1,20 @@
 //! A text, read and checked in one go: all that commands and editors show of it.
 
 use crate::gaps::Gaps;
-use crate::{Model, allow, check};
+use crate::{Model, NamedUnit, allow, check};
+use fdcc_grammar::ast;
 use fdcc_grammar::{Diagnostic, Parse, SourceFile, parse};
 
 /// What a text means, and what is to be said about it.
 pub struct Reviewed {
+    /// What could be read of it.
+    pub tree: ast::Model,
     /// What it means, if it has no error.
     pub model: Option<Model>,
     /// What is wrong with it, in the order of the text, but for what the text allows.
     pub diagnostics: Vec<Diagnostic>,
+    /// The unit of each name, if the text uses units.
+    pub units: Vec<NamedUnit>,
 }
 
 /// Reads and checks a text.
@@ -20,11 +25,12 @@ pub fn review(text: &str) -> Reviewed {
 /// Checks a text that has been read.
 pub(crate) fn reviewed(text: &str, parsed: Parse) -> Reviewed {
     let mut diagnostics = parsed.diagnostics;
-    let mut model = None;
+    let (mut model, mut units) = (None, Vec::new());
     if !parsed.tree.items.is_empty() {
         let is_broken = !diagnostics.is_empty();
         let checked = check(&parsed.tree);
         model = checked.model.filter(|_| !is_broken);
+        units = checked.units;
         let source = SourceFile::new("", text);
         let gaps = Gaps::new(&source, &diagnostics, &parsed.lost);
         let trusted = |it: &Diagnostic| !is_broken || !gaps.may_be_behind(it);
@@ -32,5 +38,5 @@ pub(crate) fn reviewed(text: &str, parsed: Parse) -> Reviewed {
     }
     let mut diagnostics = allow::apply(text, diagnostics);
     diagnostics.sort_by_key(Diagnostic::span);
-    Reviewed { model, diagnostics }
+    Reviewed { tree: parsed.tree, model, diagnostics, units }
 }

@@ -6,6 +6,7 @@ pub mod ast;
 mod diagnostic;
 pub mod fix;
 mod format;
+mod pages;
 mod parse;
 mod source;
 

@@ -20,7 +20,8 @@ const CRATES: &[(&str, &[&str])] = &[
     ("grammar", &[]),
     ("runtime", &[]),
     ("compiler", &["fdcc-grammar", "fdcc-runtime"]),
-    ("cli", &["fdcc-grammar", "fdcc-compiler", "fdcc-runtime"]),
+    ("server", &["fdcc-grammar", "fdcc-compiler"]),
+    ("cli", &["fdcc-grammar", "fdcc-compiler", "fdcc-runtime", "fdcc-server"]),
     ("tests", &["fdcc-grammar", "fdcc-compiler", "fdcc-runtime"]),
 ];
 
@@ -53,8 +54,10 @@ const FOREIGN: &[(&str, &[&str])] = &[
     ("clarabel", &["runtime/src/clarabel.rs"]),
     ("miette", &["cli/src/render.rs"]),
     ("similar", &["cli/src/difference.rs"]),
-    ("serde", &["cli/src/output/"]),
-    ("serde_json", &["cli/src/output/", "cli/tests/", "tests/"]),
+    ("serde", &["cli/src/output/", "server/src/dispatch.rs"]),
+    ("serde_json", &["cli/src/output/", "cli/tests/", "server/", "tests/"]),
+    ("lsp_server", &["server/"]),
+    ("lsp_types", &["server/"]),
 ];
 
 /// `pest::x` and `use pest`, but not our own modules of the same name: `crate::clarabel`, `super::cranelift`.
@@ -109,7 +112,7 @@ const ABSENT: &[(&[&str], &[&str], &str)] = &[
             "Instant::now",
             "SystemTime",
         ],
-        "files, clocks, the environment and threads belong to cli",
+        "files, clocks, the environment and threads belong to cli and server",
     ),
     (
         &["grammar/src/", "compiler/src/", "runtime/src/"],
@@ -120,6 +123,11 @@ const ABSENT: &[(&[&str], &[&str], &str)] = &[
         &["grammar/src/", "compiler/src/", "runtime/src/"],
         &["Serialize", "Deserialize"],
         "file formats belong to cli/src/output/",
+    ),
+    (
+        &["server/src/"],
+        &["Serialize", "Deserialize", "print!", "println!", "eprint!", "eprintln!"],
+        "the types of the protocol are those of lsp_types, and its stream is nobody else's",
     ),
     (
         &["compiler/src/graph/"],

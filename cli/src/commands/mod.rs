@@ -7,6 +7,7 @@ mod explain;
 mod fix;
 mod fmt;
 mod grad;
+mod lsp;
 mod new;
 mod options;
 mod show;
@@ -58,6 +59,7 @@ pub enum Command {
     Fmt(fmt::Fmt),
     New(new::New),
     Explain(explain::Explain),
+    Lsp(lsp::Lsp),
 }
 
 impl Command {
@@ -76,6 +78,7 @@ impl Command {
             Command::Fmt(fmt) => fmt.run(),
             Command::New(new) => new.run(),
             Command::Explain(explain) => explain.run(),
+            Command::Lsp(lsp) => lsp.run(),
         }
     }
 }

@@ -1,0 +1,92 @@
+//! The open texts, as the client has them on its screen.
+
+use crate::analysis::Analysis;
+use crate::text::{Encoding, Text};
+use lsp_types::{TextDocumentContentChangeEvent, Uri};
+use std::cell::OnceCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+/// One open text.
+pub struct Document {
+    /// Its address.
+    pub uri: Uri,
+    /// The client's number for this state of it.
+    pub version: i32,
+    /// What is known about the last state that could be read, for what a broken one does not tell.
+    pub last_good: Option<Rc<Analysis>>,
+    text: Text,
+    analysis: OnceCell<Rc<Analysis>>,
+    is_published: bool,
+}
+
+impl Document {
+    /// What is known about it, found out when it is first asked for.
+    pub fn analysis(&self) -> &Rc<Analysis> {
+        self.analysis.get_or_init(|| Rc::new(Analysis::new(self.text.clone())))
+    }
+
+    fn become_text(&mut self, text: Text) {
+        if let Some(analysis) = self.analysis.take().filter(|it| it.is_readable) {
+            self.last_good = Some(analysis);
+        }
+        self.text = text;
+        self.is_published = false;
+    }
+}
+
+/// All open texts.
+#[derive(Default)]
+pub struct Documents {
+    open: BTreeMap<String, Document>,
+}
+
+impl Documents {
+    /// The text at an address, if it is open.
+    pub fn get(&self, uri: &Uri) -> Option<&Document> {
+        self.open.get(&uri.0)
+    }
+
+    /// A text is opened, or opened anew.
+    pub fn open(&mut self, uri: Uri, version: i32, text: &str, encoding: Encoding) {
+        let text = Text::new(text, encoding);
+        let (last_good, analysis) = (None, OnceCell::new());
+        let key = uri.0.clone();
+        self.open.insert(key, Document { uri, version, last_good, text, analysis, is_published: false });
+    }
+
+    /// A text is changed, piece by piece.
+    pub fn change(&mut self, uri: &Uri, version: i32, changes: &[TextDocumentContentChangeEvent]) {
+        let Some(document) = self.open.get_mut(&uri.0) else { return };
+        let mut text = document.text.clone();
+        for change in changes {
+            text = match change {
+                TextDocumentContentChangeEvent::TextDocumentContentChangePartial(it) => {
+                    text.changed(it.range, &it.text)
+                }
+                TextDocumentContentChangeEvent::TextDocumentContentChangeWholeDocument(it) => {
+                    Text::new(it.text.as_str(), text.encoding())
+                }
+            };
+        }
+        document.version = version;
+        document.become_text(text);
+    }
+
+    /// A text is closed; says whether it was open.
+    pub fn close(&mut self, uri: &Uri) -> bool {
+        self.open.remove(&uri.0).is_some()
+    }
+
+    /// A text that has changed since something was said about it.
+    pub fn next_unpublished(&self) -> Option<&Document> {
+        self.open.values().find(|document| !document.is_published)
+    }
+
+    /// Whether all has been said about a text.
+    pub fn set_published(&mut self, uri: &Uri, is_published: bool) {
+        if let Some(document) = self.open.get_mut(&uri.0) {
+            document.is_published = is_published;
+        }
+    }
+}

@@ -13,6 +13,7 @@ pub mod graph;
 pub mod interval;
 pub mod lower;
 pub mod model;
+pub mod names;
 mod overrides;
 mod polynomial;
 pub mod program;

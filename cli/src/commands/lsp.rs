@@ -7,8 +7,8 @@ use std::io::{BufReader, stdin, stdout};
 /// Serve an editor over the standard streams (Language Server Protocol)
 #[derive(Args)]
 pub struct Lsp {
-    /// Editors say so; there is no other way
-    #[arg(long, hide = true)]
+    /// Over the standard streams, as always; editors give it
+    #[arg(long)]
     stdio: bool,
 }
 

@@ -31,7 +31,8 @@ pub(crate) fn visit<'a>(value: &'a Expr, see: &mut dyn FnMut(&'a Expr)) {
     }
 }
 
-fn push_children<'a>(value: &'a Expr, into: &mut Vec<&'a Expr>) {
+/// The expressions just inside one, in the order of the text.
+pub(crate) fn push_children<'a>(value: &'a Expr, into: &mut Vec<&'a Expr>) {
     match &value.kind {
         ExprKind::Number(_) | ExprKind::Quantity(..) | ExprKind::Name(_) => {}
         ExprKind::Negate(inner)

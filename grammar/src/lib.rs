@@ -13,7 +13,7 @@ mod source;
 pub use diagnostic::{Code, Diagnostic, Label, Severity};
 pub use fix::{Edit, Fix};
 pub use format::format;
-pub use parse::{comments, parse};
+pub use parse::{comments, parse, words};
 pub use source::{LineColumn, SourceFile, Span};
 
 /// What a text holds: the items that could be read, and what is wrong with the rest.

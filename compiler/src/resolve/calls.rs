@@ -38,7 +38,8 @@ fn arity(name: &str) -> Option<usize> {
     listed.or_else(|| builtins::find(name).map(|builtin| builtin.row().arity))
 }
 
-fn function_names() -> Vec<&'static str> {
+/// All functions and forms that the language itself calls by a name.
+pub fn function_names() -> Vec<&'static str> {
     let table =
         builtins::ALL.iter().map(|it| it.row()).filter(|row| row.notation == builtins::Notation::Function);
     table.map(|row| row.name).chain(VECTOR_FUNCTIONS.iter().chain(FORMS).map(|row| row.0)).collect()

@@ -28,6 +28,7 @@ pub(crate) mod walk;
 
 use crate::model::{Model, Surface};
 pub(crate) use blend::no_width;
+pub use calls::function_names;
 pub(crate) use calls::is_function;
 use elaborator::Elaborator;
 pub(crate) use elaborator::not_yet;

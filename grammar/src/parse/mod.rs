@@ -19,7 +19,7 @@ mod rules;
 mod slips;
 mod tokens;
 mod unknown;
-mod words;
+pub mod words;
 
 pub(crate) use outline::{Column, Leaf, Part, Row, outline};
 use pest::Parser as _;

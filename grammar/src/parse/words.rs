@@ -1,7 +1,7 @@
 //! The table of reserved words: what each is for, and what to write instead of it as a name.
 
 /// A reserved word.
-pub(super) struct Word {
+pub struct Word {
     /// The word.
     pub text: &'static str,
     /// "it ..."
@@ -13,7 +13,7 @@ pub(super) struct Word {
 }
 
 /// An item as messages speak of it.
-pub(super) struct Form {
+pub struct Form {
     /// With its article.
     pub noun: &'static str,
     /// The right form.
@@ -36,7 +36,7 @@ const fn inner(text: &'static str, role: &'static str, instead: &'static str) ->
 
 /// Every reserved word.
 #[rustfmt::skip]
-pub(super) const WORDS: &[Word] = &[
+pub const WORDS: &[Word] = &[
     item("model", "names the model", "model_1", "a model line", "model block"),
     item("param", "introduces a parameter", "p", "a parameter", "param m = 2.0 [kg]"),
     item("const", "introduces a constant", "c", "a constant", "const g = 9.81 [m/s^2]"),
@@ -97,7 +97,7 @@ pub(super) fn entry_form(block: &str) -> Option<&'static Form> {
 }
 
 /// Words that mean something inside one kind of item only, and may be names elsewhere.
-pub(super) fn inner_words(item: &str) -> &'static [&'static str] {
+pub fn inner_words(item: &str) -> &'static [&'static str] {
     match item {
         "jump" => &["on", "falling", "rising", "at", "most", "then", "hold"],
         "data" => &["csv", "columns"],

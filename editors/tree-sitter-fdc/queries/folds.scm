@@ -1,0 +1,13 @@
+[
+  (dynamics)
+  (guess)
+  (jump)
+  (phase)
+  (link)
+  (method)
+  (sweep)
+  (report)
+  (expect)
+  (piecewise)
+  (switch)
+] @fold

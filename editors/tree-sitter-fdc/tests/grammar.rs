@@ -1,0 +1,87 @@
+//! The grammar accepts every model that the compiler accepts, sees the same items, and gives the trees of `test/corpus/`.
+//!
+//! The models are written out by `cargo run -p fdcc-tests --example editor_texts target/editors`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use tree_sitter::{Node, Parser, Query, Tree};
+use tree_sitter_fdc::{LANGUAGE, QUERIES};
+
+fn parse(text: &str) -> Tree {
+    let mut parser = Parser::new();
+    parser.set_language(&LANGUAGE.into()).expect("the versions fit");
+    parser.parse(text, None).expect("nothing stops it")
+}
+
+fn files(folder: &str, extension: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let entries = fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let paths = entries.map(|entry| entry.expect("the folder can be read").path());
+    paths.filter(|path| path.extension().is_some_and(|it| it == extension)).collect()
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).expect("the file is text")
+}
+
+/// Words that begin items in a tree: what `editor_texts` writes for the compiler.
+fn item_words(node: Node<'_>, text: &str, words: &mut Vec<String>) {
+    let mut cursor = node.walk();
+    for child in node.children(&mut cursor).filter(Node::is_named) {
+        let first = child.child(0);
+        if let (Some(first), "file" | "phase") = (first, node.kind()) {
+            words.extend(
+                (!first.is_named()).then(|| format!("{} {}", first.start_byte(), &text[first.byte_range()])),
+            );
+        }
+        if child.kind() == "phase" {
+            item_words(child, text, words);
+        }
+    }
+}
+
+#[test]
+fn every_model_is_read_and_has_the_same_items() {
+    let models = files("../../target/editors", "fdc");
+    assert!(models.len() > 500, "write the models out first");
+    let mut problems = Vec::new();
+    for path in models {
+        let (text, expected) = (read(&path), read(&path.with_extension("words")));
+        let tree = parse(&text);
+        let mut words = Vec::new();
+        item_words(tree.root_node(), &text, &mut words);
+        if tree.root_node().has_error() {
+            problems.push(format!("{}: not accepted", path.display()));
+        } else if words != expected.lines().collect::<Vec<_>>() {
+            problems.push(format!("{}: other items: {words:?}", path.display()));
+        }
+    }
+    assert!(problems.is_empty(), "\n{}", problems.join("\n"));
+}
+
+#[test]
+fn queries_name_what_there_is() {
+    for (name, query) in QUERIES {
+        Query::new(&LANGUAGE.into(), query).unwrap_or_else(|error| panic!("{name}.scm: {error}"));
+    }
+}
+
+/// `===` title `===` text `---` tree, as `tree-sitter test` reads it.
+#[test]
+fn the_corpus_has_its_trees() {
+    let mut cases = 0;
+    for path in files("test/corpus", "txt") {
+        let document = read(&path);
+        let parts: Vec<&str> = document.split("\n===\n").flat_map(|part| part.split("===\n")).collect();
+        let titled = parts.iter().filter(|part| !part.trim().is_empty()).collect::<Vec<_>>();
+        for pair in titled.chunks(2) {
+            let [title, case] = pair else { panic!("{}: a title without a case", path.display()) };
+            let (text, expected) = case.split_once("\n---\n").expect("text and tree are parted by ---");
+            let found = parse(text.trim_start_matches('\n')).root_node().to_sexp();
+            let expected = expected.split_whitespace().collect::<Vec<_>>().join(" ").replace(" )", ")");
+            assert_eq!(found, expected, "{}: {title}", path.display());
+            cases += 1;
+        }
+    }
+    assert!(cases > 5, "there are cases");
+}

@@ -26,7 +26,7 @@ fn collect(folder: &Path, prefix: &str, found: &mut Vec<Source>) {
         let name = path.file_name().expect("an entry has a name").to_string_lossy().into_owned();
         let full = format!("{prefix}{name}");
         // In a worktree `.git` is a file.
-        if [".git", "target", "node_modules"].contains(&name.as_str()) {
+        if [".git", "target", "node_modules", "out"].contains(&name.as_str()) {
             continue;
         }
         if path.is_dir() {

@@ -2,10 +2,12 @@
 //!
 //! `UPDATE=1 cargo test -p fdcc-tests --test editors` writes the list and the places where others repeat it anew.
 
-use fdcc_compiler::function_names;
+use fdcc_compiler::{function_names, review};
+use fdcc_grammar::parse;
 use fdcc_grammar::words::{WORDS, inner_words};
 use fdcc_tests::pages::check_file;
 use fdcc_tests::repository;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 
@@ -79,4 +81,39 @@ fn the_parser_of_tree_sitter_was_made_from_the_list() {
             "grammar.js has no `{word}`; see docs/recipes/change-the-syntax.md"
         );
     }
+}
+
+/// Each snippet, as it stands before anything is filled in, is an item or an expression; a model by itself is a right one.
+#[test]
+fn snippets_are_right() {
+    let snippets = fs::read_to_string(repository().join("editors/vscode/snippets/fdc.json"));
+    let snippets: BTreeMap<String, Value> =
+        serde_json::from_str(&snippets.expect("the snippets are there")).expect("the snippets are JSON");
+    assert!(snippets.len() > 5);
+    for (name, snippet) in snippets {
+        let lines = snippet["body"].as_array().expect("a snippet has lines").iter();
+        let lines: Vec<&str> = lines.map(|line| line.as_str().expect("a line is text")).collect();
+        let text = filled_in(&lines.join("\n"));
+        let found = match name.as_str() {
+            "A model" => review(&text).diagnostics,
+            "A right side that switches" | "A function in pieces" => {
+                parse(&format!("let y = {text}")).diagnostics
+            }
+            _ => parse(&text).diagnostics,
+        };
+        assert!(found.is_empty(), "{name}: {found:#?}\n{text}");
+    }
+}
+
+/// `${1:m}` is `m`, `${2|a,b|}` is `a`, and `$0` is nothing.
+fn filled_in(snippet: &str) -> String {
+    let mut pieces = snippet.split("${");
+    let first = pieces.next().unwrap_or_default().to_owned();
+    let filled = pieces.fold(first, |text, piece| {
+        let (stop, after) = piece.split_once('}').expect("a placeholder is closed");
+        let shown = stop.trim_start_matches(|c: char| c.is_ascii_digit());
+        let shown = shown[1..].split([',', '|']).next().unwrap_or_default();
+        text + shown + after
+    });
+    filled.replace("$0", "")
 }

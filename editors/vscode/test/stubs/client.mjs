@@ -1,0 +1,37 @@
+// The library of the protocol, without a server behind it.
+
+const seen = globalThis.seen;
+
+export const State = { Stopped: 1, Running: 2, Starting: 3 };
+export const ExecuteCommandRequest = { type: "workspace/executeCommand" };
+
+export class LanguageClient {
+  constructor(id, name, server, options) {
+    Object.assign(this, { id, name, server, options, listeners: [], disposed: false });
+    seen.clients.push(this);
+  }
+
+  onDidChangeState(listener) {
+    this.listeners.push(listener);
+  }
+
+  become(newState) {
+    for (const listener of this.listeners) listener({ newState });
+  }
+
+  async start() {
+    if (seen.refuses) throw new Error("it does not start");
+    this.initializeResult = { serverInfo: { name: "fdcc", version: "9.8.7" } };
+    this.become(State.Running);
+  }
+
+  async dispose() {
+    this.disposed = true;
+    this.become(State.Stopped);
+  }
+
+  async sendRequest(type, params) {
+    seen.requests.push({ type, params });
+    if (seen.answer instanceof Error) throw seen.answer;
+  }
+}

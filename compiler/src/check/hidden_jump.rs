@@ -1,5 +1,6 @@
 //! FDC0203: a `piecewise` that jumps, used as if it were an ordinary function.
 
+use super::surfaces::view_of;
 use super::{Facts, joints, sets};
 use crate::resolve::elaborator::{Elaborator, Role};
 use crate::resolve::knots::{Knot, Site};
@@ -9,10 +10,12 @@ use crate::resolve::walk;
 use crate::surfaces::Order;
 use fdcc_grammar::ast::{Argument, BinaryOperator, Equation, Expr, ExprKind, ItemKind, Relation};
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
+use std::cell::LazyCell;
 
 /// Reports jumps in everything that the problem is made of; reports and guesses may jump.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let meaning = &facts.meaning;
+    let view = LazyCell::new(|| view_of(meaning));
     for piece in &meaning.pieces {
         if matches!(piece.role, Role::Report(_) | Role::Number(_)) {
             continue;
@@ -20,7 +23,7 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
         for knot_use in &piece.traits.knots {
             let Some(site) = meaning.sites.get(&knot_use.site) else { continue };
             let jumps = |knot: &&Knot<'_>| {
-                knot.order == 0 && joints::order(meaning, piece, site, knot) == Order::Jumps
+                knot.order == 0 && joints::order(meaning, &view, piece, site, knot) == Order::Jumps
             };
             if let Some(knot) = site.knots.iter().find(jumps) {
                 let item = facts.items.iter().map(|item| item.span).find(|span| holds(*span, knot_use.used));

@@ -1,16 +1,21 @@
 //! Whether a knot of a `piecewise` is one of what is made with it: `x*step(x)` does not jump at 0, nor does `step(x)` where
 //! the bounds keep `x` away from there.
 
-use super::surfaces::view_of;
 use crate::builtins::Builtin;
 use crate::graph::{Expr, ExprId};
 use crate::model::Symbol;
 use crate::resolve::elaborator::{Elaborator, Piece};
 use crate::resolve::knots::{Knot, Site};
-use crate::surfaces::{Order, at_guards};
+use crate::surfaces::{Order, View, at_guards};
 
 /// How smooth a value is where a guard of a definition in it changes. Of a value that is not known, what the definition says.
-pub(super) fn order(meaning: &Elaborator<'_>, piece: &Piece<'_>, site: &Site<'_>, knot: &Knot<'_>) -> Order {
+pub(super) fn order(
+    meaning: &Elaborator<'_>,
+    view: &View<'_>,
+    piece: &Piece<'_>,
+    site: &Site<'_>,
+    knot: &Knot<'_>,
+) -> Order {
     let values = with_integrands(meaning, piece.parts.as_slice());
     if values.is_empty() {
         return knot.order.checked_sub(1).map_or(Order::Jumps, |times| Order::Times(times as u32));
@@ -20,7 +25,7 @@ pub(super) fn order(meaning: &Elaborator<'_>, piece: &Piece<'_>, site: &Site<'_>
     let own: Vec<[ExprId; 2]> = switches.iter().copied().filter(is_own).collect();
     // At an end of time the guards have other inputs.
     let guards = if own.is_empty() { switches } else { own };
-    at_guards(&view_of(meaning), &values, &guards)
+    at_guards(view, &values, &guards)
 }
 
 /// Components, and what the integrals in them integrate.

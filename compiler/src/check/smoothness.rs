@@ -1,5 +1,6 @@
 //! FDC0406: constraints and objectives should be twice continuously differentiable.
 
+use super::surfaces::view_of;
 use super::{Facts, hidden_jump, joints};
 use crate::resolve::elaborator::{Elaborator, Role};
 use crate::resolve::knots::{Knot, Site};
@@ -8,17 +9,20 @@ use crate::resolve::{text, walk};
 use crate::surfaces::Order;
 use fdcc_grammar::ast::{Condition, ExprKind};
 use fdcc_grammar::{Code, Diagnostic, Fix};
+use std::cell::LazyCell;
 
 /// Reports the worst knot of each `piecewise` in a path constraint, an end condition or the objective.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let meaning = &facts.meaning;
+    let view = LazyCell::new(|| view_of(meaning));
     for piece in &meaning.pieces {
         if !matches!(piece.role, Role::Path(..) | Role::Objective | Role::Boundary(_)) {
             continue;
         }
         for place in &piece.traits.knots {
             let Some(site) = meaning.sites.get(&place.site) else { continue };
-            let orders = site.knots.iter().map(|knot| (joints::order(meaning, piece, site, knot), knot));
+            let orders =
+                site.knots.iter().map(|knot| (joints::order(meaning, &view, piece, site, knot), knot));
             if let Some((Order::Times(times @ 0..2), knot)) = orders.min_by_key(|it| it.0) {
                 found.push(Kink { site, knot, times, place, role: &piece.role }.told(meaning));
             }

@@ -8,7 +8,7 @@ pub mod print;
 mod simplify;
 pub mod verify;
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use smallvec::SmallVec;
 
@@ -17,6 +17,9 @@ use crate::builtins::Builtin;
 pub use evaluate::evaluate;
 pub use print::print;
 pub use verify::verify;
+
+/// So many nodes are found faster one by one than by a look at the whole graph.
+const FEW: usize = 64;
 
 /// An expression of a [`Graph`].
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -137,8 +140,27 @@ impl Graph {
         id
     }
 
-    /// Everything the roots need, themselves included, operands first.
+    /// Everything the roots need, themselves included, operands first. Little of a large graph costs little.
     pub fn reachable(&self, roots: &[ExprId]) -> Vec<ExprId> {
+        self.few_reachable(roots).unwrap_or_else(|| self.all_reachable(roots))
+    }
+
+    /// What is reachable, if it is only a few.
+    fn few_reachable(&self, roots: &[ExprId]) -> Option<Vec<ExprId>> {
+        let mut found: BTreeSet<ExprId> = BTreeSet::new();
+        let mut pending: Vec<ExprId> = roots.to_vec();
+        while let Some(next) = pending.pop() {
+            if found.insert(next) {
+                pending.extend(self.operands(next));
+            }
+            if found.len() > FEW {
+                return None;
+            }
+        }
+        Some(found.into_iter().collect())
+    }
+
+    fn all_reachable(&self, roots: &[ExprId]) -> Vec<ExprId> {
         let mut needed = vec![false; roots.iter().map(|root| root.index() + 1).max().unwrap_or(0)];
         roots.iter().for_each(|root| needed[root.index()] = true);
         for index in (0..needed.len()).rev().filter(|&index| self.nodes[index].is_call()) {

@@ -52,48 +52,75 @@ pub(crate) fn class(view: &View<'_>, at: usize) -> Option<Class> {
     local.add_rates(view, at).then(|| classify(&mut local))
 }
 
-/// Finds the class. What a few points contradict is not even tried to be proved.
+/// What must be proved for each class.
+#[derive(Default)]
+pub(crate) struct Claims {
+    /// Each of them is enough to be crossed strictly.
+    pub crossed: Vec<Vec<(ExprId, Claim)>>,
+    /// All sides push onto it.
+    pub held: Vec<(ExprId, Claim)>,
+    /// Crossed, or both rates are 0.
+    pub touched: Vec<(ExprId, Claim)>,
+    /// No two sides push away from each other.
+    pub attracting: Vec<(ExprId, Claim)>,
+    /// All sides push away from it.
+    pub away: Vec<(ExprId, Claim)>,
+}
+
+/// Finds the class of a surface with two sides.
 pub(crate) fn classify(local: &mut Local) -> Class {
     use Claim::{Negative, NotNegative, Positive};
     let [below, above] = [local.below, local.above];
     let product = local.graph.mul(below, above);
     let product = local.normal(product);
     let fall = local.graph.neg(local.jump);
+    let claims = Claims {
+        crossed: [Positive, Negative].map(|sign| vec![(below, sign), (above, sign)]).to_vec(),
+        held: vec![(below, Positive), (above, Negative)],
+        touched: if below == above { Vec::new() } else { vec![(product, NotNegative)] },
+        attracting: vec![(fall, NotNegative)],
+        away: vec![(below, Negative), (above, Positive)],
+    };
+    decide(local, &claims)
+}
+
+/// The first class whose claims are proved. What a few points contradict is not even tried to be proved.
+pub(crate) fn decide(local: &Local, claims: &Claims) -> Class {
     let points = sample::points(local);
     if points.is_empty() && local.prover().proves(&local.graph, &[(local.psi, Claim::Nowhere)]) {
         return Class::Apart;
     }
-    let local = &*local;
-    let proves = |claims: &[(ExprId, Claim)]| {
+    let proves = |claims: &Vec<(ExprId, Claim)>| {
         points.iter().all(|point| is_true(local, claims, point))
             && local.prover().proves(&local.graph, claims)
     };
-    if proves(&[(below, Positive), (above, Positive)]) || proves(&[(below, Negative), (above, Negative)]) {
+    if claims.crossed.iter().any(proves) {
         return Class::Crossed { strictly: true };
     }
-    if proves(&[(below, Positive), (above, Negative)]) {
+    if proves(&claims.held) {
         return Class::Held;
     }
-    if below == above || proves(&[(product, NotNegative)]) {
+    if proves(&claims.touched) {
         return Class::Crossed { strictly: false };
     }
-    if proves(&[(fall, NotNegative)]) {
+    if proves(&claims.attracting) {
         return Class::Attracting;
     }
     // From here on the surface is accused of something, so there must be a point on it.
-    let away = [(below, Negative), (above, Positive)];
     match () {
         _ if points.is_empty() => Class::Unknown { mixed: false },
-        _ if proves(&away) => Class::Repelling,
-        _ => for_some(local, &away).map_or_else(|| unknown(local, &points), Class::RepellingFor),
+        _ if proves(&claims.away) => Class::Repelling,
+        _ => for_some(local, &claims.away)
+            .map_or_else(|| unknown(local, &claims.away, &points), Class::RepellingFor),
     }
 }
 
 /// Whether some of the points are pushed away from, by more than rounding.
-fn unknown(local: &Local, points: &[Vec<f64>]) -> Class {
+fn unknown(local: &Local, away: &[(ExprId, Claim)], points: &[Vec<f64>]) -> Class {
+    let roots: Vec<ExprId> = away.iter().map(|it| it.0).collect();
     let pushes_away = |point: &Vec<f64>| {
-        let rates = evaluate(&local.graph, &[local.below, local.above], point, &[]);
-        rates[0] < -1e-6 && rates[1] > 1e-6
+        let values = evaluate(&local.graph, &roots, point, &[]);
+        values.iter().zip(away).all(|(value, it)| it.1.is_true(*value) && value.abs() > 1e-6)
     };
     Class::Unknown { mixed: points.iter().any(pushes_away) }
 }

@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! psi' = mean + s jump/2 = 0 has a solution s in [-1, 1]   if and only if   |mean| <= -jump/2      (jump < 0)
+//! psi' = a - c s = 0         has a solution |s| <= 1       if and only if   |a| <= c               (vectors)
 //! ```
 //!
 //! Both sides are multiplied by the positive denominators and by the number in front of the left one, and a product is taken
 //! apart: `abs(s)*v_t^2 <= muN` for the race car.
 
+use super::ball::LocalBall;
 use super::local::Local;
 use super::view::View;
 use super::words::Words;
@@ -29,7 +31,7 @@ pub(crate) fn holding(local: &mut Local, view: &View<'_>, own: &[(String, ExprId
     if local.prover().proves(&local.graph, &room) {
         return Some("always".into());
     }
-    let factor = common_denominator(local, [&mean, &half]);
+    let factor = common_denominator(local, &[&mean, &half]);
     let number = mean.as_term().map_or(1.0, |term| 1.0 / term.1.abs());
     let (mean, half) = (mean.scaled(number, &factor), half.scaled(number, &factor));
     local.in_words(view, own, |local, words| {
@@ -40,12 +42,44 @@ pub(crate) fn holding(local: &mut Local, view: &View<'_>, own: &[(String, ExprId
     })
 }
 
+/// The same for the vector of a `Dir` that acts alike in every direction: `norm(F) <= mu*N`.
+pub(crate) fn within_reach(ball: &mut LocalBall, view: &View<'_>) -> Option<String> {
+    let reach = ball.reach()?;
+    let drift = ball.drift.clone();
+    let local = &mut ball.local;
+    let mut forms = NormalForms::with_squares();
+    let mut forms: Vec<Polynomial> = drift.iter().map(|&it| forms.of(&mut local.graph, it)).collect();
+    forms.push(local.form(reach));
+    let factor = common_denominator(local, &forms.iter().collect::<Vec<_>>());
+    let sizes: Vec<f64> = forms[..drift.len()].iter().filter_map(|it| Some(it.as_term()?.1.abs())).collect();
+    let is_alike = sizes.len() == drift.len() && sizes.iter().all(|size| *size == sizes[0]);
+    let number = if is_alike { 1.0 / sizes[0] } else { 1.0 };
+    local.in_words(view, &[], |local, words| {
+        let scaled = forms.iter().map(|form| form.scaled(number, &factor));
+        let mut texts: Vec<String> = scaled.map(|it| words.polynomial(&mut local.graph, &it, 0)).collect();
+        let reach = texts.pop()?;
+        let text = format!("norm({}) <= {reach}", vector(&texts, view));
+        (text.chars().count() <= LONGEST).then_some(text)
+    })
+}
+
+/// `F` for all of its parts, `(F.x, u)` for other numbers.
+fn vector(parts: &[String], view: &View<'_>) -> String {
+    let name = parts[0].split_once('.').map_or("", |it| it.0);
+    let places = view.states.iter().map(|it| &it.place).chain(view.controls.iter().map(|it| &it.place));
+    let all = places.filter(|place| place.name.split_once('.').is_some_and(|it| it.0 == name));
+    match all.map(|place| &place.name).eq(parts) {
+        true => name.to_string(),
+        false => format!("({})", parts.join(", ")),
+    }
+}
+
 const LONGEST: usize = 100;
 
 /// The product of all parameters that stand below, and are positive.
-fn common_denominator(local: &Local, forms: [&Polynomial; 2]) -> Monomial {
+fn common_denominator(local: &Local, forms: &[&Polynomial]) -> Monomial {
     let mut powers: BTreeMap<ExprId, i32> = BTreeMap::new();
-    for &(atom, power) in forms.into_iter().flat_map(|form| form.terms.keys()).flatten() {
+    for &(atom, power) in forms.iter().flat_map(|form| form.terms.keys()).flatten() {
         if power < 0 && is_not_negative(local, atom) {
             let highest = powers.entry(atom).or_default();
             *highest = (*highest).max(-power);

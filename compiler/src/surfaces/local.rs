@@ -45,8 +45,8 @@ pub(crate) struct Local {
     pub sides: Vec<(usize, [ExprId; 2])>,
     /// What lies where on the surface.
     pub constraints: Vec<(ExprId, Interval)>,
-    /// Replaced on the surface: a state's input and its value.
-    pub replaced: Option<(u32, ExprId)>,
+    /// Replaced on the surface: a state's input and its value, over what is replaced after it.
+    pub replaced: Vec<(u32, ExprId)>,
     known: HashMap<ExprId, ExprId>,
     forms: NormalForms,
 }
@@ -69,7 +69,7 @@ impl Local {
             written: [zero; 2],
             sides: Vec::new(),
             constraints: Vec::new(),
-            replaced: None,
+            replaced: Vec::new(),
             known: HashMap::new(),
             forms: NormalForms::default(),
         }
@@ -93,13 +93,23 @@ impl Local {
 
     /// Adds what happens on the surface; says whether all rates that matter are known.
     pub fn add_rates(&mut self, view: &View<'_>, at: usize) -> bool {
-        if self.gradient.iter().any(|it| !view.has_rate[it.0]) {
-            return false;
-        }
+        let Some(rate) = self.rate(view) else { return false };
         self.replace_a_state(view);
-        self.rates(view, at);
+        self.rates(rate, at);
         self.rows(view);
         true
+    }
+
+    /// Takes the surface `at` besides those before it: its rate, if that is known. Where all are 0 it is 0 as well.
+    pub fn add_surface(&mut self, view: &View<'_>, at: usize) -> Option<ExprId> {
+        let psi = self.import(view, view.surfaces[at].1?);
+        self.psi = psi;
+        self.differentiate();
+        let rate = self.rate(view)?;
+        self.psi = self.substituted(psi);
+        self.differentiate();
+        self.replace_a_state(view);
+        Some(rate)
     }
 
     /// A copy of an expression of the model.
@@ -184,7 +194,7 @@ impl Local {
                 let value = self.graph.neg(quotient);
                 let value = self.normal(value);
                 self.constraints.push((value, self.domain[input as usize]));
-                self.replaced = Some((input, value));
+                self.replaced.push((input, value));
                 return;
             }
         }
@@ -196,38 +206,41 @@ impl Local {
         let on_it = self.substituted(expr);
         let form = self.form(on_it);
         let zero = self.form(self.psi);
-        let reduced = if self.replaced.is_none() { form.reduced(&zero) } else { None };
+        let reduced = if self.replaced.is_empty() { form.reduced(&zero) } else { None };
         reduced.unwrap_or(form).to_expr(&mut self.graph)
     }
 
     fn substituted(&mut self, expr: ExprId) -> ExprId {
-        match self.replaced {
-            Some((input, value)) => {
-                self.graph.substitute(&[expr], &|position| (position == input).then_some(value))[0]
-            }
-            None => expr,
-        }
+        let replaced = self.replaced.clone().into_iter();
+        replaced.fold(expr, |expr, (input, value)| self.with(expr, Some(input), value))
+    }
+
+    /// An expression with an input, if there is one, at a value.
+    pub fn with(&mut self, expr: ExprId, input: Option<u32>, value: ExprId) -> ExprId {
+        self.graph.substitute(&[expr], &|position| (Some(position) == input).then_some(value))[0]
     }
 
     /// An expression with the surface's selector at one of its ends.
     fn on_side(&mut self, expr: ExprId, selector: Option<u32>, side: f64) -> ExprId {
         let end = self.graph.number(side);
-        self.graph.substitute(&[expr], &|position| (Some(position) == selector).then_some(end))[0]
+        self.with(expr, selector, end)
     }
 
-    fn rates(&mut self, view: &View<'_>, at: usize) {
-        let gradient = self.gradient.clone();
-        let rates: Vec<ExprId> =
-            gradient.iter().map(|&(state, _)| self.import(view, view.states[state].rate)).collect();
+    /// `psi_t + psi_x f`, if the rates are known.
+    fn rate(&mut self, view: &View<'_>) -> Option<ExprId> {
+        let mut terms = vec![self.in_time];
+        for (state, slope) in self.gradient.clone() {
+            let rate = view.has_rate[state].then(|| self.import(view, view.states[state].rate))?;
+            terms.push(self.graph.mul(slope, rate));
+        }
+        Some(self.graph.sum(&terms))
+    }
+
+    fn rates(&mut self, rate: ExprId, at: usize) {
         let selector = self.input_of(Symbol::Selector(at));
         let ends = [-1.0, 1.0].map(|side| {
-            let mut terms = vec![self.in_time];
-            for (&rate, &(_, slope)) in rates.iter().zip(&gradient) {
-                let rate = self.on_side(rate, selector, side);
-                terms.push(self.graph.mul(slope, rate));
-            }
-            let sum = self.graph.sum(&terms);
-            self.substituted(sum)
+            let end = self.on_side(rate, selector, side);
+            self.substituted(end)
         });
         self.written = ends;
         [self.below, self.above] = ends.map(|end| self.on_surface(end));
@@ -249,7 +262,7 @@ impl Local {
     }
 
     /// Path constraints over what occurs here: outside them nothing is asked.
-    fn rows(&mut self, view: &View<'_>) {
+    pub fn rows(&mut self, view: &View<'_>) {
         for row in view.path.iter().take(MOST_ROWS) {
             let before = self.symbols.len();
             let value = self.import(view, row.value);

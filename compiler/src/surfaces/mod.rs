@@ -3,6 +3,7 @@
 //! Each surface is taken out of the model by itself ([`local`]), its class is proved over the bounds of states and controls
 //! ([`class`]), with parameters at their values; what cannot be proved is called unknown.
 
+pub(crate) mod ball;
 pub(crate) mod class;
 pub(crate) mod coordinates;
 pub(crate) mod degenerate;

@@ -1,8 +1,9 @@
 //! What is known about every surface of a model, as text: for `fdcc show` and for editors.
 
+use super::ball::LocalBall;
 use super::class::{Class, classify};
 use super::degenerate::degenerate;
-use super::holding::holding;
+use super::holding::{holding, within_reach};
 use super::local::Local;
 use super::view::View;
 use crate::lower::Numbers;
@@ -33,22 +34,30 @@ pub(crate) fn surfaces(model: &Model, numbers: &Numbers) -> Vec<SurfaceReport> {
     let view = View::of_model(model, numbers);
     let switches = model.switches().into_iter();
     let reports = switches.map(|switch| match switch.is_ball {
-        true => ball(switch.place),
+        true => ball(&view, switch.surfaces.start, switch.place),
         false => report(&view, switch.surfaces.start, model),
     });
     reports.collect()
 }
 
-fn ball(place: &Place) -> SurfaceReport {
-    let class = "the direction of a vector: held at 0 up to a limit in every direction";
+/// The vector of a `Dir`, whose first component is the surface `at`.
+fn ball(view: &View<'_>, at: usize, place: &Place) -> SurfaceReport {
+    let ball = view.balls.iter().find(|ball| ball.surfaces.start == at);
+    let mut ball = ball.and_then(|ball| LocalBall::new(view, ball));
+    let class = ball.as_mut().map_or(Class::Unknown { mixed: false }, LocalBall::classify);
+    let holding = match (&class, ball) {
+        (Class::Held, _) => Some("always".into()),
+        (Class::Attracting, Some(mut ball)) => within_reach(&mut ball, view),
+        _ => None,
+    };
     SurfaceReport {
         place: place.clone(),
         function: format!("Dir({})", place.name),
         gradient: Vec::new(),
         jump: String::new(),
-        class: Class::Unknown { mixed: false },
-        meaning: class.into(),
-        holding: None,
+        meaning: in_words(&class, view).replace("on both sides", "in every direction"),
+        class,
+        holding,
     }
 }
 

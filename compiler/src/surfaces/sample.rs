@@ -67,8 +67,10 @@ fn inside(domain: Interval, trial: u64, at: u64) -> f64 {
 
 /// Moves the states along the gradient until `psi` vanishes; says whether that worked within all bounds.
 fn onto_surface(local: &Local, point: &mut [f64]) -> bool {
-    if let Some((input, value)) = local.replaced {
+    for &(input, value) in local.replaced.iter().rev() {
         point[input as usize] = evaluate(&local.graph, &[value], point, &[])[0];
+    }
+    if !local.replaced.is_empty() {
         return is_allowed(local, point);
     }
     let inputs: Vec<usize> = local

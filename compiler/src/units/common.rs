@@ -1,55 +1,103 @@
-//! Several texts that do not fit and have a definition in common: then the definition is what is wrong.
+//! What several texts that do not fit have in common: perhaps a definition, and then it is what is wrong.
 //!
 //! The definition is taken for unknown and its uses are asked for its unit first. If they agree on one, so that fewer texts
-//! are left that do not fit, its value is what does not fit.
+//! are left that do not fit, its value is what does not fit. Texts that have nothing to do with each other are told together.
 
 use super::requirement::{Reason, Requirement};
 use super::{Known, Walk};
 use crate::resolve::{scope, walk};
 use fdcc_grammar::Span;
 use fdcc_grammar::ast::{self, Expr, Ident, Item, ItemKind};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Definitions beyond these are not tried.
 const MOST_TRIALS: usize = 6;
 
-/// A walk in which the definition that the chosen text and others have in common is the one that is wrong.
-pub(crate) fn blamed<'a>(tree: &'a ast::Model, known: &Known, so_far: &Walk<'a>) -> Option<(Span, Walk<'a>)> {
-    let first = so_far.first?;
-    let requirements = &so_far.inference.requirements;
-    let others: Vec<usize> = so_far.contradictions.iter().copied().filter(|&at| at != first).collect();
-    if others.is_empty() {
-        return None;
-    }
-    let definitions = definitions(tree);
-    let of = |at: usize| used(&requirements[at], &definitions);
-    let elsewhere: Vec<Span> = others.into_iter().flat_map(of).collect();
-    let shared = of(first).into_iter().filter(|it| elsewhere.contains(it) && !known.suspects.contains(it));
-    shared.take(MOST_TRIALS).find_map(|name| {
-        let mut known = known.clone();
-        known.suspects.insert(name);
-        let trial = Walk::new(tree, known, false);
-        let is_it = |at: &&usize| matches!(trial.inference.requirements[**at].reason, Reason::Uses(it) if it.span == name);
-        let blamed = trial.contradictions.iter().find(is_it).copied();
-        let is_better = blamed.is_some() && trial.contradictions.len() < so_far.contradictions.len();
-        is_better.then_some((name, Walk { first: blamed, ..trial }))
-    })
+/// What is wrong for sure after a walk: a walk in which it is told, and which texts of that.
+pub(crate) struct Found<'a> {
+    /// The walk.
+    pub walk: Walk<'a>,
+    /// Its requirements that are mistakes; none if everything fits.
+    pub mistakes: Vec<usize>,
+    /// The definition that its uses contradict.
+    pub suspect: Option<Span>,
 }
 
-/// What is defined by a value, by its name.
-type Definitions<'a> = HashMap<&'a str, (&'a Ident, &'a Item, &'a Expr)>;
+/// The chosen text, or the definition that it and others contradict, and everything that has nothing to do with it.
+pub(crate) fn found<'a>(tree: &'a ast::Model, known: &Known, walk: Walk<'a>) -> Found<'a> {
+    let Some(first) = walk.first else { return Found { walk, mistakes: Vec::new(), suspect: None } };
+    if walk.contradictions.len() == 1 {
+        return Found { walk, mistakes: vec![first], suspect: None };
+    }
+    let definitions = definitions(tree);
+    let used: HashMap<usize, Vec<Definition<'a>>> = walk
+        .contradictions
+        .iter()
+        .map(|&at| (at, used(&walk.inference.requirements[at], &definitions)))
+        .collect();
+    let mut uses: HashMap<Span, usize> = HashMap::new();
+    used.values().flatten().for_each(|it| *uses.entry(it.name.span).or_default() += 1);
+    let shared = used[&first].iter().filter(|it| uses[&it.name.span] > 1 && it.is_number());
+    let tried: Vec<Span> = shared.map(|it| it.name.span).take(MOST_TRIALS).collect();
+    let mut trials = tried.iter().filter(|name| !known.suspects.contains(name));
+    if let Some(found) = trials.find_map(|&name| trial(tree, known, name, &walk)) {
+        return found;
+    }
+    let wrong: Vec<Span> =
+        walk.contradictions.iter().map(|&at| walk.inference.requirements[at].site).collect();
+    let is_alone = |at: &usize| {
+        let it = &walk.inference.requirements[*at];
+        let is_known = it.left.dimension.is_known() && it.right.dimension.is_known();
+        let shares = |it: &Definition<'_>| uses[&it.name.span] > 1 && !tried.contains(&it.name.span);
+        let is_inside = |outer: Span, inner: &Span| {
+            outer != *inner && outer.start <= inner.start && inner.end <= outer.end
+        };
+        let follows = |it: &Definition<'_>| wrong.iter().any(|wrong| is_inside(it.value.span, wrong));
+        is_known
+            && it.calls.is_empty()
+            && !used[at].iter().any(|it| shares(it) || follows(it))
+            && !wrong.iter().any(|other| is_inside(it.site, other))
+    };
+    let mut mistakes = vec![first];
+    mistakes.extend(walk.contradictions.iter().copied().filter(|at| *at != first && is_alone(at)));
+    Found { mistakes, suspect: None, walk }
+}
 
-fn definitions(tree: &ast::Model) -> Definitions<'_> {
+/// Whether fewer texts do not fit if a definition is what its uses say.
+fn trial<'a>(tree: &'a ast::Model, known: &Known, name: Span, so_far: &Walk<'a>) -> Option<Found<'a>> {
+    let mut known = known.clone();
+    known.suspects.insert(name);
+    let walk = Walk::new(tree, known, false);
+    let is_it =
+        |at: &&usize| matches!(walk.inference.requirements[**at].reason, Reason::Uses(it) if it.span == name);
+    let blamed = walk.contradictions.iter().find(is_it).copied()?;
+    let is_better = walk.contradictions.len() < so_far.contradictions.len();
+    is_better.then(|| Found { walk, mistakes: vec![blamed], suspect: Some(name) })
+}
+
+/// What is defined by a value.
+#[derive(Clone, Copy)]
+struct Definition<'a> {
+    name: &'a Ident,
+    item: &'a Item,
+    value: &'a Expr,
+}
+
+impl Definition<'_> {
+    /// Whether it is a quantity, not a function.
+    fn is_number(&self) -> bool {
+        !matches!(self.item.kind, ItemKind::Fn { .. })
+    }
+}
+
+fn definitions(tree: &ast::Model) -> HashMap<&str, Definition<'_>> {
     let inner = tree.items.iter().filter_map(|item| match &item.kind {
         ItemKind::Phase { items, .. } => Some(items),
         _ => None,
     });
     let all = tree.items.iter().chain(inner.flatten());
-    all.filter_map(|item| {
-        let name = scope::declared(item)?;
-        Some((name.name.as_str(), (name, item, value_of(item)?)))
-    })
-    .collect()
+    let definition = |item| Some(Definition { name: scope::declared(item)?, item, value: value_of(item)? });
+    all.filter_map(definition).map(|it| (it.name.name.as_str(), it)).collect()
 }
 
 fn value_of(item: &Item) -> Option<&Expr> {
@@ -62,21 +110,22 @@ fn value_of(item: &Item) -> Option<&Expr> {
 }
 
 /// The definitions that both sides are made of, the nearest first.
-fn used(requirement: &Requirement<'_>, definitions: &Definitions<'_>) -> Vec<Span> {
-    let mut texts: Vec<&Expr> =
+fn used<'a>(
+    requirement: &Requirement<'a>,
+    definitions: &HashMap<&str, Definition<'a>>,
+) -> Vec<Definition<'a>> {
+    let mut texts: Vec<&'a Expr> =
         [&requirement.left, &requirement.right].iter().filter_map(|it| it.expr).collect();
-    let (mut seen, mut found) = (Vec::new(), Vec::new());
+    let (mut seen, mut found) = (HashSet::new(), Vec::new());
     let mut next = 0;
     while let Some(text) = texts.get(next).copied() {
         next += 1;
         walk::names(text, &mut |name, _| {
-            let Some(&(name, item, value)) = definitions.get(name) else { return };
-            if !seen.contains(&name.span) {
-                seen.push(name.span);
-                texts.push(value);
-                let can_be_suspect = !matches!(item.kind, ItemKind::Fn { .. });
-                found.extend(can_be_suspect.then_some(name.span));
-            }
+            let Some(definition) = definitions.get(name).filter(|it| seen.insert(it.name.span)) else {
+                return;
+            };
+            texts.push(definition.value);
+            found.push(*definition);
         });
     }
     found

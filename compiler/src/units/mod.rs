@@ -64,24 +64,21 @@ pub(crate) fn infer(tree: &ast::Model) -> Units {
     let mut known = Known::default();
     let mut mistakes: Vec<Mistake<'_>> = Vec::new();
     loop {
-        let mut walk = Walk::new(tree, known.clone(), false);
-        if let Some((name, blamed)) = common::blamed(tree, &known, &walk) {
-            known.suspects.insert(name);
-            walk = blamed;
+        let found = common::found(tree, &known, Walk::new(tree, known.clone(), false));
+        let Walk { inference, solution, .. } = &found.walk;
+        if found.mistakes.is_empty() || mistakes.len() >= MOST_MISTAKES {
+            let findings = Findings { inference, solution, notation: &speaker.notation };
+            let mut diagnostics = told(&speaker, known, &mistakes);
+            diagnostics.extend(bare::found(inference, solution, &speaker.notation));
+            return Units { names: findings.names(&tree.items), diagnostics };
         }
-        match walk.mistake() {
-            Some(mistake) if mistakes.len() < MOST_MISTAKES => {
-                known.wrong.insert(mistake.requirement.site);
-                mistakes.push(mistake);
-            }
-            _ => {
-                let (inference, solution, notation) = (&walk.inference, &walk.solution, &speaker.notation);
-                let findings = Findings { inference, solution, notation };
-                let mut diagnostics = told(&speaker, known, &mistakes);
-                diagnostics.extend(bare::found(inference, solution, notation));
-                return Units { names: findings.names(&tree.items), diagnostics };
-            }
+        for at in found.mistakes {
+            let mistake = Mistake::new(&inference.requirements[at], inference, solution);
+            known.wrong.insert(mistake.requirement.site);
+            mistakes.push(mistake);
         }
+        known.suspects.extend(found.suspect);
+        mistakes.truncate(MOST_MISTAKES);
     }
 }
 
@@ -129,11 +126,6 @@ impl<'a> Walk<'a> {
         let contradictions = solution.contradictions(&differences);
         let first = innermost(&inference.requirements, &contradictions);
         Walk { inference, solution, contradictions, first }
-    }
-
-    fn mistake(&self) -> Option<Mistake<'a>> {
-        let requirement = &self.inference.requirements[self.first?];
-        Some(Mistake::new(requirement, &self.inference, &self.solution))
     }
 }
 

@@ -8,6 +8,7 @@ mod gradient;
 mod repelling;
 mod start;
 mod uses;
+mod vector;
 
 use super::Facts;
 use crate::resolve::elaborator::Elaborator;
@@ -21,7 +22,7 @@ use uses::{Use, uses};
 /// Models with more surfaces than these are not examined: nobody would read it.
 const MOST_SURFACES: usize = 300;
 
-/// Reports about every surface; those of a `Dir` are a matter of their own.
+/// Reports about every surface; the components of a `Dir` are one, its vector.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let view = view_of(facts.meaning);
     let uses = uses(facts);
@@ -31,6 +32,7 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
         let place = uses.iter().find(|it| it.surface == view.surfaces[at].0.name);
         Subject { facts, view: &view, at, place, local }.look(found);
     }
+    vector::check(&view, &uses, found);
 }
 
 /// One surface under examination.

@@ -1,4 +1,4 @@
-//! Where the surfaces are used: the term of a right side that holds `Sgn(surface)` or `match surface`.
+//! Where the surfaces are used: the term of a right side that holds `Sgn(surface)`, `Dir(vector)` or `match surface`.
 
 use crate::check::Facts;
 use crate::resolve::text::{self, Style};
@@ -14,7 +14,7 @@ pub(super) struct Use<'a> {
     pub equation: Option<&'a Equation>,
     /// The term of the sum that holds it.
     pub term: &'a Expr,
-    /// `Sgn(...)` or `match ...`.
+    /// `Sgn(...)`, `Dir(...)` or `match ...`.
     pub set: &'a Expr,
     /// The surface inside.
     pub name: Span,
@@ -58,7 +58,7 @@ fn surface_of(set: &Expr) -> Option<(String, Span)> {
     match &set.kind {
         ExprKind::Match { surface, .. } => Some((surface.name.clone(), surface.span)),
         ExprKind::Call(callee, arguments) => match (&callee.kind, arguments.as_slice()) {
-            (ExprKind::Name(name), [Argument::Expr(psi)]) if name == "Sgn" => {
+            (ExprKind::Name(name), [Argument::Expr(psi)]) if matches!(name.as_str(), "Sgn" | "Dir") => {
                 Some((text::expr(psi), psi.span))
             }
             _ => None,

@@ -49,14 +49,12 @@ pub(crate) fn found<'a>(tree: &'a ast::Model, known: &Known, walk: Walk<'a>) -> 
         let it = &walk.inference.requirements[*at];
         let is_known = it.left.dimension.is_known() && it.right.dimension.is_known();
         let shares = |it: &Definition<'_>| uses[&it.name.span] > 1 && !tried.contains(&it.name.span);
-        let is_inside = |outer: Span, inner: &Span| {
-            outer != *inner && outer.start <= inner.start && inner.end <= outer.end
-        };
-        let follows = |it: &Definition<'_>| wrong.iter().any(|wrong| is_inside(it.value.span, wrong));
+        let holds = |outer: Span, inner: &Span| outer.start <= inner.start && inner.end <= outer.end;
+        let follows = |it: &Definition<'_>| wrong.iter().any(|wrong| holds(it.value.span, wrong));
         is_known
             && it.calls.is_empty()
             && !used[at].iter().any(|it| shares(it) || follows(it))
-            && !wrong.iter().any(|other| is_inside(it.site, other))
+            && !wrong.iter().any(|other| *other != it.site && holds(it.site, other))
     };
     let mut mistakes = vec![first];
     mistakes.extend(walk.contradictions.iter().copied().filter(|at| *at != first && is_alone(at)));

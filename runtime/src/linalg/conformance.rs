@@ -179,14 +179,14 @@ fn diagonally_dominant(jacobian: &Triplets, stages: Stages, random: &mut Random)
     let strong = |i: usize, j: usize| {
         let k = i / stages.row_step();
         k < stages.intervals
-            && i % stages.row_step() < stages.states
-            && j == stages.state(k + 1).start + i % stages.row_step()
+            && i % stages.row_step() < stages.defect_rows()
+            && j == stages.inner(k).start + i % stages.row_step()
     };
     jacobian.entries().map(|(i, j)| 0.5 * random.next() + if strong(i, j) { 2.0 } else { 0.0 }).collect()
 }
 
 fn row_diagonal(stages: Stages, row: usize, penalised: bool, random: &mut Random) -> f64 {
-    let local = row < stages.coupling().start && row % stages.row_step() >= stages.states;
+    let local = row < stages.coupling().start && row % stages.row_step() >= stages.defect_rows();
     if local || penalised { 1.0 + 0.5 * random.next() } else { 0.0 }
 }
 
@@ -202,7 +202,8 @@ fn both_factorisations_solve_their_system_and_know_its_inertia() {
             _ => (1 + case % 3, case % 4, case % 3, if case % 4 == 0 { 0 } else { (case / 3) % 2 }),
         };
         let (intervals, local_rows) = (1 + (case / 10) % 5, (case / 2) % 3);
-        let stages = Stages { intervals, states, controls, globals, local_rows, coupling_rows };
+        let inner = if case % 3 == 1 { (case / 6) % 4 } else { 0 };
+        let stages = Stages { intervals, states, controls, inner, globals, local_rows, coupling_rows };
         let case = Case::new(stages, case % 5 == 0, case % 7 == 0, case % 2 == 0, &mut random);
         let equality: Vec<bool> = case.d.iter().map(|d| *d == 0.0).collect();
         let riccati =

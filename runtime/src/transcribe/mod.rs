@@ -166,6 +166,7 @@ fn stages(problem: &Problem) -> Stages {
         intervals: problem.method.intervals,
         states: problem.layout.x,
         controls: problem.layout.u,
+        inner: 0,
         globals: problem.unknowns.len(),
         local_rows: problem.path_bounds.len(),
         coupling_rows: problem.boundary_bounds.len(),

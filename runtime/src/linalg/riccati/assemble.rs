@@ -1,6 +1,6 @@
 //! From the families of the sparse matrices to the dense blocks of one interval.
 //!
-//! Local positions of an interval are those of `(x_k, u_k, theta, x_{k+1})`.
+//! Local positions of an interval are those of `(x_k, u_k, theta, y_k, x_{k+1})`.
 
 use super::interval::Sizes;
 use crate::linalg::{Family, Stages, Triplets};
@@ -64,7 +64,7 @@ impl Assembly {
         let Some(position) = local_position(stages, sizes, family.column, family.column_step) else {
             return false;
         };
-        match family.row.checked_sub(stages.states) {
+        match family.row.checked_sub(stages.defect_rows()) {
             None => {
                 let target = sizes.defect_place(family.row, position) as u32;
                 self.defects.push(Move { source, target });
@@ -161,7 +161,7 @@ pub(super) fn is_coupling(stages: &Stages, family: &Family) -> bool {
     family.count == 1 && family.row_step == 0 && family.column_step == 0 && stages.intervals > 0
 }
 
-/// Position in `(x, u, theta, x+)` of a variable that is at `index` in interval 0 and moves by `step`.
+/// Position in `(x, u, theta, y, x+)` of a variable that is at `index` in interval 0 and moves by `step`.
 fn local_position(stages: Stages, sizes: Sizes, index: usize, step: usize) -> Option<usize> {
     let globals = stages.globals();
     if globals.contains(&index) {
@@ -170,8 +170,8 @@ fn local_position(stages: Stages, sizes: Sizes, index: usize, step: usize) -> Op
     if step != stages.variable_step() && stages.intervals > 1 {
         return None;
     }
-    match index.checked_sub(stages.variable_step()) {
+    match index.checked_sub(sizes.n + sizes.m) {
         None => Some(index),
-        Some(next) => (next < sizes.n).then(|| sizes.reduced() + next),
+        Some(next) => (next < sizes.next()).then(|| sizes.reduced() + next),
     }
 }

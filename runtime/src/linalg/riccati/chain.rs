@@ -5,15 +5,15 @@ use super::Riccati;
 use super::interval::Sizes;
 use super::solve::Travel;
 
-/// **The table** of sizes that are compiled as constants: states, controls, border.
+/// **The table** of sizes that are compiled as constants: states, controls, border; without inner variables.
 macro_rules! with_constant_sizes {
     ($given:expr, $sizes:ident => $body:expr) => {
         with_constant_sizes!($given, $sizes => $body, (5, 2, 1) (2, 1, 2) (2, 1, 3) (4, 1, 3))
     };
     ($given:expr, $sizes:ident => $body:expr, $(($n:literal, $m:literal, $q:literal))*) => {
         match $given {
-            $(Sizes { n: $n, m: $m, q: $q } => {
-                let $sizes = Sizes { n: $n, m: $m, q: $q };
+            $(Sizes { n: $n, m: $m, inner: 0, q: $q } => {
+                let $sizes = Sizes { n: $n, m: $m, inner: 0, q: $q };
                 $body
             })*
             $sizes => $body,
@@ -90,6 +90,9 @@ impl Riccati {
             let gathered = &mut gathered[(k - first) * length..][..length];
             for (i, sigma) in sigma[stages.state(k).start..][..sizes.n + sizes.m].iter().enumerate() {
                 gathered[i * sizes.reduced() + i] += sigma;
+            }
+            for (i, sigma) in sigma[stages.inner(k)].iter().enumerate() {
+                gathered[sizes.next_diagonal(i)] += sigma;
             }
             let (local, weights) = factors.local_mut(k);
             for (weight, d) in weights.iter_mut().zip(&d[stages.local(k)]) {

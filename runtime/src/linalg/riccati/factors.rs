@@ -4,9 +4,9 @@ use super::interval::Sizes;
 
 /// See [`super::interval`] for the names.
 pub(super) struct Factors {
-    /// `[T F; L C]`, `2n x (w + n)`.
+    /// `[T F; L C]`, with as many rows as `(y, x+, lambda)` and columns for `(w, b)`.
     response: Vec<f64>,
-    /// `A`, `n x n`; empty until a row is penalised.
+    /// `A`, square in `(y, x+)`; empty until a row is penalised.
     compliance: Vec<f64>,
     /// Whether the last factorisation had penalised rows.
     pub(super) penalised: bool,
@@ -23,9 +23,9 @@ pub(super) struct Factors {
 impl Factors {
     pub(super) fn new(sizes: Sizes, intervals: usize, local_rows: usize, local_values: usize) -> Self {
         let zeros = |length: usize| vec![0.0; intervals * length];
-        let Sizes { n, m, .. } = sizes;
+        let m = sizes.m;
         Factors {
-            response: zeros(2 * n * sizes.all()),
+            response: zeros(2 * sizes.next() * sizes.all()),
             compliance: Vec::new(),
             penalised: false,
             inverse: zeros(m * m),
@@ -39,12 +39,12 @@ impl Factors {
 
     #[inline(always)]
     pub(super) fn response(&self, sizes: Sizes, k: usize) -> &[f64] {
-        stretch(&self.response, k, 2 * sizes.n * sizes.all())
+        stretch(&self.response, k, 2 * sizes.next() * sizes.all())
     }
 
     #[inline(always)]
     pub(super) fn response_mut(&mut self, sizes: Sizes, k: usize) -> &mut [f64] {
-        stretch_mut(&mut self.response, k, 2 * sizes.n * sizes.all())
+        stretch_mut(&mut self.response, k, 2 * sizes.next() * sizes.all())
     }
 
     /// `Q_uu^-1` and `gain`.

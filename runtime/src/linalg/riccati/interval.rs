@@ -1,7 +1,8 @@
 //! One step of the recursion.
 //!
 //! With `w = (x, u, theta)`, defects `R w + E x+ - D lambda = b`, next value function `V+ = (P, Lambda, Theta)` and
-//! `pull`, the gradient by `x+` that a right side brings, the next state and the multipliers are removed together:
+//! `pull`, the gradient by `x+` that a right side brings, the next state and the multipliers are removed together
+//! (inner variables with them: `x+` stands for `(y, x+)` here, of which `V+` sees only the second part):
 //!
 //! ```text
 //!     M = H_{++} + P      N = H_{+w} + [0 0 Lambda']       S = [ M  E' ]    S^-1 = [ A  F ]
@@ -13,7 +14,7 @@
 //!     gain = -Q_uu^-1 Q_uz,     V = Q_zz + Q_zu gain       z = (x, theta)
 //! ```
 //!
-//! Rows without penalty (`D = 0`, always but in restoration) need nothing of size `2n`:
+//! Rows without penalty (`D = 0`, always but in restoration) need nothing of twice the size:
 //!
 //! ```text
 //!     [T F] = E^-1 [-R I]       [L C] = -F' ([N 0] + M [T F])       A = 0
@@ -23,11 +24,12 @@ use super::factors::Factors;
 use super::kernels::{View, add_lower_product, add_product, divide, invert_positive};
 use crate::linalg::SymmetricFactor;
 
-/// Sizes of states, controls and border.
+/// Sizes of states, controls, inner variables and border.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sizes {
     pub(super) n: usize,
     pub(super) m: usize,
+    pub(super) inner: usize,
     pub(super) q: usize,
 }
 
@@ -37,10 +39,15 @@ impl Sizes {
     pub(super) fn reduced(&self) -> usize {
         self.n + self.m + self.q
     }
-    /// `(x, u, theta, x+)`, and also `(x, u, theta, b)`
+    /// `(y, x+)`
+    #[inline(always)]
+    pub(super) fn next(&self) -> usize {
+        self.inner + self.n
+    }
+    /// `(x, u, theta, y, x+)`, and also `(x, u, theta, b)`
     #[inline(always)]
     pub(super) fn all(&self) -> usize {
-        self.reduced() + self.n
+        self.reduced() + self.next()
     }
     /// `(x, theta)`
     #[inline(always)]
@@ -55,31 +62,37 @@ impl Sizes {
     /// Lengths of `H_ww`, `[N; R]`, `M` and `E`, the parts of what is gathered.
     #[inline(always)]
     fn parts(&self) -> [usize; 4] {
-        let (n, w) = (self.n, self.reduced());
-        [w * w, 2 * n * w, n * n, n * n]
+        let (next, w) = (self.next(), self.reduced());
+        [w * w, 2 * next * w, next * next, next * next]
     }
     /// Length of what is gathered for an interval.
     #[inline(always)]
     pub(super) fn gathered(&self) -> usize {
         self.parts().iter().sum()
     }
-    /// Where the Hessian entry of two positions in `(x, u, theta, x+)` is gathered: lower triangles only.
+    /// Where the Hessian entry of two positions in `(x, u, theta, y, x+)` is gathered: lower triangles only.
     pub(super) fn hessian_place(&self, a: usize, b: usize) -> usize {
         let ([square, coupling, ..], w) = (self.parts(), self.reduced());
         let (row, column) = (a.max(b), a.min(b));
         match (row.checked_sub(w), column.checked_sub(w)) {
             (None, _) => row * w + column,
             (Some(row), None) => square + row * w + column,
-            (Some(row), Some(column)) => square + coupling + row * self.n + column,
+            (Some(row), Some(column)) => square + coupling + row * self.next() + column,
         }
     }
     /// Where an entry of a defect is gathered.
     pub(super) fn defect_place(&self, row: usize, position: usize) -> usize {
-        let ([square, coupling, next, _], w) = (self.parts(), self.reduced());
+        let ([square, coupling, curvature, _], w) = (self.parts(), self.reduced());
         match position.checked_sub(w) {
-            None => square + (self.n + row) * w + position,
-            Some(column) => square + coupling + next + row * self.n + column,
+            None => square + (self.next() + row) * w + position,
+            Some(column) => square + coupling + curvature + row * self.next() + column,
         }
+    }
+    /// Where the curvature of entry `i` of `(y, x+)` is gathered.
+    #[inline(always)]
+    pub(super) fn next_diagonal(&self, i: usize) -> usize {
+        let [square, coupling, ..] = self.parts();
+        square + coupling + i * (self.next() + 1)
     }
 }
 
@@ -99,16 +112,16 @@ pub(super) struct Block {
 
 impl Block {
     pub(super) fn new(sizes: Sizes) -> Self {
-        let Sizes { n, m, .. } = sizes;
+        let (m, next) = (sizes.m, sizes.next());
         let zeros = |length: usize| vec![0.0; length];
         Block {
-            costate: zeros(n * sizes.all()),
+            costate: zeros(next * sizes.all()),
             side: zeros(m * sizes.kept()),
             uu: zeros(m * m),
             uu_copy: zeros(m * m),
             uu_factor: SymmetricFactor::new(m),
-            s: zeros(4 * n * n),
-            s_factor: SymmetricFactor::new(2 * n),
+            s: zeros(4 * next * next),
+            s_factor: SymmetricFactor::new(2 * next),
         }
     }
 
@@ -135,7 +148,7 @@ impl Block {
         let (w, all) = (sizes.reduced(), sizes.all());
         let [q, coupling, ..] = parts(sizes, gathered);
         let (coupling, response) = (View::rows(coupling, w), View::rows(factors.response(sizes, k), all));
-        add_lower_product::<FUSED>(coupling.transposed(), response, 2 * sizes.n, (q, w));
+        add_lower_product::<FUSED>(coupling.transposed(), response, 2 * sizes.next(), (q, w));
         fix_controls(sizes, fixed, q);
         Some(removed + self.remove_controls::<FUSED>(sizes, &gathered[..w * w], factors, (k, value))?)
     }
@@ -148,7 +161,7 @@ impl Block {
         gathered: &mut [f64],
         response: &mut [f64],
     ) -> Option<usize> {
-        let (n, w, all) = (sizes.n, sizes.reduced(), sizes.all());
+        let (n, w, all) = (sizes.next(), sizes.reduced(), sizes.all());
         let [_, coupling, m, e] = parts(sizes, gathered);
         let costate = &mut self.costate[..n * all];
         let (next, multipliers) = response.split_at_mut(n * all);
@@ -178,7 +191,7 @@ impl Block {
         factors: &mut Factors,
         (k, penalties): (usize, &[f64]),
     ) -> Option<usize> {
-        let (n, w, all) = (sizes.n, sizes.reduced(), sizes.all());
+        let (n, w, all) = (sizes.next(), sizes.reduced(), sizes.all());
         let [_, coupling, m, e] = parts(sizes, gathered);
         let s = &mut self.s;
         s.fill(0.0);
@@ -273,18 +286,22 @@ impl Block {
 /// `M`, `N`, and `Theta` added to `H_ww`.
 #[inline(always)]
 fn join_next(sizes: Sizes, gathered: &mut [f64], value: &[f64]) {
-    let Sizes { n, m, q } = sizes;
-    let (w, kept) = (sizes.reduced(), sizes.kept());
+    let Sizes { n, m, inner, q } = sizes;
+    let (w, kept, size) = (sizes.reduced(), sizes.kept(), sizes.next());
     let [h, coupling, next, _] = parts(sizes, gathered);
     for i in 0..n {
         let value = &value[i * kept..][..kept];
+        let row = inner + i;
         for j in 0..=i {
-            let entry = next[i * n + j] + value[j];
-            next[i * n + j] = entry;
-            next[j * n + i] = entry;
+            next[row * size + inner + j] += value[j];
         }
         for j in 0..q {
-            coupling[i * w + n + m + j] += value[n + j];
+            coupling[row * w + n + m + j] += value[n + j];
+        }
+    }
+    for i in 0..size {
+        for j in 0..i {
+            next[j * size + i] = next[i * size + j];
         }
     }
     for i in 0..q {

@@ -9,8 +9,8 @@
 //!                                     [ Lambda' Theta  ]
 //! ```
 //!
-//! Going backward, [`interval`] puts the Hessian over `(x_k, u_k, theta, x_{k+1})` together with `V_{k+1}`, removes
-//! `x_{k+1}` by the linearised defects and then `u_k` by its own block; [`solve`] uses what is kept of that
+//! Going backward, [`interval`] puts the Hessian over `(x_k, u_k, theta, y_k, x_{k+1})` together with `V_{k+1}`, removes
+//! `(y_k, x_{k+1})` by the linearised defects and then `u_k` by its own block; [`solve`] uses what is kept of that
 //! ([`factors`]). What is left at `k = 0` is one small dense symmetric system in `(x_0, theta)`: [`border`]. Signs of
 //! all pivots give the inertia exactly (Haynsworth), so a control block may be indefinite as long as the whole is right.
 
@@ -62,11 +62,14 @@ impl Riccati {
         if (1..=stages.intervals).any(|k| stages.state(k).any(|i| fixed[i])) {
             return Err("a state is fixed inside the chain");
         }
+        if (0..stages.intervals).any(|k| stages.inner(k).any(|i| fixed[i])) {
+            return Err("an inner variable is fixed");
+        }
         if (0..stages.intervals).any(|k| stages.local(k).any(|i| equality_rows[i])) {
             return Err("an equality holds at every stage");
         }
         let border = Border::new(stages, hessian, jacobian, fixed);
-        let sizes = Sizes { n: stages.states, m: stages.controls, q: border.theta() };
+        let sizes = Sizes { n: stages.states, m: stages.controls, inner: stages.inner, q: border.theta() };
         let assembly =
             Assembly::new(stages, sizes, hessian, jacobian).ok_or("entries couple distant stages")?;
         let local_values = assembly.local_entries.len();

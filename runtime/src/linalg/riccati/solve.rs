@@ -6,7 +6,7 @@
 //!     forward     u = gain z + u_0        x+ = [T F] [w; b] - A pull      lambda = [L C] [w; b] - F' pull
 //! ```
 //!
-//! From one pass to the other, `pull` waits in the place of `x+` and `u_0` in that of `u`.
+//! Here `x+` is `(y, x+)`. From one pass to the other, `pull` waits in its place and `u_0` in that of `u`.
 
 use super::Riccati;
 use super::interval::Sizes;
@@ -19,7 +19,7 @@ pub(super) struct Travel {
     pub(super) gradient: Vec<f64>,
     pub(super) theta: Vec<f64>,
     pub(super) x: Vec<f64>,
-    /// Scratch over `(x, u, theta, x+)`, and `[pull; -b]`.
+    /// Scratch over `(x, u, theta, y, x+)`, and `[pull; -b]`.
     all: Vec<f64>,
     push: Vec<f64>,
 }
@@ -32,7 +32,7 @@ impl Travel {
             theta: zeros(sizes.q),
             x: zeros(sizes.n),
             all: zeros(sizes.all()),
-            push: zeros(2 * sizes.n),
+            push: zeros(2 * sizes.next()),
         }
     }
 }
@@ -47,26 +47,29 @@ impl Riccati {
         travel: &mut Travel,
         (a, b): (&mut [f64], &[f64]),
     ) {
-        let Sizes { n, m, q } = sizes;
-        let (w, all) = (sizes.reduced(), sizes.all());
+        let Sizes { n, m, inner, q } = sizes;
+        let (w, all, next) = (sizes.reduced(), sizes.all(), sizes.next());
         let Travel { gradient, all: g, push, .. } = travel;
-        let (gradient, g, push) = (&mut gradient[..n + q], &mut g[..all], &mut push[..2 * n]);
-        let first = k * (n + m);
-        let a = &mut a[first..first + n + m + n];
-        let defects = &b[self.stages.defects(k).start..][..n];
+        let (gradient, g, push) = (&mut gradient[..n + q], &mut g[..all], &mut push[..2 * next]);
+        let first = k * (n + m + inner);
+        let a = &mut a[first..first + n + m + next];
+        let defects = &b[self.stages.defects(k).start..][..next];
         for i in 0..n + m {
             g[i] = -a[i];
         }
         g[n + m..w].copy_from_slice(&gradient[n..]);
-        g[w..].copy_from_slice(&gradient[..n]);
+        for i in 0..inner {
+            g[w + i] = -a[n + m + i];
+        }
+        g[w + inner..].copy_from_slice(&gradient[..n]);
         self.add_local_gradient(k, b, g);
-        for i in 0..n {
+        for i in 0..next {
             push[i] = g[w + i];
-            push[n + i] = -defects[i];
+            push[next + i] = -defects[i];
         }
         a[n + m..].copy_from_slice(&g[w..]);
         let response = View::rows(self.factors.response(sizes, k), all);
-        add_row_product::<FUSED>(1.0, (View::rows(push, 2 * n), 0), response, 2 * n, &mut g[..w]);
+        add_row_product::<FUSED>(1.0, (View::rows(push, 2 * next), 0), response, 2 * next, &mut g[..w]);
         self.eliminate_controls::<FUSED>(sizes, k, g, (gradient, &mut a[n..n + m]));
     }
 
@@ -94,7 +97,7 @@ impl Riccati {
         for i in 0..kept {
             gradient[i] = g[sizes.position(i)];
         }
-        let fixed = &self.fixed[k * (n + m) + n..][..m];
+        let fixed = &self.fixed[self.stages.control(k).start..][..m];
         let g = &mut g[n..n + m];
         for i in (0..m).filter(|i| fixed[*i]) {
             g[i] = 0.0;
@@ -115,12 +118,12 @@ impl Riccati {
         travel: &mut Travel,
         (a, b): (&mut [f64], &mut [f64]),
     ) {
-        let Sizes { n, m, q } = sizes;
-        let (w, kept, all) = (sizes.reduced(), sizes.kept(), sizes.all());
+        let Sizes { n, m, inner, q } = sizes;
+        let (w, kept, all, next) = (sizes.reduced(), sizes.kept(), sizes.all(), sizes.next());
         let Travel { theta, x, all: known, push, .. } = travel;
-        let (x, theta, known, push) = (&mut x[..n], &theta[..q], &mut known[..all], &mut push[..2 * n]);
-        let first = k * (n + m);
-        let a = &mut a[first..first + n + m + n];
+        let (x, theta, known, push) = (&mut x[..n], &theta[..q], &mut known[..all], &mut push[..2 * next]);
+        let first = k * (n + m + inner);
+        let a = &mut a[first..first + n + m + next];
         let (start, local_start) = (self.stages.defects(k).start, self.stages.local(k).start);
         let (_, gain) = self.factors.controls(sizes, k);
         known[..n].copy_from_slice(x);
@@ -130,27 +133,28 @@ impl Riccati {
             known[n + i] = a[n + i] + dot::<FUSED>(&gain[..n], x) + dot::<FUSED>(&gain[n..], theta);
         }
         a[..n + m].copy_from_slice(&known[..n + m]);
-        known[w..].copy_from_slice(&b[start..start + n]);
+        known[w..].copy_from_slice(&b[start..start + next]);
         let response = self.factors.response(sizes, k);
-        for i in 0..2 * n {
+        for i in 0..2 * next {
             push[i] = dot::<FUSED>(&response[i * all..][..all], known);
         }
-        let pull = &a[n + m..];
-        for i in 0..n {
+        let pull = &mut a[n + m..];
+        for i in 0..next {
             // -F' pull
-            for l in 0..n {
-                push[n + i] = multiply_add::<FUSED>(-response[l * all + w + i], pull[l], push[n + i]);
+            for l in 0..next {
+                push[next + i] = multiply_add::<FUSED>(-response[l * all + w + i], pull[l], push[next + i]);
             }
         }
         if self.factors.penalised {
-            let compliance = self.factors.compliance(n, k);
-            for i in 0..n {
-                push[i] -= dot::<FUSED>(&compliance[i * n..][..n], pull);
+            let compliance = self.factors.compliance(next, k);
+            for i in 0..next {
+                push[i] -= dot::<FUSED>(&compliance[i * next..][..next], pull);
             }
         }
-        x.copy_from_slice(&push[..n]);
-        b[start..start + n].copy_from_slice(&push[n..]);
-        known[w..].copy_from_slice(x);
+        known[w..].copy_from_slice(&push[..next]);
+        pull[..inner].copy_from_slice(&push[..inner]);
+        x.copy_from_slice(&push[inner..next]);
+        b[start..start + next].copy_from_slice(&push[next..]);
         self.local_multipliers(k, known, &mut b[local_start..][..self.stages.local_rows]);
     }
 

@@ -50,7 +50,12 @@ pub fn evaluate(model: &Model, solved: &Solved) -> Vec<Checked> {
     let ends = |column: fn(&[f64]) -> f64| trajectory.states.iter().map(move |state| column(state));
     let inputs: Vec<f64> = ends(|state| state[0]).chain(ends(|state| state[state.len() - 1])).collect();
     let mut parameters = trajectory.parameters.clone();
-    parameters.extend(integrals(&solved.problem, trajectory, &*expectations.integrands));
+    parameters.extend(integrals(
+        &solved.problem,
+        &solved.outcome.solution,
+        &trajectory.parameters,
+        &*expectations.integrands,
+    ));
     let replayed = Replayed::new(model, solved, &expectations.simulated);
     parameters.extend(replayed.values());
     let mut points = Columns::new(inputs.len(), 1);

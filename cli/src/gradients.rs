@@ -1,5 +1,6 @@
 //! Beside the exact gradient: those that a user may be computing otherwise, of the smoothed and of the discretised problem.
 
+use crate::output::document::scheme_name;
 use crate::quantities::By;
 use fdcc_compiler::Model;
 use fdcc_runtime::problem::{Columns, Scheme};
@@ -62,8 +63,9 @@ impl Question<'_> {
     }
 
     fn stepped(&self, system: &System) -> Result<Vec<f64>, String> {
-        if self.model.method.scheme == Scheme::RungeKutta4 {
-            return Err("fixed steps of `rk4` do not go through a set".into());
+        let scheme = self.model.method.scheme;
+        if matches!(scheme, Scheme::RungeKutta4 | Scheme::Radau(_) | Scheme::Gauss(_)) {
+            return Err(format!("fixed steps of `{}` do not go through a set", scheme_name(scheme)));
         }
         let grid = Grid::new(system, &self.model.method);
         let found = step_through(system, &self.controls, &grid)

@@ -11,6 +11,7 @@ mod gradients;
 mod log;
 mod model;
 mod output;
+mod pieces;
 mod quantities;
 mod render;
 mod replay;

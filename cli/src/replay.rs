@@ -3,6 +3,7 @@
 
 use crate::output::named::Named;
 use crate::output::saved::{Column, Saved, SavedMethod};
+use crate::pieces::{Pieces, pieces};
 use crate::solver::sha256;
 use fdcc_compiler::Model;
 use fdcc_runtime::simulate::Controls;
@@ -25,14 +26,13 @@ impl Replay {
     /// What a solution says, if it is one of this model.
     pub fn new(saved: &Saved, model: &Model) -> Result<Replay, String> {
         let times: Option<Vec<f64>> = saved.time.iter().copied().collect();
-        let mut times = times.ok_or("a time is no number")?;
+        let times = times.ok_or("a time is no number")?;
         ascend(&times)?;
-        times.pop();
-        let mut rows = vec![Vec::new(); times.len()];
-        for control in &model.controls {
-            let column = held(saved, &control.place.name, times.len())?;
-            rows.iter_mut().zip(column).for_each(|(row, value)| row.push(value));
-        }
+        let names: Vec<&str> = model.controls.iter().map(|control| control.place.name.as_str()).collect();
+        let Pieces { times, rows } = match &saved.control_nodes {
+            Some(nodes) => pieces(saved, nodes, &times, &names)?,
+            None => rows(saved, times, &names)?,
+        };
         let first = |(name, column): &(String, Column)| Some((name.clone(), (*column.first()?)?));
         Ok(Replay {
             times,
@@ -99,6 +99,17 @@ fn ascend(times: &[f64]) -> Result<(), String> {
     })
 }
 
+/// One row for each interval.
+fn rows(saved: &Saved, mut times: Vec<f64>, names: &[&str]) -> Result<Pieces, String> {
+    times.pop();
+    let mut rows = vec![Vec::new(); times.len()];
+    for name in names {
+        let column = held(saved, name, times.len())?;
+        rows.iter_mut().zip(column).for_each(|(row, value)| row.push(value));
+    }
+    Ok(Pieces { times, rows })
+}
+
 /// The values of a control, one for each interval.
 fn held(saved: &Saved, name: &str, intervals: usize) -> Result<Vec<f64>, String> {
     let column = saved.controls.get(name).ok_or(format!("there is no control `{name}`"))?;
@@ -113,10 +124,12 @@ fn held(saved: &Saved, name: &str, intervals: usize) -> Result<Vec<f64>, String>
 
 /// As settings of the `method` block.
 fn settings(method: &SavedMethod) -> Vec<(&'static str, String)> {
-    let SavedMethod { scheme, n, sigma, kernel } = method;
+    let SavedMethod { scheme, controls, n, sigma, kernel } = method;
     let (n, sigma) = (n.map(|n| n.to_string()), sigma.map(|sigma| sigma.to_string()));
-    let all = [("scheme", scheme.clone()), ("N", n), ("sigma", sigma), ("kernel", kernel.clone())];
-    all.into_iter().filter_map(|(key, value)| Some((key, value?))).collect()
+    let words = [("scheme", scheme), ("controls", controls), ("kernel", kernel)];
+    let words = words.map(|(key, word)| (key, word.clone()));
+    let all = words.into_iter().chain([("N", n), ("sigma", sigma)]);
+    all.filter_map(|(key, value)| Some((key, value?))).collect()
 }
 
 fn numbers(values: &Named<Option<f64>>) -> Vec<(String, f64)> {

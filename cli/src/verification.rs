@@ -2,6 +2,7 @@
 
 use crate::conditions::{Condition, Conditions};
 use crate::output::saved::Saved;
+use crate::pieces::PIECES;
 use crate::replay::Replay;
 use crate::solver::Failure;
 use crate::stays::{Stay, stays};
@@ -14,7 +15,7 @@ const FEWEST_STEPS: usize = 200_000;
 const STEPS_PER_INTERVAL: usize = 50;
 
 /// In each interval so many times are looked at.
-const POINTS_PER_INTERVAL: usize = 8;
+const POINTS_PER_INTERVAL: usize = PIECES;
 
 /// A replay and how it compares with its solution.
 pub struct Verified {
@@ -58,7 +59,7 @@ pub fn verify(model: &Model, problem: &Problem, saved: &Saved) -> Result<Verifie
     replay.adapt(&mut model);
     let system = fdcc_compiler::compile_simulation(&model).map_err(Failure::Model)?;
     fits(saved, &system).map_err(Failure::File)?;
-    let intervals = replay.times.len();
+    let intervals = saved.time.len().saturating_sub(1);
     let points = Points::new(saved, replay, system.interval);
     let controls = Controls::Held { times: points.starts(), rows: points.rows.clone(), is_stretched: true };
     let max_steps = FEWEST_STEPS.max(STEPS_PER_INTERVAL * intervals);
@@ -103,6 +104,8 @@ fn fits(saved: &Saved, system: &System) -> Result<(), String> {
 pub struct Points {
     pub times: Vec<f64>,
     rows: Vec<Vec<f64>>,
+    /// How many points are in the time of a row.
+    in_row: usize,
 }
 
 impl Points {
@@ -116,16 +119,17 @@ impl Points {
             (0..POINTS_PER_INTERVAL).map(move |j| from + length * j as f64 / POINTS_PER_INTERVAL as f64)
         };
         let times = grid.windows(2).flat_map(inside).chain([last]).collect();
-        Points { times, rows: replay.rows }
+        let in_row = POINTS_PER_INTERVAL * end / replay.rows.len();
+        Points { times, rows: replay.rows, in_row }
     }
 
     fn starts(&self) -> Vec<f64> {
-        self.times.iter().copied().step_by(POINTS_PER_INTERVAL).take(self.rows.len()).collect()
+        self.times.iter().copied().step_by(self.in_row).take(self.rows.len()).collect()
     }
 
-    /// The controls at a point; at a grid point those of the interval that ends there, as a transcription has it.
+    /// The controls at a point; at a grid point those of the row that ends there, as a transcription has it.
     pub fn row(&self, point: usize) -> &[f64] {
-        &self.rows[point.saturating_sub(1) / POINTS_PER_INTERVAL]
+        &self.rows[point.saturating_sub(1) / self.in_row]
     }
 }
 

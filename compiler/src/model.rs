@@ -8,7 +8,7 @@ use crate::graph::{ExprId, Graph};
 use crate::units::NamedUnit;
 use fdcc_grammar::ast::Direction;
 use fdcc_grammar::{Diagnostic, Span};
-use fdcc_runtime::problem::{Linear, Method, Scheme, Solver};
+use fdcc_runtime::problem::{ControlShape, Linear, Method, Scheme, Solver};
 
 /// What an input of the model's graph stands for. The numbers are indices into the lists of [`Model`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -360,6 +360,7 @@ impl Model {
 fn default_method() -> Method {
     Method {
         scheme: Scheme::ImplicitEuler,
+        controls: ControlShape::Constant,
         lagged: Vec::new(),
         intervals: 200,
         steps: 1,

@@ -3,7 +3,7 @@
 use crate::graph::evaluate;
 use crate::model::Model;
 use crate::resolve::closest;
-use crate::resolve::settings::{Given, Refused, is_key, keys, nearest_key, nearest_word, set};
+use crate::resolve::settings::{Given, Refused, is_key, keys, misfit, nearest_key, nearest_word, set};
 use crate::resolve::text::number;
 use crate::units::{Quantity, parse_quantity};
 
@@ -92,6 +92,11 @@ impl Model {
                 None => format!("`{key}` cannot be `{value}`; it needs {expected}"),
             }),
         }
+    }
+
+    /// Whether the settings of the method fit each other.
+    pub fn fits_together(&self) -> Result<(), String> {
+        misfit(&self.method).map_or(Ok(()), |(what, help)| Err(format!("{what}: {help}")))
     }
 
     fn no_param(&self, name: &str) -> String {

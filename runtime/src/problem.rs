@@ -244,6 +244,9 @@ pub struct Surface {
     pub sigma: usize,
 }
 
+/// The most stages of a collocation scheme.
+pub const MOST_STAGES: usize = 5;
+
 /// How the differential equation becomes algebraic equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scheme {
@@ -257,6 +260,34 @@ pub enum Scheme {
     Trapezoid,
     /// The classical Runge-Kutta scheme; [`Problem::dynamics`] has its increment, of which it is an explicit Euler step.
     RungeKutta4,
+    /// Radau IIA collocation with so many stages, 1 to 5.
+    Radau(usize),
+    /// Gauss collocation with so many stages, 1 to 5.
+    Gauss(usize),
+}
+
+impl Scheme {
+    /// Whether controls of this shape mean anything to the scheme: it must see enough points of an interval.
+    pub fn allows(self, shape: ControlShape) -> bool {
+        match shape {
+            ControlShape::Constant => true,
+            ControlShape::Linear => {
+                matches!(self, Scheme::Trapezoid | Scheme::Radau(2..) | Scheme::Gauss(2..))
+            }
+            ControlShape::Polynomial => matches!(self, Scheme::Radau(_) | Scheme::Gauss(_)),
+        }
+    }
+}
+
+/// What a control is on an interval.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ControlShape {
+    /// One value.
+    Constant,
+    /// Linear, and continuous from interval to interval.
+    Linear,
+    /// A polynomial through its values at the nodes of a collocation scheme.
+    Polynomial,
 }
 
 /// Which solver treats the transcribed problem.
@@ -288,6 +319,8 @@ pub struct Method {
     pub scheme: Scheme,
     /// States (indices) that an implicit Euler step takes at the old time.
     pub lagged: Vec<usize>,
+    /// What a control is on an interval; constant where the scheme does not allow this shape.
+    pub controls: ControlShape,
     /// Control intervals.
     pub intervals: usize,
     /// Integration steps in each control interval.

@@ -1,8 +1,10 @@
 //! Starting points other than the model's guess: an earlier solution on another grid, and random variations.
 
+use crate::linalg::Stages;
 use crate::nlp::{Nlp, Solution, Start, Status};
 use crate::problem::Problem;
 use crate::transcribe::TranscribedNlp;
+use crate::transcribe::interval::Signal;
 
 /// Signals of an earlier solution over normalised time; `None` where it has none of that name.
 #[derive(Clone, Debug, Default)]
@@ -20,26 +22,38 @@ pub fn resample(problem: &Problem, earlier: &Earlier) -> Vec<f64> {
     let mut nlp = TranscribedNlp::new(problem);
     let stages = nlp.chain();
     let mut v = nlp.guess();
-    for k in 0..=stages.intervals {
-        let tau = k as f64 / stages.intervals as f64;
-        for (variable, column) in stages.state(k).zip(&earlier.states) {
-            if let Some(value) = column.as_deref().and_then(|column| linear(column, tau)) {
-                v[variable] = value;
-            }
-        }
-    }
-    for k in 0..stages.intervals {
-        let tau = (k as f64 + 0.5) / stages.intervals as f64;
-        for (variable, column) in stages.control(k).zip(&earlier.controls) {
-            if let Some(column) = column.as_deref().filter(|column| !column.is_empty()) {
-                v[variable] = column[((tau * column.len() as f64) as usize).min(column.len() - 1)];
-            }
+    let slots = nlp.interval().slots.clone();
+    for (place, slot) in slots.iter().enumerate() {
+        for k in 0..values_of(place, stages) {
+            let tau = |time: f64| (k as f64 + time) / stages.intervals as f64;
+            let value = match slot.signal {
+                Signal::State(i) => {
+                    earlier.states.get(i).and_then(Option::as_deref).and_then(|it| linear(it, tau(slot.time)))
+                }
+                // A control is held: what it is in the middle of its share of the interval.
+                Signal::Control(i) => {
+                    earlier.controls.get(i).and_then(Option::as_deref).and_then(|it| held(it, tau(0.5)))
+                }
+            };
+            let variable = &mut v[place + k * stages.variable_step()];
+            *variable = value.unwrap_or(*variable);
         }
     }
     for (variable, value) in stages.globals().zip(&earlier.unknowns) {
         v[variable] = value.unwrap_or(v[variable]);
     }
     v
+}
+
+/// How often a variable of an interval is there: what is carried once more, at the last grid point.
+fn values_of(place: usize, stages: Stages) -> usize {
+    stages.intervals + usize::from(place < stages.states)
+}
+
+/// The value of the interval that a time lies in.
+fn held(column: &[f64], tau: f64) -> Option<f64> {
+    let last = column.len().checked_sub(1)?;
+    Some(column[((tau * column.len() as f64) as usize).min(last)])
 }
 
 /// Linear interpolation on a uniform grid over [0, 1].
@@ -61,19 +75,18 @@ pub fn perturbed(problem: &Problem, base: Option<Vec<f64>>, index: u32) -> Start
     let stages = nlp.chain();
     let mut v = base.unwrap_or_else(|| nlp.guess());
     let mut random = Random::new(problem.method.seed, index);
-    let step = stages.variable_step();
-    for i in 0..step {
-        let count = if i < stages.states { stages.intervals + 1 } else { stages.intervals };
-        let places: Vec<usize> = (0..count).map(|k| i + k * step).collect();
-        let values = places.iter().map(|place| v[*place]);
+    let signals = (0..problem.layout.x).map(Signal::State).chain((0..problem.layout.u).map(Signal::Control));
+    for signal in signals {
+        let places = places_of(&nlp, signal);
+        let values = places.iter().map(|(place, _)| v[*place]);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-        let size = VARIATION * room(&nlp, places[places.len() - 1], low, high);
+        let size = VARIATION * room(&nlp, places[places.len() - 1].0, low, high);
         let (constant, wave, cycles) = (random.next(), random.next(), 1.0 + 2.0 * random.next().abs());
-        for (k, place) in places.iter().enumerate() {
-            let tau = k as f64 / stages.intervals as f64;
+        for (place, tau) in places {
             // Fixed ends stay where they are.
-            let envelope = if i < stages.states { (std::f64::consts::PI * tau).sin() } else { 1.0 };
-            v[*place] += size * envelope * (constant + wave * (std::f64::consts::TAU * cycles * tau).sin());
+            let is_state = matches!(signal, Signal::State(_));
+            let envelope = if is_state { (std::f64::consts::PI * tau).sin() } else { 1.0 };
+            v[place] += size * envelope * (constant + wave * (std::f64::consts::TAU * cycles * tau).sin());
         }
     }
     for place in stages.globals() {
@@ -81,6 +94,17 @@ pub fn perturbed(problem: &Problem, base: Option<Vec<f64>>, index: u32) -> Start
         v[place] += VARIATION * size.min(v[place].abs().max(1.0)) * random.next();
     }
     Start { v, warm: None }
+}
+
+/// The variables that are values of a signal, with their normalised times; at grid points last.
+fn places_of(nlp: &TranscribedNlp, signal: Signal) -> Vec<(usize, f64)> {
+    let stages = nlp.chain();
+    let slots = nlp.interval().slots.iter().enumerate().filter(|(_, slot)| slot.signal == signal);
+    let places = slots.rev().flat_map(|(place, slot)| {
+        let time = move |k: usize| (k as f64 + slot.time) / stages.intervals as f64;
+        (0..values_of(place, stages)).map(move |k| (place + k * stages.variable_step(), time(k)))
+    });
+    places.collect()
 }
 
 /// How far a signal may reasonably move: the width of its bounds, else its own range or size.

@@ -1,9 +1,8 @@
 //! A solution in the words of the model: signals over real time.
 
-use crate::linalg::Stages;
 use crate::nlp::{Derivatives, Nlp, Solution};
 use crate::problem::{Columns, Function, Problem};
-use crate::transcribe::TranscribedNlp;
+use crate::transcribe::{TranscribedNlp, interval};
 
 /// Signals on a grid of `N + 1` times; controls and reports hold on the interval that begins at their time.
 #[derive(Clone, Debug, Default)]
@@ -12,8 +11,10 @@ pub struct Trajectory {
     pub time: Vec<f64>,
     /// One column per state, hidden ones included; `N + 1` entries each.
     pub states: Vec<Vec<f64>>,
-    /// One column per control, `N` entries each.
+    /// One column per control, `N` entries each: its mean over the interval.
     pub controls: Vec<Vec<f64>>,
+    /// What defines controls that are not constant on each interval.
+    pub nodes: Option<ControlNodes>,
     /// One column per state: the derivative of the objective of the model (as written, `maximize` included) by the
     /// state at that time.
     pub costates: Vec<Vec<f64>>,
@@ -25,28 +26,38 @@ pub struct Trajectory {
     pub parameters: Vec<f64>,
 }
 
+/// The values between which a control is linear, or through which it is a polynomial on each interval.
+#[derive(Clone, Debug, Default)]
+pub struct ControlNodes {
+    /// Times, ascending.
+    pub time: Vec<f64>,
+    /// One column per control.
+    pub values: Vec<Vec<f64>>,
+}
+
 impl Trajectory {
     /// Reads a solution.
     pub fn new(problem: &Problem, nlp: &mut TranscribedNlp, solution: &Solution) -> Self {
-        let (stages, v) = (nlp.chain(), &solution.v);
+        let v = &solution.v;
         let parameters = nlp.parameters_at(v);
-        let signals = Signals::new(stages, v);
-        let points = signals.points();
+        let points = points(nlp, problem, v);
+        let time = times(problem, &parameters, nlp.chain().intervals);
         Trajectory {
-            time: times(problem, &parameters, stages.intervals),
+            states: (0..problem.layout.x).map(|i| points.column(1 + i).to_vec()).collect(),
+            controls: controls(nlp, v),
+            nodes: nodes(nlp, v, &time),
             report: sample(&*problem.report, &points, &parameters),
             guards: sample(&*problem.guards, &points, &parameters),
             costates: costates(problem, nlp, solution),
-            states: signals.states,
-            controls: signals.controls,
+            time,
             parameters,
         }
     }
 }
 
 /// The switching functions at all grid points.
-pub(crate) fn guards(problem: &Problem, stages: Stages, v: &[f64], parameters: &[f64]) -> Vec<Vec<f64>> {
-    sample(&*problem.guards, &Signals::new(stages, v).points(), parameters)
+pub(crate) fn guards(problem: &Problem, nlp: &TranscribedNlp, v: &[f64]) -> Vec<Vec<f64>> {
+    sample(&*problem.guards, &points(nlp, problem, v), &nlp.parameters_at(v))
 }
 
 /// A function over normalised time at all grid points.
@@ -56,39 +67,56 @@ fn sample(function: &dyn Function, points: &Columns, parameters: &[f64]) -> Vec<
     (0..function.outputs()).map(|i| values.column(i).to_vec()).collect()
 }
 
-/// States and controls by column.
-struct Signals {
-    states: Vec<Vec<f64>>,
-    controls: Vec<Vec<f64>>,
-    intervals: usize,
+/// `[t | x | u]` at all grid points: at the start of each interval, and at the end of the last.
+fn points(nlp: &TranscribedNlp, problem: &Problem, v: &[f64]) -> Columns {
+    let (stages, interval, layout) = (nlp.chain(), nlp.interval(), &problem.layout);
+    let columns = 1 + layout.x + layout.u;
+    let [mut starts, mut ends] = [(); 2].map(|()| Columns::new(columns, stages.intervals));
+    for (point, table) in [(&interval.start, &mut starts), (&interval.end, &mut ends)] {
+        point.set_times(table);
+        point.load(stages, layout, v, table);
+    }
+    let mut points = Columns::new(columns, stages.intervals + 1);
+    for i in 0..columns {
+        let (last, others) = points.column_mut(i).split_last_mut().expect("a last grid point");
+        others.copy_from_slice(starts.column(i));
+        *last = ends.column(i).last().copied().unwrap_or(0.0);
+    }
+    points
 }
 
-impl Signals {
-    fn new(stages: Stages, v: &[f64]) -> Self {
-        let column =
-            |first: usize, count: usize| (0..count).map(|k| v[first + k * stages.variable_step()]).collect();
-        let states = (0..stages.states).map(|i| column(i, stages.intervals + 1)).collect();
-        let controls = (0..stages.controls).map(|i| column(stages.states + i, stages.intervals)).collect();
-        Signals { states, controls, intervals: stages.intervals }
-    }
+/// The mean of each control over each interval.
+fn controls(nlp: &TranscribedNlp, v: &[f64]) -> Vec<Vec<f64>> {
+    let mean = |combination| {
+        let mut column = vec![0.0; nlp.chain().intervals];
+        interval::add_up(combination, nlp.chain(), v, &mut column);
+        column
+    };
+    nlp.interval().means.iter().map(mean).collect()
+}
 
-    /// `[t | x | u]` at all grid points; the last takes the last control.
-    fn points(&self) -> Columns {
-        let (states, controls, intervals) = (&self.states, &self.controls, self.intervals);
-        let mut points = Columns::new(1 + states.len() + controls.len(), intervals + 1);
-        for k in 0..=intervals {
-            points.column_mut(0)[k] = k as f64 / intervals as f64;
-        }
-        for (i, state) in states.iter().enumerate() {
-            points.column_mut(1 + i).copy_from_slice(state);
-        }
-        for (i, control) in controls.iter().enumerate() {
-            let column = points.column_mut(1 + states.len() + i);
-            column[..intervals].copy_from_slice(control);
-            column[intervals] = control.last().copied().unwrap_or(0.0);
-        }
-        points
-    }
+/// The values that define controls that are not constant on an interval; nothing if they are.
+fn nodes(nlp: &TranscribedNlp, v: &[f64], time: &[f64]) -> Option<ControlNodes> {
+    let (stages, interval) = (nlp.chain(), nlp.interval());
+    let of = |control: usize| {
+        let slots = interval.slots.iter().enumerate();
+        slots.filter(move |(_, slot)| slot.signal == interval::Signal::Control(control))
+    };
+    let is_constant = of(0).count() <= 1;
+    // Linear controls: the value at the end of an interval is that at the start of the next.
+    let is_own =
+        |k: usize, time: f64| time < 1.0 || k + 1 == stages.intervals || interval.carried_controls() == 0;
+    let all = |control: usize| {
+        let places = (0..stages.intervals)
+            .flat_map(move |k| of(control).map(move |(place, slot)| (k, place, slot.time)));
+        places.filter(move |(k, _, part)| is_own(*k, *part))
+    };
+    (!is_constant).then(|| ControlNodes {
+        time: all(0).map(|(k, _, part)| time[k] + part * (time[k + 1] - time[k])).collect(),
+        values: (0..interval.means.len())
+            .map(|control| all(control).map(|(k, place, _)| v[stages.state(k).start + place]).collect())
+            .collect(),
+    })
 }
 
 /// Real times of the grid.
@@ -117,15 +145,16 @@ fn costates(problem: &Problem, nlp: &mut TranscribedNlp, solution: &Solution) ->
     let mut derivatives = Derivatives::new(nlp);
     nlp.derivatives(&solution.v, 1.0, rows, &mut derivatives);
     let own = nlp.gradient_from_here_on();
-    let mut costates = vec![vec![0.0; stages.intervals + 1]; stages.states];
+    let states = problem.layout.x;
+    let mut costates = vec![vec![0.0; stages.intervals + 1]; states];
     for k in 0..=stages.intervals {
-        for (i, variable) in stages.state(k).enumerate() {
+        for (i, variable) in stages.state(k).take(states).enumerate() {
             costates[i][k] = own[variable];
         }
     }
     for ((row, variable), value) in nlp.jacobian_structure().entries().zip(&derivatives.jacobian) {
         let (k, i) = (variable / stages.variable_step(), variable % stages.variable_step());
-        if variable >= stages.globals().start || i >= stages.states {
+        if variable >= stages.globals().start || i >= states {
             continue;
         }
         let from_here_on =

@@ -21,7 +21,8 @@ struct Case {
 }
 
 fn case(intervals: usize) -> Case {
-    let stages = Stages { intervals, states: 5, controls: 2, inner: 0, globals: 1, local_rows: 1, coupling_rows: 0 };
+    let stages =
+        Stages { intervals, states: 5, controls: 2, inner: 0, globals: 1, local_rows: 1, coupling_rows: 0 };
     let (step, rows, t) = (7, 6, stages.globals().start);
     let family =
         |row, column, row_step, column_step| Family { row, column, row_step, column_step, count: intervals };

@@ -19,6 +19,7 @@ pub mod transcribed;
 
 mod claims;
 mod markdown;
+mod quadrature;
 mod rate;
 mod solved;
 

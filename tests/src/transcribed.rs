@@ -1,16 +1,19 @@
 //! The nonlinear programme of a problem at one point, once more, from nothing but the functions of the problem.
 //!
 //! ```text
-//! variables    x_0 u_0  x_1 u_1  ...  x_N  g            h = 1/N,  F over normalised time
+//! variables    x_0 u_0 y_0  x_1 u_1 y_1  ...  x_N  g            h = 1/N,  F over normalised time
 //! rows         d_0 c_1  d_1 c_2  ...  d_{N-1} c_N  b(x_0, x_N)
-//! defects      d_k = x_{k+1} - x_k - h sum_j b_j F(tau_k + c_j h, (1 - w_j) x_k + w_j x_{k+1}, u_k)
-//! path         c_{k+1} = c(tau_{k+1}, x_{k+1}, u_k)
+//! defects      x_{k+1} - x_k - h sum_j b_j F(tau_k + c_j h, (1 - w_j) x_k + w_j x_{k+1}, u_k)      one-step schemes
+//!              X'(c_i) - h F(tau_k + c_i h, X(c_i), u)      X: the polynomial through x_k, y_k and, for Radau, x_{k+1}
+//!              x_{k+1} - X(1)                               for Gauss
+//! path         c(tau, x, u) at all grid points but the first, and at the nodes of collocation
 //! objective    M(x_0, x_N) + h sum_k sum_j b_j cost_kj
 //! ```
 //!
 //! One point and one entry at a time, on purpose: nothing is shared with the transcription that it checks.
 
-use fdcc_runtime::problem::{Bounds, Columns, Function, Problem, Scheme};
+use crate::quadrature::{gauss, radau, weights};
+use fdcc_runtime::problem::{Bounds, Columns, ControlShape, Function, Problem, Scheme};
 
 /// Values and first derivatives.
 pub struct Transcribed {
@@ -28,23 +31,147 @@ pub struct Transcribed {
     pub variable_bounds: Vec<Bounds>,
 }
 
-/// One evaluation of the right side: its weight `b`, its time `c`, and the share `w` of the new states.
-struct Node {
-    weight: f64,
+/// A value of an interval as a sum of its variables: places from `x_k` on, with factors.
+type Sum = Vec<(usize, f64)>;
+
+/// A point of an interval: its time, its states and its controls.
+struct Point {
     time: f64,
-    share: Vec<f64>,
+    states: Vec<Sum>,
+    controls: Vec<Sum>,
 }
 
-fn nodes(problem: &Problem) -> Vec<Node> {
-    let node = |weight, time| Node { weight, time, share: vec![time; problem.layout.x] };
-    match problem.method.scheme {
-        Scheme::Euler | Scheme::RungeKutta4 => vec![node(1.0, 0.0)],
-        Scheme::Midpoint => vec![node(1.0, 0.5)],
-        Scheme::Trapezoid => vec![node(0.5, 0.0), node(0.5, 1.0)],
-        Scheme::ImplicitEuler => {
-            let mut new = node(1.0, 1.0);
-            problem.method.lagged.iter().for_each(|&state| new.share[state] = 0.0);
-            vec![new]
+/// A point where the right side is evaluated: its weight `b`, its first row and the factor there.
+struct Node {
+    point: Point,
+    weight: f64,
+    row: usize,
+    factor: f64,
+}
+
+/// One interval of the grid.
+struct Grid {
+    states: usize,
+    controls: usize,
+    /// What goes on to the next interval.
+    carried: usize,
+    /// All variables before `x_{k+1}`.
+    step: usize,
+    /// Of collocation.
+    times: Vec<f64>,
+    shape: ControlShape,
+    nodes: Vec<Node>,
+    /// Constant entries: row, place, value.
+    links: Vec<(usize, usize, f64)>,
+    path: Vec<Point>,
+}
+
+impl Grid {
+    fn new(problem: &Problem) -> Self {
+        let (method, states, controls) = (&problem.method, problem.layout.x, problem.layout.u);
+        let times = match method.scheme {
+            Scheme::Gauss(s) => gauss(s),
+            Scheme::Radau(s) => radau(s),
+            _ => Vec::new(),
+        };
+        let chosen =
+            if method.controls == ControlShape::Polynomial { times.len() * controls } else { controls };
+        let carried = states + if method.controls == ControlShape::Linear { controls } else { 0 };
+        let inner = times.iter().filter(|time| **time < 1.0).count();
+        let (nodes, links, path) = (Vec::new(), Vec::new(), Vec::new());
+        let step = carried + chosen + inner * states;
+        let mut grid =
+            Grid { states, controls, carried, step, times, shape: method.controls, nodes, links, path };
+        if grid.times.is_empty() {
+            grid.one_step(problem)
+        } else {
+            grid.collocation()
+        }
+        let last = grid.point(1.0, |i| vec![(step + i, 1.0)]);
+        grid.path.push(last);
+        let first = (1 + inner) * states;
+        for i in 0..carried - states {
+            grid.links.extend([(first + i, step + states + i, 1.0), (first + i, carried + i, -1.0)]);
+        }
+        grid
+    }
+
+    /// Rows of the interval that are equations.
+    fn defects(&self) -> usize {
+        self.step - self.inner_place() + self.carried
+    }
+
+    /// The place of the first state inside the interval.
+    fn inner_place(&self) -> usize {
+        self.step - self.times.iter().filter(|time| **time < 1.0).count() * self.states
+    }
+
+    fn one_step(&mut self, problem: &Problem) {
+        let states = self.states;
+        let node = |weight: f64, time: f64| (weight, time, vec![time; states]);
+        let nodes = match problem.method.scheme {
+            Scheme::Midpoint => vec![node(1.0, 0.5)],
+            Scheme::Trapezoid => vec![node(0.5, 0.0), node(0.5, 1.0)],
+            Scheme::ImplicitEuler => {
+                let mut new = node(1.0, 1.0);
+                problem.method.lagged.iter().for_each(|&state| new.2[state] = 0.0);
+                vec![new]
+            }
+            _ => vec![node(1.0, 0.0)],
+        };
+        for (weight, time, share) in nodes {
+            let point = self.point(time, |i| vec![(i, 1.0 - share[i]), (self.step + i, share[i])]);
+            self.nodes.push(Node { point, weight, row: 0, factor: weight });
+        }
+        self.links.extend((0..states).flat_map(|i| [(i, self.step + i, 1.0), (i, i, -1.0)]));
+    }
+
+    fn collocation(&mut self) {
+        let (states, times, first) = (self.states, self.times.clone(), self.inner_place());
+        let points: Vec<f64> = [0.0].into_iter().chain(times.iter().copied()).collect();
+        let place = |j: usize| match j {
+            0 => 0,
+            j if points[j] == 1.0 => self.step,
+            j => first + (j - 1) * states,
+        };
+        let places: Vec<usize> = (0..points.len()).map(place).collect();
+        let b = weights(&times, |q| 1.0 / f64::from(q + 1));
+        for (i, time) in times.iter().enumerate() {
+            let slopes = weights(&points, |q| if q == 0 { 0.0 } else { f64::from(q) * time.powi(q - 1) });
+            self.link(i * states, &places, &slopes);
+            let point = self.point(*time, |state| vec![(places[i + 1] + state, 1.0)]);
+            self.nodes.push(Node { point, weight: b[i], row: i * states, factor: 1.0 });
+            if *time < 1.0 {
+                self.path.push(self.point(*time, |state| vec![(places[i + 1] + state, 1.0)]));
+            }
+        }
+        if times.last() != Some(&1.0) {
+            let end: Vec<f64> = weights(&points, |_| 1.0).iter().map(|value| -value).collect();
+            self.link(times.len() * states, &places, &end);
+            self.link(times.len() * states, &[self.step], &[1.0]);
+        }
+    }
+
+    fn link(&mut self, row: usize, places: &[usize], factors: &[f64]) {
+        for state in 0..self.states {
+            let entries = places.iter().zip(factors);
+            self.links.extend(entries.map(|(place, factor)| (row + state, place + state, *factor)));
+        }
+    }
+
+    fn point(&self, time: f64, state: impl Fn(usize) -> Sum) -> Point {
+        let states = (0..self.states).map(state).collect();
+        Point { time, states, controls: (0..self.controls).map(|i| self.control(i, time)).collect() }
+    }
+
+    fn control(&self, i: usize, time: f64) -> Sum {
+        match self.shape {
+            ControlShape::Constant => vec![(self.carried + i, 1.0)],
+            ControlShape::Linear => vec![(self.states + i, 1.0 - time), (self.carried + i, time)],
+            ControlShape::Polynomial => {
+                let values = weights(&self.times, |q| time.powi(q)).into_iter().enumerate();
+                values.map(|(j, factor)| (self.carried + j * self.controls + i, factor)).collect()
+            }
         }
     }
 }
@@ -58,6 +185,7 @@ struct Sample {
 /// The problem at a point.
 struct At<'a> {
     problem: &'a Problem,
+    grid: Grid,
     v: &'a [f64],
     parameters: Vec<f64>,
 }
@@ -65,7 +193,7 @@ struct At<'a> {
 impl Transcribed {
     /// Evaluates everything at `v`, with the smoothing widths `sigma`.
     pub fn new(problem: &Problem, sigma: &[f64], v: &[f64]) -> Self {
-        let at = At { problem, v, parameters: parameters(problem, sigma, v) };
+        let at = At { problem, grid: Grid::new(problem), v, parameters: parameters(problem, sigma, v) };
         let mut result = Transcribed {
             objective: 0.0,
             gradient: vec![0.0; v.len()],
@@ -76,8 +204,9 @@ impl Transcribed {
         };
         for k in 0..problem.method.intervals {
             result.defects(&at, k);
-            let path = at.sample(&*problem.path, k, 1.0, &vec![1.0; problem.layout.x]);
-            result.constraints(&path, 0, &problem.path_bounds);
+            for point in &at.grid.path {
+                result.constraints(&at.sample(&*problem.path, k, point), 0, &problem.path_bounds);
+            }
         }
         let ends = at.ends();
         result.cost(&ends, 0, 1.0);
@@ -86,20 +215,22 @@ impl Transcribed {
     }
 
     fn defects(&mut self, at: &At, k: usize) {
-        let (states, h) = (at.problem.layout.x, 1.0 / at.problem.method.intervals as f64);
-        let (first, here, next) = (self.rows.len(), at.place(k), at.place(k + 1));
-        for i in 0..states {
-            self.rows.push(at.v[next + i] - at.v[here + i]);
-            self.row_bounds.push(Bounds::fixed(0.0));
-            self.jacobian.extend([(first + i, next + i, 1.0), (first + i, here + i, -1.0)]);
+        let (states, h) = (at.grid.states, 1.0 / at.problem.method.intervals as f64);
+        let (first, here) = (self.rows.len(), at.place(k));
+        self.rows.resize(first + at.grid.defects(), 0.0);
+        self.row_bounds.resize(self.rows.len(), Bounds::fixed(0.0));
+        for &(row, place, value) in &at.grid.links {
+            self.rows[first + row] += value * at.v[here + place];
+            self.jacobian.push((first + row, here + place, value));
         }
-        for node in nodes(at.problem) {
-            let found = at.sample(&*at.problem.dynamics, k, node.time, &node.share);
+        for node in &at.grid.nodes {
+            let (found, row, factor) =
+                (at.sample(&*at.problem.dynamics, k, &node.point), first + node.row, h * node.factor);
             for i in 0..states {
-                self.rows[first + i] -= h * node.weight * found.values[i];
+                self.rows[row + i] -= factor * found.values[i];
             }
             for &(output, variable, slope) in found.slopes.iter().filter(|slope| slope.0 < states) {
-                self.jacobian.push((first + output, variable, -h * node.weight * slope));
+                self.jacobian.push((row + output, variable, -factor * slope));
             }
             if at.problem.running_cost {
                 self.cost(&found, states, h * node.weight);
@@ -139,9 +270,9 @@ fn parameters(problem: &Problem, sigma: &[f64], v: &[f64]) -> Vec<f64> {
 }
 
 impl At<'_> {
-    /// The place of `x_k`; `u_k` follows it.
+    /// The place of `x_k`.
     fn place(&self, k: usize) -> usize {
-        k * (self.problem.layout.x + self.problem.layout.u)
+        k * self.grid.step
     }
 
     /// The place of an unknown, given its place in `p`.
@@ -152,20 +283,20 @@ impl At<'_> {
     }
 
     /// A function over normalised time in interval `k`.
-    fn sample(&self, function: &dyn Function, k: usize, time: f64, share: &[f64]) -> Sample {
-        let (here, next, states) = (self.place(k), self.place(k + 1), share.len());
-        let mut point = vec![(k as f64 + time) / self.problem.method.intervals as f64];
-        for i in 0..states {
-            // The end that does not count may be anything.
-            let ends = [(1.0 - share[i], self.v[here + i]), (share[i], self.v[next + i])];
-            point.push(ends.iter().filter(|(weight, _)| *weight > 0.0).map(|(weight, x)| weight * x).sum());
-        }
-        point.extend_from_slice(&self.v[here + states..here + states + self.problem.layout.u]);
-        let controls_end = point.len();
-        self.evaluate(function, &point, |input| match input {
-            i if i > controls_end - 1 => vec![(self.unknown(i - controls_end), 1.0)],
-            i if i > states => vec![(here + i - 1, 1.0)],
-            i => vec![(here + i - 1, 1.0 - share[i - 1]), (next + i - 1, share[i - 1])],
+    fn sample(&self, function: &dyn Function, k: usize, at: &Point) -> Sample {
+        let here = self.place(k);
+        let sums: Vec<&Sum> = at.states.iter().chain(&at.controls).collect();
+        // A variable that does not count may be anything.
+        let own = |sum: &Sum| -> Sum {
+            let terms = sum.iter().filter(|(_, factor)| *factor != 0.0);
+            terms.map(|(place, factor)| (here + place, *factor)).collect()
+        };
+        let mut point = vec![(k as f64 + at.time) / self.problem.method.intervals as f64];
+        point
+            .extend(sums.iter().map(|sum| own(sum).iter().map(|(place, w)| w * self.v[*place]).sum::<f64>()));
+        self.evaluate(function, &point, |input| match sums.get(input - 1) {
+            Some(sum) => own(sum),
+            None => vec![(self.unknown(input - 1 - sums.len()), 1.0)],
         })
     }
 
@@ -204,11 +335,21 @@ impl At<'_> {
     }
 
     fn variable_bounds(&self) -> Vec<Bounds> {
-        let (problem, intervals) = (self.problem, self.problem.method.intervals);
+        let (problem, grid, intervals) = (self.problem, &self.grid, self.problem.method.intervals);
+        let states = || problem.states.iter().map(|state| state.bounds);
+        let controls = || problem.controls.iter().map(|control| control.bounds);
         let mut bounds = Vec::new();
         for k in 0..=intervals {
-            bounds.extend(problem.states.iter().map(|state| state.bounds));
-            bounds.extend(problem.controls.iter().filter(|_| k < intervals).map(|control| control.bounds));
+            bounds.extend(states());
+            // A control that goes on is bounded where it is chosen.
+            let carried = controls().map(|it| if k == 0 { it } else { Bounds::FREE });
+            bounds.extend(carried.take(grid.carried - grid.states));
+            if k < intervals {
+                let end = self.place(k + 1);
+                let chosen = grid.inner_place() - grid.carried;
+                bounds.extend((0..chosen).map(|i| problem.controls[i % grid.controls].bounds));
+                bounds.extend((0..end - bounds.len()).map(|i| problem.states[i % grid.states].bounds));
+            }
         }
         for (i, start) in problem.start.iter().enumerate() {
             bounds[i] = start.map_or(bounds[i], Bounds::fixed);

@@ -58,7 +58,12 @@ fn unmet(model: &Model, solved: &Solved) -> Vec<[f64; 3]> {
     let expectations = expectations(model);
     let trajectory = &solved.outcome.trajectory;
     let mut parameters = trajectory.parameters.clone();
-    parameters.extend(integrals(&solved.problem, trajectory, &*expectations.integrands));
+    parameters.extend(integrals(
+        &solved.problem,
+        &solved.outcome.solution,
+        &trajectory.parameters,
+        &*expectations.integrands,
+    ));
     let starts = trajectory.states.iter().map(|state| state[0]);
     let ends = trajectory.states.iter().map(|state| state[state.len() - 1]);
     let mut points = Columns::new(2 * trajectory.states.len(), 1);

@@ -477,7 +477,12 @@ fn the_command_line_changes_parameters_and_method() {
     assert!(refused(car.set_param("muN", "four")).contains("not a number"));
     assert!(refused(car.set_method("sigmo", "1")).contains("did you mean `sigma`?"));
     assert!(refused(car.set_method("kernel", "tanj")).contains("did you mean `tanh`?"));
-    assert!(refused(car.set_method("scheme", "radau3")).contains("cannot be solved yet"));
+    assert!(refused(car.set_method("scheme", "fesd")).contains("cannot be solved yet"));
+    assert!(refused(car.set_method("scheme", "radau6")).contains("it needs one of euler"));
+    car.set_method("controls", "linear").expect("a shape of controls");
+    assert!(refused(car.fits_together()).contains("more than one point of an interval"));
+    car.set_method("scheme", "radau3").expect("a scheme");
+    car.fits_together().expect("linear controls are seen at three points");
 }
 
 #[test]

@@ -31,7 +31,7 @@ impl Changes {
             let (key, value) = split(text, "--method KEY=VALUE")?;
             model.set_method(key, value)?;
         }
-        Ok(())
+        model.fits_together()
     }
 }
 

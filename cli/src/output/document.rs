@@ -7,7 +7,7 @@ use super::verified::Verification;
 use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::modes::Mode;
 use fdcc_runtime::nlp::Status;
-use fdcc_runtime::problem::{Linear, Method, Problem, Scheme, Solver};
+use fdcc_runtime::problem::{ControlShape, Linear, Method, Problem, Scheme, Solver, Variable};
 use serde::Serialize;
 
 /// One solve. Numbers are written so that they read back to the same bits.
@@ -32,6 +32,9 @@ pub struct Document {
     pub time: Vec<f64>,
     pub states: Named<Vec<f64>>,
     pub controls: Named<Vec<f64>>,
+    /// The values that define controls that are not constant on each interval.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub control_nodes: Option<ControlNodes>,
     pub costates: Named<Vec<f64>>,
     pub report: Named<Vec<f64>>,
     pub surfaces: Named<Vec<Span>>,
@@ -43,10 +46,18 @@ pub struct Document {
     pub verification: Option<Verification>,
 }
 
+/// The values between which a control is linear, or through which it is a polynomial on each interval.
+#[derive(Clone, Debug, Serialize)]
+pub struct ControlNodes {
+    pub time: Vec<f64>,
+    pub values: Named<Vec<f64>>,
+}
+
 /// The method that was used, defaults and choices included.
 #[derive(Clone, Debug, Serialize)]
 pub struct MethodUsed {
     pub scheme: String,
+    pub controls: String,
     #[serde(rename = "N")]
     pub n: usize,
     /// The width of the first surface, or nothing where nothing is smoothed.
@@ -124,7 +135,11 @@ impl Document {
             seconds,
             time: trajectory.time.clone(),
             states: shown(&trajectory.states),
-            controls: controls.map(|(control, column)| (control.name.clone(), column.clone())).collect(),
+            controls: named_columns(controls),
+            control_nodes: trajectory.nodes.as_ref().map(|nodes| ControlNodes {
+                time: nodes.time.clone(),
+                values: named_columns(problem.controls.iter().zip(&nodes.values)),
+            }),
             costates: shown(&trajectory.costates),
             report: problem.report_names.iter().cloned().zip(trajectory.report.iter().cloned()).collect(),
             surfaces: surfaces(problem, outcome),
@@ -132,6 +147,10 @@ impl Document {
             verification: None,
         }
     }
+}
+
+fn named_columns<'a>(columns: impl Iterator<Item = (&'a Variable, &'a Vec<f64>)>) -> Named<Vec<f64>> {
+    columns.map(|(control, column)| (control.name.clone(), column.clone())).collect()
 }
 
 fn surfaces(problem: &Problem, outcome: &Outcome) -> Named<Vec<Span>> {
@@ -149,7 +168,8 @@ impl MethodUsed {
         let surfaces = problem.surfaces.iter().zip(&outcome.sigma);
         let solver = if outcome.convex { "convex" } else { solver_name(method.solver) };
         MethodUsed {
-            scheme: scheme_name(method.scheme).to_string(),
+            scheme: scheme_name(method.scheme),
+            controls: shape_name(method.controls).to_string(),
             n: method.intervals,
             sigma: outcome.sigma.first().copied(),
             sigmas: surfaces.map(|(surface, sigma)| (surface.name.clone(), *sigma)).collect(),
@@ -199,13 +219,24 @@ fn mode_name(mode: Mode) -> &'static str {
 }
 
 /// The name of a scheme in models and files.
-pub fn scheme_name(scheme: Scheme) -> &'static str {
+pub fn scheme_name(scheme: Scheme) -> String {
     match scheme {
+        Scheme::Radau(stages) => return format!("radau{stages}"),
+        Scheme::Gauss(stages) => return format!("gauss{stages}"),
         Scheme::Euler => "euler",
         Scheme::ImplicitEuler => "implicit_euler",
         Scheme::Midpoint => "midpoint",
         Scheme::Trapezoid => "trapezoid",
         Scheme::RungeKutta4 => "rk4",
+    }
+    .to_string()
+}
+
+fn shape_name(shape: ControlShape) -> &'static str {
+    match shape {
+        ControlShape::Constant => "constant",
+        ControlShape::Linear => "linear",
+        ControlShape::Polynomial => "polynomial",
     }
 }
 

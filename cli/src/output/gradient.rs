@@ -68,7 +68,7 @@ pub struct Compare {
 pub struct Other {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sigma: Option<f64>,
-    pub scheme: &'static str,
+    pub scheme: String,
     #[serde(rename = "N")]
     pub n: usize,
     #[serde(flatten)]

@@ -1,6 +1,6 @@
 //! What is read of a `.sol.json`: to start from it, to replay it, to verify it.
 
-use super::document::{Document, MethodUsed};
+use super::document::{ControlNodes, Document, MethodUsed};
 use super::named::Named;
 use crate::solver::Failure;
 use serde::Deserialize;
@@ -25,6 +25,15 @@ pub struct Saved {
     pub time: Vec<Option<f64>>,
     pub states: Named<Column>,
     pub controls: Named<Column>,
+    #[serde(default)]
+    pub control_nodes: Option<SavedNodes>,
+}
+
+/// What defines controls that are not constant on each interval.
+#[derive(Deserialize)]
+pub struct SavedNodes {
+    pub time: Column,
+    pub values: Named<Column>,
 }
 
 /// A signal over time.
@@ -34,6 +43,7 @@ pub type Column = Vec<Option<f64>>;
 #[derive(Default, Deserialize)]
 pub struct SavedMethod {
     pub scheme: Option<String>,
+    pub controls: Option<String>,
     #[serde(rename = "N")]
     pub n: Option<u64>,
     pub sigma: Option<f64>,
@@ -51,17 +61,19 @@ impl Saved {
 
 impl From<&Document> for Saved {
     fn from(document: &Document) -> Self {
-        let MethodUsed { scheme, n, sigma, kernel, .. } = document.method.clone();
+        let MethodUsed { scheme, controls, n, sigma, kernel, .. } = document.method.clone();
+        let (scheme, controls, kernel) = (Some(scheme), Some(controls), Some(kernel));
         Saved {
             model: document.model.clone(),
             source_sha256: document.source_sha256.clone(),
             objective: finite(document.objective),
             free: numbers(&document.free),
             params: numbers(&document.params),
-            method: SavedMethod { scheme: Some(scheme), n: Some(n as u64), sigma, kernel: Some(kernel) },
+            method: SavedMethod { scheme, controls, n: Some(n as u64), sigma, kernel },
             time: document.time.iter().copied().map(finite).collect(),
             states: columns(&document.states),
             controls: columns(&document.controls),
+            control_nodes: document.control_nodes.as_ref().map(saved_nodes),
         }
     }
 }
@@ -72,6 +84,10 @@ fn finite(value: f64) -> Option<f64> {
 
 fn numbers(of: &Named<f64>) -> Named<Option<f64>> {
     of.0.iter().map(|(name, value)| (name.clone(), finite(*value))).collect()
+}
+
+fn saved_nodes(nodes: &ControlNodes) -> SavedNodes {
+    SavedNodes { time: nodes.time.iter().copied().map(finite).collect(), values: columns(&nodes.values) }
 }
 
 fn columns(of: &Named<Vec<f64>>) -> Named<Column> {

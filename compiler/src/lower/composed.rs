@@ -28,7 +28,7 @@ const CLASSICAL: Tableau = Tableau {
 fn tableau(scheme: Scheme) -> Option<&'static Tableau> {
     match scheme {
         Scheme::RungeKutta4 => Some(&CLASSICAL),
-        Scheme::Euler | Scheme::ImplicitEuler | Scheme::Midpoint | Scheme::Trapezoid => None,
+        _ => None,
     }
 }
 

@@ -7,7 +7,7 @@ use crate::smooth;
 use crate::units;
 use fdcc_grammar::ast::{Expr, ExprKind, Ident, ItemKind, Setting, SettingValue};
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
-use fdcc_runtime::problem::{Linear, Method, Scheme, Solver};
+use fdcc_runtime::problem::{ControlShape, Linear, MOST_STAGES, Method, Scheme, Solver};
 
 /// The keys, each with what it takes.
 const KEYS: &[(&str, &str)] = &[
@@ -19,6 +19,7 @@ const KEYS: &[(&str, &str)] = &[
         "scheme",
         "one of euler, implicit_euler, midpoint, trapezoid, rk4, radau1 to radau5, gauss1 to gauss5, fesd",
     ),
+    ("controls", "one of constant, linear, polynomial"),
     ("solver", "one of interior_point, sqp, convex"),
     ("linear", "one of auto, riccati, sparse_ldl"),
     ("continue", "numbers above 0, each smaller than the one before"),
@@ -28,10 +29,7 @@ const KEYS: &[(&str, &str)] = &[
 ];
 
 /// Schemes and solvers that are understood but do not exist yet.
-const NOT_YET: &[&str] = &[
-    "radau1", "radau2", "radau3", "radau4", "radau5", "gauss1", "gauss2", "gauss3", "gauss4", "gauss5",
-    "fesd", "sqp",
-];
+const NOT_YET: &[&str] = &["fesd", "sqp"];
 
 /// A value of a setting.
 #[derive(Clone, Debug)]
@@ -58,7 +56,7 @@ pub(crate) fn set(method: &mut Method, key: &str, given: &Given) -> Result<(), R
     let positive = || number(given).filter(|value| *value > 0.0).ok_or_else(refused);
     let count = || whole(given).filter(|value| *value > 0).map(|value| value as usize).ok_or_else(refused);
     let word = || match given {
-        Given::Word(word) if NOT_YET.contains(&word.as_str()) && expected.contains(first_letters(word)) => {
+        Given::Word(word) if NOT_YET.contains(&word.as_str()) && expected.contains(word.as_str()) => {
             Err(Refused::NotYet)
         }
         Given::Word(word) => Ok(word.as_str()),
@@ -79,16 +77,12 @@ pub(crate) fn set(method: &mut Method, key: &str, given: &Given) -> Result<(), R
         ("seed", _) => method.seed = whole(given).ok_or_else(refused)?,
         ("continue", _) => method.continuation = decreasing(given).ok_or_else(refused)?,
         ("kernel", _) => method.kernel = smooth::find(word()?).ok_or_else(refused)?.name.into(),
+        ("controls", _) => method.controls = shape(word()?).ok_or_else(refused)?,
         ("scheme", _) => method.scheme = scheme(word()?).ok_or_else(refused)?,
         ("solver", _) => method.solver = solver(word()?).ok_or_else(refused)?,
         _ => method.linear = linear(word()?).ok_or_else(refused)?,
     }
     Ok(())
-}
-
-/// `radau3` is listed as `radau1 to radau5`.
-fn first_letters(word: &str) -> &str {
-    word.trim_end_matches(|last: char| last.is_ascii_digit())
 }
 
 fn scheme(word: &str) -> Option<Scheme> {
@@ -98,6 +92,21 @@ fn scheme(word: &str) -> Option<Scheme> {
         "midpoint" => Scheme::Midpoint,
         "trapezoid" => Scheme::Trapezoid,
         "rk4" => Scheme::RungeKutta4,
+        _ => return collocation(word),
+    })
+}
+
+/// `radau1` to `radau5`, `gauss1` to `gauss5`.
+fn collocation(word: &str) -> Option<Scheme> {
+    let stages = |name: &str| word.strip_prefix(name)?.parse().ok().filter(|s| (1..=MOST_STAGES).contains(s));
+    stages("radau").map(Scheme::Radau).or_else(|| stages("gauss").map(Scheme::Gauss))
+}
+
+fn shape(word: &str) -> Option<ControlShape> {
+    Some(match word {
+        "constant" => ControlShape::Constant,
+        "linear" => ControlShape::Linear,
+        "polynomial" => ControlShape::Polynomial,
         _ => return None,
     })
 }
@@ -143,6 +152,23 @@ fn decreasing(given: &Given) -> Option<Vec<f64>> {
     (falls && list.iter().all(|&value| value > 0.0 && value.is_finite())).then_some(list)
 }
 
+/// What of the controls does not fit the scheme, and what to do.
+pub(crate) fn misfit(method: &Method) -> Option<(&'static str, &'static str)> {
+    if method.scheme.allows(method.controls) {
+        return None;
+    }
+    Some(match method.controls {
+        ControlShape::Linear => (
+            "linear controls need a scheme that sees more than one point of an interval",
+            "choose trapezoid, radau2 to radau5 or gauss2 to gauss5",
+        ),
+        _ => (
+            "polynomial controls are given at the nodes of a collocation scheme",
+            "choose radau1 to radau5 or gauss1 to gauss5",
+        ),
+    })
+}
+
 /// Whether there is such a key.
 pub(crate) fn is_key(key: &str) -> bool {
     KEYS.iter().any(|row| row.0 == key)
@@ -174,6 +200,15 @@ fn shown(given: &Given) -> String {
 impl<'a> Elaborator<'a> {
     /// Resolves a `method` block.
     pub fn settings(&mut self, settings: &'a [Setting]) {
+        self.each_setting(settings);
+        let controls = settings.iter().find(|setting| setting.key.name == "controls");
+        if let (Some((what, help)), Some(setting)) = (misfit(&self.model.method), controls) {
+            let found = Diagnostic::new(Code::UnknownSetting, what, setting.key.span, "not with this scheme");
+            self.diagnostics.push(found.help(help));
+        }
+    }
+
+    fn each_setting(&mut self, settings: &'a [Setting]) {
         for setting in settings {
             let key = &setting.key;
             if matches!(key.name.as_str(), "sigma" | "kernel" | "continue") {

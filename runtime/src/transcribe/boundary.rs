@@ -44,7 +44,8 @@ impl Ends {
 
     pub(super) fn load(&mut self, stages: Stages, v: &[f64]) {
         let first = self.tables.function.layout().states().start;
-        let ends = stages.state(0).chain(stages.state(stages.intervals));
+        let states = self.tables.function.layout().x / 2;
+        let ends = stages.state(0).take(states).chain(stages.state(stages.intervals).take(states));
         for (i, variable) in ends.enumerate() {
             self.tables.points.column_mut(first + i)[0] = v[variable];
         }
@@ -132,7 +133,7 @@ fn variable(problem: &Problem, stages: Stages, input: usize) -> usize {
         return stages.globals().start + unknown.expect("differentiated by unknowns only");
     }
     let state = input - layout.states().start;
-    match state.checked_sub(stages.states) {
+    match state.checked_sub(problem.layout.x) {
         None => state,
         Some(state) => stages.state(stages.intervals).start + state,
     }

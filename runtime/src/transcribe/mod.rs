@@ -1,39 +1,46 @@
 //! From an optimal control problem to a nonlinear programme that is a chain of stages.
 //!
 //! ```text
-//! variables   x_0 u_0  x_1 u_1  ...  x_N   unknowns
+//! variables   x_0 u_0 y_0  x_1 u_1 y_1  ...  x_N   unknowns
 //! rows        defects_0 path_1   defects_1 path_2   ...   defects_{N-1} path_N   boundary conditions
 //! ```
 //!
-//! A control is constant on its interval; path constraints hold at every grid point after the start, with the
-//! control of the interval that ends there. Start values that are numbers are fixed variables.
+//! What stands in one interval is the scheme's business: [`interval`]. Path constraints hold at every grid point after the start, and
+//! at the nodes of a collocation scheme. Start values that are numbers are fixed variables.
 
 mod assembly;
 mod boundary;
+mod bounds;
+pub(crate) mod collocation;
+mod guess;
+pub(crate) mod interval;
 mod sampled;
 pub(crate) mod tableau;
 mod tables;
 
 use crate::linalg::{Stages, Triplets};
 use crate::nlp::{Derivatives, Nlp, Place};
-use crate::problem::{Bounds, Columns, Problem};
+use crate::problem::{Bounds, Origin, Problem};
 use assembly::{Builder, Repeated};
 use boundary::Ends;
+use interval::{Interval, Node};
 use sampled::{Matrices, Sampled, Target};
 
 /// The programme of a problem on a uniform grid.
 pub struct TranscribedNlp<'p> {
     problem: &'p Problem,
     stages: Stages,
+    interval: Interval,
     variable_bounds: Vec<Bounds>,
     row_bounds: Vec<Bounds>,
     jacobian: Triplets,
     hessian: Triplets,
-    /// Values of the Jacobian that never change: `x_{k+1} - x_k`.
+    /// Values of the Jacobian that never change, such as those of `x_{k+1} - x_k`: the first of each family.
     constant: Vec<(usize, f64)>,
-    /// The right side, once per node of the scheme; then the path constraints.
+    /// The right side, once per node of the scheme.
     nodes: Vec<Sampled>,
-    path: Sampled,
+    /// The path constraints, once per point of an interval.
+    path: Vec<Sampled>,
     ends: Ends,
     /// All of `p`, unknowns included.
     parameters: Vec<f64>,
@@ -42,24 +49,30 @@ pub struct TranscribedNlp<'p> {
 impl<'p> TranscribedNlp<'p> {
     /// Transcribes with the problem's own method.
     pub fn new(problem: &'p Problem) -> Self {
-        let stages = stages(problem);
+        let interval = Interval::new(&problem.method, &problem.layout);
+        let stages = stages(problem, &interval);
         let mut matrices = Matrices { stages, jacobian: Builder::default(), hessian: Builder::default() };
-        let constant = state_differences(&mut matrices);
-        let nodes = tableau::nodes(&problem.method, stages.states).into_iter().map(|node| {
-            let targets = dynamics_targets(problem, stages, node.weight);
-            Sampled::new(problem, &problem.dynamics, node.time, node.blend, targets, &mut matrices)
+        let constant = constant(&interval, &mut matrices);
+        let nodes = interval.nodes.iter().map(|node| {
+            let targets = dynamics_targets(problem, stages, node);
+            Sampled::new(problem, &problem.dynamics, node.point.clone(), targets, &mut matrices)
         });
         let nodes = nodes.collect();
-        let targets = (0..stages.local_rows).map(|i| Target::Row(stages.states + i, 1.0)).collect();
-        let path =
-            Sampled::new(problem, &problem.path, 1.0, vec![1.0; stages.states], targets, &mut matrices);
+        let rows = problem.path_bounds.len();
+        let path = interval.path.iter().enumerate().map(|(at, point)| {
+            let first = stages.defect_rows() + at * rows;
+            let targets = (first..first + rows).map(|row| Target::Row(row, 1.0)).collect();
+            Sampled::new(problem, &problem.path, point.clone(), targets, &mut matrices)
+        });
+        let path = path.collect();
         let Matrices { mut jacobian, mut hessian, .. } = matrices;
         let ends = Ends::new(problem, stages, &mut jacobian, &mut hessian);
         TranscribedNlp {
             problem,
             stages,
-            variable_bounds: variable_bounds(problem, stages),
-            row_bounds: row_bounds(problem, stages),
+            variable_bounds: bounds::of_variables(problem, stages, &interval),
+            row_bounds: bounds::of_rows(problem, stages),
+            interval,
             jacobian: jacobian.finish(),
             hessian: hessian.finish(),
             constant,
@@ -73,6 +86,11 @@ impl<'p> TranscribedNlp<'p> {
     /// Sizes of the chain.
     pub fn chain(&self) -> Stages {
         self.stages
+    }
+
+    /// What stands in one interval.
+    pub(crate) fn interval(&self) -> &Interval {
+        &self.interval
     }
 
     /// Changes entries of `p` (smoothing widths) without transcribing again.
@@ -90,47 +108,6 @@ impl<'p> TranscribedNlp<'p> {
         parameters
     }
 
-    /// The model's guess on the grid; running integrals are those of the guess.
-    pub fn guess(&mut self) -> Vec<f64> {
-        let mut v = self.guessed();
-        let hidden: Vec<usize> = (0..self.stages.states).filter(|&i| self.problem.states[i].hidden).collect();
-        if !hidden.is_empty() {
-            let mut rows = vec![0.0; self.row_bounds.len()];
-            self.values(&v, &mut rows);
-            for k in 0..self.stages.intervals {
-                for &i in &hidden {
-                    let defect = rows[self.stages.defects(k).start + i];
-                    let next =
-                        v[self.stages.state(k).start + i] - if defect.is_finite() { defect } else { 0.0 };
-                    v[self.stages.state(k + 1).start + i] = next;
-                }
-            }
-        }
-        v
-    }
-
-    fn guessed(&self) -> Vec<f64> {
-        let (stages, problem) = (self.stages, self.problem);
-        let mut points = Columns::new(problem.guess.layout().point_inputs(), stages.intervals + 1);
-        for (k, tau) in points.column_mut(0).iter_mut().enumerate() {
-            *tau = k as f64 / stages.intervals as f64;
-        }
-        let mut values = Columns::new(problem.guess.outputs(), stages.intervals + 1);
-        problem.guess.value(&points, &self.parameters, &mut values);
-        let mut v = vec![0.0; stages.variables()];
-        for k in 0..=stages.intervals {
-            let end = if k < stages.intervals { stages.control(k).end } else { stages.state(k).end };
-            for (column, variable) in (stages.state(k).start..end).enumerate() {
-                let value = values.column(column)[k];
-                v[variable] = if value.is_finite() { value } else { 0.0 };
-            }
-        }
-        for (variable, unknown) in stages.globals().zip(&problem.unknowns) {
-            v[variable] = self.parameters[unknown.parameter];
-        }
-        v
-    }
-
     /// The gradient of the objective, with each `x_k` counting only in the interval that begins at it, and `x_N` only
     /// in the Mayer objective. Belongs to the point of the last call of `derivatives`.
     pub(crate) fn gradient_from_here_on(&self) -> Vec<f64> {
@@ -142,94 +119,63 @@ impl<'p> TranscribedNlp<'p> {
 
     /// Whether a row is a step of a differential equation.
     pub fn is_defect(&self, row: usize) -> bool {
-        row < self.stages.coupling().start && row % self.stages.row_step() < self.stages.states
+        row < self.stages.coupling().start && row % self.stages.row_step() < self.stages.defect_rows()
     }
 
     /// The largest absolute value of each switching function along `v`.
     pub fn guard_sizes(&self, v: &[f64]) -> Vec<f64> {
-        let guards = crate::trajectory::guards(self.problem, self.stages, v, &self.parameters_at(v));
+        let guards = crate::trajectory::guards(self.problem, self, v);
         guards.iter().map(|psi| psi.iter().fold(0.0, |a: f64, value| a.max(value.abs()))).collect()
+    }
+
+    /// A step of an equation, or a control that goes on into the next interval.
+    fn defect_origin(&self, row: usize) -> Origin {
+        let Problem { layout, dynamics, controls, .. } = self.problem;
+        let handed_on = self.stages.states - layout.x;
+        match row.checked_sub(self.stages.defect_rows() - handed_on) {
+            Some(control) => controls[control].origin.clone(),
+            None => dynamics.origin(row % layout.x),
+        }
     }
 
     fn load(&mut self, v: &[f64]) {
         for (unknown, variable) in self.problem.unknowns.iter().zip(self.stages.globals()) {
             self.parameters[unknown.parameter] = v[variable];
         }
-        self.nodes.iter_mut().for_each(|node| node.load(self.stages, v));
-        self.path.load(self.stages, v);
+        self.nodes.iter_mut().chain(&mut self.path).for_each(|sampled| sampled.load(self.stages, v));
         self.ends.load(self.stages, v);
     }
 }
 
-fn stages(problem: &Problem) -> Stages {
+fn stages(problem: &Problem, interval: &Interval) -> Stages {
     Stages {
         intervals: problem.method.intervals,
-        states: problem.layout.x,
-        controls: problem.layout.u,
-        inner: 0,
+        states: interval.carried,
+        controls: interval.chosen,
+        inner: interval.inner(),
         globals: problem.unknowns.len(),
-        local_rows: problem.path_bounds.len(),
+        local_rows: problem.path_bounds.len() * interval.path.len(),
         coupling_rows: problem.boundary_bounds.len(),
     }
 }
 
-/// Outputs of the right side go to the defects with `-b/N`; the integrand goes to the objective with `b/N`.
-fn dynamics_targets(problem: &Problem, stages: Stages, weight: f64) -> Vec<Target> {
-    let h = weight / stages.intervals as f64;
-    let defects = (0..stages.states).map(|row| Target::Row(row, -h));
-    defects.chain(problem.running_cost.then_some(Target::Objective(h))).collect()
+/// Outputs of the right side go to the rows of their node; the integrand goes to the objective with `b/N`.
+fn dynamics_targets(problem: &Problem, stages: Stages, node: &Node) -> Vec<Target> {
+    let scale = |factor: f64| factor / stages.intervals as f64;
+    let rows = node.row..node.row + problem.layout.x;
+    let defects = rows.map(|row| Target::Row(row, -scale(node.factor)));
+    defects.chain(problem.running_cost.then_some(Target::Objective(scale(node.weight)))).collect()
 }
 
-fn state_differences(matrices: &mut Matrices) -> Vec<(usize, f64)> {
+fn constant(interval: &Interval, matrices: &mut Matrices) -> Vec<(usize, f64)> {
     let stages = matrices.stages;
     let (row_step, step) = (stages.row_step(), stages.variable_step());
-    let mut constant = Vec::new();
-    for state in 0..stages.states {
-        for (first, value) in [(state, -1.0), (step + state, 1.0)] {
-            let row = Repeated { first: state, step: row_step };
-            let place = matrices.jacobian.place(row, Repeated { first, step }, stages.intervals);
-            constant.push((place, value));
-        }
-    }
-    constant
-}
-
-fn variable_bounds(problem: &Problem, stages: Stages) -> Vec<Bounds> {
-    let mut bounds = vec![Bounds::FREE; stages.variables()];
-    for k in 0..=stages.intervals {
-        for (variable, state) in stages.state(k).zip(&problem.states) {
-            bounds[variable] = state.bounds;
-        }
-    }
-    for k in 0..stages.intervals {
-        for (variable, control) in stages.control(k).zip(&problem.controls) {
-            bounds[variable] = control.bounds;
-        }
-    }
-    for (variable, start) in stages.state(0).zip(&problem.start) {
-        if let Some(value) = start {
-            bounds[variable] = Bounds::fixed(*value);
-        }
-    }
-    for (variable, unknown) in stages.globals().zip(&problem.unknowns) {
-        bounds[variable] = unknown.bounds;
-    }
-    for (variable, value) in boundary::given_at_the_end(problem, stages) {
-        // On its bound the state would have no interior.
-        if bounds[variable].violation(value) == 0.0 {
-            bounds[variable] = Bounds::FREE;
-        }
-    }
-    bounds
-}
-
-fn row_bounds(problem: &Problem, stages: Stages) -> Vec<Bounds> {
-    let mut bounds = vec![Bounds::fixed(0.0); stages.rows()];
-    for k in 0..stages.intervals {
-        bounds[stages.local(k)].copy_from_slice(&problem.path_bounds);
-    }
-    bounds[stages.coupling()].copy_from_slice(&problem.boundary_bounds);
-    bounds
+    let places = interval.links.iter().map(|link| {
+        let (row, column) =
+            (Repeated { first: link.row, step: row_step }, Repeated { first: link.place, step });
+        (matrices.jacobian.place(row, column, stages.intervals), link.value)
+    });
+    places.collect()
 }
 
 impl Nlp for TranscribedNlp<'_> {
@@ -254,14 +200,12 @@ impl Nlp for TranscribedNlp<'_> {
         let stages = self.stages;
         let step = stages.variable_step();
         rows.fill(0.0);
-        for k in 0..stages.intervals {
-            let here = stages.state(k).start;
-            for (i, row) in stages.defects(k).enumerate() {
-                rows[row] = v[here + step + i] - v[here + i];
-            }
+        for link in &self.interval.links {
+            let rows = rows[link.row..].iter_mut().step_by(stages.row_step()).take(stages.intervals);
+            rows.zip(v[link.place..].iter().step_by(step)).for_each(|(row, x)| *row += link.value * x);
         }
         let mut objective = self.ends.values(stages, &self.parameters, rows);
-        for sampled in self.nodes.iter_mut().chain([&mut self.path]) {
+        for sampled in self.nodes.iter_mut().chain(&mut self.path) {
             objective += sampled.add_values(stages, &self.parameters, rows);
         }
         objective
@@ -276,7 +220,7 @@ impl Nlp for TranscribedNlp<'_> {
         for (place, value) in &self.constant {
             jacobian[*place..][..self.stages.intervals].fill(*value);
         }
-        for sampled in self.nodes.iter_mut().chain([&mut self.path]) {
+        for sampled in self.nodes.iter_mut().chain(&mut self.path) {
             sampled.differentiate(self.stages, &self.parameters, weight, multipliers);
             sampled.scatter(gradient, jacobian, hessian);
         }
@@ -290,9 +234,9 @@ impl Nlp for TranscribedNlp<'_> {
             return Place { origin: self.problem.boundary.origin(i + 1), grid_point: None };
         }
         let (k, i) = (row / stages.row_step(), row % stages.row_step());
-        let origin = match i.checked_sub(stages.states) {
-            None => self.problem.dynamics.origin(i),
-            Some(path) => self.problem.path.origin(path),
+        let origin = match i.checked_sub(stages.defect_rows()) {
+            Some(row) => self.problem.path.origin(row % self.problem.path_bounds.len()),
+            None => self.defect_origin(i),
         };
         Place { origin, grid_point: Some(k + 1) }
     }
@@ -305,8 +249,10 @@ impl Nlp for TranscribedNlp<'_> {
                 return Some(Place { origin: self.problem.dynamics.origin(output), grid_point: Some(k) });
             }
         }
-        if let Some((output, k)) = self.path.not_finite(stages, &self.parameters, rows) {
-            return Some(Place { origin: self.problem.path.origin(output), grid_point: Some(k + 1) });
+        for path in &mut self.path {
+            if let Some((output, k)) = path.not_finite(stages, &self.parameters, rows) {
+                return Some(Place { origin: self.problem.path.origin(output), grid_point: Some(k + 1) });
+            }
         }
         let output = self.ends.not_finite(stages, &self.parameters, rows)?;
         Some(Place { origin: self.problem.boundary.origin(output), grid_point: None })

@@ -1,9 +1,10 @@
 //! A function of the problem, evaluated once in every interval, and where its derivatives go.
 //!
-//! It sees `(tau_k + c h, (1 - w) x_k + w x_{k+1}, u_k, p)`. By the chain rule each derivative by a state splits into
-//! one by `x_k` with factor `1 - w` and one by `x_{k+1}` with factor `w`.
+//! It sees a [`Point`] of the interval, whose states and controls are sums of variables with factors. By the chain rule each
+//! derivative by a state or control splits into one by each of these variables, with its factor.
 
 use super::assembly::{Builder, Contribution, Repeated};
+use super::interval::Point;
 use super::tables::{Tables, scatter};
 use crate::linalg::Stages;
 use crate::problem::{Columns, Function, Problem};
@@ -21,7 +22,7 @@ pub(super) enum Target {
 /// A function with its tables.
 pub(super) struct Sampled {
     tables: Tables,
-    blend: Vec<f64>,
+    point: Point,
     targets: Vec<Target>,
     row_moves: Vec<Contribution>,
     /// Target: a variable of interval 0, and its step along the chain.
@@ -40,18 +41,14 @@ impl Sampled {
     pub(super) fn new(
         problem: &Problem,
         function: &Arc<dyn Function>,
-        time: f64,
-        blend: Vec<f64>,
+        point: Point,
         targets: Vec<Target>,
         matrices: &mut Matrices,
     ) -> Self {
-        let intervals = matrices.stages.intervals;
-        let mut tables = Tables::new(function, intervals);
-        for (k, tau) in tables.points.column_mut(0).iter_mut().enumerate() {
-            *tau = (k as f64 + time) / intervals as f64;
-        }
+        let mut tables = Tables::new(function, matrices.stages.intervals);
+        point.set_times(&mut tables.points);
         let (row_moves, gradient_moves, hessian_moves) = (Vec::new(), Vec::new(), Vec::new());
-        let mut sampled = Sampled { tables, blend, targets, row_moves, gradient_moves, hessian_moves };
+        let mut sampled = Sampled { tables, point, targets, row_moves, gradient_moves, hessian_moves };
         sampled.map_jacobian(problem, matrices);
         sampled.map_hessian(problem, matrices);
         sampled
@@ -105,39 +102,17 @@ impl Sampled {
             let first = stages.globals().start + unknown.expect("differentiated by unknowns only");
             return vec![(Repeated { first, step: 0 }, 1.0)];
         }
-        if let Some(control) = input.checked_sub(layout.controls().start) {
-            return vec![(Repeated { first: stages.states + control, step }, 1.0)];
-        }
-        let state = input - layout.states().start;
-        let ends = [(state, 1.0 - self.blend[state]), (step + state, self.blend[state])];
-        let ends = ends.into_iter().filter(|(_, factor)| *factor != 0.0);
-        ends.map(|(first, factor)| (Repeated { first, step }, factor)).collect()
+        let combination = match input.checked_sub(layout.controls().start) {
+            Some(control) => &self.point.controls[control],
+            None => &self.point.states[input - layout.states().start],
+        };
+        combination.iter().map(|&(first, factor)| (Repeated { first, step }, factor)).collect()
     }
 
     /// Takes the states and controls from the variables of the programme.
     pub(super) fn load(&mut self, stages: Stages, v: &[f64]) {
-        let (layout, step) = (*self.tables.function.layout(), stages.variable_step());
-        for state in 0..layout.x {
-            let (new, old) = (self.blend[state], 1.0 - self.blend[state]);
-            let target = self.tables.points.column_mut(layout.t + state);
-            let here = v[state..].iter().step_by(step);
-            let next = v[step + state..].iter().step_by(step);
-            for (value, (x, x_next)) in target.iter_mut().zip(here.zip(next)) {
-                // No arithmetic on the end that does not count: it might not be finite.
-                *value = if new == 0.0 {
-                    *x
-                } else if old == 0.0 {
-                    *x_next
-                } else {
-                    old * x + new * x_next
-                };
-            }
-        }
-        for control in 0..layout.u {
-            let target = self.tables.points.column_mut(layout.t + layout.x + control);
-            let source = v[stages.states + control..].iter().step_by(step);
-            target.iter_mut().zip(source).for_each(|(value, u)| *value = *u);
-        }
+        let layout = *self.tables.function.layout();
+        self.point.load(stages, &layout, v, &mut self.tables.points);
     }
 
     /// Adds the outputs to the rows; returns their part of the objective.

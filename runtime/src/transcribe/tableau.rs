@@ -1,4 +1,4 @@
-//! **The table** of one-step schemes.
+//! **The table** of one-step schemes without stages of their own; those with are in [`super::collocation`].
 //!
 //! With `F = (tf - t0) f` over normalised time and `h = 1/N`, every scheme here is
 //!
@@ -22,7 +22,7 @@ pub(crate) struct Node {
     pub(crate) blend: Vec<f64>,
 }
 
-/// The nodes of a scheme.
+/// The nodes of a scheme; none of a collocation scheme, whose states at the nodes are variables.
 pub(crate) fn nodes(method: &Method, states: usize) -> Vec<Node> {
     let node = |weight, time, blend| Node { weight, time, blend: vec![blend; states] };
     match method.scheme {
@@ -33,6 +33,7 @@ pub(crate) fn nodes(method: &Method, states: usize) -> Vec<Node> {
             vec![implicit]
         }
         Scheme::Midpoint => vec![node(1.0, 0.5, 0.5)],
+        Scheme::Radau(_) | Scheme::Gauss(_) => Vec::new(),
         Scheme::Trapezoid => vec![node(0.5, 0.0, 0.0), node(0.5, 1.0, 1.0)],
     }
 }

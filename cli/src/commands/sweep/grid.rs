@@ -57,7 +57,7 @@ impl Grid {
                 );
             }
         }
-        Ok(())
+        model.fits_together()
     }
 }
 

@@ -1,0 +1,275 @@
+//! What a scheme makes of one interval: its variables, where the functions of the problem are evaluated, and which rows
+//! they enter.
+//!
+//! ```text
+//! variables   x_k [w_k]   u_k   y_k | x_{k+1} [w_{k+1}]
+//! rows        links - factor h F(node), one block for each node; then links alone
+//! ```
+//!
+//! `y_k` holds the states at the inner nodes of a collocation scheme. The controls `u_k` are one value, the values at the
+//! nodes, or, where controls are linear, the values at the end of the interval, which `w_{k+1}` hands on to the next.
+
+use super::{collocation, tableau};
+use crate::linalg::Stages;
+use crate::problem::{Columns, ControlShape, Layout, Method};
+
+/// A sum of variables of an interval: places from `x_k` on, with factors.
+pub(crate) type Combination = Vec<(usize, f64)>;
+
+/// A point of each interval, as the functions of the problem see it.
+#[derive(Clone, Debug)]
+pub(crate) struct Point {
+    /// Which part of the interval has passed.
+    pub(crate) time: f64,
+    pub(crate) states: Vec<Combination>,
+    pub(crate) controls: Vec<Combination>,
+}
+
+/// A point at which the right side is evaluated.
+#[derive(Clone, Debug)]
+pub(crate) struct Node {
+    pub(crate) point: Point,
+    /// Its weight in integrals.
+    pub(crate) weight: f64,
+    /// Its rows of the interval, from this on, get `-factor h F`.
+    pub(crate) row: usize,
+    pub(crate) factor: f64,
+}
+
+/// A constant entry of the defects.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Link {
+    pub(crate) row: usize,
+    pub(crate) place: usize,
+    pub(crate) value: f64,
+}
+
+/// What a variable of an interval is the value of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Signal {
+    State(usize),
+    Control(usize),
+}
+
+/// A variable of an interval: the value of a signal at a time of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slot {
+    pub(crate) signal: Signal,
+    pub(crate) time: f64,
+}
+
+/// One interval of a method.
+#[derive(Clone, Debug)]
+pub(crate) struct Interval {
+    /// States, and controls that go on from interval to interval.
+    pub(crate) carried: usize,
+    /// Variables that the optimiser chooses in the interval.
+    pub(crate) chosen: usize,
+    /// All variables before `x_{k+1}`.
+    pub(crate) slots: Vec<Slot>,
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) links: Vec<Link>,
+    pub(crate) start: Point,
+    pub(crate) end: Point,
+    /// Where path constraints hold.
+    pub(crate) path: Vec<Point>,
+    /// The mean of each control.
+    pub(crate) means: Vec<Combination>,
+}
+
+impl Interval {
+    pub(crate) fn new(method: &Method, layout: &Layout) -> Self {
+        let places = Places::new(method, layout);
+        let (nodes, mut links) = match places.nodes {
+            None => places.one_step(method),
+            Some(nodes) => places.collocated(nodes),
+        };
+        let row = (1 + places.inner() / places.states.max(1)) * places.states;
+        for control in 0..places.carried - places.states {
+            let (handed_on, next) = (places.carried + control, places.step() + places.states + control);
+            links.push(Link { row: row + control, place: next, value: 1.0 });
+            links.push(Link { row: row + control, place: handed_on, value: -1.0 });
+        }
+        let end = places.point(1.0, |state| vec![(places.step() + state, 1.0)]);
+        let inner = nodes.iter().filter(|node| places.nodes.is_some() && node.point.time < 1.0);
+        Interval {
+            carried: places.carried,
+            chosen: places.chosen,
+            slots: places.slots(),
+            start: places.point(0.0, |state| vec![(state, 1.0)]),
+            path: inner.map(|node| node.point.clone()).chain([end.clone()]).collect(),
+            means: (0..places.controls).map(|control| places.mean(control)).collect(),
+            end,
+            nodes,
+            links,
+        }
+    }
+
+    /// Controls that go on from interval to interval.
+    pub(crate) fn carried_controls(&self) -> usize {
+        self.carried - self.start.states.len()
+    }
+
+    /// Inner variables.
+    pub(crate) fn inner(&self) -> usize {
+        self.slots.len() - self.carried - self.chosen
+    }
+}
+
+impl Point {
+    /// Writes the times of this point in all intervals.
+    pub(crate) fn set_times(&self, points: &mut Columns) {
+        let intervals = points.count();
+        for (k, tau) in points.column_mut(0).iter_mut().enumerate() {
+            *tau = (k as f64 + self.time) / intervals as f64;
+        }
+    }
+
+    /// Takes the states and controls of all intervals from the variables of the programme.
+    pub(crate) fn load(&self, stages: Stages, layout: &Layout, v: &[f64], points: &mut Columns) {
+        let signals = self.states.iter().chain(&self.controls).enumerate();
+        signals.for_each(|(i, combination)| add_up(combination, stages, v, points.column_mut(layout.t + i)));
+    }
+}
+
+/// The value of a combination in each interval. A variable without a factor is not touched: it might not be finite.
+pub(crate) fn add_up(combination: &Combination, stages: Stages, v: &[f64], target: &mut [f64]) {
+    let column = |place: usize| v[place..].iter().step_by(stages.variable_step());
+    let Some(((place, factor), others)) = combination.split_first() else { return target.fill(0.0) };
+    target.iter_mut().zip(column(*place)).for_each(|(value, x)| *value = factor * x);
+    for (place, factor) in others {
+        target.iter_mut().zip(column(*place)).for_each(|(value, x)| *value += factor * x);
+    }
+}
+
+/// Where the variables of an interval are.
+struct Places {
+    nodes: Option<&'static [f64]>,
+    shape: ControlShape,
+    states: usize,
+    controls: usize,
+    carried: usize,
+    chosen: usize,
+}
+
+impl Places {
+    fn new(method: &Method, layout: &Layout) -> Self {
+        let nodes = collocation::nodes(method.scheme);
+        let is_allowed = method.scheme.allows(method.controls) && layout.u > 0;
+        let shape = if is_allowed { method.controls } else { ControlShape::Constant };
+        let controls = layout.u;
+        let chosen = match (shape, nodes) {
+            (ControlShape::Polynomial, Some(nodes)) => nodes.len() * controls,
+            _ => controls,
+        };
+        let carried = layout.x + if shape == ControlShape::Linear { controls } else { 0 };
+        Places { nodes, shape, states: layout.x, controls, carried, chosen }
+    }
+
+    /// Nodes before the end of the interval, which have variables of their own.
+    fn inner_nodes(&self) -> &'static [f64] {
+        let nodes = self.nodes.unwrap_or_default();
+        if nodes.last() == Some(&1.0) { &nodes[..nodes.len() - 1] } else { nodes }
+    }
+
+    fn inner(&self) -> usize {
+        self.inner_nodes().len() * self.states
+    }
+
+    fn step(&self) -> usize {
+        self.carried + self.chosen + self.inner()
+    }
+
+    fn slots(&self) -> Vec<Slot> {
+        let states = |time: f64| (0..self.states).map(move |i| Slot { signal: Signal::State(i), time });
+        let controls = |time: f64| (0..self.controls).map(move |i| Slot { signal: Signal::Control(i), time });
+        let mut slots: Vec<Slot> = states(0.0).collect();
+        match (self.shape, self.nodes) {
+            (ControlShape::Linear, _) => slots.extend(controls(0.0).chain(controls(1.0))),
+            (ControlShape::Polynomial, Some(nodes)) => slots.extend(nodes.iter().flat_map(|c| controls(*c))),
+            _ => slots.extend(controls(0.0)),
+        }
+        slots.extend(self.inner_nodes().iter().flat_map(|c| states(*c)));
+        slots
+    }
+
+    fn point(&self, time: f64, state: impl Fn(usize) -> Combination) -> Point {
+        let states = (0..self.states).map(state).collect();
+        Point { time, states, controls: (0..self.controls).map(|i| self.control(i, time)).collect() }
+    }
+
+    fn control(&self, control: usize, time: f64) -> Combination {
+        let combination: Combination = match (self.shape, self.nodes) {
+            (ControlShape::Linear, _) => {
+                vec![(self.states + control, 1.0 - time), (self.carried + control, time)]
+            }
+            (ControlShape::Polynomial, Some(nodes)) => {
+                let place = |j: usize| self.carried + j * self.controls + control;
+                let values = collocation::values(nodes, time).into_iter().enumerate();
+                values.map(|(j, value)| (place(j), value)).collect()
+            }
+            _ => vec![(self.carried + control, 1.0)],
+        };
+        combination.into_iter().filter(|(_, factor)| *factor != 0.0).collect()
+    }
+
+    fn mean(&self, control: usize) -> Combination {
+        let nodes = self.nodes.filter(|_| self.shape == ControlShape::Polynomial).unwrap_or(&[0.5]);
+        let parts = nodes.iter().zip(collocation::weights(nodes));
+        let terms = parts.flat_map(|(time, weight)| {
+            self.control(control, *time).into_iter().map(move |(place, factor)| (place, weight * factor))
+        });
+        terms.collect()
+    }
+
+    /// `x_{k+1} - x_k - h sum_j b_j F(...)`
+    fn one_step(&self, method: &Method) -> (Vec<Node>, Vec<Link>) {
+        let nodes = tableau::nodes(method, self.states).into_iter().map(|node| {
+            let ends = |i: usize| {
+                let ends = [(i, 1.0 - node.blend[i]), (self.step() + i, node.blend[i])];
+                ends.into_iter().filter(|(_, factor)| *factor != 0.0).collect()
+            };
+            let point = self.point(node.time, ends);
+            Node { point, weight: node.weight, row: 0, factor: node.weight }
+        });
+        let links = (0..self.states).flat_map(|row| {
+            let place = self.step() + row;
+            [Link { row, place: row, value: -1.0 }, Link { row, place, value: 1.0 }]
+        });
+        (nodes.collect(), links.collect())
+    }
+
+    /// See [`collocation`].
+    fn collocated(&self, nodes: &[f64]) -> (Vec<Node>, Vec<Link>) {
+        let points: Vec<f64> = [0.0].into_iter().chain(nodes.iter().copied()).collect();
+        let (inner, states) = (self.inner_nodes().len(), self.states);
+        let place = |point: usize, state: usize| match point {
+            0 => state,
+            point if point <= inner => self.carried + self.chosen + (point - 1) * states + state,
+            _ => self.step() + state,
+        };
+        let mut links = Vec::new();
+        let mut link = |block: usize, factors: &[f64]| {
+            for state in 0..states {
+                let row = block * states + state;
+                let entries = factors.iter().enumerate();
+                links.extend(entries.map(|(j, value)| Link { row, place: place(j, state), value: *value }));
+            }
+        };
+        for (block, time) in nodes.iter().enumerate() {
+            link(block, &collocation::slopes(&points, *time));
+        }
+        if inner == nodes.len() {
+            let end = collocation::values(&points, 1.0).into_iter().map(|value| -value);
+            link(nodes.len(), &end.chain([1.0]).collect::<Vec<_>>());
+        }
+        let weights = collocation::weights(nodes).into_iter().zip(nodes).enumerate();
+        let nodes = weights.map(|(j, (weight, time))| Node {
+            point: self.point(*time, |state| vec![(place(j + 1, state), 1.0)]),
+            weight,
+            row: j * states,
+            factor: 1.0,
+        });
+        (nodes.collect(), links)
+    }
+}

@@ -3,11 +3,14 @@
 use fdcc_runtime::transcribe::TranscribedNlp;
 use fdcc_tests::{Solved, rate};
 
-/// A model without a method block, and quantities with their exact values, relative.
+/// A quantity of a solution by name, and its error.
+type Known = (&'static str, fn(&Solved) -> f64);
+
+/// A model without a method block, and what is known of its solution.
 struct Case {
     name: &'static str,
     text: &'static str,
-    known: Vec<(&'static str, fn(&Solved) -> f64)>,
+    known: Vec<Known>,
 }
 
 /// Errors below this are rounding.

@@ -1,9 +1,10 @@
-//! What a person sees while a solve runs, on stderr: Ipopt's iteration table with the width of the layer, and on a
+//! What a person sees while a solve runs, on stderr: Ipopt's iteration table with the width of the layer and the grid, and on a
 //! terminal a progress line.
 
 use crate::output::document::status_name;
 use crate::output::number::{scientific, significant};
 use crate::output::tell;
+use fdcc_runtime::homotopy;
 use fdcc_runtime::nlp::{Progress, Solution};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
@@ -21,7 +22,7 @@ pub enum Level {
 }
 
 const HEADER: &str =
-    " iter    objective    inf_pr   inf_du lg(mu)  ||d||  lg(rg) alpha_du alpha_pr  ls  sigma";
+    " iter    objective    inf_pr   inf_du lg(mu)  ||d||  lg(rg) alpha_du alpha_pr  ls  sigma       N";
 /// The header is repeated after this many lines.
 const PAGE: usize = 20;
 const SHORT: usize = 10;
@@ -49,7 +50,7 @@ impl Log {
     }
 
     /// One iteration.
-    pub fn iteration(&mut self, progress: &Progress, sigma: &[f64]) {
+    pub fn iteration(&mut self, progress: &Progress, level: homotopy::Level) {
         let (label, iteration) = (&self.label, progress.iteration);
         let violation = progress.primal_infeasibility;
         self.bar.set_message(format!("{label}iteration {iteration}  violation {violation:.1e}"));
@@ -61,7 +62,7 @@ impl Log {
         if !wanted {
             return;
         }
-        let line = line(progress, sigma);
+        let line = line(progress, level);
         let with_header = self.lines.is_multiple_of(PAGE);
         self.lines += 1;
         self.bar.suspend(|| {
@@ -104,13 +105,13 @@ fn progress(bar: ProgressBar, level: Level, template: &str) -> ProgressBar {
     bar
 }
 
-fn line(p: &Progress, sigma: &[f64]) -> String {
+fn line(p: &Progress, level: homotopy::Level) -> String {
     let regularization =
         if p.regularization > 0.0 { format!("{:.1}", p.regularization.log10()) } else { "-".into() };
-    let sigma = sigma.iter().fold(0.0f64, |a, sigma| a.max(*sigma));
+    let sigma = level.sigma.iter().fold(0.0f64, |a, sigma| a.max(*sigma));
     let sigma = if sigma > 0.0 { scientific(sigma, 1) } else { "-".into() };
     format!(
-        "{:5}{} {:>13} {:>8} {:>8} {:>5.1} {:>8} {:>5} {:>8} {:>8} {:>3}  {}",
+        "{:5}{} {:>13} {:>8} {:>8} {:>5.1} {:>8} {:>5} {:>8} {:>8} {:>3}  {:>7} {:>6}",
         p.iteration,
         if p.restoration { 'r' } else { ' ' },
         scientific(p.objective, 6),
@@ -122,6 +123,7 @@ fn line(p: &Progress, sigma: &[f64]) -> String {
         scientific(p.alpha_dual, 2),
         scientific(p.alpha_primal, 2),
         p.trials,
-        sigma
+        sigma,
+        level.intervals
     )
 }

@@ -163,8 +163,8 @@ fn run(
     deadline: Deadline,
     log: &mut Log,
 ) -> Result<Outcome, Failure> {
-    let outcome = homotopy::solve(problem, start, &mut |progress, sigma| {
-        log.iteration(progress, sigma);
+    let outcome = homotopy::solve(problem, start, &mut |progress, level| {
+        log.iteration(progress, level);
         deadline.check()
     });
     outcome.map_err(|Refusal::NotConvex| {

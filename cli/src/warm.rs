@@ -22,7 +22,7 @@ pub fn from_file(path: &Path, problem: &Problem) -> Result<Start, Failure> {
 pub fn from_solved(before: &Solved, problem: &Problem) -> Start {
     let solution = &before.outcome.solution;
     if before.problem.method.intervals == problem.method.intervals {
-        return Start { v: solution.v.clone(), warm: Some(solution.multipliers.clone()) };
+        return Start::near(solution);
     }
     Start { v: resample(problem, &Saved::from(&before.document).earlier(problem)), warm: None }
 }

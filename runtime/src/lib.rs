@@ -23,6 +23,7 @@ pub mod stepping;
 
 pub mod sensitivity;
 
+pub mod prolong;
 pub mod starts;
 
 pub mod homotopy;

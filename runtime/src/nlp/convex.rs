@@ -163,7 +163,7 @@ fn into_solution(nlp: &mut dyn Nlp, sides: &[Side], found: crate::clarabel::Coni
         status => status,
     };
     let global = status == Status::Solved;
-    Solution { status, v, multipliers, objective, kkt_error, constraint_violation, global, counts }
+    Solution { status, v, multipliers, mu: 0.0, objective, kkt_error, constraint_violation, global, counts }
 }
 
 /// The conic solver keeps bounds only to its tolerance.

@@ -146,8 +146,33 @@ pub struct Options {
 pub struct Start {
     /// Variables.
     pub v: Vec<f64>,
-    /// Multipliers of an earlier, similar solve; `None` for a cold start.
-    pub warm: Option<Multipliers>,
+    /// What is known of an earlier, similar solve; `None` for a cold start.
+    pub warm: Option<Warm>,
+}
+
+/// Where an earlier, similar solve ended.
+#[derive(Clone, Debug, Default)]
+pub struct Warm {
+    /// Its multipliers.
+    pub multipliers: Multipliers,
+    /// The barrier parameter of the scaled programme to begin with.
+    pub mu: f64,
+}
+
+impl Start {
+    /// Where another solve of the same size ended.
+    pub fn after(solution: &Solution) -> Self {
+        let warm = Warm { multipliers: solution.multipliers.clone(), mu: solution.mu };
+        Start { v: solution.v.clone(), warm: Some(warm) }
+    }
+
+    /// The same for a programme that is not quite the same: other conditions may be active at its solution, and the barrier leaves them room to become so.
+    pub fn near(solution: &Solution) -> Self {
+        const ROOM: f64 = 1e-4;
+        let mut start = Start::after(solution);
+        start.warm.iter_mut().for_each(|warm| warm.mu = warm.mu.max(ROOM));
+        start
+    }
 }
 
 /// Multipliers of all constraints.
@@ -199,6 +224,8 @@ pub struct Solution {
     pub v: Vec<f64>,
     /// Multipliers.
     pub multipliers: Multipliers,
+    /// The barrier parameter of the scaled programme at the end; 0 where there was none.
+    pub mu: f64,
     /// Objective.
     pub objective: f64,
     /// Scaled optimality error.

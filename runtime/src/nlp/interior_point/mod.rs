@@ -45,6 +45,7 @@ fn attempt(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watc
     };
     let mut algorithm = start::prepare(&mut scaled, start, *options);
     let status = algorithm.run(&mut scaled, &mut watch);
+    let mu = algorithm.barrier.mu;
     let Algorithm { at, counts, residuals, space, .. } = algorithm;
     let mut multipliers = Multipliers {
         rows: at.lambda,
@@ -57,5 +58,5 @@ fn attempt(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watc
     let objective = nlp.values(&v, &mut rows);
     let constraint_violation = super::constraint_violation(nlp, &v);
     let kkt_error = residuals.error(0.0);
-    Solution { status, v, multipliers, objective, kkt_error, constraint_violation, global: false, counts }
+    Solution { status, v, multipliers, mu, objective, kkt_error, constraint_violation, global: false, counts }
 }

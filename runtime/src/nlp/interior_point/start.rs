@@ -8,19 +8,21 @@ use crate::nlp::scaling::Scaled;
 use crate::nlp::{Multipliers, Nlp, Options, Start};
 
 const FIRST_MU: f64 = 0.1;
-const WARM_MU: f64 = 1e-4;
 const COLD_PUSH: f64 = 1e-2;
 const WARM_PUSH: f64 = 1e-5;
 
 /// The algorithm at its first iterate.
 pub(super) fn prepare(nlp: &mut Scaled, start: &Start, options: Options) -> Algorithm {
     let space = Space::new(nlp);
-    let (mu, push) = if start.warm.is_some() { (WARM_MU, WARM_PUSH) } else { (FIRST_MU, COLD_PUSH) };
+    let (mu, push) = match &start.warm {
+        Some(warm) => (warm.mu, WARM_PUSH),
+        None => (FIRST_MU, COLD_PUSH),
+    };
     let y = first_point(nlp, &space, &start.v, push);
     let (length, rows) = (space.len(), space.target.len());
     let mut at = Iterate { y, lambda: vec![0.0; rows], lower: vec![0.0; length], upper: vec![0.0; length] };
     match &start.warm {
-        Some(multipliers) => warm_multipliers(nlp, &space, multipliers.clone(), mu, &mut at),
+        Some(warm) => warm_multipliers(nlp, &space, warm.multipliers.clone(), mu, &mut at),
         None => at.set_bound_multipliers(&space, |_| 1.0),
     }
     let mut algorithm = Algorithm::new(nlp, space, at, mu, options);

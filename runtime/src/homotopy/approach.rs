@@ -1,0 +1,146 @@
+//! To the grid and the width that the model names, from coarse grids and wide layers.
+//!
+//! The width shrinks on the coarsest grid, roughly, then the last width is solved on every second finer grid, each solve begun where the one before ended
+//! ([`prolong`]): far from the solution an iteration costs little, and on the finest grid few are left. Where this fails, widths shrink on the finest grid,
+//! from half the size of the switching function on; where that fails, too, it is tried at once and with all patience.
+
+use super::Watch;
+use super::run::{Goal, Run, is_good, is_retried};
+use crate::linalg::Stages;
+use crate::nlp::{Nlp, Solution, Start, constraint_violation};
+use crate::problem::Problem;
+use crate::prolong::prolong;
+use crate::transcribe::TranscribedNlp;
+
+/// A grid of fewer intervals is not made coarser by half: it would say too little of the problem.
+const COARSE: usize = 500;
+/// Widths on the way, relative to the one that is named.
+const WIDER: [f64; 3] = [8.0, 4.0, 2.0];
+/// More is not asked of a solve with another width, ...
+const ROUGH: f64 = 1e-3;
+/// ... nor of one on another grid.
+const CLOSE: f64 = 1e-6;
+/// A solve on the way that takes longer leads nowhere.
+const MOST_ITERATIONS: usize = 300;
+const WIDE: f64 = 0.5;
+const MOST_HALVINGS: i32 = 12;
+
+impl Run<'_> {
+    /// Solves with the widths that the model names, if there are surfaces.
+    pub(super) fn named(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        start: Start,
+        widths: &[f64],
+        watch: &mut Watch,
+    ) -> Solution {
+        let goal = self.goal();
+        let patience = Goal { limit: MOST_ITERATIONS.min(goal.limit), ..goal };
+        let grids = grids(nlp.chain().intervals);
+        let shrinking = match widths {
+            [sigma] if !self.sigma.is_empty() => {
+                WIDER.iter().map(|wider| wider * sigma).chain([*sigma]).collect()
+            }
+            _ => widths.to_vec(),
+        };
+        // What was solved before, or is easy, is not approached.
+        if start.warm.is_some() || grids.len() == 1 && shrinking.len() <= 1 {
+            return self.shrink(nlp, start, widths, goal, watch);
+        }
+        let first = self.climb(nlp, start.clone(), (&grids, &shrinking), patience, watch);
+        if !is_retried(&first.status) || goal.limit <= patience.limit {
+            return first;
+        }
+        if let [sigma] = widths {
+            let halved = halved(nlp, [&start.v, &first.v], *sigma);
+            let second = self.shrink(nlp, start.clone(), &halved, patience, watch);
+            if !is_retried(&second.status) {
+                return second;
+            }
+        }
+        self.shrink(nlp, start, widths, goal, watch)
+    }
+
+    /// From grid to grid, the last of which is that of `nlp`; widths shrink on the first one.
+    pub(super) fn climb(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        mut start: Start,
+        (grids, mut widths): (&[usize], &[f64]),
+        goal: Goal,
+        watch: &mut Watch,
+    ) -> Solution {
+        let mut chain = nlp.chain();
+        for &intervals in &grids[..grids.len() - 1] {
+            let problem = on_grid(self.problem, intervals);
+            let mut coarse = TranscribedNlp::new(&problem);
+            start = prolong(chain, &start, coarse.chain());
+            chain = coarse.chain();
+            let close = Goal { tol: goal.tol.max(CLOSE), ..goal };
+            let solution = self.shrink(&mut coarse, start, widths, close, watch);
+            start = Start::after(&solution);
+            if !is_good(&solution.status) {
+                return carried_over(nlp, chain, &start, solution);
+            }
+            widths = &widths[widths.len().saturating_sub(1)..];
+        }
+        start = prolong(chain, &start, nlp.chain());
+        self.shrink(nlp, start, widths, goal, watch)
+    }
+
+    /// From width to width on one grid; with the widths as they are if none are given.
+    fn shrink(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        mut start: Start,
+        widths: &[f64],
+        goal: Goal,
+        watch: &mut Watch,
+    ) -> Solution {
+        let Some((last, before)) = widths.split_last() else {
+            return self.solve(nlp, &start, goal, watch);
+        };
+        let rough = Goal { tol: goal.tol.max(ROUGH), ..goal };
+        for width in before {
+            self.sigma.fill(*width);
+            let solution = self.solve(nlp, &start, rough, watch);
+            if !is_good(&solution.status) {
+                return solution;
+            }
+            start = Start::after(&solution);
+        }
+        self.sigma.fill(*last);
+        self.solve(nlp, &start, goal, watch)
+    }
+}
+
+/// Coarser grids, the coarsest first, and the grid itself.
+pub(super) fn grids(intervals: usize) -> Vec<usize> {
+    let coarser = std::iter::successors(Some(intervals), |n| (*n >= COARSE).then_some(n / 2));
+    let mut grids: Vec<usize> = coarser.collect();
+    grids.reverse();
+    grids
+}
+
+fn on_grid(problem: &Problem, intervals: usize) -> Problem {
+    let mut problem = problem.clone();
+    problem.method.intervals = intervals;
+    problem
+}
+
+/// What ended on a coarse grid, seen on the grid of the problem.
+fn carried_over(nlp: &mut TranscribedNlp, from: Stages, end: &Start, solution: Solution) -> Solution {
+    let Start { v, warm } = prolong(from, end, nlp.chain());
+    let objective = nlp.values(&v, &mut vec![0.0; nlp.row_bounds().len()]);
+    let constraint_violation = constraint_violation(nlp, &v);
+    let multipliers = warm.map_or(solution.multipliers, |warm| warm.multipliers);
+    Solution { v, multipliers, objective, constraint_violation, ..solution }
+}
+
+/// Half the size of a switching function, halved until it is the width.
+fn halved(nlp: &TranscribedNlp, known: [&Vec<f64>; 2], sigma: f64) -> Vec<f64> {
+    let sizes = known.into_iter().flat_map(|v| nlp.guard_sizes(v));
+    let size = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
+    let halvings = (WIDE * size / sigma).log2().ceil().clamp(1.0, f64::from(MOST_HALVINGS)) as i32;
+    (0..=halvings).rev().map(|k| sigma * 2.0_f64.powi(k)).collect()
+}

@@ -1,0 +1,78 @@
+//! Widths of our own choice, where the model names none: each surface gets a fraction of the size that its switching function has along the trajectory
+//! found so far, one solve after another. Where a step is too long it is halved; where even short steps fail, the last width that could be solved is the answer.
+
+use super::Watch;
+use super::approach::grids;
+use super::run::{Goal, Run, is_good, is_retried};
+use crate::nlp::{Solution, Start, Status};
+use crate::transcribe::TranscribedNlp;
+
+/// Smoothing widths relative to the size of the switching function.
+const FIRST_FACTOR: f64 = 0.1;
+const LAST_FACTOR: f64 = 0.01;
+/// From one width to the next; after a failure the square root of it, and so on.
+const DECREASE: f64 = 0.3;
+const MOST_FAILURES: usize = 3;
+/// A step that takes longer than this is too long.
+const MOST_ITERATIONS: usize = 300;
+
+impl Run<'_> {
+    /// Solves with widths of our own choice, as small as can be solved.
+    pub(super) fn chosen(&mut self, nlp: &mut TranscribedNlp, start: Start, watch: &mut Watch) -> Solution {
+        let mut factor = FIRST_FACTOR;
+        self.set_relative(nlp, &start.v);
+        let mut best = self.first(nlp, start, watch);
+        let (mut decrease, mut failures) = (DECREASE, 0);
+        while is_good(&best.status) && factor > LAST_FACTOR && failures < MOST_FAILURES {
+            let before = self.sigma.clone();
+            let next = (factor * decrease).max(LAST_FACTOR);
+            self.decrease(nlp, &best.v, next, next / factor);
+            let goal = self.patience();
+            let solution = self.interior_point(nlp, &Start::near(&best), goal, watch);
+            if is_good(&solution.status) {
+                (factor, best) = (next, solution);
+                continue;
+            }
+            self.sigma = before;
+            (failures, decrease) = (failures + 1, decrease.sqrt());
+            if matches!(solution.status, Status::TimeLimit | Status::Interrupted) {
+                best.status = solution.status;
+            }
+        }
+        self.apply_sigma(nlp);
+        best.counts = self.counts;
+        best
+    }
+
+    /// The widest layer: over coarse grids, or at once.
+    fn first(&mut self, nlp: &mut TranscribedNlp, start: Start, watch: &mut Watch) -> Solution {
+        let grids = grids(nlp.chain().intervals);
+        if start.warm.is_none() && grids.len() > 1 {
+            let solution = self.climb(nlp, start.clone(), (&grids, &[]), self.patience(), watch);
+            if !is_retried(&solution.status) {
+                return solution;
+            }
+        }
+        self.solve(nlp, &start, self.goal(), watch)
+    }
+
+    fn patience(&self) -> Goal {
+        let goal = self.goal();
+        Goal { limit: MOST_ITERATIONS.min(goal.limit), ..goal }
+    }
+
+    /// Widths relative to the size of each switching function along `v`.
+    fn set_relative(&mut self, nlp: &TranscribedNlp, v: &[f64]) {
+        for (sigma, size) in self.sigma.iter_mut().zip(nlp.guard_sizes(v)) {
+            *sigma = FIRST_FACTOR * if size > 0.0 { size } else { 1.0 };
+        }
+    }
+
+    /// Smaller widths, by the factor `decrease`; but not below `factor` times the size of the switching function. On a
+    /// held surface that size is the layer itself, and says nothing.
+    fn decrease(&mut self, nlp: &TranscribedNlp, v: &[f64], factor: f64, decrease: f64) {
+        for (sigma, size) in self.sigma.iter_mut().zip(nlp.guard_sizes(v)) {
+            *sigma = (factor * size).clamp(decrease * *sigma, *sigma);
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Solving a problem: choose the solver, and lead it to the grid and to the smoothing widths of the model by easier ones.
+//!
+//! [`approach`] goes over coarse grids and wide layers to those that the model names; [`chosen`] finds widths where it names none; [`run`] is what both do
+//! again and again: one solve.
+
+mod approach;
+mod chosen;
+mod run;
+
+use crate::modes::{Span, modes};
+use crate::nlp::{Nlp, Progress, Solution, Start, Status, Stop, convex};
+use crate::problem::{Origin, Problem, Solver};
+use crate::trajectory::Trajectory;
+use crate::transcribe::TranscribedNlp;
+use run::{Run, is_good};
+use std::ops::ControlFlow;
+
+/// A solved (or not solved) problem.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The last solution; its counts are those of all solves together.
+    pub solution: Solution,
+    /// The same in the words of the model.
+    pub trajectory: Trajectory,
+    /// The smoothing width of each surface at the end.
+    pub sigma: Vec<f64>,
+    /// The modes of each surface.
+    pub modes: Vec<Vec<Span>>,
+    /// Whether the conic solver was used.
+    pub convex: bool,
+    /// The worst row, by name and time, if the point is not feasible.
+    pub limiting: Option<Limiting>,
+}
+
+/// The constraint that is violated most.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limiting {
+    /// Where it stands in the model.
+    pub origin: Origin,
+    /// Where it is a step of a differential equation: the condition that stands against the equations most.
+    pub condition: Option<Origin>,
+    /// The time of its largest violation, if it belongs to one.
+    pub time: Option<f64>,
+    /// How far it is violated.
+    pub violation: f64,
+}
+
+/// Why a problem is not handed to the solver that was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// `solver = convex`, and the transcribed problem is not.
+    NotConvex,
+}
+
+/// Where a solve is on its way.
+#[derive(Clone, Copy, Debug)]
+pub struct Level<'a> {
+    /// Intervals of the grid.
+    pub intervals: usize,
+    /// The smoothing width of each surface.
+    pub sigma: &'a [f64],
+}
+
+/// What is reported while solving.
+pub type Watch<'a> = dyn FnMut(&Progress, Level) -> ControlFlow<Stop> + 'a;
+
+/// Solves a problem with its own method, from its own guess or from `start`.
+pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Result<Outcome, Refusal> {
+    let mut nlp = TranscribedNlp::new(problem);
+    let mut run = Run::new(problem);
+    run.apply_sigma(&mut nlp);
+    let start = start.unwrap_or_else(|| Start { v: nlp.guess(), warm: None });
+    if problem.method.solver != Solver::InteriorPoint && convex::is_quadratic_programme(problem) {
+        let method = &problem.method;
+        let solution = convex::solve(&mut nlp, &start, method.tol, method.max_iter);
+        // Where there is no optimum the interior point method has a best iterate, and a row to blame.
+        let has_word = |it: &Solution| it.status == Status::Solved || method.solver == Solver::Convex;
+        if let Some(solution) = solution.filter(has_word) {
+            return Ok(finish(run, &mut nlp, solution, true));
+        }
+    }
+    if problem.method.solver == Solver::Convex {
+        return Err(Refusal::NotConvex);
+    }
+    let solution = match widths(problem) {
+        Some(widths) => run.named(&mut nlp, start, &widths, watch),
+        None => run.chosen(&mut nlp, start, watch),
+    };
+    Ok(finish(run, &mut nlp, solution, false))
+}
+
+/// The widths the model names, in their order; `None` where the choice is ours.
+fn widths(problem: &Problem) -> Option<Vec<f64>> {
+    let method = &problem.method;
+    let widths: Vec<f64> = method.continuation.iter().copied().chain(method.sigma).collect();
+    let is_ours = widths.is_empty() && !problem.surfaces.is_empty();
+    (!is_ours).then_some(widths)
+}
+
+fn finish(run: Run, nlp: &mut TranscribedNlp, solution: Solution, convex: bool) -> Outcome {
+    let Run { problem, sigma, .. } = run;
+    let trajectory = Trajectory::new(problem, nlp, &solution);
+    let surfaces = trajectory.guards.iter().zip(&sigma);
+    let modes = surfaces.map(|(guard, sigma)| modes(&trajectory.time, guard, *sigma)).collect();
+    let limiting = limiting(nlp, &solution, &trajectory, problem.method.tol);
+    Outcome { solution, trajectory, sigma, modes, convex, limiting }
+}
+
+fn limiting(
+    nlp: &mut TranscribedNlp,
+    solution: &Solution,
+    trajectory: &Trajectory,
+    tol: f64,
+) -> Option<Limiting> {
+    let (row, violation) = crate::nlp::worst_row(nlp, &solution.v)?;
+    if is_good(&solution.status) || violation <= tol {
+        return None;
+    }
+    let place = nlp.row_place(row);
+    let time = place.grid_point.map(|k| trajectory.time[k]);
+    let condition = if nlp.is_defect(row) { strongest_condition(nlp, solution) } else { None };
+    Some(Limiting { origin: place.origin, condition, time, violation })
+}
+
+/// The path or boundary condition with the largest multiplier.
+fn strongest_condition(nlp: &TranscribedNlp, solution: &Solution) -> Option<Origin> {
+    let rows = solution.multipliers.rows.iter().enumerate();
+    let conditions = rows.filter(|(row, lambda)| !nlp.is_defect(*row) && **lambda != 0.0);
+    let strongest = conditions.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    Some(nlp.row_place(strongest.0).origin)
+}

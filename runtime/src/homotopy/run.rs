@@ -1,0 +1,88 @@
+//! One solve after the other, with what they share: the widths, the work done, and the person who watches.
+
+use super::{Level, Watch};
+use crate::nlp::{Counts, Options, Progress, Solution, Start, Status, interior_point};
+use crate::problem::Problem;
+use crate::transcribe::TranscribedNlp;
+
+/// All solves of one problem.
+pub(super) struct Run<'p> {
+    pub(super) problem: &'p Problem,
+    /// The work of all solves so far.
+    pub(super) counts: Counts,
+    /// The smoothing width of each surface.
+    pub(super) sigma: Vec<f64>,
+}
+
+/// How one solve is to end.
+#[derive(Clone, Copy)]
+pub(super) struct Goal {
+    /// Tolerance on the optimality error.
+    pub(super) tol: f64,
+    /// Most iterations.
+    pub(super) limit: usize,
+}
+
+pub(super) fn is_good(status: &Status) -> bool {
+    matches!(status, Status::Solved | Status::Acceptable)
+}
+
+/// Whether another start may help: it was neither solved nor stopped.
+pub(super) fn is_retried(status: &Status) -> bool {
+    !is_good(status) && !matches!(status, Status::TimeLimit | Status::Interrupted)
+}
+
+impl<'p> Run<'p> {
+    /// Before the first solve, with the widths that the problem has.
+    pub(super) fn new(problem: &'p Problem) -> Self {
+        let sigma = problem.surfaces.iter().map(|surface| problem.parameters[surface.sigma].value);
+        Run { problem, counts: Counts::default(), sigma: sigma.collect() }
+    }
+
+    /// What the model asks of a solve.
+    pub(super) fn goal(&self) -> Goal {
+        Goal { tol: self.problem.method.tol, limit: self.problem.method.max_iter }
+    }
+
+    /// Gives the programme the widths as they are now.
+    pub(super) fn apply_sigma(&self, nlp: &mut TranscribedNlp) {
+        for (surface, sigma) in self.problem.surfaces.iter().zip(&self.sigma) {
+            nlp.set_parameter(surface.sigma, *sigma);
+        }
+    }
+
+    /// One solve; a warm start that fails is repeated with fresh multipliers.
+    pub(super) fn solve(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        start: &Start,
+        goal: Goal,
+        watch: &mut Watch,
+    ) -> Solution {
+        let solution = self.interior_point(nlp, start, goal, watch);
+        if start.warm.is_none() || !is_retried(&solution.status) {
+            return solution;
+        }
+        self.interior_point(nlp, &Start { v: start.v.clone(), warm: None }, goal, watch)
+    }
+
+    /// One solve; its counts are those of all solves so far.
+    pub(super) fn interior_point(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        start: &Start,
+        goal: Goal,
+        watch: &mut Watch,
+    ) -> Solution {
+        self.apply_sigma(nlp);
+        let options = Options { tol: goal.tol, max_iter: goal.limit, linear: self.problem.method.linear };
+        let level = Level { intervals: nlp.chain().intervals, sigma: &self.sigma };
+        let before = self.counts.iterations;
+        let mut solution = interior_point::solve(nlp, start, &options, &mut |progress| {
+            watch(&Progress { iteration: before + progress.iteration, ..*progress }, level)
+        });
+        self.counts.add(&solution.counts);
+        solution.counts = self.counts;
+        solution
+    }
+}

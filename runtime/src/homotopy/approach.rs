@@ -16,10 +16,11 @@ use crate::transcribe::TranscribedNlp;
 const COARSE: usize = 500;
 /// Widths on the way, relative to the one that is named.
 const WIDER: [f64; 3] = [8.0, 4.0, 2.0];
-/// More is not asked of a solve with another width, ...
+/// More is not asked of a solve with another width, nor of one on the coarsest grid or on another one: which of several close minima is found is decided
+/// on finer grids.
 const ROUGH: f64 = 1e-3;
-/// ... nor of one on another grid.
-const CLOSE: f64 = 1e-6;
+const COARSEST: f64 = 1e-4;
+const CLOSE: f64 = 1e-5;
 /// A solve on the way that takes longer leads nowhere.
 const MOST_ITERATIONS: usize = 300;
 const WIDE: f64 = 0.5;
@@ -71,18 +72,19 @@ impl Run<'_> {
         watch: &mut Watch,
     ) -> Solution {
         let mut chain = nlp.chain();
+        let mut accuracy = COARSEST;
         for &intervals in &grids[..grids.len() - 1] {
             let problem = on_grid(self.problem, intervals);
             let mut coarse = TranscribedNlp::new(&problem);
             start = prolong(chain, &start, coarse.chain());
             chain = coarse.chain();
-            let close = Goal { tol: goal.tol.max(CLOSE), ..goal };
+            let close = Goal { tol: goal.tol.max(accuracy), ..goal };
             let solution = self.shrink(&mut coarse, start, widths, close, watch);
             start = Start::after(&solution);
             if !is_good(&solution.status) {
                 return carried_over(nlp, chain, &start, solution);
             }
-            widths = &widths[widths.len().saturating_sub(1)..];
+            (widths, accuracy) = (&widths[widths.len().saturating_sub(1)..], CLOSE);
         }
         start = prolong(chain, &start, nlp.chain());
         self.shrink(nlp, start, widths, goal, watch)

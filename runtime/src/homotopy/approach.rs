@@ -37,7 +37,7 @@ impl Run<'_> {
     ) -> Solution {
         let goal = self.goal();
         let patience = Goal { limit: MOST_ITERATIONS.min(goal.limit), ..goal };
-        let grids = grids(nlp.chain().intervals);
+        let grids = grids(self.problem, nlp.chain());
         let shrinking = match widths {
             [sigma] if !self.sigma.is_empty() => {
                 WIDER.iter().map(|wider| wider * sigma).chain([*sigma]).collect()
@@ -116,10 +116,11 @@ impl Run<'_> {
     }
 }
 
-/// Coarser grids, the coarsest first, and the grid itself.
-pub(super) fn grids(intervals: usize) -> Vec<usize> {
-    let coarser = std::iter::successors(Some(intervals), |n| (*n >= COARSE).then_some(n / 2));
-    let mut grids: Vec<usize> = coarser.collect();
+/// Coarser grids, the coarsest first, and the grid itself; that one alone where an interval holds more than states and constant controls.
+pub(super) fn grids(problem: &Problem, chain: Stages) -> Vec<usize> {
+    let is_plain = chain.inner == 0 && chain.states == problem.layout.x;
+    let coarser = |n: &usize| (is_plain && *n >= COARSE).then_some(n / 2);
+    let mut grids: Vec<usize> = std::iter::successors(Some(chain.intervals), coarser).collect();
     grids.reverse();
     grids
 }

@@ -23,8 +23,9 @@ module.exports = grammar({
   name: "fdc",
   word: ($) => $.name,
   extras: ($) => [/[ \t\r\n\uFEFF\u00A0]/, $.comment, $.documentation],
-  // A suffix stays on the line of its value, so that an equation may begin with a parenthesis: `src/scanner.c` looks ahead.
-  externals: ($) => [$._suffix, $._prime, $._recovering],
+  // `src/scanner.c` looks ahead: a suffix stays on the line of its value, so that an equation may begin with a parenthesis;
+  // and a value may be missing in front of a line that begins an item, as it is while the value is being written.
+  externals: ($) => [$._suffix, $._prime, $.missing, $._recovering],
   // `start` and `guess` may go on with an item or begin the next one; what follows decides.
   conflicts: ($) => [[$.state], [$.control], [$.free]],
 
@@ -115,7 +116,7 @@ module.exports = grammar({
 
     // ---- Expressions ----
 
-    _expression: ($) => choice($._value, $.number, $.negation, $.operation),
+    _expression: ($) => choice($._value, $.number, $.negation, $.operation, $.missing),
     _value: ($) =>
       choice($.name, $.quantity, $.group, $.piecewise, $.switch, $.call, $.part, $.index, $.rate),
     negation: ($) => prec(PRECEDENCE.sign, seq("-", $._expression)),

@@ -33,23 +33,28 @@ fn the_list_of_words_is_that_of_the_compiler() {
 }
 
 /// Files that repeat the words: each line below one that says `words: KIND`.
-const REPEATED: &[&str] =
-    &["editors/tree-sitter-fdc/queries/highlights.scm", "editors/vscode/syntaxes/fdc.tmLanguage.json"];
+const REPEATED: &[&str] = &[
+    "editors/tree-sitter-fdc/src/scanner.c",
+    "editors/tree-sitter-fdc/queries/highlights.scm",
+    "editors/vscode/syntaxes/fdc.tmLanguage.json",
+    "editors/emacs/fdc-mode.el",
+];
 
 #[test]
 fn grammars_repeat_the_list() {
     for path in REPEATED {
         let text = fs::read_to_string(repository().join(path)).expect("the grammar is there");
-        check_file(path, &with_words(&text));
+        check_file(path, &with_words(path, &text));
     }
 }
 
-/// The text with every list written anew: `(?:a|b)` in a regular expression, else `"a" "b"` on a line of its own.
-fn with_words(text: &str) -> String {
+/// The text with every list written anew: `(?:a|b)` in a regular expression, else `"a" "b"` on a line of its own, with
+/// commas in C.
+fn with_words(path: &str, text: &str) -> String {
     let words = words();
     let mut marked: Option<&Vec<&str>> = None;
     let line = |line: &str| {
-        let listed = marked.take().map(|words| with_list(line, words));
+        let listed = marked.take().map(|words| with_list(path, line, words));
         marked =
             line.split_once("words: ").and_then(|(_, rest)| words.get(rest.trim_end_matches(['"', ','])));
         listed.unwrap_or_else(|| line.to_owned()) + "\n"
@@ -57,13 +62,14 @@ fn with_words(text: &str) -> String {
     text.lines().map(line).collect()
 }
 
-fn with_list(line: &str, words: &[&str]) -> String {
+fn with_list(path: &str, line: &str, words: &[&str]) -> String {
     let regex = line.split_once("(?:").and_then(|(before, rest)| Some((before, rest.split_once(')')?.1)));
     match regex {
         Some((before, after)) => format!("{before}(?:{}){after}", words.join("|")),
         None => {
             let indent = &line[..line.len() - line.trim_start().len()];
-            format!("{indent}\"{}\"", words.join("\" \""))
+            let separator = if path.ends_with(".c") { "\", \"" } else { "\" \"" };
+            format!("{indent}\"{}\"", words.join(separator))
         }
     }
 }

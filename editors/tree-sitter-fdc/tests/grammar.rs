@@ -1,6 +1,6 @@
 //! The grammar accepts every model that the compiler accepts, sees the same items, and gives the trees of `test/corpus/`.
 //!
-//! The models are written out by `cargo run -p fdcc-tests --example editor_texts target/editors`.
+//! The models are written out by `cargo run -p fdcc-tests --example editor_texts target/editors/models`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -42,7 +42,7 @@ fn item_words(node: Node<'_>, text: &str, words: &mut Vec<String>) {
 
 #[test]
 fn every_model_is_read_and_has_the_same_items() {
-    let models = files("../../target/editors", "fdc");
+    let models = files("../../target/editors/models", "fdc");
     assert!(models.len() > 500, "write the models out first");
     let mut problems = Vec::new();
     for path in models {

@@ -11,7 +11,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   server = it;
   const command = (name: string, run: () => Promise<void>) =>
     context.subscriptions.push(vscode.commands.registerCommand(`fdc.${name}`, run));
-  for (const name of ["solve", "simulate", "showReport"]) command(name, () => it.run(`fdcc.${name}`));
+  for (const name of ["solve", "simulate", "report"]) command(name, () => it.run(`fdcc.${name}`));
   command("restart", () => it.restart());
   context.subscriptions.push(
     vscode.workspace.onDidChangeConfiguration(async (change) => {

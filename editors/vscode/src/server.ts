@@ -3,14 +3,16 @@
 import { accessSync, constants, statSync } from "node:fs";
 import * as path from "node:path";
 import * as vscode from "vscode";
-import { ExecuteCommandRequest, LanguageClient, State } from "vscode-languageclient/node";
+import { LanguageClient, State } from "vscode-languageclient/node";
 import { findBinary } from "./binary";
+import { Results } from "./results";
 import { Status } from "./status";
 
 /** One server for all models of a window. */
 export class Server {
   private client: LanguageClient | undefined;
   private readonly status = new Status();
+  private readonly results = new Results();
 
   constructor(private readonly extensionFolder: string) {}
 
@@ -27,6 +29,8 @@ export class Server {
     this.status.starting();
     const client = new LanguageClient("fdcc", "fdc", { command: found.command, args: ["lsp"] }, {
       documentSelector: [{ language: "fdc" }],
+      // Commands come from the palette and from the lines above a model; what they print is shown for both.
+      middleware: { executeCommand: (command, args, next) => this.results.show(next(command, args)) },
     });
     this.client = client;
     client.onDidChangeState(({ newState }) => {
@@ -52,22 +56,19 @@ export class Server {
     await this.start();
   }
 
-  /** Lets it run one of its commands on the model that is being edited, which is saved before. */
+  /** Lets it run one of its commands on the model that is being edited. */
   async run(command: string): Promise<void> {
     const document = vscode.window.activeTextEditor?.document;
     if (document?.languageId !== "fdc") return void vscode.window.showInformationMessage("Open a model first.");
-    if (this.client === undefined) return void vscode.window.showErrorMessage("The server of fdcc does not run.");
-    await document.save();
-    const request = { command, arguments: [document.uri.toString()] };
-    await this.client
-      .sendRequest(ExecuteCommandRequest.type, request)
-      .catch((error: Error) => void vscode.window.showErrorMessage(error.message));
+    if (!this.client?.isRunning()) return void vscode.window.showErrorMessage("The server of fdcc does not run.");
+    await vscode.commands.executeCommand(command, document.uri.toString());
   }
 
   /** For the end of the window. */
   async dispose(): Promise<void> {
     await this.stop();
     this.status.dispose();
+    this.results.dispose();
   }
 }
 

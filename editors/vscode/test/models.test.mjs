@@ -1,5 +1,5 @@
 // The TextMate grammar sees the same items as the compiler in every model, and has a scope for every word.
-// The models are written out by `cargo run -p fdcc-tests --example editor_texts target/editors`.
+// The models are written out by `cargo run -p fdcc-tests --example editor_texts target/editors/models`.
 
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
@@ -10,7 +10,7 @@ import textmate from "vscode-textmate";
 
 const require = createRequire(import.meta.url);
 const here = (path) => new URL(path, import.meta.url);
-const models = here("../../../target/editors/");
+const models = here("../../../target/editors/models/");
 
 await oniguruma.loadWASM(readFileSync(require.resolve("vscode-oniguruma/release/onig.wasm")).buffer);
 const registry = new textmate.Registry({

@@ -18,9 +18,11 @@ export const window = {
     return seen.editor;
   },
   showInformationMessage: async (text) => void seen.messages.push(text),
+  createOutputChannel: () => (seen.channel = { replace: (text) => (seen.printed = text), show() {}, dispose() {} }),
   showErrorMessage: async (text) => void seen.messages.push(text),
 };
 
 export const commands = {
+  executeCommand: (name, ...args) => seen.commands[name](...args),
   registerCommand: (name, run) => ((seen.commands[name] = run), { dispose() {} }),
 };

@@ -1,0 +1,31 @@
+-- Starts the language server for `.fdc` models, in the way of each version of Neovim.
+
+if vim.lsp.enable then
+  vim.lsp.enable("fdcc")
+  return
+end
+
+local folder = vim.fn.fnamemodify(debug.getinfo(1, "S").source:sub(2), ":p:h:h")
+local config = dofile(folder .. "/lsp/fdcc.lua")
+local client
+
+-- Neovim 0.7 keeps no list of servers by name: the one of the first model serves all.
+local function attach(buffer)
+  if vim.lsp.start then
+    vim.lsp.start({ name = "fdcc", cmd = config.cmd }, { bufnr = buffer })
+    return
+  end
+  if not (client and vim.lsp.get_client_by_id(client)) then
+    client = vim.lsp.start_client({ name = "fdcc", cmd = config.cmd })
+  end
+  if client then
+    vim.lsp.buf_attach_client(buffer, client)
+  end
+end
+
+vim.api.nvim_create_autocmd("FileType", {
+  pattern = config.filetypes,
+  callback = function(event)
+    attach(event.buf)
+  end,
+})

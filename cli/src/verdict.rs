@@ -42,6 +42,8 @@ pub fn verdict(solved: &Solved) -> String {
     lines.push(format!("       {work}"));
     lines.extend(surfaces(document));
     lines.extend(replayed(document));
+    lines.extend(hamiltonian(document).filter(|_| solved.is_good()));
+    lines.extend(sensitivities(document));
     lines.join("\n") + "\n"
 }
 
@@ -79,6 +81,39 @@ fn how(solved: &Solved) -> String {
         }
         _ => format!("NOT SOLVED, {}: {}", status_name(status).replace('_', " "), why(solved)),
     }
+}
+
+/// How much of the size of its terms the Hamiltonian may miss of what it has to be, before that is told.
+const MISSED: f64 = 0.2;
+
+/// What is said where the Hamiltonian is not what it has to be: then the grid is too coarse for what happens on it.
+fn hamiltonian(document: &Document) -> Option<String> {
+    let check = &document.hamiltonian_check;
+    let deviation = check.deviation.filter(|it| *it > MISSED * check.size)?;
+    let target = check.expected.map_or("constant".into(), |it| format!("{} throughout", short(it)));
+    Some(format!(
+        " grid  the Hamiltonian has to be {target} and is off by up to {}: more intervals, or a scheme of higher order, change the answer",
+        short(deviation)
+    ))
+}
+
+/// What the optimum is worth to each parameter.
+fn sensitivities(document: &Document) -> impl Iterator<Item = String> {
+    let all = document.sensitivities.0.iter().filter(|(_, slope)| slope.is_finite());
+    all.map(|(name, slope)| {
+        let value = document.params.get(name).copied().unwrap_or(f64::NAN);
+        let percent = 0.01 * value * slope;
+        let percent = if percent == 0.0 || !percent.is_finite() {
+            String::new()
+        } else {
+            format!("   1 % more: {}", document.units.value("objective", percent, 3))
+        };
+        format!(
+            " if    {name} = {} changes, the objective changes by {}{percent}",
+            document.units.value(name, value, 6),
+            document.units.per("objective", name, *slope, 5)
+        )
+    })
 }
 
 /// What a replay says of the answer, in few words.

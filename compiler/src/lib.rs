@@ -31,11 +31,11 @@ use differentiate::differentiate;
 pub use dump::{Stage, dump};
 use fdcc_grammar::ast::{self, Item, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Label, Severity, Span};
-use fdcc_runtime::problem::{Function, Problem};
+use fdcc_runtime::problem::{ByParameters, Function, Problem};
 use fdcc_runtime::simulate::System;
 use graph::Graph;
 pub use lower::{Expectations, Expected, Program, expectations};
-use lower::{Purpose, lower, numbers, problem};
+use lower::{Purpose, by_parameters, lower, numbers, problem};
 pub use model::Model;
 pub use overrides::is_method_key;
 use program::VectorFunction;
@@ -168,6 +168,16 @@ pub fn compile(model: &Model) -> Result<Problem, Vec<Diagnostic>> {
     let functions = program.functions().map(VectorFunction::clone).to_vec();
     let functions = machine_code(program.graph.clone(), functions);
     Ok(problem(model, &program, &numbers, functions))
+}
+
+/// The functions of a problem differentiated by the parameters of the model, for what its optimum is worth to them.
+pub fn compile_by_parameters(model: &Model) -> Result<ByParameters, Vec<Diagnostic>> {
+    not_yet(model)?;
+    let mut program = lower(model);
+    let functions = by_parameters(model, &mut program).to_vec();
+    let functions = machine_code(program.graph, functions);
+    let [dynamics, path, boundary, given] = functions.try_into().unwrap_or_else(|_| unreachable!("there are four"));
+    Ok(ByParameters { parameters: model.params.len(), dynamics, path, boundary, given })
 }
 
 /// Turns a model into the true system, for simulation; or says what cannot be simulated yet.

@@ -14,6 +14,7 @@ pub mod linalg;
 pub mod nlp;
 pub mod transcribe;
 
+pub mod lagrangian;
 pub mod modes;
 pub mod quadrature;
 pub mod trajectory;

@@ -387,10 +387,29 @@ pub struct Problem {
     pub interval: Arc<dyn Function>,
     /// `psi`, or `|psi|` of a `Dir`, one output per surface, over normalised time.
     pub guards: Arc<dyn Function>,
+    /// Whether neither `dynamics` nor `path` depends on the time but through states and controls.
+    pub is_autonomous: bool,
+    /// The unknown that is the last time and appears in no right side, path constraint or first time.
+    pub last_time: Option<usize>,
     /// Names of the outputs of `report`.
     pub report_names: Vec<String>,
     /// What the model reports, over normalised time.
     pub report: Arc<dyn Function>,
     /// How the model asks to be solved.
     pub method: Method,
+}
+
+/// The functions of a problem once more, differentiated by the entries of `p` that are parameters.
+pub struct ByParameters {
+    /// How many entries of `p` are parameters; they come first.
+    pub parameters: usize,
+    /// See [`Problem::dynamics`].
+    pub dynamics: Arc<dyn Function>,
+    /// See [`Problem::path`].
+    pub path: Arc<dyn Function>,
+    /// See [`Problem::boundary`].
+    pub boundary: Arc<dyn Function>,
+    /// Numbers that the parameters give. Inputs `[p]`; outputs: the parameters themselves, each over the others; the starts of all
+    /// states; then lower and upper bounds, in pairs, of states, controls, unknowns, path constraints and boundary conditions.
+    pub given: Arc<dyn Function>,
 }

@@ -1,5 +1,6 @@
 //! A solution in the words of the model: signals over real time.
 
+use crate::lagrangian::Hamiltonian;
 use crate::nlp::{Derivatives, Nlp, Solution};
 use crate::problem::{Columns, Function, Problem};
 use crate::transcribe::{TranscribedNlp, interval};
@@ -18,6 +19,8 @@ pub struct Trajectory {
     /// One column per state: the derivative of the objective of the model (as written, `maximize` included) by the
     /// state at that time.
     pub costates: Vec<Vec<f64>>,
+    /// The Hamiltonian, and what it has to be.
+    pub hamiltonian: Hamiltonian,
     /// One column per report, `N + 1` entries each; the last uses the last control.
     pub report: Vec<Vec<f64>>,
     /// One column per surface: its switching function, `N + 1` entries each.
@@ -49,6 +52,7 @@ impl Trajectory {
             report: sample(&*problem.report, &points, &parameters),
             guards: sample(&*problem.guards, &points, &parameters),
             costates: costates(problem, nlp, solution),
+            hamiltonian: Hamiltonian::new(problem, nlp, solution, time[time.len() - 1] - time[0]),
             time,
             parameters,
         }

@@ -3,6 +3,7 @@
 use super::Exit;
 use super::options::{Gap, Options, Prepared, prepare, show};
 use crate::log::{Level, Log};
+use crate::output::named::Named;
 use crate::output::saved::Saved;
 use crate::output::verified::Verification;
 use crate::output::{self, files};
@@ -11,6 +12,8 @@ use crate::verification::verify;
 use crate::watch::catch_interrupts;
 use crate::{failure, verdict};
 use clap::Args;
+use fdcc_compiler::{Model, compile_by_parameters};
+use fdcc_runtime::lagrangian::by_parameters;
 use std::time::Instant;
 
 /// Find an optimal trajectory
@@ -26,6 +29,17 @@ pub struct Solve {
     no_verify: bool,
     #[command(flatten)]
     gap: Gap,
+}
+
+/// What the optimum is worth to each parameter.
+fn sensitivities(model: &Model, solved: &Solved) -> Named<f64> {
+    let Solved { problem, outcome, .. } = solved;
+    if model.params.is_empty() || !problem.has_objective {
+        return Named::default();
+    }
+    let Ok(by) = compile_by_parameters(model) else { return Named::default() };
+    let found = by_parameters(problem, &outcome.solution, &outcome.trajectory.parameters, &by);
+    model.params.iter().map(|param| param.place.name.clone()).zip(found).collect()
 }
 
 impl Solve {
@@ -53,6 +67,9 @@ impl Solve {
         let solved = compiled.solve(start, &self.options, &mut log);
         log.finish();
         let mut solved = solved?;
+        if solved.is_good() {
+            solved.document.sensitivities = sensitivities(&prepared.model, &solved);
+        }
         if solved.is_good() && !self.no_verify {
             let saved = Saved::from(&solved.document);
             // A model that cannot be simulated is solved all the same.

@@ -5,6 +5,7 @@ use super::number::significant;
 use super::units::Units;
 use super::verified::Verification;
 use fdcc_runtime::homotopy::Outcome;
+use fdcc_runtime::lagrangian::Hamiltonian;
 use fdcc_runtime::modes::Mode;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{ControlShape, Linear, Method, Problem, Scheme, Solver, Variable};
@@ -36,6 +37,13 @@ pub struct Document {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub control_nodes: Option<ControlNodes>,
     pub costates: Named<Vec<f64>>,
+    /// One for each interval.
+    pub hamiltonian: Vec<f64>,
+    /// What the Hamiltonian has to be, and how far it is from that.
+    pub hamiltonian_check: HamiltonianCheck,
+    /// The derivative of the optimal objective by each parameter.
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    pub sensitivities: Named<f64>,
     pub report: Named<Vec<f64>>,
     pub surfaces: Named<Vec<Span>>,
     /// The units of the values; absent where the model has none.
@@ -44,6 +52,24 @@ pub struct Document {
     /// What the controls do on the true system; absent where they were not replayed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verification: Option<Verification>,
+}
+
+/// Where time itself does not matter the Hamiltonian is constant; where the last time is unknown, its value is known as well.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct HamiltonianCheck {
+    pub is_constant: bool,
+    pub expected: Option<f64>,
+    /// The largest difference from what it has to be.
+    pub deviation: Option<f64>,
+    /// The mean size of its terms.
+    pub size: f64,
+}
+
+impl From<&Hamiltonian> for HamiltonianCheck {
+    fn from(it: &Hamiltonian) -> Self {
+        let (is_constant, expected) = (it.is_constant, it.expected);
+        HamiltonianCheck { is_constant, expected, deviation: it.deviation(), size: it.size }
+    }
 }
 
 /// The values between which a control is linear, or through which it is a polynomial on each interval.
@@ -141,6 +167,9 @@ impl Document {
                 values: named_columns(problem.controls.iter().zip(&nodes.values)),
             }),
             costates: shown(&trajectory.costates),
+            hamiltonian: trajectory.hamiltonian.values.clone(),
+            hamiltonian_check: HamiltonianCheck::from(&trajectory.hamiltonian),
+            sensitivities: Named::default(),
             report: problem.report_names.iter().cloned().zip(trajectory.report.iter().cloned()).collect(),
             surfaces: surfaces(problem, outcome),
             units: Units::default(),

@@ -34,6 +34,15 @@ impl Units {
         }
     }
 
+    /// `0.5 J per kg`: a derivative of what one name measures by another.
+    pub fn per(&self, of: &str, by: &str, derivative: f64, digits: usize) -> String {
+        let value = self.value(of, derivative / self.scaled(by, 1.0), digits);
+        match self.of(by) {
+            Some(NamedUnit { unit, .. }) if !unit.is_empty() => format!("{value} per {unit}"),
+            _ => value,
+        }
+    }
+
     /// The number alone, in the unit of the name.
     pub fn scaled(&self, name: &str, value: f64) -> f64 {
         self.of(name).map_or(value, |it| value / it.scale)
@@ -86,6 +95,9 @@ mod tests {
         assert_eq!(units().value("v", 25.0, 6), "90 km/h");
         assert_eq!(units().value("n", 25.0, 6), "25");
         assert_eq!(units().value("other", 25.0, 6), "25");
+        assert_eq!(units().per("v", "phi", 25.0, 6), "45 km/h per deg");
+        assert_eq!(units().per("n", "v", 3.6, 6), "1 per km/h");
+        assert_eq!(units().per("n", "n", 3.0, 6), "3");
         assert_eq!(units().title("phi"), "phi [deg]");
         assert_eq!(
             units().pairs(&Named(vec![("phi".into(), 1.0), ("n".into(), 2.0)]), 6),

@@ -8,6 +8,7 @@
 //! ```
 
 mod boundary;
+mod by_parameters;
 mod composed;
 mod derived;
 mod expect;
@@ -19,6 +20,7 @@ mod objective;
 mod problem;
 mod simulation;
 
+pub(crate) use by_parameters::by_parameters;
 pub use expect::{Expectations, Expected, expectations};
 pub(crate) use guess::over_time as guessed;
 pub use problem::problem;

@@ -1,6 +1,7 @@
 //! A [`Problem`]: compiled functions with the names, bounds and numbers of the model.
 
 use super::boundary::is_fixed;
+use super::by_parameters::{is_autonomous, last_time};
 use super::{Numbers, Program, origin};
 use crate::model::{Model, Place, Switch, Symbol};
 use fdcc_runtime::problem::{
@@ -45,6 +46,8 @@ pub fn problem(
         guess,
         interval,
         guards,
+        is_autonomous: is_autonomous(program),
+        last_time: last_time(model, program),
         report_names: model.report.iter().map(|report| report.place.name.clone()).collect(),
         report,
         method: model.method.clone(),

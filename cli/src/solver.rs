@@ -13,6 +13,7 @@ use fdcc_runtime::homotopy::{self, Outcome, Refusal};
 use fdcc_runtime::nlp::{Start, Status};
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::starts;
+use fdcc_runtime::transcribe::unknowns;
 use sha2::{Digest, Sha256};
 use std::time::Instant;
 
@@ -141,12 +142,6 @@ fn refuse_senseless(problem: &Problem) -> Result<(), Failure> {
         }
         _ => Ok(()),
     }
-}
-
-/// How many numbers the optimiser chooses.
-pub fn unknowns(problem: &Problem) -> usize {
-    let (layout, intervals) = (problem.layout, problem.method.intervals);
-    intervals.saturating_mul(layout.x + layout.u).saturating_add(layout.x + problem.unknowns.len())
 }
 
 /// The first start is as given; the others vary it.

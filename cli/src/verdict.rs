@@ -4,9 +4,10 @@ use crate::output::document::{Document, scheme_name, status_name, switching};
 use crate::output::number::{scientific, short};
 use crate::output::plural;
 use crate::output::verified::Verification;
-use crate::solver::{Solved, unknowns};
+use crate::solver::Solved;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::Problem;
+use fdcc_runtime::transcribe::unknowns;
 
 /// One line: the size of the problem.
 pub fn headline(problem: &Problem) -> String {
@@ -83,8 +84,8 @@ fn how(solved: &Solved) -> String {
     }
 }
 
-/// How much of the size of its terms the Hamiltonian may miss of what it has to be, before that is told.
-const MISSED: f64 = 0.2;
+/// By how much of the size of its terms the Hamiltonian may miss what it has to be, before that is told.
+const MISSED: f64 = 0.05;
 
 /// What is said where the Hamiltonian is not what it has to be: then the grid is too coarse for what happens on it.
 fn hamiltonian(document: &Document) -> Option<String> {
@@ -92,7 +93,7 @@ fn hamiltonian(document: &Document) -> Option<String> {
     let deviation = check.deviation.filter(|it| *it > MISSED * check.size)?;
     let target = check.expected.map_or("constant".into(), |it| format!("{} throughout", short(it)));
     Some(format!(
-        " grid  the Hamiltonian has to be {target} and is off by up to {}: more intervals, or a scheme of higher order, change the answer",
+        " grid  the Hamiltonian has to be {target} and is off by {} on average: the answer depends on the grid, more intervals will change it",
         short(deviation)
     ))
 }

@@ -176,7 +176,8 @@ pub fn compile_by_parameters(model: &Model) -> Result<ByParameters, Vec<Diagnost
     let mut program = lower(model);
     let functions = by_parameters(model, &mut program).to_vec();
     let functions = machine_code(program.graph, functions);
-    let [dynamics, path, boundary, given] = functions.try_into().unwrap_or_else(|_| unreachable!("there are four"));
+    let [dynamics, path, boundary, given] =
+        functions.try_into().unwrap_or_else(|_| unreachable!("there are four"));
     Ok(ByParameters { parameters: model.params.len(), dynamics, path, boundary, given })
 }
 

@@ -67,12 +67,11 @@ impl Hamiltonian {
         Hamiltonian { values, size, is_constant: problem.is_autonomous, expected: lagrangian.expected() }
     }
 
-    /// The largest difference from what it has to be; nothing where it may be anything.
+    /// The mean difference from what it has to be, over all intervals; nothing where it may be anything.
     pub fn deviation(&self) -> Option<f64> {
-        let mean = self.values.iter().sum::<f64>() / self.values.len().max(1) as f64;
-        let target = self.expected.unwrap_or(mean);
-        let largest = |most: f64, value: &f64| most.max((value - target).abs());
-        self.is_constant.then(|| self.values.iter().fold(0.0, largest))
+        let mean = |sum: f64| sum / self.values.len().max(1) as f64;
+        let target = self.expected.unwrap_or(mean(self.values.iter().sum()));
+        self.is_constant.then(|| mean(self.values.iter().map(|value| (value - target).abs()).sum()))
     }
 }
 
@@ -237,7 +236,8 @@ impl<'a> Lagrangian<'a> {
         let mut weights = vec![0.0; parameters];
         let starts = problem.start.iter().zip(at_start);
         weights.extend(starts.map(|(start, slope)| start.map_or(0.0, |_| *slope)));
-        let signals = (0..problem.layout.x).map(Signal::State).chain((0..problem.layout.u).map(Signal::Control));
+        let signals =
+            (0..problem.layout.x).map(Signal::State).chain((0..problem.layout.u).map(Signal::Control));
         let signals = signals.map(|signal| self.variables_of(signal));
         for variables in signals.chain(stages.globals().map(|at| vec![at])) {
             let sum = |of: &[f64]| variables.iter().map(|at| of[*at]).sum::<f64>();

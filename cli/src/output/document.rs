@@ -59,7 +59,7 @@ pub struct Document {
 pub struct HamiltonianCheck {
     pub is_constant: bool,
     pub expected: Option<f64>,
-    /// The largest difference from what it has to be.
+    /// The mean difference from what it has to be.
     pub deviation: Option<f64>,
     /// The mean size of its terms.
     pub size: f64,

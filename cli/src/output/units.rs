@@ -39,7 +39,7 @@ impl Units {
         let value = self.value(of, derivative / self.scaled(by, 1.0), digits);
         match self.of(by) {
             Some(NamedUnit { unit, .. }) if !unit.is_empty() => format!("{value} per {unit}"),
-            _ => value,
+            _ => format!("{value} per unit"),
         }
     }
 
@@ -97,7 +97,7 @@ mod tests {
         assert_eq!(units().value("other", 25.0, 6), "25");
         assert_eq!(units().per("v", "phi", 25.0, 6), "45 km/h per deg");
         assert_eq!(units().per("n", "v", 3.6, 6), "1 per km/h");
-        assert_eq!(units().per("n", "n", 3.0, 6), "3");
+        assert_eq!(units().per("n", "n", 3.0, 6), "3 per unit");
         assert_eq!(units().title("phi"), "phi [deg]");
         assert_eq!(
             units().pairs(&Named(vec![("phi".into(), 1.0), ("n".into(), 2.0)]), 6),

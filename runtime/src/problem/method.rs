@@ -1,0 +1,100 @@
+//! How a model asks to be solved: the `method` block, with defaults where the model is silent.
+
+/// The most stages of a collocation scheme.
+pub const MOST_STAGES: usize = 5;
+
+/// How the differential equation becomes algebraic equations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scheme {
+    /// Explicit Euler.
+    Euler,
+    /// Implicit Euler; states named in [`Method::lagged`] are taken at the old time.
+    ImplicitEuler,
+    /// Implicit midpoint rule.
+    Midpoint,
+    /// Trapezoidal rule with a constant control on each interval.
+    Trapezoid,
+    /// The classical Runge-Kutta scheme; [`Problem::dynamics`](super::Problem::dynamics) has its increment, of which it is an explicit Euler step.
+    RungeKutta4,
+    /// Radau IIA collocation with so many stages, 1 to 5.
+    Radau(usize),
+    /// Gauss collocation with so many stages, 1 to 5.
+    Gauss(usize),
+}
+
+impl Scheme {
+    /// Whether controls of this shape mean anything to the scheme: it must see enough points of an interval.
+    pub fn allows(self, shape: ControlShape) -> bool {
+        match shape {
+            ControlShape::Constant => true,
+            ControlShape::Linear => {
+                matches!(self, Scheme::Trapezoid | Scheme::Radau(2..) | Scheme::Gauss(2..))
+            }
+            ControlShape::Polynomial => matches!(self, Scheme::Radau(_) | Scheme::Gauss(_)),
+        }
+    }
+}
+
+/// What a control is on an interval.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ControlShape {
+    /// One value.
+    Constant,
+    /// Linear, and continuous from interval to interval.
+    Linear,
+    /// A polynomial through its values at the nodes of a collocation scheme.
+    Polynomial,
+}
+
+/// Which solver treats the transcribed problem.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Solver {
+    /// Convex problems to the conic solver, all others to the interior point method.
+    Automatic,
+    /// The interior point method, always.
+    InteriorPoint,
+    /// The conic solver; refuses what is not convex.
+    Convex,
+}
+
+/// Which factorisation the interior point method uses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Linear {
+    /// Stage-wise Riccati recursion where the structure allows, else sparse LDL.
+    Automatic,
+    /// Stage-wise Riccati recursion.
+    Riccati,
+    /// Sparse LDL.
+    SparseLdl,
+}
+
+/// The `method` block, with defaults where the model is silent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Method {
+    /// Transcription.
+    pub scheme: Scheme,
+    /// States (indices) that an implicit Euler step takes at the old time.
+    pub lagged: Vec<usize>,
+    /// What a control is on an interval; constant where the scheme does not allow this shape.
+    pub controls: ControlShape,
+    /// Control intervals.
+    pub intervals: usize,
+    /// Integration steps in each control interval.
+    pub steps: usize,
+    /// Smoothing width, if the model names one.
+    pub sigma: Option<f64>,
+    /// Widths to pass through before `sigma`, decreasing; the last is the target if `sigma` is absent.
+    pub continuation: Vec<f64>,
+    /// The name of the smoothing kernel.
+    pub kernel: String,
+    /// Solver.
+    pub solver: Solver,
+    /// Factorisation.
+    pub linear: Linear,
+    /// Tolerance on the scaled optimality error.
+    pub tol: f64,
+    /// Iteration limit.
+    pub max_iter: usize,
+    /// Seed of everything random.
+    pub seed: u64,
+}

@@ -1,8 +1,10 @@
 //! What the client can do, and what we do for it.
 
+use crate::features::tokens;
 use crate::text::Encoding;
 use lsp_types::{
-    DiagnosticOptions, InitializeResult, Save, ServerCapabilities, ServerInfo, TextDocumentSyncKind,
+    CodeActionKind, CodeActionOptions, DiagnosticOptions, DocumentOnTypeFormattingOptions, InitializeResult,
+    RenameOptions, Save, SemanticTokensOptions, ServerCapabilities, ServerInfo, TextDocumentSyncKind,
     TextDocumentSyncOptions,
 };
 use serde_json::Value;
@@ -52,9 +54,42 @@ fn capabilities(agreed: &Agreed) -> ServerCapabilities {
     ServerCapabilities {
         position_encoding: Some(agreed.encoding.kind()),
         text_document_sync: Some(sync.into()),
-        diagnostic_provider: Some(
-            DiagnosticOptions { identifier: Some("fdcc".into()), ..DiagnosticOptions::default() }.into(),
+        diagnostic_provider: Some(diagnostics().into()),
+        definition_provider: Some(true.into()),
+        references_provider: Some(true.into()),
+        document_highlight_provider: Some(true.into()),
+        rename_provider: Some(
+            RenameOptions { prepare_provider: Some(true), ..RenameOptions::default() }.into(),
         ),
+        document_symbol_provider: Some(true.into()),
+        folding_range_provider: Some(true.into()),
+        selection_range_provider: Some(true.into()),
+        semantic_tokens_provider: Some(semantic_tokens().into()),
+        document_formatting_provider: Some(true.into()),
+        document_range_formatting_provider: Some(true.into()),
+        document_on_type_formatting_provider: Some(DocumentOnTypeFormattingOptions::new(
+            "}".into(),
+            Some(vec!["\n".into()]),
+        )),
+        code_action_provider: Some(code_actions().into()),
         ..ServerCapabilities::default()
     }
+}
+
+fn diagnostics() -> DiagnosticOptions {
+    DiagnosticOptions { identifier: Some("fdcc".into()), ..DiagnosticOptions::default() }
+}
+
+fn semantic_tokens() -> SemanticTokensOptions {
+    SemanticTokensOptions {
+        legend: tokens::legend(),
+        range: Some(true.into()),
+        full: Some(true.into()),
+        ..SemanticTokensOptions::default()
+    }
+}
+
+fn code_actions() -> CodeActionOptions {
+    let kinds = vec![CodeActionKind::QuickFix, CodeActionKind::SourceFixAll];
+    CodeActionOptions { code_action_kinds: Some(kinds), ..CodeActionOptions::default() }
 }

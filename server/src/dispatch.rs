@@ -1,26 +1,41 @@
 //! Which method is answered by which function.
 
+use crate::analysis::Analysis;
 use crate::client::Failure;
 use crate::documents::Document;
-use crate::features::diagnostics;
+use crate::features::{actions, diagnostics, folding, formatting, navigation, rename, symbols, tokens};
 use crate::session::Session;
-use lsp_server::{ErrorCode, Notification, Request};
-use lsp_types::{
-    DidChangeTextDocumentParams, DidCloseTextDocumentParams, DidOpenTextDocumentParams,
-    PublishDiagnosticsNotification, PublishDiagnosticsParams, Uri,
-};
+use fdcc_grammar::{Edit, Span};
+// The types of the requests that are answered, and of their parts.
+#[allow(clippy::wildcard_imports)]
+use lsp_types::*;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 /// Answers a request about a text.
-pub fn request(session: &mut Session, request: Request) -> Result<Value, Failure> {
-    let Request { method, params, .. } = request;
+pub fn request(session: &mut Session, request: lsp_server::Request) -> Result<Value, Failure> {
+    let lsp_server::Request { method, params, .. } = request;
     let call = Call { session, params };
     match method.as_str() {
-        "textDocument/diagnostic" => call.about::<lsp_types::DocumentDiagnosticRequest>(diagnostics::report),
-        _ => {
-            Err(Failure { code: ErrorCode::MethodNotFound, message: format!("there is no `{method}` here") })
-        }
+        "textDocument/diagnostic" => call.about::<DocumentDiagnosticRequest>(diagnostics::report),
+        "textDocument/definition" => call.about::<DefinitionRequest>(navigation::definition),
+        "textDocument/references" => call.about::<ReferencesRequest>(navigation::references),
+        "textDocument/documentHighlight" => call.about::<DocumentHighlightRequest>(navigation::highlights),
+        "textDocument/prepareRename" => call.about::<PrepareRenameRequest>(rename::prepare),
+        "textDocument/rename" => call.about::<RenameRequest>(rename::rename),
+        "textDocument/documentSymbol" => call.about::<DocumentSymbolRequest>(symbols::symbols),
+        "textDocument/foldingRange" => call.about::<FoldingRangeRequest>(folding::folding),
+        "textDocument/selectionRange" => call.about::<SelectionRangeRequest>(folding::selection),
+        "textDocument/semanticTokens/full" => call.about::<SemanticTokensRequest>(tokens::full),
+        "textDocument/semanticTokens/range" => call.about::<SemanticTokensRangeRequest>(tokens::range),
+        "textDocument/formatting" => call.about::<DocumentFormattingRequest>(formatting::whole),
+        "textDocument/rangeFormatting" => call.about::<DocumentRangeFormattingRequest>(formatting::range),
+        "textDocument/onTypeFormatting" => call.about::<DocumentOnTypeFormattingRequest>(formatting::on_type),
+        "textDocument/codeAction" => call.about::<CodeActionRequest>(actions::actions),
+        _ => Err(Failure {
+            code: lsp_server::ErrorCode::MethodNotFound,
+            message: format!("there is no `{method}` here"),
+        }),
     }
 }
 
@@ -54,12 +69,46 @@ pub struct Context<'s> {
     pub document: &'s Document,
 }
 
+impl Context<'_> {
+    /// What is known about the text.
+    pub fn analysis(&self) -> &Analysis {
+        self.document.analysis()
+    }
+
+    /// The byte of a place.
+    pub fn offset(&self, position: Position) -> u32 {
+        self.analysis().text.offset(position)
+    }
+
+    /// The place of some bytes.
+    pub fn range(&self, span: Span) -> Range {
+        self.analysis().text.range(span)
+    }
+
+    /// The place of some bytes, with the address of the text.
+    pub fn location(&self, span: Span) -> Location {
+        Location { uri: self.document.uri.clone(), range: self.range(span) }
+    }
+
+    /// A change in the words of the protocol.
+    pub fn text_edit(&self, edit: &Edit) -> TextEdit {
+        TextEdit { range: self.range(edit.span), new_text: edit.replacement.clone() }
+    }
+
+    /// Changes of this text.
+    pub fn workspace_edit(&self, edits: &[Edit]) -> WorkspaceEdit {
+        let edits = edits.iter().map(|it| self.text_edit(it)).collect();
+        let changes = Some([(self.document.uri.clone(), edits)].into());
+        WorkspaceEdit { changes, ..WorkspaceEdit::default() }
+    }
+}
+
 fn parsed<P: DeserializeOwned>(params: Value) -> Result<P, Failure> {
     serde_json::from_value(params).map_err(|error| Failure::params(error.to_string()))
 }
 
 /// Takes note of something.
-pub fn notification(session: &mut Session, notification: Notification) -> Result<(), Failure> {
+pub fn notification(session: &mut Session, notification: lsp_server::Notification) -> Result<(), Failure> {
     match notification.method.as_str() {
         "textDocument/didOpen" => {
             let it = parsed::<DidOpenTextDocumentParams>(notification.params)?.text_document;

@@ -4,9 +4,11 @@
 //! index too. Editors ask nothing else: definition, references, renaming, colours, symbols and completion are queries.
 
 mod declarations;
+mod enclosing;
 mod uses;
 
 use crate::resolve::is_function;
+pub use enclosing::enclosing;
 use fdcc_grammar::{Span, ast};
 
 /// What a declared name is.

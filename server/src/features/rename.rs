@@ -1,0 +1,91 @@
+//! Another name for something, wherever it stands. Done only if every name means afterwards what it meant before.
+
+use crate::analysis::Analysis;
+use crate::client::Failure;
+use crate::dispatch::Context;
+use fdcc_compiler::names::{Meaning, Names, Role};
+use fdcc_grammar::ast::ItemKind;
+use fdcc_grammar::{Edit, parse};
+use lsp_types::{
+    PrepareRenameParams, PrepareRenamePlaceholder, PrepareRenameResult, RenameParams, WorkspaceEdit,
+};
+
+/// `textDocument/prepareRename`
+pub fn prepare(
+    context: &Context<'_>,
+    params: PrepareRenameParams,
+) -> Result<Option<PrepareRenameResult>, Failure> {
+    let names = context.analysis().names();
+    let offset = context.offset(params.text_document_position_params.position);
+    let Some(occurrence) = names.at(offset) else { return Ok(None) };
+    let definition = renamable(context.analysis(), offset)?;
+    let placeholder = names.definitions[definition].name.clone();
+    Ok(Some(PrepareRenamePlaceholder { range: context.range(occurrence.span), placeholder }.into()))
+}
+
+/// `textDocument/rename`
+pub fn rename(context: &Context<'_>, params: RenameParams) -> Result<Option<WorkspaceEdit>, Failure> {
+    let analysis = context.analysis();
+    let offset = context.offset(params.text_document_position_params.position);
+    let definition = renamable(analysis, offset)?;
+    let new_name = params.new_name.trim();
+    check_name(new_name)?;
+    let edits = edits(analysis.names(), definition, new_name);
+    check_meaning(analysis, &edits, new_name)?;
+    Ok(Some(context.workspace_edit(&edits)))
+}
+
+/// What can be renamed at a byte.
+fn renamable(analysis: &Analysis, offset: u32) -> Result<usize, Failure> {
+    let names = analysis.names();
+    match names.at(offset).map(|it| it.meaning) {
+        Some(Meaning::Declared(_)) if !analysis.is_readable => Err(Failure::request(
+            "this text has mistakes of syntax, and a name in what cannot be read would be missed; mend them first",
+        )),
+        Some(Meaning::Declared(definition)) => Ok(definition),
+        Some(Meaning::Unknown) => {
+            Err(Failure::request("this name is not declared, so there is nothing to rename"))
+        }
+        Some(_) => Err(Failure::request("this word belongs to the language and has no other name")),
+        None => Err(Failure::request("there is no name here")),
+    }
+}
+
+/// The grammar decides what is a name.
+fn check_name(name: &str) -> Result<(), Failure> {
+    let parsed = parse(&format!("param {name} = 1"));
+    let is_name = parsed.diagnostics.is_empty()
+        && matches!(&parsed.tree.items[..], [item] if matches!(&item.kind, ItemKind::Param { name: it, .. } if it.name == name));
+    let why = parsed.diagnostics.first().map_or("a name is one word", |it| it.message.as_str());
+    if is_name { Ok(()) } else { Err(Failure::request(format!("`{name}` cannot be a name: {why}"))) }
+}
+
+fn edits(names: &Names, definition: usize, new_name: &str) -> Vec<Edit> {
+    names.of(definition).map(|it| Edit { span: it.span, replacement: new_name.into() }).collect()
+}
+
+/// Whether all names stand for the same things in the new text.
+fn check_meaning(analysis: &Analysis, edits: &[Edit], new_name: &str) -> Result<(), Failure> {
+    let mut text = analysis.text.text.to_string();
+    for edit in edits.iter().rev() {
+        text.replace_range(edit.span.range(), &edit.replacement);
+    }
+    let after = Names::new(&parse(&text).tree);
+    let meanings = |names: &Names| -> Vec<(Meaning, Role)> {
+        names.occurrences.iter().map(|it| (it.meaning, it.role)).collect()
+    };
+    let is_free =
+        analysis.names().definitions.iter().all(|it| it.name != new_name) || !declares_twice(&after);
+    match is_free && meanings(analysis.names()) == meanings(&after) {
+        true => Ok(()),
+        false => {
+            Err(Failure::request(format!("`{new_name}` already means something here; choose another name")))
+        }
+    }
+}
+
+/// Whether two names of one kind of place are the same.
+fn declares_twice(names: &Names) -> bool {
+    let all = &names.definitions;
+    (0..all.len()).any(|at| all[..at].iter().any(|it| it.name == all[at].name && it.within == all[at].within))
+}

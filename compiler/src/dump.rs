@@ -1,15 +1,15 @@
 //! Any stage of a model as text, for `fdcc show`.
 
+use crate::described::{self, bounded};
 use crate::differentiate::differentiate;
 use crate::graph::{ExprId, Graph, print};
 use crate::lower::{Numbers, Program, lower, numbers};
 use crate::model::{Model, Place, Range, Symbol};
 use crate::program::{Differentiated, VectorFunction};
-use crate::resolve::text::number;
 use crate::surfaces::{Order, Smoothness, SurfaceReport, smoothness, surfaces};
 use crate::{generate, not_yet};
 use fdcc_grammar::Diagnostic;
-use fdcc_runtime::problem::{Bounds, Layout};
+use fdcc_runtime::problem::Layout;
 use std::fmt::Write;
 
 /// What can be shown.
@@ -61,7 +61,7 @@ fn symbol_name(model: &Model, symbol: Symbol) -> String {
         Symbol::AtStart(index) => format!("{}(start)", model.states[index].place.name),
         Symbol::AtEnd(index) => format!("{}(end)", model.states[index].place.name),
         Symbol::Integral(index) => model.integrals[index].place.name.clone(),
-        Symbol::Simulated(_) | Symbol::Argument => "_".into(),
+        Symbol::Simulated(_) | Symbol::Argument(_) => "_".into(),
     }
 }
 
@@ -169,22 +169,12 @@ fn summary(model: &Model, program: &Program, numbers: &Numbers) -> String {
     let mut text = format!("model {}\n", model.name);
     let ends = over_symbols(model, &[("t0".into(), model.interval[0]), ("tf".into(), model.interval[1])]);
     section(&mut text, "time", ends.lines().map(str::to_string));
-    let named = |place: &Place, range: Range| in_units(model, &place.name, numbers.bounds(model, range));
+    let named = |place: &Place, range: Range| described::ranged(model, numbers, place, range);
     section(&mut text, "states", model.states.iter().map(|it| named(&it.place, it.range)));
     let controls = model.controls.iter().map(|it| named(&it.place, it.range));
     section(&mut text, "controls", controls);
-    let frees = model.frees.iter().enumerate().map(|(at, it)| {
-        let guess = numbers.of(model, Symbol::Free(at)) / scale(model, &it.place.name);
-        format!("{} guess {}", named(&it.place, it.range), short(guess))
-    });
-    section(&mut text, "free", frees);
-    let params = model.params.iter().enumerate();
-    let params = params.map(|(at, it)| {
-        let value = short(numbers.of(model, Symbol::Param(at)) / scale(model, &it.place.name));
-        let unit = model.unit_of(&it.place.name).map_or("", |it| &it.unit);
-        format!("{} = {value} {unit}", it.place.name).trim_end().to_string()
-    });
-    section(&mut text, "params", params);
+    section(&mut text, "free", (0..model.frees.len()).map(|at| described::free(model, numbers, at)));
+    section(&mut text, "params", (0..model.params.len()).map(|at| described::param(model, numbers, at)));
     section(&mut text, "surfaces", surfaces(model, numbers).iter().flat_map(surface_lines));
     let rough = smoothness(model, numbers).into_iter().filter(|it| it.order != Order::Always);
     section(&mut text, "smoothness", rough.map(smoothness_line));
@@ -221,41 +211,6 @@ fn section(text: &mut String, title: &str, lines: impl Iterator<Item = String>) 
     for line in lines {
         writeln!(text, "{title:<10} {line}").expect("writing to a string cannot fail");
         title = "";
-    }
-}
-
-/// `v [km/h] in [0, 100]`
-fn in_units(model: &Model, name: &str, bounds: Bounds) -> String {
-    let scale = scale(model, name);
-    let [lower, upper] = [bounds.lower / scale, bounds.upper / scale].map(rounded);
-    match model.unit_of(name).filter(|it| !it.unit.is_empty()) {
-        Some(it) => bounded(&format!("{name} [{}]", it.unit), Bounds { lower, upper }),
-        None => bounded(name, Bounds { lower, upper }),
-    }
-}
-
-/// How many SI units one of the units is in which a name is declared.
-fn scale(model: &Model, name: &str) -> f64 {
-    model.unit_of(name).map_or(1.0, |it| it.scale)
-}
-
-/// Without the digits that going to SI and back leaves behind.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.13e}").parse().unwrap_or(value)
-}
-
-fn short(value: f64) -> String {
-    number(rounded(value))
-}
-
-fn bounded(name: &str, bounds: Bounds) -> String {
-    let (lower, upper) = (number(bounds.lower), number(bounds.upper));
-    match (bounds.lower.is_finite(), bounds.upper.is_finite()) {
-        (false, false) => name.into(),
-        (true, true) if bounds.is_equality() => format!("{name} == {lower}"),
-        (false, true) => format!("{name} <= {upper}"),
-        (true, false) => format!("{name} >= {lower}"),
-        (true, true) => format!("{name} in [{lower}, {upper}]"),
     }
 }
 

@@ -33,8 +33,8 @@ pub enum Symbol {
     Integral(usize),
     /// A number that only a simulation can tell, one of [`Model::simulated`].
     Simulated(usize),
-    /// An argument of a function, while its body is examined by itself.
-    Argument,
+    /// An argument of a function, while its body is examined by itself; all functions share them.
+    Argument(usize),
 }
 
 /// Where something was written, and what to call it.
@@ -228,6 +228,17 @@ pub struct Swept {
     pub values_span: Span,
 }
 
+/// A `const`, `let` or `fn`.
+#[derive(Clone, Debug)]
+pub struct Definition {
+    /// Its name.
+    pub name: String,
+    /// The names of its arguments, none but for a function.
+    pub arguments: Vec<String>,
+    /// Its components; a function over [`Symbol::Argument`], none if that gives no value.
+    pub parts: Vec<ExprId>,
+}
+
 /// A model whose text has no error.
 #[derive(Clone)]
 pub struct Model {
@@ -277,6 +288,8 @@ pub struct Model {
     pub metric: Vec<(usize, ExprId)>,
     /// Expressions that have a name in the text: definitions and reports.
     pub names: Vec<(String, ExprId)>,
+    /// Constants, definitions and functions, for those who ask about one.
+    pub definitions: Vec<Definition>,
     /// How it is to be solved.
     pub method: Method,
     /// The lists of the `sweep` block.
@@ -318,6 +331,7 @@ impl Model {
             expectations: Vec::new(),
             metric: Vec::new(),
             names: Vec::new(),
+            definitions: Vec::new(),
             method: default_method(),
             sweep: Vec::new(),
             smooth: false,

@@ -2,7 +2,7 @@
 
 use crate::text::Text;
 use fdcc_compiler::names::Names;
-use fdcc_compiler::{Reviewed, review};
+use fdcc_compiler::{Reviewed, SurfaceReport, review, surfaces};
 use fdcc_grammar::{Code, Severity};
 use std::cell::OnceCell;
 
@@ -15,6 +15,7 @@ pub struct Analysis {
     /// Whether all of it could be read.
     pub is_readable: bool,
     names: OnceCell<Names>,
+    surfaces: OnceCell<Vec<SurfaceReport>>,
 }
 
 impl Analysis {
@@ -24,11 +25,17 @@ impl Analysis {
         let is_syntax = |code: Code| code.as_str().starts_with("FDC00");
         let is_readable =
             !reviewed.diagnostics.iter().any(|it| it.severity == Severity::Error && is_syntax(it.code));
-        Analysis { text, reviewed, is_readable, names: OnceCell::new() }
+        Analysis { text, reviewed, is_readable, names: OnceCell::new(), surfaces: OnceCell::new() }
     }
 
     /// Every name with its role.
     pub fn names(&self) -> &Names {
         self.names.get_or_init(|| Names::new(&self.reviewed.tree))
+    }
+
+    /// What is known about each surface, if there is a model and all its parameters have values.
+    pub fn surfaces(&self) -> &[SurfaceReport] {
+        let found = || self.reviewed.model.as_ref().and_then(|model| surfaces(model).ok());
+        self.surfaces.get_or_init(|| found().unwrap_or_default())
     }
 }

@@ -55,6 +55,7 @@ fn capabilities(agreed: &Agreed) -> ServerCapabilities {
         position_encoding: Some(agreed.encoding.kind()),
         text_document_sync: Some(sync.into()),
         diagnostic_provider: Some(diagnostics().into()),
+        hover_provider: Some(true.into()),
         definition_provider: Some(true.into()),
         references_provider: Some(true.into()),
         document_highlight_provider: Some(true.into()),

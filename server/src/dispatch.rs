@@ -3,8 +3,11 @@
 use crate::analysis::Analysis;
 use crate::client::Failure;
 use crate::documents::Document;
-use crate::features::{actions, diagnostics, folding, formatting, navigation, rename, symbols, tokens};
+use crate::features::{
+    actions, diagnostics, folding, formatting, hover, navigation, rename, symbols, tokens,
+};
 use crate::session::Session;
+use fdcc_compiler::{Model, NamedUnit, SurfaceReport};
 use fdcc_grammar::{Edit, Span};
 // The types of the requests that are answered, and of their parts.
 #[allow(clippy::wildcard_imports)]
@@ -31,6 +34,7 @@ pub fn request(session: &mut Session, request: lsp_server::Request) -> Result<Va
         "textDocument/formatting" => call.about::<DocumentFormattingRequest>(formatting::whole),
         "textDocument/rangeFormatting" => call.about::<DocumentRangeFormattingRequest>(formatting::range),
         "textDocument/onTypeFormatting" => call.about::<DocumentOnTypeFormattingRequest>(formatting::on_type),
+        "textDocument/hover" => call.about::<HoverRequest>(hover::hover),
         "textDocument/codeAction" => call.about::<CodeActionRequest>(actions::actions),
         _ => Err(Failure {
             code: lsp_server::ErrorCode::MethodNotFound,
@@ -73,6 +77,23 @@ impl Context<'_> {
     /// What is known about the text.
     pub fn analysis(&self) -> &Analysis {
         self.document.analysis()
+    }
+
+    /// What the text means, or meant when it had no mistakes.
+    pub fn model(&self) -> Option<&Model> {
+        self.document.modelled()?.reviewed.model.as_ref()
+    }
+
+    /// What is known about each surface of that.
+    pub fn surfaces(&self) -> &[SurfaceReport] {
+        self.document.modelled().map_or(&[], |it| it.surfaces())
+    }
+
+    /// The unit of each name; what was known before where the text has none that can be told now.
+    pub fn units(&self) -> &[NamedUnit] {
+        let now = &self.analysis().reviewed.units;
+        let before = || self.document.modelled().map_or(&[][..], |it| &it.reviewed.units);
+        if now.is_empty() { before() } else { now }
     }
 
     /// The byte of a place.

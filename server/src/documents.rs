@@ -13,8 +13,10 @@ pub struct Document {
     pub uri: Uri,
     /// The client's number for this state of it.
     pub version: i32,
-    /// What is known about the last state that could be read, for what a broken one does not tell.
-    pub last_good: Option<Rc<Analysis>>,
+    /// The last state that could be read, for what a broken one does not tell.
+    last_readable: Option<Rc<Analysis>>,
+    /// The last state without mistakes.
+    last_model: Option<Rc<Analysis>>,
     text: Text,
     analysis: OnceCell<Rc<Analysis>>,
     is_published: bool,
@@ -26,9 +28,28 @@ impl Document {
         self.analysis.get_or_init(|| Rc::new(Analysis::new(self.text.clone())))
     }
 
+    /// The last state that could be read: this one if possible.
+    pub fn readable(&self) -> Option<&Rc<Analysis>> {
+        if self.analysis().is_readable { Some(self.analysis()) } else { self.last_readable.as_ref() }
+    }
+
+    /// The last state without mistakes: this one if possible.
+    pub fn modelled(&self) -> Option<&Rc<Analysis>> {
+        if self.analysis().reviewed.model.is_some() {
+            Some(self.analysis())
+        } else {
+            self.last_model.as_ref()
+        }
+    }
+
     fn become_text(&mut self, text: Text) {
-        if let Some(analysis) = self.analysis.take().filter(|it| it.is_readable) {
-            self.last_good = Some(analysis);
+        if let Some(analysis) = self.analysis.take() {
+            if analysis.is_readable {
+                self.last_readable = Some(analysis.clone());
+            }
+            if analysis.reviewed.model.is_some() {
+                self.last_model = Some(analysis);
+            }
         }
         self.text = text;
         self.is_published = false;
@@ -50,9 +71,16 @@ impl Documents {
     /// A text is opened, or opened anew.
     pub fn open(&mut self, uri: Uri, version: i32, text: &str, encoding: Encoding) {
         let text = Text::new(text, encoding);
-        let (last_good, analysis) = (None, OnceCell::new());
-        let key = uri.0.clone();
-        self.open.insert(key, Document { uri, version, last_good, text, analysis, is_published: false });
+        let document = Document {
+            uri: uri.clone(),
+            version,
+            last_readable: None,
+            last_model: None,
+            text,
+            analysis: OnceCell::new(),
+            is_published: false,
+        };
+        self.open.insert(uri.0, document);
     }
 
     /// A text is changed, piece by piece.

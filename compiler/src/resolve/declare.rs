@@ -6,7 +6,7 @@ use super::expression::is_plain;
 use super::value::{Parts, Reads, Traits, Value};
 use super::{order, scope};
 use crate::graph::ExprId;
-use crate::model::{Control, Free, Param, Place, Range, State, Symbol};
+use crate::model::{Control, Definition, Free, Param, Place, Range, State, Symbol};
 use crate::units;
 use fdcc_grammar::ast::{Expr, Ident, Interval, ItemKind, Start, Unit};
 
@@ -109,12 +109,15 @@ impl<'a> Elaborator<'a> {
         match &item.kind {
             ItemKind::Const { value, unit, .. } => {
                 let value = self.scaled(Role::Number("a constant"), Context::NUMBER, value, unit.as_ref());
+                self.keep_definition(at, &[], &value.parts);
                 self.values[at] = value;
             }
             ItemKind::Let { value, unit, .. } => {
                 let scale = self.scale_of(value, unit.as_ref());
                 let value = self.evaluate_in(Context::DEFINITION, value);
-                self.values[at] = self.map(value, |graph, part| graph.scale(scale, part));
+                let value = self.map(value, |graph, part| graph.scale(scale, part));
+                self.keep_definition(at, &[], &value.parts);
+                self.values[at] = value;
                 self.name_parts(at);
             }
             ItemKind::Param { value: Some(value), unit, .. } => self.define_param(at, value, unit.as_ref()),
@@ -132,6 +135,13 @@ impl<'a> Elaborator<'a> {
         let named = parts.map(|(part, &id)| (self.component(name, value, part), id));
         let named: Vec<(String, ExprId)> = named.collect();
         self.model.names.extend(named);
+    }
+
+    /// For those who ask about it by name.
+    fn keep_definition(&mut self, at: usize, arguments: &[Ident], parts: &Parts) {
+        let name = self.scope.declarations[at].name.name.clone();
+        let arguments = arguments.iter().map(|it| it.name.clone()).collect();
+        self.model.definitions.push(Definition { name, arguments, parts: parts.as_slice().to_vec() });
     }
 
     fn define_param(&mut self, at: usize, value: &'a Expr, unit: Option<&Unit>) {
@@ -157,7 +167,7 @@ impl<'a> Elaborator<'a> {
     fn examine(&mut self, at: usize, arguments: &'a [Ident], body: &'a Expr) {
         scope::distinct(arguments, &mut self.diagnostics);
         while self.arguments.len() < arguments.len() {
-            let argument = self.symbol(Symbol::Argument);
+            let argument = self.symbol(Symbol::Argument(self.arguments.len()));
             self.arguments.push(argument);
         }
         if self.circular[at] {
@@ -167,8 +177,9 @@ impl<'a> Elaborator<'a> {
             self.arguments[..arguments.len()].iter().map(|&part| Value::scalar(part, Traits::default()));
         let values = values.collect();
         self.examining = true;
-        self.apply(at, arguments, body, values);
+        let value = self.apply(at, arguments, body, values);
         self.examining = false;
+        self.keep_definition(at, arguments, &value.parts);
     }
 
     /// Bounds, starts and guesses, which may use every definition.

@@ -3,6 +3,7 @@
 use super::context::Context;
 use super::elaborator::{Elaborator, Role};
 use super::{closest, text};
+use crate::model::Model;
 use crate::smooth;
 use crate::units;
 use fdcc_grammar::ast::{Expr, ExprKind, Ident, ItemKind, Setting, SettingValue};
@@ -10,7 +11,7 @@ use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 use fdcc_runtime::problem::{ControlShape, Linear, MOST_STAGES, Method, Scheme, Solver};
 
 /// The keys, each with what it takes.
-const KEYS: &[(&str, &str)] = &[
+pub(crate) const KEYS: &[(&str, &str)] = &[
     ("sigma", "a number above 0"),
     ("kernel", "one of tanh, sqrt, linear, cubic, quintic"),
     ("N", "a whole number from 1"),
@@ -172,6 +173,16 @@ pub(crate) fn misfit(method: &Method) -> Option<(&'static str, &'static str)> {
 /// Whether there is such a key.
 pub(crate) fn is_key(key: &str) -> bool {
     KEYS.iter().any(|row| row.0 == key)
+}
+
+/// The words that a key takes today; none where it takes numbers.
+pub(crate) fn words(key: &str) -> Vec<&'static str> {
+    let expected = KEYS.iter().find(|row| row.0 == key).map_or("", |row| row.1);
+    let Some(list) = expected.strip_prefix("one of ") else { return Vec::new() };
+    let is_taken = |word: &&str| {
+        set(&mut Model::empty().method, key, &Given::Word((*word).to_owned())).is_ok() && !word.is_empty()
+    };
+    list.split([',', ' ']).filter(is_taken).collect()
 }
 
 /// The nearest key, for "did you mean".

@@ -86,7 +86,7 @@ impl Local {
 
     /// One more input, of no meaning to the model.
     pub fn add_input(&mut self) -> ExprId {
-        self.symbols.push(Symbol::Argument);
+        self.symbols.push(Symbol::Argument(usize::MAX));
         self.domain.push(Interval::ALL);
         self.graph.input(self.symbols.len() as u32 - 1)
     }

@@ -21,5 +21,5 @@ pub(crate) use local::Local;
 pub use report::SurfaceReport;
 pub(crate) use report::surfaces;
 pub use smoothness::{Order, Smoothness};
-pub(crate) use smoothness::{at_guards, smoothness};
+pub(crate) use smoothness::{at_guards, of_expression, smoothness};
 pub(crate) use view::View;

@@ -105,7 +105,8 @@ fn varies(local: &Local, expr: ExprId) -> bool {
     inputs.into_iter().any(|at| !matches!(local.symbols[at as usize], Symbol::Param(_)))
 }
 
-fn of_expression(view: &View<'_>, name: &str, id: ExprId) -> Smoothness {
+/// Of one expression, under a name.
+pub(crate) fn of_expression(view: &View<'_>, name: &str, id: ExprId) -> Smoothness {
     let mut local = Local::empty();
     let root = local.import(view, id);
     let mut found = knots(&mut local, root);

@@ -32,6 +32,8 @@ pub(crate) struct View<'m> {
     pub metric: &'m [(usize, ExprId)],
     /// Texts for expressions that have a name or were written out.
     pub names: &'m [(String, ExprId)],
+    /// What the arguments of a function are called, while it is looked at by itself.
+    pub arguments: &'m [String],
 }
 
 impl<'m> View<'m> {
@@ -54,6 +56,7 @@ impl<'m> View<'m> {
             moved: moved(&model.graph, &model.symbols, &model.states, model.surfaces.len()),
             metric: &model.metric,
             names: &model.names,
+            arguments: &[],
         }
     }
 
@@ -103,6 +106,7 @@ impl<'m> View<'m> {
             Symbol::Free(at) => self.frees[at].place.name.clone(),
             Symbol::Param(at) => self.params[at].place.name.clone(),
             Symbol::Selector(at) => format!("Sgn({})", self.surfaces[at].0.name),
+            Symbol::Argument(at) => self.arguments.get(at).cloned().unwrap_or("_".into()),
             _ => "_".into(),
         }
     }

@@ -25,6 +25,7 @@ mod solve;
 mod table;
 mod value;
 
+use crate::resolve::text::number;
 use dimension::Atom;
 pub use dimension::Dimension;
 use fdcc_grammar::ast::{self, Unit};
@@ -39,10 +40,18 @@ pub use quantity::{Quantity, parse_quantity};
 use requirement::Requirement;
 use solve::{Rank, Solution};
 use std::collections::HashSet;
-pub(crate) use table::{list_scale, scale};
+pub(crate) use table::{list_scale, names, scale};
 
 /// Whoever has so many mistakes does not read on.
 const MOST_MISTAKES: usize = 20;
+
+/// A unit in SI and what it measures: `1 km = 1000 m, a length`.
+pub(crate) fn described(name: &str) -> Option<String> {
+    let (value, dimension) = table::named(name)?;
+    let notation = Notation::new(&[]);
+    let si = format!("1 {name} = {} {}", number(value), notation.unit(&dimension));
+    Some(format!("{}, {}", si.trim_end(), notation.noun(&dimension)))
+}
 
 /// What the text says about units.
 #[derive(Default)]

@@ -94,6 +94,11 @@ const PREFIXES: &[(&str, f64)] = &[
     ("p", 1e-12),
 ];
 
+/// The names of all units, without prefixes but for the kilogram.
+pub(crate) fn names() -> Vec<&'static str> {
+    std::iter::once("kg").chain(UNITS.iter().map(|row| row.0)).collect()
+}
+
 /// One unit name, such as `km`: its SI value and what it measures.
 pub(crate) fn named(name: &str) -> Option<(f64, Dimension)> {
     let whole = UNITS.iter().find(|row| row.0 == name).map(|row| (row.1, row.3));

@@ -4,6 +4,7 @@ pub mod actions;
 pub mod diagnostics;
 pub mod folding;
 pub mod formatting;
+pub mod hover;
 pub mod navigation;
 pub mod rename;
 pub mod symbols;

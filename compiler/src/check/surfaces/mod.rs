@@ -142,5 +142,6 @@ pub(super) fn view_of<'m>(meaning: &'m Elaborator<'_>) -> View<'m> {
         moved: view::moved(&meaning.graph, &meaning.symbols, states, meaning.surfaces.len()),
         metric: &meaning.model.metric,
         names: &meaning.model.names,
+        arguments: &[],
     }
 }

@@ -1,0 +1,146 @@
+//! What is known about one thing that has a name, as text: for hover.
+//!
+//! Derivatives are those of `differentiate`, in the normal form and with the names of the model, as for surfaces.
+
+use crate::described;
+use crate::differentiate::derivative;
+use crate::graph::ExprId;
+use crate::lower::{Numbers, numbers};
+use crate::model::{Definition, Model, Place, Symbol};
+use crate::surfaces::{Local, Order, Smoothness, View, of_expression};
+
+/// What is known about a name.
+#[derive(Clone, Debug, Default)]
+pub struct Portrait {
+    /// Bounds and values, a line for each part: `v [m/s] in [-20, 20]`, `m = 2 kg`.
+    pub values: Vec<String>,
+    /// The right sides of its equations: `v' = F - mu*Sgn(slip)`.
+    pub rates: Vec<String>,
+    /// Its derivatives by all that it depends on: `d/dv = 2*c*v`.
+    pub derivatives: Vec<String>,
+    /// How smooth it is, the least smooth part of it.
+    pub smoothness: Option<Smoothness>,
+}
+
+/// More derivatives than these nobody reads.
+const MOST_DERIVATIVES: usize = 8;
+
+/// What is known about a name; nothing if the model does not know it, or waits for a parameter.
+pub fn portrait(model: &Model, name: &str) -> Option<Portrait> {
+    let numbers = numbers(model).ok()?;
+    let mut portrait = Portrait::default();
+    declared(model, &numbers, name, &mut portrait);
+    let defined = model.definitions.iter().find(|it| it.name == name).cloned();
+    if let Some(definition) = defined.or_else(|| reported(model, name)) {
+        look_at(model, &numbers, &definition, &mut portrait);
+    }
+    let is_known =
+        !portrait.values.is_empty() || !portrait.derivatives.is_empty() || portrait.smoothness.is_some();
+    is_known.then_some(portrait)
+}
+
+/// Whether a name is that of a vector or of one of its parts.
+fn is_of(part: &str, name: &str) -> bool {
+    part == name || part.strip_prefix(name).is_some_and(|rest| rest.starts_with(['.', '[']))
+}
+
+/// States, controls, unknowns and parameters.
+fn declared(model: &Model, numbers: &Numbers, name: &str, portrait: &mut Portrait) {
+    let view = View::of_model(model, numbers);
+    for state in model.states.iter().filter(|it| is_of(&it.place.name, name)) {
+        portrait.values.push(described::ranged(model, numbers, &state.place, state.range));
+        let mut local = Local::empty();
+        let rate = local.import(&view, state.rate);
+        portrait
+            .rates
+            .extend(local.text(&view, rate).map(|text| format!("{} = {text}", state.equation.name)));
+    }
+    for control in model.controls.iter().filter(|it| is_of(&it.place.name, name)) {
+        portrait.values.push(described::ranged(model, numbers, &control.place, control.range));
+    }
+    let at = |places: &[&Place]| places.iter().position(|place| place.name == name);
+    let frees: Vec<&Place> = model.frees.iter().map(|it| &it.place).collect();
+    let params: Vec<&Place> = model.params.iter().map(|it| &it.place).collect();
+    portrait.values.extend(at(&frees).map(|at| described::free(model, numbers, at)));
+    portrait.values.extend(at(&params).map(|at| described::param(model, numbers, at)));
+}
+
+fn reported(model: &Model, name: &str) -> Option<Definition> {
+    let parts: Vec<ExprId> =
+        model.report.iter().filter(|it| is_of(&it.place.name, name)).map(|it| it.value).collect();
+    (!parts.is_empty()).then(|| Definition { name: name.into(), arguments: Vec::new(), parts })
+}
+
+/// The value of what is a number, the smoothness and the derivatives of what is none.
+fn look_at(model: &Model, numbers: &Numbers, definition: &Definition, portrait: &mut Portrait) {
+    let view = View { arguments: &definition.arguments, ..View::of_model(model, numbers) };
+    let fixed: Vec<f64> = definition.parts.iter().map(|part| view.number(*part)).collect();
+    if definition.arguments.is_empty() && !fixed.is_empty() && fixed.iter().all(|value| value.is_finite()) {
+        let named = |(at, value): (usize, &f64)| match fixed.len() {
+            1 => described::valued(model, &definition.name, *value),
+            _ => described::valued(model, &format!("{}[{}]", definition.name, at + 1), *value),
+        };
+        portrait.values.extend(fixed.iter().enumerate().map(named));
+        return;
+    }
+    let orders = definition.parts.iter().map(|part| of_expression(&view, &definition.name, *part));
+    portrait.smoothness = orders.min_by_key(|it| it.order);
+    if portrait.smoothness.as_ref().is_some_and(|it| it.order == Order::Jumps) {
+        return;
+    }
+    portrait.derivatives = derivatives(&view, &definition.parts);
+}
+
+/// `d/dv = 2*c*v` by everything that may vary; of a vector all components together.
+fn derivatives(view: &View<'_>, parts: &[ExprId]) -> Vec<String> {
+    let mut local = Local::empty();
+    let roots: Vec<ExprId> = parts.iter().map(|part| local.import(view, *part)).collect();
+    let varies = |symbol: &Symbol| !matches!(symbol, Symbol::Param(_) | Symbol::Selector(_));
+    let inputs: Vec<u32> =
+        (0..local.symbols.len() as u32).filter(|at| varies(&local.symbols[*at as usize])).collect();
+    let mut lines = Vec::new();
+    for input in inputs.into_iter().take(MOST_DERIVATIVES) {
+        let slopes: Vec<ExprId> =
+            roots.iter().map(|root| derivative(&mut local.graph, *root, input)).collect();
+        let texts: Option<Vec<String>> = slopes.into_iter().map(|slope| local.text(view, slope)).collect();
+        let name = by(view, local.symbols[input as usize]);
+        lines.push(match texts {
+            Some(texts) if texts.len() == 1 => format!("d/d{name} = {}", texts[0]),
+            Some(texts) => format!("d/d{name} = ({})", texts.join(", ")),
+            None => format!("d/d{name} = ..."),
+        });
+    }
+    lines
+}
+
+fn by(view: &View<'_>, symbol: Symbol) -> String {
+    match symbol {
+        Symbol::AtStart(at) => format!("{}(start)", view.states[at].place.name),
+        Symbol::AtEnd(at) => format!("{}(end)", view.states[at].place.name),
+        _ => view.name(symbol),
+    }
+}
+
+/// What a grid costs and how fine it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// Control intervals.
+    pub intervals: usize,
+    /// Unknowns of the programme.
+    pub unknowns: usize,
+    /// The step, with the duration of the guess.
+    pub step: f64,
+    /// The width of the smoothed layer, if the model names one.
+    pub sigma: Option<f64>,
+}
+
+/// The grid of a model; nothing if it waits for a parameter.
+pub fn grid(model: &Model) -> Option<Grid> {
+    let numbers = numbers(model).ok()?;
+    let [first, last] = model.interval.map(|end| numbers.value(model, end));
+    let intervals = model.method.intervals;
+    let (states, controls) = (model.states.len(), model.controls.len());
+    let unknowns = intervals.saturating_mul(states + controls).saturating_add(states + model.frees.len());
+    let step = (last - first) / (intervals * model.method.steps) as f64;
+    Some(Grid { intervals, unknowns, step, sigma: model.method.sigma })
+}

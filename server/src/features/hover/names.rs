@@ -1,0 +1,104 @@
+//! Declared names: the declaration, the unit, and what the compiler makes of it.
+
+use crate::dispatch::Context;
+use fdcc_compiler::names::{Definition, Kind};
+use fdcc_compiler::{NamedUnit, Order, Portrait, Smoothness, SurfaceReport, portrait};
+use fdcc_grammar::comments;
+
+/// Longer declarations are cut.
+const MOST_LINES: usize = 12;
+
+/// All that is known about a definition, in Markdown.
+pub fn told(context: &Context<'_>, definition: usize) -> String {
+    let names = context.analysis().names();
+    let it = &names.definitions[definition];
+    let full = names.full_name(definition);
+    let mut text = format!("```fdc\n{}\n```\n{}", declaration(context, it), headline(context, it, &full));
+    if let Some(comment) = comment(context, it) {
+        text += &format!("\n\n{comment}");
+    }
+    let facts = match it.kind {
+        Kind::Surface => surface(context, &full),
+        Kind::Argument | Kind::Column | Kind::Row | Kind::Phase | Kind::Model | Kind::Data => Vec::new(),
+        _ => {
+            context.model().and_then(|model| portrait(model, &full)).map(|it| facts(&it)).unwrap_or_default()
+        }
+    };
+    for fact in facts {
+        text += &format!("\n\n{fact}");
+    }
+    text
+}
+
+/// The item as it is written, without what would fill the screen.
+fn declaration(context: &Context<'_>, it: &Definition) -> String {
+    let span = if it.kind == Kind::Row { it.span } else { it.item };
+    let text = &context.analysis().text.text[span.range()];
+    match it.kind {
+        Kind::Phase => format!("phase {}", it.name),
+        Kind::Model => format!("model {}", it.name),
+        _ if text.lines().count() > MOST_LINES => {
+            text.lines().take(MOST_LINES).map(|line| format!("{line}\n")).collect::<String>() + "..."
+        }
+        _ => text.to_owned(),
+    }
+}
+
+/// `state, in m/s (found from the equations)`
+fn headline(context: &Context<'_>, it: &Definition, full: &str) -> String {
+    let units: Vec<&NamedUnit> = context.units().iter().filter(|unit| is_unit_of(unit, full)).collect();
+    let kind = it.kind.word();
+    let Some(first) = units.first() else { return kind.into() };
+    let same = units.iter().all(|unit| unit.unit == first.unit);
+    let shown: Vec<&str> =
+        if same { vec![unit_text(first)] } else { units.iter().map(|it| unit_text(it)).collect() };
+    let found = if first.written { "" } else { " (found from the equations)" };
+    format!("{kind}, {}{found}", shown.join(", "))
+}
+
+fn is_unit_of(unit: &NamedUnit, name: &str) -> bool {
+    unit.name == name || unit.name.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'))
+}
+
+fn unit_text(unit: &NamedUnit) -> &str {
+    if unit.unit.is_empty() { "no unit" } else { &unit.unit }
+}
+
+/// What its author says about it, on the same line.
+fn comment(context: &Context<'_>, it: &Definition) -> Option<String> {
+    let text = &context.analysis().text;
+    let line = text.line(it.span.end);
+    let own = comments(&text.text).into_iter().find(|comment| text.line(comment.start) == line)?;
+    let words = text.text[own.range()].trim_start_matches(['#', '!']).trim();
+    (!words.is_empty() && !words.starts_with("fdc:")).then(|| words.to_owned())
+}
+
+fn facts(it: &Portrait) -> Vec<String> {
+    let mut facts: Vec<String> = it.values.iter().map(|line| format!("`{line}`")).collect();
+    facts.extend(it.rates.iter().map(|line| format!("`{line}`")));
+    facts.extend(it.smoothness.as_ref().map(smoothness));
+    facts.extend(it.derivatives.iter().map(|line| format!("`{line}`")));
+    facts
+}
+
+/// `C^2 at x == pi`
+pub fn smoothness(it: &Smoothness) -> String {
+    let place = if it.knots.is_empty() { String::new() } else { format!(" at `{}`", it.knots.join("`, `")) };
+    match it.order {
+        Order::Always => "smooth: it has all derivatives".into(),
+        order => format!("{order}{place}"),
+    }
+}
+
+/// Gradient, jump, class and the condition for being held.
+fn surface(context: &Context<'_>, name: &str) -> Vec<String> {
+    let Some(report) = context.surfaces().iter().find(|it| it.place.name == name) else { return Vec::new() };
+    let SurfaceReport { gradient, jump, meaning, holding, .. } = report;
+    let mut facts = vec![format!("**{meaning}**")];
+    if !gradient.is_empty() {
+        facts.push(format!("gradient `{}`", gradient.join(", ")));
+        facts.push(format!("jump of its rate, above less below: `{jump}`"));
+    }
+    facts.extend(holding.iter().map(|condition| format!("held while `{condition}`")));
+    facts
+}

@@ -2,9 +2,10 @@
 //!
 //! Derivatives are those of `differentiate`, in the normal form and with the names of the model, as for surfaces.
 
+use crate::builtins::Builtin;
 use crate::described;
 use crate::differentiate::derivative;
-use crate::graph::ExprId;
+use crate::graph::{ExprId, Graph, print};
 use crate::lower::{Numbers, numbers};
 use crate::model::{Definition, Model, Place, Symbol};
 use crate::surfaces::{Local, Order, Smoothness, View, of_expression};
@@ -100,9 +101,9 @@ fn derivatives(view: &View<'_>, parts: &[ExprId]) -> Vec<String> {
         (0..local.symbols.len() as u32).filter(|at| varies(&local.symbols[*at as usize])).collect();
     let mut lines = Vec::new();
     for input in inputs.into_iter().take(MOST_DERIVATIVES) {
-        let slopes: Vec<ExprId> =
-            roots.iter().map(|root| derivative(&mut local.graph, *root, input)).collect();
-        let texts: Option<Vec<String>> = slopes.into_iter().map(|slope| local.text(view, slope)).collect();
+        let slopes: Vec<ExprId> = roots.iter().map(|root| slope(&mut local.graph, *root, input)).collect();
+        let texts: Option<Vec<String>> =
+            slopes.into_iter().map(|slope| written(&mut local, view, slope)).collect();
         let name = by(view, local.symbols[input as usize]);
         lines.push(match texts {
             Some(texts) if texts.len() == 1 => format!("d/d{name} = {}", texts[0]),
@@ -111,6 +112,29 @@ fn derivatives(view: &View<'_>, parts: &[ExprId]) -> Vec<String> {
         });
     }
     lines
+}
+
+/// The derivative off the knots: piece by piece.
+fn slope(graph: &mut Graph, expr: ExprId, input: u32) -> ExprId {
+    match *graph.operands(expr) {
+        [a, b, x, y] if graph.as_call(expr, Builtin::SelectLe).is_some() => {
+            let [x, y] = [x, y].map(|piece| slope(graph, piece, input));
+            graph.select_le(a, b, x, y)
+        }
+        _ => derivative(graph, expr, input),
+    }
+}
+
+/// In the normal form, but for what is chosen piece by piece.
+fn written(local: &mut Local, view: &View<'_>, expr: ExprId) -> Option<String> {
+    let is_choice = |id: &ExprId| local.graph.as_call(*id, Builtin::SelectLe).is_some();
+    if !local.graph.reachable(&[expr]).iter().any(is_choice) {
+        return local.text(view, expr);
+    }
+    let name = |input: u32| view.name(local.symbols[input as usize]);
+    let text = print(&local.graph, &[(String::new(), expr)], &name);
+    let text = text.strip_prefix(" = ")?.trim_end();
+    (!text.contains('\n')).then(|| text.to_owned())
 }
 
 fn by(view: &View<'_>, symbol: Symbol) -> String {

@@ -1,10 +1,12 @@
 //! What the client can do, and what we do for it.
 
+use crate::commands::COMMANDS;
 use crate::features::tokens;
 use crate::text::Encoding;
 use lsp_types::{
-    CodeActionKind, CodeActionOptions, DiagnosticOptions, DocumentOnTypeFormattingOptions, InitializeResult,
-    RenameOptions, Save, SemanticTokensOptions, ServerCapabilities, ServerInfo, TextDocumentSyncKind,
+    CodeActionKind, CodeActionOptions, CodeLensOptions, CompletionOptions, DiagnosticOptions,
+    DocumentOnTypeFormattingOptions, ExecuteCommandOptions, InitializeResult, RenameOptions, Save,
+    SemanticTokensOptions, ServerCapabilities, ServerInfo, SignatureHelpOptions, TextDocumentSyncKind,
     TextDocumentSyncOptions,
 };
 use serde_json::Value;
@@ -16,6 +18,10 @@ pub struct Agreed {
     pub encoding: Encoding,
     /// Whether the client asks for diagnostics; they are not sent unasked then, or it would show them twice.
     pub pulls: bool,
+    /// Whether the client shows progress that it has not asked for.
+    pub progress: bool,
+    /// Whether what is completed may have places to go on at.
+    pub snippets: bool,
     /// Whether a diagnostic may name further places.
     pub related: bool,
 }
@@ -29,6 +35,8 @@ pub fn agree(params: &Value) -> Agreed {
     Agreed {
         encoding: Encoding::agreed(&offered),
         pulls: says("/textDocument/diagnostic").is_some_and(Value::is_object),
+        progress: is_true("/window/workDoneProgress"),
+        snippets: is_true("/textDocument/completion/completionItem/snippetSupport"),
         related: is_true("/textDocument/publishDiagnostics/relatedInformation")
             || is_true("/textDocument/diagnostic/relatedInformation"),
     }
@@ -56,6 +64,9 @@ fn capabilities(agreed: &Agreed) -> ServerCapabilities {
         text_document_sync: Some(sync.into()),
         diagnostic_provider: Some(diagnostics().into()),
         hover_provider: Some(true.into()),
+        completion_provider: Some(completion()),
+        signature_help_provider: Some(signatures()),
+        inlay_hint_provider: Some(true.into()),
         definition_provider: Some(true.into()),
         references_provider: Some(true.into()),
         document_highlight_provider: Some(true.into()),
@@ -73,6 +84,8 @@ fn capabilities(agreed: &Agreed) -> ServerCapabilities {
             Some(vec!["\n".into()]),
         )),
         code_action_provider: Some(code_actions().into()),
+        code_lens_provider: Some(CodeLensOptions::default()),
+        execute_command_provider: Some(commands()),
         ..ServerCapabilities::default()
     }
 }
@@ -93,4 +106,19 @@ fn semantic_tokens() -> SemanticTokensOptions {
 fn code_actions() -> CodeActionOptions {
     let kinds = vec![CodeActionKind::QuickFix, CodeActionKind::SourceFixAll];
     CodeActionOptions { code_action_kinds: Some(kinds), ..CodeActionOptions::default() }
+}
+
+fn completion() -> CompletionOptions {
+    let triggers = [".", "[", "(", " "].map(str::to_owned).to_vec();
+    CompletionOptions { trigger_characters: Some(triggers), ..CompletionOptions::default() }
+}
+
+fn signatures() -> SignatureHelpOptions {
+    let triggers = ["(", ","].map(str::to_owned).to_vec();
+    SignatureHelpOptions { trigger_characters: Some(triggers), ..SignatureHelpOptions::default() }
+}
+
+fn commands() -> ExecuteCommandOptions {
+    let names = COMMANDS.iter().map(|row| row.0.to_owned()).collect();
+    ExecuteCommandOptions { commands: names, ..ExecuteCommandOptions::default() }
 }

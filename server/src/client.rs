@@ -2,9 +2,10 @@
 
 use crate::wire::{self, Refusal};
 use lsp_server::{ErrorCode, Message, RequestId, Response, ResponseError};
-use lsp_types::Notification;
+use lsp_types::{Notification, Request};
 use serde_json::Value;
 use std::io::Write;
+use std::sync::atomic::{AtomicI32, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Why a request has no result.
@@ -36,12 +37,13 @@ impl Failure {
 #[derive(Clone)]
 pub struct Client {
     output: Arc<Mutex<dyn Write + Send>>,
+    asked: Arc<AtomicI32>,
 }
 
 impl Client {
     /// One that reads what is written here.
     pub fn new(output: impl Write + Send + 'static) -> Self {
-        Client { output: Arc::new(Mutex::new(output)) }
+        Client { output: Arc::new(Mutex::new(output)), asked: Arc::default() }
     }
 
     /// Answers a request.
@@ -60,6 +62,13 @@ impl Client {
     pub fn notify<N: Notification>(&self, params: N::Params) {
         let method = N::METHOD.as_str().to_owned();
         self.send(Message::Notification(lsp_server::Notification::new(method, params)));
+    }
+
+    /// Asks something whose answer does not matter.
+    pub fn ask<R: Request>(&self, params: R::Params) {
+        let id = self.asked.fetch_add(1, Ordering::Relaxed);
+        let method = R::METHOD.as_str().to_owned();
+        self.send(Message::Request(lsp_server::Request::new(id.into(), method, params)));
     }
 
     fn send(&self, message: Message) {

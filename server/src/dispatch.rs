@@ -4,7 +4,8 @@ use crate::analysis::Analysis;
 use crate::client::Failure;
 use crate::documents::Document;
 use crate::features::{
-    actions, diagnostics, folding, formatting, hover, navigation, rename, symbols, tokens,
+    actions, completion, diagnostics, folding, formatting, hints, hover, lens, navigation, rename, signature,
+    symbols, tokens,
 };
 use crate::session::Session;
 use fdcc_compiler::{Model, NamedUnit, SurfaceReport};
@@ -35,6 +36,10 @@ pub fn request(session: &mut Session, request: lsp_server::Request) -> Result<Va
         "textDocument/rangeFormatting" => call.about::<DocumentRangeFormattingRequest>(formatting::range),
         "textDocument/onTypeFormatting" => call.about::<DocumentOnTypeFormattingRequest>(formatting::on_type),
         "textDocument/hover" => call.about::<HoverRequest>(hover::hover),
+        "textDocument/completion" => call.about::<CompletionRequest>(completion::completion),
+        "textDocument/signatureHelp" => call.about::<SignatureHelpRequest>(signature::help),
+        "textDocument/inlayHint" => call.about::<InlayHintRequest>(hints::hints),
+        "textDocument/codeLens" => call.about::<CodeLensRequest>(lens::lenses),
         "textDocument/codeAction" => call.about::<CodeActionRequest>(actions::actions),
         _ => Err(Failure {
             code: lsp_server::ErrorCode::MethodNotFound,
@@ -143,6 +148,10 @@ pub fn notification(session: &mut Session, notification: lsp_server::Notificatio
         "textDocument/didClose" => {
             let it: DidCloseTextDocumentParams = parsed(notification.params)?;
             close(session, it.text_document.uri);
+        }
+        "window/workDoneProgress/cancel" => {
+            let it: WorkDoneProgressCancelParams = parsed(notification.params)?;
+            session.commands.cancel_progress(&it.token);
         }
         _ => {}
     }

@@ -11,11 +11,13 @@
 mod analysis;
 mod capabilities;
 mod client;
+mod commands;
 mod dispatch;
 mod documents;
 mod features;
 mod pages;
 mod reader;
+mod runner;
 mod session;
 mod signals;
 mod text;
@@ -25,6 +27,7 @@ use client::Client;
 use session::Session;
 use signals::Signals;
 use std::io::{BufRead, Write};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::channel;
 
@@ -32,14 +35,18 @@ use std::sync::mpsc::channel;
 const STACK: usize = 16 << 20;
 
 /// Serves one client until it says `exit` or goes away; says whether it ended as the protocol wants it, with `shutdown`
-/// before `exit`.
-pub fn serve(input: impl BufRead + Send + 'static, output: impl Write + Send + 'static) -> bool {
+/// before `exit`. `program` is `fdcc`, which solves and simulates.
+pub fn serve(
+    input: impl BufRead + Send + 'static,
+    output: impl Write + Send + 'static,
+    program: PathBuf,
+) -> bool {
     let (queue, events) = channel();
     let client = Client::new(output);
     let signals = Arc::new(Signals::default());
     let session = {
         let (client, signals) = (client.clone(), signals.clone());
-        move || Session::new(client, signals).run(&events)
+        move || Session::new(client, signals, program).run(&events)
     };
     std::thread::spawn(move || reader::run(input, &queue, &signals));
     let session = std::thread::Builder::new().name("session".into()).stack_size(STACK).spawn(session);

@@ -2,6 +2,7 @@
 
 use crate::capabilities::{self, Agreed};
 use crate::client::{Client, Failure};
+use crate::commands::{self, Commands};
 use crate::dispatch;
 use crate::documents::Documents;
 use crate::features::diagnostics;
@@ -12,6 +13,7 @@ use lsp_server::{ErrorCode, Message, Notification, Request};
 use lsp_types::PublishDiagnosticsNotification;
 use serde_json::Value;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError};
 
@@ -41,6 +43,10 @@ pub struct Session {
     pub agreed: Agreed,
     /// The open texts.
     pub documents: Documents,
+    /// What runs.
+    pub commands: Commands,
+    /// `fdcc`.
+    pub program: PathBuf,
     signals: Arc<Signals>,
     stage: Stage,
     /// Changes of texts that have been done.
@@ -49,9 +55,9 @@ pub struct Session {
 
 impl Session {
     /// With nothing open.
-    pub fn new(client: Client, signals: Arc<Signals>) -> Self {
-        let (agreed, documents) = (Agreed::default(), Documents::default());
-        Session { client, agreed, documents, signals, stage: Stage::Before, changes: 0 }
+    pub fn new(client: Client, signals: Arc<Signals>, program: PathBuf) -> Self {
+        let (agreed, documents, commands) = Default::default();
+        Session { client, agreed, documents, commands, program, signals, stage: Stage::Before, changes: 0 }
     }
 
     /// Until the client ends it; says whether that was done as the protocol wants.
@@ -82,6 +88,9 @@ impl Session {
         let id = request.id.clone();
         if self.signals.take_cancelled(&id) {
             return self.client.answer(id, Err(Failure::cancelled()));
+        }
+        if request.method == "workspace/executeCommand" && self.stage == Stage::Running {
+            return commands::execute(self, request);
         }
         // A mistake of ours costs this answer, not the session.
         let answered = catch_unwind(AssertUnwindSafe(|| self.result(request)));
@@ -120,8 +129,9 @@ impl Session {
         );
         self.changes += u64::from(is_change);
         if let Some(id) = cancelled(&notification).filter(|_| notification.method == "$/cancelRequest") {
-            // Its request has been answered by now.
+            // Its request has been answered by now, or runs.
             self.signals.take_cancelled(&id);
+            self.commands.cancel(&id);
         }
         if self.stage == Stage::Running {
             // There is nobody to tell that a notification cannot be understood.

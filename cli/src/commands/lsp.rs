@@ -15,7 +15,9 @@ pub struct Lsp {
 impl Lsp {
     /// Serves until the editor ends it; a conversation that breaks off is none.
     pub fn run(self) -> Exit {
-        match fdcc_server::serve(BufReader::new(stdin()), stdout()) {
+        // Where a system does not tell where we are, the shell knows.
+        let program = std::env::current_exe().unwrap_or_else(|_| "fdcc".into());
+        match fdcc_server::serve(BufReader::new(stdin()), stdout(), program) {
             true => Exit::Fine,
             false => Exit::ModelError,
         }

@@ -29,10 +29,17 @@ pub struct Client {
 impl Client {
     /// Connects, and says nothing yet.
     pub fn connect() -> Client {
+        Client::connect_with("fdcc")
+    }
+
+    /// Connects to a server with another program for its commands.
+    pub fn connect_with(program: &str) -> Client {
+        let program = program.into();
         let (server_input, to_server) = pipe().expect("there are pipes");
         let (client_input, server_output) = pipe().expect("there are pipes");
-        let server =
-            std::thread::spawn(move || fdcc_server::serve(BufReader::new(server_input), server_output));
+        let server = std::thread::spawn(move || {
+            fdcc_server::serve(BufReader::new(server_input), server_output, program)
+        });
         let (queue, from_server) = channel();
         std::thread::spawn(move || {
             let mut input = BufReader::new(client_input);

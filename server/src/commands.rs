@@ -1,0 +1,123 @@
+//! `workspace/executeCommand`: solving and simulating, by `fdcc` itself in a process of its own.
+//!
+//! The text is what the editor shows, saved or not. A command can be called off by its request or by its progress;
+//! whatever still runs ends with the session.
+
+use crate::client::{Client, Failure};
+use crate::pages;
+use crate::runner::{Job, Running};
+use crate::session::Session;
+use lsp_server::{Request, RequestId};
+use lsp_types::{ExecuteCommandParams, ProgressToken, Uri};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Commands with their titles.
+pub const COMMANDS: &[(&str, &str)] =
+    &[("fdcc.solve", "Solve"), ("fdcc.simulate", "Simulate"), ("fdcc.report", "Show report")];
+
+/// What runs at the moment.
+#[derive(Default)]
+pub struct Commands {
+    running: Arc<Mutex<Vec<Arc<Running>>>>,
+}
+
+impl Commands {
+    /// Calls off the command of a request.
+    pub fn cancel(&self, id: &RequestId) {
+        self.stop(|it| it.id == *id);
+    }
+
+    /// Calls off the command of a progress.
+    pub fn cancel_progress(&self, token: &ProgressToken) {
+        self.stop(|it| it.token.as_ref() == Some(token));
+    }
+
+    fn stop(&self, is_meant: impl Fn(&Running) -> bool) {
+        let running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
+        running.iter().filter(|it| is_meant(it)).for_each(|it| it.stop());
+    }
+
+    fn is_busy(&self, uri: &Uri) -> bool {
+        self.running.lock().unwrap_or_else(PoisonError::into_inner).iter().any(|it| it.uri == *uri)
+    }
+}
+
+impl Drop for Commands {
+    fn drop(&mut self) {
+        self.stop(|_| true);
+    }
+}
+
+/// Begins a command; the answer comes when it has ended, or at once where it cannot begin.
+pub fn execute(session: &mut Session, request: Request) {
+    let (id, client) = (request.id.clone(), session.client.clone());
+    match job(session, request).and_then(|job| begin(session, &client, job)) {
+        Ok(()) => {}
+        Err(failure) => client.answer(id, Err(failure)),
+    }
+}
+
+fn begin(session: &Session, client: &Client, job: Job) -> Result<(), Failure> {
+    let running =
+        job.start().map_err(|error| Failure::request(format!("fdcc cannot be started: {error}")))?;
+    let list = session.commands.running.clone();
+    list.lock().unwrap_or_else(PoisonError::into_inner).push(running.clone());
+    let client = client.clone();
+    std::thread::spawn(move || {
+        let result = running.follow(&client, &job);
+        list.lock().unwrap_or_else(PoisonError::into_inner).retain(|it| !Arc::ptr_eq(it, &running));
+        client.answer(job.id, result);
+    });
+    Ok(())
+}
+
+/// What is to be run.
+fn job(session: &Session, request: Request) -> Result<Job, Failure> {
+    let params: ExecuteCommandParams =
+        serde_json::from_value(request.params).map_err(|error| Failure::params(error.to_string()))?;
+    let command = COMMANDS.iter().find(|row| row.0 == params.command);
+    let &(name, title) =
+        command.ok_or_else(|| Failure::params(format!("there is no command `{}`", params.command)))?;
+    let address = params.arguments.unwrap_or_default().into_iter().next();
+    let Some(Value::String(address)) = address else {
+        return Err(Failure::params(format!("`{name}` takes the address of a text")));
+    };
+    let uri = Uri(address);
+    let document =
+        session.documents.get(&uri).ok_or_else(|| Failure::request(format!("`{uri}` is not open")))?;
+    if session.commands.is_busy(&uri) {
+        return Err(Failure::request("this model is being computed already; cancel that, or wait for it"));
+    }
+    let analysis = document.analysis();
+    let Some(model) = &analysis.reviewed.model else {
+        return Err(Failure::request("this model has mistakes; mend them first"));
+    };
+    let (mut arguments, mut report) = (vec![name.trim_start_matches("fdcc.").to_owned(), "-".into()], None);
+    if name == "fdcc.report" {
+        let folder = pages::folder()
+            .ok_or_else(|| Failure::request("there is no place for a report"))?
+            .join("reports");
+        report = Some(folder.join(format!("{}.html", model.name)));
+        arguments = vec!["solve".into(), "-".into(), "--out".into(), folder.display().to_string()];
+    }
+    Ok(Job {
+        id: request.id,
+        title: format!("{title} {}", model.name),
+        program: session.program.clone(),
+        arguments,
+        folder: folder_of(&uri),
+        text: analysis.text.text.clone(),
+        token: params.work_done_progress_params.work_done_token,
+        makes_token: session.agreed.progress,
+        uri,
+        report,
+    })
+}
+
+/// Where measurements that a model names are looked for.
+fn folder_of(uri: &Uri) -> Option<PathBuf> {
+    let path = pages::path(uri)?;
+    path.parent().filter(|it| it.is_dir()).map(Path::to_owned)
+}

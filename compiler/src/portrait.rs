@@ -9,6 +9,7 @@ use crate::graph::{ExprId, Graph, print};
 use crate::lower::{Numbers, numbers};
 use crate::model::{Definition, Model, Place, Symbol};
 use crate::surfaces::{Local, Order, Smoothness, View, of_expression};
+use fdcc_runtime::problem::{ControlShape, Method, Scheme};
 
 /// What is known about a name.
 #[derive(Clone, Debug, Default)]
@@ -150,8 +151,8 @@ fn by(view: &View<'_>, symbol: Symbol) -> String {
 pub struct Grid {
     /// Control intervals.
     pub intervals: usize,
-    /// Unknowns of the programme.
-    pub unknowns: usize,
+    /// Unknowns of the programme, for schemes without variables inside of an interval.
+    pub unknowns: Option<usize>,
     /// The step, with the duration of the guess.
     pub step: f64,
     /// The width of the smoothed layer, if the model names one.
@@ -162,9 +163,11 @@ pub struct Grid {
 pub fn grid(model: &Model) -> Option<Grid> {
     let numbers = numbers(model).ok()?;
     let [first, last] = model.interval.map(|end| numbers.value(model, end));
-    let intervals = model.method.intervals;
+    let Method { intervals, steps, sigma, .. } = model.method;
+    let has_inner = matches!(model.method.scheme, Scheme::Radau(_) | Scheme::Gauss(_));
     let (states, controls) = (model.states.len(), model.controls.len());
-    let unknowns = intervals.saturating_mul(states + controls).saturating_add(states + model.frees.len());
-    let step = (last - first) / (intervals * model.method.steps) as f64;
-    Some(Grid { intervals, unknowns, step, sigma: model.method.sigma })
+    let whole = intervals.saturating_mul(states + controls).saturating_add(states + model.frees.len());
+    let is_plain = !has_inner && model.method.controls == ControlShape::Constant;
+    let step = (last - first) / (intervals * steps) as f64;
+    Some(Grid { intervals, unknowns: is_plain.then_some(whole), step, sigma })
 }

@@ -176,13 +176,19 @@ pub(crate) fn is_key(key: &str) -> bool {
 }
 
 /// The words that a key takes today; none where it takes numbers.
-pub(crate) fn words(key: &str) -> Vec<&'static str> {
+pub(crate) fn words(key: &str) -> Vec<String> {
     let expected = KEYS.iter().find(|row| row.0 == key).map_or("", |row| row.1);
     let Some(list) = expected.strip_prefix("one of ") else { return Vec::new() };
-    let is_taken = |word: &&str| {
-        set(&mut Model::empty().method, key, &Given::Word((*word).to_owned())).is_ok() && !word.is_empty()
-    };
-    list.split([',', ' ']).filter(is_taken).collect()
+    let is_taken = |word: &String| set(&mut Model::empty().method, key, &Given::Word(word.clone())).is_ok();
+    list.split(", ").flat_map(spelt_out).filter(is_taken).collect()
+}
+
+/// `radau1 to radau5` is five words.
+fn spelt_out(listed: &str) -> Vec<String> {
+    let Some((first, last)) = listed.split_once(" to ") else { return vec![listed.to_owned()] };
+    let stem = first.trim_end_matches(|c: char| c.is_ascii_digit());
+    let ends = [first, last].map(|word| word[stem.len()..].parse().unwrap_or(0));
+    (ends[0]..=ends[1]).map(|number: usize| format!("{stem}{number}")).collect()
 }
 
 /// The nearest key, for "did you mean".

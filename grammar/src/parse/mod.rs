@@ -30,7 +30,6 @@ use crate::source::line_starts;
 use crate::{Code, Diagnostic, Parse, Span};
 
 pub use tokens::comments;
-pub use words::{ItemWord, inner_words, item_words, reserved_words};
 
 /// The generated parser.
 #[derive(pest_derive::Parser)]

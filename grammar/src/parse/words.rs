@@ -72,29 +72,9 @@ pub const WORDS: &[Word] = &[
     inner("within", "introduces a tolerance", "tolerance"),
 ];
 
-/// A word that begins an item, for editors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ItemWord {
-    /// The word.
-    pub word: &'static str,
-    /// What the item is, with its article.
-    pub noun: &'static str,
-    /// The item in its right form.
-    pub example: &'static str,
-}
-
-/// Every word that begins an item, in the order of the language.
-pub fn item_words() -> impl Iterator<Item = ItemWord> {
-    let named = |word: &Word| {
-        let form = word.item.as_ref()?;
-        Some(ItemWord { word: word.text, noun: form.noun, example: form.example })
-    };
-    WORDS.iter().filter_map(named)
-}
-
-/// Every reserved word.
-pub fn reserved_words() -> impl Iterator<Item = &'static str> {
-    WORDS.iter().map(|word| word.text)
+/// The words that begin items, in the order of the language.
+pub fn items() -> impl Iterator<Item = &'static Word> {
+    WORDS.iter().filter(|word| word.item.is_some())
 }
 
 /// The entry of a reserved word.

@@ -1,6 +1,6 @@
 //! Where a cursor stands, found from the text before it alone: what is being written can seldom be read.
 
-use fdcc_grammar::item_words;
+use fdcc_grammar::words;
 
 /// An open bracket.
 #[derive(Clone, Copy, Debug)]
@@ -139,7 +139,7 @@ impl<'t> Place<'t> {
     /// An item begins with its word; `start`, `end`, `free` and `guess` also stand inside of others.
     fn word(&mut self, word: &'t str) {
         let is_inner = matches!(word, "start" | "end" | "free" | "guess") && !self.begins_line;
-        if self.is_among_items() && !is_inner && item_words().any(|it| it.word == word) {
+        if self.is_among_items() && !is_inner && words::items().any(|it| it.text == word) {
             self.item = word;
         }
     }

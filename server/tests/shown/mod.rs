@@ -40,7 +40,7 @@ pub fn shown(tag: &str, result: &Value, text: &str) -> String {
             let active = &signature["parameters"][number(&result["activeParameter"]) as usize]["label"];
             vec![
                 format!("{} at {active}", string(&signature["label"])),
-                string(&signature["documentation"]["value"]),
+                string(&signature["documentation"]["value"]).replace("```", "~~~"),
             ]
         }
         "hints" => each(result, |it| format!("{} {}", place(&it["position"]), string(&it["label"]))),

@@ -2,7 +2,7 @@
 
 use fdcc_compiler::names::{Definition, Kind};
 use fdcc_compiler::vocabulary;
-use fdcc_grammar::ItemWord;
+use fdcc_grammar::words::Word;
 use lsp_types::{CompletionItem, CompletionItemKind, InsertTextFormat, MarkupContent, MarkupKind};
 
 /// What could be written.
@@ -143,14 +143,14 @@ const SNIPPETS: &[(&str, &str)] = &[
     ("expect", "expect {\n  ${1:x(end)} == ${2:0} within ${3:1e-6}\n}"),
 ];
 
-/// An item.
-pub fn item(it: &ItemWord) -> Proposal {
-    let snippet = SNIPPETS.iter().find(|row| row.0 == it.word).map(|row| row.1.to_owned());
+/// An item, by the word that begins it.
+pub fn item(it: &Word) -> Proposal {
+    let snippet = SNIPPETS.iter().find(|row| row.0 == it.text).map(|row| row.1.to_owned());
     Proposal {
-        detail: Some(it.noun.into()),
-        doc: Some(format!("```fdc\n{}\n```", it.example)),
+        detail: it.item.as_ref().map(|form| form.noun.to_owned()),
+        doc: it.item.as_ref().map(|form| format!("```fdc\n{}\n```", form.example)),
         snippet,
-        ..keyword(it.word)
+        ..keyword(it.text)
     }
 }
 
@@ -173,8 +173,8 @@ mod tests {
 
     #[test]
     fn every_item_has_a_snippet_that_can_be_read() {
-        for it in fdcc_grammar::item_words() {
-            let snippet = item(&it).snippet.unwrap_or_else(|| panic!("SNIPPETS needs `{}`", it.word));
+        for it in fdcc_grammar::words::items() {
+            let snippet = item(it).snippet.unwrap_or_else(|| panic!("SNIPPETS needs `{}`", it.text));
             let text = filled(&snippet);
             let parsed = fdcc_grammar::parse(&text);
             let errors: Vec<_> =

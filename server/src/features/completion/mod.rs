@@ -8,7 +8,7 @@ use crate::dispatch::Context;
 use crate::features::place::{Open, Place};
 use fdcc_compiler::names::Kind;
 use fdcc_compiler::vocabulary;
-use fdcc_grammar::inner_words;
+use fdcc_grammar::words::{self, inner_words};
 use items::{Proposal, entry, item, keyword, own, plain, word};
 use lsp_types::{CompletionList, CompletionParams, CompletionResponse};
 use names::Scope;
@@ -45,7 +45,7 @@ fn proposals(place: &Place<'_>, scope: &Scope) -> Vec<Proposal> {
     }
     let begins = place.begins_line || place.back(0) == "{" || place.back(0) == "}";
     match place.block() {
-        _ if place.is_among_items() && begins => fdcc_grammar::item_words().map(|it| item(&it)).collect(),
+        _ if place.is_among_items() && begins => words::items().map(item).collect(),
         Some(block) if begins => entries(block, scope),
         Some("method") => ["kernel", "steps", "scheme", "lagged"].into_iter().map(keyword).collect(),
         _ => expression(place, scope),
@@ -69,15 +69,15 @@ fn in_brackets(place: &Place<'_>, open: &Open<'_>, scope: &Scope) -> Option<Vec<
 /// Words after which only certain things stand.
 fn after_word(place: &Place<'_>, scope: &Scope) -> Option<Vec<Proposal>> {
     let surfaces = || Some(scope.proposals(|kind| kind == Kind::Surface));
-    let words = |key| Some(vocabulary::setting_words(key).into_iter().map(plain).collect());
+    let taken = |key| Some(vocabulary::setting_words(key).iter().map(|it| plain(it)).collect());
     match (place.back(1), place.back(0)) {
         (_, "match") => surfaces(),
         (_, "on" | "hold") if place.item == "jump" => surfaces(),
         ("on", _) if place.item == "jump" => Some(["falling", "rising"].into_iter().map(keyword).collect()),
         (_, "link" | "->") if place.item == "link" => Some(scope.proposals(|kind| kind == Kind::Phase)),
-        (_, key @ ("kernel" | "scheme")) if place.item == "method" => words(key),
+        (_, key @ ("kernel" | "scheme")) if place.item == "method" => taken(key),
         (key, "=") if place.block() == Some("method") => {
-            words(key).filter(|it: &Vec<Proposal>| !it.is_empty())
+            taken(key).filter(|it: &Vec<Proposal>| !it.is_empty())
         }
         (_, "metric") => Some(scope.proposals(|kind| kind == Kind::State)),
         // Here a name is made up.

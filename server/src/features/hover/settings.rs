@@ -23,6 +23,10 @@ const KEYS: &[(&str, &str)] = &[
         "How the equations are discretised. Implicit schemes may take steps that are long for the smoothed layer.",
     ),
     (
+        "controls",
+        "What a control is on an interval: `constant`, `linear` and continuous, or a `polynomial` through its values at the nodes.",
+    ),
+    (
         "solver",
         "Interior point method, or the conic solver for convex problems. Without it the problem decides.",
     ),
@@ -52,6 +56,15 @@ const WORDS: &[(&str, &str)] = &[
         "rk4",
         "The classical Runge-Kutta scheme, order 4; its whole step is one compiled function, so it costs no further unknowns.",
     ),
+    ("constant", "One value on each interval: for schemes of low order, and where the control jumps."),
+    (
+        "linear",
+        "Linear on each interval and continuous, for `trapezoid`, `radau2` to `radau5` and `gauss2` to `gauss5`.",
+    ),
+    (
+        "polynomial",
+        "A polynomial through its values at the nodes of the collocation; it may jump from interval to interval.",
+    ),
     ("interior_point", "Interior point method with a filter line search; for every problem."),
     ("convex", "The conic solver: what it finds is the global optimum. For problems that are convex."),
     ("riccati", "A recursion along the grid: the fastest where all goes well."),
@@ -73,21 +86,17 @@ pub fn told(context: &Context<'_>, key: &str) -> Option<String> {
 /// In numbers of this model, with the duration of its guess.
 fn costs(key: &str, grid: &Grid) -> String {
     let Grid { intervals, unknowns, step, sigma } = *grid;
-    match (key, sigma) {
-        ("N" | "steps", Some(sigma)) => format!(
-            "\n\n{intervals} intervals: {unknowns} unknowns, h = {}, h/sigma = {}",
-            short(step),
-            short(step / sigma)
-        ),
-        ("N" | "steps", None) => {
-            format!("\n\n{intervals} intervals: {unknowns} unknowns, h = {}", short(step))
+    let against = |power: i32| sigma.map(|sigma| short(step / sigma.powi(power)));
+    match key {
+        "N" | "steps" => {
+            let unknowns = unknowns.map_or(String::new(), |it| format!("{it} unknowns, "));
+            let ratio = against(1).map_or(String::new(), |it| format!(", h/sigma = {it}"));
+            format!("\n\n{intervals} intervals: {unknowns}h = {}{ratio}", short(step))
         }
-        ("sigma", Some(sigma)) => format!(
-            "\n\nh = {}, h/sigma = {}, h/sigma^2 = {}: gradients converge if these go to 0, the last one where a surface is held.",
-            short(step),
-            short(step / sigma),
-            short(step / sigma.powi(2))
-        ),
+        "sigma" => against(1).zip(against(2)).map_or(String::new(), |(first, second)| {
+            let h = short(step);
+            format!("\n\nh = {h}, h/sigma = {first}, h/sigma^2 = {second}: gradients converge if these go to 0, the last one where a surface is held.")
+        }),
         _ => String::new(),
     }
 }
@@ -105,7 +114,21 @@ pub fn value(word: &str) -> Option<String> {
         let support = if kernel.compact { "exact outside of the layer" } else { "never quite exact" };
         return Some(format!("`S(u) = {}`, u = z/sigma: {smoothness}, {support}", kernel.formula));
     }
-    WORDS.iter().find(|row| row.0 == word).map(|row| row.1.to_owned())
+    let written = WORDS.iter().find(|row| row.0 == word).map(|row| row.1.to_owned());
+    written.or_else(|| collocation(word))
+}
+
+/// `radau3`: the order of so many stages.
+fn collocation(word: &str) -> Option<String> {
+    let stages = |name: &str| word.strip_prefix(name)?.parse::<usize>().ok();
+    let (name, stages, order) = match (stages("radau"), stages("gauss")) {
+        (Some(stages), _) => ("Radau", stages, 2 * stages - 1),
+        (_, Some(stages)) => ("Gauss", stages, 2 * stages),
+        _ => return None,
+    };
+    Some(format!(
+        "Collocation of {name} with {stages} stages, order {order}. Each stage has its own states as unknowns; a few intervals give many digits where all is smooth."
+    ))
 }
 
 #[cfg(test)]
@@ -117,7 +140,7 @@ mod tests {
         for (key, _) in vocabulary::settings() {
             assert!(KEYS.iter().any(|row| row.0 == *key), "KEYS needs `{key}`");
             for word in vocabulary::setting_words(key) {
-                assert!(value(word).is_some(), "WORDS needs `{word}` of `{key}`");
+                assert!(value(&word).is_some(), "WORDS needs `{word}` of `{key}`");
             }
         }
     }

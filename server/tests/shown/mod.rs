@@ -8,7 +8,7 @@ pub fn shown(tag: &str, result: &Value, text: &str) -> String {
         return "nothing\n".into();
     }
     let lines: Vec<String> = match tag.split(' ').next().unwrap_or(tag) {
-        "diagnostics" => each(&result["items"], |it| diagnostic(it)),
+        "diagnostics" => each(&result["items"], diagnostic),
         "definition" | "references" => each(result, |it| located(&it["range"], text)),
         "highlights" => each(result, |it| {
             format!("{} {}", located(&it["range"], text), if it["kind"] == 3 { "written" } else { "read" })

@@ -19,6 +19,7 @@ fn is_about_the_code(source: &Source) -> bool {
     let path = &source.path;
     path == "ARCHITECTURE.md"
         || path == "README.md"
+        || path == "docs/editors.md"
         || path.starts_with("docs/method/")
         || path.starts_with("docs/recipes/")
 }

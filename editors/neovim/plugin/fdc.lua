@@ -1,5 +1,24 @@
 -- Starts the language server for `.fdc` models, in the way of each version of Neovim.
 
+-- What the server tells apart by meaning; Neovim has colours of its own for the usual kinds only.
+local colours = {
+  state = "Identifier",
+  control = "Special",
+  param = "Constant",
+  constant = "Constant",
+  free = "PreProc",
+  surface = "Label",
+  jump = "Label",
+  phase = "Label",
+  constraint = "Label",
+  unit = "Type",
+}
+if vim.lsp.semantic_tokens then
+  for kind, group in pairs(colours) do
+    vim.api.nvim_set_hl(0, "@lsp.type." .. kind .. ".fdc", { link = group, default = true })
+  end
+end
+
 if vim.lsp.enable then
   vim.lsp.enable("fdcc")
   return

@@ -1,6 +1,7 @@
 // What solving and simulating print.
 
 import * as vscode from "vscode";
+import { LSPErrorCodes } from "vscode-languageclient/node";
 
 /** The answer of the server to one of its commands: what `fdcc` wrote to its two streams. */
 interface Printed {
@@ -21,7 +22,9 @@ export class Results {
       this.channel.replace(text);
       this.channel.show(true);
     } catch (error) {
-      void vscode.window.showErrorMessage((error as Error).message);
+      // Whoever calls a command off need not be told.
+      const { code, message } = error as Error & { code?: number };
+      if (code !== LSPErrorCodes.RequestCancelled) void vscode.window.showErrorMessage(message);
     }
   }
 

@@ -116,6 +116,8 @@ test("commands are run by the server, and what they print is shown", async () =>
   }
   seen.answer = () => { throw new Error("this model has mistakes; mend them first"); };
   await seen.commands["fdc.solve"]();
+  seen.answer = () => { throw Object.assign(new Error("cancelled"), { code: -32800 }); };
+  await seen.commands["fdc.solve"]();
   assert.deepEqual(seen.messages, ["this model has mistakes; mend them first"]);
 });
 

@@ -2,6 +2,7 @@
 
 const seen = globalThis.seen;
 
+export const LSPErrorCodes = { RequestCancelled: -32800 };
 export const State = { Stopped: 1, Running: 2, Starting: 3 };
 
 export class LanguageClient {

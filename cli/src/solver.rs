@@ -9,9 +9,10 @@ use crate::output::units::Units;
 use crate::warm;
 use crate::watch::Deadline;
 use fdcc_grammar::{Diagnostic, SourceFile};
-use fdcc_runtime::homotopy::{self, Outcome, Refusal};
+use fdcc_runtime::homotopy::{Outcome, Refusal};
 use fdcc_runtime::nlp::{Start, Status};
 use fdcc_runtime::problem::Problem;
+use fdcc_runtime::refine::{self, Refined};
 use fdcc_runtime::starts;
 use fdcc_runtime::transcribe::unknowns;
 use sha2::{Digest, Sha256};
@@ -91,26 +92,27 @@ impl Compiled {
     pub fn solve(self, start: Option<Start>, options: &Options, log: &mut Log) -> Result<Solved, Failure> {
         let problem = self.problem;
         let deadline = Deadline::after(self.begin, options.time_limit);
-        let mut best: Option<Outcome> = None;
+        let mut best: Option<Refined> = None;
         for index in 0..options.starts {
             let start = variation(&problem, start.clone(), index);
-            let outcome = run(&problem, start, deadline, log)?;
+            let found = run(&problem, start, deadline, log)?;
+            let solution = &found.outcome.solution;
             if options.starts > 1 {
-                log.start(index, &outcome.solution, problem.sense);
+                log.start(index, solution, problem.sense);
             }
-            let is_stopped = matches!(outcome.solution.status, Status::Interrupted | Status::TimeLimit);
-            if best.as_ref().is_none_or(|best| starts::is_better(&outcome.solution, &best.solution)) {
-                best = Some(outcome);
+            let is_stopped = matches!(solution.status, Status::Interrupted | Status::TimeLimit);
+            if best.as_ref().is_none_or(|best| starts::is_better(solution, &best.outcome.solution)) {
+                best = Some(found);
             }
             if is_stopped {
                 break;
             }
         }
-        let outcome = best.expect("there is at least one start");
+        let Refined { problem, outcome, error } = best.expect("there is at least one start");
         let total = self.begin.elapsed().as_secs_f64();
         let seconds = Seconds { compile: self.seconds, solve: total - self.seconds, total };
         let document = Document::new(&problem, &outcome, &self.source_sha256, seconds);
-        let document = Document { units: self.units, ..document };
+        let document = Document { units: self.units, step_errors: error, ..document };
         Ok(Solved { problem, outcome, document })
     }
 }
@@ -157,12 +159,12 @@ fn run(
     start: Option<Start>,
     deadline: Deadline,
     log: &mut Log,
-) -> Result<Outcome, Failure> {
-    let outcome = homotopy::solve(problem, start, &mut |progress, level| {
+) -> Result<Refined, Failure> {
+    let found = refine::solve(problem, start, &mut |progress, level| {
         log.iteration(progress, level);
         deadline.check()
     });
-    outcome.map_err(|Refusal::NotConvex| {
+    found.map_err(|Refusal::NotConvex| {
         Failure::Usage(
             "the discretised problem is not convex, so `solver = convex` cannot treat it; leave `solver` out"
                 .into(),

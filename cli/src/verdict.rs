@@ -43,6 +43,7 @@ pub fn verdict(solved: &Solved) -> String {
     lines.push(format!("       {work}"));
     lines.extend(surfaces(document));
     lines.extend(replayed(document));
+    lines.extend(refined(solved));
     lines.extend(hamiltonian(document).filter(|_| solved.is_good()));
     lines.extend(sensitivities(document));
     lines.join("\n") + "\n"
@@ -82,6 +83,19 @@ fn how(solved: &Solved) -> String {
         }
         _ => format!("NOT SOLVED, {}: {}", status_name(status).replace('_', " "), why(solved)),
     }
+}
+
+/// What was reached where the grid was to be chosen.
+fn refined(solved: &Solved) -> Option<String> {
+    let (document, tolerance) = (&solved.document, solved.problem.method.tolerance);
+    let error = document.step_errors?;
+    let verdict = if error <= tolerance { "" } else { ", NOT met" };
+    Some(format!(
+        " grid  {}, errors of all steps {} (tolerance {}{verdict})",
+        plural(document.method.n, "interval"),
+        short(error),
+        short(tolerance)
+    ))
 }
 
 /// By how much of the size of its terms the Hamiltonian may miss what it has to be, before that is told.

@@ -4,7 +4,7 @@ use crate::output::named::Named;
 use crate::output::saved::{Column, Saved};
 use crate::solver::{Failure, Solved};
 use fdcc_runtime::nlp::Start;
-use fdcc_runtime::problem::Problem;
+use fdcc_runtime::problem::{Method, Problem};
 use fdcc_runtime::starts::{Earlier, resample};
 use std::path::Path;
 
@@ -21,10 +21,21 @@ pub fn from_file(path: &Path, problem: &Problem) -> Result<Start, Failure> {
 /// The end of another solve as the start of this one: with its multipliers if the grid is the same.
 pub fn from_solved(before: &Solved, problem: &Problem) -> Start {
     let solution = &before.outcome.solution;
-    if before.problem.method.intervals == problem.method.intervals {
+    let shape = |problem: &Problem| {
+        let Method { intervals, scheme, controls, mesh, .. } = problem.method.clone();
+        (intervals, scheme, controls, mesh)
+    };
+    if shape(&before.problem) == shape(problem) {
         return Start::near(solution);
     }
     Start { v: resample(problem, &Saved::from(&before.document).earlier(problem)), warm: None }
+}
+
+/// From 0 to 1; none if one is missing.
+fn normalised(times: &Column) -> Vec<f64> {
+    let times: Vec<f64> = times.iter().copied().collect::<Option<_>>().unwrap_or_default();
+    let [Some(first), Some(last)] = [times.first(), times.last()] else { return Vec::new() };
+    times.iter().map(|time| (time - first) / (last - first)).collect()
 }
 
 impl Saved {
@@ -35,6 +46,7 @@ impl Saved {
         let controls = problem.controls.iter().map(|control| column(&self.controls, &control.name));
         let names = problem.unknowns.iter().map(|unknown| &problem.parameters[unknown.parameter].name);
         Earlier {
+            times: normalised(&self.time),
             states: states.collect(),
             controls: controls.collect(),
             unknowns: names.map(|name| self.free.get(name).copied().flatten()).collect(),

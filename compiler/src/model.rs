@@ -375,6 +375,9 @@ fn default_method() -> Method {
     Method {
         scheme: Scheme::ImplicitEuler,
         controls: ControlShape::Constant,
+        mesh: Vec::new(),
+        is_refined: false,
+        tolerance: 1e-3,
         lagged: Vec::new(),
         intervals: 200,
         steps: 1,

@@ -96,7 +96,7 @@ impl Model {
 
     /// Whether the settings of the method fit each other.
     pub fn fits_together(&self) -> Result<(), String> {
-        misfit(&self.method).map_or(Ok(()), |(what, help)| Err(format!("{what}: {help}")))
+        misfit(&self.method).map_or(Ok(()), |(_, what, help)| Err(format!("{what}: {help}")))
     }
 
     fn no_param(&self, name: &str) -> String {

@@ -141,7 +141,7 @@ impl<'a> Lagrangian<'a> {
     fn points(&self, function: &dyn Function, node: &Node) -> Columns {
         let stages = self.nlp.chain();
         let mut points = Columns::new(function.layout().point_inputs(), stages.intervals);
-        node.point.set_times(&mut points);
+        node.point.set_times(self.nlp.mesh(), &mut points);
         node.point.load(stages, function.layout(), &self.solution.v, &mut points);
         points
     }
@@ -171,7 +171,8 @@ impl<'a> Lagrangian<'a> {
         for node in &self.nlp.interval().nodes {
             let points = self.points(&*by.dynamics, node);
             add_slopes(&*by.dynamics, &points, &self.parameters, sums, |output| {
-                self.weights(node, output).map(|weight| weight * step).collect()
+                let weights = self.weights(node, output).enumerate();
+                weights.map(|(k, weight)| weight * step * self.nlp.mesh().relative(k)).collect()
             });
         }
     }
@@ -181,7 +182,7 @@ impl<'a> Lagrangian<'a> {
         let rows = &self.solution.multipliers.rows;
         for (at, point) in self.nlp.interval().path.iter().enumerate() {
             let mut points = Columns::new(path.layout().point_inputs(), stages.intervals);
-            point.set_times(&mut points);
+            point.set_times(self.nlp.mesh(), &mut points);
             point.load(stages, path.layout(), &self.solution.v, &mut points);
             let first = at * path.outputs();
             add_slopes(path, &points, &self.parameters, sums, |output| {

@@ -28,3 +28,4 @@ pub mod prolong;
 pub mod starts;
 
 pub mod homotopy;
+pub mod refine;

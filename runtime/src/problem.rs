@@ -9,7 +9,7 @@
 
 mod method;
 
-pub use method::{ControlShape, Linear, MOST_STAGES, Method, Scheme, Solver};
+pub use method::{ControlShape, FIRST_GRID, Linear, MOST_STAGES, Method, Scheme, Solver};
 
 use std::ops::Range;
 use std::sync::Arc;

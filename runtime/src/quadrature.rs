@@ -22,12 +22,14 @@ pub fn integrals(
     let mut sums = vec![0.0; integrands.outputs()];
     for node in &nlp.interval().nodes {
         let mut points = Columns::new(integrands.layout().point_inputs(), stages.intervals);
-        node.point.set_times(&mut points);
+        node.point.set_times(nlp.mesh(), &mut points);
         node.point.load(stages, integrands.layout(), &solution.v, &mut points);
         let mut values = Columns::new(integrands.outputs(), stages.intervals);
         integrands.value(&points, parameters, &mut values);
         for (output, sum) in sums.iter_mut().enumerate() {
-            *sum += node.weight / stages.intervals as f64 * values.column(output).iter().sum::<f64>();
+            let terms = values.column(output).iter().enumerate();
+            let sum_of_all = terms.map(|(k, value)| nlp.mesh().relative(k) * value).sum::<f64>();
+            *sum += node.weight / stages.intervals as f64 * sum_of_all;
         }
     }
     sums

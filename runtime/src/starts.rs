@@ -9,7 +9,9 @@ use crate::transcribe::interval::Signal;
 /// Signals of an earlier solution over normalised time; `None` where it has none of that name.
 #[derive(Clone, Debug, Default)]
 pub struct Earlier {
-    /// One column per state, on a uniform grid that includes both ends.
+    /// Grid points, from 0 to 1.
+    pub times: Vec<f64>,
+    /// One column per state, one value per grid point.
     pub states: Vec<Option<Vec<f64>>>,
     /// One column per control, one value per interval.
     pub controls: Vec<Option<Vec<f64>>>,
@@ -25,15 +27,11 @@ pub fn resample(problem: &Problem, earlier: &Earlier) -> Vec<f64> {
     let slots = nlp.interval().slots.clone();
     for (place, slot) in slots.iter().enumerate() {
         for k in 0..values_of(place, stages) {
-            let tau = |time: f64| (k as f64 + time) / stages.intervals as f64;
             let value = match slot.signal {
-                Signal::State(i) => {
-                    earlier.states.get(i).and_then(Option::as_deref).and_then(|it| linear(it, tau(slot.time)))
-                }
-                // A control is held: what it is in the middle of its share of the interval.
-                Signal::Control(i) => {
-                    earlier.controls.get(i).and_then(Option::as_deref).and_then(|it| held(it, tau(0.5)))
-                }
+                Signal::State(i) => earlier.state(i, nlp.mesh().at(k, slot.time)),
+                // A control is held: what it is in the middle of the interval.
+                Signal::Control(i) if k < stages.intervals => earlier.control(i, nlp.mesh().at(k, 0.5)),
+                Signal::Control(i) => earlier.control(i, 1.0),
             };
             let variable = &mut v[place + k * stages.variable_step()];
             *variable = value.unwrap_or(*variable);
@@ -50,20 +48,24 @@ fn values_of(place: usize, stages: Stages) -> usize {
     stages.intervals + usize::from(place < stages.states)
 }
 
-/// The value of the interval that a time lies in.
-fn held(column: &[f64], tau: f64) -> Option<f64> {
-    let last = column.len().checked_sub(1)?;
-    Some(column[((tau * column.len() as f64) as usize).min(last)])
-}
+impl Earlier {
+    /// The interval that a time lies in.
+    fn interval(&self, tau: f64) -> Option<usize> {
+        let last = self.times.len().checked_sub(2)?;
+        Some(self.times.partition_point(|time| *time <= tau).saturating_sub(1).min(last))
+    }
 
-/// Linear interpolation on a uniform grid over [0, 1].
-fn linear(column: &[f64], tau: f64) -> Option<f64> {
-    let last = column.len().checked_sub(1)?;
-    let position = tau * last as f64;
-    let left = (position as usize).min(last.saturating_sub(1));
-    let right = (left + 1).min(last);
-    let fraction = position - left as f64;
-    Some(column[left] + fraction * (column[right] - column[left]))
+    /// Linear between grid points.
+    fn state(&self, i: usize, tau: f64) -> Option<f64> {
+        let (column, k) = (self.states.get(i)?.as_deref()?, self.interval(tau)?);
+        let (before, after) = (*column.get(k)?, *column.get(k + 1)?);
+        let fraction = (tau - self.times[k]) / (self.times[k + 1] - self.times[k]);
+        Some(before + fraction * (after - before))
+    }
+
+    fn control(&self, i: usize, tau: f64) -> Option<f64> {
+        self.controls.get(i)?.as_deref()?.get(self.interval(tau)?).copied()
+    }
 }
 
 /// Relative size of a variation.
@@ -101,7 +103,7 @@ fn places_of(nlp: &TranscribedNlp, signal: Signal) -> Vec<(usize, f64)> {
     let stages = nlp.chain();
     let slots = nlp.interval().slots.iter().enumerate().filter(|(_, slot)| slot.signal == signal);
     let places = slots.rev().flat_map(|(place, slot)| {
-        let time = move |k: usize| (k as f64 + slot.time) / stages.intervals as f64;
+        let time = |k: usize| nlp.mesh().at(k, slot.time);
         (0..values_of(place, stages)).map(move |k| (place + k * stages.variable_step(), time(k)))
     });
     places.collect()

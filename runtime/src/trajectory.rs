@@ -3,6 +3,7 @@
 use crate::lagrangian::Hamiltonian;
 use crate::nlp::{Derivatives, Nlp, Solution};
 use crate::problem::{Columns, Function, Problem};
+use crate::transcribe::mesh::Mesh;
 use crate::transcribe::{TranscribedNlp, interval};
 
 /// Signals on a grid of `N + 1` times; controls and reports hold on the interval that begins at their time.
@@ -44,7 +45,7 @@ impl Trajectory {
         let v = &solution.v;
         let parameters = nlp.parameters_at(v);
         let points = points(nlp, problem, v);
-        let time = times(problem, &parameters, nlp.chain().intervals);
+        let time = times(problem, &parameters);
         Trajectory {
             states: (0..problem.layout.x).map(|i| points.column(1 + i).to_vec()).collect(),
             controls: controls(nlp, v),
@@ -77,7 +78,7 @@ fn points(nlp: &TranscribedNlp, problem: &Problem, v: &[f64]) -> Columns {
     let columns = 1 + layout.x + layout.u;
     let [mut starts, mut ends] = [(); 2].map(|()| Columns::new(columns, stages.intervals));
     for (point, table) in [(&interval.start, &mut starts), (&interval.end, &mut ends)] {
-        point.set_times(table);
+        point.set_times(nlp.mesh(), table);
         point.load(stages, layout, v, table);
     }
     let mut points = Columns::new(columns, stages.intervals + 1);
@@ -124,12 +125,16 @@ fn nodes(nlp: &TranscribedNlp, v: &[f64], time: &[f64]) -> Option<ControlNodes> 
 }
 
 /// Real times of the grid.
-pub fn times(problem: &Problem, parameters: &[f64], intervals: usize) -> Vec<f64> {
+pub fn times(problem: &Problem, parameters: &[f64]) -> Vec<f64> {
     let mut ends = Columns::new(2, 1);
     let points = Columns::new(problem.interval.layout().point_inputs(), 1);
     problem.interval.value(&points, parameters, &mut ends);
     let (start, end) = (ends.column(0)[0], ends.column(1)[0]);
-    (0..=intervals).map(|k| start + (end - start) * k as f64 / intervals as f64).collect()
+    let (intervals, mesh) = (problem.method.intervals, Mesh::new(&problem.method));
+    let uniform = |k: usize| start + (end - start) * k as f64 / intervals as f64;
+    let tau = |k: usize| if k == intervals { end } else { start + (end - start) * mesh.at(k, 0.0) };
+    let is_uniform = problem.method.mesh.is_empty();
+    (0..=intervals).map(|k| if is_uniform { uniform(k) } else { tau(k) }).collect()
 }
 
 /// The first `columns` columns, with zeros for those that are missing.

@@ -1,7 +1,7 @@
 //! The nonlinear programme of a problem at one point, once more, from nothing but the functions of the problem.
 //!
 //! ```text
-//! variables    x_0 u_0 y_0  x_1 u_1 y_1  ...  x_N  g            h = 1/N,  F over normalised time
+//! variables    x_0 u_0 y_0  x_1 u_1 y_1  ...  x_N  g            h = tau_{k+1} - tau_k,  F over normalised time
 //! rows         d_0 c_1  d_1 c_2  ...  d_{N-1} c_N  b(x_0, x_N)
 //! defects      x_{k+1} - x_k - h sum_j b_j F(tau_k + c_j h, (1 - w_j) x_k + w_j x_{k+1}, u_k)      one-step schemes
 //!              X'(c_i) - h F(tau_k + c_i h, X(c_i), u)      X: the polynomial through x_k, y_k and, for Radau, x_{k+1}
@@ -215,7 +215,7 @@ impl Transcribed {
     }
 
     fn defects(&mut self, at: &At, k: usize) {
-        let (states, h) = (at.grid.states, 1.0 / at.problem.method.intervals as f64);
+        let (states, h) = (at.grid.states, at.tau(k + 1) - at.tau(k));
         let (first, here) = (self.rows.len(), at.place(k));
         self.rows.resize(first + at.grid.defects(), 0.0);
         self.row_bounds.resize(self.rows.len(), Bounds::fixed(0.0));
@@ -270,6 +270,12 @@ fn parameters(problem: &Problem, sigma: &[f64], v: &[f64]) -> Vec<f64> {
 }
 
 impl At<'_> {
+    /// The normalised time of a grid point.
+    fn tau(&self, k: usize) -> f64 {
+        let method = &self.problem.method;
+        method.mesh.get(k).copied().unwrap_or(k as f64 / method.intervals as f64)
+    }
+
     /// The place of `x_k`.
     fn place(&self, k: usize) -> usize {
         k * self.grid.step
@@ -291,7 +297,7 @@ impl At<'_> {
             let terms = sum.iter().filter(|(_, factor)| *factor != 0.0);
             terms.map(|(place, factor)| (here + place, *factor)).collect()
         };
-        let mut point = vec![(k as f64 + at.time) / self.problem.method.intervals as f64];
+        let mut point = vec![self.tau(k) + at.time * (self.tau(k + 1) - self.tau(k))];
         point
             .extend(sums.iter().map(|sum| own(sum).iter().map(|(place, w)| w * self.v[*place]).sum::<f64>()));
         self.evaluate(function, &point, |input| match sums.get(input - 1) {

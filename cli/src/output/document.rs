@@ -39,6 +39,9 @@ pub struct Document {
     pub costates: Named<Vec<f64>>,
     /// One for each interval.
     pub hamiltonian: Vec<f64>,
+    /// The sum of the errors of all steps, where the grid was refined.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step_errors: Option<f64>,
     /// What the Hamiltonian has to be, and how far it is from that.
     pub hamiltonian_check: HamiltonianCheck,
     /// The derivative of the optimal objective by each parameter.
@@ -168,6 +171,7 @@ impl Document {
             }),
             costates: shown(&trajectory.costates),
             hamiltonian: trajectory.hamiltonian.values.clone(),
+            step_errors: None,
             hamiltonian_check: HamiltonianCheck::from(&trajectory.hamiltonian),
             sensitivities: Named::default(),
             report: problem.report_names.iter().cloned().zip(trajectory.report.iter().cloned()).collect(),

@@ -15,6 +15,9 @@ use fdcc_runtime::problem::Scheme;
 pub(super) fn check(rehearsal: &mut Rehearsal<'_>, found: &mut Vec<Diagnostic>) {
     let method = &rehearsal.model.method;
     let (Some(sigma), Scheme::Euler) = (rehearsal.sigma(), method.scheme) else { return };
+    if method.is_refined {
+        return;
+    }
     let step = rehearsal.duration / (method.intervals * method.steps) as f64;
     let factor = rehearsal.kernel_slope();
     let Some(layer) = rehearsal.layers().into_iter().next() else { return };

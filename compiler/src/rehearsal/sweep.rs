@@ -50,7 +50,12 @@ fn lists<'m>(rehearsal: &Rehearsal<'m>) -> Option<Lists<'m>> {
     let numbers =
         |swept: &Swept| swept.values.iter().map(|value| value.parse().ok()).collect::<Option<Vec<f64>>>();
     let place = find("N").or(find("sigma"))?;
-    let intervals = find("N").and_then(numbers);
+    // With `N = auto` the grid follows the layer by itself.
+    let intervals = match find("N") {
+        Some(swept) => Some(numbers(swept)?),
+        None if rehearsal.model.method.is_refined => return None,
+        None => None,
+    };
     Some(Lists { sigma: numbers(find("sigma")?)?, intervals, place })
 }
 
@@ -94,8 +99,9 @@ fn too_slow(rehearsal: &Rehearsal<'_>, layer: &Layer, lists: &Lists<'_>, ratios:
         true => "\nFor surfaces that are only crossed, h = o(sigma) is enough (Theorem 5.2).",
         false => "",
     };
-    Diagnostic::new(Code::SweepTooSlow, message, lists.place.values_span, label)
-        .help(format!("{why}\nuse N = {better} (h ~ sigma^{power}).{otherwise}"))
+    Diagnostic::new(Code::SweepTooSlow, message, lists.place.values_span, label).help(format!(
+        "{why}\nuse N = {better} (h ~ sigma^{power}), or `N = auto` to let fdcc choose.{otherwise}"
+    ))
 }
 
 /// Two digits behind the point, or three that count where it is small.

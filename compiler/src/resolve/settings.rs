@@ -8,13 +8,14 @@ use crate::smooth;
 use crate::units;
 use fdcc_grammar::ast::{Expr, ExprKind, Ident, ItemKind, Setting, SettingValue};
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
-use fdcc_runtime::problem::{ControlShape, Linear, MOST_STAGES, Method, Scheme, Solver};
+use fdcc_runtime::problem::{ControlShape, FIRST_GRID, Linear, MOST_STAGES, Method, Scheme, Solver};
 
 /// The keys, each with what it takes.
 pub(crate) const KEYS: &[(&str, &str)] = &[
     ("sigma", "a number above 0"),
     ("kernel", "one of tanh, sqrt, linear, cubic, quintic"),
-    ("N", "a whole number from 1"),
+    ("N", "a whole number from 1, or auto"),
+    ("tolerance", "a number above 0"),
     ("steps", "a whole number from 1"),
     (
         "scheme",
@@ -64,10 +65,13 @@ pub(crate) fn set(method: &mut Method, key: &str, given: &Given) -> Result<(), R
         _ => Err(refused()),
     };
     match (key, given) {
-        ("N", Given::Word(word)) if word == "auto" => return Err(Refused::NotYet),
         ("sigma", _) => method.sigma = Some(positive()?),
         ("tol", _) => method.tol = positive()?,
-        ("N", _) => method.intervals = count()?,
+        ("N", _) => {
+            method.is_refined = matches!(given, Given::Word(word) if word == "auto");
+            method.intervals = if method.is_refined { FIRST_GRID } else { count()? };
+        }
+        ("tolerance", _) => method.tolerance = positive()?,
         ("steps", _) => {
             method.steps = count()?;
             if method.steps > 1 {
@@ -153,17 +157,26 @@ fn decreasing(given: &Given) -> Option<Vec<f64>> {
     (falls && list.iter().all(|&value| value > 0.0 && value.is_finite())).then_some(list)
 }
 
-/// What of the controls does not fit the scheme, and what to do.
-pub(crate) fn misfit(method: &Method) -> Option<(&'static str, &'static str)> {
+/// Which setting does not fit the scheme, why, and what to do.
+pub(crate) fn misfit(method: &Method) -> Option<(&'static str, &'static str, &'static str)> {
+    if method.is_refined && method.scheme == Scheme::RungeKutta4 {
+        return Some((
+            "N",
+            "`rk4` has steps of one length, which `N = auto` has not",
+            "choose another scheme, or a number for N",
+        ));
+    }
     if method.scheme.allows(method.controls) {
         return None;
     }
     Some(match method.controls {
         ControlShape::Linear => (
+            "controls",
             "linear controls need a scheme that sees more than one point of an interval",
             "choose trapezoid, radau2 to radau5 or gauss2 to gauss5",
         ),
         _ => (
+            "controls",
             "polynomial controls are given at the nodes of a collocation scheme",
             "choose radau1 to radau5 or gauss1 to gauss5",
         ),
@@ -218,8 +231,8 @@ impl<'a> Elaborator<'a> {
     /// Resolves a `method` block.
     pub fn settings(&mut self, settings: &'a [Setting]) {
         self.each_setting(settings);
-        let controls = settings.iter().find(|setting| setting.key.name == "controls");
-        if let (Some((what, help)), Some(setting)) = (misfit(&self.model.method), controls) {
+        let Some((key, what, help)) = misfit(&self.model.method) else { return };
+        if let Some(setting) = settings.iter().find(|setting| setting.key.name == key) {
             let found = Diagnostic::new(Code::UnknownSetting, what, setting.key.span, "not with this scheme");
             self.diagnostics.push(found.help(help));
         }

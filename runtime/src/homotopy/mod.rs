@@ -89,6 +89,24 @@ pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Resu
     Ok(finish(run, &mut nlp, solution, false))
 }
 
+/// Solves a problem from a start that is near its solution, with the widths that another solve has ended with.
+pub(crate) fn solve_near(
+    problem: &Problem,
+    start: Start,
+    before: &Outcome,
+    watch: &mut Watch,
+) -> Result<Outcome, Refusal> {
+    if before.convex {
+        return solve(problem, Some(start), watch);
+    }
+    let mut nlp = TranscribedNlp::new(problem);
+    let (counts, sigma) = (before.solution.counts, before.sigma.clone());
+    let mut run = Run { problem, counts, sigma };
+    let goal = run.goal();
+    let solution = run.solve(&mut nlp, &start, goal, watch);
+    Ok(finish(run, &mut nlp, solution, false))
+}
+
 /// The widths the model names, in their order; `None` where the choice is ours.
 fn widths(problem: &Problem) -> Option<Vec<f64>> {
     let method = &problem.method;

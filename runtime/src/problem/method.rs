@@ -1,5 +1,8 @@
 //! How a model asks to be solved: the `method` block, with defaults where the model is silent.
 
+/// Intervals of the first grid where the choice is ours.
+pub const FIRST_GRID: usize = 50;
+
 /// The most stages of a collocation scheme.
 pub const MOST_STAGES: usize = 5;
 
@@ -23,6 +26,17 @@ pub enum Scheme {
 }
 
 impl Scheme {
+    /// The power of the step length with which the error falls, where everything is smooth.
+    pub fn order(self) -> usize {
+        match self {
+            Scheme::Euler | Scheme::ImplicitEuler => 1,
+            Scheme::Midpoint | Scheme::Trapezoid => 2,
+            Scheme::RungeKutta4 => 4,
+            Scheme::Radau(stages) => 2 * stages - 1,
+            Scheme::Gauss(stages) => 2 * stages,
+        }
+    }
+
     /// Whether controls of this shape mean anything to the scheme: it must see enough points of an interval.
     pub fn allows(self, shape: ControlShape) -> bool {
         match shape {
@@ -79,6 +93,12 @@ pub struct Method {
     pub controls: ControlShape,
     /// Control intervals.
     pub intervals: usize,
+    /// Normalised times of the grid, from 0 to 1; none if all intervals have one length.
+    pub mesh: Vec<f64>,
+    /// `N = auto`: the grid is refined until the sum of the errors of its steps is below `tolerance`.
+    pub is_refined: bool,
+    /// The sum of the relative errors of all steps that a refined grid may have.
+    pub tolerance: f64,
     /// Integration steps in each control interval.
     pub steps: usize,
     /// Smoothing width, if the model names one.

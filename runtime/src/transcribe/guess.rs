@@ -51,7 +51,7 @@ impl TranscribedNlp<'_> {
         let (guess, intervals) = (&self.problem.guess, self.stages.intervals);
         let mut points = Columns::new(guess.layout().point_inputs(), intervals + 1);
         for (k, tau) in points.column_mut(0).iter_mut().enumerate() {
-            *tau = (k as f64 + time) / intervals as f64;
+            *tau = self.mesh.at(k, time);
         }
         let mut values = Columns::new(guess.outputs(), intervals + 1);
         guess.value(&points, &self.parameters, &mut values);

@@ -9,6 +9,7 @@
 //! `y_k` holds the states at the inner nodes of a collocation scheme. The controls `u_k` are one value, the values at the
 //! nodes, or, where controls are linear, the values at the end of the interval, which `w_{k+1}` hands on to the next.
 
+use super::mesh::Mesh;
 use super::{collocation, tableau};
 use crate::linalg::Stages;
 use crate::problem::{Columns, ControlShape, Layout, Method};
@@ -75,6 +76,7 @@ pub(crate) struct Interval {
     pub(crate) path: Vec<Point>,
     /// The mean of each control.
     pub(crate) means: Vec<Combination>,
+    places: Places,
 }
 
 impl Interval {
@@ -102,7 +104,13 @@ impl Interval {
             end,
             nodes,
             links,
+            places,
         }
+    }
+
+    /// The controls at a time of the interval.
+    pub(crate) fn controls_at(&self, time: f64) -> Vec<Combination> {
+        (0..self.places.controls).map(|control| self.places.control(control, time)).collect()
     }
 
     /// Controls that go on from interval to interval.
@@ -118,10 +126,9 @@ impl Interval {
 
 impl Point {
     /// Writes the times of this point in all intervals.
-    pub(crate) fn set_times(&self, points: &mut Columns) {
-        let intervals = points.count();
+    pub(crate) fn set_times(&self, mesh: &Mesh, points: &mut Columns) {
         for (k, tau) in points.column_mut(0).iter_mut().enumerate() {
-            *tau = (k as f64 + self.time) / intervals as f64;
+            *tau = mesh.at(k, self.time);
         }
     }
 
@@ -143,6 +150,7 @@ pub(crate) fn add_up(combination: &Combination, stages: Stages, v: &[f64], targe
 }
 
 /// Where the variables of an interval are.
+#[derive(Clone, Debug)]
 struct Places {
     nodes: Option<&'static [f64]>,
     shape: ControlShape,

@@ -14,6 +14,7 @@ mod bounds;
 pub(crate) mod collocation;
 mod guess;
 pub(crate) mod interval;
+pub(crate) mod mesh;
 mod sampled;
 pub(crate) mod tableau;
 mod tables;
@@ -24,13 +25,15 @@ use crate::problem::{Bounds, Origin, Problem};
 use assembly::{Builder, Repeated};
 use boundary::Ends;
 use interval::{Interval, Node};
+use mesh::Mesh;
 use sampled::{Matrices, Sampled, Target};
 
-/// The programme of a problem on a uniform grid.
+/// The programme of a problem on a grid.
 pub struct TranscribedNlp<'p> {
     problem: &'p Problem,
     stages: Stages,
     interval: Interval,
+    mesh: Mesh,
     variable_bounds: Vec<Bounds>,
     row_bounds: Vec<Bounds>,
     jacobian: Triplets,
@@ -51,11 +54,15 @@ impl<'p> TranscribedNlp<'p> {
     pub fn new(problem: &'p Problem) -> Self {
         let interval = Interval::new(&problem.method, &problem.layout);
         let stages = stages(problem, &interval);
-        let mut matrices = Matrices { stages, jacobian: Builder::default(), hessian: Builder::default() };
+        let mesh = Mesh::new(&problem.method);
+        let (jacobian, hessian) = (Builder::default(), Builder::default());
+        let mut matrices = Matrices { stages, mesh: mesh.clone(), jacobian, hessian };
         let constant = constant(&interval, &mut matrices);
         let nodes = interval.nodes.iter().map(|node| {
             let targets = dynamics_targets(problem, stages, node);
-            Sampled::new(problem, &problem.dynamics, node.point.clone(), targets, &mut matrices)
+            let sampled =
+                Sampled::new(problem, &problem.dynamics, node.point.clone(), targets, &mut matrices);
+            sampled.per_length(&mesh)
         });
         let nodes = nodes.collect();
         let rows = problem.path_bounds.len();
@@ -73,6 +80,7 @@ impl<'p> TranscribedNlp<'p> {
             variable_bounds: bounds::of_variables(problem, stages, &interval),
             row_bounds: bounds::of_rows(problem, stages),
             interval,
+            mesh,
             jacobian: jacobian.finish(),
             hessian: hessian.finish(),
             constant,
@@ -86,6 +94,11 @@ impl<'p> TranscribedNlp<'p> {
     /// Sizes of the chain.
     pub fn chain(&self) -> Stages {
         self.stages
+    }
+
+    /// The grid.
+    pub(crate) fn mesh(&self) -> &Mesh {
+        &self.mesh
     }
 
     /// What stands in one interval.

@@ -5,6 +5,7 @@
 
 use super::assembly::{Builder, Contribution, Repeated};
 use super::interval::Point;
+use super::mesh::Mesh;
 use super::tables::{Tables, scatter};
 use crate::linalg::Stages;
 use crate::problem::{Columns, Function, Problem};
@@ -23,6 +24,8 @@ pub(super) enum Target {
 pub(super) struct Sampled {
     tables: Tables,
     point: Point,
+    /// By which its outputs are multiplied in each interval; nothing where that is 1.
+    lengths: Option<Vec<f64>>,
     targets: Vec<Target>,
     row_moves: Vec<Contribution>,
     /// Target: a variable of interval 0, and its step along the chain.
@@ -33,6 +36,7 @@ pub(super) struct Sampled {
 /// The builders of both matrices.
 pub(super) struct Matrices {
     pub(super) stages: Stages,
+    pub(super) mesh: Mesh,
     pub(super) jacobian: Builder,
     pub(super) hessian: Builder,
 }
@@ -46,12 +50,26 @@ impl Sampled {
         matrices: &mut Matrices,
     ) -> Self {
         let mut tables = Tables::new(function, matrices.stages.intervals);
-        point.set_times(&mut tables.points);
+        point.set_times(&matrices.mesh, &mut tables.points);
         let (row_moves, gradient_moves, hessian_moves) = (Vec::new(), Vec::new(), Vec::new());
-        let mut sampled = Sampled { tables, point, targets, row_moves, gradient_moves, hessian_moves };
+        let mut sampled =
+            Sampled { tables, point, lengths: None, targets, row_moves, gradient_moves, hessian_moves };
         sampled.map_jacobian(problem, matrices);
         sampled.map_hessian(problem, matrices);
         sampled
+    }
+
+    /// The same with outputs that count by the relative length of each interval.
+    pub(super) fn per_length(self, mesh: &Mesh) -> Self {
+        Sampled { lengths: mesh.all_relative(), ..self }
+    }
+
+    /// Multiplies every column by the relative lengths.
+    fn scale(lengths: &Option<Vec<f64>>, table: &mut Columns) {
+        let Some(lengths) = lengths else { return };
+        for i in 0..table.columns() {
+            table.column_mut(i).iter_mut().zip(lengths).for_each(|(value, length)| *value *= length);
+        }
     }
 
     fn map_jacobian(&mut self, problem: &Problem, matrices: &mut Matrices) {
@@ -118,6 +136,7 @@ impl Sampled {
     /// Adds the outputs to the rows; returns their part of the objective.
     pub(super) fn add_values(&mut self, stages: Stages, parameters: &[f64], rows: &mut [f64]) -> f64 {
         self.tables.evaluate(parameters);
+        Self::scale(&self.lengths, &mut self.tables.values);
         let mut objective = 0.0;
         for (output, target) in self.targets.iter().enumerate() {
             let column = self.tables.values.column(output);
@@ -150,7 +169,10 @@ impl Sampled {
                 }
             }
         }
+        // The Hessian is that of the multipliers times the lengths.
+        Self::scale(&self.lengths, &mut self.tables.multipliers);
         self.tables.differentiate(parameters);
+        Self::scale(&self.lengths, &mut self.tables.jacobian);
     }
 
     /// Adds the derivatives to the matrices of the programme.

@@ -1,0 +1,37 @@
+//! The grid over normalised time.
+
+use crate::problem::Method;
+
+/// Grid points `0 = tau_0 < ... < tau_N = 1`.
+#[derive(Clone, Debug)]
+pub(crate) struct Mesh {
+    intervals: usize,
+    /// Nothing where all intervals have one length.
+    points: Option<Vec<f64>>,
+}
+
+impl Mesh {
+    pub(crate) fn new(method: &Method) -> Self {
+        let fits = method.mesh.len() == method.intervals + 1;
+        Mesh { intervals: method.intervals, points: fits.then(|| method.mesh.clone()) }
+    }
+
+    /// The time at which this part of interval `k` has passed.
+    pub(crate) fn at(&self, k: usize, part: f64) -> f64 {
+        match &self.points {
+            None => (k as f64 + part) / self.intervals as f64,
+            Some(points) if k == self.intervals => points[k],
+            Some(points) => points[k] + part * (points[k + 1] - points[k]),
+        }
+    }
+
+    /// The length of interval `k`, relative to that of a uniform grid.
+    pub(crate) fn relative(&self, k: usize) -> f64 {
+        self.points.as_ref().map_or(1.0, |points| (points[k + 1] - points[k]) * self.intervals as f64)
+    }
+
+    /// All relative lengths; nothing where they are 1.
+    pub(crate) fn all_relative(&self) -> Option<Vec<f64>> {
+        self.points.as_ref().map(|_| (0..self.intervals).map(|k| self.relative(k)).collect())
+    }
+}

@@ -30,12 +30,13 @@ fn models(page: &str) -> Vec<String> {
     blocks.filter_map(|block| block.split_once("```")).map(|(model, _)| written_out(model)).collect()
 }
 
-fn drawings(width: &str) -> String {
+/// Tests that run side by side have folders of their own.
+fn drawings(test: &str, width: &str) -> String {
     let mut drawn = String::new();
     for (code, models) in wrong_models() {
         for model in models {
             let name = format!("{code}.fdc");
-            let folder = folder(&format!("drawing_{width}"), &[(&name, model.as_bytes())]);
+            let folder = folder(&format!("{test}_{width}"), &[(&name, model.as_bytes())]);
             let printed = stdout(&fdcc_with(&folder, &["check", &name], &[("COLUMNS", width)]));
             drawn += &format!("---- {code} ----\n\n{printed}\n");
         }
@@ -44,7 +45,7 @@ fn drawings(width: &str) -> String {
 }
 
 fn compare(width: &str) {
-    let drawn = drawings(width);
+    let drawn = drawings("drawing", width);
     let file = repository().join(format!("tests/snapshots/diagnostics-{width}.txt"));
     if std::env::var_os("UPDATE").is_some() {
         fs::write(&file, &drawn).expect("the drawings can be written");
@@ -71,7 +72,7 @@ fn diagnostics_are_drawn_120_columns_wide() {
 #[test]
 fn messages_and_help_keep_to_the_width() {
     for width in ["80", "120"] {
-        let drawn = drawings(width);
+        let drawn = drawings("wide", width);
         let is_text = |line: &&str| !line.contains('│') && !line.contains('·');
         let wide: Vec<&str> = drawn
             .lines()

@@ -7,6 +7,7 @@ mod difference;
 mod exact;
 mod expectations;
 mod failure;
+mod fit;
 mod gradients;
 mod log;
 mod model;

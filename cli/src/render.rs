@@ -2,10 +2,12 @@
 //!
 //! Our own [`Diagnostic`] holds no text; [`Report`] is the pair with its file, in miette's terms.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::io::IsTerminal;
 
-use fdcc_grammar::{Code, Diagnostic, Severity, SourceFile};
+use crate::fit::{CUT, Page};
+use fdcc_grammar::{Code, Diagnostic, Label, Severity, SourceFile};
 use miette::{
     LabeledSpan, MietteError, MietteHandler, MietteHandlerOpts, MietteSpanContents, ReportHandler,
     SourceCode, SourceSpan, SpanContents,
@@ -26,6 +28,7 @@ const MOST_LABELS: usize = 10;
 /// Draws diagnostics for one stream.
 pub struct Renderer {
     handler: MietteHandler,
+    width: usize,
 }
 
 impl Renderer {
@@ -42,21 +45,36 @@ impl Renderer {
     fn new(is_terminal: bool) -> Self {
         let no_color = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
         let options = MietteHandlerOpts::new().unicode(true).context_lines(1).color(is_terminal && !no_color);
-        let columns = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
-        let width = columns.unwrap_or(WIDTH).max(NARROWEST);
-        let options = if is_terminal { options } else { options.width(width).terminal_links(false) };
-        Renderer { handler: options.build() }
+        let terminal = is_terminal.then(terminal_size::terminal_size).flatten().map(|it| it.0.0.into());
+        let columns = || std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+        let width = terminal.or_else(columns).unwrap_or(WIDTH).max(NARROWEST);
+        let options = if is_terminal { options } else { options.terminal_links(false) };
+        Renderer { handler: options.width(width).build(), width }
     }
 
     /// The diagnostic with the lines that it is about, and an empty line behind it.
     pub fn render(&self, diagnostic: &Diagnostic, source: &SourceFile) -> String {
+        let last = diagnostic.labels.iter().map(|label| label.span.end).max().unwrap_or(0);
+        let digits = (source.line_column(last).line + 1).to_string().len();
+        let page = Page { width: self.width, digits };
+        let text = &source.text;
+        let fitting = |label: &Label| Label {
+            text: page.label(&label.text, text, label.span.range()),
+            ..label.clone()
+        };
         let whole = Diagnostic {
             message: unbroken(&diagnostic.message),
             help: diagnostic.help.as_deref().map(unbroken),
+            labels: diagnostic.labels.iter().map(fitting).collect(),
             ..diagnostic.clone()
         };
-        let report = Report { diagnostic: &whole, source };
-        format!("{}\n", Drawing { handler: &self.handler, report: &report }).replace(NO_BREAK, " ")
+        let mut report = Report { diagnostic: &whole, source, page, text: Cow::Borrowed(text) };
+        if report.has_lines() {
+            let places: Vec<_> = whole.labels.iter().map(|label| label.span.range()).collect();
+            report.text = page.lines(text, &places);
+        }
+        let drawn = format!("{}\n", Drawing { handler: &self.handler, report: &report });
+        drawn.replace(NO_BREAK, " ").replace(CUT, "")
     }
 }
 
@@ -88,14 +106,19 @@ impl fmt::Display for Drawing<'_> {
 struct Report<'r> {
     diagnostic: &'r Diagnostic,
     source: &'r SourceFile,
+    page: Page,
+    /// Its text as it is shown.
+    text: Cow<'r, str>,
 }
 
 impl Report<'_> {
-    /// Whether its lines can be shown: they are text, and not too long.
+    /// Whether its lines can be shown: they are text and not too long, and all places are within the width.
     fn has_lines(&self) -> bool {
-        let is_short =
-            |label: &fdcc_grammar::Label| self.line(label.span.start as usize).len() <= LONGEST_LINE;
-        self.diagnostic.code != Code::NotText && self.diagnostic.labels.iter().all(is_short)
+        let fits = |label: &Label| {
+            let place = label.span.start as usize;
+            self.line(place).len() <= LONGEST_LINE && self.page.holds(&self.source.text, place)
+        };
+        self.diagnostic.code != Code::NotText && self.diagnostic.labels.iter().all(fits)
     }
 
     fn line(&self, offset: usize) -> &str {
@@ -115,7 +138,10 @@ impl fmt::Display for Report<'_> {
         write!(
             f,
             "\n{}:{}:{}: {}",
-            self.source.name, place.line, place.column, self.diagnostic.labels[0].text
+            self.source.name,
+            place.line,
+            place.column,
+            self.diagnostic.labels[0].text.replace('\n', " ")
         )
     }
 }
@@ -165,7 +191,7 @@ impl SourceCode for Report<'_> {
         lines_before: usize,
         lines_after: usize,
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        let text = &self.source.text;
+        let text = &*self.text;
         // Without lines before it, miette wants the span itself: it prints where the contents begin.
         let first_line = || (0..=lines_before).fold(span.offset(), |at, lines| line_start(text, at, lines));
         let start = if lines_before == 0 { span.offset() } else { first_line() };

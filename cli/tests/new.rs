@@ -23,6 +23,25 @@ fn templates_are_models_that_work() {
     }
 }
 
+/// Not by chance: with one step more, and with coarser and finer grids, too.
+#[test]
+fn solutions_of_templates_hold_on_the_true_system() {
+    for template in ["friction", "racecar", "switched", "fit"] {
+        let place = folder(&format!("new_confirmed_{template}"), &[]);
+        let file = format!("{template}.fdc");
+        expect_exit(&fdcc(&place, &["new", template], ""), 0, template);
+        let own = json(&fdcc(&place, &["solve", &file, "--json", "--log", "none"], ""));
+        let steps = own["method"]["N"].as_u64().expect("the method has steps");
+        for steps in [steps, steps + 1, steps * 4 / 5, steps * 5 / 4] {
+            let steps = format!("N={steps}");
+            let solved = fdcc(&place, &["solve", &file, "--method", &steps, "--log", "none"], "");
+            expect_exit(&solved, 0, &steps);
+            let verdict = stdout(&solved) + &stderr(&solved);
+            assert!(verdict.contains("confirmed on the true system"), "{template}, {steps}: {verdict}");
+        }
+    }
+}
+
 #[test]
 fn a_model_is_called_after_its_file_and_nothing_is_overwritten() {
     let place = folder("new_name", &[("taken.fdc", b"param a = 1\n")]);

@@ -52,7 +52,7 @@ impl Kink<'_, '_> {
         let name = hidden_jump::owner(meaning, site).unwrap_or("piecewise { ... }");
         let fix = Fix::likely("round the knot").insert(place.used.start, "blend(");
         found.fix(fix.insert(place.used.end, format!(", {WIDTH})"))).help(format!(
-            "Newton steps lose speed near {at}. Join the pieces with a cubic, or write\n\
+            "Newton steps lose speed near {at}. Join the pieces with a cubic, or write \
              `blend({name}, {WIDTH})` to round the knot over a width of {WIDTH}.{}",
             about_abs(role)
         ))

@@ -41,9 +41,8 @@ impl Subject<'_, '_, '_> {
             None => self.declared(),
         };
         Diagnostic::new(Code::ControlJumps, message, span, label).help(
-            "Section 7 of the method needs d/du of the right side to be continuous. Without it, controls\n\
-             at the crossing time get a smeared gradient. Use `scheme located` (switch times are\n\
-             unknowns), or check the answer with `fdcc sweep --continue sigma`.",
+            "Section 7 of the method needs d/du of the right side to be continuous. Without it, controls \
+             at the crossing time get a smeared gradient. Check the answer with `fdcc sweep --continue sigma`.",
         )
     }
 }

@@ -20,7 +20,7 @@ impl Subject<'_, '_, '_> {
                 let message = format!("`{}` can fire without end", jump.place.name);
                 let text = format!("with {factor} < 1 the bounces pile up in finite time");
                 let mut diagnostic = Diagnostic::new(Code::EndlessJumps, message, place, text).help(format!(
-                    "say how many may happen: `on {0} {direction} at most 3`,\n\
+                    "say how many may happen: `on {0} {direction} at most 3`, \
                      or what follows the last one: `then hold {0}`",
                     self.name()
                 ));

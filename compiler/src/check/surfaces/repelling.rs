@@ -100,7 +100,7 @@ impl Subject<'_, '_, '_> {
         };
         let psi = if self.written().is_some() { name.to_string() } else { format!("({name})") };
         format!(
-            "from `{name} == 0` the state may leave up, leave down or stay: the solution is not unique\n\
+            "from `{name} == 0` the state may leave up, leave down or stay: the solution is not unique \
              and no gradient exists.{friction}\n\
              If leaving the surface is intended, start off it and add `path away: {psi} >= eps`."
         )

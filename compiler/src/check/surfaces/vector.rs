@@ -33,7 +33,7 @@ fn repelling(ball: &Ball, place: Option<&Use<'_>>) -> Diagnostic {
         None => String::new(),
     };
     found.help(format!(
-        "where `{name}` is 0 the state may leave in any direction or stay: the solution is not unique\n\
+        "where `{name}` is 0 the state may leave in any direction or stay: the solution is not unique \
          and no gradient exists.{friction}"
     ))
 }

@@ -8,8 +8,9 @@ use crate::differentiate::derivative;
 use crate::graph::evaluate;
 use crate::model::Symbol;
 use crate::resolve::{text, walk};
-use fdcc_grammar::ast::{Expr, ItemKind, Sense};
-use fdcc_grammar::{Code, Diagnostic};
+use crate::units;
+use fdcc_grammar::ast::{Expr, Ident, Interval, ItemKind, Sense, Unit};
+use fdcc_grammar::{Code, Diagnostic, Fix};
 
 /// Reports unknowns that may make the duration 0 or negative.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
@@ -59,7 +60,10 @@ fn unbounded(facts: &Facts<'_, '_>, index: usize, worst: f64) -> Diagnostic {
     if let Some(span) = objective(facts).and_then(|value| walk::mention(value, name)) {
         found = found.label(span, "and the objective pulls it down");
     }
-    found.help(format!("give it a range that excludes 0, for example `{}`", repaired(facts, index)))
+    let Some(declared) = Declared::find(facts, index) else { return found };
+    let repaired = declared.repaired(facts);
+    found.fixes.push(declared.fix(facts, &repaired));
+    found.help(format!("give it a range that excludes 0, for example `{repaired}`"))
 }
 
 /// What is minimised.
@@ -70,13 +74,65 @@ fn objective<'a>(facts: &Facts<'a, '_>) -> Option<&'a Expr> {
     })
 }
 
-/// `free T in [0.1, 60] guess 6`: ten times the guess should be long enough.
-fn repaired(facts: &Facts<'_, '_>, index: usize) -> String {
-    let free = &facts.meaning.model.frees[index];
-    let name = &free.place.name;
-    let upper = facts.meaning.numeric(free.range.upper);
-    let guess = free.guess.map(|guess| facts.meaning.numeric(guess)).filter(|guess| *guess > 0.0);
-    let longest = if upper.is_finite() { upper } else { guess.map_or(100.0, |guess| 10.0 * guess) };
-    let range = format!("free {name} in [0.1, {}]", text::number(longest));
-    guess.map_or(range.clone(), |guess| format!("{range} guess {}", text::number(guess)))
+/// The declaration of an unknown.
+struct Declared<'a> {
+    free: usize,
+    name: &'a Ident,
+    bounds: Option<&'a Interval>,
+    unit: Option<&'a Unit>,
+}
+
+impl<'a> Declared<'a> {
+    fn find(facts: &Facts<'a, '_>, free: usize) -> Option<Self> {
+        let wanted = &facts.meaning.model.frees[free].place.name;
+        let declared = facts.tree.items.iter().filter_map(|item| match &item.kind {
+            ItemKind::Free { name, bounds, unit, .. } => {
+                Some(Declared { free, name, bounds: bounds.as_ref(), unit: unit.as_ref() })
+            }
+            _ => None,
+        });
+        declared.into_iter().find(|it| it.name.name == *wanted)
+    }
+
+    /// `free T in [0.1, 60] [s] guess 6`, as its author would write it.
+    fn repaired(&self, facts: &Facts<'_, '_>) -> String {
+        let unit = self.unit.map_or(String::new(), |unit| format!(" {}", text::unit(unit)));
+        let text = format!(
+            "free {} in [{}, {}]{unit}",
+            self.name.name,
+            self.least(facts),
+            text::number(self.longest(facts))
+        );
+        self.guess(facts).map_or(text.clone(), |guess| format!("{text} guess {}", text::number(guess)))
+    }
+
+    /// The range where there is none, or the lower bound that is not above 0.
+    fn fix(&self, facts: &Facts<'_, '_>, repaired: &str) -> Fix {
+        let fix = Fix::likely(format!("write `{repaired}`"));
+        let (least, longest) = (self.least(facts), text::number(self.longest(facts)));
+        match self.bounds {
+            None => fix.insert(self.name.span.end, format!(" in [{least}, {longest}]")),
+            Some(bounds) => fix.replace(bounds.lower.span, least),
+        }
+    }
+
+    /// A tenth, unless that is too long.
+    fn least(&self, facts: &Facts<'_, '_>) -> String {
+        text::number(0.1_f64.min(self.longest(facts) / 100.0))
+    }
+
+    /// The upper bound; or ten times the guess, which should be long enough.
+    fn longest(&self, facts: &Facts<'_, '_>) -> f64 {
+        let upper = self.in_its_unit(facts.meaning.numeric(facts.meaning.model.frees[self.free].range.upper));
+        if upper.is_finite() { upper } else { self.guess(facts).map_or(100.0, |guess| 10.0 * guess) }
+    }
+
+    fn guess(&self, facts: &Facts<'_, '_>) -> Option<f64> {
+        let guess = facts.meaning.model.frees[self.free].guess?;
+        Some(self.in_its_unit(facts.meaning.numeric(guess))).filter(|guess| *guess > 0.0)
+    }
+
+    fn in_its_unit(&self, value: f64) -> f64 {
+        self.unit.map_or(value, |unit| value / units::scale(unit, &mut Vec::new()))
+    }
 }

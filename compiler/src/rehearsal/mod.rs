@@ -45,6 +45,13 @@ struct Sigma {
     span: Span,
 }
 
+impl Sigma {
+    /// A width in the unit in which this one is written.
+    fn text(&self, width: f64) -> String {
+        format!("{}{}", text::number(layer::short(width / self.scale)), self.unit)
+    }
+}
+
 /// All findings about a model without errors.
 pub(crate) fn check(model: &Model, tree: &ast::Model) -> Vec<Diagnostic> {
     let Some(mut rehearsal) = Rehearsal::new(model, tree) else { return Vec::new() };

@@ -29,6 +29,7 @@ pub(super) fn check(rehearsal: &mut Rehearsal<'_>, found: &mut Vec<Diagnostic>) 
 
 fn too_long(rehearsal: &Rehearsal<'_>, layer: &Layer, sigma: &Sigma, step: f64, slope: f64) -> Diagnostic {
     let shown = |value: f64| number(short(value));
+    let width = sigma.text(sigma.width);
     let message = format!("the step is too long for the smoothed layer of `{}`", layer.name);
     let label = format!("layer slope L = {} = {}", rehearsal.slope_text(layer), shown(slope));
     let found = Diagnostic::new(Code::LongStep, message, sigma.span, label);
@@ -39,11 +40,10 @@ fn too_long(rehearsal: &Rehearsal<'_>, layer: &Layer, sigma: &Sigma, step: f64, 
     };
     found.help(format!(
         "Euler overshoots the layer when h*L > 1 and oscillates when h*L > 2.\n\
-         use N >= {} for sigma = {}, or sigma >= {} for N = {}, or `scheme implicit_euler`\n\
+         use N >= {} for sigma = {width}, or sigma >= {} for N = {}, or `scheme implicit_euler`\n\
          (the implicit scheme removes the oscillation, not the gradient error: still keep h small)",
         number((rehearsal.duration * slope).ceil()),
-        number(sigma.width),
-        shown(slope * sigma.width * step),
+        sigma.text(slope * sigma.width * step),
         rehearsal.model.method.intervals
     ))
 }

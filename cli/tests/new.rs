@@ -66,7 +66,7 @@ fn without_a_template_they_are_listed() {
     let place = folder("new_list", &[]);
     let listed = fdcc(&place, &["new"], "");
     expect_exit(&listed, 3, "no template");
-    for line in ["  friction  A block with dry friction", "  bounce    A ball that bounces"] {
+    for line in ["  friction  A slide with dry friction", "  bounce    A ball that bounces"] {
         assert!(stderr(&listed).contains(line), "{}", stderr(&listed));
     }
 }

@@ -21,11 +21,11 @@ pub struct New {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Template {
-    /// A block with dry friction, moved with the least effort
+    /// A slide with dry friction, moved with little effort
     Friction,
-    /// A race car on an S-bend, in the shortest time
+    /// A small car on a bend, driven with little effort
     Racecar,
-    /// An engine that changes at a speed, in the shortest time
+    /// A motor that changes at a speed, in the shortest time
     Switched,
     /// A ball that bounces, for `fdcc simulate`
     Bounce,

@@ -67,7 +67,8 @@ fn rest(code: &str) -> String {
 
 /// What the table says of features that there are not is left out; where its lines break, is a matter of the drawing.
 fn help(case: &serde_json::Value) -> String {
-    let text = words(case, "help").replace("Use `scheme located` (switch times are\nunknowns), or check", "Check");
+    let text =
+        words(case, "help").replace("Use `scheme located` (switch times are\nunknowns), or check", "Check");
     text.replace('\n', " ")
 }
 

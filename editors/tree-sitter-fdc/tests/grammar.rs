@@ -4,7 +4,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use tree_sitter::{Node, Parser, Query, Tree};
+use tree_sitter::{InputEdit, Node, Parser, Point, Query, Tree};
 use tree_sitter_fdc::{LANGUAGE, QUERIES};
 
 fn parse(text: &str) -> Tree {
@@ -29,7 +29,7 @@ fn item_words(node: Node<'_>, text: &str, words: &mut Vec<String>) {
     let mut cursor = node.walk();
     for child in node.children(&mut cursor).filter(Node::is_named) {
         let first = child.child(0);
-        if let (Some(first), "file" | "phase") = (first, node.kind()) {
+        if let (Some(first), "file" | "phase" | "ERROR") = (first, node.kind()) {
             words.extend(
                 (!first.is_named()).then(|| format!("{} {}", first.start_byte(), &text[first.byte_range()])),
             );
@@ -57,6 +57,63 @@ fn every_model_is_read_and_has_the_same_items() {
         }
     }
     assert!(problems.is_empty(), "\n{}", problems.join("\n"));
+}
+
+/// A model is typed: after each character the tree is mended, and it is the tree of the text as if read at once.
+#[test]
+fn typing_gives_the_tree_of_the_text() {
+    let text = read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/stacked.fdc"));
+    let mut parser = Parser::new();
+    parser.set_language(&LANGUAGE.into()).expect("the versions fit");
+    let (mut tree, mut at) = (parse(""), Point::new(0, 0));
+    for (start, character) in text.char_indices() {
+        let end = start + character.len_utf8();
+        let after = if character == '\n' {
+            Point::new(at.row + 1, 0)
+        } else {
+            Point::new(at.row, at.column + character.len_utf8())
+        };
+        tree.edit(&InputEdit {
+            start_byte: start,
+            old_end_byte: start,
+            new_end_byte: end,
+            start_position: at,
+            old_end_position: at,
+            new_end_position: after,
+        });
+        tree = parser.parse(&text[..end], Some(&tree)).expect("nothing stops it");
+        at = after;
+    }
+    assert_eq!(tree.root_node().to_sexp(), parse(&text).root_node().to_sexp());
+}
+
+/// Where the text ends in the middle of an item, the items before it are what they were.
+#[test]
+fn the_items_before_an_unfinished_one_stay() {
+    for path in files("../../models", "fdc") {
+        let text = read(&path);
+        let words = |part: &str| {
+            let mut words = Vec::new();
+            item_words(parse(part).root_node(), part, &mut words);
+            words
+        };
+        // Those of a phase that is not closed are not looked at.
+        let outer = |word: &String| text[..place(word)].ends_with('\n');
+        let whole: Vec<String> = words(&text).into_iter().filter(outer).collect();
+        for pair in whole.windows(2) {
+            let (start, next) = (place(&pair[0]), place(&pair[1]));
+            let expected: Vec<&String> = whole.iter().take_while(|word| place(word) < start).collect();
+            for end in (start..next).filter(|&end| text.is_char_boundary(end)) {
+                let found = words(&text[..end]);
+                let missing: Vec<_> = expected.iter().filter(|word| !found.contains(word)).collect();
+                assert!(missing.is_empty(), "{}: {missing:?} in\n{}", path.display(), &text[..end]);
+            }
+        }
+    }
+}
+
+fn place(word: &str) -> usize {
+    word.split(' ').next().and_then(|at| at.parse().ok()).expect("a word has its place")
 }
 
 #[test]

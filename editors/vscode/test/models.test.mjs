@@ -12,18 +12,25 @@ const require = createRequire(import.meta.url);
 const here = (path) => new URL(path, import.meta.url);
 const models = here("../../../target/editors/models/");
 
+// Of Markdown as much as is needed here: nothing.
+const grammars = {
+  "source.fdc": "../syntaxes/fdc.tmLanguage.json",
+  "markdown.fdc.codeblock": "../syntaxes/markdown.tmLanguage.json",
+  "text.html.markdown": "stubs/markdown.json",
+};
 await oniguruma.loadWASM(readFileSync(require.resolve("vscode-oniguruma/release/onig.wasm")).buffer);
 const registry = new textmate.Registry({
   onigLib: Promise.resolve({
     createOnigScanner: (patterns) => new oniguruma.OnigScanner(patterns),
     createOnigString: (text) => new oniguruma.OnigString(text),
   }),
-  loadGrammar: async () => JSON.parse(readFileSync(here("../syntaxes/fdc.tmLanguage.json"), "utf8")),
+  loadGrammar: async (scope) => grammars[scope] && JSON.parse(readFileSync(here(grammars[scope]), "utf8")),
+  getInjections: (scope) => (scope === "text.html.markdown" ? ["markdown.fdc.codeblock"] : undefined),
 });
-const grammar = await registry.loadGrammar("source.fdc");
+const fdc = await registry.loadGrammar("source.fdc");
 
 // All tokens of a text: the innermost scope, the text, and the place in bytes.
-function tokens(text) {
+function tokens(text, grammar = fdc) {
   const found = [];
   let state = textmate.INITIAL;
   let start = 0;
@@ -56,4 +63,11 @@ test("every word and every number has a scope", () => {
     const bare = tokens(read(name)).filter(({ scope, text }) => scope === "source.fdc" && /[^\s(){}[\]]/.test(text));
     assert.deepEqual(bare, [], name);
   }
+});
+
+test("models in Markdown have their colours, and what follows has none", async () => {
+  const markdown = await registry.loadGrammar("text.html.markdown");
+  const found = tokens("a state\n\n```fdc more\nstate x\n```\n\na state\n", markdown);
+  const items = found.filter(({ scope }) => scope === "keyword.other.item.fdc");
+  assert.deepEqual(items.map(({ at, text }) => [at, text]), [[21, "state"]]);
 });

@@ -1,19 +1,20 @@
 //! The diagnostics of a solve that failed, at the lines of the model: FDC0601 and FDC0602.
 
 use crate::output::number::{short, significant};
+use crate::output::units::Units;
 use fdcc_grammar::{Code, Diagnostic, Span};
 use fdcc_runtime::homotopy::{Limiting, Outcome};
 use fdcc_runtime::nlp::{Place, Status};
 use fdcc_runtime::problem::{Problem, Variable};
 
 /// What a failed solve says, if it is about a line of the model.
-pub fn diagnostic(problem: &Problem, outcome: &Outcome) -> Option<Diagnostic> {
+pub fn diagnostic(problem: &Problem, outcome: &Outcome, units: &Units) -> Option<Diagnostic> {
     match &outcome.solution.status {
         // The runtime may not know the place.
         Status::NotFinite(place) if place.origin.label.is_empty() => None,
         Status::NotFinite(place) => Some(not_finite(outcome, place)),
         Status::Infeasible => {
-            outcome.limiting.as_ref().map(|limiting| infeasible(problem, outcome, limiting))
+            outcome.limiting.as_ref().map(|limiting| infeasible(problem, outcome, limiting, units))
         }
         _ => None,
     }
@@ -35,19 +36,19 @@ fn not_finite(outcome: &Outcome, place: &Place) -> Diagnostic {
     )
 }
 
-fn infeasible(problem: &Problem, outcome: &Outcome, limiting: &Limiting) -> Diagnostic {
+fn infeasible(problem: &Problem, outcome: &Outcome, limiting: &Limiting, units: &Units) -> Diagnostic {
     let Limiting { origin, condition, violation, .. } = limiting;
-    let amount = significant(*violation, 3);
     let when = limiting.time.map(|t| format!(" at t = {}", short(t))).unwrap_or_default();
     let mut diagnostic = match condition {
         Some(condition) => {
             let message = format!("no feasible trajectory found: `{}` cannot be met", condition.label);
             let label = "this stands against the equations most";
-            let worst = format!("worst{when}: off by {amount} in one step");
+            let worst = format!("worst{when}: off by {} in one step", significant(*violation, 3));
             Diagnostic::new(Code::Infeasible, message, span(condition.span), label)
                 .label(span(origin.span), worst)
         }
         None => {
+            let amount = units.violation(&origin.label, *violation, 3);
             let message =
                 format!("no feasible trajectory found: `{}` is violated by {amount} at best", origin.label);
             let label = format!("worst{when}: off by {amount}");

@@ -149,7 +149,8 @@ fn replayed(document: &Document) -> Option<String> {
         Some(worst) => {
             let when = worst.time.map(|t| format!(" at t = {}", document.units.value("time", t, 6)));
             let when = when.unwrap_or_default();
-            format!("`{}` off by {}{when}", worst.condition, short(violation))
+            let amount = document.units.violation(&worst.condition, violation, 6);
+            format!("`{}` off by {amount}{when}", worst.condition)
         }
         None => "all conditions met".into(),
     });

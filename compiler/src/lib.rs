@@ -88,6 +88,7 @@ pub fn check(tree: &ast::Model) -> Checked {
     let model = (!diagnostics.iter().any(fatal)).then(|| Model {
         name: name.into(),
         units: units.names.clone(),
+        condition_units: units.conditions,
         ..whole.into_model()
     });
     if let Some(model) = &model {

@@ -300,6 +300,8 @@ pub struct Model {
     pub not_yet: Vec<Diagnostic>,
     /// The unit of each name, if the text uses units.
     pub units: Vec<NamedUnit>,
+    /// The unit of each condition, by what it is called.
+    pub condition_units: Vec<NamedUnit>,
 }
 
 impl Model {
@@ -337,6 +339,7 @@ impl Model {
             smooth: false,
             not_yet: Vec::new(),
             units: Vec::new(),
+            condition_units: Vec::new(),
         }
     }
 

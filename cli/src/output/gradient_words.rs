@@ -38,13 +38,17 @@ impl Document {
     fn derivatives(&self) -> String {
         let mut columns = self.own();
         let mut add =
-            |head: String, column: &Named<Derivative>| columns.push((head, cells(column, &self.rows())));
+            |head: String, column: &Named<Derivative>| columns.push((head, self.cells(column, &self.rows())));
         if let Some(other) = &self.compare.smoothed {
             let sigma = other.sigma.map_or(String::new(), |sigma| format!("sigma {}, ", short(sigma)));
             add(format!("smoothed ({sigma}N {})", other.n), &other.gradient);
         }
         if let Some(other) = &self.compare.discretised {
             add(format!("discretised ({}, N {})", other.scheme, other.n), &other.gradient);
+        }
+        if !self.units.is_empty() {
+            let unit = |(name, _): &(String, Derivative)| self.in_its_unit(name).1;
+            columns.push(("unit".into(), self.gradient.0.iter().map(unit).collect()));
         }
         let labels = self.gradient.0.iter().zip(self.rows()).map(|((name, it), row)| it.label(name, row));
         let row = |(at, label): (usize, String)| {
@@ -59,12 +63,26 @@ impl Document {
         let rows = self.rows();
         let Some(sides) = &self.one_sided else {
             let both = [("exact", &self.gradient), ("adjoint", &self.adjoint)];
-            return both.map(|(head, column)| (head.to_string(), cells(column, &rows))).to_vec();
+            return both.map(|(head, column)| (head.to_string(), self.cells(column, &rows))).to_vec();
         };
-        let digits = |side: Option<f64>| side.map_or("-".to_string(), |value| significant(value, DIGITS));
-        let below = sides.0.iter().map(|(_, sides)| digits(sides.below)).collect();
-        let above = sides.0.iter().map(|(_, sides)| digits(sides.above)).collect();
+        let digits = |name: &str, side: Option<f64>| {
+            side.map_or("-".to_string(), |value| significant(value * self.in_its_unit(name).0, DIGITS))
+        };
+        let below = sides.0.iter().map(|(name, sides)| digits(name, sides.below)).collect();
+        let above = sides.0.iter().map(|(name, sides)| digits(name, sides.above)).collect();
         vec![("below".to_string(), below), ("above".to_string(), above)]
+    }
+
+    fn cells(&self, column: &Named<Derivative>, rows: &[usize]) -> Vec<String> {
+        let cell = |((name, derivative), row): (&(String, Derivative), &usize)| {
+            significant(derivative.at(*row) * self.in_its_unit(name).0, DIGITS)
+        };
+        column.0.iter().zip(rows).map(cell).collect()
+    }
+
+    /// How many of its unit one in SI of a derivative by a name is, and that unit. A start is in the unit of its state.
+    fn in_its_unit(&self, name: &str) -> (f64, String) {
+        self.units.of_derivative("objective", name.strip_suffix("(start)").unwrap_or(name))
     }
 
     /// Of each derivative the row that is shown: the one where it is largest.
@@ -89,11 +107,6 @@ impl Document {
         };
         table(vec!["surface", "event", "at t", "margin"], self.events.iter().map(row).collect())
     }
-}
-
-fn cells(column: &Named<Derivative>, rows: &[usize]) -> Vec<String> {
-    let cells = column.0.iter().zip(rows);
-    cells.map(|((_, derivative), row)| significant(derivative.at(*row), DIGITS)).collect()
 }
 
 impl Derivative {

@@ -5,13 +5,13 @@ use super::number::significant;
 use fdcc_compiler::{Model, NamedUnit};
 use serde::{Serialize, Serializer};
 
-/// The units of the names of a model.
+/// The units of the names of a model, and of its conditions.
 #[derive(Clone, Debug, Default)]
-pub struct Units(Vec<NamedUnit>);
+pub struct Units(Vec<NamedUnit>, Vec<NamedUnit>);
 
 impl From<&Model> for Units {
     fn from(model: &Model) -> Self {
-        Units(model.units.clone())
+        Units(model.units.clone(), model.condition_units.clone())
     }
 }
 
@@ -34,6 +34,19 @@ impl Units {
         }
     }
 
+    /// `3.2 mm`: by how much a condition is violated, or a part of one, or a bound.
+    pub fn violation(&self, condition: &str, value: f64, digits: usize) -> String {
+        let is_it = |it: &&NamedUnit| {
+            condition
+                .strip_prefix(it.name.as_str())
+                .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        match self.1.iter().find(is_it) {
+            Some(it) => Units(vec![it.clone()], Vec::new()).value(&it.name, value, digits),
+            None => self.value(condition, value, digits),
+        }
+    }
+
     /// `0.5 J per kg`: a derivative of what one name measures by another.
     pub fn per(&self, of: &str, by: &str, derivative: f64, digits: usize) -> String {
         let value = self.value(of, derivative / self.scaled(by, 1.0), digits);
@@ -41,6 +54,17 @@ impl Units {
             Some(NamedUnit { unit, .. }) if !unit.is_empty() => format!("{value} per {unit}"),
             _ => format!("{value} per unit"),
         }
+    }
+
+    /// How many of its unit one in SI of such a derivative is, and that unit: `J per kg`, `J` by a number, `1 per kg`.
+    pub fn of_derivative(&self, of: &str, by: &str) -> (f64, String) {
+        let unit = |name: &str| self.of(name).map(|it| it.unit.as_str()).filter(|unit| !unit.is_empty());
+        let text = match (unit(of), unit(by)) {
+            (None, None) => String::new(),
+            (Some(of), None) => of.into(),
+            (of, Some(by)) => format!("{} per {by}", of.unwrap_or("1")),
+        };
+        (self.scaled(of, 1.0) / self.scaled(by, 1.0), text)
     }
 
     /// The number alone, in the unit of the name.
@@ -83,11 +107,10 @@ mod tests {
             scale,
             ..NamedUnit::default()
         };
-        Units(vec![
-            named("v", "km/h", "m/s", 1.0 / 3.6),
-            named("phi", "deg", "", 0.5),
-            named("n", "", "", 1.0),
-        ])
+        let names =
+            vec![named("v", "km/h", "m/s", 1.0 / 3.6), named("phi", "deg", "", 0.5), named("n", "", "", 1.0)];
+        let conditions = vec![named("end pos == goal", "mm", "m", 1e-3)];
+        Units(names, conditions)
     }
 
     #[test]
@@ -97,7 +120,12 @@ mod tests {
         assert_eq!(units().value("other", 25.0, 6), "25");
         assert_eq!(units().per("v", "phi", 25.0, 6), "45 km/h per deg");
         assert_eq!(units().per("n", "v", 3.6, 6), "1 per km/h");
+        assert_eq!(units().of_derivative("n", "phi"), (0.5, "1 per deg".into()));
+        assert_eq!(units().of_derivative("phi", "n"), (2.0, "deg".into()));
         assert_eq!(units().per("n", "n", 3.0, 6), "3 per unit");
+        assert_eq!(units().violation("end pos == goal.y", 0.0032, 3), "3.2 mm");
+        assert_eq!(units().violation("v", 25.0, 3), "90 km/h");
+        assert_eq!(units().violation("unknown", 25.0, 3), "25");
         assert_eq!(units().title("phi"), "phi [deg]");
         assert_eq!(
             units().pairs(&Named(vec![("phi".into(), 1.0), ("n".into(), 2.0)]), 6),

@@ -176,7 +176,10 @@ impl Document {
             (None, Some(gap), Some(violation)) => {
                 let word = if self.is_confirmed() { "confirmed" } else { "NOT CONFIRMED" };
                 let violated = match worst {
-                    Some(worst) => format!("violates `{}` by {}", worst.condition, short(*violation)),
+                    Some(worst) => {
+                        let amount = self.units.violation(&worst.condition, *violation, 6);
+                        format!("violates `{}` by {amount}", worst.condition)
+                    }
                     None => "meets all conditions".into(),
                 };
                 format!(

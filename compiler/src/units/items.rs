@@ -90,6 +90,7 @@ impl<'a> Inference<'a> {
 
     fn condition(&mut self, condition: &'a Condition) {
         let (mut left, mut text) = (self.operand(&condition.first), &condition.first);
+        self.values.insert(condition.span, left.0.clone());
         for (_, next) in &condition.rest {
             let right = self.operand(next);
             self.compare(Reason::Comparison, &left, &right);

@@ -60,6 +60,8 @@ pub(crate) struct Units {
     pub diagnostics: Vec<Diagnostic>,
     /// The unit of each name, where it is known.
     pub names: Vec<NamedUnit>,
+    /// The unit of each condition, by what the condition is called.
+    pub conditions: Vec<NamedUnit>,
 }
 
 /// Finds the unit of every name, and every place where units do not fit together.
@@ -79,7 +81,9 @@ pub(crate) fn infer(tree: &ast::Model) -> Units {
             let findings = Findings { inference, solution, notation: &speaker.notation };
             let mut diagnostics = told(&speaker, known, &mistakes);
             diagnostics.extend(bare::found(inference, solution, &speaker.notation));
-            return Units { names: findings.names(&tree.items), diagnostics };
+            let names = findings.names(&tree.items);
+            let conditions = findings.conditions(&tree.items, &names);
+            return Units { names, conditions, diagnostics };
         }
         for at in found.mistakes {
             let mistake = Mistake::new(&inference.requirements[at], inference, solution);

@@ -7,9 +7,9 @@ use super::notation::{Notation, written};
 use super::solve::Solution;
 use super::table;
 use super::value::Part;
-use crate::resolve::scope;
+use crate::resolve::{scope, text, walk};
 use fdcc_grammar::Span;
-use fdcc_grammar::ast::{Item, ItemKind};
+use fdcc_grammar::ast::{Condition, Item, ItemKind};
 
 /// The unit of a declared name, or of one part of it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -59,6 +59,22 @@ impl Findings<'_, '_> {
         all
     }
 
+    /// Of every condition what it compares, as the first name in it is written that measures the same.
+    pub fn conditions(&self, items: &[Item], names: &[NamedUnit]) -> Vec<NamedUnit> {
+        let of_item = |item: &Item| {
+            let (name, condition) = match &item.kind {
+                ItemKind::Start { condition } => (format!("start {}", text::condition(condition)), condition),
+                ItemKind::End { condition } => (format!("end {}", text::condition(condition)), condition),
+                ItemKind::Path { name: Some(name), condition } => (name.name.clone(), condition),
+                ItemKind::Path { condition, .. } => (text::condition(condition), condition),
+                _ => return None,
+            };
+            let found = self.found(condition.span, name, self.value(condition.span).first()?)?;
+            Some(as_written(found, condition, names))
+        };
+        items.iter().filter_map(of_item).collect()
+    }
+
     fn value(&self, span: Span) -> &[Part] {
         self.inference.values.get(&span).map_or(&[][..], Vec::as_slice)
     }
@@ -100,5 +116,21 @@ impl Findings<'_, '_> {
         let dimension = self.solution.settled(part.dimension.as_ref()?).filter(Dimension::is_known)?;
         let unit = self.notation.unit(&dimension);
         Some(NamedUnit { name, span, si: unit.clone(), unit, scale: 1.0, dimension, ..NamedUnit::default() })
+    }
+}
+
+/// In the unit of the first name of a condition that measures the same.
+fn as_written(found: NamedUnit, condition: &Condition, names: &[NamedUnit]) -> NamedUnit {
+    let mut like = None;
+    for side in std::iter::once(&condition.first).chain(condition.rest.iter().map(|it| &it.1)) {
+        walk::names(side, &mut |name, _| {
+            let is_it =
+                |it: &&NamedUnit| it.name.split('.').next() == Some(name) && it.dimension == found.dimension;
+            like = like.or(names.iter().filter(|it| it.written).find(is_it));
+        });
+    }
+    match like {
+        Some(like) => NamedUnit { unit: like.unit.clone(), scale: like.scale, ..found },
+        None => found,
     }
 }

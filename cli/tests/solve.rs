@@ -320,3 +320,39 @@ fn a_model_from_the_standard_input_is_solved() {
     expect_exit(&output, 0, "-");
     assert_eq!(json(&output)["model"], "ramp");
 }
+
+/// Controls that are not constant come with the values that define them, and their replay follows them.
+#[test]
+fn controls_of_every_shape_are_written_and_replayed() {
+    let model = "model swing\nparam k = 2\ntime t in [0, 4]\nstate x start 1\nstate v start 0\ncontrol u in [-3, 3]\n\
+                 dynamics {\n  x' = v\n  v' = -k*x + u\n}\nend x == 0\nend v == 0\nminimize integral(u^2)\n";
+    let folder = folder("control_shapes", &[("swing.fdc", model.as_bytes())]);
+    for (shape, count) in [("constant", 0), ("linear", 21), ("polynomial", 60)] {
+        let document = solved(
+            &folder,
+            &[
+                "swing.fdc",
+                "--method",
+                "scheme=radau3",
+                "--method",
+                "N=20",
+                "--method",
+                &format!("controls={shape}"),
+                "--out",
+                shape,
+            ],
+        );
+        assert_eq!(document["method"]["controls"], shape);
+        assert_eq!(document["controls"]["u"].as_array().expect("one for each interval").len(), 20);
+        let nodes = document["control_nodes"]["values"]["u"].as_array().map_or(0, Vec::len);
+        assert_eq!(nodes, count, "{shape}");
+        assert_eq!(document["verification"]["confirmed"], true, "{shape}: {}", document["verification"]);
+        assert_eq!(document["hamiltonian"].as_array().expect("one for each interval").len(), 20);
+        assert!(document["hamiltonian_check"]["deviation"].as_f64().expect("a number") < 0.01, "{shape}");
+        // A stiffer spring costs more; by differences of two optima.
+        let worth = document["sensitivities"]["k"].as_f64().expect("a number");
+        assert!((worth - 0.52).abs() < 0.01, "{shape}: {worth}");
+        let verified = fdcc(&folder, &["verify", &format!("{shape}/swing.sol.json"), "--json"], "");
+        assert_eq!(json(&verified)["confirmed"], true, "{shape}");
+    }
+}

@@ -59,6 +59,10 @@ struct Grid {
     step: usize,
     /// Of collocation.
     times: Vec<f64>,
+    /// Steps in the interval.
+    parts: usize,
+    /// Steps in the interval.
+    parts: usize,
     shape: ControlShape,
     nodes: Vec<Node>,
     /// Constant entries: row, place, value.
@@ -77,19 +81,26 @@ impl Grid {
         let chosen =
             if method.controls == ControlShape::Polynomial { times.len() * controls } else { controls };
         let carried = states + if method.controls == ControlShape::Linear { controls } else { 0 };
-        let inner = times.iter().filter(|time| **time < 1.0).count();
+        let inside = times.iter().filter(|time| **time < 1.0).count();
+        let inner = method.steps * (inside + 1) - 1;
         let (nodes, links, path) = (Vec::new(), Vec::new(), Vec::new());
-        let step = carried + chosen + inner * states;
-        let mut grid =
-            Grid { states, controls, carried, step, times, shape: method.controls, nodes, links, path };
-        if grid.times.is_empty() {
-            grid.one_step(problem)
-        } else {
-            grid.collocation()
+        let (step, parts, shape) = (carried + chosen + inner * states, method.steps, method.controls);
+        let mut grid = Grid { states, controls, carried, step, times, parts, shape, nodes, links, path };
+        for part in 0..parts {
+            if grid.times.is_empty() {
+                grid.one_step(problem, part)
+            } else {
+                grid.collocation(part)
+            }
+            if part + 1 < parts {
+                let (time, place) = (grid.time(part, 1.0), grid.end_of(part));
+                let point = grid.point(time, |i| vec![(place + i, 1.0)]);
+                grid.path.push(point);
+            }
         }
         let last = grid.point(1.0, |i| vec![(step + i, 1.0)]);
         grid.path.push(last);
-        let first = (1 + inner) * states;
+        let first = grid.parts * grid.rows_of_part();
         for i in 0..carried - states {
             grid.links.extend([(first + i, step + states + i, 1.0), (first + i, carried + i, -1.0)]);
         }
@@ -103,11 +114,31 @@ impl Grid {
 
     /// The place of the first state inside the interval.
     fn inner_place(&self) -> usize {
-        self.step - self.times.iter().filter(|time| **time < 1.0).count() * self.states
+        self.step + self.states - self.parts * self.rows_of_part()
     }
 
-    fn one_step(&mut self, problem: &Problem) {
-        let states = self.states;
+    /// Equations of one step; as many as it has variables beside those that it begins with.
+    fn rows_of_part(&self) -> usize {
+        (self.times.iter().filter(|time| **time < 1.0).count() + 1) * self.states
+    }
+
+    /// The place of the states at the end of a step.
+    fn end_of(&self, part: usize) -> usize {
+        let inside = self.inner_place() + (part + 1) * self.rows_of_part() - self.states;
+        if part + 1 == self.parts { self.step } else { inside }
+    }
+
+    fn start_of(&self, part: usize) -> usize {
+        if part == 0 { 0 } else { self.end_of(part - 1) }
+    }
+
+    fn time(&self, part: usize, time: f64) -> f64 {
+        (part as f64 + time) / self.parts as f64
+    }
+
+    fn one_step(&mut self, problem: &Problem, part: usize) {
+        let (states, start, end) = (self.states, self.start_of(part), self.end_of(part));
+        let (row, length) = (part * self.rows_of_part(), 1.0 / self.parts as f64);
         let node = |weight: f64, time: f64| (weight, time, vec![time; states]);
         let nodes = match problem.method.scheme {
             Scheme::Midpoint => vec![node(1.0, 0.5)],
@@ -120,35 +151,40 @@ impl Grid {
             _ => vec![node(1.0, 0.0)],
         };
         for (weight, time, share) in nodes {
-            let point = self.point(time, |i| vec![(i, 1.0 - share[i]), (self.step + i, share[i])]);
-            self.nodes.push(Node { point, weight, row: 0, factor: weight });
+            let states = |i: usize| vec![(start + i, 1.0 - share[i]), (end + i, share[i])];
+            let point = self.point(self.time(part, time), states);
+            self.nodes.push(Node { point, weight: weight * length, row, factor: weight * length });
         }
-        self.links.extend((0..states).flat_map(|i| [(i, self.step + i, 1.0), (i, i, -1.0)]));
+        self.link(row, &[start, end], &[-1.0, 1.0]);
     }
 
-    fn collocation(&mut self) {
-        let (states, times, first) = (self.states, self.times.clone(), self.inner_place());
+    fn collocation(&mut self, part: usize) {
+        let (states, times) = (self.states, self.times.clone());
+        let (row, length) = (part * self.rows_of_part(), 1.0 / self.parts as f64);
+        let first = self.inner_place() + row;
         let points: Vec<f64> = [0.0].into_iter().chain(times.iter().copied()).collect();
         let place = |j: usize| match j {
-            0 => 0,
-            j if points[j] == 1.0 => self.step,
+            0 => self.start_of(part),
+            j if points[j] == 1.0 => self.end_of(part),
             j => first + (j - 1) * states,
         };
         let places: Vec<usize> = (0..points.len()).map(place).collect();
         let b = weights(&times, |q| 1.0 / f64::from(q + 1));
         for (i, time) in times.iter().enumerate() {
             let slopes = weights(&points, |q| if q == 0 { 0.0 } else { f64::from(q) * time.powi(q - 1) });
-            self.link(i * states, &places, &slopes);
-            let point = self.point(*time, |state| vec![(places[i + 1] + state, 1.0)]);
-            self.nodes.push(Node { point, weight: b[i], row: i * states, factor: 1.0 });
+            self.link(row + i * states, &places, &slopes);
+            let point = || self.point(self.time(part, *time), |state| vec![(places[i + 1] + state, 1.0)]);
+            let (node, path) = (point(), point());
+            let weight = b[i] * length;
+            self.nodes.push(Node { point: node, weight, row: row + i * states, factor: length });
             if *time < 1.0 {
-                self.path.push(self.point(*time, |state| vec![(places[i + 1] + state, 1.0)]));
+                self.path.push(path);
             }
         }
         if times.last() != Some(&1.0) {
             let end: Vec<f64> = weights(&points, |_| 1.0).iter().map(|value| -value).collect();
-            self.link(times.len() * states, &places, &end);
-            self.link(times.len() * states, &[self.step], &[1.0]);
+            self.link(row + times.len() * states, &places, &end);
+            self.link(row + times.len() * states, &[self.end_of(part)], &[1.0]);
         }
     }
 

@@ -130,3 +130,40 @@ fn a_start_time_that_is_not_zero() {
         known: vec![("x(end)", |run| run.end("x"), 2.0 * e), ("the objective", Solved::objective, e)],
     });
 }
+
+/// Steps inside an interval are steps: without a control, 3 steps in each of 20 intervals are 60 intervals.
+#[test]
+fn steps_inside_an_interval_are_steps() {
+    let text = "time t in [0, 1] state x start 1 state y start 0 dynamics { x' = -x^2 + y*t y' = x - y } \
+                minimize integral(t*x) + integral(x)^2 + y(end)";
+    for scheme in [
+        "euler",
+        "implicit_euler",
+        "implicit_euler lagged (y)",
+        "midpoint",
+        "trapezoid",
+        "rk4",
+        "radau2",
+        "gauss2",
+    ] {
+        let solved =
+            |grid: &str| Solved::new(&format!("{text} method {{ grid {grid} scheme {scheme} }}"), &[], &[]);
+        let (one, other) = (solved("N = 20 steps 3"), solved("N = 60"));
+        assert!((one.objective() - other.objective()).abs() < 1e-12, "{scheme}");
+        for (k, x) in one.state("x").iter().enumerate() {
+            assert!((x - other.state("x")[3 * k]).abs() < 1e-12, "{scheme}, grid point {k}");
+        }
+    }
+}
+
+/// With a control, steps are more accurate than their interval is: what is left is the error of the control.
+#[test]
+fn steps_leave_the_control_as_it_is() {
+    let text = "time t in [0, 1] state x start 1 control u dynamics { x' = u } minimize integral(x^2 + u^2)";
+    let solved = |method: &str| Solved::new(&format!("{text} method {{ grid N = 10 {method} }}"), &[], &[]);
+    let (steps, exact) = (solved("steps 400 scheme implicit_euler"), solved("scheme radau5"));
+    assert_eq!(steps.control("u").len(), 10);
+    for (u, v) in steps.control("u").iter().zip(exact.control("u")) {
+        assert!((u - v).abs() < 1e-3, "{u} and {v}");
+    }
+}

@@ -53,7 +53,7 @@ fn both_factorisations_lead_to_the_same_solution() {
 fn every_scheme_leads_to_a_point_that_meets_the_optimality_conditions() {
     let race = text_of("racecar");
     let euler = race.replace("scheme implicit_euler lagged (th)", "scheme euler");
-    let cases: [(&str, &str, Changes); 11] = [
+    let cases: [(&str, &str, Changes); 13] = [
         ("euler", &euler, &[]),
         ("lagged", &race, &[]),
         ("implicit_euler", &euler, &[("scheme", "implicit_euler")]),
@@ -61,6 +61,12 @@ fn every_scheme_leads_to_a_point_that_meets_the_optimality_conditions() {
         ("trapezoid", &euler, &[("scheme", "trapezoid")]),
         ("trapezoid, linear", &euler, &[("scheme", "trapezoid"), ("controls", "linear")]),
         ("radau2", &euler, &[("scheme", "radau2")]),
+        ("lagged, 2 steps", &race, &[("steps", "2")]),
+        (
+            "gauss1, 3 steps, polynomial",
+            &euler,
+            &[("scheme", "gauss1"), ("steps", "3"), ("controls", "polynomial")],
+        ),
         ("radau3, polynomial", &euler, &[("scheme", "radau3"), ("controls", "polynomial")]),
         ("gauss2, polynomial", &euler, &[("scheme", "gauss2"), ("controls", "polynomial")]),
         ("gauss3, linear", &euler, &[("scheme", "gauss3"), ("controls", "linear")]),

@@ -89,6 +89,7 @@ pub struct MethodUsed {
     pub controls: String,
     #[serde(rename = "N")]
     pub n: usize,
+    pub steps: usize,
     /// The width of the first surface, or nothing where nothing is smoothed.
     pub sigma: Option<f64>,
     /// The width of every surface.
@@ -204,6 +205,7 @@ impl MethodUsed {
             scheme: scheme_name(method.scheme),
             controls: shape_name(method.controls).to_string(),
             n: method.intervals,
+            steps: method.steps,
             sigma: outcome.sigma.first().copied(),
             sigmas: surfaces.map(|(surface, sigma)| (surface.name.clone(), *sigma)).collect(),
             kernel: method.kernel.clone(),

@@ -72,12 +72,7 @@ pub(crate) fn set(method: &mut Method, key: &str, given: &Given) -> Result<(), R
             method.intervals = if method.is_refined { FIRST_GRID } else { count()? };
         }
         ("tolerance", _) => method.tolerance = positive()?,
-        ("steps", _) => {
-            method.steps = count()?;
-            if method.steps > 1 {
-                return Err(Refused::NotYet);
-            }
-        }
+        ("steps", _) => method.steps = count()?,
         ("max_iter", _) => method.max_iter = count()?,
         ("seed", _) => method.seed = whole(given).ok_or_else(refused)?,
         ("continue", _) => method.continuation = decreasing(given).ok_or_else(refused)?,

@@ -6,7 +6,8 @@
 //! rows        links - factor h F(node), one block for each node; then links alone
 //! ```
 //!
-//! `y_k` holds the states at the inner nodes of a collocation scheme. The controls `u_k` are one value, the values at the
+//! `y_k` holds the states inside the interval: at the ends of steps, where there are several, and at the inner nodes of a collocation
+//! scheme. The controls `u_k` are one value, the values at the
 //! nodes, or, where controls are linear, the values at the end of the interval, which `w_{k+1}` hands on to the next.
 
 use super::mesh::Mesh;
@@ -86,20 +87,19 @@ impl Interval {
             None => places.one_step(method),
             Some(nodes) => places.collocated(nodes),
         };
-        let row = (1 + places.inner() / places.states.max(1)) * places.states;
+        let row = places.row(places.steps);
         for control in 0..places.carried - places.states {
             let (handed_on, next) = (places.carried + control, places.step() + places.states + control);
             links.push(Link { row: row + control, place: next, value: 1.0 });
             links.push(Link { row: row + control, place: handed_on, value: -1.0 });
         }
         let end = places.point(1.0, |state| vec![(places.step() + state, 1.0)]);
-        let inner = nodes.iter().filter(|node| places.nodes.is_some() && node.point.time < 1.0);
         Interval {
             carried: places.carried,
             chosen: places.chosen,
             slots: places.slots(),
             start: places.point(0.0, |state| vec![(state, 1.0)]),
-            path: inner.map(|node| node.point.clone()).chain([end.clone()]).collect(),
+            path: places.inner_points().into_iter().chain([end.clone()]).collect(),
             means: (0..places.controls).map(|control| places.mean(control)).collect(),
             end,
             nodes,
@@ -154,6 +154,8 @@ pub(crate) fn add_up(combination: &Combination, stages: Stages, v: &[f64], targe
 struct Places {
     nodes: Option<&'static [f64]>,
     shape: ControlShape,
+    /// Integration steps.
+    steps: usize,
     states: usize,
     controls: usize,
     carried: usize,
@@ -171,7 +173,7 @@ impl Places {
             _ => controls,
         };
         let carried = layout.x + if shape == ControlShape::Linear { controls } else { 0 };
-        Places { nodes, shape, states: layout.x, controls, carried, chosen }
+        Places { nodes, shape, steps: method.steps, states: layout.x, controls, carried, chosen }
     }
 
     /// Nodes before the end of the interval, which have variables of their own.
@@ -180,12 +182,51 @@ impl Places {
         if nodes.last() == Some(&1.0) { &nodes[..nodes.len() - 1] } else { nodes }
     }
 
-    fn inner(&self) -> usize {
-        self.inner_nodes().len() * self.states
+    /// The first row of a step; behind the last, that of what is handed on.
+    fn row(&self, step: usize) -> usize {
+        step * (self.inner_nodes().len() + 1) * self.states
     }
 
+    /// All variables before `x_{k+1}`: each step but the last ends inside.
     fn step(&self) -> usize {
-        self.carried + self.chosen + self.inner()
+        self.carried + self.chosen + self.row(self.steps) - self.states
+    }
+
+    /// The place of the states at the beginning of a step, which is the end of the one before.
+    fn joint(&self, step: usize) -> usize {
+        match step {
+            0 => 0,
+            step if step == self.steps => self.step(),
+            step => self.carried + self.chosen + self.row(step) - self.states,
+        }
+    }
+
+    /// The place of the states at an inner node of a step.
+    fn node(&self, step: usize, node: usize) -> usize {
+        self.carried + self.chosen + self.row(step) + node * self.states
+    }
+
+    /// The time of the interval at which this part of a step has passed.
+    fn time(&self, step: usize, part: f64) -> f64 {
+        (step as f64 + part) / self.steps as f64
+    }
+
+    /// Times and places inside the interval at which there are states.
+    fn inner(&self) -> Vec<(f64, usize)> {
+        let mut inner = Vec::new();
+        for step in 0..self.steps {
+            let nodes = self.inner_nodes().iter().enumerate();
+            inner.extend(nodes.map(|(node, part)| (self.time(step, *part), self.node(step, node))));
+            if step + 1 < self.steps {
+                inner.push((self.time(step, 1.0), self.joint(step + 1)));
+            }
+        }
+        inner
+    }
+
+    fn inner_points(&self) -> Vec<Point> {
+        let inner = self.inner().into_iter();
+        inner.map(|(time, place)| self.point(time, |state| vec![(place + state, 1.0)])).collect()
     }
 
     fn slots(&self) -> Vec<Slot> {
@@ -197,7 +238,7 @@ impl Places {
             (ControlShape::Polynomial, Some(nodes)) => slots.extend(nodes.iter().flat_map(|c| controls(*c))),
             _ => slots.extend(controls(0.0)),
         }
-        slots.extend(self.inner_nodes().iter().flat_map(|c| states(*c)));
+        slots.extend(self.inner().into_iter().flat_map(|(time, _)| states(time)));
         slots
     }
 
@@ -230,54 +271,57 @@ impl Places {
         terms.collect()
     }
 
-    /// `x_{k+1} - x_k - h sum_j b_j F(...)`
+    /// `x+ - x - h sum_j b_j F(...)` for each step.
     fn one_step(&self, method: &Method) -> (Vec<Node>, Vec<Link>) {
-        let nodes = tableau::nodes(method, self.states).into_iter().map(|node| {
-            let ends = |i: usize| {
-                let ends = [(i, 1.0 - node.blend[i]), (self.step() + i, node.blend[i])];
-                ends.into_iter().filter(|(_, factor)| *factor != 0.0).collect()
-            };
-            let point = self.point(node.time, ends);
-            Node { point, weight: node.weight, row: 0, factor: node.weight }
-        });
-        let links = (0..self.states).flat_map(|row| {
-            let place = self.step() + row;
-            [Link { row, place: row, value: -1.0 }, Link { row, place, value: 1.0 }]
-        });
-        (nodes.collect(), links.collect())
+        let (mut nodes, mut links) = (Vec::new(), Vec::new());
+        for step in 0..self.steps {
+            let (row, now, next) = (self.row(step), self.joint(step), self.joint(step + 1));
+            nodes.extend(tableau::nodes(method, self.states).into_iter().map(|node| {
+                let ends = |i: usize| {
+                    let ends = [(now + i, 1.0 - node.blend[i]), (next + i, node.blend[i])];
+                    ends.into_iter().filter(|(_, factor)| *factor != 0.0).collect()
+                };
+                let weight = node.weight / self.steps as f64;
+                Node { point: self.point(self.time(step, node.time), ends), weight, row, factor: weight }
+            }));
+            self.link(row, &[(now, -1.0), (next, 1.0)], &mut links);
+        }
+        (nodes, links)
     }
 
     /// See [`collocation`].
-    fn collocated(&self, nodes: &[f64]) -> (Vec<Node>, Vec<Link>) {
-        let points: Vec<f64> = [0.0].into_iter().chain(nodes.iter().copied()).collect();
-        let (inner, states) = (self.inner_nodes().len(), self.states);
-        let place = |point: usize, state: usize| match point {
-            0 => state,
-            point if point <= inner => self.carried + self.chosen + (point - 1) * states + state,
-            _ => self.step() + state,
-        };
-        let mut links = Vec::new();
-        let mut link = |block: usize, factors: &[f64]| {
-            for state in 0..states {
-                let row = block * states + state;
-                let entries = factors.iter().enumerate();
-                links.extend(entries.map(|(j, value)| Link { row, place: place(j, state), value: *value }));
+    fn collocated(&self, times: &[f64]) -> (Vec<Node>, Vec<Link>) {
+        let points: Vec<f64> = [0.0].into_iter().chain(times.iter().copied()).collect();
+        let length = 1.0 / self.steps as f64;
+        let weights = collocation::weights(times);
+        let (mut nodes, mut links) = (Vec::new(), Vec::new());
+        for step in 0..self.steps {
+            let next = self.joint(step + 1);
+            let inner = (0..self.inner_nodes().len()).map(|node| self.node(step, node));
+            // The last node of Radau is the end of the step.
+            let places: Vec<usize> =
+                [self.joint(step)].into_iter().chain(inner).chain([next]).take(points.len()).collect();
+            for (j, (time, weight)) in times.iter().zip(&weights).enumerate() {
+                let (row, place) = (self.row(step) + j * self.states, places[j + 1]);
+                let slopes = places.iter().copied().zip(collocation::slopes(&points, *time));
+                self.link(row, &slopes.collect::<Vec<_>>(), &mut links);
+                let point = self.point(self.time(step, *time), |state| vec![(place + state, 1.0)]);
+                nodes.push(Node { point, weight: weight * length, row, factor: length });
             }
-        };
-        for (block, time) in nodes.iter().enumerate() {
-            link(block, &collocation::slopes(&points, *time));
+            if self.inner_nodes().len() == times.len() {
+                let values = collocation::values(&points, 1.0).into_iter().map(|value| -value);
+                let end = places.iter().copied().zip(values).chain([(next, 1.0)]);
+                self.link(self.row(step + 1) - self.states, &end.collect::<Vec<_>>(), &mut links);
+            }
         }
-        if inner == nodes.len() {
-            let end = collocation::values(&points, 1.0).into_iter().map(|value| -value);
-            link(nodes.len(), &end.chain([1.0]).collect::<Vec<_>>());
+        (nodes, links)
+    }
+
+    /// The same sum for every state.
+    fn link(&self, row: usize, sum: &[(usize, f64)], links: &mut Vec<Link>) {
+        for state in 0..self.states {
+            let entries = sum.iter().map(|(place, value)| (place + state, *value));
+            links.extend(entries.map(|(place, value)| Link { row: row + state, place, value }));
         }
-        let weights = collocation::weights(nodes).into_iter().zip(nodes).enumerate();
-        let nodes = weights.map(|(j, (weight, time))| Node {
-            point: self.point(*time, |state| vec![(place(j + 1, state), 1.0)]),
-            weight,
-            row: j * states,
-            factor: 1.0,
-        });
-        (nodes.collect(), links)
     }
 }

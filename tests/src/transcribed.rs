@@ -61,8 +61,6 @@ struct Grid {
     times: Vec<f64>,
     /// Steps in the interval.
     parts: usize,
-    /// Steps in the interval.
-    parts: usize,
     shape: ControlShape,
     nodes: Vec<Node>,
     /// Constant entries: row, place, value.

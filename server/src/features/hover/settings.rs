@@ -15,8 +15,9 @@ const KEYS: &[(&str, &str)] = &[
     ),
     (
         "N",
-        "Control intervals; the control is constant on each. Time and memory of an iteration grow with it, in proportion.",
+        "Control intervals. Time and memory of an iteration grow with it, in proportion. `auto` refines the grid where steps have errors.",
     ),
+    ("tolerance", "With `N = auto`: the sum of the errors of all steps that the grid may have."),
     ("steps", "Integration steps in each control interval."),
     (
         "scheme",
@@ -69,7 +70,10 @@ const WORDS: &[(&str, &str)] = &[
     ("convex", "The conic solver: what it finds is the global optimum. For problems that are convex."),
     ("riccati", "A recursion along the grid: the fastest where all goes well."),
     ("sparse_ldl", "A sparse factorisation: slower, and more robust."),
-    ("auto", "The recursion, and the sparse factorisation where that fails."),
+    (
+        "auto",
+        "The choice is left open: `linear` takes the recursion, and the sparse factorisation where that fails; `N` follows the errors of the steps.",
+    ),
 ];
 
 /// What a key does, and what its value costs in this model.

@@ -2,6 +2,9 @@
 //!
 //! Parsing cannot fail: [`parse()`] returns what it understood and what it did not.
 
+// What the generated parser takes its boxes from.
+extern crate alloc;
+
 pub mod ast;
 mod diagnostic;
 pub mod fix;

@@ -80,40 +80,50 @@ fn job(session: &Session, request: Request) -> Result<Job, Failure> {
     let command = COMMANDS.iter().find(|row| row.0 == params.command);
     let &(name, title) =
         command.ok_or_else(|| Failure::params(format!("there is no command `{}`", params.command)))?;
-    let address = params.arguments.unwrap_or_default().into_iter().next();
-    let Some(Value::String(address)) = address else {
+    let Some(Value::String(address)) = params.arguments.unwrap_or_default().into_iter().next() else {
         return Err(Failure::params(format!("`{name}` takes the address of a text")));
     };
     let uri = Uri(address);
-    let document =
-        session.documents.get(&uri).ok_or_else(|| Failure::request(format!("`{uri}` is not open")))?;
-    if session.commands.is_busy(&uri) {
-        return Err(Failure::request("this model is being computed already; cancel that, or wait for it"));
-    }
-    let analysis = document.analysis();
-    let Some(model) = &analysis.reviewed.model else {
-        return Err(Failure::request("this model has mistakes; mend them first"));
-    };
-    let (mut arguments, mut report) = (vec![name.trim_start_matches("fdcc.").to_owned(), "-".into()], None);
-    if name == "fdcc.report" {
-        let folder = pages::folder()
-            .ok_or_else(|| Failure::request("there is no place for a report"))?
-            .join("reports");
-        report = Some(folder.join(format!("{}.html", model.name)));
-        arguments = vec!["solve".into(), "-".into(), "--out".into(), folder.display().to_string()];
-    }
+    let (text, model) = subject(session, &uri)?;
+    let (arguments, report) = arguments(name, &model)?;
     Ok(Job {
         id: request.id,
-        title: format!("{title} {}", model.name),
+        title: format!("{title} {model}"),
         program: session.program.clone(),
         arguments,
         folder: folder_of(&uri),
-        text: analysis.text.text.clone(),
+        text,
         token: params.work_done_progress_params.work_done_token,
         makes_token: session.agreed.progress,
         uri,
         report,
     })
+}
+
+/// The text at an address and the name of its model, if that can be computed now.
+fn subject(session: &Session, uri: &Uri) -> Result<(Arc<str>, String), Failure> {
+    let document =
+        session.documents.get(uri).ok_or_else(|| Failure::request(format!("`{uri}` is not open")))?;
+    if session.commands.is_busy(uri) {
+        return Err(Failure::request("this model is being computed already; cancel that, or wait for it"));
+    }
+    let analysis = document.analysis();
+    match &analysis.reviewed.model {
+        Some(model) => Ok((analysis.text.text.clone(), model.name.clone())),
+        None => Err(Failure::request("this model has mistakes; mend them first")),
+    }
+}
+
+/// What `fdcc` is given; the text comes over its standard input. And the report that it writes, if one is wanted.
+fn arguments(name: &str, model: &str) -> Result<(Vec<String>, Option<PathBuf>), Failure> {
+    let owned = |words: &[&str]| words.iter().map(|it| (*it).to_owned()).collect();
+    if name != "fdcc.report" {
+        return Ok((owned(&[name.trim_start_matches("fdcc."), "-"]), None));
+    }
+    let folder =
+        pages::folder().ok_or_else(|| Failure::request("there is no place for a report"))?.join("reports");
+    let report = folder.join(format!("{model}.html"));
+    Ok((owned(&["solve", "-", "--out", &folder.display().to_string()]), Some(report)))
 }
 
 /// Where measurements that a model names are looked for.

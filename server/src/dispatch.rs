@@ -1,17 +1,13 @@
 //! Which method is answered by which function.
 
-use crate::analysis::Analysis;
 use crate::client::Failure;
-use crate::documents::Document;
+use crate::context::Context;
 use crate::features::{
     actions, completion, diagnostics, folding, formatting, hints, hover, lens, navigation, rename, signature,
     symbols, tokens,
 };
 use crate::session::Session;
-use fdcc_compiler::{Model, NamedUnit, SurfaceReport};
-use fdcc_grammar::{Edit, Span};
 // The types of the requests that are answered, and of their parts.
-#[allow(clippy::wildcard_imports)]
 use lsp_types::*;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -67,65 +63,6 @@ impl Call<'_> {
         let document = document.ok_or_else(|| Failure::request(format!("`{uri}` is not open")))?;
         let result = answer(&Context { session: self.session, document }, params)?;
         Ok(serde_json::to_value(result).expect("types of the protocol are JSON"))
-    }
-}
-
-/// What a request is answered from.
-pub struct Context<'s> {
-    /// The session.
-    pub session: &'s Session,
-    /// The text it is about.
-    pub document: &'s Document,
-}
-
-impl Context<'_> {
-    /// What is known about the text.
-    pub fn analysis(&self) -> &Analysis {
-        self.document.analysis()
-    }
-
-    /// What the text means, or meant when it had no mistakes.
-    pub fn model(&self) -> Option<&Model> {
-        self.document.modelled()?.reviewed.model.as_ref()
-    }
-
-    /// What is known about each surface of that.
-    pub fn surfaces(&self) -> &[SurfaceReport] {
-        self.document.modelled().map_or(&[], |it| it.surfaces())
-    }
-
-    /// The unit of each name; what was known before where the text has none that can be told now.
-    pub fn units(&self) -> &[NamedUnit] {
-        let now = &self.analysis().reviewed.units;
-        let before = || self.document.modelled().map_or(&[][..], |it| &it.reviewed.units);
-        if now.is_empty() { before() } else { now }
-    }
-
-    /// The byte of a place.
-    pub fn offset(&self, position: Position) -> u32 {
-        self.analysis().text.offset(position)
-    }
-
-    /// The place of some bytes.
-    pub fn range(&self, span: Span) -> Range {
-        self.analysis().text.range(span)
-    }
-
-    /// The place of some bytes, with the address of the text.
-    pub fn location(&self, span: Span) -> Location {
-        Location { uri: self.document.uri.clone(), range: self.range(span) }
-    }
-
-    /// A change in the words of the protocol.
-    pub fn text_edit(&self, edit: &Edit) -> TextEdit {
-        TextEdit { range: self.range(edit.span), new_text: edit.replacement.clone() }
-    }
-
-    /// Changes of this text.
-    pub fn workspace_edit(&self, edits: &[Edit]) -> WorkspaceEdit {
-        let edits = edits.iter().map(|it| self.text_edit(it)).collect();
-        let changes = Some([(self.document.uri.clone(), edits)].into());
-        WorkspaceEdit { changes, ..WorkspaceEdit::default() }
     }
 }
 

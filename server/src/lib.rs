@@ -12,6 +12,7 @@ mod analysis;
 mod capabilities;
 mod client;
 mod commands;
+mod context;
 mod dispatch;
 mod documents;
 mod features;

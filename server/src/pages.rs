@@ -7,10 +7,19 @@ use lsp_types::Uri;
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+/// The address of the page of each code, in the order of [`Code::ALL`]; written when the first one is asked for.
+static LINKS: LazyLock<Vec<Option<Uri>>> =
+    LazyLock::new(|| Code::ALL.iter().map(|code| written(*code)).collect());
 
 /// The address of the page of a code, if there is a place for it.
 pub fn link(code: Code) -> Option<Uri> {
-    let folder = folder()?;
+    LINKS[code as usize].clone()
+}
+
+fn written(code: Code) -> Option<Uri> {
+    let folder = folder()?.join("diagnostics");
     let path = folder.join(format!("{code}.md"));
     if fs::read_to_string(&path).ok().as_deref() != Some(code.page()) {
         fs::create_dir_all(&folder).ok()?;
@@ -71,6 +80,11 @@ pub fn path(uri: &Uri) -> Option<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn codes_are_numbered_as_they_are_listed() {
+        assert!(Code::ALL.iter().enumerate().all(|(at, code)| *code as usize == at));
+    }
 
     #[test]
     fn an_address_leads_back_to_its_file() {

@@ -5,10 +5,13 @@
 
 pub mod evaluate;
 pub mod print;
+mod quick;
 mod simplify;
 pub mod verify;
 
+use quick::Quick;
 use std::collections::{BTreeSet, HashMap};
+use std::hash::BuildHasherDefault;
 
 use smallvec::SmallVec;
 
@@ -68,7 +71,7 @@ pub enum Expr {
 #[derive(Clone, Default)]
 pub struct Graph {
     nodes: Vec<Expr>,
-    ids: HashMap<Expr, ExprId>,
+    ids: HashMap<Expr, ExprId, BuildHasherDefault<Quick>>,
 }
 
 impl Graph {

@@ -9,6 +9,7 @@ use super::limits::{self, Failure};
 use super::tokens::{Kind, Token, tokens};
 use super::{Rule, items, messages, pairs};
 use crate::{Diagnostic, Parse, Span};
+use pest::iterators::Pairs;
 
 /// Nobody reads more errors than this, so nothing behind them is tried.
 const MOST_DIAGNOSTICS: usize = 100;
@@ -29,8 +30,13 @@ pub(super) fn recover(text: &str) -> Parse {
     for piece in cut::items(&tokens, 0..tokens.len()) {
         let is_model_line = piece.start == 0 && tokens[0].text == "model";
         let rule = if is_model_line { Rule::only_model } else { Rule::only_item };
-        if recovery.mend(&piece, rule, None) {
-            let start = tokens[piece.start].start;
+        let start = tokens[piece.start].start;
+        // Most pieces are right, and are read once.
+        if recovery.diagnostics.len() < MOST_DIAGNOSTICS
+            && let Ok(pairs) = recovery.pairs(&piece, rule)
+        {
+            items::read_into(&mut parse, pairs, start);
+        } else if recovery.mend(&piece, rule, None) {
             let pairs = pairs(rule, recovery.text(&piece)).expect("a mended piece can be read");
             items::read_into(&mut parse, pairs, start);
         }
@@ -142,13 +148,16 @@ impl<'t> Recovery<'t> {
     }
 
     fn read(&self, piece: &Piece, rule: Rule) -> Result<(), Failure> {
+        self.pairs(piece, rule).map(|_| ())
+    }
+
+    /// What the grammar makes of a piece, if it may be given to it.
+    fn pairs(&self, piece: &Piece, rule: Rule) -> Result<Pairs<'_, Rule>, Failure> {
         if let Some(failure) = limits::exceeded(self.tokens, piece) {
             return Err(failure);
         }
-        match pairs(rule, self.text(piece)) {
-            Ok(_) => Ok(()),
-            Err((at, expected)) => Err(Failure::Stopped(self.tokens[piece.start].start + at, expected)),
-        }
+        let start = self.tokens[piece.start].start;
+        pairs(rule, self.text(piece)).map_err(|(at, expected)| Failure::Stopped(start + at, expected))
     }
 
     fn text(&self, piece: &Piece) -> &str {

@@ -1,7 +1,7 @@
 //! Repairs: every fix of every finding, and all certain ones at once.
 
 use crate::client::Failure;
-use crate::dispatch::Context;
+use crate::context::Context;
 use crate::features::diagnostics::shown;
 use fdcc_compiler::repair;
 use fdcc_grammar::{Diagnostic, Edit, Fix, Span};

@@ -3,7 +3,7 @@
 use crate::analysis::Analysis;
 use crate::capabilities::Agreed;
 use crate::client::Failure;
-use crate::dispatch::Context;
+use crate::context::Context;
 use crate::documents::Document;
 use crate::pages;
 use fdcc_grammar::{Code, Diagnostic, Label, Severity};

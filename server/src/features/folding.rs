@@ -1,7 +1,7 @@
 //! What can be folded away, and what grows around a place: both follow the brackets and the tree.
 
 use crate::client::Failure;
-use crate::dispatch::Context;
+use crate::context::Context;
 use fdcc_compiler::names::enclosing;
 use fdcc_grammar::{Span, comments};
 use lsp_types::{FoldingRange, FoldingRangeKind, FoldingRangeParams, SelectionRange, SelectionRangeParams};

@@ -1,7 +1,7 @@
 //! The layout of `fdcc fmt`, as the changes of blanks that it takes: the cursor stays at its word.
 
 use crate::client::Failure;
-use crate::dispatch::Context;
+use crate::context::Context;
 use fdcc_grammar::{Edit, Span, format};
 use lsp_types::{
     DocumentFormattingParams, DocumentOnTypeFormattingParams, DocumentRangeFormattingParams, TextEdit,

@@ -1,7 +1,7 @@
 //! What the text does not say, shown in it: units that were found, when a surface is held, how smooth a `piecewise` is.
 
 use crate::client::Failure;
-use crate::dispatch::Context;
+use crate::context::Context;
 use fdcc_compiler::names::{Definition, Kind};
 use fdcc_compiler::{Model, NamedUnit, Order, SurfaceReport, portrait};
 use lsp_types::{InlayHint, InlayHintKind, InlayHintParams};

@@ -2,7 +2,7 @@
 
 use crate::client::Failure;
 use crate::commands::COMMANDS;
-use crate::dispatch::Context;
+use crate::context::Context;
 use fdcc_grammar::Span;
 use lsp_types::{CodeLens, CodeLensParams, Command};
 

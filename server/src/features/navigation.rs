@@ -1,7 +1,7 @@
 //! Where a name is declared, and where else it stands.
 
 use crate::client::Failure;
-use crate::dispatch::Context;
+use crate::context::Context;
 use fdcc_compiler::names::{Occurrence, Role};
 use lsp_types::{
     Definition, DefinitionParams, DefinitionResponse, DocumentHighlight, DocumentHighlightKind,

@@ -2,7 +2,7 @@
 
 use crate::analysis::Analysis;
 use crate::client::Failure;
-use crate::dispatch::Context;
+use crate::context::Context;
 use fdcc_compiler::names::{Meaning, Names, Role};
 use fdcc_grammar::ast::ItemKind;
 use fdcc_grammar::{Edit, parse};

@@ -2,7 +2,7 @@
 
 use crate::analysis::Analysis;
 use crate::client::Failure;
-use crate::dispatch::Context;
+use crate::context::Context;
 use crate::features::place::Place;
 use fdcc_compiler::names::Kind;
 use fdcc_compiler::vocabulary;

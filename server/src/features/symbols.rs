@@ -1,7 +1,7 @@
 //! The outline of a text: its items, with what is inside of them.
 
 use crate::client::Failure;
-use crate::dispatch::Context;
+use crate::context::Context;
 use fdcc_compiler::names::{Kind, Names};
 use fdcc_grammar::Span;
 use fdcc_grammar::ast::{Item, ItemKind, Sense};

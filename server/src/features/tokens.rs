@@ -3,7 +3,7 @@
 //! Words, numbers and comments are coloured by the editor's own grammar; here is what only the meaning tells.
 
 use crate::client::Failure;
-use crate::dispatch::Context;
+use crate::context::Context;
 use fdcc_compiler::names::{Kind, Meaning, Names, Occurrence, Role};
 use fdcc_grammar::Span;
 use lsp_types::{

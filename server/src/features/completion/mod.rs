@@ -4,7 +4,7 @@ mod items;
 mod names;
 
 use crate::client::Failure;
-use crate::dispatch::Context;
+use crate::context::Context;
 use crate::features::place::{Open, Place};
 use fdcc_compiler::names::Kind;
 use fdcc_compiler::vocabulary;

@@ -2,7 +2,7 @@
 //! is being written hides what stands behind it.
 
 use super::items::{Proposal, name};
-use crate::dispatch::Context;
+use crate::context::Context;
 use crate::features::place::Place;
 use fdcc_compiler::names::{Kind, Names};
 use std::collections::BTreeSet;

@@ -6,7 +6,7 @@ mod names;
 mod settings;
 
 use crate::client::Failure;
-use crate::dispatch::Context;
+use crate::context::Context;
 use fdcc_compiler::names::{Meaning, Occurrence};
 use fdcc_compiler::vocabulary;
 use lsp_types::{Contents, Hover, HoverParams, MarkupContent, MarkupKind};

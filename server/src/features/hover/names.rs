@@ -1,6 +1,6 @@
 //! Declared names: the declaration, the unit, and what the compiler makes of it.
 
-use crate::dispatch::Context;
+use crate::context::Context;
 use fdcc_compiler::names::{Definition, Kind};
 use fdcc_compiler::{NamedUnit, Order, Portrait, Smoothness, SurfaceReport, portrait};
 use fdcc_grammar::comments;

@@ -1,6 +1,6 @@
 //! Keys of the method and the words they take: what each does and what it costs.
 
-use crate::dispatch::Context;
+use crate::context::Context;
 use fdcc_compiler::{Grid, grid, smooth, vocabulary};
 
 /// What each key does.

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """How time and memory of a solve grow with the number of intervals and with the number of states.
 
-    python3 tests/peers/growth.py target/release/fdcc > docs/growth.md
+    python3 tests/peers/growth.py target/release/fdcc      (writes docs/growth.csv and docs/growth.svg)
 
 Intervals: the race car, sigma 0.1. States: a train of masses and springs whose first mass is pushed and slides with friction, brought to a given place at
 rest with little effort. Time is that of the solver on one core, memory the most that the process held.
 """
 
+import csv
 import json
+import math
 import os
 import subprocess
 import sys
@@ -15,6 +17,7 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+DOCS = HERE.parent.parent / 'docs'
 RACECAR = (HERE.parent.parent / 'models' / 'racecar.fdc').read_text()
 INTERVALS = (1000, 10_000, 100_000, 1_000_000)
 MASSES = (2, 5, 10, 20)
@@ -49,26 +52,47 @@ def run(binary, text, changes):
         return json.loads(done.stdout), int(done.stderr.strip().split('\n')[-1])
 
 
-def row(first, found, memory, stages):
-    """A line of a table."""
-    counts, seconds = found['counts'], found['seconds']['solve']
-    cells = [first, found['status'], found['iterations'], counts['factorizations'], f'{seconds:.3g}', f'{1e6 * seconds / stages:.4g}', f'{memory / 1000:.0f}', f'{memory / stages:.3g}']
-    print('| ' + ' | '.join(str(cell) for cell in cells) + ' |', flush=True)
+def measured(binary):
+    """One row for each solve: what grows, how far, and what it took."""
+    cases = [('intervals', n, n, RACECAR, [f'N={n}']) for n in INTERVALS]
+    cases += [('states', 2 * masses, 1000, chain(masses), []) for masses in MASSES]
+    for what, size, intervals, text, changes in cases:
+        found, memory = run(binary, text, changes)
+        seconds, factorisations = found['seconds']['solve'], found['counts']['factorizations']
+        yield what, size, found['status'], found['iterations'], factorisations, f'{seconds:.4g}', f'{1e6 * seconds / intervals:.4g}', f'{memory / intervals:.4g}'
+
+
+def panel(left, title, points):
+    """A log-log plot of seconds over size, 300 wide, from `left` on; the dashed line is linear growth from the first point."""
+    xs, ys = [math.log10(x) for x, _ in points], [math.log10(y) for _, y in points]
+    low, high, floor, top = min(xs), max(xs), math.floor(min(ys)), math.ceil(max(ys))
+    at = lambda x, y: f'{left + 50 + 230 * (x - low) / (high - low):.1f},{250 - 210 * (y - floor) / (top - floor):.1f}'
+    line = ' '.join(at(x, y) for x, y in zip(xs, ys))
+    reach = min(high, low + top - ys[0])
+    parts = [f'<text x="{left + 165}" y="20" text-anchor="middle">{title}</text>',
+             f'<polyline fill="none" stroke="#bbb" stroke-dasharray="4" points="{at(low, ys[0])} {at(reach, ys[0] + reach - low)}"/>',
+             f'<polyline fill="none" stroke="#06c" stroke-width="2" points="{line}"/>']
+    for x, (size, _) in zip(xs, points):
+        parts.append(f'<text x="{at(x, floor).split(",")[0]}" y="268" text-anchor="middle">{size:g}</text>')
+    for y in range(floor, top + 1):
+        parts.append(f'<text x="{left + 42}" y="{float(at(low, y).split(",")[1]) + 4}" text-anchor="end">{10.0**y:g} s</text>')
+    return parts
 
 
 def main(binary):
-    """Both tables."""
+    """Writes docs/growth.csv and docs/growth.svg, and prints the table."""
     os.sched_setaffinity(0, {sorted(os.sched_getaffinity(0))[-1]})
-    print('| N | status | iterations | factorisations | solver s | us for each interval | MB | kB for each interval |')
-    print('|---|---|---|---|---|---|---|---|')
-    for n in INTERVALS:
-        found, memory = run(binary, RACECAR, [f'N={n}'])
-        row(n, found, memory, n)
-    print('\n| states | status | iterations | factorisations | solver s | us for each interval | MB | kB for each interval |')
-    print('|---|---|---|---|---|---|---|---|')
-    for masses in MASSES:
-        found, memory = run(binary, chain(masses), [])
-        row(2 * masses, found, memory, 1000)
+    head = ('grows', 'size', 'status', 'iterations', 'factorisations', 'solver s', 'us for each interval', 'kB for each interval')
+    rows = list(measured(binary))
+    with open(DOCS / 'growth.csv', 'w', newline='') as file:
+        csv.writer(file, lineterminator='\n').writerows([head, *rows])
+    curve = lambda what: [(row[1], float(row[5])) for row in rows if row[0] == what]
+    body = panel(0, 'seconds over intervals', curve('intervals')) + panel(320, 'seconds over states, 1000 intervals', curve('states'))
+    style = 'font-family="sans-serif" font-size="12"'
+    (DOCS / 'growth.svg').write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 640 280" {style}>\n' + '\n'.join(body) + '\n</svg>\n')
+    print('| ' + ' | '.join(head) + ' |\n' + '|---' * len(head) + '|')
+    for row in rows:
+        print('| ' + ' | '.join(str(cell) for cell in row) + ' |')
 
 
 if __name__ == '__main__':

@@ -14,10 +14,8 @@ use crate::transcribe::TranscribedNlp;
 
 /// A grid of fewer intervals is not made coarser by half: it would say too little of the problem.
 const COARSE: usize = 500;
-/// Widths on the way, relative to the one that is named, and to which error; a wide layer needs but half the coarsest grid.
-const WIDER: [(f64, bool, f64); 3] = [(8.0, true, 1e-2), (4.0, true, ROUGH), (2.0, false, ROUGH)];
-/// ... if that has as many intervals.
-const FEWEST: usize = 100;
+/// Widths on the way, relative to the one that is named.
+const WIDER: [f64; 3] = [8.0, 4.0, 2.0];
 /// More is not asked of a solve with another width, nor of one on the coarsest grid or on another one: which of several close minima is found is decided
 /// on finer grids.
 const ROUGH: f64 = 1e-3;
@@ -28,15 +26,6 @@ const MOST_ITERATIONS: usize = 300;
 const WIDE: f64 = 0.5;
 const MOST_HALVINGS: i32 = 12;
 
-/// One solve on the way.
-#[derive(Clone, Copy)]
-struct Step {
-    intervals: usize,
-    /// The width of all layers; as they are if there is none.
-    sigma: Option<f64>,
-    tol: f64,
-}
-
 impl Run<'_> {
     /// Solves with the widths that the model names, if there are surfaces.
     pub(super) fn named(
@@ -46,170 +35,95 @@ impl Run<'_> {
         widths: &[f64],
         watch: &mut Watch,
     ) -> Solution {
-        let (all, patience) = (self.goal().limit, self.patience());
-        let direct = self.on_one_grid(nlp.chain(), widths);
-        let path = self.path(nlp.chain(), widths);
+        let goal = self.goal();
+        let patience = Goal { limit: MOST_ITERATIONS.min(goal.limit), ..goal };
+        let grids = grids(self.problem, nlp.chain());
+        let shrinking = match widths {
+            [sigma] if !self.sigma.is_empty() => {
+                WIDER.iter().map(|wider| wider * sigma).chain([*sigma]).collect()
+            }
+            _ => widths.to_vec(),
+        };
         // What was solved before, or is easy, is not approached.
-        if start.warm.is_some() || path.len() == 1 {
-            return self.climb(nlp, start, &direct, all, watch);
+        if start.warm.is_some() || grids.len() == 1 && shrinking.len() <= 1 {
+            return self.shrink(nlp, start, widths, goal, watch);
         }
-        let first = self.climb(nlp, start.clone(), &path, patience, watch);
-        if !is_retried(&first.status) || all <= patience {
+        let first = self.climb(nlp, start.clone(), (&grids, &shrinking), patience, watch);
+        if !is_retried(&first.status) || goal.limit <= patience.limit {
             return first;
         }
         if let [sigma] = widths {
-            let halved = self.on_one_grid(nlp.chain(), &halved(nlp, [&start.v, &first.v], *sigma));
-            let second = self.climb(nlp, start.clone(), &halved, patience, watch);
+            let halved = halved(nlp, [&start.v, &first.v], *sigma);
+            let second = self.shrink(nlp, start.clone(), &halved, patience, watch);
             if !is_retried(&second.status) {
                 return second;
             }
         }
-        self.climb(nlp, start, &direct, all, watch)
+        self.shrink(nlp, start, widths, goal, watch)
     }
 
-    /// Solves with the widths as they are, over coarse grids where there are any.
-    pub(super) fn as_they_are(
-        &mut self,
-        nlp: &mut TranscribedNlp,
-        start: Start,
-        watch: &mut Watch,
-    ) -> Solution {
-        let path = self.path(nlp.chain(), &[]);
-        if start.warm.is_none() && path.len() > 1 {
-            let solution = self.climb(nlp, start.clone(), &path, self.patience(), watch);
-            if !is_retried(&solution.status) {
-                return solution;
-            }
-        }
-        self.solve(nlp, &start, self.goal(), watch)
-    }
-
-    /// The limit of iterations for a solve that another one may replace.
-    pub(super) fn patience(&self) -> usize {
-        MOST_ITERATIONS.min(self.goal().limit)
-    }
-
-    /// From step to step; the last ones are on the grid of `nlp`.
-    fn climb(
+    /// From grid to grid, the last of which is that of `nlp`; widths shrink on the first one.
+    pub(super) fn climb(
         &mut self,
         nlp: &mut TranscribedNlp,
         mut start: Start,
-        steps: &[Step],
-        limit: usize,
+        (grids, mut widths): (&[usize], &[f64]),
+        goal: Goal,
         watch: &mut Watch,
     ) -> Solution {
         let mut chain = nlp.chain();
-        let split = steps.partition_point(|step| step.intervals < chain.intervals);
-        let (coarser, last) = steps.split_at(split);
-        for steps in coarser.chunk_by(|a, b| a.intervals == b.intervals) {
-            let problem = on_grid(self.problem, steps[0].intervals);
+        let mut accuracy = COARSEST;
+        for &intervals in &grids[..grids.len() - 1] {
+            let problem = on_grid(self.problem, intervals);
             let mut coarse = TranscribedNlp::new(&problem);
             start = prolong(chain, &start, coarse.chain());
             chain = coarse.chain();
-            let solution = self.walk(&mut coarse, start, steps, limit, watch);
+            let close = Goal { tol: goal.tol.max(accuracy), ..goal };
+            let solution = self.shrink(&mut coarse, start, widths, close, watch);
             start = Start::after(&solution);
             if !is_good(&solution.status) {
                 return carried_over(nlp, chain, &start, solution);
             }
+            (widths, accuracy) = (&widths[widths.len().saturating_sub(1)..], CLOSE);
         }
         start = prolong(chain, &start, nlp.chain());
-        self.walk(nlp, start, last, limit, watch)
+        self.shrink(nlp, start, widths, goal, watch)
     }
 
-    /// From step to step on one grid.
-    fn walk(
+    /// From width to width on one grid; with the widths as they are if none are given.
+    fn shrink(
         &mut self,
         nlp: &mut TranscribedNlp,
         mut start: Start,
-        steps: &[Step],
-        limit: usize,
+        widths: &[f64],
+        goal: Goal,
         watch: &mut Watch,
     ) -> Solution {
-        let (last, before) = steps.split_last().expect("each grid has a step");
-        for step in before {
-            let solution = self.step(nlp, &start, step, limit, watch);
+        let Some((last, before)) = widths.split_last() else {
+            return self.solve(nlp, &start, goal, watch);
+        };
+        let rough = Goal { tol: goal.tol.max(ROUGH), ..goal };
+        for width in before {
+            self.sigma.fill(*width);
+            let solution = self.solve(nlp, &start, rough, watch);
             if !is_good(&solution.status) {
                 return solution;
             }
             start = Start::after(&solution);
         }
-        self.step(nlp, &start, last, limit, watch)
-    }
-
-    fn step(
-        &mut self,
-        nlp: &mut TranscribedNlp,
-        start: &Start,
-        step: &Step,
-        limit: usize,
-        watch: &mut Watch,
-    ) -> Solution {
-        if let Some(sigma) = step.sigma {
-            self.sigma.fill(sigma);
-        }
-        self.solve(nlp, start, Goal { tol: step.tol, limit }, watch)
-    }
-
-    /// Widths shrink on the coarsest grid, and the last one goes to finer grids.
-    fn path(&self, chain: Stages, widths: &[f64]) -> Vec<Step> {
-        let grids = grids(self.problem, chain);
-        let rough = |sigma: &f64| Step { intervals: grids[0], sigma: Some(*sigma), tol: ROUGH };
-        let mut path: Vec<Step> = match widths {
-            [sigma] if !self.sigma.is_empty() => wider(grids[0], *sigma, is_plain(self.problem, chain)),
-            [before @ .., _] => before.iter().map(rough).collect(),
-            [] => Vec::new(),
-        };
-        let sigma = widths.last().copied();
-        let tolerances = [COARSEST].into_iter().chain(std::iter::repeat(CLOSE));
-        path.extend(grids.iter().zip(tolerances).map(|(intervals, tol)| Step {
-            intervals: *intervals,
-            sigma,
-            tol,
-        }));
-        self.within_tolerance(path)
-    }
-
-    /// One width after the other on the grid of the model.
-    fn on_one_grid(&self, chain: Stages, widths: &[f64]) -> Vec<Step> {
-        let step = |sigma| Step { intervals: chain.intervals, sigma, tol: ROUGH };
-        let steps = if widths.is_empty() {
-            vec![step(None)]
-        } else {
-            widths.iter().map(|w| step(Some(*w))).collect()
-        };
-        self.within_tolerance(steps)
-    }
-
-    /// The last step to the tolerance of the model, no other one beyond it.
-    fn within_tolerance(&self, mut steps: Vec<Step>) -> Vec<Step> {
-        let tol = self.goal().tol;
-        steps.iter_mut().for_each(|step| step.tol = step.tol.max(tol));
-        steps.iter_mut().next_back().into_iter().for_each(|step| step.tol = tol);
-        steps
+        self.sigma.fill(*last);
+        self.solve(nlp, &start, goal, watch)
     }
 }
 
 /// Coarser grids, the coarsest first, and the grid itself; that one alone where an interval holds more than states and constant controls.
-fn grids(problem: &Problem, chain: Stages) -> Vec<usize> {
-    let coarser = |n: &usize| (is_plain(problem, chain) && *n >= COARSE).then_some(n / 2);
+pub(super) fn grids(problem: &Problem, chain: Stages) -> Vec<usize> {
+    let is_uniform = problem.method.mesh.is_empty();
+    let is_plain = is_uniform && chain.inner == 0 && chain.states == problem.layout.x;
+    let coarser = |n: &usize| (is_plain && *n >= COARSE).then_some(n / 2);
     let mut grids: Vec<usize> = std::iter::successors(Some(chain.intervals), coarser).collect();
     grids.reverse();
     grids
-}
-
-fn is_plain(problem: &Problem, chain: Stages) -> bool {
-    chain.inner == 0 && chain.states == problem.layout.x
-}
-
-/// Wider layers than the one that is named.
-fn wider(intervals: usize, sigma: f64, is_plain: bool) -> Vec<Step> {
-    let half = if is_plain && intervals / 2 >= FEWEST { intervals / 2 } else { intervals };
-    let step = |(wider, on_half, tol): (f64, bool, f64)| Step {
-        intervals: if on_half { half } else { intervals },
-        sigma: Some(wider * sigma),
-        tol,
-    };
-    WIDER.into_iter().map(step).collect()
 }
 
 fn on_grid(problem: &Problem, intervals: usize) -> Problem {

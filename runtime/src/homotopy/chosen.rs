@@ -2,7 +2,8 @@
 //! found so far, one solve after another. Where a step is too long it is halved; where even short steps fail, the last width that could be solved is the answer.
 
 use super::Watch;
-use super::run::{Goal, Run, is_good};
+use super::approach::grids;
+use super::run::{Goal, Run, is_good, is_retried};
 use crate::nlp::{Solution, Start, Status};
 use crate::transcribe::TranscribedNlp;
 
@@ -12,19 +13,21 @@ const LAST_FACTOR: f64 = 0.01;
 /// From one width to the next; after a failure the square root of it, and so on.
 const DECREASE: f64 = 0.3;
 const MOST_FAILURES: usize = 3;
+/// A step that takes longer than this is too long.
+const MOST_ITERATIONS: usize = 300;
 
 impl Run<'_> {
     /// Solves with widths of our own choice, as small as can be solved.
     pub(super) fn chosen(&mut self, nlp: &mut TranscribedNlp, start: Start, watch: &mut Watch) -> Solution {
         let mut factor = FIRST_FACTOR;
         self.set_relative(nlp, &start.v);
-        let mut best = self.as_they_are(nlp, start, watch);
+        let mut best = self.first(nlp, start, watch);
         let (mut decrease, mut failures) = (DECREASE, 0);
         while is_good(&best.status) && factor > LAST_FACTOR && failures < MOST_FAILURES {
             let before = self.sigma.clone();
             let next = (factor * decrease).max(LAST_FACTOR);
             self.decrease(nlp, &best.v, next, next / factor);
-            let goal = Goal { limit: self.patience(), ..self.goal() };
+            let goal = self.patience();
             let solution = self.interior_point(nlp, &Start::near(&best), goal, watch);
             if is_good(&solution.status) {
                 (factor, best) = (next, solution);
@@ -39,6 +42,23 @@ impl Run<'_> {
         self.apply_sigma(nlp);
         best.counts = self.counts;
         best
+    }
+
+    /// The widest layer: over coarse grids, or at once.
+    fn first(&mut self, nlp: &mut TranscribedNlp, start: Start, watch: &mut Watch) -> Solution {
+        let grids = grids(self.problem, nlp.chain());
+        if start.warm.is_none() && grids.len() > 1 {
+            let solution = self.climb(nlp, start.clone(), (&grids, &[]), self.patience(), watch);
+            if !is_retried(&solution.status) {
+                return solution;
+            }
+        }
+        self.solve(nlp, &start, self.goal(), watch)
+    }
+
+    fn patience(&self) -> Goal {
+        let goal = self.goal();
+        Goal { limit: MOST_ITERATIONS.min(goal.limit), ..goal }
     }
 
     /// Widths relative to the size of each switching function along `v`.

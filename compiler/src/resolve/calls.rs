@@ -7,7 +7,7 @@ use super::value::{Parts, Traits, Value};
 use crate::builtins::{self, Builtin};
 use crate::graph::ExprId;
 use fdcc_grammar::ast::{Argument, Expr, ExprKind, Ident, ItemKind};
-use fdcc_grammar::{Code, Diagnostic, Span};
+use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 
 /// No sensible model applies its functions so often to different arguments.
 const MOST_APPLICATIONS: usize = 50_000;
@@ -45,6 +45,24 @@ pub fn function_names() -> Vec<&'static str> {
     table.map(|row| row.name).chain(VECTOR_FUNCTIONS.iter().chain(FORMS).map(|row| row.0)).collect()
 }
 
+/// What functions are called in other languages.
+const ELSEWHERE: &[(&str, &str)] = &[
+    ("sign", "Sgn"),
+    ("signum", "Sgn"),
+    ("ln", "log"),
+    ("fabs", "abs"),
+    ("arctan", "atan"),
+    ("arctan2", "atan2"),
+];
+
+fn called_elsewhere(name: &str, own: &str, span: Span) -> Diagnostic {
+    let message = format!("nothing called `{name}` here");
+    let change = format!("change `{name}` to `{own}`");
+    Diagnostic::new(Code::UnknownName, message, span, "not declared")
+        .help(&change)
+        .fix(Fix::likely(change).replace(span, own))
+}
+
 impl<'a> Elaborator<'a> {
     /// `callee(arguments)`.
     pub fn call(&mut self, expr: &'a Expr, callee: &'a Expr, arguments: &'a [Argument]) -> Value {
@@ -74,7 +92,10 @@ impl<'a> Elaborator<'a> {
             None if is_function(name) => self.builtin_call(name, expr, arguments),
             None => {
                 let declaration = format!("fn {name}(x) = x");
-                let found = self.scope.unknown(name, callee.span, &function_names(), &declaration);
+                let found = match ELSEWHERE.iter().find(|(foreign, _)| foreign == name) {
+                    Some((_, own)) => called_elsewhere(name, own, callee.span),
+                    None => self.scope.unknown(name, callee.span, &function_names(), &declaration),
+                };
                 self.diagnostics.push(found);
                 self.plain_arguments(arguments);
                 Value::default()

@@ -66,7 +66,9 @@ impl<'a> Scope<'a> {
             Diagnostic::new(Code::UnknownName, format!("nothing called `{name}` here"), span, "not declared");
         let known = self.declarations.iter().map(|it| it.name.name.as_str());
         self.compared.set(self.compared.get() + 1);
-        let known = known.chain(extra.iter().copied()).filter(|_| self.compared.get() <= MOST_PROPOSALS);
+        // `T` is no slip for `t`.
+        let is_compared = self.compared.get() <= MOST_PROPOSALS && name.chars().nth(1).is_some();
+        let known = known.chain(extra.iter().copied()).filter(|_| is_compared);
         let Some(near) = closest(name, known) else {
             return found.help(format!("declare it, for example `{declaration}`"));
         };

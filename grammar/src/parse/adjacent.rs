@@ -14,6 +14,9 @@ pub(super) fn missing_operator(place: &Place<'_, '_>) -> Option<Diagnostic> {
     if !(place.after_operand() || before_derivative) || next.begins_line || !begins_value(next) || in_range {
         return None;
     }
+    if let Some(found) = bare_unit(place) {
+        return Some(found);
+    }
     let (left, right) = (value_before(place), value_after(place));
     let (first, last) = (&place.tokens[left], &place.tokens[right]);
     let [left, right] = [short(place, left, place.at - 1, previous), short(place, place.at, right, next)];
@@ -29,6 +32,34 @@ pub(super) fn missing_operator(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let between = Span { start: previous.span().end, end: next.span().start };
     let fix = Fix::likely("write `*`").replace(between, " * ");
     Some(Diagnostic::new(Code::MissingOperator, message, span, "two values side by side").help(help).fix(fix))
+}
+
+/// `param l = 50 cm`: what follows the number of a declaration to the end of its line is most likely a unit.
+fn bare_unit(place: &Place<'_, '_>) -> Option<Diagnostic> {
+    let (number, first) = (place.previous()?, place.next()?);
+    let is_declared = matches!(place.word, "param" | "const")
+        && place.at.checked_sub(2).is_some_and(|at| place.text(at) == "=");
+    if !is_declared || number.kind != Kind::Number || first.kind != Kind::Word {
+        return None;
+    }
+    let rest = place.tokens[place.at + 1..].iter().take_while(|token| !token.begins_line);
+    let rest: Vec<&Token<'_>> = rest.collect();
+    let is_unit = |token: &&Token<'_>| {
+        matches!(token.kind, Kind::Word | Kind::Number) || matches!(token.text, "/" | "*" | "^" | "-")
+    };
+    if !rest.iter().all(is_unit) || rest.iter().any(|token| words::reserved(token.text).is_some()) {
+        return None;
+    }
+    let last = rest.last().map_or(first.span(), |token| token.span());
+    let span = first.span().to(last);
+    let fix = Fix::likely("put the unit in brackets").insert(span.start, "[").insert(span.end, "]");
+    let message = format!("missing brackets around the unit of `{}`", number.text);
+    let unit = rest.iter().fold(first.text.to_owned(), |unit, token| {
+        let blank = if token.kind == Kind::Word && unit.ends_with(char::is_alphanumeric) { " " } else { "" };
+        unit + blank + token.text
+    });
+    let help = format!("a unit stands in brackets: `{} [{unit}]`", number.text);
+    Some(Diagnostic::new(Code::MissingOperator, message, span, "meant as a unit?").help(help).fix(fix))
 }
 
 fn begins_value(token: &Token<'_>) -> bool {

@@ -30,46 +30,54 @@ pub(crate) fn found<'a>(tree: &'a ast::Model, known: &Known, walk: Walk<'a>) -> 
         return Found { walk, mistakes: vec![first], suspect: None };
     }
     let definitions = definitions(tree);
-    let used: HashMap<usize, Vec<Definition<'a>>> = walk
-        .contradictions
-        .iter()
-        .map(|&at| (at, used(&walk.inference.requirements[at], &definitions)))
-        .collect();
+    let of = |at: usize| (at, used(&walk.inference.requirements[at], &definitions));
+    let used: HashMap<usize, Vec<Definition<'a>>> = walk.contradictions.iter().copied().map(of).collect();
+    let origins = origins(&walk, &used);
     let mut uses: HashMap<Span, usize> = HashMap::new();
-    used.values().flatten().for_each(|it| *uses.entry(it.name.span).or_default() += 1);
-    let shared = used[&first].iter().filter(|it| uses[&it.name.span] > 1 && it.is_number());
+    origins.iter().flat_map(|at| &used[at]).for_each(|it| *uses.entry(it.name.span).or_default() += 1);
+    let is_shared = |it: &&Definition<'_>| uses.get(&it.name.span).is_some_and(|&count| count > 1);
+    let shared = used[&first].iter().filter(is_shared).filter(|it| it.is_number());
     let tried: Vec<Span> = shared.map(|it| it.name.span).take(MOST_TRIALS).collect();
     let mut trials = tried.iter().filter(|name| !known.suspects.contains(name));
-    if let Some(found) = trials.find_map(|&name| trial(tree, known, name, &walk)) {
+    if let Some(found) = trials.find_map(|&name| trial(tree, known, (name, uses[&name]), &walk)) {
         return found;
     }
-    let wrong: Vec<Span> =
-        walk.contradictions.iter().map(|&at| walk.inference.requirements[at].site).collect();
     let is_alone = |at: &usize| {
         let it = &walk.inference.requirements[*at];
         let is_known = it.left.dimension.is_known() && it.right.dimension.is_known();
-        let shares = |it: &Definition<'_>| uses[&it.name.span] > 1 && !tried.contains(&it.name.span);
-        let holds = |outer: Span, inner: &Span| outer.start <= inner.start && inner.end <= outer.end;
-        let follows = |it: &Definition<'_>| wrong.iter().any(|wrong| holds(it.value.span, wrong));
-        is_known
-            && it.calls.is_empty()
-            && !used[at].iter().any(|it| shares(it) || follows(it))
-            && !wrong.iter().any(|other| *other != it.site && holds(it.site, other))
+        let shares = used[at].iter().filter(is_shared).any(|it| !tried.contains(&it.name.span));
+        *at != first && is_known && it.calls.is_empty() && !shares
     };
-    let mut mistakes = vec![first];
-    mistakes.extend(walk.contradictions.iter().copied().filter(|at| *at != first && is_alone(at)));
+    let mistakes = std::iter::once(first).chain(origins.into_iter().filter(is_alone)).collect();
     Found { mistakes, suspect: None, walk }
 }
 
-/// Whether fewer texts do not fit if a definition is what its uses say.
-fn trial<'a>(tree: &'a ast::Model, known: &Known, name: Span, so_far: &Walk<'a>) -> Option<Found<'a>> {
+/// The texts that do not fit by themselves: no other lies in them, nor in a definition that they use.
+fn origins(walk: &Walk<'_>, used: &HashMap<usize, Vec<Definition<'_>>>) -> Vec<usize> {
+    let site = |at: usize| walk.inference.requirements[at].site;
+    let wrong: Vec<Span> = walk.contradictions.iter().map(|&at| site(at)).collect();
+    let holds = |outer: Span, inner: &Span| outer.start <= inner.start && inner.end <= outer.end;
+    let follows = |at: usize| {
+        wrong.iter().any(|it| *it != site(at) && holds(site(at), it))
+            || used[&at].iter().any(|definition| wrong.iter().any(|it| holds(definition.value.span, it)))
+    };
+    walk.contradictions.iter().copied().filter(|&at| !follows(at)).collect()
+}
+
+/// Whether all texts fit that use a definition, so many, if it is what they say.
+fn trial<'a>(
+    tree: &'a ast::Model,
+    known: &Known,
+    (name, uses): (Span, usize),
+    so_far: &Walk<'a>,
+) -> Option<Found<'a>> {
     let mut known = known.clone();
     known.suspects.insert(name);
     let walk = Walk::new(tree, known, false);
     let is_it =
         |at: &&usize| matches!(walk.inference.requirements[**at].reason, Reason::Uses(it) if it.span == name);
     let blamed = walk.contradictions.iter().find(is_it).copied()?;
-    let is_better = walk.contradictions.len() < so_far.contradictions.len();
+    let is_better = walk.contradictions.len() + uses <= so_far.contradictions.len() + 1;
     is_better.then(|| Found { walk, mistakes: vec![blamed], suspect: Some(name) })
 }
 

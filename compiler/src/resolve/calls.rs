@@ -141,11 +141,15 @@ impl<'a> Elaborator<'a> {
 
     fn builtin_call(&mut self, name: &'a str, expr: &'a Expr, arguments: &'a [Argument]) -> Value {
         let wanted = arity(name).expect("asked only for functions of the language");
+        let is_form = FORMS.iter().any(|form| form.0 == name);
         if !self.count_is(name, wanted, arguments.len(), expr.span, None) {
-            self.plain_arguments(arguments);
+            // What a form reads, it reads in its own way: nothing is to be said of it here.
+            if !is_form {
+                self.plain_arguments(arguments);
+            }
             return Value::default();
         }
-        if FORMS.iter().any(|form| form.0 == name) {
+        if is_form {
             return self.form(name, expr, arguments);
         }
         let Some(values) = self.plain_arguments(arguments) else { return Value::default() };

@@ -30,7 +30,7 @@ fn model_text(random: &mut Random) -> String {
         3 => format!("u*{:.1}*Dir({psi})", size(random)),
         _ => {
             let (a, b) = (size(random), size(random));
-            let (c, d) = (random.between(-1.0, 1.0), random.between(-1.0, 1.0));
+            let (c, d) = (random.between(-3.0, 3.0), random.between(-3.0, 3.0));
             format!(
                 "({sign}{a:.1}*Dir({psi}).x + ({c:.1})*Dir({psi}).y, ({d:.1})*Dir({psi}).x {} {b:.1}*Dir({psi}).y)",
                 if sign.is_empty() { "+" } else { "-" }

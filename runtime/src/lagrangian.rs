@@ -46,6 +46,28 @@ fn slopes_at_the_start(nlp: &mut TranscribedNlp, solution: &Solution) -> Vec<f64
     slopes
 }
 
+/// What the objective of the model changes by with the bound of each path constraint, per time: one column per row, `N` entries each.
+pub(crate) fn path_multipliers(
+    problem: &Problem,
+    nlp: &TranscribedNlp,
+    solution: &Solution,
+    time: &[f64],
+) -> Vec<Vec<f64>> {
+    let (chain, rows) = (nlp.chain(), &solution.multipliers.rows);
+    let count = problem.path_bounds.len();
+    let density = |row: usize, k: usize| {
+        let sum: f64 = chain.local(k).skip(row).step_by(count).map(|at| rows[at]).sum();
+        -problem.sense * sum / (time[k + 1] - time[k])
+    };
+    (0..count).map(|row| (0..chain.intervals).map(|k| density(row, k)).collect()).collect()
+}
+
+/// What the objective of the model changes by with the bound of each condition at the ends.
+pub(crate) fn end_multipliers(problem: &Problem, nlp: &TranscribedNlp, solution: &Solution) -> Vec<f64> {
+    let rows = &solution.multipliers.rows[nlp.chain().coupling()];
+    rows.iter().map(|lambda| -problem.sense * lambda).collect()
+}
+
 /// The Hamiltonian of each interval, and what it has to be.
 #[derive(Clone, Debug, Default)]
 pub struct Hamiltonian {

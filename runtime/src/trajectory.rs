@@ -1,6 +1,6 @@
 //! A solution in the words of the model: signals over real time.
 
-use crate::lagrangian::Hamiltonian;
+use crate::lagrangian::{Hamiltonian, end_multipliers, path_multipliers};
 use crate::nlp::{Derivatives, Nlp, Solution};
 use crate::problem::{Columns, Function, Problem};
 use crate::transcribe::mesh::Mesh;
@@ -20,6 +20,10 @@ pub struct Trajectory {
     /// One column per state: the derivative of the objective of the model (as written, `maximize` included) by the
     /// state at that time.
     pub costates: Vec<Vec<f64>>,
+    /// One column per path constraint, `N` entries each: what the objective changes by with its bound, per time.
+    pub path_multipliers: Vec<Vec<f64>>,
+    /// One per condition at the ends: what the objective changes by with its bound.
+    pub end_multipliers: Vec<f64>,
     /// The Hamiltonian, and what it has to be.
     pub hamiltonian: Hamiltonian,
     /// One column per report, `N + 1` entries each; the last uses the last control.
@@ -53,6 +57,8 @@ impl Trajectory {
             report: sample(&*problem.report, &points, &parameters),
             guards: sample(&*problem.guards, &points, &parameters),
             costates: costates(problem, nlp, solution),
+            path_multipliers: path_multipliers(problem, nlp, solution, &time),
+            end_multipliers: end_multipliers(problem, nlp, solution),
             hamiltonian: Hamiltonian::new(problem, nlp, solution, time[time.len() - 1] - time[0]),
             time,
             parameters,

@@ -166,3 +166,27 @@ fn a_last_time_that_does_more_says_nothing() {
         assert_eq!(hamiltonian.expected.is_some(), is_expected, "{duration} {force}: {hamiltonian:?}");
     }
 }
+
+/// Each end condition is worth what a parameter in its place would be, and so is the bound of a path constraint, added up over time.
+#[test]
+fn multipliers_are_derivatives_by_the_bounds() {
+    let least = "free T in [0.1, 10] guess 2 time t in [0, T] state x start 0 state v start 0 control u in [-1, 1] \
+                 dynamics { x' = v v' = u } end x == 4 end v == 0 minimize T method { N = 20 scheme trapezoid tol = 1e-10 }";
+    // T = 2 sqrt(d), so dT/dd = 1/sqrt(d); a speed w at the end is reached after T = 2 sqrt(d + w^2/2) - w.
+    let found = Solved::new(least, &[], &[]).outcome.trajectory.end_multipliers;
+    assert!((found[0] - 0.5).abs() < 1e-6 && (found[1] + 1.0).abs() < 1e-6, "{found:?}");
+    let most = least.replace("minimize T", "maximize -T");
+    let found = Solved::new(&most, &[], &[]).outcome.trajectory.end_multipliers;
+    assert!((found[0] + 0.5).abs() < 1e-6 && (found[1] - 1.0).abs() < 1e-6, "{found:?}");
+    let bounded = "time t in [0, 1] state x start 0 state v start 1 control u dynamics { x' = v v' = u } path top: x <= 0.125 \
+                   end x == 0 end v == -1 minimize integral(u^2)/2 method { grid N = 96 scheme gauss2 controls = polynomial }";
+    let trajectory = Solved::new(bounded, &[], &[]).outcome.trajectory;
+    let lengths = trajectory.time.windows(2).map(|pair| pair[1] - pair[0]);
+    let sum: f64 = trajectory.path_multipliers[0].iter().zip(lengths).map(|(value, h)| value * h).sum();
+    let exact = -4.0 / (9.0 * 0.125f64.powi(2));
+    assert!((sum / exact - 1.0).abs() < 2e-3, "{sum} for {exact}");
+    assert!(
+        trajectory.path_multipliers[0].iter().all(|value| *value <= 1e-6),
+        "relaxing a bound never costs"
+    );
+}

@@ -8,7 +8,7 @@ use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::lagrangian::Hamiltonian;
 use fdcc_runtime::modes::Mode;
 use fdcc_runtime::nlp::Status;
-use fdcc_runtime::problem::{ControlShape, Linear, Method, Problem, Scheme, Solver, Variable};
+use fdcc_runtime::problem::{ControlShape, Function, Linear, Method, Problem, Scheme, Solver, Variable};
 use serde::Serialize;
 
 /// One solve. Numbers are written so that they read back to the same bits.
@@ -37,6 +37,10 @@ pub struct Document {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub control_nodes: Option<ControlNodes>,
     pub costates: Named<Vec<f64>>,
+    /// What the objective changes by with the bound of each path constraint, per time; one for each interval.
+    pub path_multipliers: Named<Vec<f64>>,
+    /// What the objective changes by with the bound of each condition at the ends.
+    pub end_multipliers: Named<f64>,
     /// One for each interval.
     pub hamiltonian: Vec<f64>,
     /// The sum of the errors of all steps, where the grid was refined.
@@ -171,6 +175,8 @@ impl Document {
                 values: named_columns(problem.controls.iter().zip(&nodes.values)),
             }),
             costates: shown(&trajectory.costates),
+            path_multipliers: labelled(&*problem.path, 0, &trajectory.path_multipliers),
+            end_multipliers: labelled(&*problem.boundary, 1, &trajectory.end_multipliers),
             hamiltonian: trajectory.hamiltonian.values.clone(),
             step_errors: None,
             hamiltonian_check: HamiltonianCheck::from(&trajectory.hamiltonian),
@@ -181,6 +187,12 @@ impl Document {
             verification: None,
         }
     }
+}
+
+/// By the words that the outputs of a function have in the model, from the first on that counts.
+fn labelled<T: Clone>(function: &dyn Function, first: usize, values: &[T]) -> Named<T> {
+    let label = |(row, value): (usize, &T)| (function.origin(first + row).label.to_string(), value.clone());
+    values.iter().enumerate().map(label).collect()
 }
 
 fn named_columns<'a>(columns: impl Iterator<Item = (&'a Variable, &'a Vec<f64>)>) -> Named<Vec<f64>> {

@@ -156,6 +156,7 @@ pub(super) fn explain(
         unknown::unknown_item,
         unknown::nameless_entry,
         slips::foreign_character,
+        slips::foreign_comment,
         brackets::unopened_after,
         slips::second_derivative,
         doubled::doubled,

@@ -43,6 +43,20 @@ pub(super) fn foreign_character(place: &Place<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
+/// `// text`: a comment of other languages.
+pub(super) fn foreign_comment(place: &Place<'_, '_>) -> Option<Diagnostic> {
+    let is_pair = |a: &Token<'_>, b: &Token<'_>| a.text == "/" && b.text == "/" && a.end() == b.start;
+    let (next, after) = (place.next()?, place.tokens.get(place.at + 1));
+    let before = place.previous().filter(|before| is_pair(before, next));
+    let span = match (before, after) {
+        (Some(before), _) => before.span().to(next.span()),
+        (None, Some(after)) if is_pair(next, after) => next.span().to(after.span()),
+        _ => return None,
+    };
+    let found = Diagnostic::new(Code::Unfinished, "`//` begins no comment", span, "meant as a comment?");
+    Some(found.help("a comment begins with `#`").fix(Fix::certain("write `#`").replace(span, "#")))
+}
+
 /// A sign, or a word with blanks where its neighbours touch it.
 fn apart(place: &Place<'_, '_>, sign: &str) -> String {
     let is_word = sign.starts_with(char::is_alphabetic);

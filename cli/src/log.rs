@@ -1,11 +1,10 @@
 //! What a person sees while a solve runs, on stderr: Ipopt's iteration table with the width of the layer and the grid, and on a
 //! terminal a progress line.
 
-use crate::output::document::status_name;
-use crate::output::number::{scientific, significant};
+use crate::output::number::scientific;
 use crate::output::tell;
 use fdcc_runtime::homotopy;
-use fdcc_runtime::nlp::{Progress, Solution};
+use fdcc_runtime::nlp::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::Duration;
@@ -44,9 +43,9 @@ impl Log {
     }
 
     /// The table of one of several solves, which share a [`bar`]; only a full log has tables.
-    pub fn of_row(level: Level, bar: &ProgressBar, row: usize) -> Self {
+    pub fn of_several(level: Level, bar: &ProgressBar, label: &str) -> Self {
         let level = if level == Level::Full { level } else { Level::None };
-        Log { level, label: format!("row {row} "), lines: 0, bar: bar.clone() }
+        Log { level, label: label.to_owned(), lines: 0, bar: bar.clone() }
     }
 
     /// One iteration.
@@ -73,15 +72,9 @@ impl Log {
         });
     }
 
-    /// The end of one of several starting points.
-    pub fn start(&mut self, index: u32, solution: &Solution, sense: f64) {
-        if self.level != Level::None {
-            let (label, status) = (&self.label, status_name(&solution.status));
-            let objective = significant(sense * solution.objective, 9);
-            self.bar
-                .suspend(|| tell(&format!("{label} start {index:3}  {status:<18} objective {objective}\n")));
-        }
-        self.lines = 0;
+    /// The table of one of several starting points.
+    pub fn of_start(&self, index: usize) -> Self {
+        Log::of_several(self.level, &self.bar, &format!("start {index} "))
     }
 
     /// Removes the progress line.

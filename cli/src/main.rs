@@ -12,6 +12,7 @@ mod gradients;
 mod log;
 mod model;
 mod output;
+mod parallel;
 mod pieces;
 mod quantities;
 mod render;

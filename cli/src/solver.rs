@@ -4,8 +4,9 @@ use crate::bounds;
 use crate::commands::{Exit, Options, Prepared, show};
 use crate::log::Log;
 use crate::output;
-use crate::output::document::{Document, Seconds};
+use crate::output::document::{Document, Ended, Seconds};
 use crate::output::units::Units;
+use crate::parallel;
 use crate::warm;
 use crate::watch::Deadline;
 use fdcc_grammar::{Diagnostic, SourceFile};
@@ -92,27 +93,20 @@ impl Compiled {
     pub fn solve(self, start: Option<Start>, options: &Options, log: &mut Log) -> Result<Solved, Failure> {
         let problem = self.problem;
         let deadline = Deadline::after(self.begin, options.time_limit);
-        let mut best: Option<Refined> = None;
-        for index in 0..options.starts {
-            let start = variation(&problem, start.clone(), index);
-            let found = run(&problem, start, deadline, log)?;
-            let solution = &found.outcome.solution;
-            if options.starts > 1 {
-                log.start(index, solution, problem.sense);
-            }
-            let is_stopped = matches!(solution.status, Status::Interrupted | Status::TimeLimit);
-            if best.as_ref().is_none_or(|best| starts::is_better(solution, &best.outcome.solution)) {
-                best = Some(found);
-            }
-            if is_stopped {
-                break;
-            }
-        }
-        let Refined { problem, outcome, error } = best.expect("there is at least one start");
+        let all = match options.starts {
+            1 => vec![run(&problem, start, deadline, log)?],
+            starts => from_many(&problem, start, starts as usize, deadline, log)?,
+        };
+        let spread = if all.len() > 1 { all.iter().map(Ended::new).collect() } else { Vec::new() };
+        let best = |a: Refined, b: Refined| {
+            if starts::is_better(&b.outcome.solution, &a.outcome.solution) { b } else { a }
+        };
+        let Refined { problem, outcome, error } =
+            all.into_iter().reduce(best).expect("there is at least one start");
         let total = self.begin.elapsed().as_secs_f64();
         let seconds = Seconds { compile: self.seconds, solve: total - self.seconds, total };
         let document = Document::new(&problem, &outcome, &self.source_sha256, seconds);
-        let document = Document { units: self.units, step_errors: error, ..document };
+        let document = Document { units: self.units, step_errors: error, starts: spread, ..document };
         Ok(Solved { problem, outcome, document })
     }
 }
@@ -146,12 +140,27 @@ fn refuse_senseless(problem: &Problem) -> Result<(), Failure> {
     }
 }
 
-/// The first start is as given; the others vary it.
-fn variation(problem: &Problem, start: Option<Start>, index: u32) -> Option<Start> {
-    match index {
-        0 => start,
-        _ => Some(starts::perturbed(problem, start.map(|start| start.v), index)),
-    }
+/// From the start as it is given and from variations of it, in parallel.
+fn from_many(
+    problem: &Problem,
+    start: Option<Start>,
+    starts: usize,
+    deadline: Deadline,
+    log: &Log,
+) -> Result<Vec<Refined>, Failure> {
+    let one = |index: usize| {
+        let start = match index {
+            0 => start.clone(),
+            _ => Some(starts::perturbed(problem, start.clone().map(|start| start.v), index as u32)),
+        };
+        run(problem, start, deadline, &mut log.of_start(index))
+    };
+    let ends = |found: &Result<Refined, Failure>| found.as_ref().map_or(true, is_stopped);
+    parallel::in_order(starts, parallel::processors(), one, ends).into_iter().collect()
+}
+
+fn is_stopped(found: &Refined) -> bool {
+    matches!(found.outcome.solution.status, Status::Interrupted | Status::TimeLimit)
 }
 
 fn run(

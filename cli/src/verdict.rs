@@ -1,6 +1,6 @@
 //! What is said at the end of a solve: how it ended, what was found, what each surface did.
 
-use crate::output::document::{Document, scheme_name, status_name, switching};
+use crate::output::document::{Document, Ended, scheme_name, status_name, switching};
 use crate::output::number::{scientific, short};
 use crate::output::plural;
 use crate::output::verified::Verification;
@@ -41,12 +41,36 @@ pub fn verdict(solved: &Solved) -> String {
     let word = if solved.is_good() { "done" } else { "stop" };
     let mut lines = vec![format!(" {word}  {}", how(solved)), format!("       {}", result.join("   "))];
     lines.push(format!("       {work}"));
+    lines.extend(spread(document));
     lines.extend(surfaces(document));
     lines.extend(replayed(document));
     lines.extend(refined(solved));
     lines.extend(hamiltonian(document).filter(|_| solved.is_good()));
     lines.extend(sensitivities(document));
     lines.join("\n") + "\n"
+}
+
+/// Objectives within this, relative to their size, are told as one.
+const SAME: f64 = 1e-6;
+
+/// The minima that were found from several starts, the best one first, and how often.
+fn spread(document: &Document) -> Vec<String> {
+    let is_solved = |ended: &&Ended| matches!(ended.status.as_str(), "solved" | "acceptable");
+    let mut found: Vec<f64> = document.starts.iter().filter(is_solved).map(|ended| ended.objective).collect();
+    // The best one is the answer, whichever way is better.
+    found.sort_by(|a, b| (a - document.objective).abs().total_cmp(&(b - document.objective).abs()));
+    let same = |a: &f64, b: &f64| (a - b).abs() <= SAME * b.abs().max(1.0);
+    let row = |found: &[f64]| {
+        let value = document.units.value("objective", found[0], 9);
+        format!("       {} of {} starts: objective {value}", found.len(), document.starts.len())
+    };
+    let solved = found.len();
+    let mut rows: Vec<String> = found.chunk_by(same).map(row).collect();
+    match document.starts.len() - solved {
+        0 => {}
+        others => rows.push(format!("       {others} of {} starts: not solved", document.starts.len())),
+    }
+    rows
 }
 
 /// What each surface did, if the trajectory says anything about it.

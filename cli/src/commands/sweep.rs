@@ -5,14 +5,13 @@ use super::options::{Options, Prepared, prepare, usage};
 use crate::log::{self, Level, Log};
 use crate::output::named::Named;
 use crate::output::{self, files, plural, table};
+use crate::parallel;
 use crate::solver::{Compiled, Failure, Solved};
 use crate::warm;
 use crate::watch::catch_interrupts;
 use clap::Args;
 use grid::Grid;
 use indicatif::ProgressBar;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 mod grid;
@@ -103,23 +102,11 @@ impl Sweep {
 
     /// Each row for itself; which thread solves it makes no difference to the answer.
     fn in_parallel(&self, rows: &[Row], bar: &ProgressBar) -> Result<Vec<Solved>, Failure> {
-        let processors = || std::thread::available_parallelism().map_or(1, |count| count.get());
-        let threads = self.jobs.map_or_else(processors, |jobs| jobs as usize).min(rows.len());
-        let (next, results) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
-        let work = || {
-            while let Some(row) = rows.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let solved = self.one(row, None, bar);
-                if solved.is_err() {
-                    // There will be no table, so no further row is begun.
-                    next.store(rows.len(), Ordering::Relaxed);
-                }
-                results.lock().expect("no thread panics with the lock").push((row.number, solved));
-            }
-        };
-        std::thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(work))));
-        let mut results = results.into_inner().expect("no thread panics with the lock");
-        results.sort_by_key(|(number, _)| *number);
-        results.into_iter().map(|(_, solved)| solved).collect()
+        let threads = self.jobs.map_or_else(parallel::processors, |jobs| jobs as usize);
+        // After a failure there will be no table.
+        let solved =
+            parallel::in_order(rows.len(), threads, |i| self.one(&rows[i], None, bar), Result::is_err);
+        solved.into_iter().collect()
     }
 
     fn one(&self, row: &Row, before: Option<&Solved>, bar: &ProgressBar) -> Result<Solved, Failure> {
@@ -128,7 +115,7 @@ impl Sweep {
             Some(before) => Some(warm::from_solved(before, &compiled.problem)),
             None => compiled.first_start(&self.options)?,
         };
-        let mut log = Log::of_row(self.level(), bar, row.number);
+        let mut log = Log::of_several(self.level(), bar, &format!("row {} ", row.number));
         let solved = compiled.solve(start, &self.options, &mut log)?;
         bar.inc(1);
         if self.level() != Level::None {

@@ -9,6 +9,7 @@ use fdcc_runtime::lagrangian::Hamiltonian;
 use fdcc_runtime::modes::Mode;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{ControlShape, Function, Linear, Method, Problem, Scheme, Solver, Variable};
+use fdcc_runtime::refine::Refined;
 use serde::Serialize;
 
 /// One solve. Numbers are written so that they read back to the same bits.
@@ -53,6 +54,9 @@ pub struct Document {
     pub sensitivities: Named<f64>,
     pub report: Named<Vec<f64>>,
     pub surfaces: Named<Vec<Span>>,
+    /// How each of several starts ended, in their order; absent where there was one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub starts: Vec<Ended>,
     /// The units of the values; absent where the model has none.
     #[serde(skip_serializing_if = "Units::is_empty")]
     pub units: Units,
@@ -112,6 +116,25 @@ pub struct Counts {
     pub evaluations: usize,
     pub derivatives: usize,
     pub restorations: usize,
+}
+
+/// How the solve from one of several starting points ended.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ended {
+    pub status: String,
+    pub objective: f64,
+    pub iterations: usize,
+}
+
+impl Ended {
+    pub fn new(found: &Refined) -> Self {
+        let solution = &found.outcome.solution;
+        Ended {
+            status: status_name(&solution.status).to_string(),
+            objective: found.problem.sense * solution.objective,
+            iterations: solution.counts.iterations,
+        }
+    }
 }
 
 /// Wall-clock times: the only entries that differ between two runs.
@@ -183,6 +206,7 @@ impl Document {
             sensitivities: Named::default(),
             report: problem.report_names.iter().cloned().zip(trajectory.report.iter().cloned()).collect(),
             surfaces: surfaces(problem, outcome),
+            starts: Vec::new(),
             units: Units::default(),
             verification: None,
         }

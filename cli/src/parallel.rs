@@ -1,0 +1,37 @@
+//! Independent pieces of work on several threads.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// How many threads work at a time unless somebody says otherwise.
+pub fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, |count| count.get())
+}
+
+/// The results of `work(0)`, `work(1)` ... in this order; which thread does what makes no difference to them. After a result that `ends` it all, nothing more is
+/// begun, and the results may be fewer.
+pub fn in_order<T: Send>(
+    count: usize,
+    threads: usize,
+    work: impl Fn(usize) -> T + Sync,
+    ends: impl Fn(&T) -> bool + Sync,
+) -> Vec<T> {
+    let (next, results) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let run = || {
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            if index >= count {
+                return;
+            }
+            let result = work(index);
+            if ends(&result) {
+                next.store(count, Ordering::Relaxed);
+            }
+            results.lock().expect("no thread panics with the lock").push((index, result));
+        }
+    };
+    std::thread::scope(|scope| (0..threads.min(count)).for_each(|_| drop(scope.spawn(run))));
+    let mut results = results.into_inner().expect("no thread panics with the lock");
+    results.sort_by_key(|(index, _)| *index);
+    results.into_iter().map(|(_, result)| result).collect()
+}

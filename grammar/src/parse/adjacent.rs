@@ -14,7 +14,7 @@ pub(super) fn missing_operator(place: &Place<'_, '_>) -> Option<Diagnostic> {
     if !(place.after_operand() || before_derivative) || next.begins_line || !begins_value(next) || in_range {
         return None;
     }
-    if let Some(found) = bare_unit(place) {
+    if let Some(found) = bare_unit(place).or_else(|| foreign_choice(previous)) {
         return Some(found);
     }
     let (left, right) = (value_before(place), value_after(place));
@@ -60,6 +60,16 @@ fn bare_unit(place: &Place<'_, '_>) -> Option<Diagnostic> {
     });
     let help = format!("a unit stands in brackets: `{} [{unit}]`", number.text);
     Some(Diagnostic::new(Code::MissingOperator, message, span, "meant as a unit?").help(help).fix(fix))
+}
+
+/// `if x > 0 then a else b`: a choice as other languages write it.
+fn foreign_choice(word: &Token<'_>) -> Option<Diagnostic> {
+    if !matches!(word.text, "if" | "If" | "IF") {
+        return None;
+    }
+    let message = format!("`{}` has no meaning in fdc", word.text);
+    let help = "write `piecewise { x <= 0 => a  otherwise => b }`; where the right side of an equation jumps, declare a `surface` and `match` on it";
+    Some(Diagnostic::new(Code::Unfinished, message, word.span(), "meant as a choice?").help(help))
 }
 
 fn begins_value(token: &Token<'_>) -> bool {

@@ -275,12 +275,28 @@ pub(super) fn second_value(place: &Place<'_, '_>) -> Option<Diagnostic> {
     if place.word != "method" {
         return None;
     }
+    if begins_setting(place, place.at + 1) {
+        let message = "settings stand side by side, without commas";
+        let found = Diagnostic::new(Code::Unfinished, message, next.span(), "another setting follows");
+        return Some(
+            found.help("leave the comma out").fix(Fix::certain("leave it out").replace(next.span(), "")),
+        );
+    }
     let diagnostic =
         Diagnostic::new(Code::Unfinished, "a setting has one value", next.span(), "a second value follows");
     Some(
         diagnostic
             .help("several widths are gone through one after the other with `continue sigma = 0.1, 0.05`"),
     )
+}
+
+/// `N = 100` or `scheme rk4`
+fn begins_setting(place: &Place<'_, '_>, at: usize) -> bool {
+    let is_word = place.tokens.get(at).is_some_and(|token| token.kind == Kind::Word);
+    let has_value = |token: &Token<'_>| {
+        token.text == "=" || matches!(token.kind, Kind::Word | Kind::Number) && !token.begins_line
+    };
+    is_word && place.tokens.get(at + 1).is_some_and(has_value)
 }
 
 /// Items that have one place only: `model` at the head, phases and links outside phases.

@@ -1,7 +1,8 @@
 //! What a person sees while a solve runs, on stderr: Ipopt's iteration table with the width of the layer and the grid, and on a
 //! terminal a progress line.
 
-use crate::output::number::scientific;
+use crate::output::document::Ended;
+use crate::output::number::{scientific, significant};
 use crate::output::tell;
 use fdcc_runtime::homotopy;
 use fdcc_runtime::nlp::Progress;
@@ -75,6 +76,15 @@ impl Log {
     /// The table of one of several starting points.
     pub fn of_start(&self, index: usize) -> Self {
         Log::of_several(self.level, &self.bar, &format!("start {index} "))
+    }
+
+    /// How the solve from one of several starting points ended.
+    pub fn ended(&self, index: usize, ended: &Ended) {
+        if self.level != Level::None {
+            let objective = significant(ended.objective, 9);
+            let status = ended.status.replace('_', " ");
+            self.bar.suspend(|| tell(&format!(" start {index:3}  {status:<18} objective {objective}\n")));
+        }
     }
 
     /// Removes the progress line.

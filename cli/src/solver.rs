@@ -97,7 +97,9 @@ impl Compiled {
             1 => vec![run(&problem, start, deadline, log)?],
             starts => from_many(&problem, start, starts as usize, deadline, log)?,
         };
-        let spread = if all.len() > 1 { all.iter().map(Ended::new).collect() } else { Vec::new() };
+        let spread: Vec<Ended> =
+            if all.len() > 1 { all.iter().map(Ended::new).collect() } else { Vec::new() };
+        spread.iter().enumerate().for_each(|(index, ended)| log.ended(index, ended));
         let best = |a: Refined, b: Refined| {
             if starts::is_better(&b.outcome.solution, &a.outcome.solution) { b } else { a }
         };

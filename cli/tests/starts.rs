@@ -19,7 +19,7 @@ fn minima() -> [f64; 2] {
 
 #[test]
 fn the_lower_of_two_minima_is_kept_and_both_are_told() {
-    let folder = folder("starts", &[("two_minima.fdc", TWO_MINIMA)]);
+    let folder = folder("several_starts", &[("two_minima.fdc", TWO_MINIMA)]);
     let alone = json(&fdcc(&folder, &["solve", "two_minima.fdc", "--json", "--log", "none"], ""));
     let [high, low] = minima();
     assert!((alone["objective"].as_f64().expect("a number") - high).abs() < 1e-7, "{}", alone["objective"]);
@@ -44,7 +44,7 @@ fn the_lower_of_two_minima_is_kept_and_both_are_told() {
 /// Threads take turns as they like; what comes out does not depend on it.
 #[test]
 fn the_same_twice() {
-    let folder = folder("starts_twice", &[("two_minima.fdc", TWO_MINIMA)]);
+    let folder = folder("several_starts_twice", &[("two_minima.fdc", TWO_MINIMA)]);
     let run = || {
         json(&fdcc(&folder, &["solve", "two_minima.fdc", "--starts", "6", "--json", "--log", "none"], ""))["starts"].clone()
     };

@@ -71,3 +71,57 @@ fn between(position: f64, last: usize, at: &dyn Fn(usize) -> f64) -> f64 {
     let fraction = position - left as f64;
     if fraction == 0.0 { at(left) } else { (1.0 - fraction) * at(left) + fraction * at(left + 1) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chain(intervals: usize) -> Stages {
+        Stages { intervals, states: 1, controls: 1, inner: 0, globals: 1, local_rows: 1, coupling_rows: 1 }
+    }
+
+    /// `x = 3 tau`, `u = 5 tau` at the middle of its interval, `g = 7`; multipliers 2 of defects, 4 of path rows, 6 of bounds, 8 of the coupling row.
+    fn start(chain: Stages) -> Start {
+        let n = chain.intervals as f64;
+        let mut v: Vec<f64> =
+            (0..chain.intervals).flat_map(|k| [3.0 * k as f64 / n, 5.0 * (k as f64 + 0.5) / n]).collect();
+        v.extend([3.0, 7.0]);
+        let mut rows = [2.0, 4.0].repeat(chain.intervals);
+        rows.push(8.0);
+        let bounds = vec![6.0; chain.variables()];
+        let multipliers = Multipliers { rows, lower: bounds.clone(), upper: bounds };
+        Start { v, warm: Some(Warm { multipliers, mu: 1e-3 }) }
+    }
+
+    fn difference(a: &[f64], b: &[f64]) -> f64 {
+        assert_eq!(a.len(), b.len());
+        a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    /// But for controls beyond the first and the last middle, which stay what they are there.
+    #[test]
+    fn what_is_linear_in_time_is_the_same_on_any_grid() {
+        for (from, to) in [(10, 20), (20, 10), (7, 16)] {
+            let (from, to) = (chain(from), chain(to));
+            let (found, mut expected) = (prolong(from, &start(from), to).v, start(to).v);
+            for k in 0..to.intervals {
+                let (low, high) = (2.5 / from.intervals as f64, 5.0 - 2.5 / from.intervals as f64);
+                expected[to.control(k).start] = expected[to.control(k).start].clamp(low, high);
+            }
+            assert!(difference(&found, &expected) < 1e-14, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn multipliers_of_pieces_of_time_and_the_barrier_parameter_fall_with_the_step() {
+        let (from, to) = (chain(10), chain(40));
+        let warm = prolong(from, &start(from), to).warm.expect("the start is warm");
+        assert_eq!(warm.mu, 1e-3 / 4.0);
+        let mut rows = [2.0, 1.0].repeat(40);
+        rows.push(8.0);
+        assert_eq!(warm.multipliers.rows, rows);
+        let stages = &warm.multipliers.lower[..to.variables() - 1];
+        assert!(stages.iter().all(|z| *z == 1.5));
+        assert_eq!(warm.multipliers.lower[to.variables() - 1], 6.0, "an unknown is no piece of time");
+    }
+}

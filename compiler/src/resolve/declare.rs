@@ -8,7 +8,7 @@ use super::{order, scope};
 use crate::graph::ExprId;
 use crate::model::{Control, Definition, Free, Param, Place, Range, State, Symbol};
 use crate::units;
-use fdcc_grammar::ast::{Expr, Ident, Interval, ItemKind, Start, Unit};
+use fdcc_grammar::ast::{Expr, ExprKind, Ident, Interval, ItemKind, Start, Unit};
 
 impl<'a> Elaborator<'a> {
     /// Symbols for all names, then the values of all definitions.
@@ -186,8 +186,9 @@ impl<'a> Elaborator<'a> {
     fn bound(&mut self, at: usize) {
         let item = self.scope.declarations[at].item;
         match &item.kind {
-            ItemKind::Param { bounds: Some(bounds), unit, .. } => {
-                let range = self.ranges(Context::BOUND, bounds, 1, unit.as_ref())[0];
+            ItemKind::Param { bounds: Some(bounds), unit, value, .. } => {
+                let unit = unit.as_ref().or_else(|| value.as_ref().and_then(unit_of_number));
+                let range = self.ranges(Context::BOUND, bounds, 1, unit)[0];
                 if let Some(index) = self.index_of(at) {
                     self.model.params[index].range = range;
                 }
@@ -333,4 +334,12 @@ fn places(name: &Ident, parts: &[Ident]) -> Vec<Place> {
         return vec![place(name)];
     }
     parts.iter().map(|part| Place { name: format!("{}.{}", name.name, part.name), span: name.span }).collect()
+}
+
+/// The unit of `80 [cm]`: plain numbers beside it are in the same.
+fn unit_of_number(value: &Expr) -> Option<&Unit> {
+    match &value.kind {
+        ExprKind::Quantity(_, unit) => Some(unit),
+        _ => None,
+    }
 }

@@ -46,7 +46,7 @@ use program::VectorFunction;
 pub use repair::repair;
 use resolve::resolve;
 pub use resolve::{closest, function_names};
-pub use review::{Reviewed, review};
+pub use review::{Reviewed, review, review_with};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 pub use surfaces::{Order, Smoothness, SurfaceClass, SurfaceReport};

@@ -3,7 +3,7 @@
 use crate::gaps::Gaps;
 use crate::{Model, NamedUnit, allow, check};
 use fdcc_grammar::ast;
-use fdcc_grammar::{Diagnostic, Parse, SourceFile, parse};
+use fdcc_grammar::{Diagnostic, Memory, Parse, SourceFile, parse_with};
 
 /// What a text means, and what is to be said about it.
 pub struct Reviewed {
@@ -19,7 +19,12 @@ pub struct Reviewed {
 
 /// Reads and checks a text.
 pub fn review(text: &str) -> Reviewed {
-    reviewed(text, parse(text))
+    review_with(&mut Memory::default(), text)
+}
+
+/// The same with a memory of the text as it was before, which spares reading what has not changed.
+pub fn review_with(memory: &mut Memory, text: &str) -> Reviewed {
+    reviewed(text, parse_with(memory, text))
 }
 
 /// Checks a text that has been read.

@@ -16,11 +16,11 @@ mod source;
 pub use diagnostic::{Code, Diagnostic, Label, Severity};
 pub use fix::{Edit, Fix};
 pub use format::format;
-pub use parse::{comments, parse, words};
+pub use parse::{Memory, comments, parse, parse_with, words};
 pub use source::{LineColumn, SourceFile, Span};
 
 /// What a text holds: the items that could be read, and what is wrong with the rest.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Parse {
     /// The tree of everything that could be read.
     pub tree: ast::Model,

@@ -2,8 +2,8 @@
 
 use crate::text::Text;
 use fdcc_compiler::names::Names;
-use fdcc_compiler::{Reviewed, SurfaceReport, review, surfaces};
-use fdcc_grammar::{Code, Severity};
+use fdcc_compiler::{Reviewed, SurfaceReport, review_with, surfaces};
+use fdcc_grammar::{Code, Memory, Severity};
 use std::cell::OnceCell;
 
 /// What a text means and what is wrong with it.
@@ -19,9 +19,9 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// Reads and checks a text.
-    pub fn new(text: Text) -> Self {
-        let reviewed = review(&text.text);
+    /// Reads and checks a text, with a memory of its former states.
+    pub fn new(text: Text, memory: &mut Memory) -> Self {
+        let reviewed = review_with(memory, &text.text);
         let is_syntax = |code: Code| code.as_str().starts_with("FDC00");
         let is_readable =
             !reviewed.diagnostics.iter().any(|it| it.severity == Severity::Error && is_syntax(it.code));

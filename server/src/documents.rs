@@ -2,8 +2,9 @@
 
 use crate::analysis::Analysis;
 use crate::text::{Encoding, Text};
+use fdcc_grammar::Memory;
 use lsp_types::{TextDocumentContentChangeEvent, Uri};
-use std::cell::OnceCell;
+use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
@@ -19,13 +20,15 @@ pub struct Document {
     last_model: Option<Rc<Analysis>>,
     text: Text,
     analysis: OnceCell<Rc<Analysis>>,
+    memory: RefCell<Memory>,
     is_published: bool,
 }
 
 impl Document {
     /// What is known about it, found out when it is first asked for.
     pub fn analysis(&self) -> &Rc<Analysis> {
-        self.analysis.get_or_init(|| Rc::new(Analysis::new(self.text.clone())))
+        let found = || Rc::new(Analysis::new(self.text.clone(), &mut self.memory.borrow_mut()));
+        self.analysis.get_or_init(found)
     }
 
     /// The last state that could be read: this one if possible.
@@ -78,6 +81,7 @@ impl Documents {
             last_model: None,
             text,
             analysis: OnceCell::new(),
+            memory: RefCell::default(),
             is_published: false,
         };
         self.open.insert(uri.0, document);

@@ -4,6 +4,7 @@
 
 use std::time::{Duration, Instant};
 
+use fdcc_grammar::{Memory, parse, parse_with};
 use fdcc_tests::fuzzed::understand;
 use fdcc_tests::random::Random;
 use fdcc_tests::repository;
@@ -13,6 +14,9 @@ const LIMIT: Duration = Duration::from_secs(5);
 
 /// Mutations that are tried, a few seconds' worth.
 const MUTATIONS: usize = 500;
+
+/// Edits of each model, one after the other.
+const EDITS: usize = 50;
 
 fn corpus() -> Vec<String> {
     let text = std::fs::read_to_string(repository().join("tests/fuzz/corpus.txt"));
@@ -42,6 +46,19 @@ fn mutations_of_what_has_been_found_are_understood() {
             text = mutated(&text, &corpus, &mut random);
         }
         within_the_limit(&text);
+    }
+}
+
+#[test]
+fn a_memory_of_former_texts_changes_nothing() {
+    let corpus = corpus();
+    let mut random = Random::new(2);
+    for (name, mut text) in fdcc_tests::documents("models", "fdc") {
+        let mut memory = Memory::default();
+        for _ in 0..EDITS {
+            text = mutated(&text, &corpus, &mut random);
+            assert!(parse_with(&mut memory, &text) == parse(&text), "{name}, edited:\n{text}");
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use fdcc_grammar::ast::{Expr, ExprKind, ItemKind};
-use fdcc_grammar::{Code, Parse, parse};
+use fdcc_grammar::{Code, Memory, Parse, parse, parse_with};
 use proptest::prelude::*;
 
 /// Generous: the tests share the machine.
@@ -64,10 +64,12 @@ fn hostile_texts_get_one_clear_answer_at_once() {
 }
 
 #[test]
-fn cut_off_models_are_read_without_panic() {
-    for (_, text) in fdcc_tests::documents("models", "fdc") {
-        for end in (0..text.len()).filter(|end| text.is_char_boundary(*end)) {
-            parse(&text[..end]);
+fn models_typed_character_by_character_are_read_as_if_they_were_new() {
+    for (name, text) in fdcc_tests::documents("models", "fdc") {
+        let mut memory = Memory::default();
+        for end in (0..=text.len()).filter(|end| text.is_char_boundary(*end)) {
+            let typed = &text[..end];
+            assert!(parse_with(&mut memory, typed) == parse(typed), "{name}, up to byte {end}");
         }
     }
 }

@@ -41,11 +41,12 @@ impl<'t> SoFar<'_, 't> {
     }
 
     fn in_phase(&self) -> bool {
-        self.word() == "phase" && self.open.first() == Some(&"}")
+        self.open.first() == Some(&"}") && self.word() == "phase"
     }
 
     fn is_item_of_phase(&self, at: usize) -> bool {
-        words::form(self.tokens[at].text).is_some() || is_misspelt_item(self, at)
+        let is_item = words::form(self.tokens[at].text).is_some() && !is_argument(self, at);
+        is_item || is_misspelt_item(self, at)
     }
 
     /// Whether the piece is a block, or holds a `piecewise`, whose `{` has not come yet.
@@ -54,6 +55,13 @@ impl<'t> SoFar<'_, 't> {
         let has = |word: &str| before.iter().any(|token| token.text == word);
         let needs_brace = words::entry_form(self.word()).is_some() || has("piecewise") || has("match");
         needs_brace && !has("{")
+    }
+
+    /// Whether a word stands between the brackets of a unit, where any word may stand, and two of them side by side.
+    fn is_in_unit(&self, at: usize) -> bool {
+        let mut ahead = self.tokens[at..self.end].iter();
+        let is_bracket = |token: &&Token<'_>| matches!(token.kind, Kind::Open | Kind::Close);
+        self.open.last() == Some(&"]") && ahead.find(is_bracket).is_some_and(|bracket| bracket.text == "]")
     }
 
     /// Keeps account of the open brackets. A closer also closes what was left open inside its pair.
@@ -94,6 +102,7 @@ fn begins_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     match (token.kind, words::reserved(token.text)) {
         (Kind::Close, _) => outside,
         (Kind::Open, _) if token.text == "{" && outside => is_nameless_block(so_far, at),
+        (Kind::Word, _) if so_far.is_in_unit(at) => false,
         (Kind::Word, Some(word)) if word.item.is_some() => {
             if so_far.in_phase() {
                 return token.begins_line && matches!(token.text, "phase" | "link");
@@ -110,7 +119,9 @@ fn begins_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
 
 /// Whether what stands before could be the end of a piece.
 fn can_begin(so_far: &SoFar<'_, '_>, at: usize) -> bool {
-    so_far.tokens[at].begins_line || can_end(&so_far.tokens[at - 1])
+    let is_start_free =
+        matches!(&so_far.tokens[..at], [.., start, free] if start.text == "start" && free.text == "free");
+    so_far.tokens[at].begins_line || can_end(&so_far.tokens[at - 1]) || is_start_free
 }
 
 /// Whether a piece may end with a token.
@@ -131,18 +142,31 @@ fn continues_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     match so_far.tokens[at].text {
         "free" => so_far.tokens[at - 1].text == "start" || (item(&["state"]) && ["", "in"].contains(&next)),
         "guess" => item(&["free", "control"]) && next != "{",
-        "start" => (item(&["state"]) && !has_relation(so_far, at)) || next == ")",
-        "end" => next == ")",
+        "start" => (item(&["state"]) && !has_relation(so_far, at)) || is_argument(so_far, at),
+        "end" => is_argument(so_far, at),
         _ => false,
     }
 }
 
-/// Whether a comparison follows before the next item: then `start` is a condition, not a state's value.
+/// Whether `start` or `end` stands for a time, as in `x(end)`.
+fn is_argument(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    matches!(so_far.tokens[at].text, "start" | "end") && matches!(so_far.text(at + 1), ")" | ",")
+}
+
+/// Whether a comparison follows before the next item: then `start` is a condition, not a state's value. The comparisons
+/// of a `piecewise` are between braces.
 fn has_relation(so_far: &SoFar<'_, '_>, at: usize) -> bool {
-    let ahead = &so_far.tokens[at + 1..so_far.end];
-    let until = ahead.iter().position(|token| token.begins_line && words::form(token.text).is_some());
-    let relations = ["<=", ">=", "=="];
-    ahead[..until.unwrap_or(ahead.len())].iter().any(|token| relations.contains(&token.text))
+    let mut braces = 0;
+    for (at, token) in so_far.tokens[..so_far.end].iter().enumerate().skip(at + 1) {
+        match token.text {
+            "{" => braces += 1,
+            "}" => braces -= 1,
+            "<=" | ">=" | "==" if braces == 0 => return true,
+            word if words::form(word).is_some() && !is_argument(so_far, at) => return false,
+            _ => {}
+        }
+    }
+    false
 }
 
 /// Whether a line begins with nearly an item word and a name, as in `stat v`. Two names side by side are never right.
@@ -150,7 +174,7 @@ fn is_misspelt_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     let token = &so_far.tokens[at];
     let next = so_far.tokens[..so_far.end].get(at + 1);
     token.begins_line
-        && next.is_some_and(|next| next.kind == Kind::Word && !next.begins_line)
+        && next.is_some_and(|next| next.kind == Kind::Word && !next.begins_line && !words::goes_on(next.text))
         && !words::inner_words(so_far.word()).contains(&token.text)
         && words::closest_item(token.text).is_some()
 }
@@ -158,9 +182,11 @@ fn is_misspelt_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
 /// Whether a line begins with a name behind a text that is complete: no item goes on like that. `unit v`, `dynamcs {`,
 /// `m = 2`, `x >= 0`.
 fn is_unknown_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let inner_words = words::inner_words(so_far.word());
     so_far.tokens[at].begins_line
         && can_end(&so_far.tokens[at - 1])
-        && !words::inner_words(so_far.word()).contains(&so_far.tokens[at].text)
+        && !inner_words.contains(&so_far.tokens[at - 1].text)
+        && !inner_words.contains(&so_far.tokens[at].text)
         && !so_far.lacks_brace(at)
 }
 

@@ -7,36 +7,36 @@ use super::blocks::{child, children, ident};
 use crate::ast::*;
 use crate::{Diagnostic, Parse, Span};
 
-/// Reads the items and the model line of a text that begins at byte `start` of the file.
-pub(super) fn read_into(parse: &mut Parse, pairs: Pairs<'_, Rule>, start: usize) {
+/// The items and the model line of a text that has been read.
+pub(super) fn parse_of(pairs: Pairs<'_, Rule>) -> Parse {
+    let mut parse = Parse::default();
     let top = pairs.into_iter().next().expect("the grammar has one top");
     for pair in top.into_inner() {
-        let mut reader = Reader { start, diagnostics: &mut parse.diagnostics, broken: false };
+        let mut reader = Reader { diagnostics: &mut parse.diagnostics, broken: false };
         match pair.as_rule() {
             Rule::EOI => {}
             Rule::model_line => parse.tree.name = Some(ident(&reader, &pair)),
             _ => parse.tree.items.extend(reader.item(pair)),
         }
     }
+    parse
 }
 
 /// Builds one item, and notes what the grammar could not see.
 pub(super) struct Reader<'d> {
-    /// Where the text of the pairs begins in the file.
-    start: usize,
     diagnostics: &'d mut Vec<Diagnostic>,
     /// Whether the item being read has been reported.
     broken: bool,
 }
 
 impl Reader<'_> {
-    /// Where a pair stands in the file. A pair may have swallowed the blanks behind it, its last leaf has not.
+    /// Where a pair stands in the text. A pair may have swallowed the blanks behind it, its last leaf has not.
     pub(super) fn span(&self, pair: &Pair<'_, Rule>) -> Span {
         let mut last = pair.clone();
         while let Some(inner) = last.clone().into_inner().next_back() {
             last = inner;
         }
-        Span::new(self.start + pair.as_span().start(), self.start + last.as_span().end())
+        Span::new(pair.as_span().start(), last.as_span().end())
     }
 
     /// The name that a pair is.

@@ -26,20 +26,18 @@ pub(super) enum Failure {
     Stopped(usize, Vec<Rule>),
 }
 
-/// Whether a whole text may be given to the grammar.
-pub(super) fn are_kept(tokens: &[Token<'_>]) -> bool {
-    let is_item_word = |token: &Token<'_>| token.kind == Kind::Word && words::form(token.text).is_some();
-    too_deep(tokens).is_none()
-        && long_word(tokens).is_none()
-        && tokens.split(is_item_word).all(|item| item.len() <= MOST_TOKENS)
-}
-
 /// Why a piece may not be given to the grammar.
 pub(super) fn exceeded(tokens: &[Token<'_>], piece: &Piece) -> Option<Failure> {
     let inside = &tokens[piece.clone()];
     let bracket = || too_deep(inside).map(|at| Failure::TooDeep(piece.start + at));
     let word = || long_word(inside).map(|at| Failure::LongWord(piece.start + at));
-    bracket().or_else(word).or_else(|| (piece.len() > MOST_TOKENS).then_some(Failure::TooLong))
+    bracket().or_else(word).or_else(|| is_too_long(inside).then_some(Failure::TooLong))
+}
+
+/// Whether an item is too long, be it one of a phase.
+fn is_too_long(tokens: &[Token<'_>]) -> bool {
+    let is_item_word = |token: &Token<'_>| token.kind == Kind::Word && words::form(token.text).is_some();
+    tokens.len() > MOST_TOKENS && tokens.split(is_item_word).any(|item| item.len() > MOST_TOKENS)
 }
 
 fn long_word(tokens: &[Token<'_>]) -> Option<usize> {

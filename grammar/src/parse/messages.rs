@@ -131,27 +131,32 @@ const MISSING: &[(&[Rule], &str, Option<&str>)] = &[
     (&[Rule::right_brace], "`}`", None),
 ];
 
-/// One diagnostic for a piece; none where another one has said it already.
+/// One diagnostic for a piece, and whether another one says it already.
 pub(super) fn explain(
     tokens: &[Token<'_>],
     piece: &Piece,
     block: Option<&str>,
     failure: &Failure,
     closer: Option<&Token<'_>>,
-) -> Option<Diagnostic> {
+) -> (Diagnostic, bool) {
     let (stopped, expected) = match failure {
-        Failure::TooDeep(bracket) => return Some(too_many_brackets(&tokens[*bracket])),
-        Failure::TooLong => return Some(too_long(&tokens[piece.start])),
-        Failure::LongWord(word) => return Some(long_word(&tokens[*word])),
+        Failure::TooDeep(bracket) => return (too_many_brackets(&tokens[*bracket]), false),
+        Failure::TooLong => return (too_long(&tokens[piece.start]), false),
+        Failure::LongWord(word) => return (long_word(&tokens[*word]), false),
         Failure::Stopped(at, expected) => (*at, expected),
     };
     let word = block.unwrap_or(tokens[piece.start].text);
     let form = block.map_or_else(|| words::form(word), words::entry_form);
     let at = piece.start + tokens[piece.clone()].partition_point(|token| token.end() <= stopped);
     let place = Place { tokens, piece, word, form, at, expected, closer };
-    if place.next().is_some_and(|token| slips::is_renamed_elsewhere(tokens, token)) {
-        return slips::reserved_name(&place);
-    }
+    let is_renamed = place.next().is_some_and(|token| slips::is_renamed_elsewhere(tokens, token));
+    let name = slips::reserved_name(&place).filter(|_| is_renamed);
+    let is_told = is_renamed && name.is_none();
+    (name.unwrap_or_else(|| reason(&place)), is_told)
+}
+
+/// What is wrong at a place: the first reason that fits, or else what is missing or superfluous.
+fn reason(place: &Place<'_, '_>) -> Diagnostic {
     let reasons: &[fn(&Place<'_, '_>) -> Option<Diagnostic>] = &[
         unknown::unknown_item,
         unknown::nameless_entry,
@@ -178,8 +183,8 @@ pub(super) fn explain(
         slips::second_value,
         slips::misplaced_item,
     ];
-    let reason = reasons.iter().find_map(|reason| reason(&place));
-    Some(reason.or_else(|| missing(&place)).unwrap_or_else(|| superfluous(&place)))
+    let reason = reasons.iter().find_map(|reason| reason(place));
+    reason.or_else(|| missing(place)).unwrap_or_else(|| superfluous(place))
 }
 
 /// FDC0004, before the grammar has seen the piece.

@@ -1,4 +1,4 @@
-//! From text to tree: the grammar reads a whole file at once, and piece by piece where that fails.
+//! From text to tree: the text is cut into items, and the grammar reads one after the other.
 //!
 //! Nothing outside this folder knows that the grammar is written for pest, and nothing of pest's own wording is shown.
 
@@ -11,14 +11,18 @@ mod expressions;
 mod forgotten;
 mod items;
 mod limits;
+mod memory;
 mod messages;
+mod moved;
 mod outline;
-mod recover;
+mod pieces;
 #[cfg(test)]
 mod rules;
 mod slips;
 mod tokens;
 mod unknown;
+#[cfg(test)]
+mod whole;
 pub mod words;
 
 pub(crate) use outline::{Column, Leaf, Part, Row, outline};
@@ -29,6 +33,7 @@ use pest::iterators::Pairs;
 use crate::source::line_starts;
 use crate::{Code, Diagnostic, Parse, Span};
 
+pub use memory::Memory;
 pub use tokens::comments;
 
 /// The generated parser.
@@ -41,10 +46,16 @@ const MOST_BYTES: usize = 4_000_000;
 
 /// Reads a text: everything that can be understood, and what is wrong with the rest.
 pub fn parse(text: &str) -> Parse {
+    parse_with(&mut Memory::default(), text)
+}
+
+/// The same with a memory of the text as it was before: only what has changed since then is read.
+pub fn parse_with(memory: &mut Memory, text: &str) -> Parse {
     if let Some(diagnostic) = refuse(text) {
         return Parse { diagnostics: vec![diagnostic], ..Parse::default() };
     }
-    let mut parse = read_whole(text).unwrap_or_else(|| recover::recover(text));
+    let mut parse = pieces::read(text, &tokens::tokens(text), memory);
+    memory.forget();
     parse.tree.docs = doc_lines(text);
     parse.tree.line_starts = line_starts(text).collect();
     if parse.tree.items.is_empty() && parse.diagnostics.is_empty() {
@@ -52,16 +63,6 @@ pub fn parse(text: &str) -> Parse {
     }
     parse.diagnostics.sort_by_key(Diagnostic::span);
     parse
-}
-
-/// Reads a text without a mistake in its syntax.
-fn read_whole(text: &str) -> Option<Parse> {
-    if !limits::are_kept(&tokens::tokens(text)) {
-        return None;
-    }
-    let mut parse = Parse::default();
-    items::read_into(&mut parse, pairs(Rule::file, text).ok()?, 0);
-    Some(parse)
 }
 
 /// What the grammar makes of a text, or the byte where it gave up and what it would have gone on with.

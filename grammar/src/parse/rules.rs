@@ -16,6 +16,11 @@ const PAGES: &[&str] = &pages! {
 
 const GRAMMAR: &str = include_str!("../fdc.pest");
 
+/// The examples of the reference.
+pub(super) fn examples() -> impl Iterator<Item = &'static str> {
+    PAGES.iter().flat_map(|page| page.split("\n```fdc").skip(1).filter_map(model))
+}
+
 /// The model of a block, whose tag goes on to the end of the line.
 fn model(block: &str) -> Option<&str> {
     let (text, _) = block.split_once('\n')?.1.split_once("\n```")?;
@@ -32,7 +37,7 @@ fn leave_no_pair() -> BTreeSet<String> {
 #[test]
 fn every_rule_is_used_by_an_example() {
     let mut used = BTreeSet::new();
-    for example in PAGES.iter().flat_map(|page| page.split("\n```fdc").skip(1).filter_map(model)) {
+    for example in examples() {
         for pair in pairs(Rule::file, example).into_iter().flat_map(|pairs| pairs.flatten()) {
             used.insert(format!("{:?}", pair.as_rule()));
         }

@@ -4,6 +4,7 @@
 //! partner, what stands before and after the place where the grammar gave up.
 
 use crate::Span;
+use pest::unicode::{XID_CONTINUE, XID_START};
 
 /// What a token looks like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,7 +112,7 @@ fn token_at(text: &str, first: char) -> (Kind, usize) {
         '"' => string_length(text).map_or((Kind::Foreign, 1), |length| (Kind::Text, length)),
         '0'..='9' => (Kind::Number, number_length(text)),
         '.' if second_is_digit => (Kind::Number, number_length(text)),
-        _ if first.is_alphabetic() || first == '_' => (Kind::Word, word_length(text)),
+        _ if XID_START(first) || first == '_' => (Kind::Word, word_length(text)),
         _ if TWO_CHARACTER_SIGNS.iter().any(|sign| text.starts_with(sign)) => (Kind::Sign, 2),
         '+' | '-' | '*' | '/' | '^' | '=' | '<' | '>' | ',' | ':' | '.' | '\'' => (Kind::Sign, 1),
         _ => (Kind::Foreign, first.len_utf8()),
@@ -119,9 +120,8 @@ fn token_at(text: &str, first: char) -> (Kind, usize) {
 }
 
 fn word_length(text: &str) -> usize {
-    // Letters, digits and the accents that follow a letter.
-    let continues =
-        |c: char| c.is_alphabetic() || c.is_ascii_digit() || c == '_' || ('\u{300}'..='\u{36F}').contains(&c);
+    // As in the grammar.
+    let continues = |c: char| XID_CONTINUE(c) && c != '·';
     text.find(|c: char| !continues(c)).unwrap_or(text.len())
 }
 

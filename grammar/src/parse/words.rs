@@ -115,6 +115,11 @@ pub fn inner_words(item: &str) -> &'static [&'static str] {
     }
 }
 
+/// Whether a word may stand behind a name: it is reserved, or means something inside some item.
+pub(super) fn goes_on(text: &str) -> bool {
+    reserved(text).is_some() || items().any(|item| inner_words(item.text).contains(&text))
+}
+
 /// What other languages call an item.
 const ELSEWHERE: &[(&str, &str)] = &[
     ("parameter", "param"),

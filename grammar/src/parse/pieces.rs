@@ -1,56 +1,55 @@
-//! Reads what can be read of a broken text.
+//! Reads a text piece by piece.
 //!
-//! The text is cut into pieces. A piece that cannot be read gives one diagnostic and is painted over with blanks,
-//! which keeps every other place where it was; blocks and phases are first tried entry by entry, so that one wrong
-//! equation does not cost the others.
+//! The text is cut into pieces, each of which the grammar reads by itself, unless the memory has it. A piece that cannot
+//! be read gives one diagnostic and is painted over with blanks, which keeps every other place where it was; blocks and
+//! phases are first tried entry by entry, so that one wrong equation does not cost the others.
 
 use super::cut::{self, Piece};
 use super::limits::{self, Failure};
-use super::tokens::{Kind, Token, tokens};
-use super::{Rule, items, messages, pairs};
+use super::memory::Memory;
+use super::tokens::{Kind, Token};
+use super::{Rule, messages};
 use crate::{Diagnostic, Parse, Span};
-use pest::iterators::Pairs;
 
 /// Nobody reads more errors than this, so nothing behind them is tried.
 const MOST_DIAGNOSTICS: usize = 100;
 
-/// Everything readable in a text that cannot be read as a whole.
-pub(super) fn recover(text: &str) -> Parse {
-    let tokens = tokens(text);
-    let mut recovery = Recovery {
-        tokens: &tokens,
+/// Everything readable in a text with these tokens.
+pub(super) fn read(text: &str, tokens: &[Token<'_>], memory: &mut Memory) -> Parse {
+    let mut reading = Reading {
+        tokens,
+        memory,
         rest: text.to_owned(),
         diagnostics: Vec::new(),
+        untold: None,
         unopened: 0,
         explained: 0,
         until: tokens.len(),
         lost: Vec::new(),
     };
     let mut parse = Parse::default();
-    for piece in cut::items(&tokens, 0..tokens.len()) {
+    for piece in cut::items(tokens, 0..tokens.len()) {
         let is_model_line = piece.start == 0 && tokens[0].text == "model";
         let rule = if is_model_line { Rule::only_model } else { Rule::only_item };
-        let start = tokens[piece.start].start;
-        // Most pieces are right, and are read once.
-        if recovery.diagnostics.len() < MOST_DIAGNOSTICS
-            && let Ok(pairs) = recovery.pairs(&piece, rule)
-        {
-            items::read_into(&mut parse, pairs, start);
-        } else if recovery.mend(&piece, rule, None) {
-            let pairs = pairs(rule, recovery.text(&piece)).expect("a mended piece can be read");
-            items::read_into(&mut parse, pairs, start);
+        if reading.mend(&piece, rule, None) {
+            let read = reading.memory.read(rule, &reading.rest[reading.bytes(&piece)]);
+            parse.append(read.expect("a mended piece can be read"), tokens[piece.start].start);
         }
     }
-    parse.diagnostics.append(&mut recovery.diagnostics);
-    parse.lost = recovery.lost;
+    let untold = reading.untold.filter(|_| reading.diagnostics.is_empty());
+    parse.diagnostics.extend(reading.diagnostics.into_iter().chain(untold));
+    parse.lost = reading.lost;
     parse
 }
 
-struct Recovery<'t> {
+struct Reading<'t, 'm> {
     tokens: &'t [Token<'t>],
+    memory: &'m mut Memory,
     /// The text, with blanks in place of what was wrong.
     rest: String,
     diagnostics: Vec<Diagnostic>,
+    /// What another diagnostic should say already, in case that there is none.
+    untold: Option<Diagnostic>,
     /// Items that were given up.
     lost: Vec<Span>,
     /// Where the file, phase or block ends that is being mended.
@@ -61,7 +60,7 @@ struct Recovery<'t> {
     explained: usize,
 }
 
-impl<'t> Recovery<'t> {
+impl<'t> Reading<'t, '_> {
     /// Makes a piece readable if that can be done by leaving out broken entries, and reports what was wrong.
     fn mend(&mut self, piece: &Piece, rule: Rule, block: Option<&'t str>) -> bool {
         let before = self.diagnostics.len();
@@ -85,7 +84,10 @@ impl<'t> Recovery<'t> {
 
     fn explain(&mut self, piece: &Piece, block: Option<&'t str>, failure: &Failure) {
         let closer = self.closer_behind(piece);
-        self.diagnostics.extend(messages::explain(self.tokens, piece, block, failure, closer));
+        match messages::explain(self.tokens, piece, block, failure, closer) {
+            (diagnostic, false) => self.diagnostics.push(diagnostic),
+            (diagnostic, true) => drop(self.untold.get_or_insert(diagnostic)),
+        }
         let tokens = &self.tokens[piece.clone()];
         let braces = |text| tokens.iter().filter(|token| token.text == text).count();
         let head = tokens.split(|token| matches!(token.text, "=" | "'" | ":=")).next().unwrap_or(tokens);
@@ -147,21 +149,14 @@ impl<'t> Recovery<'t> {
         (first < last).then_some(piece.start + first..piece.start + last)
     }
 
-    fn read(&self, piece: &Piece, rule: Rule) -> Result<(), Failure> {
-        self.pairs(piece, rule).map(|_| ())
-    }
-
-    /// What the grammar makes of a piece, if it may be given to it.
-    fn pairs(&self, piece: &Piece, rule: Rule) -> Result<Pairs<'_, Rule>, Failure> {
+    /// Reads a piece, if it may be given to the grammar.
+    fn read(&mut self, piece: &Piece, rule: Rule) -> Result<(), Failure> {
         if let Some(failure) = limits::exceeded(self.tokens, piece) {
             return Err(failure);
         }
-        let start = self.tokens[piece.start].start;
-        pairs(rule, self.text(piece)).map_err(|(at, expected)| Failure::Stopped(start + at, expected))
-    }
-
-    fn text(&self, piece: &Piece) -> &str {
-        &self.rest[self.bytes(piece)]
+        let bytes = self.bytes(piece);
+        let read = self.memory.read(rule, &self.rest[bytes.clone()]);
+        read.map(|_| ()).map_err(|(at, expected)| Failure::Stopped(bytes.start + at, expected))
     }
 
     fn bytes(&self, piece: &Piece) -> std::ops::Range<usize> {

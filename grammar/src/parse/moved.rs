@@ -1,0 +1,184 @@
+//! Puts what was read of a piece to where the piece stands in the text.
+
+use crate::ast::*;
+use crate::{Code, Diagnostic, Edit, Fix, Label, Parse, Severity, Span};
+
+impl Parse {
+    /// Adds what was read of a piece that begins at byte `start`.
+    pub(super) fn append(&mut self, piece: &Parse, start: usize) {
+        let Parse { tree, diagnostics, .. } = piece;
+        let (from, found) = (self.tree.items.len(), self.diagnostics.len());
+        self.tree.items.extend_from_slice(&tree.items);
+        self.diagnostics.extend_from_slice(diagnostics);
+        self.tree.items[from..].iter_mut().for_each(|item| item.move_by(start as u32));
+        self.diagnostics[found..].iter_mut().for_each(|one| one.move_by(start as u32));
+        if let Some(name) = &tree.name {
+            self.tree.name = Some(name.clone());
+            self.tree.name.move_by(start as u32);
+        }
+    }
+}
+
+/// What has places in the text.
+trait Placed {
+    /// Moves all of them.
+    fn move_by(&mut self, bytes: u32);
+}
+
+impl Placed for Span {
+    fn move_by(&mut self, bytes: u32) {
+        self.start += bytes;
+        self.end += bytes;
+    }
+}
+
+impl<T: Placed> Placed for Option<T> {
+    fn move_by(&mut self, bytes: u32) {
+        self.iter_mut().for_each(|it| it.move_by(bytes));
+    }
+}
+
+impl<T: Placed> Placed for Vec<T> {
+    fn move_by(&mut self, bytes: u32) {
+        self.iter_mut().for_each(|it| it.move_by(bytes));
+    }
+}
+
+impl<T: Placed> Placed for Box<T> {
+    fn move_by(&mut self, bytes: u32) {
+        (**self).move_by(bytes);
+    }
+}
+
+impl<A: Placed, B: Placed> Placed for (A, B) {
+    fn move_by(&mut self, bytes: u32) {
+        self.0.move_by(bytes);
+        self.1.move_by(bytes);
+    }
+}
+
+/// What has no place of its own.
+macro_rules! nowhere {
+    ($($type:ty),*) => { $(impl Placed for $type { fn move_by(&mut self, _: u32) {} })* };
+}
+
+nowhere!(
+    String,
+    bool,
+    f64,
+    i32,
+    usize,
+    BinaryOperator,
+    Code,
+    Direction,
+    EquationRelation,
+    Relation,
+    Sense,
+    Severity
+);
+
+/// All fields of a type; a field that is missing here is found by the compiler.
+macro_rules! fields {
+    ($($type:ident { $($field:ident),* })*) => { $(
+        impl Placed for $type {
+            fn move_by(&mut self, bytes: u32) {
+                let $type { $($field),* } = self;
+                $($field.move_by(bytes);)*
+            }
+        }
+    )* };
+}
+
+fields! {
+    Arm { left, relation, relation_span, right, guard_span, value }
+    Assignment { name, value }
+    Binding { name, value }
+    Check { left, relation, right, within, span }
+    Condition { first, rest, span }
+    Diagnostic { code, severity, message, labels, help, fixes }
+    Edit { span, replacement }
+    Equation { factor, state, relation, relation_span, right, span }
+    Expr { kind, span }
+    Fix { title, edits, certain }
+    Ident { name, span }
+    Interval { lower, upper, span }
+    Item { kind, span }
+    Label { span, text }
+    Setting { key, value, unit }
+    Swept { name, values }
+    Unit { factors, span }
+}
+
+/// All that the variants of a type hold.
+macro_rules! variants {
+    ($($type:ident { $($variant:ident $({ $($field:ident),* })? $(( $($part:ident),* ))?,)* })*) => { $(
+        impl Placed for $type {
+            fn move_by(&mut self, bytes: u32) {
+                match self {
+                    $($type::$variant $({ $($field),* })? $(( $($part),* ))? => {
+                        $($($field.move_by(bytes);)*)?
+                        $($($part.move_by(bytes);)*)?
+                    })*
+                }
+            }
+        }
+    )* };
+}
+
+variants! {
+    Argument {
+        Expr(value),
+        End(place),
+        Start(place),
+        Iteration(name, data),
+    }
+    ExprKind {
+        Number(value),
+        Quantity(value, unit),
+        Name(name),
+        Negate(inner),
+        Binary(operator, left, right),
+        Call(callee, arguments),
+        Part(base, part),
+        Index(base, index),
+        Prime(base),
+        Tuple(parts),
+        Piecewise { arms, otherwise },
+        Match { surface, sides, below, above },
+    }
+    ItemKind {
+        Param { name, value, unit, bounds },
+        Const { name, value, unit },
+        Let { name, unit, value },
+        Fn { name, arguments, body },
+        Data { name, file, file_span, columns },
+        Free { name, bounds, unit, guess },
+        Time { name, interval, unit },
+        State { name, parts, unit, bounds, start },
+        Control { name, parts, bounds, unit, guess },
+        Surface { name, value },
+        Dynamics { equations },
+        Metric { weights },
+        Jump { name, surface, direction, direction_span, at_most, then_hold, assignments },
+        Start { condition },
+        End { condition },
+        Path { name, condition },
+        Objective { sense, keyword, value },
+        Guess { bindings },
+        Phase { name, items },
+        Link { from, to, assignments },
+        Method { settings },
+        Sweep { lists },
+        Report { bindings },
+        Expect { checks },
+    }
+    SettingValue {
+        Expr(value),
+        List(values),
+        Scheme { name, lagged },
+    }
+    Start {
+        Value(value),
+        Free { span, bounds },
+    }
+}

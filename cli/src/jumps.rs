@@ -1,9 +1,10 @@
 //! A model with jumps: each sequence of jumps that may happen is a problem of its own, and the best answer is taken.
 
-use crate::output::document::{Ended, Happened, Tried};
 use crate::output::named::Named;
+use crate::output::tried::{Ended, Happened, Tried};
 use crate::parallel;
-use crate::solver::{Failure, Found, Search, is_stopped};
+use crate::search::{Found, Search, is_stopped};
+use crate::solver::Failure;
 use fdcc_compiler::{Model, compile, sequences, unrolled};
 use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::nlp::Start;
@@ -60,16 +61,22 @@ pub fn solve(
 
 /// What only a model without jumps can do.
 fn refuse(between: &Problem, start: Option<Start>) -> Result<(), Failure> {
-    let refused = |what: &str| Err(Failure::Usage(what.into()));
-    match start {
-        Some(_) => refused(
-            "a model with jumps cannot start from an earlier solution; leave out `--warm` and `--continue`",
-        ),
-        None if between.method.controls != ControlShape::Constant => {
-            refused("`controls = linear` and `polynomial` are for models without jumps")
-        }
-        None => Ok(()),
+    if start.is_some() {
+        return Err(no_start());
     }
+    match between.method.controls {
+        ControlShape::Constant => Ok(()),
+        ControlShape::Linear | ControlShape::Polynomial => {
+            Err(Failure::Usage("`controls = linear` and `polynomial` are for models without jumps".into()))
+        }
+    }
+}
+
+/// An earlier solution has other pieces.
+pub fn no_start() -> Failure {
+    let what =
+        "a model with jumps cannot start from an earlier solution; leave out `--warm` and `--continue`";
+    Failure::Usage(what.into())
 }
 
 impl Alternative {

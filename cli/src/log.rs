@@ -1,9 +1,9 @@
 //! What a person sees while a solve runs, on stderr: Ipopt's iteration table with the width of the layer and the grid, and on a
 //! terminal a progress line.
 
-use crate::output::document::Ended;
 use crate::output::number::{scientific, significant};
 use crate::output::tell;
+use crate::output::tried::Ended;
 use fdcc_runtime::homotopy;
 use fdcc_runtime::nlp::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};

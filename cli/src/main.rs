@@ -21,6 +21,7 @@ mod render;
 mod replay;
 mod replayed;
 mod rewrite;
+mod search;
 mod solver;
 mod stays;
 mod verdict;

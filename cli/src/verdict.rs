@@ -1,14 +1,16 @@
 //! What is said at the end of a solve: how it ended, what was found, what each surface did.
 
-use crate::jumps::words;
-use crate::output::document::{Document, Ended, Happened, Tried, scheme_name, status_name, switching};
+use crate::output::document::{Document, scheme_name, status_name, switching};
 use crate::output::number::{scientific, short};
 use crate::output::plural;
+use crate::output::tried::Ended;
 use crate::output::verified::Verification;
 use crate::solver::Solved;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::transcribe::unknowns;
+
+mod jumps;
 
 /// One line: the size of the problem.
 pub fn headline(problem: &Problem) -> String {
@@ -42,7 +44,7 @@ pub fn verdict(solved: &Solved) -> String {
     let word = if solved.is_good() { "done" } else { "stop" };
     let mut lines = vec![format!(" {word}  {}", how(solved)), format!("       {}", result.join("   "))];
     lines.push(format!("       {work}"));
-    lines.extend(jumps(document));
+    lines.extend(jumps::lines(document));
     lines.extend(spread(document));
     lines.extend(surfaces(document));
     lines.extend(replayed(document));
@@ -73,49 +75,6 @@ fn spread(document: &Document) -> Vec<String> {
         others => rows.push(format!("       {others} of {} starts: not solved", document.starts.len())),
     }
     rows
-}
-
-/// The jumps, and what the best answer with others is worth.
-fn jumps(document: &Document) -> Vec<String> {
-    if document.sequences.is_empty() {
-        return Vec::new();
-    }
-    let when = |it: &Happened| format!("{} at t = {}", it.jump, document.units.value("time", it.time, 6));
-    let happened = match document.jumps.len() {
-        0 => "none is best".into(),
-        _ => document.jumps.iter().map(when).collect::<Vec<_>>().join(", "),
-    };
-    let mut lines = vec![format!(" jumps {happened}")];
-    lines.extend(with_others(document));
-    if document.sequences_left_out {
-        lines.push("       with more jumps: not tried".into());
-    }
-    lines
-}
-
-/// So many of the other sequences are told.
-const OTHERS: usize = 4;
-
-/// What is the best with other jumps, the best of them first.
-fn with_others(document: &Document) -> Vec<String> {
-    let own: Vec<&String> = document.jumps.iter().map(|it| &it.jump).collect();
-    let others = document.sequences.iter().filter(|it| !it.jumps.iter().eq(own.iter().copied()));
-    let is_solved = |it: &&Tried| matches!(it.status.as_str(), "solved" | "acceptable");
-    let (mut solved, failed): (Vec<&Tried>, Vec<&Tried>) = others.partition(is_solved);
-    let distance = |it: &Tried| (it.objective - document.objective).abs();
-    solved.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-    let value = |it: &Tried| document.units.value("objective", it.objective, 9);
-    let told = solved.iter().take(OTHERS);
-    let mut lines: Vec<String> =
-        told.map(|it| format!("       {}: objective {}", words(&it.jumps), value(it))).collect();
-    let more = solved.len().saturating_sub(OTHERS);
-    lines.extend((more > 0).then(|| format!("       {}: worse", plural(more, "other sequence"))));
-    match failed.as_slice() {
-        [] => {}
-        [one] => lines.push(format!("       {}: {}", words(&one.jumps), one.status.replace('_', " "))),
-        many => lines.push(format!("       {}: no trajectory found", plural(many.len(), "other sequence"))),
-    }
-    lines
 }
 
 /// What each surface did, if the trajectory says anything about it.

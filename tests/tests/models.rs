@@ -1,7 +1,8 @@
 //! Every model of the repository has an expectation, and meets it.
 
+use fdcc_compiler::{Model, compile, sequences, unrolled};
 use fdcc_tests::expected::Expected;
-use fdcc_tests::models::{borrowed, meaning, problem, refusal};
+use fdcc_tests::models::{borrowed, changed, meaning, refusal};
 use fdcc_tests::{Solved, documents, repository};
 
 fn expected(name: &str) -> Expected {
@@ -10,8 +11,20 @@ fn expected(name: &str) -> Expected {
     Expected::read(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
+/// The best of all sequences of jumps, none of which happens in most models.
+fn best(model: &Model) -> Solved {
+    let solvable = |model: &Model| compile(model).expect("the model can be solved");
+    if model.jumps.is_empty() {
+        return Solved::of(solvable(model));
+    }
+    let all = sequences(model).expect("the model can be solved").all;
+    let one = |sequence: &Vec<usize>| Solved::of(solvable(&unrolled(model, sequence).expect("as well")));
+    let better = |a: Solved, b: Solved| if b.objective() < a.objective() { b } else { a };
+    all.iter().map(one).reduce(better).expect("that nothing jumps is one of them")
+}
+
 fn check_values(name: &str, text: &str, expected: &Expected) {
-    let solved = Solved::of(problem(text, &[], &borrowed(&expected.methods)));
+    let solved = best(&changed(text, &[], &borrowed(&expected.methods)));
     assert!(!expected.values.is_empty(), "{name}: nothing is expected");
     for value in &expected.values {
         let got = solved.quantity(&value.name);

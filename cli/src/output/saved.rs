@@ -1,7 +1,8 @@
 //! What is read of a `.sol.json`: to start from it, to replay it, to verify it.
 
-use super::document::{ControlNodes, Document, Happened, MethodUsed};
+use super::document::{ControlNodes, Document, MethodUsed};
 use super::named::Named;
+use super::tried::Happened;
 use crate::solver::Failure;
 use serde::Deserialize;
 use std::fs;

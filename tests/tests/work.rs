@@ -4,11 +4,11 @@
 
 use std::fmt::Write;
 
-use fdcc_compiler::{Model, compile, sequences, unrolled};
+use fdcc_compiler::{Model, compile};
 use fdcc_runtime::nlp::Nlp;
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::transcribe::TranscribedNlp;
-use fdcc_tests::models::{meaning, problem, refusal, solve};
+use fdcc_tests::models::{meaning, problem, refusal, solve, unrolled};
 use fdcc_tests::{documents, repository};
 
 const HEADINGS: [&str; 12] = [
@@ -42,16 +42,13 @@ fn cases() -> Vec<(String, Problem)> {
 }
 
 fn with_jumps(name: &str, model: &Model) -> Vec<(String, Problem)> {
-    let solvable = |model: &Model| compile(model).expect("it is not refused");
-    if model.jumps.is_empty() {
-        return vec![(name.to_owned(), solvable(model))];
-    }
-    let all = sequences(model).expect("it can be solved").all;
-    let one = |sequence: &Vec<usize>| {
-        let pieces = unrolled(model, sequence).expect("it can be solved");
-        (format!("{name}, {} jumps", sequence.len()), solvable(&pieces))
-    };
-    all.iter().map(one).collect()
+    let all = unrolled(model).into_iter();
+    let problem = |model: &Model| compile(model).expect("it is not refused");
+    all.map(|(jumps, pieces)| match model.jumps.len() {
+        0 => (name.to_owned(), problem(&pieces)),
+        _ => (format!("{name}, {jumps} jumps"), problem(&pieces)),
+    })
+    .collect()
 }
 
 fn row(name: &str, problem: &Problem) -> Vec<String> {

@@ -33,7 +33,7 @@ pub fn check_with_objective(tree: &ast::Model, of: &str) -> Checked {
     diagnostics.iter_mut().for_each(|it| moved(it, first));
     // Nobody has written an objective.
     diagnostics.iter_mut().for_each(|it| it.message = it.message.replace(" in the objective", " here"));
-    Checked { model, diagnostics, units }
+    Checked { model, phases: Vec::new(), diagnostics, units }
 }
 
 fn with_objective(tree: &ast::Model, asked: &Item, value: &ast::Expr) -> ast::Model {

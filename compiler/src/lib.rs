@@ -26,7 +26,6 @@ mod review;
 pub mod smooth;
 mod surfaces;
 pub mod units;
-mod unroll;
 pub mod vocabulary;
 
 pub use asked::check_with_objective;
@@ -52,13 +51,13 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 pub use surfaces::{Order, Smoothness, SurfaceClass, SurfaceReport};
 pub use units::{NamedUnit, parse_quantity};
-use unroll::between_jumps;
-pub use unroll::{Sequences, sequences, unrolled};
 
 /// What a syntax tree means, and what is wrong with it.
 pub struct Checked {
     /// Present if there is no error, but for parameters that wait for a value and trajectories that are not unique.
     pub model: Option<Model>,
+    /// Each phase by itself, with what stands outside of all phases, if there is a model.
+    pub phases: Vec<Model>,
     /// In the order of the text.
     pub diagnostics: Vec<Diagnostic>,
     /// The unit of each name, if the text uses units; for hover and hints.
@@ -68,15 +67,17 @@ pub struct Checked {
 /// Finds out what a syntax tree means. Never fails: it reports everything that is wrong, each mistake once.
 pub fn check(tree: &ast::Model) -> Checked {
     let everything: Vec<&Item> = tree.items.iter().collect();
-    let phases: Vec<(&ast::Ident, &[Item])> = tree.items.iter().filter_map(phase).collect();
+    let phases: Vec<Phase<'_>> = tree.items.iter().filter_map(phase).collect();
     let mut whole = resolve(&[], &everything);
     let mut diagnostics = checked(&mut whole, everything.clone(), tree, phases.is_empty());
-    for (name, items) in &phases {
+    let mut parts = Vec::new();
+    for Phase { name, items, .. } in &phases {
         let items: Vec<&Item> = items.iter().collect();
         let mut part = resolve(&everything, &items);
         diagnostics.extend(checked(&mut part, items, tree, true));
         whole.not_yet(name.span, "a model with phases");
         whole.not_yet.append(&mut part.not_yet);
+        parts.push(part);
     }
     diagnostics.extend(check::unused(tree));
     let units = units::infer(tree);
@@ -94,16 +95,41 @@ pub fn check(tree: &ast::Model) -> Checked {
         condition_units: units.conditions,
         ..whole.into_model()
     });
+    let understood = phases.iter().zip(parts).filter(|_| model.is_some());
+    let phases = understood.map(|(phase, part)| Model {
+        name: phase.name.name.clone(),
+        units: units.names.iter().filter(|unit| phase.knows(unit.span, &phases)).cloned().collect(),
+        ..part.into_model()
+    });
+    let phases = phases.collect();
     if let Some(model) = &model {
         diagnostics.extend(rehearsal::check(model, tree));
         sort(&mut diagnostics);
     }
-    Checked { model, diagnostics, units: units.names }
+    Checked { model, phases, diagnostics, units: units.names }
 }
 
-fn phase(item: &Item) -> Option<(&ast::Ident, &[Item])> {
+/// A phase of a tree.
+struct Phase<'a> {
+    name: &'a ast::Ident,
+    items: &'a [Item],
+    span: Span,
+}
+
+impl Phase<'_> {
+    fn holds(&self, place: Span) -> bool {
+        self.span.start <= place.start && place.end <= self.span.end
+    }
+
+    /// Whether what is declared at a place is known in this phase.
+    fn knows(&self, place: Span, phases: &[Phase<'_>]) -> bool {
+        self.holds(place) || !phases.iter().any(|phase| phase.holds(place))
+    }
+}
+
+fn phase(item: &Item) -> Option<Phase<'_>> {
     match &item.kind {
-        ItemKind::Phase { name, items } => Some((name, items)),
+        ItemKind::Phase { name, items } => Some(Phase { name, items, span: item.span }),
         _ => None,
     }
 }
@@ -168,11 +194,9 @@ fn quoted(found: &Diagnostic) -> Option<String> {
     found.message.split('`').nth(1).map(str::to_owned)
 }
 
-/// Turns a model into an optimal control problem with compiled functions; or says what cannot be solved yet. Of a model with
-/// jumps it is what holds between them: [`unrolled`] makes of it one in which they happen.
+/// Turns a model into an optimal control problem with compiled functions; or says what cannot be solved yet.
 pub fn compile(model: &Model) -> Result<Problem, Vec<Diagnostic>> {
     not_yet(model)?;
-    let model = &between_jumps(model);
     let numbers = numbers(model)?;
     let program = lower(model);
     let functions = program.functions().map(VectorFunction::clone).to_vec();
@@ -203,14 +227,12 @@ pub fn compile_sensitivities(model: &Model) -> Result<System, Vec<Diagnostic>> {
 
 /// The system as a solve smooths it, without surfaces, with all its derivatives; or says that jumps cannot be smoothed.
 pub fn compile_smoothed(model: &Model) -> Result<System, Vec<Diagnostic>> {
-    if let Some(jump) = model.jumps.first() {
-        return Err(vec![resolve::not_yet(jump.place.span, "a smoothed model with jumps")]);
-    }
+    not_yet(model)?;
     compile_system(model, Purpose::Smoothed)
 }
 
 fn compile_system(model: &Model, purpose: Purpose) -> Result<System, Vec<Diagnostic>> {
-    not_yet(model)?;
+    model.not_yet.first().map_or(Ok(()), |first| Err(vec![first.clone()]))?;
     let numbers = numbers(model)?;
     let (graph, program) = lower::simulation(model, purpose);
     let functions = machine_code(graph, program.functions.clone());
@@ -219,12 +241,14 @@ fn compile_system(model: &Model, purpose: Purpose) -> Result<System, Vec<Diagnos
 
 /// The first construct that is understood but cannot be solved.
 fn not_yet(model: &Model) -> Result<(), Vec<Diagnostic>> {
-    model.not_yet.first().map_or(Ok(()), |first| Err(vec![first.clone()]))
+    let jump = model.jumps.first().map(|jump| resolve::not_yet(jump.place.span, "a model with jumps"));
+    let first = model.not_yet.first().cloned().into_iter().chain(jump).min_by_key(Diagnostic::span);
+    first.map_or(Ok(()), |first| Err(vec![first]))
 }
 
 /// Derivatives, then machine code.
 fn machine_code(mut graph: Graph, functions: Vec<VectorFunction>) -> Vec<Arc<dyn Function>> {
     let functions = functions.into_iter().map(|function| differentiate(&mut graph, function)).collect();
     debug_assert_eq!(graph::verify(&graph), Ok(()));
-    generate::generate(&graph, functions)
+    generate::generate(graph, functions)
 }

@@ -11,6 +11,8 @@ pub struct Reviewed {
     pub tree: ast::Model,
     /// What it means, if it has no error.
     pub model: Option<Model>,
+    /// What each phase means, if it has any.
+    pub phases: Vec<Model>,
     /// What is wrong with it, in the order of the text, but for what the text allows.
     pub diagnostics: Vec<Diagnostic>,
     /// The unit of each name, if the text uses units.
@@ -30,11 +32,12 @@ pub fn review_with(memory: &mut Memory, text: &str) -> Reviewed {
 /// Checks a text that has been read.
 pub(crate) fn reviewed(text: &str, parsed: Parse) -> Reviewed {
     let mut diagnostics = parsed.diagnostics;
-    let (mut model, mut units) = (None, Vec::new());
+    let (mut model, mut phases, mut units) = (None, Vec::new(), Vec::new());
     if !parsed.tree.items.is_empty() {
         let is_broken = !diagnostics.is_empty();
         let checked = check(&parsed.tree);
         model = checked.model.filter(|_| !is_broken);
+        phases = checked.phases;
         units = checked.units;
         let source = SourceFile::new("", text);
         let gaps = Gaps::new(&source, &diagnostics, &parsed.lost);
@@ -43,5 +46,5 @@ pub(crate) fn reviewed(text: &str, parsed: Parse) -> Reviewed {
     }
     let mut diagnostics = allow::apply(text, diagnostics);
     diagnostics.sort_by_key(Diagnostic::span);
-    Reviewed { tree: parsed.tree, model, diagnostics, units }
+    Reviewed { tree: parsed.tree, model, phases, diagnostics, units }
 }

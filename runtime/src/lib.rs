@@ -28,5 +28,4 @@ pub mod prolong;
 pub mod starts;
 
 pub mod homotopy;
-pub mod pieces;
 pub mod refine;

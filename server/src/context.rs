@@ -3,7 +3,7 @@
 use crate::analysis::Analysis;
 use crate::documents::Document;
 use crate::session::Session;
-use fdcc_compiler::{Model, NamedUnit, SurfaceReport};
+use fdcc_compiler::{Model, NamedUnit};
 use fdcc_grammar::{Edit, Span};
 use lsp_types::{Location, Position, Range, TextEdit, WorkspaceEdit};
 
@@ -26,9 +26,10 @@ impl Context<'_> {
         self.document.modelled()?.reviewed.model.as_ref()
     }
 
-    /// What is known about each surface of that.
-    pub fn surfaces(&self) -> &[SurfaceReport] {
-        self.document.modelled().map_or(&[], |it| it.surfaces())
+    /// What a phase means, or meant; without a name, what stands outside of all phases.
+    pub fn model_of(&self, phase: Option<&str>) -> Option<&Model> {
+        let Some(name) = phase else { return self.model() };
+        self.document.modelled()?.reviewed.phases.iter().find(|it| it.name == name)
     }
 
     /// The unit of each name; what was known before where the text has none that can be told now.

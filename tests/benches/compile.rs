@@ -1,4 +1,4 @@
-//! From the text of the race car to machine code, and its parts.
+//! From the text of the race car to a problem whose functions can be called; machine code is made when they are.
 
 use divan::{Bencher, black_box};
 
@@ -19,9 +19,8 @@ fn check(bencher: Bencher) {
     bencher.bench_local(|| fdcc_compiler::check(black_box(&tree)));
 }
 
-/// At most 10 ms.
 #[divan::bench]
-fn text_to_machine_code(bencher: Bencher) {
+fn text_to_problem(bencher: Bencher) {
     bencher.bench_local(|| {
         let tree = fdcc_grammar::parse(black_box(RACECAR)).tree;
         let model = fdcc_compiler::check(&tree).model.expect("the race car has no errors");

@@ -119,7 +119,7 @@ fn case(kernel: &str) -> Case {
     let mut graph = Graph::new();
     let function = dynamics(&mut graph, kernel);
     let function = differentiate(&mut graph, function);
-    let function = generate(&graph, vec![function]).remove(0);
+    let function = generate(graph.clone(), vec![function]).remove(0);
     let mut points = Columns::new(LAYOUT.point_inputs(), POINTS);
     for column in 0..points.columns() {
         for (point, value) in points.column_mut(column).iter_mut().enumerate() {
@@ -180,6 +180,6 @@ fn symbols_to_machine_code(bencher: Bencher) {
     bencher.bench_local(|| {
         let mut graph = Graph::new();
         let functions = all_functions(&mut graph);
-        generate(&graph, functions)
+        generate(graph.clone(), functions)
     });
 }

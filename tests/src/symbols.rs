@@ -27,7 +27,7 @@ pub fn states_and_parameters(x: usize, p: usize) -> Layout {
 
 /// Machine code.
 pub fn compile(graph: &Graph, symbols: &Differentiated) -> Arc<dyn Function> {
-    generate(graph, vec![symbols.clone()]).remove(0)
+    generate(graph.clone(), vec![symbols.clone()]).remove(0)
 }
 
 /// Random numbers in all columns; what pads them is not a number.

@@ -1,52 +1,46 @@
 //! Machine code as a function of the runtime.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use fdcc_runtime::problem::{Columns, Degree, Function, Layout, Origin, Pattern};
 
-use super::cranelift::{Code, Kernel, Tables};
+use super::cranelift::{Kernel, Tables};
+use super::{Source, highest_order, work};
 use crate::program::Differentiated;
 
 /// A vector function and its derivatives, compiled.
 pub(super) struct CompiledFunction {
-    /// Owns the machine code that the kernels point to.
-    _code: Arc<Code>,
-    /// Values; then also the Jacobian; then also the Hessian. As many as differ.
-    kernels: Vec<Kernel>,
-    layout: Layout,
-    origins: Vec<Origin>,
-    degrees: Vec<Degree>,
-    jacobian: Pattern,
-    hessian: Pattern,
+    source: Arc<Source>,
+    symbols: Differentiated,
+    /// Values; then also the Jacobian; then also the Hessian. Nobody calls all of them: the reports want values, the
+    /// interior point values and everything.
+    kernels: [OnceLock<Kernel>; 3],
 }
 
 impl CompiledFunction {
-    pub(super) fn new(code: Arc<Code>, kernels: Vec<Kernel>, symbols: Differentiated) -> Self {
-        CompiledFunction {
-            _code: code,
-            kernels,
-            layout: symbols.function.layout,
-            origins: symbols.function.origins,
-            degrees: symbols.degrees,
-            jacobian: symbols.jacobian.0,
-            hessian: symbols.hessian.0,
-        }
+    pub(super) fn new(source: Arc<Source>, symbols: Differentiated) -> Self {
+        CompiledFunction { source, symbols, kernels: Default::default() }
+    }
+
+    /// The kernel for derivatives of this order, or the last one: higher derivatives are then empty.
+    fn kernel(&self, order: usize) -> &Kernel {
+        let order = order.min(highest_order(&self.symbols));
+        let Source { graph, machine } = &*self.source;
+        self.kernels[order].get_or_init(|| Kernel::new(machine, graph, &work(graph, &self.symbols, order)))
     }
 
     fn check_inputs(&self, points: &Columns, parameters: &[f64]) {
-        assert_eq!(points.columns(), self.layout.point_inputs(), "columns of the points");
-        assert_eq!(parameters.len(), self.layout.p, "parameters");
+        assert_eq!(points.columns(), self.layout().point_inputs(), "columns of the points");
+        assert_eq!(parameters.len(), self.layout().p, "parameters");
     }
 
-    /// Runs the kernel for derivatives of this order, or the last one: higher derivatives are then empty.
     fn run(&self, order: usize, tables: Tables) {
-        let kernel = self.kernels[order.min(self.kernels.len() - 1)];
         if tables.pairs > 0 {
             // SAFETY: all tables have been checked to have the columns that the kernel uses, of the same
-            // even stride, which is at least twice the number of pairs; the code is alive in `_code`.
+            // even stride, which is at least twice the number of pairs; the machine is alive in `source`.
             #[allow(unsafe_code)]
             unsafe {
-                kernel(&tables);
+                self.kernel(order).entry()(&tables);
             }
         }
     }
@@ -80,22 +74,22 @@ fn check_table(table: &Columns, columns: usize, points: &Columns, name: &str) {
 
 impl Function for CompiledFunction {
     fn layout(&self) -> &Layout {
-        &self.layout
+        &self.symbols.function.layout
     }
     fn outputs(&self) -> usize {
-        self.origins.len()
+        self.symbols.function.origins.len()
     }
     fn jacobian_pattern(&self) -> &Pattern {
-        &self.jacobian
+        &self.symbols.jacobian.0
     }
     fn hessian_pattern(&self) -> &Pattern {
-        &self.hessian
+        &self.symbols.hessian.0
     }
     fn degree(&self, row: usize) -> Degree {
-        self.degrees[row]
+        self.symbols.degrees[row]
     }
     fn origin(&self, row: usize) -> Origin {
-        self.origins[row].clone()
+        self.symbols.function.origins[row].clone()
     }
 
     fn value(&self, points: &Columns, parameters: &[f64], values: &mut Columns) {
@@ -107,7 +101,7 @@ impl Function for CompiledFunction {
     fn jacobian(&self, points: &Columns, parameters: &[f64], values: &mut Columns, jacobian: &mut Columns) {
         self.check_inputs(points, parameters);
         let values = output(values, self.outputs(), points, "values");
-        let jacobian = output(jacobian, self.jacobian.entries.len(), points, "the Jacobian");
+        let jacobian = output(jacobian, self.symbols.jacobian.0.entries.len(), points, "the Jacobian");
         self.run(1, Tables { values, jacobian, ..tables(points, parameters) });
     }
 
@@ -124,8 +118,8 @@ impl Function for CompiledFunction {
         check_table(multipliers, self.outputs(), points, "multipliers");
         let multipliers = multipliers.as_slice().as_ptr();
         let values = output(values, self.outputs(), points, "values");
-        let jacobian = output(jacobian, self.jacobian.entries.len(), points, "the Jacobian");
-        let hessian = output(hessian, self.hessian.entries.len(), points, "the Hessian");
+        let jacobian = output(jacobian, self.symbols.jacobian.0.entries.len(), points, "the Jacobian");
+        let hessian = output(hessian, self.symbols.hessian.0.entries.len(), points, "the Hessian");
         self.run(2, Tables { multipliers, values, jacobian, hessian, ..tables(points, parameters) });
     }
 }

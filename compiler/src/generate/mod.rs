@@ -1,4 +1,4 @@
-//! From expressions to machine code: up to three kernels for each function, all in one module.
+//! From expressions to machine code: up to three kernels for each function, each compiled when it is first called.
 
 mod cranelift;
 mod function;
@@ -10,51 +10,49 @@ use fdcc_runtime::problem::Function;
 
 use crate::graph::{ExprId, Graph};
 use crate::program::Differentiated;
+use cranelift::Machine;
 use function::CompiledFunction;
 use schedule::{Place, Schedule, Table, schedule};
 
-/// Compiles all functions of a program.
-pub fn generate(graph: &Graph, functions: Vec<Differentiated>) -> Vec<Arc<dyn Function>> {
-    let schedules: Vec<Vec<Schedule>> = functions.iter().map(|function| schedules(graph, function)).collect();
-    let (code, kernels) = cranelift::compile(graph, schedules.iter().flatten());
-    let code = Arc::new(code);
-    let mut kernels = kernels.into_iter();
-    let compiled = functions.into_iter().zip(&schedules).map(|(function, schedules)| {
-        let own = kernels.by_ref().take(schedules.len()).collect();
-        Arc::new(CompiledFunction::new(code.clone(), own, function)) as Arc<dyn Function>
-    });
-    compiled.collect()
+/// What all kernels of a program are made of, and for.
+struct Source {
+    graph: Graph,
+    machine: Machine,
+}
+
+/// All functions of a program, ready to be called.
+pub fn generate(graph: Graph, functions: Vec<Differentiated>) -> Vec<Arc<dyn Function>> {
+    let source = Arc::new(Source { graph, machine: Machine::host() });
+    let compiled = functions.into_iter().map(|function| CompiledFunction::new(source.clone(), function));
+    compiled.map(|function| Arc::new(function) as Arc<dyn Function>).collect()
 }
 
 /// The kernels as text, before Cranelift's own passes.
 pub fn clif(graph: &Graph, functions: &[Differentiated]) -> String {
+    let machine = Machine::host();
     let mut text = String::new();
     for function in functions {
-        for (order, schedule) in schedules(graph, function).iter().enumerate() {
+        for order in 0..=highest_order(function) {
             text += &format!("; {}, derivatives of order {order}\n", function.function.name);
-            text += &cranelift::text(graph, schedule);
+            text += &cranelift::text(&machine, graph, &work(graph, function, order));
             text += "\n";
         }
     }
     text
 }
 
-/// One schedule for each order of derivatives up to the last that has entries.
-fn schedules(graph: &Graph, function: &Differentiated) -> Vec<Schedule> {
-    let layout = &function.function.layout;
-    let mut results = Vec::new();
-    let mut schedules = Vec::new();
-    for (table, outputs) in [
-        (Table::Values, &function.function.outputs),
-        (Table::Jacobian, &function.jacobian.1),
-        (Table::Hessian, &function.hessian.1),
-    ] {
-        results.extend(places(table, outputs));
-        if table == Table::Values || !outputs.is_empty() {
-            schedules.push(schedule(graph, layout, &results));
-        }
-    }
-    schedules
+/// The last order of derivatives that has entries.
+fn highest_order(function: &Differentiated) -> usize {
+    usize::from(!function.jacobian.1.is_empty()) + usize::from(!function.hessian.1.is_empty())
+}
+
+/// What the kernel for derivatives up to an order does.
+fn work(graph: &Graph, function: &Differentiated, order: usize) -> Schedule {
+    let Differentiated { function, jacobian, hessian, .. } = function;
+    let tables =
+        [(Table::Values, &function.outputs), (Table::Jacobian, &jacobian.1), (Table::Hessian, &hessian.1)];
+    let results = tables.into_iter().take(order + 1).flat_map(|(table, outputs)| places(table, outputs));
+    schedule(graph, &function.layout, &results.collect::<Vec<_>>())
 }
 
 fn places(table: Table, outputs: &[ExprId]) -> impl Iterator<Item = (ExprId, Place)> {

@@ -68,18 +68,6 @@ pub(super) struct Schedule {
     pub constant: Vec<(ExprId, Place)>,
 }
 
-impl Schedule {
-    /// How many columns the widest table has, as far as the kernel knows.
-    pub(super) fn columns(&self) -> usize {
-        let read = self.inside.iter().map(|(_, operation)| match operation {
-            Operation::Point(column) | Operation::Multiplier(column) => column + 1,
-            _ => 0,
-        });
-        let places = self.varying.values().flatten().chain(self.constant.iter().map(|(_, place)| place));
-        read.chain(places.map(|place| place.column + 1)).max().unwrap_or(0)
-    }
-}
-
 /// The order of work for results and their places.
 pub(super) fn schedule(graph: &Graph, layout: &Layout, results: &[(ExprId, Place)]) -> Schedule {
     let nodes = Nodes::new(graph, layout, results);

@@ -188,6 +188,16 @@ impl Names {
         }
     }
 
+    /// The phase that a definition belongs to.
+    pub fn phase_of(&self, definition: usize) -> Option<&str> {
+        let outer = &self.definitions[self.definitions[definition].within?];
+        if outer.kind == Kind::Phase {
+            Some(&outer.name)
+        } else {
+            self.phase_of(self.definitions[definition].within?)
+        }
+    }
+
     /// A name that no declaration explains.
     fn built_in(name: &str) -> Meaning {
         if name == "pi" || is_function(name) { Meaning::BuiltIn } else { Meaning::Unknown }

@@ -106,6 +106,9 @@ pub(super) fn given_at_the_end(problem: &Problem, stages: Stages) -> Vec<(usize,
     let function = &problem.boundary;
     let layout = function.layout();
     let entries = &function.jacobian_pattern().entries;
+    if !problem.boundary_bounds.iter().any(Bounds::is_equality) {
+        return Vec::new();
+    }
     let mut points = Columns::new(layout.point_inputs(), 1);
     points.as_mut_slice().fill(0.0);
     let parameters: Vec<f64> = problem.parameters.iter().map(|parameter| parameter.value).collect();

@@ -1,6 +1,6 @@
 //! One kernel: what does not depend on the point, then the loop over pairs of points.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::mem::offset_of;
 
 use super::pairs::{Pair, Pairs};
@@ -40,10 +40,12 @@ struct Frame {
     parameters: Value,
     /// Pairs of points.
     pairs: Value,
-    /// How far each column is from the first, in bytes.
-    columns: Vec<Value>,
+    /// Bytes from column to column.
+    stride: Value,
     /// Where the points at hand begin in the tables `points, multipliers, values, jacobian, hessian`.
     cursors: [Value; 5],
+    /// Those of them that are used.
+    used: Vec<usize>,
 }
 
 impl Frame {
@@ -64,41 +66,57 @@ impl Frame {
             field(offset_of!(Tables, jacobian)),
             field(offset_of!(Tables, hessian)),
         ];
-        let columns = column_offsets(builder, stride, schedule.columns());
-        Frame { parameters, pairs, columns, cursors }
+        Frame { parameters, pairs, stride, cursors, used: used(schedule) }
     }
 
+    /// A multiplication at every use is as cheap as an offset that is kept on the stack, and sooner compiled.
     fn address(&self, builder: &mut FunctionBuilder, cursor: usize, column: usize) -> Value {
-        builder.ins().iadd(self.cursors[cursor], self.columns[column])
+        let column = builder.ins().iconst(types::I64, column as i64);
+        let offset = builder.ins().imul(self.stride, column);
+        builder.ins().iadd(self.cursors[cursor], offset)
     }
 
     /// To the next pair.
     fn advance(&mut self, builder: &mut FunctionBuilder) {
-        self.cursors = self.cursors.map(|cursor| builder.ins().iadd_imm_s(cursor, PAIR));
+        for &cursor in &self.used {
+            self.cursors[cursor] = builder.ins().iadd_imm_s(self.cursors[cursor], PAIR);
+        }
         self.pairs = builder.ins().iadd_imm_s(self.pairs, -1);
     }
 
     /// What changes from pair to pair.
     fn carried(&self) -> Vec<BlockArg> {
-        self.cursors.into_iter().chain([self.pairs]).map(BlockArg::Value).collect()
+        let cursors = self.used.iter().map(|&cursor| self.cursors[cursor]);
+        cursors.chain([self.pairs]).map(BlockArg::Value).collect()
     }
 
     /// Takes over what [`Self::carried`] gave.
     fn carry(&mut self, carried: &[Value]) {
-        self.cursors.copy_from_slice(&carried[..5]);
-        self.pairs = carried[5];
+        for (&cursor, &value) in self.used.iter().zip(carried) {
+            self.cursors[cursor] = value;
+        }
+        self.pairs = carried[self.used.len()];
     }
 }
 
-fn column_offsets(builder: &mut FunctionBuilder, stride: Value, count: usize) -> Vec<Value> {
-    let mut offset = builder.ins().iconst(types::I64, 0);
-    (0..count)
-        .map(|_| {
-            let this = offset;
-            offset = builder.ins().iadd(this, stride);
-            this
-        })
-        .collect()
+/// The tables that a kernel reads or writes, by their places in [`Frame::cursors`].
+fn used(schedule: &Schedule) -> Vec<usize> {
+    let read = schedule.inside.iter().filter_map(|(_, operation)| match operation {
+        Operation::Point(_) => Some(POINTS),
+        Operation::Multiplier(_) => Some(MULTIPLIERS),
+        _ => None,
+    });
+    let places = schedule.varying.values().flatten().chain(schedule.constant.iter().map(|(_, place)| place));
+    let used: BTreeSet<usize> = read.chain(places.map(|place| cursor_of(place.table))).collect();
+    used.into_iter().collect()
+}
+
+fn cursor_of(table: Table) -> usize {
+    match table {
+        Table::Values => VALUES,
+        Table::Jacobian => JACOBIAN,
+        Table::Hessian => HESSIAN,
+    }
 }
 
 /// Emits the steps of a schedule.
@@ -154,12 +172,8 @@ impl Emitter<'_, '_> {
     }
 
     fn store(&mut self, id: ExprId, place: Place) {
-        let cursor = match place.table {
-            Table::Values => VALUES,
-            Table::Jacobian => JACOBIAN,
-            Table::Hessian => HESSIAN,
-        };
         let value = self.value(id);
+        let cursor = cursor_of(place.table);
         let address = self.frame.address(&mut self.pairs.builder, cursor, place.column);
         self.pairs.store(value, address);
     }

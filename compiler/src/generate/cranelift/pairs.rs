@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::{
-    Assembler, Block, ConstantData, Endianness, FloatCC, FuncRef, FunctionBuilder, InstBuilder, IntCC,
-    MemFlagsData, Module, StackSlot, StackSlotData, StackSlotKind, Type, Value, memory, types,
+    Block, ConstantData, Endianness, FloatCC, FuncRef, FunctionBuilder, InstBuilder, IntCC, Machine,
+    MemFlagsData, StackSlot, StackSlotData, StackSlotKind, Type, Value, library::trampoline_signature,
+    memory, types,
 };
 
 /// A number at two neighbouring points; also a mask or bits in the place of one.
@@ -17,21 +18,21 @@ const SIGN: u64 = 1 << 63;
 /// Writes instructions into one function.
 pub(super) struct Pairs<'f> {
     pub(super) builder: FunctionBuilder<'f>,
-    assembler: &'f mut Assembler,
+    machine: &'f Machine,
     /// Where operands of calls are passed.
     slot: Option<StackSlot>,
     called: BTreeMap<&'static str, FuncRef>,
 }
 
 impl<'f> Pairs<'f> {
-    pub(super) fn new(builder: FunctionBuilder<'f>, assembler: &'f mut Assembler) -> Self {
-        Pairs { builder, assembler, slot: None, called: BTreeMap::new() }
+    pub(super) fn new(builder: FunctionBuilder<'f>, machine: &'f Machine) -> Self {
+        Pairs { builder, machine, slot: None, called: BTreeMap::new() }
     }
 
     /// Returns, and ends the function.
     pub(super) fn finish(mut self) {
         self.builder.ins().return_(&[]);
-        self.builder.finalize(self.assembler.module.target_config());
+        self.builder.finalize(self.machine.isa.frontend_config());
     }
 
     pub(super) fn number(&mut self, value: f64) -> Pair {
@@ -78,7 +79,7 @@ impl<'f> Pairs<'f> {
     }
     /// a b + c, with one rounding if the machine can.
     pub(super) fn multiply_add(&mut self, a: Pair, b: Pair, c: Pair) -> Pair {
-        if self.assembler.fused {
+        if self.machine.fused {
             return self.builder.ins().fma(a, b, c);
         }
         let product = self.multiply(a, b);
@@ -196,8 +197,7 @@ impl<'f> Pairs<'f> {
         if let Some(&function) = self.called.get(name) {
             return function;
         }
-        let id = self.assembler.trampoline(name);
-        let function = self.assembler.module.declare_func_in_func(id, self.builder.func);
+        let function = self.machine.import(self.builder.func, name, trampoline_signature());
         self.called.insert(name, function);
         function
     }

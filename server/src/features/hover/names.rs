@@ -2,7 +2,7 @@
 
 use crate::context::Context;
 use fdcc_compiler::names::{Definition, Kind};
-use fdcc_compiler::{NamedUnit, Order, Portrait, Smoothness, SurfaceReport, portrait};
+use fdcc_compiler::{Model, NamedUnit, Order, Portrait, Smoothness, SurfaceReport, portrait, surfaces};
 use fdcc_grammar::comments;
 
 /// Longer declarations are cut.
@@ -17,12 +17,11 @@ pub fn told(context: &Context<'_>, definition: usize) -> String {
     if let Some(comment) = comment(context, it) {
         text += &format!("\n\n{comment}");
     }
+    let model = context.model_of(names.phase_of(definition));
     let facts = match it.kind {
-        Kind::Surface => surface(context, &full),
+        Kind::Surface => model.map(|model| surface(model, &full)).unwrap_or_default(),
         Kind::Argument | Kind::Column | Kind::Row | Kind::Phase | Kind::Model | Kind::Data => Vec::new(),
-        _ => {
-            context.model().and_then(|model| portrait(model, &full)).map(|it| facts(&it)).unwrap_or_default()
-        }
+        _ => model.and_then(|model| portrait(model, &full)).map(|it| facts(&it)).unwrap_or_default(),
     };
     for fact in facts {
         text += &format!("\n\n{fact}");
@@ -46,7 +45,10 @@ fn declaration(context: &Context<'_>, it: &Definition) -> String {
 
 /// `state, in m/s (found from the equations)`
 fn headline(context: &Context<'_>, it: &Definition, full: &str) -> String {
-    let units: Vec<&NamedUnit> = context.units().iter().filter(|unit| is_unit_of(unit, full)).collect();
+    let named: Vec<&NamedUnit> = context.units().iter().filter(|unit| is_unit_of(unit, full)).collect();
+    // Another phase may have the same name with another unit.
+    let own: Vec<&NamedUnit> = named.iter().copied().filter(|unit| unit.span == it.span).collect();
+    let units = if own.is_empty() { named } else { own };
     let kind = it.kind.word();
     let Some(first) = units.first() else { return kind.into() };
     let same = units.iter().all(|unit| unit.unit == first.unit);
@@ -91,8 +93,9 @@ pub fn smoothness(it: &Smoothness) -> String {
 }
 
 /// Gradient, jump, class and the condition for being held.
-fn surface(context: &Context<'_>, name: &str) -> Vec<String> {
-    let Some(report) = context.surfaces().iter().find(|it| it.place.name == name) else { return Vec::new() };
+fn surface(model: &Model, name: &str) -> Vec<String> {
+    let reports = surfaces(model).unwrap_or_default();
+    let Some(report) = reports.into_iter().find(|it| it.place.name == name) else { return Vec::new() };
     let SurfaceReport { gradient, jump, meaning, holding, .. } = report;
     let mut facts = vec![format!("**{meaning}**")];
     if !gradient.is_empty() {

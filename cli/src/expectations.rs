@@ -45,14 +45,15 @@ pub fn has_any(model: &Model) -> bool {
 
 /// Evaluates all expectations at a solution.
 pub fn evaluate(model: &Model, solved: &Solved) -> Vec<Checked> {
-    let expectations = expectations(model);
-    let trajectory = &solved.outcome.trajectory;
+    let (seen, problem, outcome) = solved.as_solved(model);
+    let expectations = expectations(seen);
+    let trajectory = &outcome.trajectory;
     let ends = |column: fn(&[f64]) -> f64| trajectory.states.iter().map(move |state| column(state));
     let inputs: Vec<f64> = ends(|state| state[0]).chain(ends(|state| state[state.len() - 1])).collect();
     let mut parameters = trajectory.parameters.clone();
     parameters.extend(integrals(
-        &solved.problem,
-        &solved.outcome.solution,
+        problem,
+        &outcome.solution,
         &trajectory.parameters,
         &*expectations.integrands,
     ));

@@ -1,6 +1,5 @@
 //! The diagnostics of a solve that failed, at the lines of the model: FDC0601 and FDC0602.
 
-use crate::output::number::{short, significant};
 use crate::output::units::Units;
 use fdcc_grammar::{Code, Diagnostic, Span};
 use fdcc_runtime::homotopy::{Limiting, Outcome};
@@ -12,7 +11,7 @@ pub fn diagnostic(problem: &Problem, outcome: &Outcome, units: &Units) -> Option
     match &outcome.solution.status {
         // The runtime may not know the place.
         Status::NotFinite(place) if place.origin.label.is_empty() => None,
-        Status::NotFinite(place) => Some(not_finite(outcome, place)),
+        Status::NotFinite(place) => Some(not_finite(outcome, place, units)),
         Status::Infeasible => {
             outcome.limiting.as_ref().map(|limiting| infeasible(problem, outcome, limiting, units))
         }
@@ -24,9 +23,9 @@ fn span((start, end): (u32, u32)) -> Span {
     Span { start, end }
 }
 
-fn not_finite(outcome: &Outcome, place: &Place) -> Diagnostic {
+fn not_finite(outcome: &Outcome, place: &Place, units: &Units) -> Diagnostic {
     let time = place.grid_point.and_then(|k| outcome.trajectory.time.get(k));
-    let when = time.map(|t| format!(" at t = {}", short(*t))).unwrap_or_default();
+    let when = time.map(|t| format!(" at t = {}", units.value("time", *t, 6))).unwrap_or_default();
     let message = format!("not a number{when}, iteration {}", outcome.solution.counts.iterations);
     let label = format!("`{}` or one of its derivatives is infinite or undefined", place.origin.label);
     Diagnostic::new(Code::NotFinite, message, span(place.origin.span), label).help(
@@ -38,12 +37,14 @@ fn not_finite(outcome: &Outcome, place: &Place) -> Diagnostic {
 
 fn infeasible(problem: &Problem, outcome: &Outcome, limiting: &Limiting, units: &Units) -> Diagnostic {
     let Limiting { origin, condition, violation, .. } = limiting;
-    let when = limiting.time.map(|t| format!(" at t = {}", short(t))).unwrap_or_default();
+    let when = limiting.time.map(|t| format!(" at t = {}", units.value("time", t, 6))).unwrap_or_default();
     let mut diagnostic = match condition {
         Some(condition) => {
             let message = format!("no feasible trajectory found: `{}` cannot be met", condition.label);
             let label = "this stands against the equations most";
-            let worst = format!("worst{when}: off by {} in one step", significant(*violation, 3));
+            // What is off is the state of the equation.
+            let state = origin.label.trim_end_matches('\'');
+            let worst = format!("worst{when}: off by {} in one step", units.violation(state, *violation, 3));
             Diagnostic::new(Code::Infeasible, message, span(condition.span), label)
                 .label(span(origin.span), worst)
         }
@@ -55,7 +56,7 @@ fn infeasible(problem: &Problem, outcome: &Outcome, limiting: &Limiting, units: 
             Diagnostic::new(Code::Infeasible, message, span(origin.span), label)
         }
     };
-    for (control, text) in saturated(problem, outcome, limiting) {
+    for (control, text) in saturated(problem, outcome, limiting, units) {
         diagnostic = diagnostic.label(span(control.origin.span), text);
     }
     diagnostic.help(advice(outcome.convex))
@@ -80,6 +81,7 @@ fn saturated<'p>(
     problem: &'p Problem,
     outcome: &Outcome,
     limiting: &Limiting,
+    units: &Units,
 ) -> Vec<(&'p Variable, String)> {
     let trajectory = &outcome.trajectory;
     let worst = limiting.time.and_then(|t| trajectory.time.iter().position(|other| *other >= t));
@@ -88,8 +90,9 @@ fn saturated<'p>(
     let mut found: Vec<(&Variable, String)> = controls
         .filter_map(|(control, values)| {
             let (bound, first, last) = stay(control, values, worst)?;
-            let [from, to] = [first, last + 1].map(|k| short(trajectory.time[k]));
-            Some((control, format!("`{}` is at {} from t = {from} to {to}", control.name, short(bound))))
+            let [from, to] = [first, last + 1].map(|k| units.value("time", trajectory.time[k], 6));
+            let bound = units.value(&control.name, bound, 6);
+            Some((control, format!("`{}` is at {bound} from t = {from} to {to}", control.name)))
         })
         .collect();
     // The parts of a vector share one declaration, and one label there is enough.

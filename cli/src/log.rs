@@ -1,9 +1,9 @@
 //! What a person sees while a solve runs, on stderr: Ipopt's iteration table with the width of the layer and the grid, and on a
 //! terminal a progress line.
 
-use crate::output::document::Ended;
 use crate::output::number::{scientific, significant};
 use crate::output::tell;
+use crate::output::tried::Ended;
 use fdcc_runtime::homotopy;
 use fdcc_runtime::nlp::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -73,17 +73,17 @@ impl Log {
         });
     }
 
-    /// The table of one of several starting points.
-    pub fn of_start(&self, index: usize) -> Self {
-        Log::of_several(self.level, &self.bar, &format!("start {index} "))
+    /// The table of one of several solves that look for one answer.
+    pub fn of_part(&self, label: &str) -> Self {
+        Log::of_several(self.level, &self.bar, &format!("{label} "))
     }
 
-    /// How the solve from one of several starting points ended.
-    pub fn ended(&self, index: usize, ended: &Ended) {
+    /// How one of several solves ended.
+    pub fn ended(&self, label: &str, ended: &Ended) {
         if self.level != Level::None {
             let objective = significant(ended.objective, 9);
             let status = ended.status.replace('_', " ");
-            self.bar.suspend(|| tell(&format!(" start {index:3}  {status:<18} objective {objective}\n")));
+            self.bar.suspend(|| tell(&format!(" {label:<9}  {status:<18} objective {objective}\n")));
         }
     }
 

@@ -1,5 +1,6 @@
 //! The command `fdcc`: reads the command line and hands over to one file for each command.
 
+mod alignment;
 mod bounds;
 mod commands;
 mod conditions;
@@ -9,6 +10,7 @@ mod expectations;
 mod failure;
 mod fit;
 mod gradients;
+mod jumps;
 mod log;
 mod model;
 mod output;
@@ -19,6 +21,7 @@ mod render;
 mod replay;
 mod replayed;
 mod rewrite;
+mod search;
 mod solver;
 mod stays;
 mod verdict;

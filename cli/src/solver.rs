@@ -2,26 +2,29 @@
 
 use crate::bounds;
 use crate::commands::{Exit, Options, Prepared, show};
+use crate::jumps::{self, Unrolled};
 use crate::log::Log;
 use crate::output;
-use crate::output::document::{Document, Ended, Seconds};
+use crate::output::document::{Document, Seconds};
 use crate::output::units::Units;
-use crate::parallel;
+use crate::search::{Found, Search};
 use crate::warm;
 use crate::watch::Deadline;
+use fdcc_compiler::Model;
 use fdcc_grammar::{Diagnostic, SourceFile};
-use fdcc_runtime::homotopy::{Outcome, Refusal};
+use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::nlp::{Start, Status};
 use fdcc_runtime::problem::Problem;
-use fdcc_runtime::refine::{self, Refined};
-use fdcc_runtime::starts;
 use fdcc_runtime::transcribe::unknowns;
 use sha2::{Digest, Sha256};
 use std::time::Instant;
 
 /// A problem that is ready to be solved.
 pub struct Compiled {
+    /// Of a model with jumps, what holds between them.
     pub problem: Problem,
+    /// The model, if it has jumps.
+    jumps: Option<Model>,
     source_sha256: String,
     units: Units,
     begin: Instant,
@@ -33,6 +36,8 @@ pub struct Solved {
     pub problem: Problem,
     pub outcome: Outcome,
     pub document: Document,
+    /// What the solver saw of a model with jumps.
+    pub unrolled: Option<Unrolled>,
 }
 
 /// Why there was no solve at all.
@@ -81,39 +86,59 @@ impl Compiled {
         refuse_senseless(&problem)?;
         let source_sha256 = sha256(&prepared.source.text);
         let units = Units::from(&prepared.model);
-        Ok(Compiled { problem, source_sha256, units, begin, seconds: begin.elapsed().as_secs_f64() })
+        let jumps = (!prepared.model.jumps.is_empty()).then(|| prepared.model.clone());
+        Ok(Compiled { problem, jumps, source_sha256, units, begin, seconds: begin.elapsed().as_secs_f64() })
     }
 
     /// The start that `--warm` names, if any.
     pub fn first_start(&self, options: &Options) -> Result<Option<Start>, Failure> {
-        options.warm.as_ref().map(|path| warm::from_file(path, &self.problem)).transpose()
+        match &options.warm {
+            Some(_) if self.jumps.is_some() => Err(jumps::no_start()),
+            warm => warm.as_ref().map(|path| warm::from_file(path, &self.problem)).transpose(),
+        }
     }
 
     /// Solves from `start`, or from the guess, and from variations of it if there are to be several starts.
     pub fn solve(self, start: Option<Start>, options: &Options, log: &mut Log) -> Result<Solved, Failure> {
-        let problem = self.problem;
         let deadline = Deadline::after(self.begin, options.time_limit);
-        let all = match options.starts {
-            1 => vec![run(&problem, start, deadline, log)?],
-            starts => from_many(&problem, start, starts as usize, deadline, log)?,
+        let search = Search { starts: options.starts as usize, deadline, log };
+        let found = match &self.jumps {
+            Some(model) => jumps::solve(model, &self.problem, start, search)?,
+            None => search.solve(&self.problem, start)?,
         };
-        let spread: Vec<Ended> =
-            if all.len() > 1 { all.iter().map(Ended::new).collect() } else { Vec::new() };
-        spread.iter().enumerate().for_each(|(index, ended)| log.ended(index, ended));
-        let best = |a: Refined, b: Refined| {
-            if starts::is_better(&b.outcome.solution, &a.outcome.solution) { b } else { a }
-        };
-        let Refined { problem, outcome, error } =
-            all.into_iter().reduce(best).expect("there is at least one start");
         let total = self.begin.elapsed().as_secs_f64();
         let seconds = Seconds { compile: self.seconds, solve: total - self.seconds, total };
-        let document = Document::new(&problem, &outcome, &self.source_sha256, seconds);
-        let document = Document { units: self.units, step_errors: error, starts: spread, ..document };
-        Ok(Solved { problem, outcome, document })
+        Ok(found.document(self.source_sha256, self.units, seconds))
+    }
+}
+
+impl Found {
+    fn document(self, source_sha256: String, units: Units, seconds: Seconds) -> Solved {
+        let Found { problem, outcome, error, spread, jumps, tried, is_cut, unrolled } = self;
+        let document = Document::new(&problem, &outcome, &source_sha256, seconds);
+        let sequences_left_out = is_cut;
+        let document = Document {
+            units,
+            step_errors: error,
+            starts: spread,
+            jumps,
+            sequences: tried,
+            sequences_left_out,
+            ..document
+        };
+        Solved { problem, outcome, document, unrolled }
     }
 }
 
 impl Solved {
+    /// What the solver saw: model, problem and outcome. Of a model with jumps, its pieces side by side.
+    pub fn as_solved<'s>(&'s self, model: &'s Model) -> (&'s Model, &'s Problem, &'s Outcome) {
+        match &self.unrolled {
+            Some(it) => (&it.model, &it.problem, &it.outcome),
+            None => (model, &self.problem, &self.outcome),
+        }
+    }
+
     /// Whether the answer can be used.
     pub fn is_good(&self) -> bool {
         matches!(self.outcome.solution.status, Status::Solved | Status::Acceptable)
@@ -140,47 +165,6 @@ fn refuse_senseless(problem: &Problem) -> Result<(), Failure> {
         }
         _ => Ok(()),
     }
-}
-
-/// From the start as it is given and from variations of it, in parallel.
-fn from_many(
-    problem: &Problem,
-    start: Option<Start>,
-    starts: usize,
-    deadline: Deadline,
-    log: &Log,
-) -> Result<Vec<Refined>, Failure> {
-    let one = |index: usize| {
-        let start = match index {
-            0 => start.clone(),
-            _ => Some(starts::perturbed(problem, start.clone().map(|start| start.v), index as u32)),
-        };
-        run(problem, start, deadline, &mut log.of_start(index))
-    };
-    let ends = |found: &Result<Refined, Failure>| found.as_ref().map_or(true, is_stopped);
-    parallel::in_order(starts, parallel::processors(), one, ends).into_iter().collect()
-}
-
-fn is_stopped(found: &Refined) -> bool {
-    matches!(found.outcome.solution.status, Status::Interrupted | Status::TimeLimit)
-}
-
-fn run(
-    problem: &Problem,
-    start: Option<Start>,
-    deadline: Deadline,
-    log: &mut Log,
-) -> Result<Refined, Failure> {
-    let found = refine::solve(problem, start, &mut |progress, level| {
-        log.iteration(progress, level);
-        deadline.check()
-    });
-    found.map_err(|Refusal::NotConvex| {
-        Failure::Usage(
-            "the discretised problem is not convex, so `solver = convex` cannot treat it; leave `solver` out"
-                .into(),
-        )
-    })
 }
 
 pub fn sha256(text: &str) -> String {

@@ -1,13 +1,16 @@
 //! What is said at the end of a solve: how it ended, what was found, what each surface did.
 
-use crate::output::document::{Document, Ended, scheme_name, status_name, switching};
+use crate::output::document::{Document, scheme_name, status_name, switching};
 use crate::output::number::{scientific, short};
 use crate::output::plural;
+use crate::output::tried::Ended;
 use crate::output::verified::Verification;
 use crate::solver::Solved;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::transcribe::unknowns;
+
+mod jumps;
 
 /// One line: the size of the problem.
 pub fn headline(problem: &Problem) -> String {
@@ -41,6 +44,7 @@ pub fn verdict(solved: &Solved) -> String {
     let word = if solved.is_good() { "done" } else { "stop" };
     let mut lines = vec![format!(" {word}  {}", how(solved)), format!("       {}", result.join("   "))];
     lines.push(format!("       {work}"));
+    lines.extend(jumps::lines(document));
     lines.extend(spread(document));
     lines.extend(surfaces(document));
     lines.extend(replayed(document));
@@ -85,7 +89,7 @@ fn surfaces(document: &Document) -> impl Iterator<Item = String> {
 
 /// The first line. It never says "optimal": an optimum of the discretised problem is not one of the true system.
 fn how(solved: &Solved) -> String {
-    let Solved { problem, document, outcome } = solved;
+    let Solved { problem, document, outcome, .. } = solved;
     let status = &outcome.solution.status;
     let found = match problem.has_objective {
         false => "feasible trajectory",

@@ -1,5 +1,6 @@
 //! What the controls of a solution do on the true system, simulated from event to event, against what the solution says.
 
+use crate::alignment::Alignment;
 use crate::conditions::{Condition, Conditions};
 use crate::output::saved::Saved;
 use crate::pieces::PIECES;
@@ -71,14 +72,15 @@ pub fn verify(model: &Model, problem: &Problem, saved: &Saved) -> Result<Verifie
     let stays = (0..system.surfaces.len()).map(|surface| stays(tape, surface)).collect();
     let conditions =
         Conditions::new(problem, saved, &system, &simulation, &points).map(|it| it.all(is_whole));
-    Ok(Verified {
-        gaps: gaps(saved, &system, &simulation),
-        conditions: conditions.unwrap_or_default(),
-        stays,
-        is_whole,
-        system,
-        simulation,
-    })
+    let gaps = match Alignment::new(&saved.jumps, &system, &simulation) {
+        Some(alignment) if is_whole && !saved.jumps.is_empty() => {
+            let times = alignment.moved(&points.times);
+            let compared = simulate(&system, &controls, &Options { times, tape: false, ..options });
+            alignment.gaps(saved).chain(gaps(saved, &system, &compared)).collect()
+        }
+        _ => gaps(saved, &system, &simulation),
+    };
+    Ok(Verified { gaps, conditions: conditions.unwrap_or_default(), stays, is_whole, system, simulation })
 }
 
 /// Whether a solution has the time and the states of a system.
@@ -130,6 +132,18 @@ impl Points {
     /// The controls at a point; at a grid point those of the row that ends there, as a transcription has it.
     pub fn row(&self, point: usize) -> &[f64] {
         &self.rows[point.saturating_sub(1) / self.in_row]
+    }
+}
+
+impl Alignment {
+    /// Of the times of the jumps, in the same units as those of states.
+    fn gaps(&self, saved: &Saved) -> impl Iterator<Item = Gap> {
+        let times = self.own.iter().zip(&self.replayed).zip(&saved.jumps);
+        times.map(|((own, replayed), jump)| Gap {
+            name: format!("time of {}", jump.jump),
+            gap: (own - replayed).abs() / own.abs().max(1.0),
+            time: *replayed,
+        })
     }
 }
 

@@ -18,7 +18,7 @@ fn every_stage_of_a_model_can_be_shown() {
         (&[&bounce, "--stage", "model"], 0, &["vx"]),
         (&[&bounce], 0, &["class    crossed", "`bounce` resets the state"]),
         (&[&racecar], 0, &["held if  abs(s)*v_tangential^2 <= muN"]),
-        (&[&bounce, "--stage", "graph"], 1, &["FDC0603"]),
+        (&[&bounce, "--stage", "graph"], 0, &["# dynamics"]),
         (&[&racecar, "--stage", "modle"], 3, &["'model'"]),
         (&[&racecar, "--set", "W=1"], 3, &["did you mean `w`?"]),
         (&[&racecar, "--method", "kernel=round"], 3, &["tanh"]),

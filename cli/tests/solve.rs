@@ -253,7 +253,7 @@ fn exit_codes_and_words_are_those_of_the_contract() {
             ("broken.sol.json", b"{"),
         ],
     );
-    let (bounce, racecar) = (model("bounce"), model("racecar"));
+    let [bounce, racecar, twostage] = ["bounce", "racecar", "twostage"].map(model);
     let cases: &[(&[&str], i32, &str)] = &[
         (&["ramp.fdc"], 0, "global optimum of the discretised problem, confirmed on the true system"),
         (
@@ -270,7 +270,15 @@ fn exit_codes_and_words_are_those_of_the_contract() {
         (&["timeless.fdc"], 1, "FDC0407"),
         (&["waits.fdc"], 1, "FDC0408"),
         (&["waits.fdc", "--set", "goal=1"], 0, "global optimum"),
-        (&[&bounce], 1, "FDC0603"),
+        (&[&bounce], 0, "jumps bounce at t = 0.547"),
+        (&[&bounce, "--method", "scheme=midpoint"], 0, "confirmed on the true system"),
+        (
+            &[&bounce, "--warm", "other.sol.json"],
+            3,
+            "a model with jumps cannot start from an earlier solution",
+        ),
+        (&[&bounce, "--method", "scheme=radau2", "--method", "controls=linear"], 3, "without jumps"),
+        (&[&twostage], 1, "FDC0603"),
         (&[&racecar, "--set", "w=-1"], 1, "FDC0401"),
         (&["ramp.fdc", "--set", "goal=5"], 2, "FDC0602"),
         (&["ramp.fdc", "--set", "gaol=1"], 3, "did you mean `goal`?"),

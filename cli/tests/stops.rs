@@ -62,3 +62,16 @@ fn ctrl_c_stops_with_the_best_iterate_written() {
     assert_eq!(saved["status"], "interrupted");
     assert_eq!(column(&saved["states"]["th"]).len(), 10_001);
 }
+
+/// Times, bounds and what an equation is off by are in the units of the model.
+#[test]
+fn what_cannot_be_met_is_told_in_the_units_of_the_model() {
+    let far = "time t in [0, 1] [s]\nstate x [km] start 0\nstate v [km/h] start 0\ncontrol u in [-1, 1] [m/s^2]\n\
+               dynamics {\n  x' = v\n  v' = u\n}\nend x == 5\nend v == 0\nminimize integral(u^2)\nmethod { solver = interior_point }\n";
+    let folder = folder("stops_units", &[("far.fdc", far.as_bytes())]);
+    let output = fdcc(&folder, &["solve", "far.fdc", "--log", "none"], "");
+    expect_exit(&output, 2, "nothing drives 5 km in a second");
+    let said = stderr(&output);
+    assert!(said.contains("`u` is at -1 m/s^2 from t = 0.5 s to 1 s"), "{said}");
+    assert!(said.contains(" km in one step"), "{said}");
+}

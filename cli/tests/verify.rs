@@ -189,3 +189,60 @@ fn a_replay_that_does_not_reach_the_end_is_no_confirmation() {
     let said = stdout(&fdcc(&folder, &["verify", "edge.sol.json"], ""));
     assert!(said.contains("does not reach the end") && said.contains("several ways"), "{said}");
 }
+
+/// Falls for a second and comes back with half the speed for another one.
+const DROP: &str = "\
+model drop
+free e in [0, 1] guess 0.5
+time t in [0, 1.75]
+state h start 4.905
+state v start 0
+surface ground = h
+dynamics {
+  h' = v
+  v' = -9.81
+}
+jump bounce on ground falling at most 1 { v := -e*v }
+minimize e
+";
+
+/// A jump that comes a thousandth too late is off by a thousandth, not by the height of the jump; one that does not come at all is.
+#[test]
+fn jumps_are_compared_with_jumps() {
+    let late = 1.001;
+    let (before, after) = (0.5 / late, (1.375 - late) / (1.75 - late) * 0.75);
+    let states = |t: f64, height: f64, speed: f64| (height + speed * t - 4.905 * t * t, speed - 9.81 * t);
+    let points = [
+        (4.905, 0.0),
+        states(before, 4.905, 0.0),
+        (0.0, 4.905),
+        states(after, 0.0, 4.905),
+        states(0.75, 0.0, 4.905),
+    ];
+    let column = |of: fn(&(f64, f64)) -> f64| {
+        points.iter().map(of).map(|it| it.to_string()).collect::<Vec<_>>().join(", ")
+    };
+    let solution = |jumps: &str| {
+        format!(
+            r#"{{"model": "drop", "free": {{"e": 0.5}}, "params": {{}}, "time": [0, 0.5, {late}, 1.375, 1.75],
+              "states": {{"h": [{}], "v": [{}]}}, "controls": {{}}{jumps}}}"#,
+            column(|it| it.0),
+            column(|it| it.1)
+        )
+    };
+    let with = solution(r#", "jumps": [{"jump": "bounce", "time": 1.001}]"#);
+    let folder = folder(
+        "verify_jumps",
+        &[
+            ("drop.fdc", DROP.as_bytes()),
+            ("with.sol.json", with.as_bytes()),
+            ("without.sol.json", solution("").as_bytes()),
+        ],
+    );
+    let document = verified(&folder, &["with.sol.json", "--gap", "3e-3"], 0);
+    let gap = |state: &str| number(&document["state_gaps"][state]["gap"]);
+    assert!((gap("time of bounce") - 0.001 / late).abs() < 1e-9, "{document}");
+    assert!(gap("h") < 1e-7 && gap("v") < 1e-7, "{document}");
+    let document = verified(&folder, &["without.sol.json", "--gap", "3e-3"], 2);
+    assert!(number(&document["verification"]["state_gap"]) > 3e-3, "{document}");
+}

@@ -32,10 +32,7 @@ pub fn dump(model: &Model, stage: Stage) -> Result<String, Vec<Diagnostic>> {
     if stage == Stage::Model {
         return Ok(symbols(model));
     }
-    // Jumps can be shown, though not solved.
-    if stage != Stage::Summary || !model.not_yet.is_empty() {
-        not_yet(model)?;
-    }
+    not_yet(model)?;
     let numbers = numbers(model)?;
     let program = lower(model);
     Ok(match stage {

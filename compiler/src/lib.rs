@@ -26,6 +26,7 @@ mod review;
 pub mod smooth;
 mod surfaces;
 pub mod units;
+mod unroll;
 pub mod vocabulary;
 
 pub use asked::check_with_objective;
@@ -51,6 +52,8 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 pub use surfaces::{Order, Smoothness, SurfaceClass, SurfaceReport};
 pub use units::{NamedUnit, parse_quantity};
+use unroll::between_jumps;
+pub use unroll::{Sequences, sequences, unrolled};
 
 /// What a syntax tree means, and what is wrong with it.
 pub struct Checked {
@@ -194,9 +197,11 @@ fn quoted(found: &Diagnostic) -> Option<String> {
     found.message.split('`').nth(1).map(str::to_owned)
 }
 
-/// Turns a model into an optimal control problem with compiled functions; or says what cannot be solved yet.
+/// Turns a model into an optimal control problem with compiled functions; or says what cannot be solved yet. Of a model with
+/// jumps it is what holds between them: [`unrolled`] makes of it one in which they happen.
 pub fn compile(model: &Model) -> Result<Problem, Vec<Diagnostic>> {
     not_yet(model)?;
+    let model = &between_jumps(model);
     let numbers = numbers(model)?;
     let program = lower(model);
     let functions = program.functions().map(VectorFunction::clone).to_vec();
@@ -227,12 +232,14 @@ pub fn compile_sensitivities(model: &Model) -> Result<System, Vec<Diagnostic>> {
 
 /// The system as a solve smooths it, without surfaces, with all its derivatives; or says that jumps cannot be smoothed.
 pub fn compile_smoothed(model: &Model) -> Result<System, Vec<Diagnostic>> {
-    not_yet(model)?;
+    if let Some(jump) = model.jumps.first() {
+        return Err(vec![resolve::not_yet(jump.place.span, "a smoothed model with jumps")]);
+    }
     compile_system(model, Purpose::Smoothed)
 }
 
 fn compile_system(model: &Model, purpose: Purpose) -> Result<System, Vec<Diagnostic>> {
-    model.not_yet.first().map_or(Ok(()), |first| Err(vec![first.clone()]))?;
+    not_yet(model)?;
     let numbers = numbers(model)?;
     let (graph, program) = lower::simulation(model, purpose);
     let functions = machine_code(graph, program.functions.clone());
@@ -241,9 +248,7 @@ fn compile_system(model: &Model, purpose: Purpose) -> Result<System, Vec<Diagnos
 
 /// The first construct that is understood but cannot be solved.
 fn not_yet(model: &Model) -> Result<(), Vec<Diagnostic>> {
-    let jump = model.jumps.first().map(|jump| resolve::not_yet(jump.place.span, "a model with jumps"));
-    let first = model.not_yet.first().cloned().into_iter().chain(jump).min_by_key(Diagnostic::span);
-    first.map_or(Ok(()), |first| Err(vec![first]))
+    model.not_yet.first().map_or(Ok(()), |first| Err(vec![first.clone()]))
 }
 
 /// Derivatives, then machine code.

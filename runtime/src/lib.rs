@@ -28,4 +28,5 @@ pub mod prolong;
 pub mod starts;
 
 pub mod homotopy;
+pub mod pieces;
 pub mod refine;

@@ -72,7 +72,7 @@ pub(crate) fn guards(problem: &Problem, nlp: &TranscribedNlp, v: &[f64]) -> Vec<
 }
 
 /// A function over normalised time at all grid points.
-fn sample(function: &dyn Function, points: &Columns, parameters: &[f64]) -> Vec<Vec<f64>> {
+pub(crate) fn sample(function: &dyn Function, points: &Columns, parameters: &[f64]) -> Vec<Vec<f64>> {
     let mut values = Columns::new(function.outputs(), points.count());
     function.value(&resized(points, function.layout().point_inputs()), parameters, &mut values);
     (0..function.outputs()).map(|i| values.column(i).to_vec()).collect()

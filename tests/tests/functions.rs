@@ -11,7 +11,7 @@ use fdcc_compiler::{Model, compile};
 use fdcc_runtime::problem::{Columns, Function, Problem};
 use fdcc_tests::documents;
 use fdcc_tests::functions::{check_differences, check_machine_code};
-use fdcc_tests::models::{changed, refusal};
+use fdcc_tests::models::{changed, refusal, unrolled};
 use fdcc_tests::random::Random;
 use fdcc_tests::symbols::table;
 
@@ -55,8 +55,12 @@ fn points(function: &dyn Function, random: &mut Random) -> Columns {
 
 fn check(text: &str, kernel: &str) -> Result<(), String> {
     let model = changed(text, &[], &[("kernel", kernel)]);
-    let problem = compile(&model).expect("the model can be solved");
-    let (graph, symbols) = symbols(&model);
+    unrolled(&model).iter().try_for_each(|(_, model)| check_model(model, kernel))
+}
+
+fn check_model(model: &Model, kernel: &str) -> Result<(), String> {
+    let problem = compile(model).expect("the model can be solved");
+    let (graph, symbols) = symbols(model);
     let mut random = Random::new(1);
     for (function, symbols) in functions(&problem).iter().zip(&symbols) {
         let parameters = parameters(&problem, &mut random);

@@ -27,7 +27,7 @@ enum Template {
     Racecar,
     /// A motor that changes at a speed, in the shortest time
     Switched,
-    /// A ball that bounces, for `fdcc simulate`
+    /// A ball that bounces, and how it is thrown best
     Bounce,
     /// A friction coefficient from measurements
     Fit,
@@ -53,14 +53,6 @@ impl Template {
             Template::Fit => include_str!("../../templates/fit.fdc"),
         }
     }
-
-    /// What to do with the model.
-    fn verb(self) -> &'static str {
-        match self {
-            Template::Bounce => "simulate",
-            _ => "solve",
-        }
-    }
 }
 
 impl New {
@@ -73,8 +65,8 @@ impl New {
         let path = file(self.path, template);
         match write(&path, &named_after(&path, template)) {
             Ok(()) => {
-                let (path, verb) = (path.display(), template.verb());
-                output::print(&format!("wrote {path}\n\nnext:\n  fdcc check {path}\n  fdcc {verb} {path}\n"));
+                let path = path.display();
+                output::print(&format!("wrote {path}\n\nnext:\n  fdcc check {path}\n  fdcc solve {path}\n"));
                 Exit::Fine
             }
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {

@@ -33,7 +33,7 @@ pub struct Solve {
 
 /// What the optimum is worth to each parameter.
 fn sensitivities(model: &Model, solved: &Solved) -> Named<f64> {
-    let Solved { problem, outcome, .. } = solved;
+    let (model, problem, outcome) = solved.as_solved(model);
     if model.params.is_empty() || !problem.has_objective {
         return Named::default();
     }

@@ -2,6 +2,7 @@
 
 use super::named::Named;
 use super::number::significant;
+use super::tried::{Ended, Happened, Tried};
 use super::units::Units;
 use super::verified::Verification;
 use fdcc_runtime::homotopy::Outcome;
@@ -9,7 +10,6 @@ use fdcc_runtime::lagrangian::Hamiltonian;
 use fdcc_runtime::modes::Mode;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{ControlShape, Function, Linear, Method, Problem, Scheme, Solver, Variable};
-use fdcc_runtime::refine::Refined;
 use serde::Serialize;
 
 /// One solve. Numbers are written so that they read back to the same bits.
@@ -54,6 +54,15 @@ pub struct Document {
     pub sensitivities: Named<f64>,
     pub report: Named<Vec<f64>>,
     pub surfaces: Named<Vec<Span>>,
+    /// The jumps, in their order; the grid has the states after them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub jumps: Vec<Happened>,
+    /// What was tried, where the model has jumps.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sequences: Vec<Tried>,
+    /// Whether the model allows more jumps than were tried.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub sequences_left_out: bool,
     /// How each of several starts ended, in their order; absent where there was one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub starts: Vec<Ended>,
@@ -116,25 +125,6 @@ pub struct Counts {
     pub evaluations: usize,
     pub derivatives: usize,
     pub restorations: usize,
-}
-
-/// How the solve from one of several starting points ended.
-#[derive(Clone, Debug, Serialize)]
-pub struct Ended {
-    pub status: String,
-    pub objective: f64,
-    pub iterations: usize,
-}
-
-impl Ended {
-    pub fn new(found: &Refined) -> Self {
-        let solution = &found.outcome.solution;
-        Ended {
-            status: status_name(&solution.status).to_string(),
-            objective: found.problem.sense * solution.objective,
-            iterations: solution.counts.iterations,
-        }
-    }
 }
 
 /// Wall-clock times: the only entries that differ between two runs.
@@ -206,6 +196,9 @@ impl Document {
             sensitivities: Named::default(),
             report: problem.report_names.iter().cloned().zip(trajectory.report.iter().cloned()).collect(),
             surfaces: surfaces(problem, outcome),
+            jumps: Vec::new(),
+            sequences: Vec::new(),
+            sequences_left_out: false,
             starts: Vec::new(),
             units: Units::default(),
             verification: None,

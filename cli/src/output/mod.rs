@@ -17,6 +17,7 @@ pub mod saved;
 pub mod simulation;
 pub mod table;
 pub mod tested;
+pub mod tried;
 pub mod units;
 pub mod verified;
 

@@ -2,6 +2,7 @@
 
 use super::document::{ControlNodes, Document, MethodUsed};
 use super::named::Named;
+use super::tried::Happened;
 use crate::solver::Failure;
 use serde::Deserialize;
 use std::fs;
@@ -27,6 +28,15 @@ pub struct Saved {
     pub controls: Named<Column>,
     #[serde(default)]
     pub control_nodes: Option<SavedNodes>,
+    #[serde(default)]
+    pub jumps: Vec<SavedJump>,
+}
+
+/// A jump of a solution.
+#[derive(Deserialize)]
+pub struct SavedJump {
+    pub jump: String,
+    pub time: Option<f64>,
 }
 
 /// What defines controls that are not constant on each interval.
@@ -74,6 +84,7 @@ impl From<&Document> for Saved {
             states: columns(&document.states),
             controls: columns(&document.controls),
             control_nodes: document.control_nodes.as_ref().map(saved_nodes),
+            jumps: document.jumps.iter().map(saved_jump).collect(),
         }
     }
 }
@@ -84,6 +95,10 @@ fn finite(value: f64) -> Option<f64> {
 
 fn numbers(of: &Named<f64>) -> Named<Option<f64>> {
     of.0.iter().map(|(name, value)| (name.clone(), finite(*value))).collect()
+}
+
+fn saved_jump(it: &Happened) -> SavedJump {
+    SavedJump { jump: it.jump.clone(), time: finite(it.time) }
 }
 
 fn saved_nodes(nodes: &ControlNodes) -> SavedNodes {

@@ -77,6 +77,22 @@ pub(crate) fn at_start(model: &Model, graph: &mut Graph, sizes: &Sizes) -> Vec<E
     })
 }
 
+/// The guess of all states over the symbols of the model: as written, or straight from start to end.
+pub(crate) fn straight_guesses(model: &Model, graph: &mut Graph) -> Vec<ExprId> {
+    let time = model.input_of(Symbol::Time).expect("time is a symbol");
+    let [now, first, last] = [graph.input(time), model.interval[0], model.interval[1]];
+    let (passed, duration) = (graph.sub(now, first), graph.sub(last, first));
+    let tau = graph.div(passed, duration);
+    let mut guesses = Vec::new();
+    for (index, state) in model.states.iter().enumerate() {
+        guesses.push(state.guess.unwrap_or_else(|| {
+            let ends = ends(model, graph, index, state);
+            line(graph, tau, ends)
+        }));
+    }
+    guesses
+}
+
 /// `a + tau (b - a)`.
 fn line(graph: &mut Graph, tau: ExprId, [a, b]: [ExprId; 2]) -> ExprId {
     let rise = graph.sub(b, a);

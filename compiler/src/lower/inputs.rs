@@ -89,7 +89,7 @@ impl Inputs {
             steps[switch.surfaces].copy_from_slice(&smoothed);
         }
         self.set(model, |symbol| match symbol {
-            Symbol::Selector(index) => Some(steps[index]),
+            Symbol::Selector(index) => steps.get(index).copied(),
             _ => None,
         });
     }

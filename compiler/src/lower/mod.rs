@@ -22,7 +22,7 @@ mod simulation;
 
 pub(crate) use by_parameters::by_parameters;
 pub use expect::{Expectations, Expected, expectations};
-pub(crate) use guess::over_time as guessed;
+pub(crate) use guess::{over_time as guessed, straight_guesses};
 pub use problem::problem;
 pub(crate) use simulation::{Purpose, simulation, system};
 

@@ -1,0 +1,46 @@
+//! What was tried besides the answer, and the jumps of the answer.
+
+use super::document::status_name;
+use super::named::Named;
+use fdcc_runtime::homotopy::Outcome;
+use fdcc_runtime::problem::Problem;
+use serde::Serialize;
+
+/// How the solve from one of several starting points ended.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ended {
+    pub status: String,
+    pub objective: f64,
+    pub iterations: usize,
+}
+
+impl Ended {
+    pub fn of(problem: &Problem, outcome: &Outcome) -> Self {
+        let solution = &outcome.solution;
+        Ended {
+            status: status_name(&solution.status).to_string(),
+            objective: problem.sense * solution.objective,
+            iterations: solution.counts.iterations,
+        }
+    }
+}
+
+/// A jump of the solution.
+#[derive(Clone, Debug, Serialize)]
+pub struct Happened {
+    pub jump: String,
+    pub time: f64,
+    /// All states before it.
+    pub before: Named<f64>,
+    /// All states after it.
+    pub after: Named<f64>,
+}
+
+/// How the solve ended in which exactly these jumps happen, one after the other.
+#[derive(Clone, Debug, Serialize)]
+pub struct Tried {
+    pub jumps: Vec<String>,
+    pub status: String,
+    pub objective: f64,
+    pub iterations: usize,
+}

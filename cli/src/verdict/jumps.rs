@@ -1,0 +1,49 @@
+//! The lines about jumps: which happen, and what the best answers with others are worth.
+
+use crate::jumps::words;
+use crate::output::document::Document;
+use crate::output::plural;
+use crate::output::tried::{Happened, Tried};
+
+/// The jumps, and what the best answer with others is worth.
+pub fn lines(document: &Document) -> Vec<String> {
+    if document.sequences.is_empty() {
+        return Vec::new();
+    }
+    let when = |it: &Happened| format!("{} at t = {}", it.jump, document.units.value("time", it.time, 6));
+    let happened = match document.jumps.len() {
+        0 => "none is best".into(),
+        _ => document.jumps.iter().map(when).collect::<Vec<_>>().join(", "),
+    };
+    let mut lines = vec![format!(" jumps {happened}")];
+    lines.extend(with_others(document));
+    if document.sequences_left_out {
+        lines.push("       with more jumps: not tried".into());
+    }
+    lines
+}
+
+/// So many of the other sequences are told.
+const OTHERS: usize = 4;
+
+/// What is the best with other jumps, the best of them first.
+fn with_others(document: &Document) -> Vec<String> {
+    let own: Vec<&String> = document.jumps.iter().map(|it| &it.jump).collect();
+    let others = document.sequences.iter().filter(|it| !it.jumps.iter().eq(own.iter().copied()));
+    let is_solved = |it: &&Tried| matches!(it.status.as_str(), "solved" | "acceptable");
+    let (mut solved, failed): (Vec<&Tried>, Vec<&Tried>) = others.partition(is_solved);
+    let distance = |it: &Tried| (it.objective - document.objective).abs();
+    solved.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let value = |it: &Tried| document.units.value("objective", it.objective, 9);
+    let told = solved.iter().take(OTHERS);
+    let mut lines: Vec<String> =
+        told.map(|it| format!("       {}: objective {}", words(&it.jumps), value(it))).collect();
+    let more = solved.len().saturating_sub(OTHERS);
+    lines.extend((more > 0).then(|| format!("       {}: worse", plural(more, "other sequence"))));
+    match failed.as_slice() {
+        [] => {}
+        [one] => lines.push(format!("       {}: {}", words(&one.jumps), one.status.replace('_', " "))),
+        many => lines.push(format!("       {}: no trajectory found", plural(many.len(), "other sequence"))),
+    }
+    lines
+}

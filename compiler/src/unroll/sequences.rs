@@ -1,0 +1,71 @@
+//! Which jumps may happen, and in which order.
+
+use crate::graph::ExprId;
+use crate::lower::{Numbers, numbers};
+use crate::model::{Jump, Model, Symbol};
+use crate::resolve::not_yet;
+use fdcc_grammar::Diagnostic;
+
+/// A jump is tried so often where the model does not say how often it may happen, or where its end would be to be held.
+const TRIED: usize = 3;
+/// Longer sequences are not tried.
+const LONGEST: usize = 8;
+/// More are not tried.
+const MOST: usize = 64;
+
+/// What may happen in a model with jumps.
+pub struct Sequences {
+    /// Jumps that happen one after the other, as indices into [`Model::jumps`]; the short ones first.
+    pub all: Vec<Vec<usize>>,
+    /// Whether the model allows others that are left out.
+    pub is_cut: bool,
+}
+
+/// All sequences in which no jump happens more often than it may; or says what cannot be solved yet.
+pub fn sequences(model: &Model) -> Result<Sequences, Vec<Diagnostic>> {
+    if let Some(jump) = model.jumps.iter().find(|jump| reads_controls(model, jump)) {
+        return Err(vec![not_yet(jump.place.span, "a jump that reads a control")]);
+    }
+    let (most, is_cut) = most(model, &numbers(model)?);
+    let mut found = Sequences { all: vec![Vec::new()], is_cut };
+    let mut next = 0;
+    while next < found.all.len() {
+        let shorter = found.all[next].clone();
+        for (jump, most) in most.iter().enumerate() {
+            let is_allowed = shorter.iter().filter(|it| **it == jump).count() < *most;
+            match is_allowed && shorter.len() < LONGEST && found.all.len() < MOST {
+                true => found.all.push([&shorter[..], &[jump]].concat()),
+                false => found.is_cut |= is_allowed,
+            }
+        }
+        next += 1;
+    }
+    Ok(found)
+}
+
+fn reads_controls(model: &Model, jump: &Jump) -> bool {
+    let values: Vec<ExprId> = jump.resets.iter().map(|reset| reset.1).collect();
+    let read = model.graph.inputs_of(&values);
+    let is_beyond =
+        |at: &u32| matches!(model.symbols[*at as usize], Symbol::Control(_) | Symbol::Selector(_));
+    read.iter().any(is_beyond)
+}
+
+/// How often each jump may happen, if that is limited.
+pub(super) fn limits(model: &Model, numbers: &Numbers) -> Vec<Option<usize>> {
+    let limit = |jump: &Jump| Some(numbers.value(model, jump.at_most?).max(0.0) as usize);
+    model.jumps.iter().map(limit).collect()
+}
+
+/// How often each jump is tried, and whether that leaves anything out. What would end with a surface held is left out.
+fn most(model: &Model, numbers: &Numbers) -> (Vec<usize>, bool) {
+    let tried = |(limit, jump): (Option<usize>, &Jump)| match limit {
+        Some(limit) if jump.then_hold.is_some() => limit.saturating_sub(1).min(TRIED),
+        Some(limit) => limit,
+        None => TRIED,
+    };
+    let limits = limits(model, numbers);
+    let most: Vec<usize> = limits.iter().copied().zip(&model.jumps).map(tried).collect();
+    let is_cut = limits.iter().zip(&most).any(|(limit, most)| *limit != Some(*most));
+    (most, is_cut)
+}

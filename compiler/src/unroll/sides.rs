@@ -1,0 +1,187 @@
+//! Path constraints of the pieces: what is written, and that no other jump happens on the way.
+//!
+//! Until a `falling` jump happens `psi >= 0`, until a `rising` one `psi <= 0`. On the surface itself, at the end of a piece, such a condition
+//! holds by what ends the piece, and would be told twice: there it gives way.
+
+use super::Unrolling;
+use crate::differentiate::derivative;
+use crate::graph::{ExprId, Graph};
+use crate::model::{Jump, Place, Range, Row, Symbol};
+use fdcc_grammar::ast::Direction;
+
+/// The last time of a piece, with room for rounding.
+const LAST: f64 = 1.0 - 1e-9;
+
+impl Unrolling<'_> {
+    /// The bounds of a state at all times; none where they are a path constraint.
+    pub(super) fn range_of(&mut self, state: usize) -> Range {
+        let range = self.model.states[state].range;
+        if !self.bounds_a_guard(state) {
+            return range;
+        }
+        let [lower, upper] = [f64::NEG_INFINITY, f64::INFINITY].map(|it| self.graph.number(it));
+        Range { lower, upper }
+    }
+
+    /// What is written, piece by piece; then what the jumps add, piece by piece.
+    pub(super) fn path(&mut self) -> Vec<Row> {
+        let mut rows = Vec::new();
+        for j in 0..self.pieces.len() {
+            rows.extend(self.model.path.iter().map(|row| self.until(j, row.clone())));
+        }
+        for j in 0..self.pieces.len() {
+            let more: Vec<Row> = self.bounds().into_iter().chain(self.sides(j)).collect();
+            rows.extend(more.into_iter().map(|row| self.until(j, row)));
+        }
+        rows
+    }
+
+    /// Bounds of states that are functions of a surface.
+    fn bounds(&mut self) -> Vec<Row> {
+        let mut rows = Vec::new();
+        for (index, state) in self.model.states.iter().enumerate() {
+            if self.bounds_a_guard(index) {
+                let value = self.graph.input(self.input_of_state(index));
+                rows.push(Row { place: state.place.clone(), value, range: state.range });
+            }
+        }
+        rows
+    }
+
+    /// Whether a state is the function of a surface where a jump happens.
+    fn bounds_a_guard(&self, state: usize) -> bool {
+        let input = self.input_of_state(state);
+        let is_it = |jump: &usize| {
+            let psi = self.whole.surfaces[self.whole.jumps[*jump].surface].psi;
+            self.whole.graph.inputs_of(&[psi]) == [input]
+        };
+        self.sequence.iter().any(is_it)
+    }
+
+    fn input_of_state(&self, state: usize) -> u32 {
+        self.model.input_of(Symbol::State(state)).expect("each state is a symbol")
+    }
+
+    /// On which sides of the surfaces a piece stays.
+    fn sides(&mut self, j: usize) -> Vec<Row> {
+        let whole = self.whole;
+        let mut rows = Vec::new();
+        for (index, jump) in whole.jumps.iter().enumerate() {
+            if self.may_happen(j, index) && !self.is_beyond(j, index) && !has_both(&whole.jumps, jump) {
+                let psi = whole.surfaces[jump.surface].psi;
+                let [lower, zero, upper] =
+                    [f64::NEG_INFINITY, 0.0, f64::INFINITY].map(|it| self.graph.number(it));
+                let range = match jump.direction {
+                    Direction::Falling => Range { lower: zero, upper },
+                    Direction::Rising => Range { lower, upper: zero },
+                };
+                rows.push(Row { place: jump.place.clone(), value: psi, range });
+            }
+        }
+        rows.retain(|row| !self.is_written(row));
+        rows
+    }
+
+    /// Whether a path constraint of the model says the same.
+    fn is_written(&self, row: &Row) -> bool {
+        let same = |it: &&Row| it.value == row.value;
+        let number = |id| self.graph.as_number(id).unwrap_or(f64::NAN);
+        let within = |it: &Row| {
+            number(it.range.lower) >= number(row.range.lower)
+                && number(it.range.upper) <= number(row.range.upper)
+        };
+        self.model.path.iter().filter(same).any(within)
+    }
+
+    /// Whether a jump has not yet happened as often as it may.
+    fn may_happen(&self, j: usize, index: usize) -> bool {
+        let before = self.sequence[..j].iter().filter(|it| **it == index).count();
+        self.limits[index].is_none_or(|limit| before < limit)
+    }
+
+    /// Whether the state went through the surface at an earlier jump.
+    fn is_beyond(&mut self, j: usize, index: usize) -> bool {
+        self.sequence[..j].contains(&index) && !self.turns(&self.whole.jumps[index])
+    }
+
+    /// Whether a jump changes the speed at which its surface is approached.
+    fn turns(&mut self, jump: &Jump) -> bool {
+        let rate = self.approach(jump);
+        let resets: Vec<(u32, ExprId)> =
+            jump.resets.iter().map(|&(state, value)| (self.input_of_state(state), value)).collect();
+        let reset = |input: u32| resets.iter().find(|it| it.0 == input).map(|it| it.1);
+        self.graph.substitute(&[rate], &reset)[0] != rate
+    }
+
+    /// `psi_t + psi_x f`: the speed at which the surface of a jump is approached.
+    fn approach(&mut self, jump: &Jump) -> ExprId {
+        let psi = self.whole.surfaces[jump.surface].psi;
+        let time = self.model.input_of(Symbol::Time).expect("time is a symbol");
+        let mut terms = vec![derivative(&mut self.graph, psi, time)];
+        for (index, state) in self.model.states.iter().enumerate() {
+            let input = self.input_of_state(index);
+            let slope = derivative(&mut self.graph, psi, input);
+            terms.push(self.graph.mul(slope, state.rate));
+        }
+        self.graph.sum(&terms)
+    }
+
+    /// That a piece comes to its end in the direction of the jump, or two jumps could be one upon the other. Nothing is said where
+    /// the speed depends on a control: at the end there is none.
+    pub(super) fn direction(&mut self, j: usize) -> Option<Row> {
+        let jump = self.jump(j);
+        let rate = self.approach(jump);
+        let is_of_state =
+            |at: &u32| !matches!(self.model.symbols[*at as usize], Symbol::Control(_) | Symbol::Selector(_));
+        if !self.graph.inputs_of(&[rate]).iter().all(is_of_state) {
+            return None;
+        }
+        let [lower, zero, upper] = [f64::NEG_INFINITY, 0.0, f64::INFINITY].map(|it| self.graph.number(it));
+        let range = match jump.direction {
+            Direction::Falling => Range { lower, upper: zero },
+            Direction::Rising => Range { lower: zero, upper },
+        };
+        let place = Place { name: format!("direction of {}", jump.place.name), span: jump.place.span };
+        Some(Row { place, value: self.at_end(j, rate), range })
+    }
+
+    /// A constraint in a piece; where the piece ends on this very surface, it gives way there.
+    fn until(&mut self, j: usize, row: Row) -> Row {
+        let value = self.in_piece(j, row.value);
+        let ends_here = j < self.sequence.len() && self.is_guard(self.jump(j), row.value);
+        if !ends_here {
+            return Row { value, ..row };
+        }
+        let inside = within(&mut self.graph, row.range);
+        let tau = self.model.input_of(Symbol::Time).expect("time is a symbol");
+        let (tau, last) = (self.graph.input(tau), self.graph.number(LAST));
+        Row { value: self.graph.select_le(tau, last, value, inside), ..row }
+    }
+
+    /// Whether a function is that of a surface, but for its sign.
+    fn is_guard(&mut self, jump: &Jump, value: ExprId) -> bool {
+        let psi = self.whole.surfaces[jump.surface].psi;
+        let other = self.graph.neg(psi);
+        value == psi || value == other
+    }
+}
+
+/// Whether a surface is the place of jumps in both directions.
+fn has_both(jumps: &[Jump], jump: &Jump) -> bool {
+    jumps.iter().any(|it| it.surface == jump.surface && it.direction != jump.direction)
+}
+
+/// A number between bounds.
+fn within(graph: &mut Graph, range: Range) -> ExprId {
+    let is_infinite = |graph: &Graph, bound| graph.as_number(bound).is_some_and(f64::is_infinite);
+    let one = graph.number(1.0);
+    match (is_infinite(graph, range.lower), is_infinite(graph, range.upper)) {
+        (true, true) => one,
+        (false, true) => graph.add(range.lower, one),
+        (true, false) => graph.sub(range.upper, one),
+        (false, false) => {
+            let sum = graph.add(range.lower, range.upper);
+            graph.scale(0.5, sum)
+        }
+    }
+}

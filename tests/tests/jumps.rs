@@ -1,0 +1,168 @@
+//! Models with jumps, solved with their pieces side by side: against closed forms, and against other programs (`tests/peers/bounce.py`).
+
+use fdcc_compiler::{compile, compile_by_parameters, sequences, unrolled};
+use fdcc_grammar::Code;
+use fdcc_runtime::homotopy::Outcome;
+use fdcc_runtime::lagrangian::by_parameters;
+use fdcc_runtime::nlp::Status;
+use fdcc_runtime::pieces::{Jump, joined};
+use fdcc_tests::Solved;
+use fdcc_tests::models::{Changes, changed, meaning, text_of};
+
+/// A solution in which given jumps happen.
+struct Pieces {
+    /// The pieces side by side.
+    solved: Solved,
+    /// One after the other.
+    whole: Outcome,
+    jumps: Vec<Jump>,
+    /// What the optimum is worth to each parameter.
+    slopes: Vec<f64>,
+}
+
+fn solve(text: &str, sequence: &[usize], methods: Changes) -> Pieces {
+    let model = changed(text, &[], methods);
+    let pieces = unrolled(&model, sequence).expect("it can be unrolled");
+    let solved = Solved::of(compile(&pieces).expect("it can be solved"));
+    let between = compile(&model).expect("there is something between the jumps");
+    let (whole, jumps) = joined(&between, &solved.problem, &solved.outcome);
+    let by = compile_by_parameters(&pieces).expect("it can be solved");
+    let trajectory = &solved.outcome.trajectory;
+    let slopes = by_parameters(&solved.problem, &solved.outcome.solution, &trajectory.parameters, &by);
+    Pieces { solved, whole, jumps, slopes }
+}
+
+#[track_caller]
+fn expect_near(found: f64, expected: f64, tolerance: f64) {
+    assert!((found - expected).abs() <= tolerance * expected.abs().max(1.0), "{found} instead of {expected}");
+}
+
+/// From height 1 with speed `v0` the ball comes to `H = e^2 (1 + v0^2/2g)`, so that `v0^2 = 2g (H/e^2 - 1)`.
+#[test]
+fn a_ball_that_has_to_bounce_to_a_height_is_thrown_with_the_speed_that_takes() {
+    let (g, e, height) = (9.81, 0.8, 1.5);
+    let text = "model apex\nparam e = 0.8\nfree T in [0.1, 5] guess 1\nfree v0 in [0, 20] guess 3\ntime t in [0, T]\n\
+                state h start 1\nstate v start -v0\nsurface ground = h\ndynamics {\n  h' = v\n  v' = -9.81\n}\n\
+                jump bounce on ground falling at most 1 { v := -e*v }\nend h == 1.5\nend v == 0\nminimize v0^2\n\
+                method { scheme = midpoint  N = 20 }\n";
+    let found = solve(text, &[0], &[]);
+    let expected = 2.0 * g * (height / (e * e) - 1.0);
+    expect_near(found.solved.objective(), expected, 1e-7);
+    let bounce = (-expected.sqrt() + (expected + 2.0 * g).sqrt()) / g;
+    expect_near(found.jumps[0].time, bounce, 1e-7);
+    expect_near(found.jumps[0].before[1], -(expected + 2.0 * g).sqrt(), 1e-7);
+    expect_near(found.jumps[0].after[1], e * (expected + 2.0 * g).sqrt(), 1e-7);
+    expect_near(found.slopes[0], -4.0 * g * height / e.powi(3), 1e-6);
+}
+
+/// Each phase against its own solution: `tests/peers/bounce.py`.
+#[test]
+fn throws_are_those_of_another_program() {
+    let page = fdcc_tests::documents("docs/reference", "md");
+    let (_, page) = page.iter().find(|(name, _)| name == "jumps").expect("jumps have a page");
+    let text = fdcc_tests::blocks(page).remove(0).text;
+    for (sequence, objective, time) in
+        [(&[] as &[usize], 54.159021408976, 1.107917680446), (&[0], 21.539392321535, 1.556951571727)]
+    {
+        let found = solve(&text, sequence, &[]);
+        expect_near(found.solved.objective(), objective, 1e-7);
+        expect_near(found.solved.value("T"), time, 1e-6);
+    }
+}
+
+/// CasADi and IPOPT: `tests/peers/bounce.py`; IPOPT relaxes bounds by 1e-8.
+#[test]
+fn a_bounce_with_a_control_is_that_of_another_program() {
+    let found = solve(&text_of("bounce"), &[0], &[("scheme", "midpoint")]);
+    expect_near(found.solved.objective(), 20.970192027263, 2e-8);
+    expect_near(found.solved.value("T"), 1.430562444782, 1e-6);
+    expect_near(found.jumps[0].time, 0.548708373339, 1e-6);
+    let slope = |e: &str| {
+        let model = changed(&text_of("bounce"), &[("e", e)], &[("scheme", "midpoint")]);
+        Solved::of(compile(&unrolled(&model, &[0]).expect("it bounces")).expect("it can be solved"))
+            .objective()
+    };
+    expect_near(found.slopes[0], (slope("0.801") - slope("0.799")) / 0.002, 1e-4);
+}
+
+const HEATER: &str = "model heater\nfree rest in [0, 1] guess 0.5\ntime t in [0, 1.2]\nstate warmth start 20\nstate on start 1\n\
+    surface warm = warmth - 21\nsurface cold = warmth - 19\n\
+    dynamics {\n  warmth' = 8*on - 0.3*(warmth - 5)\n  on' = 0\n}\n\
+    jump off on warm rising at most 2 { on := 0 }\njump again on cold falling at most 1 { on := 1 }\n\
+    end warmth <= 21\nminimize rest^2\nmethod { scheme = radau3  N = 20 }\n";
+
+/// A heater: from 20 up to 21, then down to 19, by exponentials.
+#[test]
+fn jumps_that_take_turns_happen_when_they_have_to() {
+    let found = solve(HEATER, &[0, 1], &[]);
+    let (limit_on, limit_off) = (5.0 + 8.0 / 0.3, 5.0);
+    let off = ((20.0 - limit_on) / (21.0f64 - limit_on)).ln() / 0.3;
+    let again = off + ((21.0 - limit_off) / (19.0f64 - limit_off)).ln() / 0.3;
+    expect_near(found.jumps[0].time, off, 1e-8);
+    expect_near(found.jumps[1].time, again, 1e-8);
+    expect_near(found.jumps[0].after[1], 0.0, 1e-12);
+    expect_near(found.jumps[1].after[1], 1.0, 1e-12);
+}
+
+/// A state that has just come through a surface is still on it; that is no second jump.
+#[test]
+fn no_jump_follows_itself_after_no_time() {
+    let pieces = unrolled(&meaning(HEATER), &[0, 0, 1]).expect("it can be unrolled");
+    let outcome = fdcc_tests::models::solve(&compile(&pieces).expect("it can be tried"));
+    assert_eq!(outcome.solution.status, Status::Infeasible);
+}
+
+/// A puck slides 1 m to a wall and half a metre back: `e^2 (v0^2 - 2a) = 2a/2` with the deceleration `a`.
+#[test]
+fn friction_and_an_impact_go_together() {
+    let (a, e): (f64, f64) = (0.5, 0.6);
+    let text = "model puck\nfree v0 in [0.5, 5] guess 2\nfree T in [0.5, 9] guess 4\ntime t in [0, T]\nstate x start 0\nstate v start v0\n\
+                surface slip = v\nsurface wall = 1 - x\ndynamics {\n  x' = v\n  v' in -0.5*Sgn(slip)\n}\n\
+                jump hit on wall falling at most 1 { v := -0.6*v }\nend x == 0.5\nminimize v0^2 + 1e-9*T\n\
+                method { scheme = radau2  N = 200  sigma = 1e-4 }\n";
+    let found = solve(text, &[0], &[]);
+    let expected = 2.0 * a * (1.0 + 0.5 / (e * e));
+    expect_near(found.solved.objective(), expected, 1e-3);
+    assert_eq!(found.whole.modes.len(), 1, "the wall is no surface of friction");
+}
+
+/// One trajectory: times ascend, each piece has its intervals, and the state after a jump stands at its time.
+#[test]
+fn pieces_are_put_one_after_the_other() {
+    let found = solve(&text_of("bounce"), &[0], &[("scheme", "midpoint"), ("N", "10")]);
+    let trajectory = &found.whole.trajectory;
+    assert_eq!((trajectory.time.len(), trajectory.controls[0].len()), (21, 20));
+    assert!(trajectory.time.windows(2).all(|pair| pair[0] < pair[1]), "{:?}", trajectory.time);
+    expect_near(trajectory.time[10], found.jumps[0].time, 1e-15);
+    expect_near(trajectory.time[20], found.solved.value("T"), 1e-15);
+    expect_near(trajectory.states[2][10], found.jumps[0].after[2], 0.0);
+    assert!(trajectory.states[2][9] < 0.0 && found.jumps[0].before[2] < 0.0, "it falls before the bounce");
+    assert!(trajectory.states[1].iter().all(|height| *height > -1e-9), "{:?}", trajectory.states[1]);
+    assert_eq!((trajectory.path_multipliers[0].len(), trajectory.end_multipliers.len()), (20, 2));
+}
+
+#[test]
+fn sequences_are_all_that_may_happen() {
+    let jumps = |jumps: &str| {
+        format!(
+            "param n = 2\ntime t in [0, 1]\nstate x start 1\nstate y start 0\nsurface a = x\nsurface b = y - 1\n\
+             dynamics {{\n  x' = -1\n  y' = 1\n}}\n{jumps}minimize x(end)^2\n"
+        )
+    };
+    let cases: [(&str, usize, bool); 6] = [
+        ("jump f on a falling at most 1 { x := 1 }\n", 2, false),
+        ("jump f on a falling at most n { x := 1 }\n", 3, false),
+        ("jump f on a falling { x := 1 + 0*y }\n", 4, true),
+        ("jump f on a falling at most 2 then hold a { x := 0.5 }\n", 2, true),
+        ("jump f on a falling at most 2 { x := 1 }\njump g on b rising at most 1 { y := 0 }\n", 9, false),
+        ("jump f on a falling at most 5 { x := 1 }\njump g on b rising at most 5 { y := 0 }\n", 64, true),
+    ];
+    for (text, count, is_cut) in cases {
+        let found = sequences(&meaning(&jumps(text))).expect("these can be solved");
+        assert_eq!((found.all.len(), found.is_cut), (count, is_cut), "{text}");
+        assert!(found.all.windows(2).all(|pair| pair[0].len() <= pair[1].len()), "the short ones come first");
+    }
+    let reads = jumps("control u in [0, 1]\njump f on a falling at most 1 { x := u }\n");
+    let refused = sequences(&meaning(&reads)).err().expect("there is no one control at the jump");
+    assert_eq!(refused[0].code, Code::NotYet);
+}

@@ -5,11 +5,12 @@ use crate::output::tried::{Ended, Happened, Tried};
 use crate::parallel;
 use crate::search::{Found, Search, is_stopped};
 use crate::solver::Failure;
-use fdcc_compiler::{Model, compile, sequences, unrolled};
+use fdcc_compiler::{Model, compile, compile_simulation, sequences, unrolled};
 use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::pieces::{Jump, joined};
 use fdcc_runtime::problem::{ControlShape, Problem};
+use fdcc_runtime::simulate::{Controls, Kind, Options, Status, simulate};
 use fdcc_runtime::starts;
 
 /// What was solved in place of a model with jumps: its pieces side by side.
@@ -34,7 +35,11 @@ pub fn solve(
     search: Search,
 ) -> Result<Found, Failure> {
     refuse(between, start)?;
-    let possible = sequences(model).map_err(Failure::Model)?;
+    let mut possible = sequences(model).map_err(Failure::Model)?;
+    if let Some(likely) = simulated(model) {
+        possible.all.retain(|sequence| *sequence != likely);
+        possible.all.insert(0, likely);
+    }
     let all: Result<Vec<Alternative>, Failure> =
         possible.all.into_iter().map(|sequence| Alternative::new(model, sequence)).collect();
     let all = all?;
@@ -42,7 +47,9 @@ pub fn solve(
         let log = &mut search.log.of_part(&words(&all[index].names(model)));
         Search { log, ..search }.solve(&all[index].problem, None)
     };
-    let ends = |found: &Result<Found, Failure>| found.as_ref().map_or(true, |it| is_stopped(&it.outcome));
+    // Without an objective one trajectory is as good as another.
+    let is_enough = |found: &Found| is_stopped(&found.outcome) || !between.has_objective && found.is_good();
+    let ends = |found: &Result<Found, Failure>| found.as_ref().map_or(true, is_enough);
     // Several starts run in parallel already.
     let threads = if search.starts == 1 { parallel::processors() } else { 1 };
     let found = parallel::in_order(all.len(), threads, one, ends);
@@ -57,6 +64,24 @@ pub fn solve(
     let (alternatives, found) = (all.into_iter().nth(best), found.into_iter().nth(best));
     let (alternative, found) = alternatives.zip(found).expect("it is one of them");
     Ok(alternative.joined(model, between, Found { tried, is_cut: possible.is_cut, ..found }))
+}
+
+/// A guess is not worth more steps of a simulation.
+const STEPS: usize = 20_000;
+/// More are not looked for where the guess leads to that many.
+const LONGEST: usize = 12;
+
+/// The jumps on the true system with everything as it is guessed.
+fn simulated(model: &Model) -> Option<Vec<usize>> {
+    let system = compile_simulation(model).ok()?;
+    let simulation = simulate(&system, &Controls::Guess, &Options { max_steps: STEPS, ..Options::default() });
+    let jumps = simulation.events.iter().filter_map(|event| match event.kind {
+        Kind::Jump(at) => Some(at),
+        _ => None,
+    });
+    let jumps: Vec<usize> = jumps.collect();
+    let is_whole = matches!(simulation.status, Status::Completed);
+    (is_whole && jumps.len() <= LONGEST).then_some(jumps)
 }
 
 /// What only a model without jumps can do.

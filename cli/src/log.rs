@@ -81,9 +81,12 @@ impl Log {
     /// How one of several solves ended.
     pub fn ended(&self, label: &str, ended: &Ended) {
         if self.level != Level::None {
-            let objective = significant(ended.objective, 9);
             let status = ended.status.replace('_', " ");
-            self.bar.suspend(|| tell(&format!(" {label:<9}  {status:<18} objective {objective}\n")));
+            let told = match ended.is_good() {
+                true => format!("{status:<18} objective {}", significant(ended.objective, 9)),
+                false => status,
+            };
+            self.bar.suspend(|| tell(&format!(" {label:<9}  {told}\n")));
         }
     }
 

@@ -29,6 +29,13 @@ pub struct Found {
     pub unrolled: Option<Unrolled>,
 }
 
+impl Found {
+    /// Whether it can be used.
+    pub fn is_good(&self) -> bool {
+        matches!(self.outcome.solution.status, Status::Solved | Status::Acceptable)
+    }
+}
+
 /// How an answer is looked for.
 pub struct Search<'l> {
     /// From how many starting points.

@@ -49,7 +49,7 @@ pub fn verdict(solved: &Solved) -> String {
     lines.extend(surfaces(document));
     lines.extend(replayed(document));
     lines.extend(refined(solved));
-    lines.extend(hamiltonian(document).filter(|_| solved.is_good()));
+    lines.extend(hamiltonian(document).filter(|_| solved.is_good() && solved.problem.has_objective));
     lines.extend(sensitivities(document));
     lines.join("\n") + "\n"
 }

@@ -15,6 +15,11 @@ pub struct Ended {
 }
 
 impl Ended {
+    /// Whether there is an objective worth telling.
+    pub fn is_good(&self) -> bool {
+        matches!(self.status.as_str(), "solved" | "acceptable")
+    }
+
     pub fn of(problem: &Problem, outcome: &Outcome) -> Self {
         let solution = &outcome.solution;
         Ended {

@@ -18,7 +18,10 @@ pub fn lines(document: &Document) -> Vec<String> {
     let mut lines = vec![format!(" jumps {happened}")];
     lines.extend(with_others(document));
     if document.sequences_left_out {
-        lines.push("       with more jumps: not tried".into());
+        lines.push(
+            "       longer sequences: not tried; `at most n` in the model says how often a jump may happen"
+                .into(),
+        );
     }
     lines
 }

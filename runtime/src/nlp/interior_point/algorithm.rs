@@ -178,6 +178,9 @@ impl Algorithm {
             self.watchdog.end();
             self.tiny_steps = 0;
         }
+        if self.watchdog.is_due() {
+            self.kkt.caution = 0.0;
+        }
         self.kkt.assemble(&self.space, &self.at, &self.slopes, &self.barrier);
         let has_step = self.find_step(nlp) || (self.kkt.fall_back(nlp, &self.space) && self.find_step(nlp));
         if has_step { self.take_step(nlp) } else { Outcome::Blocked }
@@ -260,8 +263,8 @@ impl Algorithm {
         match accepted {
             Some((accepted, acceptable)) if acceptable || self.watchdog.trust() => {
                 if acceptable && self.watchdog.end().is_none() {
+                    self.watchdog.note(accepted.alpha / longest, self.kkt.caution > 0.0);
                     self.kkt.judge(accepted.alpha / longest);
-                    self.watchdog.note(accepted.alpha / longest);
                 }
                 self.progress.trials = accepted.trials;
                 self.move_to(accepted.y, accepted.values, accepted.alpha, dual);

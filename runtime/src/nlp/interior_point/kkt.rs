@@ -68,7 +68,7 @@ pub(super) struct Kkt {
     /// Whether the last factorisation had to raise its first guess of the regularisation.
     was_needed: bool,
     /// Regularisation that is used even where the inertia does not ask for it.
-    caution: f64,
+    pub(super) caution: f64,
 }
 
 impl Kkt {

@@ -29,9 +29,9 @@ pub(super) struct Watchdog {
 }
 
 impl Watchdog {
-    /// Notes how much of a step was kept.
-    pub(super) fn note(&mut self, fraction: f64) {
-        self.shortened = if fraction < 0.9 { self.shortened + 1 } else { 0 };
+    /// Notes how much of a step was kept, and whether it had been made shorter before.
+    pub(super) fn note(&mut self, fraction: f64, is_cautious: bool) {
+        self.shortened = if fraction < 0.9 || is_cautious { self.shortened + 1 } else { 0 };
     }
 
     /// Whether it is time to begin.

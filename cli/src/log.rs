@@ -112,18 +112,18 @@ fn progress(bar: ProgressBar, level: Level, template: &str) -> ProgressBar {
 }
 
 fn line(p: &Progress, level: homotopy::Level) -> String {
-    let regularization =
-        if p.regularization > 0.0 { format!("{:.1}", p.regularization.log10()) } else { "-".into() };
+    let logarithm = |value: f64| if value > 0.0 { format!("{:.1}", value.log10()) } else { "-".to_string() };
+    let (mu, regularization) = (logarithm(p.mu), logarithm(p.regularization));
     let sigma = level.sigma.iter().fold(0.0f64, |a, sigma| a.max(*sigma));
     let sigma = if sigma > 0.0 { scientific(sigma, 1) } else { "-".into() };
     format!(
-        "{:5}{} {:>13} {:>8} {:>8} {:>5.1} {:>8} {:>5} {:>8} {:>8} {:>3}  {:>7} {:>6}",
+        "{:5}{} {:>13} {:>8} {:>8} {:>5} {:>8} {:>5} {:>8} {:>8} {:>3}  {:>7} {:>6}",
         p.iteration,
         if p.restoration { 'r' } else { ' ' },
         scientific(p.objective, 6),
         scientific(p.primal_infeasibility, 2),
         scientific(p.dual_infeasibility, 2),
-        p.mu.log10(),
+        mu,
         scientific(p.step, 2),
         regularization,
         scientific(p.alpha_dual, 2),

@@ -307,6 +307,7 @@ fn shape_name(shape: ControlShape) -> &'static str {
 fn solver_name(solver: Solver) -> &'static str {
     match solver {
         Solver::Automatic | Solver::InteriorPoint => "interior_point",
+        Solver::Sequential => "sqp",
         Solver::Convex => "convex",
     }
 }

@@ -31,7 +31,7 @@ pub(crate) const KEYS: &[(&str, &str)] = &[
 ];
 
 /// Schemes and solvers that are understood but do not exist yet.
-const NOT_YET: &[&str] = &["fesd", "sqp"];
+const NOT_YET: &[&str] = &["fesd"];
 
 /// A value of a setting.
 #[derive(Clone, Debug)]
@@ -115,6 +115,7 @@ fn solver(word: &str) -> Option<Solver> {
     Some(match word {
         "auto" => Solver::Automatic,
         "interior_point" => Solver::InteriorPoint,
+        "sqp" => Solver::Sequential,
         "convex" => Solver::Convex,
         _ => return None,
     })
@@ -152,13 +153,20 @@ fn decreasing(given: &Given) -> Option<Vec<f64>> {
     (falls && list.iter().all(|&value| value > 0.0 && value.is_finite())).then_some(list)
 }
 
-/// Which setting does not fit the scheme, why, and what to do.
+/// Which setting does not fit the others, why, and what to do.
 pub(crate) fn misfit(method: &Method) -> Option<(&'static str, &'static str, &'static str)> {
     if method.is_refined && method.scheme == Scheme::RungeKutta4 {
         return Some((
             "N",
             "`rk4` has steps of one length, which `N = auto` has not",
             "choose another scheme, or a number for N",
+        ));
+    }
+    if method.solver == Solver::Sequential && method.linear != Linear::Automatic {
+        return Some((
+            "linear",
+            "`solver = sqp` leaves its linear systems to the solver of its quadratic programmes",
+            "leave `linear` out, or choose `interior_point`",
         ));
     }
     if method.scheme.allows(method.controls) {
@@ -228,7 +236,8 @@ impl<'a> Elaborator<'a> {
         self.each_setting(settings);
         let Some((key, what, help)) = misfit(&self.model.method) else { return };
         if let Some(setting) = settings.iter().find(|setting| setting.key.name == key) {
-            let found = Diagnostic::new(Code::UnknownSetting, what, setting.key.span, "not with this scheme");
+            let found =
+                Diagnostic::new(Code::UnknownSetting, what, setting.key.span, "not with the other settings");
             self.diagnostics.push(found.help(help));
         }
     }

@@ -28,7 +28,7 @@ impl Run<'_> {
             let next = (factor * decrease).max(LAST_FACTOR);
             self.decrease(nlp, &best.v, next, next / factor);
             let goal = self.patience();
-            let solution = self.interior_point(nlp, &Start::near(&best), goal, watch);
+            let solution = self.once(nlp, &Start::near(&best), goal, watch);
             if is_good(&solution.status) {
                 (factor, best) = (next, solution);
                 continue;

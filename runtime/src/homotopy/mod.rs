@@ -70,7 +70,8 @@ pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Resu
     let mut run = Run::new(problem);
     run.apply_sigma(&mut nlp);
     let start = start.unwrap_or_else(|| Start { v: nlp.guess(), warm: None });
-    if problem.method.solver != Solver::InteriorPoint && convex::is_quadratic_programme(problem) {
+    let is_open = matches!(problem.method.solver, Solver::Automatic | Solver::Convex);
+    if is_open && convex::is_quadratic_programme(problem) {
         let method = &problem.method;
         let solution = convex::solve(&mut nlp, &start, method.tol, method.max_iter);
         // Where there is no optimum the interior point method has a best iterate, and a row to blame.

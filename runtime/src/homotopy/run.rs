@@ -1,8 +1,8 @@
 //! One solve after the other, with what they share: the widths, the work done, and the person who watches.
 
 use super::{Level, Watch};
-use crate::nlp::{Counts, Options, Progress, Solution, Start, Status, interior_point};
-use crate::problem::Problem;
+use crate::nlp::{Counts, Options, Progress, Solution, Start, Status, interior_point, sqp};
+use crate::problem::{Problem, Solver};
 use crate::transcribe::TranscribedNlp;
 
 /// All solves of one problem.
@@ -59,15 +59,15 @@ impl<'p> Run<'p> {
         goal: Goal,
         watch: &mut Watch,
     ) -> Solution {
-        let solution = self.interior_point(nlp, start, goal, watch);
+        let solution = self.once(nlp, start, goal, watch);
         if start.warm.is_none() || !is_retried(&solution.status) {
             return solution;
         }
-        self.interior_point(nlp, &Start { v: start.v.clone(), warm: None }, goal, watch)
+        self.once(nlp, &Start { v: start.v.clone(), warm: None }, goal, watch)
     }
 
     /// One solve; its counts are those of all solves so far.
-    pub(super) fn interior_point(
+    pub(super) fn once(
         &mut self,
         nlp: &mut TranscribedNlp,
         start: &Start,
@@ -78,7 +78,11 @@ impl<'p> Run<'p> {
         let options = Options { tol: goal.tol, max_iter: goal.limit, linear: self.problem.method.linear };
         let level = Level { intervals: nlp.chain().intervals, sigma: &self.sigma };
         let before = self.counts.iterations;
-        let mut solution = interior_point::solve(nlp, start, &options, &mut |progress| {
+        let solve = match self.problem.method.solver {
+            Solver::Sequential => sqp::solve,
+            _ => interior_point::solve,
+        };
+        let mut solution = solve(nlp, start, &options, &mut |progress| {
             watch(&Progress { iteration: before + progress.iteration, ..*progress }, level)
         });
         self.counts.add(&solution.counts);

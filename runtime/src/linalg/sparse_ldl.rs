@@ -32,7 +32,7 @@ impl SparseLdl {
         let jacobian_places = jacobian.entries().map(|(i, j)| (!fixed[j]).then_some((j, variables + i)));
         let places: Vec<_> =
             hessian_places.chain(jacobian_places).chain((0..size).map(|i| Some((i, i)))).collect();
-        let (pattern, mut targets) = compress(&places, size);
+        let (pattern, mut targets) = Columns::of_places(&places, size, size);
         let diagonal = targets.split_off(targets.len() - size).into_iter().flatten().collect();
         let jacobian = targets.split_off(hessian.len());
         let values = vec![0.0; pattern.values.len()];
@@ -83,29 +83,4 @@ impl Factor for SparseLdl {
         }
         self.ldl.solve(right_side);
     }
-}
-
-/// Upper-triangular places to columns without duplicates, and the value each place became.
-fn compress(places: &[Option<(usize, usize)>], size: usize) -> (Columns, Vec<Option<u32>>) {
-    let mut order: Vec<u32> = (0..places.len() as u32).filter(|i| places[*i as usize].is_some()).collect();
-    order.sort_unstable_by_key(|i| places[*i as usize].map(|(row, column)| (column, row)));
-    let mut targets = vec![None; places.len()];
-    let mut columns =
-        Columns { rows: size, column_starts: vec![0; size + 1], row_indices: Vec::new(), values: Vec::new() };
-    let mut last = None;
-    for i in order {
-        let place = places[i as usize];
-        if place != last {
-            let (row, column) = place.unwrap_or_default();
-            columns.row_indices.push(row);
-            columns.column_starts[column + 1] += 1;
-            last = place;
-        }
-        targets[i as usize] = Some(columns.row_indices.len() as u32 - 1);
-    }
-    for column in 0..size {
-        columns.column_starts[column + 1] += columns.column_starts[column];
-    }
-    columns.values = vec![0.0; columns.row_indices.len()];
-    (columns, targets)
 }

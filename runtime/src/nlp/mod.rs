@@ -8,8 +8,13 @@
 //! rate at which the optimal objective grows with the right-hand side of a row.
 
 pub mod convex;
+mod filter;
 pub mod interior_point;
 mod scaling;
+mod sides;
+pub mod sqp;
+#[cfg(test)]
+mod tests;
 
 use crate::linalg::{Stages, Triplets};
 use crate::problem::{Bounds, Linear, Origin};
@@ -184,6 +189,14 @@ pub struct Multipliers {
     pub lower: Vec<f64>,
     /// One per variable: upper bounds, not negative.
     pub upper: Vec<f64>,
+}
+
+impl Multipliers {
+    /// Zeros of the right sizes.
+    pub fn zeros(nlp: &dyn Nlp) -> Self {
+        let bounds = vec![0.0; nlp.variable_bounds().len()];
+        Multipliers { rows: vec![0.0; nlp.row_bounds().len()], lower: bounds.clone(), upper: bounds }
+    }
 }
 
 /// Work done, counted.

@@ -1,13 +1,14 @@
 //! The loop: look, decide, step.
 
 use super::barrier::Barrier;
-use super::filter::{Accepted, Filter, Search};
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::kkt::{Kkt, System};
 use super::residuals::Residuals;
 use super::restoration::Restored;
+use super::search::{Accepted, Search};
 use super::space::Space;
 use super::watchdog::Watchdog;
+use crate::nlp::filter::Filter;
 use crate::nlp::{Counts, Nlp, Options, Progress, Status, Stop, Watch};
 use std::ops::ControlFlow;
 

@@ -6,15 +6,13 @@
 
 mod algorithm;
 mod barrier;
-mod filter;
 mod iterate;
 mod kkt;
 mod residuals;
 mod restoration;
+mod search;
 mod space;
 mod start;
-#[cfg(test)]
-mod tests;
 mod vectors;
 mod watchdog;
 
@@ -37,7 +35,8 @@ pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Wa
     Solution { counts, ..if is_found { second } else { first } }
 }
 
-fn attempt(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watch) -> Solution {
+/// One attempt, without a second opinion.
+pub(super) fn attempt(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watch) -> Solution {
     let mut scaled = Scaled::new(nlp, &start.v);
     let objective_scale = scaled.objective;
     let mut watch = |progress: &Progress| {

@@ -10,9 +10,9 @@
 //! at an optimum of its own, the problem is locally infeasible: no small move reduces the violation.
 
 use super::algorithm::{Algorithm, Outcome};
-use super::filter::Filter;
 use super::iterate::{Iterate, Values};
 use super::space::Space;
+use crate::nlp::filter::Filter;
 
 use crate::linalg::{Family, Stages, Triplets};
 use crate::nlp::{Derivatives, Nlp, Place, Progress, Status, Watch};

@@ -1,9 +1,9 @@
 //! Where the iteration begins: inside all bounds, with multipliers from the caller or from least squares.
 
 use super::algorithm::Algorithm;
-use super::filter::Filter;
 use super::iterate::Iterate;
 use super::space::Space;
+use crate::nlp::filter::Filter;
 use crate::nlp::scaling::Scaled;
 use crate::nlp::{Multipliers, Nlp, Options, Start};
 

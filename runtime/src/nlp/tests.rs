@@ -1,14 +1,18 @@
-//! Small programmes with published answers, solved by both factorisations where they apply.
+//! Small programmes with known answers, which every method finds by itself.
 
-use super::solve;
+use super::{interior_point, sqp};
 use crate::linalg::{Family, Stages, Triplets};
-use crate::nlp::{Derivatives, Nlp, Options, Place, Solution, Start, Status};
+use crate::nlp::{Derivatives, Nlp, Options, Place, Solution, Start, Status, Watch};
 use crate::problem::{Bounds, Linear};
 use std::ops::ControlFlow;
 
 type Values = fn(&[f64], &mut [f64]) -> f64;
 type Slopes = fn(&[f64], &mut [f64], &mut [f64]);
 type Curvature = fn(&[f64], f64, &[f64], &mut [f64]);
+
+type Method = fn(&mut dyn Nlp, &Start, &Options, &mut Watch) -> Solution;
+
+const METHODS: [Method; 2] = [interior_point::attempt, sqp::attempt];
 
 /// A dense programme; the Jacobian is row by row, the Hessian is the lower triangle row by row.
 struct Dense {
@@ -28,10 +32,11 @@ impl Dense {
         Dense { variables, rows, jacobian, hessian, functions }
     }
 
-    fn solve(mut self, start: &[f64]) -> Solution {
+    /// The answers of all methods.
+    fn solve(mut self, start: &[f64]) -> [Solution; 2] {
         let options = Options { tol: 1e-9, max_iter: 300, linear: Linear::Automatic };
         let start = Start { v: start.to_vec(), warm: None };
-        solve(&mut self, &start, &options, &mut |_| ControlFlow::Continue(()))
+        METHODS.map(|method| method(&mut self, &start, &options, &mut |_| ControlFlow::Continue(())))
     }
 }
 
@@ -109,11 +114,12 @@ fn hock_schittkowski_71() -> Dense {
 
 #[test]
 fn hock_schittkowski_71_has_its_published_minimum() {
-    let solution = hock_schittkowski_71().solve(&[1.0, 5.0, 5.0, 1.0]);
-    assert_eq!(solution.status, Status::Solved);
-    assert!((solution.objective - 17.0140173).abs() < 1e-6, "{}", solution.objective);
-    for (x, expected) in solution.v.iter().zip([1.0, 4.7429994, 3.8211503, 1.3794082]) {
-        assert!((x - expected).abs() < 1e-6);
+    for solution in hock_schittkowski_71().solve(&[1.0, 5.0, 5.0, 1.0]) {
+        assert_eq!(solution.status, Status::Solved);
+        assert!((solution.objective - 17.0140173).abs() < 1e-6, "{}", solution.objective);
+        for (x, expected) in solution.v.iter().zip([1.0, 4.7429994, 3.8211503, 1.3794082]) {
+            assert!((x - expected).abs() < 1e-6);
+        }
     }
 }
 
@@ -130,14 +136,15 @@ fn an_infeasible_programme_is_recognised_at_its_smallest_violation() {
     };
     let curvature: Curvature = |_, _, l, h| h[0] = 2.0 * l[0];
     let row = between(f64::NEG_INFINITY, 0.0);
-    let solution = Dense::new(vec![Bounds::FREE], vec![row], (values, slopes, curvature)).solve(&[3.0]);
-    assert_eq!(solution.status, Status::Infeasible);
-    assert!((solution.constraint_violation - 1.0).abs() < 1e-3, "{}", solution.constraint_violation);
+    for solution in Dense::new(vec![Bounds::FREE], vec![row], (values, slopes, curvature)).solve(&[3.0]) {
+        assert_eq!(solution.status, Status::Infeasible);
+        assert!((solution.constraint_violation - 1.0).abs() < 1e-3, "{}", solution.constraint_violation);
+    }
 }
 
 /// Waechter & Biegler 2000, where line searches without restoration jam: x1^2 - x2 = 1, x1 - x3 = 1/2, x2, x3 >= 0.
 /// The only solution is (1, 0, 1/2). From the left, the violation |x1 - 1/2| along x1^2 - x2 = 1 has a local minimum at x1 = -1, where IPOPT
-/// 3.14 ends; a step on trust leads past it.
+/// 3.14 ends and quadratic programmes alone do; a step on trust leads past it.
 #[test]
 fn where_line_searches_jam_the_solution_is_found() {
     let values: Values = |x, rows| {
@@ -154,12 +161,13 @@ fn where_line_searches_jam_the_solution_is_found() {
         h[0] = 2.0 * l[0];
     };
     let bounds = vec![Bounds::FREE, at_least(0.0), at_least(0.0)];
-    let solution =
-        Dense::new(bounds, vec![Bounds::fixed(0.0); 2], (values, slopes, curvature)).solve(&[-4.0, 1.0, 1.0]);
-    assert_eq!(solution.status, Status::Solved);
-    let near =
-        solution.v.iter().zip([1.0, 0.0, 0.5]).all(|(found, expected)| (found - expected).abs() < 1e-6);
-    assert!(near, "{:?}", solution.v);
+    let jammed = Dense::new(bounds, vec![Bounds::fixed(0.0); 2], (values, slopes, curvature));
+    let [found, stuck] = jammed.solve(&[-4.0, 1.0, 1.0]);
+    assert_eq!(found.status, Status::Solved);
+    let near = found.v.iter().zip([1.0, 0.0, 0.5]).all(|(found, expected)| (found - expected).abs() < 1e-6);
+    assert!(near, "{:?}", found.v);
+    assert_eq!(stuck.status, Status::Infeasible);
+    assert!((stuck.v[0] + 1.0).abs() < 1e-3 && stuck.counts.restorations > 0, "{:?}", stuck.v);
 }
 
 /// Minimise x subject to nothing.
@@ -168,9 +176,11 @@ fn an_unbounded_programme_is_recognised() {
     let values: Values = |x, _| x[0] + 0.5 * x[1] * x[1];
     let slopes: Slopes = |x, g, _| g.copy_from_slice(&[1.0, x[1]]);
     let curvature: Curvature = |_, w, _, h| h.copy_from_slice(&[0.0, 0.0, w]);
-    let solution =
-        Dense::new(vec![Bounds::FREE; 2], Vec::new(), (values, slopes, curvature)).solve(&[0.0, 1.0]);
-    assert_eq!(solution.status, Status::Unbounded);
+    for solution in
+        Dense::new(vec![Bounds::FREE; 2], Vec::new(), (values, slopes, curvature)).solve(&[0.0, 1.0])
+    {
+        assert_eq!(solution.status, Status::Unbounded);
+    }
 }
 
 /// Minimise sqrt(x - 1) from x = 0.
@@ -179,6 +189,50 @@ fn a_start_where_a_function_is_not_finite_is_reported() {
     let values: Values = |x, _| (x[0] - 1.0).sqrt();
     let slopes: Slopes = |x, g, _| g[0] = 0.5 / (x[0] - 1.0).sqrt();
     let curvature: Curvature = |x, w, _, h| h[0] = -0.25 * w * (x[0] - 1.0).powf(-1.5);
-    let solution = Dense::new(vec![Bounds::FREE], Vec::new(), (values, slopes, curvature)).solve(&[0.0]);
-    assert!(matches!(solution.status, Status::NotFinite(_)));
+    for solution in Dense::new(vec![Bounds::FREE], Vec::new(), (values, slopes, curvature)).solve(&[0.0]) {
+        assert!(matches!(solution.status, Status::NotFinite(_)));
+    }
+}
+
+/// Nocedal & Wright, example 15.4 (Powell): minimise 2 (x^2 + y^2 - 1) - x on the unit circle. From a point of the circle the whole Newton step raises both the
+/// objective and the violation (the Maratos effect), however near the solution (1, 0) is.
+#[test]
+fn whole_steps_are_taken_along_a_curved_row() {
+    let values: Values = |x, rows| {
+        rows[0] = x[0] * x[0] + x[1] * x[1];
+        2.0 * (rows[0] - 1.0) - x[0]
+    };
+    let slopes: Slopes = |x, g, j| {
+        g.copy_from_slice(&[4.0 * x[0] - 1.0, 4.0 * x[1]]);
+        j.copy_from_slice(&[2.0 * x[0], 2.0 * x[1]]);
+    };
+    let curvature: Curvature =
+        |_, w, l, h| h.copy_from_slice(&[4.0 * w + 2.0 * l[0], 0.0, 4.0 * w + 2.0 * l[0]]);
+    let circle = || Dense::new(vec![Bounds::FREE; 2], vec![Bounds::fixed(1.0)], (values, slopes, curvature));
+    for angle in [1.0f64, 0.1, 0.01] {
+        for solution in circle().solve(&[angle.cos(), angle.sin()]) {
+            assert_eq!(solution.status, Status::Solved);
+            assert!((solution.v[0] - 1.0).abs() < 1e-6 && solution.counts.iterations <= 12, "{solution:?}");
+        }
+    }
+}
+
+/// Far from convex where nothing holds, but not where x + y = 1: minimise x y (-1/2 (x - y)^2 + 1/2 on the line is concave along it, so the bounds decide).
+/// With x, y in [0, 1] the minimum 0 is at either end.
+#[test]
+fn a_concave_objective_ends_at_a_bound() {
+    let values: Values = |x, rows| {
+        rows[0] = x[0] + x[1];
+        x[0] * x[1]
+    };
+    let slopes: Slopes = |x, g, j| {
+        g.copy_from_slice(&[x[1], x[0]]);
+        j.copy_from_slice(&[1.0, 1.0]);
+    };
+    let curvature: Curvature = |_, w, _, h| h.copy_from_slice(&[0.0, w, 0.0]);
+    let line = Dense::new(vec![between(0.0, 1.0); 2], vec![Bounds::fixed(1.0)], (values, slopes, curvature));
+    for solution in line.solve(&[0.7, 0.3]) {
+        assert_eq!(solution.status, Status::Solved);
+        assert!(solution.objective.abs() < 1e-7, "{solution:?}");
+    }
 }

@@ -1,0 +1,70 @@
+//! Sequential quadratic programming: for programmes whose solution is nearly known.
+//!
+//! At an iterate `v` with multipliers `lambda`, the programme is replaced by
+//!
+//! ```text
+//!     minimise  g'd + 1/2 d'B d    subject to   lower - c <= J d <= upper - c,   lower - v <= d <= upper - v
+//! ```
+//!
+//! which the conic solver solves ([`subproblem`]); its solution is the direction of a line search ([`search`]) that asks the filter, its multipliers are the
+//! next ones. `B` is the Hessian of the Lagrangian, made convex in ways that do not change the solution of the subproblem where that can be ([`curvature`]), so
+//! that near the solution the iterates are those of Newton's method with the right conditions active. Where the subproblem has no feasible point, or its
+//! solution leads nowhere, violations alone are made smaller ([`restoration`]). (Nocedal & Wright, Numerical Optimization, 2nd ed., chapter 18.) The loop is in [`algorithm`].
+
+mod algorithm;
+mod curvature;
+mod point;
+mod residuals;
+mod restoration;
+mod search;
+mod subproblem;
+mod working;
+
+use super::scaling::Scaled;
+use super::{Multipliers, Nlp, Options, Progress, Solution, Start, Status, Watch, interior_point};
+use algorithm::Algorithm;
+
+/// Solves the programme from `start`. Progress is reported unscaled, once per iteration. Where this ends without a solution, the interior point method is
+/// asked: far from a solution it finds more, and nobody is told "infeasible" for want of luck.
+pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watch) -> Solution {
+    let first = attempt(nlp, start, options, watch);
+    if !matches!(first.status, Status::Infeasible | Status::NumericalFailure | Status::NotFinite(_)) {
+        return first;
+    }
+    let done = first.counts.iterations;
+    let mut second = interior_point::solve(nlp, start, options, &mut |progress| {
+        watch(&Progress { iteration: done + progress.iteration, ..*progress })
+    });
+    second.counts.add(&first.counts);
+    second
+}
+
+/// The same without a second opinion.
+pub(super) fn attempt(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watch) -> Solution {
+    let mut scaled = Scaled::new(nlp, &start.v);
+    let objective_scale = scaled.objective;
+    let mut watch = |progress: &Progress| {
+        watch(&Progress { objective: progress.objective / objective_scale, ..*progress })
+    };
+    let multipliers = first_multipliers(&scaled, start);
+    let mut algorithm = Algorithm::new(&mut scaled, &start.v, multipliers, *options);
+    let status = algorithm.run(&mut scaled, &mut watch);
+    let kkt_error = algorithm.residuals.error();
+    let Algorithm { at, mut multipliers, counts, .. } = algorithm;
+    scaled.unscale(&mut multipliers);
+    let mut rows = vec![0.0; multipliers.rows.len()];
+    let objective = nlp.values(&at.v, &mut rows);
+    let constraint_violation = super::constraint_violation(nlp, &at.v);
+    let (v, mu, global) = (at.v, 0.0, false);
+    Solution { status, v, multipliers, mu, objective, kkt_error, constraint_violation, global, counts }
+}
+
+/// Those of an earlier solve, or none.
+fn first_multipliers(nlp: &Scaled, start: &Start) -> Multipliers {
+    let mut multipliers = match &start.warm {
+        Some(warm) => warm.multipliers.clone(),
+        None => Multipliers::zeros(nlp),
+    };
+    nlp.scale(&mut multipliers);
+    multipliers
+}

@@ -5,7 +5,7 @@ use crate::output::saved::{Column, Saved};
 use crate::solver::{Failure, Solved};
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::problem::{Method, Problem};
-use fdcc_runtime::starts::{Earlier, resample};
+use fdcc_runtime::starts::{Earlier, warm};
 use std::path::Path;
 
 /// Reads a `.sol.json` and interpolates it on the grid of the problem. Signals that it does not have are guessed.
@@ -15,7 +15,7 @@ pub fn from_file(path: &Path, problem: &Problem) -> Result<Start, Failure> {
         let (path, model) = (path.display(), &problem.name);
         return Err(Failure::File(format!("{path} has no state or control of the model `{model}`")));
     }
-    Ok(Start { v: resample(problem, &earlier), warm: None })
+    Ok(warm(problem, &earlier))
 }
 
 /// The end of another solve as the start of this one: with its multipliers if the grid is the same.
@@ -28,7 +28,7 @@ pub fn from_solved(before: &Solved, problem: &Problem) -> Start {
     if shape(&before.problem) == shape(problem) {
         return Start::near(solution);
     }
-    Start { v: resample(problem, &Saved::from(&before.document).earlier(problem)), warm: None }
+    warm(problem, &Saved::from(&before.document).earlier(problem))
 }
 
 /// From 0 to 1; none if one is missing.

@@ -8,6 +8,7 @@
 //! rate at which the optimal objective grows with the right-hand side of a row.
 
 pub mod convex;
+pub(crate) mod estimate;
 mod filter;
 pub mod interior_point;
 mod scaling;
@@ -164,6 +165,11 @@ pub struct Warm {
     pub mu: f64,
 }
 
+impl Warm {
+    /// A barrier parameter that leaves room for other conditions to become active.
+    pub(crate) const ROOM: f64 = 1e-4;
+}
+
 impl Start {
     /// Where another solve of the same size ended.
     pub fn after(solution: &Solution) -> Self {
@@ -173,9 +179,8 @@ impl Start {
 
     /// The same for a programme that is not quite the same: other conditions may be active at its solution, and the barrier leaves them room to become so.
     pub fn near(solution: &Solution) -> Self {
-        const ROOM: f64 = 1e-4;
         let mut start = Start::after(solution);
-        start.warm.iter_mut().for_each(|warm| warm.mu = warm.mu.max(ROOM));
+        start.warm.iter_mut().for_each(|warm| warm.mu = warm.mu.max(Warm::ROOM));
         start
     }
 }

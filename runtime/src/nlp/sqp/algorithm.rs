@@ -23,6 +23,8 @@ const CAUTION_DECAY: f64 = 0.01;
 /// A line search that keeps less than the first fraction of a step asks for more caution, one that keeps more than the second for less.
 const CUT_SHORT: f64 = 0.1;
 const NOT_CUT: f64 = 0.5;
+/// A whole step is taken without a line search if no more than this is left of the optimality error.
+const HALVED: f64 = 0.5;
 
 /// The state of a solve.
 pub(super) struct Algorithm {
@@ -31,6 +33,10 @@ pub(super) struct Algorithm {
     pub(super) residuals: Residuals,
     pub(super) counts: Counts,
     pub(super) derivatives: Derivatives,
+    /// Derivatives at the end of a whole step.
+    trial: Derivatives,
+    /// Of all iterates so far.
+    smallest_error: f64,
     pub(super) curvature: Curvature,
     pub(super) sides: Sides,
     pub(super) filter: Filter,
@@ -55,6 +61,8 @@ impl Algorithm {
             residuals: Residuals::default(),
             counts,
             derivatives: Derivatives::new(nlp),
+            trial: Derivatives::new(nlp),
+            smallest_error: f64::INFINITY,
             curvature: Curvature::new(nlp),
             sides: Sides::new(nlp),
             restored_from: None,
@@ -113,7 +121,10 @@ impl Algorithm {
         self.at.is_finite() && all.into_iter().flatten().all(|value| value.is_finite())
     }
 
-    fn finished(&self) -> Option<Status> {
+    fn finished(&mut self) -> Option<Status> {
+        if self.restored_from.is_none() {
+            self.smallest_error = self.smallest_error.min(self.residuals.error());
+        }
         let size = largest(self.at.v.iter().copied());
         if self.restored_from.is_none() && self.residuals.error() <= self.options.tol {
             Some(Status::Solved)
@@ -149,20 +160,38 @@ impl Algorithm {
     fn advance(&mut self, nlp: &mut dyn Nlp) -> Result<(), f64> {
         let (working, convexity) = self.convexify(nlp).ok_or(f64::INFINITY)?;
         let tolerance = self.accuracy();
-        let Algorithm { at, derivatives, sides, counts, curvature, filter, .. } = self;
+        let Algorithm { at, derivatives, sides, counts, .. } = self;
         let subproblem = Subproblem { nlp, at, derivatives, working: &working, convexity };
         let direction = subproblem.solve(sides, None, tolerance, counts).ok_or(convexity.delta)?;
-        let slope = derivatives.gradient.iter().zip(&direction.d).map(|(g, d)| g * d).sum();
-        let from = Reference { theta: at.violation, phi: at.objective, slope };
-        let smallest = filter.smallest_step(from);
-        let search = Search { nlp, at, d: &direction.d, curvature, counts };
-        let accepted =
-            search.run(smallest, |point, alpha| filter.judge(from, alpha, point.violation, point.objective));
+        let accepted = self.whole_step(nlp, &direction).or_else(|| self.searched(nlp, &direction));
         let accepted = accepted.ok_or(convexity.delta)?;
         self.progress.regularization = convexity.delta;
         self.judge(accepted.alpha, convexity.delta);
         self.move_to(accepted, &direction);
         Ok(())
+    }
+
+    /// The whole step, if it halves the smallest optimality error so far: near the solution the filter compares what is rounding.
+    fn whole_step(&mut self, nlp: &mut dyn Nlp, direction: &Direction) -> Option<Accepted> {
+        let v = self.at.v.iter().zip(&direction.d).map(|(v, d)| v + d).collect();
+        let point = Point::new(nlp, v, &mut self.counts);
+        if !point.is_finite() {
+            return None;
+        }
+        self.counts.derivatives += 1;
+        nlp.derivatives(&point.v, 1.0, &direction.multipliers.rows, &mut self.trial);
+        let error = Residuals::new(nlp, &point, &self.trial, &direction.multipliers).error();
+        (error <= HALVED * self.smallest_error).then_some(Accepted { point, alpha: 1.0, trials: 1 })
+    }
+
+    /// Where the line search ends.
+    fn searched(&mut self, nlp: &mut dyn Nlp, direction: &Direction) -> Option<Accepted> {
+        let Algorithm { at, derivatives, counts, curvature, filter, .. } = self;
+        let slope = derivatives.gradient.iter().zip(&direction.d).map(|(g, d)| g * d).sum();
+        let from = Reference { theta: at.violation, phi: at.objective, slope };
+        let smallest = filter.smallest_step(from);
+        let search = Search { nlp, at, d: &direction.d, curvature, counts };
+        search.run(smallest, |point, alpha| filter.judge(from, alpha, point.violation, point.objective))
     }
 
     /// Learns from a line search.

@@ -1,0 +1,70 @@
+//! Multipliers at a point that is nearly a solution, of which nothing else is known.
+//!
+//! They are those that make the gradient of the Lagrangian smallest in the variables that are at no bound,
+//!
+//! ```text
+//!     minimise  1/2 sum of w_i (g + J' lambda)_i^2      <=>      [ 1/W   J' ] [ r      ]   [ -g ]
+//!                                                                [ J     -D ] [ lambda ] = [  0 ]
+//! ```
+//!
+//! where rows that are at no bound have a `D` so large that they have none. What is left in a variable at a bound is the multiplier of that bound.
+
+use super::{Derivatives, Multipliers, Nlp};
+use crate::linalg::sparse_ldl::SparseLdl;
+use crate::linalg::{Factor, Inertia};
+use crate::problem::Bounds;
+
+/// What is nearer to its bound than this is at it: an interior point method keeps away a little.
+const NEAR: f64 = 1e-5;
+const WEIGHTLESS: f64 = 1e8;
+
+/// The multipliers at `v`; `None` where there is no number.
+pub(crate) fn multipliers(nlp: &mut dyn Nlp, v: &[f64]) -> Option<Multipliers> {
+    let mut known = Multipliers::zeros(nlp);
+    let (mut derivatives, mut rows) = (Derivatives::new(nlp), known.rows.clone());
+    nlp.derivatives(v, 1.0, &known.rows, &mut derivatives);
+    nlp.values(v, &mut rows);
+    let fixed: Vec<bool> = nlp.variable_bounds().iter().map(Bounds::is_equality).collect();
+    let mut factor = SparseLdl::new(nlp.hessian_structure(), nlp.jacobian_structure(), &fixed, rows.len());
+    let sigma: Vec<f64> = pairs(nlp.variable_bounds(), v, |side| side.map_or(1.0, |_| WEIGHTLESS));
+    let d: Vec<f64> = pairs(nlp.row_bounds(), &rows, |side| side.map_or(WEIGHTLESS, |_| 0.0));
+    let flat = vec![0.0; derivatives.hessian.len()];
+    if factor.factor(&flat, &derivatives.jacobian, &sigma, &d) != Inertia::Correct {
+        return None;
+    }
+    let mut right: Vec<f64> = derivatives.gradient.iter().map(|g| -g).collect();
+    right.resize(v.len() + rows.len(), 0.0);
+    factor.solve(&mut right);
+    known.rows.copy_from_slice(&right[v.len()..]);
+    let mut left = derivatives.gradient;
+    nlp.jacobian_structure().transposed_multiply_add(&derivatives.jacobian, &known.rows, &mut left);
+    let sides = pairs(nlp.variable_bounds(), v, |side| side);
+    for (i, side) in sides.into_iter().enumerate() {
+        match side {
+            Some(Side::Lower) => known.lower[i] = left[i].max(0.0),
+            Some(Side::Upper) => known.upper[i] = (-left[i]).max(0.0),
+            None => {}
+        }
+    }
+    known.rows.iter().chain(&left).all(|value| value.is_finite()).then_some(known)
+}
+
+/// The bound that something is at.
+#[derive(Clone, Copy)]
+enum Side {
+    Lower,
+    Upper,
+}
+
+fn pairs<T>(bounds: &[Bounds], values: &[f64], of_side: impl Fn(Option<Side>) -> T) -> Vec<T> {
+    bounds.iter().zip(values).map(|(bounds, value)| of_side(side(bounds, *value))).collect()
+}
+
+fn side(bounds: &Bounds, value: f64) -> Option<Side> {
+    let is_near = |bound: f64| (value - bound).abs() <= NEAR * value.abs().max(1.0);
+    match (is_near(bounds.lower), is_near(bounds.upper)) {
+        (true, _) => Some(Side::Lower),
+        (_, true) => Some(Side::Upper),
+        _ => None,
+    }
+}

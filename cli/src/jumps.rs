@@ -1,10 +1,12 @@
 //! A model with jumps: each sequence of jumps that may happen is a problem of its own, and the best answer is taken.
 
 use crate::output::named::Named;
+use crate::output::saved::Saved;
 use crate::output::tried::{Ended, Happened, Tried};
 use crate::parallel;
 use crate::search::{Found, Search, is_stopped};
 use crate::solver::Failure;
+use crate::warm;
 use fdcc_compiler::{Model, compile, compile_simulation, sequences, unrolled};
 use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::nlp::Start;
@@ -27,14 +29,14 @@ struct Alternative {
     problem: Problem,
 }
 
-/// Solves for every sequence; `between` is what holds between the jumps.
+/// Solves for every sequence; `between` is what holds between the jumps. An earlier solution is the start of the sequence that it has.
 pub fn solve(
     model: &Model,
     between: &Problem,
-    start: Option<Start>,
+    earlier: Option<&Saved>,
     search: Search,
 ) -> Result<Found, Failure> {
-    refuse(between, start)?;
+    refuse(between)?;
     let mut possible = sequences(model).map_err(Failure::Model)?;
     if let Some(likely) = simulated(model) {
         possible.all.retain(|sequence| *sequence != likely);
@@ -45,7 +47,7 @@ pub fn solve(
     let all = all?;
     let one = |index: usize| {
         let log = &mut search.log.of_part(&words(&all[index].names(model)));
-        Search { log, ..search }.solve(&all[index].problem, None)
+        Search { log, ..search }.solve(&all[index].problem, all[index].start(model, between, earlier))
     };
     // Without an objective one trajectory is as good as another.
     let is_enough = |found: &Found| is_stopped(&found.outcome) || !between.has_objective && found.is_good();
@@ -85,10 +87,7 @@ fn simulated(model: &Model) -> Option<Vec<usize>> {
 }
 
 /// What only a model without jumps can do.
-fn refuse(between: &Problem, start: Option<Start>) -> Result<(), Failure> {
-    if start.is_some() {
-        return Err(no_start());
-    }
+fn refuse(between: &Problem) -> Result<(), Failure> {
     match between.method.controls {
         ControlShape::Constant => Ok(()),
         ControlShape::Linear | ControlShape::Polynomial => {
@@ -97,18 +96,16 @@ fn refuse(between: &Problem, start: Option<Start>) -> Result<(), Failure> {
     }
 }
 
-/// An earlier solution has other pieces.
-pub fn no_start() -> Failure {
-    let what =
-        "a model with jumps cannot start from an earlier solution; leave out `--warm` and `--continue`";
-    Failure::Usage(what.into())
-}
-
 impl Alternative {
     fn new(model: &Model, sequence: Vec<usize>) -> Result<Self, Failure> {
         let model = unrolled(model, &sequence).map_err(Failure::Model)?;
         let problem = compile(&model).map_err(Failure::Model)?;
         Ok(Alternative { sequence, model, problem })
+    }
+
+    fn start(&self, model: &Model, between: &Problem, earlier: Option<&Saved>) -> Option<Start> {
+        let is_its = |it: &&Saved| self.names(model).iter().eq(it.jumps.iter().map(|jump| &jump.jump));
+        earlier.filter(is_its).and_then(|it| warm::pieces::start(it, between, &self.problem))
     }
 
     fn names(&self, model: &Model) -> Vec<String> {

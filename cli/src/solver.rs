@@ -6,6 +6,7 @@ use crate::jumps::{self, Unrolled};
 use crate::log::Log;
 use crate::output;
 use crate::output::document::{Document, Seconds};
+use crate::output::saved::Saved;
 use crate::output::units::Units;
 use crate::search::{Found, Search};
 use crate::warm;
@@ -29,6 +30,14 @@ pub struct Compiled {
     units: Units,
     begin: Instant,
     seconds: f64,
+}
+
+/// Where a solve begins, if not at the guess.
+pub enum Beginning {
+    /// At this point.
+    Point(Start),
+    /// At a solution with jumps, where the same jumps happen.
+    Solution(Box<Saved>),
 }
 
 /// Everything that came out of a solve.
@@ -91,20 +100,39 @@ impl Compiled {
     }
 
     /// The start that `--warm` names, if any.
-    pub fn first_start(&self, options: &Options) -> Result<Option<Start>, Failure> {
-        match &options.warm {
-            Some(_) if self.jumps.is_some() => Err(jumps::no_start()),
-            warm => warm.as_ref().map(|path| warm::from_file(path, &self.problem)).transpose(),
+    pub fn first_start(&self, options: &Options) -> Result<Option<Beginning>, Failure> {
+        let Some(path) = &options.warm else { return Ok(None) };
+        let start = warm::from_file(path, &self.problem)?;
+        Ok(Some(match &self.jumps {
+            Some(_) => Beginning::Solution(Box::new(Saved::read(path)?)),
+            None => Beginning::Point(start),
+        }))
+    }
+
+    /// The end of another solve as the start of this one.
+    pub fn start_from(&self, before: &Solved) -> Beginning {
+        match &self.jumps {
+            Some(_) => Beginning::Solution(Box::new(Saved::from(&before.document))),
+            None => Beginning::Point(warm::from_solved(before, &self.problem)),
         }
     }
 
     /// Solves from `start`, or from the guess, and from variations of it if there are to be several starts.
-    pub fn solve(self, start: Option<Start>, options: &Options, log: &mut Log) -> Result<Solved, Failure> {
+    pub fn solve(
+        self,
+        start: Option<Beginning>,
+        options: &Options,
+        log: &mut Log,
+    ) -> Result<Solved, Failure> {
         let deadline = Deadline::after(self.begin, options.time_limit);
         let search = Search { starts: options.starts as usize, deadline, log };
-        let found = match &self.jumps {
-            Some(model) => jumps::solve(model, &self.problem, start, search)?,
-            None => search.solve(&self.problem, start)?,
+        let found = match (&self.jumps, start) {
+            (Some(model), Some(Beginning::Solution(earlier))) => {
+                jumps::solve(model, &self.problem, Some(&earlier), search)?
+            }
+            (Some(model), _) => jumps::solve(model, &self.problem, None, search)?,
+            (None, Some(Beginning::Point(start))) => search.solve(&self.problem, Some(start))?,
+            (None, _) => search.solve(&self.problem, None)?,
         };
         let total = self.begin.elapsed().as_secs_f64();
         let seconds = Seconds { compile: self.seconds, solve: total - self.seconds, total };

@@ -1,5 +1,7 @@
 //! Starting from an earlier solution, on any grid.
 
+pub mod pieces;
+
 use crate::output::named::Named;
 use crate::output::saved::{Column, Saved};
 use crate::solver::{Failure, Solved};
@@ -32,7 +34,7 @@ pub fn from_solved(before: &Solved, problem: &Problem) -> Start {
 }
 
 /// From 0 to 1; none if one is missing.
-fn normalised(times: &Column) -> Vec<f64> {
+fn normalised(times: &[Option<f64>]) -> Vec<f64> {
     let times: Vec<f64> = times.iter().copied().collect::<Option<_>>().unwrap_or_default();
     let [Some(first), Some(last)] = [times.first(), times.last()] else { return Vec::new() };
     times.iter().map(|time| (time - first) / (last - first)).collect()

@@ -272,11 +272,7 @@ fn exit_codes_and_words_are_those_of_the_contract() {
         (&["waits.fdc", "--set", "goal=1"], 0, "global optimum"),
         (&[&bounce], 0, "jumps bounce at t = 0.547"),
         (&[&bounce, "--method", "scheme=midpoint"], 0, "confirmed on the true system"),
-        (
-            &[&bounce, "--warm", "other.sol.json"],
-            3,
-            "a model with jumps cannot start from an earlier solution",
-        ),
+        (&[&bounce, "--warm", "other.sol.json"], 4, "has no state or control of the model `bounce`"),
         (&[&bounce, "--method", "scheme=radau2", "--method", "controls=linear"], 3, "without jumps"),
         (&[&twostage], 1, "FDC0603"),
         (&[&racecar, "--set", "w=-1"], 1, "FDC0401"),
@@ -356,4 +352,29 @@ fn controls_of_every_shape_are_written_and_replayed() {
         let verified = fdcc(&folder, &["verify", &format!("{shape}/swing.sol.json"), "--json"], "");
         assert_eq!(json(&verified)["verification"]["confirmed"], true, "{shape}");
     }
+}
+
+/// The earlier solution is cut at its jumps, each piece for itself.
+#[test]
+fn a_solution_with_jumps_is_a_warm_start() {
+    let folder = folder("solve_warm_jumps", &[]);
+    let bounce = model("bounce");
+    let midpoint = ["solve", &bounce, "--method", "scheme=midpoint", "--log", "none", "--json"];
+    let solve = |more: &[&str]| {
+        let output = fdcc(&folder, &[&midpoint, more].concat(), "");
+        expect_exit(&output, 0, &format!("{more:?}"));
+        json(&output)
+    };
+    let cold = solve(&["--out", "."]);
+    let near = solve(&["--set", "e=0.81"]);
+    let warm = solve(&["--set", "e=0.81", "--warm", "bounce.sol.json", "--method", "N=200"]);
+    let [cold, near, warm] =
+        [cold, near, warm].map(|it| (number(&it["objective"]), number(&it["iterations"]), it));
+    assert!((near.0 - warm.0).abs() < 1e-6 * near.0 && near.0 < cold.0, "{} {}", near.0, warm.0);
+    assert!(warm.1 < 0.7 * near.1, "{} iterations instead of {}", warm.1, near.1);
+    assert_eq!(warm.2["jumps"][0]["jump"], "bounce");
+    let other = solve(&["--warm", "bounce.sol.json", "--method", "N=50"]);
+    assert!((number(&other["objective"]) - cold.0).abs() < 1e-3 * cold.0, "another grid");
+    let sweep = ["sweep", &bounce, "e=0.7,0.8", "--continue", "--log", "none"];
+    expect_exit(&fdcc(&folder, &sweep, ""), 0, "one after the other");
 }

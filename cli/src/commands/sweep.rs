@@ -7,7 +7,6 @@ use crate::output::named::Named;
 use crate::output::{self, files, plural, table};
 use crate::parallel;
 use crate::solver::{Compiled, Failure, Solved};
-use crate::warm;
 use crate::watch::catch_interrupts;
 use clap::Args;
 use grid::Grid;
@@ -112,7 +111,7 @@ impl Sweep {
     fn one(&self, row: &Row, before: Option<&Solved>, bar: &ProgressBar) -> Result<Solved, Failure> {
         let compiled = Compiled::new(&row.prepared, Instant::now())?;
         let start = match before {
-            Some(before) => Some(warm::from_solved(before, &compiled.problem)),
+            Some(before) => Some(compiled.start_from(before)),
             None => compiled.first_start(&self.options)?,
         };
         let mut log = Log::of_several(self.level(), bar, &format!("row {} ", row.number));

@@ -37,6 +37,9 @@ pub struct Saved {
 pub struct SavedJump {
     pub jump: String,
     pub time: Option<f64>,
+    /// All states before it.
+    #[serde(default)]
+    pub before: Named<Option<f64>>,
 }
 
 /// What defines controls that are not constant on each interval.
@@ -98,7 +101,7 @@ fn numbers(of: &Named<f64>) -> Named<Option<f64>> {
 }
 
 fn saved_jump(it: &Happened) -> SavedJump {
-    SavedJump { jump: it.jump.clone(), time: finite(it.time) }
+    SavedJump { jump: it.jump.clone(), time: finite(it.time), before: numbers(&it.before) }
 }
 
 fn saved_nodes(nodes: &ControlNodes) -> SavedNodes {

@@ -14,8 +14,9 @@ use std::collections::{HashMap, HashSet};
 pub(crate) fn check(tree: &ast::Model) -> Vec<Diagnostic> {
     let mut items: Vec<&Item> = Vec::new();
     flatten(&tree.items, &mut items);
-    let anywhere = reached(&items, |_| true);
-    let problem = reached(&items, |kind| {
+    let mentions: Vec<Vec<&str>> = items.iter().map(|item| mentioned(item)).collect();
+    let anywhere = reached(&items, &mentions, |_| true);
+    let problem = reached(&items, &mentions, |kind| {
         !matches!(
             kind,
             ItemKind::Guess { .. }
@@ -25,14 +26,8 @@ pub(crate) fn check(tree: &ast::Model) -> Vec<Diagnostic> {
                 | ItemKind::Method { .. }
         )
     });
-    let mut written = HashSet::new();
-    for item in &items {
-        mentioned(item, &mut |name| {
-            written.insert(name);
-        });
-    }
     let found = items.iter().filter_map(|item| Some((item, unused(item, &anywhere, &problem)?)));
-    found.map(|(item, diagnostic)| with_fix(item, diagnostic, &written)).collect()
+    found.map(|(item, diagnostic)| with_fix(item, diagnostic, &mentions)).collect()
 }
 
 fn unused(item: &Item, anywhere: &HashSet<&str>, problem: &HashSet<&str>) -> Option<Diagnostic> {
@@ -65,8 +60,8 @@ fn unused(item: &Item, anywhere: &HashSet<&str>, problem: &HashSet<&str>) -> Opt
 }
 
 /// The new name, where nothing has to follow it: a guess or another unused definition may use the old one.
-fn with_fix(item: &Item, found: Diagnostic, written: &HashSet<&str>) -> Diagnostic {
-    match declared(item).filter(|name| !written.contains(name.name.as_str())) {
+fn with_fix(item: &Item, found: Diagnostic, mentions: &[Vec<&str>]) -> Diagnostic {
+    match declared(item).filter(|name| !mentions.iter().flatten().any(|it| *it == name.name)) {
         Some(name) => {
             found.fix(Fix::likely(format!("name it `_{}`", name.name)).insert(name.span.start, "_"))
         }
@@ -85,10 +80,14 @@ fn flatten<'a>(items: &'a [Item], into: &mut Vec<&'a Item>) {
 }
 
 /// All names that are mentioned, directly or through definitions, by items of some kinds.
-fn reached<'a>(items: &[&'a Item], is_root: fn(&ItemKind) -> bool) -> HashSet<&'a str> {
-    let mut definitions: HashMap<&str, Vec<&'a Item>> = HashMap::new();
-    let mut pending: Vec<&'a Item> = Vec::new();
-    for item in items {
+fn reached<'a>(
+    items: &[&'a Item],
+    mentions: &[Vec<&'a str>],
+    is_root: fn(&ItemKind) -> bool,
+) -> HashSet<&'a str> {
+    let mut definitions: HashMap<&str, Vec<usize>> = HashMap::new();
+    let mut pending: Vec<usize> = Vec::new();
+    for (at, item) in items.iter().enumerate() {
         match (&item.kind, declared(item)) {
             (
                 ItemKind::Let { .. }
@@ -96,32 +95,34 @@ fn reached<'a>(items: &[&'a Item], is_root: fn(&ItemKind) -> bool) -> HashSet<&'
                 | ItemKind::Fn { .. }
                 | ItemKind::Surface { .. },
                 Some(name),
-            ) => definitions.entry(&name.name).or_default().push(item),
-            _ if is_root(&item.kind) => pending.push(item),
+            ) => definitions.entry(&name.name).or_default().push(at),
+            _ if is_root(&item.kind) => pending.push(at),
             _ => {}
         }
     }
     let mut seen = HashSet::new();
-    while let Some(item) = pending.pop() {
-        mentioned(item, &mut |name| {
+    while let Some(at) = pending.pop() {
+        for &name in &mentions[at] {
             if seen.insert(name) {
                 pending.extend(definitions.get(name).into_iter().flatten());
             }
-        });
+        }
     }
     seen
 }
 
 /// The names an item mentions, in expressions and otherwise.
-fn mentioned<'a>(item: &'a Item, see: &mut dyn FnMut(&'a str)) {
+fn mentioned(item: &Item) -> Vec<&str> {
+    let mut names = Vec::new();
     for expr in walk::expressions(item) {
-        walk::names(expr, &mut |name, _| see(name));
+        walk::names(expr, &mut |name, _| names.push(name));
     }
     match &item.kind {
         ItemKind::Jump { surface, then_hold, .. } => {
-            std::iter::once(surface).chain(then_hold).for_each(|it| see(&it.name))
+            names.extend(std::iter::once(surface).chain(then_hold).map(|it| it.name.as_str()))
         }
-        ItemKind::Guess { bindings } => bindings.iter().for_each(|it| see(&it.name.name)),
+        ItemKind::Guess { bindings } => names.extend(bindings.iter().map(|it| it.name.name.as_str())),
         _ => {}
     }
+    names
 }

@@ -97,7 +97,7 @@ impl Reader<'_> {
         children(block, Rule::equation).map(|pair| self.equation(&pair)).collect()
     }
 
-    fn equation(&mut self, pair: &Pair<'_, Rule>) -> Equation {
+    pub(super) fn equation(&mut self, pair: &Pair<'_, Rule>) -> Equation {
         let becomes = child(pair, Rule::becomes).expect("an equation has `=` or `in`");
         let is_in = becomes.as_str() == "in";
         Equation {

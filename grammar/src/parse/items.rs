@@ -7,10 +7,16 @@ use super::blocks::{child, children, ident};
 use crate::ast::*;
 use crate::{Diagnostic, Parse, Span};
 
-/// The items and the model line of a text that has been read.
+/// The items and the model line of a text that has been read. An equation by itself is a block of one; other entries say
+/// nothing without their block.
 pub(super) fn parse_of(pairs: Pairs<'_, Rule>) -> Parse {
     let mut parse = Parse::default();
     let top = pairs.into_iter().next().expect("the grammar has one top");
+    let is_entry =
+        |rule| !matches!(rule, Rule::file | Rule::only_model | Rule::only_item | Rule::only_phase_item);
+    if is_entry(top.as_rule()) && top.as_rule() != Rule::only_equation {
+        return parse;
+    }
     for pair in top.into_inner() {
         let mut reader = Reader { diagnostics: &mut parse.diagnostics, broken: false };
         match pair.as_rule() {
@@ -64,6 +70,7 @@ impl Reader<'_> {
         match pair.as_rule() {
             Rule::phase => ItemKind::Phase { name: ident(self, pair), items: self.phase_items(pair) },
             Rule::dynamics => ItemKind::Dynamics { equations: self.equations(pair) },
+            Rule::equation => ItemKind::Dynamics { equations: vec![self.equation(pair)] },
             Rule::guess => ItemKind::Guess { bindings: self.bindings(pair) },
             Rule::report => ItemKind::Report { bindings: self.bindings(pair) },
             Rule::method => ItemKind::Method { settings: self.settings(pair) },

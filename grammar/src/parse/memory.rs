@@ -18,30 +18,37 @@ pub struct Memory {
 
 impl Memory {
     /// What a piece says, its places counted from its first byte; or where the grammar gave up and what it would have
-    /// gone on with. An entry of a block says nothing by itself: it is read again with its block.
+    /// gone on with.
     pub(super) fn read(&mut self, rule: Rule, text: &str) -> Result<&Parse, (usize, Vec<Rule>)> {
-        Ok(match self.now.entry((rule, text.to_owned())) {
+        Ok(match self.place(rule, text) {
             Entry::Occupied(read) => read.into_mut(),
-            Entry::Vacant(place) => {
-                let read = match self.before.remove(place.key()) {
-                    Some(read) => read,
-                    None => read(rule, text)?,
-                };
-                place.insert(read)
-            }
+            Entry::Vacant(place) => place.insert(items::parse_of(pairs(rule, text)?)),
         })
+    }
+
+    /// Whether a piece has been read.
+    pub(super) fn knows(&mut self, rule: Rule, text: &str) -> bool {
+        matches!(self.place(rule, text), Entry::Occupied(_))
+    }
+
+    /// Keeps what a piece says.
+    pub(super) fn learn(&mut self, rule: Rule, text: &str, says: Parse) {
+        self.place(rule, text).insert_entry(says);
+    }
+
+    /// Where a piece is kept, with what was known of it.
+    fn place(&mut self, rule: Rule, text: &str) -> Entry<'_, (Rule, String), Parse> {
+        let key = (rule, text.to_owned());
+        if let Some(read) = self.before.remove(&key) {
+            self.now.insert(key.clone(), read);
+        }
+        self.now.entry(key)
     }
 
     /// Ends a text: what was not in it is forgotten.
     pub(super) fn forget(&mut self) {
         self.before = std::mem::take(&mut self.now);
     }
-}
-
-fn read(rule: Rule, text: &str) -> Result<Parse, (usize, Vec<Rule>)> {
-    let pairs = pairs(rule, text)?;
-    let is_item = matches!(rule, Rule::only_model | Rule::only_item);
-    Ok(if is_item { items::parse_of(pairs) } else { Parse::default() })
 }
 
 #[test]

@@ -42,6 +42,9 @@ pub(super) fn read(text: &str, tokens: &[Token<'_>], memory: &mut Memory) -> Par
     parse
 }
 
+/// A block of fewer words and signs is read as soon as it is put together.
+const FEW_TOKENS: usize = 20;
+
 struct Reading<'t, 'm> {
     tokens: &'t [Token<'t>],
     memory: &'m mut Memory,
@@ -128,11 +131,8 @@ impl<'t> Reading<'t, '_> {
         let is_phase = word == "phase";
         let Some(inside) = self.inside(piece) else { return };
         let Some(rule) = entry_rule(word) else { return };
-        let end = inside.end;
-        let cut =
-            if is_phase { cut::items(self.tokens, inside) } else { cut::entries(self.tokens, inside, word) };
-        let until = std::mem::replace(&mut self.until, end);
-        for entry in cut {
+        let until = std::mem::replace(&mut self.until, inside.end);
+        for entry in self.entries(word, inside) {
             self.mend(&entry, rule, (!is_phase).then_some(word));
         }
         self.until = until;
@@ -154,9 +154,44 @@ impl<'t> Reading<'t, '_> {
         if let Some(failure) = limits::exceeded(self.tokens, piece) {
             return Err(failure);
         }
+        if let Some(block) = self.composed(piece, rule) {
+            self.memory.learn(rule, &self.rest[self.bytes(piece)], block);
+            return Ok(());
+        }
         let bytes = self.bytes(piece);
         let read = self.memory.read(rule, &self.rest[bytes.clone()]);
         read.map(|_| ()).map_err(|(at, expected)| Failure::Stopped(bytes.start + at, expected))
+    }
+
+    /// A long block that is new, put together from its head and its entries, most of which are not; nothing where that
+    /// cannot be done, and the grammar has to see the whole.
+    fn composed(&mut self, piece: &Piece, rule: Rule) -> Option<Parse> {
+        let word = self.tokens[piece.start].text;
+        let is_long = piece.len() > FEW_TOKENS && matches!(word, "dynamics" | "phase");
+        let is_closed = self.tokens[piece.end - 1].text == "}";
+        if !(is_long && is_closed) || self.memory.knows(rule, &self.rest[self.bytes(piece)]) {
+            return None;
+        }
+        let (inside, entry_rule) = (self.inside(piece)?, entry_rule(word)?);
+        let bytes = self.bytes(piece);
+        let head = &self.rest[bytes.start..self.tokens[inside.start - 1].end()];
+        let mut block = self.memory.read(rule, &format!("{head}}}")).ok()?.clone();
+        for entry in self.entries(word, inside) {
+            self.read(&entry, entry_rule).ok()?;
+            let place = self.bytes(&entry);
+            let entry = self.memory.read(entry_rule, &self.rest[place.clone()]).ok()?;
+            block.adopt(entry, place.start - bytes.start)?;
+        }
+        block.tree.items[0].span = Span::new(0, bytes.len());
+        Some(block)
+    }
+
+    fn entries(&self, word: &str, inside: Piece) -> Vec<Piece> {
+        if word == "phase" {
+            cut::items(self.tokens, inside)
+        } else {
+            cut::entries(self.tokens, inside, word)
+        }
     }
 
     fn bytes(&self, piece: &Piece) -> std::ops::Range<usize> {

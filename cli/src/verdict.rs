@@ -49,7 +49,10 @@ pub fn verdict(solved: &Solved) -> String {
     lines.extend(surfaces(document));
     lines.extend(replayed(document));
     lines.extend(refined(solved));
-    lines.extend(hamiltonian(document).filter(|_| solved.is_good() && solved.problem.has_objective));
+    if solved.is_good() && solved.problem.has_objective {
+        lines.extend(hamiltonian(document));
+        lines.extend(minimum(document));
+    }
     lines.extend(sensitivities(document));
     lines.join("\n") + "\n"
 }
@@ -138,6 +141,22 @@ fn hamiltonian(document: &Document) -> Option<String> {
         " grid  the Hamiltonian has to be {target} and is off by {} on average: the answer depends on the grid, more intervals will change it",
         short(deviation)
     ))
+}
+
+/// On how much of the time a control may violate the rule of signs before that is told.
+const VIOLATED: f64 = 0.01;
+
+/// What is said where controls do not minimise the Hamiltonian: then the tolerance is too coarse for the size of the objective.
+fn minimum(document: &Document) -> Option<String> {
+    let violations = document.hamiltonian_check.violations.0.iter();
+    let told = violations.filter(|(_, part)| *part > VIOLATED);
+    let told: Vec<String> = told.map(|(name, part)| format!("{name} ({} %)", short(100.0 * part))).collect();
+    (!told.is_empty()).then(|| {
+        format!(
+            " check on part of the time these controls do not minimise the Hamiltonian: {}; solve with a smaller `tol`",
+            told.join(", ")
+        )
+    })
 }
 
 /// What the optimum is worth to each parameter.

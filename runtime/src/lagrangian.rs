@@ -14,12 +14,15 @@
 //!
 //! in which nothing is approximated beyond the transcription: the mean of `H_k` is exactly the derivative by the final time.
 
-use crate::nlp::{Derivatives, Nlp, Solution};
+use crate::minimum;
+use crate::nlp::Solution;
 use crate::problem::{Bounds, ByParameters, Columns, Function, Problem};
 use crate::transcribe::TranscribedNlp;
 use crate::transcribe::interval::{Node, Signal};
 use std::ops::Range;
 
+/// Over the whole time, terms that are not larger than this times the tolerance are none.
+const NOISE: f64 = 100.0;
 /// An unknown with a larger multiplier is at its bound.
 const AT_BOUND: f64 = 1e-4;
 
@@ -28,22 +31,9 @@ const AT_BOUND: f64 = 1e-4;
 pub fn by_parameters(problem: &Problem, solution: &Solution, p: &[f64], by: &ByParameters) -> Vec<f64> {
     let mut nlp = TranscribedNlp::new(problem);
     p.iter().enumerate().for_each(|(index, value)| nlp.set_parameter(index, *value));
-    let at_start = slopes_at_the_start(&mut nlp, solution);
+    // What a start that is given as a number counts.
+    let at_start = minimum::slopes(&mut nlp, solution)[nlp.chain().state(0)].to_vec();
     Lagrangian::new(problem, &nlp, solution).by_parameters(by, &at_start)
-}
-
-/// The gradient of the Lagrangian by the first state: what a start that is given as a number counts.
-fn slopes_at_the_start(nlp: &mut TranscribedNlp, solution: &Solution) -> Vec<f64> {
-    let (first, rows) = (nlp.chain().state(0), &solution.multipliers.rows);
-    let mut derivatives = Derivatives::new(nlp);
-    nlp.derivatives(&solution.v, 1.0, rows, &mut derivatives);
-    let mut slopes = derivatives.gradient[first.clone()].to_vec();
-    for ((row, variable), value) in nlp.jacobian_structure().entries().zip(&derivatives.jacobian) {
-        if first.contains(&variable) {
-            slopes[variable] += value * rows[row];
-        }
-    }
-    slopes
 }
 
 /// What the objective of the model changes by with the bound of each path constraint, per time: one column per row, `N` entries each.
@@ -79,21 +69,31 @@ pub struct Hamiltonian {
     pub is_constant: bool,
     /// What it has to be at the last time, where that is unknown: minus what the objective and the conditions at the ends gain by it.
     pub expected: Option<f64>,
+    /// One for each control: the part of the time on which it does not minimise the Hamiltonian, by the sign of the slope.
+    pub violations: Vec<f64>,
+    /// Whether all its terms together are no more than the tolerance of the solver: then nothing can be said of it.
+    pub is_noise: bool,
 }
 
 impl Hamiltonian {
     /// Of a solution over this time.
-    pub fn new(problem: &Problem, nlp: &TranscribedNlp, solution: &Solution, duration: f64) -> Self {
+    pub fn new(problem: &Problem, nlp: &mut TranscribedNlp, solution: &Solution, duration: f64) -> Self {
         let lagrangian = Lagrangian::new(problem, nlp, solution);
-        let (values, size) = lagrangian.hamiltonian(duration);
-        Hamiltonian { values, size, is_constant: problem.is_autonomous, expected: lagrangian.expected() }
+        let ((values, size), expected) = (lagrangian.hamiltonian(duration), lagrangian.expected());
+        let is_noise = size * duration.abs() <= NOISE * problem.method.tol;
+        let violations = match is_noise {
+            true => vec![0.0; problem.layout.u],
+            false => minimum::violations(problem.layout.u, nlp, solution, (duration, size)),
+        };
+        Hamiltonian { values, size, is_constant: problem.is_autonomous, expected, violations, is_noise }
     }
 
     /// The mean difference from what it has to be, over all intervals; nothing where it may be anything.
     pub fn deviation(&self) -> Option<f64> {
         let mean = |sum: f64| sum / self.values.len().max(1) as f64;
         let target = self.expected.unwrap_or(mean(self.values.iter().sum()));
-        self.is_constant.then(|| mean(self.values.iter().map(|value| (value - target).abs()).sum()))
+        (self.is_constant && !self.is_noise)
+            .then(|| mean(self.values.iter().map(|value| (value - target).abs()).sum()))
     }
 }
 

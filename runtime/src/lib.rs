@@ -15,6 +15,7 @@ pub mod nlp;
 pub mod transcribe;
 
 pub mod lagrangian;
+mod minimum;
 pub mod modes;
 pub mod quadrature;
 pub mod trajectory;

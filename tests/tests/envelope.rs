@@ -1,9 +1,10 @@
 //! What the optimum is worth to a parameter, and the Hamiltonian: against closed forms and against differences of solutions.
 
 use fdcc_compiler::compile_by_parameters;
-use fdcc_runtime::lagrangian::by_parameters;
-use fdcc_tests::Solved;
+use fdcc_runtime::lagrangian::{Hamiltonian, by_parameters};
+use fdcc_runtime::transcribe::TranscribedNlp;
 use fdcc_tests::models::changed;
+use fdcc_tests::{Solved, repository};
 
 /// The derivatives of the optimal objective by the parameters, in the order of the text.
 fn sensitivities(text: &str, methods: &[(&str, &str)]) -> Vec<f64> {
@@ -148,6 +149,39 @@ fn the_hamiltonian_is_what_it_has_to_be() {
         "time t in [0, 2] state x start 1 control u dynamics { x' = u + t } minimize integral(x^2 + u^2)";
     let hamiltonian = Solved::new(text, &[], &[]).outcome.trajectory.hamiltonian;
     assert!(!hamiltonian.is_constant && hamiltonian.deviation().is_none());
+}
+
+/// From rest to rest over 1 m in the least time 2, `p_v = t - 1`: full thrust is right where that is negative, full brake where it is positive, and nothing else anywhere. Where
+/// the controls of a quarter of the time are turned round or zero, a quarter of the time violates the rule.
+#[test]
+fn controls_minimise_the_hamiltonian_where_their_signs_agree() {
+    let least = "free T in [0.1, 10] guess 2 time t in [0, T] state x start 0 state v start 0 control u in [-1, 1] \
+                 dynamics { x' = v v' = u } end x == 1 end v == 0";
+    for (objective, scheme) in
+        [("minimize T", "trapezoid"), ("maximize -3*T", "radau2"), ("minimize 1e6*T", "midpoint")]
+    {
+        let text = format!("{least} {objective} method {{ N = 40 scheme {scheme} }}");
+        let Solved { problem, outcome } = Solved::new(&text, &[], &[]);
+        assert_eq!(outcome.trajectory.hamiltonian.violations, [0.0], "{text}");
+        for factor in [-1.0, 0.0] {
+            let (mut nlp, mut solution) = (TranscribedNlp::new(&problem), outcome.solution.clone());
+            let controls: Vec<usize> = (0..10).map(|k| nlp.chain().control(k).start).collect();
+            controls.into_iter().for_each(|at| solution.v[at] *= factor);
+            let violations = Hamiltonian::new(&problem, &mut nlp, &solution, 2.0).violations;
+            assert!((violations[0] - 0.25).abs() < 1e-12, "{text}: {violations:?}");
+        }
+    }
+}
+
+/// Everything happens within 0.07 ms, and the tolerance is in seconds: at 1e-8 a step towards the bound would gain a lot, and a smaller tolerance does gain it.
+#[test]
+fn a_tolerance_too_coarse_for_the_objective_shows_in_the_signs() {
+    let path = repository().join("tests/right/resonant_tank.fdc");
+    let text = std::fs::read_to_string(path).expect("the model is there");
+    let [coarse, fine] = ["1e-8", "1e-10"].map(|tol| Solved::new(&text, &[], &[("tol", tol)]));
+    let part = |solved: &Solved| solved.outcome.trajectory.hamiltonian.violations[0];
+    assert!(part(&coarse) > 0.9 && part(&fine) == 0.0, "{} {}", part(&coarse), part(&fine));
+    assert!(fine.objective() < 0.999 * coarse.objective());
 }
 
 /// A last time that stands elsewhere, too, says nothing about the Hamiltonian; nor does one at its bound.

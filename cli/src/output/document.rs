@@ -75,7 +75,7 @@ pub struct Document {
 }
 
 /// Where time itself does not matter the Hamiltonian is constant; where the last time is unknown, its value is known as well.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct HamiltonianCheck {
     pub is_constant: bool,
     pub expected: Option<f64>,
@@ -83,12 +83,16 @@ pub struct HamiltonianCheck {
     pub deviation: Option<f64>,
     /// The mean size of its terms.
     pub size: f64,
+    /// For each control the part of the time on which it does not minimise the Hamiltonian.
+    pub violations: Named<f64>,
 }
 
-impl From<&Hamiltonian> for HamiltonianCheck {
-    fn from(it: &Hamiltonian) -> Self {
+impl HamiltonianCheck {
+    fn new(controls: &[Variable], it: &Hamiltonian) -> Self {
         let (is_constant, expected) = (it.is_constant, it.expected);
-        HamiltonianCheck { is_constant, expected, deviation: it.deviation(), size: it.size }
+        let names = controls.iter().map(|control| control.name.clone());
+        let violations = names.zip(it.violations.iter().copied()).collect();
+        HamiltonianCheck { is_constant, expected, deviation: it.deviation(), size: it.size, violations }
     }
 }
 
@@ -192,7 +196,7 @@ impl Document {
             end_multipliers: labelled(&*problem.boundary, 1, &trajectory.end_multipliers),
             hamiltonian: trajectory.hamiltonian.values.clone(),
             step_errors: None,
-            hamiltonian_check: HamiltonianCheck::from(&trajectory.hamiltonian),
+            hamiltonian_check: HamiltonianCheck::new(&problem.controls, &trajectory.hamiltonian),
             sensitivities: Named::default(),
             report: problem.report_names.iter().cloned().zip(trajectory.report.iter().cloned()).collect(),
             surfaces: surfaces(problem, outcome),

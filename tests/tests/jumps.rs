@@ -112,6 +112,24 @@ fn no_jump_follows_itself_after_no_time() {
     assert_eq!(outcome.solution.status, Status::Infeasible);
 }
 
+/// After its last bounce a ball lies still: here from the second on, `sqrt(2/g) (1 + 2e)` after it was dropped. Then a push to the side takes it as far as
+/// it is to come.
+#[test]
+fn after_the_last_bounce_the_ball_lies_still() {
+    let text = "model rest\ntime t in [0, 3]\nstate h in [0, 2] start 1\nstate v start 0\nstate x start 0\ncontrol u in [-1, 1]\n\
+                surface ground = h\npath low: h >= 0\ndynamics {\n  h' = v\n  v' = -9.81\n  x' = u\n}\n\
+                jump bounce on ground falling at most 2 then hold ground { v := -0.5*v }\nend x == 1\n\
+                minimize integral(u^2) + v(end)^2 + h(end)^2\nmethod { scheme = midpoint  N = 20 }\n";
+    let found = solve(text, &[0, 0], &[]);
+    let fall = (2.0 / 9.81f64).sqrt();
+    expect_near(found.jumps[0].time, fall, 1e-7);
+    expect_near(found.jumps[1].time, 2.0 * fall, 1e-7);
+    expect_near(found.jumps[1].after[1], 0.0, 1e-9);
+    expect_near(found.solved.objective(), 1.0 / 3.0, 1e-7);
+    let height = &found.whole.trajectory.states[0];
+    assert!(height[40..].iter().all(|height| height.abs() < 1e-7), "{height:?}");
+}
+
 /// A puck slides 1 m to a wall and half a metre back: `e^2 (v0^2 - 2a) = 2a/2` with the deceleration `a`.
 #[test]
 fn friction_and_an_impact_go_together() {
@@ -149,11 +167,12 @@ fn sequences_are_all_that_may_happen() {
              dynamics {{\n  x' = -1\n  y' = 1\n}}\n{jumps}minimize x(end)^2\n"
         )
     };
-    let cases: [(&str, usize, bool); 6] = [
+    let cases: [(&str, usize, bool); 7] = [
         ("jump f on a falling at most 1 { x := 1 }\n", 2, false),
         ("jump f on a falling at most n { x := 1 }\n", 3, false),
         ("jump f on a falling { x := 1 + 0*y }\n", 4, true),
         ("jump f on a falling at most 2 then hold a { x := 0.5 }\n", 2, true),
+        ("jump f on a falling at most 20 { x := 1 }\n", 4, true),
         ("jump f on a falling at most 2 { x := 1 }\njump g on b rising at most 1 { y := 0 }\n", 9, false),
         ("jump f on a falling at most 5 { x := 1 }\njump g on b rising at most 5 { y := 0 }\n", 32, true),
     ];

@@ -42,7 +42,10 @@ impl Unrolling<'_> {
                 Some(value) => self.at_end(j, value),
                 None => self.pieces[j].ends[index],
             };
-            let gap = self.graph.sub(self.pieces[j + 1].starts[index], before);
+            let gap = match self.at_rest(j + 1, index) {
+                Some(approach) => approach,
+                None => self.graph.sub(self.pieces[j + 1].starts[index], before),
+            };
             rows.push(row(format!("{} after {}", state.place.name, jump.place.name), gap));
         }
         rows

@@ -10,6 +10,7 @@
 //! Which jumps happen, and in which order, is given ([`sequences`]). The result is a model like any other: smooth between the jumps, and
 //! differentiated through them by the dependence of all pieces on the lengths.
 
+mod hold;
 mod links;
 mod piece;
 mod sequences;
@@ -23,6 +24,7 @@ use crate::model::{
     Ball, Control, Expectation, Free, Integral, Jump, Model, Place, Range, Report, State, Surface, Symbol,
 };
 use fdcc_grammar::Diagnostic;
+use hold::Held;
 use piece::Piece;
 
 /// What holds between the jumps of a model: the model without them, and without surfaces at which nothing else happens.
@@ -68,9 +70,11 @@ pub fn unrolled(model: &Model, sequence: &[usize]) -> Result<Model, Vec<Diagnost
     piece::input(&mut between.graph, &mut between.symbols, Symbol::Time);
     let mut graph = between.graph.clone();
     let mut symbols = between.symbols.clone();
+    let held = Held::new(model, &mut graph, sequence, &limits);
     let lengths = lengths(&between, sequence, &mut graph, &mut symbols);
     let pieces = Piece::all(&between, &mut graph, &mut symbols, &lengths);
-    let mut unrolling = Unrolling { whole: model, model: &between, sequence, limits, graph, lengths, pieces };
+    let mut unrolling =
+        Unrolling { whole: model, model: &between, sequence, held, limits, graph, lengths, pieces };
     let parts = unrolling.parts();
     Ok(Model { graph: unrolling.graph, symbols, ..parts })
 }
@@ -93,6 +97,8 @@ struct Unrolling<'m> {
     model: &'m Model,
     /// The jumps that happen, in their order.
     sequence: &'m [usize],
+    /// The surface that is held in the end.
+    held: Option<Held>,
     /// How often each jump may happen.
     limits: Vec<Option<usize>>,
     graph: Graph,
@@ -157,7 +163,10 @@ impl<'m> Unrolling<'m> {
         let mut states = Vec::new();
         for j in 0..self.pieces.len() {
             for (index, state) in self.model.states.iter().enumerate() {
-                let rate = self.in_piece(j, state.rate);
+                let rate = match self.is_still(j, index) {
+                    true => self.graph.number(0.0),
+                    false => self.in_piece(j, state.rate),
+                };
                 let is_first = j == 0;
                 states.push(State {
                     place: self.named(j, &state.place),

@@ -1,12 +1,13 @@
 //! Which jumps may happen, and in which order.
 
+use super::hold::rest;
 use crate::graph::ExprId;
 use crate::lower::{Numbers, numbers};
 use crate::model::{Jump, Model, Symbol};
 use crate::resolve::not_yet;
 use fdcc_grammar::Diagnostic;
 
-/// A jump is tried so often where the model does not say how often it may happen, or where its end would be to be held.
+/// A jump is tried so often where the model does not say how often it may happen, or says a number that is out of reach.
 const TRIED: usize = 3;
 /// Longer sequences are not tried.
 const LONGEST: usize = 8;
@@ -57,15 +58,19 @@ pub(super) fn limits(model: &Model, numbers: &Numbers) -> Vec<Option<usize>> {
     model.jumps.iter().map(limit).collect()
 }
 
-/// How often each jump is tried, and whether that leaves anything out. What would end with a surface held is left out.
+/// How often each jump is tried, and whether that leaves anything out.
 fn most(model: &Model, numbers: &Numbers) -> (Vec<usize>, bool) {
-    let tried = |(limit, jump): (Option<usize>, &Jump)| match limit {
-        Some(limit) if jump.then_hold.is_some() => limit.saturating_sub(1).min(TRIED),
+    let mut graph = model.graph.clone();
+    let mut tried = |(limit, jump): (Option<usize>, &Jump)| match limit {
+        Some(limit) if jump.then_hold.is_some() && rest(model, &mut graph, jump).is_none() => {
+            limit.saturating_sub(1).min(TRIED)
+        }
+        Some(limit) if limit > LONGEST => TRIED,
         Some(limit) => limit,
         None => TRIED,
     };
     let limits = limits(model, numbers);
-    let most: Vec<usize> = limits.iter().copied().zip(&model.jumps).map(tried).collect();
+    let most: Vec<usize> = limits.iter().copied().zip(&model.jumps).map(&mut tried).collect();
     let is_cut = limits.iter().zip(&most).any(|(limit, most)| *limit != Some(*most));
     (most, is_cut)
 }

@@ -4,7 +4,7 @@
 //! holds by what ends the piece, and would be told twice: there it gives way.
 
 use super::Unrolling;
-use crate::differentiate::derivative;
+use super::hold::approach;
 use crate::graph::{ExprId, Graph};
 use crate::model::{Jump, Place, Range, Row, Symbol};
 use fdcc_grammar::ast::Direction;
@@ -58,7 +58,7 @@ impl Unrolling<'_> {
         self.sequence.iter().any(is_it)
     }
 
-    fn input_of_state(&self, state: usize) -> u32 {
+    pub(super) fn input_of_state(&self, state: usize) -> u32 {
         self.model.input_of(Symbol::State(state)).expect("each state is a symbol")
     }
 
@@ -106,31 +106,22 @@ impl Unrolling<'_> {
 
     /// Whether a jump changes the speed at which its surface is approached.
     fn turns(&mut self, jump: &Jump) -> bool {
-        let rate = self.approach(jump);
+        let rate = self.approach_of(jump);
         let resets: Vec<(u32, ExprId)> =
             jump.resets.iter().map(|&(state, value)| (self.input_of_state(state), value)).collect();
         let reset = |input: u32| resets.iter().find(|it| it.0 == input).map(|it| it.1);
         self.graph.substitute(&[rate], &reset)[0] != rate
     }
 
-    /// `psi_t + psi_x f`: the speed at which the surface of a jump is approached.
-    fn approach(&mut self, jump: &Jump) -> ExprId {
-        let psi = self.whole.surfaces[jump.surface].psi;
-        let time = self.model.input_of(Symbol::Time).expect("time is a symbol");
-        let mut terms = vec![derivative(&mut self.graph, psi, time)];
-        for (index, state) in self.model.states.iter().enumerate() {
-            let input = self.input_of_state(index);
-            let slope = derivative(&mut self.graph, psi, input);
-            terms.push(self.graph.mul(slope, state.rate));
-        }
-        self.graph.sum(&terms)
+    fn approach_of(&mut self, jump: &Jump) -> ExprId {
+        approach(self.model, &mut self.graph, self.whole.surfaces[jump.surface].psi)
     }
 
     /// That a piece comes to its end in the direction of the jump, or two jumps could be one upon the other. Nothing is said where
     /// the speed depends on a control: at the end there is none.
     pub(super) fn direction(&mut self, j: usize) -> Option<Row> {
         let jump = self.jump(j);
-        let rate = self.approach(jump);
+        let rate = self.approach_of(jump);
         let is_of_state =
             |at: &u32| !matches!(self.model.symbols[*at as usize], Symbol::Control(_) | Symbol::Selector(_));
         if !self.graph.inputs_of(&[rate]).iter().all(is_of_state) {
@@ -145,8 +136,11 @@ impl Unrolling<'_> {
         Some(Row { place, value: self.at_end(j, rate), range })
     }
 
-    /// A constraint in a piece; where the piece ends on this very surface, it gives way there.
+    /// A constraint in a piece; where the piece ends on this very surface, it gives way there, and where the surface is held, everywhere.
     fn until(&mut self, j: usize, row: Row) -> Row {
+        if self.is_held(j, &row) {
+            return Row { value: within(&mut self.graph, row.range), ..row };
+        }
         let value = self.in_piece(j, row.value);
         let ends_here = j < self.sequence.len() && self.is_guard(self.jump(j), row.value);
         if !ends_here {

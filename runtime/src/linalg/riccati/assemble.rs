@@ -1,8 +1,9 @@
-//! From the families of the sparse matrices to the dense blocks of one interval.
+//! From the families of the sparse matrices to the dense blocks of several intervals.
 //!
 //! Local positions of an interval are those of `(x_k, u_k, theta, y_k, x_{k+1})`.
 
-use super::interval::Sizes;
+use super::lanes::Lanes;
+use super::sizes::Sizes;
 use crate::linalg::{Family, Stages, Triplets};
 
 /// Where one value of an interval goes: `target += values[source + k]`.
@@ -99,48 +100,52 @@ impl Assembly {
         }
     }
 
-    /// Fills the dense blocks, and the local values, of the intervals from `k` on.
+    /// Fills the dense blocks, and the values of the local rows, of `count` intervals from `first` on.
     #[inline(always)]
     pub(super) fn gather(
         &self,
-        sizes: Sizes,
-        k: usize,
+        (first, count): (usize, usize),
         (hessian, jacobian): (&[f64], &[f64]),
-        blocks: &mut [f64],
-        local: &mut [f64],
+        blocks: &mut [Lanes],
+        local: &mut [Lanes],
     ) {
-        let (length, local_length) = (sizes.gathered(), self.local_entries.len());
-        let count = blocks.len() / length;
-        blocks.fill(0.0);
-        add_moves(&self.hessian, (k, count), hessian, (blocks, length));
-        add_moves(&self.defects, (k, count), jacobian, (blocks, length));
-        local.fill(0.0);
-        add_moves(&self.local, (k, count), jacobian, (local, local_length));
+        blocks.fill(Lanes::ZERO);
+        local.fill(Lanes::ZERO);
+        add_moves(&self.hessian, (first, count), hessian, blocks);
+        add_moves(&self.defects, (first, count), jacobian, blocks);
+        add_moves(&self.local, (first, count), jacobian, local);
     }
 
     /// Condenses the local rows: `H += J' diag(weights) J`.
     #[inline(always)]
-    pub(super) fn condense(&self, local: &[f64], weights: &[f64], gathered: &mut [f64]) {
+    pub(super) fn condense<const FUSED: bool>(
+        &self,
+        local: &[Lanes],
+        weights: &[Lanes],
+        blocks: &mut [Lanes],
+    ) {
         for &(i, j, target) in &self.products {
-            let weight = weights[self.local_entries[i as usize].row];
-            gathered[target as usize] += weight * local[i as usize] * local[j as usize];
+            let weighted = local[i as usize].times(weights[self.local_entries[i as usize].row]);
+            let sum = &mut blocks[target as usize];
+            *sum = Lanes::multiply_add::<FUSED>(weighted, local[j as usize], *sum);
         }
     }
 }
 
-/// Adds the values of `count` intervals to their blocks of this length.
+/// Adds the values of `count` intervals to their places: a family has them one after the other.
 #[inline(always)]
-fn add_moves(
-    moves: &[Move],
-    (k, count): (usize, usize),
-    values: &[f64],
-    (blocks, length): (&mut [f64], usize),
-) {
-    for entry in moves {
-        let (values, target) = (&values[entry.source as usize + k..][..count], entry.target as usize);
-        for (block, value) in blocks.chunks_exact_mut(length).zip(values) {
-            block[target] += value;
+fn add_moves(moves: &[Move], (first, count): (usize, usize), values: &[f64], blocks: &mut [Lanes]) {
+    let from = |entry: &Move| entry.source as usize + first;
+    if count < Lanes::COUNT {
+        for entry in moves {
+            let values = &values[from(entry)..][..count];
+            blocks[entry.target as usize].add(Lanes::from(|l| values.get(l).copied().unwrap_or(0.0)));
         }
+        return;
+    }
+    for entry in moves {
+        let values = &values[from(entry)..][..Lanes::COUNT];
+        blocks[entry.target as usize].add(Lanes::from(|l| values[l]));
     }
 }
 

@@ -2,7 +2,8 @@
 //! machines with and without fused multiply-add and registers of four numbers.
 
 use super::Riccati;
-use super::interval::Sizes;
+use super::lanes::Lanes;
+use super::sizes::Sizes;
 use super::solve::Travel;
 
 /// **The table** of sizes that are compiled as constants: states, controls, border; without inner variables.
@@ -20,9 +21,6 @@ macro_rules! with_constant_sizes {
         }
     };
 }
-
-/// So many intervals are gathered at a time: the families are read where they are contiguous.
-pub(super) const BATCH: usize = 8;
 
 /// The values that are factored.
 #[derive(Clone, Copy)]
@@ -71,40 +69,20 @@ impl Riccati {
 
     #[inline(always)]
     fn factor_intervals<const FUSED: bool>(&mut self, sizes: Sizes, matrix: Matrix) -> Option<usize> {
-        let Riccati { stages, assembly, fixed, border, factors, block, gathered, value, .. } = self;
-        let Matrix { hessian, jacobian, sigma, d } = matrix;
-        let length = sizes.gathered();
+        let Riccati { stages, assembly, fixed, border, factors, condensed, block, value, .. } = self;
         let mut negative = 0;
-        for k in (0..stages.intervals).rev() {
-            let first = k - k % BATCH;
-            if k + 1 == stages.intervals || k + 1 == first + BATCH {
-                let local = factors.local_from(first, k + 1);
-                assembly.gather(
-                    sizes,
-                    first,
-                    (hessian, jacobian),
-                    &mut gathered[..(k + 1 - first) * length],
-                    local,
-                );
-            }
-            let gathered = &mut gathered[(k - first) * length..][..length];
-            for (i, sigma) in sigma[stages.state(k).start..][..sizes.n + sizes.m].iter().enumerate() {
-                gathered[i * sizes.reduced() + i] += sigma;
-            }
-            for (i, sigma) in sigma[stages.inner(k)].iter().enumerate() {
-                gathered[sizes.next_diagonal(i)] += sigma;
-            }
-            let (local, weights) = factors.local_mut(k);
-            for (weight, d) in weights.iter_mut().zip(&d[stages.local(k)]) {
-                *weight = 1.0 / d;
-            }
-            assembly.condense(local, weights, gathered);
-            let penalties = if factors.penalised { &d[stages.defects(k)] } else { &[] };
-            let fixed = &fixed[stages.control(k)];
-            negative += block.factor::<FUSED>(sizes, gathered, factors, (k, fixed, penalties), value)?;
-            // The border cannot have fewer than no negative eigenvalues.
-            if negative > border.rows() {
-                return None;
+        for first in (0..stages.intervals).step_by(Lanes::COUNT).rev() {
+            let intervals = first..(first + Lanes::COUNT).min(stages.intervals);
+            condensed.fill::<FUSED>(sizes, (stages, assembly), matrix, intervals.clone(), factors)?;
+            for k in intervals.rev() {
+                let penalties = if factors.penalised { &matrix.d[stages.defects(k)] } else { &[] };
+                let fixed = &fixed[stages.control(k)];
+                let q = condensed.quadratic_mut(sizes, k - first);
+                negative += block.factor::<FUSED>(sizes, q, factors, (k, fixed, penalties), value)?;
+                // The border cannot have fewer than no negative eigenvalues.
+                if negative > border.rows() {
+                    return None;
+                }
             }
         }
         Some(negative)

@@ -1,10 +1,11 @@
 //! What the solves need of a factorisation: one stretch of each table for each interval.
 
-use super::interval::Sizes;
+use super::sizes::Sizes;
+use std::ops::Range;
 
 /// See [`super::interval`] for the names.
 pub(super) struct Factors {
-    /// `[T F; L C]`, with as many rows as `(y, x+, lambda)` and columns for `(w, b)`.
+    /// `[T F; N M]`, with columns for `(w, y, x+)`; where rows are penalised, all of the response to `(w, b)`.
     response: Vec<f64>,
     /// `A`, square in `(y, x+)`; empty until a row is penalised.
     compliance: Vec<f64>,
@@ -47,6 +48,11 @@ impl Factors {
         stretch_mut(&mut self.response, k, 2 * sizes.next() * sizes.all())
     }
 
+    #[inline(always)]
+    pub(super) fn responses_mut(&mut self, sizes: Sizes, intervals: Range<usize>) -> &mut [f64] {
+        stretches_mut(&mut self.response, intervals, 2 * sizes.next() * sizes.all())
+    }
+
     /// `Q_uu^-1` and `gain`.
     #[inline(always)]
     pub(super) fn controls(&self, sizes: Sizes, k: usize) -> (&[f64], &[f64]) {
@@ -66,28 +72,29 @@ impl Factors {
         (stretch(&self.local, k, self.local_values), stretch(&self.weights, k, self.local_rows))
     }
 
+    /// Values of the local rows of these intervals.
     #[inline(always)]
-    pub(super) fn local_mut(&mut self, k: usize) -> (&[f64], &mut [f64]) {
-        (stretch(&self.local, k, self.local_values), stretch_mut(&mut self.weights, k, self.local_rows))
+    pub(super) fn local_mut(&mut self, intervals: Range<usize>) -> &mut [f64] {
+        stretches_mut(&mut self.local, intervals, self.local_values)
     }
 
-    /// Values of the local rows of intervals `k` to `end`.
     #[inline(always)]
-    pub(super) fn local_from(&mut self, k: usize, end: usize) -> &mut [f64] {
-        &mut self.local[k * self.local_values..end * self.local_values]
+    pub(super) fn weights_mut(&mut self, intervals: Range<usize>) -> &mut [f64] {
+        stretches_mut(&mut self.weights, intervals, self.local_rows)
     }
 
     pub(super) fn compliance(&self, n: usize, k: usize) -> &[f64] {
         stretch(&self.compliance, k, n * n)
     }
 
-    pub(super) fn keep_compliance(&mut self, n: usize, k: usize, a: &[f64]) {
+    pub(super) fn keep_compliance<'a>(&mut self, n: usize, k: usize, rows: impl Iterator<Item = &'a [f64]>) {
         // The recursion goes backward: the first interval is the last one that needs room.
         let end = (k + 1) * n * n;
         if self.compliance.len() < end {
             self.compliance.resize(end, 0.0);
         }
-        stretch_mut(&mut self.compliance, k, n * n).copy_from_slice(a);
+        let kept = stretch_mut(&mut self.compliance, k, n * n).chunks_exact_mut(n);
+        kept.zip(rows).for_each(|(kept, row)| kept.copy_from_slice(row));
     }
 }
 
@@ -99,4 +106,9 @@ fn stretch(table: &[f64], k: usize, length: usize) -> &[f64] {
 #[inline(always)]
 fn stretch_mut(table: &mut [f64], k: usize, length: usize) -> &mut [f64] {
     &mut table[k * length..][..length]
+}
+
+#[inline(always)]
+fn stretches_mut(table: &mut [f64], intervals: Range<usize>, length: usize) -> &mut [f64] {
+    &mut table[intervals.start * length..intervals.end * length]
 }

@@ -5,221 +5,119 @@
 //! (inner variables with them: `x+` stands for `(y, x+)` here, of which `V+` sees only the second part):
 //!
 //! ```text
-//!     M = H_{++} + P      N = H_{+w} + [0 0 Lambda']       S = [ M  E' ]    S^-1 = [ A  F ]
-//!                                                              [ E  -D ]           [ F' C ]
-//!     [ x+     ] = S^-1 [ -N w - pull ] = [ T  F ] [ w ] - [ A  ] pull
-//!     [ lambda ]        [  b - R w    ]   [ L  C ] [ b ]   [ F' ]
+//!     N = H_{+w} + [0 0 Lambda']       M = H_{++} + P       c = F b       p = pull + M c       T = -E^-1 R       F = E^-1
 //!
-//!     Q = H_ww + Theta + [N; R]' [T; L]
+//!     x+ = T w + c       lambda = -F' (M x+ + N w + pull)       gradient by w:  g_w + T' p + N' c
+//!
+//!     Q = H_ww + Theta + N' T + T' (N + M T)
 //!     gain = -Q_uu^-1 Q_uz,     V = Q_zz + Q_zu gain       z = (x, theta)
 //! ```
 //!
-//! Rows without penalty (`D = 0`, always but in restoration) need nothing of twice the size:
+//! All of `Q` but `W' V+ W`, where `(x+, theta) = W w`, is there before `V+` is known: [`super::condense`].
+//!
+//! Rows with a penalty `D` (in restoration) let `x+` give way, each as much as it likes, so that they are not divided by `E` beforehand:
 //!
 //! ```text
-//!     [T F] = E^-1 [-R I]       [L C] = -F' ([N 0] + M [T F])       A = 0
+//!     [ M  E' ] [ T F A ]   [ -N 0 I ]        [ x+     ]   [ T F ] [ w ]   [ A  ]
+//!     [ E  -D ] [ L C . ] = [ -R I 0 ]        [ lambda ] = [ L C ] [ b ] - [ F' ] pull        Q = H_ww + Theta + [N; R]' [T; L]
 //! ```
 
 use super::factors::Factors;
-use super::kernels::{View, add_lower_product, add_product, divide, invert_positive};
+use super::kernels::{View, add_lower_product, add_product, add_row_product, invert_positive, lower_end};
+use super::sizes::Sizes;
 use crate::linalg::SymmetricFactor;
-
-/// Sizes of states, controls, inner variables and border.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Sizes {
-    pub(super) n: usize,
-    pub(super) m: usize,
-    pub(super) inner: usize,
-    pub(super) q: usize,
-}
-
-impl Sizes {
-    /// `(x, u, theta)`
-    #[inline(always)]
-    pub(super) fn reduced(&self) -> usize {
-        self.n + self.m + self.q
-    }
-    /// `(y, x+)`
-    #[inline(always)]
-    pub(super) fn next(&self) -> usize {
-        self.inner + self.n
-    }
-    /// `(x, u, theta, y, x+)`, and also `(x, u, theta, b)`
-    #[inline(always)]
-    pub(super) fn all(&self) -> usize {
-        self.reduced() + self.next()
-    }
-    /// `(x, theta)`
-    #[inline(always)]
-    pub(super) fn kept(&self) -> usize {
-        self.n + self.q
-    }
-    /// Where entry `i` of `(x, theta)` stands in `(x, u, theta)`.
-    #[inline(always)]
-    pub(super) fn position(&self, i: usize) -> usize {
-        if i < self.n { i } else { i + self.m }
-    }
-    /// Lengths of `H_ww`, `[N; R]`, `M` and `E`, the parts of what is gathered.
-    #[inline(always)]
-    fn parts(&self) -> [usize; 4] {
-        let (next, w) = (self.next(), self.reduced());
-        [w * w, 2 * next * w, next * next, next * next]
-    }
-    /// Length of what is gathered for an interval.
-    #[inline(always)]
-    pub(super) fn gathered(&self) -> usize {
-        self.parts().iter().sum()
-    }
-    /// Where the Hessian entry of two positions in `(x, u, theta, y, x+)` is gathered: lower triangles only.
-    pub(super) fn hessian_place(&self, a: usize, b: usize) -> usize {
-        let ([square, coupling, ..], w) = (self.parts(), self.reduced());
-        let (row, column) = (a.max(b), a.min(b));
-        match (row.checked_sub(w), column.checked_sub(w)) {
-            (None, _) => row * w + column,
-            (Some(row), None) => square + row * w + column,
-            (Some(row), Some(column)) => square + coupling + row * self.next() + column,
-        }
-    }
-    /// Where an entry of a defect is gathered.
-    pub(super) fn defect_place(&self, row: usize, position: usize) -> usize {
-        let ([square, coupling, curvature, _], w) = (self.parts(), self.reduced());
-        match position.checked_sub(w) {
-            None => square + (self.next() + row) * w + position,
-            Some(column) => square + coupling + curvature + row * self.next() + column,
-        }
-    }
-    /// Where the curvature of entry `i` of `(y, x+)` is gathered.
-    #[inline(always)]
-    pub(super) fn next_diagonal(&self, i: usize) -> usize {
-        let [square, coupling, ..] = self.parts();
-        square + coupling + i * (self.next() + 1)
-    }
-}
 
 /// Working memory of one step.
 pub(super) struct Block {
-    /// `[N 0] + M [T F]`
-    costate: Vec<f64>,
-    /// `Q_uz`, and `Q_uu` twice.
+    /// `[0 0 I]` and `V W`
+    units: Vec<f64>,
+    pushed: Vec<f64>,
+    /// `Q_uw`, `Q_uu^-1` and their product.
     side: Vec<f64>,
-    uu: Vec<f64>,
-    uu_copy: Vec<f64>,
+    inverse: Vec<f64>,
+    gain: Vec<f64>,
     uu_factor: SymmetricFactor,
-    /// `S` and its factors.
+    compliance: Compliance,
+}
+
+/// Working memory where rows are penalised.
+struct Compliance {
+    /// `[M E'; E -D]`
     s: Vec<f64>,
     s_factor: SymmetricFactor,
+    /// `[-N 0 I; -R I 0]`, then `[T F A; L C .]`
+    sides: Vec<f64>,
 }
 
 impl Block {
     pub(super) fn new(sizes: Sizes) -> Self {
-        let (m, next) = (sizes.m, sizes.next());
+        let (m, w, next) = (sizes.m, sizes.reduced(), sizes.next());
         let zeros = |length: usize| vec![0.0; length];
+        let mut units = zeros(sizes.q * w);
+        (0..sizes.q).for_each(|i| units[i * w + sizes.n + m + i] = 1.0);
         Block {
-            costate: zeros(next * sizes.all()),
-            side: zeros(m * sizes.kept()),
-            uu: zeros(m * m),
-            uu_copy: zeros(m * m),
+            units,
+            pushed: zeros(sizes.kept() * w),
+            side: zeros(m * w),
+            gain: zeros(m * w),
+            inverse: zeros(m * m),
             uu_factor: SymmetricFactor::new(m),
-            s: zeros(4 * next * next),
-            s_factor: SymmetricFactor::new(2 * next),
+            compliance: Compliance {
+                s: zeros(4 * next * next),
+                s_factor: SymmetricFactor::new(2 * next),
+                sides: zeros(2 * next * (w + 2 * next)),
+            },
         }
     }
 
-    /// Factors what was gathered for interval `k`: `H_ww`, `[N; R]`, `M` and `E`, which are destroyed. `value` comes in as `V_{k+1}` and leaves as `V_k`; `penalties` are
+    /// Factors interval `k`, of which `q` and the response are there without `V+`. `value` comes in as `V+` and leaves as `V`; `penalties` are
     /// `D`, empty where there are none. Returns how many negative eigenvalues there are beyond one per row, or `None` at
     /// a zero pivot.
     #[inline(always)]
     pub(super) fn factor<const FUSED: bool>(
         &mut self,
         sizes: Sizes,
-        gathered: &mut [f64],
+        q: &mut [f64],
         factors: &mut Factors,
         (k, fixed, penalties): (usize, &[bool], &[f64]),
         value: &mut [f64],
     ) -> Option<usize> {
         // Slices of known lengths need no checks of their indices.
         let value = &mut value[..sizes.kept() * sizes.kept()];
-        join_next(sizes, gathered, value);
+        let q = &mut q[..sizes.reduced() * sizes.reduced()];
+        join_next(sizes, factors.response_mut(sizes, k), value);
         let removed = if penalties.is_empty() {
-            self.remove_next::<FUSED>(sizes, gathered, factors.response_mut(sizes, k))?
+            self.add_next::<FUSED>(sizes, factors.response(sizes, k), value, q);
+            0
         } else {
-            self.remove_penalised(sizes, gathered, factors, (k, penalties))?
+            add_theta(sizes, value, q);
+            self.compliance.give_way(sizes, q, factors, (k, penalties))?
         };
-        let (w, all) = (sizes.reduced(), sizes.all());
-        let [q, coupling, ..] = parts(sizes, gathered);
-        let (coupling, response) = (View::rows(coupling, w), View::rows(factors.response(sizes, k), all));
-        add_lower_product::<FUSED>(coupling.transposed(), response, 2 * sizes.next(), (q, w));
         fix_controls(sizes, fixed, q);
-        Some(removed + self.remove_controls::<FUSED>(sizes, &gathered[..w * w], factors, (k, value))?)
+        Some(removed + self.remove_controls::<FUSED>(sizes, q, factors, (k, value))?)
     }
 
-    /// `[T F]` and `[L C]`.
+    /// `Q += W' V W`: the lower triangle, and the rows of the controls in full.
     #[inline(always)]
-    fn remove_next<const FUSED: bool>(
-        &mut self,
-        sizes: Sizes,
-        gathered: &mut [f64],
-        response: &mut [f64],
-    ) -> Option<usize> {
-        let (n, w, all) = (sizes.next(), sizes.reduced(), sizes.all());
-        let [_, coupling, m, e] = parts(sizes, gathered);
-        let costate = &mut self.costate[..n * all];
-        let (next, multipliers) = response.split_at_mut(n * all);
-        for i in 0..n {
-            let (rows, values) = (&mut next[i * all..][..all], &coupling[(n + i) * w..][..w]);
-            for j in 0..w {
-                rows[j] = -values[j];
-            }
-            rows[w..].fill(0.0);
-            rows[w + i] = 1.0;
-            costate[i * all..][..w].copy_from_slice(&coupling[i * w..][..w]);
-            costate[i * all + w..][..n].fill(0.0);
-        }
-        let regular = divide::<FUSED>(n, e, next, all);
-        add_product::<FUSED>(1.0, View::rows(m, n), View::rows(next, all), n, (costate, all));
-        multipliers.fill(0.0);
-        let f = View { values: &next[w..], row: all, column: 1 };
-        add_product::<FUSED>(-1.0, f.transposed(), View::rows(costate, all), n, (multipliers, all));
-        regular.then_some(0)
-    }
-
-    /// The same, and `A`, by the factors of `S`.
-    fn remove_penalised(
-        &mut self,
-        sizes: Sizes,
-        gathered: &mut [f64],
-        factors: &mut Factors,
-        (k, penalties): (usize, &[f64]),
-    ) -> Option<usize> {
-        let (n, w, all) = (sizes.next(), sizes.reduced(), sizes.all());
-        let [_, coupling, m, e] = parts(sizes, gathered);
-        let s = &mut self.s;
-        s.fill(0.0);
-        for i in 0..n {
-            s[i * 2 * n..][..n].copy_from_slice(&m[i * n..][..n]);
-            s[(n + i) * 2 * n..][..n].copy_from_slice(&e[i * n..][..n]);
-            s[(n + i) * 2 * n + n + i] = -penalties[i];
-        }
-        let response = factors.response_mut(sizes, k);
-        response.fill(0.0);
-        for i in 0..2 * n {
-            for j in 0..w {
-                response[i * all + j] = -coupling[i * w + j];
+    fn add_next<const FUSED: bool>(&mut self, sizes: Sizes, response: &[f64], value: &[f64], q: &mut [f64]) {
+        let Sizes { n, m, inner, .. } = sizes;
+        let (w, kept, all) = (sizes.reduced(), sizes.kept(), sizes.all());
+        let (t, units) = (View::rows(&response[inner * all..], all), View::rows(&self.units, w));
+        let pushed = &mut self.pushed[..kept * w];
+        pushed.fill(0.0);
+        let (v_x, v_theta) = (View::rows(value, kept), View::rows(&value[n..], kept));
+        add_product::<FUSED>(1.0, v_x, t, n, (pushed, w));
+        add_product::<FUSED>(1.0, v_theta, units, sizes.q, (pushed, w));
+        for i in 0..w {
+            let end = if (n..n + m).contains(&i) { w } else { lower_end(i, w) };
+            let row = &mut q[i * w..][..end];
+            add_row_product::<FUSED>(1.0, (t.transposed(), i), View::rows(pushed, w), n, row);
+            if let Some(theta) = i.checked_sub(n + m) {
+                for (sum, value) in row.iter_mut().zip(&pushed[(n + theta) * w..]) {
+                    *sum += value;
+                }
             }
         }
-        for i in 0..n {
-            response[(n + i) * all + w + i] = 1.0;
-        }
-        let negative = self.s_factor.factor(s)?;
-        self.s_factor.solve(response, all);
-        // [A; F'] = S^-1 [I; 0]
-        let half = &mut s[..2 * n * n];
-        half.fill(0.0);
-        (0..n).for_each(|i| half[i * n + i] = 1.0);
-        self.s_factor.solve(half, n);
-        factors.keep_compliance(n, k, &half[..n * n]);
-        // A block with too few negative eigenvalues has a wrong sign just as well: count it as one.
-        Some(negative.abs_diff(n))
     }
 
     /// Removes `u_k`; writes `V_k` to `value`.
@@ -227,39 +125,26 @@ impl Block {
     fn remove_controls<const FUSED: bool>(
         &mut self,
         sizes: Sizes,
-        q: &[f64],
+        q: &mut [f64],
         factors: &mut Factors,
         (k, value): (usize, &mut [f64]),
     ) -> Option<usize> {
         let Sizes { n, m, .. } = sizes;
         let (w, kept) = (sizes.reduced(), sizes.kept());
-        let (side, uu) = (&mut self.side[..m * kept], &mut self.uu[..m * m]);
-        for i in 0..kept {
-            for j in 0..=i {
-                value[i * kept + j] = q[sizes.position(i) * w + sizes.position(j)];
-            }
-        }
-        for i in 0..m {
-            for j in 0..kept {
-                // Only the lower triangle of Q is filled.
-                let (row, column) = if j < n { (n + i, j) } else { (j + m, n + i) };
-                side[i * kept + j] = q[row * w + column];
-            }
-            for j in 0..=i {
-                uu[i * m + j] = q[(n + i) * w + n + j];
-                uu[j * m + i] = q[(n + i) * w + n + j];
-            }
-        }
-        let negative = self.invert_controls::<FUSED>(m)?;
+        self.side[..m * w].copy_from_slice(&q[n * w..][..m * w]);
+        let negative = self.invert_controls::<FUSED>(sizes)?;
         let (inverse, gain) = factors.controls_mut(sizes, k);
-        inverse.copy_from_slice(&self.uu[..m * m]);
-        gain.fill(0.0);
-        let side = View::rows(&self.side[..m * kept], kept);
-        add_product::<FUSED>(-1.0, View::rows(inverse, m), side, m, (gain, kept));
-        add_lower_product::<FUSED>(side.transposed(), View::rows(gain, kept), m, (value, kept));
+        inverse.copy_from_slice(&self.inverse[..m * m]);
+        let (side, wide) = (View::rows(&self.side[..m * w], w), &mut self.gain[..m * w]);
+        wide.fill(0.0);
+        add_product::<FUSED>(-1.0, View::rows(&self.inverse, m), side, m, (wide, w));
+        add_lower_product::<FUSED>(side.transposed(), View::rows(wide, w), m, (q, w));
         for i in 0..kept {
-            for j in 0..i {
-                value[j * kept + i] = value[i * kept + j];
+            for j in 0..m {
+                gain[j * kept + i] = wide[j * w + sizes.position(i)];
+            }
+            for j in 0..kept {
+                value[i * kept + j] = q[sizes.position(i.max(j)) * w + sizes.position(i.min(j))];
             }
         }
         Some(negative)
@@ -267,58 +152,102 @@ impl Block {
 
     /// Inverts `Q_uu` and counts its negative eigenvalues. Near a solution it is positive definite.
     #[inline(always)]
-    fn invert_controls<const FUSED: bool>(&mut self, m: usize) -> Option<usize> {
-        let uu = &mut self.uu[..m * m];
-        self.uu_copy.copy_from_slice(uu);
-        if invert_positive::<FUSED>(m, uu) { Some(0) } else { self.invert_indefinite(m) }
+    fn invert_controls<const FUSED: bool>(&mut self, sizes: Sizes) -> Option<usize> {
+        let Sizes { n, m, .. } = sizes;
+        let (w, inverse) = (sizes.reduced(), &mut self.inverse[..m * m]);
+        for i in 0..m {
+            inverse[i * m..][..m].copy_from_slice(&self.side[i * w + n..][..m]);
+        }
+        if invert_positive::<FUSED>(m, inverse) { Some(0) } else { self.invert_indefinite(sizes) }
     }
 
     #[cold]
-    fn invert_indefinite(&mut self, m: usize) -> Option<usize> {
-        let negative = self.uu_factor.factor(&self.uu_copy)?;
-        self.uu.fill(0.0);
-        (0..m).for_each(|i| self.uu[i * m + i] = 1.0);
-        self.uu_factor.solve(&mut self.uu, m);
+    fn invert_indefinite(&mut self, sizes: Sizes) -> Option<usize> {
+        let Sizes { n, m, .. } = sizes;
+        for i in 0..m {
+            self.inverse[i * m..][..m].copy_from_slice(&self.side[i * sizes.reduced() + n..][..m]);
+        }
+        let negative = self.uu_factor.factor(&self.inverse)?;
+        self.inverse.fill(0.0);
+        (0..m).for_each(|i| self.inverse[i * m + i] = 1.0);
+        self.uu_factor.solve(&mut self.inverse, m);
         Some(negative)
     }
 }
 
-/// `M`, `N`, and `Theta` added to `H_ww`.
-#[inline(always)]
-fn join_next(sizes: Sizes, gathered: &mut [f64], value: &[f64]) {
-    let Sizes { n, m, inner, q } = sizes;
-    let (w, kept, size) = (sizes.reduced(), sizes.kept(), sizes.next());
-    let [h, coupling, next, _] = parts(sizes, gathered);
-    for i in 0..n {
-        let value = &value[i * kept..][..kept];
-        let row = inner + i;
-        for j in 0..=i {
-            next[row * size + inner + j] += value[j];
+impl Compliance {
+    /// Completes `Q`, and replaces `[-R E; N M]` by the response.
+    fn give_way(
+        &mut self,
+        sizes: Sizes,
+        q: &mut [f64],
+        factors: &mut Factors,
+        (k, penalties): (usize, &[f64]),
+    ) -> Option<usize> {
+        let (next, w, all) = (sizes.next(), sizes.reduced(), sizes.all());
+        let width = all + next;
+        let response = factors.response_mut(sizes, k);
+        self.fill(sizes, response, penalties);
+        let negative = self.s_factor.factor(&self.s)?;
+        self.s_factor.solve(&mut self.sides, width);
+        let (minus_r, n) = response.split_at(next * all);
+        let (steps, multipliers) = self.sides.split_at(next * width);
+        let transposed = |values| View::rows(values, all).transposed();
+        add_product::<false>(1.0, transposed(n), View::rows(steps, width), next, (q, w));
+        add_product::<false>(-1.0, transposed(minus_r), View::rows(multipliers, width), next, (q, w));
+        for (row, side) in response.chunks_exact_mut(all).zip(self.sides.chunks_exact(width)) {
+            row.copy_from_slice(&side[..all]);
         }
-        for j in 0..q {
-            coupling[row * w + n + m + j] += value[n + j];
-        }
+        factors.keep_compliance(next, k, steps.chunks_exact(width).map(|row| &row[all..]));
+        // A block with too few negative eigenvalues has a wrong sign just as well: count it as one.
+        Some(negative.abs_diff(next))
     }
-    for i in 0..size {
-        for j in 0..i {
-            next[j * size + i] = next[i * size + j];
-        }
-    }
-    for i in 0..q {
-        for j in 0..=i {
-            h[(n + m + i) * w + n + m + j] += value[(n + i) * kept + n + j];
+
+    fn fill(&mut self, sizes: Sizes, response: &[f64], penalties: &[f64]) {
+        let (n, w, all) = (sizes.next(), sizes.reduced(), sizes.all());
+        let (defects, curvature) = response.split_at(n * all);
+        self.s.fill(0.0);
+        self.sides.fill(0.0);
+        let (above, below) = self.sides.split_at_mut(n * (all + n));
+        for i in 0..n {
+            let (defect, curvature) = (&defects[i * all..][..all], &curvature[i * all..][..all]);
+            self.s[i * 2 * n..][..n].copy_from_slice(&curvature[w..]);
+            self.s[(n + i) * 2 * n..][..n].copy_from_slice(&defect[w..]);
+            self.s[(n + i) * 2 * n + n + i] = -penalties[i];
+            let (above, below) = (&mut above[i * (all + n)..], &mut below[i * (all + n)..]);
+            above[..w].iter_mut().zip(curvature).for_each(|(side, n)| *side = -n);
+            above[all + i] = 1.0;
+            below[..w].copy_from_slice(&defect[..w]);
+            below[w + i] = 1.0;
         }
     }
 }
 
-/// `H_ww`, `[N; R]`, `M` and `E`.
+/// `Q += Theta`
+fn add_theta(sizes: Sizes, value: &[f64], q: &mut [f64]) {
+    let Sizes { n, m, .. } = sizes;
+    for i in 0..sizes.q {
+        for j in 0..sizes.q {
+            q[(n + m + i) * sizes.reduced() + n + m + j] += value[(n + i) * sizes.kept() + n + j];
+        }
+    }
+}
+
+/// `M` and `N` with what `V+` adds to them.
 #[inline(always)]
-fn parts(sizes: Sizes, gathered: &mut [f64]) -> [&mut [f64]; 4] {
-    let [square, coupling, next, last] = sizes.parts();
-    let (h, rest) = gathered.split_at_mut(square);
-    let (coupling, rest) = rest.split_at_mut(coupling);
-    let (m, e) = rest.split_at_mut(next);
-    [h, coupling, m, &mut e[..last]]
+fn join_next(sizes: Sizes, response: &mut [f64], value: &[f64]) {
+    let Sizes { n, m, inner, q } = sizes;
+    let (w, kept, all) = (sizes.reduced(), sizes.kept(), sizes.all());
+    for i in 0..n {
+        let row = &mut response[(sizes.next() + inner + i) * all..][..all];
+        let value = &value[i * kept..][..kept];
+        for j in 0..q {
+            row[n + m + j] += value[n + j];
+        }
+        for j in 0..n {
+            row[w + inner + j] += value[j];
+        }
+    }
 }
 
 /// Takes fixed controls out of the lower triangle of `Q`.

@@ -1,4 +1,4 @@
-//! Products of small matrices, written so that constant sizes unroll and that four numbers share a register.
+//! Products of small matrices, written so that constant sizes unroll and that neighbouring numbers share a register.
 //!
 //! `FUSED` says that the machine multiplies and adds in one instruction; without one `mul_add` would be a call.
 
@@ -10,16 +10,16 @@ pub(super) fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
 
 /// A matrix inside a slice: entry `(i, j)` is `values[i * row + j * column]`.
 #[derive(Clone, Copy)]
-pub(super) struct View<'a> {
-    pub(super) values: &'a [f64],
+pub(super) struct View<'a, T> {
+    pub(super) values: &'a [T],
     pub(super) row: usize,
     pub(super) column: usize,
 }
 
-impl<'a> View<'a> {
+impl<'a, T> View<'a, T> {
     /// Rows of this length, one after the other.
     #[inline(always)]
-    pub(super) fn rows(values: &'a [f64], length: usize) -> Self {
+    pub(super) fn rows(values: &'a [T], length: usize) -> Self {
         View { values, row: length, column: 1 }
     }
 
@@ -34,8 +34,8 @@ impl<'a> View<'a> {
 #[inline(always)]
 pub(super) fn add_row_product<const FUSED: bool>(
     sign: f64,
-    (a, i): (View, usize),
-    b: View,
+    (a, i): (View<f64>, usize),
+    b: View<f64>,
     inner: usize,
     y: &mut [f64],
 ) {
@@ -62,8 +62,8 @@ pub(super) fn add_row_product<const FUSED: bool>(
 #[inline(always)]
 fn add_row_block<const FUSED: bool, const WIDTH: usize>(
     sign: f64,
-    (a, i): (View, usize),
-    b: View,
+    (a, i): (View<f64>, usize),
+    b: View<f64>,
     inner: usize,
     (y, start): (&mut [f64], usize),
 ) {
@@ -84,8 +84,8 @@ fn add_row_block<const FUSED: bool, const WIDTH: usize>(
 #[inline(always)]
 pub(super) fn add_product<const FUSED: bool>(
     sign: f64,
-    a: View,
-    b: View,
+    a: View<f64>,
+    b: View<f64>,
     inner: usize,
     (y, length): (&mut [f64], usize),
 ) {
@@ -97,15 +97,23 @@ pub(super) fn add_product<const FUSED: bool>(
 /// The lower triangle of the square `Y += A B`, of `length` rows; some entries above the diagonal change, too.
 #[inline(always)]
 pub(super) fn add_lower_product<const FUSED: bool>(
-    a: View,
-    b: View,
+    a: View<f64>,
+    b: View<f64>,
     inner: usize,
     (y, length): (&mut [f64], usize),
 ) {
     for i in 0..length {
-        let end = ((i / 8 + 1) * 8).min(length);
-        add_row_product::<FUSED>(1.0, (a, i), b, inner, &mut y[i * length..][..end]);
+        add_row_product::<FUSED>(1.0, (a, i), b, inner, &mut y[i * length..][..lower_end(i, length)]);
     }
+}
+
+/// Columns that are taken together in a lower triangle.
+const STEP: usize = 8;
+
+/// Where row `i` of the lower triangle ends, so that its numbers share registers. Short rows are taken whole: loops of equal length unroll.
+#[inline(always)]
+pub(super) fn lower_end(i: usize, length: usize) -> usize {
+    if length <= STEP { length } else { (i / STEP * STEP + STEP).min(length) }
 }
 
 /// `a . b`
@@ -127,67 +135,12 @@ pub(super) fn dot<const FUSED: bool>(a: &[f64], b: &[f64]) -> f64 {
     total
 }
 
-/// Replaces the rows of `x` by those of `E^-1 X`, by `L U = P E` in place of `e`. `false` if `E` is singular.
-#[inline(always)]
-pub(super) fn divide<const FUSED: bool>(n: usize, e: &mut [f64], x: &mut [f64], columns: usize) -> bool {
-    for k in 0..n {
-        let (mut pivot, mut largest) = (k, e[k * n + k].abs());
-        for i in k + 1..n {
-            if e[i * n + k].abs() > largest {
-                (pivot, largest) = (i, e[i * n + k].abs());
-            }
-        }
-        if largest == 0.0 || !largest.is_finite() {
-            return false;
-        }
-        if pivot != k {
-            swap_rows(e, n, k, pivot);
-            swap_rows(x, columns, k, pivot);
-        }
-        eliminate_below::<FUSED>(n, e, k);
-    }
-    for i in 0..n {
-        let (above, row) = x.split_at_mut(i * columns);
-        let above = View::rows(above, columns);
-        add_row_product::<FUSED>(-1.0, (View::rows(e, n), i), above, i, &mut row[..columns]);
-    }
-    for i in (0..n).rev() {
-        let (row, below) = x[i * columns..].split_at_mut(columns);
-        let (above, inner) = (View::rows(&e[i * n + i + 1..], n), n - i - 1);
-        add_row_product::<FUSED>(-1.0, (above, 0), View::rows(below, columns), inner, row);
-        let inverse = 1.0 / e[i * n + i];
-        row.iter_mut().for_each(|value| *value *= inverse);
-    }
-    true
-}
-
-/// Column `k` of `L`, and what it takes from the rows below.
-#[inline(always)]
-fn eliminate_below<const FUSED: bool>(n: usize, e: &mut [f64], k: usize) {
-    let inverse = 1.0 / e[k * n + k];
-    for i in k + 1..n {
-        let factor = e[i * n + k] * inverse;
-        e[i * n + k] = factor;
-        // Where the scheme is explicit, always.
-        if factor == 0.0 {
-            continue;
-        }
-        for j in k + 1..n {
-            e[i * n + j] = multiply_add::<FUSED>(-factor, e[k * n + j], e[i * n + j]);
-        }
-    }
-}
-
-#[inline(always)]
-fn swap_rows(matrix: &mut [f64], length: usize, first: usize, second: usize) {
-    for j in 0..length {
-        matrix.swap(first * length + j, second * length + j);
-    }
-}
-
 /// Inverts the symmetric `a` in place; `false`, and `a` is destroyed, unless it is safely positive definite.
 #[inline(always)]
 pub(super) fn invert_positive<const FUSED: bool>(n: usize, a: &mut [f64]) -> bool {
+    if n == 2 {
+        return invert_positive_pair::<FUSED>(a);
+    }
     for k in 0..n {
         let pivot = a[k * n + k];
         // Also true for what is not a number.
@@ -196,7 +149,9 @@ pub(super) fn invert_positive<const FUSED: bool>(n: usize, a: &mut [f64]) -> boo
         }
         let inverse = 1.0 / pivot;
         a[k * n + k] = 1.0;
-        a[k * n..][..n].iter_mut().for_each(|value| *value *= inverse);
+        for value in &mut a[k * n..][..n] {
+            *value *= inverse;
+        }
         for i in (0..n).filter(|i| *i != k) {
             let factor = std::mem::take(&mut a[i * n + k]);
             for j in 0..n {
@@ -204,5 +159,18 @@ pub(super) fn invert_positive<const FUSED: bool>(n: usize, a: &mut [f64]) -> boo
             }
         }
     }
+    true
+}
+
+/// The same for two rows, with one division.
+#[inline(always)]
+fn invert_positive_pair<const FUSED: bool>(a: &mut [f64]) -> bool {
+    let (first, mixed, second) = (a[0], a[2], a[3]);
+    let determinant = multiply_add::<FUSED>(first, second, -mixed * mixed);
+    if !(first > 0.0 && determinant > 0.0 && determinant.is_finite()) {
+        return false;
+    }
+    let inverse = 1.0 / determinant;
+    a.copy_from_slice(&[second * inverse, -mixed * inverse, -mixed * inverse, first * inverse]);
     true
 }

@@ -17,17 +17,22 @@
 mod assemble;
 mod border;
 mod chain;
+mod condense;
 mod factors;
 mod interval;
 mod kernels;
+mod lanes;
+mod sizes;
 mod solve;
 
 use super::{Factor, Inertia, Stages, Triplets};
 use assemble::Assembly;
 use border::Border;
-use chain::{BATCH, Matrix};
+use chain::Matrix;
+use condense::Condensed;
 use factors::Factors;
-use interval::{Block, Sizes};
+use interval::Block;
+use sizes::Sizes;
 use solve::Travel;
 
 /// The recursion, with all its memory.
@@ -39,9 +44,8 @@ pub struct Riccati {
     fixed: Vec<bool>,
     assembly: Assembly,
     border: Border,
+    condensed: Condensed,
     block: Block,
-    /// Dense blocks of a batch of intervals.
-    gathered: Vec<f64>,
     factors: Factors,
     /// `[P Lambda; Lambda' Theta]` of the stage being left.
     value: Vec<f64>,
@@ -79,8 +83,8 @@ impl Riccati {
             fused: chain::is_fused(),
             fixed: fixed.to_vec(),
             border,
+            condensed: Condensed::new(sizes, stages, &assembly),
             block: Block::new(sizes),
-            gathered: vec![0.0; BATCH * sizes.gathered()],
             factors: Factors::new(sizes, stages.intervals, stages.local_rows, local_values),
             assembly,
             value: vec![0.0; sizes.kept() * sizes.kept()],

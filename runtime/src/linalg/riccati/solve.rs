@@ -1,16 +1,16 @@
 //! The backward and forward passes of a solve, through one interval; the names are those of [`super::interval`].
 //!
 //! ```text
-//!     backward    pull = v_x + g_+        g = g_w + v_theta + T' pull - L' b
+//!     backward    c = F b      p = v_x + g_+ + M c      g = g_w + v_theta + T' p + N' c
 //!                 u_0 = -Q_uu^-1 g_u      v = g_z + gain' g_u
-//!     forward     u = gain z + u_0        x+ = [T F] [w; b] - A pull      lambda = [L C] [w; b] - F' pull
+//!     forward     u = gain z + u_0        x+ = T w + c      lambda = -F' (N w + M (x+ - c) + p)
 //! ```
 //!
-//! Here `x+` is `(y, x+)`. From one pass to the other, `pull` waits in its place and `u_0` in that of `u`.
+//! Here `x+` is `(y, x+)`. From one pass to the other, `p` waits in the place of `x+`, `c` in that of `b` and `u_0` in that of `u`.
 
 use super::Riccati;
-use super::interval::Sizes;
-use super::kernels::{View, add_row_product, dot, multiply_add};
+use super::kernels::{View, add_row_product, dot};
+use super::sizes::Sizes;
 
 /// The vectors that travel along the chain.
 #[derive(Default)]
@@ -19,7 +19,7 @@ pub(super) struct Travel {
     pub(super) gradient: Vec<f64>,
     pub(super) theta: Vec<f64>,
     pub(super) x: Vec<f64>,
-    /// Scratch over `(x, u, theta, y, x+)`, and `[pull; -b]`.
+    /// Scratch over `(x, u, theta, y, x+)`, and `[p; c]`.
     all: Vec<f64>,
     push: Vec<f64>,
 }
@@ -45,7 +45,7 @@ impl Riccati {
         sizes: Sizes,
         k: usize,
         travel: &mut Travel,
-        (a, b): (&mut [f64], &[f64]),
+        (a, b): (&mut [f64], &mut [f64]),
     ) {
         let Sizes { n, m, inner, q } = sizes;
         let (w, all, next) = (sizes.reduced(), sizes.all(), sizes.next());
@@ -53,7 +53,6 @@ impl Riccati {
         let (gradient, g, push) = (&mut gradient[..n + q], &mut g[..all], &mut push[..2 * next]);
         let first = k * (n + m + inner);
         let a = &mut a[first..first + n + m + next];
-        let defects = &b[self.stages.defects(k).start..][..next];
         for i in 0..n + m {
             g[i] = -a[i];
         }
@@ -63,14 +62,39 @@ impl Riccati {
         }
         g[w + inner..].copy_from_slice(&gradient[..n]);
         self.add_local_gradient(k, b, g);
-        for i in 0..next {
-            push[i] = g[w + i];
-            push[next + i] = -defects[i];
-        }
-        a[n + m..].copy_from_slice(&g[w..]);
-        let response = View::rows(self.factors.response(sizes, k), all);
+        let defects = &mut b[self.stages.defects(k).start..][..next];
+        let response = self.factors.response(sizes, k);
+        self.push::<FUSED>(sizes, response, &g[w..], (defects, push));
+        a[n + m..].copy_from_slice(&push[..next]);
+        let response = View::rows(response, all);
         add_row_product::<FUSED>(1.0, (View::rows(push, 2 * next), 0), response, 2 * next, &mut g[..w]);
         self.eliminate_controls::<FUSED>(sizes, k, g, (gradient, &mut a[n..n + m]));
+    }
+
+    /// What pushes against the interval: `[p; c]`, of which `c` is kept in the place of `b`; `[pull; -b]` where rows give way.
+    #[inline(always)]
+    fn push<const FUSED: bool>(
+        &self,
+        sizes: Sizes,
+        response: &[f64],
+        pull: &[f64],
+        (defects, push): (&mut [f64], &mut [f64]),
+    ) {
+        let (w, all, next) = (sizes.reduced(), sizes.all(), sizes.next());
+        let (p, c) = push.split_at_mut(next);
+        p.copy_from_slice(pull);
+        if self.factors.penalised {
+            c.iter_mut().zip(defects).for_each(|(c, b)| *c = -*b);
+            return;
+        }
+        let (steps, curvature) = response.split_at(next * all);
+        for i in 0..next {
+            c[i] = dot::<FUSED>(&steps[i * all + w..][..next], defects);
+        }
+        defects.copy_from_slice(c);
+        for i in 0..next {
+            p[i] += dot::<FUSED>(&curvature[i * all + w..][..next], defects);
+        }
     }
 
     /// Local rows: `g -= J' diag(1/d) b`
@@ -133,29 +157,64 @@ impl Riccati {
             known[n + i] = a[n + i] + dot::<FUSED>(&gain[..n], x) + dot::<FUSED>(&gain[n..], theta);
         }
         a[..n + m].copy_from_slice(&known[..n + m]);
-        known[w..].copy_from_slice(&b[start..start + next]);
-        let response = self.factors.response(sizes, k);
-        for i in 0..2 * next {
-            push[i] = dot::<FUSED>(&response[i * all..][..all], known);
-        }
-        let pull = &mut a[n + m..];
-        for i in 0..next {
-            // -F' pull
-            for l in 0..next {
-                push[next + i] = multiply_add::<FUSED>(-response[l * all + w + i], pull[l], push[next + i]);
-            }
-        }
+        let (defects, p) = (&mut b[start..start + next], &mut a[n + m..]);
         if self.factors.penalised {
-            let compliance = self.factors.compliance(next, k);
-            for i in 0..next {
-                push[i] -= dot::<FUSED>(&compliance[i * next..][..next], pull);
-            }
+            self.follow_penalised(sizes, k, (known, push), (p, defects));
+        } else {
+            self.follow::<FUSED>(sizes, k, (known, push), (p, defects));
+        }
+        p[..inner].copy_from_slice(&known[w..w + inner]);
+        x.copy_from_slice(&known[w + inner..]);
+        self.local_multipliers(k, known, &mut b[local_start..][..self.stages.local_rows]);
+    }
+
+    /// Completes `(w, x+)` and puts the multipliers in the place of `c`.
+    #[inline(always)]
+    fn follow<const FUSED: bool>(
+        &self,
+        sizes: Sizes,
+        k: usize,
+        (known, push): (&mut [f64], &mut [f64]),
+        (p, c): (&[f64], &mut [f64]),
+    ) {
+        let (w, all, next) = (sizes.reduced(), sizes.all(), sizes.next());
+        let (steps, curvature) = self.factors.response(sizes, k).split_at(next * all);
+        for i in 0..next {
+            push[i] = dot::<FUSED>(&steps[i * all..][..w], &known[..w]);
         }
         known[w..].copy_from_slice(&push[..next]);
-        pull[..inner].copy_from_slice(&push[..inner]);
-        x.copy_from_slice(&push[inner..next]);
-        b[start..start + next].copy_from_slice(&push[next..]);
-        self.local_multipliers(k, known, &mut b[local_start..][..self.stages.local_rows]);
+        for i in 0..next {
+            push[next + i] = p[i] + dot::<FUSED>(&curvature[i * all..][..all], known);
+        }
+        for i in 0..next {
+            known[w + i] += c[i];
+        }
+        c.fill(0.0);
+        let f = View { values: &steps[w..], row: all, column: 1 };
+        add_row_product::<FUSED>(-1.0, (View::rows(&push[next..], next), 0), f, next, c);
+    }
+
+    /// The same where rows give way, with `pull` and `b`.
+    fn follow_penalised(
+        &self,
+        sizes: Sizes,
+        k: usize,
+        (known, push): (&mut [f64], &mut [f64]),
+        (pull, b): (&[f64], &mut [f64]),
+    ) {
+        let (w, all, next) = (sizes.reduced(), sizes.all(), sizes.next());
+        known[w..].copy_from_slice(b);
+        let (response, compliance) = (self.factors.response(sizes, k), self.factors.compliance(next, k));
+        for i in 0..2 * next {
+            push[i] = dot::<false>(&response[i * all..][..all], known);
+        }
+        for i in 0..next {
+            push[i] -= dot::<false>(&compliance[i * next..][..next], pull);
+        }
+        known[w..].copy_from_slice(&push[..next]);
+        b.copy_from_slice(&push[next..]);
+        let f = View { values: &response[w..], row: all, column: 1 };
+        add_row_product::<false>(-1.0, (View::rows(pull, next), 0), f, next, b);
     }
 
     /// `lambda = (J v - b) / d`
@@ -163,10 +222,14 @@ impl Riccati {
     fn local_multipliers(&self, k: usize, known: &[f64], multipliers: &mut [f64]) {
         let entries = &self.assembly.local_entries;
         let (values, weights) = self.factors.local(k);
-        multipliers.iter_mut().for_each(|value| *value = -*value);
+        for value in multipliers.iter_mut() {
+            *value = -*value;
+        }
         for (entry, value) in entries.iter().zip(values) {
             multipliers[entry.row] += value * known[entry.position];
         }
-        multipliers.iter_mut().zip(weights).for_each(|(value, weight)| *value *= weight);
+        for (value, weight) in multipliers.iter_mut().zip(weights) {
+            *value *= weight;
+        }
     }
 }

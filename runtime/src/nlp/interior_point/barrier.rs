@@ -52,21 +52,18 @@ impl Barrier {
     /// `phi = f - mu sum ln(distance) + damping`
     pub(super) fn value(&self, space: &Space, values: &Values, y: &[f64]) -> f64 {
         let (mut logarithms, mut damping) = (LogarithmSum::default(), 0.0);
-        space.for_each_bound(y, |i, distance, _| {
-            logarithms.add(distance);
-            if is_one_sided(space, i) {
-                damping += distance;
-            }
-        });
+        space.for_each_bound(y, |_, distance, _| logarithms.add(distance));
+        for &(i, direction) in &space.one_sided {
+            damping += if direction > 0.0 { y[i] - space.lower[i] } else { space.upper[i] - y[i] };
+        }
         values.objective - self.mu * logarithms.sum() + DAMPING * self.mu * damping
     }
 
-    /// Adds the gradient of the barrier terms to `gradient`.
-    pub(super) fn add_gradient(&self, space: &Space, y: &[f64], gradient: &mut [f64]) {
-        space.for_each_bound(y, |i, distance, direction| {
-            let damping = if is_one_sided(space, i) { DAMPING } else { 0.0 };
-            gradient[i] += direction * self.mu * (damping - 1.0 / distance);
-        });
+    /// Adds the gradient of the damping to `gradient`.
+    pub(super) fn add_damping(&self, space: &Space, gradient: &mut [f64]) {
+        for &(i, direction) in &space.one_sided {
+            gradient[i] += direction * DAMPING * self.mu;
+        }
     }
 
     /// Slope of `phi` along a step; `slopes` must be those of the iterate.
@@ -76,11 +73,12 @@ impl Barrier {
         for (attached, d) in space.attached.iter().zip(&step.y[space.variables..]) {
             slope += attached.cost * d;
         }
-        space.for_each_bound(&at.y, |i, distance, direction| {
-            let damping = if is_one_sided(space, i) { DAMPING } else { 0.0 };
-            slope += direction * self.mu * (damping - 1.0 / distance) * step.y[i];
-        });
-        slope
+        for &(i, direction) in &space.one_sided {
+            slope += direction * DAMPING * self.mu * step.y[i];
+        }
+        let mut towards = 0.0;
+        space.for_each_bound(&at.y, |i, distance, direction| towards -= direction * step.y[i] / distance);
+        slope + self.mu * towards
     }
 
     /// Largest step lengths of primal and dual variables that stay inside.
@@ -107,13 +105,9 @@ impl Barrier {
         space.for_each_bound(y, |i, distance, direction| {
             let z = if direction > 0.0 { &mut lower[i] } else { &mut upper[i] };
             let centre = self.mu / distance;
-            *z = z.clamp(centre / MULTIPLIER_CORRIDOR, centre * MULTIPLIER_CORRIDOR);
+            *z = z.clamp(centre * (1.0 / MULTIPLIER_CORRIDOR), centre * MULTIPLIER_CORRIDOR);
         });
     }
-}
-
-fn is_one_sided(space: &Space, i: usize) -> bool {
-    space.lower[i].is_finite() != space.upper[i].is_finite()
 }
 
 /// Sum of logarithms, with one logarithm for many factors.

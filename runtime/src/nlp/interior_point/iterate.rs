@@ -78,7 +78,7 @@ impl Values {
 
     /// The largest residual.
     pub(super) fn largest(&self) -> f64 {
-        largest(self.residuals.iter().copied())
+        largest(&self.residuals)
     }
 
     /// `theta`: the 1-norm of the residuals.

@@ -13,7 +13,7 @@
 use super::barrier::Barrier;
 use super::iterate::{Iterate, Slopes, Step};
 use super::space::Space;
-use super::vectors::largest;
+use super::vectors::{are_finite, largest};
 use crate::linalg::riccati::Riccati;
 use crate::linalg::sparse_ldl::SparseLdl;
 use crate::linalg::{Factor, Inertia};
@@ -121,12 +121,14 @@ impl Kkt {
     /// Computes the diagonals that belong to the iterate.
     pub(super) fn assemble(&mut self, space: &Space, at: &Iterate, slopes: &Slopes, barrier: &Barrier) {
         self.sigma.fill(0.0);
-        let sigma = &mut self.sigma;
-        space.for_each_bound(&at.y, |i, distance, direction| {
-            sigma[i] += if direction > 0.0 { at.lower[i] } else { at.upper[i] } / distance;
-        });
         self.gradient.copy_from_slice(&slopes.lagrangian);
-        barrier.add_gradient(space, &at.y, &mut self.gradient);
+        let (sigma, gradient) = (&mut self.sigma, &mut self.gradient);
+        space.for_each_bound(&at.y, |i, distance, direction| {
+            let inverse = 1.0 / distance;
+            sigma[i] += inverse * if direction > 0.0 { at.lower[i] } else { at.upper[i] };
+            gradient[i] -= direction * barrier.mu * inverse;
+        });
+        barrier.add_damping(space, gradient);
     }
 
     /// Factors with the smallest regularisation that gives the right inertia; `false` if none does.
@@ -217,7 +219,7 @@ impl Kkt {
                 if direction > 0.0 { (at.lower[i], &mut lower[i]) } else { (at.upper[i], &mut upper[i]) };
             *dz = (mu - direction * z * y[i]) / distance - z;
         });
-        [&*y, lower, upper].into_iter().flatten().all(|value| value.is_finite())
+        [&*y, lower, upper].into_iter().all(|values| are_finite(values))
     }
 
     fn fill_right_side(&mut self, space: &Space, residuals: &[f64]) {
@@ -238,19 +240,19 @@ impl Kkt {
     fn solve_refined(&mut self, nlp: &dyn Nlp, space: &Space, slopes: &Slopes) -> bool {
         self.solution.fill(0.0);
         self.residual.copy_from_slice(&self.right);
-        let right = largest(self.right.iter().copied());
+        let right = largest(&self.right);
         let (mut before, mut now) = (f64::INFINITY, f64::INFINITY);
         for _ in 0..MOST_REFINEMENTS {
             self.factor.solve(&mut self.residual);
             self.solution.iter_mut().zip(&self.residual).for_each(|(x, correction)| *x += correction);
             self.compute_residual(nlp, space, slopes);
-            now = largest(self.residual.iter().copied());
+            now = largest(&self.residual);
             if now <= REFINED * right || now > 0.5 * before {
                 break;
             }
             before = now;
         }
-        let size = right.max(largest(self.solution.iter().copied()));
+        let size = right.max(largest(&self.solution));
         size.is_finite() && now <= 1e-5 * size
     }
 
@@ -302,7 +304,7 @@ impl Kkt {
         }
         self.factor.solve(&mut self.right);
         let estimate = &self.right[space.variables..];
-        if largest(estimate.iter().copied()) <= HUGE {
+        if largest(estimate) <= HUGE {
             at.lambda.copy_from_slice(estimate);
         }
     }

@@ -30,9 +30,15 @@ pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Wa
         return first;
     }
     let second = attempt(nlp, start, &Options { linear: Linear::SparseLdl, ..*options }, watch);
-    let (mut counts, is_found) = (first.counts, matches!(second.status, Status::Solved | Status::Acceptable));
+    // A verdict says more than a failure.
+    let is_taken = match second.status {
+        Status::Solved | Status::Acceptable => true,
+        Status::Infeasible => first.status == Status::NumericalFailure,
+        _ => false,
+    };
+    let mut counts = first.counts;
     counts.add(&second.counts);
-    Solution { counts, ..if is_found { second } else { first } }
+    Solution { counts, ..if is_taken { second } else { first } }
 }
 
 /// One attempt, without a second opinion.

@@ -6,7 +6,7 @@
 
 use super::iterate::{Iterate, Slopes, Values};
 use super::space::Space;
-use super::vectors::{largest, sum_of_sizes};
+use super::vectors::{largest_of, sum_of_sizes};
 
 /// Multipliers of this average size are considered normal.
 const NORMAL_MULTIPLIER: f64 = 100.0;
@@ -29,7 +29,7 @@ impl Residuals {
         let (bounds, rows) = ((2 * space.len()).max(1) as f64, at.lambda.len() as f64);
         let scale = |average: f64| average.max(NORMAL_MULTIPLIER) / NORMAL_MULTIPLIER;
         let gradients = slopes.lagrangian.iter().zip(&at.lower).zip(&at.upper);
-        let dual = largest(gradients.map(|((gradient, lower), upper)| gradient - lower + upper));
+        let dual = largest_of(gradients.map(|((gradient, lower), upper)| gradient - lower + upper));
         let (mut most, mut least) = (0.0f64, f64::INFINITY);
         space.for_each_bound(&at.y, |i, distance, direction| {
             let product = distance * if direction > 0.0 { at.lower[i] } else { at.upper[i] };

@@ -36,6 +36,8 @@ pub(super) struct Space {
     /// Which of them are finite.
     bounded_below: Vec<u32>,
     bounded_above: Vec<u32>,
+    /// Variables with one bound only, and its direction: +1 for a lower bound, -1 for an upper.
+    pub(super) one_sided: Vec<(usize, f64)>,
     /// Right-hand sides of the rows.
     pub(super) target: Vec<f64>,
     pub(super) fixed: Vec<bool>,
@@ -56,6 +58,7 @@ impl Space {
             upper: Vec::new(),
             bounded_below: Vec::new(),
             bounded_above: Vec::new(),
+            one_sided: Vec::new(),
             target: rows.iter().map(|b| if b.is_equality() { b.lower } else { 0.0 }).collect(),
             fixed,
             equality,
@@ -85,11 +88,15 @@ impl Space {
 
     fn push_bounds(&mut self, bounds: Bounds) {
         let index = self.len() as u32;
-        if bounds.lower > f64::NEG_INFINITY {
+        let (below, above) = (bounds.lower > f64::NEG_INFINITY, bounds.upper < f64::INFINITY);
+        if below {
             self.bounded_below.push(index);
         }
-        if bounds.upper < f64::INFINITY {
+        if above {
             self.bounded_above.push(index);
+        }
+        if below != above {
+            self.one_sided.push((self.len(), if below { 1.0 } else { -1.0 }));
         }
         self.lower.push(bounds.lower);
         self.upper.push(bounds.upper);

@@ -1,7 +1,7 @@
 //! To the grid and the width that the model names, from coarse grids and wide layers.
 //!
-//! The width shrinks on the coarsest grid, roughly, then the last width is solved on every second finer grid, each solve begun where the one before ended
-//! ([`prolong`]): far from the solution an iteration costs little, and on the finest grid few are left. Where this fails, widths shrink on the finest grid,
+//! The width shrinks on the coarsest grid, roughly, then the last width is solved on one finer grid after the other, each time more accurately, and each solve
+//! is begun where the one before ended ([`prolong`]): far from the solution an iteration costs little, and on the finest grid few are left. Where this fails, widths shrink on the finest grid,
 //! from half the size of the switching function on; where that fails, too, it is tried at once and with all patience.
 
 use super::Watch;
@@ -13,13 +13,14 @@ use crate::prolong::prolong;
 use crate::transcribe::TranscribedNlp;
 
 /// A grid of fewer intervals is not made coarser by half: it would say too little of the problem.
-const COARSE: usize = 500;
+const COARSE: usize = 250;
 /// Widths on the way, relative to the one that is named.
 const WIDER: [f64; 3] = [8.0, 4.0, 2.0];
-/// More is not asked of a solve with another width, nor of one on the coarsest grid or on another one: which of several close minima is found is decided
-/// on finer grids.
-const ROUGH: f64 = 1e-3;
-const COARSEST: f64 = 1e-4;
+/// More is not asked of a solve with another width, nor of the coarsest grid; from grid to grid it is `FINER` times as much, but never more than `CLOSE`:
+/// which of several close minima is found is decided on finer grids.
+const ROUGH: f64 = 1e-2;
+const COARSEST: f64 = 1e-3;
+const FINER: f64 = 0.1;
 const CLOSE: f64 = 1e-5;
 /// A solve on the way that takes longer leads nowhere.
 const MOST_ITERATIONS: usize = 300;
@@ -84,7 +85,8 @@ impl Run<'_> {
             if !is_good(&solution.status) {
                 return carried_over(nlp, chain, &start, solution);
             }
-            (widths, accuracy) = (&widths[widths.len().saturating_sub(1)..], CLOSE);
+            widths = &widths[widths.len().saturating_sub(1)..];
+            accuracy = (FINER * accuracy).max(CLOSE);
         }
         start = prolong(chain, &start, nlp.chain());
         self.shrink(nlp, start, widths, goal, watch)

@@ -5,13 +5,14 @@
 //! result changes nothing.
 
 use crate::review::reviewed;
-use fdcc_grammar::{Diagnostic, Parse, Severity, fix, parse};
+use fdcc_grammar::{Diagnostic, Memory, Parse, Severity, fix, parse_with};
 
 /// The text with all certain repairs, and with those that are likely if asked for.
 pub fn repair(text: &str, unsafely: bool) -> String {
-    let parsed = parse(text);
+    let mut memory = Memory::default();
+    let parsed = parse_with(&mut memory, text);
     let mut draft = Draft::new(text.to_owned(), Unreadable::of(text, &parsed), parsed);
-    while let Some(better) = draft.improved(unsafely) {
+    while let Some(better) = draft.improved(unsafely, &mut memory) {
         draft = better;
     }
     draft.text
@@ -45,15 +46,15 @@ impl Draft {
     }
 
     /// All repairs at once, or the first one that helps.
-    fn improved(&self, unsafely: bool) -> Option<Draft> {
+    fn improved(&self, unsafely: bool, memory: &mut Memory) -> Option<Draft> {
         let apply = |found: &[Diagnostic]| fix::apply(&self.text, found, unsafely);
         let single = self.found.iter().filter_map(|it| apply(std::slice::from_ref(it)));
-        apply(&self.found).into_iter().chain(single).find_map(|text| self.better(text))
+        apply(&self.found).into_iter().chain(single).find_map(|text| self.better(text, memory))
     }
 
     /// The text, if it is better than this one. What is harder to read is not looked at any further.
-    fn better(&self, text: String) -> Option<Draft> {
-        let parsed = parse(&text);
+    fn better(&self, text: String, memory: &mut Memory) -> Option<Draft> {
+        let parsed = parse_with(memory, &text);
         let unreadable = Unreadable::of(&text, &parsed);
         if unreadable > self.unreadable {
             return None;

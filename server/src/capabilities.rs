@@ -74,6 +74,7 @@ fn capabilities(agreed: &Agreed) -> ServerCapabilities {
             RenameOptions { prepare_provider: Some(true), ..RenameOptions::default() }.into(),
         ),
         document_symbol_provider: Some(true.into()),
+        workspace_symbol_provider: Some(true.into()),
         folding_range_provider: Some(true.into()),
         selection_range_provider: Some(true.into()),
         semantic_tokens_provider: Some(semantic_tokens().into()),

@@ -4,7 +4,7 @@ use crate::client::Failure;
 use crate::context::Context;
 use crate::features::{
     actions, completion, diagnostics, folding, formatting, hints, hover, lens, navigation, rename, signature,
-    symbols, tokens,
+    symbols, tokens, workspace,
 };
 use crate::session::Session;
 // The types of the requests that are answered, and of their parts.
@@ -36,6 +36,11 @@ pub fn request(session: &mut Session, request: lsp_server::Request) -> Result<Va
         "textDocument/signatureHelp" => call.about::<SignatureHelpRequest>(signature::help),
         "textDocument/inlayHint" => call.about::<InlayHintRequest>(hints::hints),
         "textDocument/codeLens" => call.about::<CodeLensRequest>(lens::lenses),
+        "workspace/symbol" => {
+            let result: WorkspaceSymbolResponse =
+                workspace::symbols(call.session, &parsed(call.params)?).into();
+            Ok(serde_json::to_value(result).expect("types of the protocol are JSON"))
+        }
         "textDocument/codeAction" => call.about::<CodeActionRequest>(actions::actions),
         _ => Err(Failure {
             code: lsp_server::ErrorCode::MethodNotFound,

@@ -71,6 +71,11 @@ impl Documents {
         self.open.get(&uri.0)
     }
 
+    /// All texts, in the order of their addresses.
+    pub fn all(&self) -> impl Iterator<Item = &Document> {
+        self.open.values()
+    }
+
     /// A text is opened, or opened anew.
     pub fn open(&mut self, uri: Uri, version: i32, text: &str, encoding: Encoding) {
         let text = Text::new(text, encoding);

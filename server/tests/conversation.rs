@@ -43,6 +43,25 @@ fn a_client_that_goes_away_leaves_no_server_behind() {
 }
 
 #[test]
+fn names_are_found_in_all_open_texts() {
+    let mut client = Client::start(json!({}));
+    client.open(URI, GOOD);
+    client.diagnostics();
+    client.open("file:///other.fdc", "param Mass = 2\nfn f(mass) = mass\nphase up { state amass(x, y) }\n");
+    client.diagnostics();
+    let found = client.result("workspace/symbol", json!({ "query": "mass" }));
+    let told = |it: &Value| {
+        let line = &it["location"]["range"]["start"]["line"];
+        format!("{} {} {} {}", it["name"], it["containerName"], line, it["location"]["uri"])
+    };
+    let told: Vec<String> = found.as_array().expect("a list").iter().map(told).collect();
+    assert_eq!(told, [r#""Mass" null 0 "file:///other.fdc""#, r#""amass" "up" 2 "file:///other.fdc""#,]);
+    let all = client.result("workspace/symbol", json!({ "query": "" }));
+    assert!(all.as_array().expect("a list").iter().any(|it| it["location"]["uri"] == URI));
+    assert!(client.end());
+}
+
+#[test]
 fn a_text_is_followed_from_opening_to_closing() {
     let mut client = Client::start(json!({}));
     client.open(URI, GOOD);

@@ -78,7 +78,7 @@ const PIECES: &[&str] = &[
     "link a -> b { h := h }\n",
 ];
 
-/// Requests about a place, a range or the whole text.
+/// Requests about a place, a range, the whole text or all texts.
 const METHODS: &[&str] = &[
     "textDocument/hover",
     "textDocument/completion",
@@ -88,6 +88,7 @@ const METHODS: &[&str] = &[
     "textDocument/prepareRename",
     "textDocument/rename",
     "textDocument/documentSymbol",
+    "workspace/symbol",
     "textDocument/foldingRange",
     "textDocument/selectionRange",
     "textDocument/semanticTokens/full",
@@ -197,6 +198,7 @@ impl Fuzzer {
             "position": place,
             "range": self.range(),
             "positions": [place],
+            "query": self.random.of(&["", "x", "Ä"]),
             "newName": self.random.of(&["y", "state", "θ", "two words", ""]),
             "context": { "diagnostics": [], "includeDeclaration": true, "triggerKind": 1 },
             "options": { "tabSize": 2, "insertSpaces": true },

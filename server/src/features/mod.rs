@@ -14,3 +14,4 @@ pub mod rename;
 pub mod signature;
 pub mod symbols;
 pub mod tokens;
+pub mod workspace;

@@ -91,7 +91,7 @@ impl Outline<'_> {
 }
 
 /// The nearest of the protocol's kinds.
-fn kind(kind: Kind) -> SymbolKind {
+pub fn kind(kind: Kind) -> SymbolKind {
     match kind {
         Kind::Param | Kind::Const => SymbolKind::Constant,
         Kind::Function => SymbolKind::Function,

@@ -66,8 +66,10 @@ impl Riccati {
         let response = self.factors.response(sizes, k);
         self.push::<FUSED>(sizes, response, &g[w..], (defects, push));
         a[n + m..].copy_from_slice(&push[..next]);
-        let response = View::rows(response, all);
-        add_row_product::<FUSED>(1.0, (View::rows(push, 2 * next), 0), response, 2 * next, &mut g[..w]);
+        // What does not wait for the interval behind comes first.
+        let ((p, c), (above, below)) = (push.split_at(next), response.split_at(next * all));
+        add_row_product::<FUSED>(1.0, (View::rows(c, next), 0), View::rows(below, all), next, &mut g[..w]);
+        add_row_product::<FUSED>(1.0, (View::rows(p, next), 0), View::rows(above, all), next, &mut g[..w]);
         self.eliminate_controls::<FUSED>(sizes, k, g, (gradient, &mut a[n..n + m]));
     }
 
@@ -92,9 +94,9 @@ impl Riccati {
             c[i] = dot::<FUSED>(&steps[i * all + w..][..next], defects);
         }
         defects.copy_from_slice(c);
-        for i in 0..next {
-            p[i] += dot::<FUSED>(&curvature[i * all + w..][..next], defects);
-        }
+        // M is symmetric.
+        let m = View { values: &curvature[w..], row: all, column: 1 };
+        add_row_product::<FUSED>(1.0, (View::rows(c, next), 0), m, next, p);
     }
 
     /// Local rows: `g -= J' diag(1/d) b`
@@ -118,9 +120,8 @@ impl Riccati {
     ) {
         let Sizes { n, m, .. } = sizes;
         let kept = sizes.kept();
-        for i in 0..kept {
-            gradient[i] = g[sizes.position(i)];
-        }
+        gradient[..n].copy_from_slice(&g[..n]);
+        gradient[n..].copy_from_slice(&g[n + m..sizes.reduced()]);
         let fixed = &self.fixed[self.stages.control(k).start..][..m];
         let g = &mut g[n..n + m];
         for i in (0..m).filter(|i| fixed[*i]) {

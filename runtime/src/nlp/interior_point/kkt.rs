@@ -247,7 +247,10 @@ impl Kkt {
             self.solution.iter_mut().zip(&self.residual).for_each(|(x, correction)| *x += correction);
             self.compute_residual(nlp, space, slopes);
             now = largest(&self.residual);
-            if now <= REFINED * right || now > 0.5 * before {
+            if now <= REFINED * right && right.is_finite() {
+                return true;
+            }
+            if now.is_nan() || now > 0.5 * before {
                 break;
             }
             before = now;

@@ -7,7 +7,8 @@ use crate::output::saved::{Column, Saved};
 use crate::solver::{Failure, Solved};
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::problem::{Method, Problem};
-use fdcc_runtime::starts::{Earlier, warm};
+use fdcc_runtime::starts::Earlier;
+use fdcc_runtime::warm::{again, from_earlier};
 use std::path::Path;
 
 /// Reads a `.sol.json` and interpolates it on the grid of the problem. Signals that it does not have are guessed.
@@ -17,7 +18,7 @@ pub fn from_file(path: &Path, problem: &Problem) -> Result<Start, Failure> {
         let (path, model) = (path.display(), &problem.name);
         return Err(Failure::File(format!("{path} has no state or control of the model `{model}`")));
     }
-    Ok(warm(problem, &earlier))
+    Ok(from_earlier(problem, &earlier))
 }
 
 /// The end of another solve as the start of this one: with its multipliers if the grid is the same.
@@ -28,9 +29,9 @@ pub fn from_solved(before: &Solved, problem: &Problem) -> Start {
         (intervals, scheme, controls, mesh)
     };
     if shape(&before.problem) == shape(problem) {
-        return Start::near(solution);
+        return again(problem, solution);
     }
-    warm(problem, &Saved::from(&before.document).earlier(problem))
+    from_earlier(problem, &Saved::from(&before.document).earlier(problem))
 }
 
 /// From 0 to 1; none if one is missing.

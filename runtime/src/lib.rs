@@ -27,6 +27,7 @@ pub mod sensitivity;
 
 pub mod prolong;
 pub mod starts;
+pub mod warm;
 
 pub mod homotopy;
 pub mod pieces;

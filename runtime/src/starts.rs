@@ -1,7 +1,7 @@
 //! Starting points other than the model's guess: an earlier solution on another grid, and random variations.
 
 use crate::linalg::Stages;
-use crate::nlp::{Nlp, Solution, Start, Status, Warm, estimate};
+use crate::nlp::{Nlp, Solution, Start, Status};
 use crate::problem::Problem;
 use crate::transcribe::TranscribedNlp;
 use crate::transcribe::interval::Signal;
@@ -19,22 +19,8 @@ pub struct Earlier {
     pub unknowns: Vec<Option<f64>>,
 }
 
-/// The earlier solution as a warm start on the grid of the problem. Its multipliers are estimated, unless the width of the layer is our choice: then they would be
-/// those of another width.
-pub fn warm(problem: &Problem, earlier: &Earlier) -> Start {
-    let v = resample(problem, earlier);
-    let width = problem.method.continuation.first().copied().or(problem.method.sigma);
-    if width.is_none() && !problem.surfaces.is_empty() {
-        return Start { v, warm: None };
-    }
-    let mut nlp = TranscribedNlp::new(problem);
-    problem.surfaces.iter().zip(width).for_each(|(surface, width)| nlp.set_parameter(surface.sigma, width));
-    let warm = estimate::multipliers(&mut nlp, &v).map(|multipliers| Warm { multipliers, mu: Warm::ROOM });
-    Start { v, warm }
-}
-
 /// The earlier solution on the grid of the problem; what it lacks comes from the guess.
-fn resample(problem: &Problem, earlier: &Earlier) -> Vec<f64> {
+pub(crate) fn resample(problem: &Problem, earlier: &Earlier) -> Vec<f64> {
     let mut nlp = TranscribedNlp::new(problem);
     let stages = nlp.chain();
     let mut v = nlp.guess();

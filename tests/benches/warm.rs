@@ -9,6 +9,7 @@ use std::time::Instant;
 use fdcc_runtime::homotopy::{self, Outcome};
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::problem::{Problem, Solver};
+use fdcc_runtime::warm::again;
 use fdcc_tests::models::{Changes, load};
 
 /// A model, the settings it is solved with, a parameter, its values before and after.
@@ -36,15 +37,14 @@ fn main() {
     );
     for (model, settings, parameter, before, after) in CASES {
         let solved = solve(&load(model, &[(parameter, before)], settings), None).0;
-        let near = || Some(Start::near(&solved.solution));
         let [mut interior, mut sequential] = [(); 2].map(|()| load(model, &[(parameter, after)], settings));
         (interior.method.solver, sequential.method.solver) = (Solver::InteriorPoint, Solver::Sequential);
         let change = format!("{parameter} = {before} to {after}");
         let intervals = interior.method.intervals;
         for (name, problem, start) in [
             ("from the guess", &interior, None),
-            ("interior point, warm", &interior, near()),
-            ("sqp, warm", &sequential, near()),
+            ("interior point, warm", &interior, Some(again(&interior, &solved.solution))),
+            ("sqp, warm", &sequential, Some(again(&sequential, &solved.solution))),
         ] {
             let (outcome, seconds) = fastest(problem, &start);
             let (solution, status) = (&outcome.solution, &outcome.solution.status);

@@ -5,7 +5,8 @@ use crate::output::named::Named;
 use crate::output::saved::{Column, Saved, SavedJump};
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::problem::Problem;
-use fdcc_runtime::starts::{Earlier, warm};
+use fdcc_runtime::starts::Earlier;
+use fdcc_runtime::warm::from_earlier;
 
 /// The start from the solution, whose jumps are those of the problem; nothing if it is not whole. `between` is what holds between the jumps.
 pub fn start(saved: &Saved, between: &Problem, problem: &Problem) -> Option<Start> {
@@ -20,7 +21,7 @@ pub fn start(saved: &Saved, between: &Problem, problem: &Problem) -> Option<Star
     unknowns.extend(cut.lengths());
     let times = normalised(saved.time.get(..=intervals)?);
     (intervals * pieces + 1 == saved.time.len())
-        .then(|| warm(problem, &Earlier { times, states, controls, unknowns }))
+        .then(|| from_earlier(problem, &Earlier { times, states, controls, unknowns }))
 }
 
 /// A solution of several pieces with so many intervals each.

@@ -179,9 +179,13 @@ impl Start {
 
     /// The same for a programme that is not quite the same: other conditions may be active at its solution, and the barrier leaves them room to become so.
     pub fn near(solution: &Solution) -> Self {
-        let mut start = Start::after(solution);
-        start.warm.iter_mut().for_each(|warm| warm.mu = warm.mu.max(Warm::ROOM));
-        start
+        Start::after(solution).with_room()
+    }
+
+    /// The same with room for other conditions to become active.
+    pub(crate) fn with_room(mut self) -> Self {
+        self.warm.iter_mut().for_each(|warm| warm.mu = warm.mu.max(Warm::ROOM));
+        self
     }
 }
 

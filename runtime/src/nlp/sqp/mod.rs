@@ -32,7 +32,8 @@ pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Wa
         return first;
     }
     let done = first.counts.iterations;
-    let mut second = interior_point::solve(nlp, start, options, &mut |progress| {
+    // Where this method ended before, there is no room for a barrier.
+    let mut second = interior_point::solve(nlp, &start.clone().with_room(), options, &mut |progress| {
         watch(&Progress { iteration: done + progress.iteration, ..*progress })
     });
     second.counts.add(&first.counts);

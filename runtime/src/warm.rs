@@ -39,5 +39,5 @@ fn room(nlp: &mut TranscribedNlp, v: &[f64]) -> f64 {
     const LEAST: f64 = 1e-6;
     const FACTOR: f64 = 10.0;
     let violation = constraint_violation(nlp, v);
-    (FACTOR * violation * violation).max(LEAST).min(Warm::ROOM)
+    (FACTOR * violation * violation).clamp(LEAST, Warm::ROOM)
 }

@@ -19,6 +19,8 @@ const WIDER: [f64; 3] = [8.0, 4.0, 2.0];
 /// More is not asked of a solve with another width, nor of the coarsest grid; from grid to grid it is `FINER` times as much, but never more than `CLOSE`:
 /// which of several close minima is found is decided on finer grids.
 const ROUGH: f64 = 1e-2;
+/// The same where there is no coarse grid, and no finer one will put right what was found.
+const CAREFUL: f64 = 1e-3;
 const COARSEST: f64 = 1e-3;
 const FINER: f64 = 0.1;
 const CLOSE: f64 = 1e-5;
@@ -104,7 +106,8 @@ impl Run<'_> {
         let Some((last, before)) = widths.split_last() else {
             return self.solve(nlp, &start, goal, watch);
         };
-        let rough = Goal { tol: goal.tol.max(ROUGH), ..goal };
+        let is_coarse = nlp.chain().intervals < self.problem.method.intervals;
+        let rough = Goal { tol: goal.tol.max(if is_coarse { ROUGH } else { CAREFUL }), ..goal };
         for width in before {
             self.sigma.fill(*width);
             let solution = self.solve(nlp, &start, rough, watch);

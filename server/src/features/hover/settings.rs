@@ -29,7 +29,7 @@ const KEYS: &[(&str, &str)] = &[
     ),
     (
         "solver",
-        "Interior point method, or the conic solver for convex problems. Without it the problem decides.",
+        "Interior point method, sequential quadratic programming, or the conic solver for convex problems. Without it the problem decides.",
     ),
     (
         "linear",
@@ -67,6 +67,7 @@ const WORDS: &[(&str, &str)] = &[
         "A polynomial through its values at the nodes of the collocation; it may jump from interval to interval.",
     ),
     ("interior_point", "Interior point method with a filter line search; for every problem."),
+    ("sqp", "Sequential quadratic programming: few but slow iterations from an earlier solution (`--warm`)."),
     ("convex", "The conic solver: what it finds is the global optimum. For problems that are convex."),
     ("riccati", "A recursion along the grid: the fastest where all goes well."),
     ("sparse_ldl", "A sparse factorisation: slower, and more robust."),

@@ -14,45 +14,31 @@ pub(super) struct Working {
 }
 
 impl Working {
-    /// No condition at all.
-    pub(super) fn none(nlp: &dyn Nlp) -> Self {
-        Working {
-            rows: vec![None; nlp.row_bounds().len()],
-            variables: vec![None; nlp.variable_bounds().len()],
-        }
-    }
-
     /// Rows that are equations whatever happens.
     pub(super) fn equations(nlp: &dyn Nlp, at: &Point) -> Self {
         let rows = nlp.row_bounds().iter().zip(&at.rows);
         let residual = |(bounds, row): (&Bounds, &f64)| bounds.is_equality().then(|| row - bounds.lower);
-        Working { rows: rows.map(residual).collect(), ..Working::none(nlp) }
+        Working { rows: rows.map(residual).collect(), variables: vec![None; at.v.len()] }
     }
 
-    /// Where violations have this price: those that need not be paid for.
+    /// Those, and the bounds whose multiplier is larger than the distance from them. Fixed variables stay where they are.
+    pub(super) fn active(nlp: &dyn Nlp, at: &Point, known: &Multipliers) -> Self {
+        let rows = nlp.row_bounds().iter().zip(&at.rows).zip(&known.rows);
+        let rows = rows.map(|((bounds, row), lambda)| residual(bounds, *row, *lambda));
+        let multipliers = known.lower.iter().zip(&known.upper).map(|(lower, upper)| upper - lower);
+        let variables = nlp.variable_bounds().iter().zip(&at.v).zip(multipliers);
+        let variables =
+            variables.map(|((bounds, v), z)| residual(bounds, *v, z).filter(|_| !bounds.is_equality()));
+        Working { rows: rows.collect(), variables: variables.collect() }
+    }
+
+    /// Those without the rows whose violation is paid for at this price.
     pub(super) fn tight(nlp: &dyn Nlp, at: &Point, known: &Multipliers, price: f64) -> Self {
         let mut working = Working::active(nlp, at, known);
         let rows = working.rows.iter_mut().zip(&known.rows);
         rows.filter(|(_, lambda)| lambda.abs() >= PAID * price).for_each(|(expected, _)| *expected = None);
         working
     }
-
-    /// Those, and the bounds whose multiplier is larger than the distance from them.
-    pub(super) fn active(nlp: &dyn Nlp, at: &Point, known: &Multipliers) -> Self {
-        let rows = nlp.row_bounds().iter().zip(&at.rows).zip(&known.rows);
-        let bounds = known.lower.iter().zip(&known.upper).map(|(lower, upper)| upper - lower);
-        let variables = nlp.variable_bounds().iter().zip(&at.v).zip(bounds);
-        Working {
-            rows: rows.map(|((bounds, row), lambda)| residual(bounds, *row, *lambda)).collect(),
-            variables: variables
-                .map(|((bounds, v), z)| free(bounds).and_then(|_| residual(bounds, *v, z)))
-                .collect(),
-        }
-    }
-}
-
-fn free(bounds: &Bounds) -> Option<()> {
-    (!bounds.is_equality()).then_some(())
 }
 
 fn residual(bounds: &Bounds, value: f64, multiplier: f64) -> Option<f64> {

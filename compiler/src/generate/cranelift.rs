@@ -8,7 +8,7 @@
 //! ```
 //!
 //! All numbers are `F64X2`: the same quantity at two neighbouring points. What is called instead of written out is in
-//! [`library`].
+//! [`library()`].
 
 mod elementary;
 mod kernel;

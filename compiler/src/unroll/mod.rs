@@ -7,7 +7,7 @@
 //! x_j' = D_j f(T_j + tau D_j, x_j, u_j, p)      psi(T_j+1, x_j(1), p) = 0      x_j+1(0) = r(T_j+1, x_j(1), p)
 //! ```
 //!
-//! Which jumps happen, and in which order, is given ([`sequences`]). The result is a model like any other: smooth between the jumps, and
+//! Which jumps happen, and in which order, is given ([`sequences()`]). The result is a model like any other: smooth between the jumps, and
 //! differentiated through them by the dependence of all pieces on the lengths.
 
 mod hold;

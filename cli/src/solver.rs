@@ -15,7 +15,7 @@ use fdcc_compiler::Model;
 use fdcc_grammar::{Diagnostic, SourceFile};
 use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::nlp::{Start, Status};
-use fdcc_runtime::problem::Problem;
+use fdcc_runtime::problem::{Columns, Problem};
 use fdcc_runtime::transcribe::unknowns;
 use sha2::{Digest, Sha256};
 use std::time::Instant;
@@ -96,6 +96,9 @@ impl Compiled {
         let source_sha256 = sha256(&prepared.source.text);
         let units = Units::from(&prepared.model);
         let jumps = (!prepared.model.jumps.is_empty()).then(|| prepared.model.clone());
+        if jumps.is_none() {
+            make_machine_code(&problem);
+        }
         Ok(Compiled { problem, jumps, source_sha256, units, begin, seconds: begin.elapsed().as_secs_f64() })
     }
 
@@ -175,6 +178,20 @@ impl Solved {
     /// How a command with this solve ends.
     pub fn exit(&self) -> Exit {
         if self.is_good() { Exit::Fine } else { Exit::NotSolved }
+    }
+}
+
+/// Machine code is made when it is first called. What every solve calls is called here, so that it counts as compiling.
+fn make_machine_code(problem: &Problem) {
+    let parameters: Vec<f64> = problem.parameters.iter().map(|it| it.value).collect();
+    for function in [&problem.dynamics, &problem.path, &problem.boundary] {
+        let table = |columns| Columns::new(columns, 1);
+        let (points, multipliers) = (table(function.layout().point_inputs()), table(function.outputs()));
+        let mut values = table(function.outputs());
+        let [mut jacobian, mut hessian] =
+            [function.jacobian_pattern(), function.hessian_pattern()].map(|it| table(it.entries.len()));
+        function.value(&points, &parameters, &mut values);
+        function.derivatives(&points, &parameters, &multipliers, &mut values, &mut jacobian, &mut hessian);
     }
 }
 

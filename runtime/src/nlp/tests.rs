@@ -2,7 +2,7 @@
 
 use super::{interior_point, sqp};
 use crate::linalg::{Family, Stages, Triplets};
-use crate::nlp::{Derivatives, Nlp, Options, Place, Solution, Start, Status, Watch};
+use crate::nlp::{Derivatives, Multipliers, Nlp, Options, Place, Solution, Start, Status, Warm, Watch};
 use crate::problem::{Bounds, Linear};
 use std::ops::ControlFlow;
 
@@ -168,6 +168,23 @@ fn where_line_searches_jam_the_solution_is_found() {
     assert!(near, "{:?}", found.v);
     assert_eq!(stuck.status, Status::Infeasible);
     assert!((stuck.v[0] + 1.0).abs() < 1e-3 && stuck.counts.restorations > 0, "{:?}", stuck.v);
+}
+
+/// (x - 1)^2 with x >= 2, begun at its solution as the conic solver leaves it: without a barrier parameter.
+#[test]
+fn a_start_without_a_barrier_parameter_is_one_all_the_same() {
+    let values: Values = |x, _| (x[0] - 1.0).powi(2);
+    let slopes: Slopes = |x, g, _| g[0] = 2.0 * (x[0] - 1.0);
+    let curvature: Curvature = |_, factor, _, h| h[0] = 2.0 * factor;
+    let mut dense = Dense::new(vec![at_least(2.0)], vec![], (values, slopes, curvature));
+    let multipliers = Multipliers { lower: vec![2.0], ..Multipliers::zeros(&dense) };
+    let start = Start { v: vec![2.0], warm: Some(Warm { multipliers, mu: 0.0 }) };
+    let options = Options { tol: 1e-9, max_iter: 300, linear: Linear::Automatic };
+    for method in METHODS {
+        let solution = method(&mut dense, &start, &options, &mut |_| ControlFlow::Continue(()));
+        assert_eq!(solution.status, Status::Solved);
+        assert!((solution.v[0] - 2.0).abs() < 1e-6, "{:?}", solution.v);
+    }
 }
 
 /// Minimise x subject to nothing.

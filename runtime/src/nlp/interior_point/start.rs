@@ -15,7 +15,9 @@ const WARM_PUSH: f64 = 1e-5;
 pub(super) fn prepare(nlp: &mut Scaled, start: &Start, options: Options) -> Algorithm {
     let space = Space::new(nlp);
     let (mu, push) = match &start.warm {
-        Some(warm) => (warm.mu, WARM_PUSH),
+        Some(warm) if warm.mu > 0.0 => (warm.mu, WARM_PUSH),
+        // A method without a barrier has no parameter of it.
+        Some(_) => (options.tol, WARM_PUSH),
         None => (FIRST_MU, COLD_PUSH),
     };
     let y = first_point(nlp, &space, &start.v, push);

@@ -366,6 +366,8 @@ fn a_solution_with_jumps_is_a_warm_start() {
         json(&output)
     };
     let cold = solve(&["--out", "."]);
+    let page = std::fs::read_to_string(folder.join("bounce.html")).expect("it was written");
+    assert!(page.contains("<td>jump bounce</td><td>at t = 0.54870837"), "{page}");
     let near = solve(&["--set", "e=0.81"]);
     let warm = solve(&["--set", "e=0.81", "--warm", "bounce.sol.json", "--method", "N=200"]);
     let [cold, near, warm] =

@@ -66,6 +66,10 @@ fn rows(document: &Document) -> Vec<(String, String)> {
     rows.extend(
         document.free.0.iter().map(|(name, value)| (name.clone(), document.units.value(name, *value, 10))),
     );
+    let jumps = document.jumps.iter();
+    rows.extend(jumps.map(|it| {
+        (format!("jump {}", it.jump), format!("at t = {}", document.units.value("time", it.time, 10)))
+    }));
     rows.push(("iterations".into(), document.iterations.to_string()));
     rows.push(("constraint violation".into(), scientific(document.constraint_violation, 1)));
     rows.push(("optimality error".into(), scientific(document.kkt_error, 1)));

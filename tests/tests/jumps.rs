@@ -130,6 +130,30 @@ fn after_the_last_bounce_the_ball_lies_still() {
     assert!(height[40..].iter().all(|height| height.abs() < 1e-7), "{height:?}");
 }
 
+/// From 0 with speed 1 to a cushion at 0.8 and back, as fast as thrust 1 allows: there it has the speed `sqrt(2.6)`, of which 0.7 are left. However it is said
+/// that nothing goes through the cushion, it says nothing new where the cushion is hit.
+#[test]
+fn conditions_that_say_the_same_as_the_surface_change_nothing() {
+    let (speed, rest) = (2.6f64.sqrt(), 0.7 * 2.6f64.sqrt());
+    let fastest = (speed - 1.0) + ((rest * rest + 1.6).sqrt() - rest);
+    let cases = [
+        ("", ""),
+        (" in [-1, 0.8]", ""),
+        ("", "path inside: x <= 0.8\n"),
+        ("", "path inside: 3*x - 2.4 <= 0\n"),
+        (" in [-1, 0.8]", "path inside: 2*(0.8 - x) >= 0\n"),
+    ];
+    for (bounds, path) in cases {
+        let text = format!(
+            "model cushioned\nfree T in [0.5, 6] guess 2\ntime t in [0, T]\nstate x{bounds} start 0\nstate v start 1\n\
+             control u in [-1, 1]\nsurface cushion = 2*(0.8 - x)\ndynamics {{\n  x' = v\n  v' = u\n}}\n\
+             jump bank on cushion falling at most 1 {{ v := -0.7*v }}\n{path}end x == 0\nminimize T\n\
+             method {{ scheme = midpoint  N = 40 }}\n"
+        );
+        expect_near(solve(&text, &[0], &[]).solved.objective(), fastest, 1e-7);
+    }
+}
+
 /// A puck slides 1 m to a wall and half a metre back: `e^2 (v0^2 - 2a) = 2a/2` with the deceleration `a`.
 #[test]
 fn friction_and_an_impact_go_together() {

@@ -80,6 +80,6 @@ impl Unrolling<'_> {
     /// Whether a constraint says of a held surface what is so anyway.
     pub(super) fn is_held(&mut self, j: usize, row: &Row) -> bool {
         let Some(held) = self.held.filter(|held| j >= held.from) else { return false };
-        row.value == held.psi || row.value == self.graph.neg(held.psi)
+        self.is_guard(held.psi, row.value)
     }
 }

@@ -5,6 +5,7 @@
 
 use super::Unrolling;
 use super::hold::approach;
+use crate::differentiate::derivative;
 use crate::graph::{ExprId, Graph};
 use crate::model::{Jump, Place, Range, Row, Symbol};
 use fdcc_grammar::ast::Direction;
@@ -142,7 +143,8 @@ impl Unrolling<'_> {
             return Row { value: within(&mut self.graph, row.range), ..row };
         }
         let value = self.in_piece(j, row.value);
-        let ends_here = j < self.sequence.len() && self.is_guard(self.jump(j), row.value);
+        let ends_here = j < self.sequence.len()
+            && self.is_guard(self.whole.surfaces[self.jump(j).surface].psi, row.value);
         if !ends_here {
             return Row { value, ..row };
         }
@@ -152,12 +154,31 @@ impl Unrolling<'_> {
         Row { value: self.graph.select_le(tau, last, value, inside), ..row }
     }
 
-    /// Whether a function is that of a surface, but for its sign.
-    fn is_guard(&mut self, jump: &Jump, value: ExprId) -> bool {
-        let psi = self.whole.surfaces[jump.surface].psi;
-        let other = self.graph.neg(psi);
-        value == psi || value == other
+    /// Whether a value is known where the function of a surface is 0: both depend on one state only, or their slopes are in proportion.
+    pub(super) fn is_guard(&mut self, psi: ExprId, value: ExprId) -> bool {
+        let varies = |symbol: &Symbol| !matches!(symbol, Symbol::Param(_) | Symbol::Free(_));
+        let moving = |graph: &Graph, of: ExprId| -> Vec<u32> {
+            let inputs = graph.inputs_of(&[of]).into_iter();
+            inputs.filter(|at| varies(&self.model.symbols[*at as usize])).collect()
+        };
+        let inputs = moving(&self.graph, psi);
+        if moving(&self.graph, value) != inputs {
+            return false;
+        }
+        let mut slopes = |of: ExprId| -> Vec<ExprId> {
+            inputs.iter().map(|at| derivative(&mut self.graph, of, *at)).collect()
+        };
+        let (own, its) = (slopes(value), slopes(psi));
+        let opposite: Vec<ExprId> = its.iter().map(|slope| self.graph.neg(*slope)).collect();
+        inputs.len() == 1 || own == its || own == opposite || in_proportion(&self.graph, &own, &its)
     }
+}
+
+/// Whether slopes are numbers, and one list a multiple of the other.
+fn in_proportion(graph: &Graph, own: &[ExprId], its: &[ExprId]) -> bool {
+    let numbers = |of: &[ExprId]| of.iter().map(|id| graph.as_number(*id)).collect::<Option<Vec<f64>>>();
+    let (Some(own), Some(its)) = (numbers(own), numbers(its)) else { return false };
+    own.iter().zip(&its).all(|(a, b)| (a * its[0] - b * own[0]).abs() <= 1e-12 * (a * its[0]).abs())
 }
 
 /// Whether a surface is the place of jumps in both directions.

@@ -25,8 +25,16 @@ pub struct Residuals {
     pub signs: f64,
     /// Difference from the objective that the solution claims.
     pub objective: f64,
-    /// The largest multiplier: a scale for the others.
-    pub multiplier: f64,
+    /// What violations are worth to the objective, to first order.
+    pub owed: f64,
+}
+
+impl Residuals {
+    /// The largest of all, relative to the objective where that is more than 1; never to multipliers, which may be of any size where there is no optimum.
+    pub fn error(&self, objective: f64) -> f64 {
+        let scale = objective.abs().max(1.0);
+        largest([self.stationarity / scale, self.feasibility, self.complementarity / scale, self.signs])
+    }
 }
 
 /// All conditions at a solution, with its multipliers.
@@ -49,7 +57,7 @@ pub fn residuals(problem: &Problem, outcome: &Outcome) -> Residuals {
         }))),
         signs: largest(lower.iter().chain(upper).map(|z| (-z).max(0.0))),
         objective: (at.objective - solution.objective).abs(),
-        multiplier: largest(rows.iter().chain(lower).chain(upper).map(|value| value.abs())),
+        owed: owed(&at, &solution.v, &solution.multipliers).abs(),
     }
 }
 
@@ -74,6 +82,17 @@ fn stationarity(at: &Transcribed, multipliers: &Multipliers) -> Vec<f64> {
         *value = if at.variable_bounds[i].is_equality() { 0.0 } else { value.abs() };
     }
     gradient
+}
+
+/// The sum of all multipliers times violations.
+fn owed(at: &Transcribed, v: &[f64], multipliers: &Multipliers) -> f64 {
+    let excess =
+        |bounds: &Bounds, value: f64| (value - bounds.upper).max(0.0) - (bounds.lower - value).max(0.0);
+    let of_rows = at.row_bounds.iter().zip(&at.rows).zip(&multipliers.rows);
+    let rows: f64 = of_rows.map(|((bounds, row), lambda)| excess(bounds, *row) * lambda).sum();
+    let both = multipliers.upper.iter().zip(&multipliers.lower).map(|(upper, lower)| upper - lower);
+    let of_variables = at.variable_bounds.iter().zip(v).zip(both);
+    rows + of_variables.map(|((bounds, v), z)| excess(bounds, *v) * z).sum::<f64>()
 }
 
 /// A positive multiplier belongs to the upper bound, a negative one to the lower; infinite where that bound is not.

@@ -11,6 +11,10 @@ use fdcc_tests::models::{meaning, try_solve};
 /// What is not solved yet, and why.
 const UNSOLVED: &[(&str, &str)] = &[
     ("decay_fit", "measured data"),
+    (
+        "gripper",
+        "the same as the sled; it was called solved, at an objective 10 % too high, while multipliers excused every error",
+    ),
     ("sled_on_ice", "stops under friction alone: there is no feasible point while friction is smoothed"),
     ("two_stage", "phases"),
 ];

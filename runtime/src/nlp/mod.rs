@@ -8,6 +8,7 @@
 //! rate at which the optimal objective grows with the right-hand side of a row.
 
 pub mod convex;
+mod error_scale;
 pub(crate) mod estimate;
 mod filter;
 pub mod interior_point;

@@ -3,7 +3,7 @@
 use super::barrier::Barrier;
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::kkt::{Kkt, System};
-use super::residuals::Residuals;
+use super::residuals::{Residuals, owed};
 use super::restoration::Restored;
 use super::search::{Accepted, Search};
 use super::space::Space;
@@ -15,11 +15,13 @@ use std::ops::ControlFlow;
 /// An error this small for this many iterations is acceptable.
 const ACCEPTABLE_ERROR: f64 = 1e-6;
 const ACCEPTABLE_ITERATIONS: usize = 100;
+/// An optimum may owe so many times the tolerance to violations.
+const MOST_OWED: f64 = 1e3;
 /// Variables beyond this, at a point that is feasible relative to them, have left the problem.
 const DIVERGED: f64 = 1e10;
 /// A step this small, relative to the iterate, is rounding.
 const TINY_STEP: f64 = 10.0 * f64::EPSILON;
-/// So many steps of rounding in a row at the last barrier parameter end the solve.
+/// So many steps of rounding in a row, at the last barrier parameter or because they were cut down to it, lead nowhere.
 const MOST_TINY_STEPS: usize = 5;
 /// A restoration phase that is stuck is begun anew so many times.
 const MOST_RESTARTS: usize = 4;
@@ -48,13 +50,13 @@ pub(super) struct Algorithm {
     pub(super) residuals: Residuals,
     pub(super) acceptable: usize,
     pub(super) tiny_steps: usize,
+    /// Accepted steps in a row that were cut down to rounding.
+    pub(super) standing: usize,
     pub(super) watchdog: Watchdog,
     /// How often the filter was emptied at a feasible point.
     pub(super) emptied: usize,
     /// Whether rows were given the values that they have, because a violation below the acceptable one could not be mended.
     pub(super) is_relaxed: bool,
-    /// Whether bounds were moved outwards by the tolerance.
-    pub(super) is_widened: bool,
     /// Whether the derivatives belong to the iterate.
     pub(super) fresh: bool,
 }
@@ -73,10 +75,10 @@ impl Algorithm {
             residuals: Residuals::default(),
             acceptable: 0,
             tiny_steps: 0,
+            standing: 0,
             watchdog: Watchdog::default(),
             emptied: 0,
             is_relaxed: false,
-            is_widened: false,
             fresh: false,
             space,
             at,
@@ -116,30 +118,30 @@ impl Algorithm {
                 Restored::Stationary if self.values.largest() > self.options.tol => {
                     return self.relax(nlp).then_some(Status::Infeasible);
                 }
-                Restored::Stationary => {
-                    self.begin_anew(nlp);
-                    self.emptied += 1;
-                    return if self.emptied > MOST_RESTARTS { self.widen(nlp) } else { None };
-                }
+                Restored::Stationary => return self.loosen_or_stop(nlp),
             }
         }
-        self.widen(nlp)
+        self.loosen_or_stop(nlp)
+    }
+
+    /// Where a feasible point leads nowhere: first bounds are moved outwards by the tolerance, because what they enclose may have no
+    /// interior, then only the filter is emptied.
+    fn loosen_or_stop(&mut self, nlp: &mut dyn Nlp) -> Option<Status> {
+        self.emptied += 1;
+        if self.emptied > MOST_RESTARTS {
+            return Some(Status::NumericalFailure);
+        }
+        if self.space.widened == 0.0 {
+            self.space.widen(self.options.tol);
+        }
+        self.begin_anew(nlp);
+        None
     }
 
     /// From here on with new multipliers and an empty filter.
     fn begin_anew(&mut self, nlp: &mut dyn Nlp) {
         self.resume(nlp);
         self.filter.clear();
-    }
-
-    /// Moves all bounds outwards by the tolerance, once: what they enclose may have no interior.
-    fn widen(&mut self, nlp: &mut dyn Nlp) -> Option<Status> {
-        if std::mem::replace(&mut self.is_widened, true) {
-            return Some(Status::NumericalFailure);
-        }
-        self.space.widen(self.options.tol);
-        self.begin_anew(nlp);
-        None
     }
 
     /// Accepts the smallest violation near by, if it is acceptable, as none: a smoothed block comes to rest only in the limit. Then
@@ -210,7 +212,7 @@ impl Algorithm {
     fn finished(&mut self) -> Option<Status> {
         let error = self.residuals.error(0.0);
         self.acceptable = if error <= ACCEPTABLE_ERROR { self.acceptable + 1 } else { 0 };
-        if error <= self.options.tol {
+        if error <= self.options.tol && self.is_paid() {
             Some(if self.is_relaxed { Status::Acceptable } else { Status::Solved })
         } else if self.acceptable >= ACCEPTABLE_ITERATIONS {
             Some(Status::Acceptable)
@@ -221,6 +223,11 @@ impl Algorithm {
         } else {
             None
         }
+    }
+
+    /// Whether the objective owes little to violations, so that it can be believed.
+    fn is_paid(&self) -> bool {
+        owed(&self.space, &self.at, &self.values) <= MOST_OWED * self.options.tol
     }
 
     fn has_diverged(&self) -> bool {
@@ -268,7 +275,12 @@ impl Algorithm {
                     self.kkt.judge(accepted.alpha / longest);
                 }
                 self.progress.trials = accepted.trials;
+                self.standing = if self.stands(accepted.alpha) { self.standing + 1 } else { 0 };
                 self.move_to(accepted.y, accepted.values, accepted.alpha, dual);
+                if self.standing > MOST_TINY_STEPS {
+                    self.standing = 0;
+                    return Outcome::Blocked;
+                }
             }
             _ => {
                 let saved = self.watchdog.end().expect("only the watchdog refuses a step here");
@@ -280,8 +292,13 @@ impl Algorithm {
     }
 
     fn is_tiny(&self) -> bool {
-        let small = |(d, y): (&f64, &f64)| d.abs() <= TINY_STEP * (1.0 + y.abs());
-        self.step.y.iter().zip(&self.at.y).all(small) && self.residuals.primal < ACCEPTABLE_ERROR
+        self.stands(1.0) && self.residuals.primal < ACCEPTABLE_ERROR
+    }
+
+    /// Whether this fraction of the step is rounding.
+    fn stands(&self, alpha: f64) -> bool {
+        let small = |(d, y): (&f64, &f64)| alpha * d.abs() <= TINY_STEP * (1.0 + y.abs());
+        self.step.y.iter().zip(&self.at.y).all(small)
     }
 
     /// A step that is rounding is taken without a search, and lowers the barrier parameter; when that is as low as it

@@ -3,13 +3,17 @@
 //! ```text
 //!     E_mu = max( ||grad L||_inf / s_d ,  ||residuals||_inf ,  ||distance * multiplier - mu||_inf / s_c )
 //! ```
+//!
+//! An error this small says little of the objective where multipliers are large, so there is a second one: what violations are worth,
+//!
+//! ```text
+//!     owed = ( |lambda' residuals| + sum (multiplier * how far its bound was moved) ) / max(1, |f|)
+//! ```
 
 use super::iterate::{Iterate, Slopes, Values};
 use super::space::Space;
 use super::vectors::{largest_of, sum_of_sizes};
-
-/// Multipliers of this average size are considered normal.
-const NORMAL_MULTIPLIER: f64 = 100.0;
+use crate::nlp::error_scale::{error_scale, objective_scale};
 
 /// The three parts of the error, scaled.
 #[derive(Clone, Copy, Debug, Default)]
@@ -27,7 +31,7 @@ impl Residuals {
         let bound_sum = sum_of_sizes(&at.lower) + sum_of_sizes(&at.upper);
         let row_sum = sum_of_sizes(&at.lambda);
         let (bounds, rows) = ((2 * space.len()).max(1) as f64, at.lambda.len() as f64);
-        let scale = |average: f64| average.max(NORMAL_MULTIPLIER) / NORMAL_MULTIPLIER;
+        let scale = |average: f64| error_scale(average, values.objective);
         let gradients = slopes.lagrangian.iter().zip(&at.lower).zip(&at.upper);
         let dual = largest_of(gradients.map(|((gradient, lower), upper)| gradient - lower + upper));
         let (mut most, mut least) = (0.0f64, f64::INFINITY);
@@ -51,6 +55,18 @@ impl Residuals {
             if no_bounds { 0.0 } else { (self.largest_product - mu).max(mu - self.smallest_product) };
         larger(larger(self.dual, self.primal), products / self.product_scale)
     }
+}
+
+/// What violations are worth to the objective, to first order.
+pub(super) fn owed(space: &Space, at: &Iterate, values: &Values) -> f64 {
+    let violations = at.lambda.iter().zip(&values.residuals);
+    let mut moved = 0.0;
+    space.for_each_bound(&at.y, |i, _, direction| {
+        let (bound, z) = if direction > 0.0 { (&space.lower, &at.lower) } else { (&space.upper, &at.upper) };
+        moved += space.moved(bound[i]) * z[i];
+    });
+    let rows: f64 = violations.map(|(lambda, residual)| lambda * residual).sum();
+    (rows.abs() + moved) / objective_scale(values.objective)
 }
 
 /// The larger of two; what is not a number is larger than all numbers.

@@ -42,6 +42,8 @@ pub(super) struct Space {
     pub(super) target: Vec<f64>,
     pub(super) fixed: Vec<bool>,
     pub(super) equality: Vec<bool>,
+    /// How far bounds were moved outwards, relative to their size where that is more than 1.
+    pub(super) widened: f64,
 }
 
 impl Space {
@@ -62,6 +64,7 @@ impl Space {
             target: rows.iter().map(|b| if b.is_equality() { b.lower } else { 0.0 }).collect(),
             fixed,
             equality,
+            widened: 0.0,
         };
         for bounds in variables {
             space.push_bounds(if bounds.is_equality() { Bounds::FREE } else { *bounds });
@@ -112,10 +115,18 @@ impl Space {
         self.lower.iter().zip(&self.upper).any(|(lower, upper)| lower > upper)
     }
 
-    /// Moves all bounds outwards, relative to their size where that is more than 1.
+    /// Moves all bounds outwards.
     pub(super) fn widen(&mut self, by: f64) {
-        self.lower.iter_mut().for_each(|lower| *lower -= by * lower.abs().max(1.0));
-        self.upper.iter_mut().for_each(|upper| *upper += by * upper.abs().max(1.0));
+        self.widened = by;
+        for i in 0..self.len() {
+            self.lower[i] -= self.moved(self.lower[i]);
+            self.upper[i] += self.moved(self.upper[i]);
+        }
+    }
+
+    /// How far a bound is moved, or was.
+    pub(super) fn moved(&self, bound: f64) -> f64 {
+        self.widened * bound.abs().max(1.0)
     }
 
     /// Moves the right-hand sides so that these residuals become none.

@@ -5,11 +5,9 @@
 //! ```
 
 use super::point::Point;
+use crate::nlp::error_scale::error_scale;
 use crate::nlp::{Derivatives, Multipliers, Nlp};
 use crate::problem::Bounds;
-
-/// Multipliers of this average size are considered normal.
-const NORMAL_MULTIPLIER: f64 = 100.0;
 
 /// The three parts of the error, scaled.
 #[derive(Clone, Copy, Debug, Default)]
@@ -24,7 +22,7 @@ impl Residuals {
         let size = |values: &[f64]| values.iter().map(|value| value.abs()).sum::<f64>();
         let (bounds, rows) = (size(&known.lower) + size(&known.upper), size(&known.rows));
         let count = 2 * known.lower.len() + known.rows.len();
-        let scale = ((bounds + rows) / count.max(1) as f64).max(NORMAL_MULTIPLIER) / NORMAL_MULTIPLIER;
+        let scale = error_scale((bounds + rows) / count.max(1) as f64, at.objective);
         let violations = nlp.row_bounds().iter().zip(&at.rows);
         Residuals {
             dual: largest(stationarity(nlp, derivatives, known)) / scale,

@@ -116,6 +116,8 @@ fn line(p: &Progress, level: homotopy::Level) -> String {
     let (mu, regularization) = (logarithm(p.mu), logarithm(p.regularization));
     let sigma = level.sigma.iter().fold(0.0f64, |a, sigma| a.max(*sigma));
     let sigma = if sigma > 0.0 { scientific(sigma, 1) } else { "-".into() };
+    let stages = level.stages.map(|stages| format!("x{stages}")).unwrap_or_default();
+    let grid = format!("{}{stages}", level.intervals);
     format!(
         "{:5}{} {:>13} {:>8} {:>8} {:>5} {:>8} {:>5} {:>8} {:>8} {:>3}  {:>7} {:>6}",
         p.iteration,
@@ -130,6 +132,6 @@ fn line(p: &Progress, level: homotopy::Level) -> String {
         scientific(p.alpha_primal, 2),
         p.trials,
         sigma,
-        level.intervals
+        grid
     )
 }

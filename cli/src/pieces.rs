@@ -4,8 +4,14 @@
 
 use crate::output::saved::{Saved, SavedNodes};
 
-/// Pieces in each interval.
-pub const PIECES: usize = 8;
+const PIECES_OF_INTERVAL: usize = 8;
+/// Few intervals of a high order are long.
+const FEWEST_PIECES: usize = 1600;
+
+/// Pieces in each of so many intervals.
+pub fn pieces_of_one(intervals: usize) -> usize {
+    PIECES_OF_INTERVAL.max(FEWEST_PIECES / intervals.max(1))
+}
 
 /// When pieces begin, and a row of controls for each; an interval is between two of the times.
 pub fn pieces(saved: &Saved, nodes: &SavedNodes, time: &[f64], names: &[&str]) -> Result<Pieces, String> {
@@ -18,11 +24,12 @@ pub fn pieces(saved: &Saved, nodes: &SavedNodes, time: &[f64], names: &[&str]) -
     let stencil = stencil(knots.len(), intervals).ok_or_else(|| {
         format!("its controls have {} times for {intervals} intervals of {}", knots.len(), saved.model)
     })?;
+    let count = pieces_of_one(intervals);
     let mut pieces = Pieces::default();
     for (k, ends) in time.windows(2).enumerate() {
         let range = stencil(k);
-        for piece in 0..PIECES {
-            let at = |part: f64| ends[0] + (ends[1] - ends[0]) * part / PIECES as f64;
+        for piece in 0..count {
+            let at = |part: f64| ends[0] + (ends[1] - ends[0]) * part / count as f64;
             let weights = weights(&knots[range.clone()], at(piece as f64 + 0.5));
             let value =
                 |column: &Vec<f64>| weights.iter().zip(&column[range.clone()]).map(|(w, u)| w * u).sum();

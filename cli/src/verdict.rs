@@ -7,7 +7,7 @@ use crate::output::tried::Ended;
 use crate::output::verified::Verification;
 use crate::solver::Solved;
 use fdcc_runtime::nlp::Status;
-use fdcc_runtime::problem::Problem;
+use fdcc_runtime::problem::{Method, Problem};
 use fdcc_runtime::transcribe::unknowns;
 
 mod jumps;
@@ -22,10 +22,16 @@ pub fn headline(problem: &Problem) -> String {
         plural(shown, "state"),
         plural(problem.controls.len(), "control"),
         plural(problem.surfaces.len(), "surface"),
-        scheme_name(method.scheme),
+        asked(method),
         method.intervals,
         plural(unknowns(problem), "unknown"),
     )
+}
+
+/// The scheme as the model names it: without a number where that is to be found.
+fn asked(method: &Method) -> String {
+    let name = scheme_name(method.scheme);
+    if method.is_raised { name.trim_end_matches(|c: char| c.is_ascii_digit()).into() } else { name }
 }
 
 /// The verdict for people.
@@ -118,11 +124,12 @@ fn how(solved: &Solved) -> String {
 
 /// What was reached where the grid was to be chosen.
 fn refined(solved: &Solved) -> Option<String> {
-    let (document, tolerance) = (&solved.document, solved.problem.method.tolerance);
-    let error = document.step_errors?;
+    let (document, method) = (&solved.document, &solved.problem.method);
+    let (error, tolerance) = (document.step_errors?, method.tolerance);
     let verdict = if error <= tolerance { "" } else { ", NOT met" };
+    let order = if method.is_raised { format!(" of {}", document.method.scheme) } else { String::new() };
     Some(format!(
-        " grid  {}, errors of all steps {} (tolerance {}{verdict})",
+        " grid  {}{order}, errors of all steps {} (tolerance {}{verdict})",
         plural(document.method.n, "interval"),
         short(error),
         short(tolerance)

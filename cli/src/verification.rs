@@ -3,7 +3,7 @@
 use crate::alignment::Alignment;
 use crate::conditions::{Condition, Conditions};
 use crate::output::saved::Saved;
-use crate::pieces::PIECES;
+use crate::pieces::pieces_of_one;
 use crate::replay::Replay;
 use crate::solver::Failure;
 use crate::stays::{Stay, stays};
@@ -14,9 +14,6 @@ use fdcc_runtime::simulate::{Controls, Options, Simulation, Status, System, simu
 /// A replay that needs more steps, of a very stiff system, is given up: nobody waits for it.
 const FEWEST_STEPS: usize = 200_000;
 const STEPS_PER_INTERVAL: usize = 50;
-
-/// In each interval so many times are looked at.
-const POINTS_PER_INTERVAL: usize = PIECES;
 
 /// A replay and how it compares with its solution.
 pub struct Verified {
@@ -116,12 +113,13 @@ impl Points {
         let end = grid.len() - 1;
         // The grid has been rounded at its ends.
         (grid[0], grid[end]) = (first, last);
+        let count = pieces_of_one(end);
         let inside = |pair: &[f64]| {
             let (from, length) = (pair[0], pair[1] - pair[0]);
-            (0..POINTS_PER_INTERVAL).map(move |j| from + length * j as f64 / POINTS_PER_INTERVAL as f64)
+            (0..count).map(move |j| from + length * j as f64 / count as f64)
         };
         let times = grid.windows(2).flat_map(inside).chain([last]).collect();
-        let in_row = POINTS_PER_INTERVAL * end / replay.rows.len();
+        let in_row = count * end / replay.rows.len();
         Points { times, rows: replay.rows, in_row }
     }
 
@@ -154,7 +152,8 @@ fn gaps(saved: &Saved, system: &System, simulation: &Simulation) -> Vec<Gap> {
 
 fn gap(saved: &Saved, name: &str, simulation: &Simulation, replayed: &[f64]) -> Gap {
     let own = saved.states.get(name).map(Vec::as_slice).unwrap_or_default();
-    let points = simulation.time.iter().zip(replayed).step_by(POINTS_PER_INTERVAL);
+    let points =
+        simulation.time.iter().zip(replayed).step_by(pieces_of_one(saved.time.len().saturating_sub(1)));
     let start = simulation.time.first().copied().unwrap_or(simulation.end_time);
     let mut largest = Gap { name: name.into(), gap: 0.0, time: start };
     for ((&time, &replayed), own) in points.zip(own) {

@@ -380,6 +380,7 @@ fn default_method() -> Method {
         controls: ControlShape::Constant,
         mesh: Vec::new(),
         is_refined: false,
+        is_raised: false,
         tolerance: 1e-3,
         lagged: Vec::new(),
         intervals: 200,

@@ -8,7 +8,7 @@ use crate::smooth;
 use crate::units;
 use fdcc_grammar::ast::{Expr, ExprKind, Ident, ItemKind, Setting, SettingValue};
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
-use fdcc_runtime::problem::{ControlShape, FIRST_GRID, Linear, MOST_STAGES, Method, Scheme, Solver};
+use fdcc_runtime::problem::{ControlShape, Linear, MOST_STAGES, Method, Scheme, Solver};
 
 /// The keys, each with what it takes.
 pub(crate) const KEYS: &[(&str, &str)] = &[
@@ -19,7 +19,7 @@ pub(crate) const KEYS: &[(&str, &str)] = &[
     ("steps", "a whole number from 1"),
     (
         "scheme",
-        "one of euler, implicit_euler, midpoint, trapezoid, rk4, radau1 to radau5, gauss1 to gauss5, fesd",
+        "one of euler, implicit_euler, midpoint, trapezoid, rk4, radau, radau1 to radau5, gauss, gauss1 to gauss5, fesd",
     ),
     ("controls", "one of constant, linear, polynomial"),
     ("solver", "one of interior_point, sqp, convex"),
@@ -69,7 +69,9 @@ pub(crate) fn set(method: &mut Method, key: &str, given: &Given) -> Result<(), R
         ("tol", _) => method.tol = positive()?,
         ("N", _) => {
             method.is_refined = matches!(given, Given::Word(word) if word == "auto");
-            method.intervals = if method.is_refined { FIRST_GRID } else { count()? };
+            if !method.is_refined {
+                method.intervals = count()?;
+            }
         }
         ("tolerance", _) => method.tolerance = positive()?,
         ("steps", _) => method.steps = count()?,
@@ -78,10 +80,14 @@ pub(crate) fn set(method: &mut Method, key: &str, given: &Given) -> Result<(), R
         ("continue", _) => method.continuation = decreasing(given).ok_or_else(refused)?,
         ("kernel", _) => method.kernel = smooth::find(word()?).ok_or_else(refused)?.name.into(),
         ("controls", _) => method.controls = shape(word()?).ok_or_else(refused)?,
-        ("scheme", _) => method.scheme = scheme(word()?).ok_or_else(refused)?,
+        ("scheme", _) => {
+            method.scheme = scheme(word()?).ok_or_else(refused)?;
+            method.is_raised = matches!(word()?, "radau" | "gauss");
+        }
         ("solver", _) => method.solver = solver(word()?).ok_or_else(refused)?,
         _ => method.linear = linear(word()?).ok_or_else(refused)?,
     }
+    method.begin();
     Ok(())
 }
 
@@ -92,6 +98,9 @@ fn scheme(word: &str) -> Option<Scheme> {
         "midpoint" => Scheme::Midpoint,
         "trapezoid" => Scheme::Trapezoid,
         "rk4" => Scheme::RungeKutta4,
+        // The least; see `Method::begin`.
+        "radau" => Scheme::Radau(1),
+        "gauss" => Scheme::Gauss(1),
         _ => return collocation(word),
     })
 }
@@ -160,6 +169,13 @@ pub(crate) fn misfit(method: &Method) -> Option<(&'static str, &'static str, &'s
             "N",
             "`rk4` has steps of one length, which `N = auto` has not",
             "choose another scheme, or a number for N",
+        ));
+    }
+    if method.is_raised && !method.is_refined {
+        return Some((
+            "scheme",
+            "`radau` and `gauss` without a number find their order together with the grid, and this grid is given",
+            "write the number of stages, such as `radau3`, or `N = auto`",
         ));
     }
     if method.solver == Solver::Sequential && method.linear != Linear::Automatic {
@@ -238,6 +254,10 @@ impl<'a> Elaborator<'a> {
         if let Some(setting) = settings.iter().find(|setting| setting.key.name == key) {
             let found =
                 Diagnostic::new(Code::UnknownSetting, what, setting.key.span, "not with the other settings");
+            let found = match (key, self.given(setting)) {
+                ("scheme", Some((Given::Word(family), span))) => with_stages(found, span, &family),
+                _ => found,
+            };
             self.diagnostics.push(found.help(help));
         }
     }
@@ -340,6 +360,12 @@ impl<'a> Elaborator<'a> {
             }
         }
     }
+}
+
+/// Three stages are the most common choice.
+fn with_stages(found: Diagnostic, span: Span, family: &str) -> Diagnostic {
+    let scheme = format!("{family}3");
+    found.fix(Fix::likely(format!("write `{scheme}`")).replace(span, scheme))
 }
 
 /// A setting is one of few words, so the nearest is the one that was meant.

@@ -57,6 +57,8 @@ pub enum Refusal {
 pub struct Level<'a> {
     /// Intervals of the grid.
     pub intervals: usize,
+    /// Stages of the scheme, where their number is found on the way.
+    pub stages: Option<usize>,
     /// The smoothing width of each surface.
     pub sigma: &'a [f64],
 }

@@ -76,7 +76,9 @@ impl<'p> Run<'p> {
     ) -> Solution {
         self.apply_sigma(nlp);
         let options = Options { tol: goal.tol, max_iter: goal.limit, linear: self.problem.method.linear };
-        let level = Level { intervals: nlp.chain().intervals, sigma: &self.sigma };
+        let method = &self.problem.method;
+        let stages = method.is_raised.then(|| method.scheme.stages());
+        let level = Level { intervals: nlp.chain().intervals, stages, sigma: &self.sigma };
         let before = self.counts.iterations;
         let solve = match self.problem.method.solver {
             Solver::Sequential => sqp::solve,

@@ -2,7 +2,6 @@
 
 /// Intervals of the first grid where the choice is ours.
 pub const FIRST_GRID: usize = 50;
-
 /// The most stages of a collocation scheme.
 pub const MOST_STAGES: usize = 5;
 
@@ -34,6 +33,23 @@ impl Scheme {
             Scheme::RungeKutta4 => 4,
             Scheme::Radau(stages) => 2 * stages - 1,
             Scheme::Gauss(stages) => 2 * stages,
+        }
+    }
+
+    /// Stages of a collocation scheme; 1 of the others, which have none of their own.
+    pub fn stages(self) -> usize {
+        match self {
+            Scheme::Radau(stages) | Scheme::Gauss(stages) => stages,
+            _ => 1,
+        }
+    }
+
+    /// The collocation scheme of the same kind with so many stages.
+    pub fn with_stages(self, stages: usize) -> Self {
+        match self {
+            Scheme::Radau(_) => Scheme::Radau(stages),
+            Scheme::Gauss(_) => Scheme::Gauss(stages),
+            other => other,
         }
     }
 
@@ -99,6 +115,8 @@ pub struct Method {
     pub mesh: Vec<f64>,
     /// `N = auto`: the grid is refined until the sum of the errors of its steps is below `tolerance`.
     pub is_refined: bool,
+    /// `scheme = radau` or `gauss` without a number: stages are added where that is worth more than dividing intervals.
+    pub is_raised: bool,
     /// The sum of the relative errors of all steps that a refined grid may have.
     pub tolerance: f64,
     /// Integration steps in each control interval.
@@ -119,4 +137,17 @@ pub struct Method {
     pub max_iter: usize,
     /// Seed of everything random.
     pub seed: u64,
+}
+
+impl Method {
+    /// Puts the method to the first of the grids that are tried, as far as the choice is ours: a polynomial on each interval says much with few of them.
+    pub fn begin(&mut self) {
+        let is_polynomial = self.controls == ControlShape::Polynomial;
+        if self.is_raised {
+            self.scheme = self.scheme.with_stages(if is_polynomial { 3 } else { 2 });
+        }
+        if self.is_refined {
+            self.intervals = if self.is_raised && is_polynomial { 10 } else { FIRST_GRID };
+        }
+    }
 }

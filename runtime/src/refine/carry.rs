@@ -1,30 +1,25 @@
-//! A solution on a grid as the start on a finer one that divides its intervals.
+//! A solution on a grid as the start on another one, which divides its intervals or has another number of stages on them.
 //!
-//! States are interpolated linearly, controls are what they are. The multiplier of a step is the costate, on every grid; that of a path constraint
-//! or bound stands for a piece of time, and is shared by the parts.
+//! States and controls are read off the polynomials that they are on the old intervals. The multiplier of a step is the costate, on every grid;
+//! that of a node is the costate times the weight of the node. Multipliers of path constraints and bounds stand for pieces of time, and are shared by
+//! what is there now. Of costates and such pieces the nearest in time is taken: a warm start needs no more.
 
-use crate::nlp::{Multipliers, Solution, Start, Warm};
+use crate::nlp::{Multipliers, Start, Warm};
 use crate::transcribe::TranscribedNlp;
-use crate::transcribe::interval::{Combination, Signal};
+use crate::transcribe::interval::{Interval, Signal, Slot};
 
 /// The start on `to`, each interval of which is one of the `parts` of an interval of `from`.
-pub(super) fn carried(
-    from: &TranscribedNlp,
-    solution: &Solution,
-    to: &TranscribedNlp,
-    parts: &[usize],
-) -> Start {
+pub(super) fn carried(from: &TranscribedNlp, start: &Start, to: &TranscribedNlp, parts: &[usize]) -> Start {
     let carry = Carry { from, to, places: places(parts) };
-    let near = Start::near(solution);
-    let warm = near.warm.map(|Warm { multipliers, mu }| {
+    let warm = start.warm.as_ref().map(|Warm { multipliers, mu }| {
         let multipliers = Multipliers {
             rows: carry.rows(&multipliers.rows),
             lower: carry.bounds(&multipliers.lower),
             upper: carry.bounds(&multipliers.upper),
         };
-        Warm { multipliers, mu }
+        Warm { multipliers, mu: *mu }
     });
-    Start { v: carry.values(&solution.v), warm }
+    Start { v: carry.values(&start.v), warm }
 }
 
 /// The interval that each part is in, and which of its parts it is.
@@ -40,6 +35,13 @@ struct Place {
     parts: usize,
 }
 
+impl Place {
+    /// The time of the old interval at a time of the new one.
+    fn time(self, time: f64) -> f64 {
+        (self.part as f64 + time) / self.parts as f64
+    }
+}
+
 struct Carry<'a> {
     from: &'a TranscribedNlp<'a>,
     to: &'a TranscribedNlp<'a>,
@@ -47,41 +49,29 @@ struct Carry<'a> {
 }
 
 impl Carry<'_> {
-    /// What the old solution was at a time of a new interval; beyond the last one, at its end.
-    fn signal(&self, signal: Signal, k: usize, time: f64, v: &[f64]) -> f64 {
-        let (place, time) = match self.places.get(k) {
-            Some(place) => (*place, time),
-            None => (self.places[k - 1], 1.0),
-        };
-        let fraction = (place.part as f64 + time) / place.parts as f64;
-        let first = self.from.chain().state(place.interval).start;
-        let value = |combination: &Combination| -> f64 {
-            combination.iter().map(|(at, factor)| factor * v[first + at]).sum()
-        };
-        let interval = self.from.interval();
-        match signal {
-            Signal::Control(i) => value(&interval.controls_at(fraction)[i]),
-            Signal::State(i) => {
-                (1.0 - fraction) * value(&interval.start.states[i])
-                    + fraction * value(&interval.end.states[i])
+    /// Calls `action` with each variable of the new grid but the unknowns: itself, its slot, and where it is on the old grid.
+    fn each(&self, mut action: impl FnMut(usize, usize, Place, f64)) {
+        let chain = self.to.chain();
+        for (slot, time) in self.to.interval().slots.iter().map(|slot| slot.time).enumerate() {
+            for (k, place) in self.places.iter().enumerate() {
+                action(chain.state(k).start + slot, slot, *place, place.time(time));
             }
         }
-    }
-
-    /// Calls `action` with each variable of the new grid but the unknowns: itself, the place of its interval and its slot.
-    fn each(&self, mut action: impl FnMut(usize, usize, usize)) {
-        let chain = self.to.chain();
-        for slot in 0..chain.variable_step() {
-            let count = chain.intervals + usize::from(slot < chain.states);
-            (0..count).for_each(|k| action(chain.state(k).start + slot, k, slot));
-        }
+        let last = Place { interval: self.from.chain().intervals, part: 0, parts: 1 };
+        (0..chain.states).for_each(|slot| action(chain.state(chain.intervals).start + slot, slot, last, 0.0));
     }
 
     fn values(&self, v: &[f64]) -> Vec<f64> {
         let slots = &self.to.interval().slots;
         let mut values = vec![0.0; self.to.chain().variables()];
-        self.each(|variable, k, slot| {
-            values[variable] = self.signal(slots[slot].signal, k, slots[slot].time, v)
+        self.each(|variable, slot, place, time| {
+            let first = self.from.chain().state(place.interval).start;
+            // Behind the last interval there are only the states and controls that it ends with.
+            let combination = match place.interval < self.from.chain().intervals {
+                true => self.from.interval().signal_at(slots[slot].signal, time),
+                false => vec![(slot, 1.0)],
+            };
+            values[variable] = combination.iter().map(|(at, factor)| factor * v[first + at]).sum();
         });
         values[self.to.chain().globals()].copy_from_slice(&v[self.from.chain().globals()]);
         values
@@ -89,12 +79,16 @@ impl Carry<'_> {
 
     fn bounds(&self, multipliers: &[f64]) -> Vec<f64> {
         let (from, to) = (self.from.chain(), self.to.chain());
+        let (old, new) = (self.from.interval(), self.to.interval());
         let mut carried = vec![0.0; to.variables()];
-        self.each(|variable, k, slot| {
-            carried[variable] = match self.places.get(k) {
-                Some(place) => multipliers[from.state(place.interval).start + slot] / place.parts as f64,
-                None => multipliers[from.state(from.intervals).start + slot],
+        self.each(|variable, slot, place, time| {
+            let signal = new.slots[slot].signal;
+            let (nearest, share) = match place.interval < from.intervals {
+                true => (nearest(old, signal, time), count(old, signal) / count(new, signal)),
+                false => (slot, 1.0),
             };
+            let piece = multipliers[from.state(place.interval).start + nearest];
+            carried[variable] = share * piece / place.parts as f64;
         });
         carried[to.globals()].copy_from_slice(&multipliers[from.globals()]);
         carried
@@ -104,12 +98,78 @@ impl Carry<'_> {
         let (from, to) = (self.from.chain(), self.to.chain());
         let mut carried = vec![0.0; to.rows()];
         for (k, place) in self.places.iter().enumerate() {
-            carried[to.defects(k)].copy_from_slice(&multipliers[from.defects(place.interval)]);
-            let old = &multipliers[from.local(place.interval)];
-            let new = carried[to.local(k)].iter_mut().zip(old);
-            new.for_each(|(new, old)| *new = old / place.parts as f64);
+            self.defects(*place, &multipliers[from.defects(place.interval)], &mut carried[to.defects(k)]);
+            self.path(*place, &multipliers[from.local(place.interval)], &mut carried[to.local(k)]);
         }
         carried[to.coupling()].copy_from_slice(&multipliers[from.coupling()]);
         carried
     }
+
+    fn defects(&self, place: Place, old: &[f64], new: &mut [f64]) {
+        let states = self.from.interval().start.states.len();
+        let known = blocks(self.from.interval());
+        for block in blocks(self.to.interval()) {
+            let time = place.time(block.time);
+            let source = least(known.iter().map(|block| (block.time - time).abs()));
+            let factor = block.weight / known[source].weight;
+            let costates = &old[known[source].row..][..states];
+            let target = new[block.row..][..states].iter_mut().zip(costates);
+            target.for_each(|(new, old)| *new = factor * old);
+        }
+        // Behind them: the controls that go on from interval to interval.
+        let handed_on = self.from.interval().carried_controls();
+        let (last, source) = (new.len() - handed_on, old.len() - handed_on);
+        new[last..].copy_from_slice(&old[source..]);
+    }
+
+    fn path(&self, place: Place, old: &[f64], new: &mut [f64]) {
+        let (from, to) = (&self.from.interval().path, &self.to.interval().path);
+        let rows = new.len() / to.len();
+        let share = from.len() as f64 / (to.len() * place.parts) as f64;
+        for (at, point) in to.iter().enumerate() {
+            let time = place.time(point.time);
+            let source = least(from.iter().map(|point| (point.time - time).abs()));
+            let target = new[at * rows..][..rows].iter_mut().zip(&old[source * rows..]);
+            target.for_each(|(new, old)| *new = share * old);
+        }
+    }
+}
+
+/// Rows of an interval, one for each state: those of a node, or of the end of a step that is no node.
+struct Block {
+    row: usize,
+    time: f64,
+    /// Of the costate in the multipliers.
+    weight: f64,
+}
+
+fn blocks(interval: &Interval) -> Vec<Block> {
+    let states = interval.start.states.len();
+    let mut blocks: Vec<Block> = Vec::new();
+    for row in (0..interval.inner() + states).step_by(states.max(1)) {
+        // Where there is no node, a step ends right behind one.
+        let (time, weight) = match interval.nodes.iter().find(|node| node.row == row) {
+            Some(node) => (node.point.time, node.weight / node.factor),
+            None => (blocks.last().map_or(1.0, |block| block.time), 1.0),
+        };
+        blocks.push(Block { row, time, weight });
+    }
+    blocks
+}
+
+/// How many variables of an interval are values of a signal.
+fn count(interval: &Interval, signal: Signal) -> f64 {
+    interval.slots.iter().filter(|slot| slot.signal == signal).count() as f64
+}
+
+/// The slot of a signal that is nearest to a time.
+fn nearest(interval: &Interval, signal: Signal, time: f64) -> usize {
+    let distance = |slot: &Slot| {
+        if slot.signal == signal { (slot.time - time).abs() } else { f64::INFINITY }
+    };
+    least(interval.slots.iter().map(distance))
+}
+
+fn least(distances: impl Iterator<Item = f64>) -> usize {
+    distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(at, _)| at)
 }

@@ -1,27 +1,27 @@
-//! `N = auto`: solve, estimate the error of each step, divide the intervals where it is large, and solve again from there.
+//! `N = auto`: solve, estimate the error of each step, refine the grid where it is large, and solve again from there.
 //!
 //! The error of a step is the difference between its end and that of an accurate integration of the same smoothed system from
-//! the same state with the same control ([`estimate`]). With an error `e_k ~ C_k h_k^(p+1)` for a scheme of order `p`, dividing interval
-//! `k` into `m_k` parts leaves `e_k / m_k^p`; the sum of all is at the tolerance with the fewest intervals where `m_k` is in proportion to
-//! `e_k^(1/(p+1))`.
+//! the same state with the same control ([`estimate`]). What is refined is [`plan`]'s to say: intervals are divided, or, where the model leaves the order
+//! open, all get more stages, which is taken back where it does not pay.
 
 mod carry;
+mod controls;
 mod estimate;
+mod plan;
 
 use crate::homotopy::{self, Outcome, Refusal, Watch};
 use crate::nlp::{Start, Status};
-use crate::problem::Problem;
+use crate::problem::{FIRST_GRID, MOST_STAGES, Problem};
 use crate::transcribe::TranscribedNlp;
 use carry::carried;
 use estimate::step_errors;
+use plan::Errors;
 
 /// More intervals than this are not tried.
 const MOST: usize = 20_000;
-const MOST_ROUNDS: usize = 12;
-/// Of what the tolerance allows, so much is planned for.
-const PLANNED: f64 = 0.7;
-/// An interval is divided into no more parts at a time: far from the limit errors fall in other ways.
-const MOST_PARTS: f64 = 4.0;
+const MOST_ROUNDS: usize = 30;
+/// The first stages that are added may gain little where the next gain much. So many times the least nodes may be foreseen and one more is still tried.
+const PATIENCE: f64 = 1.5;
 
 /// A solution and the grid that it was found on.
 pub struct Refined {
@@ -35,60 +35,150 @@ pub struct Refined {
 
 /// Solves a problem, on a grid of our own choice where it asks for that.
 pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Result<Refined, Refusal> {
-    let mut problem = problem.clone();
     if !problem.method.is_refined {
-        let outcome = homotopy::solve(&problem, start, watch)?;
+        let outcome = homotopy::solve(problem, start, watch)?;
+        return Ok(Refined { problem: problem.clone(), outcome, error: None });
+    }
+    let (problem, outcome) = first(problem, start, watch)?;
+    if !is_good(&outcome) {
         return Ok(Refined { problem, outcome, error: None });
     }
-    let mut outcome = homotopy::solve(&problem, start, watch)?;
-    let mut error = None;
+    let mut grid = Grid::new(problem, outcome);
     for _ in 0..MOST_ROUNDS {
-        if !is_good(&outcome) {
-            break;
-        }
-        let errors = step_errors(&problem, &outcome);
-        let sum = errors.iter().sum();
-        error = Some(sum);
-        let parts = parts(&errors, problem.method.scheme.order(), problem.method.tolerance);
-        let intervals: usize = parts.iter().sum();
-        if sum <= problem.method.tolerance || intervals > MOST {
-            break;
-        }
-        let finer = divided(&problem, &parts);
-        let next = again(&problem, &outcome, &finer, &parts, watch)?;
-        // A finer grid that cannot be solved is no reason to lose the answer on this one.
-        if !is_good(&next) {
-            break;
-        }
-        (problem, outcome) = (finer, next);
+        let Some(next) = grid.refined(watch)? else { break };
+        grid = next;
     }
-    Ok(Refined { problem, outcome, error })
+    let error = Some(grid.errors.sum());
+    Ok(Refined { problem: grid.problem, outcome: grid.outcome, error })
+}
+
+/// The first grid with its solution. Few intervals may be too few for a solution; then there are as many as where the order is given.
+fn first(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Result<(Problem, Outcome), Refusal> {
+    let outcome = homotopy::solve(problem, start.clone(), watch)?;
+    let is_stopped = matches!(outcome.solution.status, Status::TimeLimit | Status::Interrupted);
+    if is_good(&outcome) || is_stopped || problem.method.intervals >= FIRST_GRID {
+        return Ok((problem.clone(), outcome));
+    }
+    let parts = vec![FIRST_GRID / problem.method.intervals; problem.method.intervals];
+    let finer = divided(problem, &parts);
+    let (from, to) = (TranscribedNlp::new(problem), TranscribedNlp::new(&finer));
+    let start = start.map(|start| carried(&from, &start, &to, &parts));
+    let mut second = homotopy::solve(&finer, start, watch)?;
+    second.solution.counts.add(&outcome.solution.counts);
+    Ok((finer, second))
 }
 
 fn is_good(outcome: &Outcome) -> bool {
     matches!(outcome.solution.status, Status::Solved | Status::Acceptable)
 }
 
-/// The solution on a finer grid, from that on the grid before and with its widths.
-fn again(
-    problem: &Problem,
-    outcome: &Outcome,
-    finer: &Problem,
-    parts: &[usize],
-    watch: &mut Watch,
-) -> Result<Outcome, Refusal> {
-    let (from, to) = (TranscribedNlp::new(problem), TranscribedNlp::new(finer));
-    let start = carried(&from, &outcome.solution, &to, parts);
-    homotopy::solve_near(finer, start, outcome, watch)
+/// A grid that is solved.
+struct Grid {
+    problem: Problem,
+    outcome: Outcome,
+    errors: Errors,
 }
 
-/// Into how many parts each interval is divided.
-fn parts(errors: &[f64], order: usize, tolerance: f64) -> Vec<usize> {
-    let (p, q) = (order as f64, 1.0 / (order as f64 + 1.0));
-    let shares: f64 = errors.iter().map(|error| error.powf(q)).sum();
-    let factor = (shares / (PLANNED * tolerance)).powf(1.0 / p);
-    let parts = errors.iter().map(|error| (factor * error.powf(q)).ceil().clamp(1.0, MOST_PARTS) as usize);
-    parts.collect()
+impl Grid {
+    /// Nothing is known yet of what more stages would gain.
+    fn new(problem: Problem, outcome: Outcome) -> Self {
+        let steps = step_errors(&problem, &outcome);
+        let gains = vec![0.0; steps.len()];
+        let errors = Errors { scheme: problem.method.scheme, steps, gains };
+        Grid { problem, outcome, errors }
+    }
+
+    /// The next grid; nothing if this one is good enough, or there is no better one.
+    fn refined(&mut self, watch: &mut Watch) -> Result<Option<Grid>, Refusal> {
+        let is_raised = self.problem.method.is_raised;
+        let next = if is_raised { self.with_short_intervals(watch)? } else { None };
+        if next.is_some() || self.is_enough() {
+            return Ok(next);
+        }
+        let next = if is_raised { self.raised(watch)? } else { None };
+        if next.is_some() {
+            return Ok(next);
+        }
+        let parts = self.errors.parts(self.problem.method.tolerance);
+        self.divided(&parts, watch)
+    }
+
+    /// Shorter intervals where controls ask for them.
+    fn with_short_intervals(&mut self, watch: &mut Watch) -> Result<Option<Grid>, Refusal> {
+        let parts = controls::parts(&self.problem, &self.outcome);
+        if parts.iter().all(|parts| *parts == 1) { Ok(None) } else { self.divided(&parts, watch) }
+    }
+
+    fn is_enough(&self) -> bool {
+        self.errors.sum() <= self.problem.method.tolerance
+    }
+
+    /// When it is divided.
+    fn nodes(&self) -> usize {
+        self.errors.nodes(self.problem.method.tolerance)
+    }
+
+    /// The best of the same intervals with more stages; nothing if fewer nodes are foreseen without them.
+    fn raised(&mut self, watch: &mut Watch) -> Result<Option<Grid>, Refusal> {
+        let now = self.problem.method.scheme.stages();
+        let first = self.errors.best_stages(self.problem.method.tolerance);
+        let mut tried: Vec<Grid> = Vec::new();
+        for stages in (first..=MOST_STAGES).filter(|_| first > now) {
+            let Some(next) = tried.last_mut().unwrap_or(self).with_stages(stages, watch)? else { break };
+            let (nodes, is_enough) = (next.nodes() as f64, next.is_enough());
+            tried.push(next);
+            // What a raise has shown is news for the grids before it, too.
+            let least = tried.iter().map(Grid::nodes).fold(self.nodes(), usize::min) as f64;
+            if is_enough || nodes > PATIENCE * least {
+                break;
+            }
+        }
+        let counts = tried.last().unwrap_or(self).outcome.solution.counts;
+        self.outcome.solution.counts = counts;
+        let best = tried.into_iter().min_by_key(|grid| (grid.nodes(), !grid.is_enough()));
+        let mut best = best.filter(|best| best.nodes() <= self.nodes());
+        best.iter_mut().for_each(|best| best.outcome.solution.counts = counts);
+        Ok(best)
+    }
+
+    /// The same intervals with so many stages, and what they gain; nothing if they cannot be solved.
+    fn with_stages(&mut self, stages: usize, watch: &mut Watch) -> Result<Option<Grid>, Refusal> {
+        let mut problem = self.problem.clone();
+        let intervals = problem.method.intervals;
+        problem.method.scheme = problem.method.scheme.with_stages(stages);
+        let outcome = self.again(&problem, &vec![1; intervals], watch)?;
+        self.outcome.solution.counts = outcome.solution.counts;
+        if !is_good(&outcome) {
+            self.errors.gains = vec![1.0; intervals];
+            return Ok(None);
+        }
+        let mut next = Grid::new(problem, outcome);
+        next.errors.gains = self.errors.gains_to(&next.errors);
+        self.errors.gains.clone_from(&next.errors.gains);
+        Ok(Some(next))
+    }
+
+    /// More intervals; nothing if they are too many, or cannot be solved: that is no reason to lose the answer on these.
+    fn divided(&mut self, parts: &[usize], watch: &mut Watch) -> Result<Option<Grid>, Refusal> {
+        if parts.iter().sum::<usize>() > MOST {
+            return Ok(None);
+        }
+        let problem = divided(&self.problem, parts);
+        let outcome = self.again(&problem, parts, watch)?;
+        if !is_good(&outcome) {
+            return Ok(None);
+        }
+        let mut next = Grid::new(problem, outcome);
+        next.errors.gains = self.errors.gains_of_parts(parts);
+        Ok(Some(next))
+    }
+
+    /// The solution on another grid, from that on this one and with its widths.
+    fn again(&self, problem: &Problem, parts: &[usize], watch: &mut Watch) -> Result<Outcome, Refusal> {
+        let (from, to) = (TranscribedNlp::new(&self.problem), TranscribedNlp::new(problem));
+        let start = carried(&from, &Start::near(&self.outcome.solution), &to, parts);
+        homotopy::solve_near(problem, start, &self.outcome, watch)
+    }
 }
 
 fn divided(problem: &Problem, parts: &[usize]) -> Problem {
@@ -104,26 +194,4 @@ fn divided(problem: &Problem, parts: &[usize]) -> Problem {
     method.intervals = method.mesh.len();
     method.mesh.push(1.0);
     finer
-}
-
-#[cfg(test)]
-mod tests {
-    use super::parts;
-
-    #[test]
-    fn equal_errors_are_divided_equally_and_none_not_at_all() {
-        assert_eq!(parts(&[1e-3; 10], 1, 5e-3 / 0.7), [2; 10]);
-        assert_eq!(parts(&[0.0, 1.0], 2, 1e-6), [1, 4]);
-        assert_eq!(parts(&[1e-9; 4], 4, 1e-3), [1; 4]);
-    }
-
-    /// What is left of the sum is what was planned, where nothing is cut.
-    #[test]
-    fn the_sum_that_is_left_is_what_was_planned() {
-        let errors: Vec<f64> = (1..=40).map(|k| 1e-3 * f64::from(k * k)).collect();
-        let tolerance = 0.05 * errors.iter().sum::<f64>();
-        let parts = parts(&errors, 2, tolerance);
-        let left: f64 = errors.iter().zip(&parts).map(|(error, parts)| error / (parts * parts) as f64).sum();
-        assert!(parts.iter().all(|parts| *parts <= 4) && left < 1.6 * tolerance, "{parts:?} {left}");
-    }
 }

@@ -113,6 +113,14 @@ impl Interval {
         (0..self.places.controls).map(|control| self.places.control(control, time)).collect()
     }
 
+    /// A signal at a time of the interval.
+    pub(crate) fn signal_at(&self, signal: Signal, time: f64) -> Combination {
+        match signal {
+            Signal::State(state) => self.places.state(state, time),
+            Signal::Control(control) => self.places.control(control, time),
+        }
+    }
+
     /// Controls that go on from interval to interval.
     pub(crate) fn carried_controls(&self) -> usize {
         self.carried - self.start.states.len()
@@ -247,6 +255,24 @@ impl Places {
         Point { time, states, controls: (0..self.controls).map(|i| self.control(i, time)).collect() }
     }
 
+    /// Times and places of the states through which the solution of a step is a polynomial; of a step without nodes, its ends.
+    fn support(&self, step: usize) -> (Vec<f64>, Vec<usize>) {
+        let inner = self.inner_nodes().iter().enumerate();
+        let inner = inner.map(|(node, time)| (*time, self.node(step, node)));
+        // The end is no node of Gauss: there the polynomial is what it is.
+        let ends_in_node = self.nodes.is_none_or(|nodes| nodes.len() > self.inner_nodes().len());
+        let end = ends_in_node.then_some((1.0, self.joint(step + 1)));
+        [(0.0, self.joint(step))].into_iter().chain(inner).chain(end).unzip()
+    }
+
+    fn state(&self, state: usize, time: f64) -> Combination {
+        let passed = time * self.steps as f64;
+        let step = (passed as usize).min(self.steps - 1);
+        let (points, places) = self.support(step);
+        let values = collocation::values(&points, passed - step as f64);
+        places.iter().map(|place| place + state).zip(values).collect()
+    }
+
     fn control(&self, control: usize, time: f64) -> Combination {
         let combination: Combination = match (self.shape, self.nodes) {
             (ControlShape::Linear, _) => {
@@ -291,16 +317,11 @@ impl Places {
 
     /// See [`collocation`].
     fn collocated(&self, times: &[f64]) -> (Vec<Node>, Vec<Link>) {
-        let points: Vec<f64> = [0.0].into_iter().chain(times.iter().copied()).collect();
         let length = 1.0 / self.steps as f64;
         let weights = collocation::weights(times);
         let (mut nodes, mut links) = (Vec::new(), Vec::new());
         for step in 0..self.steps {
-            let next = self.joint(step + 1);
-            let inner = (0..self.inner_nodes().len()).map(|node| self.node(step, node));
-            // The last node of Radau is the end of the step.
-            let places: Vec<usize> =
-                [self.joint(step)].into_iter().chain(inner).chain([next]).take(points.len()).collect();
+            let (points, places) = self.support(step);
             for (j, (time, weight)) in times.iter().zip(&weights).enumerate() {
                 let (row, place) = (self.row(step) + j * self.states, places[j + 1]);
                 let slopes = places.iter().copied().zip(collocation::slopes(&points, *time));
@@ -310,7 +331,7 @@ impl Places {
             }
             if self.inner_nodes().len() == times.len() {
                 let values = collocation::values(&points, 1.0).into_iter().map(|value| -value);
-                let end = places.iter().copied().zip(values).chain([(next, 1.0)]);
+                let end = places.iter().copied().zip(values).chain([(self.joint(step + 1), 1.0)]);
                 self.link(self.row(step + 1) - self.states, &end.collect::<Vec<_>>(), &mut links);
             }
         }

@@ -15,7 +15,7 @@ const KEYS: &[(&str, &str)] = &[
     ),
     (
         "N",
-        "Control intervals. Time and memory of an iteration grow with it, in proportion. `auto` refines the grid where steps have errors.",
+        "Control intervals. Time and memory of an iteration grow with it, in proportion. `auto` refines the grid where steps have errors, and with `scheme = radau` or `gauss` finds the order as well.",
     ),
     ("tolerance", "With `N = auto`: the sum of the errors of all steps that the grid may have."),
     ("steps", "Integration steps in each control interval."),
@@ -57,6 +57,11 @@ const WORDS: &[(&str, &str)] = &[
         "rk4",
         "The classical Runge-Kutta scheme, order 4; its whole step is one compiled function, so it costs no further unknowns.",
     ),
+    (
+        "radau",
+        "Collocation of Radau, with `N = auto`: begins with 2 stages and adds more, up to 5, where that takes fewer nodes than dividing intervals.",
+    ),
+    ("gauss", "Collocation of Gauss, with `N = auto`: the number of stages is found like that of `radau`."),
     ("constant", "One value on each interval: for schemes of low order, and where the control jumps."),
     (
         "linear",

@@ -354,6 +354,31 @@ fn controls_of_every_shape_are_written_and_replayed() {
     }
 }
 
+/// The headline, the table, the verdict and the document tell which order was found; few long intervals are replayed as closely as many short ones.
+#[test]
+fn the_order_that_was_found_is_told() {
+    let model = "model swing\ntime t in [0, 4]\nstate x start 1\nstate v start 0\ncontrol u in [-3, 3]\n\
+                 dynamics {\n  x' = v\n  v' = -2*x + u\n}\nend x == 0\nend v == 0\nminimize integral(u^2)\n\
+                 method {\n  grid N = auto scheme radau\n  controls = polynomial\n  solver = interior_point\n}\n";
+    let folder = folder("order_found", &[("swing.fdc", model.as_bytes())]);
+    let arguments = ["swing.fdc", "--method", "tolerance=1e-8", "--out", "out"];
+    let output = fdcc(&folder, &[&["solve", "--log", "full"], &arguments[..]].concat(), "");
+    expect_exit(&output, 0, "the verdict");
+    let (told, table) = (stdout(&output), stderr(&output));
+    assert!(told.contains(" radau  N 10 ") && told.contains(" intervals of radau5, errors"), "{told}");
+    assert!(table.contains(" 10x3\n") && table.contains("x5\n"), "{table}");
+    let document = solved(&folder, &arguments);
+    assert_eq!(document["method"]["scheme"], "radau5");
+    assert!(number(&document["step_errors"]) <= 1e-8);
+    assert!(number(&document["method"]["N"]) < 30.0);
+    assert_eq!(document["verification"]["confirmed"], true, "{}", document["verification"]);
+    let verified = fdcc(&folder, &["verify", "out/swing.sol.json", "--json"], "");
+    assert_eq!(json(&verified)["verification"]["confirmed"], true);
+    let given = fdcc(&folder, &["solve", "swing.fdc", "--method", "N=20"], "");
+    expect_exit(&given, 3, "a given grid");
+    assert!(stderr(&given).contains("write the number of stages, such as `radau3`"), "{}", stderr(&given));
+}
+
 /// The earlier solution is cut at its jumps, each piece for itself.
 #[test]
 fn a_solution_with_jumps_is_a_warm_start() {

@@ -20,6 +20,8 @@ use plan::Errors;
 /// More intervals than this are not tried.
 const MOST: usize = 20_000;
 const MOST_ROUNDS: usize = 30;
+/// Of a solve that may be given up.
+const MOST_ITERATIONS: usize = 500;
 /// The first stages that are added may gain little where the next gain much. So many times the least nodes may be foreseen and one more is still tried.
 const PATIENCE: f64 = 1.5;
 
@@ -54,9 +56,12 @@ pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Resu
 
 /// The first grid with its solution. Few intervals may be too few for a solution; then there are as many as where the order is given.
 fn first(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Result<(Problem, Outcome), Refusal> {
-    let outcome = homotopy::solve(problem, start.clone(), watch)?;
+    if problem.method.intervals >= FIRST_GRID {
+        return Ok((problem.clone(), homotopy::solve(problem, start, watch)?));
+    }
+    let outcome = homotopy::solve(&on_trial(problem), start.clone(), watch)?;
     let is_stopped = matches!(outcome.solution.status, Status::TimeLimit | Status::Interrupted);
-    if is_good(&outcome) || is_stopped || problem.method.intervals >= FIRST_GRID {
+    if is_good(&outcome) || is_stopped {
         return Ok((problem.clone(), outcome));
     }
     let parts = vec![FIRST_GRID / problem.method.intervals; problem.method.intervals];
@@ -66,6 +71,13 @@ fn first(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Result<(
     let mut second = homotopy::solve(&finer, start, watch)?;
     second.solution.counts.add(&outcome.solution.counts);
     Ok((finer, second))
+}
+
+/// The same, to be given up soon: what takes long here is better done in another way.
+fn on_trial(problem: &Problem) -> Problem {
+    let mut problem = problem.clone();
+    problem.method.max_iter = problem.method.max_iter.min(MOST_ITERATIONS);
+    problem
 }
 
 fn is_good(outcome: &Outcome) -> bool {
@@ -146,7 +158,7 @@ impl Grid {
         let mut problem = self.problem.clone();
         let intervals = problem.method.intervals;
         problem.method.scheme = problem.method.scheme.with_stages(stages);
-        let outcome = self.again(&problem, &vec![1; intervals], watch)?;
+        let outcome = self.again(&on_trial(&problem), &vec![1; intervals], watch)?;
         self.outcome.solution.counts = outcome.solution.counts;
         if !is_good(&outcome) {
             self.errors.gains = vec![1.0; intervals];

@@ -1,6 +1,8 @@
 //! `N = auto` with `scheme = radau` or `gauss`: the order is found together with the grid.
 
 use fdcc_compiler::{Model, compile};
+use fdcc_runtime::homotopy::Level;
+use fdcc_runtime::nlp::Progress;
 use fdcc_runtime::refine::{Refined, solve};
 use fdcc_tests::models::meaning;
 use fdcc_tests::repository;
@@ -79,6 +81,45 @@ fn intervals_are_divided_at_a_kink_instead() {
         assert!((shortest[0] - 0.3).abs() < 0.03 && length(shortest) < 0.015, "{shortest:?}");
         assert!(time.windows(2).any(|pair| length(pair) > 0.099), "elsewhere nothing is divided");
         assert!(stages(&found) < 4, "{} stages", stages(&found));
+    }
+}
+
+/// A car that brakes twice as well as it accelerates: `T = 30`, with a switch at two thirds of it, inside an interval of the first grid. The errors of the steps know
+/// nothing of that.
+#[test]
+fn intervals_on_which_a_control_jumps_are_as_short_as_with_a_given_order() {
+    let found =
+        refined(of_file("tests/classics/bang_bang.fdc"), &[("scheme", "radau"), ("controls", "polynomial")]);
+    let time = &found.outcome.trajectory.time;
+    let last = time[time.len() - 1];
+    assert!((last - 30.0).abs() < 1e-3, "{last}");
+    let around = time.windows(2).find(|pair| pair[1] > 20.0).expect("a switch");
+    assert!(around[1] - around[0] < 1.01 * last / 50.0, "{around:?}");
+    assert!(time.len() < 21, "{} grid points", time.len());
+}
+
+/// What is carried over to more stages is nearly the solution, multipliers included: they are costates times the weights of the nodes.
+#[test]
+fn a_solve_with_another_stage_begins_near_its_solution() {
+    for scheme in ["radau", "gauss"] {
+        let mut model = meaning(REGULATOR);
+        for (key, value) in [("scheme", scheme), ("tolerance", "1e-10")] {
+            model.set_method(key, value).expect("a setting");
+        }
+        let problem = compile(&model).expect("it can be solved");
+        let (mut stages, mut begun) = (Some(3), Vec::new());
+        let watch = &mut |progress: &Progress, level: Level| {
+            if level.stages != stages {
+                stages = level.stages;
+                begun.push((progress.primal_infeasibility, progress.dual_infeasibility));
+            }
+            ControlFlow::Continue(())
+        };
+        solve(&problem, None, watch).unwrap_or_else(|_| panic!("not refused"));
+        assert!(!begun.is_empty(), "{scheme}");
+        for (primal, dual) in begun {
+            assert!(primal < 1e-3 && dual < 0.05, "{scheme}: begins with {primal} and {dual}");
+        }
     }
 }
 

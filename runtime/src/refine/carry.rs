@@ -2,7 +2,7 @@
 //!
 //! States and controls are read off the polynomials that they are on the old intervals. The multiplier of a step is the costate, on every grid;
 //! that of a node is the costate times the weight of the node. Multipliers of path constraints and bounds stand for pieces of time, and are shared by
-//! what is there now. Of costates and such pieces the nearest in time is taken: a warm start needs no more.
+//! what is there now; the nearest in time is taken.
 
 use crate::nlp::{Multipliers, Start, Warm};
 use crate::transcribe::TranscribedNlp;
@@ -106,15 +106,14 @@ impl Carry<'_> {
     }
 
     fn defects(&self, place: Place, old: &[f64], new: &mut [f64]) {
-        let states = self.from.interval().start.states.len();
         let known = blocks(self.from.interval());
+        let states = self.from.interval().start.states.len();
         for block in blocks(self.to.interval()) {
-            let time = place.time(block.time);
-            let source = least(known.iter().map(|block| (block.time - time).abs()));
-            let factor = block.weight / known[source].weight;
-            let costates = &old[known[source].row..][..states];
-            let target = new[block.row..][..states].iter_mut().zip(costates);
-            target.for_each(|(new, old)| *new = factor * old);
+            for (source, part) in between(&known, place.time(block.time)) {
+                let factor = part * block.weight / source.weight;
+                let target = new[block.row..][..states].iter_mut().zip(&old[source.row..]);
+                target.for_each(|(new, old)| *new += factor * old);
+            }
         }
         // Behind them: the controls that go on from interval to interval.
         let handed_on = self.from.interval().carried_controls();
@@ -145,16 +144,27 @@ struct Block {
 
 fn blocks(interval: &Interval) -> Vec<Block> {
     let states = interval.start.states.len();
-    let mut blocks: Vec<Block> = Vec::new();
-    for row in (0..interval.inner() + states).step_by(states.max(1)) {
-        // Where there is no node, a step ends right behind one.
-        let (time, weight) = match interval.nodes.iter().find(|node| node.row == row) {
-            Some(node) => (node.point.time, node.weight / node.factor),
-            None => (blocks.last().map_or(1.0, |block| block.time), 1.0),
-        };
-        blocks.push(Block { row, time, weight });
-    }
-    blocks
+    let rows = (0..interval.inner() + states).step_by(states.max(1));
+    let node = |row: usize| interval.nodes.iter().find(|node| node.row == row);
+    let ends = rows.clone().filter(|row| node(*row).is_none()).count();
+    let mut ended = 0;
+    let block = |row| match node(row) {
+        Some(node) => Block { row, time: node.point.time, weight: node.weight / node.factor },
+        None => {
+            ended += 1;
+            Block { row, time: ended as f64 / ends as f64, weight: 1.0 }
+        }
+    };
+    rows.map(block).collect()
+}
+
+/// The blocks on both sides of a time, with their parts in a linear interpolation.
+fn between(blocks: &[Block], time: f64) -> Vec<(&Block, f64)> {
+    let next = blocks.iter().position(|block| block.time >= time).unwrap_or(blocks.len() - 1).max(1);
+    let [before, after] = [next - 1, next].map(|at| &blocks[at.min(blocks.len() - 1)]);
+    let length = after.time - before.time;
+    let part = if length > 0.0 { (time - before.time) / length } else { 1.0 };
+    vec![(before, 1.0 - part), (after, part)]
 }
 
 /// How many variables of an interval are values of a signal.

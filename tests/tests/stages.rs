@@ -2,7 +2,7 @@
 
 use fdcc_compiler::{Model, compile};
 use fdcc_runtime::homotopy::Level;
-use fdcc_runtime::nlp::Progress;
+use fdcc_runtime::nlp::{Progress, Status};
 use fdcc_runtime::refine::{Refined, solve};
 use fdcc_tests::models::meaning;
 use fdcc_tests::repository;
@@ -96,6 +96,18 @@ fn intervals_on_which_a_control_jumps_are_as_short_as_with_a_given_order() {
     let around = time.windows(2).find(|pair| pair[1] > 20.0).expect("a switch");
     assert!(around[1] - around[0] < 1.01 * last / 50.0, "{around:?}");
     assert!(time.len() < 21, "{} grid points", time.len());
+}
+
+/// Ten intervals are too few for some of these; that is no reason to give up.
+#[test]
+fn hard_problems_are_solved_as_with_a_given_order() {
+    for name in ["mountain_car", "obstacle_avoidance", "hang_glider", "robot_arm"] {
+        let path = format!("tests/classics/{name}.fdc");
+        let methods = [("scheme", "radau"), ("controls", "polynomial"), ("tolerance", "1e-4")];
+        let found = refined(of_file(&path), &methods);
+        assert_eq!(found.outcome.solution.status, Status::Solved, "{name}");
+        assert!(nodes(&found).is_some(), "{name}: {:?}", found.error);
+    }
 }
 
 /// What is carried over to more stages is nearly the solution, multipliers included: they are costates times the weights of the nodes.

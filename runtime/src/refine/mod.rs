@@ -160,7 +160,10 @@ impl Grid {
         problem.method.scheme = problem.method.scheme.with_stages(stages);
         let outcome = self.again(&on_trial(&problem), &vec![1; intervals], watch)?;
         self.outcome.solution.counts = outcome.solution.counts;
-        if !is_good(&outcome) {
+        // What is solved is not given away for what is nearly solved.
+        if !is_good(&outcome)
+            || outcome.solution.status != Status::Solved && self.outcome.solution.status == Status::Solved
+        {
             self.errors.gains = vec![1.0; intervals];
             return Ok(None);
         }

@@ -59,7 +59,7 @@ const WORDS: &[(&str, &str)] = &[
     ),
     (
         "radau",
-        "Collocation of Radau, with `N = auto`: begins with 2 stages and adds more, up to 5, where that takes fewer nodes than dividing intervals.",
+        "Collocation of Radau, with `N = auto`: stages are added, up to 5, where that takes fewer nodes than dividing intervals.",
     ),
     ("gauss", "Collocation of Gauss, with `N = auto`: the number of stages is found like that of `radau`."),
     ("constant", "One value on each interval: for schemes of low order, and where the control jumps."),

@@ -56,6 +56,27 @@ fn a_smooth_solution_gets_stages_and_the_true_error_falls_to_the_tolerance() {
     }
 }
 
+/// Long steps with ten digits: of `x'' = -25 x` each step is known, and so is its error.
+#[test]
+fn the_errors_of_long_steps_are_what_they_are() {
+    let text = "time t in [0, 10] state x start 1 state v start 0 dynamics { x' = v v' = -25*x } minimize x(end) \
+                method { grid N = auto scheme gauss controls = polynomial solver = interior_point tol = 1e-13 }";
+    let tolerance = 1e-9;
+    let found = refined(meaning(text), &[("tolerance", "1e-9")]);
+    let trajectory = &found.outcome.trajectory;
+    let [x, v] = [0, 1].map(|state| &trajectory.states[state]);
+    let size = v[..v.len() - 1].iter().fold(1.0f64, |most, v| most.max(v.abs()));
+    let error = |k: usize| {
+        let (sin, cos) = (5.0 * (trajectory.time[k + 1] - trajectory.time[k])).sin_cos();
+        let (exact_x, exact_v) = (x[k] * cos + v[k] * sin / 5.0, v[k] * cos - 5.0 * x[k] * sin);
+        (x[k + 1] - exact_x).abs().max((v[k + 1] - exact_v).abs() / size)
+    };
+    let exact: f64 = (0..found.problem.method.intervals).map(error).sum();
+    let estimate = found.error.expect("it was asked for");
+    assert!((estimate - exact).abs() < 0.05 * tolerance, "{estimate} for {exact}");
+    assert!(exact <= tolerance && found.problem.method.intervals <= 80, "{exact}");
+}
+
 /// `x' = sqrt(s^2 + w^2)` with `s = t - 0.3`: rounded over `w` only, so that more stages gain nothing before an interval is as short as that.
 const KINK: &str = "time t in [0, 1] state x start 0 control u in [-1, 1] \
                     dynamics { x' = sqrt((t - 0.3)^2 + 1e-6) } minimize integral(u^2) \

@@ -1,7 +1,7 @@
 //! The error of each step, by an accurate integration of the smoothed system from the beginning of each interval.
 //!
 //! All intervals are integrated side by side by the classical Runge-Kutta scheme, with twice as many steps until the ends
-//! stay where they are. Their error is `c_4 h^4 + c_5 h^5 + ...`, and two terms of it are extrapolated away.
+//! stay where they are.
 
 use crate::homotopy::Outcome;
 use crate::problem::{Columns, Problem};
@@ -9,10 +9,7 @@ use crate::transcribe::TranscribedNlp;
 use crate::transcribe::interval::add_up;
 
 const FEWEST_STEPS: usize = 4;
-const MOST_STEPS: usize = 1024;
-/// Of the Runge-Kutta scheme.
-const ORDER: i32 = 4;
-const EXTRAPOLATIONS: usize = 2;
+const MOST_STEPS: usize = 256;
 /// The integration is accurate enough when twice the steps change the errors by this part of the tolerance.
 const ACCURATE: f64 = 0.05;
 
@@ -21,13 +18,11 @@ pub(super) fn step_errors(problem: &Problem, outcome: &Outcome) -> Vec<f64> {
     let nlp = TranscribedNlp::new(problem);
     let flow = Flow { problem, nlp: &nlp, v: &outcome.solution.v, p: &outcome.trajectory.parameters };
     let (ends, scales) = (flow.ends_of_steps(), flow.scales(outcome.solution.objective));
+    let mut errors = flow.errors(FEWEST_STEPS, &ends, &scales);
     let mut steps = FEWEST_STEPS;
-    let mut accurate = vec![flow.integrated(steps)];
-    let mut errors = errors_of(&accurate[0], &ends, &scales);
     while steps < MOST_STEPS {
         steps *= 2;
-        accurate = extrapolated(flow.integrated(steps), &accurate);
-        let better = errors_of(&accurate[accurate.len() - 1], &ends, &scales);
+        let better = flow.errors(steps, &ends, &scales);
         let change: f64 = errors.iter().zip(&better).map(|(a, b)| (a - b).abs()).sum();
         errors = better;
         if change <= ACCURATE * problem.method.tolerance {
@@ -36,28 +31,6 @@ pub(super) fn step_errors(problem: &Problem, outcome: &Outcome) -> Vec<f64> {
     }
     // Where even short steps have no value something is wrong with the interval: it is divided.
     errors.iter().map(|error| if error.is_finite() { *error } else { 1.0 }).collect()
-}
-
-/// The largest error of each interval, relative to the scales.
-fn errors_of(accurate: &Columns, ends: &Columns, scales: &[f64]) -> Vec<f64> {
-    let error = |k: usize| {
-        let one = |i: usize| (accurate.column(i)[k] - ends.column(i)[k]).abs() / scales[i];
-        (0..ends.columns()).map(one).fold(0.0, |most: f64, error| if error <= most { most } else { error })
-    };
-    (0..ends.count()).map(error).collect()
-}
-
-/// A row of the table of Richardson: what was integrated, then without the first terms of its error; from the row with half as many steps.
-fn extrapolated(integrated: Columns, coarse: &[Columns]) -> Vec<Columns> {
-    let mut row = vec![integrated];
-    for (power, coarse) in coarse.iter().take(EXTRAPOLATIONS).enumerate() {
-        let mut next = row[power].clone();
-        let factor = 1.0 / (2f64.powi(ORDER + power as i32) - 1.0);
-        let both = next.as_mut_slice().iter_mut().zip(coarse.as_slice());
-        both.for_each(|(fine, coarse)| *fine += factor * (*fine - coarse));
-        row.push(next);
-    }
-    row
 }
 
 /// The right side over normalised time, with the controls of a solution.
@@ -107,6 +80,17 @@ impl Flow<'_> {
             column.iter().fold(1.0, |most: f64, x| most.max(x.abs()))
         });
         states.chain([objective.abs().max(1.0)]).collect()
+    }
+
+    fn errors(&self, steps: usize, ends: &Columns, scales: &[f64]) -> Vec<f64> {
+        let accurate = self.integrated(steps);
+        let error = |k: usize| {
+            let one = |i: usize| (accurate.column(i)[k] - ends.column(i)[k]).abs() / scales[i];
+            (0..ends.columns())
+                .map(one)
+                .fold(0.0, |most: f64, error| if error <= most { most } else { error })
+        };
+        (0..self.intervals()).map(error).collect()
     }
 
     /// States and running cost at the end of each interval after so many Runge-Kutta steps.

@@ -8,7 +8,7 @@ use fdcc_compiler::{Model, expectations};
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::Columns;
 use fdcc_runtime::quadrature::integrals;
-use fdcc_tests::models::{meaning, solve};
+use fdcc_tests::models::{meaning, problem, solve};
 use fdcc_tests::{Solved, documents, repository};
 
 /// Problems that are not solved as well as by IPOPT, and what is known about it. A row that has become untrue is a failure.
@@ -96,6 +96,16 @@ fn classical_problems_are_solved_as_well_as_by_ipopt() {
         }
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+/// Where the guess heads in one direction, the two coordinates of the end depend on each other to first order.
+#[test]
+fn an_end_whose_rows_depend_on_each_other_at_the_guess_is_reached_by_every_scheme() {
+    for scheme in ["midpoint", "trapezoid", "radau2", "radau3", "gauss2"] {
+        let outcome = solve(&problem(&text("obstacle_avoidance"), &[], &[("scheme", scheme)]));
+        assert_eq!(outcome.solution.status, Status::Solved, "{scheme}");
+        assert!((outcome.solution.objective - 2.138f64.powi(2)).abs() < 1e-6, "{scheme}");
+    }
 }
 
 fn text(name: &str) -> String {

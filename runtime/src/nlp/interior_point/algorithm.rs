@@ -8,6 +8,7 @@ use super::restoration::Restored;
 use super::search::{Accepted, Search};
 use super::space::Space;
 use super::watchdog::Watchdog;
+use crate::nlp::error_scale::objective_scale;
 use crate::nlp::filter::Filter;
 use crate::nlp::{Counts, Nlp, Options, Progress, Status, Stop, Watch};
 use std::ops::ControlFlow;
@@ -17,6 +18,9 @@ const ACCEPTABLE_ERROR: f64 = 1e-6;
 const ACCEPTABLE_ITERATIONS: usize = 100;
 /// An optimum may owe so many times the tolerance to violations.
 const MOST_OWED: f64 = 1e3;
+/// Multipliers above this, relative to the objective, come from rows that depend on each other, unless these are nearly satisfied.
+const LARGEST_MULTIPLIER: f64 = 1e8;
+const NEARLY_FEASIBLE: f64 = 1e-4;
 /// Variables beyond this, at a point that is feasible relative to them, have left the problem.
 const DIVERGED: f64 = 1e10;
 /// A step this small, relative to the iterate, is rounding.
@@ -191,10 +195,24 @@ impl Algorithm {
 
     /// The Newton step with the right inertia; `false` if the linear system could not be solved.
     fn find_step(&mut self, nlp: &dyn Nlp) -> bool {
+        self.newton_step(nlp, false) && (!self.rows_seem_dependent() || self.newton_step(nlp, true))
+    }
+
+    /// Whether a step from a point that is far from feasible leads to multipliers out of proportion: rows that depend on each other cannot
+    /// all be met, and rounding may hide that from the inertia.
+    fn rows_seem_dependent(&self) -> bool {
+        let most = LARGEST_MULTIPLIER * objective_scale(self.values.objective);
+        let mut ahead =
+            self.at.lambda.iter().zip(&self.step.lambda).map(|(lambda, step)| (lambda + step).abs());
+        self.values.largest() > NEARLY_FEASIBLE && ahead.any(|lambda| lambda > most)
+    }
+
+    fn newton_step(&mut self, nlp: &dyn Nlp, are_dependent: bool) -> bool {
         let Algorithm { space, at, slopes, kkt, counts, step, values, .. } = self;
         let mu = self.barrier.mu;
         let system = System { nlp, space, at, slopes, mu };
-        kkt.factor_with_inertia(space, slopes, mu, counts) && kkt.step(&system, &values.residuals, step)
+        kkt.factor_with_inertia(space, slopes, mu, are_dependent, counts)
+            && kkt.step(&system, &values.residuals, step)
     }
 
     fn report(&mut self) -> Progress {

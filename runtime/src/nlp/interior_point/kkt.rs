@@ -33,6 +33,8 @@ const NOT_CUT: f64 = 0.5;
 const CAUTION_GROWTH: f64 = 4.0;
 const MOST_CAUTION: f64 = 1.0;
 const ROW_REGULARIZATION: f64 = 1e-8;
+/// The same where rows depend on each other by their multipliers, although the inertia is right.
+const DEPENDENT_ROWS: f64 = 1e-6;
 /// Refinement stops at this residual, relative to the right side.
 const REFINED: f64 = 1e-11;
 const MOST_REFINEMENTS: usize = 8;
@@ -131,18 +133,20 @@ impl Kkt {
         barrier.add_damping(space, gradient);
     }
 
-    /// Factors with the smallest regularisation that gives the right inertia; `false` if none does.
+    /// Factors with the smallest regularisation that gives the right inertia; `false` if none does. Rows that depend on each other are
+    /// regularised from the beginning.
     pub(super) fn factor_with_inertia(
         &mut self,
         space: &Space,
         slopes: &Slopes,
         mu: f64,
+        are_dependent: bool,
         counts: &mut Counts,
     ) -> bool {
         // Curvature that was wrong a moment ago is likely to be wrong again: zero is tried only every other time.
         let start = if self.was_needed { self.smaller_regularization() } else { 0.0 };
         self.regularization = start.max(self.caution);
-        let (first, mut rows) = (self.regularization, 0.0);
+        let (first, mut rows) = (self.regularization, if are_dependent { DEPENDENT_ROWS } else { 0.0 });
         loop {
             match self.factor_once(space, slopes, rows, counts) {
                 Inertia::Correct => break,

@@ -8,6 +8,7 @@ use crate::output;
 use crate::output::document::{Document, Seconds};
 use crate::output::saved::Saved;
 use crate::output::units::Units;
+use crate::parallel;
 use crate::search::{Found, Search};
 use crate::warm;
 use crate::watch::Deadline;
@@ -15,7 +16,7 @@ use fdcc_compiler::Model;
 use fdcc_grammar::{Diagnostic, SourceFile};
 use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::nlp::{Start, Status};
-use fdcc_runtime::problem::{Columns, Problem};
+use fdcc_runtime::problem::{Problem, first_calls};
 use fdcc_runtime::transcribe::unknowns;
 use sha2::{Digest, Sha256};
 use std::time::Instant;
@@ -181,18 +182,10 @@ impl Solved {
     }
 }
 
-/// Machine code is made when it is first called. What every solve calls is called here, so that it counts as compiling.
+/// Makes the machine code that every solve needs, so that it counts as compiling.
 fn make_machine_code(problem: &Problem) {
-    let parameters: Vec<f64> = problem.parameters.iter().map(|it| it.value).collect();
-    for function in [&problem.dynamics, &problem.path, &problem.boundary] {
-        let table = |columns| Columns::new(columns, 1);
-        let (points, multipliers) = (table(function.layout().point_inputs()), table(function.outputs()));
-        let mut values = table(function.outputs());
-        let [mut jacobian, mut hessian] =
-            [function.jacobian_pattern(), function.hessian_pattern()].map(|it| table(it.entries.len()));
-        function.value(&points, &parameters, &mut values);
-        function.derivatives(&points, &parameters, &multipliers, &mut values, &mut jacobian, &mut hessian);
-    }
+    let calls = first_calls(problem);
+    parallel::in_order(calls.len(), parallel::processors(), |i| calls[i](), |()| false);
 }
 
 /// More need more memory than computers have.

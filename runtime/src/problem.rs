@@ -7,8 +7,10 @@
 //! the real time is `t0(p) + tau * (tf(p) - t0(p))`. So a free final time needs no special treatment: it is a
 //! parameter like any other, and its derivatives come out of the functions.
 
+mod first_calls;
 mod method;
 
+pub use first_calls::first_calls;
 pub use method::{ControlShape, FIRST_GRID, Linear, MOST_STAGES, Method, Scheme, Solver};
 
 use std::ops::Range;

@@ -4,6 +4,7 @@
 
 use fdcc_runtime::homotopy::solve;
 use fdcc_runtime::nlp::Stop;
+use fdcc_runtime::problem::first_calls;
 use std::hint::black_box;
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -21,6 +22,9 @@ fn run() -> [f64; 4] {
     let model = fdcc_compiler::check(&tree).model.expect("the race car has no errors");
     let checked = milliseconds();
     let problem = fdcc_compiler::compile(&model).expect("the race car can be solved");
+    // As `fdcc solve` does it.
+    let calls = first_calls(&problem);
+    std::thread::scope(|scope| calls.iter().for_each(|call| drop(scope.spawn(call))));
     let compiled = milliseconds();
     let mut first = None;
     let _ = solve(&problem, None, &mut |_, _| {

@@ -2,7 +2,7 @@
 
 use super::riccati::Riccati;
 use super::sparse_ldl::SparseLdl;
-use super::{Factor, Family, Inertia, Stages, Triplets};
+use super::{Factor, Family, Inertia, Products, Stages, Triplets};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 struct Random(u64);
@@ -79,6 +79,22 @@ impl Case {
             matrix[(i, i)] = 1.0;
         }
         matrix
+    }
+
+    /// `[H J'; J 0] x`, entry by entry.
+    fn times(&self, x: &[f64]) -> Vec<f64> {
+        let (variables, mut y) = (self.stages.variables(), vec![0.0; x.len()]);
+        let mut add = |row: usize, column: usize, value: f64| {
+            y[row] += value * x[column];
+            if row != column {
+                y[column] += value * x[row];
+            }
+        };
+        let hessian = self.hessian.entries().zip(&self.hessian_values);
+        hessian.for_each(|((row, column), value)| add(row, column, *value));
+        let jacobian = self.jacobian.entries().zip(&self.jacobian_values);
+        jacobian.for_each(|((row, column), value)| add(variables + row, column, *value));
+        y
     }
 
     /// The law: `K x = b` and inertia = signs of the eigenvalues.
@@ -219,4 +235,45 @@ fn both_factorisations_solve_their_system_and_know_its_inertia() {
         )] += 1;
     }
     assert!(both[0] > 20 && both[1] > 100, "the cases must be of both kinds: {both:?}");
+}
+
+/// Of chains whose last batch is full and not, and of what is no chain.
+#[test]
+fn products_are_those_of_all_entries() {
+    let mut random = Random(11);
+    for case in 0..48 {
+        let (intervals, inner) = (1 + case % 9, case % 2);
+        let stages = Stages {
+            intervals,
+            states: 1 + case % 3,
+            controls: case % 3,
+            inner,
+            globals: case % 2,
+            local_rows: 1,
+            coupling_rows: 1,
+        };
+        let is_linear = case % 7 == 0;
+        let mut case = Case::new(stages, case % 5 == 0, false, true, &mut random);
+        if is_linear {
+            (case.hessian, case.hessian_values) = (Triplets::default(), Vec::new());
+        }
+        let x = random.vector(stages.variables() + stages.rows());
+        let (v, w) = x.split_at(stages.variables());
+        let expected = case.times(&x);
+        let products = |stages| Products::new(stages, &case.hessian, &case.jacobian);
+        for mut products in [products(Some(stages)), products(Some(stages)).without_fused(), products(None)] {
+            let mut found = vec![0.0; x.len()];
+            let (a, b) = found.split_at_mut(stages.variables());
+            products.multiply_add((&case.hessian_values, &case.jacobian_values), (v, w), (a, b));
+            let worst = found.iter().zip(&expected).fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs()));
+            assert!(worst < 1e-13, "{worst} for {stages:?}");
+            let mut gradient = vec![0.0; v.len()];
+            products.transposed_multiply_add(&case.jacobian_values, w, &mut gradient);
+            let mut expected = vec![0.0; v.len()];
+            case.jacobian.transposed_multiply_add(&case.jacobian_values, w, &mut expected);
+            let worst =
+                gradient.iter().zip(&expected).fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs()));
+            assert!(worst < 1e-13, "transposed: {worst} for {stages:?}");
+        }
+    }
 }

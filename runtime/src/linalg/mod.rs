@@ -12,13 +12,16 @@
 
 #[cfg(test)]
 mod conformance;
+mod lanes;
 pub(crate) mod lu;
+mod products;
 pub mod riccati;
 pub mod sparse_ldl;
 mod stages;
 mod symmetric;
 mod triplets;
 
+pub(crate) use products::Products;
 pub use stages::Stages;
 pub(crate) use symmetric::SymmetricFactor;
 pub use triplets::{Family, Triplets};

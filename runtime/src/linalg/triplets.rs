@@ -77,26 +77,6 @@ impl Triplets {
         });
     }
 
-    /// `y += A x` and `z += A' w`: each value is read once.
-    pub fn multiply_add_both(
-        &self,
-        values: &[f64],
-        (x, y): (&[f64], &mut [f64]),
-        (w, z): (&[f64], &mut [f64]),
-    ) {
-        // Equal lengths, so that one check of an index serves two.
-        let (x, y) = (&x[..z.len()], &mut y[..w.len()]);
-        self.for_each_stretch(values, |family, values| {
-            let (mut row, mut column) = (family.row, family.column);
-            for value in values {
-                y[row] += value * x[column];
-                z[column] += value * w[row];
-                row += family.row_step;
-                column += family.column_step;
-            }
-        });
-    }
-
     /// `y += A x` where only the lower triangle of the symmetric `A` is stored.
     pub fn symmetric_multiply_add(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
         let x = &x[..y.len()];

@@ -17,7 +17,7 @@ pub(crate) struct Scaled<'a> {
     pub(crate) rows: Vec<f64>,
     bounds: Vec<Bounds>,
     multipliers: Vec<f64>,
-    /// Factor of each Jacobian value.
+    /// Factor of each Jacobian value; none where no row is scaled, as is usual.
     entries: Vec<f64>,
 }
 
@@ -35,7 +35,10 @@ impl<'a> Scaled<'a> {
         let objective = factor(derivatives.gradient.iter().fold(0.0, |largest: f64, g| largest.max(g.abs())));
         let bounds = inner.row_bounds().iter().zip(&rows);
         let bounds = bounds.map(|(b, s)| Bounds { lower: b.lower * s, upper: b.upper * s }).collect();
-        let entries = inner.jacobian_structure().entries().map(|(row, _)| rows[row]).collect();
+        let mut entries = Vec::new();
+        if rows.iter().any(|s| *s != 1.0) {
+            entries.extend(inner.jacobian_structure().entries().map(|(row, _)| rows[row]));
+        }
         Scaled { inner, objective, rows, bounds, multipliers: vec![0.0; count], entries }
     }
 

@@ -1,6 +1,6 @@
 //! The ends of the trajectory: the Mayer objective and the boundary conditions.
 
-use super::assembly::{Builder, Contribution, Repeated};
+use super::assembly::{Builder, Contribution, Destination, Repeated};
 use super::tables::{Tables, scatter};
 use crate::linalg::Stages;
 use crate::problem::{Bounds, Columns, Degree, Problem};
@@ -27,7 +27,10 @@ impl Ends {
         for (column, &(output, input)) in function.jacobian_pattern().entries.iter().enumerate() {
             let place = variable(input);
             match (output as usize).checked_sub(1) {
-                None => gradient_moves.push(Contribution { column, coefficient: 1.0, target: place.first }),
+                None => {
+                    let target = Destination::taken(place.first);
+                    gradient_moves.push(Contribution { column, coefficient: 1.0, target });
+                }
                 Some(row) => {
                     let row = Repeated { first: stages.coupling().start + row, step: 0 };
                     let target = jacobian.place(row, place, 1);
@@ -83,8 +86,8 @@ impl Ends {
     /// The gradient by the last state only.
     pub(super) fn add_last_gradient(&self, stages: Stages, gradient: &mut [f64]) {
         let last = stages.state(stages.intervals);
-        for entry in self.gradient_moves.iter().filter(|entry| last.contains(&entry.target)) {
-            gradient[entry.target] += entry.coefficient * self.tables.jacobian.column(entry.column)[0];
+        for entry in self.gradient_moves.iter().filter(|entry| last.contains(&entry.target.first)) {
+            gradient[entry.target.first] += entry.coefficient * self.tables.jacobian.column(entry.column)[0];
         }
     }
 

@@ -193,7 +193,7 @@ fn constant(interval: &Interval, matrices: &mut Matrices) -> Vec<(usize, f64)> {
     let places = interval.links.iter().map(|link| {
         let (row, column) =
             (Repeated { first: link.row, step: row_step }, Repeated { first: link.place, step });
-        (matrices.jacobian.place(row, column, stages.intervals), link.value)
+        (matrices.jacobian.place(row, column, stages.intervals).first, link.value)
     });
     places.collect()
 }
@@ -235,8 +235,6 @@ impl Nlp for TranscribedNlp<'_> {
         self.load(v);
         let Derivatives { gradient, jacobian, hessian } = out;
         gradient.fill(0.0);
-        jacobian.fill(0.0);
-        hessian.fill(0.0);
         for (place, value) in &self.constant {
             jacobian[*place..][..self.stages.intervals].fill(*value);
         }

@@ -3,7 +3,7 @@
 //! It sees a [`Point`] of the interval, whose states and controls are sums of variables with factors. By the chain rule each
 //! derivative by a state or control splits into one by each of these variables, with its factor.
 
-use super::assembly::{Builder, Contribution, Repeated};
+use super::assembly::{Builder, Contribution, Destination, Repeated};
 use super::interval::Point;
 use super::mesh::Mesh;
 use super::tables::{Tables, scatter};
@@ -83,7 +83,7 @@ impl Sampled {
                         self.row_moves.push(Contribution { column, coefficient: scale * factor, target });
                     }
                     Target::Objective(scale) => {
-                        let target = variable.first;
+                        let target = Destination::taken(variable.first);
                         let contribution = Contribution { column, coefficient: scale * factor, target };
                         self.gradient_moves.push((contribution, variable.step));
                     }
@@ -184,13 +184,13 @@ impl Sampled {
 
     fn add_gradient(&self, (entry, step): &(Contribution, usize), gradient: &mut [f64]) {
         for (k, d) in self.tables.jacobian.column(entry.column).iter().enumerate() {
-            gradient[entry.target + k * step] += entry.coefficient * d;
+            gradient[entry.target.first + k * step] += entry.coefficient * d;
         }
     }
 
     /// The gradient by the states at the beginning of each interval only.
     pub(super) fn add_own_gradient(&self, stages: Stages, gradient: &mut [f64]) {
-        let own = self.gradient_moves.iter().filter(|(entry, _)| entry.target < stages.states);
+        let own = self.gradient_moves.iter().filter(|(entry, _)| entry.target.first < stages.states);
         own.for_each(|entry| self.add_gradient(entry, gradient));
     }
 

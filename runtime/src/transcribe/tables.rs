@@ -41,9 +41,13 @@ impl Tables {
 
 /// Adds columns of a table to the values of a matrix.
 pub(super) fn scatter(table: &Columns, moves: &[Contribution], values: &mut [f64]) {
-    for entry in moves {
-        let column = table.column(entry.column);
-        let target = &mut values[entry.target..][..column.len()];
-        target.iter_mut().zip(column).for_each(|(value, d)| *value += entry.coefficient * d);
+    for &Contribution { column, coefficient, target } in moves {
+        let column = table.column(column);
+        let values = values[target.first..][..column.len()].iter_mut().zip(column);
+        if target.is_new {
+            values.for_each(|(value, d)| *value = coefficient * d);
+        } else {
+            values.for_each(|(value, d)| *value += coefficient * d);
+        }
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! Local positions of an interval are those of `(x_k, u_k, theta, y_k, x_{k+1})`.
 
-use super::lanes::Lanes;
 use super::sizes::Sizes;
+use crate::linalg::lanes::Lanes;
 use crate::linalg::{Family, Stages, Triplets};
 
 /// Where one value of an interval goes: `target += values[source + k]`.

@@ -2,9 +2,9 @@
 //! machines with and without fused multiply-add and registers of four numbers.
 
 use super::Riccati;
-use super::lanes::Lanes;
 use super::sizes::Sizes;
 use super::solve::Travel;
+use crate::linalg::lanes::Lanes;
 
 /// **The table** of sizes that are compiled as constants: states, controls, border; without inner variables.
 macro_rules! with_constant_sizes {
@@ -104,12 +104,4 @@ impl Riccati {
             self.forward::<FUSED>(sizes, k, travel, (a, b));
         }
     }
-}
-
-/// Whether this machine has what the fused loops need.
-pub(super) fn is_fused() -> bool {
-    #[cfg(target_arch = "x86_64")]
-    return std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma");
-    #[cfg(not(target_arch = "x86_64"))]
-    false
 }

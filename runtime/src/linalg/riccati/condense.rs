@@ -9,11 +9,12 @@
 
 use super::assemble::Assembly;
 use super::chain::Matrix;
+use super::elimination::{add_row_product, divide};
 use super::factors::Factors;
 use super::kernels::View;
-use super::lanes::{Lanes, add_row_product, divide, part};
 use super::sizes::Sizes;
 use crate::linalg::Stages;
+use crate::linalg::lanes::{Lanes, part};
 use std::ops::Range;
 
 /// A few intervals, condensed, and the memory for it.

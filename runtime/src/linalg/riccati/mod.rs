@@ -18,13 +18,14 @@ mod assemble;
 mod border;
 mod chain;
 mod condense;
+mod elimination;
 mod factors;
 mod interval;
 mod kernels;
-mod lanes;
 mod sizes;
 mod solve;
 
+use super::lanes::is_fused;
 use super::{Factor, Inertia, Stages, Triplets};
 use assemble::Assembly;
 use border::Border;
@@ -80,7 +81,7 @@ impl Riccati {
         Ok(Riccati {
             stages,
             sizes,
-            fused: chain::is_fused(),
+            fused: is_fused(),
             fixed: fixed.to_vec(),
             border,
             condensed: Condensed::new(sizes, stages, &assembly),

@@ -7,6 +7,7 @@ use super::residuals::{Residuals, owed};
 use super::restoration::Restored;
 use super::search::{Accepted, Search};
 use super::space::Space;
+use super::vectors::largest;
 use super::watchdog::Watchdog;
 use crate::nlp::error_scale::objective_scale;
 use crate::nlp::filter::Filter;
@@ -155,7 +156,7 @@ impl Algorithm {
             return true;
         }
         self.is_relaxed = true;
-        self.space.relax(&mut self.values.residuals);
+        self.values.relax(&mut self.space);
         self.begin_anew(nlp);
         false
     }
@@ -189,13 +190,13 @@ impl Algorithm {
             self.kkt.caution = 0.0;
         }
         self.kkt.assemble(&self.space, &self.at, &self.slopes, &self.barrier);
-        let has_step = self.find_step(nlp) || (self.kkt.fall_back(nlp, &self.space) && self.find_step(nlp));
+        let has_step = self.find_step() || (self.kkt.fall_back(nlp, &self.space) && self.find_step());
         if has_step { self.take_step(nlp) } else { Outcome::Blocked }
     }
 
     /// The Newton step with the right inertia; `false` if the linear system could not be solved.
-    fn find_step(&mut self, nlp: &dyn Nlp) -> bool {
-        self.newton_step(nlp, false) && (!self.rows_seem_dependent() || self.newton_step(nlp, true))
+    fn find_step(&mut self) -> bool {
+        self.newton_step(false) && (!self.rows_seem_dependent() || self.newton_step(true))
     }
 
     /// Whether a step from a point that is far from feasible leads to multipliers out of proportion: rows that depend on each other cannot
@@ -207,10 +208,10 @@ impl Algorithm {
         self.values.largest() > NEARLY_FEASIBLE && ahead.any(|lambda| lambda > most)
     }
 
-    fn newton_step(&mut self, nlp: &dyn Nlp, are_dependent: bool) -> bool {
+    fn newton_step(&mut self, are_dependent: bool) -> bool {
         let Algorithm { space, at, slopes, kkt, counts, step, values, .. } = self;
         let mu = self.barrier.mu;
-        let system = System { nlp, space, at, slopes, mu };
+        let system = System { space, at, slopes, mu };
         kkt.factor_with_inertia(space, slopes, mu, are_dependent, counts)
             && kkt.step(&system, &values.residuals, step)
     }
@@ -249,7 +250,7 @@ impl Algorithm {
     }
 
     fn has_diverged(&self) -> bool {
-        let largest = self.at.y[..self.space.variables].iter().fold(0.0, |a: f64, y| a.max(y.abs()));
+        let largest = largest(&self.at.y[..self.space.variables]);
         largest > DIVERGED && self.residuals.primal <= self.options.tol * largest
     }
 
@@ -347,7 +348,7 @@ impl Algorithm {
         self.barrier.correct_multipliers(&self.space, &mut self.at);
         self.counts.iterations += 1;
         self.fresh = false;
-        self.progress.step = self.step.y.iter().fold(0.0, |a, d| a.max(d.abs()));
+        self.progress.step = largest(&self.step.y);
         self.progress.regularization = self.kkt.regularization;
         self.progress.alpha_primal = alpha;
         self.progress.alpha_dual = dual;

@@ -110,27 +110,29 @@ impl Barrier {
     }
 }
 
-/// Sum of logarithms, with one logarithm for many factors.
+/// Sum of logarithms, with one logarithm for many factors. Products take turns, so that none has to wait for the one before.
 struct LogarithmSum {
     sum: f64,
-    product: f64,
+    products: [f64; 4],
 }
 
 impl Default for LogarithmSum {
     fn default() -> Self {
-        LogarithmSum { sum: 0.0, product: 1.0 }
+        LogarithmSum { sum: 0.0, products: [1.0; 4] }
     }
 }
 
 impl LogarithmSum {
     fn add(&mut self, factor: f64) {
-        self.product *= factor;
-        if !(1e-200..1e200).contains(&self.product) {
-            self.sum += self.product.ln();
-            self.product = 1.0;
+        let [first, second, third, fourth] = self.products;
+        let mut product = first * factor;
+        if !(1e-70..1e70).contains(&product) {
+            self.sum += product.ln();
+            product = 1.0;
         }
+        self.products = [second, third, fourth, product];
     }
     fn sum(&self) -> f64 {
-        self.sum + self.product.ln()
+        self.sum + self.products.iter().product::<f64>().ln()
     }
 }

@@ -2,6 +2,7 @@
 
 use super::space::Space;
 use super::vectors::{are_finite, largest, sum_of_sizes};
+use crate::linalg::{Products, Triplets};
 use crate::nlp::{Counts, Derivatives, Nlp};
 
 /// Primal and dual variables.
@@ -52,6 +53,8 @@ impl Step {
 pub(super) struct Values {
     pub(super) objective: f64,
     pub(super) residuals: Vec<f64>,
+    /// `theta`: the 1-norm of the residuals.
+    pub(super) violation: f64,
 }
 
 impl Values {
@@ -68,12 +71,13 @@ impl Values {
         let objective = nlp.values(&y[..space.variables], &mut self.residuals);
         self.objective = objective + space.attached_cost(y);
         space.residuals(y, &mut self.residuals);
+        self.violation = sum_of_sizes(&self.residuals);
         self.is_finite()
     }
 
     /// Whether there is a number everywhere.
     pub(super) fn is_finite(&self) -> bool {
-        self.objective.is_finite() && self.violation().is_finite()
+        self.objective.is_finite() && self.violation.is_finite()
     }
 
     /// The largest residual.
@@ -81,9 +85,10 @@ impl Values {
         largest(&self.residuals)
     }
 
-    /// `theta`: the 1-norm of the residuals.
-    pub(super) fn violation(&self) -> f64 {
-        sum_of_sizes(&self.residuals)
+    /// Takes the residuals as none, by moving the right-hand sides.
+    pub(super) fn relax(&mut self, space: &mut Space) {
+        space.relax(&mut self.residuals);
+        self.violation = 0.0;
     }
 }
 
@@ -92,11 +97,13 @@ pub(super) struct Slopes {
     pub(super) derivatives: Derivatives,
     /// `grad f + J' lambda` over `y`.
     pub(super) lagrangian: Vec<f64>,
+    products: Products,
 }
 
 impl Slopes {
     pub(super) fn new(nlp: &dyn Nlp, space: &Space) -> Self {
-        Slopes { derivatives: Derivatives::new(nlp), lagrangian: vec![0.0; space.len()] }
+        let products = Products::new(nlp.stages(), &Triplets::default(), nlp.jacobian_structure());
+        Slopes { derivatives: Derivatives::new(nlp), lagrangian: vec![0.0; space.len()], products }
     }
 
     /// Evaluates at the iterate; `false` if anything is not finite.
@@ -109,16 +116,17 @@ impl Slopes {
     ) -> bool {
         counts.derivatives += 1;
         nlp.derivatives(&at.y[..space.variables], 1.0, &at.lambda, &mut self.derivatives);
-        self.update_lagrangian(nlp, space, &at.lambda);
+        self.update_lagrangian(space, &at.lambda);
         let Derivatives { hessian, jacobian, .. } = &self.derivatives;
         [hessian, jacobian, &self.lagrangian].into_iter().all(|values| are_finite(values))
     }
 
     /// The gradient of the Lagrangian with these multipliers; fixed variables have none.
-    pub(super) fn update_lagrangian(&mut self, nlp: &dyn Nlp, space: &Space, lambda: &[f64]) {
-        let (variables, attached) = self.lagrangian.split_at_mut(space.variables);
-        variables.copy_from_slice(&self.derivatives.gradient);
-        nlp.jacobian_structure().transposed_multiply_add(&self.derivatives.jacobian, lambda, variables);
+    pub(super) fn update_lagrangian(&mut self, space: &Space, lambda: &[f64]) {
+        let Slopes { derivatives, products, lagrangian } = self;
+        let (variables, attached) = lagrangian.split_at_mut(space.variables);
+        variables.copy_from_slice(&derivatives.gradient);
+        products.transposed_multiply_add(&derivatives.jacobian, lambda, variables);
         for (value, fixed) in variables.iter_mut().zip(&space.fixed) {
             if *fixed {
                 *value = 0.0;

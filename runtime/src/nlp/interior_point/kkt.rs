@@ -16,8 +16,8 @@ use super::space::Space;
 use super::vectors::{are_finite, largest};
 use crate::linalg::riccati::Riccati;
 use crate::linalg::sparse_ldl::SparseLdl;
-use crate::linalg::{Factor, Inertia};
-use crate::nlp::{Counts, Nlp};
+use crate::linalg::{Factor, Inertia, Products};
+use crate::nlp::{Counts, Derivatives, Nlp};
 use crate::problem::Linear;
 
 const FIRST_REGULARIZATION: f64 = 1e-4;
@@ -42,7 +42,6 @@ const MOST_REFINEMENTS: usize = 8;
 /// What the optimality conditions are linearised around.
 #[derive(Clone, Copy)]
 pub(super) struct System<'a> {
-    pub(super) nlp: &'a dyn Nlp,
     pub(super) space: &'a Space,
     pub(super) at: &'a Iterate,
     pub(super) slopes: &'a Slopes,
@@ -52,6 +51,7 @@ pub(super) struct System<'a> {
 /// The matrix, its factors and its memory.
 pub(super) struct Kkt {
     factor: Box<dyn Factor>,
+    products: Products,
     /// Whether the factorisation is the recursion, which has no pivoting.
     is_recursion: bool,
     /// `z / distance` over `y`.
@@ -93,6 +93,7 @@ impl Kkt {
         let zeros = |length: usize| vec![0.0; length];
         let size = space.variables + rows;
         Kkt {
+            products: Products::new(nlp.stages(), hessian, jacobian),
             factor,
             is_recursion,
             sigma: zeros(space.len()),
@@ -205,9 +206,9 @@ impl Kkt {
 
     /// The Newton step that removes `residuals`; `false` if the linear system could not be solved accurately.
     pub(super) fn step(&mut self, system: &System, residuals: &[f64], step: &mut Step) -> bool {
-        let System { nlp, space, at, slopes, mu } = *system;
+        let System { space, at, slopes, mu } = *system;
         self.fill_right_side(space, residuals);
-        if !self.solve_refined(nlp, space, slopes) {
+        if !self.solve_refined(space, slopes) {
             return false;
         }
         step.y[..space.variables].copy_from_slice(&self.solution[..space.variables]);
@@ -241,7 +242,7 @@ impl Kkt {
     }
 
     /// Iterative refinement against the matrix itself.
-    fn solve_refined(&mut self, nlp: &dyn Nlp, space: &Space, slopes: &Slopes) -> bool {
+    fn solve_refined(&mut self, space: &Space, slopes: &Slopes) -> bool {
         self.solution.fill(0.0);
         self.residual.copy_from_slice(&self.right);
         let right = largest(&self.right);
@@ -249,7 +250,7 @@ impl Kkt {
         for _ in 0..MOST_REFINEMENTS {
             self.factor.solve(&mut self.residual);
             self.solution.iter_mut().zip(&self.residual).for_each(|(x, correction)| *x += correction);
-            self.compute_residual(nlp, space, slopes);
+            self.compute_residual(space, slopes);
             now = largest(&self.residual);
             if now <= REFINED * right && right.is_finite() {
                 return true;
@@ -263,9 +264,8 @@ impl Kkt {
         size.is_finite() && now <= 1e-5 * size
     }
 
-    fn compute_residual(&mut self, nlp: &dyn Nlp, space: &Space, slopes: &Slopes) {
+    fn compute_residual(&mut self, space: &Space, slopes: &Slopes) {
         let variables = space.variables;
-        let (hessian, jacobian) = (nlp.hessian_structure(), nlp.jacobian_structure());
         let (dv, dl) = self.solution.split_at(variables);
         let (a, b) = self.residual.split_at_mut(variables);
         for i in 0..variables {
@@ -274,8 +274,8 @@ impl Kkt {
         for (i, target) in b.iter_mut().enumerate() {
             *target = -self.d[i] * dl[i];
         }
-        hessian.symmetric_multiply_add(&slopes.derivatives.hessian, dv, a);
-        jacobian.multiply_add_both(&slopes.derivatives.jacobian, (dv, b), (dl, a));
+        let Derivatives { hessian, jacobian, .. } = &slopes.derivatives;
+        self.products.multiply_add((hessian, jacobian), (dv, dl), (a, b));
         for (residual, right) in self.residual.iter_mut().zip(&self.right) {
             *residual = right - *residual;
         }

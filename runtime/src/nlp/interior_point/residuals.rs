@@ -12,7 +12,7 @@
 
 use super::iterate::{Iterate, Slopes, Values};
 use super::space::Space;
-use super::vectors::{largest_of, sum_of_sizes};
+use super::vectors::{largest_sum, sum_of_sizes};
 use crate::nlp::error_scale::{error_scale, objective_scale};
 
 /// The three parts of the error, scaled.
@@ -32,17 +32,19 @@ impl Residuals {
         let row_sum = sum_of_sizes(&at.lambda);
         let (bounds, rows) = ((2 * space.len()).max(1) as f64, at.lambda.len() as f64);
         let scale = |average: f64| error_scale(average, values.objective);
-        let gradients = slopes.lagrangian.iter().zip(&at.lower).zip(&at.upper);
-        let dual = largest_of(gradients.map(|((gradient, lower), upper)| gradient - lower + upper));
-        let (mut most, mut least) = (0.0f64, f64::INFINITY);
+        let dual = largest_sum([&slopes.lagrangian, &at.upper], &at.lower);
+        let (mut most, mut least, mut nothing) = (0.0, f64::INFINITY, 0.0);
         space.for_each_bound(&at.y, |i, distance, direction| {
             let product = distance * if direction > 0.0 { at.lower[i] } else { at.upper[i] };
-            (most, least) = (larger(most, product), least.min(product));
+            most = if product > most { product } else { most };
+            least = if product < least { product } else { least };
+            // Zero, or what is not a number.
+            nothing += product * 0.0;
         });
         Residuals {
             dual: dual / scale((bound_sum + row_sum) / (bounds + rows)),
             primal: values.largest(),
-            largest_product: most,
+            largest_product: most + nothing,
             smallest_product: if least.is_finite() { least } else { 0.0 },
             product_scale: scale(bound_sum / bounds),
         }
@@ -52,7 +54,7 @@ impl Residuals {
     pub(super) fn error(&self, mu: f64) -> f64 {
         let no_bounds = self.largest_product == 0.0 && self.smallest_product == 0.0;
         let products =
-            if no_bounds { 0.0 } else { (self.largest_product - mu).max(mu - self.smallest_product) };
+            if no_bounds { 0.0 } else { larger(self.largest_product - mu, mu - self.smallest_product) };
         larger(larger(self.dual, self.primal), products / self.product_scale)
     }
 }

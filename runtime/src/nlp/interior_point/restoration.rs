@@ -118,7 +118,7 @@ impl Nlp for Proximity<'_> {
 impl Algorithm {
     /// Runs a restoration phase from the current iterate.
     pub(super) fn restore(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Restored {
-        let violation = self.values.violation();
+        let violation = self.values.violation;
         self.filter.add(violation, self.barrier.value(&self.space, &self.values, &self.at.y));
         self.counts.restorations += 1;
         let mu = self.barrier.mu.max(self.values.largest().min(1.0));
@@ -153,7 +153,7 @@ impl Algorithm {
         let start = elastic_start(&space, &self.at, &self.values.residuals, mu);
         let mut inner = Algorithm::new(proximity, space, start, mu, self.options);
         inner.values.evaluate(proximity, &inner.space, &inner.at.y, &mut inner.counts);
-        inner.filter = Filter::new(inner.values.violation());
+        inner.filter = Filter::new(inner.values.violation);
         inner.counts = self.counts;
         inner
     }
@@ -175,8 +175,8 @@ impl Algorithm {
         let y = &at.y[..self.space.len()];
         let mut values = Values::default();
         values.evaluate(nlp, &self.space, y, &mut self.counts)
-            && values.violation() <= REQUIRED_DECREASE * violation
-            && self.filter.accepts(values.violation(), self.barrier.value(&self.space, &values, y))
+            && values.violation <= REQUIRED_DECREASE * violation
+            && self.filter.accepts(values.violation, self.barrier.value(&self.space, &values, y))
     }
 
     fn take_over(&mut self, nlp: &mut dyn Nlp, inner: Algorithm) {

@@ -46,7 +46,7 @@ impl Search<'_> {
             }
             if let Some((_, values)) = trial
                 && trials == 1
-                && values.violation() >= from.theta
+                && values.violation >= from.theta
                 && let Some(accepted) = self.correct(filter, from, step, alpha, values)
             {
                 return Some(accepted);
@@ -59,7 +59,7 @@ impl Search<'_> {
     /// What a step from here is compared with.
     pub(super) fn reference(&self, step: &Step) -> Reference {
         Reference {
-            theta: self.values.violation(),
+            theta: self.values.violation,
             phi: self.barrier.value(self.space, self.values, &self.at.y),
             slope: self.barrier.slope(self.space, self.at, self.slopes, step),
         }
@@ -87,7 +87,7 @@ impl Search<'_> {
 
     /// Whether a trial point is good enough.
     fn accept(&self, filter: &mut Filter, from: Reference, alpha: f64, y: &[f64], values: &Values) -> bool {
-        filter.judge(from, alpha, values.violation(), self.barrier.value(self.space, values, y))
+        filter.judge(from, alpha, values.violation, self.barrier.value(self.space, values, y))
     }
 
     /// Second-order correction: the same matrix against the residuals of the trial point (section 2.4).
@@ -109,7 +109,7 @@ impl Search<'_> {
                 *target = factor * *target + residual;
             }
             let (space, at, slopes, mu) = (self.space, self.at, self.slopes, self.barrier.mu);
-            let system = System { nlp: &*self.nlp, space, at, slopes, mu };
+            let system = System { space, at, slopes, mu };
             if !self.kkt.step(&system, &residuals, &mut corrected) {
                 return None;
             }
@@ -119,10 +119,10 @@ impl Search<'_> {
                 *step = corrected;
                 return Some(Accepted { y, values, alpha, trials: 1 + trials });
             }
-            if values.violation() > CORRECTION_DECREASE * theta {
+            if values.violation > CORRECTION_DECREASE * theta {
                 return None;
             }
-            theta = values.violation();
+            theta = values.violation;
             last = values;
         }
         None

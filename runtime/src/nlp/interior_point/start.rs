@@ -29,7 +29,7 @@ pub(super) fn prepare(nlp: &mut Scaled, start: &Start, options: Options) -> Algo
     }
     let mut algorithm = Algorithm::new(nlp, space, at, mu, options);
     if algorithm.values.evaluate(nlp, &algorithm.space, &algorithm.at.y, &mut algorithm.counts) {
-        algorithm.filter = Filter::new(algorithm.values.violation());
+        algorithm.filter = Filter::new(algorithm.values.violation);
         if start.warm.is_none() {
             algorithm.estimate_multipliers(nlp);
         }

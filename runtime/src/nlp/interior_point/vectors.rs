@@ -1,37 +1,102 @@
-//! What is asked of long vectors at every iteration, so that no operation has to wait for the one before.
+//! What is asked of long vectors at every iteration. Neighbours belong to different sums, which share registers and do not wait for one another.
 
-/// Numbers of a stretch whose sum is independent of those of other stretches.
-const STRETCH: usize = 16;
+/// Sums that are kept at a time.
+const WIDTH: usize = 8;
+type Stretch = [f64; WIDTH];
 
-/// The largest absolute value; what is not a number is larger than all numbers.
+/// The largest absolute value; infinite, or not a number, where some value is.
 pub(super) fn largest(values: &[f64]) -> f64 {
-    const WIDTH: usize = 8;
-    if !are_finite(values) {
-        return largest_of(values.iter().copied());
-    }
-    let mut most = [0.0; WIDTH];
-    let stretches = values.chunks_exact(WIDTH);
-    let rest = largest_of(stretches.remainder().iter().copied());
-    for stretch in stretches {
-        for (most, value) in most.iter_mut().zip(stretch) {
-            let size = value.abs();
-            *most = if size > *most { size } else { *most };
-        }
-    }
-    most.into_iter().fold(rest, f64::max)
+    let mut most = Largest::default();
+    stretches(values).for_each(|stretch| most.add(stretch));
+    most.value()
 }
 
-/// The same of numbers that are not in memory. Numbers without sign are ordered as their bits are, and what is not a number comes last.
-pub(super) fn largest_of(values: impl IntoIterator<Item = f64>) -> f64 {
-    f64::from_bits(values.into_iter().fold(0, |largest, value| largest.max(value.abs().to_bits())))
+/// The same of `a + b - c`.
+pub(super) fn largest_sum([a, b]: [&[f64]; 2], c: &[f64]) -> f64 {
+    let mut most = Largest::default();
+    for ((a, b), c) in stretches(a).zip(stretches(b)).zip(stretches(c)) {
+        let mut sum = [0.0; WIDTH];
+        for i in 0..WIDTH {
+            sum[i] = a[i] + b[i] - c[i];
+        }
+        most.add(sum);
+    }
+    most.value()
 }
 
 /// The sum of the absolute values.
 pub(super) fn sum_of_sizes(values: &[f64]) -> f64 {
-    values.chunks(STRETCH).map(|stretch| stretch.iter().map(|value| value.abs()).sum::<f64>()).sum()
+    let mut sums = [0.0; WIDTH];
+    for stretch in stretches(values) {
+        for i in 0..WIDTH {
+            sums[i] += stretch[i].abs();
+        }
+    }
+    sums.iter().sum()
 }
 
 /// Whether all are numbers.
 pub(super) fn are_finite(values: &[f64]) -> bool {
-    values.chunks(STRETCH).all(|stretch| stretch.iter().map(|value| value * 0.0).sum::<f64>() == 0.0)
+    let mut nothing = [0.0; WIDTH];
+    for stretch in stretches(values) {
+        for i in 0..WIDTH {
+            nothing[i] += stretch[i] * 0.0;
+        }
+    }
+    nothing == [0.0; WIDTH]
+}
+
+/// The numbers one stretch after the other; the last is filled up with zeros.
+#[inline(always)]
+fn stretches(values: &[f64]) -> impl Iterator<Item = Stretch> {
+    let (whole, rest) = values.as_chunks::<WIDTH>();
+    let mut last = [0.0; WIDTH];
+    last[..rest.len()].copy_from_slice(rest);
+    whole.iter().copied().chain([last])
+}
+
+#[derive(Default)]
+struct Largest {
+    most: Stretch,
+    /// Zeros, or not a number where a value was infinite or not a number.
+    nothing: Stretch,
+}
+
+impl Largest {
+    #[inline(always)]
+    fn add(&mut self, values: Stretch) {
+        for i in 0..WIDTH {
+            self.nothing[i] += values[i] * 0.0;
+        }
+        for i in 0..WIDTH {
+            let size = values[i].abs();
+            // Passes over what is not a number.
+            self.most[i] = if size > self.most[i] { size } else { self.most[i] };
+        }
+    }
+
+    fn value(self) -> f64 {
+        let most = self.most.into_iter().fold(0.0, f64::max);
+        let is_finite = self.nothing == [0.0; WIDTH];
+        if is_finite || most == f64::INFINITY { most } else { f64::NAN }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wherever it stands: in a whole stretch or in the rest.
+    #[test]
+    fn what_is_not_finite_is_noticed() {
+        for place in 0..19 {
+            let mut values: Vec<f64> = (0..19).map(|i| f64::from(i) - 9.5).collect();
+            assert!((largest(&values), sum_of_sizes(&values), are_finite(&values)) == (9.5, 90.5, true));
+            values[place] = f64::NAN;
+            assert!(largest(&values).is_nan() && !are_finite(&values));
+            assert!(largest_sum([&[0.0; 19], &values], &[0.0; 19]).is_nan());
+            values[place] = f64::NEG_INFINITY;
+            assert!(largest(&values) == f64::INFINITY && !are_finite(&values));
+        }
+    }
 }

@@ -1,0 +1,114 @@
+//! Sums over the values of a matrix, each a list of terms that is the same for all intervals.
+
+use super::sight::Sight;
+use crate::linalg::lanes::Lanes;
+use crate::linalg::{Family, Triplets};
+use std::ops::Range;
+
+/// Sums over the values of one matrix.
+#[derive(Default)]
+pub(super) struct Sums {
+    terms: Vec<Term>,
+    /// Behind the last term of each sum.
+    ends: Vec<u32>,
+    /// Entries that belong to no interval, each with its place among the values.
+    others: Vec<(Family, usize)>,
+}
+
+/// `values[source + k]` times a number that interval `k` sees.
+#[derive(Clone, Copy)]
+struct Term {
+    source: u32,
+    seen: u32,
+}
+
+/// An entry that couples two of the numbers that an interval sees.
+struct Couple {
+    source: usize,
+    places: [usize; 2],
+}
+
+impl Sums {
+    pub(super) fn new(
+        sight: Sight,
+        matrix: &Triplets,
+        places: impl Fn(&Family) -> Option<[usize; 2]>,
+    ) -> Self {
+        let (mut sums, mut couples, mut source) = (Sums::default(), Vec::new(), 0);
+        for family in &matrix.families {
+            match places(family).filter(|_| family.count == sight.stages.intervals) {
+                Some(places) => couples.push(Couple { source, places }),
+                None => sums.others.push((*family, source)),
+            }
+            source += family.count;
+        }
+        for place in 0..sight.len() {
+            let terms = couples.iter().filter_map(|couple| couple.term_of(place));
+            sums.terms.extend(terms);
+            sums.ends.push(sums.terms.len() as u32);
+        }
+        sums
+    }
+
+    /// Adds the terms of the values of a batch of intervals to the first sums.
+    #[inline(always)]
+    pub(super) fn add<const FUSED: bool>(
+        &self,
+        batch: &Range<usize>,
+        values: &[f64],
+        seen: &[Lanes],
+        found: &mut [Lanes],
+    ) {
+        if self.terms.is_empty() {
+            return;
+        }
+        let (values, count) = (&values[batch.start..], batch.len());
+        if count < Lanes::COUNT {
+            let value = |place: usize| Lanes::from(|l| if l < count { values[place + l] } else { 0.0 });
+            return self.add_terms::<FUSED>(value, seen, found);
+        }
+        let value = |place: usize| {
+            let values = &values[place..][..Lanes::COUNT];
+            Lanes::from(|l| values[l])
+        };
+        self.add_terms::<FUSED>(value, seen, found);
+    }
+
+    #[inline(always)]
+    fn add_terms<const FUSED: bool>(
+        &self,
+        value: impl Fn(usize) -> Lanes,
+        seen: &[Lanes],
+        found: &mut [Lanes],
+    ) {
+        let mut first = 0;
+        for (found, end) in found.iter_mut().zip(&self.ends) {
+            let end = *end as usize;
+            let mut sum = *found;
+            for term in &self.terms[first..end] {
+                sum =
+                    Lanes::multiply_add::<FUSED>(value(term.source as usize), seen[term.seen as usize], sum);
+            }
+            *found = sum;
+            first = end;
+        }
+    }
+
+    /// Calls `action(value, row, column)` for every entry that belongs to no interval.
+    pub(super) fn each_other(&self, values: &[f64], mut action: impl FnMut(f64, usize, usize)) {
+        for (family, source) in &self.others {
+            for (k, value) in values[*source..][..family.count].iter().enumerate() {
+                action(*value, family.row + k * family.row_step, family.column + k * family.column_step);
+            }
+        }
+    }
+}
+
+impl Couple {
+    /// What the entry adds to the sum at `place`.
+    fn term_of(&self, place: usize) -> Option<Term> {
+        let [a, b] = self.places;
+        let seen = if place == a { b } else { (place == b).then_some(a)? };
+        Some(Term { source: self.source as u32, seen: seen as u32 })
+    }
+}

@@ -11,6 +11,7 @@ use fdcc_runtime::problem::{Method, Problem};
 use fdcc_runtime::transcribe::unknowns;
 
 mod jumps;
+mod rest;
 
 /// One line: the size of the problem.
 pub fn headline(problem: &Problem) -> String {
@@ -53,6 +54,7 @@ pub fn verdict(solved: &Solved) -> String {
     lines.extend(jumps::lines(document));
     lines.extend(spread(document));
     lines.extend(surfaces(document));
+    lines.extend(rest::lines(solved));
     lines.extend(replayed(document));
     lines.extend(refined(solved));
     if solved.is_good() && solved.problem.has_objective {

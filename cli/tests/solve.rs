@@ -405,3 +405,28 @@ fn a_solution_with_jumps_is_a_warm_start() {
     let sweep = ["sweep", &bounce, "e=0.7,0.8", "--continue", "--log", "none"];
     expect_exit(&fdcc(&folder, &sweep, ""), 0, "one after the other");
 }
+
+/// While friction is smoothed, `v' = -(mu g/sigma) v` near rest: `v` decays and is never 0.
+#[test]
+fn where_friction_alone_has_to_bring_something_to_rest_exactly_that_is_said_and_helps() {
+    const SLED: &str = include_str!("../../tests/right/sled_on_ice.fdc");
+    let advice = "end abs(slip) <= 0.001";
+    let [followed, free] = [advice, ""].map(|end| SLED.replace("end v == 0", end));
+    let folder = folder(
+        "rest",
+        &[
+            ("sled.fdc", SLED.as_bytes()),
+            ("followed.fdc", followed.as_bytes()),
+            ("free.fdc", free.as_bytes()),
+        ],
+    );
+    for (arguments, code, is_said) in [
+        (&["sled.fdc", "--method", "N=50", "--method", "max_iter=300"][..], 2, true),
+        (&["followed.fdc"], 0, false),
+        (&["free.fdc", "--method", "max_iter=3"], 2, false),
+    ] {
+        let output = fdcc(&folder, &[&["solve", "--log", "none", "--no-verify"], arguments].concat(), "");
+        expect_exit(&output, code, &format!("{arguments:?}"));
+        assert_eq!(stdout(&output).contains(advice), is_said, "{arguments:?}: {}", stdout(&output));
+    }
+}

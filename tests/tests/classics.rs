@@ -98,13 +98,15 @@ fn classical_problems_are_solved_as_well_as_by_ipopt() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-/// Where the guess heads in one direction, the two coordinates of the end depend on each other to first order.
+/// Where the guess heads in one direction, the two coordinates of the end depend on each other to first order. IPOPT takes 23 to 67 iterations.
 #[test]
 fn an_end_whose_rows_depend_on_each_other_at_the_guess_is_reached_by_every_scheme() {
     for scheme in ["midpoint", "trapezoid", "radau2", "radau3", "gauss2"] {
         let outcome = solve(&problem(&text("obstacle_avoidance"), &[], &[("scheme", scheme)]));
-        assert_eq!(outcome.solution.status, Status::Solved, "{scheme}");
-        assert!((outcome.solution.objective - 2.138f64.powi(2)).abs() < 1e-6, "{scheme}");
+        let solution = &outcome.solution;
+        assert_eq!(solution.status, Status::Solved, "{scheme}");
+        assert!((solution.objective - 2.138f64.powi(2)).abs() < 1e-6, "{scheme}");
+        assert!(solution.counts.iterations <= 200, "{scheme}: {} iterations", solution.counts.iterations);
     }
 }
 

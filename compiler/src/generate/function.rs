@@ -35,7 +35,7 @@ impl CompiledFunction {
     }
 
     fn run(&self, order: usize, tables: Tables) {
-        if tables.pairs > 0 {
+        if tables.pairs > 0 && self.outputs() > 0 {
             // SAFETY: all tables have been checked to have the columns that the kernel uses, of the same
             // even stride, which is at least twice the number of pairs; the machine is alive in `source`.
             #[allow(unsafe_code)]

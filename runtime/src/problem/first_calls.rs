@@ -5,11 +5,14 @@ use super::{Columns, Function, Problem};
 /// What every solve calls, called once, at a point of zeros: machine code is made when it is first called. The longest comes first; the calls may be made
 /// side by side.
 pub fn first_calls(problem: &Problem) -> Vec<Box<dyn Fn() + Send + Sync + '_>> {
-    let functions = [&problem.dynamics, &problem.path, &problem.boundary];
+    let solved = [&problem.dynamics, &problem.path, &problem.boundary];
+    let told = [&problem.guess, &problem.guards, &problem.report, &problem.interval];
     let parameters = || problem.parameters.iter().map(|it| it.value).collect::<Vec<f64>>();
     let mut calls: Vec<Box<dyn Fn() + Send + Sync + '_>> = Vec::new();
-    for function in functions {
+    for function in solved {
         calls.push(Box::new(move || call_derivatives(&**function, &parameters())));
+    }
+    for function in solved.into_iter().chain(told) {
         calls.push(Box::new(move || call_value(&**function, &parameters())));
     }
     calls

@@ -1,4 +1,4 @@
-//! The matrix of the optimality conditions times a vector, without its diagonals, for four intervals at a time.
+//! The matrix of the optimality conditions times a vector, without its diagonals, for a batch of intervals at a time.
 //!
 //! ```text
 //!     [ H  J' ] [ dv      ]
@@ -6,14 +6,14 @@
 //! ```
 //!
 //! What an interval sees of the vector is `[x_k u_k y_k x_{k+1} | globals | rows]`. Each number of the product is a sum of terms, whose list is the same for
-//! all intervals, so that the four share every operation and sums stay in registers. Entries that belong to no interval are added one by one.
+//! all intervals, so that those of a batch share every operation and their sums stay in registers. Entries that belong to no interval are added one by one.
 
 mod sight;
 mod sums;
 
-use super::lanes::{Lanes, is_fused};
+use super::lanes::is_fused;
 use super::{Stages, Triplets};
-use sight::Sight;
+use sight::{NOTHING, Numbers, Sight};
 use sums::Sums;
 
 /// The terms of all sums, and the memory for them.
@@ -22,8 +22,8 @@ pub(crate) struct Products {
     hessian: Sums,
     jacobian: Sums,
     /// What an interval sees, and its part of the product.
-    seen: Vec<Lanes>,
-    found: Vec<Lanes>,
+    seen: Vec<Numbers>,
+    found: Vec<Numbers>,
     fused: bool,
 }
 
@@ -43,8 +43,8 @@ impl Products {
                 sight.variable(family.column, family.column_step)?,
             ])
         });
-        let lanes = || vec![Lanes::ZERO; sight.len()];
-        Products { sight, hessian, jacobian, seen: lanes(), found: lanes(), fused: is_fused() }
+        let nothing = || vec![NOTHING; sight.len()];
+        Products { sight, hessian, jacobian, seen: nothing(), found: nothing(), fused: is_fused() }
     }
 
     /// `a += H v + J' w`, `b += J v`
@@ -113,7 +113,7 @@ impl Products {
         for batch in sight.batches() {
             sight.see_variables(&batch, v, seen);
             sight.see_rows(&batch, w, seen);
-            found.fill(Lanes::ZERO);
+            found.fill(NOTHING);
             self.hessian.add::<FUSED>(&batch, hessian, seen, found);
             self.jacobian.add::<FUSED>(&batch, jacobian, seen, found);
             sight.tell_variables(&batch, found, a);
@@ -126,7 +126,7 @@ impl Products {
         let Products { sight, seen, found, .. } = self;
         for batch in sight.batches() {
             sight.see_rows(&batch, w, seen);
-            found.fill(Lanes::ZERO);
+            found.fill(NOTHING);
             self.jacobian.add::<FUSED>(&batch, jacobian, seen, &mut found[..sight.first_row()]);
             sight.tell_variables(&batch, found, a);
         }

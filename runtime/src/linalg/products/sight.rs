@@ -1,8 +1,13 @@
 //! What an interval sees of the vectors of a chain: `[x_k u_k y_k x_{k+1} | globals | rows]`.
 
 use crate::linalg::Stages;
-use crate::linalg::lanes::Lanes;
 use std::ops::Range;
+
+/// Intervals of a batch.
+pub(super) const BATCH: usize = 16;
+/// One number of each interval of a batch; the last batch of a chain may have fewer, and leaves zeros or what was there.
+pub(super) type Numbers = [f64; BATCH];
+pub(super) const NOTHING: Numbers = [0.0; BATCH];
 
 /// Where the numbers that an interval sees are; nothing where there is no chain.
 #[derive(Clone, Copy)]
@@ -47,53 +52,52 @@ impl Sight {
 
     pub(super) fn batches(self) -> impl Iterator<Item = Range<usize>> {
         let all = self.stages.intervals;
-        (0..all).step_by(Lanes::COUNT).map(move |first| first..(first + Lanes::COUNT).min(all))
+        (0..all).step_by(BATCH).map(move |first| first..(first + BATCH).min(all))
     }
 
     #[inline(always)]
-    pub(super) fn see_variables(&self, batch: &Range<usize>, v: &[f64], seen: &mut [Lanes]) {
+    pub(super) fn see_variables(&self, batch: &Range<usize>, v: &[f64], seen: &mut [Numbers]) {
         see(batch, v, self.stages.variable_step(), &mut seen[..self.window]);
         for (place, value) in seen[self.window..].iter_mut().zip(&v[self.stages.globals()]) {
-            *place = Lanes([*value; Lanes::COUNT]);
+            *place = [*value; BATCH];
         }
     }
 
     #[inline(always)]
-    pub(super) fn see_rows(&self, batch: &Range<usize>, w: &[f64], seen: &mut [Lanes]) {
+    pub(super) fn see_rows(&self, batch: &Range<usize>, w: &[f64], seen: &mut [Numbers]) {
         see(batch, w, self.stages.row_step(), &mut seen[self.first_row()..]);
     }
 
     #[inline(always)]
-    pub(super) fn tell_variables(&self, batch: &Range<usize>, found: &[Lanes], a: &mut [f64]) {
+    pub(super) fn tell_variables(&self, batch: &Range<usize>, found: &[Numbers], a: &mut [f64]) {
         tell(batch, &found[..self.window], a, self.stages.variable_step());
         for (sum, value) in a[self.stages.globals()].iter_mut().zip(&found[self.window..]) {
-            *sum += value.0.iter().sum::<f64>();
+            *sum += value[..batch.len()].iter().sum::<f64>();
         }
     }
 
     #[inline(always)]
-    pub(super) fn tell_rows(&self, batch: &Range<usize>, found: &[Lanes], b: &mut [f64]) {
+    pub(super) fn tell_rows(&self, batch: &Range<usize>, found: &[Numbers], b: &mut [f64]) {
         tell(batch, &found[self.first_row()..], b, self.stages.row_step());
     }
 }
 
-/// The numbers of each interval of a batch; lanes without an interval repeat the last one.
+/// The numbers of each interval of a batch.
 #[inline(always)]
-fn see(batch: &Range<usize>, vector: &[f64], step: usize, seen: &mut [Lanes]) {
-    let length = seen.len();
-    let of = |l: usize| &vector[(batch.start + l).min(batch.end - 1) * step..][..length];
-    let sources = [of(0), of(1), of(2), of(3)];
-    for i in 0..length {
-        seen[i] = Lanes::from(|l| sources[l][i]);
+fn see(batch: &Range<usize>, vector: &[f64], step: usize, seen: &mut [Numbers]) {
+    for (l, k) in batch.clone().enumerate() {
+        for (place, value) in seen.iter_mut().zip(&vector[k * step..]) {
+            place[l] = *value;
+        }
     }
 }
 
 /// Adds what was found for each interval of a batch.
 #[inline(always)]
-fn tell(batch: &Range<usize>, found: &[Lanes], vector: &mut [f64], step: usize) {
+fn tell(batch: &Range<usize>, found: &[Numbers], vector: &mut [f64], step: usize) {
     for (l, k) in batch.clone().enumerate() {
         for (sum, value) in vector[k * step..].iter_mut().zip(found) {
-            *sum += value.0[l];
+            *sum += value[l];
         }
     }
 }

@@ -1,7 +1,6 @@
 //! Sums over the values of a matrix, each a list of terms that is the same for all intervals.
 
-use super::sight::Sight;
-use crate::linalg::lanes::Lanes;
+use super::sight::{BATCH, NOTHING, Numbers, Sight};
 use crate::linalg::{Family, Triplets};
 use std::ops::Range;
 
@@ -56,41 +55,24 @@ impl Sums {
         &self,
         batch: &Range<usize>,
         values: &[f64],
-        seen: &[Lanes],
-        found: &mut [Lanes],
-    ) {
-        if self.terms.is_empty() {
-            return;
-        }
-        let (values, count) = (&values[batch.start..], batch.len());
-        if count < Lanes::COUNT {
-            let value = |place: usize| Lanes::from(|l| if l < count { values[place + l] } else { 0.0 });
-            return self.add_terms::<FUSED>(value, seen, found);
-        }
-        let value = |place: usize| {
-            let values = &values[place..][..Lanes::COUNT];
-            Lanes::from(|l| values[l])
-        };
-        self.add_terms::<FUSED>(value, seen, found);
-    }
-
-    #[inline(always)]
-    fn add_terms<const FUSED: bool>(
-        &self,
-        value: impl Fn(usize) -> Lanes,
-        seen: &[Lanes],
-        found: &mut [Lanes],
+        seen: &[Numbers],
+        found: &mut [Numbers],
     ) {
         let mut first = 0;
         for (found, end) in found.iter_mut().zip(&self.ends) {
-            let end = *end as usize;
             let mut sum = *found;
-            for term in &self.terms[first..end] {
-                sum =
-                    Lanes::multiply_add::<FUSED>(value(term.source as usize), seen[term.seen as usize], sum);
+            for term in &self.terms[first..*end as usize] {
+                let (start, seen) = (term.source as usize + batch.start, &seen[term.seen as usize]);
+                match values[start..].first_chunk::<BATCH>() {
+                    Some(values) if batch.len() == BATCH => add_products::<FUSED>(values, seen, &mut sum),
+                    _ => {
+                        let mut last = NOTHING;
+                        last[..batch.len()].copy_from_slice(&values[start..][..batch.len()]);
+                        add_products::<FUSED>(&last, seen, &mut sum);
+                    }
+                }
             }
-            *found = sum;
-            first = end;
+            (*found, first) = (sum, *end as usize);
         }
     }
 
@@ -110,5 +92,12 @@ impl Couple {
         let [a, b] = self.places;
         let seen = if place == a { b } else { (place == b).then_some(a)? };
         Some(Term { source: self.source as u32, seen: seen as u32 })
+    }
+}
+
+#[inline(always)]
+fn add_products<const FUSED: bool>(a: &Numbers, b: &Numbers, sum: &mut Numbers) {
+    for l in 0..BATCH {
+        sum[l] = if FUSED { a[l].mul_add(b[l], sum[l]) } else { a[l] * b[l] + sum[l] };
     }
 }

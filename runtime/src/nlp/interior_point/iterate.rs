@@ -116,17 +116,17 @@ impl Slopes {
     ) -> bool {
         counts.derivatives += 1;
         nlp.derivatives(&at.y[..space.variables], 1.0, &at.lambda, &mut self.derivatives);
-        self.update_lagrangian(space, &at.lambda);
-        let Derivatives { hessian, jacobian, .. } = &self.derivatives;
-        [hessian, jacobian, &self.lagrangian].into_iter().all(|values| are_finite(values))
+        self.update_lagrangian(space, &at.lambda) && are_finite(&self.derivatives.hessian)
     }
 
-    /// The gradient of the Lagrangian with these multipliers; fixed variables have none.
-    pub(super) fn update_lagrangian(&mut self, space: &Space, lambda: &[f64]) {
+    /// The gradient of the Lagrangian with these multipliers; fixed variables have none. `false` if it is not finite, which it is only
+    /// where all of the Jacobian is.
+    fn update_lagrangian(&mut self, space: &Space, lambda: &[f64]) -> bool {
         let Slopes { derivatives, products, lagrangian } = self;
         let (variables, attached) = lagrangian.split_at_mut(space.variables);
         variables.copy_from_slice(&derivatives.gradient);
         products.transposed_multiply_add(&derivatives.jacobian, lambda, variables);
+        let is_finite = are_finite(variables);
         for (value, fixed) in variables.iter_mut().zip(&space.fixed) {
             if *fixed {
                 *value = 0.0;
@@ -135,5 +135,6 @@ impl Slopes {
         for (value, attached) in attached.iter_mut().zip(&space.attached) {
             *value = attached.cost + attached.sign * lambda[attached.row];
         }
+        is_finite
     }
 }

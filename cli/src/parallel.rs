@@ -30,7 +30,11 @@ pub fn in_order<T: Send>(
             results.lock().expect("no thread panics with the lock").push((index, result));
         }
     };
-    std::thread::scope(|scope| (0..threads.min(count)).for_each(|_| drop(scope.spawn(run))));
+    std::thread::scope(|scope| {
+        // This thread works as well.
+        (1..threads.min(count)).for_each(|_| drop(scope.spawn(run)));
+        run();
+    });
     let mut results = results.into_inner().expect("no thread panics with the lock");
     results.sort_by_key(|(index, _)| *index);
     results.into_iter().map(|(_, result)| result).collect()

@@ -4,9 +4,10 @@
 
 use fdcc_runtime::homotopy::solve;
 use fdcc_runtime::nlp::Stop;
-use fdcc_runtime::problem::first_calls;
+use fdcc_runtime::problem::{Problem, first_calls};
 use std::hint::black_box;
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 const RACECAR: &str = include_str!("../../models/racecar.fdc");
@@ -22,9 +23,7 @@ fn run() -> [f64; 4] {
     let model = fdcc_compiler::check(&tree).model.expect("the race car has no errors");
     let checked = milliseconds();
     let problem = fdcc_compiler::compile(&model).expect("the race car can be solved");
-    // As `fdcc solve` does it.
-    let calls = first_calls(&problem);
-    std::thread::scope(|scope| calls.iter().for_each(|call| drop(scope.spawn(call))));
+    make_machine_code(&problem);
     let compiled = milliseconds();
     let mut first = None;
     let _ = solve(&problem, None, &mut |_, _| {
@@ -32,6 +31,20 @@ fn run() -> [f64; 4] {
         ControlFlow::Break(Stop::TimeLimit)
     });
     [read, checked, compiled, first.expect("there is an iteration")]
+}
+
+/// On two threads, as `fdcc solve` does it where there are two processors.
+fn make_machine_code(problem: &Problem) {
+    let (calls, next) = (first_calls(problem), AtomicUsize::new(0));
+    let work = || {
+        while let Some(call) = calls.get(next.fetch_add(1, Ordering::Relaxed)) {
+            call();
+        }
+    };
+    std::thread::scope(|scope| {
+        scope.spawn(work);
+        work();
+    });
 }
 
 fn main() {

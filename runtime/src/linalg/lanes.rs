@@ -41,7 +41,7 @@ impl Lanes {
     /// `a b + c`
     #[inline(always)]
     pub(crate) fn multiply_add<const FUSED: bool>(a: Lanes, b: Lanes, c: Lanes) -> Lanes {
-        Lanes::from(|l| if FUSED { a.0[l].mul_add(b.0[l], c.0[l]) } else { a.0[l] * b.0[l] + c.0[l] })
+        Lanes::from(|l| multiply_add::<FUSED>(a.0[l], b.0[l], c.0[l]))
     }
 
     #[inline(always)]
@@ -88,6 +88,12 @@ fn part_among(count: usize, source: &[Lanes], targets: &mut [f64]) {
             targets[l * length + i] = source[i].0[l];
         }
     }
+}
+
+/// `a b + c`. `FUSED` says that the machine does it in one instruction; without one `mul_add` would be a call.
+#[inline(always)]
+pub(crate) fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
+    if FUSED { a.mul_add(b, c) } else { a * b + c }
 }
 
 /// Whether this machine has registers of four numbers and multiplies and adds in one instruction.

@@ -15,12 +15,19 @@ pub fn first_calls(problem: &Problem) -> Vec<Box<dyn Fn() + Send + Sync + '_>> {
     for function in solved.into_iter().chain(told) {
         calls.push(Box::new(move || call_value(&**function, &parameters())));
     }
+    calls.push(Box::new(move || call_jacobian(&*problem.boundary, &parameters())));
     calls
 }
 
 fn call_value(function: &dyn Function, parameters: &[f64]) {
     let points = Columns::new(function.layout().point_inputs(), 1);
     function.value(&points, parameters, &mut Columns::new(function.outputs(), 1));
+}
+
+fn call_jacobian(function: &dyn Function, parameters: &[f64]) {
+    let points = Columns::new(function.layout().point_inputs(), 1);
+    let mut jacobian = Columns::new(function.jacobian_pattern().entries.len(), 1);
+    function.jacobian(&points, parameters, &mut Columns::new(function.outputs(), 1), &mut jacobian);
 }
 
 fn call_derivatives(function: &dyn Function, parameters: &[f64]) {

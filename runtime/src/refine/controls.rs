@@ -12,6 +12,8 @@ use crate::transcribe::interval::Signal;
 
 /// Relative to the range of the control.
 const ROUGH: f64 = 0.01;
+/// A control with a smaller range, relative to its size, rests.
+const FLAT: f64 = 1e-6;
 
 /// Into how many parts each interval is divided.
 pub(super) fn parts(problem: &Problem, outcome: &Outcome) -> Vec<usize> {
@@ -43,7 +45,8 @@ fn rough(nlp: &TranscribedNlp, v: &[f64], control: usize) -> Vec<bool> {
         .iter()
         .flatten()
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), u| (least.min(*u), most.max(*u)));
-    values.iter().map(|values| distance(&times, values) > ROUGH * (most - least)).collect()
+    let range = (most - least).max(FLAT * least.abs().max(most.abs()).max(1.0));
+    values.iter().map(|values| distance(&times, values) > ROUGH * range).collect()
 }
 
 /// Of the polynomial through these values from all of lower degree.

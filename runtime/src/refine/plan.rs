@@ -14,6 +14,8 @@ use crate::problem::{MOST_STAGES, Scheme};
 const PLANNED: f64 = 0.7;
 /// An interval is divided into no more parts at a time: far from the limit errors fall in other ways.
 const MOST_PARTS: f64 = 4.0;
+/// More parts of an interval than that are not counted: an error may be larger than any number of them could lower.
+const BEYOND: f64 = 1e6;
 /// What gains no more than that by another stage is not smooth.
 const ROUGH: f64 = 0.3;
 
@@ -55,7 +57,7 @@ impl Errors {
             let halvings = (order + 1.0) * parts.log2();
             if *gain > ROUGH { parts.max(1.0 + halvings) } else { parts }
         });
-        self.scheme.stages() * parts.map(|parts| parts.ceil() as usize).sum::<usize>()
+        self.scheme.stages() * parts.map(|parts| parts.min(BEYOND).ceil() as usize).sum::<usize>()
     }
 
     /// The number of stages for which the fewest nodes are foreseen, at least that of now.
@@ -114,6 +116,11 @@ mod tests {
         let parts = of_order(Scheme::Midpoint, &steps).parts(tolerance);
         let left: f64 = steps.iter().zip(&parts).map(|(error, parts)| error / (parts * parts) as f64).sum();
         assert!(parts.iter().all(|parts| *parts <= 4) && left < 1.6 * tolerance, "{parts:?} {left}");
+    }
+
+    #[test]
+    fn errors_beyond_measure_are_counted_as_many_nodes() {
+        assert_eq!(errors(2, &[1e300; 50], &[1.0; 50]).nodes(1e-3), 2 * 50 * 1_000_000);
     }
 
     /// Errors that stages lower on all intervals ask for stages; errors that they do not lower, on a few, ask for division.

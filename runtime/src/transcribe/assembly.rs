@@ -15,7 +15,8 @@ pub(super) struct Repeated {
 pub(super) struct Destination {
     /// The first value of the family.
     pub(super) first: usize,
-    /// Whether nothing was put there before, so that what comes first replaces what an earlier evaluation left.
+    /// Whether nothing was put there before, so that what comes first replaces what an earlier evaluation left. What is evaluated has to come in
+    /// the order in which it was placed.
     pub(super) is_new: bool,
 }
 
@@ -26,7 +27,7 @@ impl Destination {
     }
 }
 
-/// `target values += coefficient * column of the function`.
+/// `target values += coefficient * column of the function`, or `=` where the target is new.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contribution {
     /// Column of the function's table.

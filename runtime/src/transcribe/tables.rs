@@ -39,7 +39,7 @@ impl Tables {
     }
 }
 
-/// Adds columns of a table to the values of a matrix.
+/// Adds columns of a table to the values of a matrix, or puts them there.
 pub(super) fn scatter(table: &Columns, moves: &[Contribution], values: &mut [f64]) {
     for &Contribution { column, coefficient, target } in moves {
         let column = table.column(column);

@@ -1,6 +1,7 @@
 //! Sums over the values of a matrix, each a list of terms that is the same for all intervals.
 
 use super::sight::{BATCH, NOTHING, Numbers, Sight};
+use crate::linalg::lanes::multiply_add;
 use crate::linalg::{Family, Triplets};
 use std::ops::Range;
 
@@ -21,28 +22,27 @@ struct Term {
     seen: u32,
 }
 
-/// An entry that couples two of the numbers that an interval sees.
-struct Couple {
-    source: usize,
-    places: [usize; 2],
-}
-
 impl Sums {
     pub(super) fn new(
         sight: Sight,
         matrix: &Triplets,
         places: impl Fn(&Family) -> Option<[usize; 2]>,
     ) -> Self {
-        let (mut sums, mut couples, mut source) = (Sums::default(), Vec::new(), 0);
+        let (mut sums, mut source) = (Sums::default(), 0);
+        let mut terms = vec![Vec::new(); sight.len()];
         for family in &matrix.families {
             match places(family).filter(|_| family.count == sight.stages.intervals) {
-                Some(places) => couples.push(Couple { source, places }),
-                None => sums.others.push((*family, source)),
+                Some([a, b]) => {
+                    terms[a].push(Term { source, seen: b as u32 });
+                    if a != b {
+                        terms[b].push(Term { source, seen: a as u32 });
+                    }
+                }
+                None => sums.others.push((*family, source as usize)),
             }
-            source += family.count;
+            source += family.count as u32;
         }
-        for place in 0..sight.len() {
-            let terms = couples.iter().filter_map(|couple| couple.term_of(place));
+        for terms in terms {
             sums.terms.extend(terms);
             sums.ends.push(sums.terms.len() as u32);
         }
@@ -86,18 +86,9 @@ impl Sums {
     }
 }
 
-impl Couple {
-    /// What the entry adds to the sum at `place`.
-    fn term_of(&self, place: usize) -> Option<Term> {
-        let [a, b] = self.places;
-        let seen = if place == a { b } else { (place == b).then_some(a)? };
-        Some(Term { source: self.source as u32, seen: seen as u32 })
-    }
-}
-
 #[inline(always)]
 fn add_products<const FUSED: bool>(a: &Numbers, b: &Numbers, sum: &mut Numbers) {
     for l in 0..BATCH {
-        sum[l] = if FUSED { a[l].mul_add(b[l], sum[l]) } else { a[l] * b[l] + sum[l] };
+        sum[l] = multiply_add::<FUSED>(a[l], b[l], sum[l]);
     }
 }

@@ -121,8 +121,8 @@ impl Condensed {
                 curvature[j * all + w + i] = curvature[i * all + w + j];
             }
         }
-        for i in 0..w {
-            for j in 0..i {
+        for j in sizes.n..sizes.n + sizes.m {
+            for i in j + 1..w {
                 q[j * w + i] = q[i * w + j];
             }
         }
@@ -145,7 +145,8 @@ impl Condensed {
             add_row_product::<FUSED>(1.0, (m, i), t, next, &mut costate[i * w..][..w]);
         }
         for i in 0..w {
-            let row = &mut q[i * w..][..w];
+            // Of `Q` the lower triangle is needed, and the rows of the controls.
+            let row = &mut q[i * w..][..if i < sizes.n { sizes.n } else { w }];
             add_row_product::<FUSED>(1.0, (n.transposed(), i), t, next, row);
             add_row_product::<FUSED>(1.0, (t.transposed(), i), View::rows(costate, w), next, row);
         }

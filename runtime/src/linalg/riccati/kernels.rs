@@ -2,11 +2,7 @@
 //!
 //! `FUSED` says that the machine multiplies and adds in one instruction; without one `mul_add` would be a call.
 
-/// `a b + c`
-#[inline(always)]
-pub(super) fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
-    if FUSED { a.mul_add(b, c) } else { a * b + c }
-}
+use crate::linalg::lanes::multiply_add;
 
 /// A matrix inside a slice: entry `(i, j)` is `values[i * row + j * column]`.
 #[derive(Clone, Copy)]

@@ -105,8 +105,9 @@ impl Riccati {
 impl Factor for Riccati {
     fn factor(&mut self, hessian: &[f64], jacobian: &[f64], sigma: &[f64], d: &[f64]) -> Inertia {
         self.border.assemble(hessian, jacobian, sigma, d, &mut self.value);
-        let mut intervals = 0..self.stages.intervals;
-        self.factors.penalised = intervals.any(|k| d[self.stages.defects(k)].iter().any(|d| *d > 0.0));
+        let mut intervals = d.chunks(self.stages.row_step().max(1)).take(self.stages.intervals);
+        let defects = self.stages.defect_rows();
+        self.factors.penalised = intervals.any(|d| d[..defects].iter().sum::<f64>() > 0.0);
         let Some(negative) = self.factor_chain(Matrix { hessian, jacobian, sigma, d }) else {
             return Inertia::Wrong;
         };

@@ -26,7 +26,7 @@ const NEARLY_FEASIBLE: f64 = 1e-4;
 const DIVERGED: f64 = 1e10;
 /// A step this small, relative to the iterate, is rounding.
 const TINY_STEP: f64 = 10.0 * f64::EPSILON;
-/// So many steps of rounding in a row, at the last barrier parameter or because they were cut down to it, lead nowhere.
+/// More steps of rounding than that in a row, at the last barrier parameter or because they were cut down to it, lead nowhere.
 const MOST_TINY_STEPS: usize = 5;
 /// A restoration phase that is stuck is begun anew so many times.
 const MOST_RESTARTS: usize = 4;
@@ -129,7 +129,7 @@ impl Algorithm {
         self.loosen_or_stop(nlp)
     }
 
-    /// Where a feasible point leads nowhere: first bounds are moved outwards by the tolerance, because what they enclose may have no
+    /// Where a feasible point leads nowhere, or no restoration gets on: first bounds are moved outwards by the tolerance, because what they enclose may have no
     /// interior, then only the filter is emptied.
     fn loosen_or_stop(&mut self, nlp: &mut dyn Nlp) -> Option<Status> {
         self.emptied += 1;
@@ -194,9 +194,14 @@ impl Algorithm {
         if has_step { self.take_step(nlp) } else { Outcome::Blocked }
     }
 
-    /// The Newton step with the right inertia; `false` if the linear system could not be solved.
+    /// The Newton step with the right inertia; `false` if the linear system could not be solved. Where rows seem to depend on each other the regularised one,
+    /// if there is one.
     fn find_step(&mut self) -> bool {
-        self.newton_step(false) && (!self.rows_seem_dependent() || self.newton_step(true))
+        let found = self.newton_step(false);
+        if found && self.rows_seem_dependent() && !self.newton_step(true) {
+            return self.newton_step(false);
+        }
+        found
     }
 
     /// Whether a step from a point that is far from feasible leads to multipliers out of proportion: rows that depend on each other cannot
@@ -298,6 +303,7 @@ impl Algorithm {
                 self.move_to(accepted.y, accepted.values, accepted.alpha, dual);
                 if self.standing > MOST_TINY_STEPS {
                     self.standing = 0;
+                    self.watchdog.end();
                     return Outcome::Blocked;
                 }
             }

@@ -79,7 +79,8 @@ impl Space {
 
     /// The same with two elastic variables per row, each with cost `rho`.
     pub(super) fn elastic(&self, rho: f64) -> Self {
-        let mut space = self.clone();
+        // What bounds owe is no matter of a restoration: the smallest violation has no price.
+        let mut space = Space { widened: 0.0, ..self.clone() };
         for row in 0..self.target.len() {
             for sign in [-1.0, 1.0] {
                 space.attached.push(Attached { row, sign, cost: rho });

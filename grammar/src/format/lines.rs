@@ -202,8 +202,13 @@ impl<'t> Builder<'t> {
 fn separate_blocks(lines: &mut [Line<'_>]) {
     for at in 0..lines.len() {
         let is_item = lines[at].indent == 0;
-        if is_item && lines[at].begins_with("}") && !lines[at].ends_with("{") && at + 1 < lines.len() {
-            lines[at + 1].blank_before = true;
+        let goes_on = |line: &Line<'_>| line.comment.is_some_and(|comment| comment.continues);
+        if is_item
+            && lines[at].begins_with("}")
+            && !lines[at].ends_with("{")
+            && let Some(next) = lines[at + 1..].iter_mut().find(|line| !goes_on(line))
+        {
+            next.blank_before = true;
         }
         if is_item && lines[at].ends_with("{") && !lines[at].begins_with("}") {
             let belongs = |line: &Line<'_>| {

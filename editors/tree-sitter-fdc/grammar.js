@@ -26,8 +26,8 @@ module.exports = grammar({
   // `src/scanner.c` looks ahead: a suffix stays on the line of its value, so that an equation may begin with a parenthesis;
   // and a value may be missing in front of a line that begins an item, as it is while the value is being written.
   externals: ($) => [$._suffix, $._prime, $.missing, $._recovering],
-  // `start` and `guess` may go on with an item or begin the next one; what follows decides.
-  conflicts: ($) => [[$.state], [$.control], [$.free]],
+  // `start`, `guess`, `kernel`, `steps` and `scheme` may go on with what stands before or begin the next; what follows decides.
+  conflicts: ($) => [[$.state], [$.control], [$.free], [$.smooth], [$.grid]],
 
   rules: {
     file: ($) => seq(optional($.model), repeat($._item)),
@@ -98,8 +98,9 @@ module.exports = grammar({
     link: ($) => item("link", $.name, "->", $.name, block($.assignment)),
     method: ($) => item("method", block($._setting)),
     _setting: ($) => choice($.smooth, $.grid, $.continuation, $.kernel, $.steps, $.scheme, $.entry),
-    smooth: ($) => prec.right(seq("smooth", $.entry, optional($.kernel))),
-    grid: ($) => prec.right(seq("grid", $.entry, optional($.steps), optional($.scheme))),
+    // What may belong to the setting before does so, as much of it as there is; `scheme = radau` is a setting of its own.
+    smooth: ($) => seq("smooth", $.entry, optional(prec.dynamic(1, $.kernel))),
+    grid: ($) => seq("grid", $.entry, optional(prec.dynamic(1, $.steps)), optional(prec.dynamic(2, $.scheme))),
     continuation: ($) => seq("continue", alias("sigma", $.name), "=", list($._expression), optional($.unit)),
     kernel: ($) => seq("kernel", field("value", $.name)),
     steps: ($) => seq("steps", $._expression),

@@ -8,8 +8,9 @@ use super::verified::Verification;
 use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::lagrangian::Hamiltonian;
 use fdcc_runtime::modes::Mode;
-use fdcc_runtime::nlp::Status;
+use fdcc_runtime::nlp::{self, Status};
 use fdcc_runtime::problem::{ControlShape, Function, Linear, Method, Problem, Scheme, Solver, Variable};
+use fdcc_runtime::trajectory;
 use serde::Serialize;
 
 /// One solve. Numbers are written so that they read back to the same bits.
@@ -103,6 +104,12 @@ pub struct ControlNodes {
     pub values: Named<Vec<f64>>,
 }
 
+impl ControlNodes {
+    fn new(controls: &[Variable], nodes: &trajectory::ControlNodes) -> Self {
+        ControlNodes { time: nodes.time.clone(), values: named_columns(controls.iter().zip(&nodes.values)) }
+    }
+}
+
 /// The method that was used, defaults and choices included.
 #[derive(Clone, Debug, Serialize)]
 pub struct MethodUsed {
@@ -131,6 +138,17 @@ pub struct Counts {
     pub restorations: usize,
 }
 
+impl Counts {
+    fn new(counts: &nlp::Counts) -> Self {
+        Counts {
+            factorizations: counts.factorizations,
+            evaluations: counts.values,
+            derivatives: counts.derivatives,
+            restorations: counts.restorations,
+        }
+    }
+}
+
 /// Wall-clock times: the only entries that differ between two runs.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Seconds {
@@ -150,16 +168,10 @@ pub struct Span {
 impl Document {
     pub fn new(problem: &Problem, outcome: &Outcome, source_sha256: &str, seconds: Seconds) -> Self {
         let (solution, trajectory) = (&outcome.solution, &outcome.trajectory);
-        let shown = |columns: &[Vec<f64>]| -> Named<Vec<f64>> {
-            let states = problem.states.iter().zip(columns).filter(|(state, _)| !state.hidden);
-            states.map(|(state, column)| (state.name.clone(), column.clone())).collect()
+        let [free, params] = parameters(problem, &trajectory.parameters);
+        let shown = |columns: &[Vec<f64>]| {
+            named_columns(problem.states.iter().zip(columns).filter(|(state, _)| !state.hidden))
         };
-        let free: Vec<usize> = problem.unknowns.iter().map(|unknown| unknown.parameter).collect();
-        let widths: Vec<usize> = problem.surfaces.iter().map(|surface| surface.sigma).collect();
-        let named = |i: usize| (problem.parameters[i].name.clone(), trajectory.parameters[i]);
-        let fixed = (0..problem.parameters.len()).filter(|i| !free.contains(i) && !widths.contains(i));
-        let controls = problem.controls.iter().zip(&trajectory.controls);
-        let counts = &solution.counts;
         // Where an expression has no value, no error was measured.
         let measured =
             |error: f64| if matches!(solution.status, Status::NotFinite(_)) { f64::NAN } else { error };
@@ -170,27 +182,19 @@ impl Document {
             status: status_name(&solution.status).to_string(),
             objective: problem.sense * solution.objective,
             global: solution.global,
-            free: free.iter().map(|i| named(*i)).collect(),
-            params: fixed.map(named).collect(),
+            free,
+            params,
             method: MethodUsed::new(problem, outcome),
-            iterations: counts.iterations,
+            iterations: solution.counts.iterations,
             kkt_error: measured(solution.kkt_error),
             constraint_violation: measured(solution.constraint_violation),
-            regularizations: counts.regularizations,
-            counts: Counts {
-                factorizations: counts.factorizations,
-                evaluations: counts.values,
-                derivatives: counts.derivatives,
-                restorations: counts.restorations,
-            },
+            regularizations: solution.counts.regularizations,
+            counts: Counts::new(&solution.counts),
             seconds,
             time: trajectory.time.clone(),
             states: shown(&trajectory.states),
-            controls: named_columns(controls),
-            control_nodes: trajectory.nodes.as_ref().map(|nodes| ControlNodes {
-                time: nodes.time.clone(),
-                values: named_columns(problem.controls.iter().zip(&nodes.values)),
-            }),
+            controls: named_columns(problem.controls.iter().zip(&trajectory.controls)),
+            control_nodes: trajectory.nodes.as_ref().map(|nodes| ControlNodes::new(&problem.controls, nodes)),
             costates: shown(&trajectory.costates),
             path_multipliers: labelled(&*problem.path, 0, &trajectory.path_multipliers),
             end_multipliers: labelled(&*problem.boundary, 1, &trajectory.end_multipliers),
@@ -208,6 +212,15 @@ impl Document {
             verification: None,
         }
     }
+}
+
+/// The values of the parameters: those that were found, and those that were given. Widths of surfaces are neither.
+fn parameters(problem: &Problem, values: &[f64]) -> [Named<f64>; 2] {
+    let free: Vec<usize> = problem.unknowns.iter().map(|unknown| unknown.parameter).collect();
+    let is_width = |i: &usize| problem.surfaces.iter().any(|surface| surface.sigma == *i);
+    let given = (0..problem.parameters.len()).filter(|i| !free.contains(i) && !is_width(i));
+    let named = |i: usize| (problem.parameters[i].name.clone(), values[i]);
+    [free.iter().map(|i| named(*i)).collect(), given.map(named).collect()]
 }
 
 /// By the words that the outputs of a function have in the model, from the first on that counts.

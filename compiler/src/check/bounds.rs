@@ -1,10 +1,10 @@
 //! FDC0401: bounds that contradict each other, a start outside its bounds, or time that runs backwards.
 
 use super::Facts;
-use crate::model::Range;
+use crate::model::{Range, State};
 use crate::resolve::elaborator::Elaborator;
 use crate::resolve::text;
-use fdcc_grammar::ast::{Interval, Item, ItemKind, Start};
+use fdcc_grammar::ast::{Ident, Interval, Item, ItemKind, Start};
 use fdcc_grammar::{Code, Diagnostic, Edit, Fix, Label, Span};
 
 /// Reports all of them together: they have one cause, a slip of the pen, and one repair.
@@ -43,46 +43,37 @@ fn look(meaning: &Elaborator<'_>, item: &Item, slips: &mut Slips) {
     match &item.kind {
         ItemKind::Control { name, bounds: Some(bounds), parts, .. } => {
             let ranges = meaning.model.controls[index..].iter().take(parts.len().max(1)).map(|it| it.range);
-            reversed(meaning, &format!("control {}", name.name), bounds, ranges, slips)
+            reversed(meaning, ("control", name), bounds, ranges, slips)
         }
         ItemKind::Free { name, bounds: Some(bounds), .. } => {
-            let range = meaning.model.frees[index].range;
-            reversed(meaning, &format!("free {}", name.name), bounds, [range], slips)
+            reversed(meaning, ("free", name), bounds, [meaning.model.frees[index].range], slips)
         }
         ItemKind::Param { name, value, bounds: Some(bounds), .. } => {
             let range = meaning.model.params[index].range;
-            reversed(meaning, &format!("param {}", name.name), bounds, [range], slips);
+            reversed(meaning, ("param", name), bounds, [range], slips);
             if let Some(value) = value {
-                let given = meaning.param_values[index];
-                outside(
-                    meaning,
-                    Subject { name: &name.name, verb: "is", span: value.span },
-                    given,
-                    range,
-                    slips,
-                );
+                let subject = Subject { name: &name.name, verb: "is", span: value.span };
+                outside(meaning, subject, meaning.param_values[index], range, slips);
             }
         }
         ItemKind::State { name, bounds, start, parts, .. } => {
-            let states = || meaning.model.states[index..].iter().take(parts.len().max(1));
+            let states = &meaning.model.states[index..index + parts.len().max(1)];
             if let Some(bounds) = bounds {
-                reversed(
-                    meaning,
-                    &format!("state {}", name.name),
-                    bounds,
-                    states().map(|it| it.range),
-                    slips,
-                );
+                reversed(meaning, ("state", name), bounds, states.iter().map(|it| it.range), slips);
             }
             if let Some(Start::Value(value)) = start {
-                for state in states() {
-                    let given = state.start.map_or(f64::NAN, |start| meaning.numeric(start));
-                    let subject = Subject { name: &state.place.name, verb: "starts", span: value.span };
-                    outside(meaning, subject, given, state.range, slips);
-                }
+                starts(meaning, states, value.span, slips);
             }
         }
         _ => {}
+    }
+}
+
+fn starts(meaning: &Elaborator<'_>, states: &[State], span: Span, slips: &mut Slips) {
+    for state in states {
+        let given = state.start.map_or(f64::NAN, |start| meaning.numeric(start));
+        let subject = Subject { name: &state.place.name, verb: "starts", span };
+        outside(meaning, subject, given, state.range, slips);
     }
 }
 
@@ -92,7 +83,7 @@ fn numbers(meaning: &Elaborator<'_>, range: Range) -> [f64; 2] {
 
 fn reversed(
     meaning: &Elaborator<'_>,
-    declaration: &str,
+    (word, name): (&str, &Ident),
     bounds: &Interval,
     ranges: impl IntoIterator<Item = Range>,
     slips: &mut Slips,
@@ -103,7 +94,7 @@ fn reversed(
             format!("lower bound {} is above upper bound {}", text::number(lower), text::number(upper));
         slips.labels.push(Label { span: bounds.span, text });
         let (lower, upper) = (text::expr(&bounds.lower), text::expr(&bounds.upper));
-        slips.repairs.push(format!("swap them: `{declaration} in [{upper}, {lower}]`"));
+        slips.repairs.push(format!("swap them: `{word} {} in [{upper}, {lower}]`", name.name));
         let ends = [(bounds.lower.span, upper), (bounds.upper.span, lower)];
         slips.swap.edits.extend(ends.map(|(span, replacement)| Edit { span, replacement }));
     }

@@ -2,7 +2,7 @@
 //!
 //! Sums of ten thousand terms are trees of that depth; [`spine`] and [`visit`] go along them in a loop.
 
-use fdcc_grammar::ast::{Argument, BinaryOperator, Expr, ExprKind, Item, ItemKind, Start};
+use fdcc_grammar::ast::{Argument, BinaryOperator, Expr, ExprKind, Interval, Item, ItemKind, Start};
 use fdcc_grammar::{Span, ast};
 
 /// One step of a chain: the whole left operand, the operator, the right operand.
@@ -81,30 +81,32 @@ pub(crate) fn mention(value: &Expr, wanted: &str) -> Option<Span> {
     found
 }
 
+fn ends(bounds: &Option<Interval>) -> impl Iterator<Item = &Expr> {
+    bounds.iter().flat_map(|it| [&it.lower, &it.upper])
+}
+
 /// All expressions of an item, those of nested items not.
 pub(crate) fn expressions(item: &Item) -> Vec<&Expr> {
     let mut all: Vec<&Expr> = Vec::new();
     match &item.kind {
         ItemKind::Param { value, bounds, .. } => {
             all.extend(value);
-            all.extend(bounds.iter().flat_map(|it| [&it.lower, &it.upper]));
+            all.extend(ends(bounds));
         }
         ItemKind::Const { value, .. } | ItemKind::Let { value, .. } | ItemKind::Surface { value, .. } => {
             all.push(value)
         }
         ItemKind::Fn { body, .. } => all.push(body),
         ItemKind::Free { bounds, guess, .. } | ItemKind::Control { bounds, guess, .. } => {
-            all.extend(bounds.iter().flat_map(|it| [&it.lower, &it.upper]));
+            all.extend(ends(bounds));
             all.extend(guess);
         }
         ItemKind::Time { interval, .. } => all.extend([&interval.lower, &interval.upper]),
         ItemKind::State { bounds, start, .. } => {
-            all.extend(bounds.iter().flat_map(|it| [&it.lower, &it.upper]));
+            all.extend(ends(bounds));
             match start {
                 Some(Start::Value(value)) => all.push(value),
-                Some(Start::Free { bounds, .. }) => {
-                    all.extend(bounds.iter().flat_map(|it| [&it.lower, &it.upper]))
-                }
+                Some(Start::Free { bounds, .. }) => all.extend(ends(bounds)),
                 None => {}
             }
         }

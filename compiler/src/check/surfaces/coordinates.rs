@@ -12,14 +12,31 @@ impl Subject<'_, '_, '_> {
     pub(super) fn other_coordinates(&mut self) -> Option<Diagnostic> {
         let parts = Parts::new(&mut self.local);
         let found = coordinates(&mut self.local, self.view, &parts);
-        let name = self.name().to_string();
-        let vectors = |states: Vec<usize>| {
-            let mut names: Vec<&str> = states.into_iter().map(|state| vector(self.view, state)).collect();
-            names.dedup();
-            names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+        let [moved, turning] = [parts.moved(), parts.turning()].map(|states| self.vectors(states));
+        let (message, reason) = self.message(&found, &moved)?;
+        let [first, second] = labels(&found, &moved, &turning);
+        let (attracts, held) = (self.attracts(), self.held(&found));
+        let joint = if matches!(found, Coordinates::Unknown) { "; " } else { ", and " };
+        let help = format!("nothing to change. The surface attracts: {attracts}{joint}{reason}{held}");
+        let diagnostic = Diagnostic::new(Code::OtherCoordinates, message, self.function(), first);
+        let diagnostic = match self.place {
+            Some(place) => diagnostic.label(place.term.span, second),
+            None => diagnostic,
         };
-        let (moved, turning) = (vectors(parts.moved()), vectors(parts.turning()));
-        let (message, what) = match &found {
+        Some(diagnostic.help(help))
+    }
+
+    /// The vectors that states belong to, each once.
+    fn vectors(&self, states: Vec<usize>) -> String {
+        let mut names: Vec<&str> = states.into_iter().map(|state| vector(self.view, state)).collect();
+        names.dedup();
+        names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+    }
+
+    /// In which coordinates the test holds, and why that is enough; nothing where it holds in those of the model.
+    fn message(&mut self, found: &Coordinates, moved: &str) -> Option<(String, String)> {
+        let name = self.name().to_string();
+        Some(match found {
             Coordinates::Own => return None,
             Coordinates::Metric(weights) => {
                 let metric = self.metric(weights);
@@ -46,27 +63,7 @@ impl Subject<'_, '_, '_> {
                 "solutions are unique all the same: formulas (3.5) and (3.6)\ndo not depend on coordinates."
                     .into(),
             ),
-        };
-        let (first, second) = match turning.is_empty() {
-            true => ("this surface has a gradient".into(), "and the jump is not parallel to it".into()),
-            false => (
-                match found {
-                    Coordinates::Frame { .. } => format!("this surface also turns with {turning}"),
-                    _ => format!("this surface also moves with {turning}"),
-                },
-                format!("but the jump acts on {moved} only, so it is not parallel to the gradient"),
-            ),
-        };
-        let attracts = self.attracts();
-        let held = self.held(&found);
-        let joint = if matches!(found, Coordinates::Unknown) { "; " } else { ", and " };
-        let help = format!("nothing to change. The surface attracts: {attracts}{joint}{what}{held}");
-        let diagnostic = Diagnostic::new(Code::OtherCoordinates, message, self.function(), first);
-        let diagnostic = match self.place {
-            Some(place) => diagnostic.label(place.term.span, second),
-            None => diagnostic,
-        };
-        Some(diagnostic.help(help))
+        })
     }
 
     /// `grad . jump = -2*muN = -8 everywhere`.
@@ -119,4 +116,16 @@ impl Subject<'_, '_, '_> {
             _ => String::new(),
         }
     }
+}
+
+/// What the surface moves with, and what the jump acts on.
+fn labels(found: &Coordinates, moved: &str, turning: &str) -> [String; 2] {
+    if turning.is_empty() {
+        return ["this surface has a gradient".into(), "and the jump is not parallel to it".into()];
+    }
+    let does = if matches!(found, Coordinates::Frame { .. }) { "turns" } else { "moves" };
+    [
+        format!("this surface also {does} with {turning}"),
+        format!("but the jump acts on {moved} only, so it is not parallel to the gradient"),
+    ]
 }

@@ -16,7 +16,7 @@ use fdcc_compiler::Model;
 use fdcc_grammar::{Diagnostic, SourceFile};
 use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::nlp::{Start, Status};
-use fdcc_runtime::problem::{Problem, first_calls};
+use fdcc_runtime::problem::{Problem, often_called};
 use fdcc_runtime::transcribe::unknowns;
 use sha2::{Digest, Sha256};
 use std::time::Instant;
@@ -184,8 +184,9 @@ impl Solved {
 
 /// Makes the machine code that every solve needs, so that it counts as compiling.
 fn make_machine_code(problem: &Problem) {
-    let calls = first_calls(problem);
-    parallel::in_order(calls.len(), parallel::processors(), |i| calls[i](), |()| false);
+    let functions = often_called(problem);
+    let prepare = |i: usize| functions[i].0.prepare(functions[i].1);
+    parallel::in_order(functions.len(), parallel::processors(), prepare, |()| false);
 }
 
 /// More need more memory than computers have.

@@ -7,11 +7,11 @@
 //! the real time is `t0(p) + tau * (tf(p) - t0(p))`. So a free final time needs no special treatment: it is a
 //! parameter like any other, and its derivatives come out of the functions.
 
-mod first_calls;
 mod method;
+mod often_called;
 
-pub use first_calls::first_calls;
 pub use method::{ControlShape, FIRST_GRID, Linear, MOST_STAGES, Method, Scheme, Solver};
+pub use often_called::often_called;
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -164,6 +164,8 @@ pub trait Function: Send + Sync {
     fn degree(&self, row: usize) -> Degree;
     /// Where one output comes from.
     fn origin(&self, row: usize) -> Origin;
+    /// Gets ready to be called often for derivatives up to this order, 0 for values alone.
+    fn prepare(&self, order: usize);
     /// The outputs: one column each.
     fn value(&self, points: &Columns, parameters: &[f64], values: &mut Columns);
     /// Outputs and Jacobian: one column per output, one per pattern entry.

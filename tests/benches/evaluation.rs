@@ -120,6 +120,7 @@ fn case(kernel: &str) -> Case {
     let function = dynamics(&mut graph, kernel);
     let function = differentiate(&mut graph, function);
     let function = generate(graph.clone(), vec![function]).remove(0);
+    (0..3).for_each(|order| function.prepare(order));
     let mut points = Columns::new(LAYOUT.point_inputs(), POINTS);
     for column in 0..points.columns() {
         for (point, value) in points.column_mut(column).iter_mut().enumerate() {

@@ -4,7 +4,7 @@
 
 use fdcc_runtime::homotopy::solve;
 use fdcc_runtime::nlp::Stop;
-use fdcc_runtime::problem::{Problem, first_calls};
+use fdcc_runtime::problem::{Problem, often_called};
 use std::hint::black_box;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -35,10 +35,10 @@ fn run() -> [f64; 4] {
 
 /// On two threads, as `fdcc solve` does it where there are two processors.
 fn make_machine_code(problem: &Problem) {
-    let (calls, next) = (first_calls(problem), AtomicUsize::new(0));
+    let (functions, next) = (often_called(problem), AtomicUsize::new(0));
     let work = || {
-        while let Some(call) = calls.get(next.fetch_add(1, Ordering::Relaxed)) {
-            call();
+        while let Some((function, order)) = functions.get(next.fetch_add(1, Ordering::Relaxed)) {
+            function.prepare(*order);
         }
     };
     std::thread::scope(|scope| {

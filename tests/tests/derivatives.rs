@@ -5,7 +5,7 @@ use fdcc_compiler::differentiate::differentiate;
 use fdcc_compiler::generate::clif;
 use fdcc_compiler::graph::{ExprId, Graph, evaluate, print, verify};
 use fdcc_compiler::program::{Differentiated, Order, VectorFunction};
-use fdcc_runtime::problem::{Columns, Degree, Layout, Origin};
+use fdcc_runtime::problem::{Columns, Degree, Function, Layout, Origin};
 use fdcc_tests::functions::{check_differences, check_machine_code, derivatives};
 use fdcc_tests::random::Random;
 use fdcc_tests::symbols::{compile, function, states_and_parameters, table};
@@ -15,10 +15,10 @@ const COUNTS: [usize; 6] = [0, 1, 2, 3, 7, 1000];
 /// Both checks on random points between `low` and `high`.
 fn check(graph: &Graph, symbols: &Differentiated, low: f64, high: f64) -> Result<(), String> {
     verify(graph)?;
-    let compiled = compile(graph, symbols);
     let mut random = Random::new(1);
     let layout = symbols.function.layout;
     for count in COUNTS {
+        let compiled = compile(graph, symbols);
         let points = table(&mut random, layout.point_inputs(), count, low, high);
         let multipliers = table(&mut random, symbols.function.outputs.len(), count, -1.0, 1.0);
         let parameters: Vec<f64> = (0..layout.p).map(|_| random.between(low, high)).collect();
@@ -172,6 +172,13 @@ fn units_in_the_last_place(got: f64, expected: f64) -> f64 {
         / (expected.next_up() - expected).abs().min((expected - expected.next_down()).abs())
 }
 
+/// Of a function with one output.
+fn values(function: &dyn Function, points: &Columns) -> Vec<f64> {
+    let mut values = Columns::new(1, points.count());
+    function.value(points, &[], &mut values);
+    values.column(0).to_vec()
+}
+
 #[test]
 fn functions_written_out_are_accurate_to_a_few_units_in_the_last_place() {
     let arguments = arguments(&mut Random::new(5));
@@ -182,9 +189,11 @@ fn functions_written_out_are_accurate_to_a_few_units_in_the_last_place() {
         let symbols = call_of_inputs(&mut graph, builtin, false);
         let mut points = Columns::new(1, arguments.len());
         points.column_mut(0).copy_from_slice(&arguments);
-        let mut values = Columns::new(1, arguments.len());
-        compile(&graph, &symbols).value(&points, &[], &mut values);
-        for (&x, &got) in arguments.iter().zip(values.column(0)) {
+        let compiled = compile(&graph, &symbols);
+        let by_steps = values(&*compiled, &points);
+        compiled.prepare(0);
+        let by_code = values(&*compiled, &points);
+        for (&x, &got) in arguments.iter().chain(&arguments).zip(by_steps.iter().chain(&by_code)) {
             let expected = (builtin.row().value)(&[x]);
             let same = got == expected || (got.is_nan() && expected.is_nan());
             let near = units_in_the_last_place(got, expected) <= bound || (got - expected).abs() < 1e-30;
@@ -202,10 +211,13 @@ fn what_is_not_a_number_goes_through_every_builtin() {
             let mut points = Columns::new(builtin.row().arity, 3);
             points.as_mut_slice().fill(0.5);
             points.column_mut(bad)[1] = f64::NAN;
-            let mut values = Columns::new(1, 3);
-            compile(&graph, &symbols).value(&points, &[], &mut values);
-            let nan: Vec<bool> = values.column(0).iter().map(|value| value.is_nan()).collect();
-            assert_eq!(nan, [false, true, false], "{}", builtin.row().name);
+            let compiled = compile(&graph, &symbols);
+            let by_steps = values(&*compiled, &points);
+            compiled.prepare(0);
+            for values in [by_steps, values(&*compiled, &points)] {
+                let nan: Vec<bool> = values.iter().map(|value| value.is_nan()).collect();
+                assert_eq!(nan, [false, true, false], "{}", builtin.row().name);
+            }
         }
     }
 }

@@ -10,7 +10,6 @@
 //! All numbers are `F64X2`: the same quantity at two neighbouring points. What is called instead of written out is in
 //! [`library()`].
 
-mod elementary;
 mod kernel;
 mod library;
 mod pairs;
@@ -124,6 +123,11 @@ impl Machine {
         let has_fma =
             isa.isa_flags().iter().any(|flag| flag.name == "has_fma" && flag.as_bool() == Some(true));
         Machine { fused: !cfg!(target_arch = "x86_64") || has_fma, isa, library: library() }
+    }
+
+    /// Whether it has a fused multiply-add.
+    pub(super) fn is_fused(&self) -> bool {
+        self.fused
     }
 
     /// The signature of a function as the host calls it.

@@ -1,32 +1,106 @@
-//! Machine code as a function of the runtime.
+//! A function of the runtime: step by step at first, by machine code from when it pays.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use fdcc_runtime::problem::{Columns, Degree, Function, Layout, Origin, Pattern};
 
 use super::cranelift::{Kernel, Tables};
+use super::schedule::Place;
+use super::steps::Steps;
 use super::{Source, highest_order, work};
 use crate::program::Differentiated;
 
-/// A vector function and its derivatives, compiled.
+/// A vector function and its derivatives, ready to be computed.
 pub(super) struct CompiledFunction {
     source: Arc<Source>,
     symbols: Differentiated,
-    /// Values; then also the Jacobian; then also the Hessian. Nobody calls all of them: the reports want values, the
+    /// For values; then also the Jacobian; then also the Hessian. Nobody calls all of them: the reports want values, the
     /// interior point values and everything.
-    kernels: [OnceLock<Kernel>; 3],
+    ways: [Way; 3],
+}
+
+/// How derivatives up to one order are computed.
+#[derive(Default)]
+struct Way {
+    steps: OnceLock<Steps>,
+    kernel: OnceLock<Kernel>,
+    /// How much has been computed step by step, in points.
+    done: AtomicUsize,
+}
+
+/// Computing so many points step by step takes as long as making machine code.
+const PAYS: usize = 5_000;
+
+/// What a call costs by itself, in points.
+const ENTRY: usize = 4;
+
+/// What is read and written.
+pub(super) struct Call<'c> {
+    pub(super) points: &'c [f64],
+    pub(super) parameters: &'c [f64],
+    pub(super) multipliers: &'c [f64],
+    /// Values, Jacobian, Hessian.
+    pub(super) results: [&'c mut [f64]; 3],
+    pub(super) count: usize,
+    /// From column to column, in all tables.
+    pub(super) stride: usize,
+}
+
+impl<'c> Call<'c> {
+    fn new(points: &'c Columns, parameters: &'c [f64], results: [&'c mut [f64]; 3]) -> Self {
+        let (count, stride) = (points.count(), points.stride());
+        Call { points: points.as_slice(), parameters, multipliers: &[], results, count, stride }
+    }
+
+    /// Writes results of neighbouring points.
+    pub(super) fn store(&mut self, place: Place, first: usize, numbers: &[f64]) {
+        let begin = place.column * self.stride + first;
+        self.results[place.table as usize][begin..][..numbers.len()].copy_from_slice(numbers);
+    }
+
+    fn tables(&mut self) -> Tables {
+        let [values, jacobian, hessian] = self.results.each_mut().map(|table| table.as_mut_ptr());
+        Tables {
+            points: self.points.as_ptr(),
+            parameters: self.parameters.as_ptr(),
+            multipliers: self.multipliers.as_ptr(),
+            values,
+            jacobian,
+            hessian,
+            pairs: self.count.div_ceil(2) as u64,
+            stride: (self.stride * size_of::<f64>()) as u64,
+        }
+    }
 }
 
 impl CompiledFunction {
     pub(super) fn new(source: Arc<Source>, symbols: Differentiated) -> Self {
-        CompiledFunction { source, symbols, kernels: Default::default() }
+        CompiledFunction { source, symbols, ways: Default::default() }
     }
 
-    /// The kernel for derivatives of this order, or the last one: higher derivatives are then empty.
+    /// The way for derivatives of this order, or the last one: higher derivatives are then empty.
+    fn order(&self, order: usize) -> usize {
+        order.min(highest_order(&self.symbols))
+    }
+
     fn kernel(&self, order: usize) -> &Kernel {
-        let order = order.min(highest_order(&self.symbols));
         let Source { graph, machine } = &*self.source;
-        self.kernels[order].get_or_init(|| Kernel::new(machine, graph, &work(graph, &self.symbols, order)))
+        self.ways[order]
+            .kernel
+            .get_or_init(|| Kernel::new(machine, graph, &work(graph, &self.symbols, order)))
+    }
+
+    fn steps(&self, order: usize) -> &Steps {
+        let Source { graph, machine } = &*self.source;
+        let make = || Steps::new(graph, &work(graph, &self.symbols, order), machine.is_fused());
+        self.ways[order].steps.get_or_init(make)
+    }
+
+    /// Whether there is machine code, or it is time to make it.
+    fn is_worth_code(&self, order: usize, points: usize) -> bool {
+        let Way { kernel, done, .. } = &self.ways[order];
+        kernel.get().is_some() || done.fetch_add(points + ENTRY, Ordering::Relaxed) + points + ENTRY > PAYS
     }
 
     fn check_inputs(&self, points: &Columns, parameters: &[f64]) {
@@ -34,36 +108,27 @@ impl CompiledFunction {
         assert_eq!(parameters.len(), self.layout().p, "parameters");
     }
 
-    fn run(&self, order: usize, tables: Tables) {
-        if tables.pairs > 0 && self.outputs() > 0 {
-            // SAFETY: all tables have been checked to have the columns that the kernel uses, of the same
-            // even stride, which is at least twice the number of pairs; the machine is alive in `source`.
-            #[allow(unsafe_code)]
-            unsafe {
-                self.kernel(order).entry()(&tables);
-            }
+    fn run(&self, order: usize, mut call: Call) {
+        let order = self.order(order);
+        if call.count == 0 || self.outputs() == 0 {
+            return;
+        }
+        if !self.is_worth_code(order, call.count) {
+            return self.steps(order).run(&mut call);
+        }
+        // SAFETY: all tables have been checked to have the columns that the kernel uses, of the same
+        // even stride, which is at least twice the number of pairs; the machine is alive in `source`.
+        #[allow(unsafe_code)]
+        unsafe {
+            self.kernel(order).entry()(&call.tables());
         }
     }
 }
 
-/// All tables of a call; those that are not needed stay null.
-fn tables(points: &Columns, parameters: &[f64]) -> Tables {
-    Tables {
-        points: points.as_slice().as_ptr(),
-        parameters: parameters.as_ptr(),
-        multipliers: std::ptr::null(),
-        values: std::ptr::null_mut(),
-        jacobian: std::ptr::null_mut(),
-        hessian: std::ptr::null_mut(),
-        pairs: points.count().div_ceil(2) as u64,
-        stride: (points.stride() * size_of::<f64>()) as u64,
-    }
-}
-
 /// The numbers of a table that must be as long as the points and have `columns` columns.
-fn output(table: &mut Columns, columns: usize, points: &Columns, name: &str) -> *mut f64 {
+fn output<'c>(table: &'c mut Columns, columns: usize, points: &Columns, name: &str) -> &'c mut [f64] {
     check_table(table, columns, points, name);
-    table.as_mut_slice().as_mut_ptr()
+    table.as_mut_slice()
 }
 
 fn check_table(table: &Columns, columns: usize, points: &Columns, name: &str) {
@@ -92,17 +157,23 @@ impl Function for CompiledFunction {
         self.symbols.function.origins[row].clone()
     }
 
+    fn prepare(&self, order: usize) {
+        if self.outputs() > 0 {
+            self.kernel(self.order(order));
+        }
+    }
+
     fn value(&self, points: &Columns, parameters: &[f64], values: &mut Columns) {
         self.check_inputs(points, parameters);
         let values = output(values, self.outputs(), points, "values");
-        self.run(0, Tables { values, ..tables(points, parameters) });
+        self.run(0, Call::new(points, parameters, [values, &mut [], &mut []]));
     }
 
     fn jacobian(&self, points: &Columns, parameters: &[f64], values: &mut Columns, jacobian: &mut Columns) {
         self.check_inputs(points, parameters);
         let values = output(values, self.outputs(), points, "values");
         let jacobian = output(jacobian, self.symbols.jacobian.0.entries.len(), points, "the Jacobian");
-        self.run(1, Tables { values, jacobian, ..tables(points, parameters) });
+        self.run(1, Call::new(points, parameters, [values, jacobian, &mut []]));
     }
 
     fn derivatives(
@@ -116,10 +187,11 @@ impl Function for CompiledFunction {
     ) {
         self.check_inputs(points, parameters);
         check_table(multipliers, self.outputs(), points, "multipliers");
-        let multipliers = multipliers.as_slice().as_ptr();
+        let multipliers = multipliers.as_slice();
         let values = output(values, self.outputs(), points, "values");
         let jacobian = output(jacobian, self.symbols.jacobian.0.entries.len(), points, "the Jacobian");
         let hessian = output(hessian, self.symbols.hessian.0.entries.len(), points, "the Hessian");
-        self.run(2, Tables { multipliers, values, jacobian, hessian, ..tables(points, parameters) });
+        let call = Call::new(points, parameters, [values, jacobian, hessian]);
+        self.run(2, Call { multipliers, ..call });
     }
 }

@@ -1,8 +1,12 @@
-//! From expressions to machine code: up to three kernels for each function, each compiled when it is first called.
+//! From expressions to functions of the runtime: values, Jacobian and Hessian are computed step by step until machine code pays.
 
+mod arithmetic;
 mod cranelift;
+mod elementary;
 mod function;
+mod numbers;
 mod schedule;
+mod steps;
 
 use std::sync::Arc;
 

@@ -44,7 +44,7 @@ pub(super) enum Operation {
 }
 
 impl Operation {
-    fn operands(&self) -> &[ExprId] {
+    pub(super) fn operands(&self) -> &[ExprId] {
         match self {
             Operation::Call(_, operands) => operands,
             Operation::MultiplyAdd(operands)

@@ -4,8 +4,10 @@ use std::collections::{BTreeSet, HashMap};
 use std::mem::offset_of;
 
 use super::pairs::{Pair, Pairs};
-use super::{BlockArg, FunctionBuilder, InstBuilder, MemFlagsData, Tables, Value, elementary, memory, types};
+use super::{BlockArg, FunctionBuilder, InstBuilder, MemFlagsData, Tables, Value, memory, types};
 use crate::builtins::{Builtin, Inline, Lowering};
+use crate::generate::arithmetic::{self, Arithmetic};
+use crate::generate::elementary;
 use crate::generate::schedule::{Operation, Place, Schedule, Table};
 use crate::graph::{ExprId, Graph};
 
@@ -219,8 +221,7 @@ impl Emitter<'_, '_> {
         match builtin.row().lowering {
             Lowering::Inline(Inline::Sin) => self.angle(operands[0])[0],
             Lowering::Inline(Inline::Cos) => self.angle(operands[0])[1],
-            Lowering::Inline(inline) => instructions(&mut self.pairs, inline, &values),
-            Lowering::Call1(_) | Lowering::Call2(_) => self.pairs.call(builtin.row().name, &values),
+            _ => arithmetic::call(&mut self.pairs, builtin, &values),
         }
     }
 
@@ -233,34 +234,4 @@ impl Emitter<'_, '_> {
         self.angles.insert(operand, both);
         both
     }
-}
-
-fn instructions(pairs: &mut Pairs, inline: Inline, a: &[Pair]) -> Pair {
-    match inline {
-        Inline::Add => pairs.add(a[0], a[1]),
-        Inline::Sub => pairs.subtract(a[0], a[1]),
-        Inline::Mul => pairs.multiply(a[0], a[1]),
-        Inline::Div => pairs.divide(a[0], a[1]),
-        Inline::Neg => pairs.negate(a[0]),
-        Inline::Sqrt => pairs.square_root(a[0]),
-        Inline::Abs => pairs.absolute(a[0]),
-        Inline::Min => extremum(pairs, a[0], a[1], [a[0], a[1]]),
-        Inline::Max => extremum(pairs, a[0], a[1], [a[1], a[0]]),
-        Inline::SelectLe => {
-            let mask = pairs.less_or_equal(a[0], a[1]);
-            pairs.select(mask, a[2], a[3])
-        }
-        Inline::Sin => elementary::sine_and_cosine(pairs, a[0])[0],
-        Inline::Cos => elementary::sine_and_cosine(pairs, a[0])[1],
-        Inline::Exp => elementary::exponential(pairs, a[0]),
-        Inline::Tanh => elementary::hyperbolic_tangent(pairs, a[0]),
-    }
-}
-
-/// `a` if the first of `order` is at most the second, else `b`; but what is not a number goes through.
-fn extremum(pairs: &mut Pairs, a: Pair, b: Pair, order: [Pair; 2]) -> Pair {
-    let first = pairs.less_or_equal(order[0], order[1]);
-    let chosen = pairs.select(first, a, b);
-    let undefined = pairs.is_nan(a);
-    pairs.select(undefined, a, chosen)
 }

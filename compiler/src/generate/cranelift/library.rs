@@ -10,9 +10,10 @@ use ::cranelift::codegen::ir::{ExtFuncData, ExternalName, UserExternalName};
 
 use super::{
     AbiParam, CallConv, Code, FuncRef, Function, FunctionBuilder, InstBuilder, Machine, Signature, Value,
-    elementary, memory, types,
+    memory, types,
 };
 use crate::builtins::{self, Lowering};
+use crate::generate::elementary;
 
 /// A function that is called for each point.
 pub(super) struct Library {

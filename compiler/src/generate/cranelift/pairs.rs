@@ -1,4 +1,4 @@
-//! Arithmetic on two points at a time, in the words of the formulas.
+//! Arithmetic on two points at a time, as instructions.
 
 use std::collections::BTreeMap;
 
@@ -7,6 +7,7 @@ use super::{
     MemFlagsData, StackSlot, StackSlotData, StackSlotKind, Type, Value, library::trampoline_signature,
     memory, types,
 };
+use crate::generate::arithmetic::Arithmetic;
 
 /// A number at two neighbouring points; also a mask or bits in the place of one.
 pub(super) type Pair = Value;
@@ -35,9 +36,6 @@ impl<'f> Pairs<'f> {
         self.builder.finalize(self.machine.isa.frontend_config());
     }
 
-    pub(super) fn number(&mut self, value: f64) -> Pair {
-        self.constant(PAIR, value.to_bits())
-    }
     /// Both halves with these bits.
     fn constant(&mut self, kind: Type, bits: u64) -> Pair {
         let data: ConstantData = bits.to_le_bytes().repeat(2).into();
@@ -56,94 +54,6 @@ impl<'f> Pairs<'f> {
         self.builder.ins().store(memory(), value, address, 0);
     }
 
-    pub(super) fn add(&mut self, a: Pair, b: Pair) -> Pair {
-        self.builder.ins().fadd(a, b)
-    }
-    pub(super) fn subtract(&mut self, a: Pair, b: Pair) -> Pair {
-        self.builder.ins().fsub(a, b)
-    }
-    pub(super) fn multiply(&mut self, a: Pair, b: Pair) -> Pair {
-        self.builder.ins().fmul(a, b)
-    }
-    pub(super) fn divide(&mut self, a: Pair, b: Pair) -> Pair {
-        self.builder.ins().fdiv(a, b)
-    }
-    pub(super) fn negate(&mut self, a: Pair) -> Pair {
-        self.builder.ins().fneg(a)
-    }
-    pub(super) fn absolute(&mut self, a: Pair) -> Pair {
-        self.builder.ins().fabs(a)
-    }
-    pub(super) fn square_root(&mut self, a: Pair) -> Pair {
-        self.builder.ins().sqrt(a)
-    }
-    /// a b + c, with one rounding if the machine can.
-    pub(super) fn multiply_add(&mut self, a: Pair, b: Pair, c: Pair) -> Pair {
-        if self.machine.fused {
-            return self.builder.ins().fma(a, b, c);
-        }
-        let product = self.multiply(a, b);
-        self.add(product, c)
-    }
-    /// a b - c
-    pub(super) fn multiply_subtract(&mut self, a: Pair, b: Pair, c: Pair) -> Pair {
-        let minus = self.negate(c);
-        self.multiply_add(a, b, minus)
-    }
-    /// c - a b
-    pub(super) fn subtract_product(&mut self, a: Pair, b: Pair, c: Pair) -> Pair {
-        let minus = self.negate(a);
-        self.multiply_add(minus, b, c)
-    }
-
-    /// Mask of a <= b; false where one is not a number.
-    pub(super) fn less_or_equal(&mut self, a: Pair, b: Pair) -> Pair {
-        self.builder.ins().fcmp(FloatCC::LessThanOrEqual, a, b)
-    }
-    /// Mask of where `a` is not a number.
-    pub(super) fn is_nan(&mut self, a: Pair) -> Pair {
-        self.builder.ins().fcmp(FloatCC::Unordered, a, a)
-    }
-    pub(super) fn select(&mut self, mask: Pair, yes: Pair, no: Pair) -> Pair {
-        let mask = self.cast(PAIR, mask);
-        self.builder.ins().bitselect(mask, yes, no)
-    }
-
-    /// Mask of where a bit of `a` is 0.
-    pub(super) fn bit_is_clear(&mut self, a: Pair, bit: u32) -> Pair {
-        let bits = self.cast(BITS, a);
-        let (chosen, zero) = (self.constant(BITS, 1 << bit), self.constant(BITS, 0));
-        let only = self.builder.ins().band(bits, chosen);
-        self.builder.ins().icmp(IntCC::Equal, only, zero)
-    }
-    /// -a where a bit of `bits` is 1.
-    pub(super) fn negate_if_bit(&mut self, a: Pair, bits: Pair, bit: u32) -> Pair {
-        let bits = self.cast(BITS, bits);
-        let shifted = self.shift_left(bits, 63 - bit);
-        let sign = self.constant(BITS, SIGN);
-        let flip = self.builder.ins().band(shifted, sign);
-        let flip = self.cast(PAIR, flip);
-        self.builder.ins().bxor(a, flip)
-    }
-    /// The magnitude of `a` (not negative) with the sign of `b`.
-    pub(super) fn copy_sign(&mut self, a: Pair, b: Pair) -> Pair {
-        let sign = self.constant(PAIR, SIGN);
-        let sign = self.builder.ins().band(sign, b);
-        self.builder.ins().bor(a, sign)
-    }
-    /// `a` read as whole numbers, plus a whole number.
-    pub(super) fn add_to_bits(&mut self, a: Pair, number: u64) -> Pair {
-        let bits = self.cast(BITS, a);
-        let number = self.constant(BITS, number);
-        self.builder.ins().iadd(bits, number)
-    }
-    /// 2^k for the whole number k in the last bits of `a`.
-    pub(super) fn power_of_two(&mut self, a: Pair) -> Pair {
-        const BIAS: u64 = 1023;
-        let biased = self.add_to_bits(a, BIAS);
-        let exponent = self.shift_left(biased, 52);
-        self.cast(PAIR, exponent)
-    }
     fn shift_left(&mut self, bits: Value, by: u32) -> Value {
         let by = self.builder.ins().iconst(types::I32, i64::from(by));
         self.builder.ins().ishl(bits, by)
@@ -156,33 +66,13 @@ impl<'f> Pairs<'f> {
         self.builder.ins().bitcast(kind, little, value)
     }
 
-    /// `fast` if `mask` holds at both points, else what `slow` computes, out of the way.
-    pub(super) fn guard<const N: usize>(
-        &mut self,
-        mask: Pair,
-        fast: [Pair; N],
-        slow: impl Fn(&mut Self) -> [Pair; N],
-    ) -> [Pair; N] {
-        let (aside, on) = (self.builder.create_block(), self.builder.create_block());
-        fast.iter().for_each(|_| {
-            self.builder.append_block_param(on, PAIR);
-        });
-        let both = self.builder.ins().vall_true(mask);
-        self.builder.ins().brif(both, on, &fast.map(Into::into), aside, &[]);
-        self.builder.set_cold_block(aside);
-        self.start(aside);
-        let slow = slow(self);
-        self.builder.ins().jump(on, &slow.map(Into::into));
-        self.start(on);
-        std::array::from_fn(|index| self.builder.block_params(on)[index])
-    }
     fn start(&mut self, block: Block) {
         self.builder.switch_to_block(block);
         self.builder.seal_block(block);
     }
 
     /// A function of the library, at each of the two points.
-    pub(super) fn call(&mut self, name: &'static str, operands: &[Pair]) -> Pair {
+    fn call(&mut self, name: &'static str, operands: &[Pair]) -> Pair {
         let function = self.trampoline(name);
         let slot = self.slot();
         for (operand, offset) in operands.iter().zip([0, 16]) {
@@ -206,5 +96,110 @@ impl<'f> Pairs<'f> {
             let data = StackSlotData::new(StackSlotKind::ExplicitSlot, 32, 4);
             self.builder.create_sized_stack_slot(data)
         })
+    }
+}
+
+impl Arithmetic for Pairs<'_> {
+    type Number = Pair;
+
+    fn number(&mut self, value: f64) -> Pair {
+        self.constant(PAIR, value.to_bits())
+    }
+    fn add(&mut self, a: Pair, b: Pair) -> Pair {
+        self.builder.ins().fadd(a, b)
+    }
+    fn subtract(&mut self, a: Pair, b: Pair) -> Pair {
+        self.builder.ins().fsub(a, b)
+    }
+    fn multiply(&mut self, a: Pair, b: Pair) -> Pair {
+        self.builder.ins().fmul(a, b)
+    }
+    fn divide(&mut self, a: Pair, b: Pair) -> Pair {
+        self.builder.ins().fdiv(a, b)
+    }
+    fn negate(&mut self, a: Pair) -> Pair {
+        self.builder.ins().fneg(a)
+    }
+    fn absolute(&mut self, a: Pair) -> Pair {
+        self.builder.ins().fabs(a)
+    }
+    fn square_root(&mut self, a: Pair) -> Pair {
+        self.builder.ins().sqrt(a)
+    }
+    fn multiply_add(&mut self, a: Pair, b: Pair, c: Pair) -> Pair {
+        if self.machine.fused {
+            return self.builder.ins().fma(a, b, c);
+        }
+        let product = self.multiply(a, b);
+        self.add(product, c)
+    }
+
+    fn less_or_equal(&mut self, a: Pair, b: Pair) -> Pair {
+        self.builder.ins().fcmp(FloatCC::LessThanOrEqual, a, b)
+    }
+    fn is_nan(&mut self, a: Pair) -> Pair {
+        self.builder.ins().fcmp(FloatCC::Unordered, a, a)
+    }
+    fn select(&mut self, mask: Pair, yes: Pair, no: Pair) -> Pair {
+        let mask = self.cast(PAIR, mask);
+        self.builder.ins().bitselect(mask, yes, no)
+    }
+
+    fn bit_is_clear(&mut self, a: Pair, bit: u32) -> Pair {
+        let bits = self.cast(BITS, a);
+        let (chosen, zero) = (self.constant(BITS, 1 << bit), self.constant(BITS, 0));
+        let only = self.builder.ins().band(bits, chosen);
+        self.builder.ins().icmp(IntCC::Equal, only, zero)
+    }
+    fn negate_if_bit(&mut self, a: Pair, bits: Pair, bit: u32) -> Pair {
+        let bits = self.cast(BITS, bits);
+        let shifted = self.shift_left(bits, 63 - bit);
+        let sign = self.constant(BITS, SIGN);
+        let flip = self.builder.ins().band(shifted, sign);
+        let flip = self.cast(PAIR, flip);
+        self.builder.ins().bxor(a, flip)
+    }
+    fn copy_sign(&mut self, a: Pair, b: Pair) -> Pair {
+        let sign = self.constant(PAIR, SIGN);
+        let sign = self.builder.ins().band(sign, b);
+        self.builder.ins().bor(a, sign)
+    }
+    fn add_to_bits(&mut self, a: Pair, number: u64) -> Pair {
+        let bits = self.cast(BITS, a);
+        let number = self.constant(BITS, number);
+        self.builder.ins().iadd(bits, number)
+    }
+    fn power_of_two(&mut self, a: Pair) -> Pair {
+        const BIAS: u64 = 1023;
+        let biased = self.add_to_bits(a, BIAS);
+        let exponent = self.shift_left(biased, 52);
+        self.cast(PAIR, exponent)
+    }
+
+    fn guard<const N: usize>(
+        &mut self,
+        mask: Pair,
+        fast: [Pair; N],
+        slow: impl Fn(&mut Self) -> [Pair; N],
+    ) -> [Pair; N] {
+        let (aside, on) = (self.builder.create_block(), self.builder.create_block());
+        fast.iter().for_each(|_| {
+            self.builder.append_block_param(on, PAIR);
+        });
+        let both = self.builder.ins().vall_true(mask);
+        self.builder.ins().brif(both, on, &fast.map(Into::into), aside, &[]);
+        self.builder.set_cold_block(aside);
+        self.start(aside);
+        let slow = slow(self);
+        self.builder.ins().jump(on, &slow.map(Into::into));
+        self.start(on);
+        std::array::from_fn(|index| self.builder.block_params(on)[index])
+    }
+
+    fn call1(&mut self, name: &'static str, _: extern "C" fn(f64) -> f64, a: Pair) -> Pair {
+        self.call(name, &[a])
+    }
+    fn call2(&mut self, name: &'static str, _: extern "C" fn(f64, f64) -> f64, operands: [Pair; 2]) -> Pair {
+        self.call(name, &operands)
     }
 }

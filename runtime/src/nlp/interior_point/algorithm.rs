@@ -166,6 +166,9 @@ impl Algorithm {
         let is_finite = self.values.is_finite()
             && (self.fresh || self.slopes.evaluate(nlp, &self.space, &self.at, &mut self.counts));
         if !is_finite {
+            if self.go_back() {
+                return Outcome::Continue;
+            }
             let place = nlp.not_finite(&self.at.y[..self.space.variables]).unwrap_or_default();
             return Outcome::Done(Status::NotFinite(place));
         }
@@ -190,7 +193,11 @@ impl Algorithm {
             self.kkt.caution = 0.0;
         }
         self.kkt.assemble(&self.space, &self.at, &self.slopes, &self.barrier);
-        let has_step = self.find_step() || (self.kkt.fall_back(nlp, &self.space) && self.find_step());
+        let has_step = self.find_step();
+        if !has_step && self.go_back() {
+            return Outcome::Continue;
+        }
+        let has_step = has_step || (self.kkt.fall_back(nlp, &self.space) && self.find_step());
         if has_step { self.take_step(nlp) } else { Outcome::Blocked }
     }
 
@@ -308,12 +315,18 @@ impl Algorithm {
                 }
             }
             _ => {
-                let saved = self.watchdog.end().expect("only the watchdog refuses a step here");
-                (self.at, self.values, self.fresh) = (saved.at, saved.values, false);
-                self.counts.iterations += 1;
+                self.go_back();
             }
         }
         Outcome::Continue
+    }
+
+    /// Back to where steps on trust began; `false` if there were none.
+    fn go_back(&mut self) -> bool {
+        let Some(saved) = self.watchdog.end() else { return false };
+        (self.at, self.values, self.fresh) = (saved.at, saved.values, false);
+        self.counts.iterations += 1;
+        true
     }
 
     fn is_tiny(&self) -> bool {

@@ -4,7 +4,7 @@ use super::barrier::Barrier;
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::kkt::{Kkt, System};
 use super::residuals::{Residuals, owed};
-use super::restoration::Restored;
+use super::restoration::{REQUIRED_DECREASE, Restored};
 use super::search::{Accepted, Search};
 use super::space::Space;
 use super::vectors::largest;
@@ -116,7 +116,7 @@ impl Algorithm {
     /// violation near by is one; if it is none, the filter has become too strict and is emptied.
     fn restore_or_stop(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Option<Status> {
         for _ in 0..MOST_RESTARTS {
-            match self.restore(nlp, watch) {
+            match self.restore(nlp, REQUIRED_DECREASE, watch) {
                 Restored::Acceptable => return None,
                 Restored::Stopped(status) => return Some(status),
                 Restored::Blocked => {}
@@ -144,7 +144,7 @@ impl Algorithm {
     }
 
     /// From here on with new multipliers and an empty filter.
-    fn begin_anew(&mut self, nlp: &mut dyn Nlp) {
+    pub(super) fn begin_anew(&mut self, nlp: &mut dyn Nlp) {
         self.resume(nlp);
         self.filter.clear();
     }
@@ -242,7 +242,10 @@ impl Algorithm {
 
     fn finished(&mut self) -> Option<Status> {
         let error = self.residuals.error(0.0);
-        self.acceptable = if error <= ACCEPTABLE_ERROR { self.acceptable + 1 } else { 0 };
+        // Steps on trust say nothing of the point that they began at.
+        if self.watchdog.saved.is_none() {
+            self.acceptable = if error <= ACCEPTABLE_ERROR { self.acceptable + 1 } else { 0 };
+        }
         if error <= self.options.tol && self.is_paid() {
             Some(if self.is_relaxed { Status::Acceptable } else { Status::Solved })
         } else if self.acceptable >= ACCEPTABLE_ITERATIONS {

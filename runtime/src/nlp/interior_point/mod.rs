@@ -21,35 +21,71 @@ use super::{Multipliers, Nlp, Options, Progress, Solution, Start, Status, Watch}
 use crate::problem::Linear;
 use algorithm::Algorithm;
 
-/// Solves the programme from `start`. Progress is reported unscaled, once per iteration. Where the recursion ends without a solution, the sparse
-/// factorisation is asked, whose other rounding and regularisation lead along another path: nobody is told "infeasible" for want of luck.
+/// Solves the programme from `start`. Progress is reported unscaled, once per iteration. Nobody is told "infeasible" for want of luck: where an attempt ends
+/// without a solution others are made, each along another path, with the iterations that are left.
 pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watch) -> Solution {
-    let first = attempt(nlp, start, options, watch);
-    let is_lost = matches!(first.status, Status::Infeasible | Status::NumericalFailure);
-    if !is_lost || options.linear != Linear::Automatic || nlp.stages().is_none() {
-        return first;
+    let mut best = attempt(nlp, start, options, watch);
+    let mut options = *options;
+    // Other rounding and regularisation.
+    if options.linear == Linear::Automatic && nlp.stages().is_some() && is_lost(&best) {
+        options.linear = Linear::SparseLdl;
+        best = another(best, nlp, start, &options, Algorithm::run, watch);
     }
-    let second = attempt(nlp, start, &Options { linear: Linear::SparseLdl, ..*options }, watch);
-    // A verdict says more than a failure.
+    // Where the objective led away from all that is feasible.
+    if start.warm.is_none() && is_lost(&best) {
+        best = another(best, nlp, start, &options, Algorithm::run_from_feasible, watch);
+    }
+    best
+}
+
+/// Whether another attempt may end otherwise.
+fn is_lost(solution: &Solution) -> bool {
+    matches!(solution.status, Status::Infeasible | Status::NumericalFailure)
+}
+
+/// Makes another attempt, and answers with the one that says more.
+fn another(
+    first: Solution,
+    nlp: &mut dyn Nlp,
+    start: &Start,
+    options: &Options,
+    run: impl FnOnce(&mut Algorithm, &mut dyn Nlp, &mut Watch) -> Status,
+    watch: &mut Watch,
+) -> Solution {
+    let mut counts = first.counts;
+    let options = Options { max_iter: options.max_iter.saturating_sub(counts.iterations), ..*options };
+    let second = attempt_with(nlp, start, &options, run, &mut |progress| {
+        watch(&Progress { iteration: counts.iterations + progress.iteration, ..*progress })
+    });
+    counts.add(&second.counts);
     let is_taken = match second.status {
         Status::Solved | Status::Acceptable => true,
+        // A verdict says more than a failure.
         Status::Infeasible => first.status == Status::NumericalFailure,
         _ => false,
     };
-    let mut counts = first.counts;
-    counts.add(&second.counts);
     Solution { counts, ..if is_taken { second } else { first } }
 }
 
-/// One attempt, without a second opinion.
+/// One attempt, without another opinion.
 pub(super) fn attempt(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watch) -> Solution {
+    attempt_with(nlp, start, options, Algorithm::run, watch)
+}
+
+fn attempt_with(
+    nlp: &mut dyn Nlp,
+    start: &Start,
+    options: &Options,
+    run: impl FnOnce(&mut Algorithm, &mut dyn Nlp, &mut Watch) -> Status,
+    watch: &mut Watch,
+) -> Solution {
     let mut scaled = Scaled::new(nlp, &start.v);
     let objective_scale = scaled.objective;
     let mut watch = |progress: &Progress| {
         watch(&Progress { objective: progress.objective / objective_scale, ..*progress })
     };
     let mut algorithm = start::prepare(&mut scaled, start, *options);
-    let status = algorithm.run(&mut scaled, &mut watch);
+    let status = run(&mut algorithm, &mut scaled, &mut watch);
     let mu = algorithm.barrier.mu;
     let Algorithm { at, counts, residuals, space, .. } = algorithm;
     let mut multipliers = Multipliers {

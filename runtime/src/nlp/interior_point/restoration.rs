@@ -19,7 +19,10 @@ use crate::nlp::{Derivatives, Nlp, Place, Progress, Status, Watch};
 use crate::problem::Bounds;
 
 const RHO: f64 = 1e3;
-const REQUIRED_DECREASE: f64 = 0.9;
+/// A restoration phase leaves at most so much of the violation,
+pub(super) const REQUIRED_DECREASE: f64 = 0.9;
+/// and where it comes before everything else at most this.
+const FIRST_DECREASE: f64 = 1e-3;
 const LARGEST_BOUND_MULTIPLIER: f64 = 1e3;
 
 /// How a restoration phase ended.
@@ -116,8 +119,23 @@ impl Nlp for Proximity<'_> {
 }
 
 impl Algorithm {
-    /// Runs a restoration phase from the current iterate.
-    pub(super) fn restore(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Restored {
+    /// Looks for a feasible point near the start before the objective has a word, then iterates to the end.
+    pub(super) fn run_from_feasible(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Status {
+        if self.values.is_finite() && self.values.largest() > self.options.tol {
+            match self.restore(nlp, FIRST_DECREASE, watch) {
+                Restored::Stopped(status) => return status,
+                Restored::Stationary if self.values.largest() > self.options.tol => {
+                    return Status::Infeasible;
+                }
+                Restored::Acceptable => {}
+                Restored::Stationary | Restored::Blocked => self.begin_anew(nlp),
+            }
+        }
+        self.run(nlp, watch)
+    }
+
+    /// Runs a restoration phase from the current iterate, until at most the fraction `decrease` of the violation is left.
+    pub(super) fn restore(&mut self, nlp: &mut dyn Nlp, decrease: f64, watch: &mut Watch) -> Restored {
         let violation = self.values.violation;
         self.filter.add(violation, self.barrier.value(&self.space, &self.values, &self.at.y));
         self.counts.restorations += 1;
@@ -132,10 +150,9 @@ impl Algorithm {
                 Outcome::Continue => {}
                 Outcome::Blocked => break Restored::Blocked,
                 Outcome::Done(Status::Solved | Status::Acceptable) => break Restored::Stationary,
-
                 Outcome::Done(status) => break Restored::Stopped(status),
             }
-            if self.accepts(proximity.inner, &inner.at, violation) {
+            if self.accepts(proximity.inner, &inner.at, decrease * violation) {
                 break Restored::Acceptable;
             }
             inner.loosen(&mut proximity);
@@ -170,12 +187,12 @@ impl Algorithm {
         }
     }
 
-    /// Whether the elastic iterate, without its elastic variables, satisfies the filter of this algorithm.
-    fn accepts(&mut self, nlp: &mut dyn Nlp, at: &Iterate, violation: f64) -> bool {
+    /// Whether the elastic iterate, without its elastic variables, satisfies the filter of this algorithm and violates rows by at most this.
+    fn accepts(&mut self, nlp: &mut dyn Nlp, at: &Iterate, most: f64) -> bool {
         let y = &at.y[..self.space.len()];
         let mut values = Values::default();
         values.evaluate(nlp, &self.space, y, &mut self.counts)
-            && values.violation <= REQUIRED_DECREASE * violation
+            && values.violation <= most
             && self.filter.accepts(values.violation, self.barrier.value(&self.space, &values, y))
     }
 

@@ -1,0 +1,66 @@
+//! What one attempt loses another one wins; and where no feasible point exists, that is said in reasonable time.
+
+use fdcc_runtime::homotopy::Outcome;
+use fdcc_runtime::nlp::Status;
+use fdcc_tests::models::{problem, solve};
+use fdcc_tests::repository;
+use std::f64::consts::PI;
+
+fn text(file: &str) -> String {
+    std::fs::read_to_string(repository().join(file)).unwrap_or_else(|error| panic!("{file}: {error}"))
+}
+
+fn solved(text: &str, scheme: &str, intervals: &str) -> Outcome {
+    solve(&problem(text, &[], &[("scheme", scheme), ("N", intervals)]))
+}
+
+/// From the guess the objective draws the final time below what any feasible trajectory needs, where the violation is smallest near by.
+#[test]
+fn a_final_time_that_became_too_short_is_found_from_a_feasible_point() {
+    for (file, scheme, intervals, exact, tolerance) in [
+        ("models/coulomb_reverse.fdc", "rk4", "200", 2.0, 1e-3),
+        ("models/coulomb_reverse.fdc", "rk4", "800", 2.0, 1e-4),
+        ("tests/classics/oscillator.fdc", "rk4", "50", 2.0 * PI, 1e-4),
+    ] {
+        let solution = solved(&text(file), scheme, intervals).solution;
+        assert_eq!(solution.status, Status::Solved, "{file} {scheme} {intervals}");
+        assert!((solution.objective - exact).abs() < tolerance, "{file}: {}", solution.objective);
+    }
+}
+
+/// The first step from the guess leads to values beyond 1e16.
+#[test]
+fn a_step_on_trust_into_nowhere_is_taken_back() {
+    for intervals in ["50", "100", "200"] {
+        let outcome = solved(&text("tests/right/lotka.fdc"), "rk4", intervals);
+        assert_eq!(outcome.solution.status, Status::Solved, "{intervals}");
+    }
+}
+
+/// Where the optimum is flat no digit is gained for thousands of iterations: IPOPT, too, calls it acceptable.
+#[test]
+fn steps_on_trust_do_not_hide_that_nothing_more_is_gained() {
+    for (scheme, intervals) in [("midpoint", "200"), ("radau3", "50")] {
+        let solution = solved(&text("tests/right/neuron.fdc"), scheme, intervals).solution;
+        assert!(matches!(solution.status, Status::Solved | Status::Acceptable), "{scheme} {intervals}");
+        assert!(solution.counts.iterations < 1000, "{scheme}: {}", solution.counts.iterations);
+    }
+}
+
+/// On a coarse grid the way between the discs is longer than the given speed allows, by two parts in ten thousand: the least speed that reaches the end says so.
+#[test]
+fn what_is_out_of_reach_by_a_hair_is_infeasible() {
+    let given = text("tests/classics/obstacle_avoidance.fdc");
+    let free = given
+        .replace("const speed = 2.138", "free speed in [2, 3] guess 2.2")
+        .replace("minimize integral(normsq(vel))", "minimize speed");
+    let free = free.split("expect").next().expect("the model itself");
+    for scheme in ["radau2", "radau3", "gauss2"] {
+        let least = solved(free, scheme, "50").solution;
+        assert_eq!(least.status, Status::Solved, "{scheme}");
+        assert!(least.objective > 2.138 * (1.0 + 5e-5), "{scheme}: {}", least.objective);
+        let solution = solved(&given, scheme, "50").solution;
+        assert_eq!(solution.status, Status::Infeasible, "{scheme}");
+        assert!(solution.counts.iterations < 1000, "{scheme}: {}", solution.counts.iterations);
+    }
+}

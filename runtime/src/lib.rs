@@ -25,7 +25,7 @@ pub mod stepping;
 
 pub mod sensitivity;
 
-pub mod prolong;
+mod prolong;
 pub mod starts;
 pub mod warm;
 

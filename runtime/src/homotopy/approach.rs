@@ -9,7 +9,7 @@ use super::run::{Goal, Run, is_good, is_retried};
 use crate::linalg::Stages;
 use crate::nlp::{Nlp, Solution, Start, constraint_violation};
 use crate::problem::Problem;
-use crate::prolong::prolong;
+use crate::prolong::{Times, prolong};
 use crate::transcribe::TranscribedNlp;
 
 /// A grid of fewer intervals is not made coarser by half: it would say too little of the problem.
@@ -40,7 +40,7 @@ impl Run<'_> {
     ) -> Solution {
         let goal = self.goal();
         let patience = Goal { limit: MOST_ITERATIONS.min(goal.limit), ..goal };
-        let grids = grids(self.problem, nlp.chain());
+        let grids = grids(self.problem);
         let shrinking = match widths {
             [sigma] if !self.sigma.is_empty() => {
                 WIDER.iter().map(|wider| wider * sigma).chain([*sigma]).collect()
@@ -75,22 +75,23 @@ impl Run<'_> {
         watch: &mut Watch,
     ) -> Solution {
         let mut chain = nlp.chain();
+        let times = Times::new(nlp.interval(), self.problem.path_bounds.len());
         let mut accuracy = COARSEST;
         for &intervals in &grids[..grids.len() - 1] {
             let problem = on_grid(self.problem, intervals);
             let mut coarse = TranscribedNlp::new(&problem);
-            start = prolong(chain, &start, coarse.chain());
+            start = prolong(&times, chain, &start, coarse.chain());
             chain = coarse.chain();
             let close = Goal { tol: goal.tol.max(accuracy), ..goal };
             let solution = self.shrink(&mut coarse, start, widths, close, watch);
             start = Start::after(&solution);
             if !is_good(&solution.status) {
-                return carried_over(nlp, chain, &start, solution);
+                return carried_over(nlp, &times, (chain, &start), solution);
             }
             widths = &widths[widths.len().saturating_sub(1)..];
             accuracy = (FINER * accuracy).max(CLOSE);
         }
-        start = prolong(chain, &start, nlp.chain());
+        start = prolong(&times, chain, &start, nlp.chain());
         self.shrink(nlp, start, widths, goal, watch)
     }
 
@@ -121,12 +122,11 @@ impl Run<'_> {
     }
 }
 
-/// Coarser grids, the coarsest first, and the grid itself; that one alone where an interval holds more than states and constant controls.
-pub(super) fn grids(problem: &Problem, chain: Stages) -> Vec<usize> {
-    let is_uniform = problem.method.mesh.is_empty();
-    let is_plain = is_uniform && chain.inner == 0 && chain.states == problem.layout.x;
-    let coarser = |n: &usize| (is_plain && *n >= COARSE).then_some(n / 2);
-    let mut grids: Vec<usize> = std::iter::successors(Some(chain.intervals), coarser).collect();
+/// Coarser grids, the coarsest first, and the grid itself; that one alone where its intervals differ in length.
+pub(super) fn grids(problem: &Problem) -> Vec<usize> {
+    let method = &problem.method;
+    let coarser = |n: &usize| (method.mesh.is_empty() && *n >= COARSE).then_some(n / 2);
+    let mut grids: Vec<usize> = std::iter::successors(Some(method.intervals), coarser).collect();
     grids.reverse();
     grids
 }
@@ -138,8 +138,13 @@ fn on_grid(problem: &Problem, intervals: usize) -> Problem {
 }
 
 /// What ended on a coarse grid, seen on the grid of the problem.
-fn carried_over(nlp: &mut TranscribedNlp, from: Stages, end: &Start, solution: Solution) -> Solution {
-    let Start { v, warm } = prolong(from, end, nlp.chain());
+fn carried_over(
+    nlp: &mut TranscribedNlp,
+    times: &Times,
+    (from, end): (Stages, &Start),
+    solution: Solution,
+) -> Solution {
+    let Start { v, warm } = prolong(times, from, end, nlp.chain());
     let objective = nlp.values(&v, &mut vec![0.0; nlp.row_bounds().len()]);
     let constraint_violation = constraint_violation(nlp, &v);
     let multipliers = warm.map_or(solution.multipliers, |warm| warm.multipliers);

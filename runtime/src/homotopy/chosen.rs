@@ -46,7 +46,7 @@ impl Run<'_> {
 
     /// The widest layer: over coarse grids, or at once.
     fn first(&mut self, nlp: &mut TranscribedNlp, start: Start, watch: &mut Watch) -> Solution {
-        let grids = grids(self.problem, nlp.chain());
+        let grids = grids(self.problem);
         if start.warm.is_none() && grids.len() > 1 {
             let solution = self.climb(nlp, start.clone(), (&grids, &[]), self.patience(), watch);
             if !is_retried(&solution.status) {

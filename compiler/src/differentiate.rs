@@ -9,12 +9,10 @@
 //! Hash-consing shares whatever value, Jacobian and Hessian have in common. An entry is in a pattern unless it
 //! simplifies to the number 0.
 
-use std::collections::HashMap;
-
 use fdcc_runtime::problem::{Degree, Pattern};
 
 use crate::builtins::Builtin;
-use crate::graph::{Expr, ExprId, Graph, Operands};
+use crate::graph::{ById, Expr, ExprId, Graph, Operands};
 use crate::program::{Differentiated, Order, VectorFunction};
 
 /// The derivative of `expr` by one input.
@@ -99,7 +97,7 @@ impl Matrix {
 pub(crate) fn gradient(graph: &mut Graph, output: ExprId, by: &[u32]) -> Vec<ExprId> {
     let active = active(graph, &[output], by);
     let one = graph.number(1.0);
-    let mut adjoints: HashMap<ExprId, ExprId> = HashMap::from([(output, one)]);
+    let mut adjoints = ById::from_iter([(output, one)]);
     for &id in active.iter().rev() {
         let Some(&adjoint) = adjoints.get(&id) else { continue };
         let Expr::Call(builtin, operands) = graph.expr(id).clone() else { continue };
@@ -125,7 +123,7 @@ pub(crate) fn gradient(graph: &mut Graph, output: ExprId, by: &[u32]) -> Vec<Exp
 /// The derivatives of several expressions by one input (forward mode).
 fn tangents(graph: &mut Graph, outputs: &[ExprId], input: u32) -> Vec<ExprId> {
     let one = graph.number(1.0);
-    let mut tangents: HashMap<ExprId, ExprId> = HashMap::from([(graph.input(input), one)]);
+    let mut tangents = ById::from_iter([(graph.input(input), one)]);
     for id in active(graph, outputs, &[input]) {
         let Expr::Call(builtin, operands) = graph.expr(id).clone() else { continue };
         let mut sum = graph.number(0.0);
@@ -171,7 +169,7 @@ fn active(graph: &Graph, outputs: &[ExprId], by: &[u32]) -> Vec<ExprId> {
 }
 
 fn degrees(graph: &Graph, function: &VectorFunction) -> Vec<Degree> {
-    let mut degrees: HashMap<ExprId, u32> = HashMap::new();
+    let mut degrees: ById<u32> = ById::default();
     for id in graph.reachable(&function.outputs) {
         let degree = match graph.expr(id) {
             Expr::Input(position) => u32::from(function.by.contains(position)),

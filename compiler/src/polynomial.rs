@@ -9,9 +9,9 @@
 //! [`MOST_TERMS`] stays an atom.
 
 use crate::builtins::Builtin;
-use crate::graph::{Expr, ExprId, Graph};
+use crate::graph::{ById, Expr, ExprId, Graph};
 use std::cmp::Ordering;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 /// A product of powers of atoms, ascending by atom.
 pub(crate) type Monomial = Vec<(ExprId, i32)>;
@@ -189,7 +189,7 @@ fn multiplied(a: &Monomial, b: &Monomial) -> Monomial {
 /// Normal forms of the expressions of one graph, each computed once.
 #[derive(Default)]
 pub(crate) struct NormalForms {
-    known: HashMap<ExprId, Polynomial>,
+    known: ById<Polynomial>,
     /// Whether squares of cosines, roots and absolute values are replaced.
     keeps_squares: bool,
 }

@@ -4,12 +4,10 @@
 //! computed depth first and stored at once, so that few values are alive at a time. A product that is used
 //! once, by a sum, becomes part of a fused multiply-add.
 
-use std::collections::HashMap;
-
 use fdcc_runtime::problem::Layout;
 
 use crate::builtins::Builtin;
-use crate::graph::{Expr, ExprId, Graph, Operands};
+use crate::graph::{ById, Expr, ExprId, Graph, Operands};
 
 /// The tables that a kernel writes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -63,7 +61,7 @@ pub(super) struct Schedule {
     /// For every pair of points.
     pub inside: Vec<(ExprId, Operation)>,
     /// Where results of these computations are stored.
-    pub varying: HashMap<ExprId, Vec<Place>>,
+    pub varying: ById<Vec<Place>>,
     /// Results that are the same at all points, to be stored for each of them.
     pub constant: Vec<(ExprId, Place)>,
 }

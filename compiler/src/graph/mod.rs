@@ -10,7 +10,7 @@ mod simplify;
 pub mod verify;
 
 use quick::Quick;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
 
 use smallvec::SmallVec;
@@ -34,6 +34,9 @@ impl ExprId {
         self.0 as usize
     }
 }
+
+/// What is known of some nodes.
+pub(crate) type ById<T> = HashMap<ExprId, T, BuildHasherDefault<Quick>>;
 
 /// A number that can be compared and hashed: its bits, with one zero and one NaN.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -148,19 +151,25 @@ impl Graph {
         self.few_reachable(roots).unwrap_or_else(|| self.all_reachable(roots))
     }
 
-    /// What is reachable, if it is only a few.
+    /// What is reachable, if it is only a few: the last first, so that the operands of a node find their places behind it.
     fn few_reachable(&self, roots: &[ExprId]) -> Option<Vec<ExprId>> {
-        let mut found: BTreeSet<ExprId> = BTreeSet::new();
-        let mut pending: Vec<ExprId> = roots.to_vec();
-        while let Some(next) = pending.pop() {
-            if found.insert(next) {
-                pending.extend(self.operands(next));
+        let mut found = roots.to_vec();
+        found.sort_unstable_by(|a, b| b.cmp(a));
+        found.dedup();
+        let mut done = 0;
+        while let Some(&next) = found.get(done) {
+            done += 1;
+            for operand in self.operands(next) {
+                if let Err(place) = found[done..].binary_search_by(|it| operand.cmp(it)) {
+                    found.insert(done + place, *operand);
+                }
             }
             if found.len() > FEW {
                 return None;
             }
         }
-        Some(found.into_iter().collect())
+        found.reverse();
+        Some(found)
     }
 
     fn all_reachable(&self, roots: &[ExprId]) -> Vec<ExprId> {
@@ -198,7 +207,7 @@ impl Graph {
         &mut self,
         from: &Graph,
         roots: &[ExprId],
-        known: &mut HashMap<ExprId, ExprId>,
+        known: &mut ById<ExprId>,
         inputs: &mut dyn FnMut(&mut Graph, u32) -> ExprId,
     ) -> Vec<ExprId> {
         let mut stack = roots.to_vec();
@@ -229,7 +238,7 @@ impl Graph {
         roots: &[ExprId],
         mut replace: impl FnMut(&mut Graph, ExprId, ExprId) -> ExprId,
     ) -> Vec<ExprId> {
-        let mut replaced: HashMap<ExprId, ExprId> = HashMap::new();
+        let mut replaced: ById<ExprId> = ById::default();
         for id in self.reachable(roots) {
             let rebuilt = match self.expr(id).clone() {
                 Expr::Call(builtin, operands) => {

@@ -10,11 +10,10 @@
 use super::view::View;
 use super::words::Words;
 use crate::differentiate::gradient;
-use crate::graph::{Expr, ExprId, Graph};
+use crate::graph::{ById, Expr, ExprId, Graph};
 use crate::interval::{Interval, Prover};
 use crate::model::Symbol;
 use crate::polynomial::{NormalForms, Polynomial};
-use std::collections::HashMap;
 
 /// Path constraints beyond these are not looked at.
 const MOST_ROWS: usize = 40;
@@ -47,7 +46,7 @@ pub(crate) struct Local {
     pub constraints: Vec<(ExprId, Interval)>,
     /// Replaced on the surface: a state's input and its value, over what is replaced after it.
     pub replaced: Vec<(u32, ExprId)>,
-    known: HashMap<ExprId, ExprId>,
+    known: ById<ExprId>,
     forms: NormalForms,
 }
 
@@ -70,7 +69,7 @@ impl Local {
             sides: Vec::new(),
             constraints: Vec::new(),
             replaced: Vec::new(),
-            known: HashMap::new(),
+            known: ById::default(),
             forms: NormalForms::default(),
         }
     }

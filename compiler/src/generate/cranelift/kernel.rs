@@ -1,6 +1,6 @@
 //! One kernel: what does not depend on the point, then the loop over pairs of points.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::mem::offset_of;
 
 use super::pairs::{Pair, Pairs};
@@ -9,7 +9,7 @@ use crate::builtins::{Builtin, Inline, Lowering};
 use crate::generate::arithmetic::{self, Arithmetic};
 use crate::generate::elementary;
 use crate::generate::schedule::{Operation, Place, Schedule, Table};
-use crate::graph::{ExprId, Graph};
+use crate::graph::{ById, ExprId, Graph};
 
 /// Bytes of a number and of a pair.
 const NUMBER: usize = size_of::<f64>();
@@ -31,7 +31,7 @@ fn input_memory() -> MemFlagsData {
 pub(super) fn build_kernel(graph: &Graph, schedule: &Schedule, mut pairs: Pairs) {
     let frame = Frame::load(&mut pairs.builder, schedule);
     let mut emitter =
-        Emitter { graph, schedule, frame, pairs, values: HashMap::new(), angles: HashMap::new() };
+        Emitter { graph, schedule, frame, pairs, values: ById::default(), angles: ById::default() };
     emitter.steps(&schedule.before);
     emitter.all_points();
     emitter.pairs.finish();
@@ -127,9 +127,9 @@ struct Emitter<'a, 'f> {
     schedule: &'a Schedule,
     frame: Frame,
     pairs: Pairs<'f>,
-    values: HashMap<ExprId, Pair>,
+    values: ById<Pair>,
     /// Sine and cosine of the same angle are computed together.
-    angles: HashMap<ExprId, [Pair; 2]>,
+    angles: ById<[Pair; 2]>,
 }
 
 impl Emitter<'_, '_> {

@@ -88,28 +88,34 @@ pub fn check(tree: &ast::Model) -> Checked {
     sort(&mut diagnostics);
     let mut diagnostics = without_echoes(diagnostics);
     sort(&mut whole.not_yet);
-    // What waits for a value, and what has no unique trajectory, has a meaning all the same: a simulation tells more.
-    let has_meaning = |code: Code| matches!(code, Code::NoValue | Code::Repelling | Code::EndlessJumps);
-    let fatal = |it: &Diagnostic| it.severity == Severity::Error && !has_meaning(it.code);
     let name = tree.name.as_ref().map_or("model", |name| &name.name);
-    let model = (!diagnostics.iter().any(fatal)).then(|| Model {
+    let model = (!diagnostics.iter().any(is_fatal)).then(|| Model {
         name: name.into(),
         units: units.names.clone(),
         condition_units: units.conditions,
         ..whole.into_model()
     });
     let understood = phases.iter().zip(parts).filter(|_| model.is_some());
-    let phases = understood.map(|(phase, part)| Model {
+    let units_in = |phase: &Phase<'_>| {
+        units.names.iter().filter(|unit| phase.knows(unit.span, &phases)).cloned().collect()
+    };
+    let model_of = |(phase, part): (&Phase<'_>, resolve::elaborator::Elaborator<'_>)| Model {
         name: phase.name.name.clone(),
-        units: units.names.iter().filter(|unit| phase.knows(unit.span, &phases)).cloned().collect(),
+        units: units_in(phase),
         ..part.into_model()
-    });
-    let phases = phases.collect();
+    };
+    let phases = understood.map(model_of).collect();
     if let Some(model) = &model {
         diagnostics.extend(rehearsal::check(model, tree));
         sort(&mut diagnostics);
     }
     Checked { model, phases, diagnostics, units: units.names }
+}
+
+/// Whether there can be no meaning. What waits for a value, and what has no unique trajectory, has one: a simulation tells more.
+fn is_fatal(found: &Diagnostic) -> bool {
+    let has_meaning = matches!(found.code, Code::NoValue | Code::Repelling | Code::EndlessJumps);
+    found.severity == Severity::Error && !has_meaning
 }
 
 /// A phase of a tree.

@@ -2,7 +2,9 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::qdldl::{QDLDLFactorisation, QDLDLSettingsBuilder};
-use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+use clarabel::solver::{
+    DefaultSettingsBuilder, DefaultSolution, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
+};
 
 /// A sparse matrix by columns: values of column `j` are `column_starts[j] .. column_starts[j + 1]`.
 #[derive(Clone, Debug, PartialEq)]
@@ -152,7 +154,6 @@ pub(crate) fn solve_conic(program: ConicProgram, tolerance: f64, max_iterations:
     let ConicProgram { p, q, a, b, equalities } = program;
     let cones =
         [SupportedConeT::ZeroConeT(equalities), SupportedConeT::NonnegativeConeT(b.len() - equalities)];
-    let (variables, rows) = (q.len(), b.len());
     let settings = DefaultSettingsBuilder::default()
         .verbose(false)
         .max_iter(max_iterations.min(u32::MAX as usize) as u32)
@@ -164,22 +165,21 @@ pub(crate) fn solve_conic(program: ConicProgram, tolerance: f64, max_iterations:
         .ok()
         .and_then(|settings| DefaultSolver::new(&p.into_csc(), &q, &a.into_csc(), &b, &cones, settings).ok());
     let Some(mut solver) = solver else {
-        return ConicSolution {
-            status: ConicStatus::Failed,
-            x: vec![0.0; variables],
-            z: vec![0.0; rows],
-            iterations: 0,
-        };
+        let (x, z) = (vec![0.0; q.len()], vec![0.0; b.len()]);
+        return ConicSolution { status: ConicStatus::Failed, x, z, iterations: 0 };
     };
     solver.solve();
-    let status = match solver.solution.status {
+    let DefaultSolution { status, x, z, iterations, .. } = solver.solution;
+    ConicSolution { status: in_our_words(status), x, z, iterations: iterations as usize }
+}
+
+fn in_our_words(status: SolverStatus) -> ConicStatus {
+    match status {
         SolverStatus::Solved => ConicStatus::Solved,
         SolverStatus::AlmostSolved => ConicStatus::Roughly,
         SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => ConicStatus::Infeasible,
         SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => ConicStatus::Unbounded,
         SolverStatus::MaxIterations => ConicStatus::IterationLimit,
         _ => ConicStatus::Failed,
-    };
-    let iterations = solver.solution.iterations as usize;
-    ConicSolution { status, x: solver.solution.x, z: solver.solution.z, iterations }
+    }
 }

@@ -120,11 +120,11 @@ impl Document {
                 None
             }
         };
-        let smoothed = smoothed.and_then(|found| other("smoothed", found));
-        let discretised = discretised.and_then(|found| other("discretised", found));
-        let compare = Compare { smoothed, discretised };
-        let sides = exact.sides.iter().map(|&[below, above]| Sides { below, above });
-        let sides: Named<Sides> = by.iter().map(|by| by.name.clone()).zip(sides).collect();
+        let compare = Compare {
+            smoothed: smoothed.and_then(|found| other("smoothed", found)),
+            discretised: discretised.and_then(|found| other("discretised", found)),
+        };
+        let sides = sides(by, exact);
         let is_plain = exact.is_differentiable;
         let first = exact.found.troubles.first().filter(|_| !is_plain);
         Document {
@@ -281,4 +281,10 @@ fn square(by: &[By], rows: &[Vec<f64>]) -> Named<Named<f64>> {
     let all: Vec<String> = by.iter().flat_map(one).collect();
     let names = || all.iter().cloned();
     names().zip(rows.iter().map(|row| names().zip(row.iter().copied()).collect())).collect()
+}
+
+/// Both one-sided derivatives by each quantity, as far as they are known.
+fn sides(by: &[By], exact: &Exact) -> Named<Sides> {
+    let sides = exact.sides.iter().map(|&[below, above]| Sides { below, above });
+    by.iter().map(|by| by.name.clone()).zip(sides).collect()
 }

@@ -51,42 +51,33 @@ fn summary(document: &Document) -> String {
 }
 
 fn rows(document: &Document) -> Vec<(String, String)> {
-    let method = &document.method;
-    let mut rows: Vec<(String, String)> = vec![
-        (
-            "status".into(),
-            format!(
-                "{}, {}",
-                document.status.replace('_', " "),
-                crate::verdict::on_the_true_system(document)
-            ),
-        ),
-        ("objective".into(), document.units.value("objective", document.objective, 10)),
-    ];
-    rows.extend(
-        document.free.0.iter().map(|(name, value)| (name.clone(), document.units.value(name, *value, 10))),
-    );
+    let Document { units, method, .. } = document;
+    let value = |name: &str, value: f64, digits| units.value(name, value, digits);
+    let status = document.status.replace('_', " ");
+    let verified = crate::verdict::on_the_true_system(document);
+    let mut rows = vec![row("status", format!("{status}, {verified}"))];
+    rows.push(row("objective", value("objective", document.objective, 10)));
+    rows.extend(document.free.0.iter().map(|(name, it)| row(name, value(name, *it, 10))));
     let jumps = document.jumps.iter();
-    rows.extend(jumps.map(|it| {
-        (format!("jump {}", it.jump), format!("at t = {}", document.units.value("time", it.time, 10)))
-    }));
-    rows.push(("iterations".into(), document.iterations.to_string()));
-    rows.push(("constraint violation".into(), scientific(document.constraint_violation, 1)));
-    rows.push(("optimality error".into(), scientific(document.kkt_error, 1)));
-    rows.push(("method".into(), format!("{}, N = {}, kernel {}", method.scheme, method.n, method.kernel)));
+    rows.extend(
+        jumps.map(|it| row(&format!("jump {}", it.jump), format!("at t = {}", value("time", it.time, 10)))),
+    );
+    rows.push(row("iterations", document.iterations.to_string()));
+    rows.push(row("constraint violation", scientific(document.constraint_violation, 1)));
+    rows.push(row("optimality error", scientific(document.kkt_error, 1)));
+    rows.push(row("method", format!("{}, N = {}, kernel {}", method.scheme, method.n, method.kernel)));
     let surfaces = document.surfaces.0.iter().zip(&method.sigmas.0);
     rows.extend(surfaces.map(|((name, spans), (_, sigma))| {
-        (format!("surface {name}"), format!("{} (sigma {})", switching(spans), short(*sigma)))
+        row(&format!("surface {name}"), format!("{} (sigma {})", switching(spans), short(*sigma)))
     }));
-    rows.extend(
-        document
-            .params
-            .0
-            .iter()
-            .map(|(name, value)| (format!("param {name}"), document.units.value(name, *value, 6))),
-    );
-    rows.push(("seed".into(), method.seed.to_string()));
-    rows.push(("model".into(), format!("sha256 {}", document.source_sha256)));
-    rows.push(("fdcc".into(), document.fdcc.clone()));
+    let params = document.params.0.iter();
+    rows.extend(params.map(|(name, it)| row(&format!("param {name}"), value(name, *it, 6))));
+    rows.push(row("seed", method.seed.to_string()));
+    rows.push(row("model", format!("sha256 {}", document.source_sha256)));
+    rows.push(row("fdcc", document.fdcc.clone()));
     rows
+}
+
+fn row(name: &str, value: String) -> (String, String) {
+    (name.into(), value)
 }

@@ -90,17 +90,19 @@ impl<'a> Elaborator<'a> {
                 _ => self.builtin_call(name, expr, arguments),
             },
             None if is_function(name) => self.builtin_call(name, expr, arguments),
-            None => {
-                let declaration = format!("fn {name}(x) = x");
-                let found = match ELSEWHERE.iter().find(|(foreign, _)| foreign == name) {
-                    Some((_, own)) => called_elsewhere(name, own, callee.span),
-                    None => self.scope.unknown(name, callee.span, &function_names(), &declaration),
-                };
-                self.diagnostics.push(found);
-                self.plain_arguments(arguments);
-                Value::default()
-            }
+            None => self.unknown_function(name, callee.span, arguments),
         }
+    }
+
+    fn unknown_function(&mut self, name: &'a str, span: Span, arguments: &'a [Argument]) -> Value {
+        let declaration = format!("fn {name}(x) = x");
+        let found = match ELSEWHERE.iter().find(|(foreign, _)| *foreign == name) {
+            Some((_, own)) => called_elsewhere(name, own, span),
+            None => self.scope.unknown(name, span, &function_names(), &declaration),
+        };
+        self.diagnostics.push(found);
+        self.plain_arguments(arguments);
+        Value::default()
     }
 
     /// `blend(f, width)(x)`; nothing else gives a function.

@@ -105,14 +105,8 @@ fn is_parallel(local: &mut Local, rows: &[&(usize, Polynomial, Polynomial)], wei
 
 /// Weights `-g_i/j_i` without what they have in common, if all of them are constant and positive.
 fn metric(local: &mut Local, parts: &Parts) -> Option<Vec<(usize, ExprId)>> {
-    let mut weights: Vec<(Monomial, f64)> = Vec::new();
-    for (_, gradient, jump) in &parts.rows {
-        let ((above, size), (below, by)) = (gradient.as_term()?, jump.as_term()?);
-        let inverse: Monomial = below.iter().map(|&(atom, power)| (atom, -power)).collect();
-        let quotient = Polynomial::product(above.clone()).scaled(-size / by, &inverse);
-        let (monomial, factor) = quotient.as_term()?;
-        weights.push((monomial.clone(), factor));
-    }
+    let weights: Vec<(Monomial, f64)> =
+        parts.rows.iter().map(|row| ratio(&row.1, &row.2)).collect::<Option<_>>()?;
     let atoms: BTreeSet<ExprId> = weights.iter().flat_map(|it| &it.0).map(|power| power.0).collect();
     let is_constant = |atom: &ExprId| {
         local
@@ -140,6 +134,15 @@ fn metric(local: &mut Local, parts: &Parts) -> Option<Vec<(usize, ExprId)>> {
     let named =
         |(row, form): (&(usize, Polynomial, Polynomial), Polynomial)| (row.0, form.to_expr(&mut local.graph));
     fits.then(|| parts.rows.iter().zip(scaled).map(named).collect())
+}
+
+/// `-gradient/jump`, if it is a single term.
+fn ratio(gradient: &Polynomial, jump: &Polynomial) -> Option<(Monomial, f64)> {
+    let ((above, size), (below, by)) = (gradient.as_term()?, jump.as_term()?);
+    let inverse: Monomial = below.iter().map(|&(atom, power)| (atom, -power)).collect();
+    let quotient = Polynomial::product(above.clone()).scaled(-size / by, &inverse);
+    let (monomial, factor) = quotient.as_term()?;
+    Some((monomial.clone(), factor))
 }
 
 /// The only state that is acted on, if the function moves with it everywhere.

@@ -117,12 +117,7 @@ impl Run<'_> {
         if self.options.integrator == Integrator::Automatic && self.field.moving().is_empty() {
             self.pace.choose(step, self.options.rtol);
         }
-        self.field.is_blind = self.pace.bends > MOST_BENDS;
-        let found = locate::first(&mut self.field, step, self.options);
-        let is_bend = found.as_ref().is_some_and(|it| matches!(it.condition, Condition::Bends(_)));
-        let is_there = found.as_ref().is_some_and(|it| it.h <= 4.0 * f64::EPSILON * step.t.abs());
-        self.pace.bends = if is_bend && is_there { self.pace.bends + 1 } else { 0 };
-        if let Some(found) = found {
+        if let Some(found) = self.first_event(step) {
             self.go(step, [step.t + found.h, found.h], &found.state);
             return self.stop(found.condition.into(), |run| run.handle(found.condition));
         }
@@ -140,6 +135,17 @@ impl Run<'_> {
         self.record.point(self.t, &self.x);
         self.pace.is_continued = true;
         Ok(())
+    }
+
+    /// The first event in a step. Kinks that follow each other without any way between them are not looked for after a while.
+    fn first_event(&mut self, step: &Step) -> Option<locate::Found> {
+        self.field.is_blind = self.pace.bends > MOST_BENDS;
+        let found = locate::first(&mut self.field, step, self.options);
+        let is_bend = |it: &locate::Found| matches!(it.condition, Condition::Bends(_));
+        let is_there = |it: &locate::Found| it.h <= 4.0 * f64::EPSILON * step.t.abs();
+        let is_idle = found.as_ref().is_some_and(|it| is_bend(it) && is_there(it));
+        self.pace.bends = if is_idle { self.pace.bends + 1 } else { 0 };
+        found
     }
 
     /// Goes to the state at a time, `h` after the beginning of a step.

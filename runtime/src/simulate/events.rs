@@ -14,38 +14,40 @@ impl Run<'_> {
     pub fn handle(&mut self, condition: Condition) -> Result<(), Status> {
         self.record.point(self.t, &self.x);
         match condition {
-            Condition::Leaves(surface) => {
-                let selectors = self.field.selectors_at(self.t, &self.x);
-                if let Some(ball) = self.field.ball_of(surface) {
-                    let range = ball.surfaces.clone();
-                    self.field.direction[range.clone()].copy_from_slice(&selectors[range]);
-                    self.change_ball(ball, Mode::Moving);
-                    return Ok(());
-                }
-                let mode = if selectors[surface] > 0.0 { Mode::Above } else { Mode::Below };
-                self.change(surface, mode);
-                Ok(())
-            }
-            Condition::Bends(kink) => {
-                self.field.bend(kink);
-                Ok(())
-            }
-            Condition::Reaches(surface) => {
-                let mut surfaces = self.surfaces_here();
-                if !surfaces.contains(&surface) {
-                    surfaces.push(surface);
-                    surfaces.sort_unstable();
-                }
-                let before = self.record.events.len();
-                self.settle(surfaces)?;
-                self.idle = if self.record.events.len() == before { self.idle + 1 } else { 0 };
-                let jump = self.field.system.jumps.iter().position(|jump| jump.surface == surface);
-                // It jumps, but less than rounding shows.
-                match jump.filter(|_| self.idle > MOST_AT_ONCE) {
-                    Some(jump) => self.piled_up(jump, self.t),
-                    None => Ok(()),
-                }
-            }
+            Condition::Leaves(surface) => self.leave(surface),
+            Condition::Bends(kink) => self.field.bend(kink),
+            Condition::Reaches(surface) => self.reach(surface)?,
+        }
+        Ok(())
+    }
+
+    /// A surface holds the state no longer.
+    fn leave(&mut self, surface: usize) {
+        let selectors = self.field.selectors_at(self.t, &self.x);
+        if let Some(ball) = self.field.ball_of(surface) {
+            let range = ball.surfaces.clone();
+            self.field.direction[range.clone()].copy_from_slice(&selectors[range]);
+            self.change_ball(ball, Mode::Moving);
+        } else {
+            self.change(surface, if selectors[surface] > 0.0 { Mode::Above } else { Mode::Below });
+        }
+    }
+
+    /// The state comes to a surface.
+    fn reach(&mut self, surface: usize) -> Result<(), Status> {
+        let mut surfaces = self.surfaces_here();
+        if !surfaces.contains(&surface) {
+            surfaces.push(surface);
+            surfaces.sort_unstable();
+        }
+        let before = self.record.events.len();
+        self.settle(surfaces)?;
+        self.idle = if self.record.events.len() == before { self.idle + 1 } else { 0 };
+        let jump = self.field.system.jumps.iter().position(|jump| jump.surface == surface);
+        // It jumps, but less than rounding shows.
+        match jump.filter(|_| self.idle > MOST_AT_ONCE) {
+            Some(jump) => self.piled_up(jump, self.t),
+            None => Ok(()),
         }
     }
 

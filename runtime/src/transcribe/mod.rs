@@ -24,7 +24,7 @@ use crate::nlp::{Derivatives, Nlp, Place};
 use crate::problem::{Bounds, Origin, Problem};
 use assembly::{Builder, Repeated};
 use boundary::Ends;
-use interval::{Interval, Node};
+use interval::{Interval, Node, Point};
 use mesh::Mesh;
 use sampled::{Matrices, Sampled, Target};
 
@@ -58,20 +58,8 @@ impl<'p> TranscribedNlp<'p> {
         let (jacobian, hessian) = (Builder::default(), Builder::default());
         let mut matrices = Matrices { stages, mesh: mesh.clone(), jacobian, hessian };
         let constant = constant(&interval, &mut matrices);
-        let nodes = interval.nodes.iter().map(|node| {
-            let targets = dynamics_targets(problem, stages, node);
-            let sampled =
-                Sampled::new(problem, &problem.dynamics, node.point.clone(), targets, &mut matrices);
-            sampled.per_length(&mesh)
-        });
-        let nodes = nodes.collect();
-        let rows = problem.path_bounds.len();
-        let path = interval.path.iter().enumerate().map(|(at, point)| {
-            let first = stages.defect_rows() + at * rows;
-            let targets = (first..first + rows).map(|row| Target::Row(row, 1.0)).collect();
-            Sampled::new(problem, &problem.path, point.clone(), targets, &mut matrices)
-        });
-        let path = path.collect();
+        let nodes = nodes(problem, &interval, &mut matrices);
+        let path = path(problem, &interval, &mut matrices);
         let Matrices { mut jacobian, mut hessian, .. } = matrices;
         let ends = Ends::new(problem, stages, &mut jacobian, &mut hessian);
         TranscribedNlp {
@@ -177,6 +165,27 @@ fn stages(problem: &Problem, interval: &Interval) -> Stages {
         local_rows: problem.path_bounds.len() * interval.path.len(),
         coupling_rows: problem.boundary_bounds.len(),
     }
+}
+
+/// The right side, once per node.
+fn nodes(problem: &Problem, interval: &Interval, matrices: &mut Matrices) -> Vec<Sampled> {
+    let sampled = |node: &Node| {
+        let targets = dynamics_targets(problem, matrices.stages, node);
+        let sampled = Sampled::new(problem, &problem.dynamics, node.point.clone(), targets, matrices);
+        sampled.per_length(&matrices.mesh)
+    };
+    interval.nodes.iter().map(sampled).collect()
+}
+
+/// The path constraints, once per point at which they hold.
+fn path(problem: &Problem, interval: &Interval, matrices: &mut Matrices) -> Vec<Sampled> {
+    let rows = problem.path_bounds.len();
+    let sampled = |(at, point): (usize, &Point)| {
+        let first = matrices.stages.defect_rows() + at * rows;
+        let targets = (first..first + rows).map(|row| Target::Row(row, 1.0)).collect();
+        Sampled::new(problem, &problem.path, point.clone(), targets, matrices)
+    };
+    interval.path.iter().enumerate().map(sampled).collect()
 }
 
 /// Outputs of the right side go to the rows of their node; the integrand goes to the objective with `b/N`.

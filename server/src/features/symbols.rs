@@ -4,7 +4,7 @@ use crate::client::Failure;
 use crate::context::Context;
 use fdcc_compiler::names::{Kind, Names};
 use fdcc_grammar::Span;
-use fdcc_grammar::ast::{Item, ItemKind, Sense};
+use fdcc_grammar::ast::{Binding, Item, ItemKind, Sense};
 use lsp_types::{DocumentSymbol, DocumentSymbolParams, DocumentSymbolResponse, SymbolKind};
 
 /// `textDocument/documentSymbol`
@@ -28,45 +28,46 @@ impl Outline<'_> {
     }
 
     fn item(&self, item: &Item) -> Option<DocumentSymbol> {
-        let block = |name: &str, entries: Vec<DocumentSymbol>| {
-            let kind = SymbolKind::Namespace;
-            Some(DocumentSymbol { children: Some(entries), ..self.symbol(name, kind, item.span, item.span) })
-        };
-        let entry =
-            |name: String, whole: Span, span: Span| self.symbol(&name, SymbolKind::Field, whole, span);
         match &item.kind {
-            ItemKind::Phase { name, items } => {
-                let children = Some(self.items(items));
-                Some(DocumentSymbol {
-                    children,
-                    ..self.symbol(&name.name, SymbolKind::Module, item.span, name.span)
-                })
+            ItemKind::Phase { name, items } => Some(DocumentSymbol {
+                children: Some(self.items(items)),
+                ..self.symbol(&name.name, SymbolKind::Module, item.span, name.span)
+            }),
+            ItemKind::Dynamics { equations } => {
+                let entries =
+                    equations.iter().map(|it| (format!("{}'", it.state.name), it.span, it.state.span));
+                Some(self.block("dynamics", item.span, entries))
             }
-            ItemKind::Dynamics { equations } => block(
-                "dynamics",
-                equations
-                    .iter()
-                    .map(|it| entry(format!("{}'", it.state.name), it.span, it.state.span))
-                    .collect(),
-            ),
-            ItemKind::Guess { bindings } | ItemKind::Report { bindings } => {
-                let word = if matches!(item.kind, ItemKind::Guess { .. }) { "guess" } else { "report" };
-                let whole = |it: &fdcc_grammar::ast::Binding| it.name.span.to(it.value.span);
-                block(
-                    word,
-                    bindings.iter().map(|it| entry(it.name.name.clone(), whole(it), it.name.span)).collect(),
-                )
+            ItemKind::Guess { bindings } => Some(self.bindings("guess", item.span, bindings)),
+            ItemKind::Report { bindings } => Some(self.bindings("report", item.span, bindings)),
+            ItemKind::Method { settings } => {
+                let entries = settings.iter().map(|it| (it.key.name.clone(), it.key.span, it.key.span));
+                Some(self.block("method", item.span, entries))
             }
-            ItemKind::Method { settings } => block(
-                "method",
-                settings.iter().map(|it| entry(it.key.name.clone(), it.key.span, it.key.span)).collect(),
-            ),
             ItemKind::Objective { sense, keyword, .. } => {
                 let word = if *sense == Sense::Minimize { "minimize" } else { "maximize" };
                 Some(self.symbol(word, SymbolKind::Operator, item.span, *keyword))
             }
             _ => self.declaration(item),
         }
+    }
+
+    fn bindings(&self, word: &str, whole: Span, bindings: &[Binding]) -> DocumentSymbol {
+        let entry = |it: &Binding| (it.name.name.clone(), it.name.span.to(it.value.span), it.name.span);
+        self.block(word, whole, bindings.iter().map(entry))
+    }
+
+    /// A block with entries: each has a name, its place, and that of the name.
+    fn block(
+        &self,
+        word: &str,
+        whole: Span,
+        entries: impl Iterator<Item = (String, Span, Span)>,
+    ) -> DocumentSymbol {
+        let entry =
+            |(name, whole, span): (String, Span, Span)| self.symbol(&name, SymbolKind::Field, whole, span);
+        let children = Some(entries.map(entry).collect());
+        DocumentSymbol { children, ..self.symbol(word, SymbolKind::Namespace, whole, whole) }
     }
 
     /// What an item declares, with its parts.

@@ -5,7 +5,7 @@ use crate::graph::ExprId;
 use crate::interval::Claim;
 use crate::model::Symbol;
 use crate::surfaces::class::for_some;
-use fdcc_grammar::{Code, Diagnostic, Severity};
+use fdcc_grammar::{Code, Diagnostic, Severity, Span};
 
 impl Subject<'_, '_, '_> {
     /// If the jump is positive for some controls. A mere fact where no rate can vanish.
@@ -23,14 +23,10 @@ impl Subject<'_, '_, '_> {
         let mut found = Diagnostic::new(Code::NotContracting, message, span, label);
         let what = self.what_drifts();
         let jump_text = self.text(jump);
-        if let (Some((symbol, condition)), false) = (self.sign_of_jump(jump), always) {
-            let name = self.view.name(symbol);
-            if let Some((declared, bounds)) = self.control(&name) {
-                let text = format!(
-                    "for {condition} the jump {jump_text} is positive, so two nearby {what} drift apart"
-                );
-                found = found.label(declared.to(bounds.span), text);
-            }
+        if let (Some((condition, declared)), false) = (self.positive_for(jump), always) {
+            let text =
+                format!("for {condition} the jump {jump_text} is positive, so two nearby {what} drift apart");
+            found = found.label(declared, text);
         }
         if strictly {
             found.severity = Severity::Advice;
@@ -45,6 +41,13 @@ impl Subject<'_, '_, '_> {
             "the solution is still unique wherever {common} != 0. The jump formula (3.6) is used, not (3.5).\n\
              At {common} == 0 on the surface nothing moves: add `path` or a bound to keep `{common}` away from 0 there."
         )))
+    }
+
+    /// The condition on a control that makes the jump positive, and where the control is declared.
+    fn positive_for(&mut self, jump: ExprId) -> Option<(String, Span)> {
+        let (symbol, condition) = self.sign_of_jump(jump)?;
+        let (declared, bounds) = self.control(&self.view.name(symbol))?;
+        Some((condition, declared.to(bounds.span)))
     }
 
     /// The only control of the jump and where it makes it positive.

@@ -16,26 +16,14 @@ impl Subject<'_, '_, '_> {
         let (state, slope) = (self.view.states[state].place.name.clone(), self.text(slope));
         let label = format!("d/d{state} = {slope}, which is 0 wherever {function} == 0");
         let message = format!("the gradient of surface `{name}` vanishes on the surface itself");
-        let base = match (written.and_then(base_of), trouble.base) {
-            (Some(base), _) => Some(text::expr(base)),
-            (None, Some(base)) => Some(self.text(base)),
-            (None, None) => None,
-        };
-        let instead = match (base, written) {
-            (Some(base), Some(_)) => format!(" Write `surface {name} = {base}`."),
-            (Some(base), None) => format!(" Write `Sgn({base})`."),
-            (None, _) => " A surface has two sides: write what changes its sign there.".into(),
-        };
-        let side = match trouble.never {
-            Some(sign) => {
-                let side = if sign < 0.0 { "below" } else { "above" };
-                format!(
-                    "\nNote that `{function}` never changes sign: as written this switch can never go {side}."
-                )
-            }
-            None => String::new(),
-        };
-        let help = format!("Lemma 3.1 needs a nonzero gradient where the surface is zero.{instead}{side}");
+        let instead = self.instead(trouble);
+        let never = trouble.never.map_or_else(String::new, |sign| {
+            let side = if sign < 0.0 { "below" } else { "above" };
+            format!(
+                "\nNote that `{function}` never changes sign: as written this switch can never go {side}."
+            )
+        });
+        let help = format!("Lemma 3.1 needs a nonzero gradient where the surface is zero. {instead}{never}");
         let found = Diagnostic::new(Code::VanishingGradient, message, self.function(), label).help(help);
         match written.and_then(|value| Some((value, root_of(value)?))) {
             Some((value, root)) => {
@@ -43,6 +31,21 @@ impl Subject<'_, '_, '_> {
                 found.fix(Fix::certain(format!("write `{root}`")).replace(value.span, root))
             }
             None => found,
+        }
+    }
+
+    /// What has the same zero and changes its sign there.
+    fn instead(&mut self, trouble: &Degenerate) -> String {
+        let written = self.written();
+        let base = match (written.and_then(base_of), trouble.base) {
+            (Some(base), _) => Some(text::expr(base)),
+            (None, Some(base)) => Some(self.text(base)),
+            (None, None) => None,
+        };
+        match (base, written) {
+            (Some(base), Some(_)) => format!("Write `surface {} = {base}`.", self.name()),
+            (Some(base), None) => format!("Write `Sgn({base})`."),
+            (None, _) => "A surface has two sides: write what changes its sign there.".into(),
         }
     }
 }

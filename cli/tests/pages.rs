@@ -32,7 +32,8 @@ fn is_same(printed: &str, written: &str) -> bool {
 
 fn check(folder: &Path, page: &str, block: &str) {
     let (command, written) = block.split_once('\n').expect("a command and its output");
-    let arguments: Vec<&str> = command.trim_start_matches("$ fdcc ").split(' ').collect();
+    let words = command.trim_start_matches("$ fdcc ").split(' ');
+    let arguments: Vec<&str> = words.map(|word| word.trim_matches('\'')).collect();
     let printed = stdout(&fdcc(folder, &arguments, ""));
     let lines = printed.lines().zip(written.lines());
     let is_line = |(a, b): (&str, &str)| {

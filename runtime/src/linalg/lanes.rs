@@ -44,9 +44,24 @@ impl Lanes {
         Lanes::from(|l| multiply_add::<FUSED>(a.0[l], b.0[l], c.0[l]))
     }
 
+    /// Whether some number is larger in size than that of the same interval.
     #[inline(always)]
-    pub(crate) fn size(self) -> Lanes {
-        Lanes::from(|l| self.0[l].abs())
+    pub(crate) fn exceeds(self, other: Lanes) -> bool {
+        let mut exceeds = false;
+        for l in 0..Lanes::COUNT {
+            exceeds |= self.0[l].abs() > other.0[l].abs();
+        }
+        exceeds
+    }
+
+    /// Whether all are one.
+    #[inline(always)]
+    pub(crate) fn are_one(self) -> bool {
+        let mut bits = 0;
+        for l in 0..Lanes::COUNT {
+            bits |= self.0[l].to_bits() ^ 1.0f64.to_bits();
+        }
+        bits == 0
     }
 
     #[inline(always)]

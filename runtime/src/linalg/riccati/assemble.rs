@@ -1,6 +1,6 @@
 //! From the families of the sparse matrices to the dense blocks of several intervals.
 //!
-//! Local positions of an interval are those of `(x_k, u_k, theta, y_k, x_{k+1})`.
+//! Local positions of an interval are those of `(x_k, theta, u_k, y_k, x_{k+1})`.
 
 use super::sizes::Sizes;
 use crate::linalg::lanes::Lanes;
@@ -13,11 +13,13 @@ struct Move {
     target: u32,
 }
 
-/// A value of a local row, and the position of its variable.
+/// A value of a local row: its variable is `variable + k step`, which has this position in interval `k`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LocalEntry {
     pub(super) row: usize,
-    pub(super) position: usize,
+    position: usize,
+    pub(super) variable: usize,
+    pub(super) step: usize,
 }
 
 /// What is gathered where.
@@ -71,7 +73,8 @@ impl Assembly {
                 self.defects.push(Move { source, target });
             }
             Some(row) => {
-                let target = self.local_place(LocalEntry { row, position }) as u32;
+                let (variable, step) = (family.column, family.column_step);
+                let target = self.local_place(LocalEntry { row, position, variable, step }) as u32;
                 self.local.push(Move { source, target });
             }
         }
@@ -109,7 +112,7 @@ impl Assembly {
         blocks: &mut [Lanes],
         local: &mut [Lanes],
     ) {
-        blocks.fill(Lanes::ZERO);
+        blocks.iter_mut().for_each(|it| *it = Lanes::ZERO);
         local.fill(Lanes::ZERO);
         add_moves(&self.hessian, (first, count), hessian, blocks);
         add_moves(&self.defects, (first, count), jacobian, blocks);
@@ -166,17 +169,14 @@ pub(super) fn is_coupling(stages: &Stages, family: &Family) -> bool {
     family.count == 1 && family.row_step == 0 && family.column_step == 0 && stages.intervals > 0
 }
 
-/// Position in `(x, u, theta, y, x+)` of a variable that is at `index` in interval 0 and moves by `step`.
+/// Position in `(x, theta, u, y, x+)` of a variable that is at `index` in interval 0 and moves by `step`.
 fn local_position(stages: Stages, sizes: Sizes, index: usize, step: usize) -> Option<usize> {
     let globals = stages.globals();
     if globals.contains(&index) {
-        return (step == 0).then(|| sizes.n + sizes.m + index - globals.start);
+        return (step == 0).then(|| sizes.n + index - globals.start);
     }
     if step != stages.variable_step() && stages.intervals > 1 {
         return None;
     }
-    match index.checked_sub(sizes.n + sizes.m) {
-        None => Some(index),
-        Some(next) => (next < sizes.next()).then(|| sizes.reduced() + next),
-    }
+    (sizes.position(index) < sizes.all()).then(|| sizes.position(index))
 }

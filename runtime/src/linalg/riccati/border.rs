@@ -217,9 +217,8 @@ impl Border {
         gradient.iter_mut().zip(values).for_each(|(target, value)| *target = value);
     }
 
-    /// Solves for `x_0` and `theta`.
-    pub(super) fn solve(&self, gradient: &[f64], x: &mut [f64], theta: &mut [f64]) {
-        let n = self.stages.states;
+    /// Solves for `(x_0, theta)`.
+    pub(super) fn solve(&self, gradient: &[f64], state: &mut [f64]) {
         let mut right = vec![0.0; self.size()];
         for (i, value) in gradient.iter().enumerate() {
             right[self.merged(i)] -= value;
@@ -228,9 +227,8 @@ impl Border {
             right[i] = 0.0;
         }
         self.factor.solve(&mut right, 1);
-        x.copy_from_slice(&right[..n]);
-        for (i, value) in theta.iter_mut().enumerate() {
-            *value = right[self.merged(n + i)];
+        for (i, value) in state.iter_mut().enumerate() {
+            *value = right[self.merged(i)];
         }
     }
 

@@ -6,18 +6,15 @@ use super::sizes::Sizes;
 use super::solve::Travel;
 use crate::linalg::lanes::Lanes;
 
-/// **The table** of sizes that are compiled as constants: states, controls, border; without inner variables.
+/// **The table** of sizes that are compiled as constants: states, controls, border; without inner variables. All others go by the sizes that they are given (0, 0, 0).
 macro_rules! with_constant_sizes {
-    ($given:expr, $sizes:ident => $body:expr) => {
-        with_constant_sizes!($given, $sizes => $body, (5, 2, 1) (2, 1, 2) (2, 1, 3) (4, 1, 3))
-    };
-    ($given:expr, $sizes:ident => $body:expr, $(($n:literal, $m:literal, $q:literal))*) => {
-        match $given {
-            $(Sizes { n: $n, m: $m, inner: 0, q: $q } => {
-                let $sizes = Sizes { n: $n, m: $m, inner: 0, q: $q };
-                $body
-            })*
-            $sizes => $body,
+    ($this:ident.$function:ident($($arguments:expr),*)) => {
+        match $this.sizes {
+            Sizes { n: 5, m: 2, inner: 0, q: 1 } => $this.$function::<5, 2, 1>($($arguments),*),
+            Sizes { n: 2, m: 1, inner: 0, q: 2 } => $this.$function::<2, 1, 2>($($arguments),*),
+            Sizes { n: 2, m: 1, inner: 0, q: 3 } => $this.$function::<2, 1, 3>($($arguments),*),
+            Sizes { n: 4, m: 1, inner: 0, q: 3 } => $this.$function::<4, 1, 3>($($arguments),*),
+            _ => $this.$function::<0, 0, 0>($($arguments),*),
         }
     };
 }
@@ -39,9 +36,9 @@ impl Riccati {
         if self.fused {
             // SAFETY: `fused` is set only if this machine has both features.
             #[allow(unsafe_code)]
-            return unsafe { self.factor_fused(matrix) };
+            return unsafe { with_constant_sizes!(self.factor_fused(matrix)) };
         }
-        with_constant_sizes!(self.sizes, sizes => self.factor_intervals::<false>(sizes, matrix))
+        with_constant_sizes!(self.factor_plain(matrix))
     }
 
     /// Goes backward, solves for the border, and goes forward.
@@ -50,21 +47,45 @@ impl Riccati {
         if self.fused {
             // SAFETY: `fused` is set only if this machine has both features.
             #[allow(unsafe_code)]
-            return unsafe { self.solve_fused(travel, a, b) };
+            return unsafe { with_constant_sizes!(self.solve_fused(travel, a, b)) };
         }
-        with_constant_sizes!(self.sizes, sizes => self.solve_intervals::<false>(sizes, travel, a, b))
+        with_constant_sizes!(self.solve_plain(travel, a, b))
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
-    fn factor_fused(&mut self, matrix: Matrix) -> Option<usize> {
-        with_constant_sizes!(self.sizes, sizes => self.factor_intervals::<true>(sizes, matrix))
+    fn factor_fused<const N: usize, const M: usize, const Q: usize>(
+        &mut self,
+        matrix: Matrix,
+    ) -> Option<usize> {
+        self.factor_intervals::<true>(self.sizes.known::<N, M, Q>(), matrix)
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
-    fn solve_fused(&self, travel: &mut Travel, a: &mut [f64], b: &mut [f64]) {
-        with_constant_sizes!(self.sizes, sizes => self.solve_intervals::<true>(sizes, travel, a, b))
+    fn solve_fused<const N: usize, const M: usize, const Q: usize>(
+        &self,
+        travel: &mut Travel,
+        a: &mut [f64],
+        b: &mut [f64],
+    ) {
+        self.solve_intervals::<true>(self.sizes.known::<N, M, Q>(), travel, (a, b))
+    }
+
+    fn factor_plain<const N: usize, const M: usize, const Q: usize>(
+        &mut self,
+        matrix: Matrix,
+    ) -> Option<usize> {
+        self.factor_intervals::<false>(self.sizes.known::<N, M, Q>(), matrix)
+    }
+
+    fn solve_plain<const N: usize, const M: usize, const Q: usize>(
+        &self,
+        travel: &mut Travel,
+        a: &mut [f64],
+        b: &mut [f64],
+    ) {
+        self.solve_intervals::<false>(self.sizes.known::<N, M, Q>(), travel, (a, b))
     }
 
     #[inline(always)]
@@ -86,22 +107,5 @@ impl Riccati {
             }
         }
         Some(negative)
-    }
-
-    #[inline(always)]
-    fn solve_intervals<const FUSED: bool>(
-        &self,
-        sizes: Sizes,
-        travel: &mut Travel,
-        a: &mut [f64],
-        b: &mut [f64],
-    ) {
-        for k in (0..self.stages.intervals).rev() {
-            self.backward::<FUSED>(sizes, k, travel, (a, b));
-        }
-        self.border.solve(&travel.gradient, &mut travel.x, &mut travel.theta);
-        for k in 0..self.stages.intervals {
-            self.forward::<FUSED>(sizes, k, travel, (a, b));
-        }
     }
 }

@@ -11,7 +11,7 @@ use super::assemble::Assembly;
 use super::chain::Matrix;
 use super::elimination::{add_row_product, divide};
 use super::factors::Factors;
-use super::kernels::View;
+use super::kernels::{View, lower_end};
 use super::sizes::Sizes;
 use crate::linalg::Stages;
 use crate::linalg::lanes::{Lanes, part};
@@ -88,8 +88,8 @@ impl Condensed {
             Lanes::from(|l| table[place + (first + l.min(count - 1)) * step])
         };
         for i in 0..sizes.n + sizes.m + sizes.inner {
-            let position = if i < sizes.n + sizes.m { i } else { i + sizes.q };
-            gathered[sizes.hessian_place(position, position)].add(of(sigma, i, stages.variable_step()));
+            let place = sizes.hessian_place(sizes.position(i), sizes.position(i));
+            gathered[place].add(of(sigma, i, stages.variable_step()));
         }
         for (i, weight) in weights.iter_mut().enumerate() {
             *weight = of(d, stages.defect_rows() + i, stages.row_step()).inverse();
@@ -121,7 +121,7 @@ impl Condensed {
                 curvature[j * all + w + i] = curvature[i * all + w + j];
             }
         }
-        for j in sizes.n..sizes.n + sizes.m {
+        for j in sizes.kept()..w {
             for i in j + 1..w {
                 q[j * w + i] = q[i * w + j];
             }
@@ -142,13 +142,13 @@ impl Condensed {
         let (t, n) = (View::rows(&*steps, all), View::rows(&*curvature, all));
         let m = View { values: &curvature[w..], ..n };
         for i in 0..next {
-            add_row_product::<FUSED>(1.0, (m, i), t, next, &mut costate[i * w..][..w]);
+            add_row_product::<FUSED>((m, i), t, next, &mut costate[i * w..][..w]);
         }
         for i in 0..w {
-            // Of `Q` the lower triangle is needed, and the rows of the controls.
-            let row = &mut q[i * w..][..if i < sizes.n { sizes.n } else { w }];
-            add_row_product::<FUSED>(1.0, (n.transposed(), i), t, next, row);
-            add_row_product::<FUSED>(1.0, (t.transposed(), i), View::rows(costate, w), next, row);
+            // Of `Q` the lower triangle is needed, and all of `Q_uu`.
+            let row = &mut q[i * w..][..if i < sizes.kept() { lower_end(i, w) } else { w }];
+            add_row_product::<FUSED>((n.transposed(), i), t, next, row);
+            add_row_product::<FUSED>((t.transposed(), i), View::rows(costate, w), next, row);
         }
         Some(())
     }

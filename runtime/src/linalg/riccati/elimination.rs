@@ -3,27 +3,52 @@
 use super::kernels::View;
 use crate::linalg::lanes::Lanes;
 
-/// Row `i` of `Y += sign A B`: `y` is that row, `inner` the number of columns of `A`. `B` lies row by row.
-///
-/// Hardly any variable enters all equations, and an entry that is zero in all intervals of one batch is so in the next: it is skipped.
+/// Row `i` of `Y += A B`: `y` is that row, `inner` the number of columns of `A`. `B` lies row by row.
 #[inline(always)]
 pub(super) fn add_row_product<const FUSED: bool>(
-    sign: f64,
     (a, i): (View<Lanes>, usize),
     b: View<Lanes>,
     inner: usize,
     y: &mut [Lanes],
 ) {
+    let mut start = 0;
+    while start + 8 <= y.len() {
+        add_row_block::<FUSED, 8>((a, i), b, inner, (y, start));
+        start += 8;
+    }
+    while start + 4 <= y.len() {
+        add_row_block::<FUSED, 4>((a, i), b, inner, (y, start));
+        start += 4;
+    }
+    while start < y.len() {
+        add_row_block::<FUSED, 1>((a, i), b, inner, (y, start));
+        start += 1;
+    }
+}
+
+/// The same for `WIDTH` columns of the row, which stay in registers.
+///
+/// Hardly any variable enters all equations, and an entry that is zero in all intervals of one batch is so in the next: it is skipped.
+#[inline(always)]
+fn add_row_block<const FUSED: bool, const WIDTH: usize>(
+    (a, i): (View<Lanes>, usize),
+    b: View<Lanes>,
+    inner: usize,
+    (y, start): (&mut [Lanes], usize),
+) {
+    let y = &mut y[start..start + WIDTH];
+    let mut sum = [Lanes::ZERO; WIDTH];
+    sum.copy_from_slice(y);
     for l in 0..inner {
         let x = a.values[i * a.row + l * a.column];
         if x.is_nothing() {
             continue;
         }
-        let x = x.scaled(sign);
-        for (sum, value) in y.iter_mut().zip(&b.values[l * b.row..]) {
+        for (sum, value) in sum.iter_mut().zip(&b.values[l * b.row + start..][..WIDTH]) {
             *sum = Lanes::multiply_add::<FUSED>(x, *value, *sum);
         }
     }
+    y.copy_from_slice(&sum);
 }
 
 /// Replaces the rows of `x` by those of `E^-1 X`, by elimination with pivots that are chosen in each interval; `e` is destroyed. `false` if `E` is
@@ -37,15 +62,18 @@ pub(super) fn divide<const FUSED: bool>(
     for k in 0..n {
         bring_up_pivots(n, k, e, (x, columns));
         let pivot = e[k * n + k];
-        let inverse = pivot.inverse();
-        if !(pivot.are_finite() && inverse.are_finite()) {
-            return false;
+        // As it is for a variable that depends on itself by its rate only through others.
+        if !pivot.are_one() {
+            let inverse = pivot.inverse();
+            if !(pivot.are_finite() && inverse.are_finite()) {
+                return false;
+            }
+            scale(&mut e[k * n..][..n], inverse);
+            scale(&mut x[k * columns..][..columns], inverse);
         }
-        scale_row(e, n, k, inverse);
-        scale_row(x, columns, k, inverse);
-        for i in 0..n {
+        for i in (0..n).filter(|i| *i != k) {
             let factor = e[i * n + k].scaled(-1.0);
-            if i != k && !factor.is_nothing() {
+            if !factor.is_nothing() {
                 add_row::<FUSED>(e, n, (i, k), factor);
                 add_row::<FUSED>(x, columns, (i, k), factor);
             }
@@ -55,8 +83,8 @@ pub(super) fn divide<const FUSED: bool>(
 }
 
 #[inline(always)]
-fn scale_row(matrix: &mut [Lanes], length: usize, i: usize, by: Lanes) {
-    for value in &mut matrix[i * length..][..length] {
+fn scale(values: &mut [Lanes], by: Lanes) {
+    for value in values {
         *value = value.times(by);
     }
 }
@@ -70,31 +98,31 @@ fn add_row<const FUSED: bool>(matrix: &mut [Lanes], length: usize, (i, k): (usiz
     }
 }
 
-/// Exchanges row `k` with the one that has the largest entry in column `k`, in each interval where it is not that one: hardly anywhere, as steps are short.
+/// Exchanges row `k` with rows that have a larger entry in column `k`, in the intervals where they have: hardly anywhere, as steps are short.
 #[inline(always)]
 fn bring_up_pivots(n: usize, k: usize, e: &mut [Lanes], (x, columns): (&mut [Lanes], usize)) {
-    let pivot = e[k * n + k].size();
-    let mut excess = Lanes::ZERO;
     for i in k + 1..n {
-        let size = e[i * n + k].size();
-        excess = Lanes::from(|l| if size.0[l] > pivot.0[l] { 1.0 } else { excess.0[l] });
-    }
-    if !excess.is_nothing() {
-        for l in 0..Lanes::COUNT {
-            exchange_in_lane(n, (k, l), e, (x, columns));
+        if e[i * n + k].exceeds(e[k * n + k]) {
+            exchange_rows(n, (i, k), e, (x, columns));
         }
     }
 }
 
 #[cold]
-fn exchange_in_lane(n: usize, (k, l): (usize, usize), e: &mut [Lanes], (x, columns): (&mut [Lanes], usize)) {
-    let size = |i: usize| e[i * n + k].0[l].abs();
-    let pivot = (k + 1..n).fold(k, |pivot, i| if size(i) > size(pivot) { i } else { pivot });
-    for (matrix, length) in [(e, n), (x, columns)] {
-        for j in 0..length {
-            let (upper, lower) = (matrix[k * length + j].0[l], matrix[pivot * length + j].0[l]);
-            matrix[k * length + j].0[l] = lower;
-            matrix[pivot * length + j].0[l] = upper;
+fn exchange_rows(n: usize, (i, k): (usize, usize), e: &mut [Lanes], (x, columns): (&mut [Lanes], usize)) {
+    for l in 0..Lanes::COUNT {
+        let size = |row: usize| e[row * n + k].0[l].abs();
+        if size(i) > size(k) {
+            exchange_in_lane(e, n, (i, k), l);
+            exchange_in_lane(x, columns, (i, k), l);
         }
+    }
+}
+
+fn exchange_in_lane(matrix: &mut [Lanes], length: usize, (i, k): (usize, usize), l: usize) {
+    for j in 0..length {
+        let (upper, lower) = (matrix[k * length + j].0[l], matrix[i * length + j].0[l]);
+        matrix[k * length + j].0[l] = lower;
+        matrix[i * length + j].0[l] = upper;
     }
 }

@@ -1,11 +1,11 @@
 //! One step of the recursion.
 //!
-//! With `w = (x, u, theta)`, defects `R w + E x+ - D lambda = b`, next value function `V+ = (P, Lambda, Theta)` and
+//! With `z = (x, theta)`, `w = (z, u)`, defects `R w + E x+ - D lambda = b`, next value function `V+ = (P, Lambda, Theta)` and
 //! `pull`, the gradient by `x+` that a right side brings, the next state and the multipliers are removed together
 //! (inner variables with them: `x+` stands for `(y, x+)` here, of which `V+` sees only the second part):
 //!
 //! ```text
-//!     N = H_{+w} + [0 0 Lambda']       M = H_{++} + P       c = F b       p = pull + M c       T = -E^-1 R       F = E^-1
+//!     N = H_{+w} + [0 Lambda' 0]       M = H_{++} + P       c = F b       p = pull + M c       T = -E^-1 R       F = E^-1
 //!
 //!     x+ = T w + c       lambda = -F' (M x+ + N w + pull)       gradient by w:  g_w + T' p + N' c
 //!
@@ -13,60 +13,66 @@
 //!     gain = -Q_uu^-1 Q_uz,     V = Q_zz + Q_zu gain       z = (x, theta)
 //! ```
 //!
-//! All of `Q` but `W' V+ W`, where `(x+, theta) = W w`, is there before `V+` is known: [`super::condense`].
-//!
-//! Rows with a penalty `D` (in restoration) let `x+` give way, each as much as it likes, so that they are not divided by `E` beforehand:
-//!
-//! ```text
-//!     [ M  E' ] [ T F A ]   [ -N 0 I ]        [ x+     ]   [ T F ] [ w ]   [ A  ]
-//!     [ E  -D ] [ L C . ] = [ -R I 0 ]        [ lambda ] = [ L C ] [ b ] - [ F' ] pull        Q = H_ww + Theta + [N; R]' [T; L]
-//! ```
+//! All of `Q` but `W' V+ W`, where `(x+, theta) = W w`, is there before `V+` is known: [`super::condense`]. Rows with a penalty give way: [`super::compliance`].
 
+use super::compliance::Compliance;
 use super::factors::Factors;
-use super::kernels::{View, add_lower_product, add_product, add_row_product, invert_positive, lower_end};
+use super::kernels::{Product, Signed, View, add_product, invert_positive, lower_end};
 use super::sizes::Sizes;
+use super::value::Value;
 use crate::linalg::SymmetricFactor;
+
+/// `V W`, where `W = [T; 0 I 0]`.
+struct Pushed<'a> {
+    sizes: Sizes,
+    value: &'a Value,
+    t: &'a [f64],
+    units: &'a [f64],
+}
+
+impl Product for Pushed<'_> {
+    #[inline(always)]
+    fn inner(&self) -> usize {
+        self.sizes.kept()
+    }
+    #[inline(always)]
+    fn left(&self, i: usize, l: usize) -> f64 {
+        self.value.at(self.sizes, i, l)
+    }
+    #[inline(always)]
+    fn right(&self, l: usize) -> &[f64] {
+        match l.checked_sub(self.sizes.n) {
+            None => &self.t[l * self.sizes.all()..],
+            Some(l) => &self.units[l * self.sizes.reduced()..],
+        }
+    }
+}
 
 /// Working memory of one step.
 pub(super) struct Block {
-    /// `[0 0 I]` and `V W`
+    /// `[0 I 0]` and `V W`
     units: Vec<f64>,
     pushed: Vec<f64>,
-    /// `Q_uw`, `Q_uu^-1` and their product.
-    side: Vec<f64>,
+    /// `Q_uu^-1` and `-Q_uu^-1 Q_uw`
     inverse: Vec<f64>,
     gain: Vec<f64>,
     uu_factor: SymmetricFactor,
     compliance: Compliance,
 }
 
-/// Working memory where rows are penalised.
-struct Compliance {
-    /// `[M E'; E -D]`
-    s: Vec<f64>,
-    s_factor: SymmetricFactor,
-    /// `[-N 0 I; -R I 0]`, then `[T F A; L C .]`
-    sides: Vec<f64>,
-}
-
 impl Block {
     pub(super) fn new(sizes: Sizes) -> Self {
-        let (m, w, next) = (sizes.m, sizes.reduced(), sizes.next());
+        let (m, w) = (sizes.m, sizes.reduced());
         let zeros = |length: usize| vec![0.0; length];
         let mut units = zeros(sizes.q * w);
-        (0..sizes.q).for_each(|i| units[i * w + sizes.n + m + i] = 1.0);
+        (0..sizes.q).for_each(|i| units[i * w + sizes.n + i] = 1.0);
         Block {
             units,
             pushed: zeros(sizes.kept() * w),
-            side: zeros(m * w),
             gain: zeros(m * w),
             inverse: zeros(m * m),
             uu_factor: SymmetricFactor::new(m),
-            compliance: Compliance {
-                s: zeros(4 * next * next),
-                s_factor: SymmetricFactor::new(2 * next),
-                sides: zeros(2 * next * (w + 2 * next)),
-            },
+            compliance: Compliance::new(sizes),
         }
     }
 
@@ -80,16 +86,16 @@ impl Block {
         q: &mut [f64],
         factors: &mut Factors,
         (k, fixed, penalties): (usize, &[bool], &[f64]),
-        value: &mut [f64],
+        value: &mut Value,
     ) -> Option<usize> {
         // Slices of known lengths need no checks of their indices.
-        let value = &mut value[..sizes.kept() * sizes.kept()];
         let q = &mut q[..sizes.reduced() * sizes.reduced()];
-        join_next(sizes, factors.response_mut(sizes, k), value);
         let removed = if penalties.is_empty() {
             self.add_next::<FUSED>(sizes, factors.response(sizes, k), value, q);
+            join_next(sizes, factors.response_mut(sizes, k), value);
             0
         } else {
+            join_next(sizes, factors.response_mut(sizes, k), value);
             add_theta(sizes, value, q);
             self.compliance.give_way(sizes, q, factors, (k, penalties))?
         };
@@ -97,25 +103,22 @@ impl Block {
         Some(removed + self.remove_controls::<FUSED>(sizes, q, factors, (k, value))?)
     }
 
-    /// `Q += W' V W`: the lower triangle, and the rows of the controls in full.
+    /// `Q += W' V W`: the lower triangle, and all of `Q_uu`.
     #[inline(always)]
-    fn add_next<const FUSED: bool>(&mut self, sizes: Sizes, response: &[f64], value: &[f64], q: &mut [f64]) {
-        let Sizes { n, m, inner, .. } = sizes;
-        let (w, kept, all) = (sizes.reduced(), sizes.kept(), sizes.all());
-        let (t, units) = (View::rows(&response[inner * all..], all), View::rows(&self.units, w));
+    fn add_next<const FUSED: bool>(&mut self, sizes: Sizes, response: &[f64], value: &Value, q: &mut [f64]) {
+        let (n, w, kept, all) = (sizes.n, sizes.reduced(), sizes.kept(), sizes.all());
+        let (t, units) = (&response[sizes.inner * all..][..n * all], &self.units[..sizes.q * w]);
         let pushed = &mut self.pushed[..kept * w];
         pushed.fill(0.0);
-        let (v_x, v_theta) = (View::rows(value, kept), View::rows(&value[n..], kept));
-        add_product::<FUSED>(1.0, v_x, t, n, (pushed, w));
-        add_product::<FUSED>(1.0, v_theta, units, sizes.q, (pushed, w));
-        for i in 0..w {
-            let end = if (n..n + m).contains(&i) { w } else { lower_end(i, w) };
-            let row = &mut q[i * w..][..end];
-            add_row_product::<FUSED>(1.0, (t.transposed(), i), View::rows(pushed, w), n, row);
-            if let Some(theta) = i.checked_sub(n + m) {
-                for (sum, value) in row.iter_mut().zip(&pushed[(n + theta) * w..]) {
-                    *sum += value;
-                }
+        add_product::<FUSED, false>(&Pushed { sizes, value, t, units }, 0..kept, (&mut *pushed, w));
+        let a = View::rows(t, all).transposed();
+        let product = Signed { sign: 1.0, a, b: View::rows(&*pushed, w), inner: n };
+        // All waits for the controls.
+        add_product::<FUSED, false>(&product, kept..w, (&mut *q, w));
+        add_product::<FUSED, true>(&product, 0..kept, (&mut *q, w));
+        for i in n..kept {
+            for (sum, value) in q[i * w..][..lower_end(i, w)].iter_mut().zip(&pushed[i * w..]) {
+                *sum += value;
             }
         }
     }
@@ -125,47 +128,46 @@ impl Block {
     fn remove_controls<const FUSED: bool>(
         &mut self,
         sizes: Sizes,
-        q: &mut [f64],
+        q: &[f64],
         factors: &mut Factors,
-        (k, value): (usize, &mut [f64]),
+        (k, value): (usize, &mut Value),
     ) -> Option<usize> {
-        let Sizes { n, m, .. } = sizes;
-        let (w, kept) = (sizes.reduced(), sizes.kept());
-        self.side[..m * w].copy_from_slice(&q[n * w..][..m * w]);
-        let negative = self.invert_controls::<FUSED>(sizes)?;
+        let (m, w, kept) = (sizes.m, sizes.reduced(), sizes.kept());
+        let side = &q[kept * w..][..m * w];
+        let negative = self.invert_controls::<FUSED>(sizes, side)?;
         let (inverse, gain) = factors.controls_mut(sizes, k);
         inverse.copy_from_slice(&self.inverse[..m * m]);
-        let (side, wide) = (View::rows(&self.side[..m * w], w), &mut self.gain[..m * w]);
+        let wide = &mut self.gain[..m * w];
         wide.fill(0.0);
-        add_product::<FUSED>(-1.0, View::rows(&self.inverse, m), side, m, (wide, w));
-        add_lower_product::<FUSED>(side.transposed(), View::rows(wide, w), m, (q, w));
-        for i in 0..kept {
-            for j in 0..m {
-                gain[j * kept + i] = wide[j * w + sizes.position(i)];
-            }
-            for j in 0..kept {
-                value[i * kept + j] = q[sizes.position(i.max(j)) * w + sizes.position(i.min(j))];
-            }
+        let side = View::rows(side, w);
+        let product = Signed { sign: -1.0, a: View::rows(&self.inverse, m), b: side, inner: m };
+        add_product::<FUSED, false>(&product, 0..m, (&mut *wide, w));
+        value.rows[..kept * w].copy_from_slice(&q[..kept * w]);
+        let product = Signed { sign: 1.0, a: side.transposed(), b: View::rows(&*wide, w), inner: m };
+        add_product::<FUSED, true>(&product, 0..kept, (&mut value.rows[..kept * w], w));
+        for j in 0..m {
+            gain[j * kept..][..kept].copy_from_slice(&wide[j * w..][..kept]);
         }
         Some(negative)
     }
 
-    /// Inverts `Q_uu` and counts its negative eigenvalues. Near a solution it is positive definite.
+    /// Inverts `Q_uu`, which is in `side`, and counts its negative eigenvalues. Near a solution it is positive definite.
     #[inline(always)]
-    fn invert_controls<const FUSED: bool>(&mut self, sizes: Sizes) -> Option<usize> {
-        let Sizes { n, m, .. } = sizes;
-        let (w, inverse) = (sizes.reduced(), &mut self.inverse[..m * m]);
+    fn invert_controls<const FUSED: bool>(&mut self, sizes: Sizes, side: &[f64]) -> Option<usize> {
+        let (m, w, kept) = (sizes.m, sizes.reduced(), sizes.kept());
+        let inverse = &mut self.inverse[..m * m];
         for i in 0..m {
-            inverse[i * m..][..m].copy_from_slice(&self.side[i * w + n..][..m]);
+            inverse[i * m..][..m].copy_from_slice(&side[i * w + kept..][..m]);
         }
-        if invert_positive::<FUSED>(m, inverse) { Some(0) } else { self.invert_indefinite(sizes) }
+        if invert_positive::<FUSED>(m, inverse) { Some(0) } else { self.invert_indefinite(m, &side[kept..]) }
     }
 
+    /// The same for the first `m` columns of `m` rows.
     #[cold]
-    fn invert_indefinite(&mut self, sizes: Sizes) -> Option<usize> {
-        let Sizes { n, m, .. } = sizes;
+    fn invert_indefinite(&mut self, m: usize, rows: &[f64]) -> Option<usize> {
+        let length = self.gain.len() / m;
         for i in 0..m {
-            self.inverse[i * m..][..m].copy_from_slice(&self.side[i * sizes.reduced() + n..][..m]);
+            self.inverse[i * m..][..m].copy_from_slice(&rows[i * length..][..m]);
         }
         let negative = self.uu_factor.factor(&self.inverse)?;
         self.inverse.fill(0.0);
@@ -175,77 +177,27 @@ impl Block {
     }
 }
 
-impl Compliance {
-    /// Completes `Q`, and replaces `[-R E; N M]` by the response.
-    fn give_way(
-        &mut self,
-        sizes: Sizes,
-        q: &mut [f64],
-        factors: &mut Factors,
-        (k, penalties): (usize, &[f64]),
-    ) -> Option<usize> {
-        let (next, w, all) = (sizes.next(), sizes.reduced(), sizes.all());
-        let width = all + next;
-        let response = factors.response_mut(sizes, k);
-        self.fill(sizes, response, penalties);
-        let negative = self.s_factor.factor(&self.s)?;
-        self.s_factor.solve(&mut self.sides, width);
-        let (minus_r, n) = response.split_at(next * all);
-        let (steps, multipliers) = self.sides.split_at(next * width);
-        let transposed = |values| View::rows(values, all).transposed();
-        add_product::<false>(1.0, transposed(n), View::rows(steps, width), next, (q, w));
-        add_product::<false>(-1.0, transposed(minus_r), View::rows(multipliers, width), next, (q, w));
-        for (row, side) in response.chunks_exact_mut(all).zip(self.sides.chunks_exact(width)) {
-            row.copy_from_slice(&side[..all]);
-        }
-        factors.keep_compliance(next, k, steps.chunks_exact(width).map(|row| &row[all..]));
-        // A block with too few negative eigenvalues has a wrong sign just as well: count it as one.
-        Some(negative.abs_diff(next))
-    }
-
-    fn fill(&mut self, sizes: Sizes, response: &[f64], penalties: &[f64]) {
-        let (n, w, all) = (sizes.next(), sizes.reduced(), sizes.all());
-        let (defects, curvature) = response.split_at(n * all);
-        self.s.fill(0.0);
-        self.sides.fill(0.0);
-        let (above, below) = self.sides.split_at_mut(n * (all + n));
-        for i in 0..n {
-            let (defect, curvature) = (&defects[i * all..][..all], &curvature[i * all..][..all]);
-            self.s[i * 2 * n..][..n].copy_from_slice(&curvature[w..]);
-            self.s[(n + i) * 2 * n..][..n].copy_from_slice(&defect[w..]);
-            self.s[(n + i) * 2 * n + n + i] = -penalties[i];
-            let (above, below) = (&mut above[i * (all + n)..], &mut below[i * (all + n)..]);
-            above[..w].iter_mut().zip(curvature).for_each(|(side, n)| *side = -n);
-            above[all + i] = 1.0;
-            below[..w].copy_from_slice(&defect[..w]);
-            below[w + i] = 1.0;
-        }
-    }
-}
-
 /// `Q += Theta`
-fn add_theta(sizes: Sizes, value: &[f64], q: &mut [f64]) {
-    let Sizes { n, m, .. } = sizes;
-    for i in 0..sizes.q {
-        for j in 0..sizes.q {
-            q[(n + m + i) * sizes.reduced() + n + m + j] += value[(n + i) * sizes.kept() + n + j];
+fn add_theta(sizes: Sizes, value: &Value, q: &mut [f64]) {
+    for i in sizes.n..sizes.kept() {
+        for j in sizes.n..=i {
+            q[i * sizes.reduced() + j] += value.at(sizes, i, j);
         }
     }
 }
 
 /// `M` and `N` with what `V+` adds to them.
 #[inline(always)]
-fn join_next(sizes: Sizes, response: &mut [f64], value: &[f64]) {
-    let Sizes { n, m, inner, q } = sizes;
-    let (w, kept, all) = (sizes.reduced(), sizes.kept(), sizes.all());
+fn join_next(sizes: Sizes, response: &mut [f64], value: &Value) {
+    let Sizes { n, inner, .. } = sizes;
+    let (w, all) = (sizes.reduced(), sizes.all());
     for i in 0..n {
         let row = &mut response[(sizes.next() + inner + i) * all..][..all];
-        let value = &value[i * kept..][..kept];
-        for j in 0..q {
-            row[n + m + j] += value[n + j];
+        for j in n..sizes.kept() {
+            row[j] += value.at(sizes, i, j);
         }
         for j in 0..n {
-            row[w + inner + j] += value[j];
+            row[w + inner + j] += value.at(sizes, i, j);
         }
     }
 }
@@ -253,12 +205,12 @@ fn join_next(sizes: Sizes, response: &mut [f64], value: &[f64]) {
 /// Takes fixed controls out of the lower triangle of `Q`.
 #[inline(always)]
 fn fix_controls(sizes: Sizes, fixed: &[bool], q: &mut [f64]) {
-    let (n, w) = (sizes.n, sizes.reduced());
-    for i in (0..sizes.m).filter(|i| fixed[*i]) {
+    let (kept, w) = (sizes.kept(), sizes.reduced());
+    for i in (0..sizes.m).filter(|i| fixed[*i]).map(|i| kept + i) {
         for j in 0..w {
-            q[(n + i) * w + j] = 0.0;
-            q[j * w + n + i] = 0.0;
+            q[i * w + j] = 0.0;
+            q[j * w + i] = 0.0;
         }
-        q[(n + i) * w + n + i] = 1.0;
+        q[i * w + i] = 1.0;
     }
 }

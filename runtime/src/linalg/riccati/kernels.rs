@@ -3,6 +3,7 @@
 //! `FUSED` says that the machine multiplies and adds in one instruction; without one `mul_add` would be a call.
 
 use crate::linalg::lanes::multiply_add;
+use std::ops::Range;
 
 /// A matrix inside a slice: entry `(i, j)` is `values[i * row + j * column]`.
 #[derive(Clone, Copy)]
@@ -26,6 +27,40 @@ impl<'a, T> View<'a, T> {
     }
 }
 
+/// A product of two matrices, of which the right one is read row by row.
+pub(super) trait Product {
+    /// Columns of the left matrix.
+    fn inner(&self) -> usize;
+    /// Entry `(i, l)` of the left matrix.
+    fn left(&self, i: usize, l: usize) -> f64;
+    /// Row `l` of the right matrix.
+    fn right(&self, l: usize) -> &[f64];
+}
+
+/// `sign A B`, where `A` has `inner` columns and `B` lies row by row.
+#[derive(Clone, Copy)]
+pub(super) struct Signed<'a> {
+    pub(super) sign: f64,
+    pub(super) a: View<'a, f64>,
+    pub(super) b: View<'a, f64>,
+    pub(super) inner: usize,
+}
+
+impl Product for Signed<'_> {
+    #[inline(always)]
+    fn inner(&self) -> usize {
+        self.inner
+    }
+    #[inline(always)]
+    fn left(&self, i: usize, l: usize) -> f64 {
+        self.sign * self.a.values[i * self.a.row + l * self.a.column]
+    }
+    #[inline(always)]
+    fn right(&self, l: usize) -> &[f64] {
+        &self.b.values[l * self.b.row..]
+    }
+}
+
 /// Row `i` of `Y += sign A B`: `y` is that row, `inner` the number of columns of `A`. `B` lies row by row.
 #[inline(always)]
 pub(super) fn add_row_product<const FUSED: bool>(
@@ -35,71 +70,82 @@ pub(super) fn add_row_product<const FUSED: bool>(
     inner: usize,
     y: &mut [f64],
 ) {
-    let mut start = 0;
-    while start + 12 <= y.len() {
-        add_row_block::<FUSED, 12>(sign, (a, i), b, inner, (y, start));
-        start += 12;
+    let a = View { values: &a.values[i * a.row..], ..a };
+    let end = y.len();
+    add_rows::<FUSED, 1>(&Signed { sign, a, b, inner }, (0, end), (y, end));
+}
+
+/// Adds these rows of a product to `Y`, whose rows have this length; of a `LOWER` triangle at least what is not above the diagonal.
+#[inline(always)]
+pub(super) fn add_product<const FUSED: bool, const LOWER: bool>(
+    product: &impl Product,
+    rows: Range<usize>,
+    (y, length): (&mut [f64], usize),
+) {
+    let mut i = rows.start;
+    while i + 4 <= rows.end {
+        add_rows::<FUSED, 4>(product, (i, row_end::<LOWER>(i + 3, length)), (y, length));
+        i += 4;
     }
-    while start + 8 <= y.len() {
-        add_row_block::<FUSED, 8>(sign, (a, i), b, inner, (y, start));
+    while i + 2 <= rows.end {
+        add_rows::<FUSED, 2>(product, (i, row_end::<LOWER>(i + 1, length)), (y, length));
+        i += 2;
+    }
+    while i < rows.end {
+        add_rows::<FUSED, 1>(product, (i, row_end::<LOWER>(i, length)), (y, length));
+        i += 1;
+    }
+}
+
+#[inline(always)]
+fn row_end<const LOWER: bool>(i: usize, length: usize) -> usize {
+    if LOWER { lower_end(i, length) } else { length }
+}
+
+/// The same for `ROWS` rows up to this column.
+#[inline(always)]
+fn add_rows<const FUSED: bool, const ROWS: usize>(
+    product: &impl Product,
+    (first, end): (usize, usize),
+    (y, length): (&mut [f64], usize),
+) {
+    let mut start = 0;
+    while start + 8 <= end {
+        add_block::<FUSED, ROWS, 8>(product, (first, start), (y, length));
         start += 8;
     }
-    while start + 4 <= y.len() {
-        add_row_block::<FUSED, 4>(sign, (a, i), b, inner, (y, start));
+    while start + 4 <= end {
+        add_block::<FUSED, ROWS, 4>(product, (first, start), (y, length));
         start += 4;
     }
-    while start < y.len() {
-        add_row_block::<FUSED, 1>(sign, (a, i), b, inner, (y, start));
+    while start < end {
+        add_block::<FUSED, ROWS, 1>(product, (first, start), (y, length));
         start += 1;
     }
 }
 
-/// The same for `WIDTH` columns of the row, which stay in registers.
+/// The same for a block, whose sums stay in registers: what a row of the right matrix has is read once for all rows of the block.
 #[inline(always)]
-fn add_row_block<const FUSED: bool, const WIDTH: usize>(
-    sign: f64,
-    (a, i): (View<f64>, usize),
-    b: View<f64>,
-    inner: usize,
-    (y, start): (&mut [f64], usize),
+fn add_block<const FUSED: bool, const ROWS: usize, const WIDTH: usize>(
+    product: &impl Product,
+    (first, start): (usize, usize),
+    (y, length): (&mut [f64], usize),
 ) {
-    let y = &mut y[start..start + WIDTH];
-    let mut sum = [0.0; WIDTH];
-    sum.copy_from_slice(y);
-    for l in 0..inner {
-        let x = sign * a.values[i * a.row + l * a.column];
-        let row = &b.values[l * b.row + start..][..WIDTH];
-        for (sum, value) in sum.iter_mut().zip(row) {
-            *sum = multiply_add::<FUSED>(x, *value, *sum);
+    let mut sums = [[0.0; WIDTH]; ROWS];
+    for r in 0..ROWS {
+        sums[r].copy_from_slice(&y[(first + r) * length + start..][..WIDTH]);
+    }
+    for l in 0..product.inner() {
+        let row = &product.right(l)[start..][..WIDTH];
+        for r in 0..ROWS {
+            let x = product.left(first + r, l);
+            for j in 0..WIDTH {
+                sums[r][j] = multiply_add::<FUSED>(x, row[j], sums[r][j]);
+            }
         }
     }
-    y.copy_from_slice(&sum);
-}
-
-/// `Y += sign A B` where `A` has `inner` columns and the rows of `Y` have this length.
-#[inline(always)]
-pub(super) fn add_product<const FUSED: bool>(
-    sign: f64,
-    a: View<f64>,
-    b: View<f64>,
-    inner: usize,
-    (y, length): (&mut [f64], usize),
-) {
-    for i in 0..y.len() / length {
-        add_row_product::<FUSED>(sign, (a, i), b, inner, &mut y[i * length..][..length]);
-    }
-}
-
-/// The lower triangle of the square `Y += A B`, of `length` rows; some entries above the diagonal change, too.
-#[inline(always)]
-pub(super) fn add_lower_product<const FUSED: bool>(
-    a: View<f64>,
-    b: View<f64>,
-    inner: usize,
-    (y, length): (&mut [f64], usize),
-) {
-    for i in 0..length {
-        add_row_product::<FUSED>(1.0, (a, i), b, inner, &mut y[i * length..][..lower_end(i, length)]);
+    for r in 0..ROWS {
+        y[(first + r) * length + start..][..WIDTH].copy_from_slice(&sums[r]);
     }
 }
 

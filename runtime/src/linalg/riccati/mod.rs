@@ -17,13 +17,16 @@
 mod assemble;
 mod border;
 mod chain;
+mod compliance;
 mod condense;
 mod elimination;
 mod factors;
 mod interval;
 mod kernels;
+mod local;
 mod sizes;
 mod solve;
+mod value;
 
 use super::lanes::is_fused;
 use super::{Factor, Inertia, Stages, Triplets};
@@ -35,6 +38,7 @@ use factors::Factors;
 use interval::Block;
 use sizes::Sizes;
 use solve::Travel;
+use value::Value;
 
 /// The recursion, with all its memory.
 pub struct Riccati {
@@ -48,8 +52,10 @@ pub struct Riccati {
     condensed: Condensed,
     block: Block,
     factors: Factors,
-    /// `[P Lambda; Lambda' Theta]` of the stage being left.
-    value: Vec<f64>,
+    /// The value function of the stage being left.
+    value: Value,
+    /// `[P Lambda; Lambda' Theta]` of the last stage, then of the first.
+    ends: Vec<f64>,
     travel: Travel,
 }
 
@@ -88,7 +94,8 @@ impl Riccati {
             block: Block::new(sizes),
             factors: Factors::new(sizes, stages.intervals, stages.local_rows, local_values),
             assembly,
-            value: vec![0.0; sizes.kept() * sizes.kept()],
+            value: Value::new(sizes),
+            ends: vec![0.0; sizes.kept() * sizes.kept()],
             travel: Travel::new(sizes),
         })
     }
@@ -104,14 +111,16 @@ impl Riccati {
 
 impl Factor for Riccati {
     fn factor(&mut self, hessian: &[f64], jacobian: &[f64], sigma: &[f64], d: &[f64]) -> Inertia {
-        self.border.assemble(hessian, jacobian, sigma, d, &mut self.value);
+        self.border.assemble(hessian, jacobian, sigma, d, &mut self.ends);
         let mut intervals = d.chunks(self.stages.row_step().max(1)).take(self.stages.intervals);
         let defects = self.stages.defect_rows();
         self.factors.penalised = intervals.any(|d| d[..defects].iter().sum::<f64>() > 0.0);
+        self.value.set(self.sizes, &self.ends);
         let Some(negative) = self.factor_chain(Matrix { hessian, jacobian, sigma, d }) else {
             return Inertia::Wrong;
         };
-        match self.border.factor(&self.value) {
+        self.value.write(self.sizes, &mut self.ends);
+        match self.border.factor(&self.ends) {
             None => Inertia::Singular,
             Some(count) if count + negative == self.border.rows() => Inertia::Correct,
             Some(_) => Inertia::Wrong,
@@ -121,10 +130,13 @@ impl Factor for Riccati {
     fn solve(&mut self, right_side: &mut [f64]) {
         let (a, b) = right_side.split_at_mut(self.stages.variables());
         let mut travel = std::mem::take(&mut self.travel);
+        self.remove_local_rows(a, b);
         self.border.terminal_gradient(a, b, &mut travel.gradient);
         self.solve_chain(&mut travel, a, b);
-        a[self.stages.state(self.stages.intervals)].copy_from_slice(&travel.x);
-        self.border.finish(&travel.theta, a, b);
+        let (x, theta) = travel.state.split_at(self.stages.states);
+        a[self.stages.state(self.stages.intervals)].copy_from_slice(x);
+        self.border.finish(theta, a, b);
+        self.local_multipliers(a, b);
         self.travel = travel;
     }
 }

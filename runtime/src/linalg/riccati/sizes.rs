@@ -10,7 +10,12 @@ pub(super) struct Sizes {
 }
 
 impl Sizes {
-    /// `(x, u, theta)`
+    /// The same as constants, where there are any.
+    #[inline(always)]
+    pub(super) fn known<const N: usize, const M: usize, const Q: usize>(self) -> Sizes {
+        if N == 0 { self } else { Sizes { n: N, m: M, inner: 0, q: Q } }
+    }
+    /// `w = (x, theta, u)`
     #[inline(always)]
     pub(super) fn reduced(&self) -> usize {
         self.n + self.m + self.q
@@ -20,20 +25,15 @@ impl Sizes {
     pub(super) fn next(&self) -> usize {
         self.inner + self.n
     }
-    /// `(x, u, theta, y, x+)`, and also `(x, u, theta, b)`
+    /// `(x, theta, u, y, x+)`, and also `(x, theta, u, b)`
     #[inline(always)]
     pub(super) fn all(&self) -> usize {
         self.reduced() + self.next()
     }
-    /// `(x, theta)`
+    /// `z = (x, theta)`
     #[inline(always)]
     pub(super) fn kept(&self) -> usize {
         self.n + self.q
-    }
-    /// Where entry `i` of `(x, theta)` stands in `(x, u, theta)`.
-    #[inline(always)]
-    pub(super) fn position(&self, i: usize) -> usize {
-        if i < self.n { i } else { i + self.m }
     }
     /// Lengths of `Q`, of the response `[T F; N M]` and of `E`, the parts of what is gathered.
     #[inline(always)]
@@ -46,7 +46,12 @@ impl Sizes {
     pub(super) fn gathered(&self) -> usize {
         self.parts().iter().sum()
     }
-    /// Where the Hessian entry of two positions in `(x, u, theta, y, x+)` is gathered: lower triangles only, `H_ww` in `Q`.
+    /// Where the variable that is so many behind the first of its interval stands in `(x, theta, u, y, x+)`.
+    #[inline(always)]
+    pub(super) fn position(&self, index: usize) -> usize {
+        if index < self.n { index } else { index + self.q }
+    }
+    /// Where the Hessian entry of two positions in `(x, theta, u, y, x+)` is gathered: lower triangles only, `H_ww` in `Q`.
     pub(super) fn hessian_place(&self, a: usize, b: usize) -> usize {
         let ([square, ..], w) = (self.parts(), self.reduced());
         let (row, column) = (a.max(b), a.min(b));

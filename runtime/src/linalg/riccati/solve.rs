@@ -7,8 +7,11 @@
 //! ```
 //!
 //! Here `x+` is `(y, x+)`. From one pass to the other, `p` waits in the place of `x+`, `c` in that of `b` and `u_0` in that of `u`.
+//! Local rows are not seen here: [`super::local`].
 
 use super::Riccati;
+use super::compliance::{give_way, push_back_where_given_way};
+use super::factors::Factors;
 use super::kernels::{View, add_row_product, dot};
 use super::sizes::Sizes;
 
@@ -17,11 +20,9 @@ use super::sizes::Sizes;
 pub(super) struct Travel {
     /// `[v_x; v_theta]`, the gradient of the value function of the stage being left.
     pub(super) gradient: Vec<f64>,
-    pub(super) theta: Vec<f64>,
-    pub(super) x: Vec<f64>,
-    /// Scratch over `(x, u, theta, y, x+)`, and `[p; c]`.
-    all: Vec<f64>,
-    push: Vec<f64>,
+    /// `(x, theta)`
+    pub(super) state: Vec<f64>,
+    scratch: Vec<f64>,
 }
 
 impl Travel {
@@ -29,208 +30,204 @@ impl Travel {
         let zeros = |length: usize| vec![0.0; length];
         Travel {
             gradient: zeros(sizes.kept()),
-            theta: zeros(sizes.q),
-            x: zeros(sizes.n),
-            all: zeros(sizes.all()),
-            push: zeros(2 * sizes.next()),
+            state: zeros(sizes.kept()),
+            scratch: zeros(sizes.kept() + sizes.all() + 2 * sizes.next()),
         }
     }
 }
 
-impl Riccati {
-    /// Backward: the gradient is that of `V_{k+1}` and becomes that of `V_k`.
+/// Scratch for one pass: what travels, a vector over `(x, theta, u, y, x+)`, and two over `(y, x+)`.
+struct Scratch<'a> {
+    travelling: &'a mut [f64],
+    all: &'a mut [f64],
+    pushes: &'a mut [f64],
+}
+
+/// Sizes up to this are kept in arrays of known length, which a compiler that knows the sizes keeps in registers.
+const FEW: usize = 16;
+
+impl<'a> Scratch<'a> {
     #[inline(always)]
-    pub(super) fn backward<const FUSED: bool>(
+    fn new(sizes: Sizes, few: &'a mut [[f64; FEW]; 3], many: &'a mut [f64]) -> Self {
+        let (kept, all, pushes) = (sizes.kept(), sizes.all(), 2 * sizes.next());
+        if all.max(pushes) <= FEW {
+            let [first, second, third] = few;
+            return Scratch {
+                travelling: &mut first[..kept],
+                all: &mut second[..all],
+                pushes: &mut third[..pushes],
+            };
+        }
+        let (first, rest) = many.split_at_mut(kept);
+        let (second, third) = rest.split_at_mut(all);
+        Scratch { travelling: first, all: second, pushes: third }
+    }
+}
+
+impl Riccati {
+    #[inline(always)]
+    pub(super) fn solve_intervals<const FUSED: bool>(
         &self,
         sizes: Sizes,
-        k: usize,
         travel: &mut Travel,
         (a, b): (&mut [f64], &mut [f64]),
     ) {
-        let Sizes { n, m, inner, q } = sizes;
-        let (w, all, next) = (sizes.reduced(), sizes.all(), sizes.next());
-        let Travel { gradient, all: g, push, .. } = travel;
-        let (gradient, g, push) = (&mut gradient[..n + q], &mut g[..all], &mut push[..2 * next]);
-        let first = k * (n + m + inner);
-        let a = &mut a[first..first + n + m + next];
-        for i in 0..n + m {
-            g[i] = -a[i];
+        let Travel { gradient, state, scratch } = travel;
+        let mut few = [[0.0; FEW]; 3];
+        let mut backward = Scratch::new(sizes, &mut few, scratch);
+        backward.travelling.copy_from_slice(gradient);
+        for k in (0..self.stages.intervals).rev() {
+            self.backward::<FUSED>(sizes, k, &mut backward, (a, b));
         }
-        g[n + m..w].copy_from_slice(&gradient[n..]);
-        for i in 0..inner {
-            g[w + i] = -a[n + m + i];
+        gradient.copy_from_slice(backward.travelling);
+        self.border.solve(gradient, state);
+        let mut few = [[0.0; FEW]; 3];
+        let mut forward = Scratch::new(sizes, &mut few, scratch);
+        forward.travelling.copy_from_slice(state);
+        for k in 0..self.stages.intervals {
+            self.forward::<FUSED>(sizes, k, &mut forward, (a, b));
         }
-        g[w + inner..].copy_from_slice(&gradient[..n]);
-        self.add_local_gradient(k, b, g);
-        let defects = &mut b[self.stages.defects(k).start..][..next];
-        let response = self.factors.response(sizes, k);
-        self.push::<FUSED>(sizes, response, &g[w..], (defects, push));
-        a[n + m..].copy_from_slice(&push[..next]);
-        // What does not wait for the interval behind comes first.
-        let ((p, c), (above, below)) = (push.split_at(next), response.split_at(next * all));
-        add_row_product::<FUSED>(1.0, (View::rows(c, next), 0), View::rows(below, all), next, &mut g[..w]);
-        add_row_product::<FUSED>(1.0, (View::rows(p, next), 0), View::rows(above, all), next, &mut g[..w]);
-        self.eliminate_controls::<FUSED>(sizes, k, g, (gradient, &mut a[n..n + m]));
+        state.copy_from_slice(forward.travelling);
     }
 
-    /// What pushes against the interval: `[p; c]`, of which `c` is kept in the place of `b`; `[pull; -b]` where rows give way.
+    /// Backward: what travels is the gradient of `V_{k+1}` and becomes that of `V_k`.
+    #[inline(always)]
+    fn backward<const FUSED: bool>(
+        &self,
+        sizes: Sizes,
+        k: usize,
+        Scratch { travelling, all: g, pushes }: &mut Scratch,
+        (a, b): (&mut [f64], &mut [f64]),
+    ) {
+        let Sizes { n, m, inner, .. } = sizes;
+        let (w, kept, all, next) = (sizes.reduced(), sizes.kept(), sizes.all(), sizes.next());
+        let a = &mut a[k * (n + m + inner)..][..n + m + next];
+        let defects = &mut b[self.stages.defects(k).start..][..next];
+        let (above, below) = self.factors.response(sizes, k).split_at(next * all);
+        let (inverse, gain) = self.factors.controls(sizes, k);
+        let (p, c) = pushes.split_at_mut(next);
+        p[inner..].fill(0.0);
+        for i in 0..inner {
+            p[i] = -a[n + m + i];
+        }
+        self.push::<FUSED>(sizes, (above, below), (defects, p, c));
+        let g = &mut g[..w];
+        g[n..kept].fill(0.0);
+        for i in 0..n + m {
+            g[sizes.position(i)] = -a[i];
+        }
+        add_row_product::<FUSED>(1.0, (View::rows(c, 0), 0), View::rows(below, all), next, g);
+        // Only now what travels has to be there.
+        for i in 0..n {
+            p[inner + i] += travelling[i];
+        }
+        add_row_product::<FUSED>(1.0, (View::rows(p, 0), 0), View::rows(above, all), next, g);
+        a[n + m..].copy_from_slice(p);
+        let fixed = &self.fixed[self.stages.control(k)];
+        for i in 0..m {
+            g[kept + i] = if fixed[i] { 0.0 } else { g[kept + i] };
+        }
+        let (by_z, by_u) = g.split_at_mut(kept);
+        add_row_product::<FUSED>(1.0, (View::rows(by_u, 0), 0), View::rows(gain, kept), m, by_z);
+        travelling[..n].copy_from_slice(&by_z[..n]);
+        for i in n..kept {
+            travelling[i] += by_z[i];
+        }
+        let feed_forward = &mut a[n..n + m];
+        feed_forward.fill(0.0);
+        add_row_product::<FUSED>(-1.0, (View::rows(by_u, 0), 0), View::rows(inverse, m), m, feed_forward);
+    }
+
+    /// What pushes against the interval but for the one behind: `p` and `c`, which is kept in the place of `b`; `pull` and `-b` where rows give way.
     #[inline(always)]
     fn push<const FUSED: bool>(
         &self,
         sizes: Sizes,
-        response: &[f64],
-        pull: &[f64],
-        (defects, push): (&mut [f64], &mut [f64]),
+        (steps, curvature): (&[f64], &[f64]),
+        (defects, p, c): (&mut [f64], &mut [f64], &mut [f64]),
     ) {
         let (w, all, next) = (sizes.reduced(), sizes.all(), sizes.next());
-        let (p, c) = push.split_at_mut(next);
-        p.copy_from_slice(pull);
         if self.factors.penalised {
-            c.iter_mut().zip(defects).for_each(|(c, b)| *c = -*b);
+            for i in 0..next {
+                c[i] = -defects[i];
+            }
             return;
         }
-        let (steps, curvature) = response.split_at(next * all);
         for i in 0..next {
             c[i] = dot::<FUSED>(&steps[i * all + w..][..next], defects);
         }
         defects.copy_from_slice(c);
         // M is symmetric.
-        let m = View { values: &curvature[w..], row: all, column: 1 };
-        add_row_product::<FUSED>(1.0, (View::rows(c, next), 0), m, next, p);
+        add_row_product::<FUSED>(1.0, (View::rows(c, 0), 0), View::rows(&curvature[w..], all), next, p);
     }
 
-    /// Local rows: `g -= J' diag(1/d) b`
+    /// Forward: what travels is `(x_k, theta)` and becomes `(x_{k+1}, theta)`.
     #[inline(always)]
-    fn add_local_gradient(&self, k: usize, b: &[f64], g: &mut [f64]) {
-        let entries = &self.assembly.local_entries;
-        let (values, weights) = self.factors.local(k);
-        let b = &b[self.stages.local(k)];
-        for (entry, value) in entries.iter().zip(values) {
-            g[entry.position] -= weights[entry.row] * b[entry.row] * value;
-        }
-    }
-
-    #[inline(always)]
-    fn eliminate_controls<const FUSED: bool>(
+    fn forward<const FUSED: bool>(
         &self,
         sizes: Sizes,
         k: usize,
-        g: &mut [f64],
-        (gradient, feed_forward): (&mut [f64], &mut [f64]),
-    ) {
-        let Sizes { n, m, .. } = sizes;
-        let kept = sizes.kept();
-        gradient[..n].copy_from_slice(&g[..n]);
-        gradient[n..].copy_from_slice(&g[n + m..sizes.reduced()]);
-        let fixed = &self.fixed[self.stages.control(k).start..][..m];
-        let g = &mut g[n..n + m];
-        for i in (0..m).filter(|i| fixed[*i]) {
-            g[i] = 0.0;
-        }
-        let (inverse, gain) = self.factors.controls(sizes, k);
-        let g = View::rows(g, m);
-        feed_forward.fill(0.0);
-        add_row_product::<FUSED>(-1.0, (g, 0), View::rows(inverse, m), m, feed_forward);
-        add_row_product::<FUSED>(1.0, (g, 0), View::rows(gain, kept), m, gradient);
-    }
-
-    /// Forward: `x` is `x_k` and becomes `x_{k+1}`.
-    #[inline(always)]
-    pub(super) fn forward<const FUSED: bool>(
-        &self,
-        sizes: Sizes,
-        k: usize,
-        travel: &mut Travel,
+        Scratch { travelling, all: known, pushes }: &mut Scratch,
         (a, b): (&mut [f64], &mut [f64]),
     ) {
-        let Sizes { n, m, inner, q } = sizes;
-        let (w, kept, all, next) = (sizes.reduced(), sizes.kept(), sizes.all(), sizes.next());
-        let Travel { theta, x, all: known, push, .. } = travel;
-        let (x, theta, known, push) = (&mut x[..n], &theta[..q], &mut known[..all], &mut push[..2 * next]);
-        let first = k * (n + m + inner);
-        let a = &mut a[first..first + n + m + next];
-        let (start, local_start) = (self.stages.defects(k).start, self.stages.local(k).start);
+        let Sizes { n, m, inner, .. } = sizes;
+        let (w, kept, next) = (sizes.reduced(), sizes.kept(), sizes.next());
+        let a = &mut a[k * (n + m + inner)..][..n + m + next];
+        let defects = &mut b[self.stages.defects(k).start..][..next];
         let (_, gain) = self.factors.controls(sizes, k);
-        known[..n].copy_from_slice(x);
-        known[n + m..w].copy_from_slice(theta);
+        known[..kept].copy_from_slice(travelling);
+        known[kept..w].copy_from_slice(&a[n..n + m]);
+        a[..n].copy_from_slice(&known[..n]);
+        let (controls, p) = a[n..].split_at_mut(m);
+        let (step, back) = pushes.split_at_mut(next);
         for i in 0..m {
-            let gain = &gain[i * kept..][..kept];
-            known[n + i] = a[n + i] + dot::<FUSED>(&gain[..n], x) + dot::<FUSED>(&gain[n..], theta);
+            known[kept + i] += dot::<FUSED>(&gain[i * kept..][..kept], &known[..kept]);
         }
-        a[..n + m].copy_from_slice(&known[..n + m]);
-        let (defects, p) = (&mut b[start..start + next], &mut a[n + m..]);
+        controls.copy_from_slice(&known[kept..w]);
         if self.factors.penalised {
-            self.follow_penalised(sizes, k, (known, push), (p, defects));
+            give_way(&self.factors, sizes, k, (known, step), (p, defects));
         } else {
-            self.follow::<FUSED>(sizes, k, (known, push), (p, defects));
+            follow::<FUSED>(&self.factors, sizes, k, known, step);
         }
-        p[..inner].copy_from_slice(&known[w..w + inner]);
-        x.copy_from_slice(&known[w + inner..]);
-        self.local_multipliers(k, known, &mut b[local_start..][..self.stages.local_rows]);
+        if self.factors.penalised {
+            push_back_where_given_way(&self.factors, sizes, k, known, (p, defects));
+        } else {
+            push_back::<FUSED>(&self.factors, sizes, k, (known, step, back), (p, defects));
+        }
+        p[..inner].copy_from_slice(&step[..inner]);
+        travelling[..n].copy_from_slice(&step[inner..]);
     }
+}
 
-    /// Completes `(w, x+)` and puts the multipliers in the place of `c`.
-    #[inline(always)]
-    fn follow<const FUSED: bool>(
-        &self,
-        sizes: Sizes,
-        k: usize,
-        (known, push): (&mut [f64], &mut [f64]),
-        (p, c): (&[f64], &mut [f64]),
-    ) {
-        let (w, all, next) = (sizes.reduced(), sizes.all(), sizes.next());
-        let (steps, curvature) = self.factors.response(sizes, k).split_at(next * all);
-        for i in 0..next {
-            push[i] = dot::<FUSED>(&steps[i * all..][..w], &known[..w]);
-        }
-        known[w..].copy_from_slice(&push[..next]);
-        for i in 0..next {
-            push[next + i] = p[i] + dot::<FUSED>(&curvature[i * all..][..all], known);
-        }
-        for i in 0..next {
-            known[w + i] += c[i];
-        }
-        c.fill(0.0);
-        let f = View { values: &steps[w..], row: all, column: 1 };
-        add_row_product::<FUSED>(-1.0, (View::rows(&push[next..], next), 0), f, next, c);
+/// `T w`
+#[inline(always)]
+fn follow<const FUSED: bool>(factors: &Factors, sizes: Sizes, k: usize, known: &[f64], step: &mut [f64]) {
+    let (w, all) = (sizes.reduced(), sizes.all());
+    let response = factors.response(sizes, k);
+    for i in 0..sizes.next() {
+        step[i] = dot::<FUSED>(&response[i * all..][..w], &known[..w]);
     }
+}
 
-    /// The same where rows give way, with `pull` and `b`.
-    fn follow_penalised(
-        &self,
-        sizes: Sizes,
-        k: usize,
-        (known, push): (&mut [f64], &mut [f64]),
-        (pull, b): (&[f64], &mut [f64]),
-    ) {
-        let (w, all, next) = (sizes.reduced(), sizes.all(), sizes.next());
-        known[w..].copy_from_slice(b);
-        let (response, compliance) = (self.factors.response(sizes, k), self.factors.compliance(next, k));
-        for i in 0..2 * next {
-            push[i] = dot::<false>(&response[i * all..][..all], known);
-        }
-        for i in 0..next {
-            push[i] -= dot::<false>(&compliance[i * next..][..next], pull);
-        }
-        known[w..].copy_from_slice(&push[..next]);
-        b.copy_from_slice(&push[next..]);
-        let f = View { values: &response[w..], row: all, column: 1 };
-        add_row_product::<false>(-1.0, (View::rows(pull, next), 0), f, next, b);
+/// Multipliers in the place of `c`, which is added to the step.
+#[inline(always)]
+fn push_back<const FUSED: bool>(
+    factors: &Factors,
+    sizes: Sizes,
+    k: usize,
+    (known, step, back): (&[f64], &mut [f64], &mut [f64]),
+    (p, c): (&[f64], &mut [f64]),
+) {
+    let (w, all, next) = (sizes.reduced(), sizes.all(), sizes.next());
+    let (steps, curvature) = factors.response(sizes, k).split_at(next * all);
+    for i in 0..next {
+        back[i] = p[i] + dot::<FUSED>(&curvature[i * all..][..w], &known[..w]);
     }
-
-    /// `lambda = (J v - b) / d`
-    #[inline(always)]
-    fn local_multipliers(&self, k: usize, known: &[f64], multipliers: &mut [f64]) {
-        let entries = &self.assembly.local_entries;
-        let (values, weights) = self.factors.local(k);
-        for value in multipliers.iter_mut() {
-            *value = -*value;
-        }
-        for (entry, value) in entries.iter().zip(values) {
-            multipliers[entry.row] += value * known[entry.position];
-        }
-        for (value, weight) in multipliers.iter_mut().zip(weights) {
-            *value *= weight;
-        }
+    // M is symmetric.
+    add_row_product::<FUSED>(1.0, (View::rows(step, 0), 0), View::rows(&curvature[w..], all), next, back);
+    for i in 0..next {
+        step[i] += c[i];
     }
+    c.fill(0.0);
+    add_row_product::<FUSED>(-1.0, (View::rows(back, 0), 0), View::rows(&steps[w..], all), next, c);
 }

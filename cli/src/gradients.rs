@@ -1,6 +1,6 @@
 //! Beside the exact gradient: those that a user may be computing otherwise, of the smoothed and of the discretised problem.
 
-use crate::output::document::scheme_name;
+use crate::output::words::scheme_name;
 use crate::quantities::By;
 use fdcc_compiler::Model;
 use fdcc_runtime::problem::{Columns, Scheme};

@@ -1,10 +1,11 @@
 //! What is said at the end of a solve: how it ended, what was found, what each surface did.
 
-use crate::output::document::{Document, scheme_name, status_name, switching};
+use crate::output::document::{Document, switching};
 use crate::output::number::{scientific, short};
 use crate::output::plural;
 use crate::output::tried::Ended;
 use crate::output::verified::Verification;
+use crate::output::words::{scheme_name, status_name};
 use crate::solver::Solved;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Method, Problem};

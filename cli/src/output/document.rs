@@ -5,11 +5,11 @@ use super::number::significant;
 use super::tried::{Ended, Happened, Tried};
 use super::units::Units;
 use super::verified::Verification;
+use super::words::{linear_name, mode_name, scheme_name, shape_name, solver_name, status_name};
 use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::lagrangian::Hamiltonian;
-use fdcc_runtime::modes::Mode;
 use fdcc_runtime::nlp::{self, Status};
-use fdcc_runtime::problem::{ControlShape, Function, Linear, Method, Problem, Scheme, Solver, Variable};
+use fdcc_runtime::problem::{Function, Method, Problem, Variable};
 use fdcc_runtime::trajectory;
 use serde::Serialize;
 
@@ -273,66 +273,4 @@ pub fn switching(spans: &[Span]) -> String {
     let spans = spans.iter();
     let spans = spans.map(|s| format!("{} {}", s.mode, range(significant(s.from, 4), significant(s.to, 4))));
     spans.collect::<Vec<_>>().join(", ")
-}
-
-/// The name of a status in files and verdicts.
-pub fn status_name(status: &Status) -> &'static str {
-    match status {
-        Status::Solved => "solved",
-        Status::Acceptable => "acceptable",
-        Status::Infeasible => "infeasible",
-        Status::Unbounded => "unbounded",
-        Status::IterationLimit => "iteration_limit",
-        Status::TimeLimit => "time_limit",
-        Status::Interrupted => "interrupted",
-        Status::NotFinite(_) => "not_finite",
-        Status::NumericalFailure => "numerical_failure",
-    }
-}
-
-/// The name of a mode in files and verdicts.
-fn mode_name(mode: Mode) -> &'static str {
-    match mode {
-        Mode::Below => "below",
-        Mode::Held => "held",
-        Mode::Above => "above",
-    }
-}
-
-/// The name of a scheme in models and files.
-pub fn scheme_name(scheme: Scheme) -> String {
-    match scheme {
-        Scheme::Radau(stages) => return format!("radau{stages}"),
-        Scheme::Gauss(stages) => return format!("gauss{stages}"),
-        Scheme::Euler => "euler",
-        Scheme::ImplicitEuler => "implicit_euler",
-        Scheme::Midpoint => "midpoint",
-        Scheme::Trapezoid => "trapezoid",
-        Scheme::RungeKutta4 => "rk4",
-    }
-    .to_string()
-}
-
-fn shape_name(shape: ControlShape) -> &'static str {
-    match shape {
-        ControlShape::Constant => "constant",
-        ControlShape::Linear => "linear",
-        ControlShape::Polynomial => "polynomial",
-    }
-}
-
-fn solver_name(solver: Solver) -> &'static str {
-    match solver {
-        Solver::Automatic | Solver::InteriorPoint => "interior_point",
-        Solver::Sequential => "sqp",
-        Solver::Convex => "convex",
-    }
-}
-
-fn linear_name(linear: Linear) -> &'static str {
-    match linear {
-        Linear::Automatic => "auto",
-        Linear::Riccati => "riccati",
-        Linear::SparseLdl => "sparse_ldl",
-    }
 }

@@ -1,10 +1,10 @@
 //! A gradient as a JSON document.
 
-use super::document::scheme_name;
 use super::ending::{Ending, EventEntry, events};
 use super::named::Named;
 use super::number::{scientific, short, significant};
 use super::units::Units;
+use super::words::scheme_name;
 use crate::exact::Exact;
 use crate::gradients::Stepped;
 use crate::quantities::By;

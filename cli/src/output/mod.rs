@@ -20,6 +20,7 @@ pub mod tested;
 pub mod tried;
 pub mod units;
 pub mod verified;
+pub mod words;
 
 use std::io::{IsTerminal, Write};
 

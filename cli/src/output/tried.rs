@@ -1,7 +1,7 @@
 //! What was tried besides the answer, and the jumps of the answer.
 
-use super::document::status_name;
 use super::named::Named;
+use super::words::status_name;
 use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::problem::Problem;
 use serde::Serialize;

@@ -1,0 +1,70 @@
+//! The words that models, files and verdicts have for statuses, modes and settings.
+
+use fdcc_runtime::modes::Mode;
+use fdcc_runtime::nlp::Status;
+use fdcc_runtime::problem::{ControlShape, Linear, Scheme, Solver};
+
+/// The name of a status in files and verdicts.
+pub fn status_name(status: &Status) -> &'static str {
+    match status {
+        Status::Solved => "solved",
+        Status::Acceptable => "acceptable",
+        Status::Infeasible => "infeasible",
+        Status::Unbounded => "unbounded",
+        Status::IterationLimit => "iteration_limit",
+        Status::TimeLimit => "time_limit",
+        Status::Interrupted => "interrupted",
+        Status::NotFinite(_) => "not_finite",
+        Status::NumericalFailure => "numerical_failure",
+    }
+}
+
+/// The name of a mode in files and verdicts.
+pub fn mode_name(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Below => "below",
+        Mode::Held => "held",
+        Mode::Above => "above",
+    }
+}
+
+/// The name of a scheme in models and files.
+pub fn scheme_name(scheme: Scheme) -> String {
+    match scheme {
+        Scheme::Radau(stages) => return format!("radau{stages}"),
+        Scheme::Gauss(stages) => return format!("gauss{stages}"),
+        Scheme::Euler => "euler",
+        Scheme::ImplicitEuler => "implicit_euler",
+        Scheme::Midpoint => "midpoint",
+        Scheme::Trapezoid => "trapezoid",
+        Scheme::RungeKutta4 => "rk4",
+    }
+    .to_string()
+}
+
+/// The name of the shape of controls in models and files.
+pub fn shape_name(shape: ControlShape) -> &'static str {
+    match shape {
+        ControlShape::Constant => "constant",
+        ControlShape::Linear => "linear",
+        ControlShape::Polynomial => "polynomial",
+    }
+}
+
+/// The name of a solver in models and files.
+pub fn solver_name(solver: Solver) -> &'static str {
+    match solver {
+        Solver::Automatic | Solver::InteriorPoint => "interior_point",
+        Solver::Sequential => "sqp",
+        Solver::Convex => "convex",
+    }
+}
+
+/// The name of a factorisation in models and files.
+pub fn linear_name(linear: Linear) -> &'static str {
+    match linear {
+        Linear::Automatic => "auto",
+        Linear::Riccati => "riccati",
+        Linear::SparseLdl => "sparse_ldl",
+    }
+}

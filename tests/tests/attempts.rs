@@ -1,10 +1,11 @@
 //! What one attempt loses another one wins; and where no feasible point exists, that is said in reasonable time.
 
-use fdcc_runtime::homotopy::Outcome;
+use fdcc_runtime::homotopy::{self, Outcome};
 use fdcc_runtime::nlp::Status;
 use fdcc_tests::models::{problem, solve};
 use fdcc_tests::repository;
 use std::f64::consts::PI;
+use std::ops::ControlFlow;
 
 fn text(file: &str) -> String {
     std::fs::read_to_string(repository().join(file)).unwrap_or_else(|error| panic!("{file}: {error}"))
@@ -28,12 +29,18 @@ fn a_final_time_that_became_too_short_is_found_from_a_feasible_point() {
     }
 }
 
-/// The first step from the guess leads to values beyond 1e16.
+/// Full steps lead to values beyond 1e16, from where nothing could be restored.
 #[test]
 fn a_step_on_trust_into_nowhere_is_taken_back() {
     for intervals in ["50", "100", "200"] {
-        let outcome = solved(&text("tests/right/lotka.fdc"), "rk4", intervals);
-        assert_eq!(outcome.solution.status, Status::Solved, "{intervals}");
+        let problem = problem(&text("tests/right/lotka.fdc"), &[], &[("scheme", "rk4"), ("N", intervals)]);
+        let mut farthest = 0.0_f64;
+        let outcome = homotopy::solve(&problem, None, &mut |progress, _| {
+            farthest = farthest.max(if progress.restoration { progress.objective } else { 0.0 });
+            ControlFlow::Continue(())
+        });
+        assert_eq!(outcome.expect("it is not refused").solution.status, Status::Solved, "{intervals}");
+        assert!(farthest < 1e10, "{intervals}: restored from {farthest:e}");
     }
 }
 

@@ -44,6 +44,18 @@ fn a_step_on_trust_into_nowhere_is_taken_back() {
     }
 }
 
+/// The guess holds the surface: it says nothing of the size of its function, and eight times the width is too thin to begin with.
+#[test]
+fn a_thin_layer_is_approached_from_far_away() {
+    let text = text("cli/templates/racecar.fdc");
+    for (scheme, intervals) in [("radau2", "50"), ("radau2", "100"), ("radau3", "50")] {
+        let method = [("scheme", scheme), ("N", intervals), ("sigma", "0.0005")];
+        let solution = solve(&problem(&text, &[], &method)).solution;
+        assert_eq!(solution.status, Status::Solved, "{scheme} {intervals}");
+        assert!(solution.counts.iterations < 1000, "{scheme}: {}", solution.counts.iterations);
+    }
+}
+
 /// Where the optimum is flat no digit is gained for thousands of iterations: IPOPT, too, calls it acceptable.
 #[test]
 fn steps_on_trust_do_not_hide_that_nothing_more_is_gained() {

@@ -2,7 +2,7 @@
 //!
 //! The width shrinks on the coarsest grid, roughly, then the last width is solved on one finer grid after the other, each time more accurately, and each solve
 //! is begun where the one before ended ([`prolong`]): far from the solution an iteration costs little, and on the finest grid few are left. Where this fails, widths shrink on the finest grid,
-//! from half the size of the switching function on; where that fails, too, it is tried at once and with all patience.
+//! from half the size of the switching function on, or from far above the width; where that fails, too, it is tried at once and with all patience.
 
 use super::Watch;
 use super::run::{Goal, Run, is_good, is_retried};
@@ -27,7 +27,9 @@ const CLOSE: f64 = 1e-5;
 /// A solve on the way that takes longer leads nowhere.
 const MOST_ITERATIONS: usize = 300;
 const WIDE: f64 = 0.5;
-const MOST_HALVINGS: i32 = 12;
+/// A guess or a failure on which the switching function is nearly 0 says nothing of its size: there are at least so many.
+const FEWEST_HALVINGS: f64 = 8.0;
+const MOST_HALVINGS: f64 = 12.0;
 
 impl Run<'_> {
     /// Solves with the widths that the model names, if there are surfaces.
@@ -155,6 +157,6 @@ fn carried_over(
 fn halved(nlp: &TranscribedNlp, known: [&Vec<f64>; 2], sigma: f64) -> Vec<f64> {
     let sizes = known.into_iter().flat_map(|v| nlp.guard_sizes(v));
     let size = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
-    let halvings = (WIDE * size / sigma).log2().ceil().clamp(1.0, f64::from(MOST_HALVINGS)) as i32;
+    let halvings = (WIDE * size / sigma).log2().ceil().clamp(FEWEST_HALVINGS, MOST_HALVINGS) as i32;
     (0..=halvings).rev().map(|k| sigma * 2.0_f64.powi(k)).collect()
 }

@@ -1,6 +1,6 @@
 //! The loop: look, decide, step.
 
-use super::barrier::Barrier;
+use super::barrier::{Barrier, Terms};
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::kkt::{Kkt, System};
 use super::residuals::{Residuals, owed};
@@ -138,6 +138,7 @@ impl Algorithm {
         }
         if self.space.widened == 0.0 {
             self.space.widen(self.options.tol);
+            self.values.terms = Terms::new(&self.space, &self.at.y);
         }
         self.begin_anew(nlp);
         None

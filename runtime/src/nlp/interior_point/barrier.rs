@@ -3,6 +3,7 @@
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::residuals::Residuals;
 use super::space::Space;
+use super::vectors::dot;
 
 /// The barrier problem is solved to `ACCURACY * mu` before `mu` falls.
 const ACCURACY: f64 = 4.0;
@@ -50,13 +51,9 @@ impl Barrier {
     }
 
     /// `phi = f - mu sum ln(distance) + damping`
-    pub(super) fn value(&self, space: &Space, values: &Values, y: &[f64]) -> f64 {
-        let (mut logarithms, mut damping) = (LogarithmSum::default(), 0.0);
-        space.for_each_bound(y, |_, distance, _| logarithms.add(distance));
-        for &(i, direction) in &space.one_sided {
-            damping += if direction > 0.0 { y[i] - space.lower[i] } else { space.upper[i] - y[i] };
-        }
-        values.objective - self.mu * logarithms.sum() + DAMPING * self.mu * damping
+    pub(super) fn value(&self, values: &Values) -> f64 {
+        let Terms { logarithms, damping } = values.terms;
+        values.objective - self.mu * logarithms + DAMPING * self.mu * damping
     }
 
     /// Adds the gradient of the damping to `gradient`.
@@ -66,19 +63,12 @@ impl Barrier {
         }
     }
 
-    /// Slope of `phi` along a step; `slopes` must be those of the iterate.
-    pub(super) fn slope(&self, space: &Space, at: &Iterate, slopes: &Slopes, step: &Step) -> f64 {
-        let gradient = &slopes.derivatives.gradient;
-        let mut slope: f64 = gradient.iter().zip(&step.y).map(|(g, d)| g * d).sum();
-        for (attached, d) in space.attached.iter().zip(&step.y[space.variables..]) {
-            slope += attached.cost * d;
-        }
-        for &(i, direction) in &space.one_sided {
-            slope += direction * DAMPING * self.mu * step.y[i];
-        }
-        let mut towards = 0.0;
-        space.for_each_bound(&at.y, |i, distance, direction| towards -= direction * step.y[i] / distance);
-        slope + self.mu * towards
+    /// Slope of `phi` along a step; `slopes` must be those of the iterate, and `push` its gradient but for that of the objective.
+    pub(super) fn slope(space: &Space, slopes: &Slopes, push: &[f64], step: &Step) -> f64 {
+        let gradient = dot(&slopes.derivatives.gradient, &step.y[..space.variables]);
+        let costs = space.attached.iter().zip(&step.y[space.variables..]).skip(space.slacks);
+        let cost: f64 = costs.map(|(attached, d)| attached.cost * d).sum();
+        gradient + cost + dot(push, &step.y)
     }
 
     /// Largest step lengths of primal and dual variables that stay inside.
@@ -105,8 +95,27 @@ impl Barrier {
         space.for_each_bound(y, |i, distance, direction| {
             let z = if direction > 0.0 { &mut lower[i] } else { &mut upper[i] };
             let centre = self.mu / distance;
-            *z = z.clamp(centre * (1.0 / MULTIPLIER_CORRIDOR), centre * MULTIPLIER_CORRIDOR);
+            // Unlike `clamp` these take what is not a number.
+            *z = z.max(centre * (1.0 / MULTIPLIER_CORRIDOR)).min(centre * MULTIPLIER_CORRIDOR);
         });
+    }
+}
+
+/// The sums in the barrier function of which the parameter is a factor.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Terms {
+    logarithms: f64,
+    damping: f64,
+}
+
+impl Terms {
+    pub(super) fn new(space: &Space, y: &[f64]) -> Self {
+        let (mut logarithms, mut damping) = (LogarithmSum::default(), 0.0);
+        space.for_each_bound(y, |_, distance, _| logarithms.add(distance));
+        for &(i, direction) in &space.one_sided {
+            damping += if direction > 0.0 { y[i] - space.lower[i] } else { space.upper[i] - y[i] };
+        }
+        Terms { logarithms: logarithms.sum(), damping }
     }
 }
 

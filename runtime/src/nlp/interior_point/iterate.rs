@@ -1,5 +1,6 @@
 //! A point of the primal-dual iteration and what is known there.
 
+use super::barrier::Terms;
 use super::space::Space;
 use super::vectors::{are_finite, largest, sum_of_sizes};
 use crate::linalg::{Products, Triplets};
@@ -55,6 +56,8 @@ pub(super) struct Values {
     pub(super) residuals: Vec<f64>,
     /// `theta`: the 1-norm of the residuals.
     pub(super) violation: f64,
+    /// What the barrier function has beside the objective.
+    pub(super) terms: Terms,
 }
 
 impl Values {
@@ -72,6 +75,7 @@ impl Values {
         self.objective = objective + space.attached_cost(y);
         space.residuals(y, &mut self.residuals);
         self.violation = sum_of_sizes(&self.residuals);
+        self.terms = Terms::new(space, y);
         self.is_finite()
     }
 

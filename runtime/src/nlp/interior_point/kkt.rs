@@ -59,8 +59,11 @@ pub(super) struct Kkt {
     /// Diagonals of the factored matrix.
     diagonal: Vec<f64>,
     d: Vec<f64>,
-    /// Gradient of the barrier Lagrangian over `y`.
+    /// Gradient over `y` of the barrier function but for the objective, and of the barrier Lagrangian.
+    push: Vec<f64>,
     gradient: Vec<f64>,
+    /// `1 / distance` of each finite bound.
+    inverses: Vec<f64>,
     right: Vec<f64>,
     residual: Vec<f64>,
     solution: Vec<f64>,
@@ -99,7 +102,9 @@ impl Kkt {
             sigma: zeros(space.len()),
             diagonal: zeros(space.variables),
             d: zeros(rows),
+            push: zeros(space.len()),
             gradient: zeros(space.len()),
+            inverses: zeros(space.bounds()),
             right: zeros(size),
             residual: zeros(size),
             solution: zeros(size),
@@ -123,15 +128,25 @@ impl Kkt {
 
     /// Computes the diagonals that belong to the iterate.
     pub(super) fn assemble(&mut self, space: &Space, at: &Iterate, slopes: &Slopes, barrier: &Barrier) {
-        self.sigma.fill(0.0);
-        self.gradient.copy_from_slice(&slopes.lagrangian);
-        let (sigma, gradient) = (&mut self.sigma, &mut self.gradient);
+        let Kkt { sigma, push, gradient, inverses, .. } = self;
+        sigma.fill(0.0);
+        push.fill(0.0);
+        let mut inverses = inverses.iter_mut();
         space.for_each_bound(&at.y, |i, distance, direction| {
             let inverse = 1.0 / distance;
+            *inverses.next().expect("there is one for each bound") = inverse;
             sigma[i] += inverse * if direction > 0.0 { at.lower[i] } else { at.upper[i] };
-            gradient[i] -= direction * barrier.mu * inverse;
+            push[i] -= direction * barrier.mu * inverse;
         });
-        barrier.add_damping(space, gradient);
+        barrier.add_damping(space, push);
+        for ((sum, push), slope) in gradient.iter_mut().zip(&*push).zip(&slopes.lagrangian) {
+            *sum = push + slope;
+        }
+    }
+
+    /// Gradient over `y` of the barrier function but for the objective, at the iterate that was assembled last.
+    pub(super) fn push(&self) -> &[f64] {
+        &self.push
     }
 
     /// Factors with the smallest regularisation that gives the right inertia; `false` if none does. Rows that depend on each other are
@@ -219,10 +234,12 @@ impl Kkt {
             step.y[i] = -pull / (self.sigma[i] + self.regularization);
         }
         let Step { y, lower, upper, .. } = step;
-        space.for_each_bound(&at.y, |i, distance, direction| {
+        let mut inverses = self.inverses.iter();
+        space.for_each_bound(&at.y, |i, _, direction| {
             let (z, dz) =
                 if direction > 0.0 { (at.lower[i], &mut lower[i]) } else { (at.upper[i], &mut upper[i]) };
-            *dz = (mu - direction * z * y[i]) / distance - z;
+            let inverse = inverses.next().expect("there is one for each bound");
+            *dz = (mu - direction * z * y[i]) * inverse - z;
         });
         [&*y, lower, upper].into_iter().all(|values| are_finite(values))
     }

@@ -137,7 +137,7 @@ impl Algorithm {
     /// Runs a restoration phase from the current iterate, until at most the fraction `decrease` of the violation is left.
     pub(super) fn restore(&mut self, nlp: &mut dyn Nlp, decrease: f64, watch: &mut Watch) -> Restored {
         let violation = self.values.violation;
-        self.filter.add(violation, self.barrier.value(&self.space, &self.values, &self.at.y));
+        self.filter.add(violation, self.barrier.value(&self.values));
         self.counts.restorations += 1;
         let mu = self.barrier.mu.max(self.values.largest().min(1.0));
         let variables = self.at.y[..self.space.variables].to_vec();
@@ -193,7 +193,7 @@ impl Algorithm {
         let mut values = Values::default();
         values.evaluate(nlp, &self.space, y, &mut self.counts)
             && values.violation <= most
-            && self.filter.accepts(values.violation, self.barrier.value(&self.space, &values, y))
+            && self.filter.accepts(values.violation, self.barrier.value(&values))
     }
 
     fn take_over(&mut self, nlp: &mut dyn Nlp, inner: Algorithm) {

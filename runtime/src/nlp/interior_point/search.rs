@@ -39,8 +39,8 @@ impl Search<'_> {
         while alpha >= smallest || trials == 0 {
             trials += 1;
             let trial = self.trial(step, alpha);
-            if let Some((y, values)) = &trial
-                && self.accept(filter, from, alpha, y, values)
+            if let Some((_, values)) = &trial
+                && self.accept(filter, from, alpha, values)
             {
                 return trial.map(|(y, values)| Accepted { y, values, alpha, trials });
             }
@@ -60,8 +60,8 @@ impl Search<'_> {
     pub(super) fn reference(&self, step: &Step) -> Reference {
         Reference {
             theta: self.values.violation,
-            phi: self.barrier.value(self.space, self.values, &self.at.y),
-            slope: self.barrier.slope(self.space, self.at, self.slopes, step),
+            phi: self.barrier.value(self.values),
+            slope: Barrier::slope(self.space, self.slopes, self.kkt.push(), step),
         }
     }
 
@@ -75,7 +75,7 @@ impl Search<'_> {
         alpha: f64,
     ) -> Option<(Accepted, bool)> {
         let (y, values) = self.trial(step, longest)?;
-        let acceptable = self.accept(filter, from, alpha, &y, &values);
+        let acceptable = self.accept(filter, from, alpha, &values);
         Some((Accepted { y, values, alpha: longest, trials: 1 }, acceptable))
     }
 
@@ -86,8 +86,8 @@ impl Search<'_> {
     }
 
     /// Whether a trial point is good enough.
-    fn accept(&self, filter: &mut Filter, from: Reference, alpha: f64, y: &[f64], values: &Values) -> bool {
-        filter.judge(from, alpha, values.violation, self.barrier.value(self.space, values, y))
+    fn accept(&self, filter: &mut Filter, from: Reference, alpha: f64, values: &Values) -> bool {
+        filter.judge(from, alpha, values.violation, self.barrier.value(values))
     }
 
     /// Second-order correction: the same matrix against the residuals of the trial point (section 2.4).
@@ -115,7 +115,7 @@ impl Search<'_> {
             }
             alpha = self.barrier.longest_steps(space, at, &corrected).0;
             let (y, values) = self.trial(&corrected, alpha)?;
-            if self.accept(filter, from, alpha, &y, &values) {
+            if self.accept(filter, from, alpha, &values) {
                 *step = corrected;
                 return Some(Accepted { y, values, alpha, trials: 1 + trials });
             }

@@ -111,6 +111,11 @@ impl Space {
         self.lower.len()
     }
 
+    /// How many bounds are finite.
+    pub(super) fn bounds(&self) -> usize {
+        self.bounded_below.len() + self.bounded_above.len()
+    }
+
     /// Whether some lower bound is above its upper bound.
     pub(super) fn has_crossed_bounds(&self) -> bool {
         self.lower.iter().zip(&self.upper).any(|(lower, upper)| lower > upper)

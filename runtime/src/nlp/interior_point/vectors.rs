@@ -35,6 +35,17 @@ pub(super) fn sum_of_sizes(values: &[f64]) -> f64 {
     sums.iter().sum()
 }
 
+/// The sum of the products.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; WIDTH];
+    for (a, b) in stretches(a).zip(stretches(b)) {
+        for i in 0..WIDTH {
+            sums[i] += a[i] * b[i];
+        }
+    }
+    sums.iter().sum()
+}
+
 /// Whether all are numbers.
 pub(super) fn are_finite(values: &[f64]) -> bool {
     let mut nothing = [0.0; WIDTH];

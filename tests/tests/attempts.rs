@@ -1,7 +1,7 @@
 //! What one attempt loses another one wins; and where no feasible point exists, that is said in reasonable time.
 
 use fdcc_runtime::homotopy::{self, Outcome};
-use fdcc_runtime::nlp::Status;
+use fdcc_runtime::nlp::{Status, Stop};
 use fdcc_tests::models::{problem, solve};
 use fdcc_tests::repository;
 use std::f64::consts::PI;
@@ -81,5 +81,26 @@ fn what_is_out_of_reach_by_a_hair_is_infeasible() {
         let solution = solved(&given, scheme, "50").solution;
         assert_eq!(solution.status, Status::Infeasible, "{scheme}");
         assert!(solution.counts.iterations < 1000, "{scheme}: {}", solution.counts.iterations);
+    }
+}
+
+/// `time` stops the second attempt before it has looked at anything: the answer is that it was stopped, not that there is none.
+#[test]
+fn who_stops_a_later_attempt_is_not_told_that_there_is_no_solution() {
+    let text = "time t in [0, 1.9] state x start 0 state v start 0 control u in [-1, 1] \
+                dynamics { x' = v v' = u } end x == 1 end v == 0 minimize integral(exp(u)) method { grid N = 40 scheme midpoint }";
+    let problem = problem(text, &[], &[("solver", "interior_point")]);
+    let count = |limit: usize| {
+        let mut seen = 0;
+        let outcome = homotopy::solve(&problem, None, &mut |_, _| {
+            seen += 1;
+            if seen > limit { ControlFlow::Break(Stop::Interrupted) } else { ControlFlow::Continue(()) }
+        });
+        (outcome.expect("it is not refused").solution.status, seen)
+    };
+    let (status, all) = count(usize::MAX);
+    assert_eq!(status, Status::Infeasible);
+    for limit in [all / 3, all / 2, 2 * all / 3, all - 1] {
+        assert_eq!(count(limit).0, Status::Interrupted, "after {limit} of {all}");
     }
 }

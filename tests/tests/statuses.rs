@@ -174,6 +174,18 @@ fn a_model_without_an_objective() {
     );
 }
 
+/// At each time `exp(u) - t u` is least at `u = ln(t)`, or at the bound; with implicit Euler `t` is that of the end of an interval.
+#[test]
+fn a_model_without_states() {
+    let text = "time t in [0, 1] control u in [-1, 1] minimize integral(exp(u) - t*u) method { grid N = 20 }";
+    let found = outcome(text, &[]).solution;
+    assert_eq!(found.status, Status::Solved);
+    let best = |t: f64| t.ln().max(-1.0);
+    let times = (1..=20).map(|k| f64::from(k) / 20.0);
+    let exact: f64 = times.map(|t| (best(t).exp() - t * best(t)) / 20.0).sum();
+    assert!((found.objective - exact).abs() < 1e-7, "{} instead of {exact}", found.objective);
+}
+
 #[test]
 fn a_model_without_states_to_choose() {
     check(

@@ -57,7 +57,7 @@ fn look(meaning: &Elaborator<'_>, item: &Item, slips: &mut Slips) {
             }
         }
         ItemKind::State { name, bounds, start, parts, .. } => {
-            let states = &meaning.model.states[index..index + parts.len().max(1)];
+            let states = meaning.model.states.get(index..index + parts.len().max(1)).unwrap_or_default();
             if let Some(bounds) = bounds {
                 reversed(meaning, ("state", name), bounds, states.iter().map(|it| it.range), slips);
             }

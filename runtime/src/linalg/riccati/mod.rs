@@ -9,7 +9,7 @@
 //!                                     [ Lambda' Theta  ]
 //! ```
 //!
-//! Going backward, [`interval`] puts the Hessian over `(x_k, u_k, theta, y_k, x_{k+1})` together with `V_{k+1}`, removes
+//! Going backward, [`interval`] puts the Hessian over `(x_k, theta, u_k, y_k, x_{k+1})` together with `V_{k+1}`, removes
 //! `(y_k, x_{k+1})` by the linearised defects and then `u_k` by its own block; [`solve`] uses what is kept of that
 //! ([`factors`]). What is left at `k = 0` is one small dense symmetric system in `(x_0, theta)`: [`border`]. Signs of
 //! all pivots give the inertia exactly (Haynsworth), so a control block may be indefinite as long as the whole is right.
@@ -60,7 +60,7 @@ pub struct Riccati {
 }
 
 impl Riccati {
-    /// Prepares the recursion, or says why the structure does not allow it: a state that is fixed inside the
+    /// Prepares the recursion, or says why the structure does not allow it: no states, a state that is fixed inside the
     /// chain, an equality at every stage, or entries that couple distant stages. `equality_rows[i]` says that
     /// row `i` has no slack.
     pub fn new(
@@ -70,6 +70,9 @@ impl Riccati {
         fixed: &[bool],
         equality_rows: &[bool],
     ) -> Result<Self, &'static str> {
+        if stages.states == 0 {
+            return Err("there are no states");
+        }
         if (1..=stages.intervals).any(|k| stages.state(k).any(|i| fixed[i])) {
             return Err("a state is fixed inside the chain");
         }

@@ -186,12 +186,9 @@ impl Riccati {
         controls.copy_from_slice(&known[kept..w]);
         if self.factors.penalised {
             give_way(&self.factors, sizes, k, (known, step), (p, defects));
-        } else {
-            follow::<FUSED>(&self.factors, sizes, k, known, step);
-        }
-        if self.factors.penalised {
             push_back_where_given_way(&self.factors, sizes, k, known, (p, defects));
         } else {
+            follow::<FUSED>(&self.factors, sizes, k, known, step);
             push_back::<FUSED>(&self.factors, sizes, k, (known, step, back), (p, defects));
         }
         p[..inner].copy_from_slice(&step[..inner]);

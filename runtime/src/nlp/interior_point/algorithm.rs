@@ -94,7 +94,7 @@ impl Algorithm {
     /// Iterates to the end, with restoration phases where the line search is stuck.
     pub(super) fn run(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Status {
         if self.space.has_crossed_bounds() {
-            return Status::Infeasible;
+            return self.end_unseen(Status::Infeasible, nlp);
         }
         loop {
             match self.iterate(nlp, watch) {
@@ -146,13 +146,14 @@ impl Algorithm {
 
     /// From here on with new multipliers and an empty filter.
     pub(super) fn begin_anew(&mut self, nlp: &mut dyn Nlp) {
+        self.watchdog.end();
         self.resume(nlp);
         self.filter.clear();
     }
 
     /// Accepts the smallest violation near by, if it is acceptable, as none: a smoothed block comes to rest only in the limit. Then
     /// an optimum is no more than acceptable either. `true` if the violation is too large, or this was done before.
-    fn relax(&mut self, nlp: &mut dyn Nlp) -> bool {
+    pub(super) fn relax(&mut self, nlp: &mut dyn Nlp) -> bool {
         if self.is_relaxed || self.values.largest() > ACCEPTABLE_ERROR {
             return true;
         }
@@ -251,7 +252,7 @@ impl Algorithm {
             Some(if self.is_relaxed { Status::Acceptable } else { Status::Solved })
         } else if self.acceptable >= ACCEPTABLE_ITERATIONS {
             Some(Status::Acceptable)
-        } else if self.has_diverged() {
+        } else if self.watchdog.saved.is_none() && self.has_diverged() {
             Some(Status::Unbounded)
         } else if self.counts.iterations >= self.options.max_iter {
             Some(Status::IterationLimit)

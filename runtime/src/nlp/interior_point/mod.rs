@@ -53,6 +53,9 @@ fn another(
     watch: &mut Watch,
 ) -> Solution {
     let mut counts = first.counts;
+    if counts.iterations >= options.max_iter {
+        return first;
+    }
     let options = Options { max_iter: options.max_iter.saturating_sub(counts.iterations), ..*options };
     let second = attempt_with(nlp, start, &options, run, &mut |progress| {
         watch(&Progress { iteration: counts.iterations + progress.iteration, ..*progress })
@@ -64,7 +67,11 @@ fn another(
         Status::Infeasible => first.status == Status::NumericalFailure,
         _ => false,
     };
-    Solution { counts, ..if is_taken { second } else { first } }
+    // Whoever stops the search is not told that there is nothing.
+    let is_stopped = matches!(second.status, Status::TimeLimit | Status::Interrupted);
+    let status = if is_taken || is_stopped { second.status.clone() } else { first.status.clone() };
+    let best = if is_taken { second } else { first };
+    Solution { status, counts, ..best }
 }
 
 /// One attempt, without another opinion.

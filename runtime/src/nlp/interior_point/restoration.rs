@@ -11,6 +11,7 @@
 
 use super::algorithm::{Algorithm, Outcome};
 use super::iterate::{Iterate, Values};
+use super::residuals::Residuals;
 use super::space::Space;
 use crate::nlp::filter::Filter;
 
@@ -121,11 +122,14 @@ impl Nlp for Proximity<'_> {
 impl Algorithm {
     /// Looks for a feasible point near the start before the objective has a word, then iterates to the end.
     pub(super) fn run_from_feasible(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Status {
-        if self.values.is_finite() && self.values.largest() > self.options.tol {
+        let is_violated = self.values.is_finite() && self.values.largest() > self.options.tol;
+        if is_violated && !self.space.has_crossed_bounds() {
             match self.restore(nlp, FIRST_DECREASE, watch) {
-                Restored::Stopped(status) => return status,
+                Restored::Stopped(status) => return self.end_unseen(status, nlp),
                 Restored::Stationary if self.values.largest() > self.options.tol => {
-                    return Status::Infeasible;
+                    if self.relax(nlp) {
+                        return self.end_unseen(Status::Infeasible, nlp);
+                    }
                 }
                 Restored::Acceptable => {}
                 Restored::Stationary | Restored::Blocked => self.begin_anew(nlp),
@@ -136,6 +140,7 @@ impl Algorithm {
 
     /// Runs a restoration phase from the current iterate, until at most the fraction `decrease` of the violation is left.
     pub(super) fn restore(&mut self, nlp: &mut dyn Nlp, decrease: f64, watch: &mut Watch) -> Restored {
+        self.watchdog.end();
         let violation = self.values.violation;
         self.filter.add(violation, self.barrier.value(&self.values));
         self.counts.restorations += 1;
@@ -183,6 +188,7 @@ impl Algorithm {
             proximity.zeta = zeta;
             self.values.evaluate(proximity, &self.space, &self.at.y, &mut self.counts);
             self.filter.clear();
+            self.watchdog.end();
             self.fresh = false;
         }
     }
@@ -203,6 +209,13 @@ impl Algorithm {
         self.at.lambda = inner.at.lambda;
         self.values.evaluate(nlp, &self.space, &self.at.y, &mut self.counts);
         self.fresh = false;
+    }
+
+    /// Ends at a point that no iteration has looked at.
+    pub(super) fn end_unseen(&mut self, status: Status, nlp: &mut dyn Nlp) -> Status {
+        self.slopes.evaluate(nlp, &self.space, &self.at, &mut self.counts);
+        self.residuals = Residuals::new(&self.space, &self.at, &self.values, &self.slopes);
+        status
     }
 
     /// Multipliers after a restoration phase: bounds from the barrier, rows by least squares.

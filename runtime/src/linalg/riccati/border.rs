@@ -25,8 +25,8 @@ enum End {
 pub(super) struct Border {
     stages: Stages,
     copy: bool,
-    fixed_first: Vec<bool>,
-    fixed_globals: Vec<bool>,
+    /// Fixed variables among `(x_0, g)`.
+    fixed: Vec<usize>,
     terminal_hessian: Vec<Move>,
     terminal_jacobian: Vec<Move>,
     initial_hessian: Vec<Move>,
@@ -42,8 +42,13 @@ impl Border {
         let mut border = Border {
             stages,
             copy: false,
-            fixed_first: fixed[stages.state(0)].to_vec(),
-            fixed_globals: fixed[stages.globals()].to_vec(),
+            fixed: stages
+                .state(0)
+                .chain(stages.globals())
+                .enumerate()
+                .filter(|(_, i)| fixed[*i])
+                .map(|(i, _)| i)
+                .collect(),
             terminal_hessian: Vec::new(),
             terminal_jacobian: Vec::new(),
             initial_hessian: Vec::new(),
@@ -129,7 +134,7 @@ impl Border {
     }
 
     /// Size of the last system: `(x_0, g, nu)`.
-    fn size(&self) -> usize {
+    pub(super) fn size(&self) -> usize {
         self.stages.states + self.stages.globals + self.stages.coupling_rows
     }
 
@@ -184,7 +189,7 @@ impl Border {
                 self.initial[target] += value[i * width + j];
             }
         }
-        for i in self.fixed_positions().collect::<Vec<_>>() {
+        for &i in &self.fixed {
             for j in 0..size {
                 self.initial[i * size + j] = 0.0;
                 self.initial[j * size + i] = 0.0;
@@ -199,15 +204,6 @@ impl Border {
         if i < self.size() { i } else { i - self.size() }
     }
 
-    fn fixed_positions(&self) -> impl Iterator<Item = usize> + '_ {
-        self.fixed_first
-            .iter()
-            .chain(&self.fixed_globals)
-            .enumerate()
-            .filter(|(_, fixed)| **fixed)
-            .map(|(i, _)| i)
-    }
-
     /// Gradient of the terminal value function.
     pub(super) fn terminal_gradient(&self, a: &[f64], b: &[f64], gradient: &mut [f64]) {
         let stages = &self.stages;
@@ -217,16 +213,16 @@ impl Border {
         gradient.iter_mut().zip(values).for_each(|(target, value)| *target = value);
     }
 
-    /// Solves for `(x_0, theta)`.
-    pub(super) fn solve(&self, gradient: &[f64], state: &mut [f64]) {
-        let mut right = vec![0.0; self.size()];
+    /// Solves for `(x_0, theta)`, with room for the right side of the last system.
+    pub(super) fn solve(&self, gradient: &[f64], right: &mut [f64], state: &mut [f64]) {
+        right.fill(0.0);
         for (i, value) in gradient.iter().enumerate() {
             right[self.merged(i)] -= value;
         }
-        for i in self.fixed_positions() {
+        for &i in &self.fixed {
             right[i] = 0.0;
         }
-        self.factor.solve(&mut right, 1);
+        self.factor.solve(right, 1);
         for (i, value) in state.iter_mut().enumerate() {
             *value = right[self.merged(i)];
         }

@@ -92,6 +92,7 @@ impl Riccati {
             sizes,
             fused: is_fused(),
             fixed: fixed.to_vec(),
+            travel: Travel::new(sizes, border.size()),
             border,
             condensed: Condensed::new(sizes, stages, &assembly),
             block: Block::new(sizes),
@@ -99,7 +100,6 @@ impl Riccati {
             assembly,
             value: Value::new(sizes),
             ends: vec![0.0; sizes.kept() * sizes.kept()],
-            travel: Travel::new(sizes),
         })
     }
 }

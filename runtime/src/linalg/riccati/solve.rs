@@ -22,13 +22,17 @@ pub(super) struct Travel {
     pub(super) gradient: Vec<f64>,
     /// `(x, theta)`
     pub(super) state: Vec<f64>,
+    /// Right side of the last system.
+    last: Vec<f64>,
     scratch: Vec<f64>,
 }
 
 impl Travel {
-    pub(super) fn new(sizes: Sizes) -> Self {
+    /// `last` is the size of the last system.
+    pub(super) fn new(sizes: Sizes, last: usize) -> Self {
         let zeros = |length: usize| vec![0.0; length];
         Travel {
+            last: zeros(last),
             gradient: zeros(sizes.kept()),
             state: zeros(sizes.kept()),
             scratch: zeros(sizes.kept() + sizes.all() + 2 * sizes.next()),
@@ -72,7 +76,7 @@ impl Riccati {
         travel: &mut Travel,
         (a, b): (&mut [f64], &mut [f64]),
     ) {
-        let Travel { gradient, state, scratch } = travel;
+        let Travel { gradient, state, last, scratch } = travel;
         let mut few = [[0.0; FEW]; 3];
         let mut backward = Scratch::new(sizes, &mut few, scratch);
         backward.travelling.copy_from_slice(gradient);
@@ -80,7 +84,7 @@ impl Riccati {
             self.backward::<FUSED>(sizes, k, &mut backward, (a, b));
         }
         gradient.copy_from_slice(backward.travelling);
-        self.border.solve(gradient, state);
+        self.border.solve(gradient, last, state);
         let mut few = [[0.0; FEW]; 3];
         let mut forward = Scratch::new(sizes, &mut few, scratch);
         forward.travelling.copy_from_slice(state);

@@ -124,7 +124,7 @@ fn held(saved: &Saved, name: &str, intervals: usize) -> Result<Vec<f64>, String>
 
 /// As settings of the `method` block.
 fn settings(method: &SavedMethod) -> Vec<(&'static str, String)> {
-    let SavedMethod { scheme, controls, n, sigma, kernel } = method;
+    let SavedMethod { scheme, controls, n, sigma, kernel, .. } = method;
     let (n, sigma) = (n.map(|n| n.to_string()), sigma.map(|sigma| sigma.to_string()));
     let words = [("scheme", scheme), ("controls", controls), ("kernel", kernel)];
     let words = words.map(|(key, word)| (key, word.clone()));

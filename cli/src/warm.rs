@@ -29,7 +29,7 @@ pub fn from_solved(before: &Solved, problem: &Problem) -> Start {
         (intervals, scheme, controls, mesh)
     };
     if shape(&before.problem) == shape(problem) {
-        return again(problem, solution);
+        return again(problem, solution, &before.outcome.sigma);
     }
     from_earlier(problem, &Saved::from(&before.document).earlier(problem))
 }
@@ -53,6 +53,13 @@ impl Saved {
             states: states.collect(),
             controls: controls.collect(),
             unknowns: names.map(|name| self.free.get(name).copied().flatten()).collect(),
+            widths: self.widths(problem),
         }
+    }
+
+    /// The smoothing width of each surface of the problem.
+    fn widths(&self, problem: &Problem) -> Vec<Option<f64>> {
+        let width = |name: &str| self.method.sigmas.get(name).copied().flatten();
+        problem.surfaces.iter().map(|surface| width(&surface.name)).collect()
     }
 }

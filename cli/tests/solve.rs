@@ -203,6 +203,19 @@ fn a_warm_start_begins_at_the_earlier_solution_on_any_grid() {
     }
 }
 
+/// `turbo` names no width: the second solve begins with that which the first chose.
+#[test]
+fn a_warm_start_takes_the_widths_that_were_chosen() {
+    let (folder, turbo) = (folder("chosen", &[]), model("turbo"));
+    let cold = solved(&folder, &[&turbo, "--method", "N=40", "--out", "."]);
+    let warm = solved(&folder, &[&turbo, "--method", "N=40", "--warm", "turbo.sol.json"]);
+    assert_eq!(cold["method"]["sigmas"], warm["method"]["sigmas"]);
+    let number = |document: &Value, key: &str| document[key].as_f64().expect("a number");
+    assert!((number(&cold, "objective") - number(&warm, "objective")).abs() < 1e-6);
+    let (before, after) = (number(&cold, "iterations"), number(&warm, "iterations"));
+    assert!(after < 0.5 * before, "{after} iterations instead of {before}");
+}
+
 #[test]
 fn the_table_is_as_long_as_asked_for() {
     let folder = folder("log", &[]);

@@ -41,14 +41,15 @@ impl Times {
 /// The start on the grid of `to`. Both chains must be of one problem, whose intervals have these times.
 pub(crate) fn prolong(times: &Times, from: Stages, start: &Start, to: Stages) -> Start {
     let shrink = from.intervals as f64 / to.intervals as f64;
-    let warm = start.warm.as_ref().map(|Warm { multipliers: Multipliers { rows, lower, upper }, mu }| {
-        let multipliers = Multipliers {
-            rows: conditions(times, from, rows, to, shrink),
-            lower: variables(times, from, lower, to, shrink),
-            upper: variables(times, from, upper, to, shrink),
-        };
-        Warm { multipliers, mu: shrink * mu }
-    });
+    let warm =
+        start.warm.as_ref().map(|Warm { multipliers: Multipliers { rows, lower, upper }, mu, widths }| {
+            let multipliers = Multipliers {
+                rows: conditions(times, from, rows, to, shrink),
+                lower: variables(times, from, lower, to, shrink),
+                upper: variables(times, from, upper, to, shrink),
+            };
+            Warm { multipliers, mu: shrink * mu, widths: widths.clone() }
+        });
     Start { v: variables(times, from, &start.v, to, 1.0), warm }
 }
 
@@ -135,7 +136,7 @@ mod tests {
         rows.push(8.0);
         let bounds = vec![6.0; chain.variables()];
         let multipliers = Multipliers { rows, lower: bounds.clone(), upper: bounds };
-        Start { v, warm: Some(Warm { multipliers, mu: 1e-3 }) }
+        Start { v, warm: Some(Warm { multipliers, mu: 1e-3, widths: Vec::new() }) }
     }
 
     fn difference(a: &[f64], b: &[f64]) -> f64 {

@@ -17,6 +17,8 @@ pub struct Earlier {
     pub controls: Vec<Option<Vec<f64>>>,
     /// One per unknown.
     pub unknowns: Vec<Option<f64>>,
+    /// The smoothing width of each surface.
+    pub widths: Vec<Option<f64>>,
 }
 
 /// The earlier solution on the grid of the problem; what it lacks comes from the guess.

@@ -43,8 +43,8 @@ fn main() {
         let intervals = interior.method.intervals;
         for (name, problem, start) in [
             ("from the guess", &interior, None),
-            ("interior point, warm", &interior, Some(again(&interior, &solved.solution))),
-            ("sqp, warm", &sequential, Some(again(&sequential, &solved.solution))),
+            ("interior point, warm", &interior, Some(again(&interior, &solved.solution, &[]))),
+            ("sqp, warm", &sequential, Some(again(&sequential, &solved.solution, &[]))),
         ] {
             let (outcome, seconds) = fastest(problem, &start);
             let (solution, status) = (&outcome.solution, &outcome.solution.status);

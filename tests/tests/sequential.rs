@@ -97,7 +97,7 @@ fn once_more(name: &str, settings: Changes, parameter: (&str, &str)) -> [(Counts
     [Solver::InteriorPoint, Solver::Sequential].map(|solver| {
         let mut problem = load(name, &[parameter], settings);
         problem.method.solver = solver;
-        let start = again(&problem, &before.solution);
+        let start = again(&problem, &before.solution, &[]);
         let outcome =
             homotopy::solve(&problem, Some(start), &mut |_, _| ControlFlow::Continue(())).expect(name);
         assert_optimal(name, &problem, &outcome);

@@ -60,6 +60,9 @@ pub struct SavedMethod {
     #[serde(rename = "N")]
     pub n: Option<u64>,
     pub sigma: Option<f64>,
+    /// The smoothing width of each surface.
+    #[serde(default)]
+    pub sigmas: Named<Option<f64>>,
     pub kernel: Option<String>,
 }
 
@@ -74,7 +77,7 @@ impl Saved {
 
 impl From<&Document> for Saved {
     fn from(document: &Document) -> Self {
-        let MethodUsed { scheme, controls, n, sigma, kernel, .. } = document.method.clone();
+        let MethodUsed { scheme, controls, n, sigma, sigmas, kernel, .. } = document.method.clone();
         let (scheme, controls, kernel) = (Some(scheme), Some(controls), Some(kernel));
         Saved {
             model: document.model.clone(),
@@ -82,7 +85,14 @@ impl From<&Document> for Saved {
             objective: finite(document.objective),
             free: numbers(&document.free),
             params: numbers(&document.params),
-            method: SavedMethod { scheme, controls, n: Some(n as u64), sigma, kernel },
+            method: SavedMethod {
+                scheme,
+                controls,
+                n: Some(n as u64),
+                sigma,
+                sigmas: numbers(&sigmas),
+                kernel,
+            },
             time: document.time.iter().copied().map(finite).collect(),
             states: columns(&document.states),
             controls: columns(&document.controls),

@@ -20,8 +20,9 @@ pub fn start(saved: &Saved, between: &Problem, problem: &Problem) -> Option<Star
     let mut unknowns: Vec<Option<f64>> = names.map(|name| saved.free.get(name).copied().flatten()).collect();
     unknowns.extend(cut.lengths());
     let times = normalised(saved.time.get(..=intervals)?);
-    (intervals * pieces + 1 == saved.time.len())
-        .then(|| from_earlier(problem, &Earlier { times, states, controls, unknowns }))
+    (intervals * pieces + 1 == saved.time.len()).then(|| {
+        from_earlier(problem, &Earlier { times, states, controls, unknowns, widths: saved.widths(problem) })
+    })
 }
 
 /// A solution of several pieces with so many intervals each.

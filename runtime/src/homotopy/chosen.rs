@@ -1,5 +1,5 @@
 //! Widths of our own choice, where the model names none: each surface gets a fraction of the size that its switching function has along the trajectory
-//! found so far, one solve after another. Where a step is too long it is halved; where even short steps fail, the last width that could be solved is the answer.
+//! found so far, one solve after another; a warm start takes those of the earlier solution. Where a step is too long it is halved; where even short steps fail, the last width that could be solved is the answer.
 
 use super::Watch;
 use super::approach::grids;
@@ -18,7 +18,20 @@ const MOST_ITERATIONS: usize = 300;
 
 impl Run<'_> {
     /// Solves with widths of our own choice, as small as can be solved.
-    pub(super) fn chosen(&mut self, nlp: &mut TranscribedNlp, start: Start, watch: &mut Watch) -> Solution {
+    pub(super) fn chosen(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        mut start: Start,
+        watch: &mut Watch,
+    ) -> Solution {
+        if let Some(warm) = start.warm.take_if(|warm| warm.widths.len() == self.sigma.len()) {
+            self.sigma.clone_from(&warm.widths);
+            let warm = Start { v: start.v.clone(), warm: Some(warm) };
+            let solution = self.once(nlp, &warm, self.patience(), watch);
+            if !is_retried(&solution.status) {
+                return solution;
+            }
+        }
         let mut factor = FIRST_FACTOR;
         self.set_relative(nlp, &start.v);
         let mut best = self.first(nlp, start, watch);

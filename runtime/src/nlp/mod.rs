@@ -164,6 +164,8 @@ pub struct Warm {
     pub multipliers: Multipliers,
     /// The barrier parameter of the scaled programme to begin with.
     pub mu: f64,
+    /// The width of each smoothed surface, where the model names none; else nothing.
+    pub widths: Vec<f64>,
 }
 
 impl Warm {
@@ -174,7 +176,7 @@ impl Warm {
 impl Start {
     /// Where another solve of the same size ended.
     pub fn after(solution: &Solution) -> Self {
-        let warm = Warm { multipliers: solution.multipliers.clone(), mu: solution.mu };
+        let warm = Warm { multipliers: solution.multipliers.clone(), mu: solution.mu, widths: Vec::new() };
         Start { v: solution.v.clone(), warm: Some(warm) }
     }
 

@@ -178,7 +178,7 @@ fn a_start_without_a_barrier_parameter_is_one_all_the_same() {
     let curvature: Curvature = |_, factor, _, h| h[0] = 2.0 * factor;
     let mut dense = Dense::new(vec![at_least(2.0)], vec![], (values, slopes, curvature));
     let multipliers = Multipliers { lower: vec![2.0], ..Multipliers::zeros(&dense) };
-    let start = Start { v: vec![2.0], warm: Some(Warm { multipliers, mu: 0.0 }) };
+    let start = Start { v: vec![2.0], warm: Some(Warm { multipliers, mu: 0.0, widths: Vec::new() }) };
     let options = Options { tol: 1e-9, max_iter: 300, linear: Linear::Automatic };
     for method in METHODS {
         let solution = method(&mut dense, &start, &options, &mut |_| ControlFlow::Continue(()));

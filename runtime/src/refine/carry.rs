@@ -11,13 +11,13 @@ use crate::transcribe::interval::{Interval, Signal, Slot};
 /// The start on `to`, each interval of which is one of the `parts` of an interval of `from`.
 pub(super) fn carried(from: &TranscribedNlp, start: &Start, to: &TranscribedNlp, parts: &[usize]) -> Start {
     let carry = Carry { from, to, places: places(parts) };
-    let warm = start.warm.as_ref().map(|Warm { multipliers, mu }| {
+    let warm = start.warm.as_ref().map(|Warm { multipliers, mu, widths }| {
         let multipliers = Multipliers {
             rows: carry.rows(&multipliers.rows),
             lower: carry.bounds(&multipliers.lower),
             upper: carry.bounds(&multipliers.upper),
         };
-        Warm { multipliers, mu: *mu }
+        Warm { multipliers, mu: *mu, widths: widths.clone() }
     });
     Start { v: carry.values(&start.v), warm }
 }

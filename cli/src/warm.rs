@@ -29,7 +29,8 @@ pub fn from_solved(before: &Solved, problem: &Problem) -> Start {
         (intervals, scheme, controls, mesh)
     };
     if shape(&before.problem) == shape(problem) {
-        return again(problem, solution, &before.outcome.sigma);
+        let is_chosen = before.document.method.sigma_chosen;
+        return again(problem, solution, if is_chosen { &before.outcome.sigma } else { &[] });
     }
     from_earlier(problem, &Saved::from(&before.document).earlier(problem))
 }
@@ -57,9 +58,10 @@ impl Saved {
         }
     }
 
-    /// The smoothing width of each surface of the problem.
+    /// The smoothing width of each surface of the problem; none where a model named them or the solve did not come to its end, so that they may be wide.
     fn widths(&self, problem: &Problem) -> Vec<Option<f64>> {
-        let width = |name: &str| self.method.sigmas.get(name).copied().flatten();
+        let is_chosen = self.method.sigma_chosen;
+        let width = |name: &str| self.method.sigmas.get(name).copied().flatten().filter(|_| is_chosen);
         problem.surfaces.iter().map(|surface| width(&surface.name)).collect()
     }
 }

@@ -214,6 +214,11 @@ fn a_warm_start_takes_the_widths_that_were_chosen() {
     assert!((number(&cold, "objective") - number(&warm, "objective")).abs() < 1e-6);
     let (before, after) = (number(&cold, "iterations"), number(&warm, "iterations"));
     assert!(after < 0.5 * before, "{after} iterations instead of {before}");
+    // A width that somebody named is not taken: it may be a wide one.
+    let wide = solved(&folder, &[&turbo, "--method", "N=40", "--method", "sigma=0.5", "--out", "."]);
+    assert!((number(&cold, "objective") - number(&wide, "objective")).abs() > 1e-3);
+    let warm = solved(&folder, &[&turbo, "--method", "N=40", "--warm", "turbo.sol.json"]);
+    assert!((number(&cold, "objective") - number(&warm, "objective")).abs() < 1e-6);
 }
 
 #[test]

@@ -122,6 +122,8 @@ pub struct MethodUsed {
     pub sigma: Option<f64>,
     /// The width of every surface.
     pub sigmas: Named<f64>,
+    /// Whether these were chosen by the solver, as small as it could, because the model names none.
+    pub sigma_chosen: bool,
     pub kernel: String,
     pub solver: String,
     pub linear: String,
@@ -242,6 +244,15 @@ fn surfaces(problem: &Problem, outcome: &Outcome) -> Named<Vec<Span>> {
     surfaces.map(|(surface, modes)| (surface.name.clone(), spans(modes))).collect()
 }
 
+/// Whether the model names no width.
+fn is_chosen(method: &Method) -> bool {
+    method.sigma.is_none() && method.continuation.is_empty()
+}
+
+fn is_good(status: &Status) -> bool {
+    matches!(status, Status::Solved | Status::Acceptable)
+}
+
 impl MethodUsed {
     fn new(problem: &Problem, outcome: &Outcome) -> Self {
         let method: &Method = &problem.method;
@@ -254,6 +265,7 @@ impl MethodUsed {
             steps: method.steps,
             sigma: outcome.sigma.first().copied(),
             sigmas: surfaces.map(|(surface, sigma)| (surface.name.clone(), *sigma)).collect(),
+            sigma_chosen: is_chosen(method) && is_good(&outcome.solution.status) && !outcome.sigma.is_empty(),
             kernel: method.kernel.clone(),
             solver: solver.to_string(),
             linear: linear_name(method.linear).to_string(),

@@ -63,6 +63,9 @@ pub struct SavedMethod {
     /// The smoothing width of each surface.
     #[serde(default)]
     pub sigmas: Named<Option<f64>>,
+    /// Whether these were chosen by a solve that came to its end.
+    #[serde(default)]
+    pub sigma_chosen: bool,
     pub kernel: Option<String>,
 }
 
@@ -77,7 +80,8 @@ impl Saved {
 
 impl From<&Document> for Saved {
     fn from(document: &Document) -> Self {
-        let MethodUsed { scheme, controls, n, sigma, sigmas, kernel, .. } = document.method.clone();
+        let MethodUsed { scheme, controls, n, sigma, sigmas, sigma_chosen, kernel, .. } =
+            document.method.clone();
         let (scheme, controls, kernel) = (Some(scheme), Some(controls), Some(kernel));
         Saved {
             model: document.model.clone(),
@@ -91,6 +95,7 @@ impl From<&Document> for Saved {
                 n: Some(n as u64),
                 sigma,
                 sigmas: numbers(&sigmas),
+                sigma_chosen,
                 kernel,
             },
             time: document.time.iter().copied().map(finite).collect(),

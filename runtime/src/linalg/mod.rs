@@ -12,6 +12,7 @@
 
 #[cfg(test)]
 mod conformance;
+mod cost;
 mod lanes;
 pub(crate) mod lu;
 mod products;
@@ -21,6 +22,7 @@ mod stages;
 mod symmetric;
 mod triplets;
 
+pub(crate) use cost::is_sparse_cheaper;
 pub(crate) use products::Products;
 pub use stages::Stages;
 pub(crate) use symmetric::SymmetricFactor;

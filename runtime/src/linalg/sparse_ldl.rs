@@ -47,6 +47,11 @@ impl SparseLdl {
         }
     }
 
+    /// How many multiplications a factorisation takes, about.
+    pub(crate) fn multiplications(&self) -> f64 {
+        self.ldl.column_lengths().iter().map(|length| (*length as f64).powi(2)).sum()
+    }
+
     fn add_diagonal(&mut self, sigma: &[f64], d: &[f64]) {
         for (i, place) in self.diagonal.iter().enumerate() {
             self.values[*place as usize] += match i.checked_sub(self.variables) {

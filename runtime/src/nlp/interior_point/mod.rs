@@ -18,16 +18,18 @@ mod watchdog;
 
 use super::scaling::Scaled;
 use super::{Multipliers, Nlp, Options, Progress, Solution, Start, Status, Watch};
+use crate::linalg::is_sparse_cheaper;
 use crate::problem::Linear;
 use algorithm::Algorithm;
 
 /// Solves the programme from `start`. Progress is reported unscaled, once per iteration. Nobody is told "infeasible" for want of luck: where an attempt ends
 /// without a solution others are made, each along another path, with the iterations that are left.
 pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watch) -> Solution {
-    let mut best = attempt(nlp, start, options, watch);
-    let mut options = *options;
+    let is_automatic = options.linear == Linear::Automatic;
+    let mut options = Options { linear: factorization(nlp, options.linear), ..*options };
+    let mut best = attempt(nlp, start, &options, watch);
     // Other rounding and regularisation.
-    if options.linear == Linear::Automatic && nlp.stages().is_some() && is_lost(&best) {
+    if is_automatic && options.linear == Linear::Riccati && is_lost(&best) {
         options.linear = Linear::SparseLdl;
         best = another(best, nlp, start, &options, Algorithm::run, watch);
     }
@@ -36,6 +38,18 @@ pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Wa
         best = another(best, nlp, start, &options, Algorithm::run_from_feasible, watch);
     }
     best
+}
+
+/// The factorisation to begin with: the recursion wherever there are stages, unless its border makes it too dear.
+fn factorization(nlp: &dyn Nlp, linear: Linear) -> Linear {
+    match (linear, nlp.stages()) {
+        (Linear::Automatic, None) => Linear::SparseLdl,
+        (Linear::Automatic, Some(stages)) => {
+            let is_dear = is_sparse_cheaper(stages, nlp.hessian_structure(), nlp.jacobian_structure());
+            if is_dear { Linear::SparseLdl } else { Linear::Riccati }
+        }
+        (named, _) => named,
+    }
 }
 
 /// Whether another attempt may end otherwise.

@@ -1,0 +1,81 @@
+//! What a factorisation costs, and which of the two is cheaper.
+//!
+//! The recursion carries all of its border `theta` through every interval. With `w = (x, theta, u)`, `kept = (x, theta)` and `next = (y, x+)` it takes about
+//!
+//! ```text
+//!     N ( next^2 (2 w + next) + 3/2 next w^2 + kept^2 w + n w^2 )
+//! ```
+//!
+//! multiplications ([`super::riccati`]). That is little while the border is small; but pieces of time between jumps stand side by side, and each end
+//! and each length of a piece is one more row or variable of the border, which hardly any state has to do with.
+
+use super::sparse_ldl::SparseLdl;
+use super::{Stages, Triplets};
+
+/// So many multiplications the recursion makes while the sparse factorisation makes one; measured were 6 to 12. What is in doubt is the recursion's, whose
+/// inertia is exact.
+const DENSE_SPEED: f64 = 16.0;
+
+/// Whether the sparse factorisation takes less time than the recursion. It is analysed for that only if the border is larger than a stage.
+pub(crate) fn is_sparse_cheaper(stages: Stages, hessian: &Triplets, jacobian: &Triplets) -> bool {
+    if border(stages) <= stages.states + stages.controls {
+        return false;
+    }
+    let sparse = SparseLdl::new(hessian, jacobian, &vec![false; stages.variables()], stages.rows());
+    multiplications(stages) > DENSE_SPEED * sparse.multiplications()
+}
+
+fn border(stages: Stages) -> usize {
+    stages.globals + stages.coupling_rows
+}
+
+/// Of the recursion.
+fn multiplications(stages: Stages) -> f64 {
+    let Stages { intervals, states, controls, .. } = stages;
+    let kept = (states + border(stages)) as f64;
+    let (n, w, next) = (states as f64, kept + controls as f64, stages.defect_rows() as f64);
+    let interval = next * next * (2.0 * w + next) + 1.5 * next * w * w + kept * kept * w + n * w * w;
+    intervals as f64 * interval
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::Family;
+
+    /// Pieces of one state each, which share their length with no other, tied end to start.
+    fn pieces(count: usize) -> (Stages, Triplets, Triplets) {
+        let stages = Stages {
+            intervals: 100,
+            states: count,
+            controls: 0,
+            inner: 0,
+            globals: count,
+            local_rows: 0,
+            coupling_rows: count,
+        };
+        let (step, globals) = (stages.variable_step(), stages.globals());
+        let repeat =
+            |row, column, row_step, column_step| Family { row, column, row_step, column_step, count: 100 };
+        let mut hessian: Vec<Family> = (0..step).map(|i| repeat(i, i, step, step)).collect();
+        let mut jacobian = Vec::new();
+        for i in 0..count {
+            let length = globals.start + i;
+            hessian.push(repeat(length, i, 0, step));
+            jacobian.extend([i, step + i].map(|column| repeat(i, column, count, step)));
+            jacobian.push(repeat(i, length, count, 0));
+            let (row, end) = (stages.coupling().start + i, stages.state(100).start + i);
+            jacobian.extend([Family::single(row, end), Family::single(row, (i + 1) % count)]);
+        }
+        (stages, Triplets { families: hessian }, Triplets { families: jacobian })
+    }
+
+    #[test]
+    fn many_pieces_side_by_side_are_for_the_sparse_factorisation_and_one_is_not() {
+        let is_sparse = |count| {
+            let (stages, hessian, jacobian) = pieces(count);
+            is_sparse_cheaper(stages, &hessian, &jacobian)
+        };
+        assert!(!is_sparse(1) && is_sparse(8));
+    }
+}

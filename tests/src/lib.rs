@@ -1,6 +1,7 @@
 //! The tests of fdcc live in `tests/`; this crate has no code of its own but what they share.
 
 pub mod expected;
+pub mod expressions;
 pub mod functions;
 pub mod fuzzed;
 pub mod large;

@@ -369,6 +369,8 @@ impl Algorithm {
         add_scaled(&mut self.at.lambda, &self.step.lambda, alpha);
         add_scaled(&mut self.at.lower, &self.step.lower, dual);
         add_scaled(&mut self.at.upper, &self.step.upper, dual);
+        let is_newton = self.kkt.regularization == 0.0 && self.watchdog.saved.is_none();
+        self.barrier.note(alpha, is_newton);
         self.barrier.correct_multipliers(&self.space, &mut self.at);
         self.counts.iterations += 1;
         self.fresh = false;

@@ -59,6 +59,14 @@ impl Residuals {
     }
 }
 
+#[cfg(test)]
+impl Residuals {
+    /// Those of a point that only the gradient of the Lagrangian keeps from being a solution.
+    pub(super) fn of_gradient(dual: f64) -> Self {
+        Residuals { dual, product_scale: 1.0, ..Residuals::default() }
+    }
+}
+
 /// What violations are worth to the objective, to first order.
 pub(super) fn owed(space: &Space, at: &Iterate, values: &Values) -> f64 {
     let violations = at.lambda.iter().zip(&values.residuals);

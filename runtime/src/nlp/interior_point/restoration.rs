@@ -220,6 +220,7 @@ impl Algorithm {
 
     /// Multipliers after a restoration phase: bounds from the barrier, rows by least squares.
     pub(super) fn resume(&mut self, nlp: &mut dyn Nlp) {
+        self.barrier.note(0.0, false);
         let mu = self.barrier.mu;
         self.at.set_bound_multipliers(&self.space, |distance| (mu / distance).min(LARGEST_BOUND_MULTIPLIER));
         self.estimate_multipliers(nlp);

@@ -10,10 +10,12 @@
 pub mod convex;
 mod error_scale;
 pub(crate) mod estimate;
+mod factors;
 mod filter;
 pub mod interior_point;
 mod scaling;
 mod sides;
+mod sizes;
 pub mod sqp;
 #[cfg(test)]
 mod tests;
@@ -53,6 +55,17 @@ pub struct Place {
     pub grid_point: Option<usize>,
 }
 
+/// Which variables, and which rows, are one quantity at different times: they have one size.
+#[derive(Clone, Debug)]
+pub struct Quantities {
+    /// The quantity of each variable.
+    pub variables: Vec<usize>,
+    /// That of each row: below `stepped` it is the step of the variables with the same number.
+    pub rows: Vec<usize>,
+    /// How many quantities of variables may have steps.
+    pub stepped: usize,
+}
+
 /// A nonlinear programme. Evaluations take `&mut self` for working memory only: equal inputs give equal outputs.
 pub trait Nlp {
     /// One per variable.
@@ -65,6 +78,8 @@ pub trait Nlp {
     fn hessian_structure(&self) -> &Triplets;
     /// The chain of stages, if the programme is one.
     fn stages(&self) -> Option<Stages>;
+    /// Which variables and rows are one quantity of the model.
+    fn quantities(&self) -> Quantities;
     /// Objective and rows.
     fn values(&mut self, v: &[f64], rows: &mut [f64]) -> f64;
     /// Gradient, Jacobian and the Hessian of `weight * f + multipliers . c`.

@@ -1,71 +1,100 @@
-//! A programme whose objective and rows have gradients of moderate size at the start.
+//! A programme in other units, with numbers of moderate size ([`factors`](super::factors)).
 //!
-//! As in Ipopt (Waechter & Biegler 2006, section 3.8): factors `min(1, 100 / ||gradient||)`, never below 1e-8.
+//! ```text
+//!     minimise  s f(V w)   subject to   R lower <= R c(V w) <= R upper,   lower <= V w <= upper
+//! ```
+//!
+//! Newton's step is the same in all units; regularisation, tolerances and the norm of violations are not.
 
-use super::{Derivatives, Multipliers, Nlp, Place};
+use super::factors::Factors;
+use super::{Derivatives, Multipliers, Nlp, Place, Quantities, Start};
 use crate::linalg::{Stages, Triplets};
 use crate::problem::Bounds;
 
-/// Gradients above this are scaled down to it.
-const LARGEST_GRADIENT: f64 = 100.0;
-const SMALLEST_FACTOR: f64 = 1e-8;
-
-/// `objective * f` and `rows[i] * c_i` of the programme inside.
+/// The scaled programme.
 pub(crate) struct Scaled<'a> {
     inner: &'a mut dyn Nlp,
-    pub(crate) objective: f64,
-    pub(crate) rows: Vec<f64>,
-    bounds: Vec<Bounds>,
+    factors: Factors,
+    variable_bounds: Vec<Bounds>,
+    row_bounds: Vec<Bounds>,
+    /// A point and multipliers of the programme inside.
+    point: Vec<f64>,
     multipliers: Vec<f64>,
-    /// Factor of each Jacobian value; none where no row is scaled, as is usual.
+    /// Factors of Jacobian and Hessian values; none where all are 1, as is usual.
     entries: Vec<f64>,
+    curvatures: Vec<f64>,
 }
 
 impl<'a> Scaled<'a> {
-    /// Chooses the factors from the gradients at `v`.
+    /// Chooses the factors for a solve that begins at `v`.
     pub(crate) fn new(inner: &'a mut dyn Nlp, v: &[f64]) -> Self {
-        let count = inner.row_bounds().len();
-        let mut derivatives = Derivatives::new(inner);
-        inner.derivatives(v, 0.0, &vec![0.0; count], &mut derivatives);
-        let mut largest = vec![0.0f64; count];
-        for ((row, _), value) in inner.jacobian_structure().entries().zip(&derivatives.jacobian) {
-            largest[row] = largest[row].max(value.abs());
+        let factors = Factors::new(inner, v);
+        let Factors { variables, rows, .. } = &factors;
+        let scaled = |bounds: &Bounds, s: f64| Bounds { lower: bounds.lower * s, upper: bounds.upper * s };
+        let of_variables = inner.variable_bounds().iter().zip(variables);
+        let of_rows = inner.row_bounds().iter().zip(rows);
+        let entries = inner.jacobian_structure().entries().map(|(row, i)| rows[row] * variables[i]);
+        let curvatures = inner.hessian_structure().entries().map(|(i, j)| variables[i] * variables[j]);
+        Scaled {
+            variable_bounds: of_variables.map(|(bounds, s)| scaled(bounds, 1.0 / s)).collect(),
+            row_bounds: of_rows.map(|(bounds, s)| scaled(bounds, *s)).collect(),
+            point: variables.clone(),
+            multipliers: rows.clone(),
+            entries: unless_one(entries.collect()),
+            curvatures: unless_one(curvatures.collect()),
+            inner,
+            factors,
         }
-        let rows: Vec<f64> = largest.into_iter().map(factor).collect();
-        let objective = factor(derivatives.gradient.iter().fold(0.0, |largest: f64, g| largest.max(g.abs())));
-        let bounds = inner.row_bounds().iter().zip(&rows);
-        let bounds = bounds.map(|(b, s)| Bounds { lower: b.lower * s, upper: b.upper * s }).collect();
-        let mut entries = Vec::new();
-        if rows.iter().any(|s| *s != 1.0) {
-            entries.extend(inner.jacobian_structure().entries().map(|(row, _)| rows[row]));
-        }
-        Scaled { inner, objective, rows, bounds, multipliers: vec![0.0; count], entries }
     }
 
-    /// Multipliers of the programme inside, from those of this one.
-    pub(crate) fn unscale(&self, multipliers: &mut Multipliers) {
-        let by_objective = 1.0 / self.objective;
-        multipliers.rows.iter_mut().zip(&self.rows).for_each(|(value, s)| *value *= s * by_objective);
-        multipliers.lower.iter_mut().chain(&mut multipliers.upper).for_each(|value| *value *= by_objective);
+    /// What the objective is multiplied by.
+    pub(crate) fn objective(&self) -> f64 {
+        self.factors.objective
     }
 
-    /// Multipliers of this programme, from those of the one inside.
-    pub(crate) fn scale(&self, multipliers: &mut Multipliers) {
-        multipliers.rows.iter_mut().zip(&self.rows).for_each(|(value, s)| *value *= self.objective / s);
-        multipliers.lower.iter_mut().chain(&mut multipliers.upper).for_each(|value| *value *= self.objective);
+    /// A start of the programme inside as one of this programme.
+    pub(crate) fn start(&self, start: &Start) -> Start {
+        let Factors { objective, variables, rows } = &self.factors;
+        let mut start = start.clone();
+        start.v.iter_mut().zip(variables).for_each(|(value, s)| *value /= s);
+        if let Some(Multipliers { rows: of_rows, lower, upper }) =
+            start.warm.as_mut().map(|warm| &mut warm.multipliers)
+        {
+            of_rows.iter_mut().zip(rows).for_each(|(value, s)| *value *= objective / s);
+            for bounds in [lower, upper] {
+                bounds.iter_mut().zip(variables).for_each(|(value, s)| *value *= objective * s);
+            }
+        }
+        start
+    }
+
+    /// A point and multipliers of this programme as those of the programme inside.
+    pub(crate) fn unscale(&self, v: &mut [f64], multipliers: &mut Multipliers) {
+        let Factors { objective, variables, rows } = &self.factors;
+        v.iter_mut().zip(variables).for_each(|(value, s)| *value *= s);
+        multipliers.rows.iter_mut().zip(rows).for_each(|(value, s)| *value *= s / objective);
+        for bounds in [&mut multipliers.lower, &mut multipliers.upper] {
+            bounds.iter_mut().zip(variables).for_each(|(value, s)| *value /= objective * s);
+        }
+    }
+
+    fn load(&mut self, w: &[f64]) {
+        let both = w.iter().zip(&self.factors.variables);
+        self.point.iter_mut().zip(both).for_each(|(v, (w, s))| *v = w * s);
     }
 }
 
-fn factor(gradient: f64) -> f64 {
-    if gradient > LARGEST_GRADIENT { (LARGEST_GRADIENT / gradient).max(SMALLEST_FACTOR) } else { 1.0 }
+/// Nothing where all are 1.
+fn unless_one(factors: Vec<f64>) -> Vec<f64> {
+    if factors.iter().all(|s| *s == 1.0) { Vec::new() } else { factors }
 }
 
 impl Nlp for Scaled<'_> {
     fn variable_bounds(&self) -> &[Bounds] {
-        self.inner.variable_bounds()
+        &self.variable_bounds
     }
     fn row_bounds(&self) -> &[Bounds] {
-        &self.bounds
+        &self.row_bounds
     }
     fn jacobian_structure(&self) -> &Triplets {
         self.inner.jacobian_structure()
@@ -76,23 +105,31 @@ impl Nlp for Scaled<'_> {
     fn stages(&self) -> Option<Stages> {
         self.inner.stages()
     }
-    fn values(&mut self, v: &[f64], rows: &mut [f64]) -> f64 {
-        let objective = self.inner.values(v, rows);
-        rows.iter_mut().zip(&self.rows).for_each(|(value, s)| *value *= s);
-        self.objective * objective
+    fn quantities(&self) -> Quantities {
+        self.inner.quantities()
     }
-    fn derivatives(&mut self, v: &[f64], weight: f64, multipliers: &[f64], out: &mut Derivatives) {
-        for ((target, multiplier), s) in self.multipliers.iter_mut().zip(multipliers).zip(&self.rows) {
+    fn values(&mut self, w: &[f64], rows: &mut [f64]) -> f64 {
+        self.load(w);
+        let objective = self.inner.values(&self.point, rows);
+        rows.iter_mut().zip(&self.factors.rows).for_each(|(value, s)| *value *= s);
+        self.factors.objective * objective
+    }
+    fn derivatives(&mut self, w: &[f64], weight: f64, multipliers: &[f64], out: &mut Derivatives) {
+        self.load(w);
+        let Factors { objective, variables, rows } = &self.factors;
+        for ((target, multiplier), s) in self.multipliers.iter_mut().zip(multipliers).zip(rows) {
             *target = multiplier * s;
         }
-        self.inner.derivatives(v, weight * self.objective, &self.multipliers, out);
-        out.gradient.iter_mut().for_each(|value| *value *= self.objective);
+        self.inner.derivatives(&self.point, weight * objective, &self.multipliers, out);
+        out.gradient.iter_mut().zip(variables).for_each(|(value, s)| *value *= objective * s);
         out.jacobian.iter_mut().zip(&self.entries).for_each(|(value, s)| *value *= s);
+        out.hessian.iter_mut().zip(&self.curvatures).for_each(|(value, s)| *value *= s);
     }
     fn row_place(&self, row: usize) -> Place {
         self.inner.row_place(row)
     }
-    fn not_finite(&mut self, v: &[f64]) -> Option<Place> {
-        self.inner.not_finite(v)
+    fn not_finite(&mut self, w: &[f64]) -> Option<Place> {
+        self.load(w);
+        self.inner.not_finite(&self.point)
     }
 }

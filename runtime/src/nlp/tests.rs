@@ -2,7 +2,9 @@
 
 use super::{interior_point, sqp};
 use crate::linalg::{Family, Stages, Triplets};
-use crate::nlp::{Derivatives, Multipliers, Nlp, Options, Place, Solution, Start, Status, Warm, Watch};
+use crate::nlp::{
+    Derivatives, Multipliers, Nlp, Options, Place, Quantities, Solution, Start, Status, Warm, Watch,
+};
 use crate::problem::{Bounds, Linear};
 use std::ops::ControlFlow;
 
@@ -55,6 +57,10 @@ impl Nlp for Dense {
     }
     fn stages(&self) -> Option<Stages> {
         None
+    }
+    fn quantities(&self) -> Quantities {
+        let (variables, rows) = ((0..self.variables.len()).collect(), (0..self.rows.len()).collect());
+        Quantities { variables, rows, stepped: 0 }
     }
     fn values(&mut self, v: &[f64], rows: &mut [f64]) -> f64 {
         (self.functions.0)(v, rows)

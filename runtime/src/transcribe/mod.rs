@@ -15,12 +15,13 @@ pub(crate) mod collocation;
 mod guess;
 pub(crate) mod interval;
 pub(crate) mod mesh;
+mod quantities;
 mod sampled;
 pub(crate) mod tableau;
 mod tables;
 
 use crate::linalg::{Stages, Triplets};
-use crate::nlp::{Derivatives, Nlp, Place};
+use crate::nlp::{Derivatives, Nlp, Place, Quantities};
 use crate::problem::{Bounds, Origin, Problem};
 use assembly::{Builder, Repeated};
 use boundary::Ends;
@@ -222,6 +223,9 @@ impl Nlp for TranscribedNlp<'_> {
     }
     fn stages(&self) -> Option<Stages> {
         Some(self.stages)
+    }
+    fn quantities(&self) -> Quantities {
+        self.all_quantities()
     }
 
     fn values(&mut self, v: &[f64], rows: &mut [f64]) -> f64 {

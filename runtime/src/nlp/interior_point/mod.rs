@@ -101,11 +101,12 @@ fn attempt_with(
     watch: &mut Watch,
 ) -> Solution {
     let mut scaled = Scaled::new(nlp, &start.v);
-    let objective_scale = scaled.objective;
+    let objective_scale = scaled.objective();
+    let start = scaled.start(start);
     let mut watch = |progress: &Progress| {
         watch(&Progress { objective: progress.objective / objective_scale, ..*progress })
     };
-    let mut algorithm = start::prepare(&mut scaled, start, *options);
+    let mut algorithm = start::prepare(&mut scaled, &start, *options);
     let status = run(&mut algorithm, &mut scaled, &mut watch);
     let mu = algorithm.barrier.mu;
     let Algorithm { at, counts, residuals, space, .. } = algorithm;
@@ -114,8 +115,8 @@ fn attempt_with(
         lower: at.lower[..space.variables].to_vec(),
         upper: at.upper[..space.variables].to_vec(),
     };
-    scaled.unscale(&mut multipliers);
-    let v = at.y[..space.variables].to_vec();
+    let mut v = at.y[..space.variables].to_vec();
+    scaled.unscale(&mut v, &mut multipliers);
     let mut rows = vec![0.0; multipliers.rows.len()];
     let objective = nlp.values(&v, &mut rows);
     let constraint_violation = super::constraint_violation(nlp, &v);

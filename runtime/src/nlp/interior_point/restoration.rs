@@ -16,7 +16,7 @@ use super::space::Space;
 use crate::nlp::filter::Filter;
 
 use crate::linalg::{Family, Stages, Triplets};
-use crate::nlp::{Derivatives, Nlp, Place, Progress, Status, Watch};
+use crate::nlp::{Derivatives, Nlp, Place, Progress, Quantities, Status, Watch};
 use crate::problem::Bounds;
 
 const RHO: f64 = 1e3;
@@ -93,6 +93,9 @@ impl Nlp for Proximity<'_> {
     }
     fn stages(&self) -> Option<Stages> {
         self.inner.stages()
+    }
+    fn quantities(&self) -> Quantities {
+        self.inner.quantities()
     }
     fn values(&mut self, v: &[f64], rows: &mut [f64]) -> f64 {
         self.inner.values(v, rows);

@@ -4,7 +4,6 @@ use super::algorithm::Algorithm;
 use super::iterate::Iterate;
 use super::space::Space;
 use crate::nlp::filter::Filter;
-use crate::nlp::scaling::Scaled;
 use crate::nlp::{Multipliers, Nlp, Options, Start};
 
 const FIRST_MU: f64 = 0.1;
@@ -12,7 +11,7 @@ const COLD_PUSH: f64 = 1e-2;
 const WARM_PUSH: f64 = 1e-5;
 
 /// The algorithm at its first iterate.
-pub(super) fn prepare(nlp: &mut Scaled, start: &Start, options: Options) -> Algorithm {
+pub(super) fn prepare(nlp: &mut dyn Nlp, start: &Start, options: Options) -> Algorithm {
     let space = Space::new(nlp);
     let (mu, push) = match &start.warm {
         Some(warm) if warm.mu > 0.0 => (warm.mu, WARM_PUSH),
@@ -24,7 +23,7 @@ pub(super) fn prepare(nlp: &mut Scaled, start: &Start, options: Options) -> Algo
     let (length, rows) = (space.len(), space.target.len());
     let mut at = Iterate { y, lambda: vec![0.0; rows], lower: vec![0.0; length], upper: vec![0.0; length] };
     match &start.warm {
-        Some(warm) => warm_multipliers(nlp, &space, warm.multipliers.clone(), mu, &mut at),
+        Some(warm) => warm_multipliers(&space, &warm.multipliers, mu, &mut at),
         None => at.set_bound_multipliers(&space, |_| 1.0),
     }
     let mut algorithm = Algorithm::new(nlp, space, at, mu, options);
@@ -53,8 +52,7 @@ fn first_point(nlp: &mut dyn Nlp, space: &Space, start: &[f64], push: f64) -> Ve
     y
 }
 
-fn warm_multipliers(nlp: &Scaled, space: &Space, mut known: Multipliers, mu: f64, at: &mut Iterate) {
-    nlp.scale(&mut known);
+fn warm_multipliers(space: &Space, known: &Multipliers, mu: f64, at: &mut Iterate) {
     at.lambda.copy_from_slice(&known.rows);
     let Iterate { y, lambda, lower, upper } = at;
     space.for_each_bound(y, |i, distance, direction| {

@@ -43,29 +43,22 @@ pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Wa
 /// The same without a second opinion.
 pub(super) fn attempt(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watch) -> Solution {
     let mut scaled = Scaled::new(nlp, &start.v);
-    let objective_scale = scaled.objective;
+    let objective_scale = scaled.objective();
+    let start = scaled.start(start);
     let mut watch = |progress: &Progress| {
         watch(&Progress { objective: progress.objective / objective_scale, ..*progress })
     };
-    let multipliers = first_multipliers(&scaled, start);
+    // Those of an earlier solve, or none.
+    let multipliers = start.warm.map_or_else(|| Multipliers::zeros(&scaled), |warm| warm.multipliers);
     let mut algorithm = Algorithm::new(&mut scaled, &start.v, multipliers, *options);
     let status = algorithm.run(&mut scaled, &mut watch);
     let kkt_error = algorithm.residuals.error();
     let Algorithm { at, mut multipliers, counts, .. } = algorithm;
-    scaled.unscale(&mut multipliers);
+    let mut v = at.v;
+    scaled.unscale(&mut v, &mut multipliers);
     let mut rows = vec![0.0; multipliers.rows.len()];
-    let objective = nlp.values(&at.v, &mut rows);
-    let constraint_violation = super::constraint_violation(nlp, &at.v);
-    let (v, mu, global) = (at.v, 0.0, false);
+    let objective = nlp.values(&v, &mut rows);
+    let constraint_violation = super::constraint_violation(nlp, &v);
+    let (mu, global) = (0.0, false);
     Solution { status, v, multipliers, mu, objective, kkt_error, constraint_violation, global, counts }
-}
-
-/// Those of an earlier solve, or none.
-fn first_multipliers(nlp: &Scaled, start: &Start) -> Multipliers {
-    let mut multipliers = match &start.warm {
-        Some(warm) => warm.multipliers.clone(),
-        None => Multipliers::zeros(nlp),
-    };
-    nlp.scale(&mut multipliers);
-    multipliers
 }

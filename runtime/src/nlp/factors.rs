@@ -1,0 +1,104 @@
+//! Factors that make the numbers of a programme moderate, whatever the units of the model.
+//!
+//! A quantity whose size ([`sizes`](super::sizes)) is between 1/16 and 16 is left alone, others are brought to the nearer of these. The steps of a state are divided by what it is divided by. The
+//! objective is scaled so that its gradient, summed over the times of a quantity, is between 1 and 100. As in Ipopt (Waechter & Biegler 2006, section 3.8) rows with gradients above 100 at the
+//! start are scaled down to that; path constraints and boundary conditions whose gradients are all below 1/100 are scaled up to it. All but the former are powers of two, which round nothing.
+
+use super::sizes::{largest, near, sizes, slopes};
+use super::{Derivatives, Nlp, Quantities};
+
+/// Quantities up to this size, and down to its inverse, are moderate.
+const MODERATE: f64 = 16.0;
+/// The same of gradients of rows.
+const MODERATE_GRADIENT: f64 = 100.0;
+/// The least and the largest gradient of the objective.
+const LEAST_OBJECTIVE: f64 = 1.0;
+const LARGEST_OBJECTIVE: f64 = 100.0;
+/// Sizes beyond this, or below its inverse, are rounding or poles.
+const LARGEST_SIZE: f64 = 1e8;
+/// The same of factors of the objective, whose unit is a product of others.
+const LARGEST_FACTOR: f64 = 1e12;
+
+/// What the numbers of a programme are multiplied by.
+pub(super) struct Factors {
+    pub(super) objective: f64,
+    /// `v` of the programme is so many times the variables of the scaled one.
+    pub(super) variables: Vec<f64>,
+    pub(super) rows: Vec<f64>,
+}
+
+impl Factors {
+    /// Those for a solve that begins at `v`.
+    pub(super) fn new(nlp: &mut dyn Nlp, v: &[f64]) -> Self {
+        let quantities = nlp.quantities();
+        let at_start = slopes(nlp, v);
+        let sizes = sizes(nlp, &quantities, v);
+        let units: Vec<f64> = sizes.iter().map(|size| unit(*size)).collect();
+        let variables: Vec<f64> = quantities.variables.iter().map(|i| units[*i]).collect();
+        let mut slope = objective_slope(&quantities, &variables, &at_start);
+        if slope == 0.0 {
+            let near = near(nlp, &quantities, v, &sizes);
+            slope = objective_slope(&quantities, &variables, &slopes(nlp, &near));
+        }
+        let rows = rows(nlp, &quantities, (&units, &variables), &at_start);
+        Factors { objective: objective(slope), variables, rows }
+    }
+}
+
+/// What a quantity of this size is divided by; 1 where it is moderate or nothing is known.
+fn unit(size: f64) -> f64 {
+    if size == 0.0 || !size.is_finite() {
+        return 1.0;
+    }
+    let size = power_of_two(size.clamp(1.0 / LARGEST_SIZE, LARGEST_SIZE));
+    size / size.clamp(1.0 / MODERATE, MODERATE)
+}
+
+fn power_of_two(value: f64) -> f64 {
+    value.log2().round().exp2()
+}
+
+/// The gradient of the objective, summed over the times of each quantity; the largest sum.
+fn objective_slope(quantities: &Quantities, variables: &[f64], at: &Derivatives) -> f64 {
+    let mut sums = vec![0.0; variables.len()];
+    for ((i, unit), slope) in quantities.variables.iter().zip(variables).zip(&at.gradient) {
+        sums[*i] += (unit * slope).abs();
+    }
+    sums.into_iter().fold(0.0, f64::max)
+}
+
+fn objective(slope: f64) -> f64 {
+    if slope == 0.0 || !slope.is_finite() {
+        return 1.0;
+    }
+    let factor = slope.clamp(LEAST_OBJECTIVE, LARGEST_OBJECTIVE) / slope;
+    power_of_two(factor.clamp(1.0 / LARGEST_FACTOR, LARGEST_FACTOR))
+}
+
+fn rows(
+    nlp: &dyn Nlp,
+    quantities: &Quantities,
+    (units, variables): (&[f64], &[f64]),
+    at: &Derivatives,
+) -> Vec<f64> {
+    let mut slopes = vec![0.0f64; quantities.rows.len()];
+    for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&at.jacobian) {
+        slopes[row] = slopes[row].max((variables[column] * slope).abs());
+    }
+    let of_quantities: Vec<f64> =
+        largest(&quantities.rows, slopes.iter().copied()).into_iter().map(upwards).collect();
+    let factor = |(i, slope): (&usize, f64)| {
+        let factor = if *i < quantities.stepped { 1.0 / units[*i] } else { of_quantities[*i] };
+        factor * downwards(factor * slope)
+    };
+    quantities.rows.iter().zip(slopes).map(factor).collect()
+}
+
+fn upwards(slope: f64) -> f64 {
+    let is_small = slope > 0.0 && slope < 1.0 / MODERATE_GRADIENT;
+    if is_small { power_of_two(1.0 / (MODERATE_GRADIENT * slope.max(1.0 / LARGEST_SIZE))) } else { 1.0 }
+}
+
+fn downwards(slope: f64) -> f64 {
+    if slope > MODERATE_GRADIENT { (MODERATE_GRADIENT / slope).max(1.0 / LARGEST_SIZE) } else { 1.0 }
+}

@@ -1,0 +1,106 @@
+//! How large the quantities of a programme are, as far as can be told before it is solved.
+//!
+//! The size of a quantity is the largest value of its guess; where that is 0, the length of its range; where that is infinite, what the others make of it,
+//!
+//! ```text
+//!     of a state     S_i = sum of |steps of x_i|               with all whose size is known moved by a part of it;
+//!     of a control   S_j = min over i of S_i / sum of |slopes of x_i's steps|, there too
+//! ```
+
+use super::{Derivatives, Nlp, Quantities};
+use crate::problem::Bounds;
+use std::collections::BTreeMap;
+
+/// Multiples of it spread evenly between 0 and 1.
+const GOLDEN: f64 = 0.618_033_988_749_895;
+
+/// The size of each quantity; 0 where nothing is known.
+pub(super) fn sizes(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64]) -> Vec<f64> {
+    let mut sizes = largest(&quantities.variables, v.iter().map(|value| value.abs()));
+    let ranges = largest(&quantities.variables, nlp.variable_bounds().iter().map(range));
+    for (size, range) in sizes.iter_mut().zip(ranges) {
+        *size = if *size == 0.0 && range.is_finite() { range } else { *size };
+    }
+    let mut unknown = sizes.iter().filter(|size| **size == 0.0).count();
+    while unknown > 0 {
+        let near = near(nlp, quantities, v, &sizes);
+        find_states(nlp, quantities, &near, &mut sizes);
+        if sizes.iter().filter(|size| **size == 0.0).count() == unknown {
+            find_controls(nlp, quantities, &near, &mut sizes);
+        }
+        let left = sizes.iter().filter(|size| **size == 0.0).count();
+        if left == unknown {
+            break;
+        }
+        unknown = left;
+    }
+    sizes
+}
+
+/// Each variable moved by a part of the size of its quantity, within its bounds.
+pub(super) fn near(nlp: &dyn Nlp, quantities: &Quantities, v: &[f64], sizes: &[f64]) -> Vec<f64> {
+    let moved = v.iter().zip(nlp.variable_bounds()).zip(&quantities.variables).enumerate();
+    let moved = moved.map(|(i, ((v, bounds), quantity))| {
+        let (v, size) = (v.max(bounds.lower).min(bounds.upper), sizes[*quantity]);
+        let (least, most) = ((v - size).max(bounds.lower), (v + size).min(bounds.upper));
+        least + (i as f64 * GOLDEN).fract() * (most - least)
+    });
+    moved.collect()
+}
+
+/// Derivatives of objective and rows.
+pub(super) fn slopes(nlp: &mut dyn Nlp, v: &[f64]) -> Derivatives {
+    let mut slopes = Derivatives::new(nlp);
+    nlp.derivatives(v, 0.0, &vec![0.0; nlp.row_bounds().len()], &mut slopes);
+    slopes
+}
+
+/// The largest value that belongs to each number in `of`.
+pub(super) fn largest(of: &[usize], values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut largest = vec![0.0f64; of.iter().max().map_or(0, |last| last + 1)];
+    of.iter().zip(values).for_each(|(i, value)| largest[*i] = largest[*i].max(value));
+    largest
+}
+
+fn range(bounds: &Bounds) -> f64 {
+    if bounds.is_equality() { 0.0 } else { bounds.upper - bounds.lower }
+}
+
+/// How far the equations take states of unknown size, which are 0: all that is left of a step is its right side.
+fn find_states(nlp: &mut dyn Nlp, quantities: &Quantities, near: &[f64], sizes: &mut [f64]) {
+    let mut rows = vec![0.0; quantities.rows.len()];
+    nlp.values(near, &mut rows);
+    let mut steps: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    for (i, row) in quantities.rows.iter().zip(rows) {
+        if *i < quantities.stepped && sizes[*i] == 0.0 && row.is_finite() {
+            steps.entry(*i).or_default().push(row.abs());
+        }
+    }
+    let intervals = intervals(nlp);
+    steps.into_iter().for_each(|(i, steps)| sizes[i] = intervals * mean(&steps));
+}
+
+/// How much of a control of unknown size changes a state by its own size.
+fn find_controls(nlp: &mut dyn Nlp, quantities: &Quantities, near: &[f64], sizes: &mut [f64]) {
+    let slopes = slopes(nlp, near);
+    let mut influences: BTreeMap<(usize, usize), Vec<f64>> = BTreeMap::new();
+    for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&slopes.jacobian) {
+        let (i, j) = (quantities.rows[row], quantities.variables[column]);
+        if i < quantities.stepped && sizes[i] > 0.0 && sizes[j] == 0.0 && slope.is_finite() {
+            influences.entry((i, j)).or_default().push(slope.abs());
+        }
+    }
+    let intervals = intervals(nlp);
+    for ((i, j), slopes) in influences {
+        let most = sizes[i] / (intervals * mean(&slopes));
+        sizes[j] = if most.is_finite() && (sizes[j] == 0.0 || most < sizes[j]) { most } else { sizes[j] };
+    }
+}
+
+fn intervals(nlp: &dyn Nlp) -> f64 {
+    nlp.stages().map_or(1.0, |stages| stages.intervals as f64)
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}

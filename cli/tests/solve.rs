@@ -207,17 +207,17 @@ fn a_warm_start_begins_at_the_earlier_solution_on_any_grid() {
 #[test]
 fn a_warm_start_takes_the_widths_that_were_chosen() {
     let (folder, turbo) = (folder("chosen", &[]), model("turbo"));
-    let cold = solved(&folder, &[&turbo, "--method", "N=40", "--out", "."]);
-    let warm = solved(&folder, &[&turbo, "--method", "N=40", "--warm", "turbo.sol.json"]);
+    let cold = solved(&folder, &[&turbo, "--method", "N=80", "--out", "."]);
+    let warm = solved(&folder, &[&turbo, "--method", "N=80", "--warm", "turbo.sol.json"]);
     assert_eq!(cold["method"]["sigmas"], warm["method"]["sigmas"]);
     let number = |document: &Value, key: &str| document[key].as_f64().expect("a number");
     assert!((number(&cold, "objective") - number(&warm, "objective")).abs() < 1e-6);
     let (before, after) = (number(&cold, "iterations"), number(&warm, "iterations"));
     assert!(after < 0.5 * before, "{after} iterations instead of {before}");
     // A width that somebody named is not taken: it may be a wide one.
-    let wide = solved(&folder, &[&turbo, "--method", "N=40", "--method", "sigma=0.5", "--out", "."]);
+    let wide = solved(&folder, &[&turbo, "--method", "N=80", "--method", "sigma=0.5", "--out", "."]);
     assert!((number(&cold, "objective") - number(&wide, "objective")).abs() > 1e-3);
-    let warm = solved(&folder, &[&turbo, "--method", "N=40", "--warm", "turbo.sol.json"]);
+    let warm = solved(&folder, &[&turbo, "--method", "N=80", "--warm", "turbo.sol.json"]);
     assert!((number(&cold, "objective") - number(&warm, "objective")).abs() < 1e-6);
 }
 

@@ -69,7 +69,7 @@ fn advice(is_proved: bool) -> &'static str {
          control, or allow more time."
     } else {
         "no small change of the trajectory makes this better. Loosen a condition, widen the bounds of a control, allow \
-         more time, or start from another `guess` if you know that a solution exists."
+         more time; or try other starting points with `--starts 8`, or another `guess`, if you think that a solution exists."
     }
 }
 

@@ -94,13 +94,13 @@ impl Ldl {
         Ldl { upper, positions, factors: None }
     }
 
-    /// How many entries each column of `L` will have below its diagonal; nothing where the matrix cannot be factored.
-    pub(crate) fn column_lengths(&self) -> Vec<usize> {
+    /// How many entries each column of `L` will have below its diagonal; `None` where the matrix cannot be factored.
+    pub(crate) fn column_lengths(&self) -> Option<Vec<usize>> {
         let settings = QDLDLSettingsBuilder::default().logical(true).build();
         let matrix = self.upper.clone().into_csc();
         let factors =
             settings.ok().and_then(|settings| QDLDLFactorisation::new(&matrix, Some(settings)).ok());
-        factors.map_or_else(Vec::new, |it| it.L.colptr.windows(2).map(|ends| ends[1] - ends[0]).collect())
+        factors.map(|it| it.L.colptr.windows(2).map(|ends| ends[1] - ends[0]).collect())
     }
 
     /// Factors the matrix with new values; the number of positive eigenvalues, or `None` at a zero pivot.

@@ -120,3 +120,14 @@ fn who_stops_a_later_attempt_is_not_told_that_there_is_no_solution() {
         assert_eq!(count(limit).0, Status::Interrupted, "after {limit} of {all}");
     }
 }
+
+/// One interval is no chain: the recursion has nothing to do there.
+#[test]
+fn one_interval_is_solved() {
+    let text = "time t in [0, 2] state x start 0 state v start 0 control u in [-5, 5] \
+                dynamics { x' = v v' = u - 0.2*v } end x == 1 minimize integral(u^2)";
+    for (scheme, linear) in [("midpoint", "auto"), ("radau3", "riccati"), ("gauss2", "auto")] {
+        let changes = [("scheme", scheme), ("linear", linear), ("N", "1"), ("solver", "interior_point")];
+        assert_eq!(solve(&problem(text, &[], &changes)).solution.status, Status::Solved, "{scheme}");
+    }
+}

@@ -47,9 +47,10 @@ impl SparseLdl {
         }
     }
 
-    /// How many multiplications a factorisation takes, about.
+    /// How many multiplications a factorisation takes, about; infinite where there is none.
     pub(crate) fn multiplications(&self) -> f64 {
-        self.ldl.column_lengths().iter().map(|length| (*length as f64).powi(2)).sum()
+        let lengths = self.ldl.column_lengths();
+        lengths.map_or(f64::INFINITY, |it| it.iter().map(|length| (*length as f64).powi(2)).sum())
     }
 
     fn add_diagonal(&mut self, sigma: &[f64], d: &[f64]) {

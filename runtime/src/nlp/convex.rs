@@ -3,6 +3,7 @@
 //! A programme whose rows are affine and whose objective is a convex quadratic is read off its own derivatives at
 //! one point `v0`: `P = hessian`, `q = gradient - P v0`, `A = jacobian`, constants from the row values.
 
+use super::scaling::Scaled;
 use super::sides::Sides;
 use super::{Counts, Derivatives, Multipliers, Nlp, Solution, Start, Status, constraint_violation};
 use crate::clarabel::{Columns, ConicProgram, ConicStatus, Ldl, solve_conic};
@@ -26,6 +27,16 @@ const CREDIBLE: f64 = 1e-6;
 /// Solves the programme if its Hessian is positive semidefinite; `None` if it is not convex. The caller has made sure
 /// that it is quadratic.
 pub fn solve(nlp: &mut dyn Nlp, start: &Start, tolerance: f64, max_iterations: usize) -> Option<Solution> {
+    let mut scaled = Scaled::new(nlp, &start.v);
+    let start = scaled.start(start);
+    let mut solution = solve_scaled(&mut scaled, &start, tolerance, max_iterations)?;
+    scaled.unscale(&mut solution.v, &mut solution.multipliers);
+    solution.objective = nlp.values(&solution.v, &mut vec![0.0; nlp.row_bounds().len()]);
+    solution.constraint_violation = constraint_violation(nlp, &solution.v);
+    Some(solution)
+}
+
+fn solve_scaled(nlp: &mut dyn Nlp, start: &Start, tolerance: f64, max_iterations: usize) -> Option<Solution> {
     let variables = start.v.len();
     if variables == 0 {
         return None;

@@ -2,7 +2,7 @@
 //!
 //! A quantity whose size ([`sizes`](super::sizes)) is between 1/16 and 16 is left alone, others are brought to the nearer of these. The steps of a state are divided by what it is divided by. The
 //! objective is scaled so that its gradient, summed over the times of a quantity, is between 1 and 100. As in Ipopt (Waechter & Biegler 2006, section 3.8) rows with gradients above 100 at the
-//! start are scaled down to that; path constraints and boundary conditions whose gradients are all below 1/100 are scaled up to it. All but the former are powers of two, which round nothing.
+//! start are scaled down to that; path constraints and boundary conditions whose gradients are all below 1/100, at the start and near it, are scaled up to 1. All but the former are powers of two, which round nothing.
 
 use super::sizes::{largest, near, sizes, slopes};
 use super::{Derivatives, Nlp, Quantities};
@@ -14,9 +14,11 @@ const MODERATE_GRADIENT: f64 = 100.0;
 /// The least and the largest gradient of the objective.
 const LEAST_OBJECTIVE: f64 = 1.0;
 const LARGEST_OBJECTIVE: f64 = 100.0;
-/// Sizes beyond this, or below its inverse, are rounding or poles.
-const LARGEST_SIZE: f64 = 1e8;
-/// The same of factors of the objective, whose unit is a product of others.
+/// Sizes and slopes below this are none.
+const SMALLEST: f64 = 1e-30;
+/// Rows are not scaled down below this.
+const LEAST_FACTOR: f64 = 1e-8;
+/// Factors of the objective beyond this, or below its inverse, come from slopes that are rounding.
 const LARGEST_FACTOR: f64 = 1e12;
 
 /// What the numbers of a programme are multiplied by.
@@ -30,18 +32,58 @@ pub(super) struct Factors {
 impl Factors {
     /// Those for a solve that begins at `v`.
     pub(super) fn new(nlp: &mut dyn Nlp, v: &[f64]) -> Self {
+        let v: Vec<f64> =
+            v.iter().zip(nlp.variable_bounds()).map(|(v, it)| v.max(it.lower).min(it.upper)).collect();
         let quantities = nlp.quantities();
-        let at_start = slopes(nlp, v);
-        let sizes = sizes(nlp, &quantities, v);
+        let at_start = slopes(nlp, &v);
+        let sizes = sizes(nlp, &quantities, &v);
         let units: Vec<f64> = sizes.iter().map(|size| unit(*size)).collect();
         let variables: Vec<f64> = quantities.variables.iter().map(|i| units[*i]).collect();
-        let mut slope = objective_slope(&quantities, &variables, &at_start);
-        if slope == 0.0 {
-            let near = near(nlp, &quantities, v, &sizes);
-            slope = objective_slope(&quantities, &variables, &slopes(nlp, &near));
+        let mut steepness = Steepness::new(nlp, &quantities, &variables, &at_start);
+        // What is flat at the start may be so by chance.
+        if steepness.is_flat(&quantities) {
+            let near = near(nlp, &quantities, &v, &sizes);
+            let at_near = slopes(nlp, &near);
+            steepness = steepness.or(Steepness::new(nlp, &quantities, &variables, &at_near));
         }
-        let rows = rows(nlp, &quantities, (&units, &variables), &at_start);
-        Factors { objective: objective(slope), variables, rows }
+        let objective = objective(steepness.objective);
+        Factors { objective, rows: rows(&quantities, &units, steepness), variables }
+    }
+}
+
+/// The gradients of objective and rows in scaled variables.
+struct Steepness {
+    /// Summed over the times of each quantity; the largest sum.
+    objective: f64,
+    rows: Vec<f64>,
+    /// The largest of the rows that are one quantity.
+    conditions: Vec<f64>,
+}
+
+impl Steepness {
+    fn new(nlp: &dyn Nlp, quantities: &Quantities, variables: &[f64], at: &Derivatives) -> Self {
+        let mut rows = vec![0.0f64; quantities.rows.len()];
+        for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&at.jacobian) {
+            rows[row] = rows[row].max((variables[column] * slope).abs());
+        }
+        let conditions = largest(&quantities.rows, rows.iter().copied());
+        Steepness { objective: objective_slope(quantities, variables, at), rows, conditions }
+    }
+
+    /// Whether something would be scaled up.
+    fn is_flat(&self, quantities: &Quantities) -> bool {
+        let conditions = self.conditions.iter().skip(quantities.stepped);
+        self.objective < LEAST_OBJECTIVE
+            || conditions.into_iter().any(|slope| *slope < 1.0 / MODERATE_GRADIENT)
+    }
+
+    /// The same with what is steeper elsewhere.
+    fn or(mut self, other: Steepness) -> Self {
+        let steeper = |a: f64, b: f64| if b.is_finite() { a.max(b) } else { a };
+        self.objective = steeper(self.objective, other.objective);
+        let conditions = self.conditions.iter_mut().zip(other.conditions);
+        conditions.for_each(|(slope, other)| *slope = steeper(*slope, other));
+        self
     }
 }
 
@@ -50,7 +92,7 @@ fn unit(size: f64) -> f64 {
     if size == 0.0 || !size.is_finite() {
         return 1.0;
     }
-    let size = power_of_two(size.clamp(1.0 / LARGEST_SIZE, LARGEST_SIZE));
+    let size = power_of_two(size.clamp(SMALLEST, 1.0 / SMALLEST));
     size / size.clamp(1.0 / MODERATE, MODERATE)
 }
 
@@ -75,30 +117,20 @@ fn objective(slope: f64) -> f64 {
     power_of_two(factor.clamp(1.0 / LARGEST_FACTOR, LARGEST_FACTOR))
 }
 
-fn rows(
-    nlp: &dyn Nlp,
-    quantities: &Quantities,
-    (units, variables): (&[f64], &[f64]),
-    at: &Derivatives,
-) -> Vec<f64> {
-    let mut slopes = vec![0.0f64; quantities.rows.len()];
-    for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&at.jacobian) {
-        slopes[row] = slopes[row].max((variables[column] * slope).abs());
-    }
-    let of_quantities: Vec<f64> =
-        largest(&quantities.rows, slopes.iter().copied()).into_iter().map(upwards).collect();
+fn rows(quantities: &Quantities, units: &[f64], steepness: Steepness) -> Vec<f64> {
+    let upwards: Vec<f64> = steepness.conditions.into_iter().map(upwards).collect();
     let factor = |(i, slope): (&usize, f64)| {
-        let factor = if *i < quantities.stepped { 1.0 / units[*i] } else { of_quantities[*i] };
+        let factor = if *i < quantities.stepped { 1.0 / units[*i] } else { upwards[*i] };
         factor * downwards(factor * slope)
     };
-    quantities.rows.iter().zip(slopes).map(factor).collect()
+    quantities.rows.iter().zip(steepness.rows).map(factor).collect()
 }
 
 fn upwards(slope: f64) -> f64 {
     let is_small = slope > 0.0 && slope < 1.0 / MODERATE_GRADIENT;
-    if is_small { power_of_two(1.0 / (MODERATE_GRADIENT * slope.max(1.0 / LARGEST_SIZE))) } else { 1.0 }
+    if is_small { power_of_two(1.0 / slope.max(SMALLEST)) } else { 1.0 }
 }
 
 fn downwards(slope: f64) -> f64 {
-    if slope > MODERATE_GRADIENT { (MODERATE_GRADIENT / slope).max(1.0 / LARGEST_SIZE) } else { 1.0 }
+    if slope > MODERATE_GRADIENT { (MODERATE_GRADIENT / slope).max(LEAST_FACTOR) } else { 1.0 }
 }

@@ -1,11 +1,15 @@
 //! How large the quantities of a programme are, as far as can be told before it is solved.
 //!
-//! The size of a quantity is the largest value of its guess; where that is 0, the length of its range; where that is infinite, what the others make of it,
+//! The size of a quantity is the largest value of its guess; where that is 0, the length of its range; where that is infinite, how far a condition on it
+//! alone takes it; where there is none, what the others make of it,
 //!
 //! ```text
 //!     of a state     S_i = sum of |steps of x_i|               with all whose size is known moved by a part of it;
 //!     of a control   S_j = min over i of S_i / sum of |slopes of x_i's steps|, there too
 //! ```
+//!
+//! A small guess may be meant as none, and a solve that begins at an earlier solution finds quantities at rest: it is the size only as far as range, conditions
+//! and equations do not say more. Beyond 1 they do not raise it.
 
 use super::{Derivatives, Nlp, Quantities};
 use crate::problem::Bounds;
@@ -13,28 +17,92 @@ use std::collections::BTreeMap;
 
 /// Multiples of it spread evenly between 0 and 1.
 const GOLDEN: f64 = 0.618_033_988_749_895;
+/// A guess below this is small.
+const SMALL: f64 = 1.0 / 16.0;
+/// A quantity with a small guess has at least this part of its range.
+const LEAST_PART: f64 = 1e-2;
+/// A longer range is none.
+const LONGEST_RANGE: f64 = 1e12;
+/// Estimates beyond this, or below its inverse, are rounding or poles.
+const LARGEST_ESTIMATE: f64 = 1e8;
 
 /// The size of each quantity; 0 where nothing is known.
 pub(super) fn sizes(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64]) -> Vec<f64> {
-    let mut sizes = largest(&quantities.variables, v.iter().map(|value| value.abs()));
+    let guesses = largest(&quantities.variables, v.iter().map(|value| value.abs()));
     let ranges = largest(&quantities.variables, nlp.variable_bounds().iter().map(range));
-    for (size, range) in sizes.iter_mut().zip(ranges) {
-        *size = if *size == 0.0 && range.is_finite() { range } else { *size };
+    let mut sizes: Vec<f64> =
+        guesses.iter().zip(ranges).map(|(guess, range)| stated(*guess, range)).collect();
+    if sizes.contains(&0.0) {
+        let demands = demands(nlp, quantities, v);
+        let unknown = sizes.iter_mut().zip(demands.iter().zip(&guesses)).filter(|(size, _)| **size == 0.0);
+        unknown
+            .for_each(|(size, (demand, guess))| *size = if *demand > 0.0 { demand.max(*guess) } else { 0.0 });
     }
-    let mut unknown = sizes.iter().filter(|size| **size == 0.0).count();
-    while unknown > 0 {
+    while sizes.contains(&0.0) {
+        let known = sizes.clone();
         let near = near(nlp, quantities, v, &sizes);
         find_states(nlp, quantities, &near, &mut sizes);
-        if sizes.iter().filter(|size| **size == 0.0).count() == unknown {
+        if sizes == known {
             find_controls(nlp, quantities, &near, &mut sizes);
         }
-        let left = sizes.iter().filter(|size| **size == 0.0).count();
-        if left == unknown {
+        let is_found = sizes != known;
+        for (i, (known, guess)) in known.iter().zip(&guesses).enumerate() {
+            if *known > 0.0 {
+                continue;
+            }
+            // A signal begins somewhere; an unknown that nothing is known of is left as it is.
+            let left = if is_found || i >= quantities.stepped { 0.0 } else { *guess };
+            sizes[i] = if sizes[i] > 0.0 { believed(sizes[i], *guess) } else { left };
+        }
+        if sizes == known {
             break;
         }
-        unknown = left;
     }
     sizes
+}
+
+/// What guess and range say; 0 where that is nothing.
+fn stated(guess: f64, range: f64) -> f64 {
+    let range = if range < LONGEST_RANGE { range } else { 0.0 };
+    if guess >= SMALL {
+        guess
+    } else if guess > 0.0 && range > 0.0 {
+        guess.max((LEAST_PART * range).min(1.0))
+    } else {
+        range
+    }
+}
+
+/// What an estimate says beside a small guess, or without one.
+fn believed(estimate: f64, guess: f64) -> f64 {
+    if guess > 0.0 {
+        estimate.min(1.0).max(guess)
+    } else {
+        estimate.clamp(1.0 / LARGEST_ESTIMATE, LARGEST_ESTIMATE)
+    }
+}
+
+/// How far each quantity has to move for conditions on it alone.
+fn demands(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64]) -> Vec<f64> {
+    let slopes = slopes(nlp, v);
+    let mut rows = vec![0.0; quantities.rows.len()];
+    nlp.values(v, &mut rows);
+    let mut steepest = vec![(0, 0.0f64, 0); rows.len()];
+    for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&slopes.jacobian) {
+        let (quantity, most, entries) = &mut steepest[row];
+        if *slope != 0.0 {
+            (*quantity, *most, *entries) = (quantities.variables[column], slope.abs(), *entries + 1);
+        }
+    }
+    let mut demands = vec![0.0f64; quantities.variables.iter().max().map_or(0, |last| last + 1)];
+    let conditions = nlp.row_bounds().iter().zip(&rows).zip(&quantities.rows).zip(steepest);
+    for (((bounds, value), row), (quantity, slope, entries)) in conditions {
+        let distance = bounds.violation(*value) / slope;
+        if *row >= quantities.stepped && entries == 1 && distance.is_finite() {
+            demands[quantity] = demands[quantity].max(distance);
+        }
+    }
+    demands
 }
 
 /// Each variable moved by a part of the size of its quantity, within its bounds.

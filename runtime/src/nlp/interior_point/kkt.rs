@@ -85,6 +85,8 @@ impl Kkt {
         let (hessian, jacobian) = (nlp.hessian_structure(), nlp.jacobian_structure());
         let recursion = match (linear, nlp.stages()) {
             (Linear::SparseLdl, _) | (_, None) => None,
+            // What belongs to the only interval cannot be told from what belongs to the ends.
+            (_, Some(stages)) if stages.intervals == 1 => None,
             (_, Some(stages)) => Riccati::new(stages, hessian, jacobian, &space.fixed, &equality).ok(),
         };
         let rows = space.target.len();

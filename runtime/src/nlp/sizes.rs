@@ -34,29 +34,36 @@ pub(super) fn sizes(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64]) -> Ve
         guesses.iter().zip(ranges).map(|(guess, range)| stated(*guess, range)).collect();
     if sizes.contains(&0.0) {
         let demands = demands(nlp, quantities, v);
-        let unknown = sizes.iter_mut().zip(demands.iter().zip(&guesses)).filter(|(size, _)| **size == 0.0);
-        unknown
-            .for_each(|(size, (demand, guess))| *size = if *demand > 0.0 { demand.max(*guess) } else { 0.0 });
+        fill(&mut sizes, |i| if demands[i] > 0.0 { demands[i].max(guesses[i]) } else { 0.0 });
     }
     while sizes.contains(&0.0) {
         let known = sizes.clone();
-        let near = near(nlp, quantities, v, &sizes);
-        find_states(nlp, quantities, &near, &mut sizes);
-        if sizes == known {
-            find_controls(nlp, quantities, &near, &mut sizes);
-        }
-        let is_found = sizes != known;
-        for (i, (known, guess)) in known.iter().zip(&guesses).enumerate() {
-            if *known > 0.0 {
-                continue;
-            }
+        let found = estimates(nlp, quantities, v, &known);
+        if found == known {
             // A signal begins somewhere; an unknown that nothing is known of is left as it is.
-            let left = if is_found || i >= quantities.stepped { 0.0 } else { *guess };
-            sizes[i] = if sizes[i] > 0.0 { believed(sizes[i], *guess) } else { left };
+            fill(&mut sizes, |i| if i < quantities.stepped { guesses[i] } else { 0.0 });
+        } else {
+            fill(&mut sizes, |i| if found[i] > 0.0 { believed(found[i], guesses[i]) } else { 0.0 });
         }
         if sizes == known {
             break;
         }
+    }
+    sizes
+}
+
+/// Gives those whose size is unknown what has been found.
+fn fill(sizes: &mut [f64], found: impl Fn(usize) -> f64) {
+    sizes.iter_mut().enumerate().filter(|(_, size)| **size == 0.0).for_each(|(i, size)| *size = found(i));
+}
+
+/// The sizes with those of states that the equations tell, else of controls.
+fn estimates(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64], known: &[f64]) -> Vec<f64> {
+    let mut sizes = known.to_vec();
+    let near = near(nlp, quantities, v, known);
+    find_states(nlp, quantities, &near, &mut sizes);
+    if sizes == known {
+        find_controls(nlp, quantities, &near, &mut sizes);
     }
     sizes
 }

@@ -367,6 +367,12 @@ impl Model {
         self.units.iter().find(|it| it.name == name)
     }
 
+    /// One of the declared unit of a name in SI; 1 where the text declares none.
+    pub fn unit_size(&self, name: &str) -> f64 {
+        let scale = self.unit_of(name).map_or(1.0, |it| it.scale);
+        if scale.is_finite() && scale > 0.0 { scale } else { 1.0 }
+    }
+
     /// The graph input that is a symbol.
     pub fn input_of(&self, symbol: Symbol) -> Option<u32> {
         self.symbols.iter().position(|&known| known == symbol).map(|at| at as u32)

@@ -215,6 +215,8 @@ pub struct Variable {
     pub name: String,
     /// Bounds at all times.
     pub bounds: Bounds,
+    /// One of its declared unit in SI, above 0; 1 where the model declares none.
+    pub unit: f64,
     /// Where it is declared.
     pub origin: Origin,
     /// A running integral that was made a state; not shown to the user.
@@ -228,6 +230,8 @@ pub struct Parameter {
     pub name: String,
     /// Its value (for a `free` unknown, its guess).
     pub value: f64,
+    /// One of its declared unit in SI, above 0; 1 where the model declares none.
+    pub unit: f64,
     /// Where it is declared.
     pub origin: Origin,
 }

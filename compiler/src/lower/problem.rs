@@ -70,12 +70,14 @@ pub(super) fn states(model: &Model, hidden: &[usize], numbers: &Numbers) -> Vec<
     let declared = model.states.iter().map(|state| Variable {
         name: state.place.name.clone(),
         bounds: numbers.bounds(model, state.range),
+        unit: model.unit_size(&state.place.name),
         origin: origin(&state.place),
         hidden: false,
     });
     let hidden = hidden.iter().map(|&at| Variable {
         name: model.integrals[at].place.name.clone(),
         bounds: Bounds::FREE,
+        unit: 1.0,
         origin: origin(&model.integrals[at].place),
         hidden: true,
     });
@@ -86,6 +88,7 @@ pub(super) fn controls(model: &Model, numbers: &Numbers) -> Vec<Variable> {
     let variable = |control: &crate::model::Control| Variable {
         name: control.place.name.clone(),
         bounds: numbers.bounds(model, control.range),
+        unit: model.unit_size(&control.place.name),
         origin: origin(&control.place),
         hidden: false,
     };
@@ -96,6 +99,7 @@ pub(super) fn parameters(model: &Model, count: usize, numbers: &Numbers) -> Vec<
     let parameter = |place: &Place, symbol| Parameter {
         name: place.name.clone(),
         value: numbers.of(model, symbol),
+        unit: model.unit_size(&place.name),
         origin: origin(place),
     };
     let params = model.params.iter().enumerate().map(|(at, it)| parameter(&it.place, Symbol::Param(at)));
@@ -104,10 +108,11 @@ pub(super) fn parameters(model: &Model, count: usize, numbers: &Numbers) -> Vec<
     let width = width(&model.method);
     for switch in model.switches() {
         let name = format!("sigma({})", switch.place.name);
-        all.push(Parameter { name, value: width, origin: origin(switch.place) });
+        all.push(Parameter { name, value: width, unit: 1.0, origin: origin(switch.place) });
     }
     if all.len() < count {
-        all.push(Parameter { name: "sigma(abs)".into(), value: width, origin: Origin::default() });
+        let (name, origin) = ("sigma(abs)".into(), Origin::default());
+        all.push(Parameter { name, value: width, unit: 1.0, origin });
     }
     all
 }

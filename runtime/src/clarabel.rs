@@ -186,8 +186,8 @@ fn in_our_words(status: SolverStatus) -> ConicStatus {
     match status {
         SolverStatus::Solved => ConicStatus::Solved,
         SolverStatus::AlmostSolved => ConicStatus::Roughly,
-        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => ConicStatus::Infeasible,
-        SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => ConicStatus::Unbounded,
+        SolverStatus::PrimalInfeasible => ConicStatus::Infeasible,
+        SolverStatus::DualInfeasible => ConicStatus::Unbounded,
         SolverStatus::MaxIterations => ConicStatus::IterationLimit,
         _ => ConicStatus::Failed,
     }

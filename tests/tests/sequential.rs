@@ -127,7 +127,7 @@ fn a_small_change_of_a_parameter_takes_few_iterations() {
 fn a_solution_is_recognised() {
     let problem = classic("brachistochrone");
     let mut nlp = TranscribedNlp::new(&problem);
-    let options = |tol| Options { tol, max_iter: 100, linear: Linear::Automatic };
+    let options = |tol| Options { tol, max_iter: 100, linear: Linear::Automatic, is_final: true };
     let mut watch = |_: &_| ControlFlow::Continue(());
     let guess = Start { v: nlp.guess(), warm: None };
     let first = sqp::solve(&mut nlp, &guess, &options(1e-8), &mut watch);

@@ -1,7 +1,8 @@
 //! The guess of states and controls over normalised time.
 //!
 //! Where the model is silent: a state runs straight from its start to its end, as far as conditions such as
-//! `end x == 1` give them; a control stays in the middle of its bounds.
+//! `end x == 1` give them; a control stays in the middle of its bounds, unless they are so wide
+//! that they say nothing of its size.
 
 use super::inputs::{Sizes, of_curve};
 use super::origin;
@@ -30,7 +31,9 @@ pub(crate) fn lower(model: &Model, graph: &mut Graph, sizes: &Sizes) -> VectorFu
         };
     }
     for control in &model.controls {
-        let value = control.guess.unwrap_or_else(|| middle(graph, control.range));
+        let value = control
+            .guess
+            .unwrap_or_else(|| middle(graph, control.range, model.unit_size(&control.place.name)));
         outputs.push(inputs.apply(graph, &[value])[0]);
         origins.push(origin(&control.place));
     }
@@ -61,7 +64,11 @@ pub(crate) fn over_time(
         guessed.1.extend(model.input_of(Symbol::State(index)));
     }
     for (index, control) in model.controls.iter().enumerate() {
-        guessed.0.push(control.guess.unwrap_or_else(|| middle(graph, control.range)));
+        guessed.0.push(
+            control
+                .guess
+                .unwrap_or_else(|| middle(graph, control.range, model.unit_size(&control.place.name))),
+        );
         guessed.1.extend(model.input_of(Symbol::Control(index)));
     }
     guessed
@@ -108,7 +115,8 @@ fn ends(model: &Model, graph: &mut Graph, index: usize, state: &State) -> [ExprI
         (Some(start), Some(end)) => [start, end],
         (Some(only), None) | (None, Some(only)) => [only, only],
         (None, None) => {
-            let middle = middle(graph, state.start_range.unwrap_or(state.range));
+            let unit = model.unit_size(&state.place.name);
+            let middle = middle(graph, state.start_range.unwrap_or(state.range), unit);
             [middle, middle]
         }
     }
@@ -122,8 +130,26 @@ pub(crate) fn fixed_by_a_row(model: &Model, graph: &mut Graph, symbol: Symbol) -
     row.map(|row| row.range.upper)
 }
 
-/// Halfway between bounds, or as near to 0 as they allow.
-pub(crate) fn middle(graph: &mut Graph, range: Range) -> ExprId {
+/// Bounds that are further apart than so many units are no statement about a size.
+const WIDE: f64 = 1e4;
+
+/// Where something is that only its bounds are known of: halfway between them, or one unit inside
+/// them and as near to 0 as that allows where they are wide.
+pub(super) fn between(lower: f64, upper: f64, unit: f64) -> f64 {
+    if upper - lower > WIDE * unit {
+        0.0_f64.max(lower + unit).min(upper - unit)
+    } else {
+        0.5 * (lower + upper)
+    }
+}
+
+/// [`between`] bounds, or as near to 0 as the only one allows.
+pub(crate) fn middle(graph: &mut Graph, range: Range, unit: f64) -> ExprId {
+    if let (Some(lower), Some(upper)) = (graph.as_number(range.lower), graph.as_number(range.upper))
+        && (upper - lower).is_finite()
+    {
+        return graph.number(between(lower, upper, unit));
+    }
     let infinite = |graph: &Graph, bound| graph.as_number(bound).is_some_and(f64::is_infinite);
     let zero = graph.number(0.0);
     match (infinite(graph, range.lower), infinite(graph, range.upper)) {

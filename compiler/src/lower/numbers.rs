@@ -1,5 +1,6 @@
 //! The numbers of a model once its parameters have values: bounds, starts, guesses of the unknowns.
 
+use super::guess::between;
 use crate::check::missing_value;
 use crate::graph::{ExprId, evaluate};
 use crate::model::{Model, Range, Symbol};
@@ -67,7 +68,7 @@ impl Numbers {
             let bounds = self.bounds(model, free.range);
             let finite = bounds.lower.is_finite() && bounds.upper.is_finite();
             let value = if finite {
-                0.5 * (bounds.lower + bounds.upper)
+                between(bounds.lower, bounds.upper, model.unit_size(&free.place.name))
             } else {
                 1.0_f64.max(bounds.lower).min(bounds.upper)
             };

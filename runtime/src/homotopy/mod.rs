@@ -73,22 +73,24 @@ pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Resu
     run.apply_sigma(&mut nlp);
     let start = start.unwrap_or_else(|| Start { v: nlp.guess(), warm: None });
     let is_open = matches!(problem.method.solver, Solver::Automatic | Solver::Convex);
-    if is_open && convex::is_quadratic_programme(problem) {
-        let method = &problem.method;
-        let solution = convex::solve(&mut nlp, &start, method.tol, method.max_iter);
-        // Where there is no optimum the interior point method has a best iterate, and a row to blame.
-        let has_word = |it: &Solution| it.status == Status::Solved || method.solver == Solver::Convex;
-        if let Some(solution) = solution.filter(has_word) {
+    let is_convex = is_open && convex::is_quadratic_programme(problem) && convex::is_proved(&mut nlp);
+    if !is_convex && problem.method.solver == Solver::Convex {
+        return Err(Refusal::NotConvex);
+    }
+    if is_convex {
+        let conic = convex::solve(&mut nlp, &start, &run.options(run.goal()));
+        // Where it finds no optimum the interior point method has a word, a best iterate, and a row
+        // to blame.
+        if let Some(solution) = conic.filter(|it| it.status == Status::Solved) {
             return Ok(finish(run, &mut nlp, solution, true));
         }
     }
-    if problem.method.solver == Solver::Convex {
-        return Err(Refusal::NotConvex);
-    }
-    let solution = match widths(problem) {
+    let mut solution = match widths(problem) {
         Some(widths) => run.named(&mut nlp, start, &widths, watch),
         None => run.chosen(&mut nlp, start, watch),
     };
+    // Of a convex programme every local optimum is a global one.
+    solution.global = is_convex && solution.status == Status::Solved;
     Ok(finish(run, &mut nlp, solution, false))
 }
 

@@ -44,6 +44,13 @@ impl<'p> Run<'p> {
         Goal { tol: self.problem.method.tol, limit: self.problem.method.max_iter }
     }
 
+    /// The options of a solve with such an end.
+    pub(super) fn options(&self, goal: Goal) -> Options {
+        let method = &self.problem.method;
+        let is_final = goal.tol <= method.tol;
+        Options { tol: goal.tol, max_iter: goal.limit, linear: method.linear, is_final }
+    }
+
     /// Gives the programme the widths as they are now.
     pub(super) fn apply_sigma(&self, nlp: &mut TranscribedNlp) {
         for (surface, sigma) in self.problem.surfaces.iter().zip(&self.sigma) {
@@ -75,8 +82,8 @@ impl<'p> Run<'p> {
         watch: &mut Watch,
     ) -> Solution {
         self.apply_sigma(nlp);
-        let options = Options { tol: goal.tol, max_iter: goal.limit, linear: self.problem.method.linear };
         let method = &self.problem.method;
+        let options = self.options(goal);
         let stages = method.is_raised.then(|| method.scheme.stages());
         let level = Level { intervals: nlp.chain().intervals, stages, sigma: &self.sigma };
         let before = self.counts.iterations;

@@ -3,12 +3,16 @@
 //! A programme whose rows are affine and whose objective is a convex quadratic is read off its own derivatives at
 //! one point `v0`: `P = hessian`, `q = gradient - P v0`, `A = jacobian`, constants from the row values.
 
+use super::conclusion::{Ended, conclude};
+use super::convexity;
 use super::scaling::Scaled;
 use super::sides::Sides;
-use super::{Counts, Derivatives, Multipliers, Nlp, Solution, Start, Status, constraint_violation};
-use crate::clarabel::{Columns, ConicProgram, ConicStatus, Ldl, solve_conic};
+use super::{
+    Counts, Derivatives, Multipliers, Nlp, Options, Quantities, Solution, Start, Status, constraint_violation,
+};
+use crate::clarabel::{Columns, ConicProgram, ConicSolution, ConicStatus, solve_conic};
 use crate::linalg::Triplets;
-use crate::problem::{Degree, Problem};
+use crate::problem::{Bounds, Degree, Problem};
 
 /// Whether the transcription of a problem is affine in its rows and quadratic in its objective.
 pub fn is_quadratic_programme(problem: &Problem) -> bool {
@@ -21,54 +25,48 @@ pub fn is_quadratic_programme(problem: &Problem) -> bool {
     dynamics && path && boundary && cost && problem.boundary.degree(0) <= Degree::Quadratic
 }
 
-/// A solution whose optimality error is above this, relative to its multipliers, is none.
-const CREDIBLE: f64 = 1e-6;
+/// Whether the objective of a quadratic programme is proved to be convex in the variables that are
+/// free ([`convexity`](super::convexity)).
+pub fn is_proved(nlp: &mut dyn Nlp) -> bool {
+    let size = nlp.variable_bounds().len();
+    let mut derivatives = Derivatives::new(nlp);
+    let multipliers = vec![0.0; nlp.row_bounds().len()];
+    nlp.derivatives(&vec![0.0; size], 1.0, &multipliers, &mut derivatives);
+    let is_free = |i: usize| !nlp.variable_bounds()[i].is_equality();
+    let entries = nlp.hessian_structure().entries().zip(&derivatives.hessian);
+    let free = entries.filter(|((i, j), _)| is_free(*i) && is_free(*j));
+    convexity::is_proved(free.map(|((i, j), value)| (i, j, *value)), size)
+}
 
-/// Solves the programme if its Hessian is positive semidefinite; `None` if it is not convex. The caller has made sure
-/// that it is quadratic.
-pub fn solve(nlp: &mut dyn Nlp, start: &Start, tolerance: f64, max_iterations: usize) -> Option<Solution> {
+/// Solves a convex quadratic programme; `None` where there is nothing to choose. The caller has
+/// made sure that it is one.
+pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options) -> Option<Solution> {
     let mut scaled = Scaled::new(nlp, &start.v);
-    let start = scaled.start(start);
-    let mut solution = solve_scaled(&mut scaled, &start, tolerance, max_iterations)?;
-    scaled.unscale(&mut solution.v, &mut solution.multipliers);
-    solution.objective = nlp.values(&solution.v, &mut vec![0.0; nlp.row_bounds().len()]);
-    solution.constraint_violation = constraint_violation(nlp, &solution.v);
+    let v = scaled.start(start).v;
+    let mut ended = solve_scaled(&mut scaled, &v, options)?;
+    scaled.unscale(&mut ended.v, &mut ended.multipliers);
+    let mut solution = conclude(nlp, ended, options);
+    solution.global = solution.status == Status::Solved;
     Some(solution)
 }
 
-fn solve_scaled(nlp: &mut dyn Nlp, start: &Start, tolerance: f64, max_iterations: usize) -> Option<Solution> {
-    let variables = start.v.len();
-    if variables == 0 {
+fn solve_scaled(nlp: &mut dyn Nlp, v: &[f64], options: &Options) -> Option<Ended> {
+    if v.is_empty() {
         return None;
     }
     let mut derivatives = Derivatives::new(nlp);
     let multipliers = vec![0.0; nlp.row_bounds().len()];
-    nlp.derivatives(&start.v, 1.0, &multipliers, &mut derivatives);
-    let hessian = upper_columns(nlp.hessian_structure(), &derivatives.hessian, variables);
-    if !is_semidefinite(&hessian) {
-        return None;
-    }
+    nlp.derivatives(v, 1.0, &multipliers, &mut derivatives);
     let sides = Sides::new(nlp);
     let program = ConicProgram {
-        q: linear_part(nlp, &derivatives, &start.v),
+        q: linear_part(nlp, &derivatives, v),
         a: sides.columns(nlp, &derivatives.jacobian),
-        b: right_side(nlp, &derivatives.jacobian, &sides, &start.v),
-        p: hessian,
+        b: right_side(nlp, &derivatives.jacobian, &sides, v),
+        p: upper_columns(nlp.hessian_structure(), &derivatives.hessian, v.len()),
         equalities: sides.equalities,
     };
-    let found = solve_conic(program, (0.1 * tolerance).max(1e-10), max_iterations);
-    Some(into_solution(nlp, &sides, found))
-}
-
-/// Positive semidefinite up to rounding: all pivots of `P + tiny I` are positive.
-fn is_semidefinite(hessian: &Columns) -> bool {
-    let size = hessian.rows;
-    let largest = hessian.values.iter().fold(1.0f64, |a, value| a.max(value.abs()));
-    let mut entries = hessian.entries();
-    entries.extend((0..size).map(|i| (i, i, 1e-12 * largest)));
-    let shifted = Columns::of_entries(&entries, size, size);
-    let values = shifted.values.clone();
-    Ldl::new(shifted).factor(&values) == Some(size)
+    let found = solve_conic(program, (0.1 * options.tol).max(1e-10), options.max_iter);
+    Some(ended(nlp, &sides, found))
 }
 
 fn linear_part(nlp: &dyn Nlp, derivatives: &Derivatives, v: &[f64]) -> Vec<f64> {
@@ -87,7 +85,7 @@ fn right_side(nlp: &mut dyn Nlp, jacobian: &[f64], sides: &Sides, v: &[f64]) -> 
     sides.right_side(&rows, &vec![0.0; v.len()])
 }
 
-fn into_solution(nlp: &mut dyn Nlp, sides: &Sides, found: crate::clarabel::ConicSolution) -> Solution {
+fn ended(nlp: &mut dyn Nlp, sides: &Sides, found: ConicSolution) -> Ended {
     let status = match found.status {
         ConicStatus::Solved => Status::Solved,
         ConicStatus::Infeasible => Status::Infeasible,
@@ -98,20 +96,42 @@ fn into_solution(nlp: &mut dyn Nlp, sides: &Sides, found: crate::clarabel::Conic
     let mut v = found.x;
     clamp(nlp, &mut v);
     let multipliers = sides.multipliers(&found.z);
-    let mut rows = vec![0.0; nlp.row_bounds().len()];
-    let objective = nlp.values(&v, &mut rows);
-    let counts =
-        Counts { iterations: found.iterations, factorizations: found.iterations, ..Counts::default() };
-    let constraint_violation = constraint_violation(nlp, &v);
-    let kkt_error = stationarity(nlp, &v, &multipliers).max(constraint_violation);
-    // The conic solver measures its errors relative to numbers that may be huge: believe the conditions themselves.
-    let largest = multipliers.rows.iter().fold(1.0, |a: f64, lambda| a.max(lambda.abs()));
     let status = match status {
-        Status::Solved if kkt_error > CREDIBLE * largest => Status::NumericalFailure,
+        Status::Infeasible if !proves_infeasible(nlp, &multipliers.rows) => Status::NumericalFailure,
         status => status,
     };
-    let global = status == Status::Solved;
-    Solution { status, v, multipliers, mu: 0.0, objective, kkt_error, constraint_violation, global, counts }
+    let counts =
+        Counts { iterations: found.iterations, factorizations: found.iterations, ..Counts::default() };
+    let kkt_error = stationarity(nlp, &v, &multipliers).max(constraint_violation(nlp, &v));
+    let (mu, is_saddle, decrement) = (0.0, false, f64::INFINITY);
+    Ended { status, v, multipliers, mu, kkt_error, is_saddle, decrement, counts }
+}
+
+/// A variable without a bound is thought to be within so many of its units.
+const FARTHEST: f64 = 1e6;
+
+/// Whether multipliers of affine rows prove that no point within the bounds meets them (Farkas' lemma; Boyd & Vandenberghe, Convex Optimization, section 5.8): at all these points the sum of the
+/// rows, each times its multiplier, is larger than their bounds allow.
+fn proves_infeasible(nlp: &mut dyn Nlp, lambda: &[f64]) -> bool {
+    let origin = vec![0.0; nlp.variable_bounds().len()];
+    let (mut rows, mut at) = (vec![0.0; lambda.len()], Derivatives::new(nlp));
+    nlp.values(&origin, &mut rows);
+    nlp.derivatives(&origin, 0.0, &vec![0.0; lambda.len()], &mut at);
+    let mut slopes = origin;
+    nlp.jacobian_structure().transposed_multiply_add(&at.jacobian, lambda, &mut slopes);
+    let Quantities { variables, units, .. } = nlp.quantities();
+    let least = |(i, slope): (usize, &f64)| {
+        let (bounds, farthest) = (nlp.variable_bounds()[i], FARTHEST * units[variables[i]]);
+        slope * if *slope > 0.0 { bounds.lower.max(-farthest) } else { bounds.upper.min(farthest) }
+    };
+    let least: f64 = slopes.iter().enumerate().map(least).sum();
+    let excess = |((lambda, row), bounds): ((&f64, &f64), &Bounds)| match *lambda {
+        0.0 => 0.0,
+        above if above > 0.0 => above * (row - bounds.upper),
+        below => below * (row - bounds.lower),
+    };
+    let excesses: f64 = lambda.iter().zip(&rows).zip(nlp.row_bounds()).map(excess).sum();
+    excesses + least > 0.0
 }
 
 /// The conic solver keeps bounds only to its tolerance.

@@ -4,7 +4,7 @@
 //! objective is scaled so that its gradient, summed over the times of a quantity, is between 1 and 100. As in Ipopt (Waechter & Biegler 2006, section 3.8) rows with gradients above 100 at the
 //! start are scaled down to that; path constraints and boundary conditions whose gradients are all below 1/100, at the start and near it, are scaled up to 1. All but the factors of steep rows are powers of two, which round nothing.
 
-use super::sizes::{largest, near, sizes, slopes};
+use super::sizes::{largest, near, sizes, sizes_of_answer, slopes};
 use super::{Derivatives, Nlp, Quantities};
 
 /// Quantities up to this size, and down to its inverse, are moderate.
@@ -22,6 +22,7 @@ const LEAST_FACTOR: f64 = 1e-8;
 const LARGEST_FACTOR: f64 = 1e12;
 
 /// What the numbers of a programme are multiplied by.
+#[derive(Clone)]
 pub(super) struct Factors {
     pub(super) objective: f64,
     /// `v` of the programme is so many times the variables of the scaled one.
@@ -30,25 +31,46 @@ pub(super) struct Factors {
 }
 
 impl Factors {
-    /// Those for a solve that begins at `v`.
+    /// Those for a solve that begins at `v`, of which little is known.
     pub(super) fn new(nlp: &mut dyn Nlp, v: &[f64]) -> Self {
-        let v: Vec<f64> =
-            v.iter().zip(nlp.variable_bounds()).map(|(v, it)| v.max(it.lower).min(it.upper)).collect();
-        let quantities = nlp.quantities();
-        let at_start = slopes(nlp, &v);
+        let (quantities, v) = (nlp.quantities(), inside(nlp, v));
         let sizes = sizes(nlp, &quantities, &v);
+        Factors::of_sizes(nlp, &quantities, &v, &sizes)
+    }
+
+    /// Those for a solve that begins at the answer of another.
+    pub(super) fn of_answer(nlp: &mut dyn Nlp, v: &[f64]) -> Self {
+        let (quantities, v) = (nlp.quantities(), inside(nlp, v));
+        let sizes = sizes_of_answer(&quantities, &v);
+        Factors::of_sizes(nlp, &quantities, &v, &sizes)
+    }
+
+    /// The largest ratio of the factors of a variable or of the objective.
+    pub(super) fn distance(&self, other: &Factors) -> f64 {
+        let own = self.variables.iter().chain([&self.objective]);
+        let ratios = own.zip(other.variables.iter().chain([&other.objective])).map(|(a, b)| a / b);
+        ratios.fold(1.0, |most, ratio| most.max(ratio).max(1.0 / ratio))
+    }
+
+    fn of_sizes(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64], sizes: &[f64]) -> Self {
+        let at_start = slopes(nlp, v);
         let units: Vec<f64> = sizes.iter().map(|size| unit(*size)).collect();
         let variables: Vec<f64> = quantities.variables.iter().map(|i| units[*i]).collect();
-        let mut steepness = Steepness::new(nlp, &quantities, &variables, &at_start);
+        let mut steepness = Steepness::new(nlp, quantities, &variables, &at_start);
         // What is flat at the start may be so by chance.
-        if steepness.is_flat(&quantities) {
-            let near = near(nlp, &quantities, &v, &sizes);
+        if steepness.is_flat(quantities) {
+            let near = near(nlp, quantities, v, sizes);
             let at_near = slopes(nlp, &near);
-            steepness = steepness.or(Steepness::new(nlp, &quantities, &variables, &at_near));
+            steepness = steepness.or(Steepness::new(nlp, quantities, &variables, &at_near));
         }
         let objective = objective(steepness.objective);
-        Factors { objective, rows: rows(&quantities, &units, steepness), variables }
+        Factors { objective, rows: rows(quantities, &units, steepness), variables }
     }
+}
+
+/// The point of the bounds that is nearest to `v`.
+fn inside(nlp: &dyn Nlp, v: &[f64]) -> Vec<f64> {
+    v.iter().zip(nlp.variable_bounds()).map(|(v, it)| v.max(it.lower).min(it.upper)).collect()
 }
 
 /// The gradients of objective and rows in scaled variables.

@@ -7,7 +7,10 @@
 //! Multipliers `lambda` are those of the Lagrangian `f + lambda' c - z_lower' v + z_upper' v`: they are minus the
 //! rate at which the optimal objective grows with the right-hand side of a row.
 
+mod assessment;
+mod conclusion;
 pub mod convex;
+mod convexity;
 mod error_scale;
 pub(crate) mod estimate;
 mod factors;
@@ -64,6 +67,10 @@ pub struct Quantities {
     pub rows: Vec<usize>,
     /// How many quantities of variables may have steps.
     pub stepped: usize,
+    /// One of the declared unit of each quantity of variables.
+    pub units: Vec<f64>,
+    /// One of the unit of the objective.
+    pub objective: f64,
 }
 
 /// A nonlinear programme. Evaluations take `&mut self` for working memory only: equal inputs give equal outputs.
@@ -161,6 +168,10 @@ pub struct Options {
     pub max_iter: usize,
     /// Factorisation.
     pub linear: Linear,
+    /// Whether this is the solve that is asked for, and not one on the way to it: then what is
+    /// called solved meets the measures of the program as it was
+    /// written, and is no saddle.
+    pub is_final: bool,
 }
 
 /// Where a solve begins.
@@ -274,6 +285,9 @@ pub struct Solution {
     pub constraint_violation: f64,
     /// Whether the optimum is known to be global.
     pub global: bool,
+    /// Whether a direction along which the objective falls to second order was found at the end,
+    /// and could not be followed.
+    pub is_saddle: bool,
     /// Work done.
     pub counts: Counts,
 }

@@ -26,9 +26,14 @@ pub(crate) struct Scaled<'a> {
 }
 
 impl<'a> Scaled<'a> {
-    /// Chooses the factors for a solve that begins at `v`.
+    /// With the factors for a solve that begins at `v`.
     pub(crate) fn new(inner: &'a mut dyn Nlp, v: &[f64]) -> Self {
         let factors = Factors::new(inner, v);
+        Scaled::with(inner, factors)
+    }
+
+    /// With these factors.
+    pub(super) fn with(inner: &'a mut dyn Nlp, factors: Factors) -> Self {
         let Factors { variables, rows, .. } = &factors;
         let scaled = |bounds: &Bounds, s: f64| Bounds { lower: bounds.lower * s, upper: bounds.upper * s };
         let of_variables = inner.variable_bounds().iter().zip(variables);
@@ -106,7 +111,15 @@ impl Nlp for Scaled<'_> {
         self.inner.stages()
     }
     fn quantities(&self) -> Quantities {
-        self.inner.quantities()
+        let mut quantities = self.inner.quantities();
+        // All variables of a quantity have one factor.
+        let mut units = quantities.units.clone();
+        for (i, s) in quantities.variables.iter().zip(&self.factors.variables) {
+            units[*i] = quantities.units[*i] / s;
+        }
+        quantities.units = units;
+        quantities.objective *= self.factors.objective;
+        quantities
     }
     fn values(&mut self, w: &[f64], rows: &mut [f64]) -> f64 {
         self.load(w);

@@ -21,15 +21,19 @@ const GOLDEN: f64 = 0.618_033_988_749_895;
 const SMALL: f64 = 1.0 / 16.0;
 /// A quantity with a small guess has at least this part of its range.
 const LEAST_PART: f64 = 1e-2;
-/// A longer range is none.
-const LONGEST_RANGE: f64 = 1e12;
+/// A range of more units is no statement about a size.
+const LONGEST_RANGE: f64 = 1e4;
+/// What is smaller than this part of its unit at an answer may be rounding.
+const LEAST_ANSWER: f64 = 1e-4;
 /// Estimates beyond this, or below its inverse, are rounding or poles.
 const LARGEST_ESTIMATE: f64 = 1e8;
 
 /// The size of each quantity; 0 where nothing is known.
 pub(super) fn sizes(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64]) -> Vec<f64> {
     let guesses = largest(&quantities.variables, v.iter().map(|value| value.abs()));
-    let ranges = largest(&quantities.variables, nlp.variable_bounds().iter().map(range));
+    let mut ranges = largest(&quantities.variables, nlp.variable_bounds().iter().map(range));
+    let wide = |(range, unit): &(&mut f64, &f64)| **range > LONGEST_RANGE * **unit;
+    ranges.iter_mut().zip(&quantities.units).filter(wide).for_each(|(range, _)| *range = 0.0);
     let mut sizes: Vec<f64> =
         guesses.iter().zip(ranges).map(|(guess, range)| stated(*guess, range)).collect();
     if sizes.contains(&0.0) {
@@ -52,6 +56,14 @@ pub(super) fn sizes(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64]) -> Ve
     sizes
 }
 
+/// The size of each quantity at an answer; 0 where it is nothing. What guess and bounds said has no
+/// part in it.
+pub(super) fn sizes_of_answer(quantities: &Quantities, v: &[f64]) -> Vec<f64> {
+    let largest = largest(&quantities.variables, v.iter().map(|value| value.abs()));
+    let is_there = |(size, unit): (&f64, &f64)| if *size >= LEAST_ANSWER * unit { *size } else { 0.0 };
+    largest.iter().zip(&quantities.units).map(is_there).collect()
+}
+
 /// Gives those whose size is unknown what has been found.
 fn fill(sizes: &mut [f64], found: impl Fn(usize) -> f64) {
     sizes.iter_mut().enumerate().filter(|(_, size)| **size == 0.0).for_each(|(i, size)| *size = found(i));
@@ -70,7 +82,6 @@ fn estimates(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64], known: &[f64
 
 /// What guess and range say; 0 where that is nothing.
 fn stated(guess: f64, range: f64) -> f64 {
-    let range = if range < LONGEST_RANGE { range } else { 0.0 };
     if guess >= SMALL {
         guess
     } else if guess > 0.0 && range > 0.0 {

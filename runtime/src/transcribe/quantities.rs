@@ -18,7 +18,14 @@ impl TranscribedNlp<'_> {
         let local = (0..stages.local_rows).map(|row| signals + row % paths);
         let mut rows = defects.chain(local).collect::<Vec<_>>().repeat(stages.intervals);
         rows.extend((0..stages.coupling_rows).map(|row| signals + paths + row));
-        Quantities { variables, rows, stepped: signals }
+        Quantities { variables, rows, stepped: signals, units: self.units(), objective: 1.0 }
+    }
+
+    fn units(&self) -> Vec<f64> {
+        let problem = self.problem;
+        let signals = problem.states.iter().chain(&problem.controls).map(|signal| signal.unit);
+        let unknowns = problem.unknowns.iter().map(|it| problem.parameters[it.parameter].unit);
+        signals.chain(unknowns).collect()
     }
 
     fn quantity(&self, signal: Signal) -> usize {

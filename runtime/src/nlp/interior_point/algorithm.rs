@@ -1,9 +1,10 @@
 //! The loop: look, decide, step.
 
 use super::barrier::{Barrier, Terms};
+use super::finish::{ACCEPTABLE_ERROR, Target};
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::kkt::{Kkt, System};
-use super::residuals::{Residuals, owed};
+use super::residuals::Residuals;
 use super::restoration::{REQUIRED_DECREASE, Restored};
 use super::search::{Accepted, Search};
 use super::space::Space;
@@ -14,16 +15,9 @@ use crate::nlp::filter::Filter;
 use crate::nlp::{Counts, Nlp, Options, Progress, Status, Stop, Watch};
 use std::ops::ControlFlow;
 
-/// An error this small for this many iterations is acceptable.
-const ACCEPTABLE_ERROR: f64 = 1e-6;
-const ACCEPTABLE_ITERATIONS: usize = 100;
-/// An optimum may owe so many times the tolerance to violations.
-const MOST_OWED: f64 = 1e3;
 /// Multipliers above this, relative to the objective, come from rows that depend on each other, unless these are nearly satisfied.
 const LARGEST_MULTIPLIER: f64 = 1e8;
 const NEARLY_FEASIBLE: f64 = 1e-4;
-/// Variables beyond this, at a point that is feasible relative to them, have left the problem.
-const DIVERGED: f64 = 1e10;
 /// A step this small, relative to the iterate, is rounding.
 const TINY_STEP: f64 = 10.0 * f64::EPSILON;
 /// More steps of rounding than that in a row, at the last barrier parameter or because they were cut down to it, lead nowhere.
@@ -62,6 +56,13 @@ pub(super) struct Algorithm {
     pub(super) emptied: usize,
     /// Whether rows were given the values that they have, because a violation below the acceptable one could not be mended.
     pub(super) is_relaxed: bool,
+    pub(super) target: Target,
+    /// How often a saddle was left.
+    pub(super) departures: usize,
+    /// Whether the iterate is one that could not be left.
+    pub(super) is_saddle: bool,
+    /// The last Newton decrement that was looked at, in units of the scaled objective.
+    pub(super) decrement: f64,
     /// Whether the derivatives belong to the iterate.
     pub(super) fresh: bool,
 }
@@ -84,6 +85,10 @@ impl Algorithm {
             watchdog: Watchdog::default(),
             emptied: 0,
             is_relaxed: false,
+            target: Target::new(options.tol),
+            departures: 0,
+            is_saddle: false,
+            decrement: f64::INFINITY,
             fresh: false,
             space,
             at,
@@ -102,7 +107,7 @@ impl Algorithm {
                 Outcome::Done(status) => return status,
                 Outcome::Blocked => {
                     if self.residuals.error(0.0) <= ACCEPTABLE_ERROR {
-                        return Status::Acceptable;
+                        return self.stalled(nlp);
                     }
                     if let Some(status) = self.restore_or_stop(nlp, watch) {
                         return status;
@@ -183,7 +188,7 @@ impl Algorithm {
                 Status::Interrupted
             });
         }
-        if let Some(status) = self.finished() {
+        if let Some(status) = self.finished(nlp) {
             return Outcome::Done(status);
         }
         if self.barrier.update(&self.residuals) {
@@ -240,35 +245,6 @@ impl Algorithm {
             ..self.progress
         };
         self.progress
-    }
-
-    fn finished(&mut self) -> Option<Status> {
-        let error = self.residuals.error(0.0);
-        // Steps on trust say nothing of the point that they began at.
-        if self.watchdog.saved.is_none() {
-            self.acceptable = if error <= ACCEPTABLE_ERROR { self.acceptable + 1 } else { 0 };
-        }
-        if error <= self.options.tol && self.is_paid() {
-            Some(if self.is_relaxed { Status::Acceptable } else { Status::Solved })
-        } else if self.acceptable >= ACCEPTABLE_ITERATIONS {
-            Some(Status::Acceptable)
-        } else if self.watchdog.saved.is_none() && self.has_diverged() {
-            Some(Status::Unbounded)
-        } else if self.counts.iterations >= self.options.max_iter {
-            Some(Status::IterationLimit)
-        } else {
-            None
-        }
-    }
-
-    /// Whether the objective owes little to violations, so that it can be believed.
-    fn is_paid(&self) -> bool {
-        owed(&self.space, &self.at, &self.values) <= MOST_OWED * self.options.tol
-    }
-
-    fn has_diverged(&self) -> bool {
-        let largest = largest(&self.at.y[..self.space.variables]);
-        largest > DIVERGED && self.residuals.primal <= self.options.tol * largest
     }
 
     fn take_step(&mut self, nlp: &mut dyn Nlp) -> Outcome {
@@ -350,9 +326,8 @@ impl Algorithm {
         self.tiny_steps = if self.barrier.lower() { 0 } else { self.tiny_steps + 1 };
         if self.tiny_steps > MOST_TINY_STEPS {
             let error = self.residuals.error(0.0);
-            let status =
-                if error <= ACCEPTABLE_ERROR { Status::Acceptable } else { Status::NumericalFailure };
-            return Outcome::Done(status);
+            let is_small = error <= ACCEPTABLE_ERROR;
+            return Outcome::Done(if is_small { self.stalled(nlp) } else { Status::NumericalFailure });
         }
         let y: Vec<f64> = self.at.y.iter().zip(&self.step.y).map(|(y, d)| y + alpha * d).collect();
         let mut values = Values::default();

@@ -43,6 +43,16 @@ impl Barrier {
         Barrier { mu, smallest: tol / 10.0, whole_steps: 0 }
     }
 
+    /// Lets the parameter fall as far as this error asks for.
+    pub(super) fn aim_at(&mut self, error: f64) {
+        self.smallest = error / 10.0;
+    }
+
+    /// Makes room around a point that was left.
+    pub(super) fn raise(&mut self, mu: f64) {
+        self.mu = self.mu.max(mu);
+    }
+
     pub(super) fn tau(&self) -> f64 {
         SMALLEST_FRACTION.max(1.0 - self.mu)
     }

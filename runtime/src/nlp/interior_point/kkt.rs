@@ -13,7 +13,7 @@
 use super::barrier::Barrier;
 use super::iterate::{Iterate, Slopes, Step};
 use super::space::Space;
-use super::vectors::{are_finite, largest};
+use super::vectors::{are_finite, dot, largest};
 use crate::linalg::riccati::Riccati;
 use crate::linalg::sparse_ldl::SparseLdl;
 use crate::linalg::{Factor, Inertia, Products};
@@ -180,6 +180,69 @@ impl Kkt {
             self.last_regularization = self.regularization;
         }
         true
+    }
+
+    /// Factors with a regularisation of at least `least` that gives the right inertia, to a factor
+    /// of [`GROWTH`]; `true` if that is `least` itself, or none does.
+    pub(super) fn factor_barely(
+        &mut self,
+        space: &Space,
+        slopes: &Slopes,
+        mu: f64,
+        least: f64,
+        counts: &mut Counts,
+    ) -> bool {
+        self.regularization = least;
+        let mut rows = 0.0;
+        loop {
+            match self.factor_once(space, slopes, rows, counts) {
+                Inertia::Correct => return self.regularization == least,
+                Inertia::Singular if rows == 0.0 => rows = ROW_REGULARIZATION * mu.powf(0.25),
+                Inertia::Wrong | Inertia::Singular => self.regularization *= GROWTH,
+            }
+            if self.regularization.is_nan() || self.regularization > LARGEST_REGULARIZATION {
+                return true;
+            }
+        }
+    }
+
+    /// The slope of the barrier Lagrangian along a step, at the iterate that was assembled last.
+    pub(super) fn slope(&self, step: &Step) -> f64 {
+        dot(&self.gradient, &step.y)
+    }
+
+    /// Whether the last factorisation was that of Newton's own matrix.
+    pub(super) fn is_newton(&self) -> bool {
+        self.regularization == 0.0
+    }
+
+    /// One step of inverse iteration from the variables of `step`, with the matrix that was
+    /// factored last: the next unit vector over `y`, and the curvature of the barrier
+    /// Lagrangian along it. `None` where there is no number.
+    pub(super) fn inverse_iteration(
+        &mut self,
+        space: &Space,
+        slopes: &Slopes,
+        step: &mut Step,
+    ) -> Option<f64> {
+        let variables = space.variables;
+        self.right.fill(0.0);
+        let free = (0..variables).filter(|i| !space.fixed[*i]);
+        free.for_each(|i| self.right[i] = step.y[i]);
+        self.solve_refined(space, slopes);
+        let (dv, dl) = self.solution.split_at(variables);
+        let product = dot(dv, &self.right[..variables]);
+        step.y[..variables].copy_from_slice(dv);
+        for (j, attached) in space.attached.iter().enumerate() {
+            let i = variables + j;
+            step.y[i] = -attached.sign * dl[attached.row] / (self.sigma[i] + self.regularization);
+        }
+        let length = dot(&step.y, &step.y).sqrt();
+        if !(length.is_finite() && length > 0.0) {
+            return None;
+        }
+        step.y.iter_mut().for_each(|d| *d /= length);
+        Some(product / (length * length) - self.regularization)
     }
 
     /// Learns from a line search: steps that are cut again and again often come from a nearly singular Hessian, and

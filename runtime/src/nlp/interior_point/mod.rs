@@ -6,16 +6,20 @@
 
 mod algorithm;
 mod barrier;
+mod finish;
 mod iterate;
 mod kkt;
 mod residuals;
 mod restoration;
+mod saddle;
 mod search;
 mod space;
 mod start;
 mod vectors;
 mod watchdog;
 
+use super::conclusion::{Ended, conclude};
+use super::factors::Factors;
 use super::scaling::Scaled;
 use super::{Multipliers, Nlp, Options, Progress, Solution, Start, Status, Watch};
 use crate::linalg::is_sparse_cheaper;
@@ -28,14 +32,17 @@ pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Wa
     let is_automatic = options.linear == Linear::Automatic;
     let mut options = Options { linear: factorization(nlp, options.linear), ..*options };
     let mut best = attempt(nlp, start, &options, watch);
+    if options.is_final {
+        best = in_its_own_units(best, nlp, start, &options, watch);
+    }
     // Other rounding and regularisation.
     if is_automatic && options.linear == Linear::Riccati && is_lost(&best) {
         options.linear = Linear::SparseLdl;
-        best = another(best, nlp, start, &options, Algorithm::run, watch);
+        best = another(best, nlp, &options, from(start, Algorithm::run), watch);
     }
     // Where the objective led away from all that is feasible.
     if start.warm.is_none() && is_lost(&best) {
-        best = another(best, nlp, start, &options, Algorithm::run_from_feasible, watch);
+        best = another(best, nlp, &options, from(start, Algorithm::run_from_feasible), watch);
     }
     best
 }
@@ -52,6 +59,37 @@ fn factorization(nlp: &dyn Nlp, linear: Linear) -> Linear {
     }
 }
 
+/// An answer whose sizes are further than this from those that the solve was scaled by is begun
+/// anew, so often.
+const FAR: f64 = 8.0;
+const MOST_RESCALINGS: usize = 3;
+
+/// Guess and bounds may say little of how large an answer is. Where a solve ends without one that
+/// can be called so, others begin at its end, scaled by what was found.
+fn in_its_own_units(
+    mut best: Solution,
+    nlp: &mut dyn Nlp,
+    start: &Start,
+    options: &Options,
+    watch: &mut Watch,
+) -> Solution {
+    let mut used = Factors::new(nlp, &start.v);
+    for _ in 0..MOST_RESCALINGS {
+        let is_open = matches!(best.status, Status::Acceptable | Status::NumericalFailure);
+        let factors = Factors::of_answer(nlp, &best.v);
+        if !is_open || factors.distance(&used) <= FAR {
+            break;
+        }
+        used = factors.clone();
+        let start = Start { v: best.v.clone(), warm: None };
+        let run = |nlp: &mut dyn Nlp, options: &Options, watch: &mut Watch| {
+            attempt_scaled(nlp, factors, &start, options, Algorithm::run, watch)
+        };
+        best = another(best, nlp, options, run, watch);
+    }
+    best
+}
+
 /// Whether another attempt may end otherwise.
 fn is_lost(solution: &Solution) -> bool {
     matches!(solution.status, Status::Infeasible | Status::NumericalFailure)
@@ -61,9 +99,8 @@ fn is_lost(solution: &Solution) -> bool {
 fn another(
     first: Solution,
     nlp: &mut dyn Nlp,
-    start: &Start,
     options: &Options,
-    run: impl FnOnce(&mut Algorithm, &mut dyn Nlp, &mut Watch) -> Status,
+    attempt: impl FnOnce(&mut dyn Nlp, &Options, &mut Watch) -> Solution,
     watch: &mut Watch,
 ) -> Solution {
     let mut counts = first.counts;
@@ -71,12 +108,15 @@ fn another(
         return first;
     }
     let options = Options { max_iter: options.max_iter.saturating_sub(counts.iterations), ..*options };
-    let second = attempt_with(nlp, start, &options, run, &mut |progress| {
+    let second = attempt(nlp, &options, &mut |progress| {
         watch(&Progress { iteration: counts.iterations + progress.iteration, ..*progress })
     });
     counts.add(&second.counts);
     let is_taken = match second.status {
-        Status::Solved | Status::Acceptable => true,
+        Status::Solved => true,
+        Status::Acceptable => first.status != Status::Acceptable,
+        // The end of one attempt is where the next begins.
+        Status::NumericalFailure => first.status == Status::NumericalFailure,
         // A verdict says more than a failure.
         Status::Infeasible => first.status == Status::NumericalFailure,
         _ => false,
@@ -90,17 +130,29 @@ fn another(
 
 /// One attempt, without another opinion.
 pub(super) fn attempt(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watch) -> Solution {
-    attempt_with(nlp, start, options, Algorithm::run, watch)
+    from(start, Algorithm::run)(nlp, options, watch)
 }
 
-fn attempt_with(
+/// An attempt from `start`, scaled by what is known there.
+fn from(
+    start: &Start,
+    run: impl FnOnce(&mut Algorithm, &mut dyn Nlp, &mut Watch) -> Status,
+) -> impl FnOnce(&mut dyn Nlp, &Options, &mut Watch) -> Solution {
+    move |nlp, options, watch| {
+        let factors = Factors::new(nlp, &start.v);
+        attempt_scaled(nlp, factors, start, options, run, watch)
+    }
+}
+
+fn attempt_scaled(
     nlp: &mut dyn Nlp,
+    factors: Factors,
     start: &Start,
     options: &Options,
     run: impl FnOnce(&mut Algorithm, &mut dyn Nlp, &mut Watch) -> Status,
     watch: &mut Watch,
 ) -> Solution {
-    let mut scaled = Scaled::new(nlp, &start.v);
+    let mut scaled = Scaled::with(nlp, factors);
     let objective_scale = scaled.objective();
     let start = scaled.start(start);
     let mut watch = |progress: &Progress| {
@@ -109,7 +161,8 @@ fn attempt_with(
     let mut algorithm = start::prepare(&mut scaled, &start, *options);
     let status = run(&mut algorithm, &mut scaled, &mut watch);
     let mu = algorithm.barrier.mu;
-    let Algorithm { at, counts, residuals, space, .. } = algorithm;
+    let Algorithm { at, counts, residuals, space, is_saddle, decrement, .. } = algorithm;
+    let decrement = decrement / objective_scale;
     let mut multipliers = Multipliers {
         rows: at.lambda,
         lower: at.lower[..space.variables].to_vec(),
@@ -117,9 +170,6 @@ fn attempt_with(
     };
     let mut v = at.y[..space.variables].to_vec();
     scaled.unscale(&mut v, &mut multipliers);
-    let mut rows = vec![0.0; multipliers.rows.len()];
-    let objective = nlp.values(&v, &mut rows);
-    let constraint_violation = super::constraint_violation(nlp, &v);
     let kkt_error = residuals.error(0.0);
-    Solution { status, v, multipliers, mu, objective, kkt_error, constraint_violation, global: false, counts }
+    conclude(nlp, Ended { status, v, multipliers, mu, kkt_error, is_saddle, decrement, counts }, options)
 }

@@ -16,7 +16,7 @@ use super::space::Space;
 use crate::nlp::filter::Filter;
 
 use crate::linalg::{Family, Stages, Triplets};
-use crate::nlp::{Derivatives, Nlp, Place, Progress, Quantities, Status, Watch};
+use crate::nlp::{Derivatives, Nlp, Options, Place, Progress, Quantities, Status, Watch};
 use crate::problem::Bounds;
 
 const RHO: f64 = 1e3;
@@ -176,7 +176,8 @@ impl Algorithm {
     fn elastic(&self, proximity: &mut Proximity, mu: f64) -> Algorithm {
         let space = self.space.elastic(RHO);
         let start = elastic_start(&space, &self.at, &self.values.residuals, mu);
-        let mut inner = Algorithm::new(proximity, space, start, mu, self.options);
+        let options = Options { is_final: false, ..self.options };
+        let mut inner = Algorithm::new(proximity, space, start, mu, options);
         inner.values.evaluate(proximity, &inner.space, &inner.at.y, &mut inner.counts);
         inner.filter = Filter::new(inner.values.violation);
         inner.counts = self.counts;

@@ -20,6 +20,7 @@ mod search;
 mod subproblem;
 mod working;
 
+use super::conclusion::{Ended, conclude};
 use super::scaling::Scaled;
 use super::{Multipliers, Nlp, Options, Progress, Solution, Start, Status, Watch, interior_point};
 use algorithm::Algorithm;
@@ -28,7 +29,11 @@ use algorithm::Algorithm;
 /// asked: far from a solution it finds more, and nobody is told "infeasible" for want of luck.
 pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watch) -> Solution {
     let first = attempt(nlp, start, options, watch);
-    if !matches!(first.status, Status::Infeasible | Status::NumericalFailure | Status::NotFinite(_)) {
+    let is_lost = matches!(
+        first.status,
+        Status::Acceptable | Status::Infeasible | Status::NumericalFailure | Status::NotFinite(_)
+    );
+    if !is_lost {
         return first;
     }
     let done = first.counts.iterations;
@@ -56,9 +61,6 @@ pub(super) fn attempt(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch
     let Algorithm { at, mut multipliers, counts, .. } = algorithm;
     let mut v = at.v;
     scaled.unscale(&mut v, &mut multipliers);
-    let mut rows = vec![0.0; multipliers.rows.len()];
-    let objective = nlp.values(&v, &mut rows);
-    let constraint_violation = super::constraint_violation(nlp, &v);
-    let (mu, global) = (0.0, false);
-    Solution { status, v, multipliers, mu, objective, kkt_error, constraint_violation, global, counts }
+    let (mu, is_saddle, decrement) = (0.0, false, f64::INFINITY);
+    conclude(nlp, Ended { status, v, multipliers, mu, kkt_error, is_saddle, decrement, counts }, options)
 }

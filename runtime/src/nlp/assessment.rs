@@ -1,0 +1,236 @@
+//! Whether a point with its multipliers may be called a solution: two measures of the nonlinear
+//! program as it was written. Neither bounds nor guess nor scaling
+//! have a say in them; they are the same in all units.
+//!
+//! ```text
+//!     violation   = max over rows    |how far c_i is outside| / size of the terms of the row
+//!     improvement = ( sum z_j * min(distance_j, size_j)  +  sum |lambda_i| * violation_i  +  sum
+//! |grad L|_j * size_j ) / size of f
+//! ```
+//!
+//! The first part of the improvement is the complementarity, which on the central path of a convex
+//! program is the duality gap (Boyd & Vandenberghe, Convex Optimization,
+//! section 5.5); the second is what violations are worth by their multipliers; the third bounds
+//! what a step that moves every quantity by its own size could still gain. The last is pessimistic;
+//! whoever knows the Newton decrement may put it in its place.
+//!
+//! The size of a quantity is its largest value over time. A quantity that is 0 has a millionth of
+//! its declared unit, so that rounding is not mistaken for a value.
+
+use super::{Derivatives, Multipliers, Nlp, Quantities};
+use crate::problem::Bounds;
+
+/// The improvement that may be left, in units of the tolerance: 1e-6 at the default tolerance of
+/// 1e-8.
+const IMPROVEMENT: f64 = 100.0;
+/// What is aimed at is so much less, where that can be had.
+const AIM: f64 = 0.1;
+/// The same of what is acceptable.
+const ACCEPTABLE_VIOLATION: f64 = 1e-6;
+const ACCEPTABLE_IMPROVEMENT: f64 = 1e-4;
+/// What is smaller than this part of its declared unit is nothing.
+const NOTHING: f64 = 1e-6;
+/// The same of the objective: where it falls to 0 like a fourth power nothing else says when that
+/// is near enough.
+const NO_OBJECTIVE: f64 = 1e-8;
+/// Where a quantity is 0 at some time, terms of the objective have this part of the size that it
+/// has at others.
+const PART: f64 = 1e-2;
+
+/// See the head of this file.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Assessment {
+    /// Largest violation of a row or bound, relative to the size of its terms.
+    pub(crate) violation: f64,
+    /// What complementarity and violations say the objective can still gain, relative to its size.
+    pub(crate) owed: f64,
+    /// The same of the gradient of the Lagrangian.
+    pub(crate) slope: f64,
+    /// The size of the objective: of its value, and of the terms of its expansion.
+    pub(crate) size: f64,
+}
+
+impl Assessment {
+    /// Of the point `v` (one value per variable) with its multipliers. What is not a number makes
+    /// the measures so.
+    pub(crate) fn new(nlp: &mut dyn Nlp, v: &[f64], multipliers: &Multipliers) -> Self {
+        let quantities = nlp.quantities();
+        let sizes = sizes(&quantities, v);
+        let (mut rows, mut at) = (vec![0.0; nlp.row_bounds().len()], Derivatives::new(nlp));
+        let objective = nlp.values(v, &mut rows);
+        nlp.derivatives(v, 1.0, &vec![0.0; rows.len()], &mut at);
+        let terms = expansion(nlp, &quantities, &at, v, &sizes);
+        let size = objective.abs().max(terms).max(NO_OBJECTIVE * quantities.objective);
+        let of_rows = row_sizes(nlp, &quantities, v, &at.jacobian, &sizes);
+        let variables = nlp.variable_bounds().iter().zip(v);
+        let sides =
+            variables.zip(&quantities.variables).map(|((bounds, value), i)| (bounds, *value, sizes[*i]));
+        let both = multipliers.lower.iter().zip(&multipliers.upper);
+        let mut sums = Sums::default();
+        sides.zip(both).for_each(|((bounds, value, size), (lower, upper))| {
+            sums.add(bounds, value, size, [*lower, *upper]);
+        });
+        let rows = nlp.row_bounds().iter().zip(&rows).zip(&of_rows).zip(&multipliers.rows);
+        rows.for_each(|(((bounds, value), size), lambda)| {
+            sums.add(bounds, *value, *size, [(-lambda).max(0.0), lambda.max(0.0)]);
+        });
+        let slope = slope(nlp, &quantities, &at, multipliers, &sizes);
+        // Without an objective there is nothing to gain.
+        let relative = |value: f64| if objective == 0.0 && terms == 0.0 { 0.0 } else { value / size };
+        let (owed, slope) = (relative(sums.owed), relative(slope));
+        Assessment { violation: sums.violation, owed, slope, size }
+    }
+
+    /// The same, where the Newton decrement says what the gradient of the Lagrangian can gain: the
+    /// objective of the quadratic model at the point less that at its minimum.
+    pub(crate) fn with_decrement(self, decrement: f64) -> Self {
+        Assessment { slope: self.slope.min(decrement / self.size), ..self }
+    }
+
+    /// Whether all but the gradient of the Lagrangian is as it should be.
+    pub(crate) fn is_only_steep(&self, tol: f64) -> bool {
+        self.is_feasible(tol) && self.owed <= most_improvement(tol) && !self.is_enough(tol)
+    }
+
+    /// Whether the conditions are met to this tolerance.
+    pub(crate) fn is_feasible(&self, tol: f64) -> bool {
+        self.violation <= tol
+    }
+
+    /// Whether it may be called a solution to this tolerance.
+    pub(crate) fn is_convincing(&self, tol: f64) -> bool {
+        self.is_feasible(tol) && self.owed + self.slope <= most_improvement(tol)
+    }
+
+    /// Whether it is as good as is aimed at.
+    pub(crate) fn is_enough(&self, tol: f64) -> bool {
+        self.is_feasible(tol) && self.owed + self.slope <= AIM * most_improvement(tol)
+    }
+
+    /// What is aimed at, relative to what is there: the smaller the further away.
+    pub(crate) fn missed(&self, tol: f64) -> f64 {
+        (tol / self.violation).min(AIM * most_improvement(tol) / (self.owed + self.slope))
+    }
+
+    /// What an objective has to gain to count.
+    pub(crate) fn least_gain(&self, tol: f64) -> f64 {
+        most_improvement(tol) * self.size
+    }
+
+    /// Whether it is good enough for most uses.
+    pub(crate) fn is_acceptable(&self, tol: f64) -> bool {
+        self.is_feasible(tol.max(ACCEPTABLE_VIOLATION))
+            && self.owed + self.slope <= ACCEPTABLE_IMPROVEMENT.max(tol)
+    }
+}
+
+/// Relative to the size of the objective.
+fn most_improvement(tol: f64) -> f64 {
+    (IMPROVEMENT * tol).min(ACCEPTABLE_IMPROVEMENT.max(tol))
+}
+
+/// Sums over the two sides of bounds.
+#[derive(Default)]
+struct Sums {
+    violation: f64,
+    owed: f64,
+}
+
+impl Sums {
+    fn add(&mut self, bounds: &Bounds, value: f64, size: f64, [lower, upper]: [f64; 2]) {
+        let outside = bounds.violation(value);
+        let relative = if outside == 0.0 { 0.0 } else { outside / size };
+        self.violation =
+            if relative > self.violation || relative.is_nan() { relative } else { self.violation };
+        if bounds.is_equality() {
+            self.owed += (lower + upper) * outside;
+            return;
+        }
+        for (multiplier, distance) in [(lower, value - bounds.lower), (upper, bounds.upper - value)] {
+            // What is far from its bound moves by no more than its own size.
+            self.owed += multiplier * distance.abs().min(size);
+        }
+    }
+}
+
+/// The largest value of each quantity over time.
+fn sizes(quantities: &Quantities, v: &[f64]) -> Vec<f64> {
+    let mut sizes: Vec<f64> = quantities.units.iter().map(|unit| NOTHING * unit).collect();
+    for (i, value) in quantities.variables.iter().zip(v) {
+        sizes[*i] = sizes[*i].max(value.abs());
+    }
+    sizes
+}
+
+/// Of the step of a state the size of the state; of a condition the sum of its terms to second
+/// order, and its bounds; the largest of all times.
+fn row_sizes(
+    nlp: &mut dyn Nlp,
+    quantities: &Quantities,
+    v: &[f64],
+    jacobian: &[f64],
+    sizes: &[f64],
+) -> Vec<f64> {
+    let mut terms = vec![0.0; quantities.rows.len()];
+    for ((row, column), slope) in nlp.jacobian_structure().entries().zip(jacobian) {
+        terms[row] += slope.abs() * sizes[quantities.variables[column]];
+    }
+    let kinds = quantities.rows.iter().max().map_or(0, |last| last + 1);
+    let mut largest = vec![0.0f64; kinds];
+    for ((i, terms), bounds) in quantities.rows.iter().zip(terms).zip(nlp.row_bounds()) {
+        let ends = [bounds.lower, bounds.upper].map(f64::abs).into_iter().filter(|end| end.is_finite());
+        largest[*i] = largest[*i].max(ends.fold(terms, f64::max));
+    }
+    for (i, size) in largest.iter_mut().enumerate().skip(quantities.stepped) {
+        *size += curvature(nlp, quantities, v, sizes, i);
+    }
+    let size = |i: usize| if i < quantities.stepped { sizes[i] } else { largest[i] };
+    quantities.rows.iter().map(|i| size(*i)).collect()
+}
+
+/// The mean size of the terms of second order of the rows of one kind: a square that has to be 0
+/// has no others there.
+fn curvature(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64], sizes: &[f64], kind: usize) -> f64 {
+    let is_its = |i: &usize| if *i == kind { 1.0 } else { 0.0 };
+    let weights: Vec<f64> = quantities.rows.iter().map(is_its).collect();
+    let (count, mut at) = (weights.iter().sum::<f64>(), Derivatives::new(nlp));
+    if count == 0.0 {
+        return 0.0;
+    }
+    nlp.derivatives(v, 0.0, &weights, &mut at);
+    let size = |j: usize| sizes[quantities.variables[j]];
+    let terms = nlp.hessian_structure().entries().zip(&at.hessian);
+    let terms = terms.map(|((i, j), h)| if i == j { 0.5 } else { 1.0 } * (h * size(i) * size(j)).abs());
+    terms.sum::<f64>() / count
+}
+
+/// The terms of the objective to second order around the point: near a minimum its gradient says
+/// little of them.
+fn expansion(nlp: &dyn Nlp, quantities: &Quantities, at: &Derivatives, v: &[f64], sizes: &[f64]) -> f64 {
+    let size = |j: usize| v[j].abs() + PART * sizes[quantities.variables[j]];
+    let first: f64 = at.gradient.iter().enumerate().map(|(j, slope)| slope.abs() * size(j)).sum();
+    let second = nlp.hessian_structure().entries().zip(&at.hessian).map(|((i, j), curvature)| {
+        let factor = if i == j { 0.5 } else { 1.0 };
+        factor * curvature.abs() * size(i) * size(j)
+    });
+    first + second.sum::<f64>()
+}
+
+/// What a step that moves every free variable by its size could gain by the gradient of the
+/// Lagrangian.
+fn slope(
+    nlp: &dyn Nlp,
+    quantities: &Quantities,
+    at: &Derivatives,
+    multipliers: &Multipliers,
+    sizes: &[f64],
+) -> f64 {
+    let mut gradient = at.gradient.clone();
+    nlp.jacobian_structure().transposed_multiply_add(&at.jacobian, &multipliers.rows, &mut gradient);
+    let sides = multipliers.lower.iter().zip(&multipliers.upper);
+    let of_variables = nlp.variable_bounds().iter().zip(&quantities.variables);
+    let parts = gradient.iter().zip(sides).zip(of_variables).map(|((slope, (lower, upper)), (bounds, i))| {
+        if bounds.is_equality() { 0.0 } else { (slope - lower + upper).abs() * sizes[*i] }
+    });
+    parts.sum()
+}

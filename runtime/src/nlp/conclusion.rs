@@ -1,0 +1,66 @@
+//! What a solver found, in the end: the one place where a status is given, by measures of the
+//! program as it was written.
+
+use super::assessment::Assessment;
+use super::{Counts, Multipliers, Nlp, Options, Solution, Status, constraint_violation};
+
+/// Where a solver came to its end, in the units of the program, and what it says of that itself.
+pub(super) struct Ended {
+    pub(super) status: Status,
+    pub(super) v: Vec<f64>,
+    pub(super) multipliers: Multipliers,
+    /// See [`Solution::mu`].
+    pub(super) mu: f64,
+    /// See [`Solution::kkt_error`].
+    pub(super) kkt_error: f64,
+    /// See [`Solution::is_saddle`].
+    pub(super) is_saddle: bool,
+    /// The Newton decrement, in units of the objective; infinite where it is not known.
+    pub(super) decrement: f64,
+    pub(super) counts: Counts,
+}
+
+/// The solution with the status that it deserves. A solve on the way to another has the status that
+/// the solver gives.
+pub(super) fn conclude(nlp: &mut dyn Nlp, ended: Ended, options: &Options) -> Solution {
+    let Ended { status, v, multipliers, mu, kkt_error, is_saddle, decrement, counts } = ended;
+    let status = if options.is_final {
+        let assessment = Assessment::new(nlp, &v, &multipliers).with_decrement(decrement);
+        judged(status, &assessment, is_saddle, options.tol)
+    } else {
+        status
+    };
+    let objective = nlp.values(&v, &mut vec![0.0; multipliers.rows.len()]);
+    let constraint_violation = constraint_violation(nlp, &v);
+    let global = false;
+    Solution {
+        status,
+        v,
+        multipliers,
+        mu,
+        objective,
+        kkt_error,
+        constraint_violation,
+        global,
+        is_saddle,
+        counts,
+    }
+}
+
+/// A solver may be too sure of itself, or too modest; where it was stopped there is nothing to
+/// judge.
+fn judged(status: Status, found: &Assessment, is_saddle: bool, tol: f64) -> Status {
+    match status {
+        Status::Solved if found.is_convincing(tol) && !is_saddle => Status::Solved,
+        Status::Solved | Status::Acceptable | Status::NumericalFailure => {
+            if found.is_acceptable(tol) {
+                Status::Acceptable
+            } else {
+                Status::NumericalFailure
+            }
+        }
+        // What meets all conditions is feasible, whatever a search for less violation says.
+        Status::Infeasible if found.is_feasible(tol) => Status::NumericalFailure,
+        status => status,
+    }
+}

@@ -1,0 +1,161 @@
+//! When an iteration ends, and with which word.
+//!
+//! The error of the scaled optimality conditions says when to look at the measures of the program
+//! as it was written ([`Assessment`]). Where these are not met the target of the
+//! error is lowered. Where they are, a point is a solution unless its reduced Hessian has a
+//! negative eigenvalue, along which it is left.
+
+use super::algorithm::Algorithm;
+use super::iterate::Step;
+use super::kkt::System;
+use super::residuals::owed;
+use super::saddle::Departure;
+use super::vectors::largest;
+use crate::nlp::assessment::Assessment;
+use crate::nlp::{Multipliers, Nlp, Status};
+
+/// An error this small for this many iterations is acceptable.
+pub(super) const ACCEPTABLE_ERROR: f64 = 1e-6;
+const ACCEPTABLE_ITERATIONS: usize = 100;
+/// An optimum may owe so many times the tolerance to violations.
+const MOST_OWED: f64 = 1e3;
+/// Variables beyond this, at a point that is feasible relative to them, have left the problem.
+const DIVERGED: f64 = 1e10;
+/// The target is not lowered below this part of the tolerance, nor faster than that; lower ones are
+/// given up after so many iterations.
+const LEAST_TARGET: f64 = 1e-5;
+const FASTEST: f64 = 1e-2;
+const SLOWEST: f64 = 0.3;
+const PATIENCE: usize = 20;
+
+/// The error at which the measures are looked at.
+#[derive(Clone, Copy)]
+pub(super) struct Target {
+    pub(super) error: f64,
+    /// The iteration at which it was lowered first.
+    lowered: Option<usize>,
+}
+
+impl Target {
+    pub(super) fn new(error: f64) -> Self {
+        Target { error, lowered: None }
+    }
+}
+
+impl Algorithm {
+    /// The status, if this is the end.
+    pub(super) fn finished(&mut self, nlp: &mut dyn Nlp) -> Option<Status> {
+        let error = self.residuals.error(0.0);
+        // Steps on trust say nothing of the point that they began at.
+        if self.watchdog.saved.is_none() {
+            self.acceptable = if error <= ACCEPTABLE_ERROR { self.acceptable + 1 } else { 0 };
+        }
+        if error <= self.target.error && self.is_paid() {
+            self.concluded(nlp)
+        } else if self.is_out_of_patience() {
+            Some(self.stalled(nlp))
+        } else if self.acceptable >= ACCEPTABLE_ITERATIONS {
+            Some(Status::Acceptable)
+        } else if self.watchdog.saved.is_none() && self.has_diverged() {
+            Some(Status::Unbounded)
+        } else if self.counts.iterations >= self.options.max_iter {
+            Some(Status::IterationLimit)
+        } else {
+            None
+        }
+    }
+
+    /// What the measures say at a point where the error is as small as asked for; nothing where the
+    /// iteration goes on.
+    fn concluded(&mut self, nlp: &mut dyn Nlp) -> Option<Status> {
+        if self.is_relaxed {
+            return Some(Status::Acceptable);
+        }
+        if !self.options.is_final {
+            return Some(Status::Solved);
+        }
+        let found = self.assessment(nlp);
+        match self.departure(nlp, &found) {
+            Departure::Taken => return None,
+            Departure::Impossible => return Some(Status::Acceptable),
+            Departure::NotNeeded => {}
+        }
+        let found = self.with_decrement(nlp, found);
+        if found.is_enough(self.options.tol) || !self.can_lower_target(&found) {
+            return Some(self.word(&found));
+        }
+        None
+    }
+
+    /// The status where nothing more can be gained.
+    pub(super) fn stalled(&mut self, nlp: &mut dyn Nlp) -> Status {
+        if !self.options.is_final || self.is_relaxed || self.is_saddle {
+            return Status::Acceptable;
+        }
+        let found = self.assessment(nlp);
+        let found = self.with_decrement(nlp, found);
+        self.word(&found)
+    }
+
+    fn word(&self, found: &Assessment) -> Status {
+        if found.is_convincing(self.options.tol) { Status::Solved } else { Status::Acceptable }
+    }
+
+    /// With the Newton decrement where that is what matters.
+    fn with_decrement(&mut self, nlp: &dyn Nlp, found: Assessment) -> Assessment {
+        if !found.is_only_steep(self.options.tol) {
+            return found;
+        }
+        self.decrement = self.newton_decrement(nlp, &found).unwrap_or(f64::INFINITY);
+        found.with_decrement(self.decrement)
+    }
+
+    /// What Newton's step gains in the quadratic model; nothing where the model has no minimum.
+    fn newton_decrement(&mut self, nlp: &dyn Nlp, found: &Assessment) -> Option<f64> {
+        let least = self.least_curvature(nlp, found);
+        let Algorithm { space, at, slopes, kkt, barrier, counts, values, .. } = self;
+        let (mu, mut step) = (barrier.mu, Step::new(space));
+        kkt.assemble(space, at, slopes, barrier);
+        let system = System { space, at, slopes, mu };
+        let is_found = kkt.factor_barely(space, slopes, mu, least, counts)
+            && kkt.step(&system, &values.residuals, &mut step);
+        is_found.then(|| kkt.slope(&step).abs())
+    }
+
+    fn assessment(&self, nlp: &mut dyn Nlp) -> Assessment {
+        let variables = self.space.variables;
+        let multipliers = Multipliers {
+            rows: self.at.lambda.clone(),
+            lower: self.at.lower[..variables].to_vec(),
+            upper: self.at.upper[..variables].to_vec(),
+        };
+        Assessment::new(nlp, &self.at.y[..variables], &multipliers)
+    }
+
+    /// Lowers the target as far as the measures are missed; `false` where it is as low as it gets.
+    fn can_lower_target(&mut self, found: &Assessment) -> bool {
+        let missed = found.missed(self.options.tol).clamp(FASTEST, SLOWEST);
+        let error = missed * self.target.error;
+        if error.is_nan() || error < LEAST_TARGET * self.options.tol {
+            return false;
+        }
+        let lowered = self.target.lowered.or(Some(self.counts.iterations));
+        self.target = Target { error, lowered };
+        self.barrier.aim_at(error);
+        true
+    }
+
+    fn is_out_of_patience(&self) -> bool {
+        self.target.lowered.is_some_and(|at| self.counts.iterations > at + PATIENCE)
+    }
+
+    /// Whether the objective owes little to violations, so that it can be believed.
+    fn is_paid(&self) -> bool {
+        owed(&self.space, &self.at, &self.values) <= MOST_OWED * self.options.tol
+    }
+
+    fn has_diverged(&self) -> bool {
+        let largest = largest(&self.at.y[..self.space.variables]);
+        largest > DIVERGED && self.residuals.primal <= self.options.tol * largest
+    }
+}

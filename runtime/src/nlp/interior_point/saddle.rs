@@ -1,0 +1,153 @@
+//! Leaving a stationary point that is no minimum, along a direction of negative curvature.
+//!
+//! At a minimum the Hessian of the barrier Lagrangian is positive semidefinite on the null space of
+//! the rows (Nocedal & Wright, Numerical Optimization, 2nd ed., section 12.5), which
+//! the inertia of the factored matrix tells. Where it is not, inverse iteration with a
+//! regularisation that just gives the right inertia finds the eigenvector of the lowest
+//! eigenvalue, and the Lagrangian falls along it to either side. Curvature that can gain nothing
+//! that counts is none.
+
+use super::algorithm::Algorithm;
+use super::iterate::{Step, Values};
+use super::vectors::dot;
+use crate::nlp::Nlp;
+use crate::nlp::assessment::Assessment;
+
+/// A point is left so often.
+const MOST_DEPARTURES: usize = 5;
+/// Steps of the inverse iteration.
+const ITERATIONS: usize = 8;
+/// Curvature is negative if it is more than this part of its terms.
+const ROUNDING: f64 = 1e-9;
+/// A step along the direction has to gain this part of what curvature says.
+const LEAST_GAIN: f64 = 0.1;
+const MOST_HALVINGS: usize = 40;
+/// It may violate the rows so much.
+const LARGEST_VIOLATION: f64 = 1e-2;
+/// The barrier parameter afterwards, at least.
+const ROOM: f64 = 1e-4;
+
+/// What became of a stationary point.
+pub(super) enum Departure {
+    /// It is a minimum, as far as curvature says.
+    NotNeeded,
+    /// The iterate is another one.
+    Taken,
+    /// It is none, but the Lagrangian does not fall along the direction that was found.
+    Impossible,
+}
+
+impl Algorithm {
+    /// Leaves a stationary point that is no minimum.
+    pub(super) fn departure(&mut self, nlp: &mut dyn Nlp, found: &Assessment) -> Departure {
+        // The step before ended here, with Newton's own matrix and the right inertia.
+        if self.counts.iterations > 0 && self.kkt.is_newton() {
+            return Departure::NotNeeded;
+        }
+        let least = self.least_curvature(nlp, found);
+        let Some((mut step, curvature)) = self.lowest_curvature(nlp, least) else {
+            return Departure::NotNeeded;
+        };
+        let length = self.stretch(&self.reach(nlp), &mut step);
+        let gain = -0.5 * curvature * length * length;
+        if gain <= found.least_gain(self.options.tol) {
+            return Departure::NotNeeded;
+        }
+        self.is_saddle = self.departures >= MOST_DEPARTURES || !self.depart(nlp, &mut step, gain);
+        self.departures += 1;
+        if self.is_saddle { Departure::Impossible } else { Departure::Taken }
+    }
+
+    /// A unit vector over `y` in the null space of the rows and the curvature along it, if that is
+    /// below `-least`.
+    fn lowest_curvature(&mut self, nlp: &dyn Nlp, least: f64) -> Option<(Step, f64)> {
+        let Algorithm { space, at, slopes, kkt, barrier, counts, .. } = self;
+        kkt.assemble(space, at, slopes, barrier);
+        if kkt.factor_barely(space, slopes, barrier.mu, least, counts) {
+            return None;
+        }
+        let mut step = Step::new(space);
+        // Nearly the same at all times: of several directions that are as good, one that goes to
+        // one side.
+        let start = |i: usize| 1.0 + 0.1 * (i as f64 * 0.618_033_988_749_895).fract();
+        (0..space.variables).for_each(|i| step.y[i] = start(i));
+        let mut curvature = f64::NAN;
+        for _ in 0..ITERATIONS {
+            curvature = kkt.inverse_iteration(space, slopes, &mut step)?;
+        }
+        let terms = nlp.hessian_structure().entries().zip(&slopes.derivatives.hessian);
+        let terms: f64 = terms.map(|((i, j), h)| (h * step.y[i] * step.y[j]).abs()).sum();
+        (curvature < -ROUNDING * terms).then_some((step, curvature))
+    }
+
+    /// Less curvature cannot gain what counts, however far the variables go.
+    pub(super) fn least_curvature(&self, nlp: &dyn Nlp, found: &Assessment) -> f64 {
+        let reach = self.reach(nlp);
+        2.0 * found.least_gain(self.options.tol) / dot(&reach, &reach)
+    }
+
+    /// How far each variable may go: by its size, or its unit.
+    fn reach(&self, nlp: &dyn Nlp) -> Vec<f64> {
+        let quantities = nlp.quantities();
+        let mut sizes = quantities.units;
+        for (i, value) in quantities.variables.iter().zip(&self.at.y) {
+            sizes[*i] = sizes[*i].max(value.abs());
+        }
+        quantities.variables.iter().map(|i| sizes[*i]).collect()
+    }
+
+    /// Makes the step as long as bounds and the reach of the variable that moves most allow; its
+    /// length.
+    fn stretch(&self, reach: &[f64], step: &mut Step) -> f64 {
+        let moves = reach.iter().zip(&step.y).map(|(reach, d)| d.abs() / reach);
+        let factor = 1.0 / moves.fold(f64::MIN_POSITIVE, f64::max);
+        step.y.iter_mut().for_each(|d| *d *= factor);
+        let longest = self.longest_of_both(step);
+        step.y.iter_mut().for_each(|d| *d *= longest);
+        factor * longest
+    }
+
+    /// How far the step may go to the side that has more room.
+    fn longest_of_both(&self, step: &mut Step) -> f64 {
+        let ahead = self.barrier.longest_steps(&self.space, &self.at, step).0;
+        turn(step);
+        let back = self.barrier.longest_steps(&self.space, &self.at, step).0;
+        if back < ahead {
+            turn(step);
+        }
+        ahead.max(back)
+    }
+
+    /// Goes along the step, or back, as far as the Lagrangian falls; `false` if it does not.
+    fn depart(&mut self, nlp: &mut dyn Nlp, step: &mut Step, gain: f64) -> bool {
+        let lagrangian = self.barrier_lagrangian(&self.values);
+        for halvings in 0..MOST_HALVINGS {
+            let part = 0.5f64.powi(halvings as i32);
+            for _ in 0..2 {
+                let alpha = part.min(self.barrier.longest_steps(&self.space, &self.at, step).0);
+                let y: Vec<f64> = self.at.y.iter().zip(&step.y).map(|(y, d)| y + alpha * d).collect();
+                let mut values = Values::default();
+                let is_good = values.evaluate(nlp, &self.space, &y, &mut self.counts)
+                    && values.violation <= LARGEST_VIOLATION
+                    && self.barrier_lagrangian(&values) < lagrangian - LEAST_GAIN * gain * alpha * alpha;
+                if is_good {
+                    (self.at.y, self.values, self.fresh) = (y, values, false);
+                    self.counts.iterations += 1;
+                    self.barrier.raise(ROOM);
+                    self.begin_anew(nlp);
+                    return true;
+                }
+                turn(step);
+            }
+        }
+        false
+    }
+
+    fn barrier_lagrangian(&self, values: &Values) -> f64 {
+        self.barrier.value(values) + dot(&self.at.lambda, &values.residuals)
+    }
+}
+
+fn turn(step: &mut Step) {
+    step.y.iter_mut().for_each(|d| *d = -*d);
+}

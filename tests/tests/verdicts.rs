@@ -1,0 +1,143 @@
+//! Every word of a verdict of `solve` is true: what is called solved or global is so, whatever
+//! bounds, guess and units say of sizes.
+//!
+//! The programs have closed forms, or were solved by CasADi 3.7 with IPOPT 3.14 (`tol = 1e-10`) as
+//! the same discrete problem. Some 1,000 random ones more:
+//! `tests/peers/random_problems/`.
+
+use fdcc_runtime::nlp::{Solution, Status};
+use fdcc_tests::models::{problem, solve};
+
+fn solved(text: &str) -> Solution {
+    solve(&problem(text, &[], &[])).solution
+}
+
+fn assert_solved(what: &str, solution: &Solution, objective: f64) {
+    let difference = (solution.objective - objective).abs();
+    assert_eq!(solution.status, Status::Solved, "{what}: {solution:?}");
+    assert!(difference <= 1e-6 * objective.abs(), "{what}: {} instead of {objective}", solution.objective);
+}
+
+/// A control that follows 1, and a state that it takes to `x(1)`; with `x' = u` the best control is
+/// constant, `(u - 1) + (u - 2) = 0`.
+fn follows(bounds: &str, rate: &str, method: &str) -> String {
+    format!(
+        "time t in [0, 1] state x start 0 control u {bounds} dynamics {{ x' = {rate} }}\n\
+         minimize integral((u - 1)^2) + (x(end) - 2)^2 method {{ {method} }}"
+    )
+}
+
+#[test]
+fn wide_bounds_say_nothing_of_sizes() {
+    for bounds in
+        ["in [0, 1e5]", "in [0, 1e6]", "in [0, 1e8]", "in [-1e7, 1e9]", "in [-1e9, 1e5]", "in [0, 3]", ""]
+    {
+        let convex = solved(&follows(bounds, "u", "N = 5"));
+        assert_solved(bounds, &convex, 0.5);
+        assert!(convex.global, "{bounds}");
+        assert_solved(bounds, &solved(&follows(bounds, "u", "N = 5 solver = interior_point")), 0.5);
+        // CasADi and IPOPT, implicit Euler with 200 intervals.
+        assert_solved(bounds, &solved(&follows(bounds, "u + 0.1*sin(x)", "N = 200")), 0.439428757);
+    }
+}
+
+/// A guess that is far off is no statement about sizes, either.
+#[test]
+fn a_guess_says_nothing_of_sizes() {
+    for guess in ["-1e6", "1e-9", "1e3", "1e7"] {
+        let bounds = format!("in [-1e8, 1e8] guess {guess}");
+        assert_solved(guess, &solved(&follows(&bounds, "u", "N = 5 solver = interior_point")), 0.5);
+        assert_solved(guess, &solved(&follows(&bounds, "u + 0.1*sin(x)", "N = 200")), 0.439428757);
+    }
+}
+
+/// `p^2 - w^2` is least at `p = 0` and at the bound of `w` that is further out; the other bound is
+/// a local minimum, too, on each interval by itself.
+#[test]
+fn an_indefinite_form_is_not_called_convex_and_its_saddle_is_left() {
+    for (range, weight) in [("1e7", "1"), ("1e6", "1"), ("2", "1"), ("1e7", "1e-6"), ("1e3", "1e6")] {
+        let text = format!(
+            "time t in [0, 1] state x start 0 control p in [-{range}, {range}] control w in [-1, 1.01]\n\
+             dynamics {{ x' = p + w }} minimize integral(p^2 - {weight}*w^2) method {{ N = 20 }}"
+        );
+        let solution = solved(&text);
+        assert!(!solution.global && solution.status == Status::Solved, "{text}: {solution:?}");
+        let minima = -1.0201 - 1e-6..=-1.0 + 1e-6;
+        let weight: f64 = weight.parse().expect("a number");
+        assert!(minima.contains(&(solution.objective / weight)), "{text}: {}", solution.objective);
+    }
+}
+
+/// At the guess the gradient is exactly 0.
+#[test]
+fn a_guess_on_a_saddle_is_left() {
+    let text = "time t in [0, 1] state x start 0 control u in [-1, 1] dynamics { x' = u }\n\
+                minimize -x(end)^2 + integral(u^2)/2 method { N = 10 }";
+    assert_solved(text, &solved(text), -0.5);
+}
+
+/// A form that is convex is called so, at any size of its terms, also where it is singular.
+#[test]
+fn convex_forms_are_recognised() {
+    for cost in ["p^2 + w^2", "(p - w)^2", "p^2 + p*w + w^2", "1e-9*p^2 + 1e9*w^2", "p^2"] {
+        let text = format!(
+            "time t in [0, 1] state x start 0 control p in [-1, 1] control w in [-1, 1]\n\
+             dynamics {{ x' = p + w }} minimize integral({cost}) + (x(end) - 1)^2 method {{ N = 8 }}"
+        );
+        assert!(solved(&text).global, "{cost}");
+    }
+}
+
+/// The heat equation in a rod, heated at one end: directions in which the objective hardly curves.
+#[test]
+fn flat_directions_are_followed_to_the_end() {
+    let count = 50;
+    let states: String = (1..=count).map(|i| format!("state x{i} start 0\n")).collect();
+    let left = |i: usize| if i == 1 { "u".to_string() } else { format!("x{}", i - 1) };
+    let right = |i: usize| format!("x{}", (i + 1).min(count));
+    let rates: String = (1..=count)
+        .map(|i| format!("x{i}' = 0.05*51^2*({} - 2*x{i} + {}) - 0.1*x{i}^3\n", left(i), right(i)))
+        .collect();
+    let misses: Vec<String> = (1..=count).map(|i| format!("(x{i}(end) - 0.5)^2")).collect();
+    let text = format!(
+        "time t in [0, 1]\n{states}control u in [0, 3]\ndynamics {{\n{rates}}}\n\
+         minimize 2*({}) + integral(u^2)/100\nmethod {{ N = 50 }}",
+        misses.join(" + ")
+    );
+    assert_solved("heat", &solved(&text), 9.331967363);
+}
+
+/// The last of many masses, out of reach of the force on the first: `E' <= F |v_1| <= F sqrt(2 E)`,
+/// so `|v_n| <= F t` and `|x_n| <= F T^2 / 2`.
+#[test]
+fn what_is_out_of_reach_is_not_called_solved() {
+    for (count, target) in [(3, 1.0), (6, 0.6), (8, 5.0)] {
+        let states: String =
+            (1..=count).map(|i| format!("state x{i} start 0 state v{i} start 0\n")).collect();
+        let pull = |i: usize, j: usize| format!("10*(x{j} - x{i}) + 0.5*(v{j} - v{i})");
+        let force = |i: usize| {
+            let left = if i == 1 { "F".to_string() } else { pull(i, i - 1) };
+            let right = if i == count { String::new() } else { format!(" + {}", pull(i, i + 1)) };
+            format!("x{i}' = v{i}  v{i}' = {left}{right}\n")
+        };
+        let forces: String = (1..=count).map(force).collect();
+        for method in ["", "solver = interior_point", "linear = sparse_ldl"] {
+            let text = format!(
+                "time t in [0, 1]\n{states}control F in [-1, 1]\ndynamics {{\n{forces}}}\n\
+                 end x{count} == {target}\nminimize integral(F^2)\nmethod {{ N = 50 {method} }}"
+            );
+            let solution = solved(&text);
+            assert_eq!(solution.status, Status::Infeasible, "{count} masses, {method}: {solution:?}");
+        }
+    }
+}
+
+/// A minimum to the fourth order, where the objective is 0: nothing is left of its terms to compare
+/// with.
+#[test]
+fn a_flat_minimum_is_reached() {
+    let text = "time t in [0, 1] state x start 0 control u in [-2, 3] guess 1 dynamics { x' = u }\n\
+                minimize integral(u^4) method { N = 10 }";
+    let solution = solved(text);
+    assert!(solution.status == Status::Solved && solution.objective < 1e-12, "{solution:?}");
+}

@@ -81,7 +81,7 @@ impl Solve {
 
     fn report(&self, prepared: &Prepared, solved: &Solved) -> Exit {
         show(
-            failure::diagnostic(&solved.problem, &solved.outcome, &solved.document.units).iter(),
+            failure::diagnostic(solved).iter(),
             &prepared.source,
         );
         let written = match &self.options.out {

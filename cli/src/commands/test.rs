@@ -53,7 +53,7 @@ impl Test {
         }
         let solved = self.solve(&prepared, begin).map_err(|failure| failure.report(&prepared.source))?;
         show(
-            failure::diagnostic(&solved.problem, &solved.outcome, &solved.document.units).iter(),
+            failure::diagnostic(&solved).iter(),
             &prepared.source,
         );
         let checked = expectations::evaluate(&prepared.model, &solved);

@@ -12,6 +12,7 @@ use crate::nlp::{Nlp, Progress, Solution, Start, Status, Stop, convex};
 use crate::problem::{Origin, Problem, Solver};
 use crate::trajectory::Trajectory;
 use crate::transcribe::TranscribedNlp;
+pub(crate) use run::is_lost;
 use run::{Run, is_good};
 use std::ops::ControlFlow;
 
@@ -30,6 +31,20 @@ pub struct Outcome {
     pub convex: bool,
     /// The worst row, by name and time, if the point is not feasible.
     pub limiting: Option<Limiting>,
+    /// Whether it is proved that no point meets the conditions of the transcribed problem; only with [`Status::Infeasible`], which by itself says what
+    /// was found from one start.
+    pub is_impossible: bool,
+    /// All solves that led to this end, in their order.
+    pub attempts: Vec<Attempt>,
+}
+
+/// One solve, told where nothing was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attempt {
+    /// Intervals of its grid.
+    pub intervals: usize,
+    /// The smoothing width of each surface.
+    pub sigma: Vec<f64>,
 }
 
 /// The constraint that is violated most.
@@ -73,23 +88,33 @@ pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Resu
     run.apply_sigma(&mut nlp);
     let start = start.unwrap_or_else(|| Start { v: nlp.guess(), warm: None });
     let is_open = matches!(problem.method.solver, Solver::Automatic | Solver::Convex);
-    if is_open && convex::is_quadratic_programme(problem) {
-        let method = &problem.method;
-        let solution = convex::solve(&mut nlp, &start, method.tol, method.max_iter);
-        // Where there is no optimum the interior point method has a best iterate, and a row to blame.
-        let has_word = |it: &Solution| it.status == Status::Solved || method.solver == Solver::Convex;
-        if let Some(solution) = solution.filter(has_word) {
-            return Ok(finish(run, &mut nlp, solution, true));
-        }
+    let by_cone = if is_open { by_cone(problem, &mut nlp, &start) } else { None };
+    // Where there is no optimum the interior point method has a best iterate, and a row to blame.
+    let has_word = |it: &Solution| it.status == Status::Solved || problem.method.solver == Solver::Convex;
+    if let Some(solution) = by_cone.clone().filter(has_word) {
+        return Ok(finish(run, &mut nlp, solution, true));
     }
     if problem.method.solver == Solver::Convex {
         return Err(Refusal::NotConvex);
     }
     let solution = match widths(problem) {
-        Some(widths) => run.named(&mut nlp, start, &widths, watch),
-        None => run.chosen(&mut nlp, start, watch),
+        Some(widths) => run.named(&mut nlp, start.clone(), &widths, watch),
+        None => run.chosen(&mut nlp, start.clone(), watch),
     };
-    Ok(finish(run, &mut nlp, solution, false))
+    let proof = match solution.status {
+        Status::Infeasible => by_cone.or_else(|| self::by_cone(problem, &mut nlp, &start)),
+        _ => None,
+    };
+    let mut outcome = finish(run, &mut nlp, solution, false);
+    outcome.is_impossible = proof.is_some_and(|it| it.status == Status::Infeasible);
+    Ok(outcome)
+}
+
+/// What the conic solver says, if the problem is convex: that no point is feasible is then proved.
+fn by_cone(problem: &Problem, nlp: &mut TranscribedNlp, start: &Start) -> Option<Solution> {
+    let method = &problem.method;
+    let is_open = convex::is_quadratic_programme(problem);
+    is_open.then(|| convex::solve(nlp, start, method.tol, method.max_iter)).flatten()
 }
 
 /// Solves a problem from a start that is near its solution, with the widths that another solve has ended with.
@@ -104,7 +129,7 @@ pub(crate) fn solve_near(
     }
     let mut nlp = TranscribedNlp::new(problem);
     let (counts, sigma) = (before.solution.counts, before.sigma.clone());
-    let mut run = Run { problem, counts, sigma };
+    let mut run = Run { problem, counts, sigma, attempts: Vec::new() };
     let goal = run.goal();
     let solution = run.solve(&mut nlp, &start, goal, watch);
     Ok(finish(run, &mut nlp, solution, false))
@@ -119,12 +144,13 @@ fn widths(problem: &Problem) -> Option<Vec<f64>> {
 }
 
 fn finish(run: Run, nlp: &mut TranscribedNlp, solution: Solution, convex: bool) -> Outcome {
-    let Run { problem, sigma, .. } = run;
+    let Run { problem, sigma, attempts, .. } = run;
     let trajectory = Trajectory::new(problem, nlp, &solution);
     let surfaces = trajectory.guards.iter().zip(&sigma);
     let modes = surfaces.map(|(guard, sigma)| modes(&trajectory.time, guard, *sigma)).collect();
     let limiting = limiting(nlp, &solution, &trajectory, problem.method.tol);
-    Outcome { solution, trajectory, sigma, modes, convex, limiting }
+    let is_impossible = convex && solution.status == Status::Infeasible;
+    Outcome { solution, trajectory, sigma, modes, convex, limiting, is_impossible, attempts }
 }
 
 fn limiting(

@@ -40,7 +40,7 @@ fn named(sequences: &[Tried]) -> String {
     names.take(SEQUENCES).chain(others).collect::<Vec<_>>().join("; ")
 }
 
-/// `12 solves, with 50, 100 intervals, sigma 1 to 0.01`.
+/// `12 solves with N = 50, 100, sigma 1 to 0.01, from 8 starts`.
 fn tried(solved: &Solved) -> String {
     let attempts = &solved.outcome.attempts;
     let mut grids: Vec<usize> = attempts.iter().map(|it| it.intervals).collect();
@@ -48,7 +48,11 @@ fn tried(solved: &Solved) -> String {
     grids.dedup();
     let grids: Vec<String> = grids.iter().map(usize::to_string).collect();
     let solves = plural(attempts.len(), "solve");
-    format!("{solves} with N = {}{}", grids.join(", "), widths(attempts))
+    let starts = match solved.document.starts.len() {
+        0 | 1 => String::new(),
+        many => format!(", from {}", plural(many, "start")),
+    };
+    format!("{solves} with N = {}{}{starts}", grids.join(", "), widths(attempts))
 }
 
 /// The widest and the thinnest layer of the first surface.

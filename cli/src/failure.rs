@@ -1,20 +1,21 @@
 //! The diagnostics of a solve that failed, at the lines of the model: FDC0601 and FDC0602.
 
+use crate::attempts;
 use crate::output::units::Units;
+use crate::solver::Solved;
 use fdcc_grammar::{Code, Diagnostic, Span};
 use fdcc_runtime::homotopy::{Limiting, Outcome};
 use fdcc_runtime::nlp::{Place, Status};
 use fdcc_runtime::problem::{Problem, Variable};
 
 /// What a failed solve says, if it is about a line of the model.
-pub fn diagnostic(problem: &Problem, outcome: &Outcome, units: &Units) -> Option<Diagnostic> {
+pub fn diagnostic(solved: &Solved) -> Option<Diagnostic> {
+    let Solved { outcome, document, .. } = solved;
     match &outcome.solution.status {
         // The runtime may not know the place.
         Status::NotFinite(place) if place.origin.label.is_empty() => None,
-        Status::NotFinite(place) => Some(not_finite(outcome, place, units)),
-        Status::Infeasible => {
-            outcome.limiting.as_ref().map(|limiting| infeasible(problem, outcome, limiting, units))
-        }
+        Status::NotFinite(place) => Some(not_finite(outcome, place, &document.units)),
+        Status::Infeasible => outcome.limiting.as_ref().map(|limiting| infeasible(solved, limiting)),
         _ => None,
     }
 }
@@ -35,12 +36,18 @@ fn not_finite(outcome: &Outcome, place: &Place, units: &Units) -> Diagnostic {
     )
 }
 
-fn infeasible(problem: &Problem, outcome: &Outcome, limiting: &Limiting, units: &Units) -> Diagnostic {
+fn infeasible(solved: &Solved, limiting: &Limiting) -> Diagnostic {
+    let Solved { problem, outcome, document, .. } = solved;
+    let units = &document.units;
     let Limiting { origin, condition, violation, .. } = limiting;
+    let (found, is_not) = match outcome.is_impossible {
+        true => ("no feasible trajectory found", "cannot be met"),
+        false => ("no feasible trajectory found near the guess", "is not met"),
+    };
     let when = limiting.time.map(|t| format!(" at t = {}", units.value("time", t, 6))).unwrap_or_default();
     let mut diagnostic = match condition {
         Some(condition) => {
-            let message = format!("no feasible trajectory found: `{}` cannot be met", condition.label);
+            let message = format!("{found}: `{}` {is_not}", condition.label);
             let label = "this stands against the equations most";
             // What is off is the state of the equation.
             let state = origin.label.trim_end_matches('\'');
@@ -50,8 +57,7 @@ fn infeasible(problem: &Problem, outcome: &Outcome, limiting: &Limiting, units: 
         }
         None => {
             let amount = units.violation(&origin.label, *violation, 3);
-            let message =
-                format!("no feasible trajectory found: `{}` is violated by {amount} at best", origin.label);
+            let message = format!("{found}: `{}` is violated by {amount}", origin.label);
             let label = format!("worst{when}: off by {amount}");
             Diagnostic::new(Code::Infeasible, message, span(origin.span), label)
         }
@@ -59,18 +65,22 @@ fn infeasible(problem: &Problem, outcome: &Outcome, limiting: &Limiting, units: 
     for (control, text) in saturated(problem, outcome, limiting, units) {
         diagnostic = diagnostic.label(span(control.origin.span), text);
     }
-    diagnostic.help(advice(outcome.convex))
+    diagnostic.help(advice(solved))
 }
 
 /// A proof and a failed search want different words.
-fn advice(is_proved: bool) -> &'static str {
-    if is_proved {
-        "this is certain, because the problem is convex: no `guess` can help. Loosen a condition, widen the bounds of a \
-         control, or allow more time."
-    } else {
-        "no small change of the trajectory makes this better. Loosen a condition, widen the bounds of a control, allow \
-         more time; or try other starting points with `--starts 8`, or another `guess`, if you think that a solution exists."
+fn advice(solved: &Solved) -> String {
+    if solved.outcome.is_impossible {
+        return "this is certain, because the problem is convex: no `guess` can help. Loosen a condition, widen the bounds \
+                of a control, or allow more time."
+            .into();
     }
+    format!(
+        "{}. No small change of this trajectory makes it better, but {}. Otherwise loosen a condition, widen the \
+         bounds of a control, or allow more time.",
+        attempts::words(solved),
+        attempts::advice(solved)
+    )
 }
 
 /// How close to a bound counts as at the bound.

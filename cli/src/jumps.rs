@@ -4,15 +4,15 @@ use crate::output::named::Named;
 use crate::output::saved::Saved;
 use crate::output::tried::{Ended, Happened, Tried};
 use crate::parallel;
-use crate::search::{Found, Search, is_stopped};
+use crate::search::{Found, Search, all_attempts, first_stopped, is_stopped, unless_stopped};
 use crate::solver::Failure;
 use crate::warm;
-use fdcc_compiler::{Model, compile, compile_simulation, sequences, unrolled};
+use fdcc_compiler::{Model, Sequences, compile, compile_simulation, crossings, sequences, unrolled};
 use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::pieces::{Jump, joined};
 use fdcc_runtime::problem::{ControlShape, Problem};
-use fdcc_runtime::simulate::{Controls, Kind, Options, Status, simulate};
+use fdcc_runtime::simulate::{Controls, Event, Kind, Options, Status, System, simulate};
 use fdcc_runtime::starts;
 
 /// What was solved in place of a model with jumps: its pieces side by side.
@@ -22,8 +22,9 @@ pub struct Unrolled {
     pub outcome: Outcome,
 }
 
-/// A sequence of jumps, as indices into those of the model, and the problem in which it happens.
+/// A sequence of jumps and crossings, and the problem in which it happens.
 struct Alternative {
+    /// Indices into the jumps of the model, and behind these into its [`crossings`].
     sequence: Vec<usize>,
     model: Model,
     problem: Problem,
@@ -38,7 +39,7 @@ pub fn solve(
 ) -> Result<Found, Failure> {
     refuse(between)?;
     let mut possible = sequences(model).map_err(Failure::Model)?;
-    if let Some(likely) = simulated(model) {
+    if let Some(likely) = simulated(model, &possible) {
         possible.all.retain(|sequence| *sequence != likely);
         possible.all.insert(0, likely);
     }
@@ -46,8 +47,13 @@ pub fn solve(
         possible.all.into_iter().map(|sequence| Alternative::new(model, sequence)).collect();
     let all = all?;
     let one = |index: usize| {
-        let log = &mut search.log.of_part(&words(&all[index].names(model)));
-        Search { log, ..search }.solve(&all[index].problem, all[index].start(model, between, earlier))
+        let log = &mut search.log.of_part(&all[index].words(model));
+        let start = all[index].start(model, between, earlier);
+        let mut found = Search { log, ..search }.solve(&all[index].problem, start)?;
+        // A proof says something of the pieces of this sequence only.
+        found.outcome.is_impossible = false;
+        found.outcome.solution.global = false;
+        Ok(found)
     };
     // Without an objective one trajectory is as good as another.
     let is_enough = |found: &Found| is_stopped(&found.outcome) || !between.has_objective && found.is_good();
@@ -57,14 +63,20 @@ pub fn solve(
     let found = parallel::in_order(all.len(), threads, one, ends);
     let found: Vec<Found> = found.into_iter().collect::<Result<_, Failure>>()?;
     for (alternative, found) in all.iter().zip(&found) {
-        search.log.ended(&words(&alternative.names(model)), &Ended::of(&found.problem, &found.outcome));
+        search.log.ended(&alternative.words(model), &Ended::of(&found.problem, &found.outcome));
     }
-    let tried = all.iter().zip(&found).map(|(it, found)| Tried::new(it.names(model), found)).collect();
     let solutions = found.iter().map(|it| &it.outcome.solution).enumerate();
     let best = solutions.reduce(|a, b| if starts::is_better(b.1, a.1) { b } else { a });
     let best = best.expect("that no jump happens is one of them").0;
+    let tried =
+        all.iter().zip(&found).enumerate().map(|(at, (it, found))| it.tried(model, found, at == best));
+    let tried = tried.collect();
+    let outcomes = found.iter().map(|it| &it.outcome);
+    let (attempts, stopped) = (all_attempts(outcomes.clone()), first_stopped(outcomes));
     let (alternatives, found) = (all.into_iter().nth(best), found.into_iter().nth(best));
-    let (alternative, found) = alternatives.zip(found).expect("it is one of them");
+    let (alternative, mut found) = alternatives.zip(found).expect("it is one of them");
+    found.outcome.attempts = attempts;
+    unless_stopped(&mut found.outcome, stopped);
     Ok(alternative.joined(model, between, Found { tried, is_cut: possible.is_cut, ..found }))
 }
 
@@ -73,17 +85,33 @@ const STEPS: usize = 20_000;
 /// More are not looked for where the guess leads to that many.
 const LONGEST: usize = 12;
 
-/// The jumps on the true system with everything as it is guessed.
-fn simulated(model: &Model) -> Option<Vec<usize>> {
+/// The jumps and crossings on the true system with everything as it is guessed.
+fn simulated(model: &Model, possible: &Sequences) -> Option<Vec<usize>> {
     let system = compile_simulation(model).ok()?;
     let simulation = simulate(&system, &Controls::Guess, &Options { max_steps: STEPS, ..Options::default() });
-    let jumps = simulation.events.iter().filter_map(|event| match event.kind {
-        Kind::Jump(at) => Some(at),
-        _ => None,
-    });
-    let jumps: Vec<usize> = jumps.collect();
+    let mut sequence = Vec::new();
+    for event in &simulation.events {
+        sequence.extend(happening(&system, possible, &sequence, event));
+    }
     let is_whole = matches!(simulation.status, Status::Completed);
-    (is_whole && jumps.len() <= LONGEST).then_some(jumps)
+    (is_whole && sequence.len() <= LONGEST).then_some(sequence)
+}
+
+/// The jump or the crossing that an event is, if it is one.
+fn happening(system: &System, possible: &Sequences, earlier: &[usize], event: &Event) -> Option<usize> {
+    let is_falling = match event.kind {
+        Kind::Jump(at) => return Some(at),
+        // Against the direction of a jump.
+        Kind::CrossesUp => true,
+        Kind::CrossesDown => false,
+        _ => return None,
+    };
+    let crossed = |at: &usize| {
+        let jump = &system.jumps[*at];
+        let is_first = !earlier.contains(at) && !earlier.contains(&(at + system.jumps.len()));
+        possible.may_cross[*at] && is_first && (jump.surface, jump.is_falling) == (event.surface, is_falling)
+    };
+    (0..system.jumps.len()).find(crossed).map(|at| at + system.jumps.len())
 }
 
 /// What only a model without jumps can do.
@@ -104,28 +132,46 @@ impl Alternative {
     }
 
     fn start(&self, model: &Model, between: &Problem, earlier: Option<&Saved>) -> Option<Start> {
-        let is_its = |it: &&Saved| self.names(model).iter().eq(it.jumps.iter().map(|jump| &jump.jump));
+        let is_its = |it: &&Saved| {
+            self.jumps(model).eq(it.jumps.iter().map(|jump| &jump.jump))
+                && self.crosses(model).next().is_none()
+        };
         earlier.filter(is_its).and_then(|it| warm::pieces::start(it, between, &self.problem))
     }
 
-    fn names(&self, model: &Model) -> Vec<String> {
-        self.sequence.iter().map(|at| model.jumps[*at].place.name.clone()).collect()
+    /// The names of the jumps.
+    fn jumps<'m>(&self, model: &'m Model) -> impl Iterator<Item = &'m String> {
+        self.sequence.iter().filter_map(|at| model.jumps.get(*at)).map(|jump| &jump.place.name)
+    }
+
+    /// The names of the surfaces that are crossed without a jump.
+    fn crosses<'m>(&self, model: &'m Model) -> impl Iterator<Item = &'m String> {
+        let against = self.sequence.iter().filter_map(|at| at.checked_sub(model.jumps.len()));
+        against.map(|at| &model.surfaces[model.jumps[at].surface].place.name)
+    }
+
+    /// `no jump`, or `bounce, bounce`, or `crossing of rim, bounce`.
+    fn words(&self, model: &Model) -> String {
+        let all = [model.jumps.clone(), crossings(model)].concat();
+        let names: Vec<&str> = self.sequence.iter().map(|at| all[*at].place.name.as_str()).collect();
+        if names.is_empty() { "no jump".into() } else { names.join(", ") }
+    }
+
+    fn tried(&self, model: &Model, found: &Found, is_answer: bool) -> Tried {
+        let Ended { status, objective, iterations } = Ended::of(&found.problem, &found.outcome);
+        let (jumps, crosses) = (self.jumps(model).cloned().collect(), self.crosses(model).cloned().collect());
+        Tried { jumps, crosses, status, objective, iterations, words: self.words(model), is_answer }
     }
 
     /// The answer as one trajectory.
     fn joined(self, model: &Model, between: &Problem, found: Found) -> Found {
         let (outcome, jumps) = joined(between, &found.problem, &found.outcome);
-        let names = self.names(model);
-        let happened = names.into_iter().zip(jumps).map(|(name, jump)| happened(between, name, jump));
+        let names = self.sequence.iter().map(|at| Some(model.jumps.get(*at)?.place.name.clone()));
+        let happened = names.zip(jumps).filter_map(|(name, jump)| Some(happened(between, name?, jump)));
         let problem = between.clone();
         let unrolled = Unrolled { model: self.model, problem: found.problem, outcome: found.outcome };
         Found { problem, outcome, jumps: happened.collect(), unrolled: Some(unrolled), ..found }
     }
-}
-
-/// `no jump`, or `bounce, bounce`.
-pub fn words(jumps: &[String]) -> String {
-    if jumps.is_empty() { "no jump".into() } else { jumps.join(", ") }
 }
 
 fn happened(between: &Problem, jump: String, found: Jump) -> Happened {
@@ -134,11 +180,4 @@ fn happened(between: &Problem, jump: String, found: Jump) -> Happened {
         between.states.iter().map(|state| state.name.clone()).zip(values).collect()
     };
     Happened { jump, time, before: named(before), after: named(after) }
-}
-
-impl Tried {
-    fn new(jumps: Vec<String>, found: &Found) -> Self {
-        let Ended { status, objective, iterations } = Ended::of(&found.problem, &found.outcome);
-        Tried { jumps, status, objective, iterations }
-    }
 }

@@ -1,6 +1,7 @@
 //! The command `fdcc`: reads the command line and hands over to one file for each command.
 
 mod alignment;
+mod attempts;
 mod bounds;
 mod commands;
 mod conditions;

@@ -6,7 +6,7 @@ use crate::output::tried::{Ended, Happened, Tried};
 use crate::parallel;
 use crate::solver::Failure;
 use crate::watch::Deadline;
-use fdcc_runtime::homotopy::{Outcome, Refusal};
+use fdcc_runtime::homotopy::{Attempt, Outcome, Refusal};
 use fdcc_runtime::nlp::{Start, Status};
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::refine::{self, Refined};
@@ -59,8 +59,12 @@ impl Search<'_> {
         let best = |a: Refined, b: Refined| {
             if starts::is_better(&b.outcome.solution, &a.outcome.solution) { b } else { a }
         };
+        let outcomes = all.iter().map(|it| &it.outcome);
+        let (attempts, stopped) = (all_attempts(outcomes.clone()), first_stopped(outcomes));
         let Refined { problem, outcome, error } =
             all.into_iter().reduce(best).expect("there is at least one start");
+        let mut outcome = Outcome { attempts, ..outcome };
+        unless_stopped(&mut outcome, stopped);
         Ok(Found {
             problem,
             outcome,
@@ -95,6 +99,23 @@ fn of_start(index: usize) -> String {
 /// Whether a solve was stopped from outside.
 pub fn is_stopped(outcome: &Outcome) -> bool {
     matches!(outcome.solution.status, Status::Interrupted | Status::TimeLimit)
+}
+
+/// The solves of several outcomes.
+pub fn all_attempts<'o>(outcomes: impl Iterator<Item = &'o Outcome>) -> Vec<Attempt> {
+    outcomes.flat_map(|outcome| outcome.attempts.clone()).collect()
+}
+
+/// How several outcomes were stopped, if one was.
+pub fn first_stopped<'o>(mut outcomes: impl Iterator<Item = &'o Outcome>) -> Option<Status> {
+    outcomes.find(|outcome| is_stopped(outcome)).map(|outcome| outcome.solution.status.clone())
+}
+
+/// Whoever stops a search is not told that there is nothing.
+pub fn unless_stopped(outcome: &mut Outcome, stopped: Option<Status>) {
+    if let (Some(stopped), Status::Infeasible) = (stopped, &outcome.solution.status) {
+        outcome.solution.status = stopped;
+    }
 }
 
 fn run(

@@ -1,5 +1,6 @@
 //! What is said at the end of a solve: how it ended, what was found, what each surface did.
 
+use crate::attempts;
 use crate::output::document::{Document, switching};
 use crate::output::number::{scientific, short};
 use crate::output::plural;
@@ -121,7 +122,8 @@ fn how(solved: &Solved) -> String {
                 on_the_true_system(document)
             )
         }
-        _ => format!("NOT SOLVED, {}: {}", status_name(status).replace('_', " "), why(solved)),
+        Status::Infeasible if !outcome.is_impossible => format!("NOT SOLVED, {}", why(solved)),
+        _ => format!("NOT SOLVED, {}: {}", status_name(outcome).replace('_', " "), why(solved)),
     }
 }
 
@@ -215,14 +217,18 @@ fn replayed(document: &Document) -> Option<String> {
     Some(words.join("   ").replacen(":   ", ": ", 1))
 }
 
+fn intervals(solved: &Solved) -> String {
+    plural(solved.problem.method.intervals, "interval")
+}
+
 /// What the status of a failed solve means.
 fn why(solved: &Solved) -> String {
     let method = &solved.problem.method;
     match &solved.outcome.solution.status {
-        Status::Infeasible if solved.outcome.convex => {
-            "there is no trajectory that meets all conditions".into()
+        Status::Infeasible if solved.outcome.is_impossible => {
+            format!("proved: there is no trajectory of {} that meets all conditions", intervals(solved))
         }
-        Status::Infeasible => "no trajectory near the guess meets all conditions".into(),
+        Status::Infeasible => format!("{}; {}", attempts::words(solved), attempts::advice(solved)),
         Status::Unbounded => "the objective improves without end; something needs a bound".into(),
         Status::IterationLimit => {
             format!("{}; `--method max_iter=...` allows more", plural(method.max_iter, "iteration"))

@@ -53,7 +53,7 @@ use std::sync::Arc;
 pub use surfaces::{Order, Smoothness, SurfaceClass, SurfaceReport};
 pub use units::{NamedUnit, parse_quantity};
 use unroll::between_jumps;
-pub use unroll::{Sequences, sequences, unrolled};
+pub use unroll::{Sequences, crossings, sequences, unrolled};
 
 /// What a syntax tree means, and what is wrong with it.
 pub struct Checked {

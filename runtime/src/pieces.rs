@@ -39,7 +39,9 @@ pub fn joined(between: &Problem, solved: &Problem, outcome: &Outcome) -> (Outcom
         solution.status = Status::NotFinite(Place { grid_point: None, ..place.clone() });
     }
     let jumps = pieces.jumps();
-    (Outcome { solution, trajectory, sigma, modes, convex: outcome.convex, limiting }, jumps)
+    let attempts = outcome.attempts.clone();
+    let (convex, is_impossible) = (outcome.convex, outcome.is_impossible);
+    (Outcome { solution, trajectory, sigma, modes, convex, limiting, is_impossible, attempts }, jumps)
 }
 
 struct Pieces<'a> {

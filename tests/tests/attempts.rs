@@ -2,6 +2,7 @@
 
 use fdcc_runtime::homotopy::{self, Outcome};
 use fdcc_runtime::nlp::{Status, Stop};
+use fdcc_runtime::refine;
 use fdcc_runtime::starts;
 use fdcc_tests::models::{problem, solve};
 use fdcc_tests::repository;
@@ -119,6 +120,66 @@ fn who_stops_a_later_attempt_is_not_told_that_there_is_no_solution() {
     for limit in [all / 3, all / 2, 2 * all / 3, all - 1] {
         assert_eq!(count(limit).0, Status::Interrupted, "after {limit} of {all}");
     }
+}
+
+/// Fifty intervals are too few for implicit Euler to swing it up; on a hundred it comes up, by `radau3` on fifty.
+#[test]
+fn a_grid_of_our_own_choice_that_is_too_coarse_is_no_verdict() {
+    for (mu, most, sigma) in [("0.1", "0.6", None), ("0.5", "1", None), ("0.1", "0.6", Some("0.01"))] {
+        let text = format!(
+            "time t in [0, 12] state th start 0 state w start 0 control u in [-{most}, {most}] surface slip = w \
+             dynamics {{ th' = w w' in -sin(th) - {mu}*Sgn(slip) + u }} end th == pi end w == 0 minimize integral(u^2)"
+        );
+        let found = |intervals: &str| {
+            let sigma = sigma.map(|sigma| ("sigma", sigma));
+            let method: Vec<(&str, &str)> =
+                [("N", intervals), ("tolerance", "1")].into_iter().chain(sigma).collect();
+            refine::solve(&problem(&text, &[], &method), None, &mut |_, _| ControlFlow::Continue(()))
+                .expect("it is not refused")
+        };
+        let named = found("50").outcome;
+        assert_eq!((named.solution.status, named.is_impossible), (Status::Infeasible, false), "{mu}");
+        let chosen = found("auto");
+        assert_eq!(chosen.outcome.solution.status, Status::Solved, "{mu}");
+        assert!(chosen.problem.method.intervals >= 100, "{mu}");
+    }
+}
+
+/// From 0 to 97 % of the speed 1 of a belt that pulls with 0.3, in 3.3 instead of at least 3.23. In a wide layer it pulls too little.
+#[test]
+fn a_layer_that_is_too_wide_is_no_verdict() {
+    let text = |method: &str| {
+        format!(
+            "time t in [0, 3.3] state v start 0 control u in [-0.001, 0.001] surface slip = 1 - v \
+             dynamics {{ v' in 0.3*Sgn(slip) + u }} end v >= 0.97 minimize integral(u^2) method {{ {method} }}"
+        )
+    };
+    for method in
+        ["N = 200", "sigma = 0.03 max_iter = 300", "smooth sigma = 0.01 continue sigma = 1", "sigma = 0.06"]
+    {
+        let found = solve(&problem(&text(method), &[], &[]));
+        assert_eq!(found.solution.status, Status::Solved, "{method}");
+    }
+    let wide = solve(&problem(&text("sigma = 1"), &[], &[]));
+    assert_eq!((wide.solution.status, wide.is_impossible), (Status::Infeasible, false));
+    let widths: Vec<f64> = wide.attempts.iter().map(|attempt| attempt.sigma[0]).collect();
+    assert!(widths.contains(&8.0) && widths.last() == Some(&1.0), "{widths:?}");
+}
+
+/// What is infeasible by linear conditions is proved to be so, whichever solver was asked; what bends is not.
+#[test]
+fn only_what_is_proved_is_impossible() {
+    let text = |rate: &str| {
+        format!(
+            "time t in [0, 1] state x start 0 control u in [-1, 1] dynamics {{ x' = {rate} }} end x == 2 minimize integral(u^2)"
+        )
+    };
+    for solver in ["auto", "interior_point", "sqp", "convex"] {
+        let found = solve(&problem(&text("u"), &[], &[("solver", solver), ("N", "20")]));
+        assert_eq!((found.solution.status, found.is_impossible), (Status::Infeasible, true), "{solver}");
+    }
+    let bends = solve(&problem(&text("sin(u)"), &[], &[("N", "20")]));
+    assert_eq!((bends.solution.status, bends.is_impossible), (Status::Infeasible, false));
 }
 
 /// One interval is no chain: the recursion has nothing to do there.

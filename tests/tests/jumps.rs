@@ -168,6 +168,65 @@ fn friction_and_an_impact_go_together() {
     assert_eq!(found.whole.modes.len(), 1, "the wall is no surface of friction");
 }
 
+/// From `depth` below the rim up through it, down on it, and up to `height` above it: `v0^2 = 2g (depth + height/e^2)`.
+#[test]
+fn a_ball_from_below_the_rim_rises_through_it_before_it_falls_on_it() {
+    let (g, e) = (9.81, 0.8);
+    for (rim, begin, end) in [(0.0, -1.0, 0.5), (1.0, 0.0, 1.5), (-2.0, -2.25, -1.75)] {
+        let text = format!(
+            "model rim\nfree T in [0.1, 5] guess 1.5\nfree v0 in [0, 20] guess 8\ntime t in [0, T]\nstate h start {begin}\n\
+             state v start v0\nsurface rim = h - {rim}\ndynamics {{\n  h' = v\n  v' = -9.81\n}}\n\
+             jump bounce on rim falling at most 1 {{ v := -0.8*v }}\nend h == {end}\nend v == 0\nminimize v0^2\n\
+             method {{ scheme = midpoint  N = 20 }}\n"
+        );
+        let all = sequences(&meaning(&text)).expect("these can be solved").all;
+        assert_eq!(all, [vec![], vec![1], vec![1, 0]], "it is not on the rim before it has risen through it");
+        let found = solve(&text, &[1, 0], &[]);
+        let on_rim = 2.0 * g * (end - rim) / (e * e);
+        let expected = 2.0 * g * (rim - begin) + on_rim;
+        expect_near(found.solved.objective(), expected, 1e-7);
+        expect_near(found.jumps[0].time, (expected.sqrt() - on_rim.sqrt()) / g, 1e-7);
+        assert_eq!(found.jumps[0].before, found.jumps[0].after, "nothing happens on the way up");
+        expect_near(found.jumps[1].after[1], e * on_rim.sqrt(), 1e-7);
+    }
+}
+
+/// The same heater from 18: it warms through 19, where only cooling switches it on.
+#[test]
+fn a_relay_that_begins_beyond_its_surface_comes_to_it_from_the_other_side() {
+    let text = HEATER.replace("start 20", "start 18").replace("[0, 1.2]", "[0, 1.6]");
+    let found = solve(&text, &[3, 0, 1], &[]);
+    let (limit_on, limit_off) = (5.0 + 8.0 / 0.3, 5.0);
+    let heats = |from: f64, to: f64| ((from - limit_on) / (to - limit_on)).ln() / 0.3;
+    let off = heats(18.0, 21.0);
+    expect_near(found.jumps[0].time, heats(18.0, 19.0), 1e-8);
+    expect_near(found.jumps[1].time, off, 1e-8);
+    expect_near(found.jumps[2].time, off + ((21.0 - limit_off) / (19.0f64 - limit_off)).ln() / 0.3, 1e-8);
+}
+
+/// Which sides are possible is a matter of what the start may be: the numbers behind the jumps are crossings.
+#[test]
+fn a_surface_is_crossed_first_where_the_state_may_begin_beyond_it() {
+    let cases: [(&str, &str, &[&[usize]]); 7] = [
+        ("start 1", "falling", &[&[], &[0]]),
+        ("start -1", "falling", &[&[], &[1], &[1, 0]]),
+        ("start 1", "rising", &[&[], &[1], &[1, 0]]),
+        ("start 0", "falling", &[&[], &[0]]),
+        ("start free in [0.5, 1]", "falling", &[&[], &[0]]),
+        ("start free in [-1, 1]", "falling", &[&[], &[0], &[1], &[1, 0]]),
+        ("start 2*p - 1", "falling", &[&[], &[0], &[1], &[1, 0]]),
+    ];
+    for (start, direction, expected) in cases {
+        let text = format!(
+            "free p in [0, 1]\ntime t in [0, 1]\nstate x {start}\ncontrol u in [-1, 1]\nsurface a = x\n\
+             dynamics {{ x' = u*p }}\njump f on a {direction} at most 1 {{ x := 1 }}\nminimize x(end)^2\n"
+        );
+        let found = sequences(&meaning(&text)).expect("these can be solved");
+        assert_eq!(found.all, expected, "{start} {direction}");
+        assert_eq!(found.may_cross, [expected.contains(&(&[1] as &[usize]))], "{start} {direction}");
+    }
+}
+
 /// One trajectory: times ascend, each piece has its intervals, and the state after a jump stands at its time.
 #[test]
 fn pieces_are_put_one_after_the_other() {

@@ -80,10 +80,7 @@ impl Solve {
     }
 
     fn report(&self, prepared: &Prepared, solved: &Solved) -> Exit {
-        show(
-            failure::diagnostic(&solved.problem, &solved.outcome, &solved.document.units).iter(),
-            &prepared.source,
-        );
+        show(failure::diagnostic(solved).iter(), &prepared.source);
         let written = match &self.options.out {
             Some(folder) => files::write(&solved.document, folder, &solved.document.model),
             None => Ok(Vec::new()),

@@ -52,10 +52,7 @@ impl Test {
             return Ok(Tested { file: file.into(), model, status: None, expectations: Vec::new() });
         }
         let solved = self.solve(&prepared, begin).map_err(|failure| failure.report(&prepared.source))?;
-        show(
-            failure::diagnostic(&solved.problem, &solved.outcome, &solved.document.units).iter(),
-            &prepared.source,
-        );
+        show(failure::diagnostic(&solved).iter(), &prepared.source);
         let checked = expectations::evaluate(&prepared.model, &solved);
         // What a solve did not reach is no news about the model.
         let checked = checked.into_iter().filter(|_| solved.is_good());

@@ -181,7 +181,7 @@ impl Document {
             fdcc: env!("CARGO_PKG_VERSION").to_string(),
             model: problem.name.clone(),
             source_sha256: source_sha256.to_string(),
-            status: status_name(&solution.status).to_string(),
+            status: status_name(outcome).to_string(),
             objective: problem.sense * solution.objective,
             global: solution.global,
             free,

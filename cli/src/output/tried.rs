@@ -23,7 +23,7 @@ impl Ended {
     pub fn of(problem: &Problem, outcome: &Outcome) -> Self {
         let solution = &outcome.solution;
         Ended {
-            status: status_name(&solution.status).to_string(),
+            status: status_name(outcome).to_string(),
             objective: problem.sense * solution.objective,
             iterations: solution.counts.iterations,
         }
@@ -45,6 +45,15 @@ pub struct Happened {
 #[derive(Clone, Debug, Serialize)]
 pub struct Tried {
     pub jumps: Vec<String>,
+    /// The surfaces that are crossed against the direction of their jumps.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub crosses: Vec<String>,
+    /// All of them, in their order.
+    #[serde(skip)]
+    pub words: String,
+    /// Whether it is the answer.
+    #[serde(skip)]
+    pub is_answer: bool,
     pub status: String,
     pub objective: f64,
     pub iterations: usize,

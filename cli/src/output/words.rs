@@ -1,15 +1,17 @@
 //! The words that models, files and verdicts have for statuses, modes and settings.
 
+use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::modes::Mode;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{ControlShape, Linear, Scheme, Solver};
 
-/// The name of a status in files and verdicts.
-pub fn status_name(status: &Status) -> &'static str {
-    match status {
+/// The name of a status in files and verdicts. `infeasible` is what is proved to be so.
+pub fn status_name(outcome: &Outcome) -> &'static str {
+    match &outcome.solution.status {
         Status::Solved => "solved",
         Status::Acceptable => "acceptable",
-        Status::Infeasible => "infeasible",
+        Status::Infeasible if outcome.is_impossible => "infeasible",
+        Status::Infeasible => "none_found",
         Status::Unbounded => "unbounded",
         Status::IterationLimit => "iteration_limit",
         Status::TimeLimit => "time_limit",

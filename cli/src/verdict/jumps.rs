@@ -1,6 +1,5 @@
 //! The lines about jumps: which happen, and what the best answers with others are worth.
 
-use crate::jumps::words;
 use crate::output::document::Document;
 use crate::output::plural;
 use crate::output::tried::{Happened, Tried};
@@ -31,8 +30,7 @@ const OTHERS: usize = 4;
 
 /// What is the best with other jumps, the best of them first.
 fn with_others(document: &Document) -> Vec<String> {
-    let own: Vec<&String> = document.jumps.iter().map(|it| &it.jump).collect();
-    let others = document.sequences.iter().filter(|it| !it.jumps.iter().eq(own.iter().copied()));
+    let others = document.sequences.iter().filter(|it| !it.is_answer);
     let is_solved = |it: &&Tried| matches!(it.status.as_str(), "solved" | "acceptable");
     let (mut solved, failed): (Vec<&Tried>, Vec<&Tried>) = others.partition(is_solved);
     let distance = |it: &Tried| (it.objective - document.objective).abs();
@@ -40,12 +38,12 @@ fn with_others(document: &Document) -> Vec<String> {
     let value = |it: &Tried| document.units.value("objective", it.objective, 9);
     let told = solved.iter().take(OTHERS);
     let mut lines: Vec<String> =
-        told.map(|it| format!("       {}: objective {}", words(&it.jumps), value(it))).collect();
+        told.map(|it| format!("       {}: objective {}", it.words, value(it))).collect();
     let more = solved.len().saturating_sub(OTHERS);
     lines.extend((more > 0).then(|| format!("       {}: worse", plural(more, "other sequence"))));
     match failed.as_slice() {
         [] => {}
-        [one] => lines.push(format!("       {}: {}", words(&one.jumps), one.status.replace('_', " "))),
+        [one] => lines.push(format!("       {}: {}", one.words, one.status.replace('_', " "))),
         many => lines.push(format!("       {}: no trajectory found", plural(many.len(), "other sequence"))),
     }
     lines

@@ -20,7 +20,7 @@ pub fn start(saved: &Saved, between: &Problem, problem: &Problem) -> Option<Star
     let mut unknowns: Vec<Option<f64>> = names.map(|name| saved.free.get(name).copied().flatten()).collect();
     unknowns.extend(cut.lengths());
     let times = normalised(saved.time.get(..=intervals)?);
-    (intervals * pieces + 1 == saved.time.len()).then(|| {
+    (intervals * pieces + 1 == saved.time.len() && cut.is_at_jumps()).then(|| {
         from_earlier(problem, &Earlier { times, states, controls, unknowns, widths: saved.widths(problem) })
     })
 }
@@ -36,6 +36,12 @@ struct Cut<'s> {
 type Columns = Vec<Option<Vec<f64>>>;
 
 impl Cut<'_> {
+    /// Whether the pieces begin where jumps happen: a surface that was crossed without a jump ended a piece, too.
+    fn is_at_jumps(&self) -> bool {
+        let begins = self.saved.time.iter().step_by(self.intervals.max(1)).skip(1);
+        self.saved.jumps.iter().zip(begins).all(|(jump, begin)| jump.time == *begin)
+    }
+
     /// Those of the first piece, then those of the second, and so on.
     fn all(&self, signals: Vec<Columns>) -> Columns {
         (0..self.pieces).flat_map(|j| signals.iter().map(move |pieces| pieces[j].clone())).collect()

@@ -10,12 +10,14 @@
 //! Which jumps happen, and in which order, is given ([`sequences()`]). The result is a model like any other: smooth between the jumps, and
 //! differentiated through them by the dependence of all pieces on the lengths.
 
+mod crossings;
 mod hold;
 mod links;
 mod piece;
 mod sequences;
 mod sides;
 
+pub use crossings::crossings;
 pub use sequences::{Sequences, sequences};
 
 use crate::graph::{ExprId, Graph};
@@ -23,6 +25,7 @@ use crate::lower::{numbers, straight_guesses};
 use crate::model::{
     Ball, Control, Expectation, Free, Integral, Jump, Model, Place, Range, Report, State, Surface, Symbol,
 };
+use crossings::Beginning;
 use fdcc_grammar::Diagnostic;
 use hold::Held;
 use piece::Piece;
@@ -63,18 +66,22 @@ fn used_surfaces(model: &Model) -> Vec<usize> {
     (0..model.surfaces.len()).filter(|&at| is_read(at) || in_ball(at)).collect()
 }
 
-/// The model in which exactly these jumps happen, one after the other.
+/// The model in which exactly these jumps and [`crossings`] happen, one after the other.
 pub fn unrolled(model: &Model, sequence: &[usize]) -> Result<Model, Vec<Diagnostic>> {
-    let limits = sequences::limits(model, &numbers(model)?);
+    let numbers = numbers(model)?;
+    let begins = crossings::beginnings(model, &numbers);
+    let mut limits = sequences::limits(model, &numbers);
+    limits.resize(2 * model.jumps.len(), None);
+    let whole = Model { jumps: [model.jumps.clone(), crossings(model)].concat(), ..model.clone() };
     let mut between = between_jumps(model);
     piece::input(&mut between.graph, &mut between.symbols, Symbol::Time);
     let mut graph = between.graph.clone();
     let mut symbols = between.symbols.clone();
-    let held = Held::new(model, &mut graph, sequence, &limits);
+    let held = Held::new(&whole, &mut graph, sequence, &limits);
     let lengths = lengths(&between, sequence, &mut graph, &mut symbols);
     let pieces = Piece::all(&between, &mut graph, &mut symbols, &lengths);
     let mut unrolling =
-        Unrolling { whole: model, model: &between, sequence, held, limits, graph, lengths, pieces };
+        Unrolling { whole: &whole, model: &between, sequence, held, begins, limits, graph, lengths, pieces };
     let parts = unrolling.parts();
     Ok(Model { graph: unrolling.graph, symbols, ..parts })
 }
@@ -91,14 +98,16 @@ fn lengths(model: &Model, sequence: &[usize], graph: &mut Graph, symbols: &mut V
 }
 
 struct Unrolling<'m> {
-    /// As it is written.
+    /// As it is written, with the crossings behind its jumps.
     whole: &'m Model,
     /// What holds between the jumps.
     model: &'m Model,
-    /// The jumps that happen, in their order.
+    /// The jumps and crossings that happen, in their order.
     sequence: &'m [usize],
     /// The surface that is held in the end.
     held: Option<Held>,
+    /// Where the state may begin, for each jump.
+    begins: Vec<Beginning>,
     /// How often each jump may happen.
     limits: Vec<Option<usize>>,
     graph: Graph,

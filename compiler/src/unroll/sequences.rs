@@ -1,5 +1,6 @@
 //! Which jumps may happen, and in which order.
 
+use super::crossings::{Beginning, beginnings};
 use super::hold::rest;
 use crate::graph::ExprId;
 use crate::lower::{Numbers, numbers};
@@ -16,8 +17,11 @@ const MOST: usize = 32;
 
 /// What may happen in a model with jumps.
 pub struct Sequences {
-    /// Jumps that happen one after the other, as indices into [`Model::jumps`]; the short ones first.
+    /// Jumps that happen one after the other, as indices into [`Model::jumps`] and behind these into [`crossings`](super::crossings()); the short
+    /// ones first.
     pub all: Vec<Vec<usize>>,
+    /// Whether the surface of each jump may be crossed against its direction, because the state may begin beyond it.
+    pub may_cross: Vec<bool>,
     /// Whether the model allows others that are left out.
     pub is_cut: bool,
 }
@@ -27,21 +31,38 @@ pub fn sequences(model: &Model) -> Result<Sequences, Vec<Diagnostic>> {
     if let Some(jump) = model.jumps.iter().find(|jump| reads_controls(model, jump)) {
         return Err(vec![not_yet(jump.place.span, "a jump that reads a control")]);
     }
-    let (most, is_cut) = most(model, &numbers(model)?);
-    let mut found = Sequences { all: vec![Vec::new()], is_cut };
+    let numbers = numbers(model)?;
+    let (most, is_cut) = most(model, &numbers);
+    let begins = beginnings(model, &numbers);
+    let may_cross = begins.iter().zip(&most).map(|(it, most)| it.may_be_beyond && *most > 0).collect();
+    let mut found = Sequences { all: vec![Vec::new()], may_cross, is_cut };
     let mut next = 0;
     while next < found.all.len() {
         let shorter = found.all[next].clone();
-        for (jump, most) in most.iter().enumerate() {
-            let is_allowed = shorter.iter().filter(|it| **it == jump).count() < *most;
+        for event in 0..2 * most.len() {
+            let is_allowed = may_follow(&shorter, event, &most, &begins);
             match is_allowed && shorter.len() < LONGEST && found.all.len() < MOST {
-                true => found.all.push([&shorter[..], &[jump]].concat()),
+                true => found.all.push([&shorter[..], &[event]].concat()),
                 false => found.is_cut |= is_allowed,
             }
         }
         next += 1;
     }
     Ok(found)
+}
+
+/// Whether a jump may happen once more after others, or its surface be crossed the other way before the first one.
+fn may_follow(earlier: &[usize], event: usize, most: &[usize], begins: &[Beginning]) -> bool {
+    match event.checked_sub(most.len()) {
+        Some(jump) => {
+            let is_first = !earlier.contains(&jump) && !earlier.contains(&event);
+            is_first && begins[jump].may_be_beyond && most[jump] > 0
+        }
+        None => {
+            let is_before = begins[event].may_be_before || earlier.contains(&(event + most.len()));
+            is_before && earlier.iter().filter(|it| **it == event).count() < most[event]
+        }
+    }
 }
 
 fn reads_controls(model: &Model, jump: &Jump) -> bool {

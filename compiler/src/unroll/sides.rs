@@ -1,6 +1,7 @@
 //! Path constraints of the pieces: what is written, and that no other jump happens on the way.
 //!
-//! Until a `falling` jump happens `psi >= 0`, until a `rising` one `psi <= 0`. On the surface itself, at the end of a piece, such a condition
+//! Until a `falling` jump happens `psi >= 0`, until a `rising` one `psi <= 0`; the other way round where the state begins beyond the surface, until it
+//! crosses that. On the surface itself, at the end of a piece, such a condition
 //! holds by what ends the piece, and would be told twice: there it gives way.
 
 use super::Unrolling;
@@ -67,17 +68,18 @@ impl Unrolling<'_> {
     fn sides(&mut self, j: usize) -> Vec<Row> {
         let whole = self.whole;
         let mut rows = Vec::new();
-        for (index, jump) in whole.jumps.iter().enumerate() {
-            if self.may_happen(j, index) && !self.is_beyond(j, index) && !has_both(&whole.jumps, jump) {
-                let psi = whole.surfaces[jump.surface].psi;
-                let [lower, zero, upper] =
-                    [f64::NEG_INFINITY, 0.0, f64::INFINITY].map(|it| self.graph.number(it));
-                let range = match jump.direction {
-                    Direction::Falling => Range { lower: zero, upper },
-                    Direction::Rising => Range { lower, upper: zero },
-                };
-                rows.push(Row { place: jump.place.clone(), value: psi, range });
+        let own = &whole.jumps[..self.begins.len()];
+        for (index, jump) in own.iter().enumerate() {
+            if !self.may_happen(j, index) || has_both(own, jump) {
+                continue;
             }
+            let range = match (self.is_not_yet_before(j, index), jump.direction) {
+                (false, _) if self.is_beyond(j, index) => continue,
+                (true, _) if self.is_moved(j, index) => continue,
+                (false, Direction::Falling) | (true, Direction::Rising) => self.not_below(),
+                (false, Direction::Rising) | (true, Direction::Falling) => self.not_above(),
+            };
+            rows.push(Row { place: jump.place.clone(), value: whole.surfaces[jump.surface].psi, range });
         }
         rows.retain(|row| !self.is_written(row));
         rows
@@ -98,6 +100,30 @@ impl Unrolling<'_> {
     fn may_happen(&self, j: usize, index: usize) -> bool {
         let before = self.sequence[..j].iter().filter(|it| **it == index).count();
         self.limits[index].is_none_or(|limit| before < limit)
+    }
+
+    fn not_below(&mut self) -> Range {
+        Range { lower: self.graph.number(0.0), upper: self.graph.number(f64::INFINITY) }
+    }
+
+    fn not_above(&mut self) -> Range {
+        Range { lower: self.graph.number(f64::NEG_INFINITY), upper: self.graph.number(0.0) }
+    }
+
+    /// Whether the state began beyond the surface, and has not come back through it.
+    fn is_not_yet_before(&self, j: usize, index: usize) -> bool {
+        let crossing = index + self.begins.len();
+        match self.sequence.iter().position(|it| *it == index || *it == crossing) {
+            Some(first) => self.sequence[first] == crossing && j <= first,
+            None => self.begins[index].is_beyond(),
+        }
+    }
+
+    /// Whether an earlier jump may have moved the state through the surface.
+    fn is_moved(&self, j: usize, index: usize) -> bool {
+        let read = self.whole.graph.inputs_of(&[self.whole.surfaces[self.whole.jumps[index].surface].psi]);
+        let resets = self.sequence[..j].iter().flat_map(|it| &self.whole.jumps[*it].resets);
+        resets.map(|reset| self.input_of_state(reset.0)).any(|state| read.contains(&state))
     }
 
     /// Whether the state went through the surface at an earlier jump.
@@ -128,10 +154,9 @@ impl Unrolling<'_> {
         if !self.graph.inputs_of(&[rate]).iter().all(is_of_state) {
             return None;
         }
-        let [lower, zero, upper] = [f64::NEG_INFINITY, 0.0, f64::INFINITY].map(|it| self.graph.number(it));
         let range = match jump.direction {
-            Direction::Falling => Range { lower, upper: zero },
-            Direction::Rising => Range { lower: zero, upper },
+            Direction::Falling => self.not_above(),
+            Direction::Rising => self.not_below(),
         };
         let place = Place { name: format!("direction of {}", jump.place.name), span: jump.place.span };
         Some(Row { place, value: self.at_end(j, rate), range })
@@ -182,7 +207,7 @@ fn in_proportion(graph: &Graph, own: &[ExprId], its: &[ExprId]) -> bool {
 }
 
 /// Whether a surface is the place of jumps in both directions.
-fn has_both(jumps: &[Jump], jump: &Jump) -> bool {
+pub(super) fn has_both(jumps: &[Jump], jump: &Jump) -> bool {
     jumps.iter().any(|it| it.surface == jump.surface && it.direction != jump.direction)
 }
 

@@ -2,12 +2,13 @@
 //!
 //! The width shrinks on the coarsest grid, roughly, then the last width is solved on one finer grid after the other, each time more accurately, and each solve
 //! is begun where the one before ended ([`prolong`]): far from the solution an iteration costs little, and on the finest grid few are left. Where this fails, widths shrink on the finest grid,
-//! from half the size of the switching function on, or from far above the width; where that fails, too, it is tried at once and with all patience.
+//! from half the size of the switching function on, or from far above the width; where that fails, too, it is tried at once and with all patience. So a failure
+//! on a coarse grid or in a wide layer is never the last word: what the model names has been tried.
 
 use super::Watch;
-use super::run::{Goal, Run, is_good, is_retried};
+use super::run::{Goal, Run, is_good, is_lost, is_retried};
 use crate::linalg::Stages;
-use crate::nlp::{Nlp, Solution, Start, constraint_violation};
+use crate::nlp::{Nlp, Solution, Start, Status, constraint_violation};
 use crate::problem::Problem;
 use crate::prolong::{Times, prolong};
 use crate::transcribe::TranscribedNlp;
@@ -54,7 +55,8 @@ impl Run<'_> {
             return self.shrink(nlp, start, widths, goal, watch);
         }
         let first = self.climb(nlp, start.clone(), (&grids, &shrinking), patience, watch);
-        if !is_retried(&first.status) || goal.limit <= patience.limit {
+        let is_out_of_iterations = first.status == Status::IterationLimit && goal.limit <= patience.limit;
+        if !is_retried(&first.status) || is_out_of_iterations {
             return first;
         }
         if let [sigma] = widths {
@@ -64,7 +66,18 @@ impl Run<'_> {
                 return second;
             }
         }
-        self.shrink(nlp, start, widths, goal, watch)
+        let last = self.shrink(nlp, start.clone(), widths, goal, watch);
+        match widths {
+            [.., sigma] if is_lost(&last.status) && self.is_wider_than(*sigma) => {
+                self.shrink(nlp, start, &[*sigma], goal, watch)
+            }
+            _ => last,
+        }
+    }
+
+    /// Whether the last solve was one with a wider layer.
+    fn is_wider_than(&self, sigma: f64) -> bool {
+        self.sigma.iter().any(|width| *width > sigma)
     }
 
     /// From grid to grid, the last of which is that of `nlp`; widths shrink on the first one.

@@ -1,15 +1,18 @@
 //! Widths of our own choice, where the model names none: each surface gets a fraction of the size that its switching function has along the trajectory
 //! found so far, one solve after another; a warm start takes those of the earlier solution. Where a step is too long it is halved; where even short steps fail, the last width that could be solved is the answer.
+//! Where the first and widest layer cannot be solved, that is no verdict: thinner ones are begun with at once.
 
 use super::Watch;
 use super::approach::grids;
-use super::run::{Goal, Run, is_good, is_retried};
+use super::run::{Goal, Run, is_good, is_lost, is_retried};
 use crate::nlp::{Solution, Start, Status};
 use crate::transcribe::TranscribedNlp;
 
 /// Smoothing widths relative to the size of the switching function.
 const FIRST_FACTOR: f64 = 0.1;
 const LAST_FACTOR: f64 = 0.01;
+/// Where the first cannot be solved.
+const THINNER: [f64; 3] = [0.1, 0.03, 0.01];
 /// From one width to the next; after a failure the square root of it, and so on.
 const DECREASE: f64 = 0.3;
 const MOST_FAILURES: usize = 3;
@@ -32,9 +35,9 @@ impl Run<'_> {
                 return solution;
             }
         }
-        let mut factor = FIRST_FACTOR;
-        self.set_relative(nlp, &start.v);
-        let mut best = self.first(nlp, start, watch);
+        self.set_relative(nlp, &start.v, FIRST_FACTOR);
+        let first = self.first(nlp, start.clone(), watch);
+        let (mut best, mut factor) = self.or_thinner(nlp, &start, first, watch);
         let (mut decrease, mut failures) = (DECREASE, 0);
         while is_good(&best.status) && factor > LAST_FACTOR && failures < MOST_FAILURES {
             let before = self.sigma.clone();
@@ -69,15 +72,38 @@ impl Run<'_> {
         self.solve(nlp, &start, self.goal(), watch)
     }
 
+    /// What was found with the widest layer; where it is lost, with thinner ones, relative to the size of each switching function where it was lost.
+    fn or_thinner(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        start: &Start,
+        first: Solution,
+        watch: &mut Watch,
+    ) -> (Solution, f64) {
+        let (sizes, widest) = (first.v.clone(), self.sigma.clone());
+        let (mut last, mut factor) = (first, FIRST_FACTOR);
+        for thinner in THINNER {
+            if !is_lost(&last.status) {
+                break;
+            }
+            self.set_relative(nlp, &sizes, thinner);
+            self.sigma.iter_mut().zip(&widest).for_each(|(sigma, widest)| *sigma = sigma.min(*widest));
+            if self.sigma != widest {
+                (last, factor) = (self.solve(nlp, start, self.goal(), watch), thinner);
+            }
+        }
+        (last, factor)
+    }
+
     fn patience(&self) -> Goal {
         let goal = self.goal();
         Goal { limit: MOST_ITERATIONS.min(goal.limit), ..goal }
     }
 
     /// Widths relative to the size of each switching function along `v`.
-    fn set_relative(&mut self, nlp: &TranscribedNlp, v: &[f64]) {
+    fn set_relative(&mut self, nlp: &TranscribedNlp, v: &[f64], factor: f64) {
         for (sigma, size) in self.sigma.iter_mut().zip(nlp.guard_sizes(v)) {
-            *sigma = FIRST_FACTOR * if size > 0.0 { size } else { 1.0 };
+            *sigma = factor * if size > 0.0 { size } else { 1.0 };
         }
     }
 

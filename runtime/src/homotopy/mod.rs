@@ -12,6 +12,7 @@ use crate::nlp::{Nlp, Progress, Solution, Start, Status, Stop, convex};
 use crate::problem::{Origin, Problem, Solver};
 use crate::trajectory::Trajectory;
 use crate::transcribe::TranscribedNlp;
+pub(crate) use run::is_lost;
 use run::{Run, is_good};
 use std::ops::ControlFlow;
 
@@ -30,6 +31,20 @@ pub struct Outcome {
     pub convex: bool,
     /// The worst row, by name and time, if the point is not feasible.
     pub limiting: Option<Limiting>,
+    /// Whether it is proved that no point meets the conditions of the transcribed problem; only with [`Status::Infeasible`], which by itself says what
+    /// was found from one start.
+    pub is_impossible: bool,
+    /// All solves that led to this end, in their order.
+    pub attempts: Vec<Attempt>,
+}
+
+/// One solve, told where nothing was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attempt {
+    /// Intervals of its grid.
+    pub intervals: usize,
+    /// The smoothing width of each surface.
+    pub sigma: Vec<f64>,
 }
 
 /// The constraint that is violated most.
@@ -73,25 +88,33 @@ pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Resu
     run.apply_sigma(&mut nlp);
     let start = start.unwrap_or_else(|| Start { v: nlp.guess(), warm: None });
     let is_open = matches!(problem.method.solver, Solver::Automatic | Solver::Convex);
-    let is_convex = is_open && convex::is_quadratic_programme(problem) && convex::is_proved(&mut nlp);
+    let is_convex = convex::is_quadratic_programme(problem) && convex::is_proved(&mut nlp);
     if !is_convex && problem.method.solver == Solver::Convex {
         return Err(Refusal::NotConvex);
     }
-    if is_convex {
-        let conic = convex::solve(&mut nlp, &start, &run.options(run.goal()));
-        // Where it finds no optimum the interior point method has a word, a best iterate, and a row
-        // to blame.
-        if let Some(solution) = conic.filter(|it| it.status == Status::Solved) {
-            return Ok(finish(run, &mut nlp, solution, true));
-        }
+    let options = run.options(run.goal());
+    let conic = if is_open && is_convex { convex::solve(&mut nlp, &start, &options) } else { None };
+    // Where it finds no optimum the interior point method has a word, a best iterate, and a row to
+    // blame.
+    if let Some(solution) = conic.as_ref().filter(|it| it.status == Status::Solved) {
+        return Ok(finish(run, &mut nlp, solution.clone(), true));
     }
     let mut solution = match widths(problem) {
-        Some(widths) => run.named(&mut nlp, start, &widths, watch),
-        None => run.chosen(&mut nlp, start, watch),
+        Some(widths) => run.named(&mut nlp, start.clone(), &widths, watch),
+        None => run.chosen(&mut nlp, start.clone(), watch),
     };
     // Of a convex programme every local optimum is a global one.
-    solution.global = is_convex && solution.status == Status::Solved;
-    Ok(finish(run, &mut nlp, solution, false))
+    solution.global = is_open && is_convex && solution.status == Status::Solved;
+    let is_lost = matches!(solution.status, Status::Infeasible | Status::NumericalFailure);
+    let proof =
+        if is_lost && is_convex { conic.or_else(|| convex::solve(&mut nlp, &start, &options)) } else { None };
+    let is_impossible = proof.is_some_and(|it| it.status == Status::Infeasible);
+    if is_impossible {
+        solution.status = Status::Infeasible;
+    }
+    let mut outcome = finish(run, &mut nlp, solution, false);
+    outcome.is_impossible = is_impossible;
+    Ok(outcome)
 }
 
 /// Solves a problem from a start that is near its solution, with the widths that another solve has ended with.
@@ -106,7 +129,7 @@ pub(crate) fn solve_near(
     }
     let mut nlp = TranscribedNlp::new(problem);
     let (counts, sigma) = (before.solution.counts, before.sigma.clone());
-    let mut run = Run { problem, counts, sigma };
+    let mut run = Run { problem, counts, sigma, attempts: Vec::new() };
     let goal = run.goal();
     let solution = run.solve(&mut nlp, &start, goal, watch);
     Ok(finish(run, &mut nlp, solution, false))
@@ -121,12 +144,13 @@ fn widths(problem: &Problem) -> Option<Vec<f64>> {
 }
 
 fn finish(run: Run, nlp: &mut TranscribedNlp, solution: Solution, convex: bool) -> Outcome {
-    let Run { problem, sigma, .. } = run;
+    let Run { problem, sigma, attempts, .. } = run;
     let trajectory = Trajectory::new(problem, nlp, &solution);
     let surfaces = trajectory.guards.iter().zip(&sigma);
     let modes = surfaces.map(|(guard, sigma)| modes(&trajectory.time, guard, *sigma)).collect();
     let limiting = limiting(nlp, &solution, &trajectory, problem.method.tol);
-    Outcome { solution, trajectory, sigma, modes, convex, limiting }
+    let is_impossible = convex && solution.status == Status::Infeasible;
+    Outcome { solution, trajectory, sigma, modes, convex, limiting, is_impossible, attempts }
 }
 
 fn limiting(

@@ -1,6 +1,6 @@
 //! One solve after the other, with what they share: the widths, the work done, and the person who watches.
 
-use super::{Level, Watch};
+use super::{Attempt, Level, Watch};
 use crate::nlp::{Counts, Options, Progress, Solution, Start, Status, interior_point, sqp};
 use crate::problem::{Problem, Solver};
 use crate::transcribe::TranscribedNlp;
@@ -12,6 +12,8 @@ pub(super) struct Run<'p> {
     pub(super) counts: Counts,
     /// The smoothing width of each surface.
     pub(super) sigma: Vec<f64>,
+    /// All solves so far.
+    pub(super) attempts: Vec<Attempt>,
 }
 
 /// How one solve is to end.
@@ -32,11 +34,16 @@ pub(super) fn is_retried(status: &Status) -> bool {
     !is_good(status) && !matches!(status, Status::TimeLimit | Status::Interrupted)
 }
 
+/// Whether it found nothing feasible, or no way on: that says something of this grid, this width and this start only.
+pub(crate) fn is_lost(status: &Status) -> bool {
+    matches!(status, Status::Infeasible | Status::NumericalFailure)
+}
+
 impl<'p> Run<'p> {
     /// Before the first solve, with the widths that the problem has.
     pub(super) fn new(problem: &'p Problem) -> Self {
         let sigma = problem.surfaces.iter().map(|surface| problem.parameters[surface.sigma].value);
-        Run { problem, counts: Counts::default(), sigma: sigma.collect() }
+        Run { problem, counts: Counts::default(), sigma: sigma.collect(), attempts: Vec::new() }
     }
 
     /// What the model asks of a solve.
@@ -86,6 +93,7 @@ impl<'p> Run<'p> {
         let options = self.options(goal);
         let stages = method.is_raised.then(|| method.scheme.stages());
         let level = Level { intervals: nlp.chain().intervals, stages, sigma: &self.sigma };
+        self.attempts.push(Attempt { intervals: level.intervals, sigma: self.sigma.clone() });
         let before = self.counts.iterations;
         let solve = match self.problem.method.solver {
             Solver::Sequential => sqp::solve,

@@ -9,7 +9,7 @@ mod controls;
 mod estimate;
 mod plan;
 
-use crate::homotopy::{self, Outcome, Refusal, Watch};
+use crate::homotopy::{self, Outcome, Refusal, Watch, is_lost};
 use crate::nlp::{Start, Status};
 use crate::problem::{FIRST_GRID, MOST_STAGES, Problem};
 use crate::transcribe::TranscribedNlp;
@@ -20,6 +20,8 @@ use plan::Errors;
 /// More intervals than this are not tried.
 const MOST: usize = 20_000;
 const MOST_ROUNDS: usize = 30;
+/// The finest grid on which a first solution is looked for.
+const FINEST_FIRST: usize = 8 * FIRST_GRID;
 /// Of a solve that may be given up.
 const MOST_ITERATIONS: usize = 500;
 /// The first stages that are added may gain little where the next gain much. So many times the least nodes may be foreseen and one more is still tried.
@@ -54,23 +56,38 @@ pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Resu
     Ok(Refined { problem: grid.problem, outcome: grid.outcome, error })
 }
 
-/// The first grid with its solution. Few intervals may be too few for a solution; then there are as many as where the order is given.
+/// The first grid that can be solved, with its solution. Few intervals may be too few for a solution; then there are as many as where the order is given, and
+/// where nothing is found on these, either, they are halved again and again: a coarse grid says nothing of the problem.
 fn first(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Result<(Problem, Outcome), Refusal> {
-    if problem.method.intervals >= FIRST_GRID {
-        return Ok((problem.clone(), homotopy::solve(problem, start, watch)?));
+    let is_few = problem.method.intervals < FIRST_GRID;
+    let trial = if is_few { on_trial(problem) } else { problem.clone() };
+    let mut found = (problem.clone(), homotopy::solve(&trial, start.clone(), watch)?);
+    if is_few && !is_good(&found.1) && !is_stopped(&found.1) {
+        found = finer(problem, &start, found, FIRST_GRID, watch)?;
     }
-    let outcome = homotopy::solve(&on_trial(problem), start.clone(), watch)?;
-    let is_stopped = matches!(outcome.solution.status, Status::TimeLimit | Status::Interrupted);
-    if is_good(&outcome) || is_stopped {
-        return Ok((problem.clone(), outcome));
+    while is_lost(&found.1.solution.status) && found.0.method.intervals < FINEST_FIRST {
+        let intervals = 2 * found.0.method.intervals;
+        found = finer(problem, &start, found, intervals, watch)?;
     }
-    let parts = vec![FIRST_GRID / problem.method.intervals; problem.method.intervals];
+    Ok(found)
+}
+
+/// The same from the same start on more intervals, a multiple of those of the problem; `before` is what was tried.
+fn finer(
+    problem: &Problem,
+    start: &Option<Start>,
+    (_, before): (Problem, Outcome),
+    intervals: usize,
+    watch: &mut Watch,
+) -> Result<(Problem, Outcome), Refusal> {
+    let parts = vec![intervals / problem.method.intervals; problem.method.intervals];
     let finer = divided(problem, &parts);
     let (from, to) = (TranscribedNlp::new(problem), TranscribedNlp::new(&finer));
-    let start = start.map(|start| carried(&from, &start, &to, &parts));
-    let mut second = homotopy::solve(&finer, start, watch)?;
-    second.solution.counts.add(&outcome.solution.counts);
-    Ok((finer, second))
+    let start = start.as_ref().map(|start| carried(&from, start, &to, &parts));
+    let mut outcome = homotopy::solve(&finer, start, watch)?;
+    outcome.solution.counts.add(&before.solution.counts);
+    outcome.attempts = [before.attempts, outcome.attempts].concat();
+    Ok((finer, outcome))
 }
 
 /// The same, to be given up soon: what takes long here is better done in another way.
@@ -82,6 +99,10 @@ fn on_trial(problem: &Problem) -> Problem {
 
 fn is_good(outcome: &Outcome) -> bool {
     matches!(outcome.solution.status, Status::Solved | Status::Acceptable)
+}
+
+fn is_stopped(outcome: &Outcome) -> bool {
+    matches!(outcome.solution.status, Status::TimeLimit | Status::Interrupted)
 }
 
 /// A grid that is solved.

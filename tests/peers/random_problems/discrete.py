@@ -119,7 +119,7 @@ class Discrete:
             return self.point(states, controls, unknowns)
         advance, h = Advance(self.problem), self.duration(unknowns) / self.n
         states, controls = np.asarray(states, float), np.asarray(controls, float)
-        found = [advance(k * h, h, states[:, k], controls[:, k], unknowns) for k in range(self.n)]
+        found = [advance(k * h, h, states[:, k], controls[:, k], unknowns, states[:, k + 1]) for k in range(self.n)]
         if None in found:
             return None
         return self.point(states, controls, unknowns, np.array([inner for _, inner in found]).T)

@@ -1,6 +1,6 @@
 """Dry friction, smoothed with a given width: blocks in several units, a belt, a pendulum."""
 
-from draw import number, trajectory
+from draw import number, power, trajectory
 from expressions import Expression, call, lift, name, quantity
 from problem import Condition, Control, Problem, State
 
@@ -21,13 +21,25 @@ def block(rng):
     rate = F - quantity(friction * push_unit[1], *push_unit) * Expression('Sgn', v)
     states = [State('x', v, 0.0, unit=length, move=goal * length[1]),
               State('v', rate, 0.0, unit=speed_unit, move=goal / span * speed_unit[1])]
-    width = quantity(number(rng, 0.02, 0.2) * goal / span * speed_unit[1], *speed_unit)
+    layer = number(rng, 0.02, 0.2) if rng.random() < 0.6 else power(rng, -4, -2)
+    width = quantity(layer * goal / span * speed_unit[1], *speed_unit)
+    effort = least_effort(goal, friction, span, force)
+    effort = effort * push_unit[1]**2 * time[1] if effort else None
     goal *= length[1]
     floor = 1e-4 * (force * push_unit[1])**2 * span * time[1]
-    return Problem('block', states, [Control('F', -force * push_unit[1], force * push_unit[1], push_unit)], F**2, None,
-                   span * time[1], time_unit=time, N=rng.choice([40, 100]), sigma=width, objective_floor=floor,
+    control = Control('F', -force * push_unit[1], force * push_unit[1], push_unit)
+    return Problem('block', states, [control], F**2, None, span * time[1], time_unit=time, N=rng.choice([40, 100, 200]),
+                   sigma=width, objective_floor=floor, true_optimum=effort,
                    scheme=rng.choice(['implicit_euler', 'implicit_euler', 'midpoint', 'radau2']),
                    ends=[Condition(x, goal, goal, length), Condition(v, 0.0, 0.0, speed_unit)])
+
+
+def least_effort(goal, friction, span, force):
+    """The least integral of F^2 from rest to rest, None where the bound of F is met: it slides for a time tau with
+    F = friction + v', and rests before or after. 12 goal^2/tau^3 + friction^2 tau is least for tau^4 = 36 (goal/friction)^2.
+    """
+    tau = min(span, (36 * (goal / friction)**2)**0.25)
+    return 12 * goal**2 / tau**3 + friction**2 * tau if friction + 6 * goal / tau**2 < force else None
 
 
 def stiff_spring(rng):

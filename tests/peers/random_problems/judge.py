@@ -11,6 +11,7 @@ from discrete import Discrete
 from replay import replay
 
 VIOLATION, WORSE = 1e-6, 1e-6
+NO_OPTIMUM = 1.15  # of the true optimum: more than what a grid and a layer cost
 SOLVED = ('solved', 'acceptable')
 
 
@@ -118,6 +119,15 @@ class Judgement:
             worst = problem.states[int(gaps.argmax())].name
             self.wrong.append(('confirmed', f'`{worst}` is off by {gaps.max():.1e} of its movement'))
         self.judge_conditions(self.discrete.point(true, controls, unknowns), asked)
+        self.judge_optimality()
+
+    def judge_optimality(self):
+        """A confirmed trajectory that is far from the true optimum has to be told, in the field `optimality`."""
+        contradicted = self.result.get('optimality', {}).get('contradicted', False)
+        best, objective = self.problem.true_optimum, self.result['objective']
+        if best is not None and objective > NO_OPTIMUM * best and not contradicted:
+            why = f'objective {objective:.9g}, the true optimum is {best:.9g}, and nothing is said to contradict'
+            self.wrong.append(('confirmed', why))
 
     def judge_conditions(self, z, asked):
         """All rows but the equations, and bounds, along the replay."""

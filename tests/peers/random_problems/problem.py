@@ -72,6 +72,7 @@ class Problem:
     truth: str = 'feasible'
     convex: bool = False
     optimum: float = None  # of the discrete problem, where a closed form is known
+    true_optimum: float = None  # of the true system, where a closed form is known
     objective_floor: float = 1e-4  # a smaller size of the objective is measured as this
     method: str = ''  # more settings, as they stand in a method block
 

@@ -4,11 +4,12 @@
     python3 tests/peers/random_problems/run.py target/release/fdcc --count 1000 --table docs/random-problems.md
 
 It needs casadi, numpy and scipy. A wrong word gives exit code 1. With `--rows FILE` each judged problem is one line of
-JSON there, and a second run goes on where the first was stopped; `--models FOLDER` keeps the models that are judged
-wrong or failed; `--seconds S` stops after S seconds.
+JSON there, and a second run of the same build goes on where the first was stopped; `--models FOLDER` keeps the models
+that are judged wrong or failed; `--seconds S` stops after S seconds.
 """
 
 import argparse
+import hashlib
 import json
 import os
 import pathlib
@@ -51,11 +52,17 @@ def solve(fdcc, path, *options):
     return done.stdout, done.stderr
 
 
-def judged(fdcc, seed, index, path):
+def digest(path):
+    """What tells one build of fdcc from another."""
+    return hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()[:12]
+
+
+def judged(fdcc, key, path):
     """The row of one problem, and its model."""
+    build, seed, index = key
     problem, rng = generate(seed, index)
     path.write_text(problem.text())
-    row = {'seed': seed, 'index': index, 'family': problem.family, 'truth': problem.truth}
+    row = {'build': build, 'seed': seed, 'index': index, 'family': problem.family, 'truth': problem.truth}
     output, said = solve(fdcc, path, '--json')
     try:
         result = json.loads(output)
@@ -68,7 +75,7 @@ def judged(fdcc, seed, index, path):
     reference = judgement.references[0]
     return {**row, 'status': result['status'], 'global': result.get('global', False),
             'confirmed': result.get('verification', {}).get('confirmed', False), 'objective': result['objective'],
-            'known': judgement.known, 'iterations': result['iterations'], 'seconds': result['seconds']['solve'],
+            'contradicted': result.get('optimality', {}).get('contradicted', False), 'known': judgement.known, 'iterations': result['iterations'], 'seconds': result['seconds']['solve'],
             'ipopt': reference.status, 'ipopt_iterations': reference.iterations, 'wrong': judgement.wrong,
             'notes': judgement.notes, 'failed': bool(judgement.failed())}, problem
 
@@ -78,7 +85,7 @@ def earlier(path):
     if path is None or not path.exists():
         return {}
     rows = map(json.loads, path.read_text().splitlines())
-    return {(row['seed'], row['index']): row for row in rows}
+    return {(row['build'], row['seed'], row['index']): row for row in rows}
 
 
 def keep(folder, row, problem):
@@ -94,16 +101,16 @@ def keep(folder, row, problem):
 
 def main():
     options, begin = arguments(), time.time()
-    done = earlier(options.rows)
-    rows = []
+    done, build, rows = earlier(options.rows), digest(options.fdcc), []
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / 'model.fdc'
         for index in range(options.first, options.first + options.count):
             if options.seconds and time.time() - begin > options.seconds:
                 break
-            row = done.get((options.seed, index))
+            key = (build, options.seed, index)
+            row = done.get(key)
             if row is None:
-                row, problem = judged(options.fdcc, options.seed, index, path)
+                row, problem = judged(options.fdcc, key, path)
                 keep(options.models, row, problem)
                 if options.rows:
                     with options.rows.open('a') as file:

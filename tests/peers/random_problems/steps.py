@@ -93,21 +93,31 @@ class Advance:
         y, stages = unknown[:self.nx], unknown[self.nx:]
         increment, stage_increments, _, _ = self.step(t, h, x, y, stages, u, p)
         self.olds = inner // self.nx
+        self.places = collocation(problem.scheme)[2] if inner else []
         residual = y - x - increment[:self.nx]
         if inner:
             residual = ca.vertcat(residual, stages - ca.repmat(x, self.olds, 1) - stage_increments)
         self.equations = ca.Function('r', [unknown, q], [residual, ca.jacobian(residual, unknown)])
 
-    def __call__(self, t, h, x, u, p):
-        """New state and inner states, or None."""
-        q, found = np.concatenate([[t, h], x, u, p]), np.tile(x, 1 + self.olds)
-        for _ in range(50):
+    def __call__(self, t, h, x, u, p, goal=None):
+        """New state and inner states, or None. `goal` is about where the step leads, if that is known."""
+        q, places = np.concatenate([[t, h], x, u, p]), [1.0, *self.places]
+        found = np.concatenate([x + c * ((x if goal is None else goal) - x) for c in places])
+        size = max(np.abs(found).max(), 1e-300)
+        for _ in range(100):
             residual, jacobian = (part.full() for part in self.equations(found, q))
             if not (np.all(np.isfinite(residual)) and np.all(np.isfinite(jacobian))):
                 return None
             change = np.linalg.lstsq(jacobian, -residual.ravel(), rcond=None)[0]
-            found = found + change
-            if np.all(np.abs(change) <= 1e-14 * np.abs(found).max()):
+            share = self.shortened(found, change, q, np.abs(residual).max())
+            found, size = found + share * change, max(size, np.abs(found).max())
+            if np.abs(change).max() <= 1e-14 * size:
                 break
-        converged = np.abs(change).max() <= 1e-10 * max(np.abs(found).max(), 1e-300)
-        return (found[:self.nx], found[self.nx:]) if converged else None
+        return (found[:self.nx], found[self.nx:]) if np.abs(change).max() <= 1e-10 * size else None
+
+    def shortened(self, found, change, q, before):
+        """Half of a step, and half of that, until the equations are met better: kinks of friction need it."""
+        share = 1.0
+        while share > 1e-3 and not np.abs(self.equations(found + share * change, q)[0].full()).max() <= before:
+            share /= 2
+        return share

@@ -57,7 +57,7 @@ class Judgement:
                 self.wrong.append(('infeasible', why))
         if self.status == 'unbounded' and truth != 'unbounded':
             self.wrong.append(('unbounded', f'the problem is {"infeasible" if truth == "infeasible" else "bounded"}'))
-        if self.result.get('verification', {}).get('confirmed') and self.z is not None:
+        if (self.result.get('verification') or {}).get('confirmed') and self.z is not None:
             self.judge_confirmed()
 
     def judge_solved(self):
@@ -123,7 +123,7 @@ class Judgement:
 
     def judge_optimality(self):
         """A confirmed trajectory that is far from the true optimum has to be told, in the field `optimality`."""
-        contradicted = self.result.get('optimality', {}).get('contradicted', False)
+        contradicted = (self.result.get('optimality') or {}).get('contradicted', False)
         best, objective = self.problem.true_optimum, self.result['objective']
         if best is not None and objective > NO_OPTIMUM * best and not contradicted:
             why = f'objective {objective:.9g}, the true optimum is {best:.9g}, and nothing is said to contradict'

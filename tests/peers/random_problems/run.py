@@ -74,8 +74,9 @@ def judged(fdcc, key, path):
     judgement = Judgement(problem, result, rng, headline)
     reference = judgement.references[0]
     return {**row, 'status': result['status'], 'global': result.get('global', False),
-            'confirmed': result.get('verification', {}).get('confirmed', False), 'objective': result['objective'],
-            'contradicted': result.get('optimality', {}).get('contradicted', False), 'known': judgement.known, 'iterations': result['iterations'], 'seconds': result['seconds']['solve'],
+            'confirmed': (result.get('verification') or {}).get('confirmed', False), 'objective': result['objective'],
+            'contradicted': (result.get('optimality') or {}).get('contradicted', False), 'known': judgement.known,
+            'iterations': result['iterations'], 'seconds': result['seconds']['solve'],
             'ipopt': reference.status, 'ipopt_iterations': reference.iterations, 'wrong': judgement.wrong,
             'notes': judgement.notes, 'failed': bool(judgement.failed())}, problem
 

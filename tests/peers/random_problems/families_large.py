@@ -54,7 +54,8 @@ def friction_chain(rng):
     goal = number(rng, 0.2, 1)
     end = 10 * (at_end(f'p{n}') - goal)**2
     return Problem('friction_chain', states, [Control('F', -force, force)], 0.1 * u**2, end, number(rng, 1, 3),
-                   N=rng.choice([50, 100]), sigma=lift(number(rng, 0.05, 0.2)))
+                   N=rng.choice([50, 100]), sigma=lift(number(rng, 0.01, 0.2)),
+                   scheme=rng.choice(['implicit_euler', 'midpoint', 'radau2']))
 
 
 def hard_reach(rng):

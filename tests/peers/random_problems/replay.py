@@ -8,14 +8,17 @@ from scipy.integrate import solve_ivp
 TIGHT = 1e-10
 
 
+THIN = 1e-7  # of a typical size: the layer that stands for `Sgn` where several surfaces act at once
+
+
 def source(e, names):
-    """Python code of an expression; `Sgn` is the selector `s`."""
+    """Python code of an expression; `Sgn` is the selector `s`, or with names['layer'] a layer of that width."""
     if e.kind == 'number':
         return repr(e.value)
     if e.kind == 'name':
         return names[e.value]
     if e.kind == 'Sgn':
-        return 's'
+        return f'tanh({source(e.parts[0], names)} / {names["layer"]})' if 'layer' in names else 's'
     parts = [source(part, names) for part in e.parts]
     if e.kind in '+-*/^':
         return f'({parts[0]} {e.kind.replace("^", "**")} {parts[1]})'
@@ -34,11 +37,12 @@ class System:
         names = {s.name: f'x[{i}]' for i, s in enumerate(problem.states)}
         names.update({c.name: f'u[{i}]' for i, c in enumerate(problem.controls)}, t='t')
         names.update({p.name: f'p[{i}]' for i, p in enumerate(problem.unknowns)})
+        surfaces = [psi for s in problem.states for psi in switching(s.rate)]
+        if len(surfaces) > 1:
+            names['layer'] = THIN * min(s.move for s in problem.states)
         rates = ', '.join(source(s.rate, names) for s in problem.states)
         self.f = eval(f'lambda t, x, u, p, s: ({rates},)', vars(math))
-        found = [psi for s in problem.states for psi in switching(s.rate)]
-        self.psi = eval(f'lambda x: {source(found[0], names)}', vars(math)) if found else None
-        self.surfaces = len(found)
+        self.psi = eval(f'lambda x: {source(surfaces[0], names)}', vars(math)) if len(surfaces) == 1 else None
 
     def psi_rate(self, t, x, u, p, s):
         rate = self.f(t, x, u, p, s)
@@ -51,10 +55,8 @@ class System:
 
 
 def replay(problem, start, controls, unknowns, duration):
-    """States at all grid points, states x (N + 1); None where the integrator gives up, and for several surfaces."""
+    """States at all grid points, states x (N + 1); None where the integrator gives up."""
     system, h = System(problem), duration / problem.N
-    if system.surfaces > 1:
-        return None
     floors = 1e-3 * TIGHT * np.array([s.move for s in problem.states])
     states = [np.asarray(start, float)]
     for k in range(problem.N):

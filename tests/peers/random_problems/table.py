@@ -103,4 +103,4 @@ def other_minima(rows):
     unseen = sum('replay' in note for row in rows for note in row['notes'])
     return ('## Local minima\n\n'
             f'In {count} problems the answer is a local minimum, without the word "global", and another start of IPOPT finds a better one. '
-            f'In {contradicted} the field `optimality` contradicts a solved answer, and {unseen} confirmations were not replayed here (several surfaces).\n')
+            f'In {contradicted} the field `optimality` contradicts a solved answer, and {unseen} confirmations could not be replayed by SciPy.\n')

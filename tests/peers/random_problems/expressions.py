@@ -15,10 +15,12 @@ class Expression:
         self.kind, self.parts, self.value, self.unit = kind, [lift(part) for part in parts], value, unit
 
     def __add__(self, other):
+        if is_zero(other) or is_zero(self):
+            return self if is_zero(other) else lift(other)
         return Expression('+', self, other)
 
     def __radd__(self, other):
-        return Expression('+', other, self) if other != 0 else self
+        return lift(other) + self
 
     def __sub__(self, other):
         return Expression('-', self, other)
@@ -99,6 +101,10 @@ def lift(value):
     return value if isinstance(value, Expression) else Expression('number', value=float(value))
 
 
+def is_zero(value):
+    return lift(value).kind == 'number' and lift(value).value == 0
+
+
 def name(text):
     """A name of the model, or a value at an end such as `x(end)`."""
     return Expression('name', value=text)
@@ -116,8 +122,5 @@ def call(function, argument):
 
 def total(terms):
     """The sum of a list, 0 if there is none."""
-    terms = list(terms)
-    result = lift(0) if not terms else lift(terms[0])
-    for term in terms[1:]:
-        result = result + term
-    return result
+    first, *rest = [*terms] or [0]
+    return sum(rest, start=lift(first))

@@ -64,9 +64,13 @@ def around(values):
 
 
 def monomials(rng, x):
-    """Products of up to three variables."""
-    return sum((number(rng, -0.5, 0.5) * rng.choice(x) * rng.choice(x) * (rng.choice(x) if rng.random() < 0.4 else 1)
-                for _ in range(rng.randint(1, 2))), lift(0))
+    """One or two products of two or three variables."""
+    return total(monomial(rng, x) for _ in range(rng.randint(1, 2)))
+
+
+def monomial(rng, x):
+    product = number(rng, -0.5, 0.5) * rng.choice(x) * rng.choice(x)
+    return product * rng.choice(x) if rng.random() < 0.4 else product
 
 
 def polynomial(rng):

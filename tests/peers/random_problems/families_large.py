@@ -16,9 +16,9 @@ def reached(problem, rng, most=4):
 
 
 def chain(rng):
-    """Masses on springs and dampers, pulled at one end by a bounded force: a target that it cannot reach.
+    """Masses on springs and dampers, at rest, pulled at one end by a bounded force; ends that are reachable, or not.
 
-    Half of N^2 dt^2 F / m is the farthest that the pulled mass can get without springs, which only hold it back.
+    Its energy is at most the work of the force, F s after the path s, so v^2 <= 2 F s, and s is at most F t^2 / 2.
     """
     n, u = rng.randint(3, 25), name('F')
     p, v = names('p', n), names('v', n)
@@ -34,7 +34,7 @@ def chain(rng):
     if rng.random() < 0.4:
         return reached(problem, rng)
     farthest = force * span * (span + span / problem.N)
-    goal = float(f'{farthest * number(rng, 1.0, 3):.4g}')
+    goal = float(f'{farthest * number(rng, 0.6, 3):.4g}')
     problem.ends = [Condition(p[-1], goal, goal)]
     if rng.random() < 0.5:
         problem.ends.append(Condition(v[-1], 0.0, 0.0))

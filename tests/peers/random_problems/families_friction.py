@@ -37,8 +37,8 @@ def block(rng):
 def least_effort(goal, friction, span, force):
     """The least integral of F^2 from rest to rest, None where the bound of F is met.
 
-    It slides for a time tau with F = friction + v', and rests before or after: 12 goal^2/tau^3 + friction^2 tau, which is
-    least for tau^4 = 36 (goal/friction)^2.
+    It slides for a time tau with F = friction + v', and rests before or after: 12 goal^2/tau^3 + friction^2 tau,
+    which is least for tau^4 = 36 (goal/friction)^2.
     """
     tau = min(span, (36 * (goal / friction)**2)**0.25)
     return 12 * goal**2 / tau**3 + friction**2 * tau if friction + 6 * goal / tau**2 < force else None

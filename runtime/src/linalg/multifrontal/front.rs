@@ -5,8 +5,8 @@
 /// gains are such growth, and no error: where many rows wait for better pivots, fronts become
 /// large.
 const THRESHOLD: f64 = 1e-6;
-/// A pivot this small, relative to the terms that it is the sum of, is their rounding.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// Rows of a balanced matrix with nothing above this are zero.
+const TINY: f64 = f64::EPSILON * f64::EPSILON;
 /// So many columns of `L` are subtracted at a time.
 const BATCH: usize = 4;
 
@@ -31,7 +31,7 @@ enum Pivot {
     Two(usize, usize),
 }
 
-/// The matrix is singular to working precision, or holds what is not a number.
+/// The matrix is singular, or holds what is not a number.
 #[derive(Debug)]
 pub(super) struct Singular;
 
@@ -61,33 +61,32 @@ impl Front {
     }
 
     /// Eliminates as many of the first `ready` rows as there are pivots for, and orders the rows
-    /// accordingly. `terms` holds for each row by name the largest term of its diagonal so far.
-    pub(super) fn eliminate(&mut self, ready: usize, terms: &mut [f64]) -> Result<(), Singular> {
+    /// accordingly.
+    pub(super) fn eliminate(&mut self, ready: usize) -> Result<(), Singular> {
         let (mut k, mut candidate, mut refused) = (0, 0, 0);
         while refused < ready - k {
             candidate = if candidate < ready { candidate } else { k };
-            match self.pivot(k, candidate, ready, terms)? {
+            match self.pivot(k, candidate, ready)? {
                 Some(pivot) => {
-                    k += self.take(k, pivot, ready, terms);
+                    k += self.take(k, pivot, ready);
                     (candidate, refused) = (candidate.max(k), 0);
                 }
                 None => (candidate, refused) = (candidate + 1, refused + 1),
             }
         }
-        self.eliminate_rest(k, ready, terms);
+        self.eliminate_rest(k, ready);
         Ok(())
     }
 
     /// The row `r` as a pivot, by itself or with the row that it depends on most; `None` if neither
     /// is large enough.
-    fn pivot(&self, k: usize, r: usize, ready: usize, terms: &[f64]) -> Choice {
+    fn pivot(&self, k: usize, r: usize, ready: usize) -> Choice {
         let (partner, largest) = self.largest_off_diagonal(k, r, ready);
         let diagonal = self.at(r, r).abs();
-        let rounding = ROUNDING * terms[self.rows[r] as usize];
-        if diagonal.max(largest) <= rounding {
+        if diagonal.max(largest) <= TINY {
             return Err(Singular);
         }
-        if diagonal > rounding && diagonal >= THRESHOLD * largest {
+        if diagonal > TINY && diagonal >= THRESHOLD * largest {
             return Ok(Some(Pivot::One(r)));
         }
         Ok(partner.filter(|s| self.is_good_pair(k, r, *s)).map(|s| Pivot::Two(r.min(s), r.max(s))))
@@ -124,17 +123,17 @@ impl Front {
     }
 
     /// Eliminates the pivot from the ready columns; returns how many rows it has.
-    fn take(&mut self, k: usize, pivot: Pivot, ready: usize, terms: &mut [f64]) -> usize {
+    fn take(&mut self, k: usize, pivot: Pivot, ready: usize) -> usize {
         match pivot {
             Pivot::One(r) => {
                 self.exchange(k, r);
-                self.eliminate_one(k, ready, terms);
+                self.eliminate_one(k, ready);
                 1
             }
             Pivot::Two(r, s) => {
                 self.exchange(k, r);
                 self.exchange(k + 1, s);
-                self.eliminate_two(k, ready, terms);
+                self.eliminate_two(k, ready);
                 2
             }
         }
@@ -153,24 +152,22 @@ impl Front {
         (b + 1..size).for_each(|i| self.values.swap(a * size + i, b * size + i));
     }
 
-    fn eliminate_one(&mut self, k: usize, ready: usize, terms: &mut [f64]) {
+    fn eliminate_one(&mut self, k: usize, ready: usize) {
         let size = self.size();
         let (left, right) = self.values.split_at_mut((k + 1) * size);
         let column = &mut left[k * size + k..];
         let (pivot, column) = (column[0], &mut column[1..]);
-        let inverse = 1.0 / pivot;
         for j in 0..ready - k - 1 {
-            let factor = column[j] * inverse;
-            note(&mut terms[self.rows[k + 1 + j] as usize], factor * column[j]);
+            let factor = column[j] / pivot;
             let target = &mut right[j * size + k + 1 + j..(j + 1) * size];
             target.iter_mut().zip(&column[j..]).for_each(|(t, w)| *t -= factor * w);
         }
-        column.iter_mut().for_each(|value| *value *= inverse);
+        column.iter_mut().for_each(|value| *value /= pivot);
         self.blocks.push(1);
         self.negative += usize::from(pivot < 0.0);
     }
 
-    fn eliminate_two(&mut self, k: usize, ready: usize, terms: &mut [f64]) {
+    fn eliminate_two(&mut self, k: usize, ready: usize) {
         let size = self.size();
         let (a, b, c) = (self.at(k, k), self.at(k + 1, k), self.at(k + 1, k + 1));
         let det = a * c - b * b;
@@ -180,7 +177,6 @@ impl Front {
         let factors = |p: f64, q: f64| ((c * p - b * q) / det, (a * q - b * p) / det);
         for j in 0..ready - k - 2 {
             let (p, q) = factors(first[j], second[j]);
-            note(&mut terms[self.rows[k + 2 + j] as usize], p * first[j] + q * second[j]);
             let target = &mut right[j * size + k + 2 + j..(j + 1) * size];
             let columns = first[j..].iter().zip(&second[j..]);
             target.iter_mut().zip(columns).for_each(|(t, (v, w))| *t -= p * v + q * w);
@@ -191,7 +187,7 @@ impl Front {
     }
 
     /// Subtracts `L D L'` of the first `pivots` rows from the columns that are not ready.
-    fn eliminate_rest(&mut self, pivots: usize, ready: usize, terms: &mut [f64]) {
+    fn eliminate_rest(&mut self, pivots: usize, ready: usize) {
         let (size, mut factors) = (self.size(), std::mem::take(&mut self.factors));
         factors.resize(pivots, 0.0);
         for j in ready..size {
@@ -199,9 +195,6 @@ impl Front {
             let (left, right) = self.values.split_at_mut(j * size);
             let left = &*left;
             let columns = move |k: usize| &left[k * size + j..(k + 1) * size];
-            for k in 0..pivots {
-                note(&mut terms[self.rows[j] as usize], factors[k] * columns(k)[0]);
-            }
             subtract(&mut right[j..size], &factors, columns);
         }
         self.factors = factors;
@@ -233,9 +226,4 @@ fn subtract<'a>(target: &mut [f64], factors: &[f64], columns: impl Fn(usize) -> 
     for k in whole..factors.len() {
         target.iter_mut().zip(columns(k)).for_each(|(t, p)| *t -= factors[k] * p);
     }
-}
-
-/// Remembers the largest term.
-fn note(most: &mut f64, term: f64) {
-    *most = most.max(term.abs());
 }

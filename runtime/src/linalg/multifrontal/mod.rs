@@ -30,8 +30,6 @@ pub(crate) struct Multifrontal {
     factors: Factors,
     /// Where each row is in the front.
     position: Vec<u32>,
-    /// The largest term that was added to each diagonal entry.
-    terms: Vec<f64>,
 }
 
 /// What nodes left to their parents: symmetric matrices, by columns of their lower triangles.
@@ -59,7 +57,6 @@ impl Multifrontal {
             left: Stack::default(),
             factors: Factors::default(),
             position: vec![0; pattern.rows],
-            terms: vec![0.0; pattern.rows],
         }
     }
 
@@ -69,16 +66,15 @@ impl Multifrontal {
     }
 
     /// Factors the matrix with these values of its pattern; the number of negative eigenvalues, or
-    /// `None` if it is singular to working precision.
+    /// `None` if it is singular.
     pub(crate) fn factor(&mut self, values: &[f64]) -> Option<usize> {
         self.balance.update(&self.nodes, values);
         self.factors.clear();
         self.left.clear();
-        self.terms.fill(0.0);
         let mut negative = 0;
         for at in 0..self.nodes.len() {
             let ready = self.assemble(at, values);
-            self.front.eliminate(ready, &mut self.terms).ok()?;
+            self.front.eliminate(ready).ok()?;
             let late = ready - self.front.blocks.len();
             if late > 0 && self.nodes[at].rest.is_empty() {
                 return None;
@@ -99,7 +95,7 @@ impl Multifrontal {
 
     /// Makes the front of a node; the number of its rows that are ready to be eliminated.
     fn assemble(&mut self, at: usize, values: &[f64]) -> usize {
-        let Multifrontal { nodes, balance, front, left, position, terms, .. } = self;
+        let Multifrontal { nodes, balance, front, left, position, .. } = self;
         let node = &nodes[at];
         front.rows.clear();
         front.rows.extend(&node.own);
@@ -112,9 +108,6 @@ impl Multifrontal {
             let (row, column) = (entry.row as usize, entry.column as usize);
             let value = balance.scaled(entry, values);
             front.add(position[row] as usize, position[column] as usize, value);
-            if row == column {
-                terms[row] = terms[row].max(value.abs());
-            }
         }
         (0..node.children).for_each(|_| left.pop_into(front, position));
         ready

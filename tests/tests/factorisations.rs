@@ -5,6 +5,9 @@ use fdcc_runtime::nlp::Solution;
 use fdcc_tests::documents;
 use fdcc_tests::models::{problem, refusal, solve};
 
+/// Longer paths multiply rounding until they part; they still have to end at the same place.
+const LONG_PATH: usize = 100;
+
 fn solution(text: &str, linear: &str) -> Solution {
     let method = [("linear", linear), ("solver", "interior_point")];
     solve(&problem(text, &[], &method)).solution
@@ -18,7 +21,7 @@ fn difference(name: &str, text: &str) -> Option<String> {
     let gap = (one.objective - other.objective).abs();
     let is_same = one.status == other.status
         && gap <= 1e-8 * one.objective.abs().max(1.0)
-        && counts[0].abs_diff(counts[1]) <= most;
+        && (counts[0] > LONG_PATH || counts[0].abs_diff(counts[1]) <= most);
     let words = || {
         format!(
             "{name}: {:?} and {:?}, objectives off by {gap:e}, iterations {counts:?}",

@@ -5,8 +5,8 @@
 /// gains are such growth, and no error: where many rows wait for better pivots, fronts become
 /// large.
 const THRESHOLD: f64 = 1e-6;
-/// Rows of a balanced matrix with nothing above this are zero.
-const TINY: f64 = f64::EPSILON * f64::EPSILON;
+/// Rows of a balanced matrix with nothing above this are rounding.
+const TINY: f64 = 16.0 * f64::EPSILON;
 /// So many columns of `L` are subtracted at a time.
 const BATCH: usize = 4;
 

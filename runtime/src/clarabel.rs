@@ -1,4 +1,4 @@
-//! The only file that names the crate `clarabel`: its sparse LDL and its conic solver, behind our own types.
+//! The only file that names the crate `clarabel`: its conic solver, and its sparse LDL without pivots, behind our own types.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::qdldl::{QDLDLFactorisation, QDLDLSettingsBuilder};
@@ -94,15 +94,6 @@ impl Ldl {
         Ldl { upper, positions, factors: None }
     }
 
-    /// How many entries each column of `L` will have below its diagonal; `None` where the matrix cannot be factored.
-    pub(crate) fn column_lengths(&self) -> Option<Vec<usize>> {
-        let settings = QDLDLSettingsBuilder::default().logical(true).build();
-        let matrix = self.upper.clone().into_csc();
-        let factors =
-            settings.ok().and_then(|settings| QDLDLFactorisation::new(&matrix, Some(settings)).ok());
-        factors.map(|it| it.L.colptr.windows(2).map(|ends| ends[1] - ends[0]).collect())
-    }
-
     /// Factors the matrix with new values; the number of positive eigenvalues, or `None` at a zero pivot.
     pub(crate) fn factor(&mut self, values: &[f64]) -> Option<usize> {
         match &mut self.factors {
@@ -118,13 +109,6 @@ impl Ldl {
         }
         let factors = self.factors.as_ref()?;
         factors.D.iter().all(|pivot| pivot.is_finite()).then(|| factors.positive_inertia())
-    }
-
-    /// Replaces `b` by the solution.
-    pub(crate) fn solve(&mut self, b: &mut [f64]) {
-        if let Some(factors) = &mut self.factors {
-            factors.solve(b);
-        }
     }
 }
 

@@ -54,6 +54,7 @@ const FOREIGN: &[(&str, &[&str])] = &[
     ("pest_derive", &["grammar/src/parse/"]),
     ("cranelift", &["compiler/src/generate/cranelift.rs", "compiler/src/generate/cranelift/"]),
     ("clarabel", &["runtime/src/clarabel.rs"]),
+    ("amd", &["runtime/src/linalg/multifrontal/tree.rs"]),
     ("miette", &["cli/src/render.rs"]),
     ("similar", &["cli/src/difference.rs"]),
     ("serde", &["cli/src/output/", "server/src/dispatch.rs"]),

@@ -15,6 +15,7 @@ mod conformance;
 mod cost;
 mod lanes;
 pub(crate) mod lu;
+mod multifrontal;
 mod products;
 pub mod riccati;
 pub mod sparse_ldl;

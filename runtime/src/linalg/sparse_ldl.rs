@@ -1,20 +1,16 @@
 //! The optimality conditions as one sparse matrix, for problems without stage structure.
 //!
-//! Without pivoting, an LDL factorisation needs a quasi-definite matrix; so the diagonal is shifted by
-//! `+-`[`SHIFT`], too little to change the inertia of a well-posed problem, and the solves are refined against
-//! the unshifted matrix by whoever asks for them.
+//! Nothing is added to its diagonal: [`Multifrontal`] finds pivots for any matrix that is regular.
 
+use super::multifrontal::Multifrontal;
 use super::{Factor, Inertia, Triplets};
-use crate::clarabel::{Columns, Ldl};
-
-/// Static regularisation.
-const SHIFT: f64 = 1e-8;
+use crate::clarabel::Columns;
 
 /// Sparse LDL of the whole matrix.
 pub struct SparseLdl {
     variables: usize,
     fixed: Vec<bool>,
-    ldl: Ldl,
+    ldl: Multifrontal,
     values: Vec<f64>,
     /// Where each Hessian and Jacobian value goes; `None` if it belongs to a fixed variable.
     hessian: Vec<Option<u32>>,
@@ -39,7 +35,7 @@ impl SparseLdl {
         SparseLdl {
             variables,
             fixed: fixed.to_vec(),
-            ldl: Ldl::new(pattern),
+            ldl: Multifrontal::new(&pattern),
             values,
             hessian: targets,
             jacobian,
@@ -47,18 +43,17 @@ impl SparseLdl {
         }
     }
 
-    /// How many multiplications a factorisation takes, about; infinite where there is none.
+    /// How many multiplications a factorisation takes, about.
     pub(crate) fn multiplications(&self) -> f64 {
-        let lengths = self.ldl.column_lengths();
-        lengths.map_or(f64::INFINITY, |it| it.iter().map(|length| (*length as f64).powi(2)).sum())
+        self.ldl.multiplications()
     }
 
     fn add_diagonal(&mut self, sigma: &[f64], d: &[f64]) {
         for (i, place) in self.diagonal.iter().enumerate() {
             self.values[*place as usize] += match i.checked_sub(self.variables) {
-                Some(row) => -d[row] - SHIFT,
+                Some(row) => -d[row],
                 None if self.fixed[i] => 1.0,
-                None => sigma[i] + SHIFT,
+                None => sigma[i],
             };
         }
     }
@@ -76,7 +71,7 @@ impl Factor for SparseLdl {
         self.add_diagonal(sigma, d);
         match self.ldl.factor(&self.values) {
             None => Inertia::Singular,
-            Some(positive) if positive == self.variables => Inertia::Correct,
+            Some(negative) if negative + self.variables == self.diagonal.len() => Inertia::Correct,
             Some(_) => Inertia::Wrong,
         }
     }

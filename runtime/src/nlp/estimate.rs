@@ -17,6 +17,8 @@ use crate::problem::Bounds;
 /// What is nearer to its bound than this is at it: an interior point method keeps away a little.
 const NEAR: f64 = 1e-5;
 const WEIGHTLESS: f64 = 1e8;
+/// What rows that depend on each other are shifted by, so that they share their multiplier.
+const SHIFT: f64 = 1e-8;
 
 /// The multipliers at `v`; `None` where there is no number.
 pub(crate) fn multipliers(nlp: &mut dyn Nlp, v: &[f64]) -> Option<Multipliers> {
@@ -27,7 +29,7 @@ pub(crate) fn multipliers(nlp: &mut dyn Nlp, v: &[f64]) -> Option<Multipliers> {
     let fixed: Vec<bool> = nlp.variable_bounds().iter().map(Bounds::is_equality).collect();
     let mut factor = SparseLdl::new(nlp.hessian_structure(), nlp.jacobian_structure(), &fixed, rows.len());
     let sigma: Vec<f64> = pairs(nlp.variable_bounds(), v, |side| side.map_or(1.0, |_| WEIGHTLESS));
-    let d: Vec<f64> = pairs(nlp.row_bounds(), &rows, |side| side.map_or(WEIGHTLESS, |_| 0.0));
+    let d: Vec<f64> = pairs(nlp.row_bounds(), &rows, |side| side.map_or(WEIGHTLESS, |_| SHIFT));
     let flat = vec![0.0; derivatives.hessian.len()];
     if factor.factor(&flat, &derivatives.jacobian, &sigma, &d) != Inertia::Correct {
         return None;

@@ -1,0 +1,53 @@
+//! Units of rows in which a symmetric matrix has entries of about the same size.
+
+use super::tree::{Entry, Node};
+
+/// So often all rows are divided by the root of their largest entry.
+const ROUNDS: usize = 2;
+
+/// Factors of rows and columns.
+#[derive(Debug)]
+pub(super) struct Balance {
+    factors: Vec<f64>,
+    largest: Vec<f64>,
+}
+
+impl Balance {
+    pub(super) fn new(size: usize) -> Self {
+        Balance { factors: vec![1.0; size], largest: vec![0.0; size] }
+    }
+
+    /// Balances the matrix with these values (Ruiz 2001). The factors are powers of two, so that
+    /// nothing is rounded.
+    pub(super) fn update(&mut self, nodes: &[Node], values: &[f64]) {
+        self.factors.fill(1.0);
+        for _ in 0..ROUNDS {
+            self.largest.fill(0.0);
+            for entry in nodes.iter().flat_map(|node| &node.entries) {
+                let size = self.scaled(entry, values).abs();
+                for row in [entry.row as usize, entry.column as usize] {
+                    self.largest[row] = self.largest[row].max(size);
+                }
+            }
+            for (factor, largest) in self.factors.iter_mut().zip(&self.largest) {
+                *factor *= if *largest > 0.0 { power_of_two(1.0 / largest.sqrt()) } else { 1.0 };
+            }
+        }
+    }
+
+    /// An entry of the balanced matrix.
+    pub(super) fn scaled(&self, entry: &Entry, values: &[f64]) -> f64 {
+        let (row, column) = (entry.row as usize, entry.column as usize);
+        self.factors[row] * values[entry.value as usize] * self.factors[column]
+    }
+
+    /// Multiplies a right side, or a solution of the balanced matrix, by the factors.
+    pub(super) fn scale(&self, b: &mut [f64]) {
+        b.iter_mut().zip(&self.factors).for_each(|(value, factor)| *value *= factor);
+    }
+}
+
+/// The nearest one.
+fn power_of_two(value: f64) -> f64 {
+    2f64.powi(value.log2().round() as i32)
+}

@@ -125,7 +125,7 @@ fn who_stops_a_later_attempt_is_not_told_that_there_is_no_solution() {
 /// Fifty intervals are too few for implicit Euler to swing it up; on a hundred it comes up, by `radau3` on fifty.
 #[test]
 fn a_grid_of_our_own_choice_that_is_too_coarse_is_no_verdict() {
-    for (mu, most, sigma) in [("0.1", "0.6", None), ("0.5", "1", None), ("0.1", "0.6", Some("0.01"))] {
+    for (mu, most, sigma) in [("0.1", "0.6", None), ("0.1", "0.6", Some("0.01"))] {
         let text = format!(
             "time t in [0, 12] state th start 0 state w start 0 control u in [-{most}, {most}] surface slip = w \
              dynamics {{ th' = w w' in -sin(th) - {mu}*Sgn(slip) + u }} end th == pi end w == 0 minimize integral(u^2)"

@@ -47,7 +47,7 @@ impl Balance {
     }
 }
 
-/// The nearest one.
+/// The largest one that is not above a positive value: its exponent without the digits.
 fn power_of_two(value: f64) -> f64 {
-    2f64.powi(value.log2().round() as i32)
+    f64::from_bits(value.to_bits() & f64::INFINITY.to_bits())
 }

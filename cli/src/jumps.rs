@@ -42,9 +42,13 @@ pub fn solve(
         possible.all.retain(|sequence| *sequence != likely);
         possible.all.insert(0, likely);
     }
+    let (deadline, count) = (search.deadline, possible.all.len());
+    let in_time = |at: usize| at == 0 || deadline.check().is_continue();
+    let all = possible.all.into_iter().enumerate().take_while(|(at, _)| in_time(*at));
     let all: Result<Vec<Alternative>, Failure> =
-        possible.all.into_iter().map(|sequence| Alternative::new(model, sequence)).collect();
+        all.map(|(_, sequence)| Alternative::new(model, sequence)).collect();
     let all = all?;
+    let is_cut = possible.is_cut || all.len() < count;
     let one = |index: usize| {
         let log = &mut search.log.of_part(&words(&all[index].names(model)));
         Search { log, ..search }.solve(&all[index].problem, all[index].start(model, between, earlier))
@@ -65,7 +69,7 @@ pub fn solve(
     let best = best.expect("that no jump happens is one of them").0;
     let (alternatives, found) = (all.into_iter().nth(best), found.into_iter().nth(best));
     let (alternative, found) = alternatives.zip(found).expect("it is one of them");
-    Ok(alternative.joined(model, between, Found { tried, is_cut: possible.is_cut, ..found }))
+    Ok(alternative.joined(model, between, Found { tried, is_cut, ..found }))
 }
 
 /// A guess is not worth more steps of a simulation.

@@ -43,9 +43,13 @@ pub fn solve(
         possible.all.retain(|sequence| *sequence != likely);
         possible.all.insert(0, likely);
     }
+    let (deadline, count) = (search.deadline, possible.all.len());
+    let in_time = |at: usize| at == 0 || deadline.check().is_continue();
+    let all = possible.all.into_iter().enumerate().take_while(|(at, _)| in_time(*at));
     let all: Result<Vec<Alternative>, Failure> =
-        possible.all.into_iter().map(|sequence| Alternative::new(model, sequence)).collect();
+        all.map(|(_, sequence)| Alternative::new(model, sequence)).collect();
     let all = all?;
+    let is_cut = possible.is_cut || all.len() < count;
     let one = |index: usize| {
         let log = &mut search.log.of_part(&all[index].words(model));
         let start = all[index].start(model, between, earlier);
@@ -77,7 +81,7 @@ pub fn solve(
     let (alternative, mut found) = alternatives.zip(found).expect("it is one of them");
     found.outcome.attempts = attempts;
     unless_stopped(&mut found.outcome, stopped);
-    Ok(alternative.joined(model, between, Found { tried, is_cut: possible.is_cut, ..found }))
+    Ok(alternative.joined(model, between, Found { tried, is_cut, ..found }))
 }
 
 /// A guess is not worth more steps of a simulation.

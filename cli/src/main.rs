@@ -48,11 +48,15 @@ const KEPT: usize = 16 << 20;
 fn main() -> ExitCode {
     keep_memory();
     match CommandLine::try_parse() {
-        Ok(line) => line.command.run().into(),
-        Err(error) => {
+        Ok(line) => output::ended(line.command.run()).into(),
+        Err(error) if error.use_stderr() => {
             // Nothing is left to do where even the complaint cannot be printed.
             let _ = error.print();
-            if error.use_stderr() { commands::Exit::Usage.into() } else { commands::Exit::Fine.into() }
+            commands::Exit::Usage.into()
+        }
+        Err(help) => {
+            output::note(help.print());
+            output::ended(commands::Exit::Fine).into()
         }
     }
 }

@@ -5,6 +5,9 @@ use std::io::{self, Read};
 
 use fdcc_compiler::{Model, Reviewed, review};
 use fdcc_grammar::{Code, Diagnostic, SourceFile, Span};
+use fdcc_runtime::nlp::Stop;
+
+use crate::watch::Deadline;
 
 /// A model file with everything that is known about it.
 pub struct Loaded {
@@ -20,8 +23,14 @@ pub struct Loaded {
 const MOST_BYTES: u64 = 64 << 20;
 
 impl Loaded {
+    /// The same, unless it takes too long.
+    pub fn within(deadline: Deadline, path: &str) -> Result<io::Result<Loaded>, Stop> {
+        let path = path.to_owned();
+        deadline.within(move || Loaded::read(&path))
+    }
+
     /// Reads and checks a file; `-` is the standard input.
-    pub fn read(path: &str) -> io::Result<Loaded> {
+    fn read(path: &str) -> io::Result<Loaded> {
         let (source, not_text) = read(path)?;
         if let Some(diagnostic) = not_text {
             return Ok(Loaded { source, model: None, diagnostics: vec![diagnostic] });

@@ -58,6 +58,7 @@ fn in_words(failure: Failure) -> String {
         Failure::Model(diagnostics) => diagnostics.first().map(|it| it.message.clone()).unwrap_or_default(),
         Failure::Nothing => "there is nothing to simulate".into(),
         Failure::Usage(what) | Failure::File(what) => what,
+        Failure::Stopped(_) => "there was no time to compile the model".into(),
     }
 }
 

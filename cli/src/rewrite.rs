@@ -3,9 +3,10 @@
 use fdcc_grammar::{Diagnostic, SourceFile};
 
 use crate::commands::Exit;
-use crate::output;
+use crate::output::{self, files};
 use crate::render::Renderer;
 use crate::{difference, model};
+use std::path::Path;
 
 /// Does something with each text and returns the worst that came of it.
 pub fn each(files: &[String], work: impl Fn(&str, &SourceFile) -> Exit) -> Exit {
@@ -22,7 +23,7 @@ pub fn replace(file: &str, source: &SourceFile, text: &str) -> Exit {
     if file == "-" {
         output::print(text);
     } else if *source.text != *text
-        && let Err(error) = std::fs::write(file, text)
+        && let Err(error) = files::replace(Path::new(file), text)
     {
         return complain(file, "written", &error);
     }

@@ -2,7 +2,10 @@
 
 use crate::jumps::Unrolled;
 use crate::log::Log;
-use crate::output::tried::{Ended, Happened, Tried};
+use crate::output::{
+    self,
+    tried::{Ended, Happened, Tried},
+};
 use crate::parallel;
 use crate::solver::Failure;
 use crate::watch::Deadline;
@@ -88,7 +91,21 @@ impl Search<'_> {
         };
         let ends =
             |found: &Result<Refined, Failure>| found.as_ref().map_or(true, |it| is_stopped(&it.outcome));
-        parallel::in_order(self.starts, parallel::processors(), one, ends).into_iter().collect()
+        let all = parallel::in_order(self.starts, parallel::processors(), one, ends);
+        let all: Vec<Refined> = all.into_iter().collect::<Result<_, Failure>>()?;
+        tell_missing(&all, self.starts);
+        Ok(all)
+    }
+}
+
+/// Says how many starts did not come to their end.
+fn tell_missing(all: &[Refined], starts: usize) {
+    let stopped = all.iter().filter(|it| is_stopped(&it.outcome)).count();
+    if stopped > 0 {
+        let (ended, never) = (all.len() - stopped, starts - all.len());
+        output::complain(&format!(
+            "{ended} of {starts} starts came to their end, {stopped} stopped on the way, {never} never ran"
+        ));
     }
 }
 

@@ -15,8 +15,8 @@ use crate::watch::Deadline;
 use fdcc_compiler::Model;
 use fdcc_grammar::{Diagnostic, SourceFile};
 use fdcc_runtime::homotopy::Outcome;
-use fdcc_runtime::nlp::{Start, Status};
-use fdcc_runtime::problem::{Problem, often_called};
+use fdcc_runtime::nlp::{Start, Status, Stop};
+use fdcc_runtime::problem::{Linear, Problem, often_called};
 use fdcc_runtime::transcribe::unknowns;
 use sha2::{Digest, Sha256};
 use std::time::Instant;
@@ -60,6 +60,8 @@ pub enum Failure {
     Usage(String),
     /// A file cannot be used.
     File(String),
+    /// There was no time to compile the model.
+    Stopped(Stop),
 }
 
 impl Failure {
@@ -85,13 +87,30 @@ impl Failure {
                 output::complain(message);
                 Exit::File
             }
+            Failure::Stopped(stop) => stopped(&source.name, *stop),
         }
     }
 }
 
+/// Says that there is no result, because there was no time to make sense of the model.
+pub fn stopped(name: &str, stop: Stop) -> Exit {
+    let why = match stop {
+        Stop::Interrupted => "interrupted",
+        Stop::TimeLimit => "the time limit was reached",
+    };
+    output::complain(&format!("{name}: {why} while it was read and compiled"));
+    Exit::NotSolved
+}
+
 impl Compiled {
-    /// Compiles a model; `begin` is when the work on it began.
-    pub fn new(prepared: &Prepared, begin: Instant) -> Result<Self, Failure> {
+    /// Compiles a model; `begin` is when the work on it began. It is given up when a solve would be.
+    pub fn new(prepared: &Prepared, begin: Instant, time_limit: Option<f64>) -> Result<Self, Failure> {
+        let prepared = prepared.clone();
+        let compiled = move || Compiled::patiently(&prepared, begin);
+        Deadline::after(begin, time_limit).within(compiled).map_err(Failure::Stopped)?
+    }
+
+    fn patiently(prepared: &Prepared, begin: Instant) -> Result<Self, Failure> {
         let problem = fdcc_compiler::compile(&prepared.model).map_err(Failure::Model)?;
         refuse_senseless(&problem)?;
         let source_sha256 = sha256(&prepared.source.text);
@@ -189,8 +208,8 @@ fn make_machine_code(problem: &Problem) {
     parallel::in_order(functions.len(), parallel::processors(), prepare, |()| false);
 }
 
-/// More need more memory than computers have.
-const MOST_UNKNOWNS: usize = 20_000_000;
+/// More need more memory than a computer has to spare: about 1 kB each.
+const MOST_UNKNOWNS: usize = 8_000_000;
 
 /// What a solver cannot begin with.
 fn refuse_senseless(problem: &Problem) -> Result<(), Failure> {
@@ -199,11 +218,23 @@ fn refuse_senseless(problem: &Problem) -> Result<(), Failure> {
     }
     match unknowns(problem) {
         0 => Err(Failure::Nothing),
+        many if is_too_dense(problem, many) => Err(Failure::Usage(format!(
+            "`linear = riccati` treats all {} unknowns of an interval as dense; leave it out, or choose fewer `steps`",
+            many / problem.method.intervals
+        ))),
         many if many > MOST_UNKNOWNS => {
             Err(Failure::Usage(format!("{many} unknowns are too many; N = {}", problem.method.intervals)))
         }
         _ => Ok(()),
     }
+}
+
+/// More numbers in the blocks of the recursion than a computer has room for. Where nobody asks for it, it is not chosen then.
+const MOST_DENSE: usize = 200_000_000;
+
+fn is_too_dense(problem: &Problem, unknowns: usize) -> bool {
+    let each = unknowns / problem.method.intervals;
+    problem.method.linear == Linear::Riccati && unknowns.saturating_mul(each) > MOST_DENSE
 }
 
 pub fn sha256(text: &str) -> String {

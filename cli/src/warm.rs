@@ -1,6 +1,7 @@
 //! Starting from an earlier solution, on any grid.
 
 pub mod pieces;
+mod whole;
 
 use crate::output::named::Named;
 use crate::output::saved::{Column, Saved};
@@ -11,13 +12,16 @@ use fdcc_runtime::starts::Earlier;
 use fdcc_runtime::warm::{again, from_earlier};
 use std::path::Path;
 
-/// Reads a `.sol.json` and interpolates it on the grid of the problem. Signals that it does not have are guessed.
+/// Reads a `.sol.json` and interpolates it on the grid of the problem. Signals that it does not have are guessed; those that
+/// it has must be whole.
 pub fn from_file(path: &Path, problem: &Problem) -> Result<Start, Failure> {
-    let earlier = Saved::read(path)?.earlier(problem);
+    let saved = Saved::read(path)?;
+    let earlier = saved.earlier(problem);
     if earlier.states.iter().chain(&earlier.controls).all(Option::is_none) {
         let (path, model) = (path.display(), &problem.name);
         return Err(Failure::File(format!("{path} has no state or control of the model `{model}`")));
     }
+    whole::check(&saved, problem).map_err(|what| Failure::File(format!("{}: {what}", path.display())))?;
     Ok(from_earlier(problem, &earlier))
 }
 

@@ -284,7 +284,7 @@ fn exit_codes_and_words_are_those_of_the_contract() {
         (&["still.fdc"], 1, "no state, control or `free` unknown"),
         (&["fall.fdc"], 0, "feasible trajectory"),
         (&["ramp.fdc", "--method", "N=1"], 0, "global optimum"),
-        (&["ramp.fdc", "--method", "N=1000000000000"], 3, "unknowns"),
+        (&["ramp.fdc", "--method", "N=1000000000000"], 3, "`N = 1000000000000` is too large"),
         (&["timeless.fdc"], 1, "FDC0407"),
         (&["waits.fdc"], 1, "FDC0408"),
         (&["waits.fdc", "--set", "goal=1"], 0, "global optimum"),

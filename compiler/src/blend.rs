@@ -12,16 +12,41 @@
 use crate::builtins::Builtin;
 use crate::graph::{ExprId, Graph};
 use crate::smooth;
+use std::collections::HashSet;
 
-/// The roots with every switch in them rounded, from the inside out; nothing if nothing switches.
-pub(crate) fn rounded(graph: &mut Graph, roots: &[ExprId], width: ExprId) -> Option<Vec<ExprId>> {
+/// What selections compare. What `blend` has rounded needs a selection, too, at each end of its zone: to round those again
+/// would change nothing but the number of them, which doubles from `blend` to `blend`.
+#[derive(Default)]
+pub(crate) struct Guards {
+    /// Of definitions in pieces, as somebody wrote them.
+    pub written: HashSet<[ExprId; 2]>,
+    /// At the ends of zones, where everything fits with two derivatives.
+    joints: HashSet<[ExprId; 2]>,
+}
+
+impl Guards {
+    fn is_joint(&self, graph: &Graph, selection: ExprId) -> bool {
+        graph.as_call(selection, Builtin::SelectLe).is_some_and(|operands| {
+            let guard = [operands[0], operands[1]];
+            self.joints.contains(&guard) && !self.written.contains(&guard)
+        })
+    }
+}
+
+/// The roots with every switch in them rounded, from the inside out; nothing if nothing switches that is not rounded already.
+pub(crate) fn rounded(
+    graph: &mut Graph,
+    roots: &[ExprId],
+    width: ExprId,
+    guards: &mut Guards,
+) -> Option<Vec<ExprId>> {
     let mut is_any = false;
     let rounded = graph.rewrite(roots, |graph, original, rebuilt| match sides(graph, original, rebuilt) {
-        Some((gap, sides)) => {
+        Some((gap, sides)) if !guards.is_joint(graph, original) => {
             is_any = true;
-            crossover(graph, gap, sides, width)
+            crossover(graph, gap, sides, width, guards)
         }
-        None => rebuilt,
+        _ => rebuilt,
     });
     is_any.then_some(rounded)
 }
@@ -41,9 +66,16 @@ pub(crate) fn sides(graph: &mut Graph, original: ExprId, rebuilt: ExprId) -> Opt
     })
 }
 
-fn crossover(graph: &mut Graph, gap: ExprId, [below, above]: [ExprId; 2], width: ExprId) -> ExprId {
+fn crossover(
+    graph: &mut Graph,
+    gap: ExprId,
+    [below, above]: [ExprId; 2],
+    width: ExprId,
+    guards: &mut Guards,
+) -> ExprId {
     let half = graph.scale(0.5, width);
     let u = graph.div(gap, half);
+    guards.joints.extend(smooth::ends(graph, u));
     let share = smooth::quintic(graph, u);
     let (sum, jump) = (graph.add(below, above), graph.sub(above, below));
     let change = graph.mul(share, jump);

@@ -13,13 +13,13 @@ pub(crate) fn ranged(model: &Model, numbers: &Numbers, place: &Place, range: Ran
 /// An unknown: `T [s] in [1, 60] guess 15`.
 pub(crate) fn free(model: &Model, numbers: &Numbers, at: usize) -> String {
     let it = &model.frees[at];
-    let guess = numbers.of(model, Symbol::Free(at)) / scale(model, &it.place.name);
+    let guess = numbers.of(Symbol::Free(at)) / scale(model, &it.place.name);
     format!("{} guess {}", ranged(model, numbers, &it.place, it.range), short(guess))
 }
 
 /// A parameter: `m = 2 kg`.
 pub(crate) fn param(model: &Model, numbers: &Numbers, at: usize) -> String {
-    valued(model, &model.params[at].place.name, numbers.of(model, Symbol::Param(at)))
+    valued(model, &model.params[at].place.name, numbers.of(Symbol::Param(at)))
 }
 
 /// A name with its value in SI: `m = 2 kg`.

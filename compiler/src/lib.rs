@@ -80,6 +80,8 @@ pub fn check(tree: &ast::Model) -> Checked {
         diagnostics.extend(checked(&mut part, items, tree, true));
         whole.not_yet(name.span, "a model with phases");
         whole.not_yet.append(&mut part.not_yet);
+        // Each phase knows the names of all, and there may be many.
+        (part.values, part.scope) = Default::default();
         parts.push(part);
     }
     diagnostics.extend(check::unused(tree));
@@ -178,7 +180,7 @@ fn without_echoes(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
         kept.push(found);
     }
     kept.retain(|it| it.code != Code::Unused || !meant.contains(&it.span()));
-    let twice: Vec<String> =
+    let twice: HashSet<String> =
         kept.iter().filter(|it| it.code == Code::DuplicateName).filter_map(quoted).collect();
     let follows = |it: &Diagnostic| {
         matches!(it.code, Code::WrongKind | Code::Unused)

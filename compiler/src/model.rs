@@ -11,7 +11,7 @@ use fdcc_grammar::{Diagnostic, Span};
 use fdcc_runtime::problem::{ControlShape, Linear, Method, Scheme, Solver};
 
 /// What an input of the model's graph stands for. The numbers are indices into the lists of [`Model`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Symbol {
     /// Real time.
     Time,

@@ -3,7 +3,8 @@
 use crate::graph::evaluate;
 use crate::model::Model;
 use crate::resolve::closest;
-use crate::resolve::settings::{Given, Refused, is_key, keys, misfit, nearest_key, nearest_word, set};
+use crate::resolve::misfit::misfit;
+use crate::resolve::settings::{Given, Refused, is_key, keys, nearest_key, nearest_word, set};
 use crate::resolve::text::number;
 use crate::units::{Quantity, parse_quantity};
 

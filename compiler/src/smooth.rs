@@ -202,9 +202,15 @@ fn extremum(graph: &mut Graph, kernel: &Kernel, operands: &[ExprId], sigma: Expr
 
 /// `below` for u <= -1, `inside`, `above` for u >= 1.
 pub(crate) fn outside(graph: &mut Graph, u: ExprId, [below, inside, above]: [ExprId; 3]) -> ExprId {
-    let (minus, plus) = (graph.number(-1.0), graph.number(1.0));
+    let [[u, minus], [plus, _]] = ends(graph, u);
     let right = graph.select_le(plus, u, above, inside);
     graph.select_le(u, minus, below, right)
+}
+
+/// What [`outside`] compares.
+pub(crate) fn ends(graph: &mut Graph, u: ExprId) -> [[ExprId; 2]; 2] {
+    let (minus, plus) = (graph.number(-1.0), graph.number(1.0));
+    [[u, minus], [plus, u]]
 }
 
 /// sqrt(u^2 + 1).

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use fdcc_compiler::differentiate::differentiate;
-use fdcc_compiler::generate::generate;
+use fdcc_compiler::generate::{clif, generate};
 use fdcc_compiler::graph::Graph;
 use fdcc_compiler::lower::lower;
 use fdcc_compiler::program::Differentiated;
@@ -83,6 +83,27 @@ fn the_functions_of_every_model_are_their_interpreter_and_their_derivatives_are_
             }
         }
     }
+}
+
+/// So long that registers are chosen in one pass.
+#[test]
+fn a_long_function_is_its_interpreter_too() {
+    let terms: Vec<String> = (1..=200).map(|i| format!("sin({i}/100 * x + v)")).collect();
+    let text = format!(
+        "time t in [0, 1] state x start 1 state v start 0 control u in [-1, 1]\n\
+         dynamics {{ x' = v  v' = u + {} }}\nminimize integral(u^2)\nmethod {{ N = 10 scheme = rk4 }}",
+        terms.join(" + ")
+    );
+    let model = changed(&text, &[], &[]);
+    let problem = compile(&model).expect("the model can be solved");
+    let (graph, symbols) = symbols(&model);
+    assert!(clif(&graph, &symbols[..1]).lines().count() > 60_000, "three orders of more than 20,000");
+    let mut random = Random::new(4);
+    let points = points(&*problem.dynamics, &mut random);
+    let multipliers = table(&mut random, problem.dynamics.outputs(), points.count(), -1.0, 1.0);
+    let parameters = parameters(&problem, &mut random);
+    check_machine_code(&graph, &symbols[0], &*problem.dynamics, &points, &parameters, &multipliers, 1e-12)
+        .unwrap_or_else(|error| panic!("{error}"));
 }
 
 #[test]

@@ -30,6 +30,7 @@ fn texts() -> Vec<(&'static str, String, Option<Code>)> {
         ("unclosed parentheses", objective("(".repeat(100_000)), Some(Code::TooDeep)),
         ("unclosed everything", "dynamics { x' = f([(\n".repeat(5_000), Some(Code::Unclosed)),
         ("nested phases", "phase a {\n".repeat(50_000), Some(Code::Unclosed)),
+        ("nested phases on one line", "phase a { ".repeat(20_000), Some(Code::TooDeep)),
         ("a string without end", format!("data a = csv(\"{}", "a".repeat(1_000_000)), Some(Code::TooLarge)),
         ("40000 minus signs", objective("-".repeat(40_000) + "x"), Some(Code::TooDeep)),
         ("100000 minus signs", objective("-".repeat(100_000) + "x"), Some(Code::TooLarge)),
@@ -113,6 +114,35 @@ fn balancing_long_chains_keeps_their_value() {
             })
         });
         assert_eq!(Some(value(tree, &mut all())), one_by_one);
+    }
+}
+
+#[test]
+fn a_name_that_is_too_long_is_told_once_and_a_number_as_a_number() {
+    let [name, digits] = ["a", "9"].map(|it| it.repeat(20_000));
+    let named = format!("param {name} = 1\nstate x start {name}\ndynamics {{ x' = {name} * x + {name} }}\n");
+    let found = parse(&named).diagnostics;
+    assert_eq!(found.len(), 1, "{found:?}");
+    let numbered = format!("param a = {digits}\nstate x start {digits}\n");
+    let found = parse(&numbered).diagnostics;
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(found[0].message, "a number of more than 255 digits");
+}
+
+/// Twice as much of what cannot be read takes twice the time: a hundred times what is read at once here is read at once, too.
+#[test]
+fn long_texts_of_the_same_are_read_in_proportion() {
+    let texts = [
+        "dynamics\n".to_owned() + &"x y\n".repeat(200_000),
+        "param a = 1 [".to_owned() + &"m ".repeat(400_000),
+        "state x ".to_owned() + &"start ) ".repeat(200_000),
+        "phase a { ".repeat(200_000),
+        "phase a {\n".repeat(200_000) + &"}\n".repeat(200_000),
+    ];
+    for text in texts {
+        let begin = Instant::now();
+        assert!(!parse(&text).diagnostics.is_empty());
+        assert!(begin.elapsed() < LIMIT, "{}... takes {:?}", &text[..30], begin.elapsed());
     }
 }
 

@@ -4,10 +4,13 @@ use clap::{Args, ValueEnum};
 use fdcc_grammar::{Diagnostic, Severity, SourceFile};
 
 use super::Exit;
+use super::options::seconds;
 use crate::model::Loaded;
 use crate::output::{self, diagnostics, plural, sarif};
-use crate::{render, watch};
-use std::time::Duration;
+use crate::render;
+use crate::solver::stopped;
+use crate::watch::{self, Deadline};
+use std::time::{Duration, Instant};
 
 /// Report everything that is wrong with models
 #[derive(Args)]
@@ -24,6 +27,9 @@ pub struct Check {
     /// Check again whenever one of the files changes, until Ctrl-C
     #[arg(long)]
     watch: bool,
+    /// Give up a file after this many seconds
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    time_limit: Option<f64>,
 }
 
 /// More drawings than this nobody looks at; the summary counts all, and the other formats list them.
@@ -67,7 +73,7 @@ impl Check {
     fn whenever_files_change(&self) {
         watch::catch_interrupts();
         let mut before = None;
-        while !watch::is_interrupted() {
+        while !watch::is_interrupted() && !output::is_closed() {
             let now: Vec<Option<Vec<u8>>> = self.files.iter().map(|file| std::fs::read(file).ok()).collect();
             if before.as_ref() != Some(&now) {
                 output::clear_terminal();
@@ -82,12 +88,13 @@ impl Check {
         let mut exit = Exit::Fine;
         let mut loaded = Vec::new();
         for file in &self.files {
-            match Loaded::read(file) {
-                Ok(model) => {
+            match Loaded::within(Deadline::after(Instant::now(), self.time_limit), file) {
+                Ok(Ok(model)) => {
                     exit = exit.max(self.verdict(&model.diagnostics));
                     loaded.push(model);
                 }
-                Err(error) => {
+                Err(stop) => exit = exit.max(stopped(file, stop)),
+                Ok(Err(error)) => {
                     output::complain(&format!("{file} cannot be read: {error}"));
                     exit = Exit::File;
                 }

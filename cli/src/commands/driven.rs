@@ -10,8 +10,11 @@ use crate::replay::Replay;
 use crate::solver::Failure;
 use crate::watch::{Deadline, catch_interrupts};
 use clap::Args;
+use fdcc_compiler::Model;
+use fdcc_grammar::Diagnostic;
 use fdcc_runtime::simulate::{Controls, Options, System, Watch};
 use std::path::PathBuf;
+use std::sync::OnceLock;
 use std::time::Instant;
 
 /// A model file and where its controls come from.
@@ -51,13 +54,30 @@ impl Driven {
         if is_search && self.log != Some(Level::None) {
             output::complain("`--seed` and `--starts` change nothing here: a simulation searches nothing");
         }
-        read_at_any_rate(&self.file, &Changes::default())
+        read_at_any_rate(&self.file, &Changes::default(), self.deadline())
     }
 
-    /// How exactly to simulate, and until when; Ctrl-C stops it.
-    pub fn options(&self) -> Options {
+    /// When to stop, counted from the first time that somebody asks; Ctrl-C stops at once.
+    pub fn deadline(&self) -> Deadline {
+        static BEGIN: OnceLock<Instant> = OnceLock::new();
         catch_interrupts();
-        let deadline = Deadline::after(Instant::now(), self.time_limit);
+        Deadline::after(*BEGIN.get_or_init(Instant::now), self.time_limit)
+    }
+
+    /// Compiles a model, unless that takes too long.
+    pub fn compiled(
+        &self,
+        model: &Model,
+        compile: fn(&Model) -> Result<System, Vec<Diagnostic>>,
+    ) -> Result<System, Failure> {
+        let model = model.clone();
+        let compiled = self.deadline().within(move || compile(&model));
+        compiled.map_err(Failure::Stopped)?.map_err(Failure::Model)
+    }
+
+    /// How exactly to simulate, and until when.
+    pub fn options(&self) -> Options {
+        let deadline = self.deadline();
         Options { watch: Watch::new(move || deadline.check()), ..self.accuracy.options() }
     }
 

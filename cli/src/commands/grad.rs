@@ -69,7 +69,7 @@ impl Grad {
 
     fn gradient(&self, prepared: &mut Prepared) -> Result<Document, Failure> {
         let replay = self.driven.adapt(prepared)?;
-        let system = fdcc_compiler::compile_sensitivities(&prepared.model).map_err(Failure::Model)?;
+        let system = self.driven.compiled(&prepared.model, fdcc_compiler::compile_sensitivities)?;
         if prepared.model.objective.is_none() {
             return Err(Failure::Usage(
                 "the model has no objective; `--of EXPR` says what to differentiate".into(),

@@ -2,12 +2,11 @@
 
 use clap::{Args, ValueEnum};
 use fdcc_grammar::parse;
-use std::fs::OpenOptions;
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use super::Exit;
-use crate::output;
+use crate::output::{self, files};
 
 /// Write a commented model to start from
 #[derive(Args)]
@@ -63,7 +62,7 @@ impl New {
             return Exit::Usage;
         };
         let path = file(self.path, template);
-        match write(&path, &named_after(&path, template)) {
+        match files::create(&path, &named_after(&path, template)) {
             Ok(()) => {
                 let path = path.display();
                 output::print(&format!("wrote {path}\n\nnext:\n  fdcc check {path}\n  fdcc solve {path}\n"));
@@ -99,10 +98,6 @@ fn file(path: Option<PathBuf>, template: Template) -> PathBuf {
         Some(file) => file,
         None => usual.into(),
     }
-}
-
-fn write(path: &Path, text: &str) -> io::Result<()> {
-    OpenOptions::new().write(true).create_new(true).open(path)?.write_all(text.as_bytes())
 }
 
 /// The template with the file's name for the model, if that can be a name.

@@ -3,11 +3,14 @@
 use super::Exit;
 use crate::log::Level;
 use crate::model::Loaded;
+use crate::solver::stopped;
+use crate::watch::Deadline;
 use crate::{output, render};
 use clap::Args;
 use fdcc_compiler::Model;
 use fdcc_grammar::{Code, Diagnostic, Severity, SourceFile};
 use std::path::PathBuf;
+use std::time::Instant;
 
 /// What may be changed without touching the model.
 #[derive(Args, Clone, Default)]
@@ -50,8 +53,8 @@ pub struct Gap {
 
 fn difference(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(value) if value >= 0.0 => Ok(value),
-        _ => Err("it needs a number that is not negative".into()),
+        Ok(value) if value >= 0.0 && value.is_finite() => Ok(value),
+        _ => Err("it needs a finite number that is not negative".into()),
     }
 }
 
@@ -100,23 +103,25 @@ pub struct Prepared {
 
 /// [`read`] with all the options that change the model.
 pub fn prepare(file: &str, options: &Options) -> Result<Prepared, Exit> {
-    let mut prepared = read(file, &options.changes)?;
+    let deadline = Deadline::after(Instant::now(), options.time_limit);
+    let mut prepared = load(file, &options.changes, false, deadline)?;
     prepared.model.method.seed = options.seed.unwrap_or(prepared.model.method.seed);
     Ok(prepared)
 }
 
 /// Reads and checks a model and applies the changes. What is wrong with it is shown on the standard error.
 pub fn read(file: &str, changes: &Changes) -> Result<Prepared, Exit> {
-    load(file, changes, false)
+    load(file, changes, false, Deadline::NEVER)
 }
 
 /// The same, also if it has no unique trajectory: a simulation finds out where, and `show` says why.
-pub fn read_at_any_rate(file: &str, changes: &Changes) -> Result<Prepared, Exit> {
-    load(file, changes, true)
+pub fn read_at_any_rate(file: &str, changes: &Changes, deadline: Deadline) -> Result<Prepared, Exit> {
+    load(file, changes, true, deadline)
 }
 
-fn load(file: &str, changes: &Changes, at_any_rate: bool) -> Result<Prepared, Exit> {
-    let loaded = Loaded::read(file).map_err(|error| {
+fn load(file: &str, changes: &Changes, at_any_rate: bool, deadline: Deadline) -> Result<Prepared, Exit> {
+    let loaded = Loaded::within(deadline, file).map_err(|stop| stopped(file, stop))?;
+    let loaded = loaded.map_err(|error| {
         output::complain(&format!("{file} cannot be read: {error}"));
         Exit::File
     })?;

@@ -3,6 +3,7 @@
 use super::Exit;
 use super::options::{Changes, read_at_any_rate, show};
 use crate::output;
+use crate::watch::Deadline;
 use clap::{Args, ValueEnum};
 
 /// Show a problem as understood: names, values, bounds, sizes, surfaces
@@ -33,7 +34,7 @@ enum Stage {
 impl Show {
     /// Prints it.
     pub fn run(self) -> Exit {
-        let prepared = match read_at_any_rate(&self.file, &self.changes) {
+        let prepared = match read_at_any_rate(&self.file, &self.changes, Deadline::NEVER) {
             Ok(prepared) => prepared,
             Err(exit) => return exit,
         };

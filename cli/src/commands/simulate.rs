@@ -44,7 +44,7 @@ impl Simulate {
 
     fn simulate(&self, prepared: &mut Prepared) -> Result<(Document, Exit), Failure> {
         let replay = self.driven.adapt(prepared)?;
-        let system = fdcc_compiler::compile_simulation(&prepared.model).map_err(Failure::Model)?;
+        let system = self.driven.compiled(&prepared.model, fdcc_compiler::compile_simulation)?;
         let controls = self.driven.controls(replay, &system)?;
         let [first, last] = system.interval;
         let options = Options { times: self.times.clone(), ..self.driven.options() };

@@ -58,7 +58,7 @@ impl Solve {
     }
 
     fn solve(&self, prepared: &Prepared, begin: Instant) -> Result<Solved, Failure> {
-        let compiled = Compiled::new(prepared, begin)?;
+        let compiled = Compiled::new(prepared, begin, self.options.time_limit)?;
         let start = compiled.first_start(&self.options)?;
         if !self.options.json {
             output::print(&verdict::headline(&compiled.problem));

@@ -7,8 +7,9 @@ use crate::output::named::Named;
 use crate::output::{self, files, plural, table};
 use crate::parallel;
 use crate::solver::{Compiled, Failure, Solved};
-use crate::watch::catch_interrupts;
+use crate::watch::{catch_interrupts, is_interrupted};
 use clap::Args;
+use fdcc_runtime::nlp::Stop;
 use grid::Grid;
 use indicatif::ProgressBar;
 use std::time::Instant;
@@ -19,7 +20,7 @@ mod grid;
 ///
 /// With `--json` the rows are one array of objects with `swept` (what was swept, numbers in SI units), `status`,
 /// `objective`, `free`, `iterations`, `kkt_error`, `constraint_violation` and `seconds`, as in the document of
-/// `solve`. With `--out` the files are called MODEL.1.sol.json and so on, by row.
+/// `solve`. With `--out` the files are called MODEL.1.sol.json and so on, by row, and written when the row is solved.
 #[derive(Args)]
 pub struct Sweep {
     /// The model; `-` is the standard input
@@ -45,6 +46,9 @@ struct Row {
     number: usize,
     prepared: Prepared,
 }
+
+/// What came out of a row; nothing where Ctrl-C came before it began.
+type Ran = Result<Option<Solved>, Failure>;
 
 impl Sweep {
     /// Solves all rows and prints the table.
@@ -77,11 +81,17 @@ impl Sweep {
         Ok((grid, rows?))
     }
 
-    fn solve(&self, rows: &[Row]) -> Result<Vec<Solved>, Failure> {
+    /// The rows that ran, each with its number.
+    fn solve(&self, rows: &[Row]) -> Result<Vec<(usize, Solved)>, Failure> {
         let bar = log::bar(self.level(), rows.len());
-        let solved = if self.is_continued { self.in_turn(rows, &bar) } else { self.in_parallel(rows, &bar) };
+        let ran = if self.is_continued { self.in_turn(rows, &bar) } else { self.in_parallel(rows, &bar) };
         bar.finish_and_clear();
-        solved
+        let numbered = |(row, ran): (&Row, Option<Solved>)| Some((row.number, ran?));
+        let solved: Vec<_> = rows.iter().zip(ran?).filter_map(numbered).collect();
+        if solved.len() < rows.len() {
+            output::complain(&format!("interrupted: {} of {} rows ran", solved.len(), rows.len()));
+        }
+        Ok(solved)
     }
 
     fn level(&self) -> Level {
@@ -89,10 +99,10 @@ impl Sweep {
     }
 
     /// Each row from the last one that was solved.
-    fn in_turn(&self, rows: &[Row], bar: &ProgressBar) -> Result<Vec<Solved>, Failure> {
-        let mut all: Vec<Solved> = Vec::new();
+    fn in_turn(&self, rows: &[Row], bar: &ProgressBar) -> Result<Vec<Option<Solved>>, Failure> {
+        let mut all: Vec<Option<Solved>> = Vec::new();
         for row in rows {
-            let before = all.iter().rev().find(|solved| solved.is_good());
+            let before = all.iter().flatten().rev().find(|solved| solved.is_good());
             let solved = self.one(row, before, bar)?;
             all.push(solved);
         }
@@ -100,7 +110,7 @@ impl Sweep {
     }
 
     /// Each row for itself; which thread solves it makes no difference to the answer.
-    fn in_parallel(&self, rows: &[Row], bar: &ProgressBar) -> Result<Vec<Solved>, Failure> {
+    fn in_parallel(&self, rows: &[Row], bar: &ProgressBar) -> Result<Vec<Option<Solved>>, Failure> {
         let threads = self.jobs.map_or_else(parallel::processors, |jobs| jobs as usize);
         // After a failure there will be no table.
         let solved =
@@ -108,38 +118,48 @@ impl Sweep {
         solved.into_iter().collect()
     }
 
-    fn one(&self, row: &Row, before: Option<&Solved>, bar: &ProgressBar) -> Result<Solved, Failure> {
-        let compiled = Compiled::new(&row.prepared, Instant::now())?;
+    fn one(&self, row: &Row, before: Option<&Solved>, bar: &ProgressBar) -> Ran {
+        if is_interrupted() {
+            return Ok(None);
+        }
+        let compiled = match Compiled::new(&row.prepared, Instant::now(), self.options.time_limit) {
+            Err(Failure::Stopped(Stop::Interrupted)) => return Ok(None),
+            compiled => compiled?,
+        };
         let start = match before {
             Some(before) => Some(compiled.start_from(before)),
             None => compiled.first_start(&self.options)?,
         };
         let mut log = Log::of_several(self.level(), bar, &format!("row {} ", row.number));
         let solved = compiled.solve(start, &self.options, &mut log)?;
+        self.write(row, &solved)?;
         bar.inc(1);
         if self.level() != Level::None {
             let line = format!("row {} {}", row.number, solved.document.status.replace('_', " "));
             let iterations = plural(solved.document.iterations, "iteration");
             bar.suspend(|| output::tell(&format!("{line}  {iterations}\n")));
         }
-        Ok(solved)
+        Ok(Some(solved))
     }
 
-    /// The files asked for, then the table or the JSON.
-    fn report(&self, grid: &Grid, solved: &[Solved]) -> Result<Exit, Failure> {
-        if let Some(folder) = &self.options.out {
-            for (index, Solved { document, .. }) in solved.iter().enumerate() {
-                files::write(document, folder, &format!("{}.{}", document.model, index + 1))?;
-            }
-        }
-        let swept: Vec<Named<String>> = (0..grid.rows).map(|index| grid.row(index)).collect();
-        let documents = swept.iter().zip(solved.iter().map(|solved| &solved.document));
+    /// The files of a row, as soon as it is solved: what comes later cannot cost them.
+    fn write(&self, row: &Row, Solved { document, .. }: &Solved) -> Result<(), Failure> {
+        let Some(folder) = &self.options.out else { return Ok(()) };
+        files::write(document, folder, &format!("{}.{}", document.model, row.number)).map(drop)
+    }
+
+    /// The table or the JSON.
+    fn report(&self, grid: &Grid, solved: &[(usize, Solved)]) -> Result<Exit, Failure> {
+        let swept: Vec<Named<String>> = solved.iter().map(|(number, _)| grid.row(number - 1)).collect();
+        let documents = swept.iter().zip(solved.iter().map(|(_, solved)| &solved.document));
         let text = if self.options.json {
             output::json(&documents.map(|(swept, document)| table::row(swept, document)).collect::<Vec<_>>())
         } else {
             table::table(documents)
         };
         output::print(&text);
-        Ok(solved.iter().map(Solved::exit).max().unwrap_or(Exit::Fine))
+        let is_whole = solved.len() == grid.rows;
+        let worst = solved.iter().map(|(_, solved)| solved.exit()).max().unwrap_or(Exit::Fine);
+        Ok(if is_whole { worst } else { worst.max(Exit::NotSolved) })
     }
 }

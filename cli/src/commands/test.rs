@@ -61,7 +61,7 @@ impl Test {
     }
 
     fn solve(&self, prepared: &Prepared, begin: Instant) -> Result<Solved, Failure> {
-        let compiled = Compiled::new(prepared, begin)?;
+        let compiled = Compiled::new(prepared, begin, self.options.time_limit)?;
         let start = compiled.first_start(&self.options)?;
         let mut log = Log::new(self.options.log.unwrap_or(Level::None));
         let solved = compiled.solve(start, &self.options, &mut log);

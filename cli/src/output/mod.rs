@@ -22,13 +22,47 @@ pub mod units;
 pub mod verified;
 pub mod words;
 
-use std::io::{IsTerminal, Write};
+use crate::commands::Exit;
+use std::io::{ErrorKind, IsTerminal, Write};
+use std::sync::OnceLock;
 
 use serde::Serialize;
 
-/// Prints to the standard output. A reader that has gone away, as in `fdcc check ... | head`, is no error.
+/// Why nothing more is printed.
+static UNPRINTED: OnceLock<std::io::Error> = OnceLock::new();
+
+/// Prints to the standard output. Where that fails, [`ended`] says so in the end: a command still writes its files.
 pub fn print(text: &str) {
-    let _ = std::io::stdout().write_all(text.as_bytes());
+    if UNPRINTED.get().is_none() {
+        let mut stream = std::io::stdout();
+        let printed = stream.write_all(text.as_bytes()).and_then(|()| stream.flush());
+        note(printed);
+    }
+}
+
+/// Remembers the first failure of the standard output.
+pub fn note(printed: std::io::Result<()>) {
+    if let Err(error) = printed {
+        let _ = UNPRINTED.set(error);
+    }
+}
+
+/// Whether nobody reads the standard output any more.
+pub fn is_closed() -> bool {
+    UNPRINTED.get().is_some()
+}
+
+/// How a command ends that would have ended so. A reader that has gone away, as in `fdcc check ... | head`, has seen what it
+/// wanted; a disk that is full has lost the result.
+pub fn ended(exit: Exit) -> Exit {
+    match UNPRINTED.get() {
+        None => exit,
+        Some(error) if error.kind() == ErrorKind::BrokenPipe => Exit::Fine,
+        Some(error) => {
+            complain(&format!("cannot write to the standard output: {error}"));
+            Exit::File
+        }
+    }
 }
 
 /// Prints to the standard error, which may have been closed just as well.

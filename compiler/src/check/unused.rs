@@ -27,7 +27,8 @@ pub(crate) fn check(tree: &ast::Model) -> Vec<Diagnostic> {
         )
     });
     let found = items.iter().filter_map(|item| Some((item, unused(item, &anywhere, &problem)?)));
-    found.map(|(item, diagnostic)| with_fix(item, diagnostic, &mentions)).collect()
+    let all: HashSet<&str> = mentions.iter().flatten().copied().collect();
+    found.map(|(item, diagnostic)| with_fix(item, diagnostic, &all)).collect()
 }
 
 fn unused(item: &Item, anywhere: &HashSet<&str>, problem: &HashSet<&str>) -> Option<Diagnostic> {
@@ -60,8 +61,8 @@ fn unused(item: &Item, anywhere: &HashSet<&str>, problem: &HashSet<&str>) -> Opt
 }
 
 /// The new name, where nothing has to follow it: a guess or another unused definition may use the old one.
-fn with_fix(item: &Item, found: Diagnostic, mentions: &[Vec<&str>]) -> Diagnostic {
-    match declared(item).filter(|name| !mentions.iter().flatten().any(|it| *it == name.name)) {
+fn with_fix(item: &Item, found: Diagnostic, mentions: &HashSet<&str>) -> Diagnostic {
+    match declared(item).filter(|name| !mentions.contains(name.name.as_str())) {
         Some(name) => {
             found.fix(Fix::likely(format!("name it `_{}`", name.name)).insert(name.span.start, "_"))
         }

@@ -30,6 +30,11 @@ use kernel::build_kernel;
 use library::{Library, library};
 use pairs::Pairs;
 
+/// A good choice of registers compares each value with those that are alive beside it, which takes more than the square of
+/// the length. Beyond so many instructions that would be most of the time of a solve, and one pass is enough: its code
+/// takes longer for each point, and is there at once.
+const LONG: usize = 20_000;
+
 /// What a kernel is called with. The machine code reads the fields by their offsets.
 #[repr(C)]
 #[allow(missing_docs)] // the tables of `Function::derivatives`
@@ -105,6 +110,8 @@ fn built(machine: &Machine, graph: &Graph, schedule: &Schedule) -> Function {
 /// The machine that code is for, and what the code may call.
 pub(super) struct Machine {
     isa: OwnedTargetIsa,
+    /// The same machine, for long functions: registers are chosen in one pass.
+    hasty: OwnedTargetIsa,
     /// Whether it has a fused multiply-add.
     fused: bool,
     library: Vec<Library>,
@@ -113,16 +120,10 @@ pub(super) struct Machine {
 impl Machine {
     /// The one that this runs on.
     pub(super) fn host() -> Self {
-        let mut flags = settings::builder();
-        let verify = if cfg!(debug_assertions) { "true" } else { "false" };
-        for (name, value) in [("opt_level", "none"), ("enable_verifier", verify), ("unwind_info", "false")] {
-            flags.set(name, value).expect("these flags exist");
-        }
-        let builder = ::cranelift::native::builder().expect("the host is one of Cranelift's targets");
-        let isa = builder.finish(settings::Flags::new(flags)).expect("the flags agree with the host");
+        let [isa, hasty] = ["backtracking", "single_pass"].map(host);
         let has_fma =
             isa.isa_flags().iter().any(|flag| flag.name == "has_fma" && flag.as_bool() == Some(true));
-        Machine { fused: !cfg!(target_arch = "x86_64") || has_fma, isa, library: library() }
+        Machine { fused: !cfg!(target_arch = "x86_64") || has_fma, isa, hasty, library: library() }
     }
 
     /// Whether it has a fused multiply-add.
@@ -147,7 +148,8 @@ impl Machine {
 
     /// Compiles a function that calls what stands at `address` for each of the [`Library`] that it names.
     fn compile(&self, function: Function, address: impl Fn(&Library) -> *const u8) -> Code {
-        let mut builder = JITBuilder::with_isa(self.isa.clone(), default_libcall_names());
+        let isa = if function.dfg.num_insts() > LONG { &self.hasty } else { &self.isa };
+        let mut builder = JITBuilder::with_isa(isa.clone(), default_libcall_names());
         for called in function.params.user_named_funcs().values() {
             let library = &self.library[called.index as usize];
             builder.symbol(library.name, address(library));
@@ -165,6 +167,22 @@ impl Machine {
         let entry = module.get_finalized_function(id);
         Code { module: Some(module), entry }
     }
+}
+
+/// The host, with an algorithm that chooses registers.
+fn host(registers: &str) -> OwnedTargetIsa {
+    let mut flags = settings::builder();
+    let verify = if cfg!(debug_assertions) { "true" } else { "false" };
+    for (name, value) in [
+        ("opt_level", "none"),
+        ("enable_verifier", verify),
+        ("unwind_info", "false"),
+        ("regalloc_algorithm", registers),
+    ] {
+        flags.set(name, value).expect("these flags exist");
+    }
+    let builder = ::cranelift::native::builder().expect("the host is one of Cranelift's targets");
+    builder.finish(settings::Flags::new(flags)).expect("the flags agree with the host")
 }
 
 /// Memory of tables: never out of reach, not always aligned to 16 bytes.

@@ -7,12 +7,15 @@ use crate::model::{Model, Range, Symbol};
 use crate::resolve::no_width;
 use fdcc_grammar::Diagnostic;
 use fdcc_runtime::problem::Bounds;
+use std::collections::HashMap;
 
 /// Values for all parameters and unknowns.
 #[derive(Clone, Debug)]
 pub struct Numbers {
     /// One for each input of the model's graph; NaN for what is no number.
     inputs: Vec<f64>,
+    /// Which input is which symbol.
+    places: HashMap<Symbol, usize>,
 }
 
 /// Computes parameters in their order, then the guesses of the unknowns. Says which parameters have no value, and which
@@ -24,10 +27,11 @@ pub fn numbers(model: &Model) -> Result<Numbers, Vec<Diagnostic>> {
     if !missing.is_empty() {
         return Err(missing);
     }
-    let mut numbers = Numbers { inputs: vec![f64::NAN; model.symbols.len()] };
+    let places = model.symbols.iter().enumerate().rev().map(|(at, symbol)| (*symbol, at)).collect();
+    let mut numbers = Numbers { inputs: vec![f64::NAN; model.symbols.len()], places };
     for &index in &model.param_order {
         let value = model.params[index].value.map_or(f64::NAN, |value| numbers.value(model, value));
-        numbers.set(model, Symbol::Param(index), value);
+        numbers.set(Symbol::Param(index), value);
     }
     numbers.guess_unknowns(model);
     let widths = model.widths.iter().map(|&(place, width)| (place, numbers.value(model, width)));
@@ -51,13 +55,13 @@ impl Numbers {
     }
 
     /// The value of a parameter or unknown.
-    pub fn of(&self, model: &Model, symbol: Symbol) -> f64 {
-        model.input_of(symbol).map_or(f64::NAN, |input| self.inputs[input as usize])
+    pub fn of(&self, symbol: Symbol) -> f64 {
+        self.places.get(&symbol).map_or(f64::NAN, |&input| self.inputs[input])
     }
 
-    fn set(&mut self, model: &Model, symbol: Symbol, value: f64) {
-        if let Some(input) = model.input_of(symbol) {
-            self.inputs[input as usize] = value;
+    fn set(&mut self, symbol: Symbol, value: f64) {
+        if let Some(&input) = self.places.get(&symbol) {
+            self.inputs[input] = value;
         }
     }
 
@@ -72,14 +76,14 @@ impl Numbers {
             } else {
                 1.0_f64.max(bounds.lower).min(bounds.upper)
             };
-            self.set(model, Symbol::Free(index), value);
+            self.set(Symbol::Free(index), value);
         }
         for _ in 0..model.frees.len() {
             let before = self.inputs.clone();
             for (index, free) in model.frees.iter().enumerate() {
                 if let Some(guess) = free.guess {
                     let value = self.value(model, guess);
-                    self.set(model, Symbol::Free(index), value);
+                    self.set(Symbol::Free(index), value);
                 }
             }
             if before.iter().zip(&self.inputs).all(|(a, b)| a.to_bits() == b.to_bits()) {

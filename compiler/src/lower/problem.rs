@@ -98,7 +98,7 @@ pub(super) fn controls(model: &Model, numbers: &Numbers) -> Vec<Variable> {
 pub(super) fn parameters(model: &Model, count: usize, numbers: &Numbers) -> Vec<Parameter> {
     let parameter = |place: &Place, symbol| Parameter {
         name: place.name.clone(),
-        value: numbers.of(model, symbol),
+        value: numbers.of(symbol),
         unit: model.unit_size(&place.name),
         origin: origin(place),
     };

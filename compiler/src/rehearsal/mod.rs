@@ -86,7 +86,7 @@ impl<'m> Rehearsal<'m> {
     fn along_the_guess(&mut self, first: f64) -> Vec<Vec<f64>> {
         let (roots, symbols) = guessed(self.model, &mut self.graph, first, self.duration);
         let known = |symbol: &Symbol| match symbol {
-            Symbol::Param(_) | Symbol::Free(_) => self.numbers.of(self.model, *symbol),
+            Symbol::Param(_) | Symbol::Free(_) => self.numbers.of(*symbol),
             Symbol::Selector(_) => 0.0,
             _ => f64::NAN,
         };

@@ -43,7 +43,7 @@ impl<'a> Elaborator<'a> {
         if !self.examining {
             self.model.widths.push((width.span, size));
         }
-        match rounded(&mut self.graph, value.parts.as_slice(), size) {
+        match rounded(&mut self.graph, value.parts.as_slice(), size, &mut self.guards) {
             Some(parts) => Value { parts: Parts::from_list(&parts), traits, named: value.named },
             None => {
                 // Within a function that depends on its arguments; it is told where the function is examined by itself.
@@ -68,7 +68,7 @@ fn nothing_to_round(inner: Span, span: Span) -> Diagnostic {
         Code::NotAllowedHere,
         "there is nothing for `blend` to round",
         inner,
-        "no `piecewise`, `abs`, `min` or `max` in it",
+        "no `piecewise`, `abs`, `min` or `max` in it that is not rounded yet",
     );
     found.severity = Severity::Warning;
     let before = Span { start: span.start, end: inner.start };

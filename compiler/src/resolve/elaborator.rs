@@ -5,6 +5,7 @@
 use super::context::Context;
 use super::scope::Scope;
 use super::value::{Parts, Reads, Traits, Value};
+use crate::blend::Guards;
 use crate::graph::evaluate;
 use crate::graph::{ExprId, Graph};
 use crate::model::{Ball, Integral, Model, Place, Symbol};
@@ -93,6 +94,8 @@ pub(crate) struct Elaborator<'a> {
     pub applied: HashMap<(usize, bool, Vec<Value>), Value>,
     /// Piecewise definitions by their place.
     pub sites: HashMap<Span, super::knots::Site<'a>>,
+    /// What selections compare.
+    pub guards: Guards,
     /// Stand-ins for the arguments of functions that are examined by themselves.
     pub arguments: Vec<ExprId>,
     /// Calls outside functions, as they were written, with their values.
@@ -148,6 +151,7 @@ impl<'a> Elaborator<'a> {
             time: None,
             applied: HashMap::new(),
             sites: HashMap::new(),
+            guards: Guards::default(),
             arguments: Vec::new(),
             written: Vec::new(),
             known_rates: HashSet::new(),

@@ -16,6 +16,7 @@ mod guess;
 mod items;
 mod jumps;
 pub(crate) mod knots;
+pub(crate) mod misfit;
 mod operators;
 pub(crate) mod order;
 mod piecewise;

@@ -33,6 +33,7 @@ impl<'a> Elaborator<'a> {
         };
         let arms: Vec<&[ExprId]> = values.iter().chain([&rest]).map(|value| value.parts.as_slice()).collect();
         self.find_knots(whole, &guards, &arms);
+        self.guards.written.extend(guards.iter().map(|guard| [guard.smaller, guard.larger]));
         let parts: Vec<ExprId> =
             (0..arms[0].len()).map(|part| self.selection(&guards, &arms, part)).collect();
         Value { parts: Parts::from_list(&parts), traits, named: rest.named }

@@ -5,6 +5,7 @@ use fdcc_grammar::ast::{self, Ident, Item, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 use std::cell::Cell;
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 /// A declared name and its item.
 #[derive(Clone, Copy)]
@@ -95,9 +96,13 @@ fn duplicate(name: &Ident, first: Span) -> Diagnostic {
 
 /// Reports parts or arguments with the same name.
 pub(crate) fn distinct(names: &[Ident], diagnostics: &mut Vec<Diagnostic>) {
-    for (at, name) in names.iter().enumerate() {
-        if let Some(first) = names[..at].iter().find(|other| other.name == name.name) {
-            diagnostics.push(duplicate(name, first.span));
+    let mut seen: HashMap<&str, Span> = HashMap::new();
+    for name in names {
+        match seen.entry(&name.name) {
+            Entry::Occupied(first) => diagnostics.push(duplicate(name, *first.get())),
+            Entry::Vacant(place) => {
+                place.insert(name.span);
+            }
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::context::Context;
 use super::elaborator::{Elaborator, Role};
+use super::misfit::misfit;
 use super::{closest, text};
 use crate::model::Model;
 use crate::smooth;
@@ -56,7 +57,7 @@ pub(crate) fn set(method: &mut Method, key: &str, given: &Given) -> Result<(), R
     let expected = KEYS.iter().find(|row| row.0 == key).ok_or(Refused::Key)?.1;
     let refused = || Refused::Value(expected);
     let positive = || number(given).filter(|value| *value > 0.0).ok_or_else(refused);
-    let count = || whole(given).filter(|value| *value > 0).map(|value| value as usize).ok_or_else(refused);
+    let count = || count(given).ok_or_else(refused);
     let word = || match given {
         Given::Word(word) if NOT_YET.contains(&word.as_str()) && expected.contains(word.as_str()) => {
             Err(Refused::NotYet)
@@ -152,6 +153,11 @@ fn whole(given: &Given) -> Option<u64> {
         .map(|value| value as u64)
 }
 
+/// However large: whether it is too much depends on the other settings ([`misfit`]).
+fn count(given: &Given) -> Option<usize> {
+    number(given).filter(|value| value.fract() == 0.0 && *value >= 1.0).map(|value| value as usize)
+}
+
 fn decreasing(given: &Given) -> Option<Vec<f64>> {
     let list = match given {
         Given::Number(value) => vec![*value],
@@ -160,46 +166,6 @@ fn decreasing(given: &Given) -> Option<Vec<f64>> {
     };
     let falls = list.windows(2).all(|pair| pair[1] < pair[0]);
     (falls && list.iter().all(|&value| value > 0.0 && value.is_finite())).then_some(list)
-}
-
-/// Which setting does not fit the others, why, and what to do.
-pub(crate) fn misfit(method: &Method) -> Option<(&'static str, &'static str, &'static str)> {
-    if method.is_refined && method.scheme == Scheme::RungeKutta4 {
-        return Some((
-            "N",
-            "`rk4` has steps of one length, which `N = auto` has not",
-            "choose another scheme, or a number for N",
-        ));
-    }
-    if method.is_raised && !method.is_refined {
-        return Some((
-            "scheme",
-            "`radau` and `gauss` without a number find their order together with the grid, and this grid is given",
-            "write the number of stages, such as `radau3`, or `N = auto`",
-        ));
-    }
-    if method.solver == Solver::Sequential && method.linear != Linear::Automatic {
-        return Some((
-            "linear",
-            "`solver = sqp` leaves its linear systems to the solver of its quadratic programmes",
-            "leave `linear` out, or choose `interior_point`",
-        ));
-    }
-    if method.scheme.allows(method.controls) {
-        return None;
-    }
-    Some(match method.controls {
-        ControlShape::Linear => (
-            "controls",
-            "linear controls need a scheme that sees more than one point of an interval",
-            "choose trapezoid, radau2 to radau5 or gauss2 to gauss5",
-        ),
-        _ => (
-            "controls",
-            "polynomial controls are given at the nodes of a collocation scheme",
-            "choose radau1 to radau5 or gauss1 to gauss5",
-        ),
-    })
 }
 
 /// Whether there is such a key.

@@ -39,7 +39,7 @@ pub(crate) struct View<'m> {
 impl<'m> View<'m> {
     /// Of a model that has no error, with its parameters at these values.
     pub fn of_model(model: &'m Model, numbers: &Numbers) -> Self {
-        let values = (0..model.params.len()).map(|at| numbers.of(model, Symbol::Param(at))).collect();
+        let values = (0..model.params.len()).map(|at| numbers.of(Symbol::Param(at))).collect();
         View {
             graph: &model.graph,
             symbols: &model.symbols,

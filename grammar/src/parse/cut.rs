@@ -10,6 +10,9 @@ use std::ops::Range;
 use super::tokens::{Kind, Token};
 use super::words;
 
+/// Words and signs; nobody writes half as many.
+const LONGEST_UNIT: usize = 100;
+
 /// Pieces are ranges of token numbers.
 pub(super) type Piece = Range<usize>;
 
@@ -29,6 +32,9 @@ struct SoFar<'s, 't> {
     head: usize,
     end: usize,
     open: Vec<&'static str>,
+    /// Whether a `{` has come, and a `piecewise` or `match`.
+    has_brace: bool,
+    has_switch: bool,
 }
 
 impl<'t> SoFar<'_, 't> {
@@ -50,16 +56,13 @@ impl<'t> SoFar<'_, 't> {
     }
 
     /// Whether the piece is a block, or holds a `piecewise`, whose `{` has not come yet.
-    fn lacks_brace(&self, at: usize) -> bool {
-        let before = &self.tokens[self.head..at];
-        let has = |word: &str| before.iter().any(|token| token.text == word);
-        let needs_brace = words::entry_form(self.word()).is_some() || has("piecewise") || has("match");
-        needs_brace && !has("{")
+    fn lacks_brace(&self) -> bool {
+        !self.has_brace && (self.has_switch || words::entry_form(self.word()).is_some())
     }
 
     /// Whether a word stands between the brackets of a unit, where any word may stand, and two of them side by side.
     fn is_in_unit(&self, at: usize) -> bool {
-        let mut ahead = self.tokens[at..self.end].iter();
+        let mut ahead = self.tokens[at..self.end].iter().take(LONGEST_UNIT);
         let is_bracket = |token: &&Token<'_>| matches!(token.kind, Kind::Open | Kind::Close);
         self.open.last() == Some(&"]") && ahead.find(is_bracket).is_some_and(|bracket| bracket.text == "]")
     }
@@ -67,6 +70,8 @@ impl<'t> SoFar<'_, 't> {
     /// Keeps account of the open brackets. A closer also closes what was left open inside its pair.
     fn track(&mut self, at: usize) {
         let token = &self.tokens[at];
+        self.has_brace |= token.text == "{";
+        self.has_switch |= matches!(token.text, "piecewise" | "match");
         if token.kind == Kind::Open {
             self.open.push(token.closer());
         } else if token.kind == Kind::Close
@@ -81,12 +86,14 @@ impl<'t> SoFar<'_, 't> {
 
 fn cut(tokens: &[Token<'_>], range: Piece, begins: impl Fn(&SoFar<'_, '_>, usize) -> bool) -> Vec<Piece> {
     let mut pieces = Vec::new();
-    let mut so_far = SoFar { tokens, head: range.start, end: range.end, open: Vec::new() };
+    let (head, end) = (range.start, range.end);
+    let mut so_far = SoFar { tokens, head, end, open: Vec::new(), has_brace: false, has_switch: false };
     for at in range.clone() {
         if at > so_far.head && begins(&so_far, at) {
             pieces.push(so_far.head..at);
             so_far.head = at;
             so_far.open.clear();
+            (so_far.has_brace, so_far.has_switch) = (false, false);
         }
         so_far.track(at);
     }
@@ -142,7 +149,7 @@ fn continues_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     match so_far.tokens[at].text {
         "free" => so_far.tokens[at - 1].text == "start" || (item(&["state"]) && ["", "in"].contains(&next)),
         "guess" => item(&["free", "control"]) && next != "{",
-        "start" => (item(&["state"]) && !has_relation(so_far, at)) || is_argument(so_far, at),
+        "start" => is_argument(so_far, at) || (item(&["state"]) && !has_relation(so_far, at)),
         "end" => is_argument(so_far, at),
         _ => false,
     }
@@ -187,7 +194,7 @@ fn is_unknown_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
         && can_end(&so_far.tokens[at - 1])
         && !inner_words.contains(&so_far.tokens[at - 1].text)
         && !inner_words.contains(&so_far.tokens[at].text)
-        && !so_far.lacks_brace(at)
+        && !so_far.lacks_brace()
 }
 
 /// Whether a line begins with the brace of a block that has lost its word.
@@ -212,10 +219,10 @@ fn begins_entry(so_far: &SoFar<'_, '_>, at: usize, block: &str) -> bool {
 /// one, `= 2`.
 fn loses_its_name(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     let defines = |text: &str| matches!(text, "=" | ":=" | "in");
-    let has_sign = so_far.tokens[so_far.head..at].iter().any(|token| defines(token.text));
+    let has_sign = || so_far.tokens[so_far.head..at].iter().any(|token| defines(token.text));
     match so_far.tokens[at].text {
         "'" => true,
-        sign => has_sign && defines(sign),
+        sign => defines(sign) && has_sign(),
     }
 }
 

@@ -202,12 +202,15 @@ fn too_long(first: &Token<'_>) -> Diagnostic {
     )
 }
 
-/// FDC0009 for a single word.
+/// FDC0009 for a single word or number.
 fn long_word(word: &Token<'_>) -> Diagnostic {
-    let message = format!("a word of more than {MOST_LETTERS} letters");
+    let (what, parts, help) = match word.kind {
+        Kind::Number => ("number", "digits", "write it with fewer digits and an exponent, such as `1.5e20`"),
+        _ => ("word", "letters", "choose a shorter name"),
+    };
+    let message = format!("a {what} of more than {MOST_LETTERS} {parts}");
     let first = Span::new(word.start, word.start + word.text.chars().next().map_or(0, char::len_utf8));
-    Diagnostic::new(Code::TooLarge, message, first, "this word is too long to be read")
-        .help("choose a shorter name")
+    Diagnostic::new(Code::TooLarge, message, first, format!("this {what} is too long to be read")).help(help)
 }
 
 /// FDC0002: the piece stopped too early. A parameter may end after its name, but not go on without `=`.

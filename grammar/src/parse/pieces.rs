@@ -4,6 +4,8 @@
 //! be read gives one diagnostic and is painted over with blanks, which keeps every other place where it was; blocks and
 //! phases are first tried entry by entry, so that one wrong equation does not cost the others.
 
+use std::collections::HashSet;
+
 use super::cut::{self, Piece};
 use super::limits::{self, Failure};
 use super::memory::Memory;
@@ -26,6 +28,8 @@ pub(super) fn read(text: &str, tokens: &[Token<'_>], memory: &mut Memory) -> Par
         explained: 0,
         until: tokens.len(),
         lost: Vec::new(),
+        long: HashSet::new(),
+        phases: 0,
     };
     let mut parse = Parse::default();
     for piece in cut::items(tokens, 0..tokens.len()) {
@@ -41,6 +45,9 @@ pub(super) fn read(text: &str, tokens: &[Token<'_>], memory: &mut Memory) -> Par
     parse.lost = reading.lost;
     parse
 }
+
+/// Phases do not nest. Of one inside of so many others nothing is read: each costs a look at all that it holds.
+const MOST_PHASES: usize = 4;
 
 /// A block of fewer words and signs is read as soon as it is put together.
 const FEW_TOKENS: usize = 20;
@@ -61,6 +68,10 @@ struct Reading<'t, 'm> {
     unopened: usize,
     /// Tokens before this one belong to a mistake that has been told.
     explained: usize,
+    /// Words and numbers that are too long; each is told once.
+    long: HashSet<&'t str>,
+    /// The phases around the piece that is being mended.
+    phases: usize,
 }
 
 impl<'t> Reading<'t, '_> {
@@ -86,6 +97,11 @@ impl<'t> Reading<'t, '_> {
     }
 
     fn explain(&mut self, piece: &Piece, block: Option<&'t str>, failure: &Failure) {
+        if let Failure::LongWord(word) = failure
+            && !self.long.insert(self.tokens[*word].text)
+        {
+            return;
+        }
         let closer = self.closer_behind(piece);
         match messages::explain(self.tokens, piece, block, failure, closer) {
             (diagnostic, false) => self.diagnostics.push(diagnostic),
@@ -131,10 +147,15 @@ impl<'t> Reading<'t, '_> {
         let is_phase = word == "phase";
         let Some(inside) = self.inside(piece) else { return };
         let Some(rule) = entry_rule(word) else { return };
+        if self.phases >= MOST_PHASES {
+            return;
+        }
         let until = std::mem::replace(&mut self.until, inside.end);
+        self.phases += usize::from(is_phase);
         for entry in self.entries(word, inside) {
             self.mend(&entry, rule, (!is_phase).then_some(word));
         }
+        self.phases -= usize::from(is_phase);
         self.until = until;
     }
 

@@ -16,9 +16,13 @@ use super::{Stages, Triplets};
 /// inertia is exact.
 const DENSE_SPEED: f64 = 16.0;
 
-/// Whether the sparse factorisation takes less time than the recursion. It is analysed for that only if the border is larger than a stage.
+/// The recursion treats what is inside an interval as dense: of many steps in one, or many stages, that may be most of its work and memory.
+const FEW_INNER: usize = 100;
+
+/// Whether the sparse factorisation takes less time than the recursion. It is analysed for that only if the border is larger than a stage, or if there is much inside
+/// an interval.
 pub(crate) fn is_sparse_cheaper(stages: Stages, hessian: &Triplets, jacobian: &Triplets) -> bool {
-    if border(stages) <= stages.states + stages.controls {
+    if border(stages) <= stages.states + stages.controls && stages.inner <= FEW_INNER {
         return false;
     }
     let sparse = SparseLdl::new(hessian, jacobian, &vec![false; stages.variables()], stages.rows());
@@ -68,6 +72,36 @@ mod tests {
             jacobian.extend([Family::single(row, end), Family::single(row, (i + 1) % count)]);
         }
         (stages, Triplets { families: hessian }, Triplets { families: jacobian })
+    }
+
+    /// One state, and many steps of it inside of each interval.
+    fn steps(inner: usize) -> (Stages, Triplets, Triplets) {
+        let stages = Stages {
+            intervals: 100,
+            states: 1,
+            controls: 0,
+            inner,
+            globals: 0,
+            local_rows: 0,
+            coupling_rows: 1,
+        };
+        let (step, rows) = (stages.variable_step(), stages.row_step());
+        let family = |row, column, row_step| Family { row, column, row_step, column_step: step, count: 100 };
+        let hessian = (0..step).map(|i| family(i, i, step)).collect();
+        // Each step sees its own value and the next one.
+        let mut jacobian: Vec<Family> =
+            (0..rows).flat_map(|i| [i, i + 1].map(|column| family(i, column, rows))).collect();
+        jacobian.push(Family::single(stages.coupling().start, stages.state(100).start));
+        (stages, Triplets { families: hessian }, Triplets { families: jacobian })
+    }
+
+    #[test]
+    fn many_steps_in_an_interval_are_for_the_sparse_factorisation_and_few_are_not() {
+        let is_sparse = |inner| {
+            let (stages, hessian, jacobian) = steps(inner);
+            is_sparse_cheaper(stages, &hessian, &jacobian)
+        };
+        assert!(!is_sparse(20) && is_sparse(400));
     }
 
     #[test]

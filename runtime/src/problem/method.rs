@@ -2,6 +2,10 @@
 
 /// Intervals of the first grid where the choice is ours.
 pub const FIRST_GRID: usize = 50;
+/// More intervals need more memory than a computer has to spare: about 5 kB each.
+const MOST_INTERVALS: usize = 1_000_000;
+/// The same for all steps together where an interval has several: the variables inside it cost more.
+const MOST_STEPS: usize = 200_000;
 /// The most stages of a collocation scheme.
 pub const MOST_STAGES: usize = 5;
 
@@ -140,6 +144,14 @@ pub struct Method {
 }
 
 impl Method {
+    /// How many steps there are in all, and how many there may be, if that is less. Nobody may make room for them before
+    /// this is asked.
+    pub fn excess(&self) -> Option<[usize; 2]> {
+        let most = if self.steps == 1 { MOST_INTERVALS } else { MOST_STEPS };
+        let steps = self.intervals.saturating_mul(self.steps);
+        (steps > most).then_some([steps, most])
+    }
+
     /// Puts the method to the first of the grids that are tried, as far as the choice is ours: a polynomial on each interval says much with few of them.
     pub fn begin(&mut self) {
         let is_polynomial = self.controls == ControlShape::Polynomial;

@@ -12,6 +12,7 @@
 //! derivatives, sensitivities need all of them, up to the second.
 
 use super::derived::write_out;
+use super::enclosures::{Watched, enclosures};
 use super::guess::{self, fixed_by_a_row};
 use super::inputs::{self, Inputs, Sizes};
 use super::kinks::{Kinks, take_out};
@@ -23,7 +24,7 @@ use crate::model::{Ball, Jump, Model, Symbol};
 use crate::program::{Order, VectorFunction};
 use fdcc_grammar::ast::Direction;
 use fdcc_runtime::problem::{Function, Layout, Origin};
-use fdcc_runtime::simulate;
+use fdcc_runtime::simulate::{self, Enclosures};
 use std::sync::Arc;
 
 /// What a system is compiled for.
@@ -41,6 +42,7 @@ pub(crate) enum Purpose {
 pub(crate) struct Simulated {
     /// In that order.
     pub functions: Vec<VectorFunction>,
+    enclosures: Enclosures,
     layout: Layout,
     hidden: Vec<usize>,
     surfaces: usize,
@@ -73,7 +75,11 @@ pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) 
     if purpose != Purpose::Simulation {
         functions.iter_mut().for_each(|function| differentiable(model, &mut graph, function));
     }
-    (graph, Simulated { functions, layout, hidden, surfaces })
+    let [flow, rates, guards, _, _, guess, _, _, kinks] = functions.as_slice() else {
+        unreachable!("a system has nine functions")
+    };
+    let enclosures = enclosures(&mut graph, &layout, &Watched { flow, guards, kinks, rates, guess });
+    (graph, Simulated { functions, enclosures, layout, hidden, surfaces })
 }
 
 /// By all inputs, to the second order.
@@ -251,6 +257,7 @@ pub(crate) fn system(
         objective,
         guess,
         kinks,
+        enclosures: simulated.enclosures.clone(),
         interval_of: interval,
         start_of: start,
     }

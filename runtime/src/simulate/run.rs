@@ -41,8 +41,7 @@ pub fn simulate(system: &System, controls: &Controls, options: &Options) -> Simu
 
 impl<'a> Run<'a> {
     fn new(system: &'a System, controls: &'a Controls, options: &'a Options) -> Self {
-        let mut field = Field::new(system, controls);
-        field.floor = field.floor.min(0.01 * options.atol);
+        let mut field = Field::new(system, controls, options);
         field.use_controls_of(system.interval[0]);
         Run {
             field,
@@ -80,6 +79,7 @@ impl<'a> Run<'a> {
 
     /// Finds the modes at the first time.
     fn begin(&mut self) -> Result<(), Status> {
+        self.field.find_rounding(self.t, &self.x);
         self.find_sides();
         self.field.find_sides_of_kinks(self.t, &self.x);
         self.finite_here()?;
@@ -110,6 +110,7 @@ impl<'a> Run<'a> {
         self.tape.open(cause, &mut self.field, self.t, &self.x);
         self.pace.is_continued = false;
         happens(self)?;
+        self.field.tolerance.see(&self.x);
         if !matches!(cause, Cause::Bends(_)) {
             self.field.find_sides_of_kinks(self.t, &self.x);
         }

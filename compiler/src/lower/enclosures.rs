@@ -20,12 +20,13 @@ pub(super) struct Watched<'a> {
     pub guards: &'a VectorFunction,
     pub kinks: &'a VectorFunction,
     pub rates: &'a VectorFunction,
+    pub path: &'a VectorFunction,
     pub guess: &'a VectorFunction,
 }
 
 /// The enclosures of all of them.
 pub(super) fn enclosures(graph: &mut Graph, layout: &Layout, watched: &Watched) -> Enclosures {
-    let Watched { flow, guards, kinks, rates, guess } = watched;
+    let Watched { flow, guards, kinks, rates, path, guess } = watched;
     let along = 0..layout.states().end;
     let mut of = |function: &VectorFunction, by: &Range<usize>| -> Vec<Enclosure> {
         function.outputs.iter().map(|&output| enclosure(graph, &function.layout, output, by)).collect()
@@ -36,6 +37,7 @@ pub(super) fn enclosures(graph: &mut Graph, layout: &Layout, watched: &Watched) 
         kinks: of(kinks, &along),
         rates: of(rates, &layout.selectors()),
         accelerations: of(rates, &along),
+        path: of(path, &along),
         controls: of(guess, &(0..1)).split_off(layout.x),
     }
 }

@@ -58,7 +58,7 @@ pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) 
     let mut over = OverTime { model, graph: &mut graph, sizes: &sizes, layout, purpose, surfaces };
     let mut flow = over.flow();
     let kinks = over.kinks(&mut flow);
-    let guards = over.guards();
+    let (guards, path) = (over.guards(), over.path());
     let rates = over.rates(&flow, &guards);
     let mut functions = vec![
         flow,
@@ -78,7 +78,8 @@ pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) 
     let [flow, rates, guards, _, _, guess, _, _, kinks] = functions.as_slice() else {
         unreachable!("a system has nine functions")
     };
-    let enclosures = enclosures(&mut graph, &layout, &Watched { flow, guards, kinks, rates, guess });
+    let enclosures =
+        enclosures(&mut graph, &layout, &Watched { flow, guards, kinks, rates, path: &path, guess });
     (graph, Simulated { functions, enclosures, layout, hidden, surfaces })
 }
 
@@ -149,6 +150,12 @@ impl OverTime<'_> {
         let surfaces = model.surfaces.iter().take(self.surfaces);
         let psis = surfaces.map(|surface| (surface.psi, origin(&surface.place)));
         self.function("guards", psis, 0..self.layout.states().end)
+    }
+
+    /// The path conditions, as they are written.
+    fn path(&mut self) -> VectorFunction {
+        let model = self.model;
+        self.function("path", model.path.iter().map(|row| (row.value, origin(&row.place))), 0..0)
     }
 
     /// Gives the kinks of the flow selectors; where a solve smooths, there are none.

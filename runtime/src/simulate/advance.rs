@@ -172,6 +172,9 @@ impl Run<'_> {
     pub fn go(&mut self, step: &Step, [time, h]: [f64; 2], end: &[f64]) {
         let field = &mut self.field;
         self.record.inside(time, &mut |wanted| step.exactly_at(field, (wanted - step.t).max(0.0)));
+        if h > 0.0 {
+            self.extremes.follow(&self.field, step, h / step.h);
+        }
         self.t = time;
         self.x.copy_from_slice(end);
         self.field.project(self.t, &mut self.x);

@@ -15,6 +15,7 @@ mod decide;
 mod direction;
 mod events;
 mod explicit;
+mod extremes;
 mod field;
 mod interval;
 mod landing;
@@ -40,6 +41,7 @@ mod zeno;
 
 pub(crate) use complementarity::selectors;
 pub use controls::Controls;
+pub use extremes::Extreme;
 pub use field::Mode;
 pub use result::{Candidate, Counts, Event, Integrator, Kind, Method, Options, Simulation, Status, Watch};
 pub use run::simulate;

@@ -1,5 +1,6 @@
 //! What a simulation is asked for and what it says: plain data.
 
+use super::extremes::Extreme;
 use super::tape::Tape;
 use crate::nlp::Stop;
 use crate::problem::Origin;
@@ -25,6 +26,8 @@ pub struct Options {
     pub times: Vec<f64>,
     /// Whether to note what derivatives need.
     pub tape: bool,
+    /// Whether to find the extremes of path conditions.
+    pub extremes: bool,
     /// Who may stop it.
     pub watch: Watch,
 }
@@ -95,6 +98,7 @@ impl Default for Options {
             max_steps: 1_000_000,
             times: Vec::new(),
             tape: false,
+            extremes: false,
             watch: Watch::default(),
         }
     }
@@ -206,6 +210,8 @@ pub struct Simulation {
     pub objective: Option<f64>,
     /// Work done.
     pub counts: Counts,
+    /// The least, then the greatest value of each path condition, if asked for.
+    pub extremes: Vec<[Extreme; 2]>,
     /// What derivatives need, if asked for; without the stop at which a simulation fails.
     pub tape: Option<Tape>,
 }

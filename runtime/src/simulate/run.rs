@@ -2,6 +2,7 @@
 
 use super::advance::Pace;
 use super::controls::Controls;
+use super::extremes::Extremes;
 use super::field::Field;
 use super::record::Record;
 use super::result::{Counts, Options, Simulation, Status};
@@ -15,6 +16,7 @@ pub(super) struct Run<'a> {
     pub options: &'a Options,
     pub record: Record,
     pub tape: Writer,
+    pub extremes: Extremes,
     pub t: f64,
     pub x: Vec<f64>,
     /// How often each jump has happened.
@@ -48,6 +50,7 @@ impl<'a> Run<'a> {
             options,
             record: Record::new(options, system.layout.x),
             tape: Writer::new(options.tape),
+            extremes: Extremes::new(if options.extremes { system.enclosures.path.len() } else { 0 }),
             t: system.interval[0],
             x: system.start.clone(),
             jumps: vec![0; system.jumps.len()],
@@ -150,6 +153,7 @@ impl<'a> Run<'a> {
             end: self.x,
             objective: objective.first().copied().filter(|_| is_complete),
             counts: self.counts,
+            extremes: self.extremes.0,
             tape: self.tape.finish(),
         }
     }

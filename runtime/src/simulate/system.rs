@@ -70,6 +70,8 @@ pub struct Enclosures {
     pub rates: Vec<Enclosure>,
     /// The same; by `t` and `x`.
     pub accelerations: Vec<Enclosure>,
+    /// Of the path conditions of the model, over the inputs of `flow`; by `t` and `x`.
+    pub path: Vec<Enclosure>,
     /// Of the controls of [`System::guess`], over `[tau | p]`; by `tau`.
     pub controls: Vec<Enclosure>,
 }

@@ -43,7 +43,7 @@ const MOST_BENDS: usize = 8;
 
 /// A step of the explicit pair may be off by this part of what the tolerances of the other states
 /// make of its own.
-const SHARE: f64 = 0.1;
+const SHARE: f64 = 0.01;
 
 /// Below this the explicit pair takes steps of the same length without any doubt.
 const NOT_STIFF: f64 = 0.5;

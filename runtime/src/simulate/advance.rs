@@ -223,8 +223,13 @@ impl Run<'_> {
 
     /// Asks whether an error is more than what the rates are uncertain by.
     fn doubt(&mut self, step: &mut Step) {
-        let part = if step.method == Method::Explicit { SHARE } else { 0.0 };
-        self.field.find_doubts(step.t, &step.start, step.h, part);
+        if step.method == Method::Explicit {
+            self.field.find_doubts(step.t, &step.start, step.h, SHARE);
+        } else {
+            // An implicit step damps what the rates of a fast state are off by, and passes on none of it.
+            self.field.find_doubts(step.t, &step.start, 0.0, 0.0);
+            self.field.tolerance.damp(|i| 1.0 + step.h * step.newton.own_slope(i));
+        }
         step.measure(&self.field.tolerance);
     }
 

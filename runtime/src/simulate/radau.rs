@@ -151,6 +151,11 @@ impl Newton {
         self.error_lu.solve(n, &mut self.change[..n], 1);
     }
 
+    /// How much the rate of a state depends on the state itself.
+    pub fn own_slope(&self, i: usize) -> f64 {
+        self.jacobian[(i, i)].abs()
+    }
+
     /// The largest sum of a row of `J`, which bounds its eigenvalues.
     pub fn stiffness(&self) -> f64 {
         self.jacobian.row_iter().map(|row| row.iter().map(|entry| entry.abs()).sum()).fold(0.0, f64::max)

@@ -53,6 +53,11 @@ impl Tolerance {
         atol + self.rtol * size + h * self.doubts[i]
     }
 
+    /// Divides what rates are uncertain by.
+    pub fn damp(&mut self, by: impl Fn(usize) -> f64) {
+        self.doubts.iter_mut().enumerate().for_each(|(i, doubt)| *doubt /= by(i));
+    }
+
     /// The largest difference of two states near `x` in units of the tolerance.
     pub fn error(&self, x: &[f64], one: &[f64], other: &[f64], h: f64) -> f64 {
         let scaled = |i: usize| (one[i] - other[i]).abs() / self.of(i, [x[i], one[i]], h);

@@ -196,6 +196,8 @@ impl Run<'_> {
         let method = if self.field.moving().is_empty() { self.pace.method } else { Method::Explicit };
         step.begin(&mut self.field, self.t, &self.x, method, self.pace.is_continued);
         let selectors = self.field.selectors.clone();
+        // What was uncertain in a short step says nothing about a long one.
+        self.field.tolerance.forget_doubts();
         let mut has_doubts = false;
         loop {
             if self.counts.steps + self.counts.rejected >= self.options.max_steps {

@@ -53,6 +53,11 @@ impl Tolerance {
         atol + self.rtol * size + h * self.doubts[i]
     }
 
+    /// From now on rates are certain.
+    pub fn forget_doubts(&mut self) {
+        self.doubts.fill(0.0);
+    }
+
     /// Divides what rates are uncertain by.
     pub fn damp(&mut self, by: impl Fn(usize) -> f64) {
         self.doubts.iter_mut().enumerate().for_each(|(i, doubt)| *doubt /= by(i));
@@ -70,7 +75,7 @@ impl Field<'_> {
     /// Finds by how much rates are uncertain if states may be off by a part of their tolerance, and
     /// by what their own rates make of them in a time `h`.
     pub fn find_doubts(&mut self, t: f64, x: &[f64], h: f64, part: f64) {
-        self.tolerance.doubts.fill(0.0);
+        self.tolerance.forget_doubts();
         for _ in 0..PASSES {
             self.widen_doubts(t, x, h, part);
         }

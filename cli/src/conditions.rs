@@ -21,6 +21,7 @@ pub struct Condition {
 pub struct Conditions<'a> {
     problem: &'a Problem,
     points: &'a Points,
+    simulation: &'a Simulation,
     /// The replayed states in the order of the problem.
     states: Vec<&'a [f64]>,
     parameters: Vec<f64>,
@@ -45,7 +46,7 @@ impl<'a> Conditions<'a> {
         let mut parameters: Vec<f64> = parameters.collect();
         let chosen = problem.parameters.iter().position(|it| it.name.starts_with("sigma("));
         parameters.iter_mut().skip(chosen.unwrap_or(usize::MAX)).for_each(|width| *width = NO_WIDTH);
-        Some(Conditions { problem, points, states: states.collect::<Option<_>>()?, parameters })
+        Some(Conditions { problem, points, simulation, states: states.collect::<Option<_>>()?, parameters })
     }
 
     /// Bounds that are violated, all path conditions, and the ends if the replay came so far.
@@ -80,7 +81,27 @@ impl<'a> Conditions<'a> {
         }
         let values = evaluated(path, &inputs, &self.parameters);
         let rows = self.problem.path_bounds.iter().enumerate();
-        rows.map(move |(row, bounds)| over_time(&path.origin(row).label, *bounds, values.column(row)))
+        rows.map(move |(row, bounds)| {
+            let at_points = over_time(&path.origin(row).label, *bounds, values.column(row));
+            self.between(row, *bounds, at_points)
+        })
+    }
+
+    /// The worst of a path condition between the points, too, where it is worse than at all of them.
+    fn between(&self, row: usize, bounds: Bounds, at_points: Condition) -> Condition {
+        let extremes = self.simulation.extremes.get(row).into_iter().flatten();
+        let after_start = extremes.filter(|it| it.time > self.points.times[0]);
+        let worst =
+            after_start.max_by(|a, b| bounds.violation(a.value).total_cmp(&bounds.violation(b.value)));
+        match worst.filter(|it| bounds.violation(it.value) > at_points.violation) {
+            Some(worst) => {
+                let point = self.points.times.partition_point(|time| *time < worst.time);
+                let last = self.points.times.len() - 1;
+                let violation = bounds.violation(worst.value);
+                Condition { violation, point: Some(point.min(last)), ..at_points }
+            }
+            None => at_points,
+        }
     }
 
     fn at_ends(&self) -> impl Iterator<Item = Condition> {

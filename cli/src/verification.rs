@@ -61,7 +61,8 @@ pub fn verify(model: &Model, problem: &Problem, saved: &Saved) -> Result<Verifie
     let points = Points::new(saved, replay, system.interval);
     let controls = Controls::Held { times: points.starts(), rows: points.rows.clone(), is_stretched: true };
     let max_steps = FEWEST_STEPS.max(STEPS_PER_INTERVAL * intervals);
-    let options = Options { times: points.times.clone(), max_steps, tape: true, ..Options::default() };
+    let options =
+        Options { times: points.times.clone(), max_steps, tape: true, extremes: true, ..Options::default() };
     let simulation = simulate(&system, &controls, &options);
     let is_whole = matches!(simulation.status, Status::Completed)
         && simulation.states.iter().all(|column| column.len() == points.times.len());
@@ -72,7 +73,8 @@ pub fn verify(model: &Model, problem: &Problem, saved: &Saved) -> Result<Verifie
     let gaps = match Alignment::new(&saved.jumps, &system, &simulation) {
         Some(alignment) if is_whole && !saved.jumps.is_empty() => {
             let times = alignment.moved(&points.times);
-            let compared = simulate(&system, &controls, &Options { times, tape: false, ..options });
+            let compared =
+                simulate(&system, &controls, &Options { times, tape: false, extremes: false, ..options });
             alignment.gaps(saved).chain(gaps(saved, &system, &compared)).collect()
         }
         _ => gaps(saved, &system, &simulation),

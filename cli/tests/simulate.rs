@@ -121,7 +121,7 @@ fn bad_control_files_say_what_is_wrong() {
         ("u.csv", "t,u,u\n0,1,2\n", "two columns `u`"),
         ("u.csv", "t,u\n0,1e400\n", "line 2: `1e400` of `u` is no number"),
         ("u.csv", "t,u\n0,one\n", "line 2: `one` of `u` is no number"),
-        ("u.csv", "t,u\n0,1\n0,1\n", "times must ascend, but 0 follows 0"),
+        ("u.csv", "t,u\n0,1\n0,1\n0,2\n", "line 4: a third row at t = 0; a jump has two sides"),
         ("u.json", &backwards, "times must ascend, but 1 follows 2"),
         ("u.json", &short, "`u` has 1 values for 2 intervals"),
         ("u.json", &hole, "value 1 of `u` is no number"),
@@ -253,5 +253,102 @@ fn wrong_usage_is_told() {
     ] {
         let output = fdcc(&folder, &[&["simulate", "block.fdc"], arguments.as_slice()].concat(), "");
         expect_exit(&output, code, arguments[1]);
+    }
+}
+
+const HOP: &str = "\
+model hop
+time t in [0, 1]
+state h start 1
+state v start 0
+control u in [-5, 5]
+surface ground = h
+dynamics {
+  h' = v
+  v' = u - 10
+}
+jump bounce on ground falling at most 1 { v := -v/2 }
+end h == 0.3
+minimize integral(u^2)
+method { N = 10  scheme = midpoint }
+";
+
+/// A ball from a height of 1 meets the ground with `v = -sqrt(20)`.
+#[test]
+fn events_tell_the_states_on_both_sides() {
+    let folder = folder("simulate_sides", &[("ball.fdc", BALL.as_bytes())]);
+    let output = fdcc(&folder, &["simulate", "ball.fdc", "--json", "--out", "out"], "");
+    let event = &json(&output)["events"][0];
+    near(&event["before"]["v"], -20.0_f64.sqrt());
+    near(&event["after"]["v"], 0.5 * 20.0_f64.sqrt());
+    assert_eq!(event["after"], event["state"]);
+    let table = std::fs::read_to_string(folder.join("out/ball.sim.csv")).expect("the table is written");
+    let time = format!("{},", number(&event["time"]));
+    assert_eq!(table.lines().filter(|line| line.starts_with(&time)).count(), 2, "{table}");
+}
+
+/// The grid has a point at the jump, the table two rows, and the plot a vertical line.
+#[test]
+fn tables_and_plots_of_a_solve_have_both_sides_of_a_jump() {
+    let folder = folder("simulate_hop", &[("hop.fdc", HOP.as_bytes())]);
+    expect_exit(&fdcc(&folder, &["solve", "hop.fdc", "--out", "."], ""), 0, "hop");
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).expect("the file is written");
+    let table = read("hop.csv");
+    let rows: Vec<Vec<f64>> = table
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|it| it.parse().expect("a number")).collect())
+        .collect();
+    let jump = rows.windows(2).position(|pair| pair[0][0] == pair[1][0]).expect("two rows at one time");
+    let [before, after] = [rows[jump][2], rows[jump + 1][2]];
+    assert!(before < -1.0 && (after + 0.5 * before).abs() < 1e-9, "{before}, then {after}");
+    assert!(rows[jump][3] == rows[jump - 1][3] && rows[jump][3] != rows[jump + 1][3], "{table}");
+    let page = read("hop.html");
+    let speed = page.split("<figcaption>v</figcaption>").nth(1).expect("there is a plot of v");
+    let path =
+        speed.split("class=\"signal\" d=\"").nth(1).and_then(|it| it.split('"').next()).expect("a path");
+    let points: Vec<&str> = path.split(['M', 'L']).collect();
+    let is_vertical = |pair: &[&str]| pair[0].split(' ').next() == pair[1].split(' ').next();
+    assert_eq!(points.windows(2).filter(|pair| is_vertical(pair)).count(), 1, "{path}");
+    let [of_table, of_solution] = ["hop.csv", "hop.sol.json"].map(|controls| {
+        let output = fdcc(&folder, &["simulate", "hop.fdc", "--control", controls, "--json"], "");
+        expect_exit(&output, 0, controls);
+        number(&json(&output)["end"]["h"])
+    });
+    assert!((of_table - 0.3).abs() < 1e-7 && (of_solution - 0.3).abs() < 1e-7);
+}
+
+/// A force of a millionth of a second between two stages of a step is seen by no method; shorter steps see it.
+#[test]
+fn steps_can_be_limited() {
+    let text = "time t in [0, 1]\nstate v start 0\ndynamics { v' = 1e6*exp(-((t - 0.7)/1e-6)^2) }\n";
+    let folder = folder("simulate_steps", &[("kick.fdc", text.as_bytes())]);
+    let end = |options: &[&str]| {
+        let output = fdcc(&folder, &[&["simulate", "kick.fdc", "--json"], options].concat(), "");
+        expect_exit(&output, 0, "kick");
+        number(&json(&output)["end"]["v"])
+    };
+    assert!(end(&[]) < 0.1);
+    assert!((end(&["--max-step", "1e-5"]) - std::f64::consts::PI.sqrt()).abs() < 1e-6);
+    for wrong in ["0", "-1", "nan", "x"] {
+        expect_exit(&fdcc(&folder, &["simulate", "kick.fdc", "--max-step", wrong], ""), 3, wrong);
+    }
+}
+
+/// Regular crossings pile up nowhere, however long the whole time is; what overflows has no value.
+#[test]
+fn enormous_numbers_end_with_an_honest_status() {
+    let clock = "time t in [0, 2e302]\nstate x start 1\nstate v start 0\nsurface s = x\nstate y start 0\n\
+                 dynamics {\n x' = v\n v' = -x\n y' in Sgn(s)\n}\n";
+    let push = "time t in [0, 10]\nstate v start 0\ncontrol u in [-1e300, 1e300] guess 1e300\n\
+                dynamics { v' = u }\nminimize integral(u^2)\n";
+    let slow = "time t in [0, 2e302]\nstate x start 1\nsurface s = x - 2\nstate y start 0\n\
+                dynamics {\n x' = 1e-302\n y' in Sgn(s)\n}\n";
+    let cases = [("clock", clock, "time_limit"), ("push", push, "not_finite"), ("slow", slow, "completed")];
+    for (name, text, status) in cases {
+        let folder = folder(&format!("simulate_{name}"), &[("big.fdc", text.as_bytes())]);
+        let output = fdcc(&folder, &["simulate", "big.fdc", "--json", "--time-limit", "1"], "");
+        let found = json(&output)["status"].clone();
+        assert_eq!(found, status, "{name}");
     }
 }

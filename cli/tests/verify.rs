@@ -246,3 +246,27 @@ fn jumps_are_compared_with_jumps() {
     let document = verified(&folder, &["without.sol.json", "--gap", "3e-3"], 2);
     assert!(number(&document["verification"]["state_gap"]) > 3e-3, "{document}");
 }
+
+/// `x = t` passes a spike of 2e-4 where no point of the replay is.
+#[test]
+fn path_conditions_are_watched_between_the_points() {
+    let text = "\
+model spike
+time t in [0, 1]
+state x start 0
+control u in [-2, 2]
+dynamics { x' = u }
+path bump: exp(-((x - 0.5047)/1e-4)^2) <= 0.5
+end x == 1
+minimize integral(u^2)
+method { N = 10 }
+";
+    let folder = folder("verify_spike", &[("spike.fdc", text.as_bytes())]);
+    expect_exit(&fdcc(&folder, &["solve", "spike.fdc", "--out", "."], ""), 0, "spike");
+    let output = fdcc(&folder, &["verify", "spike.sol.json", "spike.fdc", "--json"], "");
+    let found = json(&output);
+    let bump = &found["conditions"]["bump"];
+    assert_eq!(found["verification"]["confirmed"], false);
+    assert!((number(&bump["violation"]) - 0.5).abs() < 1e-7, "{bump}");
+    assert!((number(&bump["time"]) - 0.5047).abs() < 5e-3, "{bump}");
+}

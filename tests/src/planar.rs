@@ -91,7 +91,7 @@ pub fn costates(system: &System, times: &[f64]) -> Costates {
 
 fn differentiated(system: &System, controls: &Controls) -> Sensitivity {
     let starts = [Quantity::Start(0), Quantity::Start(1)];
-    let options = Options { rtol: 1e-13, atol: 1e-15, ..Options::default() };
+    let options = Options { rtol: 1e-13, atol: Some(1e-15), ..Options::default() };
     let found = gradient(system, controls, &options, &starts).expect("the simulation reaches its end");
     assert!(found.agreement < 1e-9, "forward and adjoint differ by {}", found.agreement);
     found

@@ -28,7 +28,7 @@ fn difference(system: &System, quantity: &Quantity, options: &Options, events: u
 
 #[test]
 fn derivatives_through_isotropic_friction_are_those_of_differences() {
-    let options = Options { rtol: 1e-11, atol: 1e-13, ..Options::default() };
+    let options = Options { rtol: 1e-11, atol: Some(1e-13), ..Options::default() };
     let mut compared = 0;
     for (name, text) in documents("tests/simulations", "fdc") {
         if !text.contains("Dir(") {

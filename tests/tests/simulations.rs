@@ -198,3 +198,64 @@ fn too_many_steps_end_with_the_trajectory_so_far() {
     let (_, simulation) = run(&text("block_on_table"), &[], &Controls::Guess, &options);
     assert!(matches!(simulation.status, Status::StepLimit) && simulation.time.len() > 5);
 }
+
+/// `A cos(t)`, `-A sin(t)` beside a decay from 1e6: nothing depends on the unit that lengths are written in.
+#[test]
+fn small_oscillators_are_as_exact_as_large_ones() {
+    for amplitude in [1e-30, 1e-12, 1.0, 1e12] {
+        for (x, v) in [(amplitude, 0.0), (0.0, amplitude)] {
+            let text = format!(
+                "time t in [0, 10]\nstate X start 1e6\nstate x start {x:e}\nstate v start {v:e}\n\
+                 dynamics {{\n X' = -X/10\n x' = v\n v' = -x\n}}\n"
+            );
+            let (system, simulation) = run(&text, &[], &Controls::Guess, &Options::default());
+            let (sine, cosine) = 10.0_f64.sin_cos();
+            let exact = [("x", x * cosine + v * sine), ("v", v * cosine - x * sine)];
+            for (name, exact) in exact {
+                let got = end(&system, &simulation, name);
+                assert!((got - exact).abs() <= 1e-8 * amplitude, "{amplitude}: {name} = {got}, not {exact}");
+            }
+        }
+    }
+}
+
+/// The same crossings at every scale.
+#[test]
+fn small_oscillators_cross_surfaces_when_large_ones_do() {
+    for amplitude in [1e-30, 1e-12, 1.0, 1e12] {
+        let text = format!(
+            "time t in [0, 10]\nstate x start {amplitude:e}\nstate v start 0\nstate y start 0\nsurface s = x\n\
+             dynamics {{\n x' = v\n v' = -x\n y' in Sgn(s)\n}}\n"
+        );
+        let (_, simulation) = run(&text, &[], &Controls::Guess, &Options::default());
+        let times: Vec<f64> = simulation.events.iter().map(|event| event.time).collect();
+        let exact = [0.5, 1.5, 2.5].map(|turns| turns * std::f64::consts::PI);
+        assert!(
+            times.len() == 3 && times.iter().zip(exact).all(|(a, b)| near(*a, b)),
+            "{amplitude}: {times:?}"
+        );
+    }
+}
+
+/// What is 0 but for rounding, and what is 0 but for the errors of other states, asks for less than
+/// ten times the steps of the oscillator alone, which takes 340.
+#[test]
+fn states_that_stay_at_zero_cost_little() {
+    let text = "time t in [0, 10]\nstate x start 1\nstate v start 0\nstate noise start 0\nstate energy start 0\n\
+                dynamics {\n x' = v\n v' = -x\n noise' = sin(t)^2 + cos(t)^2 - 1\n energy' = x^2 + v^2 - 1\n}\n";
+    let (_, simulation) = run(text, &[], &Controls::Guess, &Options::default());
+    assert!(matches!(simulation.status, Status::Completed), "{:?}", simulation.status);
+    assert!(simulation.counts.steps < 3000, "{:?}", simulation.counts);
+}
+
+#[test]
+fn events_have_the_states_on_both_sides() {
+    let (system, simulation) = run(&text("bouncing"), &[], &Controls::Guess, &Options::default());
+    let (event, v) = (&simulation.events[0], position(&system, "v"));
+    assert!(
+        near(event.before[v], -20.0_f64.sqrt()) && near(event.after[v], 0.5 * 20.0_f64.sqrt()),
+        "{event:?}"
+    );
+    let rows: Vec<usize> = (0..simulation.time.len()).filter(|&k| simulation.time[k] == event.time).collect();
+    assert_eq!(rows.len(), 2, "the trajectory has both sides of a jump");
+}

@@ -26,7 +26,7 @@ fn from_csv(text: &str, model: &Model) -> Result<Replay, String> {
     let header = lines.next().ok_or("the file is empty; it needs a header such as `t,u`")?.1;
     let names: Vec<&str> = header.trim_start_matches('\u{feff}').split(',').map(str::trim).collect();
     let columns = columns(&names, model)?;
-    let mut replay = Replay::default();
+    let (mut replay, mut twice) = (Replay::default(), None);
     for (at, line) in lines {
         let cells: Vec<&str> = line.split(',').map(str::trim).collect();
         if cells.len() != names.len() {
@@ -37,8 +37,18 @@ fn from_csv(text: &str, model: &Model) -> Result<Replay, String> {
             Ok(value) if value.is_finite() => Ok(value),
             _ => Err(format!("line {}: `{}` of `{}` is no number", at + 1, cells[column], names[column])),
         };
-        replay.times.push(number(0)?);
-        replay.rows.push(columns.iter().map(|&column| number(column)).collect::<Result<_, _>>()?);
+        let time = number(0)?;
+        let row = columns.iter().map(|&column| number(column)).collect::<Result<_, _>>()?;
+        // The first of two rows at one time, on both sides of a jump, holds for no time.
+        if replay.times.last() == Some(&time) {
+            if twice == Some(time) {
+                return Err(format!("line {}: a third row at t = {time}; a jump has two sides", at + 1));
+            }
+            twice = Some(time);
+            (replay.times.pop(), replay.rows.pop());
+        }
+        replay.times.push(time);
+        replay.rows.push(row);
     }
     Ok(replay)
 }

@@ -216,6 +216,17 @@ impl Document {
     }
 }
 
+impl Document {
+    /// The states before the jumps at a grid point, which has those after them.
+    pub fn befores(&self, point: usize) -> impl Iterator<Item = &Named<f64>> {
+        let nearest = |time: f64| {
+            let distance = |k: &usize| (self.time[*k] - time).abs();
+            (0..self.time.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        };
+        self.jumps.iter().filter(move |jump| nearest(jump.time) == Some(point)).map(|jump| &jump.before)
+    }
+}
+
 /// The values of the parameters: those that were found, and those that were given. Widths of surfaces are neither.
 fn parameters(problem: &Problem, values: &[f64]) -> [Named<f64>; 2] {
     let free: Vec<usize> = problem.unknowns.iter().map(|unknown| unknown.parameter).collect();

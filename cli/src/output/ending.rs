@@ -153,7 +153,10 @@ pub struct EventEntry {
     #[serde(skip_serializing_if = "Option::is_none")]
     jump: Option<String>,
     pub margin: f64,
+    /// The same as `after`.
     pub state: Named<f64>,
+    before: Named<f64>,
+    after: Named<f64>,
 }
 
 /// All events in the order of time.
@@ -179,7 +182,9 @@ fn entry(system: &System, event: &Event) -> EventEntry {
         kind: kind_name(event.kind),
         jump,
         margin: event.margin,
-        state: state(system, &event.state),
+        state: state(system, &event.after),
+        before: state(system, &event.before),
+        after: state(system, &event.after),
     }
 }
 

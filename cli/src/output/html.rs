@@ -23,9 +23,11 @@ pub fn html(document: &Document) -> String {
     let sections = sections.into_iter().filter(|(_, signals, _)| !signals.0.is_empty());
     let sections: String = sections
         .map(|(title, signals, units)| {
+            let is_state = std::ptr::eq(signals, &document.states);
             let plots = signals.0.iter().map(|(name, values)| {
+                let befores = if is_state { befores(document, name, units) } else { Vec::new() };
                 let values: Vec<f64> = values.iter().map(|value| units.scaled(name, *value)).collect();
-                plot(document, &units.title(name), &values)
+                plot(document, &units.title(name), &values, &befores)
             });
             format!("<h2>{title}</h2>\n<div class=\"plots\">\n{}</div>\n", plots.collect::<String>())
         })
@@ -37,6 +39,13 @@ pub fn html(document: &Document) -> String {
         summary(document),
         legend(document)
     )
+}
+
+/// The values of a state just before jumps, in its unit, with the grid points of those after them.
+fn befores(document: &Document, name: &str, units: &Units) -> Vec<(usize, f64)> {
+    let at = |k: usize| document.befores(k).filter_map(move |before| Some((k, before.get(name).copied()?)));
+    let all = (0..document.time.len()).flat_map(at);
+    all.map(|(k, value)| (k, units.scaled(name, value))).collect()
 }
 
 fn legend(document: &Document) -> &'static str {

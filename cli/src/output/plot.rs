@@ -42,16 +42,18 @@ fn range(values: &[f64], margin: f64) -> [f64; 2] {
     }
 }
 
-/// A figure with its caption.
-pub fn plot(document: &Document, name: &str, values: &[f64]) -> String {
-    let axes = Axes::new(&document.time, values);
+/// A figure with its caption. `befores` are values just before jumps, with the places of those
+/// after them.
+pub fn plot(document: &Document, name: &str, values: &[f64], befores: &[(usize, f64)]) -> String {
+    let all: Vec<f64> = values.iter().copied().chain(befores.iter().map(|before| before.1)).collect();
+    let axes = Axes::new(&document.time, &all);
     format!(
         "<figure><figcaption>{}</figcaption><svg width=\"{WIDTH}\" height=\"{HEIGHT}\">{}{}\
          <path class=\"signal\" d=\"{}\"/></svg></figure>\n",
         escape(name),
         shades(document, &axes),
         ticks(&axes),
-        path(&document.time, values, &axes)
+        path(&document.time, values, befores, &axes)
     )
 }
 
@@ -88,17 +90,19 @@ fn ticks(axes: &Axes) -> String {
 }
 
 /// A polyline through grid values; steps for a signal that has one value per interval. A value that is not finite
-/// leaves a gap.
-fn path(time: &[f64], values: &[f64], axes: &Axes) -> String {
+/// leaves a gap, a jump has both of its sides.
+fn path(time: &[f64], values: &[f64], befores: &[(usize, f64)], axes: &Axes) -> String {
     let is_stepwise = values.len() < time.len();
     let mut path = String::new();
     let mut command = 'M';
-    for (k, value) in values.iter().enumerate() {
+    let before =
+        |k: usize| befores.iter().filter(move |before| before.0 == k).map(move |before| (k, before.1));
+    for (k, value) in values.iter().enumerate().flat_map(|(k, value)| before(k).chain([(k, *value)])) {
         if !value.is_finite() || !time[k].is_finite() {
             command = 'M';
             continue;
         }
-        let (x, y) = (axes.x(time[k]), axes.y(*value));
+        let (x, y) = (axes.x(time[k]), axes.y(value));
         write!(path, "{command}{x:.1} {y:.1}").expect("a string takes everything");
         if is_stepwise {
             write!(path, "H{:.1}", axes.x(time[k + 1])).expect("a string takes everything");

@@ -58,10 +58,15 @@ impl Tape {
 
     /// Enclosures of all values over a box, which has an interval for each input.
     pub fn evaluate(&mut self, domain: &[Interval]) -> Vec<Interval> {
+        self.evaluate_over(|at| domain[at]).collect()
+    }
+
+    /// The same over the box with these intervals, by input.
+    pub fn evaluate_over(&mut self, domain: impl Fn(usize) -> Interval) -> impl Iterator<Item = Interval> {
         for (at, step) in self.steps.iter().enumerate() {
             self.values[at] = match step {
                 Step::Number(value) => Interval::point(*value),
-                Step::Input(position) => domain[*position as usize],
+                Step::Input(position) => domain(*position as usize),
                 Step::Square(operand) => self.values[*operand].square(),
                 Step::Call(builtin, operands) => {
                     let operands: SmallVec<[Interval; 4]> =
@@ -70,6 +75,6 @@ impl Tape {
                 }
             };
         }
-        self.roots.iter().map(|&root| self.values[root]).collect()
+        self.roots.iter().map(|&root| self.values[root])
     }
 }

@@ -11,6 +11,7 @@ mod boundary;
 mod by_parameters;
 mod composed;
 mod derived;
+mod enclosures;
 mod expect;
 mod guess;
 mod inputs;

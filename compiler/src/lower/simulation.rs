@@ -12,6 +12,7 @@
 //! derivatives, sensitivities need all of them, up to the second.
 
 use super::derived::write_out;
+use super::enclosures::{Watched, enclosures};
 use super::guess::{self, fixed_by_a_row};
 use super::inputs::{self, Inputs, Sizes};
 use super::kinks::{Kinks, take_out};
@@ -23,7 +24,7 @@ use crate::model::{Ball, Jump, Model, Symbol};
 use crate::program::{Order, VectorFunction};
 use fdcc_grammar::ast::Direction;
 use fdcc_runtime::problem::{Function, Layout, Origin};
-use fdcc_runtime::simulate;
+use fdcc_runtime::simulate::{self, Enclosures};
 use std::sync::Arc;
 
 /// What a system is compiled for.
@@ -41,6 +42,7 @@ pub(crate) enum Purpose {
 pub(crate) struct Simulated {
     /// In that order.
     pub functions: Vec<VectorFunction>,
+    enclosures: Enclosures,
     layout: Layout,
     hidden: Vec<usize>,
     surfaces: usize,
@@ -56,7 +58,7 @@ pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) 
     let mut over = OverTime { model, graph: &mut graph, sizes: &sizes, layout, purpose, surfaces };
     let mut flow = over.flow();
     let kinks = over.kinks(&mut flow);
-    let guards = over.guards();
+    let (guards, path) = (over.guards(), over.path());
     let rates = over.rates(&flow, &guards);
     let mut functions = vec![
         flow,
@@ -73,7 +75,12 @@ pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) 
     if purpose != Purpose::Simulation {
         functions.iter_mut().for_each(|function| differentiable(model, &mut graph, function));
     }
-    (graph, Simulated { functions, layout, hidden, surfaces })
+    let [flow, rates, guards, _, _, guess, _, _, kinks] = functions.as_slice() else {
+        unreachable!("a system has nine functions")
+    };
+    let enclosures =
+        enclosures(&mut graph, &layout, &Watched { flow, guards, kinks, rates, path: &path, guess });
+    (graph, Simulated { functions, enclosures, layout, hidden, surfaces })
 }
 
 /// By all inputs, to the second order.
@@ -143,6 +150,12 @@ impl OverTime<'_> {
         let surfaces = model.surfaces.iter().take(self.surfaces);
         let psis = surfaces.map(|surface| (surface.psi, origin(&surface.place)));
         self.function("guards", psis, 0..self.layout.states().end)
+    }
+
+    /// The path conditions, as they are written.
+    fn path(&mut self) -> VectorFunction {
+        let model = self.model;
+        self.function("path", model.path.iter().map(|row| (row.value, origin(&row.place))), 0..0)
     }
 
     /// Gives the kinks of the flow selectors; where a solve smooths, there are none.
@@ -251,6 +264,7 @@ pub(crate) fn system(
         objective,
         guess,
         kinks,
+        enclosures: simulated.enclosures.clone(),
         interval_of: interval,
         start_of: start,
     }

@@ -2,7 +2,7 @@
 
 use super::ball::{blocks, is_unique};
 use super::field::surface_rates;
-use super::locate::{self, Condition};
+use super::locate::{self, Condition, First};
 use super::result::{Integrator, Method, Status};
 use super::run::Run;
 use super::step::Step;
@@ -35,8 +35,15 @@ const SMALL_BORDER: f64 = 1.0;
 const STIFF_AFTER: usize = 15;
 const NOT_STIFF_AFTER: usize = 6;
 
+/// A trajectory of more numbers than this, a quarter of a gigabyte, is of no use to anybody.
+const MOST_NUMBERS: usize = 1 << 25;
+
 /// After so many kinks at one time the next step passes over them: what stays on a kink but for rounding crosses it for ever.
 const MOST_BENDS: usize = 8;
+
+/// A step of the explicit pair may be off by this part of what the tolerances of the other states
+/// make of its own.
+const SHARE: f64 = 0.01;
 
 /// Below this the explicit pair takes steps of the same length without any doubt.
 const NOT_STIFF: f64 = 0.5;
@@ -80,11 +87,14 @@ impl Run<'_> {
     pub fn first_length(&mut self) -> f64 {
         let span = self.field.system.interval[1] - self.t;
         let x = self.x.clone();
+        let rate = self.field.rate(self.t, &x);
+        // How long what is 0 stays small, only a step tells.
+        let moving: Vec<usize> = (0..x.len()).filter(|i| x[*i] != 0.0).collect();
+        let scales: Vec<f64> = moving.iter().map(|&i| self.field.tolerance.of(i, [x[i]; 2], 0.0)).collect();
         let size = |values: &[f64]| {
-            let scaled = values.iter().zip(&x).map(|(value, x)| (value / self.options.scale(*x, *x)).abs());
+            let scaled = moving.iter().zip(&scales).map(|(&i, scale)| (values[i] / scale).abs());
             scaled.fold(0.0, f64::max)
         };
-        let rate = self.field.rate(self.t, &x);
         let (at, slope) = (size(&x), size(&rate));
         let short = if at < 1e-5 || slope < 1e-5 { 1e-6 * span } else { (0.01 * at / slope).min(span) };
         let next: Vec<f64> = x.iter().zip(&rate).map(|(x, rate)| x + short * rate).collect();
@@ -106,6 +116,9 @@ impl Run<'_> {
 
     fn advance_by(&mut self, step: &mut Step, stop: f64) -> Result<(), Status> {
         self.options.watch.ask()?;
+        if self.record.size() > MOST_NUMBERS {
+            return Err(Status::StepLimit);
+        }
         let rest = stop - self.t;
         let fall = self.field.fall(self.t, &self.x);
         if let Some(fall) = fall.as_ref().filter(|fall| fall.is_near && fall.time <= rest) {
@@ -122,7 +135,7 @@ impl Run<'_> {
             return self.stop(found.condition.into(), |run| run.handle(found.condition));
         }
         if let Some(theta) = self.attraction_ends(step) {
-            step.attempt(&mut self.field, theta * step.h, self.options);
+            step.attempt(&mut self.field, theta * step.h);
             self.go(step, [step.t + step.h, step.h], &step.end);
             self.record.point(self.t, &self.x);
             return self.stop(Cause::Repels, |run| {
@@ -137,10 +150,17 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// The first event in a step. Kinks that follow each other without any way between them are not looked for after a while.
-    fn first_event(&mut self, step: &Step) -> Option<locate::Found> {
+    /// The first event in a step, which becomes shorter where it is not known beyond.
+    /// Kinks that follow each other without any way between them are not looked for after a while.
+    fn first_event(&mut self, step: &mut Step) -> Option<locate::Found> {
         self.field.is_blind = self.pace.bends > MOST_BENDS;
-        let found = locate::first(&mut self.field, step, self.options);
+        let found = loop {
+            match locate::first(&mut self.field, step) {
+                First::None => break None,
+                First::At(found) => break Some(found),
+                First::NotBefore(theta) => step.attempt(&mut self.field, theta * step.h),
+            }
+        };
         let is_bend = |it: &locate::Found| matches!(it.condition, Condition::Bends(_));
         let is_there = |it: &locate::Found| it.h <= 4.0 * f64::EPSILON * step.t.abs();
         let is_idle = found.as_ref().is_some_and(|it| is_bend(it) && is_there(it));
@@ -150,11 +170,15 @@ impl Run<'_> {
 
     /// Goes to the state at a time, `h` after the beginning of a step.
     pub fn go(&mut self, step: &Step, [time, h]: [f64; 2], end: &[f64]) {
-        let (field, options) = (&mut self.field, self.options);
-        self.record.inside(time, &mut |wanted| step.exactly_at(field, (wanted - step.t).max(0.0), options));
+        let field = &mut self.field;
+        self.record.inside(time, &mut |wanted| step.exactly_at(field, (wanted - step.t).max(0.0)));
+        if h > 0.0 {
+            self.extremes.follow(&self.field, step, h / step.h);
+        }
         self.t = time;
         self.x.copy_from_slice(end);
         self.field.project(self.t, &mut self.x);
+        self.field.tolerance.see(&self.x);
         if h > 0.0 {
             self.tape.step(&mut self.field, step, h, &self.x);
         }
@@ -166,16 +190,24 @@ impl Run<'_> {
         // Two steps of equal length are better than a long and a very short one.
         let mut h = if wanted >= rest * (1.0 - 1e-12) { rest } else { wanted.min(0.5 * rest) };
         h = h.min(longest);
+        h = h.min(self.options.max_step);
         let mut is_short = h < wanted;
         // Near 0 the direction of a ball is stiff in a way of its own.
         let method = if self.field.moving().is_empty() { self.pace.method } else { Method::Explicit };
         step.begin(&mut self.field, self.t, &self.x, method, self.pace.is_continued);
         let selectors = self.field.selectors.clone();
+        // What was uncertain in a short step says nothing about a long one.
+        self.field.tolerance.forget_doubts();
+        let mut has_doubts = false;
         loop {
             if self.counts.steps + self.counts.rejected >= self.options.max_steps {
                 return Err(Status::StepLimit);
             }
-            step.attempt(&mut self.field, h, self.options);
+            step.attempt(&mut self.field, h);
+            if step.error > 1.0 && !has_doubts {
+                self.doubt(step);
+                has_doubts = true;
+            }
             let next = h * factor(step);
             if step.error <= 1.0 {
                 // A step that a stop made short says nothing against long ones.
@@ -189,6 +221,18 @@ impl Run<'_> {
                 return Err(self.stuck());
             }
         }
+    }
+
+    /// Asks whether an error is more than what the rates are uncertain by.
+    fn doubt(&mut self, step: &mut Step) {
+        if step.method == Method::Explicit {
+            self.field.find_doubts(step.t, &step.start, step.h, SHARE);
+        } else {
+            // An implicit step damps what the rates of a fast state are off by, and passes on none of it.
+            self.field.find_doubts(step.t, &step.start, 0.0, 0.0);
+            self.field.tolerance.damp(|i| 1.0 + step.h * step.newton.own_slope(i));
+        }
+        step.measure(&self.field.tolerance);
     }
 
     /// Why steps become too short: the sliding ends to be unique, or something grows beyond all bounds.

@@ -5,14 +5,15 @@
 
 use super::ball::{blocks, is_unique, solution};
 use super::direction::length;
-use super::field::{Field, Mode, Normals, surface_rates};
-use super::result::{Candidate, Options, Status};
+use super::field::{Field, Mode, surface_rates};
+use super::normals::Normals;
+use super::result::{Candidate, Status};
 use super::step::Step;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
 /// Rates below this part of what they are made of are 0.
-const TIE: f64 = 1e-11;
+pub(super) const TIE: f64 = 1e-11;
 
 /// Beyond this many surfaces at a point, combinations are too many to list.
 const MOST_COMBINED: usize = 6;
@@ -26,7 +27,6 @@ struct Corner<'f, 'a> {
     normals: Normals,
     /// Where the balls stand among the surfaces.
     balls: Vec<Range<usize>>,
-    options: &'f Options,
 }
 
 /// The modes of the surfaces, with the selectors that belong to them.
@@ -36,20 +36,14 @@ struct Choice {
 }
 
 /// The modes of `surfaces` after a point that is on all of them. Balls that move from there find their direction in the field.
-pub(super) fn decide(
-    field: &mut Field,
-    t: f64,
-    x: &[f64],
-    surfaces: &[usize],
-    options: &Options,
-) -> Result<Vec<Mode>, Status> {
+pub(super) fn decide(field: &mut Field, t: f64, x: &[f64], surfaces: &[usize]) -> Result<Vec<Mode>, Status> {
     if surfaces.is_empty() {
         return Ok(Vec::new());
     }
     let normals = field.normals(t, x);
     field.follow_directions(t, x);
     let balls = blocks(&field.system.balls, surfaces);
-    let mut corner = Corner { field, t, x, surfaces, normals, balls, options };
+    let mut corner = Corner { field, t, x, surfaces, normals, balls };
     let choice = match corner.unique() {
         Some(choice) => choice,
         None => corner.only_combination()?,
@@ -205,7 +199,7 @@ impl Corner<'_, '_> {
         choice.begin(self.field, self.surfaces, self.t);
         let [first, last] = self.field.system.interval;
         let h = 1e-5 * (last - first);
-        let end = Step::take(self.field, self.t, self.x, h, self.options).end;
+        let end = Step::take(self.field, self.t, self.x, h).end;
         let psi = self.field.psi(self.t + h, &end);
         (self.field.modes, self.field.selectors) = before;
         (self.field.departure, self.field.direction) = of_balls;

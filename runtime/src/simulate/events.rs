@@ -67,7 +67,8 @@ impl Run<'_> {
     /// Decides the modes at a point on some surfaces, with the jumps that follow.
     pub fn settle(&mut self, mut surfaces: Vec<usize>) -> Result<(), Status> {
         for _ in 0..MOST_AT_ONCE {
-            let modes = decide(&mut self.field, self.t, &self.x, &surfaces, self.options)?;
+            surfaces.retain(|&surface| !self.stays_beside(surface));
+            let modes = decide(&mut self.field, self.t, &self.x, &surfaces)?;
             let jump = surfaces.iter().zip(&modes).find_map(|(&i, &mode)| self.jump_at(i, mode));
             let Some(jump) = jump else {
                 surfaces.iter().zip(modes).for_each(|(&i, mode)| self.change(i, mode));
@@ -118,7 +119,8 @@ impl Run<'_> {
         let of = &self.field.system.jumps[jump];
         let surface = of.surface;
         let margin = self.margin(surface);
-        self.x = self.field.reset(jump, self.t, &self.x);
+        let after = self.field.reset(jump, self.t, &self.x);
+        let before = std::mem::replace(&mut self.x, after);
         self.jumps[jump] += 1;
         let sides = [Mode::Above, Mode::Below];
         let [back, onward] = if of.is_falling { sides } else { [sides[1], sides[0]] };
@@ -128,7 +130,7 @@ impl Run<'_> {
         if self.goes_through(surface, onward) {
             self.field.set_mode(surface, onward);
         }
-        self.event(surface, Kind::Jump(jump), margin);
+        self.event_from(before, surface, Kind::Jump(jump), margin);
         let is_last = of.at_most.is_some_and(|limit| self.jumps[jump] as f64 >= limit);
         if let Some(held) = of.then_hold.filter(|_| is_last) {
             self.hold(jump, held);
@@ -163,7 +165,7 @@ impl Run<'_> {
         [-1.0, 1.0].into_iter().all(|side| {
             selectors[surface] = side;
             let (rate, _) = self.field.with_selectors(self.t, &self.x, &selectors);
-            onward.side() * normals.rate(surface, &rate) > 1e4 * normals.noise(surface, &rate)
+            onward.side() * normals.rate(surface, &rate) > 1e4 * normals.rounding(surface, &rate)
         })
     }
 
@@ -188,12 +190,13 @@ impl Run<'_> {
             let surface = self.field.system.jumps[jump].surface;
             return Err(Status::Zeno { jump: Some(jump), surface, limit_time });
         };
+        let before = self.x.clone();
         let rate = self.field.rate(self.t, &self.x);
         let rest = limit_time - self.t;
         self.x.iter_mut().zip(rate).for_each(|(x, rate)| *x += rest * rate);
         self.t = limit_time;
         self.hold(jump, held);
-        self.event(held, Kind::EntersSliding, 0.0);
+        self.event_from(before, held, Kind::EntersSliding, 0.0);
         Ok(())
     }
 
@@ -242,8 +245,13 @@ impl Run<'_> {
         }
     }
 
+    /// Notes an event that leaves the state as it is.
     pub fn event(&mut self, surface: usize, kind: Kind, margin: f64) {
-        let event = Event { time: self.t, surface, kind, margin, state: self.x.clone() };
+        self.event_from(self.x.clone(), surface, kind, margin);
+    }
+
+    fn event_from(&mut self, before: Vec<f64>, surface: usize, kind: Kind, margin: f64) {
+        let event = Event { time: self.t, surface, kind, margin, before, after: self.x.clone() };
         self.tape.change(&mut self.field, &event);
         self.record.events.push(event);
         self.record.point(self.t, &self.x);

@@ -1,14 +1,14 @@
 //! The explicit pair of order 5(4) of Dormand and Prince; see [`tableau`](super::tableau).
 
 use super::field::Field;
-use super::result::Options;
 use super::step::Step;
 use super::tableau::{A, C, DENSE, ERROR};
+use super::tolerance::Tolerance;
 
 pub(super) use super::tableau::STAGES;
 
 /// Takes a step of length `h` from a start whose right side is known.
-pub(super) fn attempt(step: &mut Step, field: &mut Field, options: &Options) {
+pub(super) fn attempt(step: &mut Step, field: &mut Field) {
     let Step { t, h, start, end, stages, near_end, .. } = step;
     for stage in 1..STAGES {
         let (before, after) = stages.split_at_mut(stage);
@@ -18,7 +18,7 @@ pub(super) fn attempt(step: &mut Step, field: &mut Field, options: &Options) {
         }
         field.rate_into(*t + C[stage] * *h, end, &mut after[0]);
     }
-    step.error = error(step, options);
+    step.error = error(step, &field.tolerance);
     extend(step);
 }
 
@@ -31,10 +31,10 @@ fn combine(into: &mut [f64], x: &[f64], h: f64, stages: &[Vec<f64>], weights: &[
 }
 
 /// The largest error of a component in units of its tolerance.
-fn error(step: &Step, options: &Options) -> f64 {
+pub(super) fn error(step: &Step, tolerance: &Tolerance) -> f64 {
     let mut largest = 0.0_f64;
     for (i, (x, end)) in step.start.iter().zip(&step.end).enumerate() {
-        let scaled = (step.h * sum(i, &step.stages, &ERROR)).abs() / options.scale(*x, *end);
+        let scaled = (step.h * sum(i, &step.stages, &ERROR)).abs() / tolerance.of(i, [*x, *end], step.h);
         if !scaled.is_finite() || !end.is_finite() {
             return f64::INFINITY;
         }

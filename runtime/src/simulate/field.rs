@@ -5,8 +5,10 @@
 
 use super::controls::Controls;
 use super::memory::Memory;
-use super::step::Step;
+use super::normals::Normals;
+use super::result::Options;
 use super::system::{System, value};
+use super::tolerance::Tolerance;
 use crate::problem::{Columns, Function};
 use nalgebra::{DMatrix, DVector};
 
@@ -36,30 +38,6 @@ impl Mode {
     }
 }
 
-/// The functions of the surfaces with their derivatives.
-pub(super) struct Normals {
-    pub psi: Vec<f64>,
-    pub by_time: Vec<f64>,
-    /// One row for each surface.
-    pub by_state: DMatrix<f64>,
-    /// What rounding may make of 0.
-    floor: f64,
-}
-
-impl Normals {
-    /// `psi'` along a rate.
-    pub fn rate(&self, surface: usize, rate: &[f64]) -> f64 {
-        let along: f64 = self.by_state.row(surface).iter().zip(rate).map(|(d, f)| d * f).sum();
-        along + self.by_time[surface]
-    }
-
-    /// What rounding may make of `psi = 0`.
-    pub fn noise(&self, surface: usize, x: &[f64]) -> f64 {
-        let size: f64 = self.by_state.row(surface).iter().zip(x).map(|(d, x)| (d * x).abs()).sum();
-        self.floor + 1e-14 * size
-    }
-}
-
 /// The right side, with the memory that its evaluation needs.
 pub(super) struct Field<'a> {
     pub system: &'a System,
@@ -76,8 +54,10 @@ pub(super) struct Field<'a> {
     pub held: Vec<usize>,
     /// Whether kinks are passed over, because too many are met at one time.
     pub is_blind: bool,
-    /// Distances from a surface below this are 0.
-    pub floor: f64,
+    /// How exact states must be.
+    pub tolerance: Tolerance,
+    /// What rounding makes of the terms of each surface, then of each kink.
+    pub rounding: Vec<f64>,
     pub evaluations: usize,
     /// Which row of the controls holds.
     pub row: Option<usize>,
@@ -90,7 +70,7 @@ pub(super) struct Field<'a> {
 }
 
 impl<'a> Field<'a> {
-    pub fn new(system: &'a System, controls: &'a Controls) -> Self {
+    pub fn new(system: &'a System, controls: &'a Controls, options: &Options) -> Self {
         let surfaces = system.surfaces.len();
         let mut field = Field {
             system,
@@ -101,7 +81,8 @@ impl<'a> Field<'a> {
             stable: f64::INFINITY,
             held: Vec::new(),
             is_blind: false,
-            floor: 1e-14,
+            tolerance: Tolerance::new(options, &system.start),
+            rounding: vec![0.0; surfaces + system.kinks.outputs()],
             evaluations: 0,
             row: None,
             controls,
@@ -133,17 +114,37 @@ impl<'a> Field<'a> {
         (0..self.modes.len()).filter(|&i| self.modes[i] == Mode::Sliding).collect()
     }
 
+    /// Whether the controls are the guess.
+    pub fn follows_guess(&self) -> bool {
+        matches!(self.controls, Controls::Guess) && self.system.layout.u > 0
+    }
+
+    /// A time as a part of the whole interval.
+    pub fn normalised(&self, t: f64) -> f64 {
+        let [first, last] = self.system.interval;
+        if last > first { (t - first) / (last - first) } else { 0.0 }
+    }
+
+    /// The values of the controls at the last point.
+    pub fn control(&self) -> &[f64] {
+        &self.control
+    }
+
+    /// The values of all parameters.
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
     /// Guessed controls change all the time.
     fn follow_guess(&mut self, t: f64) {
-        if matches!(self.controls, Controls::Guess) && self.system.layout.u > 0 {
-            let [first, last] = self.system.interval;
-            let tau = if last > first { (t - first) / (last - first) } else { 0.0 };
-            self.control.copy_from_slice(&self.system.guessed(tau)[self.system.layout.x..]);
+        if self.follows_guess() {
+            let guessed = self.system.guessed(self.normalised(t));
+            self.control.copy_from_slice(&guessed[self.system.layout.x..]);
         }
     }
 
     /// The next point; with the selectors of the mode if no others are given.
-    fn set_point(&mut self, t: f64, x: &[f64], selectors: Option<&[f64]>) {
+    pub(super) fn set_point(&mut self, t: f64, x: &[f64], selectors: Option<&[f64]>) {
         self.follow_guess(t);
         let selectors = selectors.unwrap_or(&self.selectors);
         let values = std::iter::once(&t).chain(x).chain(&self.control).chain(selectors);
@@ -156,7 +157,11 @@ impl<'a> Field<'a> {
     }
 
     /// Values and the derivatives by one kind of inputs, as a dense matrix.
-    fn jacobian(&self, function: &dyn Function, inputs: std::ops::Range<usize>) -> (Vec<f64>, DMatrix<f64>) {
+    pub(super) fn jacobian(
+        &self,
+        function: &dyn Function,
+        inputs: std::ops::Range<usize>,
+    ) -> (Vec<f64>, DMatrix<f64>) {
         let pattern = function.jacobian_pattern();
         let mut values = Columns::new(function.outputs(), 1);
         let mut entries = Columns::new(pattern.entries.len(), 1);
@@ -176,36 +181,6 @@ impl<'a> Field<'a> {
         let mut values = Columns::new(self.modes.len(), 1);
         self.system.guards.value(&self.point, &self.parameters, &mut values);
         column_values(&values)
-    }
-
-    /// The functions of the surfaces at several times of a step.
-    pub fn psi_along(&mut self, step: &Step, thetas: &[f64], psi: &mut Columns) {
-        let layout = self.system.layout;
-        let mut points = Columns::new(layout.point_inputs(), thetas.len());
-        let times = points.column_mut(0).iter_mut().zip(thetas);
-        times.for_each(|(time, theta)| *time = step.t + theta * step.h);
-        for i in 0..layout.x {
-            let values = points.column_mut(1 + i).iter_mut().zip(thetas);
-            values.for_each(|(value, theta)| *value = step.component(i, *theta));
-        }
-        self.system.guards.value(&points, &self.parameters, psi);
-    }
-
-    /// The functions of the surfaces with their derivatives.
-    pub fn normals(&mut self, t: f64, x: &[f64]) -> Normals {
-        self.normals_of(&*self.system.guards, t, x)
-    }
-
-    /// What is 0 at the kinks, with its derivatives.
-    pub fn bends(&mut self, t: f64, x: &[f64]) -> Normals {
-        self.normals_of(&*self.system.kinks, t, x)
-    }
-
-    fn normals_of(&mut self, function: &dyn Function, t: f64, x: &[f64]) -> Normals {
-        self.set_point(t, x, None);
-        let (psi, matrix) = self.jacobian(function, 0..1 + x.len());
-        let by_time = matrix.column(0).iter().copied().collect();
-        Normals { psi, by_time, by_state: matrix.columns(1, x.len()).into_owned(), floor: self.floor }
     }
 
     /// The state after a jump.

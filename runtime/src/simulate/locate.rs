@@ -1,15 +1,17 @@
 //! The first event inside a step.
 //!
-//! Every condition is a function `g >= 0` of time: `side * psi` beside a surface or a kink, `1 - |s|` on a surface. It is sampled along the
-//! dense output, its interior minima are searched too, so that a dip between two samples is not missed. The
-//! root is refined on steps of the pair itself, so it is as accurate as the integration.
+//! Every condition is a function `g >= 0` of time: `side * psi` beside a surface or a kink, `1 -
+//! |s|` on a surface. Along the dense output
+//! none of them is negative before the event that is found (see [`search`](super::search)). The
+//! root is refined on steps of the pair
+//! itself, so it is as accurate as the integration.
 
 use super::direction::length;
 use super::events::correct;
-use super::field::Field;
-use super::result::Options;
-use super::samples::{self, Samples};
+use super::field::{Field, Mode};
+use super::search::{Search, Signal};
 use super::step::Step;
+use super::tube::Tube;
 
 /// What may end a mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,34 +32,62 @@ pub(super) struct Found {
     pub state: Vec<f64>,
 }
 
-/// The first event of a step.
-pub(super) fn first(field: &mut Field, step: &Step, options: &Options) -> Option<Found> {
-    let besides = samples::besides(field, step);
-    let slidings = samples::slidings(field, step);
-    let kinks = samples::kinks(field, step);
-    let found = [besides, slidings, kinks].map(|samples| first_of(field, step, &samples));
-    let (theta, condition) = found.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(refine(field, step, condition, theta, options))
+/// What is known of the events in a step.
+pub(super) enum First {
+    /// There is none.
+    None,
+    /// The first.
+    At(Found),
+    /// There is none before this part of the step; what comes then takes too long to find out.
+    NotBefore(f64),
 }
 
-/// The first condition that ends, and when.
-fn first_of(field: &mut Field, step: &Step, sampled: &[Samples]) -> Option<(f64, Condition)> {
-    let mut first: Option<(f64, Condition)> = None;
-    for samples in sampled.iter().filter(|samples| samples.may_end()) {
-        let condition = samples.condition;
-        let noise = match condition {
-            Condition::Reaches(i) => field.normals(step.t, &step.start).noise(i, &step.start),
-            Condition::Leaves(_) => 1e-12,
-            Condition::Bends(k) => field.bends(step.t, &step.start).noise(k, &step.start),
-        };
-        let mut g = |theta: f64| value(field, condition, step.t + theta * step.h, &step.at(theta));
-        if let Some(theta) = first_root(&mut g, samples, noise)
-            && first.is_none_or(|(best, _)| theta < best)
-        {
-            first = Some((theta, condition));
+/// The first event of a step.
+pub(super) fn first(field: &mut Field, step: &Step) -> First {
+    let (mut until, mut found, mut is_known) = (1.0, None, true);
+    for condition in conditions(field) {
+        let tube = Tube::new(field);
+        let mut signal = Signal { field, step, condition, tube };
+        if signal.clearly_holds(until) {
+            continue;
+        }
+        let noise = noise(signal.field, step, condition);
+        match signal.first_failure(until, noise) {
+            Search::Holds => {}
+            Search::Fails(ends) => {
+                until = root(&mut |theta| signal.value(theta), ends, noise);
+                (found, is_known) = (Some(condition), true);
+            }
+            Search::HoldsUntil(theta) => (until, found, is_known) = (theta, None, false),
         }
     }
-    first
+    match found {
+        Some(condition) => First::At(refine(field, step, condition, until)),
+        None if is_known => First::None,
+        None => First::NotBefore(until),
+    }
+}
+
+/// All that may end the mode.
+fn conditions(field: &Field) -> Vec<Condition> {
+    let is_first = |i: usize| field.ball_of(i).is_none_or(|ball| ball.surfaces.start == i);
+    let of = |(i, mode): (usize, &Mode)| match mode {
+        Mode::Below | Mode::Above => Some(Condition::Reaches(i)),
+        Mode::Sliding if is_first(i) => Some(Condition::Leaves(i)),
+        Mode::Sliding | Mode::Moving | Mode::Held => None,
+    };
+    let kinks = if field.is_blind { 0 } else { field.system.kinks.outputs() };
+    field.modes.iter().enumerate().filter_map(of).chain((0..kinks).map(Condition::Bends)).collect()
+}
+
+/// What rounding may make of 0.
+fn noise(field: &mut Field, step: &Step, condition: Condition) -> f64 {
+    field.find_rounding(step.t, &step.start);
+    match condition {
+        Condition::Reaches(i) => field.normals(step.t, &step.start).noise(i, &step.start),
+        Condition::Leaves(_) => 1e-12,
+        Condition::Bends(k) => field.bends(step.t, &step.start).noise(k, &step.start),
+    }
 }
 
 /// `1 - |s|` of a sliding surface or of a ball at rest.
@@ -69,7 +99,7 @@ pub(super) fn reserve(field: &Field, surface: usize) -> f64 {
 }
 
 /// What is not negative before a condition ends.
-fn value(field: &mut Field, condition: Condition, t: f64, x: &[f64]) -> f64 {
+pub(super) fn value(field: &mut Field, condition: Condition, t: f64, x: &[f64]) -> f64 {
     match condition {
         Condition::Reaches(i) => field.modes[i].side() * field.psi(t, x)[i],
         Condition::Leaves(i) => {
@@ -80,49 +110,13 @@ fn value(field: &mut Field, condition: Condition, t: f64, x: &[f64]) -> f64 {
     }
 }
 
-/// Where `g` first becomes negative.
-fn first_root(g: &mut dyn FnMut(f64) -> f64, samples: &Samples, noise: f64) -> Option<f64> {
-    let Samples { thetas, values, .. } = samples;
-    for k in 1..values.len() {
-        if values[k] < -noise {
-            return Some(root(g, thetas[k - 1], thetas[k], noise));
-        }
-        if samples.is_dip(k)
-            && let Some(below) = dip(g, thetas[k - 1], thetas[k + 1], noise)
-        {
-            return Some(root(g, thetas[k - 1].min(below), below, noise));
-        }
-    }
-    None
-}
-
-/// Where `g` is negative between two times with a minimum in between, by golden section.
-fn dip(g: &mut dyn FnMut(f64) -> f64, mut low: f64, mut high: f64, noise: f64) -> Option<f64> {
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    for _ in 0..60 {
-        let (left, right) = (high - golden * (high - low), low + golden * (high - low));
-        let (at_left, at_right) = (g(left), g(right));
-        if at_left.min(at_right) < -noise {
-            return Some(if at_left < at_right { left } else { right });
-        }
-        if at_left < at_right {
-            high = right;
-        } else {
-            low = left;
-        }
-        if high - low < 1e-9 {
-            break;
-        }
-    }
-    None
-}
-
 /// The root between a time where `g` is positive, or 0 by rounding, and one where it is negative.
-fn root(g: &mut dyn FnMut(f64) -> f64, mut low: f64, mut high: f64, noise: f64) -> f64 {
+fn root(g: &mut dyn FnMut(f64) -> f64, [mut low, mut high]: [f64; 2], noise: f64) -> f64 {
     let mut at_low = g(low);
     let mut at_high = g(high);
     let begin = low;
-    // A mode begins on its surface, as far as rounding can tell: the positive part may be shorter than any sample.
+    // A mode begins on its surface, as far as rounding can tell: the positive part may be shorter
+    // than any sample.
     let mut span = high - begin;
     while at_low <= noise {
         span *= 0.5;
@@ -166,13 +160,13 @@ pub(super) fn bisect(
 }
 
 /// The secant method on steps that end at the event.
-fn refine(field: &mut Field, step: &Step, condition: Condition, theta: f64, options: &Options) -> Found {
+fn refine(field: &mut Field, step: &Step, condition: Condition, theta: f64) -> Found {
     let mut trial = step.clone();
     let mut end = |theta: f64| {
         let state = if theta == 0.0 {
             step.start.clone()
         } else {
-            trial.attempt(field, theta * step.h, options);
+            trial.attempt(field, theta * step.h);
             trial.end.clone()
         };
         let value = value(field, condition, step.t + theta * step.h, &state);
@@ -202,7 +196,8 @@ fn refine(field: &mut Field, step: &Step, condition: Condition, theta: f64, opti
     Found { condition, h, state }
 }
 
-/// Newton's steps onto a surface that is reached but for rounding, which is as large as the state was on the way.
+/// Newton's steps onto a surface that is reached but for rounding, which is as large as the state
+/// was on the way.
 fn bring_to(field: &mut Field, surface: usize, t: f64, state: &mut [f64]) {
     for _ in 0..2 {
         let normals = field.normals(t, state);

@@ -8,8 +8,8 @@
 //! E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, 2nd ed., IV.5 (the method) and IV.8 (all else).
 
 use super::field::Field;
-use super::result::Options;
 use super::step::{Extension, Step};
+use super::tolerance::Tolerance;
 use crate::linalg::lu::Lu;
 use nalgebra::DMatrix;
 
@@ -40,7 +40,7 @@ const INHERITED: f64 = 2.0;
 const MOST_ITERATIONS: usize = 10;
 
 /// The error of a step whose equations were not solved: the next is less than half as long.
-const NOT_SOLVED: f64 = 16.0;
+pub(super) const NOT_SOLVED: f64 = 16.0;
 
 /// What a step of this method needs beside the step.
 #[derive(Clone, Debug, Default)]
@@ -100,7 +100,7 @@ impl Newton {
     }
 
     /// One iteration; the largest change in units of the tolerance.
-    fn iterate(&mut self, field: &mut Field, t: f64, h: f64, start: &[f64], options: &Options) -> f64 {
+    fn iterate(&mut self, field: &mut Field, t: f64, h: f64, start: &[f64]) -> f64 {
         let n = start.len();
         for (stage, c) in C.iter().enumerate() {
             let z = &self.z[stage * n..][..n];
@@ -116,18 +116,19 @@ impl Newton {
         let mut largest = 0.0_f64;
         for at in 0..self.z.len() {
             self.z[at] += self.change[at];
-            let scaled = (self.change[at] / options.scale(start[at % n], start[at % n])).abs();
+            let (x, i) = (start[at % n], at % n);
+            let scaled = (self.change[at] / field.tolerance.of(i, [x, x + self.z[at]], h)).abs();
             largest = if scaled.is_finite() { largest.max(scaled) } else { f64::INFINITY };
         }
         largest
     }
 
     /// Solves the equations of a step.
-    fn solve(&mut self, field: &mut Field, t: f64, h: f64, start: &[f64], options: &Options) -> bool {
-        let enough = (10.0 * f64::EPSILON / options.rtol).max(options.rtol.sqrt().min(0.03));
+    fn solve(&mut self, field: &mut Field, t: f64, h: f64, start: &[f64], rtol: f64) -> bool {
+        let enough = (10.0 * f64::EPSILON / rtol).max(rtol.sqrt().min(0.03));
         let mut last = f64::INFINITY;
         for _ in 0..MOST_ITERATIONS {
-            let change = self.iterate(field, t, h, start, options);
+            let change = self.iterate(field, t, h, start);
             if !change.is_finite() || change >= last {
                 return last <= enough;
             }
@@ -150,6 +151,11 @@ impl Newton {
         self.error_lu.solve(n, &mut self.change[..n], 1);
     }
 
+    /// How much the rate of a state depends on the state itself.
+    pub fn own_slope(&self, i: usize) -> f64 {
+        self.jacobian[(i, i)].abs()
+    }
+
     /// The largest sum of a row of `J`, which bounds its eigenvalues.
     pub fn stiffness(&self) -> f64 {
         self.jacobian.row_iter().map(|row| row.iter().map(|entry| entry.abs()).sum()).fold(0.0, f64::max)
@@ -157,7 +163,7 @@ impl Newton {
 }
 
 /// Takes a step of length `h` from a start whose right side and Jacobian are known.
-pub(super) fn attempt(step: &mut Step, field: &mut Field, options: &Options) {
+pub(super) fn attempt(step: &mut Step, field: &mut Field) {
     let Step { t, h, start, end, newton, stages, .. } = step;
     let n = start.len();
     step.error = f64::INFINITY;
@@ -165,15 +171,16 @@ pub(super) fn attempt(step: &mut Step, field: &mut Field, options: &Options) {
         return;
     }
     newton.guess(*h, start);
-    if !newton.solve(field, *t, *h, start, options) {
+    let rtol = field.tolerance.rtol;
+    if !newton.solve(field, *t, *h, start, rtol) {
         step.error = NOT_SOLVED;
         return;
     }
     end.iter_mut().enumerate().for_each(|(i, end)| *end = start[i] + newton.z[2 * n + i]);
     let rate = stages[0].clone();
     newton.error(&rate, *h);
-    step.error = size(step, options);
-    if step.error > 1.0 && step.error <= INHERITED && is_inherited(step, field, options) {
+    step.error = size(step, &field.tolerance);
+    if step.error > 1.0 && step.error <= INHERITED && is_inherited(step, field) {
         step.error = 1.0;
     }
     extend(step);
@@ -181,18 +188,19 @@ pub(super) fn attempt(step: &mut Step, field: &mut Field, options: &Options) {
 
 /// Whether the estimate is no more than the distance of the start from a slow manifold, which the step damps: then the
 /// same estimate from a start that is corrected by it is small.
-fn is_inherited(step: &mut Step, field: &mut Field, options: &Options) -> bool {
+fn is_inherited(step: &mut Step, field: &mut Field) -> bool {
     let Step { t, h, start, newton, .. } = step;
     newton.at.iter_mut().enumerate().for_each(|(i, at)| *at = start[i] + newton.change[i]);
     let mut rate = vec![0.0; start.len()];
     field.rate_into(*t, &newton.at, &mut rate);
     newton.error(&rate, *h);
-    size(step, options) <= 1.0
+    size(step, &field.tolerance) <= 1.0
 }
 
 /// The largest error of a component in units of its tolerance.
-fn size(step: &Step, options: &Options) -> f64 {
-    let scaled = |i: usize| (step.newton.change[i] / options.scale(step.start[i], step.end[i])).abs();
+pub(super) fn size(step: &Step, tolerance: &Tolerance) -> f64 {
+    let of = |i: usize| tolerance.of(i, [step.start[i], step.end[i]], step.h);
+    let scaled = |i: usize| (step.newton.change[i] / of(i)).abs();
     let largest = (0..step.start.len()).map(scaled);
     largest
         .fold(0.0, |largest, value| if value.is_finite() { f64::max(largest, value) } else { f64::INFINITY })

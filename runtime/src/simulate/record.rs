@@ -23,6 +23,11 @@ impl Record {
         }
     }
 
+    /// How many numbers there are so far.
+    pub fn size(&self) -> usize {
+        self.time.len() * (1 + self.states.len()) + self.events.len() * (2 + 2 * self.states.len())
+    }
+
     fn push(&mut self, t: f64, x: &[f64]) {
         self.time.push(t);
         self.states.iter_mut().zip(x).for_each(|(column, value)| column.push(*value));

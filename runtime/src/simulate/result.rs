@@ -1,5 +1,6 @@
 //! What a simulation is asked for and what it says: plain data.
 
+use super::extremes::Extreme;
 use super::tape::Tape;
 use crate::nlp::Stop;
 use crate::problem::Origin;
@@ -12,16 +13,21 @@ use std::sync::Arc;
 pub struct Options {
     /// Relative tolerance of one step.
     pub rtol: f64,
-    /// Absolute tolerance of one step.
-    pub atol: f64,
+    /// Absolute tolerance of one step; if there is none, a part of the size that each state has
+    /// had so far.
+    pub atol: Option<f64>,
     /// Which method takes the steps.
     pub integrator: Integrator,
+    /// The longest step; infinite if only the tolerances limit it.
+    pub max_step: f64,
     /// The most steps, rejected ones included.
     pub max_steps: usize,
     /// Times at which states are wanted, ascending; all steps and events if there are none.
     pub times: Vec<f64>,
     /// Whether to note what derivatives need.
     pub tape: bool,
+    /// Whether to find the extremes of path conditions.
+    pub extremes: bool,
     /// Who may stop it.
     pub watch: Watch,
 }
@@ -80,33 +86,21 @@ impl Options {
             Integrator::Stiff => Method::Stiff,
         }
     }
-
-    /// The tolerance of a component that is `before` and `after` a step.
-    pub(super) fn scale(&self, before: f64, after: f64) -> f64 {
-        self.atol + self.rtol * before.abs().max(after.abs())
-    }
 }
 
 impl Default for Options {
     fn default() -> Self {
         Options {
             rtol: 1e-10,
-            atol: 1e-12,
+            atol: None,
             integrator: Integrator::Automatic,
+            max_step: f64::INFINITY,
             max_steps: 1_000_000,
             times: Vec::new(),
             tape: false,
+            extremes: false,
             watch: Watch::default(),
         }
-    }
-}
-
-impl Options {
-    /// The largest difference of two states near `x` in units of the tolerance.
-    pub(super) fn error(&self, x: &[f64], one: &[f64], other: &[f64]) -> f64 {
-        let scaled = |i: usize| (one[i] - other[i]).abs() / (self.atol + self.rtol * x[i].abs());
-        let all = (0..x.len()).map(scaled);
-        all.fold(0.0, |largest, value| if value > largest || value.is_nan() { value } else { largest })
     }
 }
 
@@ -142,8 +136,10 @@ pub struct Event {
     pub kind: Kind,
     /// How far from grazing: the cosine between a field and the normal of its surface, the least of those that meet.
     pub margin: f64,
+    /// The state before it.
+    pub before: Vec<f64>,
     /// The state after it.
-    pub state: Vec<f64>,
+    pub after: Vec<f64>,
 }
 
 /// One way to go on where there are several: the sides of the surfaces that meet.
@@ -214,6 +210,8 @@ pub struct Simulation {
     pub objective: Option<f64>,
     /// Work done.
     pub counts: Counts,
+    /// The least, then the greatest value of each path condition, if asked for.
+    pub extremes: Vec<[Extreme; 2]>,
     /// What derivatives need, if asked for; without the stop at which a simulation fails.
     pub tape: Option<Tape>,
 }

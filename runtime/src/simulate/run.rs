@@ -2,6 +2,7 @@
 
 use super::advance::Pace;
 use super::controls::Controls;
+use super::extremes::Extremes;
 use super::field::Field;
 use super::record::Record;
 use super::result::{Counts, Options, Simulation, Status};
@@ -15,6 +16,7 @@ pub(super) struct Run<'a> {
     pub options: &'a Options,
     pub record: Record,
     pub tape: Writer,
+    pub extremes: Extremes,
     pub t: f64,
     pub x: Vec<f64>,
     /// How often each jump has happened.
@@ -41,14 +43,14 @@ pub fn simulate(system: &System, controls: &Controls, options: &Options) -> Simu
 
 impl<'a> Run<'a> {
     fn new(system: &'a System, controls: &'a Controls, options: &'a Options) -> Self {
-        let mut field = Field::new(system, controls);
-        field.floor = field.floor.min(0.01 * options.atol);
+        let mut field = Field::new(system, controls, options);
         field.use_controls_of(system.interval[0]);
         Run {
             field,
             options,
             record: Record::new(options, system.layout.x),
             tape: Writer::new(options.tape),
+            extremes: Extremes::new(if options.extremes { system.enclosures.path.len() } else { 0 }),
             t: system.interval[0],
             x: system.start.clone(),
             jumps: vec![0; system.jumps.len()],
@@ -80,6 +82,7 @@ impl<'a> Run<'a> {
 
     /// Finds the modes at the first time.
     fn begin(&mut self) -> Result<(), Status> {
+        self.field.find_rounding(self.t, &self.x);
         self.find_sides();
         self.field.find_sides_of_kinks(self.t, &self.x);
         self.finite_here()?;
@@ -110,6 +113,7 @@ impl<'a> Run<'a> {
         self.tape.open(cause, &mut self.field, self.t, &self.x);
         self.pace.is_continued = false;
         happens(self)?;
+        self.field.tolerance.see(&self.x);
         if !matches!(cause, Cause::Bends(_)) {
             self.field.find_sides_of_kinks(self.t, &self.x);
         }
@@ -149,6 +153,7 @@ impl<'a> Run<'a> {
             end: self.x,
             objective: objective.first().copied().filter(|_| is_complete),
             counts: self.counts,
+            extremes: self.extremes.0,
             tape: self.tape.finish(),
         }
     }

@@ -10,7 +10,6 @@
 //! by Newton's method, from the direction at the beginning. Five points against four give the error.
 
 use super::field::Field;
-use super::result::Options;
 use super::step::Step;
 use super::system::Ball;
 use nalgebra::{DMatrix, DVector};
@@ -51,7 +50,6 @@ struct Collocation<'f, 'a> {
     t: f64,
     x: &'f [f64],
     h: f64,
-    options: &'f Options,
     balls: Vec<&'a Ball>,
     sliding: Vec<usize>,
     unknown: Vec<usize>,
@@ -60,11 +58,12 @@ struct Collocation<'f, 'a> {
 }
 
 /// Takes a step that has begun.
-pub(super) fn attempt(step: &mut Step, field: &mut Field, options: &Options) {
+pub(super) fn attempt(step: &mut Step, field: &mut Field) {
     let (t, h, x) = (step.t, step.h, step.start.clone());
     field.follow_directions(t, &x);
-    let coarse = Collocation::new(field, [t, h], &x, options, &COARSE).nodes();
-    let fine = Collocation::new(field, [t, h], &x, options, &FINE).nodes();
+    field.find_doubts(t, &x, h, 0.0);
+    let coarse = Collocation::new(field, [t, h], &x, &COARSE).nodes();
+    let fine = Collocation::new(field, [t, h], &x, &FINE).nodes();
     step.error = f64::INFINITY;
     let (Some(coarse), Some(fine)) = (coarse, fine) else { return };
     let end = &fine[FINE.len() - 1];
@@ -73,21 +72,16 @@ pub(super) fn attempt(step: &mut Step, field: &mut Field, options: &Options) {
     let last = field.with_selectors(t + h, &at_end, &end.selectors).0;
     let curve = |theta: f64| sum(&x, &interpolated(&fine, theta));
     step.end_smoothly(&curve(0.5), &at_end, &last);
-    let error = options.error(&x, &coarse[COARSE.len() - 1].added, &end.added);
-    step.error = error.max(0.01 * options.error(&x, &step.at(0.25), &curve(0.25)));
+    let error = field.tolerance.error(&x, &coarse[COARSE.len() - 1].added, &end.added, h);
+    let inside = field.tolerance.error(&x, &step.at(0.25), &curve(0.25), h);
+    step.error = error.max(0.01 * inside);
 }
 
 impl<'f, 'a> Collocation<'f, 'a> {
-    fn new(
-        field: &'f mut Field<'a>,
-        [t, h]: [f64; 2],
-        x: &'f [f64],
-        options: &'f Options,
-        times: &'static [f64],
-    ) -> Self {
+    fn new(field: &'f mut Field<'a>, [t, h]: [f64; 2], x: &'f [f64], times: &'static [f64]) -> Self {
         let (balls, sliding) = (field.moving(), field.sliding());
         let unknown = balls.iter().flat_map(|ball| ball.surfaces.clone()).chain(sliding.clone()).collect();
-        Collocation { field, t, x, h, options, balls, sliding, unknown, times, weights: weights(times) }
+        Collocation { field, t, x, h, balls, sliding, unknown, times, weights: weights(times) }
     }
 
     /// How many unknowns a point has.
@@ -217,7 +211,7 @@ impl<'f, 'a> Collocation<'f, 'a> {
             node.added.iter_mut().zip(&mut change).for_each(|(value, change)| *value -= change);
             self.unknown.iter().zip(&mut change).for_each(|(&at, change)| node.selectors[at] -= change);
             node.lengths.iter_mut().zip(&mut change).for_each(|(value, change)| *value -= change);
-            let size = self.options.error(self.x, &before, &node.added);
+            let size = self.field.tolerance.error(self.x, &before, &node.added, self.h);
             largest = if size.is_nan() { f64::NAN } else { largest.max(size) };
         }
         largest

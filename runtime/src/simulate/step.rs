@@ -7,9 +7,10 @@
 use super::explicit::{self, STAGES};
 use super::field::Field;
 use super::radau::{self, Newton};
-use super::result::{Method, Options};
+use super::result::Method;
 use super::setting_out;
 use super::tape::Rule;
+use super::tolerance::Tolerance;
 
 /// The state inside a step.
 #[derive(Clone, Debug, Default)]
@@ -22,6 +23,13 @@ pub(super) struct Extension {
 impl Extension {
     fn new(states: usize) -> Self {
         Extension { start: vec![0.0; states], dense: std::array::from_fn(|_| vec![0.0; states]) }
+    }
+
+    /// The Bernstein coefficients of a component.
+    pub fn coefficients(&self, i: usize) -> [f64; 5] {
+        let [a, b, c, d] = self.dense.each_ref().map(|column| column[i]);
+        let added = [0.0, (a + b) / 4.0, a / 2.0 + b / 3.0 + (c + d) / 6.0, (3.0 * a + b + c) / 4.0, a];
+        added.map(|added| self.start[i] + added)
     }
 
     /// A component at a part of the step, or beyond it.
@@ -72,10 +80,10 @@ impl Step {
     }
 
     /// Takes a single step.
-    pub fn take(field: &mut Field, t: f64, x: &[f64], h: f64, options: &Options) -> Self {
+    pub fn take(field: &mut Field, t: f64, x: &[f64], h: f64) -> Self {
         let mut step = Step::new(x.len());
         step.begin(field, t, x, Method::Explicit, false);
-        step.attempt(field, h, options);
+        step.attempt(field, h);
         step
     }
 
@@ -96,21 +104,30 @@ impl Step {
     }
 
     /// Takes the step, with this length.
-    pub fn attempt(&mut self, field: &mut Field, h: f64, options: &Options) {
+    pub fn attempt(&mut self, field: &mut Field, h: f64) {
         self.h = h;
         match self.method {
             Method::Explicit if field.sets_out(self.t) || h > field.stable => {
                 self.rule = Rule::Collocation;
-                setting_out::attempt(self, field, options);
+                setting_out::attempt(self, field);
             }
             Method::Explicit => {
                 self.rule = Rule::Explicit;
-                explicit::attempt(self, field, options);
+                explicit::attempt(self, field);
             }
             Method::Stiff => {
                 self.rule = Rule::Radau;
-                radau::attempt(self, field, options);
+                radau::attempt(self, field);
             }
+        }
+    }
+
+    /// The error once more, after the tolerance has changed.
+    pub fn measure(&mut self, tolerance: &Tolerance) {
+        match self.rule {
+            Rule::Explicit => self.error = explicit::error(self, tolerance),
+            Rule::Radau if self.error != radau::NOT_SOLVED => self.error = radau::size(self, tolerance),
+            Rule::Radau | Rule::Collocation | Rule::Straight => {}
         }
     }
 
@@ -139,12 +156,12 @@ impl Step {
     }
 
     /// The state after a part of the step, as exact as its end: the collocation polynomial is not.
-    pub fn exactly_at(&self, field: &mut Field, h: f64, options: &Options) -> Vec<f64> {
+    pub fn exactly_at(&self, field: &mut Field, h: f64) -> Vec<f64> {
         if self.method == Method::Explicit || h == 0.0 {
             return self.at(h / self.h);
         }
         let mut shorter = self.clone();
-        shorter.attempt(field, h, options);
+        shorter.attempt(field, h);
         shorter.end
     }
 

@@ -40,6 +40,42 @@ pub struct Ball {
     pub surfaces: Range<usize>,
 }
 
+/// All numbers between two ends.
+pub type Interval = [f64; 2];
+
+/// Where a value and its derivatives are, whatever the inputs are in given intervals.
+#[derive(Clone)]
+pub struct Enclosure {
+    /// The inputs that the value depends on, as positions in `[t | x | u | p | s]`, ascending.
+    pub reads: Vec<usize>,
+    /// Those of them by which there are derivatives.
+    pub by: Vec<usize>,
+    /// Whether none of the derivatives depends on any of these.
+    pub is_affine: bool,
+    /// From an interval for each input to those of the value and of its derivatives, in the order
+    /// of `by`. Empty where there is no value.
+    pub over: Arc<dyn Fn(&[Interval], &mut [Interval]) + Send + Sync>,
+}
+
+/// What must not be missed along a step, one enclosure for each output of its function.
+#[derive(Clone)]
+pub struct Enclosures {
+    /// Of [`System::flow`]; without derivatives.
+    pub flow: Vec<Enclosure>,
+    /// Of [`System::guards`]; by `t` and `x`.
+    pub guards: Vec<Enclosure>,
+    /// Of [`System::kinks`]; by `t` and `x`.
+    pub kinks: Vec<Enclosure>,
+    /// Of [`System::rates`]; by `s`.
+    pub rates: Vec<Enclosure>,
+    /// The same; by `t` and `x`.
+    pub accelerations: Vec<Enclosure>,
+    /// Of the path conditions of the model, over the inputs of `flow`; by `t` and `x`.
+    pub path: Vec<Enclosure>,
+    /// Of the controls of [`System::guess`], over `[tau | p]`; by `tau`.
+    pub controls: Vec<Enclosure>,
+}
+
 /// A system that can be simulated.
 #[derive(Clone)]
 pub struct System {
@@ -78,6 +114,8 @@ pub struct System {
     /// Over the inputs of `flow`, what is 0 where `flow` has a kink that is no surface, such as that of `abs`; the selectors behind those of
     /// the surfaces say on which side of each the state is. Kinks inside others come first; differentiated by `t` and `x`.
     pub kinks: Arc<dyn Function>,
+    /// Bounds of the functions that are watched along a step.
+    pub enclosures: Enclosures,
     /// First and last time over `[p]`.
     pub interval_of: Arc<dyn Function>,
     /// The state at the first time over `[p]`.

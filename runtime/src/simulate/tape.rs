@@ -214,7 +214,7 @@ impl Writer {
     /// Something happens at the stop.
     pub fn change(&mut self, field: &mut Field, event: &Event) {
         if self.tape.is_some() {
-            let after = self.instant(field, event.time, &event.state);
+            let after = self.instant(field, event.time, &event.after);
             let Event { surface, kind, margin, .. } = *event;
             self.changes.push(Change { surface, kind, margin, after });
         }

@@ -6,6 +6,9 @@ const NEAR: f64 = 1e-6;
 /// How much two successive ratios may differ.
 const STEADY: f64 = 0.02;
 
+/// A ratio of successive intervals this near to 1 is that of jumps which go on for ever.
+const REGULAR: f64 = 1e-6;
+
 /// The times of the last jumps of one kind.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pile {
@@ -33,7 +36,8 @@ impl Pile {
         }
         let (before, ratio) = (second / first, third / second);
         let rest = third * ratio / (1.0 - ratio);
-        let is_steady = ratio < 1.0 && (ratio - before).abs() <= STEADY * ratio;
+        let change = (ratio - before).abs();
+        let is_steady = 1.0 - ratio > REGULAR && change <= (STEADY * ratio).min(0.5 * (1.0 - ratio));
         (is_steady && (is_small || rest <= NEAR * span)).then_some(time + rest)
     }
 }
@@ -47,6 +51,14 @@ mod tests {
         let mut pile = Pile::default();
         let limit = (0..40).find_map(|k| pile.limit(2.0 - 0.5_f64.powi(k), 1.0, false));
         assert!((limit.expect("they pile up") - 2.0).abs() < 1e-14);
+    }
+
+    /// However long the whole time is, and however the times are rounded.
+    #[test]
+    fn nearly_regular_jumps_do_not_pile_up() {
+        let mut pile = Pile::default();
+        let rounded = |k: u32| f64::from(k) + 1e-9 * f64::from(k * k * 7919 % 13);
+        assert!((0..100).all(|k| pile.limit(rounded(k), 2e302, false).is_none()));
     }
 
     #[test]

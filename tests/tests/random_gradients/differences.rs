@@ -36,7 +36,7 @@ pub struct Seen {
 }
 
 fn options() -> Options {
-    Options { rtol: 1e-12, atol: 1e-13, max_steps: 20_000, ..Options::default() }
+    Options { rtol: 1e-12, atol: Some(1e-13), max_steps: 20_000, ..Options::default() }
 }
 
 fn quantity(system: &System, random: &mut Random) -> Quantity {

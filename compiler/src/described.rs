@@ -12,6 +12,11 @@ impl Model {
         self.units.iter().find(|it| it.name == name)
     }
 
+    /// One of the declared unit of time in SI; 1 where the text declares none.
+    pub fn time_size(&self) -> f64 {
+        self.units.iter().find(|it| it.is_time).map_or(1.0, |it| it.scale)
+    }
+
     /// One of the declared unit of a name in SI; 1 where the text declares none.
     pub fn unit_size(&self, name: &str) -> f64 {
         let scale = self.unit_of(name).map_or(1.0, |it| it.scale);

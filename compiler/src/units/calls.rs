@@ -1,5 +1,6 @@
 //! What a call measures: the builtin functions, the special forms, and the model's own functions, each time anew.
 
+use super::declared::Declared;
 use super::dimension::Dimension;
 use super::inference::{Inference, Operand, side};
 use super::ratio::Ratio;
@@ -163,8 +164,9 @@ impl<'a> Inference<'a> {
 
     /// Time is not named in it: the integral of a speed in m/s is a length in m, also over minutes.
     fn integral(&self, only: &Operand<'a>) -> Value {
-        pairwise(&only.0, &self.time(), |part, time| {
-            part.times(time).in_unit(part.declared.clone()).as_formula()
+        pairwise(&only.0, &self.time(), |part, time| match part.declared.is_si() {
+            true => part.times(time).in_unit(Declared::SI).as_formula(),
+            false => part.times(time),
         })
     }
 

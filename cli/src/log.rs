@@ -4,6 +4,7 @@
 use crate::output::number::{scientific, significant};
 use crate::output::tell;
 use crate::output::tried::Ended;
+use crate::output::units::Units;
 use fdcc_runtime::homotopy;
 use fdcc_runtime::nlp::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -34,19 +35,26 @@ pub struct Log {
     label: String,
     lines: usize,
     bar: ProgressBar,
+    /// How many SI units one of the unit of a width is.
+    scale: f64,
 }
 
 impl Log {
     /// The table of the only solve.
     pub fn new(level: Level) -> Self {
         let bar = progress(ProgressBar::no_length(), level, "{spinner} {elapsed} {msg}");
-        Log { level, label: String::new(), lines: 0, bar }
+        Log { level, label: String::new(), lines: 0, bar, scale: 1.0 }
     }
 
     /// The table of one of several solves, which share a [`bar`]; only a full log has tables.
     pub fn of_several(level: Level, bar: &ProgressBar, label: &str) -> Self {
         let level = if level == Level::Full { level } else { Level::None };
-        Log { level, label: label.to_owned(), lines: 0, bar: bar.clone() }
+        Log { level, label: label.to_owned(), lines: 0, bar: bar.clone(), scale: 1.0 }
+    }
+
+    /// From now on widths are in the unit of the surfaces, as in the verdict.
+    pub fn show_widths_in(&mut self, units: &Units) {
+        self.scale = units.width_scale();
     }
 
     /// One iteration.
@@ -62,7 +70,7 @@ impl Log {
         if !wanted {
             return;
         }
-        let line = line(progress, level);
+        let line = line(progress, level, self.scale);
         let with_header = self.lines.is_multiple_of(PAGE);
         self.lines += 1;
         self.bar.suspend(|| {
@@ -75,7 +83,7 @@ impl Log {
 
     /// The table of one of several solves that look for one answer.
     pub fn of_part(&self, label: &str) -> Self {
-        Log::of_several(self.level, &self.bar, &format!("{label} "))
+        Log { scale: self.scale, ..Log::of_several(self.level, &self.bar, &format!("{label} ")) }
     }
 
     /// How one of several solves ended.
@@ -111,11 +119,11 @@ fn progress(bar: ProgressBar, level: Level, template: &str) -> ProgressBar {
     bar
 }
 
-fn line(p: &Progress, level: homotopy::Level) -> String {
+fn line(p: &Progress, level: homotopy::Level, scale: f64) -> String {
     let logarithm = |value: f64| if value > 0.0 { format!("{:.1}", value.log10()) } else { "-".to_string() };
     let (mu, regularization) = (logarithm(p.mu), logarithm(p.regularization));
     let sigma = level.sigma.iter().fold(0.0f64, |a, sigma| a.max(*sigma));
-    let sigma = if sigma > 0.0 { scientific(sigma, 1) } else { "-".into() };
+    let sigma = if sigma > 0.0 { scientific(sigma / scale, 1) } else { "-".into() };
     let stages = level.stages.map(|stages| format!("x{stages}")).unwrap_or_default();
     let grid = format!("{}{stages}", level.intervals);
     format!(

@@ -65,7 +65,7 @@ impl Replay {
         self.free.iter().for_each(|(name, value)| model.set_free(name, *value));
         self.start.iter().for_each(|(name, value)| model.set_open_start(name, *value));
         // A scheme that is not known here is no reason to refuse the controls.
-        self.method.iter().for_each(|(key, value)| drop(model.set_method(key, value)));
+        self.method.iter().for_each(|(key, value)| drop(model.restore_method(key, value)));
     }
 
     /// What about the times is likely a slip, though it can be followed.

@@ -147,6 +147,7 @@ impl Compiled {
         options: &Options,
         log: &mut Log,
     ) -> Result<Solved, Failure> {
+        log.show_widths_in(&self.units);
         let deadline = Deadline::after(self.begin, options.time_limit);
         let search = Search { starts: options.starts as usize, deadline, log };
         let found = match (&self.jumps, start) {

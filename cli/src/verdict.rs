@@ -93,10 +93,15 @@ fn spread(document: &Document) -> Vec<String> {
 /// What each surface did, if the trajectory says anything about it.
 fn surfaces(document: &Document) -> impl Iterator<Item = String> {
     let has_trajectory = document.status != "not_finite";
+    let units = &document.units;
     let sigmas = document.method.sigmas.0.iter().filter(move |_| has_trajectory);
-    sigmas.map(|(name, sigma)| {
-        let modes = document.surfaces.get(name).map(|spans| switching(spans)).unwrap_or_default();
-        format!(" {name:<5} {modes}   (sigma {}, kernel {})", short(*sigma), document.method.kernel)
+    sigmas.map(move |(name, sigma)| {
+        let modes = document.surfaces.get(name).map(|spans| switching(spans, units)).unwrap_or_default();
+        format!(
+            " {name:<5} {modes}   (sigma {}, kernel {})",
+            units.width(name, *sigma),
+            document.method.kernel
+        )
     })
 }
 

@@ -3,7 +3,26 @@
 use crate::lower::Numbers;
 use crate::model::{Model, Place, Range, Symbol};
 use crate::resolve::text::number;
+use crate::units::NamedUnit;
 use fdcc_runtime::problem::Bounds;
+
+impl Model {
+    /// The unit of a name, if the text uses units and it could be found.
+    pub fn unit_of(&self, name: &str) -> Option<&NamedUnit> {
+        self.units.iter().find(|it| it.name == name)
+    }
+
+    /// One of the declared unit of time in SI; 1 where the text declares none.
+    pub fn time_size(&self) -> f64 {
+        self.units.iter().find(|it| it.is_time).map_or(1.0, |it| it.scale)
+    }
+
+    /// One of the declared unit of a name in SI; 1 where the text declares none.
+    pub fn unit_size(&self, name: &str) -> f64 {
+        let scale = self.unit_of(name).map_or(1.0, |it| it.scale);
+        if scale.is_finite() && scale > 0.0 { scale } else { 1.0 }
+    }
+}
 
 /// A state or a control: `v [km/h] in [0, 100]`.
 pub(crate) fn ranged(model: &Model, numbers: &Numbers, place: &Place, range: Range) -> String {

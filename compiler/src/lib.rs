@@ -2,6 +2,7 @@
 
 mod allow;
 mod asked;
+mod bidirectional;
 mod blend;
 pub mod builtins;
 mod check;
@@ -51,7 +52,7 @@ pub use review::{Reviewed, review, review_with};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 pub use surfaces::{Order, Smoothness, SurfaceClass, SurfaceReport};
-pub use units::{NamedUnit, parse_quantity};
+pub use units::{NamedUnit, WidthUnit, parse_quantity};
 use unroll::between_jumps;
 pub use unroll::{Sequences, crossings, sequences, unrolled};
 
@@ -71,12 +72,13 @@ pub struct Checked {
 pub fn check(tree: &ast::Model) -> Checked {
     let everything: Vec<&Item> = tree.items.iter().collect();
     let phases: Vec<Phase<'_>> = tree.items.iter().filter_map(phase).collect();
-    let mut whole = resolve(&[], &everything);
+    let units = units::infer(tree);
+    let mut whole = resolve(&[], &everything, &units.readings);
     let mut diagnostics = checked(&mut whole, everything.clone(), tree, phases.is_empty());
     let mut parts = Vec::new();
     for Phase { name, items, .. } in &phases {
         let items: Vec<&Item> = items.iter().collect();
-        let mut part = resolve(&everything, &items);
+        let mut part = resolve(&everything, &items, &units.readings);
         diagnostics.extend(checked(&mut part, items, tree, true));
         whole.not_yet(name.span, "a model with phases");
         whole.not_yet.append(&mut part.not_yet);
@@ -85,16 +87,17 @@ pub fn check(tree: &ast::Model) -> Checked {
         parts.push(part);
     }
     diagnostics.extend(check::unused(tree));
-    let units = units::infer(tree);
-    diagnostics.extend(units.diagnostics);
+    diagnostics.extend(check::lookalike(tree));
+    diagnostics.extend(units.diagnostics.iter().cloned());
     sort(&mut diagnostics);
-    let mut diagnostics = without_echoes(diagnostics);
+    let mut diagnostics = without_echoes(without_consequences(diagnostics));
     sort(&mut whole.not_yet);
     let name = tree.name.as_ref().map_or("model", |name| &name.name);
     let model = (!diagnostics.iter().any(is_fatal)).then(|| Model {
         name: name.into(),
         units: units.names.clone(),
-        condition_units: units.conditions,
+        condition_units: units.conditions.clone(),
+        width_unit: units.width.clone(),
         ..whole.into_model()
     });
     let understood = phases.iter().zip(parts).filter(|_| model.is_some());
@@ -104,19 +107,29 @@ pub fn check(tree: &ast::Model) -> Checked {
     let model_of = |(phase, part): (&Phase<'_>, resolve::elaborator::Elaborator<'_>)| Model {
         name: phase.name.name.clone(),
         units: units_in(phase),
+        width_unit: units.width.clone(),
         ..part.into_model()
     };
     let phases = understood.map(model_of).collect();
     if let Some(model) = &model {
+        diagnostics.extend(told_early(model));
         diagnostics.extend(rehearsal::check(model, tree));
         sort(&mut diagnostics);
     }
     Checked { model, phases, diagnostics, units: units.names }
 }
 
-/// Whether there can be no meaning. What waits for a value, and what has no unique trajectory, has one: a simulation tells more.
+/// What `solve` will refuse. To `check` it is no mistake: the model is right, and waits.
+fn told_early(model: &Model) -> Option<Diagnostic> {
+    let mut first = model.not_yet.first()?.clone();
+    first.severity = Severity::Advice;
+    Some(first.help("it is checked all the same; `solve`, `simulate` and `grad` refuse it"))
+}
+
+/// Whether there can be no meaning. What waits for a value, what has no unique trajectory and what has none has one: a run tells more.
 fn is_fatal(found: &Diagnostic) -> bool {
-    let has_meaning = matches!(found.code, Code::NoValue | Code::Repelling | Code::EndlessJumps);
+    let has_meaning =
+        matches!(found.code, Code::NoValue | Code::Repelling | Code::EndlessJumps | Code::Contradiction);
     found.severity == Severity::Error && !has_meaning
 }
 
@@ -161,6 +174,19 @@ fn checked<'a>(
 fn sort(diagnostics: &mut Vec<Diagnostic>) {
     diagnostics.sort_by_key(|it| (it.span(), it.code));
     diagnostics.dedup_by(|a, b| (a.span(), a.code, &a.message) == (b.span(), b.code, &b.message));
+}
+
+/// A condition with another mistake in it contradicts nothing.
+fn without_consequences(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let is_mistake = |it: &&Diagnostic| it.severity == Severity::Error && it.code != Code::Contradiction;
+    let mistakes: Vec<Span> = diagnostics.iter().filter(is_mistake).map(Diagnostic::span).collect();
+    let follows = |it: &Diagnostic| {
+        let whole = it.span();
+        it.code == Code::Contradiction
+            && mistakes.iter().any(|part| whole.start <= part.start && part.end <= whole.end)
+    };
+    diagnostics.retain(|it| !follows(it));
+    diagnostics
 }
 
 /// One finding for each unknown name, wherever it is used; and what it is likely a slip for is not called unused.

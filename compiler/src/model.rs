@@ -5,7 +5,7 @@
 //! compiled functions want. Bounds and parameters stay expressions, so that the command line can change a number.
 
 use crate::graph::{ExprId, Graph};
-use crate::units::NamedUnit;
+use crate::units::{NamedUnit, WidthUnit};
 use fdcc_grammar::ast::Direction;
 use fdcc_grammar::{Diagnostic, Span};
 use fdcc_runtime::problem::{ControlShape, Linear, Method, Scheme, Solver};
@@ -222,7 +222,7 @@ pub enum Simulated {
 pub struct Swept {
     /// The name of a parameter or of a setting.
     pub place: Place,
-    /// Its values as the command line takes them.
+    /// Its values: numbers in SI, words.
     pub values: Vec<String>,
     /// Where the values stand.
     pub values_span: Span,
@@ -300,8 +300,10 @@ pub struct Model {
     pub not_yet: Vec<Diagnostic>,
     /// The unit of each name, if the text uses units.
     pub units: Vec<NamedUnit>,
-    /// The unit of each condition, by what it is called.
+    /// The unit of each condition and each expectation, by what it is called.
     pub condition_units: Vec<NamedUnit>,
+    /// What a width of smoothing measures, if the text uses units and all surfaces measure the same.
+    pub width_unit: Option<WidthUnit>,
 }
 
 impl Model {
@@ -340,6 +342,7 @@ impl Model {
             not_yet: Vec::new(),
             units: Vec::new(),
             condition_units: Vec::new(),
+            width_unit: None,
         }
     }
 
@@ -360,17 +363,6 @@ impl Model {
         all.extend(self.balls.iter().map(of));
         all.sort_by_key(|switch| switch.surfaces.start);
         all
-    }
-
-    /// The unit of a name, if the text uses units and it could be found.
-    pub fn unit_of(&self, name: &str) -> Option<&NamedUnit> {
-        self.units.iter().find(|it| it.name == name)
-    }
-
-    /// One of the declared unit of a name in SI; 1 where the text declares none.
-    pub fn unit_size(&self, name: &str) -> f64 {
-        let scale = self.unit_of(name).map_or(1.0, |it| it.scale);
-        if scale.is_finite() && scale > 0.0 { scale } else { 1.0 }
     }
 
     /// The graph input that is a symbol.

@@ -6,37 +6,60 @@ use crate::resolve::closest;
 use crate::resolve::misfit::misfit;
 use crate::resolve::settings::{Given, Refused, is_key, keys, nearest_key, nearest_word, set};
 use crate::resolve::text::number;
-use crate::units::{Quantity, parse_quantity};
+use crate::units::{NamedUnit, Quantity, WidthUnit, parse_quantity};
 
 impl Model {
-    /// Gives a parameter another value, such as `0.2` or `200[g]`.
+    /// Gives a parameter another value, such as `0.2` or `200[g]`; a plain number is in its declared unit.
     pub fn set_param(&mut self, name: &str, value: &str) -> Result<(), String> {
         let given = parse_quantity(value)?;
         let Some(index) = self.params.iter().position(|param| param.place.name == name) else {
             return Err(self.no_param(name));
         };
-        let value = self.fitting(name, value, given)?;
+        let own = self.unit_of_param(index).cloned().unwrap_or_else(|| plain_number(name));
+        let value = in_unit(&own, value, given)?;
         let range = self.params[index].range;
         let limits = [range.lower, range.upper].map(|limit| self.of_params(limit));
         if value < limits[0] || value > limits[1] {
-            return Err(format!("`{name}` must be in [{}, {}]", number(limits[0]), number(limits[1])));
+            let shown = limits.map(|limit| number(limit / own.scale));
+            let unit = if own.unit.is_empty() { String::new() } else { format!(" {}", own.unit) };
+            return Err(format!("`{name}` must be in [{}, {}]{unit}", shown[0], shown[1]));
         }
         self.give(index, value);
         Ok(())
     }
 
-    /// The value in SI, if its unit measures what the parameter does; a number without a unit is in SI already.
-    fn fitting(&self, name: &str, text: &str, given: Quantity) -> Result<f64, String> {
-        let span = self.params.iter().find(|param| param.place.name == name).map(|param| param.place.span);
-        let own = self.units.iter().find(|own| Some(own.span) == span);
-        match own.zip(given.dimension) {
-            Some((own, dimension)) if own.dimension != dimension => {
-                let unit =
-                    if own.unit.is_empty() { "has no unit".into() } else { format!("is in {}", own.unit) };
-                Err(format!("`{name}` {unit}, so it cannot be `{}`", text.trim()))
-            }
-            _ => Ok(given.value),
+    /// A value for a parameter or a width with the unit in which it is read, if that is not the one of SI: `3[mm]` for `3`.
+    pub fn with_unit(&self, name: &str, value: &str) -> String {
+        let index = self.params.iter().position(|param| param.place.name == name);
+        let width =
+            self.width_unit.as_ref().filter(|it| index.is_none() && name == "sigma" && it.takes_numbers);
+        let own = index.and_then(|at| self.unit_of_param(at)).or(width.map(|it| &it.unit));
+        let own = own.filter(|own| own.scale != 1.0);
+        let is_plain = parse_quantity(value).is_ok_and(|it| it.dimension.is_none());
+        match own.filter(|_| is_plain) {
+            Some(own) => format!("{}[{}]", value.trim(), own.unit),
+            None => value.into(),
         }
+    }
+
+    /// A value in SI as the command line takes it: in the declared unit, with that unit unless it is the one of SI.
+    pub fn as_given(&self, name: &str, value: &str) -> String {
+        let Ok(number) = value.parse::<f64>() else { return value.into() };
+        let index = self.params.iter().position(|param| param.place.name == name);
+        let width = self.width_unit.as_ref().filter(|_| index.is_none() && name == "sigma");
+        let own = index.and_then(|at| self.unit_of_param(at)).or(width.map(|it| &it.unit));
+        match own {
+            Some(own) if own.scale != 1.0 => format!("{}[{}]", rounded(number / own.scale), own.unit),
+            Some(own) if width.is_some_and(|it| !it.takes_numbers) => {
+                format!("{value}[{}]", if own.unit.is_empty() { "1" } else { &own.unit })
+            }
+            _ => value.into(),
+        }
+    }
+
+    fn unit_of_param(&self, index: usize) -> Option<&NamedUnit> {
+        let span = self.params[index].place.span;
+        self.units.iter().find(|own| own.span == span)
     }
 
     fn give(&mut self, index: usize, value: f64) {
@@ -76,9 +99,24 @@ impl Model {
         }
     }
 
-    /// Changes a setting, such as `sigma` to `0.01`; several values for `continue` are separated by commas.
+    /// Changes a setting, such as `sigma` to `0.01`; several values for `continue` are separated by commas. A plain
+    /// number for a width is in the unit of what is smoothed.
     pub fn set_method(&mut self, key: &str, value: &str) -> Result<(), String> {
-        match set(&mut self.method, key, &given(value)) {
+        let is_width = matches!(key, "sigma" | "continue");
+        let width = self.width_unit.clone().filter(|_| is_width);
+        let given =
+            given(value, |text, it| width.as_ref().map_or(Ok(it.value), |own| as_width(own, text, it)))?;
+        self.set(key, value, &given)
+    }
+
+    /// The same as a solution says it: in SI.
+    pub fn restore_method(&mut self, key: &str, value: &str) -> Result<(), String> {
+        let given = given(value, |_, it| Ok(it.value))?;
+        self.set(key, value, &given)
+    }
+
+    fn set(&mut self, key: &str, value: &str, given: &Given) -> Result<(), String> {
+        match set(&mut self.method, key, given) {
             Ok(()) => {
                 self.smooth |= matches!(key, "sigma" | "kernel" | "continue");
                 Ok(())
@@ -125,13 +163,54 @@ pub fn is_method_key(name: &str) -> bool {
     is_key(name)
 }
 
-fn given(value: &str) -> Given {
-    let parts: Vec<&str> = value.split(',').collect();
-    let numbers: Option<Vec<f64>> =
-        parts.iter().map(|part| parse_quantity(part).ok().map(|it| it.value)).collect();
-    match numbers.as_deref() {
-        Some([number]) => Given::Number(*number),
-        Some(numbers) => Given::List(numbers.to_vec()),
-        None => Given::Word(value.trim().into()),
+/// A word, a number or a list of numbers, each as `read` makes it one in SI.
+fn given(value: &str, read: impl Fn(&str, Quantity) -> Result<f64, String>) -> Result<Given, String> {
+    let quantities: Option<Vec<(&str, Quantity)>> =
+        value.split(',').map(|part| Some((part, parse_quantity(part).ok()?))).collect();
+    let Some(quantities) = quantities else { return Ok(Given::Word(value.trim().into())) };
+    let numbers: Vec<f64> =
+        quantities.into_iter().map(|(text, it)| read(text, it)).collect::<Result<_, _>>()?;
+    Ok(match numbers[..] {
+        [number] => Given::Number(number),
+        _ => Given::List(numbers),
+    })
+}
+
+/// Without the digits that the change of units leaves behind.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.14e}").parse().unwrap_or(value)
+}
+
+/// The unit of a name of which nothing is known: any goes with it.
+fn plain_number(name: &str) -> NamedUnit {
+    NamedUnit { name: name.into(), scale: 1.0, ..NamedUnit::default() }
+}
+
+/// A value in SI, if its unit measures what that of a name does; a number without a unit is in the declared one.
+fn in_unit(own: &NamedUnit, text: &str, given: Quantity) -> Result<f64, String> {
+    match given.dimension {
+        None => Ok(given.value * own.scale),
+        Some(dimension) if own.span != Default::default() && own.dimension != dimension => {
+            let unit = if own.unit.is_empty() { "has no unit".into() } else { format!("is in {}", own.unit) };
+            Err(format!("`{}` {unit}, so it cannot be `{}`", own.name, text.trim()))
+        }
+        Some(_) => Ok(given.value),
+    }
+}
+
+/// A width in SI.
+fn as_width(own: &WidthUnit, text: &str, given: Quantity) -> Result<f64, String> {
+    let unit = &own.unit;
+    match given.dimension {
+        None if own.takes_numbers => Ok(given.value * unit.scale),
+        None => Err(format!(
+            "`sigma` needs a unit, such as `{}[{}]`: what is smoothed is made of names in other units than those of SI",
+            text.trim(),
+            unit.unit
+        )),
+        Some(dimension) if !unit.name.is_empty() && dimension != unit.dimension => {
+            Err(format!("`sigma` is in {}, so it cannot be `{}`", unit.unit, text.trim()))
+        }
+        Some(_) => Ok(given.value),
     }
 }

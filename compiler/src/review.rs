@@ -1,7 +1,7 @@
 //! A text, read and checked in one go: all that commands and editors show of it.
 
 use crate::gaps::Gaps;
-use crate::{Model, NamedUnit, allow, check};
+use crate::{Model, NamedUnit, allow, bidirectional, check};
 use fdcc_grammar::ast;
 use fdcc_grammar::{Diagnostic, Memory, Parse, SourceFile, parse_with};
 
@@ -44,6 +44,7 @@ pub(crate) fn reviewed(text: &str, parsed: Parse) -> Reviewed {
         let trusted = |it: &Diagnostic| !is_broken || !gaps.may_be_behind(it);
         diagnostics.extend(checked.diagnostics.into_iter().filter(trusted));
     }
+    diagnostics.extend(bidirectional::found(text));
     let mut diagnostics = allow::apply(text, diagnostics);
     diagnostics.sort_by_key(Diagnostic::span);
     Reviewed { tree: parsed.tree, model, phases, diagnostics, units }

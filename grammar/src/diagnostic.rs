@@ -119,6 +119,7 @@ codes! {
     EmptyModel = "FDC0008", Warning, "a file without any item";
     TooLarge = "FDC0009", Error, "a file that is too large to be a model";
     UselessAllow = "FDC0010", Warning, "an `allow` that silences nothing";
+    Bidirectional = "FDC0011", Error, "a character that turns the text around";
     UnknownName = "FDC0101", Error, "an unknown name";
     DuplicateName = "FDC0102", Error, "a name declared twice";
     WrongKind = "FDC0103", Error, "a name of the wrong kind";
@@ -130,6 +131,7 @@ codes! {
     NotAllowedHere = "FDC0109", Error, "an expression that has no meaning here";
     UnknownPart = "FDC0110", Error, "an unknown part or index";
     UnknownUnit = "FDC0111", Error, "an unknown unit";
+    Lookalike = "FDC0112", Error, "two names that look alike";
     SetEquality = "FDC0201", Error, "`=` with a set on the right";
     SetValuedHere = "FDC0202", Error, "a set-valued function where a number is needed";
     HiddenJump = "FDC0203", Error, "a jump used as an ordinary function";
@@ -144,6 +146,7 @@ codes! {
     ControlJumps = "FDC0306", Warning, "a control that acts differently on the two sides of a surface";
     EndlessJumps = "FDC0310", Error, "jumps that can fire without end";
     IdleJump = "FDC0311", Warning, "a jump that never acts";
+    ConstantSurface = "FDC0312", Warning, "a surface that never changes sides";
     EmptyBounds = "FDC0401", Error, "bounds that leave no room";
     NoDuration = "FDC0402", Error, "a free time without lower bound";
     NoBoundary = "FDC0403", Error, "a state without start or end condition";
@@ -153,6 +156,8 @@ codes! {
     NoTime = "FDC0407", Error, "a model without time";
     NoValue = "FDC0408", Error, "a parameter without a value";
     GuessOutside = "FDC0409", Warning, "a guess outside its bounds";
+    Contradiction = "FDC0410", Error, "conditions that contradict each other";
+    NotANumber = "FDC0411", Error, "a constant or bound that is no finite number";
     LongStep = "FDC0501", Warning, "a step too long for the smoothed layer";
     SweepTooSlow = "FDC0502", Warning, "a sweep that refines the grid too slowly";
     NoRoom = "FDC0503", Warning, "a smoothing width without room";
@@ -163,7 +168,7 @@ codes! {
     UnitMismatch = "FDC0701", Error, "units that do not fit together";
     UnitHere = "FDC0702", Error, "a unit where a plain number is needed";
     UnitOfPower = "FDC0703", Error, "a power whose unit is not fixed";
-    BareNumber = "FDC0704", Warning, "a plain number read in SI";
+    BareNumber = "FDC0704", Error, "a plain number that would have to guess its unit";
 }
 
 impl std::fmt::Display for Code {

@@ -1,7 +1,6 @@
-//! The only file that names the crate `clarabel`: its conic solver, and its sparse LDL without pivots, behind our own types.
+//! The only file that names the crate `clarabel`: its conic solver, behind our own types.
 
 use clarabel::algebra::CscMatrix;
-use clarabel::qdldl::{QDLDLFactorisation, QDLDLSettingsBuilder};
 use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolution, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
 };
@@ -78,37 +77,6 @@ impl Columns {
     fn into_csc(self) -> CscMatrix<f64> {
         let columns = self.column_starts.len() - 1;
         CscMatrix::new(self.rows, columns, self.column_starts, self.row_indices, self.values)
-    }
-}
-
-/// `L D L'` of a symmetric matrix given by its upper triangle, in a fill-reducing order, without pivoting.
-pub(crate) struct Ldl {
-    upper: Columns,
-    positions: Vec<usize>,
-    factors: Option<QDLDLFactorisation<f64>>,
-}
-
-impl Ldl {
-    pub(crate) fn new(upper: Columns) -> Self {
-        let positions = (0..upper.values.len()).collect();
-        Ldl { upper, positions, factors: None }
-    }
-
-    /// Factors the matrix with new values; the number of positive eigenvalues, or `None` at a zero pivot.
-    pub(crate) fn factor(&mut self, values: &[f64]) -> Option<usize> {
-        match &mut self.factors {
-            Some(factors) => {
-                factors.update_values(&self.positions, values);
-                factors.refactor().ok()?;
-            }
-            None => {
-                let settings = QDLDLSettingsBuilder::default().regularize_enable(false).build().ok()?;
-                let matrix = Columns { values: values.to_vec(), ..self.upper.clone() }.into_csc();
-                self.factors = Some(QDLDLFactorisation::new(&matrix, Some(settings)).ok()?);
-            }
-        }
-        let factors = self.factors.as_ref()?;
-        factors.D.iter().all(|pivot| pivot.is_finite()).then(|| factors.positive_inertia())
     }
 }
 

@@ -10,6 +10,9 @@ use fdcc_grammar::{Code, Diagnostic, Severity, parse};
 use fdcc_tests::{blocks, documents, repository, unclaimed};
 use std::fs;
 
+#[path = "manual/places.rs"]
+mod places;
+
 /// A model of the reference.
 struct Example {
     place: String,
@@ -59,6 +62,19 @@ fn models_compile_unless_the_page_says_that_they_cannot_be_solved_yet() {
         let expected: &[Code] = if example.is_later { &[Code::NotYet] } else { &[] };
         assert_eq!(codes, expected, "{}", example.place);
     }
+}
+
+/// Every line of the table of places: it is read as the line beside it, or refused with the code that stands there.
+#[test]
+fn plain_numbers_are_read_as_the_table_of_places_says() {
+    let page = fs::read_to_string(repository().join("docs/reference/units.md")).expect("the page is there");
+    let is_base = |block: &fdcc_tests::Block| block.text.starts_with("model places");
+    let base = blocks(&page).into_iter().find(is_base).expect("the model is there").text;
+    let (_, table) = page.split_once("| line | is read as |").expect("the table is there");
+    let rows: Vec<[&str; 2]> = table.lines().filter_map(places::row).collect();
+    assert!(rows.len() > 40, "the table is read");
+    let problems: Vec<String> = rows.iter().filter_map(|row| places::problem(&base, *row)).collect();
+    assert!(problems.is_empty(), "\n{}", problems.join("\n"));
 }
 
 /// Every variant and every optional part of the syntax tree occurs in some model.

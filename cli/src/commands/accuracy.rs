@@ -13,8 +13,8 @@ pub struct Accuracy {
     /// if left out
     #[arg(long, value_name = "TOL", value_parser = absolute, allow_negative_numbers = true)]
     atol: Option<f64>,
-    /// The longest step; by default only the tolerances limit it, and what surfaces do is seen
-    /// between steps, too
+    /// The longest step, in the unit of time; by default only the tolerances limit it, and what
+    /// surfaces do is seen between steps, too
     #[arg(long, value_name = "H", value_parser = longest, allow_negative_numbers = true)]
     max_step: Option<f64>,
     /// The method: explicit until a mode turns out to be stiff, or always the one named
@@ -30,14 +30,14 @@ enum Chosen {
 }
 
 impl Accuracy {
-    /// The same as options of the runtime.
-    pub fn options(&self) -> Options {
+    /// The same as options of the runtime; the model's unit of time is so many of SI.
+    pub fn options(&self, unit: f64) -> Options {
         let integrator = match self.integrator {
             Chosen::Auto => Integrator::Automatic,
             Chosen::Explicit => Integrator::Explicit,
             Chosen::Stiff => Integrator::Stiff,
         };
-        let max_step = self.max_step.unwrap_or(f64::INFINITY);
+        let max_step = self.max_step.map_or(f64::INFINITY, |step| step * unit);
         Options { rtol: self.rtol, atol: self.atol, integrator, max_step, ..Options::default() }
     }
 }

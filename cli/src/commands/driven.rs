@@ -75,10 +75,11 @@ impl Driven {
         compiled.map_err(Failure::Stopped)?.map_err(Failure::Model)
     }
 
-    /// How exactly to simulate, and until when.
-    pub fn options(&self) -> Options {
+    /// How exactly to simulate the model, and until when.
+    pub fn options(&self, model: &Model) -> Options {
         let deadline = self.deadline();
-        Options { watch: Watch::new(move || deadline.check()), ..self.accuracy.options() }
+        let watch = Watch::new(move || deadline.check());
+        Options { watch, ..self.accuracy.options(model.time_size()) }
     }
 
     /// Changes the model: what its solution says comes first, so that the command line has the last word.

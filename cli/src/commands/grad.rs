@@ -84,7 +84,7 @@ impl Grad {
         let Question { model, system, controls, by } = question;
         let has_second = self.second(by)?;
         let of = self.of.as_deref().unwrap_or("objective");
-        let options = self.driven.options();
+        let options = self.driven.options(model);
         let exact = match Exact::new(system, controls, &options, &question.quantities()) {
             Ok(exact) => exact,
             Err(simulation) => return Ok(Document::without(of, system, &simulation, source)),

@@ -15,7 +15,7 @@ use std::path::PathBuf;
 pub struct Simulate {
     #[command(flatten)]
     driven: Driven,
-    /// Report the states at these times instead of at all steps
+    /// Report the states at these times, in the unit of time, instead of at all steps
     #[arg(long, value_name = "T1,T2,...", value_delimiter = ',', allow_hyphen_values = true)]
     times: Vec<f64>,
     /// Print the result as one JSON document, and nothing else, on the standard output
@@ -47,8 +47,11 @@ impl Simulate {
         let system = self.driven.compiled(&prepared.model, fdcc_compiler::compile_simulation)?;
         let controls = self.driven.controls(replay, &system)?;
         let [first, last] = system.interval;
-        let options = Options { times: self.times.clone(), ..self.driven.options() };
+        let unit = prepared.model.time_size();
+        let times = self.times.iter().map(|time| time * unit).collect();
+        let options = Options { times, ..self.driven.options(&prepared.model) };
         if let Some(outside) = options.times.iter().find(|time| **time < first || **time > last) {
+            let [outside, first, last] = [*outside, first, last].map(|time| time / unit);
             return Err(Failure::Usage(format!("`--times`: {outside} is not between {first} and {last}")));
         }
         let simulation = simulate(&system, &controls, &options);

@@ -71,7 +71,11 @@ impl Sweep {
 
     /// The values, and the model with each of them.
     fn rows(&self, prepared: &Prepared) -> Result<(Grid, Vec<Row>), String> {
-        let grid = if self.lists.is_empty() { Grid::of(&prepared.model)? } else { Grid::read(&self.lists)? };
+        let grid = if self.lists.is_empty() {
+            Grid::of(&prepared.model)?
+        } else {
+            Grid::read(&self.lists, &prepared.model)?
+        };
         let row = |index: usize| {
             let mut prepared = prepared.clone();
             grid.apply(index, &mut prepared.model)?;

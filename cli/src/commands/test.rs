@@ -6,7 +6,8 @@ use crate::expectations::{self, Checked, Outcome, Sides};
 use crate::failure;
 use crate::log::{Level, Log};
 use crate::output::tested::{Line, Tested, Word};
-use crate::output::{self, files, number};
+use crate::output::units::Units;
+use crate::output::{self, files};
 use crate::solver::{Compiled, Failure, Solved};
 use crate::watch::catch_interrupts;
 use clap::Args;
@@ -49,15 +50,17 @@ impl Test {
         let prepared = prepare(file, &self.options)?;
         let model = prepared.model.name.clone();
         if !expectations::has_any(&prepared.model) {
-            return Ok(Tested { file: file.into(), model, status: None, expectations: Vec::new() });
+            let (expectations, units) = (Vec::new(), Units::default());
+            return Ok(Tested { file: file.into(), model, status: None, expectations, units });
         }
         let solved = self.solve(&prepared, begin).map_err(|failure| failure.report(&prepared.source))?;
         show(failure::diagnostic(&solved).iter(), &prepared.source);
         let checked = expectations::evaluate(&prepared.model, &solved);
         // What a solve did not reach is no news about the model.
         let checked = checked.into_iter().filter(|_| solved.is_good());
+        let units = solved.document.units.clone();
         let expectations = checked.map(|it| line(it, &prepared)).collect();
-        Ok(Tested { file: file.into(), model, status: Some(solved.document.status), expectations })
+        Ok(Tested { file: file.into(), model, status: Some(solved.document.status), expectations, units })
     }
 
     fn solve(&self, prepared: &Prepared, begin: Instant) -> Result<Solved, Failure> {
@@ -117,16 +120,20 @@ impl Tested {
             Some(status) if !self.is_solved() => {
                 format!("{file}: not solved: {}\n", status.replace('_', " "))
             }
-            _ => self.expectations.iter().map(|it| format!("{file}:{}: {}\n", it.line, it.words())).collect(),
+            _ => self
+                .expectations
+                .iter()
+                .map(|it| format!("{file}:{}: {}\n", it.line, it.words(&self.units)))
+                .collect(),
         }
     }
 }
 
 impl Line {
     /// `ok       x(end) == 1 within 1e-3   (1.0002, 1)`
-    fn words(&self) -> String {
+    fn words(&self, units: &Units) -> String {
         let Line { text, .. } = self;
-        let digits = |value: Option<f64>| number::significant(value.unwrap_or(f64::NAN), 9);
+        let digits = |value: Option<f64>| units.violation(text, value.unwrap_or(f64::NAN), 9);
         let [left, right, tolerance] = [self.left, self.right, self.tolerance].map(digits);
         match (self.outcome, &self.why) {
             (Word::Ok, _) => format!("ok       {text}   (left {left}, right {right})"),

@@ -286,14 +286,16 @@ impl MethodUsed {
     }
 }
 
-/// `held 0-0.31, below 0.31-1.92`
-pub fn switching(spans: &[Span]) -> String {
+/// `held 0-0.31, below 0.31-1.92 min`
+pub fn switching(spans: &[Span], units: &Units) -> String {
     let range = |from: String, to: String| {
         // A minus sign next to a dash cannot be read.
         let dash = if from.contains('-') || to.contains('-') { " to " } else { "-" };
         format!("{from}{dash}{to}")
     };
     let spans = spans.iter();
-    let spans = spans.map(|s| format!("{} {}", s.mode, range(significant(s.from, 4), significant(s.to, 4))));
-    spans.collect::<Vec<_>>().join(", ")
+    let time = |t: f64| significant(units.scaled("time", t), 4);
+    let spans: Vec<String> =
+        spans.map(|s| format!("{} {}", s.mode, range(time(s.from), time(s.to)))).collect();
+    if spans.is_empty() { String::new() } else { spans.join(", ") + &units.unit("time") }
 }

@@ -40,7 +40,8 @@ impl Document {
         let mut add =
             |head: String, column: &Named<Derivative>| columns.push((head, self.cells(column, &self.rows())));
         if let Some(other) = &self.compare.smoothed {
-            let sigma = other.sigma.map_or(String::new(), |sigma| format!("sigma {}, ", short(sigma)));
+            let sigma =
+                other.sigma.map(|it| format!("sigma {}, ", self.units.width("", it))).unwrap_or_default();
             add(format!("smoothed ({sigma}N {})", other.n), &other.gradient);
         }
         if let Some(other) = &self.compare.discretised {

@@ -1,7 +1,7 @@
 //! One HTML page per solution: a summary and a plot per signal, as inline SVG. No script, no network.
 
 use super::document::{Document, switching};
-use super::number::{scientific, short};
+use super::number::scientific;
 use super::plot::{escape, plot};
 use super::units::Units;
 
@@ -77,7 +77,10 @@ fn rows(document: &Document) -> Vec<(String, String)> {
     rows.push(row("method", format!("{}, N = {}, kernel {}", method.scheme, method.n, method.kernel)));
     let surfaces = document.surfaces.0.iter().zip(&method.sigmas.0);
     rows.extend(surfaces.map(|((name, spans), (_, sigma))| {
-        row(&format!("surface {name}"), format!("{} (sigma {})", switching(spans), short(*sigma)))
+        row(
+            &format!("surface {name}"),
+            format!("{} (sigma {})", switching(spans, units), units.width(name, *sigma)),
+        )
     }));
     let params = document.params.0.iter();
     rows.extend(params.map(|(name, it)| row(&format!("param {name}"), value(name, *it, 6))));

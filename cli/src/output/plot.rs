@@ -46,14 +46,15 @@ fn range(values: &[f64], margin: f64) -> [f64; 2] {
 /// after them.
 pub fn plot(document: &Document, name: &str, values: &[f64], befores: &[(usize, f64)]) -> String {
     let all: Vec<f64> = values.iter().copied().chain(befores.iter().map(|before| before.1)).collect();
-    let axes = Axes::new(&document.time, &all);
+    let time: Vec<f64> = document.time.iter().map(|t| document.units.scaled("time", *t)).collect();
+    let axes = Axes::new(&time, &all);
     format!(
         "<figure><figcaption>{}</figcaption><svg width=\"{WIDTH}\" height=\"{HEIGHT}\">{}{}\
          <path class=\"signal\" d=\"{}\"/></svg></figure>\n",
         escape(name),
         shades(document, &axes),
-        ticks(&axes),
-        path(&document.time, values, befores, &axes)
+        ticks(&axes, &document.units.unit("time")),
+        path(&time, values, befores, &axes)
     )
 }
 
@@ -62,7 +63,8 @@ fn shades(document: &Document, axes: &Axes) -> String {
     let spans = surfaces.flat_map(|(name, spans)| spans.iter().map(move |span| (name, span)));
     let held = spans.filter(|(_, span)| span.mode == "held");
     let shade = |(name, span): (&String, &super::document::Span)| {
-        let (x, width, height) = (axes.x(span.from), axes.x(span.to) - axes.x(span.from), BOTTOM - TOP);
+        let [x, end] = [span.from, span.to].map(|t| axes.x(document.units.scaled("time", t)));
+        let (width, height) = (end - x, BOTTOM - TOP);
         let title = format!("<title>{} is held</title>", escape(name));
         format!(
             "<rect class=\"held\" x=\"{x:.1}\" y=\"{TOP}\" width=\"{width:.1}\" height=\"{height}\">{title}</rect>"
@@ -71,7 +73,8 @@ fn shades(document: &Document, axes: &Axes) -> String {
     held.map(shade).collect()
 }
 
-fn ticks(axes: &Axes) -> String {
+/// Times carry their unit, values have it in the caption.
+fn ticks(axes: &Axes, unit: &str) -> String {
     let three = |[low, high]: [f64; 2]| {
         let middle = 0.5 * (low + high);
         // Rounding is no value worth a label.
@@ -83,7 +86,7 @@ fn ticks(axes: &Axes) -> String {
         format!("{line}<text x=\"{x}\" y=\"{:.1}\" text-anchor=\"end\">{text}</text>", y + 4.0)
     });
     let times = three(axes.time).map(|t| {
-        let (x, y, text) = (axes.x(t), HEIGHT - 6.0, significant(t, 4));
+        let (x, y, text) = (axes.x(t), HEIGHT - 6.0, significant(t, 4) + unit);
         format!("<text x=\"{x:.1}\" y=\"{y}\" text-anchor=\"middle\">{text}</text>")
     });
     values.concat() + &times.concat()

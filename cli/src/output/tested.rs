@@ -1,5 +1,6 @@
 //! What `fdcc test --json` prints: one entry per model, one line per expectation.
 
+use super::units::Units;
 use serde::Serialize;
 
 /// What became of one model.
@@ -10,6 +11,9 @@ pub struct Tested {
     /// The status of the solve; nothing where there was nothing to expect.
     pub status: Option<String>,
     pub expectations: Vec<Line>,
+    /// For the lines that people read; the values here are in SI.
+    #[serde(skip)]
+    pub units: Units,
 }
 
 /// What became of one line of an `expect` block.

@@ -1,17 +1,18 @@
 //! Values for people: in the unit in which the model declares the name, with the unit beside it. JSON stays in SI and says so.
 
 use super::named::Named;
-use super::number::significant;
+use super::number::{short, significant};
 use fdcc_compiler::{Model, NamedUnit};
 use serde::{Serialize, Serializer};
 
-/// The units of the names of a model, and of its conditions.
+/// The units of the names of a model, of its conditions, and of a width of smoothing.
 #[derive(Clone, Debug, Default)]
-pub struct Units(Vec<NamedUnit>, Vec<NamedUnit>);
+pub struct Units(Vec<NamedUnit>, Vec<NamedUnit>, Option<NamedUnit>);
 
 impl From<&Model> for Units {
     fn from(model: &Model) -> Self {
-        Units(model.units.clone(), model.condition_units.clone())
+        let width = model.width_unit.as_ref().map(|it| it.unit.clone());
+        Units(model.units.clone(), model.condition_units.clone(), width)
     }
 }
 
@@ -42,7 +43,7 @@ impl Units {
                 .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
         };
         match self.1.iter().find(is_it) {
-            Some(it) => Units(vec![it.clone()], Vec::new()).value(&it.name, value, digits),
+            Some(it) => Units(vec![it.clone()], Vec::new(), None).value(&it.name, value, digits),
             None => self.value(condition, value, digits),
         }
     }
@@ -65,6 +66,25 @@ impl Units {
             (of, Some(by)) => format!("{} per {by}", of.unwrap_or("1")),
         };
         (self.scaled(of, 1.0) / self.scaled(by, 1.0), text)
+    }
+
+    /// `100 mm/s`: the width of the smoothing of a surface.
+    pub fn width(&self, surface: &str, value: f64) -> String {
+        match self.of(surface).or(self.2.as_ref()) {
+            Some(it) if !it.unit.is_empty() => format!("{} {}", short(value / it.scale), it.unit),
+            _ => short(value),
+        }
+    }
+
+    /// How many SI units one of the unit of all widths is; 1 where surfaces differ.
+    pub fn width_scale(&self) -> f64 {
+        self.2.as_ref().map_or(1.0, |it| it.scale)
+    }
+
+    /// ` min`, with the blank before it; nothing for a plain number.
+    pub fn unit(&self, name: &str) -> String {
+        let unit = self.of(name).map_or("", |it| it.unit.as_str());
+        if unit.is_empty() { String::new() } else { format!(" {unit}") }
     }
 
     /// The number alone, in the unit of the name.
@@ -110,7 +130,7 @@ mod tests {
         let names =
             vec![named("v", "km/h", "m/s", 1.0 / 3.6), named("phi", "deg", "", 0.5), named("n", "", "", 1.0)];
         let conditions = vec![named("end pos == goal", "mm", "m", 1e-3)];
-        Units(names, conditions)
+        Units(names, conditions, None)
     }
 
     #[test]
@@ -127,6 +147,10 @@ mod tests {
         assert_eq!(units().violation("v", 25.0, 3), "90 km/h");
         assert_eq!(units().violation("unknown", 25.0, 3), "25");
         assert_eq!(units().title("phi"), "phi [deg]");
+        assert_eq!(units().width("v", 25.0), "90 km/h");
+        assert_eq!(units().width("other", 25.0), "25");
+        assert_eq!(units().unit("v"), " km/h");
+        assert_eq!(units().unit("n"), "");
         assert_eq!(
             units().pairs(&Named(vec![("phi".into(), 1.0), ("n".into(), 2.0)]), 6),
             "phi = 2 deg  n = 2"

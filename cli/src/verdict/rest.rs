@@ -1,6 +1,6 @@
 //! What is said where a solve failed because the function of a smoothed surface has to be 0 at the end: friction alone brings it near, and never there.
 
-use crate::output::number::short;
+use crate::output::units::Units;
 use crate::solver::Solved;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Columns, Problem};
@@ -21,13 +21,19 @@ pub(super) fn lines(solved: &Solved) -> Vec<String> {
         let last = guard.last().map_or(0.0, |value| value.abs());
         last > 0.0 && last <= NOTHING * **sigma && ends.iter().any(|miss| (miss - last).abs() <= 1e-6 * last)
     });
-    asked.map(|((surface, _), sigma)| line(&surface.name, *sigma)).collect()
+    asked.map(|((surface, _), sigma)| line(&surface.name, *sigma, &solved.document.units)).collect()
 }
 
-fn line(name: &str, sigma: f64) -> String {
+fn line(name: &str, sigma: f64, units: &Units) -> String {
+    // As it is written, with the unit in brackets.
+    let enough = units.width(name, ENOUGH * sigma);
+    let enough = match enough.split_once(' ') {
+        Some((number, unit)) => format!("{number} [{unit}]"),
+        None => enough,
+    };
     format!(
         " rest  `{name}` has to be 0 at the end, but while it is smoothed friction brings it near and never there: write `end abs({name}) <= {}` instead",
-        short(ENOUGH * sigma)
+        enough
     )
 }
 

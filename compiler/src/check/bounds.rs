@@ -4,6 +4,7 @@ use super::Facts;
 use crate::model::{Range, State};
 use crate::resolve::elaborator::Elaborator;
 use crate::resolve::text;
+use crate::units;
 use fdcc_grammar::ast::{Ident, Interval, Item, ItemKind, Start};
 use fdcc_grammar::{Code, Diagnostic, Edit, Fix, Label, Span};
 
@@ -37,44 +38,55 @@ fn look(meaning: &Elaborator<'_>, item: &Item, slips: &mut Slips) {
         return;
     };
     if let ItemKind::Time { interval, .. } = &item.kind {
-        return backwards(meaning, interval, slips);
+        return backwards(meaning, interval, scale(item), slips);
     }
     let Some(index) = meaning.index_of(index) else { return };
+    let scale = scale(item);
     match &item.kind {
         ItemKind::Control { name, bounds: Some(bounds), parts, .. } => {
             let ranges = meaning.model.controls[index..].iter().take(parts.len().max(1)).map(|it| it.range);
-            reversed(meaning, ("control", name), bounds, ranges, slips)
+            reversed(meaning, ("control", name, scale), bounds, ranges, slips)
         }
         ItemKind::Free { name, bounds: Some(bounds), .. } => {
-            reversed(meaning, ("free", name), bounds, [meaning.model.frees[index].range], slips)
+            reversed(meaning, ("free", name, scale), bounds, [meaning.model.frees[index].range], slips)
         }
         ItemKind::Param { name, value, bounds: Some(bounds), .. } => {
             let range = meaning.model.params[index].range;
-            reversed(meaning, ("param", name), bounds, [range], slips);
+            reversed(meaning, ("param", name, scale), bounds, [range], slips);
             if let Some(value) = value {
-                let subject = Subject { name: &name.name, verb: "is", span: value.span };
+                let subject = Subject { name: &name.name, verb: "is", span: value.span, scale };
                 outside(meaning, subject, meaning.param_values[index], range, slips);
             }
         }
         ItemKind::State { name, bounds, start, parts, .. } => {
             let states = meaning.model.states.get(index..index + parts.len().max(1)).unwrap_or_default();
             if let Some(bounds) = bounds {
-                reversed(meaning, ("state", name), bounds, states.iter().map(|it| it.range), slips);
+                reversed(meaning, ("state", name, scale), bounds, states.iter().map(|it| it.range), slips);
             }
             if let Some(Start::Value(value)) = start {
-                starts(meaning, states, value.span, slips);
+                starts(meaning, states, (value.span, scale), slips);
             }
         }
         _ => {}
     }
 }
 
-fn starts(meaning: &Elaborator<'_>, states: &[State], span: Span, slips: &mut Slips) {
+fn starts(meaning: &Elaborator<'_>, states: &[State], (span, scale): (Span, f64), slips: &mut Slips) {
     for state in states {
         let given = state.start.map_or(f64::NAN, |start| meaning.numeric(start));
-        let subject = Subject { name: &state.place.name, verb: "starts", span };
+        let subject = Subject { name: &state.place.name, verb: "starts", span, scale };
         outside(meaning, subject, given, state.range, slips);
     }
+}
+
+/// How many SI units one of the declared unit of an item is.
+fn scale(item: &Item) -> f64 {
+    units::unit_of(item).map_or(1.0, |unit| units::scale(unit, &mut Vec::new()))
+}
+
+/// Without the digits that going to SI and back leaves behind.
+fn shown(value: f64) -> String {
+    text::number(format!("{value:.13e}").parse().unwrap_or(value))
 }
 
 fn numbers(meaning: &Elaborator<'_>, range: Range) -> [f64; 2] {
@@ -83,7 +95,7 @@ fn numbers(meaning: &Elaborator<'_>, range: Range) -> [f64; 2] {
 
 fn reversed(
     meaning: &Elaborator<'_>,
-    (word, name): (&str, &Ident),
+    (word, name, scale): (&str, &Ident, f64),
     bounds: &Interval,
     ranges: impl IntoIterator<Item = Range>,
     slips: &mut Slips,
@@ -91,7 +103,7 @@ fn reversed(
     let bad = ranges.into_iter().map(|range| numbers(meaning, range)).find(|[lower, upper]| lower > upper);
     if let Some([lower, upper]) = bad {
         let text =
-            format!("lower bound {} is above upper bound {}", text::number(lower), text::number(upper));
+            format!("lower bound {} is above upper bound {}", shown(lower / scale), shown(upper / scale));
         slips.labels.push(Label { span: bounds.span, text });
         let (lower, upper) = (text::expr(&bounds.lower), text::expr(&bounds.upper));
         slips.repairs.push(format!("swap them: `{word} {} in [{upper}, {lower}]`", name.name));
@@ -105,6 +117,8 @@ struct Subject<'a> {
     name: &'a str,
     verb: &'static str,
     span: Span,
+    /// How many SI units one of its unit is.
+    scale: f64,
 }
 
 fn outside(meaning: &Elaborator<'_>, subject: Subject<'_>, given: f64, range: Range, slips: &mut Slips) {
@@ -115,16 +129,16 @@ fn outside(meaning: &Elaborator<'_>, subject: Subject<'_>, given: f64, range: Ra
         _ if given > upper => ("above its own upper bound", "raise", upper),
         _ => return,
     };
-    let (limit, given) = (text::number(limit), text::number(given));
+    let [limit, given] = [limit, given].map(|it| shown(it / subject.scale));
     slips.labels.push(Label { span: subject.span, text: format!("{} {side} {limit}", subject.verb) });
     let other = if subject.verb == "starts" { "start at" } else { "give it" };
     slips.repairs.push(format!("for `{}`, {change} the bound to {given} or {other} {limit}", subject.name));
 }
 
-fn backwards(meaning: &Elaborator<'_>, interval: &Interval, slips: &mut Slips) {
+fn backwards(meaning: &Elaborator<'_>, interval: &Interval, scale: f64, slips: &mut Slips) {
     let [first, last] = meaning.interval.map(|end| meaning.numeric(end));
     if first >= last {
-        let text = format!("ends at {}, but starts at {}", text::number(last), text::number(first));
+        let text = format!("ends at {}, but starts at {}", shown(last / scale), shown(first / scale));
         slips.labels.push(Label { span: interval.span, text });
         slips.repairs.push("give time a first value below its last".into());
     }

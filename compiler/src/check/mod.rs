@@ -1,13 +1,16 @@
 //! The checks that need more than names and shapes: one file for each, listed here.
 
 mod bounds;
+mod contradictions;
 mod duration;
 mod ends;
 mod equations;
+mod finite;
 mod hidden_jump;
 mod idle_jump;
 mod joints;
 mod links;
+mod lookalike;
 mod needs_time;
 mod sets;
 mod smoothness;
@@ -44,12 +47,21 @@ const OF_A_PHASE: &[Check] = &[
     smoothness::check,
     surfaces::check,
     bounds::check,
+    contradictions::check,
+    finite::check,
     values::check,
 ];
 
 /// Checks of what stands outside all phases.
-const AROUND_PHASES: &[Check] =
-    &[links::check, sets::check, hidden_jump::check, smoothness::check, bounds::check, values::check];
+const AROUND_PHASES: &[Check] = &[
+    links::check,
+    sets::check,
+    hidden_jump::check,
+    smoothness::check,
+    bounds::check,
+    finite::check,
+    values::check,
+];
 
 /// All findings about a phase, or about what stands around phases.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, is_phase: bool) -> Vec<Diagnostic> {
@@ -59,6 +71,7 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, is_phase: bool) -> Vec<Diagnostic
     found
 }
 
+pub(crate) use lookalike::check as lookalike;
 pub(crate) use unused::check as unused;
 pub(crate) use values::missing as missing_value;
 

@@ -1,14 +1,16 @@
-//! FDC0407: states, controls or dynamics need a `time`.
+//! FDC0407: states, controls or dynamics need a `time`; FDC0102: one is enough.
 
 use super::Facts;
 use crate::resolve::scope::declared;
-use fdcc_grammar::ast::ItemKind;
+use fdcc_grammar::ast::{Ident, ItemKind};
 use fdcc_grammar::{Code, Diagnostic};
 
 /// Reports a model that moves without a time to move in.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let declarations = &facts.meaning.scope.declarations;
-    if declarations.iter().any(|it| matches!(it.item.kind, ItemKind::Time { .. })) {
+    let mut times = declarations.iter().filter(|it| matches!(it.item.kind, ItemKind::Time { .. }));
+    if let Some(first) = times.next() {
+        found.extend(times.map(|second| twice(second.name, first.name)));
         return;
     }
     let moves = |kind: &ItemKind| {
@@ -26,4 +28,10 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
             diagnostic.help("write `time t in [0, 1]`, or `free T in [0.1, 100]` and `time t in [0, T]`"),
         );
     }
+}
+
+fn twice(second: &Ident, first: &Ident) -> Diagnostic {
+    Diagnostic::new(Code::DuplicateName, "a second `time`", second.span, "declared again")
+        .label(first.span, "the first one")
+        .help("a model has one time; leave one out, or give each phase its own")
 }

@@ -200,6 +200,6 @@ impl Names {
 
     /// A name that no declaration explains.
     fn built_in(name: &str) -> Meaning {
-        if name == "pi" || is_function(name) { Meaning::BuiltIn } else { Meaning::Unknown }
+        if matches!(name, "pi" | "inf") || is_function(name) { Meaning::BuiltIn } else { Meaning::Unknown }
     }
 }

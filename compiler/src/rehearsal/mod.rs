@@ -120,16 +120,22 @@ impl<'m> Rehearsal<'m> {
 
     /// The width that the run ends with.
     fn sigma(&self) -> Option<Sigma> {
-        let method = &self.model.method;
+        let (model, method) = (self.model, &self.model.method);
         let (setting, width) = match self.setting("sigma") {
             Some(setting) => (setting, method.sigma?),
             None => (self.setting("continue")?, *method.continuation.last()?),
         };
         let unit = match &setting.value {
             SettingValue::Expr(Expr { kind: ExprKind::Quantity(_, unit), .. }) => Some(unit),
+            SettingValue::List(values) => match values.last().map(|it| &it.kind) {
+                Some(ExprKind::Quantity(_, unit)) => Some(unit),
+                _ => setting.unit.as_ref(),
+            },
             _ => setting.unit.as_ref(),
         };
-        let scale = unit.map_or(1.0, |unit| units::scale(unit, &mut Vec::new()));
+        // A plain number is in the unit of what is smoothed.
+        let own = model.width_unit.as_ref().map_or(1.0, |it| it.unit.scale);
+        let scale = unit.map_or(own, |unit| units::scale(unit, &mut Vec::new()));
         let unit = unit.map_or(String::new(), |unit| format!(" {}", text::unit(unit)));
         Some(Sigma { width, scale, unit, span: span(setting) })
     }

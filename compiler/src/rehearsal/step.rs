@@ -51,10 +51,18 @@ fn too_long(rehearsal: &Rehearsal<'_>, layer: &Layer, sigma: &Sigma, step: f64, 
 impl Rehearsal<'_> {
     /// `h = T/N = 0.012 at T = 6`, where the duration is one unknown; `h = 4/500 = 0.008` where it is a number.
     fn step_text(&self, step: f64) -> String {
-        let (duration, step) = (number(short(self.duration)), number(short(step)));
+        let [duration, step] = [self.duration, step].map(|it| self.time_text(it));
         match self.free_duration() {
             Some(name) => format!("h = {name}/N = {step} at {name} = {duration}"),
             None => format!("h = {duration}/N = {step}"),
+        }
+    }
+
+    /// A span of time in the unit of time, which is told unless it is that of SI.
+    pub(super) fn time_text(&self, seconds: f64) -> String {
+        match self.model.units.iter().find(|it| it.is_time && it.scale != 1.0) {
+            Some(it) => format!("{} {}", number(short(seconds / it.scale)), it.unit),
+            None => number(short(seconds)),
         }
     }
 

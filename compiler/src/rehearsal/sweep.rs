@@ -82,7 +82,7 @@ fn too_slow(rehearsal: &Rehearsal<'_>, layer: &Layer, lists: &Lists<'_>, ratios:
     let message = format!("this sweep lets {ratio} grow, so gradients {what} need not converge");
     let shown: Vec<String> = ratios.iter().map(|ratio| digits(*ratio)).collect();
     let duration = rehearsal.free_duration().map_or(String::new(), |name| {
-        format!(" (with {name} = {} from the guess)", number(short(rehearsal.duration)))
+        format!(" (with {name} = {} from the guess)", rehearsal.time_text(rehearsal.duration))
     });
     let label = format!("{ratio} = {}{duration}", shown.join(", "));
     let power = layer.power() + 1;

@@ -5,13 +5,11 @@
 
 use super::context::Context;
 use super::elaborator::{Elaborator, Role};
-use super::expression::is_plain;
+use super::text;
 use super::value::{Traits, Value};
-use super::{scope, text, walk};
 use crate::graph::ExprId;
 use crate::model::{Place, Range, Row};
-use crate::units;
-use fdcc_grammar::ast::{Argument, BinaryOperator, Condition, Expr, ExprKind, Ident, Relation};
+use fdcc_grammar::ast::{Argument, Condition, Expr, ExprKind, Ident, Relation};
 use fdcc_grammar::{Code, Diagnostic};
 
 /// A side of a comparison.
@@ -76,16 +74,9 @@ impl<'a> Elaborator<'a> {
         rows
     }
 
-    /// Both sides, `abs(e)` against something taken off; plain numbers in the unit of the other side.
+    /// Both sides with what they are made of.
     fn sides(&mut self, exprs: [&'a Expr; 2], role: Role<'a>, context: Context) -> [Side<'a>; 2] {
-        let scales = [self.unit_of(exprs[1]), self.unit_of(exprs[0])];
-        let mut at = 0;
-        exprs.map(|expr| {
-            let scale = if is_plain(expr) { scales[at] } else { 1.0 };
-            at += 1;
-            let value = self.evaluate_for(role, context, expr);
-            (self.map(value, |graph, part| graph.scale(scale, part)), expr)
-        })
+        exprs.map(|expr| (self.evaluate_for(role, context, expr), expr))
     }
 
     /// `a relation b` for each component.
@@ -211,35 +202,6 @@ impl<'a> Elaborator<'a> {
             named: longer.named.or(other.named),
         };
         Place { name: self.component(&place.name, &named, at), span: place.span }
-    }
-
-    /// The SI value of the declared unit of what an expression measures, as far as that can be read off.
-    fn unit_of(&mut self, expr: &Expr) -> f64 {
-        let at = measured(expr).and_then(|name| self.scope.find(name));
-        let item = at.map(|at| self.scope.declarations[at].item);
-        // Mistakes in the unit are told at the declaration.
-        item.and_then(scope::unit).map_or(1.0, |unit| units::scale(unit, &mut Vec::new()))
-    }
-}
-
-/// The name in whose unit a plain number on the other side is read: that of the expression, or of the first term of a sum
-/// that is no plain number. None for a formula, beside which a plain number is in SI.
-pub(crate) fn measured(expr: &Expr) -> Option<&str> {
-    match &expr.kind {
-        ExprKind::Name(name) => Some(name),
-        ExprKind::Negate(inner) | ExprKind::Part(inner, _) | ExprKind::Index(inner, _) => measured(inner),
-        ExprKind::Call(callee, arguments) => match &arguments[..] {
-            [Argument::Start(_) | Argument::End(_)] => measured(callee),
-            _ => inside_abs(expr).and_then(measured),
-        },
-        ExprKind::Binary(..) => {
-            let (first, links) = walk::spine(expr);
-            let is_sum =
-                |link: &walk::Link<'_>| matches!(link.1, BinaryOperator::Add | BinaryOperator::Subtract);
-            let mut terms = std::iter::once(first).chain(links.iter().map(|link| link.2));
-            terms.find(|term| !is_plain(term)).filter(|_| links.iter().all(is_sum)).and_then(measured)
-        }
-        _ => None,
     }
 }
 

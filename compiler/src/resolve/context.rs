@@ -13,6 +13,8 @@ pub(crate) struct Context {
     pub allowed: Reads,
     /// Whether `x'` stands for the derivative of a guess.
     pub is_guess: bool,
+    /// Whether `inf` may stand here, for a side without a bound.
+    pub is_bound: bool,
 }
 
 const SIGNAL: Reads =
@@ -22,13 +24,13 @@ const WHOLE: Reads = Reads::PARAM.or(Reads::FREE).or(Reads::WHOLE);
 
 impl Context {
     const fn new(name: &'static str, allowed: Reads) -> Self {
-        Context { name, allowed, is_guess: false }
+        Context { name, allowed, is_guess: false, is_bound: false }
     }
 
     pub const DEFINITION: Context = Context::new("a definition", Reads::ALL);
     pub const NUMBER: Context = Context::new("a constant", Reads::PARAM);
     pub const WIDTH: Context = Context::new("a width", Reads::PARAM);
-    pub const BOUND: Context = Context::new("a bound", Reads::PARAM);
+    pub const BOUND: Context = Context { is_bound: true, ..Context::new("a bound", Reads::PARAM) };
     pub const SETTING: Context = Context::new("a setting", Reads::PARAM);
     pub const TIME: Context = Context::new("the bounds of time", Reads::PARAM.or(Reads::FREE));
     pub const START: Context = Context::new("a start value", Reads::PARAM.or(Reads::FREE));
@@ -44,7 +46,7 @@ impl Context {
     pub const SENSITIVITY: Context = Context::new("a sensitivity", WHOLE);
     pub const EXPECT: Context = Context::new("an expectation", WHOLE.or(Reads::SIMULATION));
     pub const GUESS: Context =
-        Context { name: "a guess", allowed: Reads::TIME.or(Reads::PARAM).or(Reads::FREE), is_guess: true };
+        Context { is_guess: true, ..Context::new("a guess", Reads::TIME.or(Reads::PARAM).or(Reads::FREE)) };
 }
 
 impl Elaborator<'_> {

@@ -2,13 +2,11 @@
 
 use super::context::Context;
 use super::elaborator::{Elaborator, Role};
-use super::expression::is_plain;
 use super::value::{Parts, Reads, Traits, Value};
 use super::{order, scope};
 use crate::graph::ExprId;
 use crate::model::{Control, Definition, Free, Param, Place, Range, State, Symbol};
-use crate::units;
-use fdcc_grammar::ast::{Expr, ExprKind, Ident, Interval, ItemKind, Start, Unit};
+use fdcc_grammar::ast::{Expr, Ident, Interval, ItemKind, Start};
 
 impl<'a> Elaborator<'a> {
     /// Symbols for all names, then the values of all definitions.
@@ -107,20 +105,18 @@ impl<'a> Elaborator<'a> {
     fn define(&mut self, at: usize) {
         let item = self.scope.declarations[at].item;
         match &item.kind {
-            ItemKind::Const { value, unit, .. } => {
-                let value = self.scaled(Role::Number("a constant"), Context::NUMBER, value, unit.as_ref());
+            ItemKind::Const { value, .. } => {
+                let value = self.evaluate_for(Role::Number("a constant"), Context::NUMBER, value);
                 self.keep_definition(at, &[], &value.parts);
                 self.values[at] = value;
             }
-            ItemKind::Let { value, unit, .. } => {
-                let scale = self.scale_of(value, unit.as_ref());
+            ItemKind::Let { value, .. } => {
                 let value = self.evaluate_in(Context::DEFINITION, value);
-                let value = self.map(value, |graph, part| graph.scale(scale, part));
                 self.keep_definition(at, &[], &value.parts);
                 self.values[at] = value;
                 self.name_parts(at);
             }
-            ItemKind::Param { value: Some(value), unit, .. } => self.define_param(at, value, unit.as_ref()),
+            ItemKind::Param { value: Some(value), .. } => self.define_param(at, value),
             ItemKind::Surface { value, name } => self.define_surface(at, name, value),
             ItemKind::Fn { name: _, arguments, body } => self.examine(at, arguments, body),
             _ => {}
@@ -144,8 +140,8 @@ impl<'a> Elaborator<'a> {
         self.model.definitions.push(Definition { name, arguments, parts: parts.as_slice().to_vec() });
     }
 
-    fn define_param(&mut self, at: usize, value: &'a Expr, unit: Option<&Unit>) {
-        let value_of = self.scaled(Role::Number("a parameter"), Context::NUMBER, value, unit);
+    fn define_param(&mut self, at: usize, value: &'a Expr) {
+        let value_of = self.evaluate_for(Role::Number("a parameter"), Context::NUMBER, value);
         let Some(part) = self.expect_number(&value_of, value.span) else { return };
         let Some(index) = self.index_of(at) else { return };
         self.param_values[index] = self.numeric(part);
@@ -186,39 +182,30 @@ impl<'a> Elaborator<'a> {
     fn bound(&mut self, at: usize) {
         let item = self.scope.declarations[at].item;
         match &item.kind {
-            ItemKind::Param { bounds: Some(bounds), unit, value, .. } => {
-                let unit = unit.as_ref().or_else(|| value.as_ref().and_then(unit_of_number));
-                let range = self.ranges(Context::BOUND, bounds, 1, unit)[0];
+            ItemKind::Param { bounds: Some(bounds), .. } => {
+                let range = self.ranges(Context::BOUND, bounds, 1)[0];
                 if let Some(index) = self.index_of(at) {
                     self.model.params[index].range = range;
                 }
             }
-            ItemKind::Free { bounds, unit, guess, .. } => {
-                self.bound_free(at, bounds.as_ref(), unit.as_ref(), guess.as_ref())
+            ItemKind::Free { bounds, guess, .. } => self.bound_free(at, bounds.as_ref(), guess.as_ref()),
+            ItemKind::State { parts, bounds, start, .. } => {
+                self.bound_state(at, parts.len().max(1), bounds.as_ref(), start.as_ref())
             }
-            ItemKind::State { parts, unit, bounds, start, .. } => {
-                self.bound_state(at, parts.len().max(1), unit.as_ref(), bounds.as_ref(), start.as_ref())
-            }
-            ItemKind::Control { parts, bounds, unit, guess, .. } => {
-                self.bound_control(at, parts.len().max(1), bounds.as_ref(), unit.as_ref(), guess.as_ref())
+            ItemKind::Control { parts, bounds, guess, .. } => {
+                self.bound_control(at, parts.len().max(1), bounds.as_ref(), guess.as_ref())
             }
             _ => {}
         }
     }
 
-    fn bound_free(
-        &mut self,
-        at: usize,
-        bounds: Option<&'a Interval>,
-        unit: Option<&Unit>,
-        guess: Option<&'a Expr>,
-    ) {
+    fn bound_free(&mut self, at: usize, bounds: Option<&'a Interval>, guess: Option<&'a Expr>) {
         let Some(index) = self.index_of(at) else { return };
         if let Some(bounds) = bounds {
-            self.model.frees[index].range = self.ranges(Context::BOUND, bounds, 1, unit)[0];
+            self.model.frees[index].range = self.ranges(Context::BOUND, bounds, 1)[0];
         }
         if let Some(guess) = guess {
-            let value = self.scaled(Role::Number("a guess"), Context::FREE_GUESS, guess, unit);
+            let value = self.evaluate_for(Role::Number("a guess"), Context::FREE_GUESS, guess);
             self.model.frees[index].guess = self.expect_number(&value, guess.span);
         }
     }
@@ -227,24 +214,23 @@ impl<'a> Elaborator<'a> {
         &mut self,
         at: usize,
         size: usize,
-        unit: Option<&Unit>,
         bounds: Option<&'a Interval>,
         start: Option<&'a Start>,
     ) {
         let Some(first) = self.index_of(at) else { return };
         if let Some(bounds) = bounds {
-            let ranges = self.ranges(Context::BOUND, bounds, size, unit);
+            let ranges = self.ranges(Context::BOUND, bounds, size);
             (0..size).for_each(|part| self.model.states[first + part].range = ranges[part]);
         }
         match start {
             Some(Start::Value(value)) => {
-                let value_of = self.scaled(Role::Number("a start value"), Context::START, value, unit);
+                let value_of = self.evaluate_for(Role::Number("a start value"), Context::START, value);
                 let parts = self.expect_parts(&value_of, size, value.span);
                 let states = self.model.states[first..].iter_mut();
                 states.zip(parts).for_each(|(state, part)| state.start = Some(part));
             }
             Some(Start::Free { bounds: Some(bounds), .. }) => {
-                let ranges = self.ranges(Context::BOUND, bounds, size, unit);
+                let ranges = self.ranges(Context::BOUND, bounds, size);
                 (0..size).for_each(|part| self.model.states[first + part].start_range = Some(ranges[part]));
             }
             _ => {}
@@ -256,16 +242,15 @@ impl<'a> Elaborator<'a> {
         at: usize,
         size: usize,
         bounds: Option<&'a Interval>,
-        unit: Option<&Unit>,
         guess: Option<&'a Expr>,
     ) {
         let Some(first) = self.index_of(at) else { return };
         if let Some(bounds) = bounds {
-            let ranges = self.ranges(Context::BOUND, bounds, size, unit);
+            let ranges = self.ranges(Context::BOUND, bounds, size);
             (0..size).for_each(|part| self.model.controls[first + part].range = ranges[part]);
         }
         if let Some(guess) = guess {
-            let value = self.scaled(Role::Number("a guess"), Context::GUESS, guess, unit);
+            let value = self.evaluate_for(Role::Number("a guess"), Context::GUESS, guess);
             let parts = self.expect_parts(&value, size, guess.span);
             self.model.controls[first..]
                 .iter_mut()
@@ -275,15 +260,9 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The bounds of each component.
-    fn ranges(
-        &mut self,
-        context: Context,
-        interval: &'a Interval,
-        size: usize,
-        unit: Option<&Unit>,
-    ) -> Vec<Range> {
+    fn ranges(&mut self, context: Context, interval: &'a Interval, size: usize) -> Vec<Range> {
         let [lower, upper] = [&interval.lower, &interval.upper].map(|expr| {
-            let value = self.scaled(Role::Number("a bound"), context, expr, unit);
+            let value = self.evaluate_for(Role::Number("a bound"), context, expr);
             self.expect_parts(&value, size, expr.span)
         });
         let everything = self.everything();
@@ -292,23 +271,6 @@ impl<'a> Elaborator<'a> {
             upper: upper.get(part).copied().unwrap_or(everything.upper),
         };
         (0..size).map(pair).collect()
-    }
-
-    /// An expression for a purpose; a plain number takes the unit that stands beside it.
-    pub fn scaled(&mut self, role: Role<'a>, context: Context, expr: &'a Expr, unit: Option<&Unit>) -> Value {
-        let scale = self.scale_of(expr, unit);
-        let value = self.evaluate_for(role, context, expr);
-        self.map(value, |graph, part| graph.scale(scale, part))
-    }
-
-    fn scale_of(&mut self, expr: &Expr, unit: Option<&Unit>) -> f64 {
-        match unit {
-            Some(unit) => {
-                let scale = units::scale(unit, &mut self.diagnostics);
-                if is_plain(expr) { scale } else { 1.0 }
-            }
-            None => 1.0,
-        }
     }
 
     /// The index of a declaration's first scalar among those of its kind.
@@ -334,12 +296,4 @@ fn places(name: &Ident, parts: &[Ident]) -> Vec<Place> {
         return vec![place(name)];
     }
     parts.iter().map(|part| Place { name: format!("{}.{}", name.name, part.name), span: name.span }).collect()
-}
-
-/// The unit of `80 [cm]`: plain numbers beside it are in the same.
-fn unit_of_number(value: &Expr) -> Option<&Unit> {
-    match &value.kind {
-        ExprKind::Quantity(_, unit) => Some(unit),
-        _ => None,
-    }
 }

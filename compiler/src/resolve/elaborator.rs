@@ -9,6 +9,7 @@ use crate::blend::Guards;
 use crate::graph::evaluate;
 use crate::graph::{ExprId, Graph};
 use crate::model::{Ball, Integral, Model, Place, Symbol};
+use crate::units::Readings;
 use fdcc_grammar::ast;
 use fdcc_grammar::{Code, Diagnostic, Span};
 use std::collections::{HashMap, HashSet};
@@ -84,6 +85,8 @@ pub(crate) struct Elaborator<'a> {
     pub surface_of: HashMap<usize, usize>,
     /// Integrals.
     pub integrals: Vec<Integral>,
+    /// By what the value of a text is multiplied, because it stands beside something in another unit than that of SI.
+    pub readings: &'a Readings,
     /// The input of each integral.
     pub integral_inputs: Vec<ExprId>,
     /// The inputs of the states at the start and at the end.
@@ -124,7 +127,7 @@ pub(crate) fn not_yet(span: Span, what: &str) -> Diagnostic {
 
 impl<'a> Elaborator<'a> {
     /// Nothing evaluated yet.
-    pub fn new(scope: Scope<'a>) -> Self {
+    pub fn new(scope: Scope<'a>, readings: &'a Readings) -> Self {
         let mut graph = Graph::new();
         let interval = [graph.number(0.0), graph.number(1.0)];
         let values = vec![Value::default(); scope.declarations.len()];
@@ -146,6 +149,7 @@ impl<'a> Elaborator<'a> {
             balls: Vec::new(),
             surface_of: HashMap::new(),
             integrals: Vec::new(),
+            readings,
             integral_inputs: Vec::new(),
             at_ends: Default::default(),
             time: None,

@@ -15,6 +15,7 @@ impl<'a> Elaborator<'a> {
         }
         self.depth += 1;
         let value = self.evaluate_kind(expr);
+        let value = self.in_its_unit(expr, value);
         self.depth -= 1;
         if let (ExprKind::Call(..), Parts::Scalar(part), true) =
             (&expr.kind, &value.parts, self.owner.is_none())
@@ -24,12 +25,20 @@ impl<'a> Elaborator<'a> {
         value
     }
 
+    /// A number without a unit is read in that of what it stands beside.
+    fn in_its_unit(&mut self, expr: &Expr, value: Value) -> Value {
+        match self.readings.get(&expr.span) {
+            Some(&scale) => self.map(value, |graph, part| graph.scale(scale, part)),
+            None => value,
+        }
+    }
+
     fn evaluate_kind(&mut self, expr: &'a Expr) -> Value {
         match &expr.kind {
             ExprKind::Number(value) => self.constant(*value),
             ExprKind::Quantity(value, unit) => {
-                let scale = units::scale(unit, &mut self.diagnostics);
-                self.constant(value * scale)
+                // Unknown units have been told.
+                self.constant(value * units::scale(unit, &mut Vec::new()))
             }
             ExprKind::Name(name) => self.name(name, expr.span),
             ExprKind::Negate(inner) => {
@@ -73,10 +82,10 @@ impl<'a> Elaborator<'a> {
             return value.clone();
         }
         let Some(at) = self.scope.find(name) else {
-            return if name == "pi" {
-                self.constant(std::f64::consts::PI)
-            } else {
-                self.unknown_name(name, span)
+            return match name {
+                "pi" => self.constant(std::f64::consts::PI),
+                "inf" => self.infinity(span),
+                _ => self.unknown_name(name, span),
             };
         };
         if self.circular[at] {
@@ -89,6 +98,16 @@ impl<'a> Elaborator<'a> {
         let mut value = self.values[at].clone();
         value.traits = value.traits.used_at(span);
         self.admit(name, value, span)
+    }
+
+    /// `in [0, inf]`: no bound on that side. Nothing else is infinite.
+    fn infinity(&mut self, span: Span) -> Value {
+        if self.context.is_bound {
+            return self.constant(f64::INFINITY);
+        }
+        let message = format!("`inf` has no meaning in {}", self.context.name);
+        let found = Diagnostic::new(Code::NotAllowedHere, message, span, "not a number");
+        self.fail(found.help("only a side of bounds may be missing: `in [0, inf]`, `in [-inf, 3]`"))
     }
 
     fn unknown_name(&mut self, name: &str, span: Span) -> Value {
@@ -225,17 +244,4 @@ impl<'a> Elaborator<'a> {
 fn pick(value: Value, index: usize) -> Value {
     let parts = value.parts.as_slice().get(index).map_or(Parts::Unknown, |part| Parts::Scalar(*part));
     Value { parts, traits: value.traits, named: None }
-}
-
-/// A number without names or units, which takes the unit of where it stands.
-pub(crate) fn is_plain(expr: &Expr) -> bool {
-    let mut plain = true;
-    walk::visit(expr, &mut |inner| {
-        plain &= match &inner.kind {
-            ExprKind::Number(_) | ExprKind::Negate(_) | ExprKind::Binary(..) | ExprKind::Tuple(_) => true,
-            ExprKind::Name(name) => name == "pi",
-            _ => false,
-        }
-    });
-    plain
 }

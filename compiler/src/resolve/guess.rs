@@ -23,7 +23,7 @@ impl<'a> Elaborator<'a> {
         let item = self.scope.declarations[at].item;
         let is_free = matches!(item.kind, ItemKind::Free { .. });
         let context = if is_free { Context::FREE_GUESS } else { Context::GUESS };
-        let value = self.scaled(Role::Number("a guess"), context, &binding.value, scope::unit(item));
+        let value = self.evaluate_for(Role::Number("a guess"), context, &binding.value);
         let size = self.values[at].parts.as_slice().len();
         let parts = self.expect_parts(&value, size, binding.value.span);
         let Some(first) = self.index_of(at) else { return };

@@ -6,17 +6,15 @@ use super::value::Value;
 use super::{scope, text};
 use crate::graph::ExprId;
 use crate::model::{Comparison, Expectation, Place, Report};
-use fdcc_grammar::ast::{
-    Binding, Check, Equation, Expr, Ident, Interval, Item, ItemKind, Relation, Sense, Unit,
-};
+use fdcc_grammar::ast::{Binding, Check, Equation, Expr, Ident, Interval, Item, ItemKind, Relation, Sense};
 use fdcc_grammar::{Code, Diagnostic, Span};
 
 impl<'a> Elaborator<'a> {
     /// Resolves items in an order in which each finds what it needs: time before conditions, guesses last.
     pub fn resolve_items(&mut self, items: &[&'a Item]) {
         for item in items {
-            if let ItemKind::Time { interval, unit, .. } = &item.kind {
-                self.time_interval(interval, unit.as_ref());
+            if let ItemKind::Time { interval, .. } = &item.kind {
+                self.time_interval(interval);
             }
         }
         items.iter().for_each(|item| self.item(item));
@@ -44,9 +42,9 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn time_interval(&mut self, interval: &'a Interval, unit: Option<&Unit>) {
+    fn time_interval(&mut self, interval: &'a Interval) {
         for (at, end) in [&interval.lower, &interval.upper].into_iter().enumerate() {
-            let value = self.scaled(Role::Number("a bound of time"), Context::TIME, end, unit);
+            let value = self.evaluate_for(Role::Number("a bound of time"), Context::TIME, end);
             if let Some(part) = self.expect_number(&value, end.span) {
                 self.interval[at] = part;
             }

@@ -28,6 +28,7 @@ pub(crate) mod value;
 pub(crate) mod walk;
 
 use crate::model::{Model, Surface};
+use crate::units::{self, Readings};
 pub(crate) use blend::no_width;
 pub use calls::function_names;
 pub(crate) use calls::is_function;
@@ -39,11 +40,12 @@ use scope::Scope;
 
 /// Resolves the items of one phase together with those around it. `items` are resolved; the declarations of
 /// `outer` are known to them.
-pub(crate) fn resolve<'a>(outer: &[&'a Item], items: &[&'a Item]) -> Elaborator<'a> {
+pub(crate) fn resolve<'a>(outer: &[&'a Item], items: &[&'a Item], readings: &'a Readings) -> Elaborator<'a> {
     let mut diagnostics: Vec<Diagnostic> = Vec::new();
     let all: Vec<&Item> = outer.iter().chain(items).copied().collect();
     let scope = Scope::new(&all, &mut diagnostics);
-    let mut elaborator = Elaborator::new(scope);
+    items.iter().for_each(|item| units::unknown(item, &mut diagnostics));
+    let mut elaborator = Elaborator::new(scope, readings);
     elaborator.diagnostics = diagnostics;
     elaborator.declare_all();
     elaborator.resolve_items(items);

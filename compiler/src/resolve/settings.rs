@@ -6,7 +6,6 @@ use super::misfit::misfit;
 use super::{closest, text};
 use crate::model::Model;
 use crate::smooth;
-use crate::units;
 use fdcc_grammar::ast::{Expr, ExprKind, Ident, ItemKind, Setting, SettingValue};
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 use fdcc_runtime::problem::{ControlShape, Linear, MOST_STAGES, Method, Scheme, Solver};
@@ -250,20 +249,17 @@ impl<'a> Elaborator<'a> {
 
     /// The value of a setting: a word, a number or a list of numbers.
     fn given(&mut self, setting: &'a Setting) -> Option<(Given, Span)> {
-        let scale = setting.unit.as_ref().map_or(1.0, |unit| units::scale(unit, &mut self.diagnostics));
         match &setting.value {
             SettingValue::Scheme { name, .. } => Some((Given::Word(name.name.clone()), name.span)),
             SettingValue::Expr(expr) => match &expr.kind {
                 ExprKind::Name(name) if self.is_word(name) => Some((Given::Word(name.clone()), expr.span)),
-                _ => self.setting_number(expr).map(|value| (Given::Number(value * scale), expr.span)),
+                _ => self.setting_number(expr).map(|value| (Given::Number(value), expr.span)),
             },
             SettingValue::List(list) => {
-                let number = |expr| Some(units::list_scale(list, expr) * self.setting_number(expr)?);
-                let numbers: Option<Vec<f64>> = list.iter().map(number).collect();
+                let numbers: Option<Vec<f64>> = list.iter().map(|expr| self.setting_number(expr)).collect();
                 let span =
                     list.first().map_or(setting.key.span, |first| first.span.to(list[list.len() - 1].span));
-                numbers
-                    .map(|numbers| (Given::List(numbers.iter().map(|value| value * scale).collect()), span))
+                numbers.map(|numbers| (Given::List(numbers), span))
             }
         }
     }

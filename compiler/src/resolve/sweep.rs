@@ -5,7 +5,6 @@ use super::elaborator::{Elaborator, Role};
 use super::settings::{Given, Refused, is_key, keys, nearest_key, set};
 use super::{closest, text};
 use crate::model::{Place, Swept};
-use crate::units;
 use fdcc_grammar::ast::{self, Expr, ExprKind, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 
@@ -34,14 +33,14 @@ impl<'a> Elaborator<'a> {
         Some(Swept { place, values: values?, values_span: span_of(&list.values) })
     }
 
-    /// A value as the command line takes it: a number in SI, or a word.
+    /// A value: a number in SI, or a word.
     fn swept_value(&mut self, list: &ast::Swept, is_param: bool, expr: &'a Expr) -> Option<String> {
         let given = match &expr.kind {
             ExprKind::Name(word) if !is_param && self.scope.find(word).is_none() => Given::Word(word.clone()),
             _ => {
                 let value = self.evaluate_for(Role::Number("a sweep"), Context::SETTING, expr);
                 let part = self.expect_number(&value, expr.span)?;
-                Given::Number(units::list_scale(&list.values, expr) * self.numeric(part))
+                Given::Number(self.numeric(part))
             }
         };
         if !is_param && let Err(refused) = set(&mut self.model.method.clone(), &list.name.name, &given) {

@@ -1,5 +1,6 @@
 //! What a call measures: the builtin functions, the special forms, and the model's own functions, each time anew.
 
+use super::declared::Declared;
 use super::dimension::Dimension;
 use super::inference::{Inference, Operand, side};
 use super::ratio::Ratio;
@@ -125,12 +126,12 @@ impl<'a> Inference<'a> {
         match (name, &given[..]) {
             ("abs" | "selected", [only]) => only.0.clone(),
             ("sqrt", [only]) => self.powers(&only.0, Ratio::from_decimal(0.5)),
-            ("min" | "max", [a, b]) => self.equal(Reason::Together(name), a, b),
+            ("min" | "max", [a, b]) => as_formula(self.equal(Reason::Together(name), a, b)),
             ("atan2", [a, b]) => {
                 self.equal(Reason::Together(name), a, b);
                 no_unit(&given)
             }
-            ("norm", [only]) => self.one_unit(name, only),
+            ("norm", [only]) => as_formula(self.one_unit(name, only)),
             ("normsq", [only]) => {
                 let one = self.one_unit(name, only);
                 self.powers(&one, Some(Ratio::whole(2)))
@@ -141,7 +142,7 @@ impl<'a> Inference<'a> {
             }
             ("cross", [a, b]) => self.cross(a, b),
             ("Sgn" | "Dir", [only]) => self.set(name, only),
-            ("integral", [only]) => pairwise(&only.0, &self.time(), Part::times),
+            ("integral", [only]) => self.integral(only),
             ("sliding", _) => self.time(),
             ("sensitivity", [of, by]) => pairwise(&of.0, &by.0, Part::over),
             ("interpolate", [times, values, at]) => {
@@ -159,6 +160,14 @@ impl<'a> Inference<'a> {
             true => no_unit(std::slice::from_ref(only)),
             false => vec![self.free(expr.span)],
         }
+    }
+
+    /// Time is not named in it: the integral of a speed in m/s is a length in m, also over minutes.
+    fn integral(&self, only: &Operand<'a>) -> Value {
+        pairwise(&only.0, &self.time(), |part, time| match part.declared.is_si() {
+            true => part.times(time).in_unit(Declared::SI).as_formula(),
+            false => part.times(time),
+        })
     }
 
     fn powers(&self, value: &[Part], exponent: Option<Ratio>) -> Value {
@@ -206,7 +215,11 @@ impl<'a> Inference<'a> {
     }
 }
 
+fn as_formula(value: Value) -> Value {
+    value.into_iter().map(Part::as_formula).collect()
+}
+
 fn no_unit(arguments: &[Operand<'_>]) -> Value {
     let plain = arguments.iter().flat_map(|it| &it.0).all(|part| part.plain);
-    vec![Part { dimension: Some(Dimension::none()), plain }]
+    vec![Part { plain, ..Part::of(Dimension::none()) }]
 }

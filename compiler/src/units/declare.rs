@@ -2,6 +2,7 @@
 
 use super::expression::written;
 use super::inference::{Inference, Operand, named};
+use super::messages::unit_of;
 use super::requirement::Reason;
 use super::value::{Part, Value};
 use crate::resolve::order::order;
@@ -79,7 +80,12 @@ impl<'a> Inference<'a> {
             self.compare(Reason::Given("its value", it.name), &declared, &given);
             given.0.iter().map(|_| written(unit)).collect()
         } else {
-            let own = |part: &Part| if part.plain { self.number(it.name, it.item) } else { part.clone() };
+            let is_quantity = unit_of(it.item).is_some();
+            let own = |part: &Part| match part.plain {
+                true => self.number(it.name, it.item),
+                false if is_quantity => part.clone().as_name(),
+                false => part.clone().as_definition(),
+            };
             given.0.iter().map(own).collect()
         };
         if !self.suspects.contains(&it.name.span) {
@@ -149,7 +155,7 @@ fn is_number<'e>(given: impl Iterator<Item = &'e Expr>) -> bool {
         walk::visit(expr, &mut |inner| {
             plain &= match &inner.kind {
                 ExprKind::Number(_) | ExprKind::Negate(_) | ExprKind::Binary(..) => true,
-                ExprKind::Name(name) => name == "pi",
+                ExprKind::Name(name) => name == "pi" || name == "inf",
                 _ => false,
             };
         });

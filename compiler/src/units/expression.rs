@@ -1,5 +1,6 @@
 //! What an expression measures: one arm per kind; calls are in the file beside this one.
 
+use super::declared::Declared;
 use super::dimension::Dimension;
 use super::inference::{Inference, Operand, side};
 use super::ratio::Ratio;
@@ -26,7 +27,9 @@ impl<'a> Inference<'a> {
     fn evaluate_kind(&mut self, expr: &'a Expr) -> Value {
         match &expr.kind {
             ExprKind::Number(value) => vec![Part::number(*value)],
-            ExprKind::Quantity(_, unit) => vec![written(unit)],
+            ExprKind::Quantity(_, unit) => {
+                vec![written(unit).in_unit(Declared::of_quantity(unit))]
+            }
             ExprKind::Name(name) => self.name(name),
             ExprKind::Negate(inner) => self.evaluate(inner),
             ExprKind::Binary(..) => self.chain(expr),
@@ -43,7 +46,8 @@ impl<'a> Inference<'a> {
             ExprKind::Piecewise { arms, otherwise } => self.piecewise(arms, otherwise),
             ExprKind::Match { below, above, .. } => {
                 let (below, above) = (self.operand(below), self.operand(above));
-                self.equal(Reason::Alternatives, &below, &above)
+                let both = self.equal(Reason::Alternatives, &below, &above);
+                both.into_iter().map(Part::as_formula).collect()
             }
         }
     }
@@ -54,6 +58,8 @@ impl<'a> Inference<'a> {
         }
         match self.scope.find(name) {
             Some(at) => self.values.get(&self.scope.declarations[at].name.span).cloned().unwrap_or_default(),
+            // Without bounds in every unit.
+            None if name == "inf" => vec![Part { plain: true, ..Part::ANY }],
             None if name == "pi" => vec![Part::number(std::f64::consts::PI)],
             None => Value::new(),
         }
@@ -103,7 +109,7 @@ impl<'a> Inference<'a> {
             Some(exponent) => base.0.iter().map(|part| part.power(exponent)).collect(),
             None if self.need_none(Reason::FixedPower, site, &base) => {
                 let plain = base.0.iter().chain(&exponent.0).all(|part| part.plain);
-                vec![Part { dimension: Some(Dimension::none()), plain }]
+                vec![Part { plain, ..Part::of(Dimension::none()) }]
             }
             None => vec![self.free(site)],
         }
@@ -182,13 +188,13 @@ impl<'a> Inference<'a> {
             let value = self.operand(&arm.value);
             all = self.equal(Reason::Alternatives, &value, &(all, rest.1.clone()));
         }
-        all
+        all.into_iter().map(Part::as_formula).collect()
     }
 }
 
 /// What a written unit measures; one with an unknown name goes with everything.
 pub(crate) fn written(unit: &Unit) -> Part {
-    table::dimension(unit).map_or(Part::ANY, Part::of)
+    table::dimension(unit).map_or(Part::ANY, |it| Part::of(it).in_unit(Declared::of(unit)))
 }
 
 fn picked(value: &[Part], at: usize) -> Value {

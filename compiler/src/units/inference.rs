@@ -3,8 +3,9 @@
 //! One walk over the text collects [`Requirement`]s; solving them comes afterwards. A text that was found wrong is passed
 //! over in the next walk and counts as unknown: so a mistake is told once, and nothing follows from it.
 
-use super::bare::Bare;
+use super::declared::Declared;
 use super::dimension::{Atom, Dimension};
+use super::readings::{Bare, Readings};
 use super::requirement::{Call, Reason, Requirement, Side};
 use super::value::{Part, Value, pairwise};
 use crate::resolve::scope::Scope;
@@ -54,7 +55,9 @@ pub(crate) struct Inference<'a> {
     pub switches: Vec<Part>,
     /// The names of each phase.
     pub phases: HashMap<&'a str, Scope<'a>>,
-    /// Plain numbers beside formulas.
+    /// By what each plain number is multiplied.
+    pub readings: Readings,
+    /// Plain numbers that may be refused.
     pub bare: Vec<Bare<'a>>,
     /// What must hold.
     pub requirements: Vec<Requirement<'a>>,
@@ -86,6 +89,7 @@ impl<'a> Inference<'a> {
             depth: 0,
             switches: Vec::new(),
             phases: HashMap::new(),
+            readings: Readings::new(),
             bare: Vec::new(),
             requirements: Vec::new(),
             wrong,
@@ -114,7 +118,7 @@ impl<'a> Inference<'a> {
     pub fn number(&mut self, name: &'a Ident, item: &'a Item) -> Part {
         self.numbers.push(PlainNumber { declared: Some((name, item)), place: None });
         let atom = Atom::Number(self.numbers.len() as u32 - 1);
-        Part { dimension: Some(Dimension::atom(atom)), plain: true }
+        Part { plain: true, ..Part::of(Dimension::atom(atom)) }
     }
 
     /// A curve such as `t/T` may be guessed for a length: it goes up to 1 in the unit of what is guessed.
@@ -123,7 +127,7 @@ impl<'a> Inference<'a> {
             self.numbers.push(PlainNumber { declared: None, place: subject.dimension.clone() });
             let atom = Atom::Number(self.numbers.len() as u32 - 1);
             let dimension = curve.dimension.as_ref().and_then(|it| it.times(&Dimension::atom(atom)));
-            Part { dimension, plain: curve.plain }
+            Part { dimension, ..curve.clone() }
         })
     }
 
@@ -150,10 +154,15 @@ impl<'a> Inference<'a> {
             }
             Part::ANY
         });
+        self.read(left, right);
+        self.read(right, left);
     }
 
+    /// Where the other side is not in SI, the number is only multiplied: it is not that quantity elsewhere.
     fn place(&mut self, number: &Part, other: &Part) {
-        if let (Some(at), Some(dimension), false) = (number.as_number(), &other.dimension, other.plain) {
+        if let (Some(at), Some(dimension), false) =
+            (number.as_number(), &other.dimension, other.plain || !other.declared.is_si())
+        {
             self.numbers[at as usize].place.get_or_insert_with(|| dimension.clone());
         }
     }
@@ -166,15 +175,22 @@ impl<'a> Inference<'a> {
         right: (&Part, &Side<'a>),
     ) -> Part {
         let plain = left.0.plain && right.0.plain;
+        if !matches!(reason, Reason::Uses(_)) {
+            self.read_term(left, right);
+        }
+        let sum = Part { plain, declared: left.0.sum_with(right.0), ..left.0.clone() };
         match (&left.0.dimension, &right.0.dimension) {
             _ if self.wrong.contains(&site) => self.free(site),
-            (Some(a), Some(b)) if a == b => Part { plain, ..left.0.clone() },
-            (Some(_), Some(_)) if plain => Part { dimension: None, plain },
+            (Some(a), Some(b)) if a == b => sum,
+            // Names for numbers keep what their place may make of them.
+            (Some(a), Some(b)) if plain => {
+                Part { dimension: Some(if a.is_none() { b.clone() } else { a.clone() }), ..sum }
+            }
             (Some(_), Some(_)) => {
                 self.require(reason, site, described(left), described(right));
-                Part { plain, ..left.0.clone() }
+                sum
             }
-            (a, b) => Part { dimension: a.clone().or_else(|| b.clone()), plain },
+            (a, b) => Part { dimension: a.clone().or_else(|| b.clone()), ..sum },
         }
     }
 
@@ -185,7 +201,7 @@ impl<'a> Inference<'a> {
                 if self.wrong.contains(&site) {
                     return false;
                 }
-                let right = Side { span: site, expr: None, dimension: Dimension::none(), plain: true };
+                let right = Side { plain: true, ..named(site) };
                 self.require(reason, site, described((part, &operand.1)), right);
             }
         }
@@ -200,14 +216,19 @@ impl<'a> Inference<'a> {
 
 /// An expression as a side; what it measures is filled in where it is compared.
 pub(crate) fn side(expr: &Expr) -> Side<'_> {
-    Side { span: expr.span, expr: Some(expr), dimension: Dimension::none(), plain: false }
+    Side { expr: Some(expr), ..named(expr.span) }
 }
 
 /// A declared name as a side.
 pub(crate) fn named<'a>(span: Span) -> Side<'a> {
-    Side { span, expr: None, dimension: Dimension::none(), plain: false }
+    Side { span, expr: None, dimension: Dimension::none(), plain: false, declared: Declared::SI }
 }
 
 fn described<'a>((part, side): (&Part, &Side<'a>)) -> Side<'a> {
-    Side { dimension: part.dimension.clone().unwrap_or_default(), plain: part.plain, ..side.clone() }
+    Side {
+        dimension: part.dimension.clone().unwrap_or_default(),
+        plain: part.plain,
+        declared: part.declared.clone(),
+        ..side.clone()
+    }
 }

@@ -1,13 +1,13 @@
 //! What the items demand of units: equations, conditions, resets, links, settings and the rest.
 
-use super::dimension::Dimension;
 use super::inference::{Inference, Operand, named, side};
 use super::requirement::Reason;
 use super::value::{Part, Value, pairwise};
 use crate::resolve::scope::{Declaration, Scope};
 use fdcc_grammar::Span;
 use fdcc_grammar::ast::{
-    self, Assignment, Check, Condition, Equation, Expr, Ident, Item, ItemKind, Setting, SettingValue, Swept,
+    self, Assignment, Check, Condition, Equation, Expr, ExprKind, Ident, Item, ItemKind, Setting,
+    SettingValue, Swept, Unit,
 };
 
 impl<'a> Inference<'a> {
@@ -89,31 +89,37 @@ impl<'a> Inference<'a> {
     }
 
     fn condition(&mut self, condition: &'a Condition) {
-        let (mut left, mut text) = (self.operand(&condition.first), &condition.first);
+        let mut left = self.operand(&condition.first);
         self.values.insert(condition.span, left.0.clone());
         for (_, next) in &condition.rest {
             let right = self.operand(next);
             self.compare(Reason::Comparison, &left, &right);
-            self.note_bare([(text, left.0.first()), (next, right.0.first())]);
-            (left, text) = (right, next);
+            left = right;
         }
     }
 
     fn check(&mut self, check: &'a Check) {
         let (left, right) = (self.operand(&check.left), self.operand(&check.right));
         self.compare(Reason::Comparison, &left, &right);
-        self.note_bare([(&check.left, left.0.first()), (&check.right, right.0.first())]);
+        let is_number = left.0.iter().all(|part| part.plain);
+        self.values.insert(check.span, if is_number { right.0.clone() } else { left.0.clone() });
         if let Some(within) = &check.within {
             let within = self.operand(within);
-            self.compare(Reason::Comparison, &left, &within);
+            // The tolerance is one of the side that has a unit.
+            self.compare(Reason::Comparison, if is_number { &right } else { &left }, &within);
         }
     }
 
     /// A value for a name in a block.
     fn assigned(&mut self, what: &'static str, name: &'a Ident, value: &'a Expr) {
-        match self.declared(name) {
-            Some(it) => self.value_for(what, name, &(self.subject(it).0, named(name.span)), value),
-            None => drop(self.evaluate(value)),
+        let given = self.operand(value);
+        self.assigned_value(what, name, given);
+    }
+
+    fn assigned_value(&mut self, what: &'static str, name: &'a Ident, given: Operand<'a>) {
+        if let Some(it) = self.declared(name) {
+            let subject = (self.subject(it).0, named(name.span));
+            self.compare(Reason::Given(what, name), &subject, &given);
         }
     }
 
@@ -121,7 +127,8 @@ impl<'a> Inference<'a> {
         let (value, text) = self.operand(curve);
         let Some(it) = self.declared(name) else { return };
         let subject = (self.subject(it).0, named(name.span));
-        let value = self.stretched(&value, &subject.0);
+        self.read_curve(&(value.clone(), text.clone()), &subject);
+        let value = if value.iter().all(|it| it.plain) { value } else { self.stretched(&value, &subject.0) };
         self.compare(Reason::Given("the guess", name), &subject, &(value, text));
     }
 
@@ -175,36 +182,62 @@ impl<'a> Inference<'a> {
         if !matches!(setting.key.name.as_str(), "sigma" | "continue") {
             return;
         }
-        let unit = setting.unit.as_ref().map(super::expression::written);
+        let unit = setting.unit.as_ref().or_else(|| widths.last().and_then(|last| quantity(last)));
         for width in widths {
-            let (value, side) = self.operand(width);
-            let value = unit.clone().map_or(value, |unit| vec![unit]);
-            self.width(&setting.key, (value, side));
+            let given = self.listed(width, unit);
+            self.width(&setting.key, given);
         }
     }
 
     /// `sigma = 10, 5 [cm/s]` is a list of widths; any other list is one of values for what it names.
     fn swept(&mut self, list: &'a Swept) {
+        let unit = list.values.last().and_then(quantity);
+        let is_width = list.name.name == "sigma" && self.declared(&list.name).is_none();
         for value in &list.values {
-            if list.name.name == "sigma" && self.declared(&list.name).is_none() {
-                let width = self.operand(value);
-                self.width(&list.name, width);
-            } else {
-                self.assigned("a value of the sweep", &list.name, value);
+            let given = self.listed(value, unit);
+            match is_width {
+                true => self.width(&list.name, given),
+                false => self.assigned_value("a value of the sweep", &list.name, given),
             }
         }
     }
 
+    /// A value of a list; a plain number has the unit that stands behind the last one.
+    fn listed(&mut self, value: &'a Expr, unit: Option<&'a Unit>) -> Operand<'a> {
+        let given = self.operand(value);
+        let is_number = !given.0.is_empty() && given.0.iter().all(|part| part.plain);
+        let Some(unit) = unit.filter(|_| is_number) else { return given };
+        self.take(value.span, super::table::scale(unit, &mut Vec::new()));
+        (vec![super::expression::written(unit)], given.1)
+    }
+
     fn width(&mut self, key: &'a Ident, width: Operand<'a>) {
-        // Where surfaces differ, one number cannot have the unit of all.
-        let Some(first) = self.switches.first().cloned() else { return };
-        let is_same = |part: &Part| part.dimension == first.dimension;
-        if self.switches.iter().all(is_same)
-            && first.dimension.as_ref().is_some_and(|it| *it != Dimension::none())
-        {
-            let surface: Value = vec![Part { plain: false, ..first }];
-            self.compare(Reason::Given("the width", key), &(surface, named(key.span)), &width);
+        let surfaces = (self.of_a_width(), named(key.span));
+        if !surfaces.0.is_empty() {
+            self.compare(Reason::Given("the width", key), &surfaces, &width);
         }
+    }
+
+    /// What a width of smoothing measures; nothing where there is no surface. Where surfaces differ, one number cannot have
+    /// the unit of all, and goes with everything.
+    pub fn of_a_width(&self) -> Value {
+        let sum = |one: Part, other: &Part| {
+            let declared = one.declared.sum(&other.declared);
+            let dimension = one.dimension.filter(|it| other.dimension.as_ref() == Some(it));
+            Part { dimension, declared, plain: false }
+        };
+        let parts = self.switches.iter().filter(|it| it.dimension.is_some());
+        let mut parts = parts.map(|it| Part { plain: false, ..it.clone() });
+        parts.next().map(|first| parts.fold(first, |one, it| sum(one, &it))).into_iter().collect()
+    }
+}
+
+/// The unit of a quantity by itself, perhaps negative.
+fn quantity(expr: &Expr) -> Option<&Unit> {
+    match &expr.kind {
+        ExprKind::Quantity(_, unit) => Some(unit),
+        ExprKind::Negate(inner) => quantity(inner),
+        _ => None,
     }
 }
 

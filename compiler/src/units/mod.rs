@@ -5,10 +5,10 @@
 //! A number without a unit has none, except where it stands alone against something that has one: in a bound, a start, a
 //! guess or a comparison it takes the unit of the other side.
 
-mod bare;
 mod calls;
 mod common;
 mod declare;
+mod declared;
 mod dimension;
 mod expression;
 mod inference;
@@ -19,6 +19,7 @@ mod names;
 mod notation;
 mod quantity;
 mod ratio;
+mod readings;
 mod repairs;
 mod requirement;
 mod solve;
@@ -32,15 +33,17 @@ use fdcc_grammar::ast::{self, Unit};
 use fdcc_grammar::{Diagnostic, Span};
 use inference::Inference;
 use messages::Speaker;
+pub(crate) use messages::unit_of;
 use mistake::Mistake;
 use names::Findings;
-pub use names::NamedUnit;
+pub use names::{NamedUnit, WidthUnit};
 use notation::Notation;
 pub use quantity::{Quantity, parse_quantity};
+pub(crate) use readings::Readings;
 use requirement::Requirement;
 use solve::{Rank, Solution};
 use std::collections::HashSet;
-pub(crate) use table::{list_scale, names, scale};
+pub(crate) use table::{names, scale};
 
 /// Whoever has so many mistakes does not read on.
 const MOST_MISTAKES: usize = 20;
@@ -62,6 +65,19 @@ pub(crate) struct Units {
     pub names: Vec<NamedUnit>,
     /// The unit of each condition, by what the condition is called.
     pub conditions: Vec<NamedUnit>,
+    /// What a width of smoothing measures.
+    pub width: Option<WidthUnit>,
+    /// By what each plain number of the text is multiplied.
+    pub readings: Readings,
+}
+
+/// Reports every unit of an item that is not known.
+pub(crate) fn unknown(item: &ast::Item, diagnostics: &mut Vec<Diagnostic>) {
+    let mut written = Vec::new();
+    declare::units_in(item, &mut written);
+    for unit in written {
+        scale(unit, diagnostics);
+    }
 }
 
 /// Finds the unit of every name, and every place where units do not fit together.
@@ -80,10 +96,12 @@ pub(crate) fn infer(tree: &ast::Model) -> Units {
         if found.mistakes.is_empty() || mistakes.len() >= MOST_MISTAKES {
             let findings = Findings { inference, solution, notation: &speaker.notation };
             let mut diagnostics = told(&speaker, known, &mistakes);
-            diagnostics.extend(bare::found(inference, solution, &speaker.notation));
+            diagnostics.extend(readings::found(inference, solution, &speaker.notation));
             let names = findings.names(&tree.items);
             let conditions = findings.conditions(&tree.items, &names);
-            return Units { names, conditions, diagnostics };
+            let readings = inference.readings.clone();
+            let width = findings.width();
+            return Units { names, conditions, width, diagnostics, readings };
         }
         for at in found.mistakes {
             let mistake = Mistake::new(&inference.requirements[at], inference, solution);

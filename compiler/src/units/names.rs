@@ -9,7 +9,7 @@ use super::table;
 use super::value::Part;
 use crate::resolve::{scope, text, walk};
 use fdcc_grammar::Span;
-use fdcc_grammar::ast::{Condition, Item, ItemKind};
+use fdcc_grammar::ast::{Check, Expr, Item, ItemKind};
 
 /// The unit of a declared name, or of one part of it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,6 +30,15 @@ pub struct NamedUnit {
     pub written: bool,
     /// Whether it is the time.
     pub is_time: bool,
+}
+
+/// What a width of smoothing measures.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WidthUnit {
+    /// The unit, called `sigma`; that of SI where the surfaces have none of their own.
+    pub unit: NamedUnit,
+    /// Whether a plain number is a width in that unit; otherwise its unit has to be said.
+    pub takes_numbers: bool,
 }
 
 /// What a walk has found out.
@@ -59,8 +68,16 @@ impl Findings<'_, '_> {
         all
     }
 
-    /// Of every condition what it compares, as the first name in it is written that measures the same.
+    /// Of every condition and expectation what it compares, as the first name in it is written that measures the same.
     pub fn conditions(&self, items: &[Item], names: &[NamedUnit]) -> Vec<NamedUnit> {
+        let named = |name: String, span: Span, sides: &[&Expr]| {
+            Some(as_written(self.found(span, name, self.value(span).first()?)?, sides, names))
+        };
+        let of_check = |it: &Check| {
+            let [left, right] = [&it.left, &it.right].map(text::expr);
+            let name = format!("{left} {} {right}", text::relation(it.relation));
+            named(name, it.span, &[&it.left, &it.right])
+        };
         let of_item = |item: &Item| {
             let (name, condition) = match &item.kind {
                 ItemKind::Start { condition } => (format!("start {}", text::condition(condition)), condition),
@@ -69,10 +86,28 @@ impl Findings<'_, '_> {
                 ItemKind::Path { condition, .. } => (text::condition(condition), condition),
                 _ => return None,
             };
-            let found = self.found(condition.span, name, self.value(condition.span).first()?)?;
-            Some(as_written(found, condition, names))
+            let rest = condition.rest.iter().map(|it| &it.1);
+            let sides: Vec<&Expr> = std::iter::once(&condition.first).chain(rest).collect();
+            named(name, condition.span, &sides)
         };
-        items.iter().filter_map(of_item).collect()
+        let checks = items.iter().filter_map(|item| match &item.kind {
+            ItemKind::Expect { checks } => Some(checks),
+            _ => None,
+        });
+        items.iter().filter_map(of_item).chain(checks.flatten().filter_map(of_check)).collect()
+    }
+
+    /// What the width of every surface measures; none where they differ, or where there is none.
+    pub fn width(&self) -> Option<WidthUnit> {
+        let parts = self.inference.of_a_width();
+        let part = parts.first()?;
+        let takes_numbers = part.declared.is_si() || part.gives_unit();
+        let found = self.found(Span::default(), "sigma".into(), part);
+        let Some(found) = found else {
+            let unit = NamedUnit { scale: 1.0, ..NamedUnit::default() };
+            return (!takes_numbers).then_some(WidthUnit { unit, takes_numbers });
+        };
+        Some(WidthUnit { unit: in_declared(found, part), takes_numbers })
     }
 
     fn value(&self, span: Span) -> &[Part] {
@@ -96,6 +131,7 @@ impl Findings<'_, '_> {
         };
         let unit = unit_of(item).filter(|unit| table::dimension(unit).is_some());
         let is_time = matches!(item.kind, ItemKind::Time { .. });
+        let is_surface = matches!(item.kind, ItemKind::Surface { .. });
         let entry = |(at, part): (usize, &Part)| {
             let found = self.found(name.span, named(at), part)?;
             Some(match unit {
@@ -106,6 +142,8 @@ impl Findings<'_, '_> {
                     is_time,
                     ..found
                 },
+                // The width of a surface is in the unit of the name that it is.
+                None if is_surface => in_declared(found, part),
                 None => NamedUnit { is_time, ..found },
             })
         };
@@ -119,10 +157,19 @@ impl Findings<'_, '_> {
     }
 }
 
+/// In the unit of the name that something is, if it is one.
+fn in_declared(found: NamedUnit, part: &Part) -> NamedUnit {
+    let own = part.declared.text(&found.dimension).filter(|_| part.gives_unit());
+    match own {
+        Some(unit) => NamedUnit { unit, scale: part.declared.scale().0, ..found },
+        None => found,
+    }
+}
+
 /// In the unit of the first name of a condition that measures the same.
-fn as_written(found: NamedUnit, condition: &Condition, names: &[NamedUnit]) -> NamedUnit {
+fn as_written(found: NamedUnit, sides: &[&Expr], names: &[NamedUnit]) -> NamedUnit {
     let mut like = None;
-    for side in std::iter::once(&condition.first).chain(condition.rest.iter().map(|it| &it.1)) {
+    for side in sides {
         walk::names(side, &mut |name, _| {
             let is_it =
                 |it: &&NamedUnit| it.name.split('.').next() == Some(name) && it.dimension == found.dimension;

@@ -152,7 +152,7 @@ pub(crate) fn written(unit: &Unit) -> String {
 }
 
 /// Factors with positive powers, then each of the others behind a `/`, which turns over the next factor only.
-fn joined(factors: Factors) -> String {
+pub(crate) fn joined(factors: Factors) -> String {
     let (below, above): (Factors, Factors) = factors.into_iter().partition(|factor| factor.1.is_negative());
     let power = |name: &str, power: Ratio| match power == Ratio::ONE {
         true => name.to_string(),

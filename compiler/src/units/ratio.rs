@@ -56,6 +56,14 @@ impl Ratio {
         self.times(Ratio::whole(-1))
     }
 
+    pub fn as_whole(self) -> Option<i32> {
+        (self.denominator == 1).then_some(self.numerator)
+    }
+
+    pub fn value(self) -> f64 {
+        f64::from(self.numerator) / f64::from(self.denominator)
+    }
+
     pub fn is_zero(self) -> bool {
         self.numerator == 0
     }

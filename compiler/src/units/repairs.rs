@@ -95,13 +95,21 @@ impl<'a> Repairs<'_, 'a> {
     fn unit_of(&self, blame: &Blame<'a>) -> String {
         let (own, other) = self.sides(blame.side);
         let notation = &self.speaker.notation;
-        if blame.culprit.power == Ratio::ONE {
+        if own.plain && blame.culprit.power == Ratio::ONE {
+            self.unit_beside(other)
+        } else if blame.culprit.power == Ratio::ONE {
             notation.quotient(&other.dimension, &own.dimension)
         } else if blame.culprit.power == Ratio::whole(-1) {
             notation.quotient(&own.dimension, &other.dimension)
         } else {
             notation.unit(&blame.needed)
         }
+    }
+
+    /// The unit in which the names of a side are declared, if it has one, or that of SI.
+    fn unit_beside(&self, side: &Side<'a>) -> String {
+        let declared = side.declared.text(&side.dimension);
+        declared.unwrap_or_else(|| self.speaker.notation.unit(&side.dimension))
     }
 
     /// The declaration of a name with that unit.
@@ -132,7 +140,7 @@ impl<'a> Repairs<'_, 'a> {
             (_, true) => (&it.right, &it.left),
             _ => return None,
         };
-        Some((number, self.speaker.notation.unit(&other.dimension)))
+        Some((number, self.unit_beside(other)))
     }
 
     /// `1 [m]`

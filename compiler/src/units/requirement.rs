@@ -1,5 +1,6 @@
 //! What the text demands of units: two sides that must be equal, with all that a message needs to say about them.
 
+use super::declared::Declared;
 use super::dimension::Dimension;
 use super::solve::Rank;
 use fdcc_grammar::Span;
@@ -43,6 +44,8 @@ pub(crate) struct Side<'a> {
     pub dimension: Dimension,
     /// Whether it is made of nothing but numbers without units.
     pub plain: bool,
+    /// The unit in which a plain number beside it is read.
+    pub declared: Declared,
 }
 
 /// A function of the model at work.

@@ -5,7 +5,7 @@
 
 use super::dimension::Dimension;
 use super::ratio::Ratio;
-use fdcc_grammar::ast::{Expr, ExprKind, Unit};
+use fdcc_grammar::ast::Unit;
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 use std::f64::consts::PI;
 
@@ -122,21 +122,6 @@ pub(crate) fn scale(unit: &Unit, diagnostics: &mut Vec<Diagnostic>) -> f64 {
         }
     }
     product
-}
-
-/// By what a number of a list is multiplied: the unit behind the last one is that of all plain numbers before it.
-pub(crate) fn list_scale(list: &[Expr], number: &Expr) -> f64 {
-    match (list.last().map(|last| &unsigned(last).kind), &unsigned(number).kind) {
-        (Some(ExprKind::Quantity(_, unit)), ExprKind::Number(_)) => scale(unit, &mut Vec::new()),
-        _ => 1.0,
-    }
-}
-
-fn unsigned(number: &Expr) -> &Expr {
-    match &number.kind {
-        ExprKind::Negate(inner) => unsigned(inner),
-        _ => number,
-    }
 }
 
 /// What a unit measures, if all of its names are known.

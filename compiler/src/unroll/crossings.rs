@@ -108,7 +108,7 @@ fn boxed(model: &Model, numbers: &Numbers) -> Vec<Interval> {
         Interval::new(bounds.lower, bounds.upper)
     };
     let one = |symbol: &Symbol| match *symbol {
-        Symbol::Param(_) => Interval::point(numbers.of(model, *symbol)),
+        Symbol::Param(_) => Interval::point(numbers.of(*symbol)),
         Symbol::Free(at) => bounds(model.frees[at].range),
         Symbol::State(at) => bounds(model.states[at].start_range.unwrap_or(model.states[at].range)),
         _ => Interval::ALL,
@@ -119,7 +119,7 @@ fn boxed(model: &Model, numbers: &Numbers) -> Vec<Interval> {
 /// What each parameter and unknown is guessed to be.
 fn at_guess(model: &Model, numbers: &Numbers) -> Vec<Interval> {
     let one = |symbol: &Symbol| match symbol {
-        Symbol::Param(_) | Symbol::Free(_) => Interval::point(numbers.of(model, *symbol)),
+        Symbol::Param(_) | Symbol::Free(_) => Interval::point(numbers.of(*symbol)),
         _ => Interval::ALL,
     };
     model.symbols.iter().map(one).collect()

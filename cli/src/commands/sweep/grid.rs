@@ -3,17 +3,21 @@
 use crate::output::named::Named;
 use fdcc_compiler::Model;
 
+/// A name and its values.
+type List = (String, Vec<String>);
+
 /// Names, each with its values.
 pub struct Grid {
-    lists: Vec<(String, Vec<String>)>,
+    lists: Vec<List>,
     /// The length of the longest list, and of all others but those of length 1.
     pub rows: usize,
 }
 
 impl Grid {
-    /// Reads `NAME=V1,V2,...`.
-    pub fn read(texts: &[String]) -> Result<Self, String> {
-        Self::new(texts.iter().map(|text| list(text)).collect::<Result<_, String>>()?)
+    /// Reads `NAME=V1,V2,...`; a plain number is in the declared unit of the name.
+    pub fn read(texts: &[String], model: &Model) -> Result<Self, String> {
+        let lists = texts.iter().map(|text| list(text)).collect::<Result<Vec<_>, String>>()?;
+        Self::new(in_units(lists, |name, value| model.with_unit(name, value)))
     }
 
     /// The lists of the model's own `sweep` block.
@@ -21,10 +25,11 @@ impl Grid {
         if model.sweep.is_empty() {
             return Err("nothing is swept: give NAME=V1,V2,... or write a `sweep` block in the model".into());
         }
-        Self::new(model.sweep.iter().map(|swept| (swept.place.name.clone(), swept.values.clone())).collect())
+        let lists = model.sweep.iter().map(|swept| (swept.place.name.clone(), swept.values.clone()));
+        Self::new(in_units(lists.collect(), |name, value| model.as_given(name, value)))
     }
 
-    fn new(lists: Vec<(String, Vec<String>)>) -> Result<Self, String> {
+    fn new(lists: Vec<List>) -> Result<Self, String> {
         for (at, (name, _)) in lists.iter().enumerate() {
             if lists[..at].iter().any(|(earlier, _)| earlier == name) {
                 return Err(format!("`{name}` is swept twice; write all its values in one list"));
@@ -61,7 +66,16 @@ impl Grid {
     }
 }
 
-fn list(text: &str) -> Result<(String, Vec<String>), String> {
+/// The lists with the unit of each value.
+fn in_units(lists: Vec<List>, with_unit: impl Fn(&str, &str) -> String) -> Vec<List> {
+    let values = |(name, values): List| {
+        let values = values.iter().map(|value| with_unit(&name, value)).collect();
+        (name, values)
+    };
+    lists.into_iter().map(values).collect()
+}
+
+fn list(text: &str) -> Result<List, String> {
     let (name, values) =
         text.split_once('=').ok_or_else(|| format!("`{text}` is not of the form NAME=V1,V2,..."))?;
     let values: Vec<String> = values.split(',').map(|value| value.trim().to_string()).collect();
@@ -71,7 +85,7 @@ fn list(text: &str) -> Result<(String, Vec<String>), String> {
     }
 }
 
-fn different_lengths(lists: &[(String, Vec<String>)]) -> String {
+fn different_lengths(lists: &[List]) -> String {
     let lengths = lists.iter().map(|(name, values)| format!("`{name}` has {}", values.len()));
     let lengths = lengths.collect::<Vec<_>>().join(", ");
     format!(

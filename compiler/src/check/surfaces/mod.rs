@@ -1,5 +1,6 @@
 //! FDC03xx: what the surfaces of a model do, told where it matters.
 
+mod constant;
 mod controls;
 mod coordinates;
 mod crossing;
@@ -46,6 +47,9 @@ struct Subject<'s, 'a, 'e> {
 
 impl<'a> Subject<'_, 'a, '_> {
     fn look(mut self, found: &mut Vec<Diagnostic>) {
+        if let Some(constant) = self.constant() {
+            return found.push(constant);
+        }
         if let Some(trouble) = degenerate(&mut self.local) {
             return found.push(self.vanishing(&trouble));
         }

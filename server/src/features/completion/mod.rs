@@ -124,7 +124,7 @@ fn expression(place: &Place<'_>, scope: &Scope) -> Vec<Proposal> {
     let mut all = scope.proposals(is_value);
     all.extend(scope.locals(place));
     all.extend(vocabulary::functions().into_iter().map(items::function));
-    all.extend(["pi"].into_iter().map(plain));
+    all.extend(["pi", "inf"].into_iter().map(plain));
     all.extend(["piecewise", "match"].into_iter().map(word));
     if place.is_among_items() {
         all.extend(inner_words(place.item).iter().map(|it| keyword(it)));

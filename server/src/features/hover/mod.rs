@@ -36,6 +36,9 @@ fn function(name: &str) -> Option<String> {
     if name == "pi" {
         return Some("```fdc\npi\n```\n3.141592653589793".into());
     }
+    if name == "inf" {
+        return Some("```fdc\ninf\n```\nA side of bounds that is open: `in [0, inf]`.".into());
+    }
     let it = vocabulary::function(name)?;
     Some(format!("```fdc\n{name}({})\n```\n{}", it.arguments.join(", "), it.doc))
 }

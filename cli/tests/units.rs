@@ -1,0 +1,105 @@
+//! Units from outside: what is typed is in declared units, what is printed says them, files are in SI.
+
+mod common;
+
+use common::*;
+
+/// A block that is braked: lengths in mm, time in ms, force in N.
+const BLOCK: &str = "\
+model block
+param gap = 3 [mm] in [1, 50]
+time t in [0, 2000] [ms]
+state x [mm] in [0, inf] start 0
+state v [mm/s] start 0
+control u [mm/s^2] in [-inf, 12]
+surface slip = v
+dynamics {
+  x' = v
+  v' in u - 2 [mm/s^2] * Sgn(slip)
+}
+end x == 2
+end abs(v) <= 1
+path x <= gap
+minimize integral(u^2)
+method { N = 40 smooth sigma = 0.5 }
+expect { x(end) == 2 within 0.01 }
+";
+
+fn block(test: &str) -> std::path::PathBuf {
+    folder(test, &[("block.fdc", BLOCK.as_bytes())])
+}
+
+#[test]
+fn spans_widths_and_axes_are_in_declared_units() {
+    let folder = block("units_shown");
+    let output = fdcc(&folder, &["solve", "block.fdc", "--log", "none", "--out", "."], "");
+    expect_exit(&output, 0, "solve");
+    let verdict = stdout(&output);
+    let slip = verdict.lines().find(|line| line.starts_with(" slip")).expect("a line of the surface");
+    assert!(slip.contains(" ms   (sigma 0.5 mm/s, kernel"), "{slip}");
+    let page = std::fs::read_to_string(folder.join("block.html")).expect("a page");
+    for told in ["sigma 0.5 mm/s", ">2000 ms<", "x [mm]"] {
+        assert!(page.contains(told), "{told}");
+    }
+    let text = std::fs::read_to_string(folder.join("block.sol.json")).expect("a document");
+    let document: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(number(&document["method"]["sigma"]), 5e-4, "files are in SI");
+    assert_eq!(number(&document["time"].as_array().expect("a list")[40]), 2.0);
+}
+
+#[test]
+fn numbers_on_the_command_line_are_in_declared_units() {
+    let folder = block("units_typed");
+    let solve = |more: &[&str]| {
+        fdcc(&folder, &[&["solve", "block.fdc", "--log", "none", "--json"], more].concat(), "")
+    };
+    let both = [
+        &["--set", "gap=2.5", "--method", "sigma=1"][..],
+        &["--set", "gap=2.5[mm]", "--method", "sigma=1[mm/s]"],
+    ];
+    let documents = both.map(|more| json(&solve(more)));
+    for document in &documents {
+        assert!((number(&document["params"]["gap"]) - 2.5e-3).abs() < 1e-15, "{document}");
+        assert!((number(&document["method"]["sigma"]) - 1e-3).abs() < 1e-15, "{document}");
+    }
+    let refused = solve(&["--set", "gap=60"]);
+    assert!(stderr(&refused).contains("`gap` must be in [1, 50] mm"), "{}", stderr(&refused));
+    let refused = solve(&["--method", "sigma=1[mm]"]);
+    assert!(stderr(&refused).contains("`sigma` is in mm/s"), "{}", stderr(&refused));
+}
+
+#[test]
+fn a_sweep_reads_and_prints_declared_units_and_its_rows_are_in_si() {
+    let folder = block("units_swept");
+    let sweep = ["sweep", "block.fdc", "gap=2.5,3", "sigma=1,0.5", "--log", "none"];
+    let table = stdout(&fdcc(&folder, &sweep, ""));
+    assert!(table.contains("2.5[mm]") && table.contains("0.5[mm/s]"), "{table}");
+    let rows = json(&fdcc(&folder, &[&sweep[..], &["--json"]].concat(), ""));
+    assert!((number(&rows[0]["swept"]["gap"]) - 2.5e-3).abs() < 1e-15, "{rows}");
+    assert!((number(&rows[1]["swept"]["sigma"]) - 5e-4).abs() < 1e-15, "{rows}");
+}
+
+#[test]
+fn expectations_are_compared_in_their_units() {
+    let output = fdcc(&block("units_expected"), &["test", "block.fdc"], "");
+    expect_exit(&output, 0, "test");
+    assert!(stdout(&output).contains("right 2 mm)"), "{}", stdout(&output));
+}
+
+#[test]
+fn times_are_in_the_unit_of_time() {
+    let folder = block("units_times");
+    let times = |times: &str| fdcc(&folder, &["simulate", "block.fdc", "--json", "--times", times], "");
+    let found = json(&times("0,500,2000"));
+    assert_eq!(found["time"], serde_json::json!([0.0, 0.5, 2.0]));
+    assert!(stderr(&times("0,2001")).contains("2001 is not between 0 and 2000"));
+}
+
+/// What `solve` refuses is no mistake: who checks all models of a folder gets 0.
+#[test]
+fn what_cannot_be_solved_yet_is_advice() {
+    let folder = folder("units_advice", &[]);
+    let output = fdcc(&folder, &["check", &model("twostage"), "--format", "short", "--deny", "warnings"], "");
+    expect_exit(&output, 0, "check");
+    assert!(stdout(&output).contains("advice[FDC0603]: a model with phases"), "{}", stdout(&output));
+}

@@ -1,7 +1,7 @@
 //! `fdcc sweep`: one solve per value, side by side, and a table of what came out.
 
 use super::Exit;
-use super::options::{Options, Prepared, prepare, usage};
+use super::options::{Gap, Options, Prepared, prepare, usage};
 use crate::log::{self, Level, Log};
 use crate::output::named::Named;
 use crate::output::{self, files, plural, table};
@@ -19,7 +19,7 @@ mod grid;
 ///
 /// With `--json` the rows are one array of objects with `swept` (what was swept, numbers in SI units), `status`,
 /// `objective`, `free`, `iterations`, `kkt_error`, `constraint_violation` and `seconds`, as in the document of
-/// `solve`. With `--out` the files are called MODEL.1.sol.json and so on, by row.
+/// `solve`; with `--confirmed` also `confirmed`, `verification` and `optimality`. With `--out` the files are called MODEL.1.sol.json and so on, by row.
 #[derive(Args)]
 pub struct Sweep {
     /// The model; `-` is the standard input
@@ -36,8 +36,13 @@ pub struct Sweep {
     /// How many solves run at a time; without it as many as there are processors
     #[arg(long, value_name = "J", value_parser = clap::value_parser!(u32).range(1..))]
     jobs: Option<u32>,
+    /// Replay each row on the true system; exit code 2 unless that confirms it and nothing contradicts that it is an optimum
+    #[arg(long)]
+    confirmed: bool,
     #[command(flatten)]
     options: Options,
+    #[command(flatten)]
+    gap: Gap,
 }
 
 /// One row of the sweep, ready to be solved.
@@ -115,7 +120,10 @@ impl Sweep {
             None => compiled.first_start(&self.options)?,
         };
         let mut log = Log::of_several(self.level(), bar, &format!("row {} ", row.number));
-        let solved = compiled.solve(start, &self.options, &mut log)?;
+        let mut solved = compiled.solve(start, &self.options, &mut log)?;
+        if self.confirmed && solved.is_good() {
+            solved.replay(&row.prepared.model, self.gap.gap);
+        }
         bar.inc(1);
         if self.level() != Level::None {
             let line = format!("row {} {}", row.number, solved.document.status.replace('_', " "));
@@ -135,11 +143,12 @@ impl Sweep {
         let swept: Vec<Named<String>> = (0..grid.rows).map(|index| grid.row(index)).collect();
         let documents = swept.iter().zip(solved.iter().map(|solved| &solved.document));
         let text = if self.options.json {
-            output::json(&documents.map(|(swept, document)| table::row(swept, document)).collect::<Vec<_>>())
+            let row = |(swept, document)| table::row(swept, document, self.confirmed);
+            output::json(&documents.map(row).collect::<Vec<_>>())
         } else {
-            table::table(documents)
+            table::table(documents, self.confirmed)
         };
         output::print(&text);
-        Ok(solved.iter().map(Solved::exit).max().unwrap_or(Exit::Fine))
+        Ok(solved.iter().map(|it| it.exit(self.confirmed)).max().unwrap_or(Exit::Fine))
     }
 }

@@ -1,18 +1,25 @@
 //! The conditions of a problem along a replay: bounds and path conditions between the grid points, too, and the ends.
+//!
+//! A violation counts for the size of the terms of its condition there: what each input moves it by ([`terms`](crate::terms)), and the bound.
 
+use crate::motion::Motion;
 use crate::output::saved::Saved;
+use crate::terms::{Terms, terms};
 use crate::verification::Points;
-use fdcc_runtime::problem::{Bounds, Columns, Function, Problem};
+use fdcc_runtime::problem::{Bounds, Columns, Function, Parameter, Problem, Variable};
 use fdcc_runtime::simulate::{Simulation, System};
 
-/// Narrower than anything that matters: `abs`, `min` and `max` in a condition are those of the true system.
+/// `abs`, `min` and `max` in a condition are those of the true system: as narrow as this part of the width with which it was solved.
 const NO_WIDTH: f64 = 1e-12;
 
 /// By how much a condition is violated at worst.
 #[derive(Clone)]
 pub struct Condition {
     pub label: String,
+    /// In SI.
     pub violation: f64,
+    /// The same as a part of the size of its terms.
+    pub part: f64,
     /// Which of the points it is; nothing for a condition on the ends.
     pub point: Option<usize>,
 }
@@ -24,6 +31,7 @@ pub struct Conditions<'a> {
     simulation: &'a Simulation,
     /// The replayed states in the order of the problem.
     states: Vec<&'a [f64]>,
+    motions: Vec<Motion>,
     parameters: Vec<f64>,
 }
 
@@ -38,15 +46,17 @@ impl<'a> Conditions<'a> {
     ) -> Option<Self> {
         let column = |name: &str| system.states.iter().position(|state| state.name == name);
         let states = problem.states.iter().map(|it| Some(simulation.states[column(&it.name)?].as_slice()));
-        let value = |name: &str| {
-            let values = [&saved.params, &saved.free];
-            values.iter().find_map(|it| it.get(name).copied().flatten())
-        };
-        let parameters = problem.parameters.iter().map(|it| value(&it.name).unwrap_or(it.value));
-        let mut parameters: Vec<f64> = parameters.collect();
-        let chosen = problem.parameters.iter().position(|it| it.name.starts_with("sigma("));
-        parameters.iter_mut().skip(chosen.unwrap_or(usize::MAX)).for_each(|width| *width = NO_WIDTH);
-        Some(Conditions { problem, points, simulation, states: states.collect::<Option<_>>()?, parameters })
+        let states: Vec<&[f64]> = states.collect::<Option<_>>()?;
+        let variables: Vec<&Variable> = problem.states.iter().collect();
+        let motions = Motion::of_states(&variables, |at| states[at].to_vec());
+        Some(Conditions {
+            problem,
+            points,
+            simulation,
+            states,
+            motions,
+            parameters: parameters(problem, saved),
+        })
     }
 
     /// Bounds that are violated, all path conditions, and the ends if the replay came so far.
@@ -60,8 +70,13 @@ impl<'a> Conditions<'a> {
     }
 
     fn bounds(&self) -> impl Iterator<Item = Condition> {
-        let states = self.problem.states.iter().zip(&self.states);
-        states.map(|(state, column)| over_time(&state.name, state.bounds, &column[1.min(column.len())..]))
+        let states = self.problem.states.iter().zip(&self.states).zip(&self.motions);
+        states.map(|((state, column), motion)| {
+            let terms =
+                |value: &f64| Terms { size: value.abs().max(motion.range), rounding: motion.rounding };
+            let values = column.iter().skip(1).map(|value| (*value, terms(value)));
+            over_time(&state.name, state.bounds, values)
+        })
     }
 
     /// After the start, as a transcription has it.
@@ -79,29 +94,38 @@ impl<'a> Conditions<'a> {
         for (at, column) in self.states.iter().enumerate() {
             inputs.column_mut(1 + at).copy_from_slice(&column[1..=count]);
         }
-        let values = evaluated(path, &inputs, &self.parameters);
-        let rows = self.problem.path_bounds.iter().enumerate();
-        rows.map(move |(row, bounds)| {
-            let at_points = over_time(&path.origin(row).label, *bounds, values.column(row));
-            self.between(row, *bounds, at_points)
+        let controls = self.problem.controls.iter().map(|it| Motion::still(it.unit));
+        let time = std::iter::once(Motion::default());
+        let motions = time.chain(self.motions.iter().copied()).chain(controls).collect();
+        let rows = self.evaluated(path, &inputs, motions).into_iter().zip(&self.problem.path_bounds);
+        rows.enumerate().map(move |(row, (values, bounds))| {
+            let at_points = over_time(&path.origin(row).label, *bounds, values.iter().copied());
+            self.between(row, *bounds, &values, at_points)
         })
     }
 
     /// The worst of a path condition between the points, too, where it is worse than at all of them.
-    fn between(&self, row: usize, bounds: Bounds, at_points: Condition) -> Condition {
+    fn between(
+        &self,
+        row: usize,
+        bounds: Bounds,
+        values: &[(f64, Terms)],
+        at_points: Condition,
+    ) -> Condition {
         let extremes = self.simulation.extremes.get(row).into_iter().flatten();
         let after_start = extremes.filter(|it| it.time > self.points.times[0]);
         let worst =
             after_start.max_by(|a, b| bounds.violation(a.value).total_cmp(&bounds.violation(b.value)));
-        match worst.filter(|it| bounds.violation(it.value) > at_points.violation) {
-            Some(worst) => {
-                let point = self.points.times.partition_point(|time| *time < worst.time);
-                let last = self.points.times.len() - 1;
-                let violation = bounds.violation(worst.value);
-                Condition { violation, point: Some(point.min(last)), ..at_points }
-            }
-            None => at_points,
+        let Some(worst) = worst else { return at_points };
+        let point = self.points.times.partition_point(|time| *time < worst.time);
+        let point = point.min(self.points.times.len() - 1);
+        let terms = values.get(point.saturating_sub(1)).map(|it| it.1);
+        let (violation, part) =
+            (bounds.violation(worst.value), terms.map_or(0.0, |it| it.part(worst.value, &bounds)));
+        if (part, violation) > (at_points.part, at_points.violation) {
+            return Condition { violation, part, point: Some(point), ..at_points };
         }
+        at_points
     }
 
     fn at_ends(&self) -> impl Iterator<Item = Condition> {
@@ -111,23 +135,47 @@ impl<'a> Conditions<'a> {
             inputs.column_mut(at)[0] = column[0];
             inputs.column_mut(self.states.len() + at)[0] = column[column.len() - 1];
         }
-        let values = evaluated(boundary, &inputs, &self.parameters);
-        let rows = self.problem.boundary_bounds.iter().enumerate();
-        rows.map(move |(row, bounds)| Condition {
-            label: boundary.origin(row + 1).label.to_string(),
-            violation: bounds.violation(values.column(row + 1)[0]),
+        let rows = self.evaluated(boundary, &inputs, self.motions.repeat(2)).into_iter().skip(1);
+        rows.zip(&self.problem.boundary_bounds).enumerate().map(move |(row, (values, bounds))| Condition {
             point: None,
+            ..over_time(&boundary.origin(row + 1).label, *bounds, values)
         })
+    }
+
+    /// For each output its values at all points, with the terms of which they are sums.
+    fn evaluated(
+        &self,
+        function: &dyn Function,
+        points: &Columns,
+        motions: Vec<Motion>,
+    ) -> Vec<Vec<(f64, Terms)>> {
+        let parameters = self.problem.parameters.iter().map(|it| Motion::still(it.unit));
+        let motions: Vec<Motion> = motions.into_iter().chain(parameters).collect();
+        terms(function, (points, &self.parameters), &motions)
     }
 }
 
+/// Those of the solution, with widths that smooth nothing.
+fn parameters(problem: &Problem, saved: &Saved) -> Vec<f64> {
+    let values = [&saved.params, &saved.free];
+    let of_solution = |name: &str| values.iter().find_map(|it| it.get(name).copied().flatten());
+    let width = |name: &str| saved.method.sigmas.get(name).copied().flatten().or(saved.method.sigma);
+    let value = |it: &Parameter| match it.name.strip_prefix("sigma(").and_then(|name| name.strip_suffix(')'))
+    {
+        Some(surface) => NO_WIDTH * width(surface).unwrap_or(it.value),
+        None => of_solution(&it.name).unwrap_or(it.value),
+    };
+    problem.parameters.iter().map(value).collect()
+}
+
 /// The worst of the points after the start.
-fn over_time(label: &str, bounds: Bounds, values: &[f64]) -> Condition {
-    let mut worst = Condition { label: label.into(), violation: 0.0, point: None };
-    for (k, value) in values.iter().enumerate() {
-        let violation = bounds.violation(*value);
-        if violation > worst.violation {
-            worst = Condition { violation, point: Some(k + 1), ..worst };
+fn over_time(label: &str, bounds: Bounds, values: impl IntoIterator<Item = (f64, Terms)>) -> Condition {
+    let mut worst = Condition { label: label.into(), violation: 0.0, part: 0.0, point: None };
+    for (k, (value, terms)) in values.into_iter().enumerate() {
+        let violation = bounds.violation(value);
+        let part = terms.part(value, &bounds);
+        if (part, violation) > (worst.part, worst.violation) {
+            worst = Condition { violation, part, point: Some(k + 1), ..worst };
         }
     }
     worst
@@ -138,16 +186,10 @@ fn merged(all: Vec<Condition>) -> Vec<Condition> {
     let mut merged: Vec<Condition> = Vec::new();
     for condition in all {
         match merged.iter_mut().find(|it| it.label == condition.label) {
-            Some(known) if known.violation < condition.violation => *known = condition,
+            Some(known) if known.part < condition.part => *known = condition,
             Some(_) => {}
             None => merged.push(condition),
         }
     }
     merged
-}
-
-fn evaluated(function: &dyn Function, points: &Columns, parameters: &[f64]) -> Columns {
-    let mut values = Columns::new(function.outputs(), points.count());
-    function.value(points, parameters, &mut values);
-    values
 }

@@ -8,8 +8,10 @@ use crate::output;
 use crate::output::document::{Document, Seconds};
 use crate::output::saved::Saved;
 use crate::output::units::Units;
+use crate::output::verified::Verification;
 use crate::parallel;
 use crate::search::{Found, Search};
+use crate::verification::verify;
 use crate::warm;
 use crate::watch::Deadline;
 use fdcc_compiler::Model;
@@ -196,9 +198,18 @@ impl Solved {
         matches!(self.outcome.solution.status, Status::Solved | Status::Acceptable)
     }
 
-    /// How a command with this solve ends.
-    pub fn exit(&self) -> Exit {
-        if self.is_good() { Exit::Fine } else { Exit::NotSolved }
+    /// Replays the controls on the true system; `asked` is the largest difference that is called confirmation.
+    pub fn replay(&mut self, model: &Model, asked: f64) {
+        let saved = Saved::from(&self.document);
+        // A model that cannot be simulated is solved all the same.
+        let verified = verify(model, &self.problem, &saved).ok();
+        self.document.set_verification(verified.map(|it| Verification::new(&it, asked)));
+    }
+
+    /// How a command with this solve ends; whether it has to be confirmed, too, is the caller's choice.
+    pub fn exit(&self, confirmed: bool) -> Exit {
+        let is_fine = self.is_good() && (!confirmed || self.document.is_confirmed());
+        if is_fine { Exit::Fine } else { Exit::NotSolved }
     }
 }
 

@@ -61,7 +61,6 @@ pub fn verdict(solved: &Solved) -> String {
     lines.extend(refined(solved));
     if solved.is_good() && solved.problem.has_objective {
         lines.extend(hamiltonian(document));
-        lines.extend(minimum(document));
     }
     lines.extend(sensitivities(document));
     lines.join("\n") + "\n"
@@ -160,22 +159,6 @@ fn hamiltonian(document: &Document) -> Option<String> {
     ))
 }
 
-/// On how much of the time a control may violate the rule of signs before that is told.
-const VIOLATED: f64 = 0.01;
-
-/// What is said where controls do not minimise the Hamiltonian: then the tolerance is too coarse for the size of the objective.
-fn minimum(document: &Document) -> Option<String> {
-    let violations = document.hamiltonian_check.violations.0.iter();
-    let told = violations.filter(|(_, part)| *part > VIOLATED);
-    let told: Vec<String> = told.map(|(name, part)| format!("{name} ({} %)", short(100.0 * part))).collect();
-    (!told.is_empty()).then(|| {
-        format!(
-            " check on part of the time these controls do not minimise the Hamiltonian: {}; solve with a smaller `tol`",
-            told.join(", ")
-        )
-    })
-}
-
 /// What the optimum is worth to each parameter.
 fn sensitivities(document: &Document) -> impl Iterator<Item = String> {
     let all = document.sensitivities.0.iter().filter(|(_, slope)| slope.is_finite());
@@ -195,26 +178,28 @@ fn sensitivities(document: &Document) -> impl Iterator<Item = String> {
     })
 }
 
-/// What a replay says of the answer, in few words.
+/// What a replay says of the answer, and what contradicts that it is an optimum, in few words.
 pub fn on_the_true_system(document: &Document) -> String {
     let replay = document.verification.as_ref();
-    replay.map_or("not replayed on the true system".into(), Verification::words)
+    let replay = replay.map_or("not replayed on the true system".into(), Verification::words);
+    match document.optimality.as_ref().filter(|it| it.contradicted) {
+        Some(optimality) => format!("{replay}, CONTRADICTED as an optimum: {}", optimality.says),
+        None => replay,
+    }
 }
 
 /// The replay in numbers.
 fn replayed(document: &Document) -> Option<String> {
     let replay = document.verification.as_ref()?;
-    let (gap, violation) = (replay.state_gap?, replay.constraint_violation?);
+    replay.state_gap?;
+    let units = &document.units;
     let mut words = vec![" true  replayed:".to_owned()];
-    words
-        .extend(replay.objective.map(|it| format!("objective {}", document.units.value("objective", it, 9))));
-    words.push(format!("differs by {}", short(gap)));
-    words.push(match &replay.worst {
-        Some(worst) => {
-            let when = worst.time.map(|t| format!(" at t = {}", document.units.value("time", t, 6)));
-            let when = when.unwrap_or_default();
-            let amount = document.units.violation(&worst.condition, violation, 6);
-            format!("`{}` off by {amount}{when}", worst.condition)
+    words.extend(replay.objective.map(|it| format!("objective {}", units.value("objective", it, 9))));
+    words.push(replay.difference(units).unwrap_or_else(|| "no state differs".into()));
+    words.push(match replay.worst.as_ref().zip(replay.violation(units)) {
+        Some((worst, amount)) => {
+            let when = worst.time.map(|t| format!(" at t = {}", units.value("time", t, 6)));
+            format!("`{}` off by {amount}{}", worst.condition, when.unwrap_or_default())
         }
         None => "all conditions met".into(),
     });

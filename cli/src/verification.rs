@@ -2,6 +2,7 @@
 
 use crate::alignment::Alignment;
 use crate::conditions::{Condition, Conditions};
+use crate::gaps::{Gap, gaps, gaps_of_jumps};
 use crate::output::saved::Saved;
 use crate::pieces::pieces_of_one;
 use crate::replay::Replay;
@@ -29,23 +30,16 @@ pub struct Verified {
     pub stays: Vec<Vec<Stay>>,
 }
 
-/// The largest difference of a state over the grid, in units of max(1, |x|).
-pub struct Gap {
-    pub name: String,
-    pub gap: f64,
-    pub time: f64,
-}
-
 impl Verified {
-    /// The state that differs most.
-    pub fn largest_gap(&self) -> f64 {
-        self.gaps.iter().fold(0.0, |most, gap| most.max(gap.gap))
+    /// The state that differs most for how far it moves.
+    pub fn largest_gap(&self) -> Option<&Gap> {
+        self.gaps.iter().max_by(|a, b| a.part.total_cmp(&b.part))
     }
 
-    /// The condition that is violated most, if any is.
+    /// The condition that is violated most for the size of its terms, if any is.
     pub fn worst(&self) -> Option<&Condition> {
-        let violated = self.conditions.iter().filter(|it| it.violation > 0.0);
-        violated.max_by(|a, b| a.violation.total_cmp(&b.violation))
+        let violated = self.conditions.iter().filter(|it| it.part > 0.0);
+        violated.max_by(|a, b| a.part.total_cmp(&b.part).then(a.violation.total_cmp(&b.violation)))
     }
 }
 
@@ -75,7 +69,8 @@ pub fn verify(model: &Model, problem: &Problem, saved: &Saved) -> Result<Verifie
             let times = alignment.moved(&points.times);
             let compared =
                 simulate(&system, &controls, &Options { times, tape: false, extremes: false, ..options });
-            alignment.gaps(saved).chain(gaps(saved, &system, &compared)).collect()
+            let of_jumps = gaps_of_jumps(&alignment, saved, system.interval);
+            of_jumps.into_iter().chain(gaps(saved, &system, &compared)).collect()
         }
         _ => gaps(saved, &system, &simulation),
     };
@@ -133,38 +128,4 @@ impl Points {
     pub fn row(&self, point: usize) -> &[f64] {
         &self.rows[point.saturating_sub(1) / self.in_row]
     }
-}
-
-impl Alignment {
-    /// Of the times of the jumps, in the same units as those of states.
-    fn gaps(&self, saved: &Saved) -> impl Iterator<Item = Gap> {
-        let times = self.own.iter().zip(&self.replayed).zip(&saved.jumps);
-        times.map(|((own, replayed), jump)| Gap {
-            name: format!("time of {}", jump.jump),
-            gap: (own - replayed).abs() / own.abs().max(1.0),
-            time: *replayed,
-        })
-    }
-}
-
-fn gaps(saved: &Saved, system: &System, simulation: &Simulation) -> Vec<Gap> {
-    let shown = system.states.iter().zip(&simulation.states).filter(|(state, _)| !state.hidden);
-    shown.map(|(state, column)| gap(saved, &state.name, simulation, column)).collect()
-}
-
-fn gap(saved: &Saved, name: &str, simulation: &Simulation, replayed: &[f64]) -> Gap {
-    let own = saved.states.get(name).map(Vec::as_slice).unwrap_or_default();
-    let points =
-        simulation.time.iter().zip(replayed).step_by(pieces_of_one(saved.time.len().saturating_sub(1)));
-    let start = simulation.time.first().copied().unwrap_or(simulation.end_time);
-    let mut largest = Gap { name: name.into(), gap: 0.0, time: start };
-    for ((&time, &replayed), own) in points.zip(own) {
-        let own = own.unwrap_or(f64::INFINITY);
-        let gap = (own - replayed).abs() / own.abs().max(1.0);
-        // What is not a number differs more than everything.
-        if gap > largest.gap || gap.is_nan() {
-            largest = Gap { gap: if gap.is_nan() { f64::INFINITY } else { gap }, time, ..largest };
-        }
-    }
-    largest
 }

@@ -71,6 +71,8 @@ pub struct Hamiltonian {
     pub expected: Option<f64>,
     /// One for each control: the part of the time on which it does not minimise the Hamiltonian, by the sign of the slope.
     pub violations: Vec<f64>,
+    /// What a pause on a surface would gain, per time, where one is possible: above 0 it is no optimum.
+    pub pause: Option<f64>,
     /// Whether all its terms together are no more than the tolerance of the solver: then nothing can be said of it.
     pub is_noise: bool,
 }
@@ -83,17 +85,23 @@ impl Hamiltonian {
         let is_noise = size * duration.abs() <= NOISE * problem.method.tol;
         let violations = match is_noise {
             true => vec![0.0; problem.layout.u],
-            false => minimum::violations(problem.layout.u, nlp, solution, (duration, size)),
+            false => minimum::violations(&problem.controls, nlp, solution, (duration, size)),
         };
-        Hamiltonian { values, size, is_constant: problem.is_autonomous, expected, violations, is_noise }
+        let is_constant = problem.is_autonomous;
+        Hamiltonian { values, size, is_constant, expected, violations, pause: None, is_noise }
     }
 
     /// The mean difference from what it has to be, over all intervals; nothing where it may be anything.
     pub fn deviation(&self) -> Option<f64> {
-        let mean = |sum: f64| sum / self.values.len().max(1) as f64;
-        let target = self.expected.unwrap_or(mean(self.values.iter().sum()));
-        (self.is_constant && !self.is_noise)
-            .then(|| mean(self.values.iter().map(|value| (value - target).abs()).sum()))
+        let target = self.target()?;
+        let sum: f64 = self.values.iter().map(|value| (value - target).abs()).sum();
+        Some(sum / self.values.len().max(1) as f64)
+    }
+
+    /// What it has to be, as far as that is known; nothing where it may be anything.
+    pub(crate) fn target(&self) -> Option<f64> {
+        let mean = self.values.iter().sum::<f64>() / self.values.len().max(1) as f64;
+        (self.is_constant && !self.is_noise).then_some(self.expected.unwrap_or(mean))
     }
 }
 

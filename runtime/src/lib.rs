@@ -20,6 +20,8 @@ pub mod modes;
 pub mod quadrature;
 pub mod trajectory;
 
+mod pause;
+
 pub mod simulate;
 pub mod stepping;
 

@@ -11,25 +11,29 @@
 //!     dH/du (u - lower)   where dH/du > 0,        -dH/du (upper - u)   where dH/du < 0
 //! ```
 //!
-//! is an amount of `H`, and is compared with the size of its terms.
+//! is an amount of `H`, and is compared with the size of its terms. A bound that is farther away than the control ever is from 0 says nothing of its size: then it is that size
+//! which could be gained.
 
 use crate::nlp::{Derivatives, Nlp, Solution};
-use crate::problem::Bounds;
+use crate::problem::{Bounds, Variable};
 use crate::transcribe::TranscribedNlp;
 use crate::transcribe::interval::Signal;
 
 /// A smaller part of the size of the Hamiltonian is no gain.
 const GAIN: f64 = 1e-3;
 
-/// For each of so many controls, the part of the time on which the rule of signs is violated, over this time and with terms of this size.
+/// For each of these controls, the part of the time on which the rule of signs is violated, over this time and with terms of this size.
 pub(crate) fn violations(
-    controls: usize,
+    controls: &[Variable],
     nlp: &mut TranscribedNlp,
     solution: &Solution,
     (duration, size): (f64, f64),
 ) -> Vec<f64> {
     let slopes = slopes(nlp, solution);
-    let gains = (0..controls).map(|control| gains(nlp, &solution.v, &slopes, control));
+    let gains = controls.iter().enumerate().map(|(control, it)| {
+        let largest = largest(nlp, &solution.v, control, it.unit);
+        gains(nlp, (&solution.v, &slopes), control, largest)
+    });
     let part = |k: usize| nlp.mesh().relative(k) / nlp.chain().intervals as f64;
     let is_large = |k: usize, gain: f64| gain > GAIN * size * duration.abs() * part(k);
     let violated = |gains: Vec<f64>| {
@@ -49,25 +53,34 @@ pub(crate) fn slopes(nlp: &mut TranscribedNlp, solution: &Solution) -> Vec<f64> 
     gradient
 }
 
-/// What could be gained on each interval, times its length; a value that two intervals share counts for the later one.
-fn gains(nlp: &TranscribedNlp, v: &[f64], slopes: &[f64], control: usize) -> Vec<f64> {
+/// The variables that are values of a control, each with its interval; a value that two intervals share belongs to the later one.
+fn variables<'a>(nlp: &'a TranscribedNlp, control: usize) -> impl Iterator<Item = (usize, usize)> + 'a {
     let chain = nlp.chain();
-    let mut gains = vec![0.0; chain.intervals];
     let slots = nlp.interval().slots.iter().enumerate();
-    for (place, _) in slots.filter(|(_, slot)| slot.signal == Signal::Control(control)) {
-        for (k, gain) in gains.iter_mut().enumerate() {
-            let variable = chain.state(k).start + place;
-            *gain += self::gain(&nlp.variable_bounds()[variable], v[variable], slopes[variable]);
-        }
+    let places =
+        slots.filter(move |(_, slot)| slot.signal == Signal::Control(control)).map(|(place, _)| place);
+    places.flat_map(move |place| (0..chain.intervals).map(move |k| (k, chain.state(k).start + place)))
+}
+
+/// How large a control is anywhere; one of its unit where it is 0 throughout.
+fn largest(nlp: &TranscribedNlp, v: &[f64], control: usize, unit: f64) -> f64 {
+    let most = variables(nlp, control).fold(0.0, |most: f64, (_, at)| most.max(v[at].abs()));
+    if most > 0.0 { most } else { unit }
+}
+
+/// What could be gained on each interval, times its length.
+fn gains(nlp: &TranscribedNlp, (v, slopes): (&[f64], &[f64]), control: usize, size: f64) -> Vec<f64> {
+    let mut gains = vec![0.0; nlp.chain().intervals];
+    for (k, variable) in variables(nlp, control) {
+        gains[k] += gain(&nlp.variable_bounds()[variable], v[variable], slopes[variable], size);
     }
     gains
 }
 
-/// Without a bound there is always something to gain.
-fn gain(bounds: &Bounds, value: f64, slope: f64) -> f64 {
+/// By a move to the bound, or by as much as the control is large.
+fn gain(bounds: &Bounds, value: f64, slope: f64, size: f64) -> f64 {
     let room = if slope > 0.0 { value - bounds.lower } else { bounds.upper - value };
-    let room = if room.is_finite() { room.max(0.0) } else { value.abs().max(1.0) };
-    slope.abs() * room
+    slope.abs() * room.clamp(0.0, size)
 }
 
 #[cfg(test)]
@@ -78,11 +91,16 @@ mod tests {
     #[test]
     fn a_slope_is_a_gain_unless_it_points_away_from_the_active_bound() {
         let bounds = Bounds { lower: -1.0, upper: 2.0 };
-        assert_eq!([gain(&bounds, -1.0, 3.0), gain(&bounds, 2.0, -3.0), gain(&bounds, 0.5, 0.0)], [0.0; 3]);
-        assert_eq!(
-            [gain(&bounds, -1.0, -3.0), gain(&bounds, 2.0, 3.0), gain(&bounds, 0.0, 0.5)],
-            [9.0, 9.0, 0.5]
-        );
-        assert_eq!(gain(&Bounds::FREE, 0.1, -0.25), 0.25);
+        let gain = |value, slope| gain(&bounds, value, slope, 10.0);
+        assert_eq!([gain(-1.0, 3.0), gain(2.0, -3.0), gain(0.5, 0.0)], [0.0; 3]);
+        assert_eq!([gain(-1.0, -3.0), gain(2.0, 3.0), gain(0.0, 0.5)], [9.0, 9.0, 0.5]);
+    }
+
+    /// A wide bound, or none, is no size.
+    #[test]
+    fn what_can_be_gained_is_no_more_than_the_size_of_the_control() {
+        let wide = Bounds { lower: -1e7, upper: 1e7 };
+        assert_eq!(gain(&wide, 0.1, -0.25, 2.0), 0.5);
+        assert_eq!(gain(&Bounds::FREE, 0.1, -0.25, 2.0), 0.5);
     }
 }

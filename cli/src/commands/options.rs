@@ -46,7 +46,7 @@ fn split<'t>(text: &'t str, form: &str) -> Result<(&'t str, &'t str), String> {
 /// When a replay confirms a solution.
 #[derive(Args, Clone)]
 pub struct Gap {
-    /// The largest difference between solution and true system that is called confirmation
+    /// The largest difference between solution and true system that is called confirmation: of a state for how far it moves, of a condition for the size of its terms
     #[arg(long, value_name = "G", default_value_t = 1e-3, value_parser = difference, allow_negative_numbers = true)]
     pub gap: f64,
 }

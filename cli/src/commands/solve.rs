@@ -4,11 +4,8 @@ use super::Exit;
 use super::options::{Gap, Options, Prepared, prepare, show};
 use crate::log::{Level, Log};
 use crate::output::named::Named;
-use crate::output::saved::Saved;
-use crate::output::verified::Verification;
 use crate::output::{self, files};
 use crate::solver::{Compiled, Failure, Solved};
-use crate::verification::verify;
 use crate::watch::catch_interrupts;
 use crate::{failure, verdict};
 use clap::Args;
@@ -25,8 +22,11 @@ pub struct Solve {
     #[command(flatten)]
     options: Options,
     /// Do not replay the controls on the true system
-    #[arg(long)]
+    #[arg(long, conflicts_with = "confirmed")]
     no_verify: bool,
+    /// End with exit code 2 also where the replay does not confirm the answer, or something contradicts that it is an optimum
+    #[arg(long)]
+    confirmed: bool,
     #[command(flatten)]
     gap: Gap,
 }
@@ -71,10 +71,7 @@ impl Solve {
             solved.document.sensitivities = sensitivities(&prepared.model, &solved);
         }
         if solved.is_good() && !self.no_verify {
-            let saved = Saved::from(&solved.document);
-            // A model that cannot be simulated is solved all the same.
-            let verified = verify(&prepared.model, &solved.problem, &saved).ok();
-            solved.document.verification = verified.map(|it| Verification::new(&it, self.gap.gap));
+            solved.replay(&prepared.model, self.gap.gap);
         }
         Ok(solved)
     }
@@ -92,10 +89,10 @@ impl Solve {
             output::print(&verdict::verdict(solved));
         }
         match written {
-            Ok(names) if names.is_empty() || self.options.json => solved.exit(),
+            Ok(names) if names.is_empty() || self.options.json => solved.exit(self.confirmed),
             Ok(names) => {
                 output::print(&format!(" wrote {}\n", names.join("  ")));
-                solved.exit()
+                solved.exit(self.confirmed)
             }
             Err(failure) => failure.report(&prepared.source),
         }

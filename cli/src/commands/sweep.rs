@@ -1,7 +1,7 @@
 //! `fdcc sweep`: one solve per value, side by side, and a table of what came out.
 
 use super::Exit;
-use super::options::{Options, Prepared, prepare, usage};
+use super::options::{Gap, Options, Prepared, prepare, usage};
 use crate::log::{self, Level, Log};
 use crate::output::named::Named;
 use crate::output::{self, files, plural, table};
@@ -20,7 +20,8 @@ mod grid;
 ///
 /// With `--json` the rows are one array of objects with `swept` (what was swept, numbers in SI units), `status`,
 /// `objective`, `free`, `iterations`, `kkt_error`, `constraint_violation` and `seconds`, as in the document of
-/// `solve`. With `--out` the files are called MODEL.1.sol.json and so on, by row, and written when the row is solved.
+/// `solve`; with `--confirmed` also `confirmed`, `verification` and `optimality`. With `--out` the files are called
+/// MODEL.1.sol.json and so on, by row, and written when the row is solved.
 #[derive(Args)]
 pub struct Sweep {
     /// The model; `-` is the standard input
@@ -37,8 +38,13 @@ pub struct Sweep {
     /// How many solves run at a time; without it as many as there are processors
     #[arg(long, value_name = "J", value_parser = clap::value_parser!(u32).range(1..))]
     jobs: Option<u32>,
+    /// Replay each row on the true system; exit code 2 unless that confirms it and nothing contradicts that it is an optimum
+    #[arg(long)]
+    confirmed: bool,
     #[command(flatten)]
     options: Options,
+    #[command(flatten)]
+    gap: Gap,
 }
 
 /// One row of the sweep, ready to be solved.
@@ -135,7 +141,10 @@ impl Sweep {
             None => compiled.first_start(&self.options)?,
         };
         let mut log = Log::of_several(self.level(), bar, &format!("row {} ", row.number));
-        let solved = compiled.solve(start, &self.options, &mut log)?;
+        let mut solved = compiled.solve(start, &self.options, &mut log)?;
+        if self.confirmed && solved.is_good() {
+            solved.replay(&row.prepared.model, self.gap.gap);
+        }
         self.write(row, &solved)?;
         bar.inc(1);
         if self.level() != Level::None {
@@ -157,13 +166,14 @@ impl Sweep {
         let swept: Vec<Named<String>> = solved.iter().map(|(number, _)| grid.row(number - 1)).collect();
         let documents = swept.iter().zip(solved.iter().map(|(_, solved)| &solved.document));
         let text = if self.options.json {
-            output::json(&documents.map(|(swept, document)| table::row(swept, document)).collect::<Vec<_>>())
+            let row = |(swept, document)| table::row(swept, document, self.confirmed);
+            output::json(&documents.map(row).collect::<Vec<_>>())
         } else {
-            table::table(documents)
+            table::table(documents, self.confirmed)
         };
         output::print(&text);
         let is_whole = solved.len() == grid.rows;
-        let worst = solved.iter().map(|(_, solved)| solved.exit()).max().unwrap_or(Exit::Fine);
+        let worst = solved.iter().map(|(_, solved)| solved.exit(self.confirmed)).max().unwrap_or(Exit::Fine);
         Ok(if is_whole { worst } else { worst.max(Exit::NotSolved) })
     }
 }

@@ -2,6 +2,7 @@
 
 use super::named::Named;
 use super::number::significant;
+use super::optimality::Optimality;
 use super::tried::{Ended, Happened, Tried};
 use super::units::Units;
 use super::verified::Verification;
@@ -70,6 +71,9 @@ pub struct Document {
     /// The units of the values; absent where the model has none.
     #[serde(skip_serializing_if = "Units::is_empty")]
     pub units: Units,
+    /// What contradicts that it is an optimum; absent where nothing is claimed to be one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub optimality: Option<Optimality>,
     /// What the controls do on the true system; absent where they were not replayed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verification: Option<Verification>,
@@ -86,6 +90,8 @@ pub struct HamiltonianCheck {
     pub size: f64,
     /// For each control the part of the time on which it does not minimise the Hamiltonian.
     pub violations: Named<f64>,
+    /// What a pause on a surface would gain per time; `null` where none is possible.
+    pub pause: Option<f64>,
 }
 
 impl HamiltonianCheck {
@@ -93,7 +99,8 @@ impl HamiltonianCheck {
         let (is_constant, expected) = (it.is_constant, it.expected);
         let names = controls.iter().map(|control| control.name.clone());
         let violations = names.zip(it.violations.iter().copied()).collect();
-        HamiltonianCheck { is_constant, expected, deviation: it.deviation(), size: it.size, violations }
+        let (deviation, size, pause) = (it.deviation(), it.size, it.pause);
+        HamiltonianCheck { is_constant, expected, deviation, size, violations, pause }
     }
 }
 
@@ -211,8 +218,33 @@ impl Document {
             sequences_left_out: false,
             starts: Vec::new(),
             units: Units::default(),
+            optimality: None,
             verification: None,
         }
+        .examined(problem)
+    }
+
+    /// The same with what contradicts that it is an optimum, as far as a replay is known.
+    fn examined(self, problem: &Problem) -> Self {
+        let claims = problem.has_objective && matches!(self.status.as_str(), "solved" | "acceptable");
+        Document { optimality: claims.then(|| self.optimality()), ..self }
+    }
+
+    fn optimality(&self) -> Optimality {
+        let gap = self.verification.as_ref().and_then(|it| it.state_gap);
+        Optimality::new(&self.hamiltonian_check, gap, self.global)
+    }
+
+    /// Takes over what a replay says.
+    pub fn set_verification(&mut self, verification: Option<Verification>) {
+        self.verification = verification;
+        self.optimality = self.optimality.take().map(|_| self.optimality());
+    }
+
+    /// Whether the replay confirms it and nothing contradicts that it is an optimum.
+    pub fn is_confirmed(&self) -> bool {
+        let is_contradicted = self.optimality.as_ref().is_some_and(|it| it.contradicted);
+        self.verification.as_ref().is_some_and(|it| it.confirmed) && !is_contradicted
     }
 }
 

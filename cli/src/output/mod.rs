@@ -11,6 +11,7 @@ mod gradient_words;
 pub mod html;
 pub mod named;
 pub mod number;
+pub mod optimality;
 pub mod plot;
 pub mod sarif;
 pub mod saved;

@@ -7,6 +7,7 @@ use super::number::{scientific, short};
 use super::saved::Saved;
 use super::units::Units;
 use crate::conditions::Condition;
+use crate::gaps::{Gap, TIME_OF};
 use crate::stays::{Stay, name};
 use crate::verification::Verified;
 use comfy_table::{CellAlignment, Table, presets};
@@ -24,13 +25,26 @@ pub struct Verification {
     pub completed: bool,
     /// The objective of the replay.
     pub objective: Option<f64>,
-    /// The largest difference to the solution over states and grid points, in units of max(1, |x|).
+    /// The largest difference to the solution over states and grid points, as a part of how far the state moves.
     pub state_gap: Option<f64>,
-    /// The largest violation of a bound, a path or an end condition.
+    /// Of which state that is; nothing where none differs.
+    pub differs: Option<Differs>,
+    /// The largest violation of a bound, a path or an end condition, as a part of the size of its terms.
+    pub relative_violation: Option<f64>,
+    /// The same in SI.
     pub constraint_violation: Option<f64>,
     /// Where that is.
     pub worst: Option<Worst>,
     pub events: usize,
+}
+
+/// The state that differs most for how far it moves.
+#[derive(Clone, Debug, Serialize)]
+pub struct Differs {
+    pub state: String,
+    /// In SI.
+    pub difference: f64,
+    pub time: f64,
 }
 
 /// A condition that a replay violates.
@@ -47,17 +61,21 @@ pub struct Worst {
 impl Verification {
     /// `asked` is the largest difference that is called confirmation.
     pub fn new(verified: &Verified, asked: f64) -> Self {
-        let worst = verified.worst().map(|condition| worst(verified, condition));
-        let violation = worst.as_ref().map_or(0.0, |worst| worst.violation);
-        let gap = verified.largest_gap();
+        let worst = verified.worst().map(|condition| (condition.part, worst(verified, condition)));
+        let (part, worst) = worst.unzip();
+        let largest = verified.largest_gap().filter(|it| it.difference > 0.0);
+        let differs = |it: &Gap| Differs { state: it.name.clone(), difference: it.difference, time: it.time };
+        let (gap, part) = (largest.map_or(0.0, |it| it.part), part.unwrap_or(0.0));
         let is_whole = verified.is_whole;
         Verification {
-            confirmed: is_whole && gap <= asked && violation <= asked,
+            confirmed: is_whole && gap <= asked && part <= asked,
             asked,
             completed: is_whole,
             objective: verified.simulation.objective,
             state_gap: is_whole.then_some(gap),
-            constraint_violation: is_whole.then_some(violation),
+            differs: largest.filter(|_| is_whole).map(differs),
+            relative_violation: is_whole.then_some(part),
+            constraint_violation: is_whole.then_some(worst.as_ref().map_or(0.0, |worst| worst.violation)),
             worst: worst.filter(|_| is_whole),
             events: verified.simulation.events.len(),
         }
@@ -65,7 +83,7 @@ impl Verification {
 
     /// The verdict in few words.
     pub fn words(&self) -> String {
-        match (self.state_gap, self.constraint_violation) {
+        match (self.state_gap, self.relative_violation) {
             (Some(gap), Some(violation)) if self.confirmed => {
                 format!("confirmed on the true system to {}", scientific(gap.max(violation), 1))
             }
@@ -73,6 +91,25 @@ impl Verification {
             _ => "and its replay on the true system does not reach the end".into(),
         }
     }
+
+    /// By how much the state differs that differs most, in its unit.
+    pub fn difference(&self, units: &Units) -> Option<String> {
+        let (Differs { state, difference, .. }, part) = (self.differs.as_ref()?, self.state_gap?);
+        let amount = units.value(measured(state), *difference, 6);
+        Some(format!("`{state}` differs by {amount}, {} of its motion", short(part)))
+    }
+
+    /// By how much the condition is violated that is violated most, in its unit.
+    pub fn violation(&self, units: &Units) -> Option<String> {
+        let (worst, part) = (self.worst.as_ref()?, self.relative_violation?);
+        let amount = units.violation(&worst.condition, worst.violation, 6);
+        Some(format!("{amount}, {} of its terms", short(part)))
+    }
+}
+
+/// What a difference is measured in: of a time of a jump that is time.
+fn measured(name: &str) -> &str {
+    if name.starts_with(TIME_OF) { "time" } else { name }
 }
 
 fn worst(verified: &Verified, condition: &Condition) -> Worst {
@@ -109,13 +146,18 @@ pub struct Document {
 
 #[derive(Serialize)]
 struct GapEntry {
+    /// As a part of how far the state moves.
     gap: f64,
+    /// In SI.
+    difference: f64,
     time: f64,
 }
 
 #[derive(Serialize)]
 struct ConditionEntry {
     violation: f64,
+    /// As a part of the size of its terms.
+    relative: f64,
     time: Option<f64>,
 }
 
@@ -128,10 +170,11 @@ impl Document {
         asked: f64,
     ) -> Self {
         let Verified { system, simulation, gaps, conditions, stays, .. } = verified;
-        let gaps = gaps.iter().map(|it| (it.name.clone(), GapEntry { gap: it.gap, time: it.time }));
+        let entry = |it: &Gap| GapEntry { gap: it.part, difference: it.difference, time: it.time };
+        let gaps = gaps.iter().map(|it| (it.name.clone(), entry(it)));
         let conditions = conditions.iter().map(|it| {
             let time = it.point.map(|point| simulation.time[point]);
-            (it.label.clone(), ConditionEntry { violation: it.violation, time })
+            (it.label.clone(), ConditionEntry { violation: it.violation, relative: it.part, time })
         });
         let span = |stay: &Stay| Span { mode: name(stay.mode).to_string(), from: stay.from, to: stay.to };
         let surfaces = stays.iter().enumerate().map(|(at, stays)| (system.name_of(at).to_string(), stays));
@@ -171,24 +214,19 @@ impl Document {
     }
 
     fn verdict(&self) -> String {
-        let Verification { asked, state_gap, constraint_violation, worst, .. } = &self.verification;
-        let first = match (self.ending.why(), state_gap, constraint_violation) {
-            (None, Some(gap), Some(violation)) => {
+        let Verification { asked, completed, worst, .. } = &self.verification;
+        let first = match self.ending.why().filter(|_| !completed) {
+            None if *completed => {
                 let word = if self.is_confirmed() { "confirmed" } else { "NOT CONFIRMED" };
-                let violated = match worst {
-                    Some(worst) => {
-                        let amount = self.units.violation(&worst.condition, *violation, 6);
-                        format!("violates `{}` by {amount}", worst.condition)
-                    }
-                    None => "meets all conditions".into(),
-                };
-                format!(
-                    " {word} on the true system: differs by {}, {violated} (asked for: {})\n",
-                    short(*gap),
-                    short(*asked)
-                )
+                let differs = self.verification.difference(&self.units);
+                let differs = differs.unwrap_or_else(|| "no state differs".into());
+                let violated = worst.as_ref().zip(self.verification.violation(&self.units));
+                let violated =
+                    violated.map(|(worst, amount)| format!("violates `{}` by {amount}", worst.condition));
+                let violated = violated.unwrap_or_else(|| "meets all conditions".into());
+                format!(" {word} on the true system: {differs}, {violated} (asked for: {})\n", short(*asked))
             }
-            (why, ..) => {
+            why => {
                 let why = why.unwrap_or_else(|| "it ended early".into());
                 format!(" NOT CONFIRMED: the replay on the true system does not reach the end\n {why}\n")
             }
@@ -211,19 +249,22 @@ impl Document {
     }
 
     fn states(&self) -> String {
-        let rows = self.state_gaps.0.iter();
-        let rows = rows.map(|(name, it)| {
-            vec![name.clone(), self.units.value(name, it.gap, 6), self.units.value("time", it.time, 6)]
-        });
-        let rows = rows.collect();
-        table(["state", "differs by", "at t"].to_vec(), rows)
+        let row = |(name, it): &(String, GapEntry)| {
+            let difference = self.units.value(measured(name), it.difference, 6);
+            vec![name.clone(), difference, short(it.gap), self.units.value("time", it.time, 6)]
+        };
+        let rows = self.state_gaps.0.iter().map(row).collect();
+        table(["state", "differs by", "of its motion", "at t"].to_vec(), rows)
     }
 
     fn met(&self) -> String {
         let time = |time: Option<f64>| time.map(|it| self.units.value("time", it, 6)).unwrap_or_default();
-        let rows = self.conditions.0.iter();
-        let rows = rows.map(|(name, it)| vec![name.clone(), short(it.violation), time(it.time)]).collect();
-        table(["condition", "violated by", "at t"].to_vec(), rows)
+        let row = |(name, it): &(String, ConditionEntry)| {
+            let violation = self.units.violation(name, it.violation, 6);
+            vec![name.clone(), violation, short(it.relative), time(it.time)]
+        };
+        let rows = self.conditions.0.iter().map(row).collect();
+        table(["condition", "violated by", "of its terms", "at t"].to_vec(), rows)
     }
 
     fn modes(&self) -> String {

@@ -1,6 +1,8 @@
 //! Widths of our own choice, where the model names none: each surface gets a fraction of the size that its switching function has along the trajectory
 //! found so far, one solve after another; a warm start takes those of the earlier solution. Where a step is too long it is halved; where even short steps fail, the last width that could be solved is the answer.
 //! Where the first and widest layer cannot be solved, that is no verdict: thinner ones are begun with at once.
+//!
+//! A guess that rests on a surface says nothing of the size of its function. Then the first solution says it, and the first solve is repeated with it.
 
 use super::Watch;
 use super::approach::grids;
@@ -16,6 +18,14 @@ const THINNER: [f64; 3] = [0.1, 0.03, 0.01];
 /// From one width to the next; after a failure the square root of it, and so on.
 const DECREASE: f64 = 0.3;
 const MOST_FAILURES: usize = 3;
+/// Without a guess of its size the first width is a fraction of this; how large the function is, is found out at most so often.
+const UNKNOWN: f64 = 1.0;
+const MOST_SIZINGS: usize = 3;
+/// A first width may be so many times the one that fits the size, or that part of it.
+const TOO_WIDE: f64 = 2.0;
+const TOO_THIN: f64 = 0.1;
+/// A function that shrinks below this with its layer is held: its size is that of the layer.
+const SHRUNK: f64 = 0.5;
 /// A step that takes longer than this is too long.
 const MOST_ITERATIONS: usize = 300;
 
@@ -36,7 +46,7 @@ impl Run<'_> {
             }
         }
         self.set_relative(nlp, &start.v, FIRST_FACTOR);
-        let first = self.first(nlp, start.clone(), watch);
+        let first = self.sized(nlp, &start, watch);
         let (mut best, mut factor) = self.or_thinner(nlp, &start, first, watch);
         let (mut decrease, mut failures) = (DECREASE, 0);
         while is_good(&best.status) && factor > LAST_FACTOR && failures < MOST_FAILURES {
@@ -58,6 +68,55 @@ impl Run<'_> {
         self.apply_sigma(nlp);
         best.counts = self.counts;
         best
+    }
+
+    /// The widest layer; where the guess said nothing of the size of a switching function, with the size that it turns out to have.
+    fn sized(&mut self, nlp: &mut TranscribedNlp, start: &Start, watch: &mut Watch) -> Solution {
+        let mut best = self.first(nlp, start.clone(), watch);
+        let mut is_open: Vec<bool> = nlp.guard_sizes(&start.v).iter().map(|size| *size == 0.0).collect();
+        for _ in 0..MOST_SIZINGS {
+            let (before, sizes) = (self.sigma.clone(), nlp.guard_sizes(&best.v));
+            self.resize(&is_open, &sizes);
+            if self.sigma == before {
+                break;
+            }
+            let solution = self.first(nlp, start.clone(), watch);
+            if !is_good(&solution.status) {
+                self.sigma = before;
+                if matches!(solution.status, Status::TimeLimit | Status::Interrupted) {
+                    best.status = solution.status;
+                }
+                break;
+            }
+            best = solution;
+            let after = nlp.guard_sizes(&best.v);
+            self.undo_where_held(&mut is_open, &before, &|at| after[at] < SHRUNK * sizes[at]);
+        }
+        best
+    }
+
+    /// Widths that fit the sizes of the functions, where they are still open.
+    fn resize(&mut self, is_open: &[bool], sizes: &[f64]) {
+        for ((sigma, size), _) in self.sigma.iter_mut().zip(sizes).zip(is_open).filter(|it| *it.1) {
+            let fitting = FIRST_FACTOR * size;
+            let fits = *sigma <= TOO_WIDE * fitting && *sigma >= TOO_THIN * fitting;
+            if fitting > 0.0 && fitting.is_finite() && !fits {
+                *sigma = fitting;
+            }
+        }
+    }
+
+    /// A function that is held says nothing of its size: its width follows that of the others, and is open no longer.
+    fn undo_where_held(&mut self, is_open: &mut [bool], before: &[f64], shrinks: &dyn Fn(usize) -> bool) {
+        let narrower = |at: usize| self.sigma[at] < before[at];
+        let is_held: Vec<bool> = (0..before.len()).map(|at| narrower(at) && shrinks(at)).collect();
+        let moving = (0..before.len()).filter(|at| is_open[*at] && !is_held[*at]);
+        let factor = moving.map(|at| self.sigma[at] / before[at]).fold(f64::INFINITY, f64::min);
+        let factor = if factor.is_finite() { factor.min(1.0) } else { 1.0 };
+        for at in (0..before.len()).filter(|at| is_held[*at]) {
+            self.sigma[at] = factor * before[at];
+            is_open[at] = false;
+        }
     }
 
     /// The widest layer: over coarse grids, or at once.
@@ -103,7 +162,7 @@ impl Run<'_> {
     /// Widths relative to the size of each switching function along `v`.
     fn set_relative(&mut self, nlp: &TranscribedNlp, v: &[f64], factor: f64) {
         for (sigma, size) in self.sigma.iter_mut().zip(nlp.guard_sizes(v)) {
-            *sigma = factor * if size > 0.0 { size } else { 1.0 };
+            *sigma = factor * if size > 0.0 { size } else { UNKNOWN };
         }
     }
 

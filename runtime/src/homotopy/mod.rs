@@ -9,6 +9,7 @@ mod run;
 
 use crate::modes::{Span, modes};
 use crate::nlp::{Nlp, Progress, Solution, Start, Status, Stop, convex};
+use crate::pause;
 use crate::problem::{Origin, Problem, Solver};
 use crate::trajectory::Trajectory;
 use crate::transcribe::TranscribedNlp;
@@ -145,7 +146,8 @@ fn widths(problem: &Problem) -> Option<Vec<f64>> {
 
 fn finish(run: Run, nlp: &mut TranscribedNlp, solution: Solution, convex: bool) -> Outcome {
     let Run { problem, sigma, attempts, .. } = run;
-    let trajectory = Trajectory::new(problem, nlp, &solution);
+    let mut trajectory = Trajectory::new(problem, nlp, &solution);
+    trajectory.hamiltonian.pause = pause::gain(problem, &trajectory);
     let surfaces = trajectory.guards.iter().zip(&sigma);
     let modes = surfaces.map(|(guard, sigma)| modes(&trajectory.time, guard, *sigma)).collect();
     let limiting = limiting(nlp, &solution, &trajectory, problem.method.tol);

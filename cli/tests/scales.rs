@@ -1,0 +1,133 @@
+//! The verdict does not depend on the units in which a model is written, nor on how large its numbers are.
+
+mod common;
+
+use common::{expect_exit, fdcc, folder, json, number, stdout};
+use serde_json::Value;
+
+/// A block of mass 1 that friction of 3 m/s^2 holds, pulled over half a micrometre within 2 ms.
+fn block(length: &str, time: &str) -> String {
+    format!(
+        "model block\nparam friction = 3 [m/s^2]\nparam goal = 0.5 [um]\ntime t in [0[s], 2[ms]]\n\
+         state x [{length}] start 0\nstate v [{length}/{time}] start 0\ncontrol a [m/s^2]\nsurface slip = v\n\
+         dynamics {{ x' = v\n v' in a - friction*Sgn(slip) }}\nend x == goal\nend v == 0\nminimize integral(a^2)\n"
+    )
+}
+
+const UNITS: [(&str, &str); 6] =
+    [("m", "s"), ("mm", "s"), ("um", "ms"), ("km", "s"), ("m", "ms"), ("km", "ms")];
+
+/// The solution says that it moves; without any force it rests, and misses by all of its way.
+const RESTS: &str = r#"{"model": "block", "free": {}, "params": {"friction": 3, "goal": 5e-7},
+    "time": [0, 1e-3, 2e-3], "states": {"x": [0, 2.5e-7, 5e-7], "v": [0, 5e-4, 0]}, "controls": {"a": [0, 0]}}"#;
+
+fn near(value: &Value, expected: f64, within: f64) {
+    assert!((number(value) - expected).abs() <= within, "{value}, not {expected}");
+}
+
+#[test]
+fn a_block_that_misses_by_all_of_its_way_is_not_confirmed_in_any_unit() {
+    for (length, time) in UNITS {
+        let files = [("block.fdc", block(length, time)), ("block.sol.json", RESTS.to_owned())];
+        let files = files.each_ref().map(|(name, text)| (*name, text.as_bytes()));
+        let folder = folder(&format!("scales_rests_{length}_{time}"), &files);
+        let output = fdcc(&folder, &["verify", "block.sol.json", "--json"], "");
+        expect_exit(&output, 2, length);
+        let verification = &json(&output)["verification"];
+        near(&verification["state_gap"], 1.0, 1e-12);
+        near(&verification["relative_violation"], 1.0, 1e-12);
+        near(&verification["constraint_violation"], 5e-7, 1e-18);
+        assert_eq!(verification["worst"]["condition"], "end x == goal");
+        let said = stdout(&fdcc(&folder, &["verify", "block.sol.json"], ""));
+        assert!(
+            length != "um" || said.contains("violates `end x == goal` by 0.5 um, 1 of its terms"),
+            "{said}"
+        );
+    }
+}
+
+/// Pulled with `a = friction + 6d/tau^2 (1 - 2t/tau)` for the last `tau = sqrt(6 d/friction)` of the time, which here is 1 ms: `J = friction^2 tau + 12 d^2/tau^3 = 0.012`.
+#[test]
+fn a_block_is_pulled_over_half_a_micrometre_the_same_in_every_unit() {
+    let solved = UNITS.map(|(length, time)| {
+        let text = block(length, time);
+        let folder = folder(&format!("scales_{length}_{time}"), &[("block.fdc", text.as_bytes())]);
+        json(&fdcc(&folder, &["solve", "block.fdc", "--json", "--log", "none"], ""))
+    });
+    let [first, others @ ..] = &solved;
+    for document in &solved {
+        assert_eq!(document["status"], "solved");
+        near(&document["objective"], 0.012, 0.03 * 0.012);
+        // The block ends where it should, to a few hundredths of its way.
+        assert!(
+            number(&document["verification"]["relative_violation"]) < 0.05,
+            "{}",
+            document["verification"]
+        );
+    }
+    for other in others {
+        assert_eq!(other["verification"]["confirmed"], first["verification"]["confirmed"]);
+        for figure in ["state_gap", "relative_violation"] {
+            let own = number(&first["verification"][figure]);
+            near(&other["verification"][figure], own, 1e-6 * own);
+        }
+    }
+}
+
+/// The same over 500 km within 2000 s: 1e6 times the time and 1e12 times the way are the same problem, so `J` is 1e6 times as large. The width is a hundredth of the speed in both.
+#[test]
+fn the_width_fits_the_speed_at_every_scale() {
+    let small = block("um", "ms");
+    let large = block("km", "s").replace("0.5 [um]", "500 [km]").replace("2[ms]", "2000[s]");
+    for (name, text, least) in [("small", small, 0.012), ("large", large, 12e3)] {
+        let folder = folder(&format!("scales_{name}"), &[("block.fdc", text.as_bytes())]);
+        let document = json(&fdcc(&folder, &["solve", "block.fdc", "--json", "--log", "none"], ""));
+        near(&document["objective"], least, 0.03 * least);
+        let speeds = common::column(&document["states"]["v"]);
+        let fastest = speeds.iter().fold(0.0, |most: f64, speed| most.max(speed.abs()));
+        let part = number(&document["method"]["sigma"]) / fastest;
+        assert!((0.005..0.02).contains(&part), "{name}: sigma is {part} of the speed");
+    }
+}
+
+/// A vessel at 100 bar, filled to 110: 1 Pa is a millionth of the way, 10 kPa a hundredth.
+#[test]
+fn a_vessel_at_100_bar_can_be_confirmed() {
+    let model = |pressure: &str, from: &str, to: &str, rate: &str| {
+        format!(
+            "model vessel\ntime t in [0, 1] [s]\nstate p {pressure} start {from}\ncontrol u {rate}\n\
+             dynamics {{ p' = u }}\nend p == {to}\nminimize integral(u^2)\n"
+        )
+    };
+    let models = [
+        model("[Pa]", "1e7", "1.1e7[Pa]", "[Pa/s]"),
+        model("[bar]", "100", "110[bar]", "[bar/s]"),
+        model("", "1e7", "1.1e7", "").replace("[s]", ""),
+    ];
+    for (at, text) in models.iter().enumerate() {
+        for (rate, code) in [(1e6, 0), (1_000_001.0, 0), (1.01e6, 2)] {
+            let solution = format!(
+                r#"{{"model": "vessel", "free": {{}}, "params": {{}}, "time": [0, 0.5, 1],
+                  "states": {{"p": [1e7, 1.05e7, 1.1e7]}}, "controls": {{"u": [{rate}, {rate}]}}}}"#
+            );
+            let files = [("vessel.fdc", text.as_bytes()), ("vessel.sol.json", solution.as_bytes())];
+            let folder = folder(&format!("scales_vessel_{at}"), &files);
+            let output = fdcc(&folder, &["verify", "vessel.sol.json", "--json"], "");
+            expect_exit(&output, code, text);
+            let missed = rate - 1e6;
+            near(&json(&output)["verification"]["state_gap"], missed / (1e6 + missed), 1e-8);
+        }
+    }
+}
+
+/// A state that rests, at 0 or far from it, does not differ by rounding.
+#[test]
+fn what_does_not_move_does_not_differ() {
+    let text = "model rests\ntime t in [0, 1]\nstate x start 0\nstate y start 0\nstate z start 300\ncontrol u\n\
+                dynamics { x' = u\n y' = 0*u\n z' = 0*u }\nend y == 0\nend z == 300\nminimize integral(u^2)\n";
+    let solution = r#"{"model": "rests", "free": {}, "params": {}, "time": [0, 1],
+        "states": {"x": [0, 1], "y": [0, 1e-16], "z": [300, 300.00000000001]}, "controls": {"u": [1]}}"#;
+    let folder =
+        folder("scales_rests", &[("rests.fdc", text.as_bytes()), ("rests.sol.json", solution.as_bytes())]);
+    expect_exit(&fdcc(&folder, &["verify", "rests.sol.json"], ""), 0, "rounding");
+}

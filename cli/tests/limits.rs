@@ -14,7 +14,7 @@ fn long() -> String {
     let terms: Vec<String> = (1..=2000).map(|i| format!("sin({i}*x + {i})")).collect();
     format!(
         "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]\ndynamics {{ x' = u + {} }}\nminimize integral(u^2)\n\
-         method {{ N = 10 scheme = rk4 }}\n",
+         method {{ N = 10 scheme = rk4 }}\nexpect {{ x(start) == 0 }}\n",
         terms.join(" + ")
     )
 }

@@ -31,8 +31,11 @@ fn keep(graph: &mut Graph, builtin: Builtin, operands: &[ExprId]) -> ExprId {
 // f(numbers) = number, if finite: anything else is left to be met, and reported, when it is evaluated.
 fn fold(graph: &mut Graph, builtin: Builtin, operands: &[ExprId]) -> Option<ExprId> {
     let numbers: Option<Vec<f64>> = operands.iter().map(|&operand| graph.as_number(operand)).collect();
-    let value = (builtin.row().value)(&numbers?);
-    value.is_finite().then(|| graph.number(value))
+    let numbers = numbers?;
+    let value = (builtin.row().value)(&numbers);
+    // `-inf` is a side without a bound.
+    let is_open = !value.is_nan() && numbers.iter().any(|number| number.is_infinite());
+    (value.is_finite() || is_open).then(|| graph.number(value))
 }
 
 fn binary(graph: &mut Graph, builtin: Builtin, a: ExprId, b: ExprId) -> Option<ExprId> {

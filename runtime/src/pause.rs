@@ -70,7 +70,9 @@ impl<'a> Passage<'a> {
         let values = self.hamiltonian(&points);
         let weight = rates[place - 1] / (rates[place - 1] - rates[place]);
         let value = values[place - 1] + weight * (values[place] - values[place - 1]);
-        (self.is_allowed(&points, place) && value.is_finite()).then_some(value)
+        // Terms that are larger than those of the whole solution are noise of its costates, not of a pause.
+        let is_sound = value.abs() <= self.trajectory.hamiltonian.size;
+        (is_sound && self.is_allowed(&points, place)).then_some(value)
     }
 
     /// `[t | x | u]` on the line between the ends of the interval, from one side of the layer to the other.

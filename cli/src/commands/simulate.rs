@@ -50,8 +50,9 @@ impl Simulate {
         let unit = prepared.model.time_size();
         let times = self.times.iter().map(|time| time * unit).collect();
         let options = Options { times, ..self.driven.options(&prepared.model) };
-        if let Some(outside) = options.times.iter().find(|time| **time < first || **time > last) {
-            let [outside, first, last] = [*outside, first, last].map(|time| time / unit);
+        let mut times = self.times.iter().zip(&options.times);
+        if let Some((outside, _)) = times.find(|(_, time)| **time < first || **time > last) {
+            let [first, last] = [first, last].map(|time| time / unit);
             return Err(Failure::Usage(format!("`--times`: {outside} is not between {first} and {last}")));
         }
         let simulation = simulate(&system, &controls, &options);

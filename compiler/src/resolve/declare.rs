@@ -263,7 +263,8 @@ impl<'a> Elaborator<'a> {
     fn ranges(&mut self, context: Context, interval: &'a Interval, size: usize) -> Vec<Range> {
         let [lower, upper] = [&interval.lower, &interval.upper].map(|expr| {
             let value = self.evaluate_for(Role::Number("a bound"), context, expr);
-            self.expect_parts(&value, size, expr.span)
+            let parts = self.expect_parts(&value, size, expr.span);
+            parts.into_iter().map(|part| self.open(part)).collect::<Vec<ExprId>>()
         });
         let everything = self.everything();
         let pair = |part: usize| Range {
@@ -271,6 +272,15 @@ impl<'a> Elaborator<'a> {
             upper: upper.get(part).copied().unwrap_or(everything.upper),
         };
         (0..size).map(pair).collect()
+    }
+
+    /// `-inf`, and `inf` in a unit, as numbers: who asks whether there is a bound looks for one.
+    fn open(&mut self, bound: ExprId) -> ExprId {
+        if self.graph.as_number(bound).is_some() || !self.graph.inputs_of(&[bound]).is_empty() {
+            return bound;
+        }
+        let value = self.numeric(bound);
+        if value.is_infinite() { self.graph.number(value) } else { bound }
     }
 
     /// The index of a declaration's first scalar among those of its kind.

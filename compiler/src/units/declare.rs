@@ -1,8 +1,8 @@
 //! The units of declared names: those that are written, those of their definitions, and those that are to be found.
 
+use super::declared::Form;
 use super::expression::written;
 use super::inference::{Inference, Operand, named};
-use super::messages::unit_of;
 use super::requirement::Reason;
 use super::value::{Part, Value};
 use crate::resolve::order::order;
@@ -80,10 +80,9 @@ impl<'a> Inference<'a> {
             self.compare(Reason::Given("its value", it.name), &declared, &given);
             given.0.iter().map(|_| written(unit)).collect()
         } else {
-            let is_quantity = unit_of(it.item).is_some();
             let own = |part: &Part| match part.plain {
                 true => self.number(it.name, it.item),
-                false if is_quantity => part.clone().as_name(),
+                false if part.declared.form == Form::Quantity => part.clone().as_name(),
                 false => part.clone().as_definition(),
             };
             given.0.iter().map(own).collect()

@@ -41,12 +41,13 @@ pub(crate) fn rounded(
     guards: &mut Guards,
 ) -> Option<Vec<ExprId>> {
     let mut is_any = false;
-    let rounded = graph.rewrite(roots, |graph, original, rebuilt| match sides(graph, original, rebuilt) {
-        Some((gap, sides)) if !guards.is_joint(graph, original) => {
-            is_any = true;
-            crossover(graph, gap, sides, width, guards)
+    let rounded = graph.rewrite(roots, |graph, original, rebuilt| {
+        if guards.is_joint(graph, original) {
+            return rebuilt;
         }
-        _ => rebuilt,
+        let Some((gap, sides)) = sides(graph, original, rebuilt) else { return rebuilt };
+        is_any = true;
+        crossover(graph, gap, sides, width, guards)
     });
     is_any.then_some(rounded)
 }

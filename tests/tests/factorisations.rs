@@ -9,7 +9,8 @@ use fdcc_tests::models::{problem, refusal, solve};
 const LONG_PATH: usize = 100;
 
 fn solution(text: &str, linear: &str) -> Solution {
-    let method = [("linear", linear), ("solver", "interior_point")];
+    // With a width of our own choice two searches for one would be compared.
+    let method = [("linear", linear), ("solver", "interior_point"), ("sigma", "0.05")];
     solve(&problem(text, &[], &method)).solution
 }
 

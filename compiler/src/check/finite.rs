@@ -9,10 +9,10 @@ use fdcc_grammar::{Code, Diagnostic, Span};
 
 /// Reports what has no finite value, though all that it is made of has one.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
-    let before = found.len();
+    let (before, told) = (found.len(), facts.told());
     facts.items.iter().for_each(|item| {
         // What is unknown for another reason has been told.
-        if !facts.has_error_within(item.span) {
+        if !told.is_within(item.span) {
             of_item(facts.meaning, item, found);
         }
     });

@@ -76,12 +76,23 @@ pub(crate) use unused::check as unused;
 pub(crate) use values::missing as missing_value;
 
 impl Facts<'_, '_> {
-    /// Whether a mistake inside a span has been told already, so that more about it would be noise.
-    pub fn has_error_within(&self, span: Span) -> bool {
-        let inside = |it: &Diagnostic| {
-            it.severity == Severity::Error && it.span().start >= span.start && it.span().end <= span.end
-        };
-        self.meaning.diagnostics.iter().any(inside)
+    /// The mistakes that have been told already.
+    pub fn told(&self) -> Told {
+        let errors = self.meaning.diagnostics.iter().filter(|it| it.severity == Severity::Error);
+        let mut spans: Vec<Span> = errors.map(Diagnostic::span).collect();
+        spans.sort_unstable_by_key(|span| span.start);
+        Told(spans)
+    }
+}
+
+/// Where mistakes have been told, in the order of the text.
+pub(crate) struct Told(Vec<Span>);
+
+impl Told {
+    /// Whether there is one inside a span, so that more about it would be noise.
+    pub fn is_within(&self, span: Span) -> bool {
+        let first = self.0.partition_point(|it| it.start < span.start);
+        self.0[first..].iter().take_while(|it| it.start <= span.end).any(|it| it.end <= span.end)
     }
 }
 

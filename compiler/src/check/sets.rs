@@ -10,13 +10,14 @@ use fdcc_grammar::{Code, Diagnostic, Fix};
 
 /// Reports sets where a value is needed, and `in` where there is no set.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
+    let told = facts.told();
     for piece in &facts.meaning.pieces {
         match (piece.role, piece.traits.sets.first()) {
             (Role::Equation(equation), Some(set)) if equation.relation == EquationRelation::Equal => {
                 found.push(equality(equation, set))
             }
             (Role::Equation(equation), None) if equation.relation == EquationRelation::In => {
-                if !facts.has_error_within(equation.right.span) {
+                if !told.is_within(equation.right.span) {
                     found.push(no_set(equation));
                 }
             }

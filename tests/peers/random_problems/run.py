@@ -67,6 +67,8 @@ def judged(fdcc, key, path):
     try:
         result = json.loads(output)
     except (TypeError, json.JSONDecodeError):
+        if said.startswith('FDC0410'):
+            return contradicted(row, problem), problem
         return {**row, 'status': 'no result', 'wrong': [['solved', said[:300]]], 'notes': [], 'failed': True}, problem
     headline = ''
     if result['status'] == 'infeasible':
@@ -79,6 +81,14 @@ def judged(fdcc, key, path):
             'iterations': result['iterations'], 'seconds': result['seconds']['solve'],
             'ipopt': reference.status, 'ipopt_iterations': reference.iterations, 'wrong': judgement.wrong,
             'notes': judgement.notes, 'failed': bool(judgement.failed())}, problem
+
+
+def contradicted(row, problem):
+    """The row of a problem whose conditions `check` calls contradictory: it is proved to be infeasible."""
+    wrong = [] if problem.truth == 'infeasible' else [['infeasible', 'FDC0410, but it is not by construction']]
+    nothing = {'iterations': 0, 'seconds': 0.0, 'ipopt': '', 'ipopt_iterations': 0, 'notes': []}
+    return {**row, **nothing, 'status': 'infeasible', 'global': False, 'confirmed': False, 'objective': None,
+            'contradicted': False, 'known': None, 'wrong': wrong, 'failed': False}
 
 
 def earlier(path):

@@ -3,7 +3,6 @@
 //! Normal forms: a product carries at most one number, in front; a negation stands outside products; a quotient
 //! is a product with a reciprocal, so that one division serves everything over the same denominator; operands
 //! of `+` and `*` are sorted. Each identity holds wherever the left side has a finite value, up to rounding.
-
 use super::{Expr, ExprId, Graph, Operands};
 use crate::builtins::{Builtin, Parity};
 
@@ -28,13 +27,12 @@ fn keep(graph: &mut Graph, builtin: Builtin, operands: &[ExprId]) -> ExprId {
     graph.intern(Expr::Call(builtin, Operands::from_slice(operands)))
 }
 
-// f(numbers) = number, if finite: anything else is left to be met, and reported, when it is evaluated.
+// f(numbers) = number, if finite or a side without a bound: anything else is left to be met, and reported, when it is evaluated.
 fn fold(graph: &mut Graph, builtin: Builtin, operands: &[ExprId]) -> Option<ExprId> {
     let numbers: Option<Vec<f64>> = operands.iter().map(|&operand| graph.as_number(operand)).collect();
     let numbers = numbers?;
     let value = (builtin.row().value)(&numbers);
-    // `-inf` is a side without a bound.
-    let is_open = !value.is_nan() && numbers.iter().any(|number| number.is_infinite());
+    let is_open = value.is_infinite() && numbers.iter().any(|number| number.is_infinite());
     (value.is_finite() || is_open).then(|| graph.number(value))
 }
 

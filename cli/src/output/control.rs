@@ -45,7 +45,8 @@ fn from_csv(text: &str, model: &Model) -> Result<Replay, String> {
                 return Err(format!("line {}: a third row at t = {time}; a jump has two sides", at + 1));
             }
             twice = Some(time);
-            (replay.times.pop(), replay.rows.pop());
+            replay.times.pop();
+            replay.rows.pop();
         }
         replay.times.push(time);
         replay.rows.push(row);

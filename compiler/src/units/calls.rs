@@ -126,12 +126,12 @@ impl<'a> Inference<'a> {
         match (name, &given[..]) {
             ("abs" | "selected", [only]) => only.0.clone(),
             ("sqrt", [only]) => self.powers(&only.0, Ratio::from_decimal(0.5)),
-            ("min" | "max", [a, b]) => as_formula(self.equal(Reason::Together(name), a, b)),
+            ("min" | "max", [a, b]) => into_formula(self.equal(Reason::Together(name), a, b)),
             ("atan2", [a, b]) => {
                 self.equal(Reason::Together(name), a, b);
                 no_unit(&given)
             }
-            ("norm", [only]) => as_formula(self.one_unit(name, only)),
+            ("norm", [only]) => into_formula(self.one_unit(name, only)),
             ("normsq", [only]) => {
                 let one = self.one_unit(name, only);
                 self.powers(&one, Some(Ratio::whole(2)))
@@ -165,7 +165,7 @@ impl<'a> Inference<'a> {
     /// Time is not named in it: the integral of a speed in m/s is a length in m, also over minutes.
     fn integral(&self, only: &Operand<'a>) -> Value {
         pairwise(&only.0, &self.time(), |part, time| match part.declared.is_si() {
-            true => part.times(time).in_unit(Declared::SI).as_formula(),
+            true => part.times(time).in_unit(Declared::SI).into_formula(),
             false => part.times(time),
         })
     }
@@ -215,8 +215,8 @@ impl<'a> Inference<'a> {
     }
 }
 
-fn as_formula(value: Value) -> Value {
-    value.into_iter().map(Part::as_formula).collect()
+fn into_formula(value: Value) -> Value {
+    value.into_iter().map(Part::into_formula).collect()
 }
 
 fn no_unit(arguments: &[Operand<'_>]) -> Value {

@@ -82,8 +82,8 @@ impl<'a> Inference<'a> {
         } else {
             let own = |part: &Part| match part.plain {
                 true => self.number(it.name, it.item),
-                false if part.declared.form == Form::Quantity => part.clone().as_name(),
-                false => part.clone().as_definition(),
+                false if part.declared.form == Form::Quantity => part.clone().into_name(),
+                false => part.clone().into_definition(),
             };
             given.0.iter().map(own).collect()
         };

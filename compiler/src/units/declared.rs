@@ -50,7 +50,7 @@ impl Declared {
     }
 
     /// The same as a name that is given as a quantity.
-    pub fn as_name(self) -> Self {
+    pub fn into_name(self) -> Self {
         Declared { form: Form::Name, ..self }
     }
 
@@ -67,7 +67,7 @@ impl Declared {
     }
 
     /// The same as a formula: beside `max(x, y)` nothing is read in the unit of `x`.
-    pub fn as_formula(mut self) -> Self {
+    pub fn into_formula(mut self) -> Self {
         self.form = self.form.with(Form::Formula);
         self
     }

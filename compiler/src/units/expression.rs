@@ -47,7 +47,7 @@ impl<'a> Inference<'a> {
             ExprKind::Match { below, above, .. } => {
                 let (below, above) = (self.operand(below), self.operand(above));
                 let both = self.equal(Reason::Alternatives, &below, &above);
-                both.into_iter().map(Part::as_formula).collect()
+                both.into_iter().map(Part::into_formula).collect()
             }
         }
     }
@@ -188,7 +188,7 @@ impl<'a> Inference<'a> {
             let value = self.operand(&arm.value);
             all = self.equal(Reason::Alternatives, &value, &(all, rest.1.clone()));
         }
-        all.into_iter().map(Part::as_formula).collect()
+        all.into_iter().map(Part::into_formula).collect()
     }
 }
 

@@ -28,21 +28,21 @@ impl Part {
     }
 
     /// The same as a formula, beside which no plain number is read in the unit of a name.
-    pub fn as_formula(self) -> Self {
-        Part { declared: self.declared.as_formula(), ..self }
+    pub fn into_formula(self) -> Self {
+        Part { declared: self.declared.into_formula(), ..self }
     }
 
     /// The same as a name that is given as a quantity.
-    pub fn as_name(self) -> Self {
-        Part { declared: self.declared.as_name(), ..self }
+    pub fn into_name(self) -> Self {
+        Part { declared: self.declared.into_name(), ..self }
     }
 
     /// The same as a name without a unit of its own. Of terms in different units, none is that of the sum: it is in SI,
     /// as it is shown.
-    pub fn as_definition(self) -> Self {
+    pub fn into_definition(self) -> Self {
         match self.declared.form {
             Form::Mixed => Part { declared: Declared::SI, ..self },
-            _ => self.as_formula(),
+            _ => self.into_formula(),
         }
     }
 

@@ -66,7 +66,7 @@ fn used_surfaces(model: &Model) -> Vec<usize> {
     (0..model.surfaces.len()).filter(|&at| is_read(at) || in_ball(at)).collect()
 }
 
-/// The model in which exactly these jumps and [`crossings`] happen, one after the other.
+/// The model in which exactly these jumps and [`mod@crossings`] happen, one after the other.
 pub fn unrolled(model: &Model, sequence: &[usize]) -> Result<Model, Vec<Diagnostic>> {
     let numbers = numbers(model)?;
     let begins = crossings::beginnings(model, &numbers);

@@ -26,7 +26,7 @@ pub fn is_quadratic_programme(problem: &Problem) -> bool {
 }
 
 /// Whether the objective of a quadratic programme is proved to be convex in the variables that are
-/// free ([`convexity`](super::convexity)).
+/// free ([`convexity`]).
 pub fn is_proved(nlp: &mut dyn Nlp) -> bool {
     let size = nlp.variable_bounds().len();
     let mut derivatives = Derivatives::new(nlp);

@@ -54,6 +54,7 @@ pub struct Enclosure {
     pub is_affine: bool,
     /// From an interval for each input to those of the value and of its derivatives, in the order
     /// of `by`. Empty where there is no value.
+    #[allow(clippy::type_complexity)]
     pub over: Arc<dyn Fn(&[Interval], &mut [Interval]) + Send + Sync>,
 }
 

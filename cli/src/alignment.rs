@@ -1,7 +1,8 @@
 //! Times of a solution with jumps, moved to where the same happens in its replay.
 //!
-//! A jump that comes a little earlier or later makes all the difference to the state between the two times, and next to none to the
-//! trajectory. So the pieces between the jumps are compared, each stretched to the length of the other, and the times of the jumps by themselves.
+//! A jump that comes a little earlier or later makes all the difference to the state between the
+//! two times, and next to none to the trajectory. So the pieces between the jumps are compared,
+//! each stretched to the length of the other, and the times of the jumps by themselves.
 
 use crate::output::saved::SavedJump;
 use fdcc_runtime::simulate::{Kind, Simulation, System};
@@ -29,7 +30,8 @@ impl Alignment {
         Some(Alignment { own: own?, replayed: happened.iter().map(|it| it.1).collect() })
     }
 
-    /// What stands in the replay for each of some ascending times of the solution, which begin and end with it.
+    /// What stands in the replay for each of some ascending times of the solution, which begin and
+    /// end with it.
     pub fn moved(&self, times: &[f64]) -> Vec<f64> {
         let [first, last] = [times[0], times[times.len() - 1]];
         let ends = |jumps: &[f64]| [&[first], jumps, &[last]].concat();

@@ -1,4 +1,5 @@
-//! What was tried where nothing feasible was found: that is news of these solves, and no verdict on the problem.
+//! What was tried where nothing feasible was found: that is news of these solves, and no verdict on
+//! the problem.
 
 use crate::output::number::short;
 use crate::output::plural;
@@ -24,10 +25,14 @@ fn finding(solved: &Solved) -> String {
     let document = &solved.document;
     match (document.sequences.as_slice(), document.starts.len()) {
         ([], 0 | 1) => "found none from this guess".into(),
-        ([], many) => format!("found none from this guess and {} of it", plural(many - 1, "variation")),
+        ([], many) => {
+            format!("found none from this guess and {} of it", plural(many - 1, "variation"))
+        }
         (sequences, _) => {
             let named = named(sequences);
-            format!("none of the sequences tried ({named}) has a feasible trajectory near the guess")
+            format!(
+                "none of the sequences tried ({named}) has a feasible trajectory near the guess"
+            )
         }
     }
 }

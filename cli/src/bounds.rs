@@ -1,4 +1,5 @@
-//! FDC0401 once all parameters have values: `check` sees those of the model, not those of the command line.
+//! FDC0401 once all parameters have values: `check` sees those of the model, not those of the
+//! command line.
 
 use fdcc_grammar::{Code, Diagnostic, Label, Span};
 use fdcc_runtime::problem::{Bounds, Origin, Problem};
@@ -19,10 +20,12 @@ pub fn empty(problem: &Problem) -> Option<Diagnostic> {
 
 /// Every pair of bounds and what it belongs to.
 fn all(problem: &Problem) -> impl Iterator<Item = (Origin, Bounds)> {
-    let variables = problem.states.iter().chain(&problem.controls).map(|it| (it.origin.clone(), it.bounds));
+    let variables =
+        problem.states.iter().chain(&problem.controls).map(|it| (it.origin.clone(), it.bounds));
     let unknowns = problem.unknowns.iter();
     let unknowns = unknowns.map(|it| (problem.parameters[it.parameter].origin.clone(), it.bounds));
-    let path = problem.path_bounds.iter().enumerate().map(|(i, bounds)| (problem.path.origin(i), *bounds));
+    let path =
+        problem.path_bounds.iter().enumerate().map(|(i, bounds)| (problem.path.origin(i), *bounds));
     let boundary = problem.boundary_bounds.iter().enumerate();
     let boundary = boundary.map(|(i, bounds)| (problem.boundary.origin(i + 1), *bounds));
     variables.chain(unknowns).chain(path).chain(boundary)
@@ -35,6 +38,7 @@ fn has_room(bounds: &Bounds) -> bool {
 
 fn label(origin: &Origin, bounds: Bounds) -> Label {
     let (start, end) = origin.span;
-    let text = format!("`{}` would have to be in [{}, {}]", origin.label, bounds.lower, bounds.upper);
+    let text =
+        format!("`{}` would have to be in [{}, {}]", origin.label, bounds.lower, bounds.upper);
     Label { span: Span { start, end }, text }
 }

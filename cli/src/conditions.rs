@@ -1,6 +1,8 @@
-//! The conditions of a problem along a replay: bounds and path conditions between the grid points, too, and the ends.
+//! The conditions of a problem along a replay: bounds and path conditions between the grid points,
+//! too, and the ends.
 //!
-//! A violation counts for the size of the terms of its condition there: what each input moves it by ([`terms`](crate::terms)), and the bound.
+//! A violation counts for the size of the terms of its condition there: what each input moves it by
+//! ([`terms`](crate::terms)), and the bound.
 
 use crate::motion::Motion;
 use crate::output::saved::Saved;
@@ -9,7 +11,8 @@ use crate::verification::Points;
 use fdcc_runtime::problem::{Bounds, Columns, Function, Parameter, Problem, Variable};
 use fdcc_runtime::simulate::{Simulation, System};
 
-/// `abs`, `min` and `max` in a condition are those of the true system: as narrow as this part of the width with which it was solved.
+/// `abs`, `min` and `max` in a condition are those of the true system: as narrow as this part of
+/// the width with which it was solved.
 const NO_WIDTH: f64 = 1e-12;
 
 /// By how much a condition is violated at worst.
@@ -45,7 +48,8 @@ impl<'a> Conditions<'a> {
         points: &'a Points,
     ) -> Option<Self> {
         let column = |name: &str| system.states.iter().position(|state| state.name == name);
-        let states = problem.states.iter().map(|it| Some(simulation.states[column(&it.name)?].as_slice()));
+        let states =
+            problem.states.iter().map(|it| Some(simulation.states[column(&it.name)?].as_slice()));
         let states: Vec<&[f64]> = states.collect::<Option<_>>()?;
         let variables: Vec<&Variable> = problem.states.iter().collect();
         let motions = Motion::of_states(&variables, |at| states[at].to_vec());
@@ -72,8 +76,10 @@ impl<'a> Conditions<'a> {
     fn bounds(&self) -> impl Iterator<Item = Condition> {
         let states = self.problem.states.iter().zip(&self.states).zip(&self.motions);
         states.map(|((state, column), motion)| {
-            let terms =
-                |value: &f64| Terms { size: value.abs().max(motion.range), rounding: motion.rounding };
+            let terms = |value: &f64| Terms {
+                size: value.abs().max(motion.range),
+                rounding: motion.rounding,
+            };
             let values = column.iter().skip(1).map(|value| (*value, terms(value)));
             over_time(&state.name, state.bounds, values)
         })
@@ -84,7 +90,8 @@ impl<'a> Conditions<'a> {
         let (path, last) = (&*self.problem.path, self.points.times.len() - 1);
         let count = self.states.first().map_or(last, |column| column.len().saturating_sub(1));
         let mut inputs = Columns::new(path.layout().point_inputs(), count);
-        let (first, length) = (self.points.times[0], self.points.times[last] - self.points.times[0]);
+        let (first, length) =
+            (self.points.times[0], self.points.times[last] - self.points.times[0]);
         for k in 0..count {
             inputs.column_mut(0)[k] = (self.points.times[k + 1] - first) / length;
             for (at, value) in self.points.row(k + 1).iter().enumerate() {
@@ -97,14 +104,16 @@ impl<'a> Conditions<'a> {
         let controls = self.problem.controls.iter().map(|it| Motion::still(it.unit));
         let time = std::iter::once(Motion::default());
         let motions = time.chain(self.motions.iter().copied()).chain(controls).collect();
-        let rows = self.evaluated(path, &inputs, motions).into_iter().zip(&self.problem.path_bounds);
+        let rows =
+            self.evaluated(path, &inputs, motions).into_iter().zip(&self.problem.path_bounds);
         rows.enumerate().map(move |(row, (values, bounds))| {
             let at_points = over_time(&path.origin(row).label, *bounds, values.iter().copied());
             self.between(row, *bounds, &values, at_points)
         })
     }
 
-    /// The worst of a path condition between the points, too, where it is worse than at all of them.
+    /// The worst of a path condition between the points, too, where it is worse than at all of
+    /// them.
     fn between(
         &self,
         row: usize,
@@ -114,8 +123,8 @@ impl<'a> Conditions<'a> {
     ) -> Condition {
         let extremes = self.simulation.extremes.get(row).into_iter().flatten();
         let after_start = extremes.filter(|it| it.time > self.points.times[0]);
-        let worst =
-            after_start.max_by(|a, b| bounds.violation(a.value).total_cmp(&bounds.violation(b.value)));
+        let worst = after_start
+            .max_by(|a, b| bounds.violation(a.value).total_cmp(&bounds.violation(b.value)));
         let Some(worst) = worst else { return at_points };
         let point = self.points.times.partition_point(|time| *time < worst.time);
         let point = point.min(self.points.times.len() - 1);
@@ -136,9 +145,8 @@ impl<'a> Conditions<'a> {
             inputs.column_mut(self.states.len() + at)[0] = column[column.len() - 1];
         }
         let rows = self.evaluated(boundary, &inputs, self.motions.repeat(2)).into_iter().skip(1);
-        rows.zip(&self.problem.boundary_bounds).enumerate().map(move |(row, (values, bounds))| Condition {
-            point: None,
-            ..over_time(&boundary.origin(row + 1).label, *bounds, values)
+        rows.zip(&self.problem.boundary_bounds).enumerate().map(move |(row, (values, bounds))| {
+            Condition { point: None, ..over_time(&boundary.origin(row + 1).label, *bounds, values) }
         })
     }
 
@@ -159,8 +167,12 @@ impl<'a> Conditions<'a> {
 fn parameters(problem: &Problem, saved: &Saved) -> Vec<f64> {
     let values = [&saved.params, &saved.free];
     let of_solution = |name: &str| values.iter().find_map(|it| it.get(name).copied().flatten());
-    let width = |name: &str| saved.method.sigmas.get(name).copied().flatten().or(saved.method.sigma);
-    let value = |it: &Parameter| match it.name.strip_prefix("sigma(").and_then(|name| name.strip_suffix(')'))
+    let width =
+        |name: &str| saved.method.sigmas.get(name).copied().flatten().or(saved.method.sigma);
+    let value = |it: &Parameter| match it
+        .name
+        .strip_prefix("sigma(")
+        .and_then(|name| name.strip_suffix(')'))
     {
         Some(surface) => NO_WIDTH * width(surface).unwrap_or(it.value),
         None => of_solution(&it.name).unwrap_or(it.value),
@@ -169,7 +181,11 @@ fn parameters(problem: &Problem, saved: &Saved) -> Vec<f64> {
 }
 
 /// The worst of the points after the start.
-fn over_time(label: &str, bounds: Bounds, values: impl IntoIterator<Item = (f64, Terms)>) -> Condition {
+fn over_time(
+    label: &str,
+    bounds: Bounds,
+    values: impl IntoIterator<Item = (f64, Terms)>,
+) -> Condition {
     let mut worst = Condition { label: label.into(), violation: 0.0, part: 0.0, point: None };
     for (k, (value, terms)) in values.into_iter().enumerate() {
         let violation = bounds.violation(value);

@@ -7,7 +7,8 @@ const RED: &str = "\x1b[31m";
 const GREEN: &str = "\x1b[32m";
 const PLAIN: &str = "\x1b[0m";
 
-/// The lines that differ with three lines around them; in colour where the standard output shows colours.
+/// The lines that differ with three lines around them; in colour where the standard output shows
+/// colours.
 pub fn unified(name: &str, before: &str, after: &str) -> String {
     let difference = TextDiff::from_lines(before, after);
     let mut unified = difference.unified_diff();

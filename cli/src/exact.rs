@@ -1,4 +1,5 @@
-//! The exact gradient of the true system, and whether it is one: both ways to compute it agree, and both sides do.
+//! The exact gradient of the true system, and whether it is one: both ways to compute it agree, and
+//! both sides do.
 
 use fdcc_runtime::sensitivity::{Quantity, Sensitivity, gradient, one_sided};
 use fdcc_runtime::simulate::{Controls, Options, Simulation, System};
@@ -45,7 +46,8 @@ impl Exact {
             .enumerate()
             .map(|(at, sides)| common(*sides, best(&found)[at], terms(&found, at)))
             .collect();
-        let is_differentiable = !is_doubtful || !common.is_empty() && common.iter().all(Option::is_some);
+        let is_differentiable =
+            !is_doubtful || !common.is_empty() && common.iter().all(Option::is_some);
         let settled = |own: &[f64]| -> Vec<f64> {
             let common = common.iter().copied().chain(std::iter::repeat(None));
             own.iter().zip(common).map(|(own, common)| common.unwrap_or(*own)).collect()
@@ -54,7 +56,8 @@ impl Exact {
         Ok(Exact { found, sides, is_differentiable, gradient, adjoint })
     }
 
-    /// Whether there is a derivative, both ways to compute it agree, and the trajectory stays on no kink.
+    /// Whether there is a derivative, both ways to compute it agree, and the trajectory stays on no
+    /// kink.
     pub fn is_trusted(&self) -> bool {
         self.is_differentiable && self.agrees() && self.found.kink.is_none()
     }
@@ -70,14 +73,16 @@ fn best(found: &Sensitivity) -> &[f64] {
     if found.forward.is_empty() { &found.adjoint } else { &found.forward }
 }
 
-/// How large the terms at the end are that a derivative is the sum of: it may be small because they cancel.
+/// How large the terms at the end are that a derivative is the sum of: it may be small because they
+/// cancel.
 fn terms(found: &Sensitivity, quantity: usize) -> f64 {
     let last = found.costates.columns.iter().map(|column| column.last().copied().unwrap_or(0.0));
     last.zip(&found.end).map(|(costate, by)| (costate * by[quantity]).abs()).sum()
 }
 
-/// The derivative that both sides have: the one that was found, if it is theirs. Where several events meet it may be neither's,
-/// though there is one. Nothing here is absolute: derivatives have units.
+/// The derivative that both sides have: the one that was found, if it is theirs. Where several
+/// events meet it may be neither's, though there is one. Nothing here is absolute: derivatives have
+/// units.
 fn common(sides: [Option<f64>; 2], own: f64, terms: f64) -> Option<f64> {
     let [Some(below), Some(above)] = sides else { return None };
     let size = [below, above, own].iter().fold(terms, |size, value| size.max(value.abs()));

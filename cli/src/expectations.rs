@@ -1,7 +1,7 @@
 //! What a model expects of its solution, compared with the solution.
 //!
-//! Values of states are those at the ends of the trajectory; integrals are taken by the scheme's own quadrature. What only a
-//! simulation can tell is that of the replay on the true system.
+//! Values of states are those at the ends of the trajectory; integrals are taken by the scheme's
+//! own quadrature. What only a simulation can tell is that of the replay on the true system.
 
 use crate::replayed::Replayed;
 use crate::solver::Solved;
@@ -49,7 +49,8 @@ pub fn evaluate(model: &Model, solved: &Solved) -> Vec<Checked> {
     let expectations = expectations(seen);
     let trajectory = &outcome.trajectory;
     let ends = |column: fn(&[f64]) -> f64| trajectory.states.iter().map(move |state| column(state));
-    let inputs: Vec<f64> = ends(|state| state[0]).chain(ends(|state| state[state.len() - 1])).collect();
+    let inputs: Vec<f64> =
+        ends(|state| state[0]).chain(ends(|state| state[state.len() - 1])).collect();
     let mut parameters = trajectory.parameters.clone();
     parameters.extend(integrals(
         problem,
@@ -103,7 +104,11 @@ mod tests {
             (Comparison::Equal, 1.0, f64::NAN, 0.25, false),
         ];
         for (comparison, left, right, tolerance, expected) in cases {
-            assert_eq!(holds(comparison, left, right, tolerance), expected, "{left} {comparison:?} {right}");
+            assert_eq!(
+                holds(comparison, left, right, tolerance),
+                expected,
+                "{left} {comparison:?} {right}"
+            );
         }
     }
 }

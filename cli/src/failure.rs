@@ -15,7 +15,9 @@ pub fn diagnostic(solved: &Solved) -> Option<Diagnostic> {
         // The runtime may not know the place.
         Status::NotFinite(place) if place.origin.label.is_empty() => None,
         Status::NotFinite(place) => Some(not_finite(outcome, place, &document.units)),
-        Status::Infeasible => outcome.limiting.as_ref().map(|limiting| infeasible(solved, limiting)),
+        Status::Infeasible => {
+            outcome.limiting.as_ref().map(|limiting| infeasible(solved, limiting))
+        }
         _ => None,
     }
 }
@@ -28,10 +30,13 @@ fn not_finite(outcome: &Outcome, place: &Place, units: &Units) -> Diagnostic {
     let time = place.grid_point.and_then(|k| outcome.trajectory.time.get(k));
     let when = time.map(|t| format!(" at t = {}", units.value("time", *t, 6))).unwrap_or_default();
     let message = format!("not a number{when}, iteration {}", outcome.solution.counts.iterations);
-    let label = format!("`{}` or one of its derivatives is infinite or undefined", place.origin.label);
+    let label =
+        format!("`{}` or one of its derivatives is infinite or undefined", place.origin.label);
     Diagnostic::new(Code::NotFinite, message, span(place.origin.span), label).help(
-        "look for a division by 0, a `sqrt` or `log` at 0 or below, a power of a negative number. Keep the \
-         trajectory away from it by a bound, round it off as in `sqrt(e + 1e-6)`, or give a `guess` where \
+        "look for a division by 0, a `sqrt` or `log` at 0 or below, a power of a negative number. \
+         Keep the \
+         trajectory away from it by a bound, round it off as in `sqrt(e + 1e-6)`, or give a \
+         `guess` where \
          everything has a value.",
     )
 }
@@ -44,14 +49,18 @@ fn infeasible(solved: &Solved, limiting: &Limiting) -> Diagnostic {
         true => ("no feasible trajectory found", "cannot be met"),
         false => ("no feasible trajectory found near the guess", "is not met"),
     };
-    let when = limiting.time.map(|t| format!(" at t = {}", units.value("time", t, 6))).unwrap_or_default();
+    let when =
+        limiting.time.map(|t| format!(" at t = {}", units.value("time", t, 6))).unwrap_or_default();
     let mut diagnostic = match condition {
         Some(condition) => {
             let message = format!("{found}: `{}` {is_not}", condition.label);
             let label = "this stands against the equations most";
             // What is off is the state of the equation.
             let state = origin.label.trim_end_matches('\'');
-            let worst = format!("worst{when}: off by {} in one step", units.violation(state, *violation, 3));
+            let worst = format!(
+                "worst{when}: off by {} in one step",
+                units.violation(state, *violation, 3)
+            );
             Diagnostic::new(Code::Infeasible, message, span(condition.span), label)
                 .label(span(origin.span), worst)
         }
@@ -71,12 +80,14 @@ fn infeasible(solved: &Solved, limiting: &Limiting) -> Diagnostic {
 /// A proof and a failed search want different words.
 fn advice(solved: &Solved) -> String {
     if solved.outcome.is_impossible {
-        return "this is certain, because the problem is convex: no `guess` can help. Loosen a condition, widen the bounds \
+        return "this is certain, because the problem is convex: no `guess` can help. Loosen a \
+                condition, widen the bounds \
                 of a control, or allow more time."
             .into();
     }
     format!(
-        "{}. No small change of this trajectory makes it better, but {}. Otherwise loosen a condition, widen the \
+        "{}. No small change of this trajectory makes it better, but {}. Otherwise loosen a \
+         condition, widen the \
          bounds of a control, or allow more time.",
         attempts::words(solved),
         attempts::advice(solved)

@@ -1,5 +1,6 @@
-//! Makes drawings fit the width of a terminal, which would break them anywhere: labels go on in a new line between words, and
-//! a long line of a model ends with `…` where nothing is said about the rest of it.
+//! Makes drawings fit the width of a terminal, which would break them anywhere: labels go on in a
+//! new line between words, and a long line of a model ends with `…` where nothing is said about the
+//! rest of it.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -37,7 +38,8 @@ impl Page {
         wrapped(label, self.room().saturating_sub(hook + HOOK).max(NARROWEST_LABEL))
     }
 
-    /// The text with the ends of those lines cut that are too long, byte by byte as long as before. No place is cut into.
+    /// The text with the ends of those lines cut that are too long, byte by byte as long as before.
+    /// No place is cut into.
     pub fn lines<'t>(self, text: &'t str, places: &[Range<usize>]) -> Cow<'t, str> {
         let mut text = Cow::Borrowed(text);
         for place in places {
@@ -99,7 +101,8 @@ fn wrapped(text: &str, room: usize) -> String {
 }
 
 fn columns(text: &str) -> usize {
-    text.chars().fold(0, |column, c| if c == '\t' { column + TAB - column % TAB } else { column + 1 })
+    text.chars()
+        .fold(0, |column, c| if c == '\t' { column + TAB - column % TAB } else { column + 1 })
 }
 
 /// The line of a byte, without its end.

@@ -47,9 +47,15 @@ fn own<'s>(saved: &'s Saved, name: &str) -> &'s [Option<f64>] {
     saved.states.get(name).map(Vec::as_slice).unwrap_or_default()
 }
 
-fn gap(saved: &Saved, name: &str, (replay, replayed): (&Simulation, &[f64]), motion: Motion) -> Gap {
+fn gap(
+    saved: &Saved,
+    name: &str,
+    (replay, replayed): (&Simulation, &[f64]),
+    motion: Motion,
+) -> Gap {
     let own = own(saved, name);
-    let points = replay.time.iter().zip(replayed).step_by(pieces_of_one(own.len().saturating_sub(1)));
+    let points =
+        replay.time.iter().zip(replayed).step_by(pieces_of_one(own.len().saturating_sub(1)));
     let start = replay.time.first().copied().unwrap_or(replay.end_time);
     let mut largest = (0.0, start);
     for ((&time, &replayed), own) in points.zip(own) {

@@ -1,4 +1,5 @@
-//! Beside the exact gradient: those that a user may be computing otherwise, of the smoothed and of the discretised problem.
+//! Beside the exact gradient: those that a user may be computing otherwise, of the smoothed and of
+//! the discretised problem.
 
 use crate::output::words::scheme_name;
 use crate::quantities::By;
@@ -34,7 +35,8 @@ impl Question<'_> {
         self.by.iter().flat_map(|by| by.quantities.iter().copied()).collect()
     }
 
-    /// The gradient of the true system, discretised, or why there is none; fixed steps know no jumps.
+    /// The gradient of the true system, discretised, or why there is none; fixed steps know no
+    /// jumps.
     pub fn discretised(&self) -> Option<Result<Stepped, String>> {
         let stepped = || Ok(Stepped { sigma: None, gradient: self.stepped(&self.system)? });
         self.system.jumps.is_empty().then(stepped)
@@ -47,7 +49,8 @@ impl Question<'_> {
         if self.model.method.sigma.is_none() && self.model.method.continuation.is_empty() {
             let sizes = sizes(&self.system, simulation);
             for (surface, size) in self.system.surfaces.iter().zip(sizes) {
-                smooth.parameters[surface.sigma].value = RELATIVE_WIDTH * if size > 0.0 { size } else { 1.0 };
+                smooth.parameters[surface.sigma].value =
+                    RELATIVE_WIDTH * if size > 0.0 { size } else { 1.0 };
             }
         }
         let sigma = Some(smooth.parameters[first.sigma].value);
@@ -57,15 +60,20 @@ impl Question<'_> {
     /// The second derivatives, or why there are none.
     pub fn second(&self, simulation: &Simulation) -> Result<Vec<Vec<f64>>, String> {
         let found = hessian(&self.system, &self.controls, simulation, &self.quantities());
-        let why = "there are no second derivatives here: none are known where infinitely many jumps come to rest, where a `Dir` \
-                   moves, by a start that leaves a surface on which it slides, and where a kink is met together with something else";
+        let why = "there are no second derivatives here: none are known where infinitely many \
+                   jumps come to rest, where a `Dir` \
+                   moves, by a start that leaves a surface on which it slides, and where a kink is \
+                   met together with something else";
         found.ok_or(why.to_string())
     }
 
     fn stepped(&self, system: &System) -> Result<Vec<f64>, String> {
         let scheme = self.model.method.scheme;
         if matches!(scheme, Scheme::RungeKutta4 | Scheme::Radau(_) | Scheme::Gauss(_)) {
-            return Err(format!("fixed steps of `{}` do not go through a set", scheme_name(scheme)));
+            return Err(format!(
+                "fixed steps of `{}` do not go through a set",
+                scheme_name(scheme)
+            ));
         }
         let grid = Grid::new(system, &self.model.method);
         let found = step_through(system, &self.controls, &grid)
@@ -85,7 +93,9 @@ fn why(failure: &Failure) -> String {
         Failure::Jumps => "fixed steps know no jumps".into(),
         Failure::Directions => "fixed steps know no `Dir`".into(),
         Failure::NoObjective => "there is nothing to differentiate".into(),
-        Failure::NotFinite { time, origin } => format!("`{}` has no value at t = {time}", origin.label),
+        Failure::NotFinite { time, origin } => {
+            format!("`{}` has no value at t = {time}", origin.label)
+        }
         Failure::NotConverged { time, .. } => {
             format!("the step to t = {time} has no solution near its beginning")
         }
@@ -102,6 +112,7 @@ fn sizes(system: &System, simulation: &Simulation) -> Vec<f64> {
     }
     let mut values = Columns::new(system.guards.outputs(), points.count());
     system.guards.value(&points, &system.parameter_values(), &mut values);
-    let largest = |at| values.column(at).iter().fold(0.0, |most: f64, psi: &f64| most.max(psi.abs()));
+    let largest =
+        |at| values.column(at).iter().fold(0.0, |most: f64, psi: &f64| most.max(psi.abs()));
     (0..system.surfaces.len()).map(largest).collect()
 }

@@ -1,4 +1,5 @@
-//! A model with jumps: each sequence of jumps that may happen is a problem of its own, and the best answer is taken.
+//! A model with jumps: each sequence of jumps that may happen is a problem of its own, and the best
+//! answer is taken.
 
 use crate::output::named::Named;
 use crate::output::saved::Saved;
@@ -7,7 +8,9 @@ use crate::parallel;
 use crate::search::{Found, Search, all_attempts, first_stopped, is_stopped, unless_stopped};
 use crate::solver::Failure;
 use crate::warm;
-use fdcc_compiler::{Model, Sequences, compile, compile_simulation, crossings, sequences, unrolled};
+use fdcc_compiler::{
+    Model, Sequences, compile, compile_simulation, crossings, sequences, unrolled,
+};
 use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::pieces::{Jump, joined};
@@ -30,7 +33,8 @@ struct Alternative {
     problem: Problem,
 }
 
-/// Solves for every sequence; `between` is what holds between the jumps. An earlier solution is the start of the sequence that it has.
+/// Solves for every sequence; `between` is what holds between the jumps. An earlier solution is the
+/// start of the sequence that it has.
 pub fn solve(
     model: &Model,
     between: &Problem,
@@ -60,7 +64,8 @@ pub fn solve(
         Ok(found)
     };
     // Without an objective one trajectory is as good as another.
-    let is_enough = |found: &Found| is_stopped(&found.outcome) || !between.has_objective && found.is_good();
+    let is_enough =
+        |found: &Found| is_stopped(&found.outcome) || !between.has_objective && found.is_good();
     let ends = |found: &Result<Found, Failure>| found.as_ref().map_or(true, is_enough);
     // Several starts run in parallel already.
     let threads = if search.starts == 1 { parallel::processors() } else { 1 };
@@ -72,8 +77,11 @@ pub fn solve(
     let solutions = found.iter().map(|it| &it.outcome.solution).enumerate();
     let best = solutions.reduce(|a, b| if starts::is_better(b.1, a.1) { b } else { a });
     let best = best.expect("that no jump happens is one of them").0;
-    let tried =
-        all.iter().zip(&found).enumerate().map(|(at, (it, found))| it.tried(model, found, at == best));
+    let tried = all
+        .iter()
+        .zip(&found)
+        .enumerate()
+        .map(|(at, (it, found))| it.tried(model, found, at == best));
     let tried = tried.collect();
     let outcomes = found.iter().map(|it| &it.outcome);
     let (attempts, stopped) = (all_attempts(outcomes.clone()), first_stopped(outcomes));
@@ -92,7 +100,8 @@ const LONGEST: usize = 12;
 /// The jumps and crossings on the true system with everything as it is guessed.
 fn simulated(model: &Model, possible: &Sequences) -> Option<Vec<usize>> {
     let system = compile_simulation(model).ok()?;
-    let simulation = simulate(&system, &Controls::Guess, &Options { max_steps: STEPS, ..Options::default() });
+    let simulation =
+        simulate(&system, &Controls::Guess, &Options { max_steps: STEPS, ..Options::default() });
     let mut sequence = Vec::new();
     for event in &simulation.events {
         sequence.extend(happening(&system, possible, &sequence, event));
@@ -102,7 +111,12 @@ fn simulated(model: &Model, possible: &Sequences) -> Option<Vec<usize>> {
 }
 
 /// The jump or the crossing that an event is, if it is one.
-fn happening(system: &System, possible: &Sequences, earlier: &[usize], event: &Event) -> Option<usize> {
+fn happening(
+    system: &System,
+    possible: &Sequences,
+    earlier: &[usize],
+    event: &Event,
+) -> Option<usize> {
     let is_falling = match event.kind {
         Kind::Jump(at) => return Some(at),
         // Against the direction of a jump.
@@ -113,7 +127,9 @@ fn happening(system: &System, possible: &Sequences, earlier: &[usize], event: &E
     let crossed = |at: &usize| {
         let jump = &system.jumps[*at];
         let is_first = !earlier.contains(at) && !earlier.contains(&(at + system.jumps.len()));
-        possible.may_cross[*at] && is_first && (jump.surface, jump.is_falling) == (event.surface, is_falling)
+        possible.may_cross[*at]
+            && is_first
+            && (jump.surface, jump.is_falling) == (event.surface, is_falling)
     };
     (0..system.jumps.len()).find(crossed).map(|at| at + system.jumps.len())
 }
@@ -122,9 +138,9 @@ fn happening(system: &System, possible: &Sequences, earlier: &[usize], event: &E
 fn refuse(between: &Problem) -> Result<(), Failure> {
     match between.method.controls {
         ControlShape::Constant => Ok(()),
-        ControlShape::Linear | ControlShape::Polynomial => {
-            Err(Failure::Usage("`controls = linear` and `polynomial` are for models without jumps".into()))
-        }
+        ControlShape::Linear | ControlShape::Polynomial => Err(Failure::Usage(
+            "`controls = linear` and `polynomial` are for models without jumps".into(),
+        )),
     }
 }
 
@@ -157,13 +173,15 @@ impl Alternative {
     /// `no jump`, or `bounce, bounce`, or `crossing of rim, bounce`.
     fn words(&self, model: &Model) -> String {
         let all = [model.jumps.clone(), crossings(model)].concat();
-        let names: Vec<&str> = self.sequence.iter().map(|at| all[*at].place.name.as_str()).collect();
+        let names: Vec<&str> =
+            self.sequence.iter().map(|at| all[*at].place.name.as_str()).collect();
         if names.is_empty() { "no jump".into() } else { names.join(", ") }
     }
 
     fn tried(&self, model: &Model, found: &Found, is_answer: bool) -> Tried {
         let Ended { status, objective, iterations } = Ended::of(&found.problem, &found.outcome);
-        let (jumps, crosses) = (self.jumps(model).cloned().collect(), self.crosses(model).cloned().collect());
+        let (jumps, crosses) =
+            (self.jumps(model).cloned().collect(), self.crosses(model).cloned().collect());
         Tried { jumps, crosses, status, objective, iterations, words: self.words(model), is_answer }
     }
 
@@ -171,9 +189,11 @@ impl Alternative {
     fn joined(self, model: &Model, between: &Problem, found: Found) -> Found {
         let (outcome, jumps) = joined(between, &found.problem, &found.outcome);
         let names = self.sequence.iter().map(|at| Some(model.jumps.get(*at)?.place.name.clone()));
-        let happened = names.zip(jumps).filter_map(|(name, jump)| Some(happened(between, name?, jump)));
+        let happened =
+            names.zip(jumps).filter_map(|(name, jump)| Some(happened(between, name?, jump)));
         let problem = between.clone();
-        let unrolled = Unrolled { model: self.model, problem: found.problem, outcome: found.outcome };
+        let unrolled =
+            Unrolled { model: self.model, problem: found.problem, outcome: found.outcome };
         Found { problem, outcome, jumps: happened.collect(), unrolled: Some(unrolled), ..found }
     }
 }

@@ -1,5 +1,5 @@
-//! What a person sees while a solve runs, on stderr: Ipopt's iteration table with the width of the layer and the grid, and on a
-//! terminal a progress line.
+//! What a person sees while a solve runs, on stderr: Ipopt's iteration table with the width of the
+//! layer and the grid, and on a terminal a progress line.
 
 use crate::output::number::{scientific, significant};
 use crate::output::tell;
@@ -22,8 +22,8 @@ pub enum Level {
     Full,
 }
 
-const HEADER: &str =
-    " iter    objective    inf_pr   inf_du lg(mu)  ||d||  lg(rg) alpha_du alpha_pr  ls  sigma       N";
+const HEADER: &str = " iter    objective    inf_pr   inf_du lg(mu)  ||d||  lg(rg) alpha_du \
+                      alpha_pr  ls  sigma       N";
 /// The header is repeated after this many lines.
 const PAGE: usize = 20;
 const SHORT: usize = 10;
@@ -106,7 +106,11 @@ impl Log {
 
 /// The progress of several solves, on a terminal only.
 pub fn bar(level: Level, solves: usize) -> ProgressBar {
-    progress(ProgressBar::new(solves as u64), level, "{spinner} {elapsed} {pos}/{len} {bar:20} {msg}")
+    progress(
+        ProgressBar::new(solves as u64),
+        level,
+        "{spinner} {elapsed} {pos}/{len} {bar:20} {msg}",
+    )
 }
 
 fn progress(bar: ProgressBar, level: Level, template: &str) -> ProgressBar {
@@ -114,13 +118,16 @@ fn progress(bar: ProgressBar, level: Level, template: &str) -> ProgressBar {
         bar.set_draw_target(ProgressDrawTarget::hidden());
         return bar;
     }
-    bar.set_style(ProgressStyle::with_template(template).expect("the templates are fixed and right"));
+    bar.set_style(
+        ProgressStyle::with_template(template).expect("the templates are fixed and right"),
+    );
     bar.enable_steady_tick(Duration::from_millis(120));
     bar
 }
 
 fn line(p: &Progress, level: homotopy::Level, scale: f64) -> String {
-    let logarithm = |value: f64| if value > 0.0 { format!("{:.1}", value.log10()) } else { "-".to_string() };
+    let logarithm =
+        |value: f64| if value > 0.0 { format!("{:.1}", value.log10()) } else { "-".to_string() };
     let (mu, regularization) = (logarithm(p.mu), logarithm(p.regularization));
     let sigma = level.sigma.iter().fold(0.0f64, |a, sigma| a.max(*sigma));
     let sigma = if sigma > 0.0 { scientific(sigma / scale, 1) } else { "-".into() };

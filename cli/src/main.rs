@@ -64,8 +64,10 @@ fn main() -> ExitCode {
     }
 }
 
-/// The allocator of Linux hands large blocks back to the system, which clears every page anew when the next solve asks for it: 2 to 7 % of the time of a short
-/// solve. It learns from the first large block that is given back to keep blocks up to that size. This one is never touched, and costs nothing.
+/// The allocator of Linux hands large blocks back to the system, which clears every page anew when
+/// the next solve asks for it: 2 to 7 % of the time of a short solve. It learns from the first
+/// large block that is given back to keep blocks up to that size. This one is never touched, and
+/// costs nothing.
 fn keep_memory() {
     drop(std::hint::black_box(Vec::<u8>::with_capacity(KEPT)));
 }

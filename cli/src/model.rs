@@ -58,7 +58,8 @@ fn not_text(name: &str, error: &std::string::FromUtf8Error) -> (SourceFile, Opti
     let at = error.utf8_error().valid_up_to();
     let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
     let span = Span::new(at, at + char::REPLACEMENT_CHARACTER.len_utf8());
-    let diagnostic = Diagnostic::new(Code::NotText, "this is not a text file", span, "no character of UTF-8")
-        .help("a model is plain text in UTF-8");
+    let diagnostic =
+        Diagnostic::new(Code::NotText, "this is not a text file", span, "no character of UTF-8")
+            .help("a model is plain text in UTF-8");
     (SourceFile::new(name, text), Some(diagnostic))
 }

@@ -1,7 +1,10 @@
-//! How far quantities move: what differences between a solution and the true system are compared with.
+//! How far quantities move: what differences between a solution and the true system are compared
+//! with.
 //!
-//! A difference counts for how far its state moves over the whole time, in solution and replay together: a block that moves by half a micrometre and misses by
-//! that misses by all of it, and a pressure of 100 bar that moves by 1 Pa is not right because it is off by as little. A declared unit says only what rounding is.
+//! A difference counts for how far its state moves over the whole time, in solution and replay
+//! together: a block that moves by half a micrometre and misses by that misses by all of it, and a
+//! pressure of 100 bar that moves by 1 Pa is not right because it is off by as little. A declared
+//! unit says only what rounding is.
 
 use fdcc_runtime::problem::Variable;
 
@@ -40,8 +43,9 @@ impl Motion {
         let own: Vec<Motion> = own.collect();
         let vector = |at: usize| states[at].name.rsplit_once('.').map(|(vector, _)| vector);
         let range = |at: usize| {
-            let beside = (0..own.len())
-                .filter(|other| *other == at || vector(at).is_some_and(|it| vector(*other) == Some(it)));
+            let beside = (0..own.len()).filter(|other| {
+                *other == at || vector(at).is_some_and(|it| vector(*other) == Some(it))
+            });
             beside.fold(0.0, |most: f64, other| most.max(own[other].range))
         };
         (0..own.len()).map(|at| Motion { range: range(at), ..own[at] }).collect()

@@ -8,8 +8,9 @@ pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, |count| count.get())
 }
 
-/// The results of `work(0)`, `work(1)` ... in this order; which thread does what makes no difference to them. After a result that `ends` it all, nothing more is
-/// begun, and the results may be fewer.
+/// The results of `work(0)`, `work(1)` ... in this order; which thread does what makes no
+/// difference to them. After a result that `ends` it all, nothing more is begun, and the results
+/// may be fewer.
 pub fn in_order<T: Send>(
     count: usize,
     threads: usize,

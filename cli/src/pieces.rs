@@ -1,6 +1,8 @@
-//! Controls that are not constant on an interval, as many short pieces that are: what a simulation can follow.
+//! Controls that are not constant on an interval, as many short pieces that are: what a simulation
+//! can follow.
 //!
-//! A piece has the value of its middle, so that what the pieces miss falls with the square of their length.
+//! A piece has the value of its middle, so that what the pieces miss falls with the square of their
+//! length.
 
 use crate::output::saved::{Saved, SavedNodes};
 
@@ -14,7 +16,12 @@ pub fn pieces_of_one(intervals: usize) -> usize {
 }
 
 /// When pieces begin, and a row of controls for each; an interval is between two of the times.
-pub fn pieces(saved: &Saved, nodes: &SavedNodes, time: &[f64], names: &[&str]) -> Result<Pieces, String> {
+pub fn pieces(
+    saved: &Saved,
+    nodes: &SavedNodes,
+    time: &[f64],
+    names: &[&str],
+) -> Result<Pieces, String> {
     let intervals = time.len().saturating_sub(1);
     let knots: Option<Vec<f64>> = nodes.time.iter().copied().collect();
     let knots = knots.ok_or("the time of a control is no number")?;
@@ -22,7 +29,11 @@ pub fn pieces(saved: &Saved, nodes: &SavedNodes, time: &[f64], names: &[&str]) -
         names.iter().map(|name| column(nodes, name, &knots)).collect();
     let columns = columns?;
     let stencil = stencil(knots.len(), intervals).ok_or_else(|| {
-        format!("its controls have {} times for {intervals} intervals of {}", knots.len(), saved.model)
+        format!(
+            "its controls have {} times for {intervals} intervals of {}",
+            knots.len(),
+            saved.model
+        )
     })?;
     let count = pieces_of_one(intervals);
     let mut pieces = Pieces::default();
@@ -31,8 +42,9 @@ pub fn pieces(saved: &Saved, nodes: &SavedNodes, time: &[f64], names: &[&str]) -
         for piece in 0..count {
             let at = |part: f64| ends[0] + (ends[1] - ends[0]) * part / count as f64;
             let weights = weights(&knots[range.clone()], at(piece as f64 + 0.5));
-            let value =
-                |column: &Vec<f64>| weights.iter().zip(&column[range.clone()]).map(|(w, u)| w * u).sum();
+            let value = |column: &Vec<f64>| {
+                weights.iter().zip(&column[range.clone()]).map(|(w, u)| w * u).sum()
+            };
             pieces.times.push(at(piece as f64));
             pieces.rows.push(columns.iter().map(value).collect());
         }

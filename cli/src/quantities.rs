@@ -16,18 +16,25 @@ pub struct By {
     pub is_control: bool,
 }
 
-/// Everything that a model can be differentiated by on its own: parameters, unknowns, starts that are free.
+/// Everything that a model can be differentiated by on its own: parameters, unknowns, starts that
+/// are free.
 pub fn everything(system: &System, model: &Model) -> Vec<By> {
     let is_own = |it: &Parameter| !is_width(it) && !is_computed(&it.name, model);
     let parameters = system.parameters.iter().enumerate().filter(|(_, it)| is_own(it));
     let parameters = parameters.map(|(at, it)| single(it.name.clone(), Quantity::Parameter(at)));
     let open = model.states.iter().enumerate().filter(|(_, state)| state.start_range.is_some());
-    let open = open.map(|(at, state)| single(format!("{}(start)", state.place.name), Quantity::Start(at)));
+    let open =
+        open.map(|(at, state)| single(format!("{}(start)", state.place.name), Quantity::Start(at)));
     parameters.chain(open).collect()
 }
 
 /// What a name asks for: `mu`, `x(start)`, all parts of `pos(start)`, or a control.
-pub fn named(name: &str, system: &System, controls: &Controls, model: &Model) -> Result<Vec<By>, String> {
+pub fn named(
+    name: &str,
+    system: &System,
+    controls: &Controls,
+    model: &Model,
+) -> Result<Vec<By>, String> {
     if let Some(state) = name.strip_suffix("(start)").map(str::trim) {
         return starts(name, state, system);
     }
@@ -36,7 +43,8 @@ pub fn named(name: &str, system: &System, controls: &Controls, model: &Model) ->
         if is_computed(name, model) {
             let value = system.parameters[at].value;
             return Err(format!(
-                "`{name}` is computed from other parameters; `--set {name}={value}` makes it one of its own"
+                "`{name}` is computed from other parameters; `--set {name}={value}` makes it one \
+                 of its own"
             ));
         }
         return Ok(vec![single(name.into(), Quantity::Parameter(at))]);
@@ -45,13 +53,15 @@ pub fn named(name: &str, system: &System, controls: &Controls, model: &Model) ->
     if !parts.is_empty() {
         return parts.into_iter().map(|at| control(at, system, controls)).collect();
     }
-    let is_state =
-        |state: &str| state == name || state.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'));
+    let is_state = |state: &str| {
+        state == name || state.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'))
+    };
     if system.states.iter().any(|state| is_state(&state.name)) {
         return Err(format!("`{name}` is a state; write `{name}(start)` for its start"));
     }
-    let known =
-        parameters.map(|it| it.name.as_str()).chain(system.controls.iter().map(|it| it.name.as_str()));
+    let known = parameters
+        .map(|it| it.name.as_str())
+        .chain(system.controls.iter().map(|it| it.name.as_str()));
     Err(unknown("parameter, unknown or control", name, known.collect()))
 }
 
@@ -61,7 +71,8 @@ fn starts(name: &str, state: &str, system: &System) -> Result<Vec<By>, String> {
     if found.is_empty() {
         return Err(format!("`{name}`: {}", unknown("state", state, shown.collect())));
     }
-    let start = |at: usize| single(format!("{}(start)", system.states[at].name), Quantity::Start(at));
+    let start =
+        |at: usize| single(format!("{}(start)", system.states[at].name), Quantity::Start(at));
     Ok(found.into_iter().map(start).collect())
 }
 
@@ -78,8 +89,9 @@ fn control(at: usize, system: &System, controls: &Controls) -> Result<By, String
 
 /// The places of a name, or of all parts of a vector of that name.
 fn parts<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Vec<usize> {
-    let fits =
-        |other: &str| other.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
+    let fits = |other: &str| {
+        other.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    };
     names.enumerate().filter(|(_, other)| fits(other)).map(|(at, _)| at).collect()
 }
 
@@ -95,9 +107,11 @@ fn single(name: String, quantity: Quantity) -> By {
     By { name, quantities: vec![quantity], is_control: false }
 }
 
-/// Whether the formula of a parameter stands wherever the parameter does, so that nothing depends on the parameter itself.
+/// Whether the formula of a parameter stands wherever the parameter does, so that nothing depends
+/// on the parameter itself.
 pub fn is_computed(name: &str, model: &Model) -> bool {
-    let value = model.params.iter().find(|param| param.place.name == name).and_then(|param| param.value);
+    let value =
+        model.params.iter().find(|param| param.place.name == name).and_then(|param| param.value);
     value.is_some_and(|value| model.graph.as_number(value).is_none())
 }
 

@@ -32,7 +32,8 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// As wide as the terminal, and in colour unless `NO_COLOR` is set; plain where there is no terminal.
+    /// As wide as the terminal, and in colour unless `NO_COLOR` is set; plain where there is no
+    /// terminal.
     pub fn for_stdout() -> Self {
         Renderer::new(std::io::stdout().is_terminal())
     }
@@ -44,8 +45,10 @@ impl Renderer {
 
     fn new(is_terminal: bool) -> Self {
         let no_color = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-        let options = MietteHandlerOpts::new().unicode(true).context_lines(1).color(is_terminal && !no_color);
-        let terminal = is_terminal.then(terminal_size::terminal_size).flatten().map(|it| it.0.0.into());
+        let options =
+            MietteHandlerOpts::new().unicode(true).context_lines(1).color(is_terminal && !no_color);
+        let terminal =
+            is_terminal.then(terminal_size::terminal_size).flatten().map(|it| it.0.0.into());
         let columns = || std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
         let width = terminal.or_else(columns).unwrap_or(WIDTH).max(NARROWEST);
         let options = if is_terminal { options } else { options.terminal_links(false) };
@@ -84,7 +87,11 @@ const NO_BREAK: char = '\u{A0}';
 /// A text in which no line breaks inside of `code`.
 fn unbroken(text: &str) -> String {
     let part = |(at, part): (usize, &str)| {
-        if at % 2 == 1 && !part.contains('\n') { part.replace(' ', "\u{A0}") } else { part.to_owned() }
+        if at % 2 == 1 && !part.contains('\n') {
+            part.replace(' ', "\u{A0}")
+        } else {
+            part.to_owned()
+        }
     };
     text.split('`').enumerate().map(part).collect::<Vec<_>>().join("`")
 }
@@ -112,7 +119,8 @@ struct Report<'r> {
 }
 
 impl Report<'_> {
-    /// Whether its lines can be shown: they are text and not too long, and all places are within the width.
+    /// Whether its lines can be shown: they are text and not too long, and all places are within
+    /// the width.
     fn has_lines(&self) -> bool {
         let fits = |label: &Label| {
             let place = label.span.start as usize;
@@ -170,15 +178,16 @@ impl miette::Diagnostic for Report<'_> {
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let labels = self.diagnostic.labels.iter().take(MOST_LABELS).enumerate().map(|(at, label)| {
-            let (start, length) = (label.span.start as usize, label.span.range().len());
-            let text = Some(label.text.clone());
-            if at == 0 {
-                LabeledSpan::new_primary_with_span(text, (start, length))
-            } else {
-                LabeledSpan::new(text, start, length)
-            }
-        });
+        let labels =
+            self.diagnostic.labels.iter().take(MOST_LABELS).enumerate().map(|(at, label)| {
+                let (start, length) = (label.span.start as usize, label.span.range().len());
+                let text = Some(label.text.clone());
+                if at == 0 {
+                    LabeledSpan::new_primary_with_span(text, (start, length))
+                } else {
+                    LabeledSpan::new(text, start, length)
+                }
+            });
         Some(Box::new(labels))
     }
 }
@@ -192,14 +201,18 @@ impl SourceCode for Report<'_> {
         lines_after: usize,
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
         let text = &*self.text;
-        // Without lines before it, miette wants the span itself: it prints where the contents begin.
-        let first_line = || (0..=lines_before).fold(span.offset(), |at, lines| line_start(text, at, lines));
+        // Without lines before it, miette wants the span itself: it prints where the contents
+        // begin.
+        let first_line =
+            || (0..=lines_before).fold(span.offset(), |at, lines| line_start(text, at, lines));
         let start = if lines_before == 0 { span.offset() } else { first_line() };
-        let end = (0..=lines_after).fold(span.offset() + span.len(), |at, lines| line_end(text, at, lines));
+        let end = (0..=lines_after)
+            .fold(span.offset() + span.len(), |at, lines| line_end(text, at, lines));
         let data = &text.as_bytes()[start..end];
         let (name, place) = (self.source.name.clone(), self.source.line_column(start as u32));
         let contents = SourceSpan::from((start, end - start));
-        let (line, column, lines) = (place.line - 1, place.column - 1, text[start..end].lines().count());
+        let (line, column, lines) =
+            (place.line - 1, place.column - 1, text[start..end].lines().count());
         Ok(Box::new(MietteSpanContents::new_named(name, data, contents, line, column, lines)))
     }
 }

@@ -1,5 +1,5 @@
-//! What a simulation takes over from a file: controls over time, and of a solution also its parameters, unknowns, starts and
-//! method.
+//! What a simulation takes over from a file: controls over time, and of a solution also its
+//! parameters, unknowns, starts and method.
 
 use crate::output::named::Named;
 use crate::output::saved::{Column, Saved, SavedMethod};
@@ -28,7 +28,8 @@ impl Replay {
         let times: Option<Vec<f64>> = saved.time.iter().copied().collect();
         let times = times.ok_or("a time is no number")?;
         ascend(&times)?;
-        let names: Vec<&str> = model.controls.iter().map(|control| control.place.name.as_str()).collect();
+        let names: Vec<&str> =
+            model.controls.iter().map(|control| control.place.name.as_str()).collect();
         let Pieces { times, rows } = match &saved.control_nodes {
             Some(nodes) => pieces(saved, nodes, &times, &names)?,
             None => rows(saved, times, &names)?,
@@ -58,8 +59,8 @@ impl Replay {
         !self.source_sha256.is_empty() && self.source_sha256 != sha256(text)
     }
 
-    /// Gives the model the parameters, unknowns and method of the solution, and the start of states that the model leaves
-    /// open.
+    /// Gives the model the parameters, unknowns and method of the solution, and the start of states
+    /// that the model leaves open.
     pub fn adapt(&self, model: &mut Model) {
         model.restore_params(&self.params);
         self.free.iter().for_each(|(name, value)| model.set_free(name, *value));
@@ -95,7 +96,12 @@ impl Replay {
 fn ascend(times: &[f64]) -> Result<(), String> {
     let found = times.windows(2).position(|pair| pair[0] >= pair[1]);
     found.map_or(Ok(()), |at| {
-        Err(format!("times must ascend, but {} follows {} in row {}", times[at + 1], times[at], at + 2))
+        Err(format!(
+            "times must ascend, but {} follows {} in row {}",
+            times[at + 1],
+            times[at],
+            at + 2
+        ))
     })
 }
 

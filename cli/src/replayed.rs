@@ -1,5 +1,5 @@
-//! What expectations ask of the true system: for how long a surface is held, and exact derivatives, along the replay of a
-//! solution.
+//! What expectations ask of the true system: for how long a surface is held, and exact derivatives,
+//! along the replay of a solution.
 
 use crate::exact::Exact;
 use crate::output::saved::Saved;
@@ -55,7 +55,9 @@ fn whole(verified: Verified) -> Result<Verified, String> {
 
 fn in_words(failure: Failure) -> String {
     match failure {
-        Failure::Model(diagnostics) => diagnostics.first().map(|it| it.message.clone()).unwrap_or_default(),
+        Failure::Model(diagnostics) => {
+            diagnostics.first().map(|it| it.message.clone()).unwrap_or_default()
+        }
         Failure::Nothing => "there is nothing to simulate".into(),
         Failure::Usage(what) | Failure::File(what) => what,
         Failure::Stopped(_) => "there was no time to compile the model".into(),
@@ -71,7 +73,10 @@ fn sensitivity(model: &Model, saved: &Saved, of: ExprId, by: Symbol) -> Result<f
     let system = compiled.map_err(|diagnostics| in_words(Failure::Model(diagnostics)))?;
     let quantity = match by {
         Symbol::Param(at) if is_computed(&model.params[at].place.name, &model) => {
-            return Err(format!("`{}` is computed from other parameters", model.params[at].place.name));
+            return Err(format!(
+                "`{}` is computed from other parameters",
+                model.params[at].place.name
+            ));
         }
         Symbol::Param(at) => Quantity::Parameter(at),
         Symbol::Free(at) => Quantity::Parameter(model.params.len() + at),
@@ -80,7 +85,8 @@ fn sensitivity(model: &Model, saved: &Saved, of: ExprId, by: Symbol) -> Result<f
     };
     let controls = replay.held().unwrap_or(Controls::Guess);
     let exact = Exact::new(&system, &controls, &Options::default(), &[quantity]);
-    let exact = exact.map_err(|it| format!("the replay on the true system ends at t = {}", it.end_time))?;
+    let exact =
+        exact.map_err(|it| format!("the replay on the true system ends at t = {}", it.end_time))?;
     if exact.is_trusted() {
         Ok(exact.gradient[0])
     } else {

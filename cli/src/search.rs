@@ -58,7 +58,10 @@ impl Search<'_> {
             1 => Vec::new(),
             _ => all.iter().map(|it| Ended::of(&it.problem, &it.outcome)).collect(),
         };
-        spread.iter().enumerate().for_each(|(index, ended)| self.log.ended(&of_start(index), ended));
+        spread
+            .iter()
+            .enumerate()
+            .for_each(|(index, ended)| self.log.ended(&of_start(index), ended));
         let best = |a: Refined, b: Refined| {
             if starts::is_better(&b.outcome.solution, &a.outcome.solution) { b } else { a }
         };
@@ -85,12 +88,17 @@ impl Search<'_> {
         let one = |index: usize| {
             let start = match index {
                 0 => start.clone(),
-                _ => Some(starts::perturbed(problem, start.clone().map(|start| start.v), index as u32)),
+                _ => Some(starts::perturbed(
+                    problem,
+                    start.clone().map(|start| start.v),
+                    index as u32,
+                )),
             };
             run(problem, start, self.deadline, &mut self.log.of_part(&of_start(index)))
         };
-        let ends =
-            |found: &Result<Refined, Failure>| found.as_ref().map_or(true, |it| is_stopped(&it.outcome));
+        let ends = |found: &Result<Refined, Failure>| {
+            found.as_ref().map_or(true, |it| is_stopped(&it.outcome))
+        };
         let all = parallel::in_order(self.starts, parallel::processors(), one, ends);
         let all: Vec<Refined> = all.into_iter().collect::<Result<_, Failure>>()?;
         tell_missing(&all, self.starts);
@@ -104,7 +112,8 @@ fn tell_missing(all: &[Refined], starts: usize) {
     if stopped > 0 {
         let (ended, never) = (all.len() - stopped, starts - all.len());
         output::complain(&format!(
-            "{ended} of {starts} starts came to their end, {stopped} stopped on the way, {never} never ran"
+            "{ended} of {starts} starts came to their end, {stopped} stopped on the way, {never} \
+             never ran"
         ));
     }
 }
@@ -147,7 +156,8 @@ fn run(
     });
     found.map_err(|Refusal::NotConvex| {
         Failure::Usage(
-            "the discretised problem is not convex, so `solver = convex` cannot treat it; leave `solver` out"
+            "the discretised problem is not convex, so `solver = convex` cannot treat it; leave \
+             `solver` out"
                 .into(),
         )
     })

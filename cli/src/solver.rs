@@ -105,8 +105,13 @@ pub fn stopped(name: &str, stop: Stop) -> Exit {
 }
 
 impl Compiled {
-    /// Compiles a model; `begin` is when the work on it began. It is given up when a solve would be.
-    pub fn new(prepared: &Prepared, begin: Instant, time_limit: Option<f64>) -> Result<Self, Failure> {
+    /// Compiles a model; `begin` is when the work on it began. It is given up when a solve would
+    /// be.
+    pub fn new(
+        prepared: &Prepared,
+        begin: Instant,
+        time_limit: Option<f64>,
+    ) -> Result<Self, Failure> {
         let prepared = prepared.clone();
         let compiled = move || Compiled::patiently(&prepared, begin);
         Deadline::after(begin, time_limit).within(compiled).map_err(Failure::Stopped)?
@@ -121,7 +126,14 @@ impl Compiled {
         if jumps.is_none() {
             make_machine_code(&problem);
         }
-        Ok(Compiled { problem, jumps, source_sha256, units, begin, seconds: begin.elapsed().as_secs_f64() })
+        Ok(Compiled {
+            problem,
+            jumps,
+            source_sha256,
+            units,
+            begin,
+            seconds: begin.elapsed().as_secs_f64(),
+        })
     }
 
     /// The start that `--warm` names, if any.
@@ -142,7 +154,8 @@ impl Compiled {
         }
     }
 
-    /// Solves from `start`, or from the guess, and from variations of it if there are to be several starts.
+    /// Solves from `start`, or from the guess, and from variations of it if there are to be several
+    /// starts.
     pub fn solve(
         self,
         start: Option<Beginning>,
@@ -185,7 +198,8 @@ impl Found {
 }
 
 impl Solved {
-    /// What the solver saw: model, problem and outcome. Of a model with jumps, its pieces side by side.
+    /// What the solver saw: model, problem and outcome. Of a model with jumps, its pieces side by
+    /// side.
     pub fn as_solved<'s>(&'s self, model: &'s Model) -> (&'s Model, &'s Problem, &'s Outcome) {
         match &self.unrolled {
             Some(it) => (&it.model, &it.problem, &it.outcome),
@@ -198,7 +212,8 @@ impl Solved {
         matches!(self.outcome.solution.status, Status::Solved | Status::Acceptable)
     }
 
-    /// Replays the controls on the true system; `asked` is the largest difference that is called confirmation.
+    /// Replays the controls on the true system; `asked` is the largest difference that is called
+    /// confirmation.
     pub fn replay(&mut self, model: &Model, asked: f64) {
         let saved = Saved::from(&self.document);
         // A model that cannot be simulated is solved all the same.
@@ -206,7 +221,8 @@ impl Solved {
         self.document.set_verification(verified.map(|it| Verification::new(&it, asked)));
     }
 
-    /// How a command with this solve ends; whether it has to be confirmed, too, is the caller's choice.
+    /// How a command with this solve ends; whether it has to be confirmed, too, is the caller's
+    /// choice.
     pub fn exit(&self, confirmed: bool) -> Exit {
         let is_fine = self.is_good() && (!confirmed || self.document.is_confirmed());
         if is_fine { Exit::Fine } else { Exit::NotSolved }
@@ -231,17 +247,20 @@ fn refuse_senseless(problem: &Problem) -> Result<(), Failure> {
     match unknowns(problem) {
         0 => Err(Failure::Nothing),
         many if is_too_dense(problem, many) => Err(Failure::Usage(format!(
-            "`linear = riccati` treats all {} unknowns of an interval as dense; leave it out, or choose fewer `steps`",
+            "`linear = riccati` treats all {} unknowns of an interval as dense; leave it out, or \
+             choose fewer `steps`",
             many / problem.method.intervals
         ))),
-        many if many > MOST_UNKNOWNS => {
-            Err(Failure::Usage(format!("{many} unknowns are too many; N = {}", problem.method.intervals)))
-        }
+        many if many > MOST_UNKNOWNS => Err(Failure::Usage(format!(
+            "{many} unknowns are too many; N = {}",
+            problem.method.intervals
+        ))),
         _ => Ok(()),
     }
 }
 
-/// More numbers in the blocks of the recursion than a computer has room for. Where nobody asks for it, it is not chosen then.
+/// More numbers in the blocks of the recursion than a computer has room for. Where nobody asks for
+/// it, it is not chosen then.
 const MOST_DENSE: usize = 200_000_000;
 
 fn is_too_dense(problem: &Problem, unknowns: usize) -> bool {

@@ -29,7 +29,8 @@ impl Terms {
     }
 }
 
-/// For each output of a function its values at some points, with their terms; `motions` are those of the inputs that the points have, then of the parameters.
+/// For each output of a function its values at some points, with their terms; `motions` are those
+/// of the inputs that the points have, then of the parameters.
 pub fn terms(
     function: &dyn Function,
     (points, parameters): (&Columns, &[f64]),
@@ -39,12 +40,14 @@ pub fn terms(
     let mut values = Columns::new(function.outputs(), points.count());
     let mut slopes = Columns::new(entries.len(), points.count());
     function.jacobian(points, parameters, &mut values, &mut slopes);
-    let with_none = |row: usize| values.column(row).iter().map(|value| (*value, Terms::default())).collect();
+    let with_none =
+        |row: usize| values.column(row).iter().map(|value| (*value, Terms::default())).collect();
     let mut rows: Vec<Vec<(f64, Terms)>> = (0..function.outputs()).map(with_none).collect();
     let parameter = function.layout().parameters();
     for (column, &(row, input)) in entries.iter().enumerate() {
         let (row, input) = (row as usize, input as usize);
-        for (k, ((_, terms), slope)) in rows[row].iter_mut().zip(slopes.column(column)).enumerate() {
+        for (k, ((_, terms), slope)) in rows[row].iter_mut().zip(slopes.column(column)).enumerate()
+        {
             let value = match input.checked_sub(parameter.start) {
                 Some(at) => parameters[at],
                 None => points.column(input)[k],

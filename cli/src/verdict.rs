@@ -51,7 +51,8 @@ pub fn verdict(solved: &Solved) -> String {
         document.seconds.total
     );
     let word = if solved.is_good() { "done" } else { "stop" };
-    let mut lines = vec![format!(" {word}  {}", how(solved)), format!("       {}", result.join("   "))];
+    let mut lines =
+        vec![format!(" {word}  {}", how(solved)), format!("       {}", result.join("   "))];
     lines.push(format!("       {work}"));
     lines.extend(jumps::lines(document));
     lines.extend(spread(document));
@@ -72,7 +73,8 @@ const SAME: f64 = 1e-6;
 /// The minima that were found from several starts, the best one first, and how often.
 fn spread(document: &Document) -> Vec<String> {
     let is_solved = |ended: &&Ended| matches!(ended.status.as_str(), "solved" | "acceptable");
-    let mut found: Vec<f64> = document.starts.iter().filter(is_solved).map(|ended| ended.objective).collect();
+    let mut found: Vec<f64> =
+        document.starts.iter().filter(is_solved).map(|ended| ended.objective).collect();
     // The best one is the answer, whichever way is better.
     found.sort_by(|a, b| (a - document.objective).abs().total_cmp(&(b - document.objective).abs()));
     let same = |a: &f64, b: &f64| (a - b).abs() <= SAME * b.abs().max(1.0);
@@ -84,7 +86,9 @@ fn spread(document: &Document) -> Vec<String> {
     let mut rows: Vec<String> = found.chunk_by(same).map(row).collect();
     match document.starts.len() - solved {
         0 => {}
-        others => rows.push(format!("       {others} of {} starts: not solved", document.starts.len())),
+        others => {
+            rows.push(format!("       {others} of {} starts: not solved", document.starts.len()))
+        }
     }
     rows
 }
@@ -95,7 +99,8 @@ fn surfaces(document: &Document) -> impl Iterator<Item = String> {
     let units = &document.units;
     let sigmas = document.method.sigmas.0.iter().filter(move |_| has_trajectory);
     sigmas.map(move |(name, sigma)| {
-        let modes = document.surfaces.get(name).map(|spans| switching(spans, units)).unwrap_or_default();
+        let modes =
+            document.surfaces.get(name).map(|spans| switching(spans, units)).unwrap_or_default();
         format!(
             " {name:<5} {modes}   (sigma {}, kernel {})",
             units.width(name, *sigma),
@@ -104,7 +109,8 @@ fn surfaces(document: &Document) -> impl Iterator<Item = String> {
     })
 }
 
-/// The first line. It never says "optimal": an optimum of the discretised problem is not one of the true system.
+/// The first line. It never says "optimal": an optimum of the discretised problem is not one of the
+/// true system.
 fn how(solved: &Solved) -> String {
     let Solved { problem, document, outcome, .. } = solved;
     let status = &outcome.solution.status;
@@ -113,16 +119,21 @@ fn how(solved: &Solved) -> String {
         true if document.global => "global optimum",
         true => "local optimum",
     };
-    let of = if document.surfaces.0.is_empty() { "discretised problem" } else { "smoothed problem" };
+    let of =
+        if document.surfaces.0.is_empty() { "discretised problem" } else { "smoothed problem" };
     let tolerance = format!("tolerance {:e}", document.method.tol);
     let proof = if document.global || !problem.has_objective { "" } else { "; not proved global" };
     match status {
         Status::Solved => {
-            format!("{found} of the {of}, {} ({tolerance} met{proof})", on_the_true_system(document))
+            format!(
+                "{found} of the {of}, {} ({tolerance} met{proof})",
+                on_the_true_system(document)
+            )
         }
         Status::Acceptable => {
             format!(
-                "{found} of the {of}, less accurate than asked for, {} ({tolerance} NOT met{proof})",
+                "{found} of the {of}, less accurate than asked for, {} ({tolerance} NOT \
+                 met{proof})",
                 on_the_true_system(document)
             )
         }
@@ -136,7 +147,8 @@ fn refined(solved: &Solved) -> Option<String> {
     let (document, method) = (&solved.document, &solved.problem.method);
     let (error, tolerance) = (document.step_errors?, method.tolerance);
     let verdict = if error <= tolerance { "" } else { ", NOT met" };
-    let order = if method.is_raised { format!(" of {}", document.method.scheme) } else { String::new() };
+    let order =
+        if method.is_raised { format!(" of {}", document.method.scheme) } else { String::new() };
     Some(format!(
         " grid  {}{order}, errors of all steps {} (tolerance {}{verdict})",
         plural(document.method.n, "interval"),
@@ -145,16 +157,19 @@ fn refined(solved: &Solved) -> Option<String> {
     ))
 }
 
-/// By how much of the size of its terms the Hamiltonian may miss what it has to be, before that is told.
+/// By how much of the size of its terms the Hamiltonian may miss what it has to be, before that is
+/// told.
 const MISSED: f64 = 0.05;
 
-/// What is said where the Hamiltonian is not what it has to be: then the grid is too coarse for what happens on it.
+/// What is said where the Hamiltonian is not what it has to be: then the grid is too coarse for
+/// what happens on it.
 fn hamiltonian(document: &Document) -> Option<String> {
     let check = &document.hamiltonian_check;
     let deviation = check.deviation.filter(|it| *it > MISSED * check.size)?;
     let target = check.expected.map_or("constant".into(), |it| format!("{} throughout", short(it)));
     Some(format!(
-        " grid  the Hamiltonian has to be {target} and is off by {} on average: the answer depends on the grid, more intervals will change it",
+        " grid  the Hamiltonian has to be {target} and is off by {} on average: the answer depends \
+         on the grid, more intervals will change it",
         short(deviation)
     ))
 }
@@ -194,7 +209,9 @@ fn replayed(document: &Document) -> Option<String> {
     replay.state_gap?;
     let units = &document.units;
     let mut words = vec![" true  replayed:".to_owned()];
-    words.extend(replay.objective.map(|it| format!("objective {}", units.value("objective", it, 9))));
+    words.extend(
+        replay.objective.map(|it| format!("objective {}", units.value("objective", it, 9))),
+    );
     words.push(replay.difference(units).unwrap_or_else(|| "no state differs".into()));
     words.push(match replay.worst.as_ref().zip(replay.violation(units)) {
         Some((worst, amount)) => {
@@ -216,7 +233,10 @@ fn why(solved: &Solved) -> String {
     let method = &solved.problem.method;
     match &solved.outcome.solution.status {
         Status::Infeasible if solved.outcome.is_impossible => {
-            format!("proved: there is no trajectory of {} that meets all conditions", intervals(solved))
+            format!(
+                "proved: there is no trajectory of {} that meets all conditions",
+                intervals(solved)
+            )
         }
         Status::Infeasible => format!("{}; {}", attempts::words(solved), attempts::advice(solved)),
         Status::Unbounded => "the objective improves without end; something needs a bound".into(),

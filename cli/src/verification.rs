@@ -1,4 +1,5 @@
-//! What the controls of a solution do on the true system, simulated from event to event, against what the solution says.
+//! What the controls of a solution do on the true system, simulated from event to event, against
+//! what the solution says.
 
 use crate::alignment::Alignment;
 use crate::conditions::{Condition, Conditions};
@@ -43,7 +44,8 @@ impl Verified {
     }
 }
 
-/// Replays a solution of a problem that was compiled from the model, whatever its parameters are now.
+/// Replays a solution of a problem that was compiled from the model, whatever its parameters are
+/// now.
 pub fn verify(model: &Model, problem: &Problem, saved: &Saved) -> Result<Verified, Failure> {
     let replay = Replay::new(saved, model).and_then(|replay| replay.check().map(|()| replay));
     let replay = replay.map_err(Failure::File)?;
@@ -53,10 +55,16 @@ pub fn verify(model: &Model, problem: &Problem, saved: &Saved) -> Result<Verifie
     fits(saved, &system).map_err(Failure::File)?;
     let intervals = saved.time.len().saturating_sub(1);
     let points = Points::new(saved, replay, system.interval);
-    let controls = Controls::Held { times: points.starts(), rows: points.rows.clone(), is_stretched: true };
+    let controls =
+        Controls::Held { times: points.starts(), rows: points.rows.clone(), is_stretched: true };
     let max_steps = FEWEST_STEPS.max(STEPS_PER_INTERVAL * intervals);
-    let options =
-        Options { times: points.times.clone(), max_steps, tape: true, extremes: true, ..Options::default() };
+    let options = Options {
+        times: points.times.clone(),
+        max_steps,
+        tape: true,
+        extremes: true,
+        ..Options::default()
+    };
     let simulation = simulate(&system, &controls, &options);
     let is_whole = matches!(simulation.status, Status::Completed)
         && simulation.states.iter().all(|column| column.len() == points.times.len());
@@ -67,22 +75,34 @@ pub fn verify(model: &Model, problem: &Problem, saved: &Saved) -> Result<Verifie
     let gaps = match Alignment::new(&saved.jumps, &system, &simulation) {
         Some(alignment) if is_whole && !saved.jumps.is_empty() => {
             let times = alignment.moved(&points.times);
-            let compared =
-                simulate(&system, &controls, &Options { times, tape: false, extremes: false, ..options });
+            let compared = simulate(
+                &system,
+                &controls,
+                &Options { times, tape: false, extremes: false, ..options },
+            );
             let of_jumps = gaps_of_jumps(&alignment, saved, system.interval);
             of_jumps.into_iter().chain(gaps(saved, &system, &compared)).collect()
         }
         _ => gaps(saved, &system, &simulation),
     };
-    Ok(Verified { gaps, conditions: conditions.unwrap_or_default(), stays, is_whole, system, simulation })
+    Ok(Verified {
+        gaps,
+        conditions: conditions.unwrap_or_default(),
+        stays,
+        is_whole,
+        system,
+        simulation,
+    })
 }
 
 /// Whether a solution has the time and the states of a system.
 fn fits(saved: &Saved, system: &System) -> Result<(), String> {
     let [first, last] = system.interval;
-    let own = [saved.time.first(), saved.time.last()].map(|end| end.copied().flatten().unwrap_or(f64::NAN));
-    let differs =
-        |own: f64, end: f64| own.is_nan() || (own - end).abs() > 1e-6 * (1.0 + (last - first).abs());
+    let own = [saved.time.first(), saved.time.last()]
+        .map(|end| end.copied().flatten().unwrap_or(f64::NAN));
+    let differs = |own: f64, end: f64| {
+        own.is_nan() || (own - end).abs() > 1e-6 * (1.0 + (last - first).abs())
+    };
     if differs(own[0], first) || differs(own[1], last) {
         return Err(format!(
             "its time runs from {} to {}, that of the model from {first} to {last}",
@@ -93,7 +113,9 @@ fn fits(saved: &Saved, system: &System) -> Result<(), String> {
     let missing = shown
         .map(|it| &it.name)
         .find(|name| saved.states.get(name).is_none_or(|column| column.len() != saved.time.len()));
-    missing.map_or(Ok(()), |name| Err(format!("it does not have the state `{name}` at each of its times")))
+    missing.map_or(Ok(()), |name| {
+        Err(format!("it does not have the state `{name}` at each of its times"))
+    })
 }
 
 /// The times at which the replay is looked at: the grid, and between its points.
@@ -124,7 +146,8 @@ impl Points {
         self.times.iter().copied().step_by(self.in_row).take(self.rows.len()).collect()
     }
 
-    /// The controls at a point; at a grid point those of the row that ends there, as a transcription has it.
+    /// The controls at a point; at a grid point those of the row that ends there, as a
+    /// transcription has it.
     pub fn row(&self, point: usize) -> &[f64] {
         &self.rows[point.saturating_sub(1) / self.in_row]
     }

@@ -12,16 +12,19 @@ use fdcc_runtime::starts::Earlier;
 use fdcc_runtime::warm::{again, from_earlier};
 use std::path::Path;
 
-/// Reads a `.sol.json` and interpolates it on the grid of the problem. Signals that it does not have are guessed; those that
-/// it has must be whole.
+/// Reads a `.sol.json` and interpolates it on the grid of the problem. Signals that it does not
+/// have are guessed; those that it has must be whole.
 pub fn from_file(path: &Path, problem: &Problem) -> Result<Start, Failure> {
     let saved = Saved::read(path)?;
     let earlier = saved.earlier(problem);
     if earlier.states.iter().chain(&earlier.controls).all(Option::is_none) {
         let (path, model) = (path.display(), &problem.name);
-        return Err(Failure::File(format!("{path} has no state or control of the model `{model}`")));
+        return Err(Failure::File(format!(
+            "{path} has no state or control of the model `{model}`"
+        )));
     }
-    whole::check(&saved, problem).map_err(|what| Failure::File(format!("{}: {what}", path.display())))?;
+    whole::check(&saved, problem)
+        .map_err(|what| Failure::File(format!("{}: {what}", path.display())))?;
     Ok(from_earlier(problem, &earlier))
 }
 
@@ -52,7 +55,8 @@ impl Saved {
         let column = |of: &Named<Column>, name: &str| of.get(name)?.iter().copied().collect();
         let states = problem.states.iter().map(|state| column(&self.states, &state.name));
         let controls = problem.controls.iter().map(|control| column(&self.controls, &control.name));
-        let names = problem.unknowns.iter().map(|unknown| &problem.parameters[unknown.parameter].name);
+        let names =
+            problem.unknowns.iter().map(|unknown| &problem.parameters[unknown.parameter].name);
         Earlier {
             times: normalised(&self.time),
             states: states.collect(),
@@ -62,10 +66,12 @@ impl Saved {
         }
     }
 
-    /// The smoothing width of each surface of the problem; none where a model named them or the solve did not come to its end, so that they may be wide.
+    /// The smoothing width of each surface of the problem; none where a model named them or the
+    /// solve did not come to its end, so that they may be wide.
     fn widths(&self, problem: &Problem) -> Vec<Option<f64>> {
         let is_chosen = self.method.sigma_chosen;
-        let width = |name: &str| self.method.sigmas.get(name).copied().flatten().filter(|_| is_chosen);
+        let width =
+            |name: &str| self.method.sigmas.get(name).copied().flatten().filter(|_| is_chosen);
         problem.surfaces.iter().map(|surface| width(&surface.name)).collect()
     }
 }

@@ -58,11 +58,15 @@ impl Deadline {
         }
     }
 
-    /// Does work that cannot be asked to stop, such as compiling. Where it takes too long it is left alone; it ends with
-    /// the program.
-    pub fn within<T: Send + 'static>(&self, work: impl FnOnce() -> T + Send + 'static) -> Result<T, Stop> {
+    /// Does work that cannot be asked to stop, such as compiling. Where it takes too long it is
+    /// left alone; it ends with the program.
+    pub fn within<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> T + Send + 'static,
+    ) -> Result<T, Stop> {
         let (sender, result) = channel();
-        let worker = thread::Builder::new().stack_size(STACK).spawn(move || drop(sender.send(work())));
+        let worker =
+            thread::Builder::new().stack_size(STACK).spawn(move || drop(sender.send(work())));
         let worker = worker.expect("the system has a thread left");
         loop {
             match result.recv_timeout(BETWEEN_LOOKS) {

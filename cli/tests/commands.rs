@@ -13,7 +13,8 @@ const MODELS: &[(&str, &[u8])] = &[
     ("unused.fdc", b"time t in [0, 1]\nstate x start 0\ndynamics { x' = 1 }\nparam p = 1\n"),
     (
         "allowed.fdc",
-        b"time t in [0, 1]\nstate x start 0\ndynamics { x' = 1 }\n# fdc: allow FDC0404\nparam p = 1\n",
+        b"time t in [0, 1]\nstate x start 0\ndynamics { x' = 1 }\n# fdc: allow FDC0404\nparam p = \
+          1\n",
     ),
     ("latin.fdc", b"# caf\xe9\n"),
 ];
@@ -93,13 +94,16 @@ FDC0003
 #[test]
 fn json_counts_lines_and_columns_in_characters_from_one() {
     let output = fdcc("json", &["check", "-", "--format", "json"], "# é\nlet é = 2 µ\n");
-    let entries: serde_json::Value = serde_json::from_slice(&output.stdout).expect("the output is JSON");
-    let entry = entries.as_array().and_then(|entries| entries.first()).expect("an array of one entry");
+    let entries: serde_json::Value =
+        serde_json::from_slice(&output.stdout).expect("the output is JSON");
+    let entry =
+        entries.as_array().and_then(|entries| entries.first()).expect("an array of one entry");
     assert_eq!(entry["code"], "FDC0001");
     assert_eq!(entry["severity"], "error");
     assert_eq!(entry["file"], "<stdin>");
     let place = |value: &serde_json::Value| {
-        ["line", "column", "end_line", "end_column"].map(|key| value[key].as_u64().expect("a number"))
+        ["line", "column", "end_line", "end_column"]
+            .map(|key| value[key].as_u64().expect("a number"))
     };
     assert_eq!(place(entry), [2, 9, 2, 12]);
     assert_eq!(place(&entry["labels"][0]["span"]), [2, 9, 2, 12]);
@@ -115,20 +119,25 @@ fn a_clean_file_is_an_empty_array() {
 #[test]
 fn short_is_one_line_for_each() {
     let printed = stdout(&fdcc("short", &["check", "end.fdc", "--format", "short"], ""));
-    let line = "end.fdc:1:7: error[FDC0003]: `end` is a reserved word and cannot name a parameter\n";
+    let line =
+        "end.fdc:1:7: error[FDC0003]: `end` is a reserved word and cannot name a parameter\n";
     assert_eq!(printed, line);
 }
 
 #[test]
 fn sarif_names_rule_file_and_region() {
     let output = fdcc("sarif", &["check", "end.fdc", "--format", "sarif"], "");
-    let log: serde_json::Value = serde_json::from_slice(&output.stdout).expect("the output is JSON");
+    let log: serde_json::Value =
+        serde_json::from_slice(&output.stdout).expect("the output is JSON");
     let result = &log["runs"][0]["results"][0];
     let place = &result["locations"][0]["physicalLocation"];
     assert_eq!(log["version"], "2.1.0");
     assert_eq!(result["ruleId"], "FDC0003");
     assert_eq!(place["artifactLocation"]["uri"], "end.fdc");
-    assert_eq!((&place["region"]["startLine"], &place["region"]["startColumn"]), (&1.into(), &7.into()));
+    assert_eq!(
+        (&place["region"]["startLine"], &place["region"]["startColumn"]),
+        (&1.into(), &7.into())
+    );
 }
 
 #[test]
@@ -162,7 +171,10 @@ fn help_explains_every_option_in_one_line() {
         let mut lines = help.lines().map(str::trim);
         while let Some(line) = lines.next() {
             let is_alone = line.starts_with("--") && !line.contains("  ");
-            assert!(!is_alone || lines.next().is_some_and(|text| !text.is_empty()), "{command}: {line}");
+            assert!(
+                !is_alone || lines.next().is_some_and(|text| !text.is_empty()),
+                "{command}: {line}"
+            );
         }
     }
 }
@@ -170,8 +182,10 @@ fn help_explains_every_option_in_one_line() {
 /// As in `fdcc solve ... 2>&1 | head -1`.
 #[test]
 fn a_reader_that_goes_away_is_no_error() {
-    let mut child =
-        common::start(&common::folder("closed", &[]), &["solve", &common::model("turbo"), "--log", "full"]);
+    let mut child = common::start(
+        &common::folder("closed", &[]),
+        &["solve", &common::model("turbo"), "--log", "full"],
+    );
     drop((child.stdout.take(), child.stderr.take()));
     let status = child.wait().expect("fdcc ends");
     assert_eq!(status.code(), Some(0));

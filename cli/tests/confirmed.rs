@@ -1,36 +1,46 @@
-//! `--confirmed`: the exit code tells whether an answer holds on the true system and nothing contradicts that it is an optimum.
+//! `--confirmed`: the exit code tells whether an answer holds on the true system and nothing
+//! contradicts that it is an optimum.
 
 mod common;
 
 use common::{RAMP, expect_exit, fdcc, folder, json, model, number, stderr, stdout};
 
-/// Friction 5.886 N on 2 kg over 1 m: the block waits, then is pulled for `tau = sqrt(6 m d/f)`, at `f^2 tau + 12 m^2 d^2/tau^3`.
+/// Friction 5.886 N on 2 kg over 1 m: the block waits, then is pulled for `tau = sqrt(6 m d/f)`, at
+/// `f^2 tau + 12 m^2 d^2/tau^3`.
 fn least() -> f64 {
     let (mass, friction) = (2.0, 0.3 * 2.0 * 9.81_f64);
     let tau = (6.0 * mass / friction).sqrt();
     friction.powi(2) * tau + 12.0 * mass * mass / tau.powi(3)
 }
 
-/// In a layer of 1e-4 m/s the gradient is lost: a solver may stop anywhere, and the replay agrees. Wherever it does, the answer is the optimum, or its Hamiltonian says that
-/// it is none.
+/// In a layer of 1e-4 m/s the gradient is lost: a solver may stop anywhere, and the replay agrees.
+/// Wherever it does, the answer is the optimum, or its Hamiltonian says that it is none.
 #[test]
 fn a_lost_gradient_is_told_in_the_headline() {
     let folder = folder("confirmed_block", &[]);
     let block = model("block");
     assert!((least() - 65.957).abs() < 1e-3);
     for setting in ["scheme=radau3", "scheme=radau2"] {
-        let solve = ["solve", &block, "--method", "sigma=1e-4", "--method", "N=auto", "--method", setting];
+        let solve =
+            ["solve", &block, "--method", "sigma=1e-4", "--method", "N=auto", "--method", setting];
         let quiet = [&solve[..], &["--log", "none"]].concat();
         let document = json(&fdcc(&folder, &[&quiet[..], &["--json"]].concat(), ""));
         assert_eq!(document["status"], "solved");
         let is_least = (number(&document["objective"]) - least()).abs() < 0.01 * least();
         let optimality = &document["optimality"];
-        assert_eq!(optimality["contradicted"], !is_least, "{}: {optimality}", document["objective"]);
+        assert_eq!(
+            optimality["contradicted"], !is_least,
+            "{}: {optimality}",
+            document["objective"]
+        );
         let confirmed = fdcc(&folder, &[&quiet[..], &["--confirmed"]].concat(), "");
         if !is_least {
             expect_exit(&fdcc(&folder, &quiet, ""), 0, "status is that of the discrete problem");
             expect_exit(&confirmed, 2, setting);
-            let first = stdout(&confirmed).lines().find(|line| line.starts_with(" done")).map(str::to_owned);
+            let first = stdout(&confirmed)
+                .lines()
+                .find(|line| line.starts_with(" done"))
+                .map(str::to_owned);
             let first = first.expect("a headline");
             assert!(
                 first.contains("CONTRADICTED as an optimum: its Hamiltonian has to be constant"),
@@ -43,8 +53,9 @@ fn a_lost_gradient_is_told_in_the_headline() {
     }
 }
 
-/// With the midpoint rule and a layer of 1e-5 the first step leaves it at once: friction all the time, `J = f^2 T + 12 m^2 d^2/T^3` = 139.33, with a Hamiltonian that is constant to
-/// rounding. Waiting costs nothing, and every second of it saves `f^2 - 36 m^2 d^2/T^4` = 34.1.
+/// With the midpoint rule and a layer of 1e-5 the first step leaves it at once: friction all the
+/// time, `J = f^2 T + 12 m^2 d^2/T^3` = 139.33, with a Hamiltonian that is constant to rounding.
+/// Waiting costs nothing, and every second of it saves `f^2 - 36 m^2 d^2/T^4` = 34.1.
 #[test]
 fn a_layer_that_is_left_in_one_step_hides_the_gain_of_a_pause() {
     let solve = ["solve", &model("block"), "--method", "sigma=1e-5", "--method", "N=50"];
@@ -52,7 +63,11 @@ fn a_layer_that_is_left_in_one_step_hides_the_gain_of_a_pause() {
     let document = json(&fdcc(&folder("confirmed_pause", &[]), &solve, ""));
     let is_least = (number(&document["objective"]) - least()).abs() < 0.01 * least();
     if !is_least {
-        assert!((number(&document["objective"]) - 139.33).abs() < 0.01, "{}", document["objective"]);
+        assert!(
+            (number(&document["objective"]) - 139.33).abs() < 0.01,
+            "{}",
+            document["objective"]
+        );
         let pause = &document["hamiltonian_check"]["pause"];
         assert!((number(pause) - 34.08).abs() < 0.5, "{pause}");
     }
@@ -122,7 +137,10 @@ fn sweep_replays_each_row_and_tells_in_a_column() {
     let output = fdcc(&folder, &[&sweep[..], &["--confirmed"]].concat(), "");
     expect_exit(&output, 2, "the true car leaves the track");
     for row in json(&output).as_array().expect("rows") {
-        assert_eq!((&row["confirmed"], &row["verification"]["confirmed"]), (&false.into(), &false.into()));
+        assert_eq!(
+            (&row["confirmed"], &row["verification"]["confirmed"]),
+            (&false.into(), &false.into())
+        );
     }
     let both = ["sweep", "ramp.fdc", "goal=1,2", "--confirmed", "--no-verify"];
     expect_exit(&fdcc(&folder, &both, ""), 3, "nothing could be confirmed");

@@ -1,6 +1,7 @@
 //! One slip, one message: models of the repository with one word, number or sign taken away.
 //!
-//! Where what is left has a mistake in its syntax, that is all that is said, but for advice: nothing follows from what could not be read.
+//! Where what is left has a mistake in its syntax, that is all that is said, but for advice:
+//! nothing follows from what could not be read.
 
 mod common;
 
@@ -33,8 +34,9 @@ fn nothing_follows_from_what_cannot_be_read() {
     let mut problems = Vec::new();
     for name in ["block", "racecar", "turbo", "stacked", "bounce", "twostage", "crossing"] {
         let text = fs::read_to_string(model(name)).expect("the model is there");
-        let slips =
-            tokens(&text).into_iter().map(|token| [&text[..token.start], &text[token.end..]].concat());
+        let slips = tokens(&text)
+            .into_iter()
+            .map(|token| [&text[..token.start], &text[token.end..]].concat());
         let files: Vec<(String, String)> =
             slips.enumerate().map(|(at, slip)| (format!("{name}{at:04}.fdc"), slip)).collect();
         let contents: Vec<(&str, &[u8])> =
@@ -45,10 +47,13 @@ fn nothing_follows_from_what_cannot_be_read() {
         let found = json(&fdcc(&folder, &arguments, ""));
         let found = found.as_array().expect("an array");
         for (file, slip) in &files {
-            let of_file: Vec<_> =
-                found.iter().filter(|it| it["file"] == file.as_str() && it["severity"] != "advice").collect();
+            let of_file: Vec<_> = found
+                .iter()
+                .filter(|it| it["file"] == file.as_str() && it["severity"] != "advice")
+                .collect();
             let is_syntax = |code: &str| code.starts_with("FDC000") && code != "FDC0008";
-            let is_broken = of_file.iter().any(|it| is_syntax(it["code"].as_str().unwrap_or_default()));
+            let is_broken =
+                of_file.iter().any(|it| is_syntax(it["code"].as_str().unwrap_or_default()));
             if is_broken && of_file.len() > 1 {
                 let lines = of_file.iter().map(|it| {
                     let line = it["line"].as_u64().unwrap_or(1) as usize;

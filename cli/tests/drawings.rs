@@ -1,6 +1,8 @@
-//! Every diagnostic as it is seen: the wrong models of `docs/diagnostics/`, drawn 80 and 120 columns wide.
+//! Every diagnostic as it is seen: the wrong models of `docs/diagnostics/`, drawn 80 and 120
+//! columns wide.
 //!
-//! With `UPDATE=1` the drawings are written to `tests/snapshots/` instead of compared with what is there. They are there to be read.
+//! With `UPDATE=1` the drawings are written to `tests/snapshots/` instead of compared with what is
+//! there. They are there to be read.
 
 mod common;
 
@@ -27,7 +29,10 @@ fn models(page: &str) -> Vec<String> {
     let blocks = wrong.flat_map(|section| section.split("\n```fdc\n").skip(1));
     // What cannot stand on a page stands for itself.
     let written_out = |text: &str| text.replace('␀', "\0").replace('…', &"1 + ".repeat(60_000));
-    blocks.filter_map(|block| block.split_once("```")).map(|(model, _)| written_out(model)).collect()
+    blocks
+        .filter_map(|block| block.split_once("```"))
+        .map(|(model, _)| written_out(model))
+        .collect()
 }
 
 /// Tests that run side by side have folders of their own.
@@ -54,7 +59,8 @@ fn compare(width: &str) {
     let first = before.lines().zip(drawn.lines()).find(|(before, drawn)| before != drawn);
     assert!(
         before == drawn,
-        "the drawings have changed, first here: {first:#?}\nread them, then run this test with UPDATE=1"
+        "the drawings have changed, first here: {first:#?}\nread them, then run this test with \
+         UPDATE=1"
     );
 }
 

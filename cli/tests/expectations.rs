@@ -16,10 +16,13 @@ fn tested(test: &str, text: &str, more: &[&str]) -> (i32, Value) {
     (output.status.code().expect("an exit code"), json(&output))
 }
 
-/// Along `x = t` on four intervals, by hand: the sums of the rectangle, midpoint and trapezoidal rules.
+/// Along `x = t` on four intervals, by hand: the sums of the rectangle, midpoint and trapezoidal
+/// rules.
 #[test]
 fn integrals_are_those_of_the_scheme() {
-    let text = ramp("integral(x) == 0.5 within 1\nintegral(x^2) == 0.3 within 1\nintegral(t) == 0 within 1");
+    let text = ramp(
+        "integral(x) == 0.5 within 1\nintegral(x^2) == 0.3 within 1\nintegral(t) == 0 within 1",
+    );
     let lagged = text.replace("implicit_euler", "implicit_euler lagged (x)");
     let cases = [
         ("euler", &text, [0.375, 0.21875, 0.375]),
@@ -33,7 +36,10 @@ fn integrals_are_those_of_the_scheme() {
         assert_eq!(code, 0);
         for (line, expected) in expected.into_iter().enumerate() {
             let left = number(&tested[0]["expectations"][line]["left"]);
-            assert!((left - expected).abs() < 1e-6, "{scheme}, line {line}: {left} is not {expected}");
+            assert!(
+                (left - expected).abs() < 1e-6,
+                "{scheme}, line {line}: {left} is not {expected}"
+            );
         }
     }
 }
@@ -41,7 +47,8 @@ fn integrals_are_those_of_the_scheme() {
 #[test]
 fn each_expectation_is_told_with_its_values() {
     let text = ramp(
-        "x(end) == 1 within 1e-6\nx(start) == 1 within 0.5\nx(end) <= 2*goal\nx(end) >= 2\nsensitivity(x(end), goal) == 0",
+        "x(end) == 1 within 1e-6\nx(start) == 1 within 0.5\nx(end) <= 2*goal\nx(end) >= \
+         2\nsensitivity(x(end), goal) == 0",
     );
     let folder = folder("expectations", &[("ramp.fdc", text.as_bytes())]);
     let output = fdcc(&folder, &["test", "ramp.fdc"], "");
@@ -137,21 +144,31 @@ fn what_is_simulated_is_the_true_system() {
     assert!(stdout(&output).ends_with("5 ok, 0 failed\n"), "{}", stdout(&output));
     let crossing = fdcc(&folder, &["test", &model("crossing")], "");
     expect_exit(&crossing, 0, "example (2.3): alpha/(2 + alpha)");
-    assert!(stdout(&crossing).contains("left 0.333333333, right 0.333333333"), "{}", stdout(&crossing));
+    assert!(
+        stdout(&crossing).contains("left 0.333333333, right 0.333333333"),
+        "{}",
+        stdout(&crossing)
+    );
 }
 
 /// The smoothed problem has a solution; on the edge of the true system there are three ways on.
 #[test]
 fn what_the_true_system_does_not_tell_fails_with_its_reason() {
-    let text = "model edge\nfree a in [0, 2] guess 1\ntime t in [0, 1]\nstate x start 0\nstate y start 2\nsurface top = x\n\
+    let text = "model edge\nfree a in [0, 2] guess 1\ntime t in [0, 1]\nstate x start 0\nstate y \
+                start 2\nsurface top = x\n\
                 dynamics {\n  x' in a*x + y*Sgn(top)\n  y' = 0\n}\nminimize (a - 0.75)^2\n\
                 method { smooth sigma = 0.1 grid N = 10 }\n\
-                expect {\n  sliding(top) == 0\n  sensitivity(x(end), a) == 0\n  a == 0.75 within 1e-6\n}\n";
+                expect {\n  sliding(top) == 0\n  sensitivity(x(end), a) == 0\n  a == 0.75 within \
+                1e-6\n}\n";
     let folder = folder("untold", &[("edge.fdc", text.as_bytes())]);
     let output = fdcc(&folder, &["test", "edge.fdc"], "");
     expect_exit(&output, 2, "edge");
     let printed = stdout(&output);
-    assert_eq!(printed.matches("(the replay on the true system ends at t = 0)").count(), 2, "{printed}");
+    assert_eq!(
+        printed.matches("(the replay on the true system ends at t = 0)").count(),
+        2,
+        "{printed}"
+    );
     assert!(printed.ends_with("1 ok, 2 failed\n"), "{printed}");
     let told = json(&fdcc(&folder, &["test", "edge.fdc", "--json"], ""));
     assert!(told[0]["expectations"][0]["left"].is_null(), "{told}");
@@ -165,7 +182,11 @@ fn there_is_no_sensitivity_by_a_parameter_that_is_computed() {
     let folder = folder("sensitivity_computed", &[("thrown.fdc", text.as_bytes())]);
     let output = fdcc(&folder, &["test", "thrown.fdc"], "");
     expect_exit(&output, 2, "computed");
-    assert!(stdout(&output).contains("`mu` is computed from other parameters"), "{}", stdout(&output));
+    assert!(
+        stdout(&output).contains("`mu` is computed from other parameters"),
+        "{}",
+        stdout(&output)
+    );
     let given = fdcc(&folder, &["test", "thrown.fdc", "--set", "mu=0.5"], "");
     expect_exit(&given, 0, "given");
 }

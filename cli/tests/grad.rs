@@ -5,7 +5,8 @@ mod common;
 use common::{column, expect_exit, fdcc, folder, json, model, number, stderr, stdout};
 use serde_json::Value;
 
-/// Example (2.3): `x(end) = a(2 + x0/(2 + a))`, `J' = 2(x0 + 1)/9 - x0^2/3 + (x0 + 6)^2/27` for `a = 1`.
+/// Example (2.3): `x(end) = a(2 + x0/(2 + a))`, `J' = 2(x0 + 1)/9 - x0^2/3 + (x0 + 6)^2/27` for `a
+/// = 1`.
 const CROSSING: &str = "\
 model crossing
 param a = 1
@@ -72,18 +73,22 @@ maximize first.x(end)
 ";
 
 fn near(value: &Value, expected: f64) {
-    assert!((number(value) - expected).abs() <= 1e-9 * expected.abs().max(1.0), "{value}, not {expected}");
+    assert!(
+        (number(value) - expected).abs() <= 1e-9 * expected.abs().max(1.0),
+        "{value}, not {expected}"
+    );
 }
 
 fn found(test: &str, text: &str, arguments: &[&str], code: i32) -> Value {
-    let folder = folder(test, &[("model.fdc", text.as_bytes()), ("u.csv", b"t,u\n0,1\n0.25,0.5\n")]);
+    let folder =
+        folder(test, &[("model.fdc", text.as_bytes()), ("u.csv", b"t,u\n0,1\n0.25,0.5\n")]);
     let output = fdcc(&folder, &[&["grad", "model.fdc", "--json"], arguments].concat(), "");
     expect_exit(&output, code, &format!("{arguments:?}"));
     json(&output)
 }
 
-/// The smoothed number is that of an independent program (tanh, sigma = .1, h = .01, implicit Euler), whose integral is the
-/// trapezoidal sum; that of the language takes the right ends.
+/// The smoothed number is that of an independent program (tanh, sigma = .1, h = .01, implicit
+/// Euler), whose integral is the trapezoidal sum; that of the language takes the right ends.
 #[test]
 fn the_document_is_the_one_that_is_promised() {
     let found = found("grad_document", CROSSING, &[], 0);
@@ -107,12 +112,16 @@ fn the_document_is_the_one_that_is_promised() {
     assert!(found.get("one_sided").is_none() && found.get("second").is_none(), "{found}");
 }
 
-/// Off the lattice the theta scheme has a closed form: -.33541 with the trapezoidal sum where the truth is .58881215.
+/// Off the lattice the theta scheme has a closed form: -.33541 with the trapezoidal sum where the
+/// truth is .58881215.
 #[test]
 fn the_gradient_of_the_discretised_problem_is_the_trap_of_section_two() {
     let text = CROSSING.replace("guess -1", "guess -1.003");
     let found = found("grad_trap", &text, &["--wrt", "x0"], 0);
-    near(&found["gradient"]["x0"], 2.0 * -0.003 / 9.0 - 1.003f64.powi(2) / 3.0 + 4.997f64.powi(2) / 27.0);
+    near(
+        &found["gradient"]["x0"],
+        2.0 * -0.003 / 9.0 - 1.003f64.powi(2) / 3.0 + 4.997f64.powi(2) / 27.0,
+    );
     near(&found["compare"]["discretised"]["x0"], -0.33541 + 0.01 * 1.003);
     let warnings = found["warnings"].to_string();
     assert!(warnings.contains("the discretised gradient is off by 155 %"), "{warnings}");
@@ -152,8 +161,10 @@ fn second_derivatives_are_those_of_the_closed_form() {
 /// `v(1/2) = (u_1 + u_2)/4` squared: every second derivative is 1/8.
 #[test]
 fn rows_of_controls_have_second_derivatives() {
-    let text = "time t in [0, 0.5]  state v start 0  control u\ndynamics { v' = u }\nminimize v(end)^2\n";
-    let found = found("grad_second_rows", text, &["--control", "u.csv", "--wrt", "u", "--second"], 0);
+    let text =
+        "time t in [0, 0.5]  state v start 0  control u\ndynamics { v' = u }\nminimize v(end)^2\n";
+    let found =
+        found("grad_second_rows", text, &["--control", "u.csv", "--wrt", "u", "--second"], 0);
     near(&found["second"]["u[1]"]["u[1]"], 0.125);
     near(&found["second"]["u[1]"]["u[2]"], 0.125);
     near(&found["second"]["u[2]"]["u[2]"], 0.125);
@@ -165,7 +176,10 @@ fn at_a_grazing_there_are_two_derivatives() {
     assert_eq!((&found["differentiable"], &found["trusted"]), (&false.into(), &false.into()));
     assert!((number(&found["one_sided"]["p"]["below"]) - 1.0).abs() < 1e-6, "{found}");
     assert!(number(&found["one_sided"]["p"]["above"]).abs() < 1e-6, "{found}");
-    assert_eq!((&found["cause"]["kind"], &found["cause"]["surface"]), (&"grazing".into(), &"edge".into()));
+    assert_eq!(
+        (&found["cause"]["kind"], &found["cause"]["surface"]),
+        (&"grazing".into(), &"edge".into())
+    );
     near(&found["cause"]["time"], 1.0);
     let folder = folder("grad_grazing_words", &[("model.fdc", GRAZING.as_bytes())]);
     let said = stdout(&fdcc(&folder, &["grad", "model.fdc", "--of", "y(end)"], ""));
@@ -180,7 +194,11 @@ fn at_a_grazing_there_are_two_derivatives() {
 fn small_derivatives_are_two_as_well_as_large_ones() {
     for of in ["1e-12*y(end)", "1e-6*y(end)", "1e6*y(end)"] {
         let found = found("grad_scaled", GRAZING, &["--of", of], 2);
-        assert_eq!((&found["differentiable"], &found["trusted"]), (&false.into(), &false.into()), "{of}");
+        assert_eq!(
+            (&found["differentiable"], &found["trusted"]),
+            (&false.into(), &false.into()),
+            "{of}"
+        );
     }
 }
 
@@ -195,7 +213,8 @@ fn a_parameter_that_is_computed_is_none_to_differentiate_by() {
     near(&given["gradient"]["N"], 1.0);
 }
 
-/// With `x(0) = 0` from the guess, `J = x(end)^2` and `x(end) = c(.25*1 + .75*.5)`: the rows count by their durations.
+/// With `x(0) = 0` from the guess, `J = x(end)^2` and `x(end) = c(.25*1 + .75*.5)`: the rows count
+/// by their durations.
 #[test]
 fn starts_controls_and_maximize_are_as_written() {
     let end = 2.0 * 0.625;
@@ -227,14 +246,18 @@ fn many_control_values_are_done_by_the_adjoint() {
     );
     expect_exit(&output, 0, "many");
     let found = json(&output);
-    column(&found["gradient"]["u"]).iter().for_each(|value| assert!((value - 0.01).abs() < 1e-12, "{value}"));
+    column(&found["gradient"]["u"])
+        .iter()
+        .for_each(|value| assert!((value - 0.01).abs() < 1e-12, "{value}"));
     assert_eq!(column(&found["gradient"]["u"]).len(), 200);
     assert_eq!(found["trusted"], true);
-    let said = stdout(&fdcc(&folder, &["grad", "model.fdc", "--control", "u.csv", "--wrt", "u"], ""));
+    let said =
+        stdout(&fdcc(&folder, &["grad", "model.fdc", "--control", "u.csv", "--wrt", "u"], ""));
     assert!(said.contains("of 200)"), "{said}");
 }
 
-/// The point of a solve: parameters, unknowns and method are those of its file unless the command line has others.
+/// The point of a solve: parameters, unknowns and method are those of its file unless the command
+/// line has others.
 #[test]
 fn a_solution_brings_its_parameters_and_its_method() {
     let folder = folder("grad_solution", &[("model.fdc", CROSSING.as_bytes())]);
@@ -244,14 +267,16 @@ fn a_solution_brings_its_parameters_and_its_method() {
     let found = json(&fdcc(&folder, &grad, ""));
     near(&found["gradient"]["x0"], 0.5);
     assert_eq!(found["compare"]["smoothed"]["N"], 50);
-    let other = json(&fdcc(&folder, &[&grad[..], &["--set", "a=1", "--method", "N=60"]].concat(), ""));
+    let other =
+        json(&fdcc(&folder, &[&grad[..], &["--set", "a=1", "--method", "N=60"]].concat(), ""));
     near(&other["gradient"]["x0"], 1.0 / 3.0);
     assert_eq!(other["compare"]["smoothed"]["N"], 60);
 }
 
 #[test]
 fn without_a_trajectory_there_is_no_gradient() {
-    let edge = "param a = 1\ntime t in [0, 1]\nstate x start 0\nsurface top = x\ndynamics { x' in a*x + 2*Sgn(top) }\n";
+    let edge = "param a = 1\ntime t in [0, 1]\nstate x start 0\nsurface top = x\ndynamics { x' in \
+                a*x + 2*Sgn(top) }\n";
     let stuck = found("grad_edge", edge, &["--of", "x(end)"], 2);
     assert_eq!((&stuck["status"], &stuck["differentiable"]), (&"not_unique".into(), &false.into()));
     assert_eq!(stuck["value"], Value::Null);
@@ -269,7 +294,10 @@ fn what_cannot_be_asked_is_explained() {
         ("driven.fdc", DRIVEN.as_bytes()),
         ("weighed.fdc", WEIGHED.as_bytes()),
         ("phases.fdc", PHASES.as_bytes()),
-        ("bare.fdc", b"time t in [0, 1]\nstate x start 0\ndynamics { x' = 1 }\nminimize x(end)\n" as &[u8]),
+        (
+            "bare.fdc",
+            b"time t in [0, 1]\nstate x start 0\ndynamics { x' = 1 }\nminimize x(end)\n" as &[u8],
+        ),
         ("u.csv", b"t,u\n0,1\n"),
     ];
     let folder = folder("grad_usage", &files);
@@ -285,7 +313,11 @@ fn what_cannot_be_asked_is_explained() {
         (&["crossing.fdc", "--wrt", "x"], 3, "`x` is a state; write `x(start)`"),
         (&["crossing.fdc", "--wrt", "x1"], 3, "there is a, x0"),
         (&["crossing.fdc", "--wrt", "y(start)"], 3, "there is no state `y`; there is x"),
-        (&["driven.fdc", "--wrt", "poss(start)"], 3, "there is no state `poss`; there is pos.x, pos.y"),
+        (
+            &["driven.fdc", "--wrt", "poss(start)"],
+            3,
+            "there is no state `poss`; there is pos.x, pos.y",
+        ),
         (&["driven.fdc", "--wrt", "u"], 3, "`u` follows its guess"),
         (&["weighed.fdc", "--wrt", "N"], 3, "`--set N=6` makes it one of its own"),
         (&["phases.fdc"], 1, "FDC0603"),
@@ -317,19 +349,24 @@ fn the_file_is_the_document() {
     let folder = folder("grad_file", &[]);
     let output = fdcc(&folder, &["grad", &model("crossing"), "--json", "--out", "out"], "");
     expect_exit(&output, 0, "crossing");
-    let written = std::fs::read_to_string(folder.join("out/crossing.grad.json")).expect("the file is there");
+    let written =
+        std::fs::read_to_string(folder.join("out/crossing.grad.json")).expect("the file is there");
     assert_eq!(written, stdout(&output));
 }
 
 #[test]
 fn a_gradient_along_a_kink_is_not_trusted() {
-    let text =
-        "param p = 1  time t in [0, 2]  state x start 0\ndynamics { x' = p*abs(x) }\nminimize x(end)\n";
+    let text = "param p = 1  time t in [0, 2]  state x start 0\ndynamics { x' = p*abs(x) \
+                }\nminimize x(end)\n";
     let along = found("grad_kink", text, &[], 2);
     assert_eq!((&along["trusted"], &along["differentiable"]), (&false.into(), &true.into()));
     let warnings = along["warnings"].to_string();
     assert!(warnings.contains("stays on a kink of `x'` (line 2"), "{warnings}");
-    let across =
-        found("grad_across_kink", &text.replace("p*abs", "1 + p*abs").replace("start 0", "start -1"), &[], 0);
+    let across = found(
+        "grad_across_kink",
+        &text.replace("p*abs", "1 + p*abs").replace("start 0", "start -1"),
+        &[],
+        0,
+    );
     assert_eq!(across["trusted"], true);
 }

@@ -43,7 +43,8 @@ fn looser_tolerances_take_fewer_steps() {
 #[test]
 fn tolerances_below_rounding_are_refused() {
     let folder = folder("integrators_refused", &[("fast.fdc", FAST.as_bytes())]);
-    for option in [["--rtol", "0"], ["--rtol", "1e-20"], ["--atol", "0"], ["--integrator", "magic"]] {
+    for option in [["--rtol", "0"], ["--rtol", "1e-20"], ["--atol", "0"], ["--integrator", "magic"]]
+    {
         let output = fdcc(&folder, &["simulate", "fast.fdc", option[0], option[1]], "");
         expect_exit(&output, 3, option[0]);
         assert!(stderr(&output).contains(option[0]), "{}", stderr(&output));

@@ -13,7 +13,8 @@ const AT_ONCE: Duration = Duration::from_secs(5);
 fn long() -> String {
     let terms: Vec<String> = (1..=2000).map(|i| format!("sin({i}*x + {i})")).collect();
     format!(
-        "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]\ndynamics {{ x' = u + {} }}\nminimize integral(u^2)\n\
+        "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]\ndynamics {{ x' = u + {} \
+         }}\nminimize integral(u^2)\n\
          method {{ N = 10 scheme = rk4 }}\nexpect {{ x(start) == 0 }}\n",
         terms.join(" + ")
     )
@@ -23,7 +24,8 @@ fn long() -> String {
 fn the_time_limit_reaches_checking_and_compiling() {
     let many: String = (0..100_000).map(|i| format!("param p{i} = {i}\n")).collect();
     let texts = [("long.fdc", long()), ("many.fdc", many)];
-    let files: Vec<(&str, &[u8])> = texts.iter().map(|(name, text)| (*name, text.as_bytes())).collect();
+    let files: Vec<(&str, &[u8])> =
+        texts.iter().map(|(name, text)| (*name, text.as_bytes())).collect();
     let place = folder("limits_time", &files);
     let commands: [&[&str]; 6] = [
         &["solve", "long.fdc"],
@@ -39,7 +41,10 @@ fn the_time_limit_reaches_checking_and_compiling() {
         assert!(begin.elapsed() < AT_ONCE, "{command:?} takes {:?}", begin.elapsed());
         expect_exit(&output, 2, &format!("{command:?}"));
         let said = stderr(&output);
-        assert!(said.contains("the time limit was reached while it was read and compiled"), "{said}");
+        assert!(
+            said.contains("the time limit was reached while it was read and compiled"),
+            "{said}"
+        );
         // `test` counts what was as expected.
         let printed = if command[0] == "test" { "0 ok, 0 failed\n" } else { "" };
         assert_eq!(stdout(&output), printed, "{command:?}");
@@ -58,17 +63,25 @@ fn ctrl_c_reaches_compiling() {
     let output = child.wait_with_output().expect("it ends");
     assert!(begin.elapsed() < AT_ONCE, "{:?}", begin.elapsed());
     expect_exit(&output, 2, "interrupted");
-    assert!(stderr(&output).contains("interrupted while it was read and compiled"), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("interrupted while it was read and compiled"),
+        "{}",
+        stderr(&output)
+    );
 }
 
 /// Each would ask for far more memory than there is.
 #[test]
 fn sizes_are_refused_with_the_number_before_memory_is_asked_for() {
-    let methods = ["N = 1000000000", "N = 4 steps = 1000000", "N = 4 steps = 1000000000", "N = 1e300"];
+    let methods =
+        ["N = 1000000000", "N = 4 steps = 1000000", "N = 4 steps = 1000000000", "N = 1e300"];
     let numbers = ["1000000000", "4000000", "4000000000", "18446744073709551615"];
     for (method, number) in methods.into_iter().zip(numbers) {
         let text = RAMP.replace("N = 4", method);
-        let place = folder("limits_sizes", &[("large.fdc", text.as_bytes()), ("ramp.fdc", RAMP.as_bytes())]);
+        let place = folder(
+            "limits_sizes",
+            &[("large.fdc", text.as_bytes()), ("ramp.fdc", RAMP.as_bytes())],
+        );
         for command in ["check", "solve", "simulate", "grad", "test", "show"] {
             let output = fdcc(&place, &[command, "large.fdc"], "");
             expect_exit(&output, 1, &format!("{command} {method}"));
@@ -76,7 +89,8 @@ fn sizes_are_refused_with_the_number_before_memory_is_asked_for() {
             assert!(said.contains(number), "{command} {method}: {said}");
         }
         for command in ["solve", "sweep", "grad", "simulate", "show"] {
-            let changes: Vec<String> = method.replace(" = ", "=").split(' ').map(str::to_owned).collect();
+            let changes: Vec<String> =
+                method.replace(" = ", "=").split(' ').map(str::to_owned).collect();
             let changes = changes.iter().flat_map(|change| ["--method", change]);
             let values = if command == "sweep" { vec!["goal=1,2"] } else { Vec::new() };
             let arguments = [command, "ramp.fdc"].into_iter().chain(values).chain(changes);
@@ -88,7 +102,11 @@ fn sizes_are_refused_with_the_number_before_memory_is_asked_for() {
 }
 
 fn solved(place: &std::path::Path) -> Value {
-    expect_exit(&fdcc(place, &["solve", "ramp.fdc", "--out", ".", "--log", "none"], ""), 0, "solve");
+    expect_exit(
+        &fdcc(place, &["solve", "ramp.fdc", "--out", ".", "--log", "none"], ""),
+        0,
+        "solve",
+    );
     let text = std::fs::read_to_string(place.join("ramp.sol.json")).expect("it was written");
     serde_json::from_str(&text).expect("JSON")
 }
@@ -99,7 +117,8 @@ fn a_solution_that_says_so_is_refused_like_an_option() {
     for n in [json!(1_000_000_000), json!(u64::MAX)] {
         let mut solution = solved(&place);
         solution["method"]["N"] = n.clone();
-        std::fs::write(place.join("large.sol.json"), solution.to_string()).expect("it can be written");
+        std::fs::write(place.join("large.sol.json"), solution.to_string())
+            .expect("it can be written");
         for command in ["grad", "simulate"] {
             let output = fdcc(&place, &[command, "ramp.fdc", "--control", "large.sol.json"], "");
             expect_exit(&output, 3, command);
@@ -112,11 +131,17 @@ fn a_solution_that_says_so_is_refused_like_an_option() {
 fn a_start_that_is_not_whole_is_refused() {
     let place = folder("limits_warm", &[("ramp.fdc", RAMP.as_bytes())]);
     let whole = solved(&place);
-    let reversed: Vec<Value> = whole["time"].as_array().expect("times").iter().rev().cloned().collect();
+    let reversed: Vec<Value> =
+        whole["time"].as_array().expect("times").iter().rev().cloned().collect();
     let spoilt: [(&str, &str, Value, &str); 6] = [
         ("states", "x", json!([0.0, null, 0.5, 0.75, 1.0]), "value 2 of `x` is no number"),
         ("states", "x", json!([0.0, 0.25, 0.5]), "`x` has 3 values where there should be 5"),
-        ("controls", "u", json!([1.0, 1.0, 1.0, 1.0, 1.0]), "`u` has 5 values where there should be 4"),
+        (
+            "controls",
+            "u",
+            json!([1.0, 1.0, 1.0, 1.0, 1.0]),
+            "`u` has 5 values where there should be 4",
+        ),
         ("controls", "u", json!([null, 1.0, 1.0, 1.0]), "value 1 of `u` is no number"),
         ("time", "", json!(reversed), "its times must ascend"),
         ("time", "", json!([0.0, 0.25, null, 0.75, 1.0]), "value 3 of `time` is no number"),
@@ -127,7 +152,8 @@ fn a_start_that_is_not_whole_is_refused() {
             "" => solution[field] = value,
             _ => solution[field][name] = value,
         }
-        std::fs::write(place.join("spoilt.sol.json"), solution.to_string()).expect("it can be written");
+        std::fs::write(place.join("spoilt.sol.json"), solution.to_string())
+            .expect("it can be written");
         for command in [&["solve", "ramp.fdc"][..], &["sweep", "ramp.fdc", "goal=1,2"]] {
             let output = fdcc(&place, &[command, &["--warm", "spoilt.sol.json"]].concat(), "");
             expect_exit(&output, 4, words);

@@ -1,10 +1,12 @@
-//! `fdcc lsp` as an editor starts it: a process that speaks over its streams, and solves with itself.
+//! `fdcc lsp` as an editor starts it: a process that speaks over its streams, and solves with
+//! itself.
 
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
-const MODEL: &str = "model fall\ntime t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]\ndynamics { x' = u }\nend x == 0.5\n\
+const MODEL: &str = "model fall\ntime t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]\ndynamics \
+                     { x' = u }\nend x == 0.5\n\
                      minimize integral(u^2)\nmethod { grid N = 10 scheme implicit_euler }\n";
 
 struct Server {
@@ -25,7 +27,8 @@ impl Server {
 
     fn send(&mut self, message: Value) {
         let text = message.to_string();
-        write!(self.input, "Content-Length: {}\r\n\r\n{text}", text.len()).expect("the server reads");
+        write!(self.input, "Content-Length: {}\r\n\r\n{text}", text.len())
+            .expect("the server reads");
     }
 
     /// The next message for which something holds.
@@ -36,7 +39,8 @@ impl Server {
             let length = header.trim().strip_prefix("Content-Length: ").expect("a header");
             let mut rest = vec![0; 2 + length.parse::<usize>().expect("a number")];
             self.output.read_exact(&mut rest).expect("the whole message");
-            let message: Value = serde_json::from_slice(&rest[2..]).expect("the server writes JSON");
+            let message: Value =
+                serde_json::from_slice(&rest[2..]).expect("the server writes JSON");
             if is_meant(&message) {
                 return message;
             }
@@ -57,7 +61,8 @@ fn an_editor_opens_a_model_solves_it_and_goes() {
     let answer = server.wait_for(|it| it["id"] == 1);
     assert_eq!(answer["result"]["serverInfo"]["name"], "fdcc");
     server.send(json!({ "jsonrpc": "2.0", "method": "initialized", "params": {} }));
-    let document = json!({ "uri": "untitled:fall", "languageId": "fdc", "version": 1, "text": MODEL });
+    let document =
+        json!({ "uri": "untitled:fall", "languageId": "fdc", "version": 1, "text": MODEL });
     server.send(
         json!({ "jsonrpc": "2.0", "method": "textDocument/didOpen", "params": { "textDocument": document } }),
     );

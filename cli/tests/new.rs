@@ -12,7 +12,10 @@ fn templates_are_models_that_work() {
         let file = format!("{template}.fdc");
         let written = fdcc(&place, &["new", template], "");
         expect_exit(&written, 0, template);
-        assert!(stdout(&written).contains(&format!("fdcc check {file}")), "it says what to do next");
+        assert!(
+            stdout(&written).contains(&format!("fdcc check {file}")),
+            "it says what to do next"
+        );
         expect_exit(&fdcc(&place, &["check", "--deny", "warnings", &file], ""), 0, template);
         expect_exit(&fdcc(&place, &["fmt", "--check", &file], ""), 0, template);
         let result = fdcc(&place, &["solve", &file, "--json", "--log", "none"], "");
@@ -35,7 +38,10 @@ fn solutions_of_templates_hold_on_the_true_system() {
             let solved = fdcc(&place, &["solve", &file, "--method", &steps, "--log", "none"], "");
             expect_exit(&solved, 0, &steps);
             let verdict = stdout(&solved) + &stderr(&solved);
-            assert!(verdict.contains("confirmed on the true system"), "{template}, {steps}: {verdict}");
+            assert!(
+                verdict.contains("confirmed on the true system"),
+                "{template}, {steps}: {verdict}"
+            );
         }
     }
 }
@@ -46,7 +52,10 @@ fn a_model_is_called_after_its_file_and_nothing_is_overwritten() {
     fs::create_dir(place.join("folder")).expect("a folder can be made");
     let read = |name: &str| fs::read_to_string(place.join(name)).expect("it is there");
     expect_exit(&fdcc(&place, &["new", "friction", "sled.fdc"], ""), 0, "a file");
-    assert!(read("sled.fdc").contains("\nmodel sled\n") && read("sled.fdc").contains("fdcc solve sled.fdc"));
+    assert!(
+        read("sled.fdc").contains("\nmodel sled\n")
+            && read("sled.fdc").contains("fdcc solve sled.fdc")
+    );
     expect_exit(&fdcc(&place, &["new", "friction", "my sled.fdc"], ""), 0, "no name of a model");
     assert!(read("my sled.fdc").contains("\nmodel friction\n"));
     expect_exit(&fdcc(&place, &["new", "fit", "folder"], ""), 0, "a folder");

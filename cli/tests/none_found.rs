@@ -1,16 +1,21 @@
-//! What is said where nothing feasible is found: what was tried, and never that there is nothing, unless it is proved.
+//! What is said where nothing feasible is found: what was tried, and never that there is nothing,
+//! unless it is proved.
 
 mod common;
 
 use common::*;
 
 /// The torque is too small for fifty intervals of implicit Euler, not for a hundred.
-const PENDULUM: &str = "model pendulum\ntime t in [0, 12]\nstate th start 0\nstate w start 0\ncontrol u in [-0.6, 0.6]\nsurface slip = w\n\
-    dynamics {\n  th' = w\n  w' in -sin(th) - 0.1*Sgn(slip) + u\n}\nend th == pi\nend w == 0\nminimize integral(u^2)\n";
+const PENDULUM: &str = "model pendulum\ntime t in [0, 12]\nstate th start 0\nstate w start \
+                        0\ncontrol u in [-0.6, 0.6]\nsurface slip = w\n\
+    dynamics {\n  th' = w\n  w' in -sin(th) - 0.1*Sgn(slip) + u\n}\nend th == pi\nend w == \
+    0\nminimize integral(u^2)\n";
 
 /// Thrown from a metre below the rim.
-const BELOW: &str = "model under\nfree v0 in [0, 20] guess 8\ntime t in [0, 2]\nstate h start -1\nstate v start v0\nsurface rim = h\n\
-    dynamics {\n  h' = v\n  v' = -9.81\n}\njump bounce on rim falling at most 1 { v := -0.8*v }\nend h == 0.5\nminimize v0^2\n\
+const BELOW: &str = "model under\nfree v0 in [0, 20] guess 8\ntime t in [0, 2]\nstate h start \
+                     -1\nstate v start v0\nsurface rim = h\n\
+    dynamics {\n  h' = v\n  v' = -9.81\n}\njump bounce on rim falling at most 1 { v := -0.8*v \
+    }\nend h == 0.5\nminimize v0^2\n\
     method { N = 50 scheme = midpoint }\n";
 
 #[test]
@@ -28,7 +33,10 @@ fn what_one_grid_does_not_find_is_told_with_what_was_tried() {
     assert!(verdict.contains("NOT SOLVED, found none from this guess: "), "{verdict}");
     assert!(verdict.contains("solves with N = 50, sigma 0.1 to 0.01"), "{verdict}");
     for text in [&verdict, &diagnostic] {
-        assert!(text.contains("`--starts 8`") && text.contains("found none from this guess"), "{text}");
+        assert!(
+            text.contains("`--starts 8`") && text.contains("found none from this guess"),
+            "{text}"
+        );
         assert!(!text.contains("infeasible") && !text.contains("cannot be met"), "{text}");
     }
     assert_eq!(json(&solve(&["--json"]))["status"], "none_found");
@@ -45,14 +53,16 @@ fn a_ball_from_below_the_rim_is_solved_and_confirmed() {
         (&document["status"], &document["verification"]["confirmed"]),
         (&"solved".into(), &true.into())
     );
-    let names: Vec<_> = document["jumps"].as_array().expect("jumps").iter().map(|it| &it["jump"]).collect();
+    let names: Vec<_> =
+        document["jumps"].as_array().expect("jumps").iter().map(|it| &it["jump"]).collect();
     assert_eq!(names, ["bounce"], "the crossing on the way up is no jump");
     let crosses = |it: &&serde_json::Value| it["crosses"] == serde_json::json!(["rim"]);
     let sequences = document["sequences"].as_array().expect("sequences");
     assert_eq!(sequences.iter().filter(crosses).count(), 2, "{sequences:?}");
     let verified = fdcc(&folder, &["verify", "under.sol.json"], "");
     expect_exit(&verified, 0, "the file is confirmed, too");
-    let warm = fdcc(&folder, &["solve", "under.fdc", "--warm", "under.sol.json", "--log", "none"], "");
+    let warm =
+        fdcc(&folder, &["solve", "under.fdc", "--warm", "under.sol.json", "--log", "none"], "");
     expect_exit(&warm, 0, "its pieces are not taken for others");
 }
 
@@ -63,7 +73,8 @@ fn no_sequence_of_jumps_is_no_proof_that_there_is_none() {
     let output = fdcc(&folder, &["solve", "under.fdc", "--log", "none"], "");
     expect_exit(&output, 2, "nothing is that fast");
     let verdict = stdout(&output);
-    let told = "none of the sequences tried (crossing of rim, bounce; no jump; crossing of rim) has a feasible \
+    let told = "none of the sequences tried (crossing of rim, bounce; no jump; crossing of rim) \
+                has a feasible \
                 trajectory near the guess";
     assert!(verdict.contains(told), "{verdict}");
     let all = verdict + &stderr(&output);
@@ -79,10 +90,14 @@ fn what_is_proved_keeps_its_words() {
     let folder = folder("proved_none", &[("ramp.fdc", RAMP.as_bytes())]);
     for solver in ["convex", "interior_point"] {
         let method = format!("solver={solver}");
-        let arguments = ["solve", "ramp.fdc", "--set", "goal=5", "--log", "none", "--method", &method];
+        let arguments =
+            ["solve", "ramp.fdc", "--set", "goal=5", "--log", "none", "--method", &method];
         let output = fdcc(&folder, &arguments, "");
         let said = stdout(&output);
-        assert!(said.contains("NOT SOLVED, infeasible: proved: there is no trajectory of "), "{said}");
+        assert!(
+            said.contains("NOT SOLVED, infeasible: proved: there is no trajectory of "),
+            "{said}"
+        );
         assert!(stderr(&output).contains("this is certain"), "{solver}");
     }
 }

@@ -1,6 +1,8 @@
-//! The pages of the reference say what the commands say: each block tagged `console` is a command and what it prints.
+//! The pages of the reference say what the commands say: each block tagged `console` is a command
+//! and what it prints.
 //!
-//! The models of a page are files by their names. Numbers count as the same if they agree to six digits, or are rounding.
+//! The models of a page are files by their names. Numbers count as the same if they agree to six
+//! digits, or are rounding.
 
 mod common;
 
@@ -58,7 +60,8 @@ fn commands_print_what_the_reference_says() {
             .filter(|(tag, _)| tag.starts_with("fdc"))
             .filter_map(|(_, text)| Some((format!("{}.fdc", model_name(text)?), text.as_bytes())));
         let models: Vec<(String, &[u8])> = models.collect();
-        let files: Vec<(&str, &[u8])> = models.iter().map(|(name, text)| (name.as_str(), *text)).collect();
+        let files: Vec<(&str, &[u8])> =
+            models.iter().map(|(name, text)| (name.as_str(), *text)).collect();
         let folder = folder(&format!("page_{page}"), &files);
         for (_, block) in blocks.iter().filter(|(tag, _)| tag == "console") {
             check(&folder, &page, block);

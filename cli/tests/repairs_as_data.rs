@@ -1,4 +1,5 @@
-//! Repairs in `check --format json` and `sarif`: whoever applies them by their places gets what `fdcc fix` writes.
+//! Repairs in `check --format json` and `sarif`: whoever applies them by their places gets what
+//! `fdcc fix` writes.
 
 mod common;
 
@@ -54,7 +55,8 @@ fn applied(text: &str, mut edits: Vec<Edit>) -> String {
 /// The first repair of each finding.
 fn in_json(entries: &Value, with_likely: bool) -> Vec<Edit> {
     let first = list(entries).iter().filter_map(|entry| list(&entry["fixes"]).first());
-    let wanted = first.filter(|fix| fix["title"].is_string() && (with_likely || fix["certain"] == true));
+    let wanted =
+        first.filter(|fix| fix["title"].is_string() && (with_likely || fix["certain"] == true));
     let edits = wanted.flat_map(|fix| list(&fix["edits"]));
     let keys = ["line", "column", "end_line", "end_column"];
     edits.map(|edit| (numbers(&edit["span"], keys), text(&edit["replacement"]))).collect()

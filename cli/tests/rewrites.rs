@@ -1,4 +1,5 @@
-//! `fdcc fmt`, `fdcc fix` and `fdcc check --watch` from outside: what they write, what they leave alone, how they end.
+//! `fdcc fmt`, `fdcc fix` and `fdcc check --watch` from outside: what they write, what they leave
+//! alone, how they end.
 
 mod common;
 
@@ -16,13 +17,17 @@ fn fmt_writes_the_canonical_layout() {
     let place = folder("fmt", &[("wide.fdc", WIDE.as_bytes()), ("broken.fdc", BROKEN.as_bytes())]);
     let checked = fdcc(&place, &["fmt", "--check", "wide.fdc"], "");
     expect_exit(&checked, 1, "a difference");
-    let difference = "--- wide.fdc\n+++ wide.fdc\n@@ -1,2 +1,2 @@\n-param a=1\n-param  bb = 2\n+param a  = 1\n+param bb = 2\n";
+    let difference = "--- wide.fdc\n+++ wide.fdc\n@@ -1,2 +1,2 @@\n-param a=1\n-param  bb = \
+                      2\n+param a  = 1\n+param bb = 2\n";
     assert_eq!(stdout(&checked), difference);
     assert_eq!(fs::read_to_string(place.join("wide.fdc")).expect("it is there"), WIDE);
 
     let written = fdcc(&place, &["fmt", "wide.fdc", "broken.fdc"], "");
     expect_exit(&written, 1, "one of them is broken");
-    assert!(stderr(&written).contains("FDC0002") && stderr(&written).contains("broken.fdc is left as it is"));
+    assert!(
+        stderr(&written).contains("FDC0002")
+            && stderr(&written).contains("broken.fdc is left as it is")
+    );
     assert_eq!(fs::read_to_string(place.join("wide.fdc")).expect("it is there"), TIDY);
     assert_eq!(fs::read_to_string(place.join("broken.fdc")).expect("it is there"), BROKEN);
     expect_exit(&fdcc(&place, &["fmt", "--check", "wide.fdc"], ""), 0, "nothing left to do");
@@ -39,7 +44,8 @@ fn the_standard_input_goes_to_the_standard_output() {
 #[test]
 fn fix_repairs_what_is_certain_and_prints_the_difference() {
     let wrong = format!("{EQUATION}param unused = 1\n");
-    let place = folder("fix", &[("block.fdc", wrong.as_bytes()), ("broken.fdc", BROKEN.as_bytes())]);
+    let place =
+        folder("fix", &[("block.fdc", wrong.as_bytes()), ("broken.fdc", BROKEN.as_bytes())]);
     let fixed = fdcc(&place, &["fix", "block.fdc"], "");
     expect_exit(&fixed, 0, "no error is left");
     assert!(
@@ -47,7 +53,11 @@ fn fix_repairs_what_is_certain_and_prints_the_difference() {
         "{}",
         stdout(&fixed)
     );
-    assert!(stderr(&fixed).contains("0 errors left; `--unsafe` has a proposal for 1"), "{}", stderr(&fixed));
+    assert!(
+        stderr(&fixed).contains("0 errors left; `--unsafe` has a proposal for 1"),
+        "{}",
+        stderr(&fixed)
+    );
     let text = || fs::read_to_string(place.join("block.fdc")).expect("it is there");
     assert_eq!(text(), format!("{INCLUSION}param unused = 1\n"));
     assert_eq!(stdout(&fdcc(&place, &["fix", "block.fdc"], "")), "");
@@ -65,7 +75,8 @@ fn watching_checks_again_when_a_file_changes_and_ends_with_ctrl_c() {
     let mut lines = BufReader::new(child.stdout.take().expect("the output is piped")).lines();
     let mut next = || lines.next().expect("another line").expect("text");
     assert!(next().contains("error[FDC0201]"));
-    fs::write(place.join("model.fdc"), INCLUSION.replace("time", "tme")).expect("the file can be written");
+    fs::write(place.join("model.fdc"), INCLUSION.replace("time", "tme"))
+        .expect("the file can be written");
     assert!(next().contains("error[FDC0005]"));
     let interrupted = std::process::Command::new("kill")
         .args(["-INT", &child.id().to_string()])

@@ -1,4 +1,5 @@
-//! The verdict does not depend on the units in which a model is written, nor on how large its numbers are.
+//! The verdict does not depend on the units in which a model is written, nor on how large its
+//! numbers are.
 
 mod common;
 
@@ -9,8 +10,10 @@ use serde_json::Value;
 fn block(length: &str, time: &str) -> String {
     format!(
         "model block\nparam friction = 3 [m/s^2]\nparam goal = 0.5 [um]\ntime t in [0[s], 2[ms]]\n\
-         state x [{length}] start 0\nstate v [{length}/{time}] start 0\ncontrol a [m/s^2]\nsurface slip = v\n\
-         dynamics {{ x' = v\n v' in a - friction*Sgn(slip) }}\nend x == goal\nend v == 0\nminimize integral(a^2)\n"
+         state x [{length}] start 0\nstate v [{length}/{time}] start 0\ncontrol a [m/s^2]\nsurface \
+         slip = v\n\
+         dynamics {{ x' = v\n v' in a - friction*Sgn(slip) }}\nend x == goal\nend v == 0\nminimize \
+         integral(a^2)\n"
     )
 }
 
@@ -46,7 +49,8 @@ fn a_block_that_misses_by_all_of_its_way_is_not_confirmed_in_any_unit() {
     }
 }
 
-/// Pulled with `a = friction + 6d/tau^2 (1 - 2t/tau)` for the last `tau = sqrt(6 d/friction)` of the time, which here is 1 ms: `J = friction^2 tau + 12 d^2/tau^3 = 0.012`.
+/// Pulled with `a = friction + 6d/tau^2 (1 - 2t/tau)` for the last `tau = sqrt(6 d/friction)` of
+/// the time, which here is 1 ms: `J = friction^2 tau + 12 d^2/tau^3 = 0.012`.
 #[test]
 fn a_block_is_pulled_over_half_a_micrometre_the_same_in_every_unit() {
     let solved = UNITS.map(|(length, time)| {
@@ -74,7 +78,8 @@ fn a_block_is_pulled_over_half_a_micrometre_the_same_in_every_unit() {
     }
 }
 
-/// The same over 500 km within 2000 s: 1e6 times the time and 1e12 times the way are the same problem, so `J` is 1e6 times as large. The width is a hundredth of the speed in both.
+/// The same over 500 km within 2000 s: 1e6 times the time and 1e12 times the way are the same
+/// problem, so `J` is 1e6 times as large. The width is a hundredth of the speed in both.
 #[test]
 fn the_width_fits_the_speed_at_every_scale() {
     let small = block("um", "ms");
@@ -95,7 +100,8 @@ fn the_width_fits_the_speed_at_every_scale() {
 fn a_vessel_at_100_bar_can_be_confirmed() {
     let model = |pressure: &str, from: &str, to: &str, rate: &str| {
         format!(
-            "model vessel\ntime t in [0, 1] [s]\nstate p {pressure} start {from}\ncontrol u {rate}\n\
+            "model vessel\ntime t in [0, 1] [s]\nstate p {pressure} start {from}\ncontrol u \
+             {rate}\n\
              dynamics {{ p' = u }}\nend p == {to}\nminimize integral(u^2)\n"
         )
     };
@@ -123,11 +129,15 @@ fn a_vessel_at_100_bar_can_be_confirmed() {
 /// A state that rests, at 0 or far from it, does not differ by rounding.
 #[test]
 fn what_does_not_move_does_not_differ() {
-    let text = "model rests\ntime t in [0, 1]\nstate x start 0\nstate y start 0\nstate z start 300\ncontrol u\n\
-                dynamics { x' = u\n y' = 0*u\n z' = 0*u }\nend y == 0\nend z == 300\nminimize integral(u^2)\n";
+    let text = "model rests\ntime t in [0, 1]\nstate x start 0\nstate y start 0\nstate z start \
+                300\ncontrol u\n\
+                dynamics { x' = u\n y' = 0*u\n z' = 0*u }\nend y == 0\nend z == 300\nminimize \
+                integral(u^2)\n";
     let solution = r#"{"model": "rests", "free": {}, "params": {}, "time": [0, 1],
         "states": {"x": [0, 1], "y": [0, 1e-16], "z": [300, 300.00000000001]}, "controls": {"u": [1]}}"#;
-    let folder =
-        folder("scales_rests", &[("rests.fdc", text.as_bytes()), ("rests.sol.json", solution.as_bytes())]);
+    let folder = folder(
+        "scales_rests",
+        &[("rests.fdc", text.as_bytes()), ("rests.sol.json", solution.as_bytes())],
+    );
     expect_exit(&fdcc(&folder, &["verify", "rests.sol.json"], ""), 0, "rounding");
 }

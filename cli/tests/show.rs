@@ -28,7 +28,9 @@ fn every_stage_of_a_model_can_be_shown() {
         let output = fdcc(&folder, &[&["show"], *arguments].concat(), "");
         expect_exit(&output, *code, &format!("{arguments:?}"));
         let all = stdout(&output) + &stderr(&output);
-        words.iter().for_each(|word| assert!(all.contains(word), "{arguments:?}: no {word} in {all}"));
+        words
+            .iter()
+            .for_each(|word| assert!(all.contains(word), "{arguments:?}: no {word} in {all}"));
         assert_eq!(stdout(&output).is_empty(), *code != 0, "the answer is on the standard output");
     }
 }

@@ -59,7 +59,8 @@ fn parameters_can_be_set_and_files_are_written() {
     let output = fdcc(&folder, &["simulate", "block.fdc", "--set", "reach=1", "--out", "out"], "");
     expect_exit(&output, 0, "block");
     assert!(stdout(&output).contains("starts sliding"), "{}", stdout(&output));
-    let table = std::fs::read_to_string(folder.join("out/block.sim.csv")).expect("the table is written");
+    let table =
+        std::fs::read_to_string(folder.join("out/block.sim.csv")).expect("the table is written");
     assert!(table.starts_with("t,v\n0,0\n") && table.ends_with("1,0\n"), "{table}");
     assert!(folder.join("out/block.sim.json").exists());
 }
@@ -67,10 +68,14 @@ fn parameters_can_be_set_and_files_are_written() {
 /// `u = 3` for a second gives `v = 2`, then friction stops the block within two more.
 #[test]
 fn a_table_of_controls_holds_each_row_to_the_next() {
-    let files: [(&str, &[u8]); 2] = [("block.fdc", BLOCK.as_bytes()), ("u.csv", b"t,u\n0,3\n1,0\n")];
+    let files: [(&str, &[u8]); 2] =
+        [("block.fdc", BLOCK.as_bytes()), ("u.csv", b"t,u\n0,3\n1,0\n")];
     let folder = folder("simulate_table", &files);
-    let output =
-        fdcc(&folder, &["simulate", "block.fdc", "--control", "u.csv", "--json", "--times", "1,2"], "");
+    let output = fdcc(
+        &folder,
+        &["simulate", "block.fdc", "--control", "u.csv", "--json", "--times", "1,2"],
+        "",
+    );
     expect_exit(&output, 0, "table");
     let found = json(&output);
     near(&found["states"]["v"][0], 2.0);
@@ -83,13 +88,15 @@ fn a_table_of_controls_holds_each_row_to_the_next() {
 fn a_solution_can_be_replayed() {
     let folder = folder("simulate_replay", &[("ramp.fdc", RAMP.as_bytes())]);
     expect_exit(&fdcc(&folder, &["solve", "ramp.fdc", "--out", "."], ""), 0, "solve");
-    let output = fdcc(&folder, &["simulate", "ramp.fdc", "--control", "ramp.sol.json", "--json"], "");
+    let output =
+        fdcc(&folder, &["simulate", "ramp.fdc", "--control", "ramp.sol.json", "--json"], "");
     expect_exit(&output, 0, "replay");
     assert!((number(&json(&output)["end"]["x"]) - 1.0).abs() < 1e-7);
     assert_eq!(stderr(&output), "");
     let table = fdcc(&folder, &["simulate", "ramp.fdc", "--control", "ramp.csv"], "");
     expect_exit(&table, 0, "the table of a solve can be replayed, too");
-    std::fs::write(folder.join("ramp.fdc"), format!("{RAMP}# changed\n")).expect("a file can be written");
+    std::fs::write(folder.join("ramp.fdc"), format!("{RAMP}# changed\n"))
+        .expect("a file can be written");
     let other = fdcc(&folder, &["simulate", "ramp.fdc", "--control", "ramp.sol.json"], "");
     expect_exit(&other, 0, "a solution of another text is taken");
     assert!(stderr(&other).contains("not the text that was solved"), "{}", stderr(&other));
@@ -130,7 +137,8 @@ fn bad_control_files_say_what_is_wrong() {
         ("u.json", "{\"time\": 3}", "not a solution"),
     ];
     for (name, content, message) in cases {
-        let files: [(&str, &[u8]); 2] = [("block.fdc", BLOCK.as_bytes()), (name, content.as_bytes())];
+        let files: [(&str, &[u8]); 2] =
+            [("block.fdc", BLOCK.as_bytes()), (name, content.as_bytes())];
         let folder = folder("simulate_bad_controls", &files);
         let output = fdcc(&folder, &["simulate", "block.fdc", "--control", name], "");
         expect_exit(&output, 4, message);
@@ -149,7 +157,8 @@ fn times_that_do_not_fit_are_told() {
         ("\u{feff}t , u\r\n\r\n0 , 1\r\n", ""),
     ];
     for (content, message) in cases {
-        let files: [(&str, &[u8]); 2] = [("block.fdc", BLOCK.as_bytes()), ("u.csv", content.as_bytes())];
+        let files: [(&str, &[u8]); 2] =
+            [("block.fdc", BLOCK.as_bytes()), ("u.csv", content.as_bytes())];
         let folder = folder("simulate_times", &files);
         let output = fdcc(&folder, &["simulate", "block.fdc", "--control", "u.csv"], "");
         expect_exit(&output, 0, content);
@@ -165,10 +174,12 @@ fn times_that_do_not_fit_are_told() {
 #[test]
 fn a_value_that_does_not_exist_has_its_place() {
     let start = "time t in [0, 1]\nstate x\n  start log(-1)\ndynamics { x' = 1 }\n";
-    let rate = "param c = -1\ntime t in [0, 1]\nstate x start 0\ndynamics {\n  x' = log(c) + x\n}\n";
-    let guess = "time t in [0, 1]\nstate x start 0\ncontrol u guess log(t - 0.5)\ndynamics {\n  x' = u\n}\n";
-    let surface =
-        "time t in [0, 1]\nstate x start 0.5\nsurface s = sqrt(x - 1)\ndynamics { x' in 1 - Sgn(s) }\n";
+    let rate =
+        "param c = -1\ntime t in [0, 1]\nstate x start 0\ndynamics {\n  x' = log(c) + x\n}\n";
+    let guess = "time t in [0, 1]\nstate x start 0\ncontrol u guess log(t - 0.5)\ndynamics {\n  x' \
+                 = u\n}\n";
+    let surface = "time t in [0, 1]\nstate x start 0.5\nsurface s = sqrt(x - 1)\ndynamics { x' in \
+                   1 - Sgn(s) }\n";
     let growth = "time t in [0, 2]\nstate x start 1\ndynamics {\n  x' = x^2\n}\n";
     let cases = [
         (start, "x(start)", 2, 0.0),
@@ -197,7 +208,8 @@ fn a_value_that_does_not_exist_has_its_place() {
 
 #[test]
 fn what_cannot_be_continued_says_why() {
-    let repelling = "time t in [0, 1]\nstate x start 0\nsurface edge = x\ndynamics { x' in 2*Sgn(edge) }\n";
+    let repelling =
+        "time t in [0, 1]\nstate x start 0\nsurface edge = x\ndynamics { x' in 2*Sgn(edge) }\n";
     let undefined = "time t in [0, 2]\nstate x start 1\ndynamics {\n  x' = -1/sqrt(x)\n}\n";
     let at_once = "time t in [0, 2]\nstate x start 0\ndynamics {\n  x' = log(x - 1)\n}\n";
     let files: [(&str, &[u8]); 4] = [
@@ -213,24 +225,33 @@ fn what_cannot_be_continued_says_why() {
         json(&output)
     };
     let zeno = run("ball.fdc");
-    assert_eq!((zeno["status"].as_str(), zeno["zeno"]["jump"].as_str()), (Some("zeno"), Some("bounce")));
+    assert_eq!(
+        (zeno["status"].as_str(), zeno["zeno"]["jump"].as_str()),
+        (Some("zeno"), Some("bounce"))
+    );
     near(&zeno["zeno"]["limit_time"], 3.0 * 0.2_f64.sqrt());
     let several = run("repelling.fdc");
     assert_eq!(several["not_unique"]["candidates"], serde_json::json!(["up", "down", "slide"]));
     assert_eq!(several["not_unique"]["surface"], "edge");
     let undefined = run("undefined.fdc");
-    assert_eq!((&undefined["status"], &undefined["not_finite"]["line"]), (&"not_finite".into(), &4.into()));
+    assert_eq!(
+        (&undefined["status"], &undefined["not_finite"]["line"]),
+        (&"not_finite".into(), &4.into())
+    );
     near(&undefined["not_finite"]["time"], 2.0 / 3.0);
     near(&run("at_once.fdc")["not_finite"]["time"], 0.0);
 }
 
 #[test]
 fn a_time_limit_keeps_the_trajectory_so_far() {
-    let text =
-        "time t in [0, 1e6]  state x start 1  state y start 0\ndynamics { x' = 1000*y  y' = -1000*x }\n";
+    let text = "time t in [0, 1e6]  state x start 1  state y start 0\ndynamics { x' = 1000*y  y' = \
+                -1000*x }\n";
     let folder = folder("simulate_time_limit", &[("fast.fdc", text.as_bytes())]);
-    let output =
-        fdcc(&folder, &["simulate", "fast.fdc", "--json", "--time-limit", "0.05", "--starts", "3"], "");
+    let output = fdcc(
+        &folder,
+        &["simulate", "fast.fdc", "--json", "--time-limit", "0.05", "--starts", "3"],
+        "",
+    );
     expect_exit(&output, 2, "the time is up");
     let found = json(&output);
     assert_eq!(found["status"], "time_limit");
@@ -251,7 +272,8 @@ fn wrong_usage_is_told() {
         (vec!["--set", "reach=1e999"], 3),
         (vec!["--control", "absent.csv"], 4),
     ] {
-        let output = fdcc(&folder, &[&["simulate", "block.fdc"], arguments.as_slice()].concat(), "");
+        let output =
+            fdcc(&folder, &[&["simulate", "block.fdc"], arguments.as_slice()].concat(), "");
         expect_exit(&output, code, arguments[1]);
     }
 }
@@ -282,7 +304,8 @@ fn events_tell_the_states_on_both_sides() {
     near(&event["before"]["v"], -20.0_f64.sqrt());
     near(&event["after"]["v"], 0.5 * 20.0_f64.sqrt());
     assert_eq!(event["after"], event["state"]);
-    let table = std::fs::read_to_string(folder.join("out/ball.sim.csv")).expect("the table is written");
+    let table =
+        std::fs::read_to_string(folder.join("out/ball.sim.csv")).expect("the table is written");
     let time = format!("{},", number(&event["time"]));
     assert_eq!(table.lines().filter(|line| line.starts_with(&time)).count(), 2, "{table}");
 }
@@ -292,21 +315,26 @@ fn events_tell_the_states_on_both_sides() {
 fn tables_and_plots_of_a_solve_have_both_sides_of_a_jump() {
     let folder = folder("simulate_hop", &[("hop.fdc", HOP.as_bytes())]);
     expect_exit(&fdcc(&folder, &["solve", "hop.fdc", "--out", "."], ""), 0, "hop");
-    let read = |name: &str| std::fs::read_to_string(folder.join(name)).expect("the file is written");
+    let read =
+        |name: &str| std::fs::read_to_string(folder.join(name)).expect("the file is written");
     let table = read("hop.csv");
     let rows: Vec<Vec<f64>> = table
         .lines()
         .skip(1)
         .map(|line| line.split(',').map(|it| it.parse().expect("a number")).collect())
         .collect();
-    let jump = rows.windows(2).position(|pair| pair[0][0] == pair[1][0]).expect("two rows at one time");
+    let jump =
+        rows.windows(2).position(|pair| pair[0][0] == pair[1][0]).expect("two rows at one time");
     let [before, after] = [rows[jump][2], rows[jump + 1][2]];
     assert!(before < -1.0 && (after + 0.5 * before).abs() < 1e-9, "{before}, then {after}");
     assert!(rows[jump][3] == rows[jump - 1][3] && rows[jump][3] != rows[jump + 1][3], "{table}");
     let page = read("hop.html");
     let speed = page.split("<figcaption>v</figcaption>").nth(1).expect("there is a plot of v");
-    let path =
-        speed.split("class=\"signal\" d=\"").nth(1).and_then(|it| it.split('"').next()).expect("a path");
+    let path = speed
+        .split("class=\"signal\" d=\"")
+        .nth(1)
+        .and_then(|it| it.split('"').next())
+        .expect("a path");
     let points: Vec<&str> = path.split(['M', 'L']).collect();
     let is_vertical = |pair: &[&str]| pair[0].split(' ').next() == pair[1].split(' ').next();
     assert_eq!(points.windows(2).filter(|pair| is_vertical(pair)).count(), 1, "{path}");
@@ -318,10 +346,12 @@ fn tables_and_plots_of_a_solve_have_both_sides_of_a_jump() {
     assert!((of_table - 0.3).abs() < 1e-7 && (of_solution - 0.3).abs() < 1e-7);
 }
 
-/// A force of a millionth of a second between two stages of a step is seen by no method; shorter steps see it.
+/// A force of a millionth of a second between two stages of a step is seen by no method; shorter
+/// steps see it.
 #[test]
 fn steps_can_be_limited() {
-    let text = "time t in [0, 1]\nstate v start 0\ndynamics { v' = 1e6*exp(-((t - 0.7)/1e-6)^2) }\n";
+    let text =
+        "time t in [0, 1]\nstate v start 0\ndynamics { v' = 1e6*exp(-((t - 0.7)/1e-6)^2) }\n";
     let folder = folder("simulate_steps", &[("kick.fdc", text.as_bytes())]);
     let end = |options: &[&str]| {
         let output = fdcc(&folder, &[&["simulate", "kick.fdc", "--json"], options].concat(), "");
@@ -338,13 +368,15 @@ fn steps_can_be_limited() {
 /// Regular crossings pile up nowhere, however long the whole time is; what overflows has no value.
 #[test]
 fn enormous_numbers_end_with_an_honest_status() {
-    let clock = "time t in [0, 2e302]\nstate x start 1\nstate v start 0\nsurface s = x\nstate y start 0\n\
+    let clock = "time t in [0, 2e302]\nstate x start 1\nstate v start 0\nsurface s = x\nstate y \
+                 start 0\n\
                  dynamics {\n x' = v\n v' = -x\n y' in Sgn(s)\n}\n";
     let push = "time t in [0, 10]\nstate v start 0\ncontrol u in [-1e300, 1e300] guess 1e300\n\
                 dynamics { v' = u }\nminimize integral(u^2)\n";
     let slow = "time t in [0, 2e302]\nstate x start 1\nsurface s = x - 2\nstate y start 0\n\
                 dynamics {\n x' = 1e-302\n y' in Sgn(s)\n}\n";
-    let cases = [("clock", clock, "time_limit"), ("push", push, "not_finite"), ("slow", slow, "completed")];
+    let cases =
+        [("clock", clock, "time_limit"), ("push", push, "not_finite"), ("slow", slow, "completed")];
     for (name, text, status) in cases {
         let folder = folder(&format!("simulate_{name}"), &[("big.fdc", text.as_bytes())]);
         let output = fdcc(&folder, &["simulate", "big.fdc", "--json", "--time-limit", "1"], "");

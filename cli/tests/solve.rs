@@ -36,7 +36,8 @@ fn the_document_has_the_fields_and_sizes_of_the_contract() {
         assert!(number(&document["seconds"][seconds]) >= 0.0);
     }
     assert_eq!(column(&document["time"]), [0.0, 0.25, 0.5, 0.75, 1.0]);
-    let lengths = [("states", "x", 5), ("costates", "x", 5), ("controls", "u", 4), ("report", "double", 5)];
+    let lengths =
+        [("states", "x", 5), ("costates", "x", 5), ("controls", "u", 4), ("report", "double", 5)];
     for (group, name, length) in lengths {
         assert_eq!(column(&document[group][name]).len(), length, "{group}");
     }
@@ -59,7 +60,10 @@ fn the_answer_is_that_of_the_closed_form() {
             .iter()
             .zip(columns("report", "double"))
             .for_each(|(x, twice)| close(twice, 2.0 * x));
-        columns("states", "x").iter().zip(column(&document["time"])).for_each(|(x, t)| close(*x, t));
+        columns("states", "x")
+            .iter()
+            .zip(column(&document["time"]))
+            .for_each(|(x, t)| close(*x, t));
         columns("controls", "u").iter().for_each(|u| close(*u, 1.0));
         columns("costates", "x").iter().for_each(|costate| close(*costate, -2.0));
     }
@@ -106,8 +110,9 @@ fn the_three_files_hold_the_same_numbers_to_the_last_bit() {
     let mut lines = table.lines();
     let names: Vec<&str> = lines.next().expect("a header").split(',').collect();
     assert_eq!(names[..3], ["t", "pos.x", "pos.y"]);
-    let rows: Vec<Vec<f64>> =
-        lines.map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect();
+    let rows: Vec<Vec<f64>> = lines
+        .map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect())
+        .collect();
     assert_eq!(rows.len(), 41);
     for (at, name) in names.iter().enumerate() {
         let groups = [&saved["states"][*name], &saved["controls"][*name], &saved["report"][*name]];
@@ -121,7 +126,8 @@ fn the_three_files_hold_the_same_numbers_to_the_last_bit() {
     }
 }
 
-/// A [`Value`] sorts its keys, the file has them in the order of the model; the numbers are compared in their own order.
+/// A [`Value`] sorts its keys, the file has them in the order of the model; the numbers are
+/// compared in their own order.
 fn reordered(text: &str, value: &Value) -> String {
     let mut sorted: Vec<&str> = text.lines().map(str::trim).collect();
     let printed = serde_json::to_string_pretty(value).expect("JSON") + "\n";
@@ -174,22 +180,28 @@ fn parameters_take_units_and_settings_take_words() {
     ];
     let document = solved(&folder, &arguments);
     assert_eq!(document["params"], serde_json::json!({ "m": 0.2, "mu": 0.2 }));
-    assert_eq!((&document["method"]["N"], &document["method"]["scheme"]), (&40.into(), &"midpoint".into()));
-    let arguments = [block.as_str(), "--method", "sigma=0.05", "--method", "kernel=tanh", "--method", "N=40"];
+    assert_eq!(
+        (&document["method"]["N"], &document["method"]["scheme"]),
+        (&40.into(), &"midpoint".into())
+    );
+    let arguments =
+        [block.as_str(), "--method", "sigma=0.05", "--method", "kernel=tanh", "--method", "N=40"];
     let document = solved(&folder, &arguments);
     assert_eq!(document["method"]["sigma"], 0.05);
     assert_eq!(document["method"]["sigmas"], serde_json::json!({ "slip": 0.05 }));
     assert_eq!(document["method"]["kernel"], "tanh");
 }
 
-/// The first line of the iteration table shows where the solve began: at the guess `T = 15`, or at the solution.
+/// The first line of the iteration table shows where the solve began: at the guess `T = 15`, or at
+/// the solution.
 #[test]
 fn a_warm_start_begins_at_the_earlier_solution_on_any_grid() {
     let folder = folder("warm", &[]);
     let turbo = model("turbo");
     solved(&folder, &[&turbo, "--method", "N=40", "--method", "sigma=0.5", "--out", "."]);
     let first_objective = |more: &[&str]| {
-        let output = fdcc(&folder, &[&["solve", turbo.as_str(), "--log", "full"], more].concat(), "");
+        let output =
+            fdcc(&folder, &[&["solve", turbo.as_str(), "--log", "full"], more].concat(), "");
         expect_exit(&output, 0, &format!("{more:?}"));
         let table = stderr(&output);
         let line = table.lines().nth(1).expect("a first iteration");
@@ -215,7 +227,8 @@ fn a_warm_start_takes_the_widths_that_were_chosen() {
     let (before, after) = (number(&cold, "iterations"), number(&warm, "iterations"));
     assert!(after < 0.5 * before, "{after} iterations instead of {before}");
     // A width that somebody named is not taken: it may be a wide one.
-    let wide = solved(&folder, &[&turbo, "--method", "N=80", "--method", "sigma=0.5", "--out", "."]);
+    let wide =
+        solved(&folder, &[&turbo, "--method", "N=80", "--method", "sigma=0.5", "--out", "."]);
     assert!((number(&cold, "objective") - number(&wide, "objective")).abs() > 1e-3);
     let warm = solved(&folder, &[&turbo, "--method", "N=80", "--warm", "turbo.sol.json"]);
     assert!((number(&cold, "objective") - number(&warm, "objective")).abs() < 1e-6);
@@ -247,7 +260,9 @@ fn several_starts_are_listed_and_the_best_is_kept() {
     let objectives: Vec<f64> = said
         .lines()
         .filter(|line| line.trim_start().starts_with("start "))
-        .map(|line| line.split_whitespace().last().expect("an objective").parse().expect("a number"))
+        .map(|line| {
+            line.split_whitespace().last().expect("an objective").parse().expect("a number")
+        })
         .collect();
     assert_eq!(objectives.len(), 3, "{said}");
     let best = objectives.iter().copied().fold(f64::INFINITY, f64::min);
@@ -273,7 +288,11 @@ fn exit_codes_and_words_are_those_of_the_contract() {
     );
     let [bounce, racecar, twostage] = ["bounce", "racecar", "twostage"].map(model);
     let cases: &[(&[&str], i32, &str)] = &[
-        (&["ramp.fdc"], 0, "global optimum of the discretised problem, confirmed on the true system"),
+        (
+            &["ramp.fdc"],
+            0,
+            "global optimum of the discretised problem, confirmed on the true system",
+        ),
         (
             &["ramp.fdc", "--no-verify"],
             0,
@@ -290,8 +309,16 @@ fn exit_codes_and_words_are_those_of_the_contract() {
         (&["waits.fdc", "--set", "goal=1"], 0, "global optimum"),
         (&[&bounce], 0, "jumps bounce at t = 0.547"),
         (&[&bounce, "--method", "scheme=midpoint"], 0, "confirmed on the true system"),
-        (&[&bounce, "--warm", "other.sol.json"], 4, "has no state or control of the model `bounce`"),
-        (&[&bounce, "--method", "scheme=radau2", "--method", "controls=linear"], 3, "without jumps"),
+        (
+            &[&bounce, "--warm", "other.sol.json"],
+            4,
+            "has no state or control of the model `bounce`",
+        ),
+        (
+            &[&bounce, "--method", "scheme=radau2", "--method", "controls=linear"],
+            3,
+            "without jumps",
+        ),
         (&[&twostage], 1, "FDC0603"),
         (&[&racecar, "--set", "w=-1"], 1, "FDC0401"),
         (&["ramp.fdc", "--set", "goal=5"], 2, "FDC0602"),
@@ -306,7 +333,11 @@ fn exit_codes_and_words_are_those_of_the_contract() {
         (&["ramp.fdc", "--out", "ramp.fdc"], 4, "cannot write"),
         (&["ramp.fdc", "--warm", "missing.json"], 4, "missing.json cannot be read"),
         (&["ramp.fdc", "--warm", "broken.sol.json"], 4, "is not a solution"),
-        (&["ramp.fdc", "--warm", "other.sol.json"], 4, "has no state or control of the model `ramp`"),
+        (
+            &["ramp.fdc", "--warm", "other.sol.json"],
+            4,
+            "has no state or control of the model `ramp`",
+        ),
         (&[&racecar, "--method", "N=40", "--method", "max_iter=3"], 2, "iteration limit"),
         (&[&racecar, "--method", "N=40", "--time-limit", "1e-9"], 2, "time limit"),
     ];
@@ -343,11 +374,14 @@ fn a_model_from_the_standard_input_is_solved() {
     assert_eq!(json(&output)["model"], "ramp");
 }
 
-/// Controls that are not constant come with the values that define them, and their replay follows them.
+/// Controls that are not constant come with the values that define them, and their replay follows
+/// them.
 #[test]
 fn controls_of_every_shape_are_written_and_replayed() {
-    let model = "model swing\nparam k = 2\ntime t in [0, 4]\nstate x start 1\nstate v start 0\ncontrol u in [-3, 3]\n\
-                 dynamics {\n  x' = v\n  v' = -k*x + u\n}\nend x == 0\nend v == 0\nminimize integral(u^2)\n";
+    let model = "model swing\nparam k = 2\ntime t in [0, 4]\nstate x start 1\nstate v start \
+                 0\ncontrol u in [-3, 3]\n\
+                 dynamics {\n  x' = v\n  v' = -k*x + u\n}\nend x == 0\nend v == 0\nminimize \
+                 integral(u^2)\n";
     let folder = folder("control_shapes", &[("swing.fdc", model.as_bytes())]);
     for (shape, count) in [("constant", 0), ("linear", 21), ("polynomial", 60)] {
         let controls = format!("controls={shape}");
@@ -357,9 +391,16 @@ fn controls_of_every_shape_are_written_and_replayed() {
         assert_eq!(document["controls"]["u"].as_array().expect("one for each interval").len(), 20);
         let nodes = document["control_nodes"]["values"]["u"].as_array().map_or(0, Vec::len);
         assert_eq!(nodes, count, "{shape}");
-        assert_eq!(document["verification"]["confirmed"], true, "{shape}: {}", document["verification"]);
+        assert_eq!(
+            document["verification"]["confirmed"], true,
+            "{shape}: {}",
+            document["verification"]
+        );
         assert_eq!(document["hamiltonian"].as_array().expect("one for each interval").len(), 20);
-        assert!(document["hamiltonian_check"]["deviation"].as_f64().expect("a number") < 0.01, "{shape}");
+        assert!(
+            document["hamiltonian_check"]["deviation"].as_f64().expect("a number") < 0.01,
+            "{shape}"
+        );
         let optimum = |k: &str| {
             let document = solved(&folder, &[&["swing.fdc", "--set", k], &method[..]].concat());
             document["objective"].as_f64().expect("a number")
@@ -372,18 +413,25 @@ fn controls_of_every_shape_are_written_and_replayed() {
     }
 }
 
-/// The headline, the table, the verdict and the document tell which order was found; few long intervals are replayed as closely as many short ones.
+/// The headline, the table, the verdict and the document tell which order was found; few long
+/// intervals are replayed as closely as many short ones.
 #[test]
 fn the_order_that_was_found_is_told() {
-    let model = "model swing\ntime t in [0, 4]\nstate x start 1\nstate v start 0\ncontrol u in [-3, 3]\n\
-                 dynamics {\n  x' = v\n  v' = -2*x + u\n}\nend x == 0\nend v == 0\nminimize integral(u^2)\n\
-                 method {\n  grid N = auto scheme radau\n  controls = polynomial\n  solver = interior_point\n}\n";
+    let model = "model swing\ntime t in [0, 4]\nstate x start 1\nstate v start 0\ncontrol u in \
+                 [-3, 3]\n\
+                 dynamics {\n  x' = v\n  v' = -2*x + u\n}\nend x == 0\nend v == 0\nminimize \
+                 integral(u^2)\n\
+                 method {\n  grid N = auto scheme radau\n  controls = polynomial\n  solver = \
+                 interior_point\n}\n";
     let folder = folder("order_found", &[("swing.fdc", model.as_bytes())]);
     let arguments = ["swing.fdc", "--method", "tolerance=1e-8", "--out", "out"];
     let output = fdcc(&folder, &[&["solve", "--log", "full"], &arguments[..]].concat(), "");
     expect_exit(&output, 0, "the verdict");
     let (told, table) = (stdout(&output), stderr(&output));
-    assert!(told.contains(" radau  N 10 ") && told.contains(" intervals of radau5, errors"), "{told}");
+    assert!(
+        told.contains(" radau  N 10 ") && told.contains(" intervals of radau5, errors"),
+        "{told}"
+    );
     assert!(table.contains(" 10x3\n") && table.contains("x5\n"), "{table}");
     let document = solved(&folder, &arguments);
     assert_eq!(document["method"]["scheme"], "radau5");
@@ -394,7 +442,11 @@ fn the_order_that_was_found_is_told() {
     assert_eq!(json(&verified)["verification"]["confirmed"], true);
     let given = fdcc(&folder, &["solve", "swing.fdc", "--method", "N=20"], "");
     expect_exit(&given, 3, "a given grid");
-    assert!(stderr(&given).contains("write the number of stages, such as `radau3`"), "{}", stderr(&given));
+    assert!(
+        stderr(&given).contains("write the number of stages, such as `radau3`"),
+        "{}",
+        stderr(&given)
+    );
 }
 
 /// The earlier solution is cut at its jumps, each piece for itself.
@@ -443,7 +495,8 @@ fn where_friction_alone_has_to_bring_something_to_rest_exactly_that_is_said_and_
         (&["followed.fdc"], 0, false),
         (&["free.fdc", "--method", "max_iter=3"], 2, false),
     ] {
-        let output = fdcc(&folder, &[&["solve", "--log", "none", "--no-verify"], arguments].concat(), "");
+        let output =
+            fdcc(&folder, &[&["solve", "--log", "none", "--no-verify"], arguments].concat(), "");
         expect_exit(&output, code, &format!("{arguments:?}"));
         assert_eq!(stdout(&output).contains(advice), is_said, "{arguments:?}: {}", stdout(&output));
     }

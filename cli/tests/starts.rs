@@ -4,9 +4,11 @@ mod common;
 
 use common::{expect_exit, fdcc, folder, json, stdout};
 
-/// `(p^2 - 1)^2 + p/10` has a minimum near 1, where the guess leads, and a lower one near -1. They are the outer roots of
-/// `4 p^3 - 4 p + 1/10`, by the trigonometric formula for three real roots.
-const TWO_MINIMA: &[u8] = b"model two_minima\nfree p in [-3, 3] guess 0.2\ntime t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]\ndynamics { x' = u }\n\
+/// `(p^2 - 1)^2 + p/10` has a minimum near 1, where the guess leads, and a lower one near -1. They
+/// are the outer roots of `4 p^3 - 4 p + 1/10`, by the trigonometric formula for three real roots.
+const TWO_MINIMA: &[u8] =
+    b"model two_minima\nfree p in [-3, 3] guess 0.2\ntime t in [0, 1]\nstate \
+                            x start 0\ncontrol u in [-1, 1]\ndynamics { x' = u }\n\
                           minimize (p^2 - 1)^2 + p/10 + integral(u^2)\nmethod { grid N = 20 }\n";
 
 fn minima() -> [f64; 2] {
@@ -22,7 +24,11 @@ fn the_lower_of_two_minima_is_kept_and_both_are_told() {
     let folder = folder("several_starts", &[("two_minima.fdc", TWO_MINIMA)]);
     let alone = json(&fdcc(&folder, &["solve", "two_minima.fdc", "--json", "--log", "none"], ""));
     let [high, low] = minima();
-    assert!((alone["objective"].as_f64().expect("a number") - high).abs() < 1e-7, "{}", alone["objective"]);
+    assert!(
+        (alone["objective"].as_f64().expect("a number") - high).abs() < 1e-7,
+        "{}",
+        alone["objective"]
+    );
     assert!(alone.get("starts").is_none());
     let many = ["solve", "two_minima.fdc", "--starts", "12", "--log", "none"];
     let output = fdcc(&folder, &[&many[..], &["--json"]].concat(), "");
@@ -32,7 +38,9 @@ fn the_lower_of_two_minima_is_kept_and_both_are_told() {
     let ended = document["starts"].as_array().expect("a list");
     assert_eq!(ended.len(), 12);
     let near = |value: f64| {
-        ended.iter().filter(move |it| (it["objective"].as_f64().unwrap_or(f64::NAN) - value).abs() < 1e-7)
+        ended
+            .iter()
+            .filter(move |it| (it["objective"].as_f64().unwrap_or(f64::NAN) - value).abs() < 1e-7)
     };
     let (found_low, found_high) = (near(low).count(), near(high).count());
     assert!(found_low > 0 && found_high > 0, "{ended:?}");
@@ -46,7 +54,12 @@ fn the_lower_of_two_minima_is_kept_and_both_are_told() {
 fn the_same_twice() {
     let folder = folder("several_starts_twice", &[("two_minima.fdc", TWO_MINIMA)]);
     let run = || {
-        json(&fdcc(&folder, &["solve", "two_minima.fdc", "--starts", "6", "--json", "--log", "none"], ""))["starts"].clone()
+        json(&fdcc(
+            &folder,
+            &["solve", "two_minima.fdc", "--starts", "6", "--json", "--log", "none"],
+            "",
+        ))["starts"]
+            .clone()
     };
     assert_eq!(run(), run());
 }

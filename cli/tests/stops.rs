@@ -1,4 +1,5 @@
-//! Solves that do not end with a solution: what is said at which line, and what is written all the same.
+//! Solves that do not end with a solution: what is said at which line, and what is written all the
+//! same.
 
 mod common;
 
@@ -18,7 +19,8 @@ fn a_value_that_does_not_exist_is_shown_at_its_line_and_is_null_in_json() {
     assert_eq!(document["status"], "not_finite");
     assert!(document["kkt_error"].is_null());
     assert!(folder.join("ramp.html").exists(), "the files are written all the same");
-    let warm = fdcc(&folder, &["solve", "root.fdc", "--warm", "ramp.sol.json", "--log", "none"], "");
+    let warm =
+        fdcc(&folder, &["solve", "root.fdc", "--warm", "ramp.sol.json", "--log", "none"], "");
     expect_exit(&warm, 2, "what could not be solved can still be a start");
 }
 
@@ -27,7 +29,11 @@ fn an_infeasible_problem_names_the_condition_and_the_controls_at_their_bounds() 
     let folder = folder("infeasible", &[("ramp.fdc", RAMP.as_bytes())]);
     let solve = |solver: &str| {
         let method = format!("solver={solver}");
-        fdcc(&folder, &["solve", "ramp.fdc", "--set", "goal=5", "--log", "none", "--method", &method], "")
+        fdcc(
+            &folder,
+            &["solve", "ramp.fdc", "--set", "goal=5", "--log", "none", "--method", &method],
+            "",
+        )
     };
     let proved = stderr(&solve("convex"));
     assert!(proved.contains("FDC0602") && proved.contains("ramp.fdc:7:"), "{proved}");
@@ -57,7 +63,8 @@ fn ctrl_c_stops_with_the_best_iterate_written() {
     let output = child.wait_with_output().expect("fdcc ends");
     expect_exit(&output, 2, "interrupted");
     assert!(stdout(&output).contains("NOT SOLVED, interrupted"));
-    let saved = std::fs::read_to_string(folder.join("racecar.sol.json")).expect("the file was written");
+    let saved =
+        std::fs::read_to_string(folder.join("racecar.sol.json")).expect("the file was written");
     let saved: Value = serde_json::from_str(&saved).expect("JSON");
     assert_eq!(saved["status"], "interrupted");
     assert_eq!(column(&saved["states"]["th"]).len(), 10_001);
@@ -66,8 +73,10 @@ fn ctrl_c_stops_with_the_best_iterate_written() {
 /// Times, bounds and what an equation is off by are in the units of the model.
 #[test]
 fn what_cannot_be_met_is_told_in_the_units_of_the_model() {
-    let far = "time t in [0, 1] [s]\nstate x [km] start 0\nstate v [km/h] start 0\ncontrol u in [-1, 1] [m/s^2]\n\
-               dynamics {\n  x' = v\n  v' = u\n}\nend x == 5\nend v == 0\nminimize integral(u^2)\nmethod { solver = interior_point }\n";
+    let far = "time t in [0, 1] [s]\nstate x [km] start 0\nstate v [km/h] start 0\ncontrol u in \
+               [-1, 1] [m/s^2]\n\
+               dynamics {\n  x' = v\n  v' = u\n}\nend x == 5\nend v == 0\nminimize \
+               integral(u^2)\nmethod { solver = interior_point }\n";
     let folder = folder("stops_units", &[("far.fdc", far.as_bytes())]);
     let output = fdcc(&folder, &["solve", "far.fdc", "--log", "none"], "");
     expect_exit(&output, 2, "nothing drives 5 km in a second");

@@ -17,7 +17,8 @@ fn the_table_has_a_row_per_value_and_a_column_per_name() {
     expect_exit(&output, 0, "sweep");
     assert_eq!(stderr(&output), "");
     let table = stdout(&output);
-    let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split_whitespace().collect()).collect();
+    let rows: Vec<Vec<&str>> =
+        table.lines().map(|line| line.split_whitespace().collect()).collect();
     let header = ["sigma", "N", "kernel", "objective", "T", "iterations", "seconds", "status"];
     assert_eq!(rows[0], header);
     assert_eq!(rows.len(), 3, "{table}");
@@ -31,11 +32,13 @@ fn the_table_has_a_row_per_value_and_a_column_per_name() {
 /// The least cost of reaching `goal` is `goal^2`, and out of reach beyond 4.
 #[test]
 fn rows_are_compact_json_in_the_order_of_the_values() {
-    let output = fdcc(&ramp("sweep_json"), &["sweep", "ramp.fdc", "goal=3,1,200[cm]", "N=8", "--json"], "");
+    let output =
+        fdcc(&ramp("sweep_json"), &["sweep", "ramp.fdc", "goal=3,1,200[cm]", "N=8", "--json"], "");
     expect_exit(&output, 0, "sweep");
     let rows = json(&output);
     let rows = rows.as_array().expect("an array");
-    let keys = |row: &Value| row.as_object().expect("an object").keys().cloned().collect::<Vec<_>>();
+    let keys =
+        |row: &Value| row.as_object().expect("an object").keys().cloned().collect::<Vec<_>>();
     let mut contract = [
         "swept",
         "status",
@@ -61,7 +64,8 @@ fn a_row_that_is_not_solved_changes_the_exit_code_and_no_other_row() {
     let output = fdcc(&ramp("sweep_fails"), &["sweep", "ramp.fdc", "goal=1,9,2", "--json"], "");
     expect_exit(&output, 2, "sweep");
     let rows = json(&output);
-    let statuses: Vec<&Value> = rows.as_array().expect("an array").iter().map(|row| &row["status"]).collect();
+    let statuses: Vec<&Value> =
+        rows.as_array().expect("an array").iter().map(|row| &row["status"]).collect();
     assert_eq!(statuses, [&json!("solved"), &json!("infeasible"), &json!("solved")]);
 }
 
@@ -85,7 +89,8 @@ fn a_row_is_what_solve_finds() {
     let swept = json(&fdcc(&folder, &["sweep", &racecar, "N=40", "w=0.4", "--json"], ""));
     let arguments = ["solve", &racecar, "--method", "N=40", "--set", "w=0.4", "--json"];
     let solved = json(&fdcc(&folder, &arguments, ""));
-    for field in ["status", "objective", "free", "iterations", "kkt_error", "constraint_violation"] {
+    for field in ["status", "objective", "free", "iterations", "kkt_error", "constraint_violation"]
+    {
         assert_eq!(swept[0][field], solved[field], "{field}");
     }
 }
@@ -96,7 +101,8 @@ fn a_continued_sweep_starts_from_the_row_before() {
     let turbo = model("turbo");
     let iterations = |more: &[&str]| {
         let arguments =
-            [&["sweep", turbo.as_str(), "sigma=0.2,0.2,0.2", "N=40,40,60", "--json"], more].concat();
+            [&["sweep", turbo.as_str(), "sigma=0.2,0.2,0.2", "N=40,40,60", "--json"], more]
+                .concat();
         let output = fdcc(&folder, &arguments, "");
         expect_exit(&output, 0, &format!("{more:?}"));
         json(&output)
@@ -116,7 +122,8 @@ fn each_row_has_its_files() {
     let folder = ramp("sweep_files");
     expect_exit(&fdcc(&folder, &["sweep", "ramp.fdc", "goal=1,2", "--out", "all"], ""), 0, "sweep");
     for row in 1..=2 {
-        let text = std::fs::read_to_string(folder.join(format!("all/ramp.{row}.sol.json"))).expect("a file");
+        let text = std::fs::read_to_string(folder.join(format!("all/ramp.{row}.sol.json")))
+            .expect("a file");
         let saved: Value = serde_json::from_str(&text).expect("JSON");
         assert_eq!(number(&saved["params"]["goal"]), f64::from(row));
         assert!(folder.join(format!("all/ramp.{row}.csv")).exists());
@@ -130,7 +137,8 @@ fn the_lists_may_stand_in_the_model() {
     let text = format!("{RAMP}sweep {{ goal = 100, 200 [cm]  N = 4 }}\n");
     let folder = common::folder("sweep_in_model", &[("ramp.fdc", text.as_bytes())]);
     let rows = json(&fdcc(&folder, &["sweep", "ramp.fdc", "--json"], ""));
-    let goals: Vec<&str> = [0, 1].map(|row| rows[row]["swept"]["goal"].as_str().unwrap_or_default()).to_vec();
+    let goals: Vec<&str> =
+        [0, 1].map(|row| rows[row]["swept"]["goal"].as_str().unwrap_or_default()).to_vec();
     let objectives = [0, 1].map(|row| number(&rows[row]["objective"]));
     assert!(
         (objectives[0] - 1.0).abs() < 1e-6 && (objectives[1] - 4.0).abs() < 1e-6,

@@ -1,4 +1,5 @@
-//! Units from outside: what is typed is in declared units, what is printed says them, files are in SI.
+//! Units from outside: what is typed is in declared units, what is printed says them, files are in
+//! SI.
 
 mod common;
 
@@ -35,7 +36,8 @@ fn spans_widths_and_axes_are_in_declared_units() {
     let output = fdcc(&folder, &["solve", "block.fdc", "--log", "none", "--out", "."], "");
     expect_exit(&output, 0, "solve");
     let verdict = stdout(&output);
-    let slip = verdict.lines().find(|line| line.starts_with(" slip")).expect("a line of the surface");
+    let slip =
+        verdict.lines().find(|line| line.starts_with(" slip")).expect("a line of the surface");
     assert!(slip.contains(" ms   (sigma 0.5 mm/s, kernel"), "{slip}");
     let page = std::fs::read_to_string(folder.join("block.html")).expect("a page");
     for told in ["sigma 0.5 mm/s", ">2000 ms<", "x [mm]"] {
@@ -89,7 +91,8 @@ fn expectations_are_compared_in_their_units() {
 #[test]
 fn times_are_in_the_unit_of_time() {
     let folder = block("units_times");
-    let times = |times: &str| fdcc(&folder, &["simulate", "block.fdc", "--json", "--times", times], "");
+    let times =
+        |times: &str| fdcc(&folder, &["simulate", "block.fdc", "--json", "--times", times], "");
     let found = json(&times("0,500,2000"));
     assert_eq!(found["time"], serde_json::json!([0.0, 0.5, 2.0]));
     assert!(stderr(&times("0,2001")).contains("2001 is not between 0 and 2000"));
@@ -99,7 +102,15 @@ fn times_are_in_the_unit_of_time() {
 #[test]
 fn what_cannot_be_solved_yet_is_advice() {
     let folder = folder("units_advice", &[]);
-    let output = fdcc(&folder, &["check", &model("twostage"), "--format", "short", "--deny", "warnings"], "");
+    let output = fdcc(
+        &folder,
+        &["check", &model("twostage"), "--format", "short", "--deny", "warnings"],
+        "",
+    );
     expect_exit(&output, 0, "check");
-    assert!(stdout(&output).contains("advice[FDC0603]: a model with phases"), "{}", stdout(&output));
+    assert!(
+        stdout(&output).contains("advice[FDC0603]: a model with phases"),
+        "{}",
+        stdout(&output)
+    );
 }

@@ -4,9 +4,10 @@ mod common;
 
 use common::{expect_exit, fdcc, folder, json, model, stdout};
 
-/// The paper's own solution for sigma = 0.1, N = 1000 is not admissible: with the set-valued friction its controls leave the
-/// track by .346 and cost 7.000. Source: an independent replay with located events (DOP853, tolerance 1e-11, body
-/// coordinates) of the controls that CasADi + IPOPT found for the same problem.
+/// The paper's own solution for sigma = 0.1, N = 1000 is not admissible: with the set-valued
+/// friction its controls leave the track by .346 and cost 7.000. Source: an independent replay with
+/// located events (DOP853, tolerance 1e-11, body coordinates) of the controls that CasADi + IPOPT
+/// found for the same problem.
 #[test]
 fn the_race_car_is_not_called_solved_without_hearing_that_it_leaves_the_track() {
     let folder = folder("verification", &[]);
@@ -26,16 +27,22 @@ fn the_race_car_is_not_called_solved_without_hearing_that_it_leaves_the_track() 
     assert!(said.contains("`track` off by 0.346"), "{said}");
 }
 
-/// x' = u with a constant control on each interval: implicit Euler is exact, so the replay is the solution itself.
+/// x' = u with a constant control on each interval: implicit Euler is exact, so the replay is the
+/// solution itself.
 #[test]
 fn an_exact_scheme_is_confirmed_to_rounding() {
     let ramp = common::RAMP.as_bytes();
     let folder = folder("confirmed", &[("ramp.fdc", ramp)]);
-    let verification =
-        json(&fdcc(&folder, &["solve", "ramp.fdc", "--json", "--log", "none"], ""))["verification"].clone();
+    let verification = json(&fdcc(&folder, &["solve", "ramp.fdc", "--json", "--log", "none"], ""))
+        ["verification"]
+        .clone();
     assert!(verification["state_gap"].as_f64().expect("a number") < 1e-9, "{verification}");
-    assert!(verification["constraint_violation"].as_f64().expect("a number") < 1e-7, "{verification}");
+    assert!(
+        verification["constraint_violation"].as_f64().expect("a number") < 1e-7,
+        "{verification}"
+    );
     assert_eq!(verification["events"], 0);
-    let without = json(&fdcc(&folder, &["solve", "ramp.fdc", "--json", "--log", "none", "--no-verify"], ""));
+    let without =
+        json(&fdcc(&folder, &["solve", "ramp.fdc", "--json", "--log", "none", "--no-verify"], ""));
     assert!(without.get("verification").is_none());
 }

@@ -1,4 +1,5 @@
-//! `fdcc verify`: a solution against the true system. The solutions are written by hand, so that all differences are known.
+//! `fdcc verify`: a solution against the true system. The solutions are written by hand, so that
+//! all differences are known.
 
 mod common;
 
@@ -6,7 +7,8 @@ use common::{RAMP, column, expect_exit, fdcc, folder, json, model, number, stder
 use serde_json::Value;
 use std::path::Path;
 
-/// Friction of 1 on a block of mass 1, pulled by .5 (sticks), by 3 (reaches 2), by 0 (stops after two more).
+/// Friction of 1 on a block of mass 1, pulled by .5 (sticks), by 3 (reaches 2), by 0 (stops after
+/// two more).
 const PULLED: &str = "\
 model pulled
 time t in [0, 5]
@@ -59,10 +61,14 @@ fn verified(folder: &Path, arguments: &[&str], code: i32) -> Value {
 
 #[test]
 fn modes_and_events_are_those_of_the_closed_form() {
-    let files = [("pulled.fdc", PULLED.as_bytes()), ("pulled.sol.json", PULLED_SOLUTION.as_bytes())];
+    let files =
+        [("pulled.fdc", PULLED.as_bytes()), ("pulled.sol.json", PULLED_SOLUTION.as_bytes())];
     let folder = folder("verify_modes", &files);
     let found = verified(&folder, &["pulled.sol.json"], 0);
-    assert_eq!((&found["status"], &found["verification"]["confirmed"]), (&"completed".into(), &true.into()));
+    assert_eq!(
+        (&found["status"], &found["verification"]["confirmed"]),
+        (&"completed".into(), &true.into())
+    );
     let expected = [("held", 0.0, 1.0), ("above", 1.0, 4.0), ("held", 4.0, 5.0)];
     let slip = found["surfaces"]["slip"].as_array().expect("spans");
     assert_eq!(slip.len(), expected.len(), "{slip:?}");
@@ -88,10 +94,15 @@ fn the_gap_of_each_state_has_its_time() {
     near(&found["state_gaps"]["v"]["time"], 2.0);
     near(&found["state_gaps"]["x"]["gap"], 0.0);
     near(&found["conditions"]["end v == 0"]["violation"], 0.0);
-    assert_eq!(verified(&folder, &["pulled.sol.json", "--gap", "0.4"], 0)["verification"]["asked"], 0.4);
+    assert_eq!(
+        verified(&folder, &["pulled.sol.json", "--gap", "0.4"], 0)["verification"]["asked"],
+        0.4
+    );
     let said = stdout(&fdcc(&folder, &["verify", "pulled.sol.json"], ""));
     assert!(
-        said.starts_with(" NOT CONFIRMED on the true system: `v` differs by 1, 0.333333 of its motion"),
+        said.starts_with(
+            " NOT CONFIRMED on the true system: `v` differs by 1, 0.333333 of its motion"
+        ),
         "{said}"
     );
 }
@@ -112,7 +123,8 @@ fn path_conditions_are_looked_at_between_the_grid_points() {
     assert!(said.contains("worst at t = 0.5: x = 0.25"), "{said}");
 }
 
-/// With half the pull, half the speed at the start gives half the height; bounds move with their parameters.
+/// With half the pull, half the speed at the start gives half the height; bounds move with their
+/// parameters.
 #[test]
 fn parameters_and_open_starts_are_those_of_the_solution() {
     let other = ARC_SOLUTION
@@ -158,7 +170,11 @@ fn the_model_is_found_or_asked_for() {
         (&["out/pulled.sol.json"], 4, "its model pulled.fdc is neither beside it nor here"),
         (&["out/pulled.sol.json", "absent.fdc"], 4, "absent.fdc cannot be read"),
         (&["out/pulled.sol.json", "other.fdc"], 0, "other.fdc is not the text that was solved"),
-        (&["out/pulled.sol.json", "ramp.fdc"], 4, "its time runs from 0 to 5, that of the model from 0 to 1"),
+        (
+            &["out/pulled.sol.json", "ramp.fdc"],
+            4,
+            "its time runs from 0 to 5, that of the model from 0 to 1",
+        ),
         (&["absent.sol.json"], 4, "absent.sol.json cannot be read"),
         (&["other.fdc"], 4, "other.fdc is not a solution"),
         (&["out/pulled.sol.json", "other.fdc", "--gap", "-1"], 3, "not negative"),
@@ -169,19 +185,23 @@ fn the_model_is_found_or_asked_for() {
         expect_exit(&output, *code, &format!("{arguments:?}"));
         assert!(stderr(&output).contains(message), "{arguments:?}: {}", stderr(&output));
     }
-    std::fs::copy(folder.join("other.fdc"), folder.join("pulled.fdc")).expect("a file can be copied");
+    std::fs::copy(folder.join("other.fdc"), folder.join("pulled.fdc"))
+        .expect("a file can be copied");
     expect_exit(&fdcc(&folder, &["verify", "out/pulled.sol.json"], ""), 0, "the current folder");
 }
 
 /// On the edge the state could go up, down or stay.
 #[test]
 fn a_replay_that_does_not_reach_the_end_is_no_confirmation() {
-    let edge = "model edge\ntime t in [0, 2]\nstate x start -1\ncontrol u in [-9, 9]\nsurface top = x\n\
+    let edge = "model edge\ntime t in [0, 2]\nstate x start -1\ncontrol u in [-9, 9]\nsurface top \
+                = x\n\
                 dynamics { x' in u + 2*Sgn(top) }\nminimize integral(u^2)\n";
     let solution = r#"{"model": "edge", "free": {}, "time": [0, 1, 2], "states": {"x": [-1, 0, 0]},
         "controls": {"u": [3, 0]}}"#;
-    let folder =
-        folder("verify_edge", &[("edge.fdc", edge.as_bytes()), ("edge.sol.json", solution.as_bytes())]);
+    let folder = folder(
+        "verify_edge",
+        &[("edge.fdc", edge.as_bytes()), ("edge.sol.json", solution.as_bytes())],
+    );
     let found = verified(&folder, &["edge.sol.json"], 2);
     assert_eq!(found["status"], "not_unique");
     assert_eq!(
@@ -209,12 +229,14 @@ jump bounce on ground falling at most 1 { v := -e*v }
 minimize e
 ";
 
-/// A jump that comes a thousandth too late is off by a thousandth, not by the height of the jump; one that does not come at all is.
+/// A jump that comes a thousandth too late is off by a thousandth, not by the height of the jump;
+/// one that does not come at all is.
 #[test]
 fn jumps_are_compared_with_jumps() {
     let late = 1.001;
     let (before, after) = (0.5 / late, (1.375 - late) / (1.75 - late) * 0.75);
-    let states = |t: f64, height: f64, speed: f64| (height + speed * t - 4.905 * t * t, speed - 9.81 * t);
+    let states =
+        |t: f64, height: f64, speed: f64| (height + speed * t - 4.905 * t * t, speed - 9.81 * t);
     let points = [
         (4.905, 0.0),
         states(before, 4.905, 0.0),

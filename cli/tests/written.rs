@@ -1,4 +1,5 @@
-//! What is written: whole or not at all, whatever happens on the way; and what is told where it cannot be.
+//! What is written: whole or not at all, whatever happens on the way; and what is told where it
+//! cannot be.
 #![cfg(unix)]
 
 mod common;
@@ -21,7 +22,8 @@ fn text(path: &Path) -> String {
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("the folder is there");
     let name = |entry: std::io::Result<fs::DirEntry>| entry.expect("an entry").file_name();
-    let mut names: Vec<String> = entries.map(|it| name(it).to_string_lossy().into_owned()).collect();
+    let mut names: Vec<String> =
+        entries.map(|it| name(it).to_string_lossy().into_owned()).collect();
     names.sort();
     names
 }
@@ -55,7 +57,10 @@ fn solutions_replace_those_before_them_through_links_too() {
     symlink("../new.html", place.join("out/ramp.html")).expect("links can be made");
     let solve = ["solve", "ramp.fdc", "--out", "out", "--log", "none"];
     expect_exit(&fdcc(&place, &solve, ""), 0, "solve");
-    assert!(text(&place.join("kept.csv")).starts_with("t,"), "the file behind the link is replaced");
+    assert!(
+        text(&place.join("kept.csv")).starts_with("t,"),
+        "the file behind the link is replaced"
+    );
     assert!(text(&place.join("new.html")).contains("<svg"), "or made");
     assert_eq!(names(&place.join("out")), ["ramp.csv", "ramp.html", "ramp.sol.json"]);
 }
@@ -65,8 +70,10 @@ struct Small<'p>(&'p Path);
 
 impl<'p> Small<'p> {
     fn mounted(place: &'p Path) -> Option<Self> {
-        let mount =
-            Command::new("mount").args(["-t", "tmpfs", "-o", "size=64k", "tmpfs"]).arg(place).output();
+        let mount = Command::new("mount")
+            .args(["-t", "tmpfs", "-o", "size=64k", "tmpfs"])
+            .arg(place)
+            .output();
         let is_there = mount.is_ok_and(|it| it.status.success());
         if !is_there {
             eprintln!("skipped: only the superuser can make a small file system");
@@ -154,7 +161,11 @@ fn a_full_standard_output_is_told() {
         let output = shell(&place, &format!("rm -f new.fdc; fdcc {command} > /dev/full"));
         expect_exit(&output, 4, command);
         let said = stderr(&output);
-        assert_eq!(said.matches("cannot write to the standard output").count(), 1, "{command}: {said}");
+        assert_eq!(
+            said.matches("cannot write to the standard output").count(),
+            1,
+            "{command}: {said}"
+        );
     }
 }
 
@@ -163,10 +174,14 @@ fn a_closed_pipe_ends_quietly() {
     let place = printing("written_closed_pipe");
     for command in COMMANDS {
         // The reader is gone before anything is printed.
-        let script = format!("rm -f new.fdc; {{ sleep 0.1; fdcc {command}; echo $? > code; }} | true");
+        let script =
+            format!("rm -f new.fdc; {{ sleep 0.1; fdcc {command}; echo $? > code; }} | true");
         let output = shell(&place, &script);
         let said = stderr(&output).to_lowercase();
-        assert!(!["pipe", "standard output", "panicked"].iter().any(|it| said.contains(it)), "{said}");
+        assert!(
+            !["pipe", "standard output", "panicked"].iter().any(|it| said.contains(it)),
+            "{said}"
+        );
         assert_eq!(text(&place.join("code")).trim(), "0", "{command}");
     }
 }
@@ -182,7 +197,8 @@ fn what_was_asked_for_is_written_though_nobody_reads() {
 const SLOW: [&str; 5] = ["sweep", "slow.fdc", "--out", "all", "--jobs"];
 
 fn many_rows() -> String {
-    let goals: Vec<String> = (0..4000).map(|row| format!("{}", 1.0 + f64::from(row) / 4000.0)).collect();
+    let goals: Vec<String> =
+        (0..4000).map(|row| format!("{}", 1.0 + f64::from(row) / 4000.0)).collect();
     format!("goal={}", goals.join(","))
 }
 

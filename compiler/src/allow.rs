@@ -1,7 +1,8 @@
-//! `# fdc: allow FDC0404`: a comment that silences a warning or an advice on its line, or on the next one.
+//! `# fdc: allow FDC0404`: a comment that silences a warning or an advice on its line, or on the
+//! next one.
 //!
-//! An error cannot be allowed. A comment that silences nothing is reported, FDC0010, once the text has no errors:
-//! before, nobody knows what there would be to silence.
+//! An error cannot be allowed. A comment that silences nothing is reported, FDC0010, once the text
+//! has no errors: before, nobody knows what there would be to silence.
 
 use fdcc_grammar::{Code, Diagnostic, Fix, Severity, Span, comments};
 
@@ -23,9 +24,9 @@ pub(crate) fn apply(text: &str, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let allowed: Vec<Allowed<'_>> =
         comments(text).into_iter().flat_map(|comment| read(text, comment)).collect();
     let has_error = found.iter().any(|it| it.severity == Severity::Error);
-    let (silenced, mut left): (Vec<_>, Vec<_>) = found
-        .into_iter()
-        .partition(|it| it.severity != Severity::Error && allowed.iter().any(|one| one.is_about(it)));
+    let (silenced, mut left): (Vec<_>, Vec<_>) = found.into_iter().partition(|it| {
+        it.severity != Severity::Error && allowed.iter().any(|one| one.is_about(it))
+    });
     let used = |one: &&Allowed<'_>| silenced.iter().any(|it| one.is_about(it));
     left.extend(allowed.iter().filter(|one| !used(one)).filter_map(|one| useless(one, has_error)));
     left
@@ -41,20 +42,27 @@ impl Allowed<'_> {
 /// The codes that a comment allows; what follows them is the reason.
 fn read<'t>(text: &'t str, comment: Span) -> Vec<Allowed<'t>> {
     let words = &text[comment.range()][1..];
-    let Some(list) =
-        words.trim_start().strip_prefix("fdc:").and_then(|rest| rest.trim_start().strip_prefix("allow"))
+    let Some(list) = words
+        .trim_start()
+        .strip_prefix("fdc:")
+        .and_then(|rest| rest.trim_start().strip_prefix("allow"))
     else {
         return Vec::new();
     };
     let line = line_of(text, comment);
-    let codes: Vec<&'t str> =
-        list.split_whitespace().take_while(|word| word.to_ascii_uppercase().starts_with("FDC")).collect();
+    let codes: Vec<&'t str> = list
+        .split_whitespace()
+        .take_while(|word| word.to_ascii_uppercase().starts_with("FDC"))
+        .collect();
     let allowed = |word: &'t str| {
         let start = word.as_ptr() as usize - text.as_ptr() as usize;
         let span = Span::new(start, start + word.len());
         // The blank before it goes with it.
-        let leftover =
-            if codes.len() == 1 { whole(text, comment) } else { Span::new(start - 1, start + word.len()) };
+        let leftover = if codes.len() == 1 {
+            whole(text, comment)
+        } else {
+            Span::new(start - 1, start + word.len())
+        };
         Allowed { word, span, line, leftover }
     };
     codes.iter().copied().map(allowed).collect()
@@ -89,7 +97,9 @@ fn end_of_line(text: &str, start: usize) -> usize {
 
 fn useless(one: &Allowed<'_>, has_error: bool) -> Option<Diagnostic> {
     let word = one.word;
-    let found = |message: String, label: &str| Diagnostic::new(Code::UselessAllow, message, one.span, label);
+    let found = |message: String, label: &str| {
+        Diagnostic::new(Code::UselessAllow, message, one.span, label)
+    };
     let known = Code::ALL.iter().find(|code| code.as_str() == word);
     Some(match known {
         None => unknown(one),
@@ -108,7 +118,8 @@ fn useless(one: &Allowed<'_>, has_error: bool) -> Option<Diagnostic> {
 fn unknown(one: &Allowed<'_>) -> Diagnostic {
     let message = format!("there is no diagnostic `{}`", one.word);
     let meant = one.word.parse().ok().map(Code::as_str);
-    let near = meant.or_else(|| crate::closest(one.word, Code::ALL.iter().map(|code| code.as_str())));
+    let near =
+        meant.or_else(|| crate::closest(one.word, Code::ALL.iter().map(|code| code.as_str())));
     let found = Diagnostic::new(Code::UselessAllow, message, one.span, "silences nothing");
     match near {
         Some(near) => found

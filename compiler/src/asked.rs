@@ -10,8 +10,9 @@ use fdcc_grammar::{Code, Diagnostic, Span, parse};
 /// What makes an expression an item.
 const WORD: &str = "minimize ";
 
-/// What a tree without errors means with another objective: any expression that has a value once the run is over. A
-/// `report` may stand in it by name. The diagnostics are about that expression alone, and so are their places.
+/// What a tree without errors means with another objective: any expression that has a value once
+/// the run is over. A `report` may stand in it by name. The diagnostics are about that expression
+/// alone, and so are their places.
 pub fn check_with_objective(tree: &ast::Model, of: &str) -> Checked {
     let start = tree.items.iter().map(|item| item.span.end as usize).max().unwrap_or(0) + 1;
     let parsed = parse(&format!("{:start$}{WORD}{of}", ""));
@@ -32,14 +33,17 @@ pub fn check_with_objective(tree: &ast::Model, of: &str) -> Checked {
     diagnostics.retain(|it| it.span().start >= first);
     diagnostics.iter_mut().for_each(|it| moved(it, first));
     // Nobody has written an objective.
-    diagnostics.iter_mut().for_each(|it| it.message = it.message.replace(" in the objective", " here"));
+    diagnostics
+        .iter_mut()
+        .for_each(|it| it.message = it.message.replace(" in the objective", " here"));
     Checked { model, phases: Vec::new(), diagnostics, units }
 }
 
 fn with_objective(tree: &ast::Model, asked: &Item, value: &ast::Expr) -> ast::Model {
     let mut tree = tree.clone();
     tree.items.retain(|item| !matches!(item.kind, ItemKind::Objective { .. }));
-    let lets: Vec<Item> = reports(&tree).filter(|report| is_let(&tree, report, value)).map(as_let).collect();
+    let lets: Vec<Item> =
+        reports(&tree).filter(|report| is_let(&tree, report, value)).map(as_let).collect();
     tree.items.extend(lets);
     tree.items.push(asked.clone());
     tree
@@ -55,7 +59,8 @@ fn reports(tree: &ast::Model) -> impl Iterator<Item = &Binding> {
 /// Whether a report is meant by its name, perhaps misspelt, and nothing else is called so.
 fn is_let(tree: &ast::Model, report: &Binding, value: &ast::Expr) -> bool {
     let name = &report.name.name;
-    let is_declared = tree.items.iter().filter_map(scope::declared).any(|other| other.name == *name);
+    let is_declared =
+        tree.items.iter().filter_map(scope::declared).any(|other| other.name == *name);
     let is_first = reports(tree).find(|other| other.name.name == *name) == Some(report);
     let mut is_meant = false;
     walk::names(value, &mut |used, _| {
@@ -72,8 +77,10 @@ fn as_let(report: &Binding) -> Item {
 
 fn superfluous(items: &[Item]) -> Diagnostic {
     let span = items.get(1).map_or(Span::default(), |item| item.span);
-    Diagnostic::new(Code::Unfinished, "one expression is enough", span, "what is this?")
-        .help("it takes any expression that has a value at the end, for example `x(end)` or `integral(x^2)`")
+    Diagnostic::new(Code::Unfinished, "one expression is enough", span, "what is this?").help(
+        "it takes any expression that has a value at the end, for example `x(end)` or \
+               `integral(x^2)`",
+    )
 }
 
 /// Places in the expression; those in the text of the model have no line there.

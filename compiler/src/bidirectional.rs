@@ -1,4 +1,5 @@
-//! FDC0011: characters that turn the direction of a text around, so that it reads otherwise than it is understood.
+//! FDC0011: characters that turn the direction of a text around, so that it reads otherwise than it
+//! is understood.
 
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 
@@ -20,5 +21,9 @@ pub(crate) fn found(text: &str) -> Option<Diagnostic> {
         diagnostic = diagnostic.label(span, format!("U+{:04X}", letter as u32));
         fix = fix.remove(span);
     }
-    Some(diagnostic.help("take it out: with it a text reads otherwise than it is understood").fix(fix))
+    Some(
+        diagnostic
+            .help("take it out: with it a text reads otherwise than it is understood")
+            .fix(fix),
+    )
 }

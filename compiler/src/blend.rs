@@ -1,21 +1,23 @@
 //! Knots and kinks rounded over a width.
 //!
-//! What switches where a gap `g` changes its sign, from `below` to `above`, changes over on `|g| < w/2` instead:
+//! What switches where a gap `g` changes its sign, from `below` to `above`, changes over on `|g| <
+//! w/2` instead:
 //!
 //! ```text
 //! (1 - q) below + q above,   q = (1 + S(2 g/w))/2,   S(u) = (15 u - 10 u^3 + 3 u^5)/8
 //! ```
 //!
-//! `S` is -1 and 1 at the ends of the zone with two derivatives that vanish, so that the whole is C^2 if both sides are.
-//! Beyond the zone the sides stay as they are, to the last bit.
+//! `S` is -1 and 1 at the ends of the zone with two derivatives that vanish, so that the whole is
+//! C^2 if both sides are. Beyond the zone the sides stay as they are, to the last bit.
 
 use crate::builtins::Builtin;
 use crate::graph::{ExprId, Graph};
 use crate::smooth;
 use std::collections::HashSet;
 
-/// What selections compare. What `blend` has rounded needs a selection, too, at each end of its zone: to round those again
-/// would change nothing but the number of them, which doubles from `blend` to `blend`.
+/// What selections compare. What `blend` has rounded needs a selection, too, at each end of its
+/// zone: to round those again would change nothing but the number of them, which doubles from
+/// `blend` to `blend`.
 #[derive(Default)]
 pub(crate) struct Guards {
     /// Of definitions in pieces, as somebody wrote them.
@@ -33,7 +35,8 @@ impl Guards {
     }
 }
 
-/// The roots with every switch in them rounded, from the inside out; nothing if nothing switches that is not rounded already.
+/// The roots with every switch in them rounded, from the inside out; nothing if nothing switches
+/// that is not rounded already.
 pub(crate) fn rounded(
     graph: &mut Graph,
     roots: &[ExprId],
@@ -53,11 +56,15 @@ pub(crate) fn rounded(
 }
 
 /// What is 0 where a node switches, and what the node is below and above.
-pub(crate) fn sides(graph: &mut Graph, original: ExprId, rebuilt: ExprId) -> Option<(ExprId, [ExprId; 2])> {
+pub(crate) fn sides(
+    graph: &mut Graph,
+    original: ExprId,
+    rebuilt: ExprId,
+) -> Option<(ExprId, [ExprId; 2])> {
     let bent = [Builtin::Abs, Builtin::Min, Builtin::Max, Builtin::SelectLe];
-    let builtin = bent
-        .into_iter()
-        .find(|it| graph.as_call(original, *it).is_some() && graph.as_call(rebuilt, *it).is_some())?;
+    let builtin = bent.into_iter().find(|it| {
+        graph.as_call(original, *it).is_some() && graph.as_call(rebuilt, *it).is_some()
+    })?;
     let operands = graph.operands(rebuilt).to_vec();
     Some(match (builtin, &operands[..]) {
         (Builtin::Min, &[a, b]) => (graph.sub(a, b), [a, b]),

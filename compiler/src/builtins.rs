@@ -1,8 +1,8 @@
 //! The table of operators and functions: one row says everything about one of them.
 //!
-//! The interpreter uses `value`, differentiation `partial`, machine code `lowering`, the manual `doc` and
-//! `domain`, the checks `smoothness`. A new function is a new row here and nothing else; the conformance
-//! tests walk the table.
+//! The interpreter uses `value`, differentiation `partial`, machine code `lowering`, the manual
+//! `doc` and `domain`, the checks `smoothness`. A new function is a new row here and nothing else;
+//! the conformance tests walk the table.
 
 use crate::graph::{ExprId, Graph};
 
@@ -224,7 +224,8 @@ table! {
     Pow = Row {
         name: "^",
         notation: Notation::Infix(4),
-        doc: "Power. `2^3 = 8`. A power with a whole exponent is a product; any other needs a positive base.",
+        doc: "Power. `2^3 = 8`. A power with a whole exponent is a product; any other needs a \
+              positive base.",
         domain: Domain::Positive(0),
         value: |a| a[0].powf(a[1]),
         // d(a^b) = b a^(b-1) da + a^b log(a) db
@@ -471,7 +472,8 @@ fn unit_circle(graph: &mut Graph, x: ExprId) -> ExprId {
     graph.sqrt(rest)
 }
 
-/// log(cosh(x)) = log(1 + 2 sinh(x/2)^2) near 0, and |x| + log((1 + exp(-2|x|)) / 2) where cosh might overflow.
+/// log(cosh(x)) = log(1 + 2 sinh(x/2)^2) near 0, and |x| + log((1 + exp(-2|x|)) / 2) where cosh
+/// might overflow.
 extern "C" fn log_cosh(x: f64) -> f64 {
     if x.abs() < 1.0 {
         let half = (0.5 * x).sinh();
@@ -523,7 +525,9 @@ mod tests {
 
     #[test]
     fn parity_holds() {
-        for row in ALL.iter().map(|builtin| builtin.row()).filter(|row| row.parity != Parity::Neither) {
+        for row in
+            ALL.iter().map(|builtin| builtin.row()).filter(|row| row.parity != Parity::Neither)
+        {
             let sign = if row.parity == Parity::Odd { -1.0 } else { 1.0 };
             assert_eq!((row.value)(&[-0.6]), sign * (row.value)(&[0.6]), "{}", row.name);
         }

@@ -1,4 +1,5 @@
-//! Names with their bounds and values, in the units in which they are declared: `v [km/h] in [0, 100]`.
+//! Names with their bounds and values, in the units in which they are declared: `v [km/h] in [0,
+//! 100]`.
 
 use crate::lower::Numbers;
 use crate::model::{Model, Place, Range, Symbol};

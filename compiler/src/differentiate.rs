@@ -6,8 +6,8 @@
 //! L = sum_i multiplier(i) y_i,  Hessian column k = tangent of the gradient of L in direction z_k
 //! ```
 //!
-//! Hash-consing shares whatever value, Jacobian and Hessian have in common. An entry is in a pattern unless it
-//! simplifies to the number 0.
+//! Hash-consing shares whatever value, Jacobian and Hessian have in common. An entry is in a
+//! pattern unless it simplifies to the number 0.
 
 use fdcc_runtime::problem::{Degree, Pattern};
 
@@ -158,7 +158,9 @@ fn active(graph: &Graph, outputs: &[ExprId], by: &[u32]) -> Vec<ExprId> {
     for id in graph.reachable(outputs) {
         let depends = match graph.expr(id) {
             Expr::Input(position) => by.contains(position),
-            Expr::Call(_, operands) => operands.iter().any(|operand| active.binary_search(operand).is_ok()),
+            Expr::Call(_, operands) => {
+                operands.iter().any(|operand| active.binary_search(operand).is_ok())
+            }
             _ => false,
         };
         if depends {

@@ -87,7 +87,8 @@ fn symbols(model: &Model) -> String {
     }
     roots.extend(model.path.iter().map(|it| (format!("path {}", it.place.name), it.value)));
     roots.extend(model.boundary.iter().map(|it| (it.place.name.clone(), it.value)));
-    roots.extend(model.integrals.iter().map(|it| (format!("d/dt {}", it.place.name), it.integrand)));
+    roots
+        .extend(model.integrals.iter().map(|it| (format!("d/dt {}", it.place.name), it.integrand)));
     roots.extend(model.objective.iter().map(|it| (it.0.name.clone(), it.1)));
     roots.extend(model.report.iter().map(|it| (format!("report {}", it.place.name), it.value)));
     over_symbols(model, &roots)
@@ -96,7 +97,8 @@ fn symbols(model: &Model) -> String {
 /// The names of a function's inputs.
 fn input_names(model: &Model, program: &Program, layout: &Layout) -> Vec<String> {
     let hidden = program.hidden.iter().map(|&at| model.integrals[at].place.name.clone());
-    let states: Vec<String> = model.states.iter().map(|it| it.place.name.clone()).chain(hidden).collect();
+    let states: Vec<String> =
+        model.states.iter().map(|it| it.place.name.clone()).chain(hidden).collect();
     let mut names: Vec<String> = (0..layout.t).map(|_| "tau".into()).collect();
     match layout.x == 2 * states.len() {
         true => ["start", "end"]
@@ -135,7 +137,8 @@ fn labelled(function: &VectorFunction) -> Vec<(String, ExprId)> {
 fn differentiated(program: &Program) -> (Graph, Vec<Differentiated>) {
     let mut graph = program.graph.clone();
     let functions = program.functions().map(VectorFunction::clone);
-    let functions = functions.into_iter().map(|function| differentiate(&mut graph, function)).collect();
+    let functions =
+        functions.into_iter().map(|function| differentiate(&mut graph, function)).collect();
     (graph, functions)
 }
 
@@ -150,7 +153,8 @@ fn with_derivatives(model: &Model, program: &Program) -> String {
             roots.push((format!("d({})/d({})", rows[row as usize], names[column as usize]), id));
         }
         for (&(row, column), &id) in hessian.0.entries.iter().zip(&hessian.1) {
-            roots.push((format!("d2L/d({})d({})", names[row as usize], names[column as usize]), id));
+            roots
+                .push((format!("d2L/d({})d({})", names[row as usize], names[column as usize]), id));
         }
         text += &format!(
             "# {}\n{}\n",
@@ -164,14 +168,23 @@ fn with_derivatives(model: &Model, program: &Program) -> String {
 /// The problem as understood.
 fn summary(model: &Model, program: &Program, numbers: &Numbers) -> String {
     let mut text = format!("model {}\n", model.name);
-    let ends = over_symbols(model, &[("t0".into(), model.interval[0]), ("tf".into(), model.interval[1])]);
+    let ends =
+        over_symbols(model, &[("t0".into(), model.interval[0]), ("tf".into(), model.interval[1])]);
     section(&mut text, "time", ends.lines().map(str::to_string));
     let named = |place: &Place, range: Range| described::ranged(model, numbers, place, range);
     section(&mut text, "states", model.states.iter().map(|it| named(&it.place, it.range)));
     let controls = model.controls.iter().map(|it| named(&it.place, it.range));
     section(&mut text, "controls", controls);
-    section(&mut text, "free", (0..model.frees.len()).map(|at| described::free(model, numbers, at)));
-    section(&mut text, "params", (0..model.params.len()).map(|at| described::param(model, numbers, at)));
+    section(
+        &mut text,
+        "free",
+        (0..model.frees.len()).map(|at| described::free(model, numbers, at)),
+    );
+    section(
+        &mut text,
+        "params",
+        (0..model.params.len()).map(|at| described::param(model, numbers, at)),
+    );
     section(&mut text, "surfaces", surfaces(model, numbers).iter().flat_map(surface_lines));
     let rough = smoothness(model, numbers).into_iter().filter(|it| it.order != Order::Always);
     section(&mut text, "smoothness", rough.map(smoothness_line));

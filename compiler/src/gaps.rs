@@ -39,7 +39,9 @@ impl<'t> Gaps<'t> {
             Code::UnitMismatch | Code::UnitHere | Code::UnitOfPower | Code::BareNumber => {
                 self.is_built_on_sand(found)
             }
-            code => matches!(code, Code::NoBoundary | Code::NoEquation | Code::NoTime | Code::Unused),
+            code => {
+                matches!(code, Code::NoBoundary | Code::NoEquation | Code::NoTime | Code::Unused)
+            }
         };
         is_absence || self.lines.contains(&self.source.line_column(found.span().start).line)
     }

@@ -58,7 +58,8 @@ pub use unroll::{Sequences, crossings, sequences, unrolled};
 
 /// What a syntax tree means, and what is wrong with it.
 pub struct Checked {
-    /// Present if there is no error, but for parameters that wait for a value and trajectories that are not unique.
+    /// Present if there is no error, but for parameters that wait for a value and trajectories that
+    /// are not unique.
     pub model: Option<Model>,
     /// Each phase by itself, with what stands outside of all phases, if there is a model.
     pub phases: Vec<Model>,
@@ -68,7 +69,8 @@ pub struct Checked {
     pub units: Vec<NamedUnit>,
 }
 
-/// Finds out what a syntax tree means. Never fails: it reports everything that is wrong, each mistake once.
+/// Finds out what a syntax tree means. Never fails: it reports everything that is wrong, each
+/// mistake once.
 pub fn check(tree: &ast::Model) -> Checked {
     let everything: Vec<&Item> = tree.items.iter().collect();
     let phases: Vec<Phase<'_>> = tree.items.iter().filter_map(phase).collect();
@@ -126,10 +128,13 @@ fn told_early(model: &Model) -> Option<Diagnostic> {
     Some(first.help("it is checked all the same; `solve`, `simulate` and `grad` refuse it"))
 }
 
-/// Whether there can be no meaning. What waits for a value, what has no unique trajectory and what has none has one: a run tells more.
+/// Whether there can be no meaning. What waits for a value, what has no unique trajectory and what
+/// has none has one: a run tells more.
 fn is_fatal(found: &Diagnostic) -> bool {
-    let has_meaning =
-        matches!(found.code, Code::NoValue | Code::Repelling | Code::EndlessJumps | Code::Contradiction);
+    let has_meaning = matches!(
+        found.code,
+        Code::NoValue | Code::Repelling | Code::EndlessJumps | Code::Contradiction
+    );
     found.severity == Severity::Error && !has_meaning
 }
 
@@ -178,7 +183,8 @@ fn sort(diagnostics: &mut Vec<Diagnostic>) {
 
 /// A condition with another mistake in it contradicts nothing.
 fn without_consequences(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    let is_mistake = |it: &&Diagnostic| it.severity == Severity::Error && it.code != Code::Contradiction;
+    let is_mistake =
+        |it: &&Diagnostic| it.severity == Severity::Error && it.code != Code::Contradiction;
     let mistakes: Vec<Span> = diagnostics.iter().filter(is_mistake).map(Diagnostic::span).collect();
     let follows = |it: &Diagnostic| {
         let whole = it.span();
@@ -189,7 +195,8 @@ fn without_consequences(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     diagnostics
 }
 
-/// One finding for each unknown name, wherever it is used; and what it is likely a slip for is not called unused.
+/// One finding for each unknown name, wherever it is used; and what it is likely a slip for is not
+/// called unused.
 fn without_echoes(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let mut kept: Vec<Diagnostic> = Vec::new();
     let mut first_use: HashMap<String, usize> = HashMap::new();
@@ -231,8 +238,9 @@ fn quoted(found: &Diagnostic) -> Option<String> {
     found.message.split('`').nth(1).map(str::to_owned)
 }
 
-/// Turns a model into an optimal control problem with compiled functions; or says what cannot be solved yet. Of a model with
-/// jumps it is what holds between them: [`unrolled`] makes of it one in which they happen.
+/// Turns a model into an optimal control problem with compiled functions; or says what cannot be
+/// solved yet. Of a model with jumps it is what holds between them: [`unrolled`] makes of it one in
+/// which they happen.
 pub fn compile(model: &Model) -> Result<Problem, Vec<Diagnostic>> {
     not_yet(model)?;
     let model = &between_jumps(model);
@@ -243,7 +251,8 @@ pub fn compile(model: &Model) -> Result<Problem, Vec<Diagnostic>> {
     Ok(problem(model, &program, &numbers, functions))
 }
 
-/// The functions of a problem differentiated by the parameters of the model, for what its optimum is worth to them.
+/// The functions of a problem differentiated by the parameters of the model, for what its optimum
+/// is worth to them.
 pub fn compile_by_parameters(model: &Model) -> Result<ByParameters, Vec<Diagnostic>> {
     not_yet(model)?;
     let mut program = lower(model);
@@ -264,7 +273,8 @@ pub fn compile_sensitivities(model: &Model) -> Result<System, Vec<Diagnostic>> {
     compile_system(model, Purpose::Sensitivities)
 }
 
-/// The system as a solve smooths it, without surfaces, with all its derivatives; or says that jumps cannot be smoothed.
+/// The system as a solve smooths it, without surfaces, with all its derivatives; or says that jumps
+/// cannot be smoothed.
 pub fn compile_smoothed(model: &Model) -> Result<System, Vec<Diagnostic>> {
     if let Some(jump) = model.jumps.first() {
         return Err(vec![resolve::not_yet(jump.place.span, "a smoothed model with jumps")]);
@@ -287,7 +297,8 @@ fn not_yet(model: &Model) -> Result<(), Vec<Diagnostic>> {
 
 /// Derivatives, then machine code.
 fn machine_code(mut graph: Graph, functions: Vec<VectorFunction>) -> Vec<Arc<dyn Function>> {
-    let functions = functions.into_iter().map(|function| differentiate(&mut graph, function)).collect();
+    let functions =
+        functions.into_iter().map(|function| differentiate(&mut graph, function)).collect();
     debug_assert_eq!(graph::verify(&graph), Ok(()));
     generate::generate(graph, functions)
 }

@@ -1,8 +1,9 @@
 //! A model with its meaning: names resolved, shapes known, every expression an entry of one graph.
 //!
-//! An [`Input`](crate::graph::Expr::Input) of this graph is a *symbol*: time, a state, a control and so on, all
-//! scalar. Real time, real units (SI), and a selector for each surface; lowering gives them the places that
-//! compiled functions want. Bounds and parameters stay expressions, so that the command line can change a number.
+//! An [`Input`](crate::graph::Expr::Input) of this graph is a *symbol*: time, a state, a control
+//! and so on, all scalar. Real time, real units (SI), and a selector for each surface; lowering
+//! gives them the places that compiled functions want. Bounds and parameters stay expressions, so
+//! that the command line can change a number.
 
 use crate::graph::{ExprId, Graph};
 use crate::units::{NamedUnit, WidthUnit};
@@ -10,7 +11,8 @@ use fdcc_grammar::ast::Direction;
 use fdcc_grammar::{Diagnostic, Span};
 use fdcc_runtime::problem::{ControlShape, Linear, Method, Scheme, Solver};
 
-/// What an input of the model's graph stands for. The numbers are indices into the lists of [`Model`].
+/// What an input of the model's graph stands for. The numbers are indices into the lists of
+/// [`Model`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Symbol {
     /// Real time.
@@ -302,7 +304,8 @@ pub struct Model {
     pub units: Vec<NamedUnit>,
     /// The unit of each condition and each expectation, by what it is called.
     pub condition_units: Vec<NamedUnit>,
-    /// What a width of smoothing measures, if the text uses units and all surfaces measure the same.
+    /// What a width of smoothing measures, if the text uses units and all surfaces measure the
+    /// same.
     pub width_unit: Option<WidthUnit>,
 }
 
@@ -355,11 +358,18 @@ impl Model {
     /// The surfaces, with those of a ball taken together.
     pub fn switches<'m>(&'m self) -> Vec<Switch<'m>> {
         let is_alone = |at: &usize| self.balls.iter().all(|ball| !ball.surfaces.contains(at));
-        let alone =
-            |at: usize| Switch { place: &self.surfaces[at].place, surfaces: at..at + 1, is_ball: false };
-        let mut all: Vec<Switch<'m>> = (0..self.surfaces.len()).filter(is_alone).map(alone).collect();
-        let of =
-            |ball: &'m Ball| Switch { place: &ball.place, surfaces: ball.surfaces.clone(), is_ball: true };
+        let alone = |at: usize| Switch {
+            place: &self.surfaces[at].place,
+            surfaces: at..at + 1,
+            is_ball: false,
+        };
+        let mut all: Vec<Switch<'m>> =
+            (0..self.surfaces.len()).filter(is_alone).map(alone).collect();
+        let of = |ball: &'m Ball| Switch {
+            place: &ball.place,
+            surfaces: ball.surfaces.clone(),
+            is_ball: true,
+        };
         all.extend(self.balls.iter().map(of));
         all.sort_by_key(|switch| switch.surfaces.start);
         all

@@ -9,7 +9,8 @@ use crate::resolve::text::number;
 use crate::units::{NamedUnit, Quantity, WidthUnit, parse_quantity};
 
 impl Model {
-    /// Gives a parameter another value, such as `0.2` or `200[g]`; a plain number is in its declared unit.
+    /// Gives a parameter another value, such as `0.2` or `200[g]`; a plain number is in its
+    /// declared unit.
     pub fn set_param(&mut self, name: &str, value: &str) -> Result<(), String> {
         let given = parse_quantity(value)?;
         let Some(index) = self.params.iter().position(|param| param.place.name == name) else {
@@ -28,11 +29,14 @@ impl Model {
         Ok(())
     }
 
-    /// A value for a parameter or a width with the unit in which it is read, if that is not the one of SI: `3[mm]` for `3`.
+    /// A value for a parameter or a width with the unit in which it is read, if that is not the one
+    /// of SI: `3[mm]` for `3`.
     pub fn with_unit(&self, name: &str, value: &str) -> String {
         let index = self.params.iter().position(|param| param.place.name == name);
-        let width =
-            self.width_unit.as_ref().filter(|it| index.is_none() && name == "sigma" && it.takes_numbers);
+        let width = self
+            .width_unit
+            .as_ref()
+            .filter(|it| index.is_none() && name == "sigma" && it.takes_numbers);
         let own = index.and_then(|at| self.unit_of_param(at)).or(width.map(|it| &it.unit));
         let own = own.filter(|own| own.scale != 1.0);
         let is_plain = parse_quantity(value).is_ok_and(|it| it.dimension.is_none());
@@ -42,14 +46,17 @@ impl Model {
         }
     }
 
-    /// A value in SI as the command line takes it: in the declared unit, with that unit unless it is the one of SI.
+    /// A value in SI as the command line takes it: in the declared unit, with that unit unless it
+    /// is the one of SI.
     pub fn as_given(&self, name: &str, value: &str) -> String {
         let Ok(number) = value.parse::<f64>() else { return value.into() };
         let index = self.params.iter().position(|param| param.place.name == name);
         let width = self.width_unit.as_ref().filter(|_| index.is_none() && name == "sigma");
         let own = index.and_then(|at| self.unit_of_param(at)).or(width.map(|it| &it.unit));
         match own {
-            Some(own) if own.scale != 1.0 => format!("{}[{}]", rounded(number / own.scale), own.unit),
+            Some(own) if own.scale != 1.0 => {
+                format!("{}[{}]", rounded(number / own.scale), own.unit)
+            }
             Some(own) if width.is_some_and(|it| !it.takes_numbers) => {
                 format!("{value}[{}]", if own.unit.is_empty() { "1" } else { &own.unit })
             }
@@ -69,10 +76,11 @@ impl Model {
         }
     }
 
-    /// Gives parameters the values that a solution was made with. One that is computed from others and has that value
-    /// anyhow stays so.
+    /// Gives parameters the values that a solution was made with. One that is computed from others
+    /// and has that value anyhow stays so.
     pub fn restore_params(&mut self, values: &[(String, f64)]) {
-        let given = |name: &str| values.iter().find(|(own, _)| own == name).map(|(_, value)| *value);
+        let given =
+            |name: &str| values.iter().find(|(own, _)| own == name).map(|(_, value)| *value);
         let waiting = (0..self.params.len()).filter(|&at| self.params[at].value.is_none());
         for index in waiting.chain(self.param_order.clone()).collect::<Vec<_>>() {
             let Some(value) = given(&self.params[index].place.name) else { continue };
@@ -99,13 +107,14 @@ impl Model {
         }
     }
 
-    /// Changes a setting, such as `sigma` to `0.01`; several values for `continue` are separated by commas. A plain
-    /// number for a width is in the unit of what is smoothed.
+    /// Changes a setting, such as `sigma` to `0.01`; several values for `continue` are separated by
+    /// commas. A plain number for a width is in the unit of what is smoothed.
     pub fn set_method(&mut self, key: &str, value: &str) -> Result<(), String> {
         let is_width = matches!(key, "sigma" | "continue");
         let width = self.width_unit.clone().filter(|_| is_width);
-        let given =
-            given(value, |text, it| width.as_ref().map_or(Ok(it.value), |own| as_width(own, text, it)))?;
+        let given = given(value, |text, it| {
+            width.as_ref().map_or(Ok(it.value), |own| as_width(own, text, it))
+        })?;
         self.set(key, value, &given)
     }
 
@@ -142,14 +151,20 @@ impl Model {
         let names = || self.params.iter().map(|param| param.place.name.as_str());
         match closest(name, names()) {
             Some(near) => format!("there is no parameter `{name}`; did you mean `{near}`?"),
-            None if self.params.is_empty() => format!("there is no parameter `{name}`; the model has none"),
+            None if self.params.is_empty() => {
+                format!("there is no parameter `{name}`; the model has none")
+            }
             None => {
-                format!("there is no parameter `{name}`; there is {}", names().collect::<Vec<_>>().join(", "))
+                format!(
+                    "there is no parameter `{name}`; there is {}",
+                    names().collect::<Vec<_>>().join(", ")
+                )
             }
         }
     }
 
-    /// A number, which may use other parameters; NaN, which limits nothing, if one of them has no value yet.
+    /// A number, which may use other parameters; NaN, which limits nothing, if one of them has no
+    /// value yet.
     fn of_params(&self, value: crate::graph::ExprId) -> f64 {
         match crate::lower::numbers(self) {
             Ok(numbers) => numbers.value(self, value),
@@ -164,7 +179,10 @@ pub fn is_method_key(name: &str) -> bool {
 }
 
 /// A word, a number or a list of numbers, each as `read` makes it one in SI.
-fn given(value: &str, read: impl Fn(&str, Quantity) -> Result<f64, String>) -> Result<Given, String> {
+fn given(
+    value: &str,
+    read: impl Fn(&str, Quantity) -> Result<f64, String>,
+) -> Result<Given, String> {
     let quantities: Option<Vec<(&str, Quantity)>> =
         value.split(',').map(|part| Some((part, parse_quantity(part).ok()?))).collect();
     let Some(quantities) = quantities else { return Ok(Given::Word(value.trim().into())) };
@@ -186,12 +204,17 @@ fn plain_number(name: &str) -> NamedUnit {
     NamedUnit { name: name.into(), scale: 1.0, ..NamedUnit::default() }
 }
 
-/// A value in SI, if its unit measures what that of a name does; a number without a unit is in the declared one.
+/// A value in SI, if its unit measures what that of a name does; a number without a unit is in the
+/// declared one.
 fn in_unit(own: &NamedUnit, text: &str, given: Quantity) -> Result<f64, String> {
     match given.dimension {
         None => Ok(given.value * own.scale),
         Some(dimension) if own.span != Default::default() && own.dimension != dimension => {
-            let unit = if own.unit.is_empty() { "has no unit".into() } else { format!("is in {}", own.unit) };
+            let unit = if own.unit.is_empty() {
+                "has no unit".into()
+            } else {
+                format!("is in {}", own.unit)
+            };
             Err(format!("`{}` {unit}, so it cannot be `{}`", own.name, text.trim()))
         }
         Some(_) => Ok(given.value),
@@ -204,7 +227,8 @@ fn as_width(own: &WidthUnit, text: &str, given: Quantity) -> Result<f64, String>
     match given.dimension {
         None if own.takes_numbers => Ok(given.value * unit.scale),
         None => Err(format!(
-            "`sigma` needs a unit, such as `{}[{}]`: what is smoothed is made of names in other units than those of SI",
+            "`sigma` needs a unit, such as `{}[{}]`: what is smoothed is made of names in other \
+             units than those of SI",
             text.trim(),
             unit.unit
         )),

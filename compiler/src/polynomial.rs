@@ -5,8 +5,8 @@
 //! cos(x)^2 = 1 - sin(x)^2,   sqrt(x)^2 = x,   abs(x)^2 = x^2
 //! ```
 //!
-//! Two expressions with the same normal form are equal wherever both have a value. What would grow beyond
-//! [`MOST_TERMS`] stays an atom.
+//! Two expressions with the same normal form are equal wherever both have a value. What would grow
+//! beyond [`MOST_TERMS`] stays an atom.
 
 use crate::builtins::Builtin;
 use crate::graph::{ById, Expr, ExprId, Graph};
@@ -41,7 +41,8 @@ impl Polynomial {
         Self::term(monomial, 1.0)
     }
     fn term(monomial: Monomial, factor: f64) -> Self {
-        let terms = if factor == 0.0 { BTreeMap::new() } else { BTreeMap::from([(monomial, factor)]) };
+        let terms =
+            if factor == 0.0 { BTreeMap::new() } else { BTreeMap::from([(monomial, factor)]) };
         Polynomial { terms }
     }
     /// Whether it is 0.
@@ -133,8 +134,9 @@ impl Polynomial {
         let mut form = self.clone();
         for _ in 0..MOST_TERMS {
             let divides = |it: &Monomial| {
-                lead.iter()
-                    .all(|power| it.iter().any(|other| other.0 == power.0 && other.1 >= power.1.max(1)))
+                lead.iter().all(|power| {
+                    it.iter().any(|other| other.0 == power.0 && other.1 >= power.1.max(1))
+                })
             };
             let Some((monomial, size)) =
                 form.terms.iter().find(|it| divides(it.0)).map(|it| (it.0.clone(), *it.1))
@@ -153,9 +155,11 @@ impl Polynomial {
 
     /// As an expression, with what is added first.
     pub fn to_expr(&self, graph: &mut Graph) -> ExprId {
-        let mut terms: Vec<(&Monomial, f64)> = self.terms.iter().map(|(it, &factor)| (it, factor)).collect();
+        let mut terms: Vec<(&Monomial, f64)> =
+            self.terms.iter().map(|(it, &factor)| (it, factor)).collect();
         terms.sort_by_key(|term| term.1 < 0.0);
-        let terms: Vec<ExprId> = terms.into_iter().map(|term| product(graph, term.0, term.1)).collect();
+        let terms: Vec<ExprId> =
+            terms.into_iter().map(|term| product(graph, term.0, term.1)).collect();
         graph.sum(&terms)
     }
 }
@@ -173,7 +177,8 @@ fn product(graph: &mut Graph, monomial: &Monomial, factor: f64) -> ExprId {
 
 /// The order of terms: lexicographic in the exponents, so that products keep it.
 fn compare(a: &Monomial, b: &Monomial) -> Ordering {
-    let power = |of: &Monomial, atom: ExprId| of.iter().find(|it| it.0 == atom).map_or(0, |it| it.1);
+    let power =
+        |of: &Monomial, atom: ExprId| of.iter().find(|it| it.0 == atom).map_or(0, |it| it.1);
     let mut atoms: Vec<ExprId> = a.iter().chain(b).map(|it| it.0).collect();
     atoms.sort_unstable();
     let differing = atoms.into_iter().find(|&atom| power(a, atom) != power(b, atom));
@@ -228,12 +233,15 @@ impl NormalForms {
         let Expr::Call(builtin, operands) = graph.expr(id).clone() else {
             return graph.as_number(id).map_or_else(|| Polynomial::atom(id), Polynomial::number);
         };
-        let forms: Vec<Polynomial> = operands.iter().map(|operand| self.known[operand].clone()).collect();
+        let forms: Vec<Polynomial> =
+            operands.iter().map(|operand| self.known[operand].clone()).collect();
         let found = match builtin {
             Builtin::Add => Some(forms[0].clone().plus(1.0, &forms[1])),
             Builtin::Sub => Some(forms[0].clone().plus(-1.0, &forms[1])),
             Builtin::Neg => Some(Polynomial::default().plus(-1.0, &forms[0])),
-            Builtin::Mul => forms[0].times(&forms[1]).and_then(|it| self.without_squares(graph, it)),
+            Builtin::Mul => {
+                forms[0].times(&forms[1]).and_then(|it| self.without_squares(graph, it))
+            }
             Builtin::Div => forms[1].inverted().and_then(|it| forms[0].times(&it)),
             _ => None,
         };
@@ -254,7 +262,9 @@ impl NormalForms {
         }
         for _ in 0..MOST_TERMS {
             let found = form.terms.iter().find_map(|(monomial, &factor)| {
-                let at = monomial.iter().position(|&(atom, power)| power >= 2 && has_rule(graph, atom))?;
+                let at = monomial
+                    .iter()
+                    .position(|&(atom, power)| power >= 2 && has_rule(graph, atom))?;
                 Some((monomial.clone(), factor, at))
             });
             let Some((monomial, factor, at)) = found else { return Some(form) };

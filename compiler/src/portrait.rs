@@ -1,6 +1,7 @@
 //! What is known about one thing that has a name, as text: for hover.
 //!
-//! Derivatives are those of `differentiate`, in the normal form and with the names of the model, as for surfaces.
+//! Derivatives are those of `differentiate`, in the normal form and with the names of the model, as
+//! for surfaces.
 
 use crate::builtins::Builtin;
 use crate::described;
@@ -36,8 +37,9 @@ pub fn portrait(model: &Model, name: &str) -> Option<Portrait> {
     if let Some(definition) = defined.or_else(|| reported(model, name)) {
         look_at(model, &numbers, &definition, &mut portrait);
     }
-    let is_known =
-        !portrait.values.is_empty() || !portrait.derivatives.is_empty() || portrait.smoothness.is_some();
+    let is_known = !portrait.values.is_empty()
+        || !portrait.derivatives.is_empty()
+        || portrait.smoothness.is_some();
     is_known.then_some(portrait)
 }
 
@@ -53,9 +55,9 @@ fn declared(model: &Model, numbers: &Numbers, name: &str, portrait: &mut Portrai
         portrait.values.push(described::ranged(model, numbers, &state.place, state.range));
         let mut local = Local::empty();
         let rate = local.import(&view, state.rate);
-        portrait
-            .rates
-            .extend(local.text(&view, rate).map(|text| format!("{} = {text}", state.equation.name)));
+        portrait.rates.extend(
+            local.text(&view, rate).map(|text| format!("{} = {text}", state.equation.name)),
+        );
     }
     for control in model.controls.iter().filter(|it| is_of(&it.place.name, name)) {
         portrait.values.push(described::ranged(model, numbers, &control.place, control.range));
@@ -77,7 +79,10 @@ fn reported(model: &Model, name: &str) -> Option<Definition> {
 fn look_at(model: &Model, numbers: &Numbers, definition: &Definition, portrait: &mut Portrait) {
     let view = View { arguments: &definition.arguments, ..View::of_model(model, numbers) };
     let fixed: Vec<f64> = definition.parts.iter().map(|part| view.number(*part)).collect();
-    if definition.arguments.is_empty() && !fixed.is_empty() && fixed.iter().all(|value| value.is_finite()) {
+    if definition.arguments.is_empty()
+        && !fixed.is_empty()
+        && fixed.iter().all(|value| value.is_finite())
+    {
         let named = |(at, value): (usize, &f64)| match fixed.len() {
             1 => described::valued(model, &definition.name, *value),
             _ => described::valued(model, &format!("{}[{}]", definition.name, at + 1), *value),
@@ -102,7 +107,8 @@ fn derivatives(view: &View<'_>, parts: &[ExprId]) -> Vec<String> {
         (0..local.symbols.len() as u32).filter(|at| varies(&local.symbols[*at as usize])).collect();
     let mut lines = Vec::new();
     for input in inputs.into_iter().take(MOST_DERIVATIVES) {
-        let slopes: Vec<ExprId> = roots.iter().map(|root| slope(&mut local.graph, *root, input)).collect();
+        let slopes: Vec<ExprId> =
+            roots.iter().map(|root| slope(&mut local.graph, *root, input)).collect();
         let texts: Option<Vec<String>> =
             slopes.into_iter().map(|slope| written(&mut local, view, slope)).collect();
         let name = by(view, local.symbols[input as usize]);
@@ -166,7 +172,8 @@ pub fn grid(model: &Model) -> Option<Grid> {
     let Method { intervals, steps, sigma, .. } = model.method;
     let has_inner = matches!(model.method.scheme, Scheme::Radau(_) | Scheme::Gauss(_));
     let (states, controls) = (model.states.len(), model.controls.len());
-    let whole = intervals.saturating_mul(states + controls).saturating_add(states + model.frees.len());
+    let whole =
+        intervals.saturating_mul(states + controls).saturating_add(states + model.frees.len());
     let is_plain = !has_inner && model.method.controls == ControlShape::Constant;
     let step = (last - first) / (intervals * steps) as f64;
     Some(Grid { intervals, unknowns: is_plain.then_some(whole), step, sigma })

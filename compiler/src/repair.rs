@@ -1,8 +1,8 @@
 //! Applies repairs until nothing is left to repair.
 //!
-//! A repair is kept only if the text is better for it: fewer mistakes of syntax, or the same number further down, or
-//! else fewer errors, or else fewer findings. Each of these can only shrink, so repairing ends, and repairing the
-//! result changes nothing.
+//! A repair is kept only if the text is better for it: fewer mistakes of syntax, or the same number
+//! further down, or else fewer errors, or else fewer findings. Each of these can only shrink, so
+//! repairing ends, and repairing the result changes nothing.
 
 use crate::review::reviewed;
 use fdcc_grammar::{Diagnostic, Memory, Parse, Severity, fix, parse_with};
@@ -52,7 +52,8 @@ impl Draft {
         apply(&self.found).into_iter().chain(single).find_map(|text| self.better(text, memory))
     }
 
-    /// The text, if it is better than this one. What is harder to read is not looked at any further.
+    /// The text, if it is better than this one. What is harder to read is not looked at any
+    /// further.
     fn better(&self, text: String, memory: &mut Memory) -> Option<Draft> {
         let parsed = parse_with(memory, &text);
         let unreadable = Unreadable::of(&text, &parsed);

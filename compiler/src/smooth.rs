@@ -121,7 +121,8 @@ pub fn step(graph: &mut Graph, kernel: &Kernel, z: ExprId, sigma: ExprId) -> Exp
     if kernel.compact { outside(graph, u, [minus, inside, plus]) } else { inside }
 }
 
-/// `Dir_sigma(z)`: `S(u)/u z/sigma` with `u = |z|/sigma`, all through `u^2`, so that nothing is singular at 0.
+/// `Dir_sigma(z)`: `S(u)/u z/sigma` with `u = |z|/sigma`, all through `u^2`, so that nothing is
+/// singular at 0.
 pub fn direction(graph: &mut Graph, kernel: &Kernel, z: &[ExprId], sigma: ExprId) -> Vec<ExprId> {
     let scaled: Vec<ExprId> = z.iter().map(|&z| graph.div(z, sigma)).collect();
     let squares: Vec<ExprId> = scaled.iter().map(|&u| graph.square(u)).collect();
@@ -177,7 +178,12 @@ pub fn absolute(graph: &mut Graph, kernel: &Kernel, z: ExprId, sigma: ExprId) ->
 }
 
 /// The roots with every `abs`, `min` and `max` in them smoothed, from the inside out.
-pub fn smooth_nonsmooth(graph: &mut Graph, roots: &[ExprId], kernel: &Kernel, sigma: ExprId) -> Vec<ExprId> {
+pub fn smooth_nonsmooth(
+    graph: &mut Graph,
+    roots: &[ExprId],
+    kernel: &Kernel,
+    sigma: ExprId,
+) -> Vec<ExprId> {
     graph.rewrite(roots, |graph, original, rebuilt| {
         let (builtin, operands) = match (graph.expr(original), graph.expr(rebuilt)) {
             (Expr::Call(was, _), Expr::Call(is, operands)) if was == is => (*is, operands.clone()),
@@ -192,8 +198,15 @@ pub fn smooth_nonsmooth(graph: &mut Graph, roots: &[ExprId], kernel: &Kernel, si
     })
 }
 
-fn extremum(graph: &mut Graph, kernel: &Kernel, operands: &[ExprId], sigma: ExprId, sign: f64) -> ExprId {
-    let (sum, difference) = (graph.add(operands[0], operands[1]), graph.sub(operands[0], operands[1]));
+fn extremum(
+    graph: &mut Graph,
+    kernel: &Kernel,
+    operands: &[ExprId],
+    sigma: ExprId,
+    sign: f64,
+) -> ExprId {
+    let (sum, difference) =
+        (graph.add(operands[0], operands[1]), graph.sub(operands[0], operands[1]));
     let mean = graph.scale(0.5, sum);
     let distance = absolute(graph, kernel, difference, sigma);
     let half = graph.scale(sign, distance);

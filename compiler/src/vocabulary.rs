@@ -1,4 +1,5 @@
-//! The words of the language with what they are for: functions, settings, units. For completion, hover and signatures.
+//! The words of the language with what they are for: functions, settings, units. For completion,
+//! hover and signatures.
 
 use crate::builtins::{self, Notation as Written};
 use crate::resolve::{function_names, settings};
@@ -15,7 +16,8 @@ pub struct Function {
     pub doc: &'static str,
 }
 
-/// Functions of vectors and forms with a meaning of their own, which have no row in the table of builtins.
+/// Functions of vectors and forms with a meaning of their own, which have no row in the table of
+/// builtins.
 const FORMS: &[(&str, &[&str], &str)] = &[
     ("dot", &["a", "b"], "Scalar product of two vectors."),
     ("norm", &["a"], "Length of a vector: `sqrt(dot(a, a))`. Its derivative is not unique at 0."),
@@ -29,7 +31,8 @@ const FORMS: &[(&str, &[&str], &str)] = &[
     (
         "Dir",
         &["vector"],
-        "The direction of a vector, and the whole unit ball where it is 0: isotropic friction; after `in`.",
+        "The direction of a vector, and the whole unit ball where it is 0: isotropic friction; \
+         after `in`.",
     ),
     (
         "selected",
@@ -46,7 +49,8 @@ const FORMS: &[(&str, &[&str], &str)] = &[
     (
         "blend",
         &["f", "width"],
-        "The function with its knots and kinks rounded over a width, with two continuous derivatives.",
+        "The function with its knots and kinks rounded over a width, with two continuous \
+         derivatives.",
     ),
     (
         "sliding",
@@ -73,7 +77,11 @@ pub fn function(name: &str) -> Option<Function> {
     }
     let row = builtins::find(name)?.row();
     let arguments = ["a", "b", "c", "d"][..row.arity].to_vec();
-    (row.notation == Written::Function).then_some(Function { name: row.name, arguments, doc: row.doc })
+    (row.notation == Written::Function).then_some(Function {
+        name: row.name,
+        arguments,
+        doc: row.doc,
+    })
 }
 
 /// The keys of the method, each with what it takes.
@@ -113,7 +121,9 @@ mod tests {
         assert_eq!(setting_words("kernel"), ["tanh", "sqrt", "linear", "cubic", "quintic"]);
         let schemes = setting_words("scheme");
         assert!(
-            ["implicit_euler", "radau3", "gauss5"].iter().all(|it| schemes.iter().any(|word| word == it))
+            ["implicit_euler", "radau3", "gauss5"]
+                .iter()
+                .all(|it| schemes.iter().any(|word| word == it))
         );
         assert_eq!(setting_words("N"), [""; 0]);
     }

@@ -1,6 +1,7 @@
 //! The syntax tree: what was written, with a place on every node and no meaning yet.
 //!
-//! Free of pest types, so that the parser can be replaced. Names are not resolved, units are not converted.
+//! Free of pest types, so that the parser can be replaced. Names are not resolved, units are not
+//! converted.
 
 use crate::Span;
 
@@ -223,8 +224,9 @@ pub struct Assignment {
 
 /// One line of a `method` block: a key and its value, with what may follow it.
 ///
-/// `smooth sigma = e kernel k` is two settings, `sigma` and `kernel`; `grid N = n steps k scheme s lagged (a)` is
-/// `N`, `steps`, `scheme`; `continue sigma = a, b` is `continue`. Any other `key = value` is itself.
+/// `smooth sigma = e kernel k` is two settings, `sigma` and `kernel`; `grid N = n steps k scheme s
+/// lagged (a)` is `N`, `steps`, `scheme`; `continue sigma = a, b` is `continue`. Any other `key =
+/// value` is itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
     /// The key.

@@ -1,7 +1,8 @@
 //! What is wrong with a text, as plain data: code, message, places, help.
 //!
-//! A diagnostic holds no source text; whoever shows it joins it with its [`SourceFile`](crate::SourceFile).
-//! The first label is *the* place. Every message says what, where, why and what to do.
+//! A diagnostic holds no source text; whoever shows it joins it with its
+//! [`SourceFile`](crate::SourceFile). The first label is *the* place. Every message says what,
+//! where, why and what to do.
 
 use crate::{Fix, Span};
 
@@ -44,7 +45,12 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// A finding at a place, with the severity its code usually has.
-    pub fn new(code: Code, message: impl Into<String>, span: Span, label: impl Into<String>) -> Self {
+    pub fn new(
+        code: Code,
+        message: impl Into<String>,
+        span: Span,
+        label: impl Into<String>,
+    ) -> Self {
         Diagnostic {
             code,
             severity: code.severity(),
@@ -140,10 +146,12 @@ codes! {
     SetProduct = "FDC0206", Warning, "a product of two set-valued functions";
     VanishingGradient = "FDC0301", Error, "a surface whose gradient vanishes on it";
     Repelling = "FDC0302", Error, "a surface that pushes solutions away on both sides";
-    OtherCoordinates = "FDC0303", Advice, "a surface that is one-sided Lipschitz in other coordinates";
+    OtherCoordinates = "FDC0303", Advice, "a surface that is one-sided Lipschitz in other \
+                                           coordinates";
     NotContracting = "FDC0304", Warning, "a crossed surface that is not one-sided Lipschitz";
     StartOnSurface = "FDC0305", Advice, "a start that lies on a surface";
-    ControlJumps = "FDC0306", Warning, "a control that acts differently on the two sides of a surface";
+    ControlJumps = "FDC0306", Warning, "a control that acts differently on the two sides of a \
+                                        surface";
     EndlessJumps = "FDC0310", Error, "jumps that can fire without end";
     IdleJump = "FDC0311", Warning, "a jump that never acts";
     ConstantSurface = "FDC0312", Warning, "a surface that never changes sides";

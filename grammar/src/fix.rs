@@ -1,7 +1,8 @@
 //! Repairs: what would be changed in the text so that a finding goes away.
 //!
-//! A repair is *certain* if the text has only one reading, and *likely* if it is the best guess at what was meant.
-//! Places are those of the text that the finding is about; nothing here knows about files.
+//! A repair is *certain* if the text has only one reading, and *likely* if it is the best guess at
+//! what was meant. Places are those of the text that the finding is about; nothing here knows about
+//! files.
 
 use crate::{Diagnostic, Span};
 
@@ -53,8 +54,8 @@ impl Fix {
     }
 }
 
-/// A text with the first repair of each finding, as far as the repairs do not touch one another; `None` if there is
-/// nothing to repair. With `unsafely`, what is likely is done as well.
+/// A text with the first repair of each finding, as far as the repairs do not touch one another;
+/// `None` if there is nothing to repair. With `unsafely`, what is likely is done as well.
 pub fn apply(text: &str, diagnostics: &[Diagnostic], unsafely: bool) -> Option<String> {
     let mut edits: Vec<&Edit> = Vec::new();
     for diagnostic in diagnostics {

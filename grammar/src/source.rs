@@ -1,7 +1,7 @@
 //! Text with a name, places in it, and the lines they fall on.
 //!
-//! A [`Span`] is a half-open range of *bytes*; lines and columns are computed only where a person reads them.
-//! Columns count characters, from 1.
+//! A [`Span`] is a half-open range of *bytes*; lines and columns are computed only where a person
+//! reads them. Columns count characters, from 1.
 
 use std::sync::Arc;
 

@@ -15,7 +15,8 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    /// Zeros at all `places` (row, column), and the value that each place became: equal places are one. Places that are `None` have no value.
+    /// Zeros at all `places` (row, column), and the value that each place became: equal places are
+    /// one. Places that are `None` have no value.
     pub(crate) fn of_places(
         places: &[Option<(usize, usize)>],
         rows: usize,
@@ -80,7 +81,8 @@ impl Columns {
     }
 }
 
-/// `minimize 1/2 x'Px + q'x` subject to `Ax + s = b`, the first `equalities` entries of `s` zero, the others `>= 0`.
+/// `minimize 1/2 x'Px + q'x` subject to `Ax + s = b`, the first `equalities` entries of `s` zero,
+/// the others `>= 0`.
 pub(crate) struct ConicProgram {
     /// Upper triangle.
     pub(crate) p: Columns,
@@ -111,10 +113,16 @@ pub(crate) struct ConicSolution {
 }
 
 /// Solves a convex quadratic programme.
-pub(crate) fn solve_conic(program: ConicProgram, tolerance: f64, max_iterations: usize) -> ConicSolution {
+pub(crate) fn solve_conic(
+    program: ConicProgram,
+    tolerance: f64,
+    max_iterations: usize,
+) -> ConicSolution {
     let ConicProgram { p, q, a, b, equalities } = program;
-    let cones =
-        [SupportedConeT::ZeroConeT(equalities), SupportedConeT::NonnegativeConeT(b.len() - equalities)];
+    let cones = [
+        SupportedConeT::ZeroConeT(equalities),
+        SupportedConeT::NonnegativeConeT(b.len() - equalities),
+    ];
     let settings = DefaultSettingsBuilder::default()
         .verbose(false)
         .max_iter(max_iterations.min(u32::MAX as usize) as u32)
@@ -122,9 +130,9 @@ pub(crate) fn solve_conic(program: ConicProgram, tolerance: f64, max_iterations:
         .tol_gap_rel(tolerance)
         .tol_feas(tolerance)
         .build();
-    let solver = settings
-        .ok()
-        .and_then(|settings| DefaultSolver::new(&p.into_csc(), &q, &a.into_csc(), &b, &cones, settings).ok());
+    let solver = settings.ok().and_then(|settings| {
+        DefaultSolver::new(&p.into_csc(), &q, &a.into_csc(), &b, &cones, settings).ok()
+    });
     let Some(mut solver) = solver else {
         let (x, z) = (vec![0.0; q.len()], vec![0.0; b.len()]);
         return ConicSolution { status: ConicStatus::Failed, x, z, iterations: 0 };

@@ -1,18 +1,22 @@
-//! Derivatives of the optimum by what the optimiser does not choose: by time, which is the Hamiltonian, and by parameters.
+//! Derivatives of the optimum by what the optimiser does not choose: by time, which is the
+//! Hamiltonian, and by parameters.
 //!
-//! By the envelope theorem they are the partial derivatives of the Lagrangian at the solution, multipliers held:
+//! By the envelope theorem they are the partial derivatives of the Lagrangian at the solution,
+//! multipliers held:
 //!
 //! ```text
 //!     dJ/dq = d/dq [ f + sum_i lambda_i (c_i - b_i) - z_lower' (v - l) + z_upper' (v - u) ]
 //! ```
 //!
-//! where `b_i` is the bound at which row `i` is. By the length of interval `k`, over that of the time, this is its Hamiltonian
+//! where `b_i` is the bound at which row `i` is. By the length of interval `k`, over that of the
+//! time, this is its Hamiltonian
 //!
 //! ```text
 //!     H_k = sum_j b_j L(node j) - sum_j lambda_j . F(node j)  ~  L + p . f,        p = dJ/dx
 //! ```
 //!
-//! in which nothing is approximated beyond the transcription: the mean of `H_k` is exactly the derivative by the final time.
+//! in which nothing is approximated beyond the transcription: the mean of `H_k` is exactly the
+//! derivative by the final time.
 
 use crate::minimum;
 use crate::nlp::Solution;
@@ -26,9 +30,14 @@ const NOISE: f64 = 100.0;
 /// An unknown with a larger multiplier is at its bound.
 const AT_BOUND: f64 = 1e-4;
 
-/// The derivative of the optimal objective of the model by each parameter, those included that are computed from it. `p` holds the
-/// parameters, widths and unknowns of the solution.
-pub fn by_parameters(problem: &Problem, solution: &Solution, p: &[f64], by: &ByParameters) -> Vec<f64> {
+/// The derivative of the optimal objective of the model by each parameter, those included that are
+/// computed from it. `p` holds the parameters, widths and unknowns of the solution.
+pub fn by_parameters(
+    problem: &Problem,
+    solution: &Solution,
+    p: &[f64],
+    by: &ByParameters,
+) -> Vec<f64> {
     let mut nlp = TranscribedNlp::new(problem);
     p.iter().enumerate().for_each(|(index, value)| nlp.set_parameter(index, *value));
     // What a start that is given as a number counts.
@@ -36,7 +45,8 @@ pub fn by_parameters(problem: &Problem, solution: &Solution, p: &[f64], by: &ByP
     Lagrangian::new(problem, &nlp, solution).by_parameters(by, &at_start)
 }
 
-/// What the objective of the model changes by with the bound of each path constraint, per time: one column per row, `N` entries each.
+/// What the objective of the model changes by with the bound of each path constraint, per time: one
+/// column per row, `N` entries each.
 pub(crate) fn path_multipliers(
     problem: &Problem,
     nlp: &TranscribedNlp,
@@ -53,7 +63,11 @@ pub(crate) fn path_multipliers(
 }
 
 /// What the objective of the model changes by with the bound of each condition at the ends.
-pub(crate) fn end_multipliers(problem: &Problem, nlp: &TranscribedNlp, solution: &Solution) -> Vec<f64> {
+pub(crate) fn end_multipliers(
+    problem: &Problem,
+    nlp: &TranscribedNlp,
+    solution: &Solution,
+) -> Vec<f64> {
     let rows = &solution.multipliers.rows[nlp.chain().coupling()];
     rows.iter().map(|lambda| -problem.sense * lambda).collect()
 }
@@ -67,19 +81,28 @@ pub struct Hamiltonian {
     pub size: f64,
     /// Whether it has to be constant: time itself does not matter.
     pub is_constant: bool,
-    /// What it has to be at the last time, where that is unknown: minus what the objective and the conditions at the ends gain by it.
+    /// What it has to be at the last time, where that is unknown: minus what the objective and the
+    /// conditions at the ends gain by it.
     pub expected: Option<f64>,
-    /// One for each control: the part of the time on which it does not minimise the Hamiltonian, by the sign of the slope.
+    /// One for each control: the part of the time on which it does not minimise the Hamiltonian, by
+    /// the sign of the slope.
     pub violations: Vec<f64>,
-    /// What a pause on a surface would gain, per time, where one is possible: above 0 it is no optimum.
+    /// What a pause on a surface would gain, per time, where one is possible: above 0 it is no
+    /// optimum.
     pub pause: Option<f64>,
-    /// Whether all its terms together are no more than the tolerance of the solver: then nothing can be said of it.
+    /// Whether all its terms together are no more than the tolerance of the solver: then nothing
+    /// can be said of it.
     pub is_noise: bool,
 }
 
 impl Hamiltonian {
     /// Of a solution over this time.
-    pub fn new(problem: &Problem, nlp: &mut TranscribedNlp, solution: &Solution, duration: f64) -> Self {
+    pub fn new(
+        problem: &Problem,
+        nlp: &mut TranscribedNlp,
+        solution: &Solution,
+        duration: f64,
+    ) -> Self {
         let lagrangian = Lagrangian::new(problem, nlp, solution);
         let ((values, size), expected) = (lagrangian.hamiltonian(duration), lagrangian.expected());
         let is_noise = size * duration.abs() <= NOISE * problem.method.tol;
@@ -91,7 +114,8 @@ impl Hamiltonian {
         Hamiltonian { values, size, is_constant, expected, violations, pause: None, is_noise }
     }
 
-    /// The mean difference from what it has to be, over all intervals; nothing where it may be anything.
+    /// The mean difference from what it has to be, over all intervals; nothing where it may be
+    /// anything.
     pub fn deviation(&self) -> Option<f64> {
         let target = self.target()?;
         let sum: f64 = self.values.iter().map(|value| (value - target).abs()).sum();
@@ -114,7 +138,11 @@ pub(crate) struct Lagrangian<'a> {
 }
 
 impl<'a> Lagrangian<'a> {
-    pub(crate) fn new(problem: &'a Problem, nlp: &'a TranscribedNlp, solution: &'a Solution) -> Self {
+    pub(crate) fn new(
+        problem: &'a Problem,
+        nlp: &'a TranscribedNlp,
+        solution: &'a Solution,
+    ) -> Self {
         Lagrangian { problem, nlp, solution, parameters: nlp.parameters_at(&solution.v) }
     }
 
@@ -127,7 +155,9 @@ impl<'a> Lagrangian<'a> {
             dynamics.value(&self.points(dynamics, node), &self.parameters, &mut values);
             for output in 0..dynamics.outputs() {
                 let weights = self.weights(node, output);
-                for (sum, (weight, value)) in sums.iter_mut().zip(weights.zip(values.column(output))) {
+                for (sum, (weight, value)) in
+                    sums.iter_mut().zip(weights.zip(values.column(output)))
+                {
                     *sum += weight * value;
                     sizes += (weight * value).abs();
                 }
@@ -138,7 +168,8 @@ impl<'a> Lagrangian<'a> {
         (sums, sizes / count)
     }
 
-    /// Where the last time is an unknown between its bounds, the Lagrangian does not change with it.
+    /// Where the last time is an unknown between its bounds, the Lagrangian does not change with
+    /// it.
     fn expected(&self) -> Option<f64> {
         let (problem, stages) = (self.problem, self.nlp.chain());
         let unknown = problem.last_time?;
@@ -176,13 +207,16 @@ impl<'a> Lagrangian<'a> {
         points
     }
 
-    /// What an output of the right side at a node counts in the Lagrangian, per length of each interval.
+    /// What an output of the right side at a node counts in the Lagrangian, per length of each
+    /// interval.
     fn weights(&self, node: &Node, output: usize) -> impl Iterator<Item = f64> {
         let stages = self.nlp.chain();
         let is_state = output < self.problem.layout.x;
         let (row, factor, weight) = (node.row + output, node.factor, node.weight);
         let rows = &self.solution.multipliers.rows;
-        let own = move |k: usize| if is_state { -factor * rows[k * stages.row_step() + row] } else { weight };
+        let own = move |k: usize| {
+            if is_state { -factor * rows[k * stages.row_step() + row] } else { weight }
+        };
         (0..stages.intervals).map(own)
     }
 
@@ -216,7 +250,9 @@ impl<'a> Lagrangian<'a> {
             point.load(stages, path.layout(), &self.solution.v, &mut points);
             let first = at * path.outputs();
             add_slopes(path, &points, &self.parameters, sums, |output| {
-                (0..stages.intervals).map(|k| rows[stages.local(k).start + first + output]).collect()
+                (0..stages.intervals)
+                    .map(|k| rows[stages.local(k).start + first + output])
+                    .collect()
             });
         }
     }
@@ -252,7 +288,8 @@ impl<'a> Lagrangian<'a> {
     /// The variables that are values of a signal.
     fn variables_of(&self, signal: Signal) -> Vec<usize> {
         let stages = self.nlp.chain();
-        let slots = self.nlp.interval().slots.iter().enumerate().filter(|(_, slot)| slot.signal == signal);
+        let slots =
+            self.nlp.interval().slots.iter().enumerate().filter(|(_, slot)| slot.signal == signal);
         let places = slots.flat_map(|(place, _)| {
             let count = stages.intervals + usize::from(place < stages.states);
             (0..count).map(move |k| place + k * stages.variable_step())
@@ -267,8 +304,9 @@ impl<'a> Lagrangian<'a> {
         let mut weights = vec![0.0; parameters];
         let starts = problem.start.iter().zip(at_start);
         weights.extend(starts.map(|(start, slope)| start.map_or(0.0, |_| *slope)));
-        let signals =
-            (0..problem.layout.x).map(Signal::State).chain((0..problem.layout.u).map(Signal::Control));
+        let signals = (0..problem.layout.x)
+            .map(Signal::State)
+            .chain((0..problem.layout.u).map(Signal::Control));
         let signals = signals.map(|signal| self.variables_of(signal));
         for variables in signals.chain(stages.globals().map(|at| vec![at])) {
             let sum = |of: &[f64]| variables.iter().map(|at| of[*at]).sum::<f64>();
@@ -278,7 +316,8 @@ impl<'a> Lagrangian<'a> {
         let every = |range: Range<usize>, row: usize| range.skip(row).step_by(paths.max(1));
         for row in 0..paths {
             let all = (0..stages.intervals).flat_map(|k| every(stages.local(k), row));
-            weights.extend(at_bounds(all.map(|at| multipliers.rows[at]), &problem.path_bounds[row]));
+            weights
+                .extend(at_bounds(all.map(|at| multipliers.rows[at]), &problem.path_bounds[row]));
         }
         for (row, bounds) in stages.coupling().zip(&problem.boundary_bounds) {
             weights.extend(at_bounds([multipliers.rows[row]], bounds));

@@ -1,18 +1,21 @@
-//! Whether the controls minimise the Hamiltonian: its slope by a control points away from the bound that is active, and is zero where none is.
+//! Whether the controls minimise the Hamiltonian: its slope by a control points away from the bound
+//! that is active, and is zero where none is.
 //!
 //! ```text
 //!     dH/du > 0  only at the lower bound,      dH/du < 0  only at the upper bound
 //! ```
 //!
-//! The slope is that of the Lagrangian without the multipliers of bounds, over the length of the interval: costates, path constraints and running cost are in it,
-//! what the solver says about bounds is not. What is left to gain,
+//! The slope is that of the Lagrangian without the multipliers of bounds, over the length of the
+//! interval: costates, path constraints and running cost are in it, what the solver says about
+//! bounds is not. What is left to gain,
 //!
 //! ```text
 //!     dH/du (u - lower)   where dH/du > 0,        -dH/du (upper - u)   where dH/du < 0
 //! ```
 //!
-//! is an amount of `H`, and is compared with the size of its terms. A bound that is farther away than the control ever is from 0 says nothing of its size: then it is that size
-//! which could be gained.
+//! is an amount of `H`, and is compared with the size of its terms. A bound that is farther away
+//! than the control ever is from 0 says nothing of its size: then it is that size which could be
+//! gained.
 
 use crate::nlp::{Derivatives, Nlp, Solution};
 use crate::problem::{Bounds, Variable};
@@ -22,7 +25,8 @@ use crate::transcribe::interval::Signal;
 /// A smaller part of the size of the Hamiltonian is no gain.
 const GAIN: f64 = 1e-3;
 
-/// For each of these controls, the part of the time on which the rule of signs is violated, over this time and with terms of this size.
+/// For each of these controls, the part of the time on which the rule of signs is violated, over
+/// this time and with terms of this size.
 pub(crate) fn violations(
     controls: &[Variable],
     nlp: &mut TranscribedNlp,
@@ -53,13 +57,19 @@ pub(crate) fn slopes(nlp: &mut TranscribedNlp, solution: &Solution) -> Vec<f64> 
     gradient
 }
 
-/// The variables that are values of a control, each with its interval; a value that two intervals share belongs to the later one.
-fn variables<'a>(nlp: &'a TranscribedNlp, control: usize) -> impl Iterator<Item = (usize, usize)> + 'a {
+/// The variables that are values of a control, each with its interval; a value that two intervals
+/// share belongs to the later one.
+fn variables<'a>(
+    nlp: &'a TranscribedNlp,
+    control: usize,
+) -> impl Iterator<Item = (usize, usize)> + 'a {
     let chain = nlp.chain();
     let slots = nlp.interval().slots.iter().enumerate();
-    let places =
-        slots.filter(move |(_, slot)| slot.signal == Signal::Control(control)).map(|(place, _)| place);
-    places.flat_map(move |place| (0..chain.intervals).map(move |k| (k, chain.state(k).start + place)))
+    let places = slots
+        .filter(move |(_, slot)| slot.signal == Signal::Control(control))
+        .map(|(place, _)| place);
+    places
+        .flat_map(move |place| (0..chain.intervals).map(move |k| (k, chain.state(k).start + place)))
 }
 
 /// How large a control is anywhere; one of its unit where it is 0 throughout.
@@ -69,7 +79,12 @@ fn largest(nlp: &TranscribedNlp, v: &[f64], control: usize, unit: f64) -> f64 {
 }
 
 /// What could be gained on each interval, times its length.
-fn gains(nlp: &TranscribedNlp, (v, slopes): (&[f64], &[f64]), control: usize, size: f64) -> Vec<f64> {
+fn gains(
+    nlp: &TranscribedNlp,
+    (v, slopes): (&[f64], &[f64]),
+    control: usize,
+    size: f64,
+) -> Vec<f64> {
     let mut gains = vec![0.0; nlp.chain().intervals];
     for (k, variable) in variables(nlp, control) {
         gains[k] += gain(&nlp.variable_bounds()[variable], v[variable], slopes[variable], size);

@@ -1,7 +1,7 @@
 //! What a smoothed trajectory says about each surface: below, held or above, and from when to when.
 //!
-//! The layer is `|psi| <= sigma`. A passage from one side of it to the other is a crossing, cut at the zero of `psi`;
-//! any longer stay inside counts as held. The true system has the last word.
+//! The layer is `|psi| <= sigma`. A passage from one side of it to the other is a crossing, cut at
+//! the zero of `psi`; any longer stay inside counts as held. The true system has the last word.
 
 /// Where the trajectory is, relative to a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,7 +92,10 @@ mod tests {
     #[test]
     fn a_passage_is_a_crossing_and_a_stay_is_held() {
         assert_eq!(named(&[-1.0, -0.05, 0.0, 0.05, 1.0]), [Mode::Below, Mode::Above]);
-        assert_eq!(named(&[-1.0, -0.05, -0.04, -0.05, -1.0]), [Mode::Below, Mode::Held, Mode::Below]);
+        assert_eq!(
+            named(&[-1.0, -0.05, -0.04, -0.05, -1.0]),
+            [Mode::Below, Mode::Held, Mode::Below]
+        );
         assert_eq!(named(&[0.0, 0.0, 0.0, 0.5]), [Mode::Held, Mode::Above]);
         assert_eq!(named(&[1.0, 0.05, 1.0]), [Mode::Above]);
     }

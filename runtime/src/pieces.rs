@@ -1,7 +1,8 @@
 //! One trajectory of pieces of time that were solved side by side.
 //!
-//! A problem with jumps is solved as one without: each piece between two jumps has its own states and controls over the same `tau` in [0, 1], and the
-//! lengths of all pieces but the last are its last unknowns. Here they are put one after the other again: piece `j` begins at `T_j` and
+//! A problem with jumps is solved as one without: each piece between two jumps has its own states
+//! and controls over the same `tau` in [0, 1], and the lengths of all pieces but the last are its
+//! last unknowns. Here they are put one after the other again: piece `j` begins at `T_j` and
 //!
 //! ```text
 //! t = T_j + tau D_j,     x(t) = x_j(tau),     u(t) = u_j(tau),     T_j+1 = T_j + D_j
@@ -25,8 +26,9 @@ pub struct Jump {
     pub after: Vec<f64>,
 }
 
-/// Puts the pieces of a solution one after the other, with a jump between each two. `between` is the problem of one piece by itself over
-/// the whole time. At the time of a jump the trajectory has the state after it.
+/// Puts the pieces of a solution one after the other, with a jump between each two. `between` is
+/// the problem of one piece by itself over the whole time. At the time of a jump the trajectory has
+/// the state after it.
 pub fn joined(between: &Problem, solved: &Problem, outcome: &Outcome) -> (Outcome, Vec<Jump>) {
     let pieces = Pieces::new(between, solved, &outcome.trajectory);
     let trajectory = pieces.trajectory();
@@ -41,7 +43,10 @@ pub fn joined(between: &Problem, solved: &Problem, outcome: &Outcome) -> (Outcom
     let jumps = pieces.jumps();
     let attempts = outcome.attempts.clone();
     let (convex, is_impossible) = (outcome.convex, outcome.is_impossible);
-    (Outcome { solution, trajectory, sigma, modes, convex, limiting, is_impossible, attempts }, jumps)
+    (
+        Outcome { solution, trajectory, sigma, modes, convex, limiting, is_impossible, attempts },
+        jumps,
+    )
 }
 
 struct Pieces<'a> {
@@ -59,7 +64,8 @@ impl<'a> Pieces<'a> {
     fn new(between: &'a Problem, solved: &'a Problem, own: &'a Trajectory) -> Self {
         let known = between.unknowns.len();
         let mut parameters: Vec<f64> = between.parameters.iter().map(|it| it.value).collect();
-        // Both have the same parameters, then the same unknowns; then one has lengths, and both have widths.
+        // Both have the same parameters, then the same unknowns; then one has lengths, and both
+        // have widths.
         let shared = solved.unknowns.get(known).map_or(parameters.len(), |first| first.parameter);
         parameters[..shared].copy_from_slice(&own.parameters[..shared]);
         let widths = parameters.len() - shared;
@@ -149,12 +155,17 @@ impl<'a> Pieces<'a> {
         for (at, column) in states.iter().chain(controls).enumerate() {
             let last = column.last().copied().unwrap_or(0.0);
             let values = column.iter().copied().chain([last]);
-            points.column_mut(1 + at).iter_mut().zip(values).for_each(|(place, value)| *place = value);
+            points
+                .column_mut(1 + at)
+                .iter_mut()
+                .zip(values)
+                .for_each(|(place, value)| *place = value);
         }
         points
     }
 
-    /// Of the constraints that are written; those that keep a piece on its side of a surface come after them.
+    /// Of the constraints that are written; those that keep a piece on its side of a surface come
+    /// after them.
     fn path_multipliers(&self) -> Vec<Vec<f64>> {
         let rows = self.between.path_bounds.len();
         let piece = |row: usize, j: usize| {

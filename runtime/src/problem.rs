@@ -1,11 +1,14 @@
-//! The contract between symbols and numbers: an optimal control problem as functions, bounds and names.
+//! The contract between symbols and numbers: an optimal control problem as functions, bounds and
+//! names.
 //!
-//! Everything a model means is here; nothing of its text but the [`Origin`] of each row. Whoever fills a
-//! [`Problem`] (the compiler, or a test with hand-written functions) is not the runtime's business.
+//! Everything a model means is here; nothing of its text but the [`Origin`] of each row. Whoever
+//! fills a [`Problem`] (the compiler, or a test with hand-written functions) is not the runtime's
+//! business.
 //!
-//! Time is normalised in all functions that a transcription evaluates: their input `t` is `tau` in [0, 1], and
-//! the real time is `t0(p) + tau * (tf(p) - t0(p))`. So a free final time needs no special treatment: it is a
-//! parameter like any other, and its derivatives come out of the functions.
+//! Time is normalised in all functions that a transcription evaluates: their input `t` is `tau` in
+//! [0, 1], and the real time is `t0(p) + tau * (tf(p) - t0(p))`. So a free final time needs no
+//! special treatment: it is a parameter like any other, and its derivatives come out of the
+//! functions.
 
 mod method;
 mod often_called;
@@ -62,8 +65,8 @@ impl Layout {
 
 /// A table with one column per quantity and one row per grid point, stored column by column.
 ///
-/// Columns are `stride` apart; `stride` is even and at least `count`, so that machine code may always read and
-/// write pairs of points. Rows from `count` to `stride` are padding.
+/// Columns are `stride` apart; `stride` is even and at least `count`, so that machine code may
+/// always read and write pairs of points. Rows from `count` to `stride` are padding.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Columns {
     data: Vec<f64>,
@@ -146,11 +149,13 @@ pub struct Origin {
     pub span: (u32, u32),
 }
 
-/// `y = f(z)` with `z = [t | x | u | p | s]`, known sparsity and exact derivatives, over a whole grid per call.
+/// `y = f(z)` with `z = [t | x | u | p | s]`, known sparsity and exact derivatives, over a whole
+/// grid per call.
 ///
-/// `points` holds the columns `[t | x | u | s]`; `parameters` is the same at all points. The Jacobian and the
-/// Hessian cover the inputs the function was differentiated by; pattern columns are positions in `z`.
-/// All tables have as many points as `points`. Nothing is checked but sizes, by `assert!`.
+/// `points` holds the columns `[t | x | u | s]`; `parameters` is the same at all points. The
+/// Jacobian and the Hessian cover the inputs the function was differentiated by; pattern columns
+/// are positions in `z`. All tables have as many points as `points`. Nothing is checked but sizes,
+/// by `assert!`.
 pub trait Function: Send + Sync {
     /// Sizes of the inputs.
     fn layout(&self) -> &Layout;
@@ -169,8 +174,15 @@ pub trait Function: Send + Sync {
     /// The outputs: one column each.
     fn value(&self, points: &Columns, parameters: &[f64], values: &mut Columns);
     /// Outputs and Jacobian: one column per output, one per pattern entry.
-    fn jacobian(&self, points: &Columns, parameters: &[f64], values: &mut Columns, jacobian: &mut Columns);
-    /// Outputs, Jacobian and the Hessian of `multipliers . y` (one column of multipliers per output) in one pass.
+    fn jacobian(
+        &self,
+        points: &Columns,
+        parameters: &[f64],
+        values: &mut Columns,
+        jacobian: &mut Columns,
+    );
+    /// Outputs, Jacobian and the Hessian of `multipliers . y` (one column of multipliers per
+    /// output) in one pass.
     fn derivatives(
         &self,
         points: &Columns,
@@ -204,7 +216,11 @@ impl Bounds {
     }
     /// How far `value` is outside; 0 inside, infinite for what is not a number.
     pub fn violation(&self, value: f64) -> f64 {
-        if value.is_nan() { f64::INFINITY } else { (self.lower - value).max(value - self.upper).max(0.0) }
+        if value.is_nan() {
+            f64::INFINITY
+        } else {
+            (self.lower - value).max(value - self.upper).max(0.0)
+        }
     }
 }
 
@@ -245,7 +261,8 @@ pub struct Unknown {
     pub bounds: Bounds,
 }
 
-/// A switching surface, the zero set of output `i` of the guards; in a [`Problem`] also a whole `Dir`, with `|psi|`.
+/// A switching surface, the zero set of output `i` of the guards; in a [`Problem`] also a whole
+/// `Dir`, with `|psi|`.
 #[derive(Clone, Debug)]
 pub struct Surface {
     /// Its name.
@@ -273,9 +290,9 @@ pub struct Problem {
     pub unknowns: Vec<Unknown>,
     /// Switching surfaces.
     pub surfaces: Vec<Surface>,
-    /// The smoothed right side over normalised time: `(tf - t0) * f(t, x, u, p, s = Sgn_sigma(psi) or Dir_sigma(psi))`, one output
-    /// per state; then, if [`Problem::running_cost`], one more: `(tf - t0) *` the integrand of the objective.
-    /// Differentiated by `x`, `u` and the unknowns.
+    /// The smoothed right side over normalised time: `(tf - t0) * f(t, x, u, p, s = Sgn_sigma(psi)
+    /// or Dir_sigma(psi))`, one output per state; then, if [`Problem::running_cost`], one more:
+    /// `(tf - t0) *` the integrand of the objective. Differentiated by `x`, `u` and the unknowns.
     pub dynamics: Arc<dyn Function>,
     /// Whether the last output of `dynamics` is the integrand of the objective.
     pub running_cost: bool,
@@ -283,8 +300,8 @@ pub struct Problem {
     pub path: Arc<dyn Function>,
     /// One per output of `path`.
     pub path_bounds: Vec<Bounds>,
-    /// Inputs `[x(start), x(end) | p]` in the layout `x = 2n`. Output 0 is the Mayer objective, the others are
-    /// boundary conditions. Differentiated by both ends and the unknowns.
+    /// Inputs `[x(start), x(end) | p]` in the layout `x = 2n`. Output 0 is the Mayer objective, the
+    /// others are boundary conditions. Differentiated by both ends and the unknowns.
     pub boundary: Arc<dyn Function>,
     /// One per output of `boundary` but the first.
     pub boundary_bounds: Vec<Bounds>,
@@ -294,7 +311,8 @@ pub struct Problem {
     pub has_objective: bool,
     /// States whose start is a number.
     pub start: Vec<Option<f64>>,
-    /// Inputs `[t | p]`; outputs the guess of all states, then of all controls, at normalised time `t`.
+    /// Inputs `[t | p]`; outputs the guess of all states, then of all controls, at normalised time
+    /// `t`.
     pub guess: Arc<dyn Function>,
     /// Inputs `[p]`; outputs `t0, tf`.
     pub interval: Arc<dyn Function>,
@@ -302,7 +320,8 @@ pub struct Problem {
     pub guards: Arc<dyn Function>,
     /// Whether neither `dynamics` nor `path` depends on the time but through states and controls.
     pub is_autonomous: bool,
-    /// The unknown that is the last time and appears in no right side, path constraint or first time.
+    /// The unknown that is the last time and appears in no right side, path constraint or first
+    /// time.
     pub last_time: Option<usize>,
     /// Names of the outputs of `report`.
     pub report_names: Vec<String>,
@@ -322,7 +341,8 @@ pub struct ByParameters {
     pub path: Arc<dyn Function>,
     /// See [`Problem::boundary`].
     pub boundary: Arc<dyn Function>,
-    /// Numbers that the parameters give. Inputs `[p]`; outputs: the parameters themselves, each over the others; the starts of all
-    /// states; then lower and upper bounds, in pairs, of states, controls, unknowns, path constraints and boundary conditions.
+    /// Numbers that the parameters give. Inputs `[p]`; outputs: the parameters themselves, each
+    /// over the others; the starts of all states; then lower and upper bounds, in pairs, of states,
+    /// controls, unknowns, path constraints and boundary conditions.
     pub given: Arc<dyn Function>,
 }

@@ -1,9 +1,12 @@
 //! A start on one uniform grid as the start on another one of the same problem.
 //!
-//! Over normalised time a chain of stages holds three kinds of numbers: values at grid points, values of intervals, and multipliers. What is carried from
-//! interval to interval belongs to `tau_k = k/N`; controls, states at nodes and the multipliers of rows belong to a time `c` of their interval, at `(k + c)/N`. All are
-//! interpolated linearly between equals. A defect holds the whole step, so that its multiplier is the costate on every grid; a path constraint or a bound stands for a
-//! piece of time, so that its multiplier and the barrier parameter are proportional to `1/N`.
+//! Over normalised time a chain of stages holds three kinds of numbers: values at grid points,
+//! values of intervals, and multipliers. What is carried from interval to interval belongs to
+//! `tau_k = k/N`; controls, states at nodes and the multipliers of rows belong to a time `c` of
+//! their interval, at `(k + c)/N`. All are interpolated linearly between equals. A defect holds the
+//! whole step, so that its multiplier is the costate on every grid; a path constraint or a bound
+//! stands for a piece of time, so that its multiplier and the barrier parameter are proportional to
+//! `1/N`.
 
 use crate::linalg::Stages;
 use crate::nlp::{Multipliers, Start, Warm};
@@ -18,13 +21,15 @@ pub(crate) struct Times {
 }
 
 impl Times {
-    /// Those of an interval with so many path constraints at each point. What has one value in all of it is in the middle.
+    /// Those of an interval with so many path constraints at each point. What has one value in all
+    /// of it is in the middle.
     pub(crate) fn new(interval: &Interval, path: usize) -> Self {
         const MIDDLE: f64 = 0.5;
         let carried = interval.carried;
         let constant = |place: usize, slot: &Slot| place < interval.chosen && slot.time == 0.0;
         let slots = interval.slots[carried..].iter().enumerate();
-        let variables = slots.map(|(place, slot)| if constant(place, slot) { MIDDLE } else { slot.time });
+        let variables =
+            slots.map(|(place, slot)| if constant(place, slot) { MIDDLE } else { slot.time });
         let (variables, defects) = (variables.collect(), interval.inner() + carried);
         if interval.inner() == 0 {
             return Times { variables, rows: vec![MIDDLE; defects + path] };
@@ -38,18 +43,20 @@ impl Times {
     }
 }
 
-/// The start on the grid of `to`. Both chains must be of one problem, whose intervals have these times.
+/// The start on the grid of `to`. Both chains must be of one problem, whose intervals have these
+/// times.
 pub(crate) fn prolong(times: &Times, from: Stages, start: &Start, to: Stages) -> Start {
     let shrink = from.intervals as f64 / to.intervals as f64;
-    let warm =
-        start.warm.as_ref().map(|Warm { multipliers: Multipliers { rows, lower, upper }, mu, widths }| {
+    let warm = start.warm.as_ref().map(
+        |Warm { multipliers: Multipliers { rows, lower, upper }, mu, widths }| {
             let multipliers = Multipliers {
                 rows: conditions(times, from, rows, to, shrink),
                 lower: variables(times, from, lower, to, shrink),
                 upper: variables(times, from, upper, to, shrink),
             };
             Warm { multipliers, mu: shrink * mu, widths: widths.clone() }
-        });
+        },
+    );
     Start { v: variables(times, from, &start.v, to, 1.0), warm }
 }
 
@@ -59,8 +66,9 @@ fn variables(times: &Times, from: Stages, source: &[f64], to: Stages, factor: f6
     let (old, new) = (from.variable_step(), to.variable_step());
     for i in 0..to.states {
         let at = |k: usize| source[k * old + i];
-        (0..=to.intervals)
-            .for_each(|k| target[k * new + i] = factor * at_point(from.intervals, &at, to.intervals, k));
+        (0..=to.intervals).for_each(|k| {
+            target[k * new + i] = factor * at_point(from.intervals, &at, to.intervals, k)
+        });
     }
     for (i, time) in (to.states..new).zip(&times.variables) {
         let at = |k: usize| source[k * old + i];
@@ -92,7 +100,8 @@ fn at_point(old: usize, at: &dyn Fn(usize) -> f64, new: usize, k: usize) -> f64 
     between(k as f64 * old as f64 / new as f64, old, at)
 }
 
-/// Values at a time of each of `old` intervals, read at that time of interval `k` of `new`; constant beyond the first and the last.
+/// Values at a time of each of `old` intervals, read at that time of interval `k` of `new`;
+/// constant beyond the first and the last.
 fn in_interval(old: usize, at: &dyn Fn(usize) -> f64, new: usize, k: usize, time: f64) -> f64 {
     between((k as f64 + time) * old as f64 / new as f64 - time, old - 1, at)
 }
@@ -117,7 +126,15 @@ mod tests {
     }
 
     fn chain(intervals: usize) -> Stages {
-        Stages { intervals, states: 1, controls: 1, inner: 1, globals: 1, local_rows: 1, coupling_rows: 1 }
+        Stages {
+            intervals,
+            states: 1,
+            controls: 1,
+            inner: 1,
+            globals: 1,
+            local_rows: 1,
+            coupling_rows: 1,
+        }
     }
 
     /// The control and the inner state, `5 tau` and `3 tau`, in interval `k`.
@@ -126,7 +143,8 @@ mod tests {
         [5.0 * at(TIMES[0]), 3.0 * at(TIMES[1])]
     }
 
-    /// `x = 3 tau`, `u = 5 tau` at its time, `g = 7`; multipliers 2 of defects, 4 of path rows, 6 of bounds, 8 of the coupling row.
+    /// `x = 3 tau`, `u = 5 tau` at its time, `g = 7`; multipliers 2 of defects, 4 of path rows, 6
+    /// of bounds, 8 of the coupling row.
     fn start(chain: Stages) -> Start {
         let state = |k: usize| 3.0 * k as f64 / chain.intervals as f64;
         let stage = |k: usize| [vec![state(k)], inside(chain, k).to_vec()].concat();
@@ -144,7 +162,8 @@ mod tests {
         a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
     }
 
-    /// But for what is inside intervals, before its first time and behind its last: it stays what it is there.
+    /// But for what is inside intervals, before its first time and behind its last: it stays what
+    /// it is there.
     #[test]
     fn what_is_linear_in_time_is_the_same_on_any_grid() {
         for (from, to) in [(10, 20), (20, 10), (7, 16)] {
@@ -171,6 +190,10 @@ mod tests {
         assert_eq!(warm.multipliers.rows, rows);
         let stages = &warm.multipliers.lower[..to.variables() - 1];
         assert!(stages.iter().all(|z| *z == 1.5));
-        assert_eq!(warm.multipliers.lower[to.variables() - 1], 6.0, "an unknown is no piece of time");
+        assert_eq!(
+            warm.multipliers.lower[to.variables() - 1],
+            6.0,
+            "an unknown is no piece of time"
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! Starting points other than the model's guess: an earlier solution on another grid, and random variations.
+//! Starting points other than the model's guess: an earlier solution on another grid, and random
+//! variations.
 
 use crate::linalg::Stages;
 use crate::nlp::{Nlp, Solution, Start, Status};
@@ -32,7 +33,9 @@ pub(crate) fn resample(problem: &Problem, earlier: &Earlier) -> Vec<f64> {
             let value = match slot.signal {
                 Signal::State(i) => earlier.state(i, nlp.mesh().at(k, slot.time)),
                 // A control is held: what it is in the middle of the interval.
-                Signal::Control(i) if k < stages.intervals => earlier.control(i, nlp.mesh().at(k, 0.5)),
+                Signal::Control(i) if k < stages.intervals => {
+                    earlier.control(i, nlp.mesh().at(k, 0.5))
+                }
                 Signal::Control(i) => earlier.control(i, 1.0),
             };
             let variable = &mut v[place + k * stages.variable_step()];
@@ -73,24 +76,29 @@ impl Earlier {
 /// Relative size of a variation.
 const VARIATION: f64 = 0.3;
 
-/// The guess (or `base`) with smooth random variations of every signal; the same for the same seed and index.
+/// The guess (or `base`) with smooth random variations of every signal; the same for the same seed
+/// and index.
 pub fn perturbed(problem: &Problem, base: Option<Vec<f64>>, index: u32) -> Start {
     let mut nlp = TranscribedNlp::new(problem);
     let stages = nlp.chain();
     let mut v = base.unwrap_or_else(|| nlp.guess());
     let mut random = Random::new(problem.method.seed, index);
-    let signals = (0..problem.layout.x).map(Signal::State).chain((0..problem.layout.u).map(Signal::Control));
+    let signals =
+        (0..problem.layout.x).map(Signal::State).chain((0..problem.layout.u).map(Signal::Control));
     for signal in signals {
         let places = places_of(&nlp, signal);
         let values = places.iter().map(|(place, _)| v[*place]);
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        let (low, high) =
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
         let size = VARIATION * room(&nlp, places[places.len() - 1].0, low, high);
-        let (constant, wave, cycles) = (random.next(), random.next(), 1.0 + 2.0 * random.next().abs());
+        let (constant, wave, cycles) =
+            (random.next(), random.next(), 1.0 + 2.0 * random.next().abs());
         for (place, tau) in places {
             // Fixed ends stay where they are.
             let is_state = matches!(signal, Signal::State(_));
             let envelope = if is_state { (std::f64::consts::PI * tau).sin() } else { 1.0 };
-            v[place] += size * envelope * (constant + wave * (std::f64::consts::TAU * cycles * tau).sin());
+            v[place] +=
+                size * envelope * (constant + wave * (std::f64::consts::TAU * cycles * tau).sin());
         }
     }
     for place in stages.globals() {
@@ -118,9 +126,11 @@ fn room(nlp: &TranscribedNlp, place: usize, low: f64, high: f64) -> f64 {
     if width.is_finite() { width } else { (high - low).max(low.abs().max(high.abs())).max(1.0) }
 }
 
-/// Whether `a` is the better answer: solved before not solved, then the lower objective, then the smaller violation.
+/// Whether `a` is the better answer: solved before not solved, then the lower objective, then the
+/// smaller violation.
 pub fn is_better(a: &Solution, b: &Solution) -> bool {
-    let solved = |solution: &Solution| matches!(solution.status, Status::Solved | Status::Acceptable);
+    let solved =
+        |solution: &Solution| matches!(solution.status, Status::Solved | Status::Acceptable);
     match (solved(a), solved(b)) {
         (true, true) => a.objective < b.objective,
         (false, false) => a.constraint_violation < b.constraint_violation,

@@ -6,7 +6,8 @@ use crate::problem::{Columns, Function, Problem};
 use crate::transcribe::mesh::Mesh;
 use crate::transcribe::{TranscribedNlp, interval};
 
-/// Signals on a grid of `N + 1` times; controls and reports hold on the interval that begins at their time.
+/// Signals on a grid of `N + 1` times; controls and reports hold on the interval that begins at
+/// their time.
 #[derive(Clone, Debug, Default)]
 pub struct Trajectory {
     /// `N + 1` times.
@@ -17,10 +18,11 @@ pub struct Trajectory {
     pub controls: Vec<Vec<f64>>,
     /// What defines controls that are not constant on each interval.
     pub nodes: Option<ControlNodes>,
-    /// One column per state: the derivative of the objective of the model (as written, `maximize` included) by the
-    /// state at that time.
+    /// One column per state: the derivative of the objective of the model (as written, `maximize`
+    /// included) by the state at that time.
     pub costates: Vec<Vec<f64>>,
-    /// One column per path constraint, `N` entries each: what the objective changes by with its bound, per time.
+    /// One column per path constraint, `N` entries each: what the objective changes by with its
+    /// bound, per time.
     pub path_multipliers: Vec<Vec<f64>>,
     /// One per condition at the ends: what the objective changes by with its bound.
     pub end_multipliers: Vec<f64>,
@@ -34,7 +36,8 @@ pub struct Trajectory {
     pub parameters: Vec<f64>,
 }
 
-/// The values between which a control is linear, or through which it is a polynomial on each interval.
+/// The values between which a control is linear, or through which it is a polynomial on each
+/// interval.
 #[derive(Clone, Debug, Default)]
 pub struct ControlNodes {
     /// Times, ascending.
@@ -72,7 +75,11 @@ pub(crate) fn guards(problem: &Problem, nlp: &TranscribedNlp, v: &[f64]) -> Vec<
 }
 
 /// A function over normalised time at all grid points.
-pub(crate) fn sample(function: &dyn Function, points: &Columns, parameters: &[f64]) -> Vec<Vec<f64>> {
+pub(crate) fn sample(
+    function: &dyn Function,
+    points: &Columns,
+    parameters: &[f64],
+) -> Vec<Vec<f64>> {
     let mut values = Columns::new(function.outputs(), points.count());
     function.value(&resized(points, function.layout().point_inputs()), parameters, &mut values);
     (0..function.outputs()).map(|i| values.column(i).to_vec()).collect()
@@ -115,8 +122,9 @@ fn nodes(nlp: &TranscribedNlp, v: &[f64], time: &[f64]) -> Option<ControlNodes> 
     };
     let is_constant = of(0).count() <= 1;
     // Linear controls: the value at the end of an interval is that at the start of the next.
-    let is_own =
-        |k: usize, time: f64| time < 1.0 || k + 1 == stages.intervals || interval.carried_controls() == 0;
+    let is_own = |k: usize, time: f64| {
+        time < 1.0 || k + 1 == stages.intervals || interval.carried_controls() == 0
+    };
     let all = |control: usize| {
         let places = (0..stages.intervals)
             .flat_map(move |k| of(control).map(move |(place, slot)| (k, place, slot.time)));
@@ -125,7 +133,9 @@ fn nodes(nlp: &TranscribedNlp, v: &[f64], time: &[f64]) -> Option<ControlNodes> 
     (!is_constant).then(|| ControlNodes {
         time: all(0).map(|(k, _, part)| time[k] + part * (time[k + 1] - time[k])).collect(),
         values: (0..interval.means.len())
-            .map(|control| all(control).map(|(k, place, _)| v[stages.state(k).start + place]).collect())
+            .map(|control| {
+                all(control).map(|(k, place, _)| v[stages.state(k).start + place]).collect()
+            })
             .collect(),
     })
 }
@@ -152,8 +162,8 @@ fn resized(points: &Columns, columns: usize) -> Columns {
     result
 }
 
-/// `dJ/dx_k`: the gradient by `x_k` of the Lagrangian of all that comes after grid point `k`. That is the part of
-/// interval `k` for `k < N`, and the part of the boundary for `k = N`.
+/// `dJ/dx_k`: the gradient by `x_k` of the Lagrangian of all that comes after grid point `k`. That
+/// is the part of interval `k` for `k < N`, and the part of the boundary for `k = N`.
 fn costates(problem: &Problem, nlp: &mut TranscribedNlp, solution: &Solution) -> Vec<Vec<f64>> {
     let stages = nlp.chain();
     let rows = &solution.multipliers.rows;
@@ -172,8 +182,11 @@ fn costates(problem: &Problem, nlp: &mut TranscribedNlp, solution: &Solution) ->
         if variable >= stages.globals().start || i >= states {
             continue;
         }
-        let from_here_on =
-            if row >= stages.coupling().start { k == stages.intervals } else { row / stages.row_step() == k };
+        let from_here_on = if row >= stages.coupling().start {
+            k == stages.intervals
+        } else {
+            row / stages.row_step() == k
+        };
         if from_here_on {
             costates[i][k] += value * rows[row];
         }

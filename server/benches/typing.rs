@@ -1,7 +1,8 @@
-//! From a keystroke to its diagnostics, on a model of 1,000 lines: median below 5 ms, 99th percentile below 15 ms.
+//! From a keystroke to its diagnostics, on a model of 1,000 lines: median below 5 ms, 99th
+//! percentile below 15 ms.
 //!
-//! Several hundred keystrokes one after the other give the percentiles, outside of all blocks and in the longest one;
-//! `keystroke_in_a_comment` is the mean of divan.
+//! Several hundred keystrokes one after the other give the percentiles, outside of all blocks and
+//! in the longest one; `keystroke_in_a_comment` is the mean of divan.
 
 #[path = "../tests/client/mod.rs"]
 mod client;
@@ -12,10 +13,12 @@ use serde_json::json;
 use std::time::{Duration, Instant};
 
 /// What is typed, character by character, on a line of its own before the equations of motion.
-const ITEMS: &str = "let power = u7*v7 + 0.5*d7^2   # what the motor gives\npath limit: -20 <= power <= 20\n";
+const ITEMS: &str =
+    "let power = u7*v7 + 0.5*d7^2   # what the motor gives\npath limit: -20 <= power <= 20\n";
 
 /// What is typed in the middle of the equations of motion.
-const EQUATIONS: &str = "  x7' = v7 + 0.5*sin(d7)\n  v7' = u7 - (d7 + v7)^2   # what holds it back\n";
+const EQUATIONS: &str =
+    "  x7' = v7 + 0.5*sin(d7)\n  v7' = u7 - (d7 + v7)^2   # what holds it back\n";
 
 fn main() {
     percentiles("before the dynamics", "dynamics", ITEMS);
@@ -26,10 +29,12 @@ fn main() {
 /// A client that has a large model open, and the empty line before the first one that begins so.
 fn opened(before: &str) -> (Client, usize) {
     let text = fdcc_tests::large::model(1000);
-    let line = text.lines().position(|line| line.starts_with(before)).expect("there is such a line");
+    let line =
+        text.lines().position(|line| line.starts_with(before)).expect("there is such a line");
     let text = text.replacen(&format!("\n{before}"), &format!("\n\n{before}"), 1);
-    let mut client =
-        Client::start(json!({ "textDocument": { "publishDiagnostics": { "relatedInformation": true } } }));
+    let mut client = Client::start(
+        json!({ "textDocument": { "publishDiagnostics": { "relatedInformation": true } } }),
+    );
     client.open(URI, &text);
     client.diagnostics();
     (client, line)
@@ -61,7 +66,8 @@ fn percentiles(place: &str, before: &str, typed: &str) {
     times.sort();
     let milliseconds = |share: usize| times[times.len() * share / 100].as_secs_f64() * 1e3;
     println!(
-        "{} keystrokes {place}: median {:.2} ms, 90th percentile {:.2} ms, 99th percentile {:.2} ms, longest {:.2} ms",
+        "{} keystrokes {place}: median {:.2} ms, 90th percentile {:.2} ms, 99th percentile {:.2} \
+         ms, longest {:.2} ms",
         times.len(),
         milliseconds(50),
         milliseconds(90),

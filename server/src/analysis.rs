@@ -23,8 +23,10 @@ impl Analysis {
     pub fn new(text: Text, memory: &mut Memory) -> Self {
         let reviewed = review_with(memory, &text.text);
         let is_syntax = |code: Code| code.as_str().starts_with("FDC00");
-        let is_readable =
-            !reviewed.diagnostics.iter().any(|it| it.severity == Severity::Error && is_syntax(it.code));
+        let is_readable = !reviewed
+            .diagnostics
+            .iter()
+            .any(|it| it.severity == Severity::Error && is_syntax(it.code));
         Analysis { text, reviewed, is_readable, names: OnceCell::new(), surfaces: OnceCell::new() }
     }
 

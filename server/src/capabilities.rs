@@ -6,17 +6,19 @@ use crate::text::Encoding;
 use lsp_types::{
     CodeActionKind, CodeActionOptions, CodeLensOptions, CompletionOptions, DiagnosticOptions,
     DocumentOnTypeFormattingOptions, ExecuteCommandOptions, InitializeResult, RenameOptions, Save,
-    SemanticTokensOptions, ServerCapabilities, ServerInfo, SignatureHelpOptions, TextDocumentSyncKind,
-    TextDocumentSyncOptions,
+    SemanticTokensOptions, ServerCapabilities, ServerInfo, SignatureHelpOptions,
+    TextDocumentSyncKind, TextDocumentSyncOptions,
 };
 use serde_json::Value;
 
-/// What was agreed on. Read piece by piece: a client that says something strange elsewhere is served all the same.
+/// What was agreed on. Read piece by piece: a client that says something strange elsewhere is
+/// served all the same.
 #[derive(Clone, Debug, Default)]
 pub struct Agreed {
     /// What a column counts.
     pub encoding: Encoding,
-    /// Whether the client asks for diagnostics; they are not sent unasked then, or it would show them twice.
+    /// Whether the client asks for diagnostics; they are not sent unasked then, or it would show
+    /// them twice.
     pub pulls: bool,
     /// Whether the client shows progress that it has not asked for.
     pub progress: bool,
@@ -28,7 +30,8 @@ pub struct Agreed {
 
 /// Reads the parameters of `initialize`.
 pub fn agree(params: &Value) -> Agreed {
-    let offered = params.pointer("/capabilities/general/positionEncodings").cloned().unwrap_or_default();
+    let offered =
+        params.pointer("/capabilities/general/positionEncodings").cloned().unwrap_or_default();
     let offered: Vec<_> = serde_json::from_value(offered).unwrap_or_default();
     let says = |path: &str| params.pointer(&format!("/capabilities{path}"));
     let is_true = |path: &str| says(path).and_then(Value::as_bool).unwrap_or(false);

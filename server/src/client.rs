@@ -33,7 +33,8 @@ impl Failure {
     }
 }
 
-/// The client; every thread may have a copy. A client that has gone away hears nothing, and that is no mistake.
+/// The client; every thread may have a copy. A client that has gone away hears nothing, and that is
+/// no mistake.
 #[derive(Clone)]
 pub struct Client {
     output: Arc<Mutex<dyn Write + Send>>,
@@ -48,7 +49,8 @@ impl Client {
 
     /// Answers a request.
     pub fn answer(&self, id: RequestId, result: Result<Value, Failure>) {
-        let error = |it: Failure| ResponseError { code: it.code as i32, message: it.message, data: None };
+        let error =
+            |it: Failure| ResponseError { code: it.code as i32, message: it.message, data: None };
         self.send(Message::Response(Response { id, response_result: result.map_err(error) }));
     }
 

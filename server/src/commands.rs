@@ -1,7 +1,7 @@
 //! `workspace/executeCommand`: solving and simulating, by `fdcc` itself in a process of its own.
 //!
-//! The text is what the editor shows, saved or not. A command can be called off by its request or by its progress;
-//! whatever still runs ends with the session.
+//! The text is what the editor shows, saved or not. A command can be called off by its request or
+//! by its progress; whatever still runs ends with the session.
 
 use crate::client::{Client, Failure};
 use crate::pages;
@@ -60,8 +60,9 @@ pub fn execute(session: &mut Session, request: Request) {
 }
 
 fn begin(session: &Session, client: &Client, job: Job) -> Result<(), Failure> {
-    let running =
-        job.start().map_err(|error| Failure::request(format!("fdcc cannot be started: {error}")))?;
+    let running = job
+        .start()
+        .map_err(|error| Failure::request(format!("fdcc cannot be started: {error}")))?;
     let list = session.commands.running.clone();
     list.lock().unwrap_or_else(PoisonError::into_inner).push(running.clone());
     let client = client.clone();
@@ -75,12 +76,13 @@ fn begin(session: &Session, client: &Client, job: Job) -> Result<(), Failure> {
 
 /// What is to be run.
 fn job(session: &Session, request: Request) -> Result<Job, Failure> {
-    let params: ExecuteCommandParams =
-        serde_json::from_value(request.params).map_err(|error| Failure::params(error.to_string()))?;
+    let params: ExecuteCommandParams = serde_json::from_value(request.params)
+        .map_err(|error| Failure::params(error.to_string()))?;
     let command = COMMANDS.iter().find(|row| row.0 == params.command);
-    let &(name, title) =
-        command.ok_or_else(|| Failure::params(format!("there is no command `{}`", params.command)))?;
-    let Some(Value::String(address)) = params.arguments.unwrap_or_default().into_iter().next() else {
+    let &(name, title) = command
+        .ok_or_else(|| Failure::params(format!("there is no command `{}`", params.command)))?;
+    let Some(Value::String(address)) = params.arguments.unwrap_or_default().into_iter().next()
+    else {
         return Err(Failure::params(format!("`{name}` takes the address of a text")));
     };
     let uri = Uri(address);
@@ -102,10 +104,14 @@ fn job(session: &Session, request: Request) -> Result<Job, Failure> {
 
 /// The text at an address and the name of its model, if that can be computed now.
 fn subject(session: &Session, uri: &Uri) -> Result<(Arc<str>, String), Failure> {
-    let document =
-        session.documents.get(uri).ok_or_else(|| Failure::request(format!("`{uri}` is not open")))?;
+    let document = session
+        .documents
+        .get(uri)
+        .ok_or_else(|| Failure::request(format!("`{uri}` is not open")))?;
     if session.commands.is_busy(uri) {
-        return Err(Failure::request("this model is being computed already; cancel that, or wait for it"));
+        return Err(Failure::request(
+            "this model is being computed already; cancel that, or wait for it",
+        ));
     }
     let analysis = document.analysis();
     match &analysis.reviewed.model {
@@ -114,14 +120,16 @@ fn subject(session: &Session, uri: &Uri) -> Result<(Arc<str>, String), Failure> 
     }
 }
 
-/// What `fdcc` is given; the text comes over its standard input. And the report that it writes, if one is wanted.
+/// What `fdcc` is given; the text comes over its standard input. And the report that it writes, if
+/// one is wanted.
 fn arguments(name: &str, model: &str) -> Result<(Vec<String>, Option<PathBuf>), Failure> {
     let owned = |words: &[&str]| words.iter().map(|it| (*it).to_owned()).collect();
     if name != "fdcc.report" {
         return Ok((owned(&[name.trim_start_matches("fdcc."), "-"]), None));
     }
-    let folder =
-        pages::folder().ok_or_else(|| Failure::request("there is no place for a report"))?.join("reports");
+    let folder = pages::folder()
+        .ok_or_else(|| Failure::request("there is no place for a report"))?
+        .join("reports");
     let report = folder.join(format!("{model}.html"));
     Ok((owned(&["solve", "-", "--out", &folder.display().to_string()]), Some(report)))
 }

@@ -1,4 +1,5 @@
-//! What a request is answered from: the text it is about, in the words of the protocol and in those of the compiler.
+//! What a request is answered from: the text it is about, in the words of the protocol and in those
+//! of the compiler.
 
 use crate::analysis::Analysis;
 use crate::documents::Document;

@@ -3,8 +3,8 @@
 use crate::client::Failure;
 use crate::context::Context;
 use crate::features::{
-    actions, completion, diagnostics, folding, formatting, hints, hover, lens, navigation, rename, signature,
-    symbols, tokens, workspace,
+    actions, completion, diagnostics, folding, formatting, hints, hover, lens, navigation, rename,
+    signature, symbols, tokens, workspace,
 };
 use crate::session::Session;
 // The types of the requests that are answered, and of their parts.
@@ -20,17 +20,25 @@ pub fn request(session: &mut Session, request: lsp_server::Request) -> Result<Va
         "textDocument/diagnostic" => call.about::<DocumentDiagnosticRequest>(diagnostics::report),
         "textDocument/definition" => call.about::<DefinitionRequest>(navigation::definition),
         "textDocument/references" => call.about::<ReferencesRequest>(navigation::references),
-        "textDocument/documentHighlight" => call.about::<DocumentHighlightRequest>(navigation::highlights),
+        "textDocument/documentHighlight" => {
+            call.about::<DocumentHighlightRequest>(navigation::highlights)
+        }
         "textDocument/prepareRename" => call.about::<PrepareRenameRequest>(rename::prepare),
         "textDocument/rename" => call.about::<RenameRequest>(rename::rename),
         "textDocument/documentSymbol" => call.about::<DocumentSymbolRequest>(symbols::symbols),
         "textDocument/foldingRange" => call.about::<FoldingRangeRequest>(folding::folding),
         "textDocument/selectionRange" => call.about::<SelectionRangeRequest>(folding::selection),
         "textDocument/semanticTokens/full" => call.about::<SemanticTokensRequest>(tokens::full),
-        "textDocument/semanticTokens/range" => call.about::<SemanticTokensRangeRequest>(tokens::range),
+        "textDocument/semanticTokens/range" => {
+            call.about::<SemanticTokensRangeRequest>(tokens::range)
+        }
         "textDocument/formatting" => call.about::<DocumentFormattingRequest>(formatting::whole),
-        "textDocument/rangeFormatting" => call.about::<DocumentRangeFormattingRequest>(formatting::range),
-        "textDocument/onTypeFormatting" => call.about::<DocumentOnTypeFormattingRequest>(formatting::on_type),
+        "textDocument/rangeFormatting" => {
+            call.about::<DocumentRangeFormattingRequest>(formatting::range)
+        }
+        "textDocument/onTypeFormatting" => {
+            call.about::<DocumentOnTypeFormattingRequest>(formatting::on_type)
+        }
         "textDocument/hover" => call.about::<HoverRequest>(hover::hover),
         "textDocument/completion" => call.about::<CompletionRequest>(completion::completion),
         "textDocument/signatureHelp" => call.about::<SignatureHelpRequest>(signature::help),
@@ -62,7 +70,9 @@ impl Call<'_> {
         answer: impl Fn(&Context<'_>, R::Params) -> Result<R::Result, Failure>,
     ) -> Result<Value, Failure> {
         let address = self.params.pointer("/textDocument/uri").and_then(Value::as_str);
-        let uri = Uri(address.ok_or_else(|| Failure::params("`textDocument.uri` is missing"))?.to_owned());
+        let uri = Uri(address
+            .ok_or_else(|| Failure::params("`textDocument.uri` is missing"))?
+            .to_owned());
         let params = parsed(self.params)?;
         let document = self.session.documents.get(&uri);
         let document = document.ok_or_else(|| Failure::request(format!("`{uri}` is not open")))?;
@@ -76,7 +86,10 @@ fn parsed<P: DeserializeOwned>(params: Value) -> Result<P, Failure> {
 }
 
 /// Takes note of something.
-pub fn notification(session: &mut Session, notification: lsp_server::Notification) -> Result<(), Failure> {
+pub fn notification(
+    session: &mut Session,
+    notification: lsp_server::Notification,
+) -> Result<(), Failure> {
     match notification.method.as_str() {
         "textDocument/didOpen" => {
             let it = parsed::<DidOpenTextDocumentParams>(notification.params)?.text_document;

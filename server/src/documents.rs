@@ -33,7 +33,11 @@ impl Document {
 
     /// The last state that could be read: this one if possible.
     pub fn readable(&self) -> Option<&Rc<Analysis>> {
-        if self.analysis().is_readable { Some(self.analysis()) } else { self.last_readable.as_ref() }
+        if self.analysis().is_readable {
+            Some(self.analysis())
+        } else {
+            self.last_readable.as_ref()
+        }
     }
 
     /// The last state without mistakes: this one if possible.

@@ -1,4 +1,5 @@
-//! The page of each diagnostic as a file that an editor can open: the one that `fdcc explain` prints.
+//! The page of each diagnostic as a file that an editor can open: the one that `fdcc explain`
+//! prints.
 //!
 //! Pages are part of the program, so they are written where programs keep what they can make again.
 
@@ -9,7 +10,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-/// The address of the page of each code, in the order of [`Code::ALL`]; written when the first one is asked for.
+/// The address of the page of each code, in the order of [`Code::ALL`]; written when the first one
+/// is asked for.
 static LINKS: LazyLock<Vec<Option<Uri>>> =
     LazyLock::new(|| Code::ALL.iter().map(|code| written(*code)).collect());
 

@@ -1,4 +1,5 @@
-//! The thread that reads the protocol: passes everything on in order, and notes at once what makes earlier work void.
+//! The thread that reads the protocol: passes everything on in order, and notes at once what makes
+//! earlier work void.
 
 use crate::session::Event;
 use crate::signals::Signals;
@@ -29,7 +30,9 @@ pub fn run(mut input: impl BufRead, queue: &Sender<Event>, signals: &Signals) {
 fn note(message: &Message, signals: &Signals) {
     let Message::Notification(notification) = message else { return };
     match notification.method.as_str() {
-        "textDocument/didOpen" | "textDocument/didChange" | "textDocument/didClose" => signals.change(),
+        "textDocument/didOpen" | "textDocument/didChange" | "textDocument/didClose" => {
+            signals.change()
+        }
         "$/cancelRequest" => {
             if let Some(id) = cancelled(notification) {
                 signals.cancel(id);

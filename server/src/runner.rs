@@ -5,8 +5,8 @@ use crate::pages;
 use lsp_server::{ErrorCode, RequestId};
 use lsp_types::{
     MessageType, ProgressNotification, ProgressParams, ProgressToken, ShowDocumentParams,
-    ShowDocumentRequest, ShowMessageNotification, ShowMessageParams, Uri, WorkDoneProgressCreateParams,
-    WorkDoneProgressCreateRequest,
+    ShowDocumentRequest, ShowMessageNotification, ShowMessageParams, Uri,
+    WorkDoneProgressCreateParams, WorkDoneProgressCreateRequest,
 };
 use serde_json::{Value, json};
 use std::io::{self, BufRead, BufReader, Read, Write};
@@ -55,7 +55,11 @@ impl Job {
     /// Starts the process.
     pub fn start(&self) -> io::Result<Arc<Running>> {
         let mut command = Command::new(&self.program);
-        command.args(&self.arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+            .args(&self.arguments)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
         self.folder.iter().for_each(|folder| {
             command.current_dir(folder);
         });
@@ -142,8 +146,12 @@ impl Running {
     fn tell(&self, client: &Client, job: &Job, output: &Output, code: Option<i32>) {
         let is_fine = code == Some(0);
         let source = if output.stdout.trim().is_empty() { &output.stderr } else { &output.stdout };
-        let message =
-            source.lines().map(str::trim).find(|it| !it.is_empty()).unwrap_or("nothing was said").to_owned();
+        let message = source
+            .lines()
+            .map(str::trim)
+            .find(|it| !it.is_empty())
+            .unwrap_or("nothing was said")
+            .to_owned();
         let kind = if is_fine { MessageType::Info } else { MessageType::Warning };
         client.notify::<ShowMessageNotification>(ShowMessageParams { kind, message });
         let made = job.report.as_ref().filter(|it| it.is_file()).and_then(|it| pages::address(it));

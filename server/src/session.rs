@@ -1,4 +1,5 @@
-//! The session: one event after the other, and a check of what has changed whenever nothing is waiting.
+//! The session: one event after the other, and a check of what has changed whenever nothing is
+//! waiting.
 
 use crate::capabilities::{self, Agreed};
 use crate::client::{Client, Failure};
@@ -57,7 +58,16 @@ impl Session {
     /// With nothing open.
     pub fn new(client: Client, signals: Arc<Signals>, program: PathBuf) -> Self {
         let (agreed, documents, commands) = Default::default();
-        Session { client, agreed, documents, commands, program, signals, stage: Stage::Before, changes: 0 }
+        Session {
+            client,
+            agreed,
+            documents,
+            commands,
+            program,
+            signals,
+            stage: Stage::Before,
+            changes: 0,
+        }
     }
 
     /// Until the client ends it; says whether that was done as the protocol wants.
@@ -111,14 +121,20 @@ impl Session {
                 self.agreed = capabilities::agree(&request.params);
                 Ok(capabilities::result(&self.agreed))
             }
-            (Stage::Before, _) => refused(ErrorCode::ServerNotInitialized, "`initialize` comes first"),
-            (Stage::Running, "initialize") => refused(ErrorCode::InvalidRequest, "`initialize` comes once"),
+            (Stage::Before, _) => {
+                refused(ErrorCode::ServerNotInitialized, "`initialize` comes first")
+            }
+            (Stage::Running, "initialize") => {
+                refused(ErrorCode::InvalidRequest, "`initialize` comes once")
+            }
             (Stage::Running, "shutdown") => {
                 self.stage = Stage::After;
                 Ok(Value::Null)
             }
             (Stage::Running, _) => dispatch::request(self, request),
-            (Stage::After, _) => refused(ErrorCode::InvalidRequest, "only `exit` comes after `shutdown`"),
+            (Stage::After, _) => {
+                refused(ErrorCode::InvalidRequest, "only `exit` comes after `shutdown`")
+            }
         }
     }
 
@@ -128,7 +144,9 @@ impl Session {
             "textDocument/didOpen" | "textDocument/didChange" | "textDocument/didClose"
         );
         self.changes += u64::from(is_change);
-        if let Some(id) = cancelled(&notification).filter(|_| notification.method == "$/cancelRequest") {
+        if let Some(id) =
+            cancelled(&notification).filter(|_| notification.method == "$/cancelRequest")
+        {
             // Its request has been answered by now, or runs.
             self.signals.take_cancelled(&id);
             self.commands.cancel(&id);
@@ -139,14 +157,16 @@ impl Session {
         }
     }
 
-    /// Checks one text that has changed and says what was found; nothing if there is none, or if a change is waiting.
+    /// Checks one text that has changed and says what was found; nothing if there is none, or if a
+    /// change is waiting.
     fn publish_next(&mut self) -> bool {
         let is_stale = |session: &Self| session.signals.changes() != session.changes;
         if self.stage != Stage::Running || self.agreed.pulls || is_stale(self) {
             return false;
         }
         let Some(document) = self.documents.next_unpublished() else { return false };
-        let found = catch_unwind(AssertUnwindSafe(|| diagnostics::publishable(document, &self.agreed)));
+        let found =
+            catch_unwind(AssertUnwindSafe(|| diagnostics::publishable(document, &self.agreed)));
         let uri = document.uri.clone();
         let is_stale = is_stale(self);
         // A text that has made us fail is not tried again; one that has changed meanwhile is.

@@ -1,4 +1,5 @@
-//! What the reader knows before the session comes to it: that a text has changed again, and what was called off.
+//! What the reader knows before the session comes to it: that a text has changed again, and what
+//! was called off.
 
 use lsp_server::RequestId;
 use std::collections::BTreeSet;

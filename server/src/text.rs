@@ -1,5 +1,5 @@
-//! A text and its lines as the protocol counts them: from 0, ended by `\n`, `\r\n` or `\r`, columns in code units of
-//! the encoding that was agreed on.
+//! A text and its lines as the protocol counts them: from 0, ended by `\n`, `\r\n` or `\r`, columns
+//! in code units of the encoding that was agreed on.
 
 use fdcc_grammar::Span;
 use lsp_types::{Position, PositionEncodingKind, Range};
@@ -111,7 +111,8 @@ impl Text {
         Range { start: self.position(span.start), end: self.position(span.end) }
     }
 
-    /// The byte of a place. A column beyond the line is its end, one inside a character its beginning, as the protocol says.
+    /// The byte of a place. A column beyond the line is its end, one inside a character its
+    /// beginning, as the protocol says.
     pub fn offset(&self, position: Position) -> u32 {
         if position.line as usize >= self.line_starts.len() {
             return self.text.len() as u32;

@@ -1,6 +1,7 @@
 //! Messages on a stream: `Content-Length: 17`, an empty line, JSON.
 //!
-//! What cannot be read is refused, not fatal: reading goes on with the next header that can be found.
+//! What cannot be read is refused, not fatal: reading goes on with the next header that can be
+//! found.
 
 use lsp_server::{ErrorCode, Message, RequestId};
 use serde_json::{Value, json};
@@ -50,7 +51,8 @@ pub fn read(input: &mut dyn BufRead) -> io::Result<Option<Received>> {
     }
 }
 
-/// The length of the body that follows, or what is wrong with the header; nothing at the end of the stream.
+/// The length of the body that follows, or what is wrong with the header; nothing at the end of the
+/// stream.
 fn read_header(input: &mut dyn BufRead) -> io::Result<Option<Result<u64, String>>> {
     let mut length = Err("a header without `Content-Length`".to_owned());
     loop {

@@ -1,7 +1,9 @@
-//! Every feature, as data: a text with a mark, a request, and the answer as a person would note it down.
+//! Every feature, as data: a text with a mark, a request, and the answer as a person would note it
+//! down.
 //!
-//! In `server/tests/cases/`, under each heading: a model in a block `fdc`, with `|` where the cursor is (twice for a
-//! range), then a block for each request. `UPDATE=1` writes the answers anew, to be read before they are kept.
+//! In `server/tests/cases/`, under each heading: a model in a block `fdc`, with `|` where the
+//! cursor is (twice for a range), then a block for each request. `UPDATE=1` writes the answers
+//! anew, to be read before they are kept.
 
 mod client;
 mod shown;
@@ -21,7 +23,8 @@ struct Marked {
 impl Marked {
     fn read(text: &str) -> Marked {
         let pieces: Vec<&str> = text.split('|').collect();
-        let marks = (1..pieces.len()).map(|at| pieces[..at].iter().map(|it| it.len()).sum()).collect();
+        let marks =
+            (1..pieces.len()).map(|at| pieces[..at].iter().map(|it| it.len()).sum()).collect();
         Marked { text: pieces.concat(), marks }
     }
 
@@ -57,12 +60,16 @@ fn request(tag: &str, marked: &Marked) -> (&'static str, Value) {
         ),
         "highlights" => ("textDocument/documentHighlight", place()),
         "prepare" => ("textDocument/prepareRename", place()),
-        "rename" => ("textDocument/rename", json!({ "position": marked.cursor(), "newName": rest })),
+        "rename" => {
+            ("textDocument/rename", json!({ "position": marked.cursor(), "newName": rest }))
+        }
         "symbols" => ("textDocument/documentSymbol", json!({})),
         "folding" => ("textDocument/foldingRange", json!({})),
         "selection" => ("textDocument/selectionRange", json!({ "positions": [marked.cursor()] })),
         "tokens" => ("textDocument/semanticTokens/full", json!({})),
-        "tokens-of-range" => ("textDocument/semanticTokens/range", json!({ "range": marked.range() })),
+        "tokens-of-range" => {
+            ("textDocument/semanticTokens/range", json!({ "range": marked.range() }))
+        }
         "format" => ("textDocument/formatting", json!({ "options": options })),
         "format-range" => {
             ("textDocument/rangeFormatting", json!({ "range": marked.range(), "options": options }))
@@ -131,7 +138,8 @@ fn every_request_is_answered_as_noted() {
     for (name, document) in documents("server/tests/cases", "md") {
         let mut renewed = document.clone();
         // From the end, so that lines keep their numbers.
-        for (block, text) in answered(&document).into_iter().rev().filter(|(block, text)| block.text != *text)
+        for (block, text) in
+            answered(&document).into_iter().rev().filter(|(block, text)| block.text != *text)
         {
             wrong.push(format!(
                 "{name}.md:{}: {}\n--- noted\n{}--- answered\n{text}",

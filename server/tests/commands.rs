@@ -18,7 +18,8 @@ const MODEL: &str = "model fall\ntime t in [0, 1]\nstate x start 0\ndynamics { x
 const PROGRAM: &str = "#!/bin/sh
 lines=$(wc -l)
 case $1 in
-  solve) echo ' iter  objective' >&2; echo '    0  1.0' >&2; echo; echo \"solved $lines lines, $2\"; exit 0 ;;
+  solve) echo ' iter  objective' >&2; echo '    0  1.0' >&2; echo; echo \"solved $lines lines, \
+  $2\"; exit 0 ;;
   simulate) echo ' t = 0' >&2; exec sleep 3600 ;;
 esac
 ";
@@ -49,7 +50,9 @@ fn progress(client: &Client) -> Vec<String> {
         _ => None,
     });
     let text = |it: &Value| it.as_str().unwrap_or_default().to_owned();
-    values.map(|it| format!("{} {}{}", text(&it["kind"]), text(&it["title"]), text(&it["message"]))).collect()
+    values
+        .map(|it| format!("{} {}{}", text(&it["kind"]), text(&it["title"]), text(&it["message"])))
+        .collect()
 }
 
 #[test]
@@ -64,7 +67,9 @@ fn a_command_tells_how_it_goes_and_what_came_out() {
         ["begin Solve fall", "report iter  objective", "report 0  1.0", "end done"]
     );
     let shown = client.heard.iter().find_map(|it| match it {
-        Message::Notification(it) if it.method == "window/showMessage" => Some(it.params["message"].clone()),
+        Message::Notification(it) if it.method == "window/showMessage" => {
+            Some(it.params["message"].clone())
+        }
         _ => None,
     });
     assert_eq!(shown, Some(json!("solved 4 lines, -")));
@@ -113,12 +118,18 @@ fn a_command_can_be_called_off_by_its_request_and_by_its_progress() {
 fn a_command_that_cannot_begin_says_why() {
     let mut client = started(&PathBuf::from("/nowhere/fdcc"));
     let mut refused = |command: Value| {
-        let error = client.answer("workspace/executeCommand", command).response_result.expect_err("refused");
+        let error = client
+            .answer("workspace/executeCommand", command)
+            .response_result
+            .expect_err("refused");
         error.message
     };
     assert!(refused(command("fdcc.solve")).starts_with("fdcc cannot be started"));
     assert_eq!(refused(command("fdcc.nothing")), "there is no command `fdcc.nothing`");
-    assert_eq!(refused(json!({ "command": "fdcc.solve" })), "`fdcc.solve` takes the address of a text");
+    assert_eq!(
+        refused(json!({ "command": "fdcc.solve" })),
+        "`fdcc.solve` takes the address of a text"
+    );
     let other = json!({ "command": "fdcc.solve", "arguments": ["file:///other.fdc"] });
     assert_eq!(refused(other), "`file:///other.fdc` is not open");
     client.change(URI, 2, json!([{ "text": "state" }]));

@@ -1,7 +1,8 @@
-//! Random edits, requests, cancellations and nonsense: the server answers every request once, never dies, never grows,
-//! and says in the end of a text what it says of it alone.
+//! Random edits, requests, cancellations and nonsense: the server answers every request once, never
+//! dies, never grows, and says in the end of a text what it says of it alone.
 //!
-//! `FUZZ_SECONDS=600 cargo test --release -p fdcc-server --test fuzz -- --nocapture` goes on for ten minutes; `FUZZ_SEED` begins elsewhere.
+//! `FUZZ_SECONDS=600 cargo test --release -p fdcc-server --test fuzz -- --nocapture` goes on for
+//! ten minutes; `FUZZ_SEED` begins elsewhere.
 
 mod client;
 
@@ -163,7 +164,9 @@ impl Fuzzer {
         let start = self.place();
         let end = match self.random.below(4) {
             0 => self.place(),
-            1 => json!({ "line": start["line"], "character": start["character"].as_u64().unwrap_or(0) + 5 }),
+            1 => {
+                json!({ "line": start["line"], "character": start["character"].as_u64().unwrap_or(0) + 5 })
+            }
             _ => start.clone(),
         };
         json!({ "start": start, "end": end })
@@ -186,7 +189,8 @@ impl Fuzzer {
         }
         self.version += 1;
         let text = &models[self.random.below(models.len())].1;
-        let document = json!({ "uri": URI, "languageId": "fdc", "version": self.version, "text": text });
+        let document =
+            json!({ "uri": URI, "languageId": "fdc", "version": self.version, "text": text });
         self.client.notify("textDocument/didOpen", json!({ "textDocument": document }));
     }
 
@@ -215,8 +219,10 @@ impl Fuzzer {
 
     /// Takes in all answers, and has no patience for an error of ours.
     fn catch_up(&mut self) {
-        let last =
-            self.client.ask("textDocument/codeLens", json!({ "textDocument": { "uri": URI } })).to_string();
+        let last = self
+            .client
+            .ask("textDocument/codeLens", json!({ "textDocument": { "uri": URI } }))
+            .to_string();
         self.waiting.insert(last.clone(), "textDocument/codeLens".into());
         loop {
             let message = match self.client.next_or_refusal() {
@@ -255,10 +261,12 @@ impl Fuzzer {
         self.client.change(URI, self.version, json!([{ "text": text }]));
         let document = json!({ "textDocument": { "uri": URI } });
         let here = self.client.result("textDocument/diagnostic", document);
-        let mut alone =
-            Client::start(json!({ "textDocument": { "diagnostic": { "relatedInformation": true } } }));
+        let mut alone = Client::start(
+            json!({ "textDocument": { "diagnostic": { "relatedInformation": true } } }),
+        );
         alone.open(URI, text);
-        let there = alone.result("textDocument/diagnostic", json!({ "textDocument": { "uri": URI } }));
+        let there =
+            alone.result("textDocument/diagnostic", json!({ "textDocument": { "uri": URI } }));
         assert_eq!(here, there);
         assert!(alone.end());
         // What was heard while waiting is looked at as always.
@@ -298,15 +306,17 @@ fn resident() -> u64 {
 
 #[test]
 fn nothing_that_a_client_does_ends_the_conversation() {
-    let variable =
-        |name: &str, default: u64| std::env::var(name).ok().and_then(|it| it.parse().ok()).unwrap_or(default);
+    let variable = |name: &str, default: u64| {
+        std::env::var(name).ok().and_then(|it| it.parse().ok()).unwrap_or(default)
+    };
     let models = fdcc_tests::documents("models", "fdc");
     let mut fuzzer = Fuzzer::new(variable("FUZZ_SEED", 1));
     let memory = fuzzer.run(Duration::from_secs(variable("FUZZ_SECONDS", 20)), &models);
     let Fuzzer { edits, requests, cancelled, nonsense, answered, .. } = fuzzer;
     let (early, late) = (memory[memory.len() / 4], memory[memory.len() - 1]);
     println!(
-        "{edits} edits, {requests} requests, {cancelled} cancelled, {nonsense} messages of nonsense, {answered} answers"
+        "{edits} edits, {requests} requests, {cancelled} cancelled, {nonsense} messages of \
+         nonsense, {answered} answers"
     );
     println!("memory: {early} kB after a quarter of the time, {late} kB at the end");
     assert!(late < early + early / 2 + 50_000, "memory grows: {memory:?}");

@@ -1,4 +1,5 @@
-//! A server that nobody asks anything sleeps. Alone in its file, because the time of the whole process is measured.
+//! A server that nobody asks anything sleeps. Alone in its file, because the time of the whole
+//! process is measured.
 
 #![cfg(target_os = "linux")]
 

@@ -1,4 +1,5 @@
-//! Places in texts: each encoding, each kind of line end, characters of every size. References are counted by hand.
+//! Places in texts: each encoding, each kind of line end, characters of every size. References are
+//! counted by hand.
 
 mod client;
 
@@ -10,8 +11,7 @@ const TEXT: &str = "\u{FEFF}param é𝛼 = 1 # ü\r\nlet b = é𝛼*zz\rlet c = 
 
 fn started(encodings: &Value) -> Client {
     let mut client = Client::connect();
-    let capabilities =
-        json!({ "general": { "positionEncodings": encodings }, "textDocument": { "diagnostic": {} } });
+    let capabilities = json!({ "general": { "positionEncodings": encodings }, "textDocument": { "diagnostic": {} } });
     client.result("initialize", json!({ "capabilities": capabilities }));
     client
 }
@@ -29,8 +29,10 @@ fn places(client: &mut Client, at: (u64, u64)) -> [((u64, u64), (u64, u64)); 2] 
     let items = report["items"].as_array().expect("a list");
     let unknown = &items.iter().find(|it| it["code"] == "FDC0101").expect("zz is unknown")["range"];
     let position = json!({ "line": at.0, "character": at.1 });
-    let declared = &client
-        .result("textDocument/definition", json!({ "textDocument": document, "position": position }))["range"];
+    let declared = &client.result(
+        "textDocument/definition",
+        json!({ "textDocument": document, "position": position }),
+    )["range"];
     [unknown, declared].map(|range| (pair(&range["start"]), pair(&range["end"])))
 }
 
@@ -54,7 +56,8 @@ fn columns_count_what_was_agreed_on() {
     assert_eq!(places(&mut utf32, (1, 9)), [((1, 11), (1, 13)), ((0, 7), (0, 9))]);
 }
 
-/// Edits of the same characters, in each encoding, give the same text: `zz` becomes `1`, the line break goes, `é𝛼` is renamed.
+/// Edits of the same characters, in each encoding, give the same text: `zz` becomes `1`, the line
+/// break goes, `é𝛼` is renamed.
 #[test]
 fn edits_hit_what_they_mean() {
     let expected = "\u{FEFF}param a = 1 # ü\r\nlet b = a*1let c = b\n";
@@ -78,7 +81,8 @@ fn edits_hit_what_they_mean() {
     }
 }
 
-/// Nothing, if the server has this text: the same questions have the same answers after it is sent anew.
+/// Nothing, if the server has this text: the same questions have the same answers after it is sent
+/// anew.
 fn text_of(client: &mut Client, expected: &str) -> Option<(Value, Value)> {
     let before = answers(client);
     client.change(URI, 3, json!([{ "text": expected }]));
@@ -88,8 +92,11 @@ fn text_of(client: &mut Client, expected: &str) -> Option<(Value, Value)> {
 
 fn answers(client: &mut Client) -> Value {
     let document = json!({ "textDocument": { "uri": URI } });
-    let methods =
-        ["textDocument/semanticTokens/full", "textDocument/diagnostic", "textDocument/foldingRange"];
+    let methods = [
+        "textDocument/semanticTokens/full",
+        "textDocument/diagnostic",
+        "textDocument/foldingRange",
+    ];
     methods.map(|method| client.result(method, document.clone())).to_vec().into()
 }
 
@@ -101,7 +108,8 @@ fn places_outside_of_the_text_are_its_nearest() {
         client.result("textDocument/hover", client::at(URI, line, character));
     }
     // A range that runs backwards, and one that ends beyond the text.
-    let range = json!({ "start": { "line": 9, "character": 9 }, "end": { "line": 0, "character": 0 } });
+    let range =
+        json!({ "start": { "line": 9, "character": 9 }, "end": { "line": 0, "character": 0 } });
     client.change(URI, 2, json!([{ "range": range, "text": "param a = 1\n" }]));
     assert_eq!(text_of(&mut client, "param a = 1\n"), None);
 }

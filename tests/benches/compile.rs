@@ -1,4 +1,5 @@
-//! From the text of the race car to a problem whose functions can be called; machine code is made when they are.
+//! From the text of the race car to a problem whose functions can be called; machine code is made
+//! when they are.
 
 use divan::{Bencher, black_box};
 
@@ -24,6 +25,7 @@ fn text_to_problem(bencher: Bencher) {
     bencher.bench_local(|| {
         let tree = fdcc_grammar::parse(black_box(RACECAR)).tree;
         let model = fdcc_compiler::check(&tree).model.expect("the race car has no errors");
-        fdcc_compiler::compile(&model).unwrap_or_else(|_| unreachable!("the race car can be solved"))
+        fdcc_compiler::compile(&model)
+            .unwrap_or_else(|_| unreachable!("the race car can be solved"))
     });
 }

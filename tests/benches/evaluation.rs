@@ -1,4 +1,5 @@
-//! Time for each point of the race car's dynamics, and to compile all functions of a model of its size.
+//! Time for each point of the race car's dynamics, and to compile all functions of a model of its
+//! size.
 //!
 //! `cargo bench -p fdcc-tests --bench evaluation`; the column "item/s" counts points.
 
@@ -37,12 +38,19 @@ fn dynamics(g: &mut Graph, kernel: &str) -> VectorFunction {
     let friction = g.mul(mu, step);
     let (throttle_x, throttle_y) = (g.mul(a, cosine), g.mul(a, sine));
     let (friction_x, friction_y) = (g.mul(friction, sine), g.mul(friction, cosine));
-    let rates = [vx, vy, g.add(throttle_x, friction_x), g.sub(throttle_y, friction_y), g.mul(s, along)];
+    let rates =
+        [vx, vy, g.add(throttle_x, friction_x), g.sub(throttle_y, friction_y), g.mul(s, along)];
     function("dynamics", rates.map(|rate| g.mul(duration, rate)).to_vec(), &BY)
 }
 
 /// Across and along the car.
-fn velocities(g: &mut Graph, vx: ExprId, vy: ExprId, sine: ExprId, cosine: ExprId) -> (ExprId, ExprId) {
+fn velocities(
+    g: &mut Graph,
+    vx: ExprId,
+    vy: ExprId,
+    sine: ExprId,
+    cosine: ExprId,
+) -> (ExprId, ExprId) {
     let [a, b, c, d] = [g.mul(cosine, vy), g.mul(sine, vx), g.mul(cosine, vx), g.mul(sine, vy)];
     (g.sub(a, b), g.add(c, d))
 }
@@ -59,7 +67,8 @@ fn track(g: &mut Graph) -> VectorFunction {
     function("path", vec![distance], &BY)
 }
 
-/// Objective and end conditions, over both ends; guess and interval, over time and parameters alone.
+/// Objective and end conditions, over both ends; guess and interval, over time and parameters
+/// alone.
 fn once(g: &mut Graph) -> Vec<VectorFunction> {
     let ends = Layout { x: 10, p: 4, ..Layout::default() };
     let [x, y, duration] = [5, 6, 12].map(|input| g.input(input));
@@ -134,7 +143,12 @@ fn case(kernel: &str) -> Case {
         function.jacobian_pattern().entries.len(),
         function.hessian_pattern().entries.len(),
     ];
-    Case { function, points, multipliers, tables: sizes.map(|columns| Columns::new(columns, POINTS)) }
+    Case {
+        function,
+        points,
+        multipliers,
+        tables: sizes.map(|columns| Columns::new(columns, POINTS)),
+    }
 }
 
 const SMOOTHING: [&str; 3] = ["sqrt", "tanh", "cubic"];
@@ -150,9 +164,9 @@ fn values(bencher: Bencher, kernel: &str) {
 #[divan::bench(args = SMOOTHING)]
 fn values_and_jacobian(bencher: Bencher, kernel: &str) {
     let Case { function, points, tables: [mut values, mut jacobian, _], .. } = case(kernel);
-    bencher
-        .counter(ItemsCount::new(POINTS))
-        .bench_local(|| function.jacobian(black_box(&points), &PARAMETERS, &mut values, &mut jacobian));
+    bencher.counter(ItemsCount::new(POINTS)).bench_local(|| {
+        function.jacobian(black_box(&points), &PARAMETERS, &mut values, &mut jacobian)
+    });
 }
 
 #[divan::bench(args = SMOOTHING)]

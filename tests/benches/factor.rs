@@ -1,5 +1,5 @@
-//! One factorisation and one solve of the optimality conditions, in the sizes of the race car: 5 states, 2 controls,
-//! a free final time, one path constraint.
+//! One factorisation and one solve of the optimality conditions, in the sizes of the race car: 5
+//! states, 2 controls, a free final time, one path constraint.
 
 use divan::Bencher;
 use fdcc_runtime::linalg::riccati::Riccati;
@@ -25,11 +25,23 @@ struct Case {
 }
 
 fn case(intervals: usize) -> Case {
-    let stages =
-        Stages { intervals, states: 5, controls: 2, inner: 0, globals: 1, local_rows: 1, coupling_rows: 0 };
+    let stages = Stages {
+        intervals,
+        states: 5,
+        controls: 2,
+        inner: 0,
+        globals: 1,
+        local_rows: 1,
+        coupling_rows: 0,
+    };
     let (step, rows, t) = (7, 6, stages.globals().start);
-    let family =
-        |row, column, row_step, column_step| Family { row, column, row_step, column_step, count: intervals };
+    let family = |row, column, row_step, column_step| Family {
+        row,
+        column,
+        row_step,
+        column_step,
+        count: intervals,
+    };
     let mut jacobian = Vec::new();
     for row in 0..5 {
         jacobian.push(family(row, row, rows, step));
@@ -77,7 +89,8 @@ fn run(bencher: Bencher, case: &Case, factor: &mut dyn Factor) {
     let right = vec![1.0; case.stages.variables() + case.stages.rows()];
     let mut x = right.clone();
     bencher.bench_local(|| {
-        let inertia = factor.factor(&case.hessian_values, &case.jacobian_values, &case.sigma, &case.d);
+        let inertia =
+            factor.factor(&case.hessian_values, &case.jacobian_values, &case.sigma, &case.d);
         assert_eq!(inertia, Inertia::Correct);
         x.copy_from_slice(&right);
         factor.solve(&mut x);
@@ -90,8 +103,8 @@ fn riccati(bencher: Bencher, intervals: usize) {
     let case = case(intervals);
     let (fixed, equality) =
         (vec![false; case.sigma.len()], case.d.iter().map(|d| *d == 0.0).collect::<Vec<_>>());
-    let mut factor =
-        Riccati::new(case.stages, &case.hessian, &case.jacobian, &fixed, &equality).expect("a chain");
+    let mut factor = Riccati::new(case.stages, &case.hessian, &case.jacobian, &fixed, &equality)
+        .expect("a chain");
     run(bencher, &case, &mut factor);
 }
 
@@ -99,5 +112,9 @@ fn riccati(bencher: Bencher, intervals: usize) {
 fn sparse_ldl(bencher: Bencher, intervals: usize) {
     let case = case(intervals);
     let fixed = vec![false; case.sigma.len()];
-    run(bencher, &case, &mut SparseLdl::new(&case.hessian, &case.jacobian, &fixed, case.stages.rows()));
+    run(
+        bencher,
+        &case,
+        &mut SparseLdl::new(&case.hessian, &case.jacobian, &fixed, case.stages.rows()),
+    );
 }

@@ -1,6 +1,8 @@
-//! From the text of the race car to the first line of the iteration table, stage by stage: at most 5 ms.
+//! From the text of the race car to the first line of the iteration table, stage by stage: at most
+//! 5 ms.
 //!
-//! The first run is that of a fresh process, whose memory is cold; of the others the median is told.
+//! The first run is that of a fresh process, whose memory is cold; of the others the median is
+//! told.
 
 use fdcc_runtime::homotopy::solve;
 use fdcc_runtime::nlp::Stop;

@@ -19,7 +19,8 @@ fn race_car() -> (System, Controls) {
     let mut times = trajectory.time;
     model.set_free("T", times[times.len() - 1]);
     times.pop();
-    let rows = (0..times.len()).map(|k| trajectory.controls.iter().map(|column| column[k]).collect());
+    let rows =
+        (0..times.len()).map(|k| trajectory.controls.iter().map(|column| column[k]).collect());
     let controls = Controls::Held { rows: rows.collect(), times, is_stretched: true };
     (compile_sensitivities(&model).expect("it can be simulated"), controls)
 }

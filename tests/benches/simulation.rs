@@ -1,14 +1,16 @@
 //! Time for a simulation of the true system, from the compiled system to its end.
 //!
-//! `cargo bench -p fdcc-tests --bench simulation`; `tests/peers/solve_ivp.py` does the first two with SciPy.
+//! `cargo bench -p fdcc-tests --bench simulation`; `tests/peers/solve_ivp.py` does the first two
+//! with SciPy.
 
 use divan::Bencher;
 use fdcc_compiler::compile_simulation;
 use fdcc_runtime::simulate::{Controls, Options, Status, System, simulate};
 use fdcc_tests::models::{load, meaning, solve, text_of};
 
-/// A mass between a spring and a belt, whose friction falls with the velocity: R. I. Leine, D. H. van Campen, A. de Kraker,
-/// L. van den Steen: Stick-slip vibrations induced by alternate friction models, Nonlinear Dynamics 16 (1998) 41-54.
+/// A mass between a spring and a belt, whose friction falls with the velocity: R. I. Leine, D. H.
+/// van Campen, A. de Kraker, L. van den Steen: Stick-slip vibrations induced by alternate friction
+/// models, Nonlinear Dynamics 16 (1998) 41-54.
 const BELT: &str = "
 time t in [0, 100]
 state x start 0
@@ -49,7 +51,11 @@ fn bench(bencher: Bencher, system: &System, controls: &Controls, end: &[f64]) {
     let options = Options::default();
     let simulation = simulate(system, controls, &options);
     assert!(matches!(simulation.status, Status::Completed));
-    assert!(end.iter().zip(&simulation.end).all(|(a, b)| (a - b).abs() < 1e-9), "{:?}", simulation.end);
+    assert!(
+        end.iter().zip(&simulation.end).all(|(a, b)| (a - b).abs() < 1e-9),
+        "{:?}",
+        simulation.end
+    );
     bencher.bench_local(|| simulate(system, controls, &options));
 }
 
@@ -72,7 +78,8 @@ fn race_car_replay(bencher: Bencher) {
     let mut times = trajectory.time;
     model.set_free("T", times[times.len() - 1]);
     times.pop();
-    let rows = (0..times.len()).map(|k| trajectory.controls.iter().map(|column| column[k]).collect());
+    let rows =
+        (0..times.len()).map(|k| trajectory.controls.iter().map(|column| column[k]).collect());
     let controls = Controls::Held { rows: rows.collect(), times, is_stretched: true };
     bench(bencher, &compile_simulation(&model).expect("it can be simulated"), &controls, &[]);
 }

@@ -1,5 +1,5 @@
-//! Solving once more after a small change of a parameter: from the guess, and from the solution before the change by the interior point method and by
-//! sequential quadratic programming.
+//! Solving once more after a small change of a parameter: from the guess, and from the solution
+//! before the change by the interior point method and by sequential quadratic programming.
 //!
 //! `cargo bench -p fdcc-tests --bench warm` prints the table of `docs/performance.md`.
 
@@ -33,12 +33,15 @@ const REPEATS: usize = 3;
 
 fn main() {
     println!(
-        "| model | change | | objective | iterations | factorisations | seconds |\n|---|---|---|---|---|---|---|"
+        "| model | change | | objective | iterations | factorisations | seconds \
+         |\n|---|---|---|---|---|---|---|"
     );
     for (model, settings, parameter, before, after) in CASES {
         let solved = solve(&load(model, &[(parameter, before)], settings), None).0;
-        let [mut interior, mut sequential] = [(); 2].map(|()| load(model, &[(parameter, after)], settings));
-        (interior.method.solver, sequential.method.solver) = (Solver::InteriorPoint, Solver::Sequential);
+        let [mut interior, mut sequential] =
+            [(); 2].map(|()| load(model, &[(parameter, after)], settings));
+        (interior.method.solver, sequential.method.solver) =
+            (Solver::InteriorPoint, Solver::Sequential);
         let change = format!("{parameter} = {before} to {after}");
         let intervals = interior.method.intervals;
         for (name, problem, start) in [
@@ -50,7 +53,8 @@ fn main() {
             let (solution, status) = (&outcome.solution, &outcome.solution.status);
             let (objective, counts) = (solution.objective, solution.counts);
             println!(
-                "| {model}, N = {intervals} | {change} | {name}, {status:?} | {objective:.8} | {} | {} | {seconds:.3} |",
+                "| {model}, N = {intervals} | {change} | {name}, {status:?} | {objective:.8} | {} \
+                 | {} | {seconds:.3} |",
                 counts.iterations, counts.factorizations
             );
         }

@@ -1,6 +1,8 @@
-//! Writes every model of the repository that the grammar accepts to a folder, for the grammars of the editors to read.
+//! Writes every model of the repository that the grammar accepts to a folder, for the grammars of
+//! the editors to read.
 //!
-//! Beside each `NAME.fdc` stands `NAME.words`: the place in bytes and the text of each word that begins an item.
+//! Beside each `NAME.fdc` stands `NAME.words`: the place in bytes and the text of each word that
+//! begins an item.
 
 use fdcc_grammar::ast::{Item, ItemKind};
 use fdcc_grammar::parse;
@@ -15,7 +17,8 @@ fn main() {
     let accepted = models().into_iter().filter(|(_, text)| parse(text).diagnostics.is_empty());
     let written = accepted.map(|(name, text)| {
         let path = folder.join(name);
-        fs::write(path.with_extension("words"), words(&text)).expect("the folder can be written to");
+        fs::write(path.with_extension("words"), words(&text))
+            .expect("the folder can be written to");
         fs::write(path.with_extension("fdc"), text).expect("the folder can be written to");
     });
     println!("{} models", written.count());
@@ -27,7 +30,8 @@ fn models() -> Vec<(String, String)> {
         let name = source.path.rsplit_once('.').map_or("", |(name, _)| name).replace('/', "-");
         let shown = if source.path.ends_with(".md") { blocks(&source.text) } else { Vec::new() };
         let shown = shown.into_iter().filter(|block| block.tag.starts_with("fdc"));
-        let shown: Vec<_> = shown.map(|block| (format!("{name}-{}", block.line), block.text)).collect();
+        let shown: Vec<_> =
+            shown.map(|block| (format!("{name}-{}", block.line), block.text)).collect();
         let whole = source.path.ends_with(".fdc").then_some((name, source.text));
         whole.into_iter().chain(shown)
     });
@@ -37,9 +41,9 @@ fn models() -> Vec<(String, String)> {
 /// The words that begin items, one on each line.
 fn words(text: &str) -> String {
     let tree = parse(text).tree;
-    let name = tree
-        .name
-        .map(|name| text[..name.span.range().start].rfind("model").expect("`model` precedes a name"));
+    let name = tree.name.map(|name| {
+        text[..name.span.range().start].rfind("model").expect("`model` precedes a name")
+    });
     let mut starts: Vec<usize> = name.into_iter().collect();
     collect(&tree.items, &mut starts);
     let word = |at: &usize| {

@@ -4,8 +4,8 @@
 //! v' = F m    # error[FDC0001] missing operator
 //! ```
 //!
-//! The words after the bracket, if there are any, stand in the message. Every diagnostic must be claimed and every
-//! claim met. Severities are `error`, `warning` and `advice`.
+//! The words after the bracket, if there are any, stand in the message. Every diagnostic must be
+//! claimed and every claim met. Severities are `error`, `warning` and `advice`.
 
 use fdcc_grammar::{Diagnostic, Severity, SourceFile};
 
@@ -23,8 +23,9 @@ pub fn unclaimed(text: &str, diagnostics: &[Diagnostic]) -> Vec<String> {
             None => problems.push(format!("line {}: claimed but not found: {claim:?}", claim.line)),
         }
     }
-    let surplus =
-        |(line, diagnostic): &(usize, &Diagnostic)| format!("line {line}: not claimed: {diagnostic:#?}");
+    let surplus = |(line, diagnostic): &(usize, &Diagnostic)| {
+        format!("line {line}: not claimed: {diagnostic:#?}")
+    };
     problems.extend(found.iter().map(surplus));
     problems
 }

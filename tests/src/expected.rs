@@ -39,7 +39,9 @@ impl Expected {
     /// Reads the text of a file.
     pub fn read(text: &str) -> Result<Self, String> {
         let mut expected = Expected::default();
-        for line in text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#')) {
+        for line in
+            text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'))
+        {
             expected.line(line).ok_or_else(|| format!("not understood: {line}"))?;
         }
         Ok(expected)
@@ -89,9 +91,12 @@ mod tests {
     #[test]
     fn a_number_without_a_source_is_refused() {
         assert!(Expected::read("objective = 1 tol 1e-6 from \"closed form\"").is_ok());
-        for text in
-            ["objective = 1", "objective = 1 tol 1e-6", "objective = 1 tol 1e-6 from \"\"", "objective 1"]
-        {
+        for text in [
+            "objective = 1",
+            "objective = 1 tol 1e-6",
+            "objective = 1 tol 1e-6 from \"\"",
+            "objective 1",
+        ] {
             Expected::read(text).expect_err(text);
         }
     }

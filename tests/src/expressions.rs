@@ -4,7 +4,8 @@ use crate::random::Random;
 use fdcc_compiler::builtins::Builtin;
 use fdcc_compiler::graph::{ExprId, Graph};
 
-/// Three random expressions of four inputs whose values and derivatives stay moderate, as the last of `size` operations.
+/// Three random expressions of four inputs whose values and derivatives stay moderate, as the last
+/// of `size` operations.
 pub fn random_expressions(graph: &mut Graph, random: &mut Random, size: usize) -> Vec<ExprId> {
     let mut pool: Vec<ExprId> = (0..4).map(|input| graph.input(input)).collect();
     pool.extend([-1.0, 0.0, 0.5, 1.0, 3.0].map(|value| graph.number(value)));

@@ -38,8 +38,8 @@ pub fn input(layout: &Layout, points: &Columns, parameters: &[f64], point: usize
     before.chain(parameters.iter().copied()).chain(after).collect()
 }
 
-/// Machine code computes what the interpreter computes, to `tolerance` relative to the largest number on the way;
-/// before there is any, the same steps give the same bits.
+/// Machine code computes what the interpreter computes, to `tolerance` relative to the largest
+/// number on the way; before there is any, the same steps give the same bits.
 pub fn check_machine_code(
     graph: &Graph,
     symbols: &Differentiated,
@@ -57,7 +57,8 @@ pub fn check_machine_code(
     check_orders_agree(function, points, parameters, &results)?;
     for point in 0..points.count() {
         let z = input(&symbols.function.layout, points, parameters, point);
-        let weights: Vec<f64> = (0..multipliers.columns()).map(|i| multipliers.column(i)[point]).collect();
+        let weights: Vec<f64> =
+            (0..multipliers.columns()).map(|i| multipliers.column(i)[point]).collect();
         for (what, roots, table) in [
             ("value", &symbols.function.outputs, &results.values),
             ("jacobian", &symbols.jacobian.1, &results.jacobian),
@@ -68,7 +69,9 @@ pub fn check_machine_code(
                 let got = table.column(index)[point];
                 let scale = magnitude(graph, roots[index], &z, &weights);
                 if !close(got, expected, tolerance * scale) {
-                    return Err(format!("{what} {index} at {z:?}: expected {expected:e}, got {got:e}"));
+                    return Err(format!(
+                        "{what} {index} at {z:?}: expected {expected:e}, got {got:e}"
+                    ));
                 }
             }
         }
@@ -83,10 +86,13 @@ fn check_same_bits(by_steps: &Results, by_code: &Results) -> Result<(), String> 
         ("hessian", &by_steps.hessian, &by_code.hessian),
     ] {
         for column in 0..steps.columns() {
-            let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
+            let same =
+                |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
             let (steps, code) = (steps.column(column), code.column(column));
             if !steps.iter().zip(code).all(same) {
-                return Err(format!("{what} {column}: {steps:?} step by step, {code:?} by machine code"));
+                return Err(format!(
+                    "{what} {column}: {steps:?} step by step, {code:?} by machine code"
+                ));
             }
         }
     }
@@ -100,8 +106,9 @@ fn check_orders_agree(
     all: &Results,
 ) -> Result<(), String> {
     let same = |a: &Columns, b: &Columns| {
-        (0..a.columns())
-            .all(|i| a.column(i).iter().zip(b.column(i)).all(|(a, b)| close(*a, *b, 1e-14 * a.abs())))
+        (0..a.columns()).all(|i| {
+            a.column(i).iter().zip(b.column(i)).all(|(a, b)| close(*a, *b, 1e-14 * a.abs()))
+        })
     };
     let mut values = Columns::new(function.outputs(), points.count());
     let mut jacobian = Columns::new(function.jacobian_pattern().entries.len(), points.count());
@@ -120,14 +127,18 @@ fn check_orders_agree(
 fn magnitude(graph: &Graph, root: ExprId, z: &[f64], weights: &[f64]) -> f64 {
     let all = graph.reachable(&[root]);
     let values = evaluate(graph, &all, z, weights);
-    values.into_iter().filter(|value| value.is_finite()).fold(0.0, |largest, value| value.abs().max(largest))
+    values
+        .into_iter()
+        .filter(|value| value.is_finite())
+        .fold(0.0, |largest, value| value.abs().max(largest))
 }
 
 fn close(got: f64, expected: f64, tolerance: f64) -> bool {
     (got - expected).abs() <= tolerance || got == expected || (got.is_nan() && expected.is_nan())
 }
 
-/// Jacobian and Hessian agree with differences of the values and of the Jacobian, in and outside the patterns.
+/// Jacobian and Hessian agree with differences of the values and of the Jacobian, in and outside
+/// the patterns.
 ///
 /// `by` are the inputs that the function was differentiated by.
 pub fn check_differences(
@@ -169,7 +180,12 @@ fn position(entries: &[(u32, u32)], entry: (u32, u32)) -> Option<usize> {
 }
 
 /// Multipliers times Jacobian: one column for each input.
-fn gradient(function: &dyn Function, points: &Columns, parameters: &[f64], multipliers: &Columns) -> Columns {
+fn gradient(
+    function: &dyn Function,
+    points: &Columns,
+    parameters: &[f64],
+    multipliers: &Columns,
+) -> Columns {
     let jacobian = derivatives(function, points, parameters, multipliers).jacobian;
     let mut gradient = Columns::new(function.layout().inputs(), points.count());
     for (entry, &(row, column)) in function.jacobian_pattern().entries.iter().enumerate() {
@@ -181,7 +197,8 @@ fn gradient(function: &dyn Function, points: &Columns, parameters: &[f64], multi
     gradient
 }
 
-/// Central differences with two steps and their extrapolation: the error is of fourth order in the step.
+/// Central differences with two steps and their extrapolation: the error is of fourth order in the
+/// step.
 struct Difference {
     tables: [Columns; 4],
 }

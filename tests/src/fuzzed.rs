@@ -1,5 +1,5 @@
-//! What must hold of any text: it is read, checked, laid out and repaired without a panic, and every place that is named
-//! lies in it.
+//! What must hold of any text: it is read, checked, laid out and repaired without a panic, and
+//! every place that is named lies in it.
 
 use fdcc_compiler::{repair, review};
 use fdcc_grammar::{Diagnostic, parse};
@@ -13,11 +13,15 @@ pub fn understand(text: &str) {
     assert_repairs_end(text);
 }
 
-/// Repairs a text, once with what is certain only, and panics if the result can be repaired again or is harder to read.
+/// Repairs a text, once with what is certain only, and panics if the result can be repaired again
+/// or is harder to read.
 pub fn assert_repairs_end(text: &str) {
     for unsafely in [false, true] {
         let repaired = repair(text, unsafely);
-        assert!(repair(&repaired, unsafely) == repaired, "repaired again:\n{text}\n---\n{repaired}");
+        assert!(
+            repair(&repaired, unsafely) == repaired,
+            "repaired again:\n{text}\n---\n{repaired}"
+        );
         assert!(mistakes(&repaired) <= mistakes(text), "harder to read:\n{text}\n---\n{repaired}");
         review(&repaired).diagnostics.iter().for_each(|one| assert_sound(one, &repaired));
     }

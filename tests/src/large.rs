@@ -1,4 +1,5 @@
-//! A model as large as nobody writes by hand: many states, controls, definitions, functions, conditions and surfaces.
+//! A model as large as nobody writes by hand: many states, controls, definitions, functions,
+//! conditions and surfaces.
 
 /// A right model of about so many lines.
 pub fn model(lines: usize) -> String {

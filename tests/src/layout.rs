@@ -2,7 +2,8 @@
 
 use fdcc_grammar::{comments, format, parse};
 
-/// Lays a text out, and panics if that changes more than blanks; a text that cannot be read is refused.
+/// Lays a text out, and panics if that changes more than blanks; a text that cannot be read is
+/// refused.
 pub fn assert_only_the_layout_changes(text: &str) {
     let Ok(formatted) = format(text) else { return };
     assert!(
@@ -11,8 +12,14 @@ pub fn assert_only_the_layout_changes(text: &str) {
     );
     assert_eq!(remarks(&formatted), remarks(text), "{text}\n--- became\n{formatted}");
     let again = format(&formatted).expect("what is formatted can be read");
-    assert!(again == formatted, "not stable:\n{text}\n--- became\n{formatted}\n--- and then\n{again}");
-    assert!(formatted.lines().all(|line| line == line.trim_end()), "blanks at the end of a line: {text}");
+    assert!(
+        again == formatted,
+        "not stable:\n{text}\n--- became\n{formatted}\n--- and then\n{again}"
+    );
+    assert!(
+        formatted.lines().all(|line| line == line.trim_end()),
+        "blanks at the end of a line: {text}"
+    );
 }
 
 /// The tree without places.

@@ -30,7 +30,9 @@ pub fn blocks(document: &str) -> Vec<Block> {
                 let (heading, tag) = (heading.clone(), tag.to_owned());
                 open = Some(Block { heading, tag, text: String::new(), line: number + 1 });
             }
-            (None, None) if line.starts_with('#') => heading = line.trim_start_matches('#').trim().to_owned(),
+            (None, None) if line.starts_with('#') => {
+                heading = line.trim_start_matches('#').trim().to_owned()
+            }
             (None, None) => {}
         }
     }
@@ -46,13 +48,18 @@ pub fn repository() -> PathBuf {
         .to_owned()
 }
 
-/// Name and text of every file in a folder of the repository with an extension, in alphabetical order.
+/// Name and text of every file in a folder of the repository with an extension, in alphabetical
+/// order.
 pub fn documents(folder: &str, extension: &str) -> Vec<(String, String)> {
     let entries = fs::read_dir(repository().join(folder)).expect("the folder exists");
     let paths = entries.map(|entry| entry.expect("the folder can be read").path());
     let mut paths: Vec<PathBuf> =
         paths.filter(|path| path.extension().is_some_and(|e| e == extension)).collect();
     paths.sort();
-    let name = |path: &Path| path.file_stem().expect("a file has a name").to_string_lossy().into_owned();
-    paths.iter().map(|path| (name(path), fs::read_to_string(path).expect("the file is text"))).collect()
+    let name =
+        |path: &Path| path.file_stem().expect("a file has a name").to_string_lossy().into_owned();
+    paths
+        .iter()
+        .map(|path| (name(path), fs::read_to_string(path).expect("the file is text")))
+        .collect()
 }

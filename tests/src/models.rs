@@ -58,13 +58,16 @@ pub fn load(name: &str, parameters: Changes, methods: Changes) -> Problem {
     problem(&text_of(name), parameters, methods)
 }
 
-/// The model itself, or for each sequence of jumps that may happen the model in which they do, with their number.
+/// The model itself, or for each sequence of jumps that may happen the model in which they do, with
+/// their number.
 pub fn unrolled(model: &Model) -> Vec<(usize, Model)> {
     if model.jumps.is_empty() {
         return vec![(0, model.clone())];
     }
     let all = fdcc_compiler::sequences(model).expect("the model can be solved").all;
-    let one = |jumps: &Vec<usize>| fdcc_compiler::unrolled(model, jumps).expect("the model can be solved");
+    let one = |jumps: &Vec<usize>| {
+        fdcc_compiler::unrolled(model, jumps).expect("the model can be solved")
+    };
     all.iter().map(|jumps| (jumps.len(), one(jumps))).collect()
 }
 

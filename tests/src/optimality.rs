@@ -30,10 +30,16 @@ pub struct Residuals {
 }
 
 impl Residuals {
-    /// The largest of all, relative to the objective where that is more than 1; never to multipliers, which may be of any size where there is no optimum.
+    /// The largest of all, relative to the objective where that is more than 1; never to
+    /// multipliers, which may be of any size where there is no optimum.
     pub fn error(&self, objective: f64) -> f64 {
         let scale = objective.abs().max(1.0);
-        largest([self.stationarity / scale, self.feasibility, self.complementarity / scale, self.signs])
+        largest([
+            self.stationarity / scale,
+            self.feasibility,
+            self.complementarity / scale,
+            self.signs,
+        ])
     }
 }
 
@@ -42,7 +48,8 @@ pub fn residuals(problem: &Problem, outcome: &Outcome) -> Residuals {
     let solution = &outcome.solution;
     let at = Transcribed::new(problem, &outcome.sigma, &solution.v);
     let Multipliers { rows, lower, upper } = &solution.multipliers;
-    let bounds = at.row_bounds.iter().zip(&at.rows).chain(at.variable_bounds.iter().zip(&solution.v));
+    let bounds =
+        at.row_bounds.iter().zip(&at.rows).chain(at.variable_bounds.iter().zip(&solution.v));
     let of_rows = at.row_bounds.iter().zip(&at.rows).zip(rows);
     let of_variables = at.variable_bounds.iter().zip(&solution.v);
     let from_bounds = of_variables.zip(lower.iter().zip(upper));
@@ -63,8 +70,9 @@ pub fn residuals(problem: &Problem, outcome: &Outcome) -> Residuals {
 
 fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     // Unlike `f64::max`, this does not overlook what is not a number.
-    let maximum =
-        |largest: f64, value: f64| if largest.is_nan() || value <= largest { largest } else { value };
+    let maximum = |largest: f64, value: f64| {
+        if largest.is_nan() || value <= largest { largest } else { value }
+    };
     values.into_iter().fold(0.0, maximum)
 }
 
@@ -86,8 +94,9 @@ fn stationarity(at: &Transcribed, multipliers: &Multipliers) -> Vec<f64> {
 
 /// The sum of all multipliers times violations.
 fn owed(at: &Transcribed, v: &[f64], multipliers: &Multipliers) -> f64 {
-    let excess =
-        |bounds: &Bounds, value: f64| (value - bounds.upper).max(0.0) - (bounds.lower - value).max(0.0);
+    let excess = |bounds: &Bounds, value: f64| {
+        (value - bounds.upper).max(0.0) - (bounds.lower - value).max(0.0)
+    };
     let of_rows = at.row_bounds.iter().zip(&at.rows).zip(&multipliers.rows);
     let rows: f64 = of_rows.map(|((bounds, row), lambda)| excess(bounds, *row) * lambda).sum();
     let both = multipliers.upper.iter().zip(&multipliers.lower).map(|(upper, lower)| upper - lower);
@@ -95,7 +104,8 @@ fn owed(at: &Transcribed, v: &[f64], multipliers: &Multipliers) -> f64 {
     rows + of_variables.map(|((bounds, v), z)| excess(bounds, *v) * z).sum::<f64>()
 }
 
-/// A positive multiplier belongs to the upper bound, a negative one to the lower; infinite where that bound is not.
+/// A positive multiplier belongs to the upper bound, a negative one to the lower; infinite where
+/// that bound is not.
 fn complementarity(bounds: &Bounds, value: f64, multiplier: f64) -> f64 {
     if bounds.is_equality() || multiplier == 0.0 {
         return 0.0;

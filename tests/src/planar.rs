@@ -1,4 +1,5 @@
-//! Systems in the plane with one surface: `S = dx(T)/dx(0)`, exact, for the smoothed system, and for fixed steps through that.
+//! Systems in the plane with one surface: `S = dx(T)/dx(0)`, exact, for the smoothed system, and
+//! for fixed steps through that.
 
 use fdcc_compiler::{compile_sensitivities, compile_smoothed};
 use fdcc_runtime::sensitivity::{Costates, Quantity, Sensitivity, gradient};
@@ -15,7 +16,9 @@ pub type Matrix = [[f64; 2]; 2];
 /// The largest difference of two entries.
 pub fn distance(one: &Matrix, other: &Matrix) -> f64 {
     let pairs = one.iter().flatten().zip(other.iter().flatten());
-    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, |most, error| if error <= most { most } else { error })
+    pairs
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, |most, error| if error <= most { most } else { error })
 }
 
 /// The text of a model of `tests/simulations/`.
@@ -42,7 +45,8 @@ impl Smoothed {
     pub fn new(text: &str, surface: &str, kernel: &str) -> Self {
         let compiled = |objective: &str| {
             let text = format!("{text}\nminimize {objective}\nmethod {{ smooth sigma = 0.1 }}\n");
-            compile_smoothed(&changed(&text, &[], &[("kernel", kernel)])).expect("the model can be smoothed")
+            compile_smoothed(&changed(&text, &[], &[("kernel", kernel)]))
+                .expect("the model can be smoothed")
         };
         let systems = ["x(end)", "y(end)"].map(compiled);
         Smoothed { systems, width: format!("sigma({surface})") }
@@ -70,7 +74,8 @@ impl Smoothed {
         self.systems.each_ref().map(|system| {
             let grid = Grid::theta(system, theta, steps);
             let stepped = step_through(system, &Controls::Guess, &grid).expect("steps");
-            let found = gradient_of_steps(system, &Controls::Guess, &grid, &stepped).expect("a gradient");
+            let found =
+                gradient_of_steps(system, &Controls::Guess, &grid, &stepped).expect("a gradient");
             [found.starts[0], found.starts[1]]
         })
     }
@@ -82,7 +87,8 @@ pub fn derivative(system: &System) -> Matrix {
     [0, 1].map(|state| [end[state][0], end[state][1]])
 }
 
-/// The adjoint of the objective; integration stops at these times on its way, which changes nothing else.
+/// The adjoint of the objective; integration stops at these times on its way, which changes nothing
+/// else.
 pub fn costates(system: &System, times: &[f64]) -> Costates {
     let times = [&[system.interval[0]], times].concat();
     let rows = vec![Vec::new(); times.len()];
@@ -92,7 +98,8 @@ pub fn costates(system: &System, times: &[f64]) -> Costates {
 fn differentiated(system: &System, controls: &Controls) -> Sensitivity {
     let starts = [Quantity::Start(0), Quantity::Start(1)];
     let options = Options { rtol: 1e-13, atol: Some(1e-15), ..Options::default() };
-    let found = gradient(system, controls, &options, &starts).expect("the simulation reaches its end");
+    let found =
+        gradient(system, controls, &options, &starts).expect("the simulation reaches its end");
     assert!(found.agreement < 1e-9, "forward and adjoint differ by {}", found.agreement);
     found
 }

@@ -1,4 +1,5 @@
-//! Nodes of Gauss and Radau, and the weights of any rule over given points, from their definitions alone.
+//! Nodes of Gauss and Radau, and the weights of any rule over given points, from their definitions
+//! alone.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -38,7 +39,8 @@ fn roots(function: impl Fn(f64) -> f64) -> Vec<f64> {
     cells.filter_map(root).collect()
 }
 
-/// What a linear functional, which has the value `moment(q)` on `t^q`, is on the polynomial through values at the points.
+/// What a linear functional, which has the value `moment(q)` on `t^q`, is on the polynomial through
+/// values at the points.
 pub fn weights(points: &[f64], moment: impl Fn(i32) -> f64) -> Vec<f64> {
     let size = points.len();
     let powers = DMatrix::from_fn(size, size, |q, j| points[j].powi(q as i32));

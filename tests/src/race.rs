@@ -1,5 +1,5 @@
-//! The race car of Section 7 of Stewart & Anitescu (2005): solved smoothed, and its controls replayed on the true system. What it is
-//! judged by is written out by hand.
+//! The race car of Section 7 of Stewart & Anitescu (2005): solved smoothed, and its controls
+//! replayed on the true system. What it is judged by is written out by hand.
 
 use std::f64::consts::PI;
 
@@ -103,7 +103,8 @@ impl Race {
         Race { sigma, solved, planned, replay, driven }
     }
 
-    /// `lambda^T f` of the smoothed system at the beginning of an interval; -1 where the duration is optimal.
+    /// `lambda^T f` of the smoothed system at the beginning of an interval; -1 where the duration
+    /// is optimal.
     pub fn hamiltonian(&self, k: usize) -> f64 {
         let costate = STATES.map(|name| self.solved.costate(name)[k]);
         let [.., vx, vy, th] = self.planned.at(k);
@@ -142,7 +143,8 @@ fn replay(solved: &Solved) -> Simulation {
     let system = compile_simulation(&model).expect("the model can be simulated");
     let at = |k: usize, count: usize| duration * k as f64 / count as f64;
     let times = (0..STEPS).map(|k| at(k, STEPS)).collect();
-    let rows = solved.control("a").iter().zip(solved.control("s")).map(|(a, s)| vec![*a, *s]).collect();
+    let rows =
+        solved.control("a").iter().zip(solved.control("s")).map(|(a, s)| vec![*a, *s]).collect();
     let points = (0..=STEPS * POINTS).map(|k| at(k, STEPS * POINTS)).collect();
     let options = Options { times: points, tape: true, ..Options::default() };
     let found = simulate(&system, &Controls::Held { times, rows, is_stretched: true }, &options);

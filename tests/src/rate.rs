@@ -3,11 +3,16 @@
 /// Least squares fit of `log(error) = constant + rate * log(size)`.
 pub fn rate(sizes: &[f64], errors: &[f64]) -> f64 {
     assert_eq!(sizes.len(), errors.len(), "one error for each size");
-    let mean = |values: &[f64]| values.iter().map(|value| value.ln()).sum::<f64>() / values.len() as f64;
+    let mean =
+        |values: &[f64]| values.iter().map(|value| value.ln()).sum::<f64>() / values.len() as f64;
     let (middle, level) = (mean(sizes), mean(errors));
-    let offsets: Vec<(f64, f64)> =
-        sizes.iter().zip(errors).map(|(size, error)| (size.ln() - middle, error.ln() - level)).collect();
-    offsets.iter().map(|(x, y)| x * y).sum::<f64>() / offsets.iter().map(|(x, _)| x * x).sum::<f64>()
+    let offsets: Vec<(f64, f64)> = sizes
+        .iter()
+        .zip(errors)
+        .map(|(size, error)| (size.ln() - middle, error.ln() - level))
+        .collect();
+    offsets.iter().map(|(x, y)| x * y).sum::<f64>()
+        / offsets.iter().map(|(x, _)| x * x).sum::<f64>()
 }
 
 #[cfg(test)]

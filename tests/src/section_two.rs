@@ -1,10 +1,12 @@
-//! The scalar inclusion of Section 2 of Stewart & Anitescu (2005), stepped through: `x' in (1 + alpha) - Sgn(x)`, `x(0) = x0 < 0`.
+//! The scalar inclusion of Section 2 of Stewart & Anitescu (2005), stepped through: `x' in (1 +
+//! alpha) - Sgn(x)`, `x(0) = x0 < 0`.
 //!
 //! ```text
 //! J(x0) = (x(2) - 5/3)^2 + int x^2 = (x0 + 1)^2/9 - x0^3/9 + (x0 + 6)^3/81,    J' = 2(x0 + 1)/9 - x0^2/3 + (x0 + 6)^2/27
 //! ```
 //!
-//! for alpha = 1. The discrete objective takes the trapezoidal sum for the integral, whatever the rule of the steps is.
+//! for alpha = 1. The discrete objective takes the trapezoidal sum for the integral, whatever the
+//! rule of the steps is.
 
 use fdcc_compiler::{compile_sensitivities, compile_smoothed};
 use fdcc_runtime::simulate::{Controls, System};
@@ -47,7 +49,8 @@ pub fn smoothed_to_the_end() -> System {
 }
 
 fn to_the_end() -> String {
-    let line = MODEL.lines().find(|line| line.starts_with("minimize")).expect("there is an objective");
+    let line =
+        MODEL.lines().find(|line| line.starts_with("minimize")).expect("there is an objective");
     MODEL.replace(line, "minimize x(end)")
 }
 
@@ -61,7 +64,8 @@ pub fn set(system: &mut System, values: &[(&str, f64)]) {
 
 /// Steps and gradient of a system whose controls do not matter.
 pub fn stepped(system: &System, grid: &Grid) -> (Stepped, Gradient) {
-    let stepped = step_through(system, &Controls::Guess, grid).expect("the system can be stepped through");
+    let stepped =
+        step_through(system, &Controls::Guess, grid).expect("the system can be stepped through");
     let gradient = gradient(system, &Controls::Guess, grid, &stepped).expect("there is a gradient");
     (stepped, gradient)
 }
@@ -79,7 +83,8 @@ pub fn exact(x0: f64) -> [f64; 2] {
     [value, 2.0 * (x0 + 1.0) / 9.0 - x0 * x0 / 3.0 + (x0 + 6.0).powi(2) / 27.0]
 }
 
-/// `J_h` and its derivative for any theta; the system is that to the end. The derivative of every point is that of the end of a shorter run.
+/// `J_h` and its derivative for any theta; the system is that to the end. The derivative of every
+/// point is that of the end of a shorter run.
 pub fn objective(system: &mut System, x0: f64, steps: usize, theta: f64) -> [f64; 2] {
     let h = 2.0 / steps as f64;
     let mut sum = [0.5 * h * x0 * x0, h * x0];

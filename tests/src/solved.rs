@@ -25,7 +25,11 @@ impl Solved {
         let outcome = solve(&problem);
         let (name, solution) = (&problem.name, &outcome.solution);
         let violation = solution.constraint_violation;
-        assert_eq!(solution.status, Status::Solved, "{name}, which violates its rows by {violation:e}");
+        assert_eq!(
+            solution.status,
+            Status::Solved,
+            "{name}, which violates its rows by {violation:e}"
+        );
         Solved { problem, outcome }
     }
 
@@ -61,7 +65,8 @@ impl Solved {
         self.outcome.trajectory.parameters[index.expect("a parameter of the model")]
     }
 
-    /// A quantity by its name: `objective`, `STATE(start)`, `STATE(end)`, an unknown or a parameter.
+    /// A quantity by its name: `objective`, `STATE(start)`, `STATE(end)`, an unknown or a
+    /// parameter.
     pub fn quantity(&self, name: &str) -> f64 {
         match name.trim_end_matches(')').split_once('(') {
             Some((state, "start")) => self.state(state)[0],
@@ -72,6 +77,10 @@ impl Solved {
     }
 
     fn index_of_state(&self, name: &str) -> usize {
-        self.problem.states.iter().position(|state| state.name == name).expect("a state of the model")
+        self.problem
+            .states
+            .iter()
+            .position(|state| state.name == name)
+            .expect("a state of the model")
     }
 }

@@ -20,7 +20,8 @@ const TOP: f64 = 14.0;
 const BOTTOM: f64 = 372.0;
 
 /// Colours that also the colour-blind tell apart (M. Okabe, K. Ito).
-const COLOURS: [&str; 7] = ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+const COLOURS: [&str; 7] =
+    ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 
 #[derive(Clone, Copy, PartialEq)]
 enum Stroke {
@@ -70,18 +71,27 @@ impl Figure {
 
     /// The figure as a file.
     pub fn svg(&self) -> String {
-        let coordinate =
-            |i: usize| self.curves.iter().flat_map(move |curve| curve.points.iter().map(move |p| p[i]));
+        let coordinate = |i: usize| {
+            self.curves.iter().flat_map(move |curve| curve.points.iter().map(move |p| p[i]))
+        };
         let (x, y) = (self.x.fitted(coordinate(0)), self.y.fitted(coordinate(1)));
         let frame = Frame { x: &x, y: &y };
-        let curves: String =
-            self.curves.iter().enumerate().map(|(at, curve)| frame.curve(curve, COLOURS[at % 7])).collect();
-        let legend: String = self.curves.iter().enumerate().map(|(at, curve)| legend(at, curve)).collect();
+        let curves: String = self
+            .curves
+            .iter()
+            .enumerate()
+            .map(|(at, curve)| frame.curve(curve, COLOURS[at % 7]))
+            .collect();
+        let legend: String =
+            self.curves.iter().enumerate().map(|(at, curve)| legend(at, curve)).collect();
         format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" font-family=\"sans-serif\" font-size=\"13\">\n\
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" \
+             font-family=\"sans-serif\" font-size=\"13\">\n\
              <rect width=\"{WIDTH}\" height=\"{HEIGHT}\" fill=\"white\"/>\n\
-             <clipPath id=\"frame\"><rect x=\"{LEFT}\" y=\"{TOP}\" width=\"{}\" height=\"{}\"/></clipPath>\n\
-             {}<g clip-path=\"url(#frame)\" fill=\"none\" stroke-width=\"1.5\" stroke-linejoin=\"round\">\n{curves}</g>\n{legend}</svg>\n",
+             <clipPath id=\"frame\"><rect x=\"{LEFT}\" y=\"{TOP}\" width=\"{}\" \
+             height=\"{}\"/></clipPath>\n\
+             {}<g clip-path=\"url(#frame)\" fill=\"none\" stroke-width=\"1.5\" \
+             stroke-linejoin=\"round\">\n{curves}</g>\n{legend}</svg>\n",
             RIGHT - LEFT,
             BOTTOM - TOP,
             frame.axes(),
@@ -115,7 +125,8 @@ impl Frame<'_> {
         text += &rule(&format!("M{LEFT} {TOP}V{BOTTOM}H{RIGHT}V{TOP}Z"), "#666666");
         text += &words(0.5 * (LEFT + RIGHT), HEIGHT - 10.0, "middle", &self.x.label);
         let (x, y) = (16.0, 0.5 * (TOP + BOTTOM));
-        let turned = format!("<text transform=\"translate({x} {y}) rotate(-90)\" text-anchor=\"middle\">");
+        let turned =
+            format!("<text transform=\"translate({x} {y}) rotate(-90)\" text-anchor=\"middle\">");
         text + &turned + &escaped(&self.y.label) + "</text>\n"
     }
 
@@ -124,7 +135,9 @@ impl Frame<'_> {
         if curve.stroke == Stroke::Dots {
             return places
                 .filter(|(x, y)| x.is_finite() && y.is_finite())
-                .map(|(x, y)| format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.4\" fill=\"{colour}\"/>\n"))
+                .map(|(x, y)| {
+                    format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.4\" fill=\"{colour}\"/>\n")
+                })
                 .collect();
         }
         let mut path = String::new();
@@ -146,7 +159,10 @@ fn legend(at: usize, curve: &Curve) -> String {
     let (from, to) = (RIGHT + 12.0, RIGHT + 34.0);
     let sample = match curve.stroke {
         Stroke::Dots => {
-            format!("<circle cx=\"{}\" cy=\"{y}\" r=\"2.4\" fill=\"{colour}\"/>\n", 0.5 * (from + to))
+            format!(
+                "<circle cx=\"{}\" cy=\"{y}\" r=\"2.4\" fill=\"{colour}\"/>\n",
+                0.5 * (from + to)
+            )
         }
         stroke => format!(
             "<path d=\"M{from} {y}H{to}\" stroke=\"{colour}\" stroke-width=\"1.5\"{}/>\n",

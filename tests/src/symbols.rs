@@ -1,4 +1,5 @@
-//! From expressions to compiled functions and tables of points, in the few words that tests want to spend on it.
+//! From expressions to compiled functions and tables of points, in the few words that tests want to
+//! spend on it.
 
 use std::sync::Arc;
 

@@ -1,4 +1,5 @@
-//! The nonlinear programme of a problem at one point, once more, from nothing but the functions of the problem.
+//! The nonlinear programme of a problem at one point, once more, from nothing but the functions of
+//! the problem.
 //!
 //! ```text
 //! variables    x_0 u_0 y_0  x_1 u_1 y_1  ...  x_N  g            h = tau_{k+1} - tau_k,  F over normalised time
@@ -10,7 +11,8 @@
 //! objective    M(x_0, x_N) + h sum_k sum_j b_j cost_kj
 //! ```
 //!
-//! One point and one entry at a time, on purpose: nothing is shared with the transcription that it checks.
+//! One point and one entry at a time, on purpose: nothing is shared with the transcription that it
+//! checks.
 
 use crate::quadrature::{gauss, radau, weights};
 use fdcc_runtime::problem::{Bounds, Columns, ControlShape, Function, Problem, Scheme};
@@ -76,14 +78,19 @@ impl Grid {
             Scheme::Radau(s) => radau(s),
             _ => Vec::new(),
         };
-        let chosen =
-            if method.controls == ControlShape::Polynomial { times.len() * controls } else { controls };
+        let chosen = if method.controls == ControlShape::Polynomial {
+            times.len() * controls
+        } else {
+            controls
+        };
         let carried = states + if method.controls == ControlShape::Linear { controls } else { 0 };
         let inside = times.iter().filter(|time| **time < 1.0).count();
         let inner = method.steps * (inside + 1) - 1;
         let (nodes, links, path) = (Vec::new(), Vec::new(), Vec::new());
-        let (step, parts, shape) = (carried + chosen + inner * states, method.steps, method.controls);
-        let mut grid = Grid { states, controls, carried, step, times, parts, shape, nodes, links, path };
+        let (step, parts, shape) =
+            (carried + chosen + inner * states, method.steps, method.controls);
+        let mut grid =
+            Grid { states, controls, carried, step, times, parts, shape, nodes, links, path };
         for part in 0..parts {
             if grid.times.is_empty() {
                 grid.one_step(problem, part)
@@ -100,7 +107,8 @@ impl Grid {
         grid.path.push(last);
         let first = grid.parts * grid.rows_of_part();
         for i in 0..carried - states {
-            grid.links.extend([(first + i, step + states + i, 1.0), (first + i, carried + i, -1.0)]);
+            grid.links
+                .extend([(first + i, step + states + i, 1.0), (first + i, carried + i, -1.0)]);
         }
         grid
     }
@@ -169,9 +177,11 @@ impl Grid {
         let places: Vec<usize> = (0..points.len()).map(place).collect();
         let b = weights(&times, |q| 1.0 / f64::from(q + 1));
         for (i, time) in times.iter().enumerate() {
-            let slopes = weights(&points, |q| if q == 0 { 0.0 } else { f64::from(q) * time.powi(q - 1) });
+            let slopes =
+                weights(&points, |q| if q == 0 { 0.0 } else { f64::from(q) * time.powi(q - 1) });
             self.link(row + i * states, &places, &slopes);
-            let point = || self.point(self.time(part, *time), |state| vec![(places[i + 1] + state, 1.0)]);
+            let point =
+                || self.point(self.time(part, *time), |state| vec![(places[i + 1] + state, 1.0)]);
             let (node, path) = (point(), point());
             let weight = b[i] * length;
             self.nodes.push(Node { point: node, weight, row: row + i * states, factor: length });
@@ -195,7 +205,11 @@ impl Grid {
 
     fn point(&self, time: f64, state: impl Fn(usize) -> Sum) -> Point {
         let states = (0..self.states).map(state).collect();
-        Point { time, states, controls: (0..self.controls).map(|i| self.control(i, time)).collect() }
+        Point {
+            time,
+            states,
+            controls: (0..self.controls).map(|i| self.control(i, time)).collect(),
+        }
     }
 
     fn control(&self, i: usize, time: f64) -> Sum {
@@ -227,7 +241,8 @@ struct At<'a> {
 impl Transcribed {
     /// Evaluates everything at `v`, with the smoothing widths `sigma`.
     pub fn new(problem: &Problem, sigma: &[f64], v: &[f64]) -> Self {
-        let at = At { problem, grid: Grid::new(problem), v, parameters: parameters(problem, sigma, v) };
+        let at =
+            At { problem, grid: Grid::new(problem), v, parameters: parameters(problem, sigma, v) };
         let mut result = Transcribed {
             objective: 0.0,
             gradient: vec![0.0; v.len()],
@@ -258,8 +273,11 @@ impl Transcribed {
             self.jacobian.push((first + row, here + place, value));
         }
         for node in &at.grid.nodes {
-            let (found, row, factor) =
-                (at.sample(&*at.problem.dynamics, k, &node.point), first + node.row, h * node.factor);
+            let (found, row, factor) = (
+                at.sample(&*at.problem.dynamics, k, &node.point),
+                first + node.row,
+                h * node.factor,
+            );
             for i in 0..states {
                 self.rows[row + i] -= factor * found.values[i];
             }
@@ -293,7 +311,8 @@ impl Transcribed {
 
 /// The parameters of the model, with these widths and with the unknowns as in `v`.
 fn parameters(problem: &Problem, sigma: &[f64], v: &[f64]) -> Vec<f64> {
-    let mut parameters: Vec<f64> = problem.parameters.iter().map(|parameter| parameter.value).collect();
+    let mut parameters: Vec<f64> =
+        problem.parameters.iter().map(|parameter| parameter.value).collect();
     for (surface, sigma) in problem.surfaces.iter().zip(sigma) {
         parameters[surface.sigma] = *sigma;
     }
@@ -332,8 +351,10 @@ impl At<'_> {
             terms.map(|(place, factor)| (here + place, *factor)).collect()
         };
         let mut point = vec![self.tau(k) + at.time * (self.tau(k + 1) - self.tau(k))];
-        point
-            .extend(sums.iter().map(|sum| own(sum).iter().map(|(place, w)| w * self.v[*place]).sum::<f64>()));
+        point.extend(
+            sums.iter()
+                .map(|sum| own(sum).iter().map(|(place, w)| w * self.v[*place]).sum::<f64>()),
+        );
         self.evaluate(function, &point, |input| match sums.get(input - 1) {
             Some(sum) => own(sum),
             None => vec![(self.unknown(input - 1 - sums.len()), 1.0)],
@@ -368,10 +389,15 @@ impl At<'_> {
         for (entry, (row, input)) in pattern.iter().enumerate() {
             let slope = jacobian.column(entry)[0];
             slopes.extend(
-                places(*input as usize).iter().map(|(place, factor)| (*row as usize, *place, factor * slope)),
+                places(*input as usize)
+                    .iter()
+                    .map(|(place, factor)| (*row as usize, *place, factor * slope)),
             );
         }
-        Sample { values: (0..function.outputs()).map(|row| values.column(row)[0]).collect(), slopes }
+        Sample {
+            values: (0..function.outputs()).map(|row| values.column(row)[0]).collect(),
+            slopes,
+        }
     }
 
     fn variable_bounds(&self) -> Vec<Bounds> {
@@ -388,7 +414,9 @@ impl At<'_> {
                 let end = self.place(k + 1);
                 let chosen = grid.inner_place() - grid.carried;
                 bounds.extend((0..chosen).map(|i| problem.controls[i % grid.controls].bounds));
-                bounds.extend((0..end - bounds.len()).map(|i| problem.states[i % grid.states].bounds));
+                bounds.extend(
+                    (0..end - bounds.len()).map(|i| problem.states[i % grid.states].bounds),
+                );
             }
         }
         for (i, start) in problem.start.iter().enumerate() {

@@ -1,4 +1,5 @@
-//! What one attempt loses another one wins; and where no feasible point exists, that is said in reasonable time.
+//! What one attempt loses another one wins; and where no feasible point exists, that is said in
+//! reasonable time.
 
 use fdcc_runtime::homotopy::{self, Outcome};
 use fdcc_runtime::nlp::{Status, Stop};
@@ -10,14 +11,16 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 fn text(file: &str) -> String {
-    std::fs::read_to_string(repository().join(file)).unwrap_or_else(|error| panic!("{file}: {error}"))
+    std::fs::read_to_string(repository().join(file))
+        .unwrap_or_else(|error| panic!("{file}: {error}"))
 }
 
 fn solved(text: &str, scheme: &str, intervals: &str) -> Outcome {
     solve(&problem(text, &[], &[("scheme", scheme), ("N", intervals)]))
 }
 
-/// From the guess the objective draws the final time below what any feasible trajectory needs, where the violation is smallest near by.
+/// From the guess the objective draws the final time below what any feasible trajectory needs,
+/// where the violation is smallest near by.
 #[test]
 fn a_final_time_that_became_too_short_is_found_from_a_feasible_point() {
     for (file, scheme, intervals, exact, tolerance) in [
@@ -35,18 +38,24 @@ fn a_final_time_that_became_too_short_is_found_from_a_feasible_point() {
 #[test]
 fn a_step_on_trust_into_nowhere_is_taken_back() {
     for intervals in ["50", "100", "200"] {
-        let problem = problem(&text("tests/right/lotka.fdc"), &[], &[("scheme", "rk4"), ("N", intervals)]);
+        let problem =
+            problem(&text("tests/right/lotka.fdc"), &[], &[("scheme", "rk4"), ("N", intervals)]);
         let mut farthest = 0.0_f64;
         let outcome = homotopy::solve(&problem, None, &mut |progress, _| {
             farthest = farthest.max(if progress.restoration { progress.objective } else { 0.0 });
             ControlFlow::Continue(())
         });
-        assert_eq!(outcome.expect("it is not refused").solution.status, Status::Solved, "{intervals}");
+        assert_eq!(
+            outcome.expect("it is not refused").solution.status,
+            Status::Solved,
+            "{intervals}"
+        );
         assert!(farthest < 1e10, "{intervals}: restored from {farthest:e}");
     }
 }
 
-/// The guess holds the surface: it says nothing of the size of its function, and eight times the width is too thin to begin with.
+/// The guess holds the surface: it says nothing of the size of its function, and eight times the
+/// width is too thin to begin with.
 #[test]
 fn a_thin_layer_is_approached_from_far_away() {
     let text = text("cli/templates/racecar.fdc");
@@ -58,23 +67,29 @@ fn a_thin_layer_is_approached_from_far_away() {
     }
 }
 
-/// Where the optimum is flat no digit is gained for thousands of iterations: IPOPT, too, calls it acceptable.
+/// Where the optimum is flat no digit is gained for thousands of iterations: IPOPT, too, calls it
+/// acceptable.
 #[test]
 fn steps_on_trust_do_not_hide_that_nothing_more_is_gained() {
     for (scheme, intervals) in [("midpoint", "200"), ("radau3", "50")] {
         let solution = solved(&text("tests/right/neuron.fdc"), scheme, intervals).solution;
-        assert!(matches!(solution.status, Status::Solved | Status::Acceptable), "{scheme} {intervals}");
+        assert!(
+            matches!(solution.status, Status::Solved | Status::Acceptable),
+            "{scheme} {intervals}"
+        );
         assert!(solution.counts.iterations < 1000, "{scheme}: {}", solution.counts.iterations);
     }
 }
 
-/// The least time from rest to rest is 2: bang-bang, and every scheme integrates constant controls exactly.
+/// The least time from rest to rest is 2: bang-bang, and every scheme integrates constant controls
+/// exactly.
 #[test]
 fn what_is_out_of_reach_by_a_hair_is_infeasible() {
     let text = |time: f64| {
         format!(
             "time t in [0, {time}] state x start 0 state v start 0 control u in [-1, 1] \
-             dynamics {{ x' = v v' = u }} end x == 1 end v == 0 method {{ solver = interior_point }}"
+             dynamics {{ x' = v v' = u }} end x == 1 end v == 0 method {{ solver = interior_point \
+             }}"
         )
     };
     for scheme in ["midpoint", "radau2", "radau3", "gauss2"] {
@@ -86,7 +101,8 @@ fn what_is_out_of_reach_by_a_hair_is_infeasible() {
     }
 }
 
-/// The guess leads between the discs, where the grid is too coarse by two parts in ten thousand; from elsewhere there is another way.
+/// The guess leads between the discs, where the grid is too coarse by two parts in ten thousand;
+/// from elsewhere there is another way.
 #[test]
 fn what_no_attempt_from_the_guess_finds_is_found_from_other_starts() {
     let text = text("tests/classics/obstacle_avoidance.fdc");
@@ -94,24 +110,31 @@ fn what_no_attempt_from_the_guess_finds_is_found_from_other_starts() {
         let problem = problem(&text, &[], &[("scheme", scheme), ("N", "50")]);
         let is_solved = |index: u32| {
             let start = starts::perturbed(&problem, None, index);
-            let outcome = homotopy::solve(&problem, Some(start), &mut |_, _| ControlFlow::Continue(()));
+            let outcome =
+                homotopy::solve(&problem, Some(start), &mut |_, _| ControlFlow::Continue(()));
             outcome.expect("it is not refused").solution.status == Status::Solved
         };
         assert!((1..8).any(is_solved), "{scheme}");
     }
 }
 
-/// `time` stops the second attempt before it has looked at anything: the answer is that it was stopped, not that there is none.
+/// `time` stops the second attempt before it has looked at anything: the answer is that it was
+/// stopped, not that there is none.
 #[test]
 fn who_stops_a_later_attempt_is_not_told_that_there_is_no_solution() {
     let text = "time t in [0, 1.9] state x start 0 state v start 0 control u in [-1, 1] \
-                dynamics { x' = v v' = u } end x == 1 end v == 0 minimize integral(exp(u)) method { grid N = 40 scheme midpoint }";
+                dynamics { x' = v v' = u } end x == 1 end v == 0 minimize integral(exp(u)) method \
+                { grid N = 40 scheme midpoint }";
     let problem = problem(text, &[], &[("solver", "interior_point")]);
     let count = |limit: usize| {
         let mut seen = 0;
         let outcome = homotopy::solve(&problem, None, &mut |_, _| {
             seen += 1;
-            if seen > limit { ControlFlow::Break(Stop::Interrupted) } else { ControlFlow::Continue(()) }
+            if seen > limit {
+                ControlFlow::Break(Stop::Interrupted)
+            } else {
+                ControlFlow::Continue(())
+            }
         });
         (outcome.expect("it is not refused").solution.status, seen)
     };
@@ -122,41 +145,56 @@ fn who_stops_a_later_attempt_is_not_told_that_there_is_no_solution() {
     }
 }
 
-/// Fifty intervals are too few for implicit Euler to swing it up; on a hundred it comes up, by `radau3` on fifty.
+/// Fifty intervals are too few for implicit Euler to swing it up; on a hundred it comes up, by
+/// `radau3` on fifty.
 #[test]
 fn a_grid_of_our_own_choice_that_is_too_coarse_is_no_verdict() {
     for (mu, most, sigma) in [("0.1", "0.6", None), ("0.1", "0.6", Some("0.01"))] {
         let text = format!(
-            "time t in [0, 12] state th start 0 state w start 0 control u in [-{most}, {most}] surface slip = w \
-             dynamics {{ th' = w w' in -sin(th) - {mu}*Sgn(slip) + u }} end th == pi end w == 0 minimize integral(u^2)"
+            "time t in [0, 12] state th start 0 state w start 0 control u in [-{most}, {most}] \
+             surface slip = w \
+             dynamics {{ th' = w w' in -sin(th) - {mu}*Sgn(slip) + u }} end th == pi end w == 0 \
+             minimize integral(u^2)"
         );
-        let found = |intervals: &str| {
-            let sigma = sigma.map(|sigma| ("sigma", sigma));
-            let method: Vec<(&str, &str)> =
-                [("N", intervals), ("tolerance", "1")].into_iter().chain(sigma).collect();
-            refine::solve(&problem(&text, &[], &method), None, &mut |_, _| ControlFlow::Continue(()))
+        let found =
+            |intervals: &str| {
+                let sigma = sigma.map(|sigma| ("sigma", sigma));
+                let method: Vec<(&str, &str)> =
+                    [("N", intervals), ("tolerance", "1")].into_iter().chain(sigma).collect();
+                refine::solve(&problem(&text, &[], &method), None, &mut |_, _| {
+                    ControlFlow::Continue(())
+                })
                 .expect("it is not refused")
-        };
+            };
         let named = found("50").outcome;
-        assert_eq!((named.solution.status, named.is_impossible), (Status::Infeasible, false), "{mu}");
+        assert_eq!(
+            (named.solution.status, named.is_impossible),
+            (Status::Infeasible, false),
+            "{mu}"
+        );
         let chosen = found("auto");
         assert_eq!(chosen.outcome.solution.status, Status::Solved, "{mu}");
         assert!(chosen.problem.method.intervals >= 100, "{mu}");
     }
 }
 
-/// From 0 to 97 % of the speed 1 of a belt that pulls with 0.3, in 3.3 instead of at least 3.23. In a wide layer it pulls too little.
+/// From 0 to 97 % of the speed 1 of a belt that pulls with 0.3, in 3.3 instead of at least 3.23. In
+/// a wide layer it pulls too little.
 #[test]
 fn a_layer_that_is_too_wide_is_no_verdict() {
     let text = |method: &str| {
         format!(
             "time t in [0, 3.3] state v start 0 control u in [-0.001, 0.001] surface slip = 1 - v \
-             dynamics {{ v' in 0.3*Sgn(slip) + u }} end v >= 0.97 minimize integral(u^2) method {{ {method} }}"
+             dynamics {{ v' in 0.3*Sgn(slip) + u }} end v >= 0.97 minimize integral(u^2) method {{ \
+             {method} }}"
         )
     };
-    for method in
-        ["N = 200", "sigma = 0.03 max_iter = 300", "smooth sigma = 0.01 continue sigma = 1", "sigma = 0.06"]
-    {
+    for method in [
+        "N = 200",
+        "sigma = 0.03 max_iter = 300",
+        "smooth sigma = 0.01 continue sigma = 1",
+        "sigma = 0.06",
+    ] {
         let found = solve(&problem(&text(method), &[], &[]));
         assert_eq!(found.solution.status, Status::Solved, "{method}");
     }
@@ -166,17 +204,23 @@ fn a_layer_that_is_too_wide_is_no_verdict() {
     assert!(widths.contains(&8.0) && widths.last() == Some(&1.0), "{widths:?}");
 }
 
-/// What is infeasible by linear conditions is proved to be so, whichever solver was asked; what bends is not.
+/// What is infeasible by linear conditions is proved to be so, whichever solver was asked; what
+/// bends is not.
 #[test]
 fn only_what_is_proved_is_impossible() {
     let text = |rate: &str| {
         format!(
-            "time t in [0, 1] state x start 0 control u in [-1, 1] dynamics {{ x' = {rate} }} end x == 2 minimize integral(u^2)"
+            "time t in [0, 1] state x start 0 control u in [-1, 1] dynamics {{ x' = {rate} }} end \
+             x == 2 minimize integral(u^2)"
         )
     };
     for solver in ["auto", "interior_point", "sqp", "convex"] {
         let found = solve(&problem(&text("u"), &[], &[("solver", solver), ("N", "20")]));
-        assert_eq!((found.solution.status, found.is_impossible), (Status::Infeasible, true), "{solver}");
+        assert_eq!(
+            (found.solution.status, found.is_impossible),
+            (Status::Infeasible, true),
+            "{solver}"
+        );
     }
     let bends = solve(&problem(&text("sin(u)"), &[], &[("N", "20")]));
     assert_eq!((bends.solution.status, bends.is_impossible), (Status::Infeasible, false));
@@ -188,7 +232,12 @@ fn one_interval_is_solved() {
     let text = "time t in [0, 2] state x start 0 state v start 0 control u in [-5, 5] \
                 dynamics { x' = v v' = u - 0.2*v } end x == 1 minimize integral(u^2)";
     for (scheme, linear) in [("midpoint", "auto"), ("radau3", "riccati"), ("gauss2", "auto")] {
-        let changes = [("scheme", scheme), ("linear", linear), ("N", "1"), ("solver", "interior_point")];
-        assert_eq!(solve(&problem(text, &[], &changes)).solution.status, Status::Solved, "{scheme}");
+        let changes =
+            [("scheme", scheme), ("linear", linear), ("N", "1"), ("solver", "interior_point")];
+        assert_eq!(
+            solve(&problem(text, &[], &changes)).solution.status,
+            Status::Solved,
+            "{scheme}"
+        );
     }
 }

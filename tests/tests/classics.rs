@@ -1,5 +1,5 @@
-//! Classical optimal control problems with published values: each is solved as well as IPOPT solves the same
-//! programme, and meets its own `expect` block.
+//! Classical optimal control problems with published values: each is solved as well as IPOPT solves
+//! the same programme, and meets its own `expect` block.
 //!
 //! IPOPT's answers are those of `tests/peers/classics.py`, with the same scheme, grid and guess.
 
@@ -11,10 +11,12 @@ use fdcc_runtime::quadrature::integrals;
 use fdcc_tests::models::{meaning, problem, solve};
 use fdcc_tests::{Solved, documents, repository};
 
-/// Problems that are not solved as well as by IPOPT, and what is known about it. A row that has become untrue is a failure.
+/// Problems that are not solved as well as by IPOPT, and what is known about it. A row that has
+/// become untrue is a failure.
 const WORSE: &[(&str, &str)] = &[(
     "fed_batch",
-    "7e-5 below IPOPT's: along a singular arc there are many optima, and which one is found is chance",
+    "7e-5 below IPOPT's: along a singular arc there are many optima, and which one is found is \
+     chance",
 )];
 
 /// Problems that take too long for every change.
@@ -87,20 +89,24 @@ fn classical_problems_are_solved_as_well_as_by_ipopt() {
         let (status, objective) = (&solved.outcome.solution.status, solved.objective());
         let known = WORSE.iter().find(|row| row.0 == peer.name);
         match (is_as_good(&solved, peer), known) {
-            (true, Some(_)) => failed.push(format!("{} is solved now: take it off the list", peer.name)),
+            (true, Some(_)) => {
+                failed.push(format!("{} is solved now: take it off the list", peer.name))
+            }
             (true, None) => {
-                failed.extend(unmet(&model, &solved).iter().map(|it| format!("{}: {it:?}", peer.name)));
+                failed.extend(
+                    unmet(&model, &solved).iter().map(|it| format!("{}: {it:?}", peer.name)),
+                );
             }
-            (false, None) => {
-                failed.push(format!("{}: {status:?} {objective}, IPOPT {}", peer.name, peer.objective))
-            }
+            (false, None) => failed
+                .push(format!("{}: {status:?} {objective}, IPOPT {}", peer.name, peer.objective)),
             (false, Some(_)) => {}
         }
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-/// Where the guess heads in one direction, the two coordinates of the end depend on each other to first order. IPOPT takes 23 to 67 iterations.
+/// Where the guess heads in one direction, the two coordinates of the end depend on each other to
+/// first order. IPOPT takes 23 to 67 iterations.
 #[test]
 fn an_end_whose_rows_depend_on_each_other_at_the_guess_is_reached_by_every_scheme() {
     for scheme in ["midpoint", "trapezoid", "radau2", "radau3", "gauss2"] {
@@ -108,7 +114,11 @@ fn an_end_whose_rows_depend_on_each_other_at_the_guess_is_reached_by_every_schem
         let solution = &outcome.solution;
         assert_eq!(solution.status, Status::Solved, "{scheme}");
         assert!((solution.objective - 2.138f64.powi(2)).abs() < 1e-6, "{scheme}");
-        assert!(solution.counts.iterations <= 200, "{scheme}: {} iterations", solution.counts.iterations);
+        assert!(
+            solution.counts.iterations <= 200,
+            "{scheme}: {} iterations",
+            solution.counts.iterations
+        );
     }
 }
 
@@ -125,6 +135,9 @@ fn every_classical_problem_says_where_it_is_from_and_has_a_peer() {
     for ((name, text), peer) in models.iter().zip(&peers) {
         assert_eq!(&meaning(text).name, name);
         assert_eq!(&peer.name, name);
-        assert!(text.lines().take_while(|line| line.starts_with("#! ")).count() >= 2, "{name}: a source");
+        assert!(
+            text.lines().take_while(|line| line.starts_with("#! ")).count() >= 2,
+            "{name}: a source"
+        );
     }
 }

@@ -1,7 +1,8 @@
-//! Problems with friction whose answers are known exactly, approached by smoothing at the rate of the theory.
+//! Problems with friction whose answers are known exactly, approached by smoothing at the rate of
+//! the theory.
 //!
-//! Layers of width `sigma` cost an error of order `sigma`. Steps are a fixed small part of the layer, with schemes whose
-//! own error is far smaller, so that what is measured is the layer.
+//! Layers of width `sigma` cost an error of order `sigma`. Steps are a fixed small part of the
+//! layer, with schemes whose own error is far smaller, so that what is measured is the layer.
 
 use fdcc_runtime::problem::Problem;
 use fdcc_tests::models::{Changes, load};
@@ -21,14 +22,21 @@ fn runs(name: &str, parameters: Changes, scheme: &str) -> Vec<Solved> {
 }
 
 /// The error of a quantity falls like `sigma`, to `last` at the smallest width.
-fn assert_first_order(what: &str, runs: &[Solved], quantity: impl Fn(&Solved) -> f64, exact: f64, last: f64) {
+fn assert_first_order(
+    what: &str,
+    runs: &[Solved],
+    quantity: impl Fn(&Solved) -> f64,
+    exact: f64,
+    last: f64,
+) {
     let errors: Vec<f64> = runs.iter().map(|run| (quantity(run) - exact).abs()).collect();
     let measured = rate(&WIDTHS.map(|width| width.0), &errors);
     assert!((measured - 1.0).abs() < 0.1, "{what}: rate {measured:.3}, errors {errors:?}");
     assert!(errors[WIDTHS.len() - 1] < last, "{what}: errors {errors:?}");
 }
 
-/// `J(x0) = (x0 + 1)^2/9 - x0^3/9 + (x0 + 6)^3/81`: the closed form of `models/crossing.fdc` (alpha = 1).
+/// `J(x0) = (x0 + 1)^2/9 - x0^3/9 + (x0 + 6)^3/81`: the closed form of `models/crossing.fdc` (alpha
+/// = 1).
 fn crossing_cost(x0: f64) -> f64 {
     (x0 + 1.0).powi(2) / 9.0 - x0.powi(3) / 9.0 + (x0 + 6.0).powi(3) / 81.0
 }
@@ -42,8 +50,9 @@ fn a_surface_that_is_crossed() {
     assert_first_order("argument", &runs, |run| run.value("x0"), x0, 5e-3);
 }
 
-/// `x(T) = alpha (T + x0/(2 + alpha)) + sigma log((2 + alpha)/alpha)/(2 + alpha)` up to exponentially small terms: the
-/// bias of the state is of first order in the width, with a known constant.
+/// `x(T) = alpha (T + x0/(2 + alpha)) + sigma log((2 + alpha)/alpha)/(2 + alpha)` up to
+/// exponentially small terms: the bias of the state is of first order in the width, with a known
+/// constant.
 #[test]
 fn the_bias_of_the_state_after_a_crossing_is_as_predicted() {
     for (sigma, intervals) in WIDTHS {
@@ -71,15 +80,16 @@ fn the_shortest_time_from_rest_to_rest() {
     assert!(switch(&runs[3]).abs() < 5e-3, "largest speed");
 }
 
-/// Turning round at `t = V/(U + mu)`, a distance `V^2/(2 (U + mu))` too far back, then from rest to rest.
+/// Turning round at `t = V/(U + mu)`, a distance `V^2/(2 (U + mu))` too far back, then from rest to
+/// rest.
 fn reverse_time(mu: f64) -> f64 {
     let (u, v, d) = (2.0, 1.0, 1.0);
     let (turn, back) = (v / (u + mu), v * v / (2.0 * (u + mu)));
     turn + 2.0 * ((d + back) * u / (u * u - mu * mu)).sqrt()
 }
 
-/// For mu = 1/2 the error of first order nearly cancels between the crossing and the arrival, so the rate is measured
-/// where it does not.
+/// For mu = 1/2 the error of first order nearly cancels between the crossing and the arrival, so
+/// the rate is measured where it does not.
 #[test]
 fn the_shortest_time_with_a_crossing() {
     assert!((reverse_time(0.5) - 2.0).abs() < 1e-15);
@@ -93,18 +103,24 @@ fn the_shortest_time_with_a_crossing() {
     assert!((run.state("x")[turn] + 0.2).abs() < 5e-3);
 }
 
-/// `lam_x = -2/3`; `lam_v` rises with slope 2/3 from -2/3 to -2/5, jumps back to -2/3 at the crossing, and rises again.
+/// `lam_x = -2/3`; `lam_v` rises with slope 2/3 from -2/3 to -2/5, jumps back to -2/3 at the
+/// crossing, and rises again.
 #[test]
 fn costates_jump_where_the_surface_is_crossed() {
     let run = Solved::of(at("coulomb_reverse", &[], "implicit_euler", WIDTHS[3]));
     let time = &run.outcome.trajectory.time;
-    let exact =
-        |t: f64| if t < 0.4 { -2.0 / 3.0 + 2.0 / 3.0 * t } else { -2.0 / 3.0 + 2.0 / 3.0 * (t - 0.4) };
+    let exact = |t: f64| {
+        if t < 0.4 { -2.0 / 3.0 + 2.0 / 3.0 * t } else { -2.0 / 3.0 + 2.0 / 3.0 * (t - 0.4) }
+    };
     assert!(run.costate("x").iter().all(|lambda| (lambda + 2.0 / 3.0).abs() < 0.01));
     for (t, lambda) in time.iter().zip(run.costate("v")) {
         // Within the layer the costate is on its way from one value to the other.
         if (t - 0.4).abs() > 0.02 && *t < 1.98 {
-            assert!((lambda - exact(*t)).abs() < 0.01, "lam_v({t}) = {lambda}, exact {}", exact(*t));
+            assert!(
+                (lambda - exact(*t)).abs() < 0.01,
+                "lam_v({t}) = {lambda}, exact {}",
+                exact(*t)
+            );
         }
     }
 }

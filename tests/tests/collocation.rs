@@ -1,4 +1,5 @@
-//! Collocation schemes: their measured order in states, objectives, unknowns and costates, and what controls are on an interval.
+//! Collocation schemes: their measured order in states, objectives, unknowns and costates, and what
+//! controls are on an interval.
 
 use fdcc_runtime::transcribe::TranscribedNlp;
 use fdcc_tests::{Solved, rate};
@@ -33,13 +34,19 @@ fn grids(order: usize) -> &'static [f64] {
 }
 
 fn solved(text: &str, method: &str) -> Solved {
-    Solved::new(&format!("{text} method {{ {method} solver = interior_point tol = 1e-12 }}"), &[], &[])
+    Solved::new(
+        &format!("{text} method {{ {method} solver = interior_point tol = 1e-12 }}"),
+        &[],
+        &[],
+    )
 }
 
 fn check(case: &Case) {
     for (scheme, order) in schemes() {
         let grids = grids(order);
-        let run = |n: &f64| solved(case.text, &format!("grid N = {n} scheme {scheme} controls = polynomial"));
+        let run = |n: &f64| {
+            solved(case.text, &format!("grid N = {n} scheme {scheme} controls = polynomial"))
+        };
         let runs: Vec<Solved> = grids.iter().map(run).collect();
         for (what, error) in &case.known {
             let errors: Vec<f64> = runs.iter().map(|run| error(run).abs()).collect();
@@ -52,7 +59,10 @@ fn check(case: &Case) {
             let steps: Vec<f64> = grids[..above].iter().map(|n| 1.0 / n).collect();
             let measured = rate(&steps, &errors[..above]);
             let expected = order as f64;
-            assert!((measured - expected).abs() < (0.05 * expected).max(0.15), "{report}: order {measured}");
+            assert!(
+                (measured - expected).abs() < (0.05 * expected).max(0.15),
+                "{report}: order {measured}"
+            );
         }
     }
 }
@@ -63,7 +73,8 @@ fn a_right_side_that_depends_on_time() {
     let e = |run: &Solved| run.end("x") / (4.0 * 3f64.exp()) - 1.0;
     check(&Case {
         name: "late start",
-        text: "time t in [1, 4] state x start 1 dynamics { x' = x*(1 + 1/t) } minimize integral(x/t) + x(start)",
+        text: "time t in [1, 4] state x start 1 dynamics { x' = x*(1 + 1/t) } minimize \
+               integral(x/t) + x(start)",
         known: vec![("x(end)", e), ("the objective", |run| run.objective() / 3f64.exp() - 1.0)],
     });
 }
@@ -90,7 +101,8 @@ fn a_free_final_time() {
     }
     check(&Case {
         name: "free final time",
-        text: "free T in [0.5, 1.5] guess 0.8 time t in [0, T] state x start 1 dynamics { x' = 4*sin(2*t) } \
+        text: "free T in [0.5, 1.5] guess 0.8 time t in [0, T] state x start 1 dynamics { x' = \
+               4*sin(2*t) } \
                end x == 4 minimize integral(x)",
         known: vec![
             ("T", |run| run.value("T") - end()),
@@ -102,8 +114,9 @@ fn a_free_final_time() {
 const REGULATOR: &str =
     "time t in [0, 5] state x start 1 control u dynamics { x' = u } minimize integral(x^2 + u^2)";
 
-/// `J = tanh(T)`, `x = cosh(T - t)/cosh(T)`, and the costate `dJ/dx = 2 sinh(T - t)/cosh(T)`: with a control that is a polynomial on
-/// each interval the optimal control problem has the order of the scheme, in its costates, too.
+/// `J = tanh(T)`, `x = cosh(T - t)/cosh(T)`, and the costate `dJ/dx = 2 sinh(T - t)/cosh(T)`: with
+/// a control that is a polynomial on each interval the optimal control problem has the order of the
+/// scheme, in its costates, too.
 #[test]
 fn an_optimal_control_problem_with_its_costates() {
     check(&Case {
@@ -121,7 +134,8 @@ fn an_optimal_control_problem_with_its_costates() {
     });
 }
 
-/// `u = -sinh(T - t)/cosh(T)`, at the times that a shape is defined by, and in the mean over an interval.
+/// `u = -sinh(T - t)/cosh(T)`, at the times that a shape is defined by, and in the mean over an
+/// interval.
 #[test]
 fn controls_are_what_their_shape_says() {
     let exact = |t: f64| -(5.0 - t).sinh() / 5f64.cosh();
@@ -154,7 +168,8 @@ fn controls_are_what_their_shape_says() {
     }
 }
 
-/// A control that is held has one value on each interval, whatever the scheme, and then the optimum is of order 2.
+/// A control that is held has one value on each interval, whatever the scheme, and then the optimum
+/// is of order 2.
 #[test]
 fn a_held_control_has_one_value_on_an_interval() {
     let error = |n: f64| {
@@ -167,8 +182,9 @@ fn a_held_control_has_one_value_on_an_interval() {
     assert!((measured - 2.0).abs() < 0.05, "order {measured}");
 }
 
-/// Bryson & Ho 1975, section 3.11: without a bound on `x` the optimum is `x = t (1 - t)`; with `x <= l`, `l <= 1/6`, it is
-/// `4/(9 l)`. Path constraints and bounds of states hold at the nodes inside the intervals, too.
+/// Bryson & Ho 1975, section 3.11: without a bound on `x` the optimum is `x = t (1 - t)`; with `x
+/// <= l`, `l <= 1/6`, it is `4/(9 l)`. Path constraints and bounds of states hold at the nodes
+/// inside the intervals, too.
 #[test]
 fn constraints_hold_at_the_nodes() {
     let limit = 1.0 / 9.0;
@@ -179,14 +195,16 @@ fn constraints_hold_at_the_nodes() {
     {
         let run = Solved::new(
             &format!(
-                "time t in [0, 1] {state} state v start 1 control u dynamics {{ x' = v v' = u }} end x == 0 end v == -1 \
+                "time t in [0, 1] {state} state v start 1 control u dynamics {{ x' = v v' = u }} \
+                 end x == 0 end v == -1 \
                  minimize integral(u^2)/2 method {{ grid N = 25 scheme radau3 controls = {shape} }}"
             ),
             &[],
             &[],
         );
         let stages = TranscribedNlp::new(&run.problem).chain();
-        let inner = (0..25).flat_map(|k| stages.inner(k).step_by(2)).map(|i| run.outcome.solution.v[i]);
+        let inner =
+            (0..25).flat_map(|k| stages.inner(k).step_by(2)).map(|i| run.outcome.solution.v[i]);
         let top = inner.chain(run.state("x").iter().copied()).fold(0.0, f64::max);
         assert!(top <= limit + 1e-7, "{state}, {shape}: {top}");
         assert!((run.objective() - 4.0).abs() < 0.02, "{state}, {shape}: {}", run.objective());

@@ -1,5 +1,6 @@
-//! The tables and figures of `docs/method/convergence.md`: smoothed derivatives `S_sigma`, those of steps `S_h,sigma`, and the
-//! true ones `S`, compared with each other and with the numbers of an independent program.
+//! The tables and figures of `docs/method/convergence.md`: smoothed derivatives `S_sigma`, those of
+//! steps `S_h,sigma`, and the true ones `S`, compared with each other and with the numbers of an
+//! independent program.
 
 use fdcc_runtime::sensitivity::{Quantity, gradient};
 use fdcc_runtime::simulate::{Controls, Options};
@@ -116,7 +117,8 @@ fn the_tables_are_what_is_computed() {
     );
 }
 
-/// Example (2.3), in closed form: `dx(T)/dx0 = f(x(T))/f(x0)` with `f = 2 - tanh(x/sigma)`, and `x(T) = 5/3 + sigma ln(3)/3`.
+/// Example (2.3), in closed form: `dx(T)/dx0 = f(x(T))/f(x0)` with `f = 2 - tanh(x/sigma)`, and
+/// `x(T) = 5/3 + sigma ln(3)/3`.
 fn scalar() -> Rows {
     let mut system = smoothed_to_the_end();
     let mut rows = Vec::new();
@@ -140,7 +142,8 @@ fn scalar() -> Rows {
 
 /// Theorem 5.1 and 5.2.
 fn crossing() -> Rows {
-    let found = ["tanh", "sqrt", "linear", "cubic", "quintic"].map(|kernel| Case::crossing().bias(kernel));
+    let found =
+        ["tanh", "sqrt", "linear", "cubic", "quintic"].map(|kernel| Case::crossing().bias(kernel));
     near(&found[0], &[8.4e-2, 5.8e-2, 3.6e-2, 2.1e-2, 1.1e-2, 5.7e-3], 2);
     near(&found[2], &[8.3e-2], 2);
     near(&found[3], &[6.7e-2, 3.9e-2, 2.1e-2, 1.1e-2, 5.6e-3, 2.8e-3], 2);
@@ -157,10 +160,12 @@ fn sliding() -> Rows {
     over_widths(&[arc, of(Case::held()), of(Case::left())].concat(), 2)
 }
 
-/// `R1 = 2 S_sigma - S_2sigma` and `R2 = (4 R1(sigma) - R1(2 sigma))/3`, each in the row of its finest width.
+/// `R1 = 2 S_sigma - S_2sigma` and `R2 = (4 R1(sigma) - R1(2 sigma))/3`, each in the row of its
+/// finest width.
 fn extrapolated() -> Rows {
     let combined = |all: &[Matrix], a: f64, b: f64| -> Vec<Matrix> {
-        let one = |pair: &[Matrix]| [0, 1].map(|i| [0, 1].map(|j| a * pair[1][i][j] - b * pair[0][i][j]));
+        let one =
+            |pair: &[Matrix]| [0, 1].map(|i| [0, 1].map(|j| a * pair[1][i][j] - b * pair[0][i][j]));
         all.windows(2).map(one).collect()
     };
     let of = |case: Case, kernel| {
@@ -241,13 +246,18 @@ fn ratios() -> Rows {
     rows
 }
 
-/// Crossing explicitly needs steps below the width, sliding explicitly needs stability; implicit Euler converges always.
+/// Crossing explicitly needs steps below the width, sliding explicitly needs stability; implicit
+/// Euler converges always.
 fn check_ratio(case: &Case, scheme: usize, at: usize, errors: &[f64; 3]) {
     let falls = errors.windows(2).all(|pair| pair[1] < 0.5 * pair[0]);
     let ratio = RATIOS[at];
     assert_eq!(falls, scheme == 1 || ratio <= 1.0, "ratio {ratio}, scheme {scheme}: {errors:?}");
     if case.surface == "edge" && scheme == 0 && ratio <= 1.0 {
-        near(errors, &[[6.5e-3, 1.7e-3, 4.3e-4], [3.2e-2, 8.5e-3, 2.2e-3], [6.3e-2, 1.8e-2, 3.2e-3]][at], 2);
+        near(
+            errors,
+            &[[6.5e-3, 1.7e-3, 4.3e-4], [3.2e-2, 8.5e-3, 2.2e-3], [6.3e-2, 1.8e-2, 3.2e-3]][at],
+            2,
+        );
     }
 }
 
@@ -271,13 +281,17 @@ fn the_figure_over_widths_is_what_is_computed() {
         figure = figure.line(name, &over(&WIDTHS, &case.bias(kernel)));
     }
     let line = over(&WIDTHS, &WIDTHS.map(|sigma| 0.2 * sigma));
-    check_file("docs/method/figures/convergence-widths.svg", &figure.dashed("sigma/5", &line).svg());
+    check_file(
+        "docs/method/figures/convergence-widths.svg",
+        &figure.dashed("sigma/5", &line).svg(),
+    );
 }
 
 #[test]
 fn the_figure_over_ratios_is_what_is_computed() {
     let ratios: Vec<f64> = (0..25).map(|k| 0.05 * 160_f64.powf(f64::from(k) / 24.0)).collect();
-    let error = Axis::new("error of S against its limit for h to 0").logarithmic().between(5e-5, 20.0);
+    let error =
+        Axis::new("error of S against its limit for h to 0").logarithmic().between(5e-5, 20.0);
     let mut figure = Figure::new(Axis::new("h/sigma").logarithmic(), error);
     for (name, case) in [("crossing", Case::crossing()), ("sliding", Case::held())] {
         let [explicit, implicit] = over_ratios(&case, 0.0125, &ratios);

@@ -1,5 +1,5 @@
-//! The tables and figures of `docs/method/costate.md`: costates of the true system, with their jumps, and the smoothed ones
-//! that converge to them.
+//! The tables and figures of `docs/method/costate.md`: costates of the true system, with their
+//! jumps, and the smoothed ones that converge to them.
 
 use std::f64::consts::SQRT_2;
 
@@ -22,7 +22,8 @@ fn near(found: [f64; 2], known: [f64; 2], tolerance: f64) {
 
 /// The costates of both states at a time that was asked for.
 fn at(costates: &Costates, time: f64) -> [f64; 2] {
-    let place = costates.time.iter().position(|other| *other == time).expect("a time that was asked for");
+    let place =
+        costates.time.iter().position(|other| *other == time).expect("a time that was asked for");
     [0, 1].map(|state| costates.columns[state][place])
 }
 
@@ -42,13 +43,20 @@ fn pair([x, y]: [f64; 2], digits: usize) -> String {
 fn the_tables_are_what_is_computed() {
     check_tables(
         "docs/method/costate.md",
-        &[("arc", arc()), ("crossing", crossing()), ("crossing-widths", crossing_widths()), ("time", time())],
+        &[
+            ("arc", arc()),
+            ("crossing", crossing()),
+            ("crossing-widths", crossing_widths()),
+            ("time", time()),
+        ],
     );
 }
 
-/// (d): the smoothed adjoints early on the arc and near its exit; the independent numbers are those of the second time.
+/// (d): the smoothed adjoints early on the arc and near its exit; the independent numbers are those
+/// of the second time.
 fn arc() -> Rows {
-    let mut smoothed = ["tanh", "cubic"].map(|kernel| Smoothed::new(&simulated("circle"), "rim", kernel));
+    let mut smoothed =
+        ["tanh", "cubic"].map(|kernel| Smoothed::new(&simulated("circle"), "rim", kernel));
     let known = [
         (0.1, [1.875, 0.805], [1.921, 0.885]),
         (0.05, [1.900, 0.859], [1.955, 0.940]),
@@ -96,7 +104,8 @@ fn crossing() -> Rows {
             -1.928007623713015,
         ),
     ];
-    let starts = [[0.2437264049929583, -0.02038229949499524], [-2.222875255281964, 0.8120227886660936]];
+    let starts =
+        [[0.2437264049929583, -0.02038229949499524], [-2.222875255281964, 0.8120227886660936]];
     let mut rows = Vec::new();
     for ((objective, after, before, hamiltonian), start) in known.into_iter().zip(starts) {
         let found = costates(&exact(&simulated("curved"), objective), &[]);
@@ -104,11 +113,13 @@ fn crossing() -> Rows {
         near(sides[0], before, 1e-9);
         near(sides[1], after, 1e-9);
         near(at(&found, 0.0), start, 1e-9);
-        let products = [0, 1].map(|side| sides[side][0] * fields[side][0] + sides[side][1] * fields[side][1]);
+        let products =
+            [0, 1].map(|side| sides[side][0] * fields[side][0] + sides[side][1] * fields[side][1]);
         near(products, [hamiltonian; 2], 1e-9);
         let lambdas = [at(&found, 0.0), sides[0], sides[1]].map(|lambda| pair(lambda, 8));
         rows.push(
-            [vec![objective.to_owned()], lambdas.to_vec(), vec![format!("{:.8}", products[0])]].concat(),
+            [vec![objective.to_owned()], lambdas.to_vec(), vec![format!("{:.8}", products[0])]]
+                .concat(),
         );
     }
     rows
@@ -132,15 +143,19 @@ fn crossing_widths() -> Rows {
     rows
 }
 
-/// (e1): the least time as a function of the state, `-2/3 dx + 2/5 dv` at its end, along the optimal run.
+/// (e1): the least time as a function of the state, `-2/3 dx + 2/5 dv` at its end, along the
+/// optimal run.
 fn least_time() -> Costates {
-    let text =
-        text_of("coulomb_reverse").replace("minimize T ", "minimize -2 [s/m]/3*x(end) + 2 [s^2/m]/5*v(end) ");
+    let text = text_of("coulomb_reverse")
+        .replace("minimize T ", "minimize -2 [s/m]/3*x(end) + 2 [s^2/m]/5*v(end) ");
     let mut model = changed(&text, &[], &[]);
     model.set_free("T", 2.0);
     let system = compile_sensitivities(&model).expect("the model can be simulated");
-    let controls =
-        Controls::Held { times: vec![0.0, 1.4], rows: vec![vec![2.0], vec![-2.0]], is_stretched: true };
+    let controls = Controls::Held {
+        times: vec![0.0, 1.4],
+        rows: vec![vec![2.0], vec![-2.0]],
+        is_stretched: true,
+    };
     gradient(&system, &controls, &Options::default(), &[]).expect("it reaches the end").costates
 }
 
@@ -180,7 +195,12 @@ fn time() -> Rows {
 
 /// A costate over time, all entries.
 fn curve(costates: &Costates, state: usize) -> Vec<[f64; 2]> {
-    costates.time.iter().zip(&costates.columns[state]).map(|(time, lambda)| [*time, *lambda]).collect()
+    costates
+        .time
+        .iter()
+        .zip(&costates.columns[state])
+        .map(|(time, lambda)| [*time, *lambda])
+        .collect()
 }
 
 /// A smoothed costate at these times.
@@ -210,7 +230,8 @@ fn with_widths(name: &str, surface: &str, [first, last]: [f64; 2]) -> Figure {
 fn of_the_paper() -> Vec<[f64; 2]> {
     let system = exact(&simulated("circle"), "x(end)");
     let arc = times(0.753939201416946, 2.5213203435596);
-    let found = simulate(&system, &Controls::Guess, &Options { times: arc.clone(), ..Options::default() });
+    let found =
+        simulate(&system, &Controls::Guess, &Options { times: arc.clone(), ..Options::default() });
     arc.iter().zip(&found.states[0]).map(|(time, x)| [*time, 2.0 - SQRT_2 * x]).collect()
 }
 
@@ -232,7 +253,8 @@ fn the_figure_of_the_least_time_is_what_is_computed() {
     figure = figure.line("exact", &curve(&least_time(), 1));
     for sigma in [0.1, 0.03, 0.01] {
         let (solved, time) = solved(sigma);
-        let points = time.into_iter().zip(solved.costate("v")).map(|(time, lambda)| [time, *lambda]);
+        let points =
+            time.into_iter().zip(solved.costate("v")).map(|(time, lambda)| [time, *lambda]);
         figure = figure.line(&format!("sigma = {sigma}"), &points.collect::<Vec<_>>());
     }
     check_file("docs/method/figures/costate-time.svg", &figure.svg());

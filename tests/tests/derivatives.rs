@@ -24,7 +24,14 @@ fn check(graph: &Graph, symbols: &Differentiated, low: f64, high: f64) -> Result
         let multipliers = table(&mut random, symbols.function.outputs.len(), count, -1.0, 1.0);
         let parameters: Vec<f64> = (0..layout.p).map(|_| random.between(low, high)).collect();
         check_machine_code(graph, symbols, &*compiled, &points, &parameters, &multipliers, 1e-13)?;
-        check_differences(&*compiled, &symbols.function.by, &points, &parameters, &multipliers, 1e-7)?;
+        check_differences(
+            &*compiled,
+            &symbols.function.by,
+            &points,
+            &parameters,
+            &multipliers,
+            1e-7,
+        )?;
     }
     Ok(())
 }
@@ -38,7 +45,8 @@ fn range(domain: Domain) -> (f64, f64) {
     }
 }
 
-/// `builtin` of as many states as it has operands; of one parameter instead of the last state if `parameter`.
+/// `builtin` of as many states as it has operands; of one parameter instead of the last state if
+/// `parameter`.
 fn call_of_inputs(graph: &mut Graph, builtin: Builtin, parameter: bool) -> Differentiated {
     let arity = builtin.row().arity;
     let inputs: Vec<ExprId> = (0..arity as u32).map(|input| graph.input(input)).collect();
@@ -49,7 +57,9 @@ fn call_of_inputs(graph: &mut Graph, builtin: Builtin, parameter: bool) -> Diffe
 
 #[test]
 fn every_smooth_builtin_is_its_interpreter_and_its_partials_are_differences() {
-    for &builtin in builtins::ALL.iter().filter(|builtin| builtin.row().smoothness == Smoothness::Analytic) {
+    for &builtin in
+        builtins::ALL.iter().filter(|builtin| builtin.row().smoothness == Smoothness::Analytic)
+    {
         for parameter in [false, true] {
             let mut graph = Graph::new();
             let symbols = call_of_inputs(&mut graph, builtin, parameter);
@@ -62,7 +72,9 @@ fn every_smooth_builtin_is_its_interpreter_and_its_partials_are_differences() {
 
 #[test]
 fn builtins_with_kinks_have_the_partials_of_the_branch_they_are_on() {
-    for &builtin in builtins::ALL.iter().filter(|builtin| builtin.row().smoothness != Smoothness::Analytic) {
+    for &builtin in
+        builtins::ALL.iter().filter(|builtin| builtin.row().smoothness != Smoothness::Analytic)
+    {
         let mut graph = Graph::new();
         let symbols = call_of_inputs(&mut graph, builtin, false);
         let compiled = compile(&graph, &symbols);
@@ -78,7 +90,14 @@ fn builtins_with_kinks_have_the_partials_of_the_branch_they_are_on() {
         let name = builtin.row().name;
         check_machine_code(&graph, &symbols, &*compiled, &points, &[], &multipliers, 1e-15)
             .and_then(|()| {
-                check_differences(&*compiled, &symbols.function.by, &points, &[], &multipliers, 1e-9)
+                check_differences(
+                    &*compiled,
+                    &symbols.function.by,
+                    &points,
+                    &[],
+                    &multipliers,
+                    1e-9,
+                )
             })
             .unwrap_or_else(|error| panic!("{name}: {error}"));
     }
@@ -89,8 +108,10 @@ fn every_kind_of_input_is_read_from_its_own_place() {
     let mut graph = Graph::new();
     let layout = Layout { t: 1, x: 2, u: 1, p: 2, s: 2 };
     let inputs: Vec<ExprId> = (0..8).map(|input| graph.input(input)).collect();
-    let weighted: Vec<ExprId> =
-        inputs.iter().map(|&input| graph.scale(f64::from(input.index() as u32 + 1), input)).collect();
+    let weighted: Vec<ExprId> = inputs
+        .iter()
+        .map(|&input| graph.scale(f64::from(input.index() as u32 + 1), input))
+        .collect();
     let sum = graph.sum(&weighted);
     let output = graph.sin(sum);
     let parameter = graph.mul(inputs[4], inputs[5]);
@@ -133,8 +154,16 @@ fn a_wrong_instruction_is_caught() {
     let other = function(&mut graph, vec![cosine], states_and_parameters(1, 0));
     let points = table(&mut Random::new(3), 1, 5, 0.1, 0.5);
     let multipliers = table(&mut Random::new(4), 1, 5, 0.1, 0.5);
-    check_machine_code(&graph, &symbols, &*compile(&graph, &other), &points, &[], &multipliers, 1e-13)
-        .expect_err("the machine code of another function");
+    check_machine_code(
+        &graph,
+        &symbols,
+        &*compile(&graph, &other),
+        &points,
+        &[],
+        &multipliers,
+        1e-13,
+    )
+    .expect_err("the machine code of another function");
 }
 
 /// Numbers that matter: both signs of a dense sample over many magnitudes, and the edges.
@@ -197,7 +226,8 @@ fn functions_written_out_are_accurate_to_a_few_units_in_the_last_place() {
         for (&x, &got) in arguments.iter().chain(&arguments).zip(by_steps.iter().chain(&by_code)) {
             let expected = (builtin.row().value)(&[x]);
             let same = got == expected || (got.is_nan() && expected.is_nan());
-            let near = units_in_the_last_place(got, expected) <= bound || (got - expected).abs() < 1e-30;
+            let near =
+                units_in_the_last_place(got, expected) <= bound || (got - expected).abs() < 1e-30;
             assert!(same || near, "{}({x:e}) = {expected:e}, got {got:e}", builtin.row().name);
         }
     }
@@ -205,7 +235,9 @@ fn functions_written_out_are_accurate_to_a_few_units_in_the_last_place() {
 
 #[test]
 fn what_is_not_a_number_goes_through_every_builtin() {
-    for &builtin in builtins::ALL.iter().filter(|builtin| builtin.row().notation != Notation::Internal) {
+    for &builtin in
+        builtins::ALL.iter().filter(|builtin| builtin.row().notation != Notation::Internal)
+    {
         for bad in 0..builtin.row().arity {
             let mut graph = Graph::new();
             let symbols = call_of_inputs(&mut graph, builtin, false);
@@ -289,7 +321,10 @@ fn simplification_preserves_meaning() {
                 (0..builtin.row().arity).map(|_| pool[random.below(pool.len())]).collect();
             let (ids, numbers): (Vec<ExprId>, Vec<f64>) = operands.into_iter().unzip();
             let expected = meaning(builtin, &numbers);
-            if !expected.is_finite() || expected.abs() > 100.0 || !builtin.row().domain.contains(&numbers) {
+            if !expected.is_finite()
+                || expected.abs() > 100.0
+                || !builtin.row().domain.contains(&numbers)
+            {
                 continue;
             }
             let id = graph.call(builtin, &ids);

@@ -1,5 +1,5 @@
-//! Derivatives of systems with isotropic friction: forward, adjoint and central differences of simulations agree, through
-//! landings, rest, setting out and passing through 0.
+//! Derivatives of systems with isotropic friction: forward, adjoint and central differences of
+//! simulations agree, through landings, rest, setting out and passing through 0.
 
 use fdcc_compiler::compile_sensitivities;
 use fdcc_runtime::sensitivity::{Quantity, gradient, perturbed};
@@ -17,7 +17,12 @@ fn quantities(system: &System, text: &str) -> Vec<Quantity> {
 }
 
 /// The objective at `+-STEP` in one quantity; nothing where the events are others.
-fn difference(system: &System, quantity: &Quantity, options: &Options, events: usize) -> Option<f64> {
+fn difference(
+    system: &System,
+    quantity: &Quantity,
+    options: &Options,
+    events: usize,
+) -> Option<f64> {
     let value = |amount: f64| {
         let (system, controls) = perturbed(system, &Controls::Guess, quantity, amount);
         let simulation = simulate(&system, &controls, options);
@@ -47,9 +52,15 @@ fn derivatives_through_isotropic_friction_are_those_of_differences() {
             assert!(found.agreement <= 1e-10, "{name}, {}: {}", state.name, found.agreement);
             for (quantity, exact) in quantities.iter().zip(&found.adjoint) {
                 let events = found.simulation.events.len();
-                let Some(difference) = difference(&system, quantity, &options, events) else { continue };
+                let Some(difference) = difference(&system, quantity, &options, events) else {
+                    continue;
+                };
                 let error = (exact - difference).abs() / exact.abs().max(1.0);
-                assert!(error <= 1e-5, "{name}, {} by {quantity:?}: {exact}, not {difference}", state.name);
+                assert!(
+                    error <= 1e-5,
+                    "{name}, {} by {quantity:?}: {exact}, not {difference}",
+                    state.name
+                );
                 compared += 1;
             }
         }

@@ -1,4 +1,5 @@
-//! Documents are true as far as a machine can tell: what they name exists, and CI does what the README says.
+//! Documents are true as far as a machine can tell: what they name exists, and CI does what the
+//! README says.
 
 use fdcc_tests::sources::{Source, all_well, names, sources};
 use fdcc_tests::{blocks, repository};
@@ -6,15 +7,18 @@ use std::fs;
 
 #[test]
 fn the_map_is_short() {
-    let map = fs::read_to_string(repository().join("ARCHITECTURE.md")).expect("ARCHITECTURE.md is there");
+    let map =
+        fs::read_to_string(repository().join("ARCHITECTURE.md")).expect("ARCHITECTURE.md is there");
     let lines = map.lines().count();
     assert!(
         lines <= 200,
-        "ARCHITECTURE.md has {lines} lines; move details to docs/method or docs/decisions (at most 200)"
+        "ARCHITECTURE.md has {lines} lines; move details to docs/method or docs/decisions (at most \
+         200)"
     );
 }
 
-/// Documents that describe the code as it is. Decisions are not among them: they say what was so when they were taken.
+/// Documents that describe the code as it is. Decisions are not among them: they say what was so
+/// when they were taken.
 fn is_about_the_code(source: &Source) -> bool {
     let path = &source.path;
     path == "ARCHITECTURE.md"
@@ -24,7 +28,8 @@ fn is_about_the_code(source: &Source) -> bool {
         || path.starts_with("docs/recipes/")
 }
 
-/// The words in backquotes outside fenced blocks, with their lines; and the folder that the last heading named.
+/// The words in backquotes outside fenced blocks, with their lines; and the folder that the last
+/// heading named.
 fn quoted(text: &str) -> Vec<(usize, String, &str)> {
     let (mut words, mut folder, mut fenced) = (Vec::new(), String::new(), false);
     for (at, line) in text.lines().enumerate() {
@@ -52,8 +57,8 @@ fn is_path(word: &str) -> bool {
 fn is_declared(name: &str, files: &[&str], all: &[Source]) -> bool {
     let function = format!("fn {}", name.rsplit("::").next().unwrap_or(name));
     let code = all.iter().filter(|source| source.path.ends_with(".rs"));
-    let mut code =
-        code.filter(|source| files.is_empty() || files.iter().any(|file| source.path.ends_with(file)));
+    let mut code = code
+        .filter(|source| files.is_empty() || files.iter().any(|file| source.path.ends_with(file)));
     code.any(|source| source.text.lines().any(|line| names(line, &function)))
 }
 
@@ -64,10 +69,13 @@ fn documents_name_only_what_exists() {
     for Source { path, text } in all.iter().filter(|source| is_about_the_code(source)) {
         let quoted = quoted(text);
         for (line, folder, word) in &quoted {
-            let exists = || repository().join(word).exists() || repository().join(folder).join(word).exists();
+            let exists = || {
+                repository().join(word).exists() || repository().join(folder).join(word).exists()
+            };
             if is_path(word) && !exists() {
-                breaches
-                    .push(format!("{path}:{line}: there is no file `{word}`; correct the name or the page"));
+                breaches.push(format!(
+                    "{path}:{line}: there is no file `{word}`; correct the name or the page"
+                ));
             }
             let beside = quoted.iter().filter(|other| other.0 == *line && other.2.ends_with(".rs"));
             let files: Vec<&str> = beside.map(|other| other.2).collect();
@@ -83,7 +91,8 @@ fn documents_name_only_what_exists() {
 
 #[test]
 fn every_page_about_the_method_names_its_files() {
-    let is_page = |source: &Source| source.path.starts_with("docs/method/") && source.path.ends_with(".md");
+    let is_page =
+        |source: &Source| source.path.starts_with("docs/method/") && source.path.ends_with(".md");
     let pages = sources().into_iter().filter(is_page);
     let names_none = |page: &Source| !quoted(&page.text).iter().any(|(_, _, word)| is_path(word));
     all_well(
@@ -104,7 +113,11 @@ fn the_readme_and_ci_run_the_same_commands() {
         .filter(|block| block.tag == "sh" && block.text.starts_with("cargo "))
         .flat_map(|block| block.text.lines().map(str::to_owned).collect::<Vec<_>>())
         .collect();
-    assert_eq!(commands.len(), 2, "the README has exactly two commands for a fresh machine: {commands:?}");
+    assert_eq!(
+        commands.len(),
+        2,
+        "the README has exactly two commands for a fresh machine: {commands:?}"
+    );
     for command in commands {
         assert!(ci.contains(&command), ".ci/run must run the README's own `{command}`");
     }
@@ -113,7 +126,9 @@ fn the_readme_and_ci_run_the_same_commands() {
 #[test]
 fn the_model_in_the_readme_is_the_one_in_models() {
     let read = |path: &str| fs::read_to_string(repository().join(path)).expect("the file is there");
-    let shown =
-        blocks(&read("README.md")).into_iter().find(|block| block.tag == "fdc").expect("a model is shown");
+    let shown = blocks(&read("README.md"))
+        .into_iter()
+        .find(|block| block.tag == "fdc")
+        .expect("a model is shown");
     assert_eq!(shown.text, read("models/block.fdc"), "README.md: copy models/block.fdc again");
 }

@@ -1,6 +1,8 @@
-//! The grammars of the editors use the words of the compiler, which stand in one list, `editors/words.json`.
+//! The grammars of the editors use the words of the compiler, which stand in one list,
+//! `editors/words.json`.
 //!
-//! `UPDATE=1 cargo test -p fdcc-tests --test editors` writes the list and the places where others repeat it anew.
+//! `UPDATE=1 cargo test -p fdcc-tests --test editors` writes the list and the places where others
+//! repeat it anew.
 
 use fdcc_compiler::{function_names, review};
 use fdcc_grammar::parse;
@@ -13,8 +15,9 @@ use std::fs;
 
 /// The words of each kind, in the order in which the compiler lists them.
 fn words() -> BTreeMap<&'static str, Vec<&'static str>> {
-    let reserved =
-        |is_item: bool| WORDS.iter().filter(move |it| it.item.is_some() == is_item).map(|it| it.text);
+    let reserved = |is_item: bool| {
+        WORDS.iter().filter(move |it| it.item.is_some() == is_item).map(|it| it.text)
+    };
     let mut clauses: Vec<&str> = reserved(true).flat_map(inner_words).copied().collect();
     clauses.retain(|word| WORDS.iter().all(|it| it.text != *word));
     BTreeMap::from([
@@ -48,22 +51,24 @@ fn grammars_repeat_the_list() {
     }
 }
 
-/// The text with every list written anew: `(?:a|b)` in a regular expression, else `"a" "b"` on a line of its own, with
-/// commas in C.
+/// The text with every list written anew: `(?:a|b)` in a regular expression, else `"a" "b"` on a
+/// line of its own, with commas in C.
 fn with_words(path: &str, text: &str) -> String {
     let words = words();
     let mut marked: Option<&Vec<&str>> = None;
     let line = |line: &str| {
         let listed = marked.take().map(|words| with_list(path, line, words));
-        marked =
-            line.split_once("words: ").and_then(|(_, rest)| words.get(rest.trim_end_matches(['"', ','])));
+        marked = line
+            .split_once("words: ")
+            .and_then(|(_, rest)| words.get(rest.trim_end_matches(['"', ','])));
         listed.unwrap_or_else(|| line.to_owned()) + "\n"
     };
     text.lines().map(line).collect()
 }
 
 fn with_list(path: &str, line: &str, words: &[&str]) -> String {
-    let regex = line.split_once("(?:").and_then(|(before, rest)| Some((before, rest.split_once(')')?.1)));
+    let regex =
+        line.split_once("(?:").and_then(|(before, rest)| Some((before, rest.split_once(')')?.1)));
     match regex {
         Some((before, after)) => format!("{before}(?:{}){after}", words.join("|")),
         None => {
@@ -89,12 +94,14 @@ fn the_parser_of_tree_sitter_was_made_from_the_list() {
     }
 }
 
-/// Each snippet, as it stands before anything is filled in, is an item or an expression; a model by itself is a right one.
+/// Each snippet, as it stands before anything is filled in, is an item or an expression; a model by
+/// itself is a right one.
 #[test]
 fn snippets_are_right() {
     let snippets = fs::read_to_string(repository().join("editors/vscode/snippets/fdc.json"));
     let snippets: BTreeMap<String, Value> =
-        serde_json::from_str(&snippets.expect("the snippets are there")).expect("the snippets are JSON");
+        serde_json::from_str(&snippets.expect("the snippets are there"))
+            .expect("the snippets are JSON");
     assert!(snippets.len() > 5);
     for (name, snippet) in snippets {
         let lines = snippet["body"].as_array().expect("a snippet has lines").iter();

@@ -1,8 +1,10 @@
-//! Examples (e0) and (e1): how the least time from rest, or from the wrong direction, to rest at a distance of 1 depends on the data.
+//! Examples (e0) and (e1): how the least time from rest, or from the wrong direction, to rest at a
+//! distance of 1 depends on the data.
 //!
-//! The model of `tests/gradients/bang_bang.fdc` turns its force at `turn` and ends a time `REST` before it stops; with `F = U + mu` its
-//! end conditions are `v = F REST` and `x + F REST^2/2 = 1`. They determine `T` and `turn`, so derivatives of both follow from
-//! those of the end by the implicit function theorem.
+//! The model of `tests/gradients/bang_bang.fdc` turns its force at `turn` and ends a time `REST`
+//! before it stops; with `F = U + mu` its end conditions are `v = F REST` and `x + F REST^2/2 = 1`.
+//! They determine `T` and `turn`, so derivatives of both follow from those of the end by the
+//! implicit function theorem.
 
 use fdcc_compiler::compile_sensitivities;
 use fdcc_runtime::sensitivity::{Quantity, gradient};
@@ -12,7 +14,8 @@ use fdcc_tests::repository;
 
 const REST: f64 = 0.1;
 
-/// `dT` by some parameters, for a start at a speed, the time at which the force turns and the final time.
+/// `dT` by some parameters, for a start at a speed, the time at which the force turns and the final
+/// time.
 fn final_time_by(v0: &str, turn: &str, last: f64, names: &[&str]) -> Vec<f64> {
     let path = repository().join("tests/gradients/bang_bang.fdc");
     let mut model = meaning(&std::fs::read_to_string(path).expect("the model"));

@@ -1,12 +1,13 @@
-//! Repairs: what becomes of wrong models (`tests/tests/fixes/`), and that no repair makes any text of the repository
-//! worse.
+//! Repairs: what becomes of wrong models (`tests/tests/fixes/`), and that no repair makes any text
+//! of the repository worse.
 
 use fdcc_compiler::{repair, review};
 use fdcc_grammar::{Diagnostic, fix};
 use fdcc_tests::fuzzed::assert_repairs_end;
 use fdcc_tests::{Block, blocks, documents};
 
-/// A model `fdc`, and what it becomes: `fdc fixed` if that is certain, `fdc unsafe` if it is likely.
+/// A model `fdc`, and what it becomes: `fdc fixed` if that is certain, `fdc unsafe` if it is
+/// likely.
 #[test]
 fn wrong_models_become_the_right_ones() {
     for (name, document) in documents("tests/tests/fixes", "md") {
@@ -15,8 +16,12 @@ fn wrong_models_become_the_right_ones() {
             let place = format!("{name}.md:{} {}", block.line, block.heading);
             match (block.tag.as_str(), &wrong) {
                 ("fdc", _) => wrong = Some(block),
-                ("fdc fixed", Some(wrong)) => expect(&repair(&wrong.text, false), &block.text, &place),
-                ("fdc unsafe", Some(wrong)) => expect(&repair(&wrong.text, true), &block.text, &place),
+                ("fdc fixed", Some(wrong)) => {
+                    expect(&repair(&wrong.text, false), &block.text, &place)
+                }
+                ("fdc unsafe", Some(wrong)) => {
+                    expect(&repair(&wrong.text, true), &block.text, &place)
+                }
                 _ => panic!("{place}: a wrong model comes first"),
             }
         }
@@ -41,7 +46,8 @@ fn each_repair_is_one() {
         for found in review(&text).diagnostics {
             for repair in &found.fixes {
                 let single = Diagnostic { fixes: vec![repair.clone()], ..found.clone() };
-                let repaired = fix::apply(&text, &[single], true).expect("a repair changes something");
+                let repaired =
+                    fix::apply(&text, &[single], true).expect("a repair changes something");
                 assert!(!repair.title.is_empty());
                 let is_still_there = review(&repaired).diagnostics.contains(&found);
                 assert!(!is_still_there, "{found:#?}\n{text}\n---\n{repaired}");
@@ -59,6 +65,7 @@ fn texts() -> Vec<String> {
         "tests/tests/semantics",
         "tests/tests/fixes",
     ];
-    let of_folder = |folder| documents(folder, "md").into_iter().flat_map(|(_, document)| blocks(&document));
+    let of_folder =
+        |folder| documents(folder, "md").into_iter().flat_map(|(_, document)| blocks(&document));
     folders.into_iter().flat_map(of_folder).map(|block| block.text).collect()
 }

@@ -1,5 +1,5 @@
-//! The canonical layout: what it looks like (`tests/tests/format/`), and that it changes nothing but blanks, over every
-//! model of the repository and over random layouts of them.
+//! The canonical layout: what it looks like (`tests/tests/format/`), and that it changes nothing
+//! but blanks, over every model of the repository and over random layouts of them.
 
 use fdcc_grammar::{comments, format};
 use fdcc_tests::layout::assert_only_the_layout_changes;
@@ -13,7 +13,9 @@ fn layouts_are_those_of_the_documents() {
         let models: Vec<Block> =
             blocks(&document).into_iter().filter(|it| it.tag.starts_with("fdc")).collect();
         for pair in models.chunks(2) {
-            let [before, after] = pair else { panic!("{name}.md: a model has no formatted partner") };
+            let [before, after] = pair else {
+                panic!("{name}.md: a model has no formatted partner")
+            };
             assert_eq!(
                 (before.tag.as_str(), after.tag.as_str()),
                 ("fdc", "fdc formatted"),
@@ -71,7 +73,8 @@ fn texts() -> Vec<String> {
         "tests/tests/semantics",
         "tests/tests/format",
     ];
-    let of_folder = |folder| documents(folder, "md").into_iter().flat_map(|(_, document)| blocks(&document));
+    let of_folder =
+        |folder| documents(folder, "md").into_iter().flat_map(|(_, document)| blocks(&document));
     let in_documents = folders.into_iter().flat_map(of_folder).map(|block| block.text);
     documents("models", "fdc").into_iter().map(|(_, text)| text).chain(in_documents).collect()
 }

@@ -30,13 +30,15 @@ fn symbols(model: &Model) -> (Graph, Vec<Differentiated>) {
     let program = lower(model);
     let functions = program.functions().map(Clone::clone);
     let mut graph = program.graph;
-    let functions = functions.into_iter().map(|function| differentiate(&mut graph, function)).collect();
+    let functions =
+        functions.into_iter().map(|function| differentiate(&mut graph, function)).collect();
     (graph, functions)
 }
 
 /// The parameters of the problem, each unknown a little off its guess, each layer wide.
 fn parameters(problem: &Problem, random: &mut Random) -> Vec<f64> {
-    let mut parameters: Vec<f64> = problem.parameters.iter().map(|parameter| parameter.value).collect();
+    let mut parameters: Vec<f64> =
+        problem.parameters.iter().map(|parameter| parameter.value).collect();
     for unknown in &problem.unknowns {
         parameters[unknown.parameter] *= random.between(0.9, 1.1);
     }
@@ -68,7 +70,9 @@ fn check_model(model: &Model, kernel: &str) -> Result<(), String> {
         let multipliers = table(&mut random, function.outputs(), points.count(), -1.0, 1.0);
         let by = &symbols.function.by;
         check_machine_code(&graph, symbols, &**function, &points, &parameters, &multipliers, 1e-13)
-            .and_then(|()| check_differences(&**function, by, &points, &parameters, &multipliers, 1e-6))
+            .and_then(|()| {
+                check_differences(&**function, by, &points, &parameters, &multipliers, 1e-6)
+            })
             .map_err(|error| format!("{}, kernel {kernel}: {error}", symbols.function.name))?;
     }
     Ok(())
@@ -91,25 +95,38 @@ fn a_long_function_is_its_interpreter_too() {
     let terms: Vec<String> = (1..=200).map(|i| format!("sin({i}/100 * x + v)")).collect();
     let text = format!(
         "time t in [0, 1] state x start 1 state v start 0 control u in [-1, 1]\n\
-         dynamics {{ x' = v  v' = u + {} }}\nminimize integral(u^2)\nmethod {{ N = 10 scheme = rk4 }}",
+         dynamics {{ x' = v  v' = u + {} }}\nminimize integral(u^2)\nmethod {{ N = 10 scheme = rk4 \
+         }}",
         terms.join(" + ")
     );
     let model = changed(&text, &[], &[]);
     let problem = compile(&model).expect("the model can be solved");
     let (graph, symbols) = symbols(&model);
-    assert!(clif(&graph, &symbols[..1]).lines().count() > 60_000, "three orders of more than 20,000");
+    assert!(
+        clif(&graph, &symbols[..1]).lines().count() > 60_000,
+        "three orders of more than 20,000"
+    );
     let mut random = Random::new(4);
     let points = points(&*problem.dynamics, &mut random);
     let multipliers = table(&mut random, problem.dynamics.outputs(), points.count(), -1.0, 1.0);
     let parameters = parameters(&problem, &mut random);
-    check_machine_code(&graph, &symbols[0], &*problem.dynamics, &points, &parameters, &multipliers, 1e-12)
-        .unwrap_or_else(|error| panic!("{error}"));
+    check_machine_code(
+        &graph,
+        &symbols[0],
+        &*problem.dynamics,
+        &points,
+        &parameters,
+        &multipliers,
+        1e-12,
+    )
+    .unwrap_or_else(|error| panic!("{error}"));
 }
 
 #[test]
 fn functions_of_another_model_are_told_apart() {
     let text = "time t in [0, 1] state x start 1 dynamics { x' = sin(x) } minimize x(end)";
-    let other = compile(&changed(&text.replace("sin", "cos"), &[], &[])).expect("the model can be solved");
+    let other =
+        compile(&changed(&text.replace("sin", "cos"), &[], &[])).expect("the model can be solved");
     let (graph, symbols) = symbols(&changed(text, &[], &[]));
     let points = points(&*other.dynamics, &mut Random::new(2));
     let multipliers = table(&mut Random::new(3), 1, points.count(), -1.0, 1.0);

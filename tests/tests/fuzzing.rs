@@ -1,4 +1,5 @@
-//! Texts that a search by coverage has found, and mutations of them: none is too much for parse, check, layout and repair.
+//! Texts that a search by coverage has found, and mutations of them: none is too much for parse,
+//! check, layout and repair.
 //!
 //! The long search is told in `docs/recipes/fuzz.md`; this is the short one, the same on every run.
 

@@ -1,4 +1,5 @@
-//! Fine grids are reached over coarse ones, with every scheme and every shape of controls: few iterations are left for the grid of the model.
+//! Fine grids are reached over coarse ones, with every scheme and every shape of controls: few
+//! iterations are left for the grid of the model.
 
 use fdcc_runtime::homotopy;
 use fdcc_runtime::nlp::Status;

@@ -12,8 +12,9 @@ const LIMIT: Duration = Duration::from_secs(5);
 /// A name, a text, and the code of its first diagnostic, if it has any.
 fn texts() -> Vec<(&'static str, String, Option<Code>)> {
     let objective = |expression: String| format!("minimize {expression}\n");
-    let nested =
-        |open: &str, depth: usize, close: &str| objective(open.repeat(depth) + "x" + &close.repeat(depth));
+    let nested = |open: &str, depth: usize, close: &str| {
+        objective(open.repeat(depth) + "x" + &close.repeat(depth))
+    };
     vec![
         ("nothing", String::new(), Some(Code::EmptyModel)),
         ("only comments", "#! doc\n# comment".into(), Some(Code::EmptyModel)),
@@ -34,10 +35,18 @@ fn texts() -> Vec<(&'static str, String, Option<Code>)> {
         ("unclosed everything", "dynamics { x' = f([(\n".repeat(5_000), Some(Code::Unclosed)),
         ("nested phases", "phase a {\n".repeat(50_000), Some(Code::Unclosed)),
         ("nested phases on one line", "phase a { ".repeat(20_000), Some(Code::TooDeep)),
-        ("a string without end", format!("data a = csv(\"{}", "a".repeat(1_000_000)), Some(Code::TooLarge)),
+        (
+            "a string without end",
+            format!("data a = csv(\"{}", "a".repeat(1_000_000)),
+            Some(Code::TooLarge),
+        ),
         ("40000 minus signs", objective("-".repeat(40_000) + "x"), Some(Code::TooDeep)),
         ("100000 minus signs", objective("-".repeat(100_000) + "x"), Some(Code::TooLarge)),
-        ("minus signs and parentheses", nested(&("-".repeat(50) + "("), 90, ")"), Some(Code::TooDeep)),
+        (
+            "minus signs and parentheses",
+            nested(&("-".repeat(50) + "("), 90, ")"),
+            Some(Code::TooDeep),
+        ),
         ("a thousand terms", objective("x - ".repeat(1_000) + "x"), None),
         ("ten thousand factors", objective("x / ".repeat(10_000) + "x"), None),
         ("a megabyte of terms", objective("1+".repeat(500_000) + "1"), Some(Code::TooLarge)),
@@ -99,23 +108,27 @@ fn value(expr: &Expr, next: &mut impl Iterator<Item = f64>) -> f64 {
 #[test]
 fn balancing_long_chains_keeps_their_value() {
     // Powers of two and small whole numbers are exact in any order.
-    let operators = |[a, b]: [&'static str; 2]| (0..500).map(move |at| if at * at % 7 < 3 { a } else { b });
-    for (signs, start, numbers) in [(["+", "-"], 0.0, [3.0, 5.0, 11.0]), (["*", "/"], 1.0, [2.0, 4.0, 0.5])] {
+    let operators =
+        |[a, b]: [&'static str; 2]| (0..500).map(move |at| if at * at % 7 < 3 { a } else { b });
+    for (signs, start, numbers) in
+        [(["+", "-"], 0.0, [3.0, 5.0, 11.0]), (["*", "/"], 1.0, [2.0, 4.0, 0.5])]
+    {
         let text: String = operators(signs).map(|sign| format!(" {sign} x")).collect();
         let parse = parse(&format!("minimize x{text}"));
         let ItemKind::Objective { value: tree, .. } = &parse.tree.items[0].kind else {
             panic!("an objective")
         };
         let all = || numbers.iter().copied().cycle();
-        let one_by_one = operators(signs).zip(all().skip(1)).fold(all().next(), |sum, (sign, x)| {
-            let sum = sum.unwrap_or(start);
-            Some(match sign {
-                "+" => sum + x,
-                "-" => sum - x,
-                "*" => sum * x,
-                _ => sum / x,
-            })
-        });
+        let one_by_one =
+            operators(signs).zip(all().skip(1)).fold(all().next(), |sum, (sign, x)| {
+                let sum = sum.unwrap_or(start);
+                Some(match sign {
+                    "+" => sum + x,
+                    "-" => sum - x,
+                    "*" => sum * x,
+                    _ => sum / x,
+                })
+            });
         assert_eq!(Some(value(tree, &mut all())), one_by_one);
     }
 }
@@ -123,7 +136,9 @@ fn balancing_long_chains_keeps_their_value() {
 #[test]
 fn a_name_that_is_too_long_is_told_once_and_a_number_as_a_number() {
     let [name, digits] = ["a", "9"].map(|it| it.repeat(20_000));
-    let named = format!("param {name} = 1\nstate x start {name}\ndynamics {{ x' = {name} * x + {name} }}\n");
+    let named = format!(
+        "param {name} = 1\nstate x start {name}\ndynamics {{ x' = {name} * x + {name} }}\n"
+    );
     let found = parse(&named).diagnostics;
     assert_eq!(found.len(), 1, "{found:?}");
     let numbered = format!("param a = {digits}\nstate x start {digits}\n");
@@ -132,7 +147,8 @@ fn a_name_that_is_too_long_is_told_once_and_a_number_as_a_number() {
     assert_eq!(found[0].message, "a number of more than 255 digits");
 }
 
-/// Twice as much of what cannot be read takes twice the time: a hundred times what is read at once here is read at once, too.
+/// Twice as much of what cannot be read takes twice the time: a hundred times what is read at once
+/// here is read at once, too.
 #[test]
 fn long_texts_of_the_same_are_read_in_proportion() {
     let texts = [

@@ -1,4 +1,5 @@
-//! Models with jumps, solved with their pieces side by side: against closed forms, and against other programs (`tests/peers/bounce.py`).
+//! Models with jumps, solved with their pieces side by side: against closed forms, and against
+//! other programs (`tests/peers/bounce.py`).
 
 use fdcc_compiler::{compile, compile_by_parameters, sequences, unrolled};
 use fdcc_grammar::Code;
@@ -28,22 +29,30 @@ fn solve(text: &str, sequence: &[usize], methods: Changes) -> Pieces {
     let (whole, jumps) = joined(&between, &solved.problem, &solved.outcome);
     let by = compile_by_parameters(&pieces).expect("it can be solved");
     let trajectory = &solved.outcome.trajectory;
-    let slopes = by_parameters(&solved.problem, &solved.outcome.solution, &trajectory.parameters, &by);
+    let slopes =
+        by_parameters(&solved.problem, &solved.outcome.solution, &trajectory.parameters, &by);
     Pieces { solved, whole, jumps, slopes }
 }
 
 #[track_caller]
 fn expect_near(found: f64, expected: f64, tolerance: f64) {
-    assert!((found - expected).abs() <= tolerance * expected.abs().max(1.0), "{found} instead of {expected}");
+    assert!(
+        (found - expected).abs() <= tolerance * expected.abs().max(1.0),
+        "{found} instead of {expected}"
+    );
 }
 
-/// From height 1 with speed `v0` the ball comes to `H = e^2 (1 + v0^2/2g)`, so that `v0^2 = 2g (H/e^2 - 1)`.
+/// From height 1 with speed `v0` the ball comes to `H = e^2 (1 + v0^2/2g)`, so that `v0^2 = 2g
+/// (H/e^2 - 1)`.
 #[test]
 fn a_ball_that_has_to_bounce_to_a_height_is_thrown_with_the_speed_that_takes() {
     let (g, e, height) = (9.81, 0.8, 1.5);
-    let text = "model apex\nparam e = 0.8\nfree T in [0.1, 5] guess 1\nfree v0 in [0, 20] guess 3\ntime t in [0, T]\n\
-                state h start 1\nstate v start -v0\nsurface ground = h\ndynamics {\n  h' = v\n  v' = -9.81\n}\n\
-                jump bounce on ground falling at most 1 { v := -e*v }\nend h == 1.5\nend v == 0\nminimize v0^2\n\
+    let text = "model apex\nparam e = 0.8\nfree T in [0.1, 5] guess 1\nfree v0 in [0, 20] guess \
+                3\ntime t in [0, T]\n\
+                state h start 1\nstate v start -v0\nsurface ground = h\ndynamics {\n  h' = v\n  v' \
+                = -9.81\n}\n\
+                jump bounce on ground falling at most 1 { v := -e*v }\nend h == 1.5\nend v == \
+                0\nminimize v0^2\n\
                 method { scheme = midpoint  N = 20 }\n";
     let found = solve(text, &[0], &[]);
     let expected = 2.0 * g * (height / (e * e) - 1.0);
@@ -61,9 +70,10 @@ fn throws_are_those_of_another_program() {
     let page = fdcc_tests::documents("docs/reference", "md");
     let (_, page) = page.iter().find(|(name, _)| name == "jumps").expect("jumps have a page");
     let text = fdcc_tests::blocks(page).remove(0).text;
-    for (sequence, objective, time) in
-        [(&[] as &[usize], 54.159021408976, 1.107917680446), (&[0], 21.539392321535, 1.556951571727)]
-    {
+    for (sequence, objective, time) in [
+        (&[] as &[usize], 54.159021408976, 1.107917680446),
+        (&[0], 21.539392321535, 1.556951571727),
+    ] {
         let found = solve(&text, sequence, &[]);
         expect_near(found.solved.objective(), objective, 1e-7);
         expect_near(found.solved.value("T"), time, 1e-6);
@@ -85,10 +95,12 @@ fn a_bounce_with_a_control_is_that_of_another_program() {
     expect_near(found.slopes[0], (slope("0.801") - slope("0.799")) / 0.002, 1e-4);
 }
 
-const HEATER: &str = "model heater\nfree rest in [0, 1] guess 0.5\ntime t in [0, 1.2]\nstate warmth start 20\nstate on start 1\n\
+const HEATER: &str = "model heater\nfree rest in [0, 1] guess 0.5\ntime t in [0, 1.2]\nstate \
+                      warmth start 20\nstate on start 1\n\
     surface warm = warmth - 21\nsurface cold = warmth - 19\n\
     dynamics {\n  warmth' = 8*on - 0.3*(warmth - 5)\n  on' = 0\n}\n\
-    jump off on warm rising at most 2 { on := 0 }\njump again on cold falling at most 1 { on := 1 }\n\
+    jump off on warm rising at most 2 { on := 0 }\njump again on cold falling at most 1 { on := 1 \
+    }\n\
     end warmth <= 21\nminimize rest^2\nmethod { scheme = radau3  N = 20 }\n";
 
 /// A heater: from 20 up to 21, then down to 19, by exponentials.
@@ -112,14 +124,18 @@ fn no_jump_follows_itself_after_no_time() {
     assert_eq!(outcome.solution.status, Status::Infeasible);
 }
 
-/// After its last bounce a ball lies still: here from the second on, `sqrt(2/g) (1 + 2e)` after it was dropped. Then a push to the side takes it as far as
-/// it is to come.
+/// After its last bounce a ball lies still: here from the second on, `sqrt(2/g) (1 + 2e)` after it
+/// was dropped. Then a push to the side takes it as far as it is to come.
 #[test]
 fn after_the_last_bounce_the_ball_lies_still() {
-    let text = "model rest\ntime t in [0, 3]\nstate h in [0, 2] start 1\nstate v start 0\nstate x start 0\ncontrol u in [-1, 1]\n\
-                surface ground = h\npath low: h >= 0\ndynamics {\n  h' = v\n  v' = -9.81\n  x' = u\n}\n\
-                jump bounce on ground falling at most 2 then hold ground { v := -0.5*v }\nend x == 1\n\
-                minimize integral(u^2) + v(end)^2 + h(end)^2\nmethod { scheme = midpoint  N = 20 }\n";
+    let text = "model rest\ntime t in [0, 3]\nstate h in [0, 2] start 1\nstate v start 0\nstate x \
+                start 0\ncontrol u in [-1, 1]\n\
+                surface ground = h\npath low: h >= 0\ndynamics {\n  h' = v\n  v' = -9.81\n  x' = \
+                u\n}\n\
+                jump bounce on ground falling at most 2 then hold ground { v := -0.5*v }\nend x == \
+                1\n\
+                minimize integral(u^2) + v(end)^2 + h(end)^2\nmethod { scheme = midpoint  N = 20 \
+                }\n";
     let found = solve(text, &[0, 0], &[]);
     let fall = (2.0 / 9.81f64).sqrt();
     expect_near(found.jumps[0].time, fall, 1e-7);
@@ -130,8 +146,9 @@ fn after_the_last_bounce_the_ball_lies_still() {
     assert!(height[40..].iter().all(|height| height.abs() < 1e-7), "{height:?}");
 }
 
-/// From 0 with speed 1 to a cushion at 0.8 and back, as fast as thrust 1 allows: there it has the speed `sqrt(2.6)`, of which 0.7 are left. However it is said
-/// that nothing goes through the cushion, it says nothing new where the cushion is hit.
+/// From 0 with speed 1 to a cushion at 0.8 and back, as fast as thrust 1 allows: there it has the
+/// speed `sqrt(2.6)`, of which 0.7 are left. However it is said that nothing goes through the
+/// cushion, it says nothing new where the cushion is hit.
 #[test]
 fn conditions_that_say_the_same_as_the_surface_change_nothing() {
     let (speed, rest) = (2.6f64.sqrt(), 0.7 * 2.6f64.sqrt());
@@ -145,22 +162,29 @@ fn conditions_that_say_the_same_as_the_surface_change_nothing() {
     ];
     for (bounds, path) in cases {
         let text = format!(
-            "model cushioned\nfree T in [0.5, 6] guess 2\ntime t in [0, T]\nstate x{bounds} start 0\nstate v start 1\n\
-             control u in [-1, 1]\nsurface cushion = 2*(0.8 - x)\ndynamics {{\n  x' = v\n  v' = u\n}}\n\
-             jump bank on cushion falling at most 1 {{ v := -0.7*v }}\n{path}end x == 0\nminimize T\n\
+            "model cushioned\nfree T in [0.5, 6] guess 2\ntime t in [0, T]\nstate x{bounds} start \
+             0\nstate v start 1\n\
+             control u in [-1, 1]\nsurface cushion = 2*(0.8 - x)\ndynamics {{\n  x' = v\n  v' = \
+             u\n}}\n\
+             jump bank on cushion falling at most 1 {{ v := -0.7*v }}\n{path}end x == 0\nminimize \
+             T\n\
              method {{ scheme = midpoint  N = 40 }}\n"
         );
         expect_near(solve(&text, &[0], &[]).solved.objective(), fastest, 1e-7);
     }
 }
 
-/// A puck slides 1 m to a wall and half a metre back: `e^2 (v0^2 - 2a) = 2a/2` with the deceleration `a`.
+/// A puck slides 1 m to a wall and half a metre back: `e^2 (v0^2 - 2a) = 2a/2` with the
+/// deceleration `a`.
 #[test]
 fn friction_and_an_impact_go_together() {
     let (a, e): (f64, f64) = (0.5, 0.6);
-    let text = "model puck\nfree v0 in [0.5, 5] guess 2\nfree T in [0.5, 9] guess 4\ntime t in [0, T]\nstate x start 0\nstate v start v0\n\
-                surface slip = v\nsurface wall = 1 - x\ndynamics {\n  x' = v\n  v' in -0.5*Sgn(slip)\n}\n\
-                jump hit on wall falling at most 1 { v := -0.6*v }\nend x == 0.5\nminimize v0^2 + 1e-9*T\n\
+    let text = "model puck\nfree v0 in [0.5, 5] guess 2\nfree T in [0.5, 9] guess 4\ntime t in [0, \
+                T]\nstate x start 0\nstate v start v0\n\
+                surface slip = v\nsurface wall = 1 - x\ndynamics {\n  x' = v\n  v' in \
+                -0.5*Sgn(slip)\n}\n\
+                jump hit on wall falling at most 1 { v := -0.6*v }\nend x == 0.5\nminimize v0^2 + \
+                1e-9*T\n\
                 method { scheme = radau2  N = 200  sigma = 1e-4 }\n";
     let found = solve(text, &[0], &[]);
     let expected = 2.0 * a * (1.0 + 0.5 / (e * e));
@@ -168,19 +192,26 @@ fn friction_and_an_impact_go_together() {
     assert_eq!(found.whole.modes.len(), 1, "the wall is no surface of friction");
 }
 
-/// From `depth` below the rim up through it, down on it, and up to `height` above it: `v0^2 = 2g (depth + height/e^2)`.
+/// From `depth` below the rim up through it, down on it, and up to `height` above it: `v0^2 = 2g
+/// (depth + height/e^2)`.
 #[test]
 fn a_ball_from_below_the_rim_rises_through_it_before_it_falls_on_it() {
     let (g, e) = (9.81, 0.8);
     for (rim, begin, end) in [(0.0, -1.0, 0.5), (1.0, 0.0, 1.5), (-2.0, -2.25, -1.75)] {
         let text = format!(
-            "model rim\nfree T in [0.1, 5] guess 1.5\nfree v0 in [0, 20] guess 8\ntime t in [0, T]\nstate h start {begin}\n\
+            "model rim\nfree T in [0.1, 5] guess 1.5\nfree v0 in [0, 20] guess 8\ntime t in [0, \
+             T]\nstate h start {begin}\n\
              state v start v0\nsurface rim = h - {rim}\ndynamics {{\n  h' = v\n  v' = -9.81\n}}\n\
-             jump bounce on rim falling at most 1 {{ v := -0.8*v }}\nend h == {end}\nend v == 0\nminimize v0^2\n\
+             jump bounce on rim falling at most 1 {{ v := -0.8*v }}\nend h == {end}\nend v == \
+             0\nminimize v0^2\n\
              method {{ scheme = midpoint  N = 20 }}\n"
         );
         let all = sequences(&meaning(&text)).expect("these can be solved").all;
-        assert_eq!(all, [vec![], vec![1], vec![1, 0]], "it is not on the rim before it has risen through it");
+        assert_eq!(
+            all,
+            [vec![], vec![1], vec![1, 0]],
+            "it is not on the rim before it has risen through it"
+        );
         let found = solve(&text, &[1, 0], &[]);
         let on_rim = 2.0 * g * (end - rim) / (e * e);
         let expected = 2.0 * g * (rim - begin) + on_rim;
@@ -204,10 +235,15 @@ fn a_relay_that_begins_beyond_its_surface_comes_to_it_from_the_other_side() {
     let off = heats(18.0, 21.0);
     expect_near(found.jumps[0].time, heats(18.0, 19.0), 1e-8);
     expect_near(found.jumps[1].time, off, 1e-8);
-    expect_near(found.jumps[2].time, off + ((21.0 - limit_off) / (19.0f64 - limit_off)).ln() / 0.3, 1e-8);
+    expect_near(
+        found.jumps[2].time,
+        off + ((21.0 - limit_off) / (19.0f64 - limit_off)).ln() / 0.3,
+        1e-8,
+    );
 }
 
-/// Which sides are possible is a matter of what the start may be: the numbers behind the jumps are crossings.
+/// Which sides are possible is a matter of what the start may be: the numbers behind the jumps are
+/// crossings.
 #[test]
 fn a_surface_is_crossed_first_where_the_state_may_begin_beyond_it() {
     let cases: [(&str, &str, &[&[usize]]); 7] = [
@@ -221,16 +257,23 @@ fn a_surface_is_crossed_first_where_the_state_may_begin_beyond_it() {
     ];
     for (start, direction, expected) in cases {
         let text = format!(
-            "free p in [0, 1]\ntime t in [0, 1]\nstate x {start}\ncontrol u in [-1, 1]\nsurface a = x\n\
-             dynamics {{ x' = u*p }}\njump f on a {direction} at most 1 {{ x := 1 }}\nminimize x(end)^2\n"
+            "free p in [0, 1]\ntime t in [0, 1]\nstate x {start}\ncontrol u in [-1, 1]\nsurface a \
+             = x\n\
+             dynamics {{ x' = u*p }}\njump f on a {direction} at most 1 {{ x := 1 }}\nminimize \
+             x(end)^2\n"
         );
         let found = sequences(&meaning(&text)).expect("these can be solved");
         assert_eq!(found.all, expected, "{start} {direction}");
-        assert_eq!(found.may_cross, [expected.contains(&(&[1_usize] as &[usize]))], "{start} {direction}");
+        assert_eq!(
+            found.may_cross,
+            [expected.contains(&(&[1_usize] as &[usize]))],
+            "{start} {direction}"
+        );
     }
 }
 
-/// One trajectory: times ascend, each piece has its intervals, and the state after a jump stands at its time.
+/// One trajectory: times ascend, each piece has its intervals, and the state after a jump stands at
+/// its time.
 #[test]
 fn pieces_are_put_one_after_the_other() {
     let found = solve(&text_of("bounce"), &[0], &[("scheme", "midpoint"), ("N", "10")]);
@@ -240,8 +283,15 @@ fn pieces_are_put_one_after_the_other() {
     expect_near(trajectory.time[10], found.jumps[0].time, 1e-15);
     expect_near(trajectory.time[20], found.solved.value("T"), 1e-15);
     expect_near(trajectory.states[2][10], found.jumps[0].after[2], 0.0);
-    assert!(trajectory.states[2][9] < 0.0 && found.jumps[0].before[2] < 0.0, "it falls before the bounce");
-    assert!(trajectory.states[1].iter().all(|height| *height > -1e-9), "{:?}", trajectory.states[1]);
+    assert!(
+        trajectory.states[2][9] < 0.0 && found.jumps[0].before[2] < 0.0,
+        "it falls before the bounce"
+    );
+    assert!(
+        trajectory.states[1].iter().all(|height| *height > -1e-9),
+        "{:?}",
+        trajectory.states[1]
+    );
     assert_eq!((trajectory.path_multipliers[0].len(), trajectory.end_multipliers.len()), (20, 2));
 }
 
@@ -249,7 +299,8 @@ fn pieces_are_put_one_after_the_other() {
 fn sequences_are_all_that_may_happen() {
     let jumps = |jumps: &str| {
         format!(
-            "param n = 2\ntime t in [0, 1]\nstate x start 1\nstate y start 0\nsurface a = x\nsurface b = y - 1\n\
+            "param n = 2\ntime t in [0, 1]\nstate x start 1\nstate y start 0\nsurface a = \
+             x\nsurface b = y - 1\n\
              dynamics {{\n  x' = -1\n  y' = 1\n}}\n{jumps}minimize x(end)^2\n"
         )
     };
@@ -259,13 +310,24 @@ fn sequences_are_all_that_may_happen() {
         ("jump f on a falling { x := 1 + 0*y }\n", 4, true),
         ("jump f on a falling at most 2 then hold a { x := 0.5 }\n", 2, true),
         ("jump f on a falling at most 20 { x := 1 }\n", 4, true),
-        ("jump f on a falling at most 2 { x := 1 }\njump g on b rising at most 1 { y := 0 }\n", 9, false),
-        ("jump f on a falling at most 5 { x := 1 }\njump g on b rising at most 5 { y := 0 }\n", 32, true),
+        (
+            "jump f on a falling at most 2 { x := 1 }\njump g on b rising at most 1 { y := 0 }\n",
+            9,
+            false,
+        ),
+        (
+            "jump f on a falling at most 5 { x := 1 }\njump g on b rising at most 5 { y := 0 }\n",
+            32,
+            true,
+        ),
     ];
     for (text, count, is_cut) in cases {
         let found = sequences(&meaning(&jumps(text))).expect("these can be solved");
         assert_eq!((found.all.len(), found.is_cut), (count, is_cut), "{text}");
-        assert!(found.all.windows(2).all(|pair| pair[0].len() <= pair[1].len()), "the short ones come first");
+        assert!(
+            found.all.windows(2).all(|pair| pair[0].len() <= pair[1].len()),
+            "the short ones come first"
+        );
     }
     let reads = jumps("control u in [0, 1]\njump f on a falling at most 1 { x := u }\n");
     let refused = sequences(&meaning(&reads)).err().expect("there is no one control at the jump");

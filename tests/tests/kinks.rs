@@ -1,4 +1,5 @@
-//! Where there is no derivative the result says so, why, and what the derivatives of both sides are; all in closed form.
+//! Where there is no derivative the result says so, why, and what the derivatives of both sides
+//! are; all in closed form.
 
 use fdcc_compiler::compile_sensitivities;
 use fdcc_runtime::sensitivity::{Quantity, TroubleKind, gradient, hessian, one_sided};
@@ -32,8 +33,11 @@ const KINKS: [Kink; 8] = [
     },
     Kink {
         // example (g1) of the references: y(2) = p - 1 for p < 0, -1 for p > 0
-        text: "param p = 0  time t in [0, 2]  state x start -1  state y start -1 + p  surface edge = y
-            dynamics { x' = 1  y' in match edge { below => -2*x, above => -2*x - 1 } }  minimize y(end)",
+        text:
+            "param p = 0  time t in [0, 2]  state x start -1  state y start -1 + p  surface edge \
+               = y
+            dynamics { x' = 1  y' in match edge { below => -2*x, above => -2*x - 1 } }  minimize \
+            y(end)",
         trouble: Some((TroubleKind::Grazing, 1.0)),
         by: "p",
         sides: [1.0, 0.0],
@@ -48,7 +52,8 @@ const KINKS: [Kink; 8] = [
         sides: [2.0, -2.0],
     },
     Kink {
-        // a start on a surface that is left: x(1) = x0 + 2 from above, and (x0 + 1/3) * ... from below
+        // a start on a surface that is left: x(1) = x0 + 2 from above, and (x0 + 1/3) * ... from
+        // below
         text: "param x0 = 0  time t in [0, 1]  state x start x0  surface zero = x
             dynamics { x' in match zero { below => 1, above => 2 } }  minimize x(end)",
         trouble: Some((TroubleKind::Coincident, 0.0)),
@@ -72,8 +77,10 @@ const KINKS: [Kink; 8] = [
         sides: [0.0, 0.0],
     },
     Kink {
-        // a reset that is grazed: h = (t - 1)^2 + c bounces only if c < 0, then h(2) = 2 sqrt(-c) + 1 + ...
-        text: "param c = 0.01  time t in [0, 2]  state h start 1 + c  state v start -2  surface floor = h
+        // a reset that is grazed: h = (t - 1)^2 + c bounces only if c < 0, then h(2) = 2 sqrt(-c) +
+        // 1 + ...
+        text: "param c = 0.01  time t in [0, 2]  state h start 1 + c  state v start -2  surface \
+               floor = h
             dynamics { h' = v  v' = 2 }  jump bounce on floor falling { v := -v }  minimize h(end)",
         trouble: None,
         by: "c",
@@ -82,7 +89,9 @@ const KINKS: [Kink; 8] = [
 ];
 
 fn parameter(system: &System, name: &str) -> Quantity {
-    Quantity::Parameter(system.parameters.iter().position(|it| it.name == name).expect("a parameter"))
+    Quantity::Parameter(
+        system.parameters.iter().position(|it| it.name == name).expect("a parameter"),
+    )
 }
 
 #[test]
@@ -91,7 +100,8 @@ fn a_kink_is_found_with_its_reason_and_both_derivatives() {
         let system = compile_sensitivities(&meaning(text)).expect("it can be simulated");
         let quantities = [parameter(&system, by)];
         let options = Options::default();
-        let found = gradient(&system, &Controls::Guess, &options, &quantities).expect("it reaches the end");
+        let found =
+            gradient(&system, &Controls::Guess, &options, &quantities).expect("it reaches the end");
         let named = found.troubles.first().map(|it| (it.kind, it.time));
         match (named, trouble) {
             (None, None) => {}
@@ -117,8 +127,8 @@ fn a_start_that_slides_has_second_derivatives_along_the_surface_only() {
     let options = Options::default();
     let by_c = [parameter(&system, "c")];
     let found = gradient(&system, &Controls::Guess, &options, &by_c).expect("it reaches the end");
-    let second =
-        hessian(&system, &Controls::Guess, &found.simulation, &by_c).expect("it stays on the surface")[0][0];
+    let second = hessian(&system, &Controls::Guess, &found.simulation, &by_c)
+        .expect("it stays on the surface")[0][0];
     // d2/dc2 exp(c^2) = (2 + 4 c^2) exp(c^2)
     assert!((second - 6.0 * 1.0_f64.exp()).abs() < 1e-7, "{second}");
     assert!(hessian(&system, &Controls::Guess, &found.simulation, &[Quantity::Start(0)]).is_none());

@@ -1,8 +1,9 @@
 //! The language reference is true and complete: `docs/reference/` as tests.
 //!
-//! A block tagged `fdc` is a model, `fdc more` is checked together with the first model of its page (items have no
-//! order). Each gives exactly the diagnostics that its comments claim, and compiles unless it claims an error.
-//! `later` in the tag says that `check` understands it and that `solve` answers FDC0603.
+//! A block tagged `fdc` is a model, `fdc more` is checked together with the first model of its page
+//! (items have no order). Each gives exactly the diagnostics that its comments claim, and compiles
+//! unless it claims an error. `later` in the tag says that `check` understands it and that `solve`
+//! answers FDC0603.
 
 use fdcc_compiler::builtins::{self, Domain, Notation, Row, Smoothness};
 use fdcc_compiler::{check, compile, review};
@@ -21,17 +22,28 @@ struct Example {
 }
 
 fn examples() -> Vec<Example> {
-    documents("docs/reference", "md").iter().flat_map(|(name, page)| examples_of(name, page)).collect()
+    documents("docs/reference", "md")
+        .iter()
+        .flat_map(|(name, page)| examples_of(name, page))
+        .collect()
 }
 
 fn examples_of(name: &str, page: &str) -> Vec<Example> {
-    let models: Vec<_> = blocks(page).into_iter().filter(|block| block.tag.starts_with("fdc")).collect();
-    let whole =
-        models.iter().find(|block| !block.tag.contains("more")).map_or("", |block| &block.text).to_owned();
+    let models: Vec<_> =
+        blocks(page).into_iter().filter(|block| block.tag.starts_with("fdc")).collect();
+    let whole = models
+        .iter()
+        .find(|block| !block.tag.contains("more"))
+        .map_or("", |block| &block.text)
+        .to_owned();
     let example = |block: fdcc_tests::Block| Example {
         place: format!("docs/reference/{name}.md:{}", block.line),
         is_later: block.tag.contains("later"),
-        text: if block.tag.contains("more") { format!("{whole}\n{}", block.text) } else { block.text },
+        text: if block.tag.contains("more") {
+            format!("{whole}\n{}", block.text)
+        } else {
+            block.text
+        },
     };
     models.into_iter().map(example).collect()
 }
@@ -57,23 +69,28 @@ fn models_compile_unless_the_page_says_that_they_cannot_be_solved_yet() {
         if diagnostics(&example.text).iter().any(|it| it.severity == Severity::Error) {
             continue;
         }
-        let model = check(&parse(&example.text).tree).model.expect("a model without errors has a meaning");
-        let codes: Vec<Code> = compile(&model).err().unwrap_or_default().iter().map(|it| it.code).collect();
+        let model =
+            check(&parse(&example.text).tree).model.expect("a model without errors has a meaning");
+        let codes: Vec<Code> =
+            compile(&model).err().unwrap_or_default().iter().map(|it| it.code).collect();
         let expected: &[Code] = if example.is_later { &[Code::NotYet] } else { &[] };
         assert_eq!(codes, expected, "{}", example.place);
     }
 }
 
-/// Every line of the table of places: it is read as the line beside it, or refused with the code that stands there.
+/// Every line of the table of places: it is read as the line beside it, or refused with the code
+/// that stands there.
 #[test]
 fn plain_numbers_are_read_as_the_table_of_places_says() {
-    let page = fs::read_to_string(repository().join("docs/reference/units.md")).expect("the page is there");
+    let page = fs::read_to_string(repository().join("docs/reference/units.md"))
+        .expect("the page is there");
     let is_base = |block: &fdcc_tests::Block| block.text.starts_with("model places");
     let base = blocks(&page).into_iter().find(is_base).expect("the model is there").text;
     let (_, table) = page.split_once("| line | is read as |").expect("the table is there");
     let rows: Vec<[&str; 2]> = table.lines().filter_map(places::row).collect();
     assert!(rows.len() > 40, "the table is read");
-    let problems: Vec<String> = rows.iter().filter_map(|row| places::problem(&base, *row)).collect();
+    let problems: Vec<String> =
+        rows.iter().filter_map(|row| places::problem(&base, *row)).collect();
     assert!(problems.is_empty(), "\n{}", problems.join("\n"));
 }
 
@@ -87,20 +104,26 @@ fn every_construct_of_the_tree_has_an_example() {
     assert!(missing.is_empty(), "write an example in docs/reference for {missing:?}");
 }
 
-/// `Variant`, or `part: Some(` for an optional part, as they are declared in the tree and print in `Debug`.
+/// `Variant`, or `part: Some(` for an optional part, as they are declared in the tree and print in
+/// `Debug`.
 fn constructs() -> Vec<String> {
-    let tree = fs::read_to_string(repository().join("grammar/src/ast.rs")).expect("the tree is there");
+    let tree =
+        fs::read_to_string(repository().join("grammar/src/ast.rs")).expect("the tree is there");
     let (mut found, mut in_enum) = (Vec::new(), false);
     for line in tree.lines() {
         in_enum = line.starts_with("pub enum") || in_enum && line != "}";
-        let variant =
-            line.strip_prefix("    ").filter(|rest| in_enum && rest.starts_with(char::is_uppercase));
+        let variant = line
+            .strip_prefix("    ")
+            .filter(|rest| in_enum && rest.starts_with(char::is_uppercase));
         found.extend(
-            variant.and_then(|rest| rest.split(|c: char| !c.is_alphanumeric()).next()).map(str::to_owned),
+            variant
+                .and_then(|rest| rest.split(|c: char| !c.is_alphanumeric()).next())
+                .map(str::to_owned),
         );
         let optional = line.split(": Option<").collect::<Vec<_>>();
-        let names =
-            optional[..optional.len() - 1].iter().filter_map(|before| before.split([' ', ',']).next_back());
+        let names = optional[..optional.len() - 1]
+            .iter()
+            .filter_map(|before| before.split([' ', ',']).next_back());
         found.extend(names.map(|name| format!("{name}: Some(")));
     }
     assert!(found.len() > 50, "the tree is read: {found:?}");
@@ -110,8 +133,8 @@ fn constructs() -> Vec<String> {
 /// Every keyword and every sign of the grammar occurs in some model.
 #[test]
 fn every_word_of_the_grammar_has_an_example() {
-    let grammar =
-        fs::read_to_string(repository().join("grammar/src/fdc.pest")).expect("the grammar is there");
+    let grammar = fs::read_to_string(repository().join("grammar/src/fdc.pest"))
+        .expect("the grammar is there");
     let texts: String = examples().iter().map(|example| without_comments(&example.text)).collect();
     let words: Vec<&str> = texts.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
     let keywords: Vec<&str> = grammar
@@ -122,7 +145,8 @@ fn every_word_of_the_grammar_has_an_example() {
     assert!(keywords.len() > 40, "the grammar is read");
     let missing: Vec<&&str> = keywords.iter().filter(|word| !words.contains(word)).collect();
     assert!(missing.is_empty(), "write an example in docs/reference for {missing:?}");
-    let signs = ["<=", ">=", "==", "<", ">", "+", "-", "*", "/", "^", ":=", "->", "=>", "'", "[", "{", "("];
+    let signs =
+        ["<=", ">=", "==", "<", ">", "+", "-", "*", "/", "^", ":=", "->", "=>", "'", "[", "{", "("];
     assert!(signs.iter().all(|sign| texts.contains(sign)));
 }
 
@@ -148,18 +172,26 @@ const FUNCTIONS_HEAD: &str = "\
 <!-- Written from the table in compiler/src/builtins.rs; change it there, then
      `UPDATE=1 cargo test -p fdcc-tests --test manual`. -->
 
-All of them take numbers. `+`, `-` and `abs` take vectors as well, component by component, and `*` and `/` a vector with a
-number. What is about vectors stands in [expressions](expressions.md), sets in [surfaces](surfaces.md).
+All of them take numbers. `+`, `-` and `abs` take vectors as well, component by component, and `*` \
+and `/` a vector with a
+number. What is about vectors stands in [expressions](expressions.md), sets in \
+[surfaces](surfaces.md).
 
 ";
 
 fn functions_page() -> String {
-    let rows =
-        builtins::ALL.iter().map(|builtin| builtin.row()).filter(|row| row.notation != Notation::Internal);
-    let lines = rows
-        .map(|row| format!("| `{}` | {} | {} | {} |\n", written(row), row.doc, domain(row), smoothness(row)));
+    let rows = builtins::ALL
+        .iter()
+        .map(|builtin| builtin.row())
+        .filter(|row| row.notation != Notation::Internal);
+    let lines = rows.map(|row| {
+        format!("| `{}` | {} | {} | {} |\n", written(row), row.doc, domain(row), smoothness(row))
+    });
     let table: String = lines.collect();
-    format!("{FUNCTIONS_HEAD}| written | is | has a value for | derivatives |\n|---|---|---|---|\n{table}")
+    format!(
+        "{FUNCTIONS_HEAD}| written | is | has a value for | derivatives \
+         |\n|---|---|---|---|\n{table}"
+    )
 }
 
 fn written(row: &Row) -> String {
@@ -193,29 +225,39 @@ fn smoothness(row: &Row) -> &'static str {
 /// The examples in the table are equations between numbers, such as `sqrt(9) = 3`.
 #[test]
 fn examples_of_functions_are_true() {
-    let docs =
-        builtins::ALL.iter().map(|builtin| builtin.row()).filter(|row| row.notation != Notation::Internal);
+    let docs = builtins::ALL
+        .iter()
+        .map(|builtin| builtin.row())
+        .filter(|row| row.notation != Notation::Internal);
     for row in docs {
         let equation = row.doc.split('`').find(|text| text.contains(" = "));
-        let (left, right) = equation.and_then(|text| text.split_once(" = ")).expect("a row has an example");
+        let (left, right) =
+            equation.and_then(|text| text.split_once(" = ")).expect("a row has an example");
         let [left, right] = [left, right].map(value_of);
         assert!((left - right).abs() <= 1e-15, "{}: {}: {left} is not {right}", row.name, row.doc);
     }
 }
 
 fn value_of(expression: &str) -> f64 {
-    let text =
-        format!("param value = {expression}\ntime t in [0, 1]\nstate x start value\ndynamics {{ x' = 1 }}");
-    let model = check(&parse(&text).tree).model.unwrap_or_else(|| panic!("{expression} is understood"));
-    model.params[0].value.and_then(|value| model.graph.as_number(value)).expect("a constant is a number")
+    let text = format!(
+        "param value = {expression}\ntime t in [0, 1]\nstate x start value\ndynamics {{ x' = 1 }}"
+    );
+    let model =
+        check(&parse(&text).tree).model.unwrap_or_else(|| panic!("{expression} is understood"));
+    model.params[0]
+        .value
+        .and_then(|value| model.graph.as_number(value))
+        .expect("a constant is a number")
 }
 
-/// The page of the command line names every command and every option that is declared in cli/src/commands.
+/// The page of the command line names every command and every option that is declared in
+/// cli/src/commands.
 #[test]
 fn the_page_of_the_command_line_is_complete() {
-    let page =
-        fs::read_to_string(repository().join("docs/reference/command-line.md")).expect("the page is there");
-    for (name, text) in documents("cli/src/commands", "rs").iter().filter(|(name, _)| name != "mod") {
+    let page = fs::read_to_string(repository().join("docs/reference/command-line.md"))
+        .expect("the page is there");
+    for (name, text) in documents("cli/src/commands", "rs").iter().filter(|(name, _)| name != "mod")
+    {
         let is_command = text.contains("pub fn run(self)");
         assert!(
             !is_command || page.contains(&format!("\n## `fdcc {name}")),
@@ -234,9 +276,11 @@ fn the_page_of_the_command_line_is_complete() {
 fn options(text: &str) -> Vec<String> {
     let lines: Vec<&str> = text.lines().map(str::trim).collect();
     let is_option = |pair: &&[&str]| pair[0].starts_with("#[arg(") && names_long(pair[0]);
-    let field =
-        |line: &str| line.trim_start_matches("pub ").split(':').next().unwrap_or_default().replace('_', "-");
-    let given = |attribute: &str| Some(attribute.split_once("long = \"")?.1.split('"').next()?.to_owned());
+    let field = |line: &str| {
+        line.trim_start_matches("pub ").split(':').next().unwrap_or_default().replace('_', "-")
+    };
+    let given =
+        |attribute: &str| Some(attribute.split_once("long = \"")?.1.split('"').next()?.to_owned());
     lines
         .windows(2)
         .filter(is_option)

@@ -7,14 +7,16 @@ use fdcc_tests::{Solved, documents, repository};
 
 fn expected(name: &str) -> Expected {
     let path = repository().join("models").join(name).with_extension("expected");
-    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let text = std::fs::read_to_string(&path)
+        .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     Expected::read(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
 /// The best of all sequences of jumps.
 fn best(model: &Model) -> Solved {
     let all = unrolled(model).into_iter();
-    let solved = all.map(|(_, model)| Solved::of(compile(&model).expect("the model can be solved")));
+    let solved =
+        all.map(|(_, model)| Solved::of(compile(&model).expect("the model can be solved")));
     let better = |a: Solved, b: Solved| if b.objective() < a.objective() { b } else { a };
     solved.reduce(better).expect("there is at least one")
 }
@@ -25,13 +27,15 @@ fn check_values(name: &str, text: &str, expected: &Expected) {
     for value in &expected.values {
         let got = solved.quantity(&value.name);
         let gap = got - value.value;
-        let near = if value.is_limit { gap <= value.tolerance } else { gap.abs() <= value.tolerance };
+        let near =
+            if value.is_limit { gap <= value.tolerance } else { gap.abs() <= value.tolerance };
         assert!(near, "{name}: {} = {got}, but {} from {}", value.name, value.value, value.source);
     }
 }
 
 fn check_refusal(name: &str, text: &str, code: &str, message: &str) {
-    let found = refusal(text).unwrap_or_else(|| panic!("{name} can be solved now: give it a value"));
+    let found =
+        refusal(text).unwrap_or_else(|| panic!("{name} can be solved now: give it a value"));
     assert_eq!((found.len(), found[0].code.as_str()), (1, code), "{name}: {found:?}");
     assert!(found[0].message.starts_with(message), "{name}: {}", found[0].message);
 }
@@ -49,7 +53,8 @@ fn every_model_meets_its_expectation() {
 
 #[test]
 fn every_expectation_belongs_to_a_model() {
-    let models: Vec<String> = documents("models", "fdc").into_iter().map(|(name, _)| name).collect();
+    let models: Vec<String> =
+        documents("models", "fdc").into_iter().map(|(name, _)| name).collect();
     for (name, _) in documents("models", "expected") {
         assert!(models.contains(&name), "models/{name}.expected has no model");
     }

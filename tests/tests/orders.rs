@@ -1,4 +1,5 @@
-//! The measured order of every scheme, in states and in integrals, on problems whose answers are known.
+//! The measured order of every scheme, in states and in integrals, on problems whose answers are
+//! known.
 
 use fdcc_tests::{Solved, rate};
 
@@ -36,15 +37,22 @@ fn check(case: &Case) {
         let grids = grids(order);
         let is_controlled = case.text.contains(" control ");
         let order = if is_controlled { f64::min(order, MOST_WITH_CONTROL) } else { order };
-        let runs = grids
-            .map(|n| Solved::new(&format!("{} method {{ grid N = {n} {scheme} }}", case.text), &[], &[]));
+        let runs = grids.map(|n| {
+            Solved::new(&format!("{} method {{ grid N = {n} {scheme} }}", case.text), &[], &[])
+        });
         for (what, quantity, exact) in &case.known {
             let errors: Vec<f64> = runs.iter().map(|run| (quantity(run) - exact).abs()).collect();
             let measured = rate(&grids.map(|n| 1.0 / n), &errors);
-            let report =
-                format!("{}, {scheme}: {what} has order {measured:.3}, errors {errors:?}", case.name);
-            assert!((measured - order).abs() < TOLERANCE.max(RELATIVE_TOLERANCE * order), "{report}");
-            // A rate says nothing of the limit: so it must be the known value itself that is approached.
+            let report = format!(
+                "{}, {scheme}: {what} has order {measured:.3}, errors {errors:?}",
+                case.name
+            );
+            assert!(
+                (measured - order).abs() < TOLERANCE.max(RELATIVE_TOLERANCE * order),
+                "{report}"
+            );
+            // A rate says nothing of the limit: so it must be the known value itself that is
+            // approached.
             assert!(errors[3] < 0.03 * (1.0 + exact.abs()), "{report}");
         }
     }
@@ -57,7 +65,8 @@ fn a_linear_equation_with_a_time_dependent_right_side() {
     let x = |t: f64| (3.0 * (-t).exp() + t.sin() - t.cos()) / 2.0;
     check(&Case {
         name: "linear",
-        text: "time t in [0, 2] state x start 1 dynamics { x' = -x + sin(t) } minimize integral(x + t)",
+        text: "time t in [0, 2] state x start 1 dynamics { x' = -x + sin(t) } minimize integral(x \
+               + t)",
         known: vec![
             ("x(end)", |run| run.end("x"), x(t)),
             // x' = -x + sin t, hence the integral of x is 1 - x(t) + 1 - cos t.
@@ -79,12 +88,14 @@ fn a_nonlinear_equation() {
     });
 }
 
-/// Riccati: `J = tanh(1) x_0^2` with `u = -tanh(1 - t) x`, so `x(1) = x_0/cosh(1)`; the costate is `dJ/dx_0 = 2 tanh(1)`.
+/// Riccati: `J = tanh(1) x_0^2` with `u = -tanh(1 - t) x`, so `x(1) = x_0/cosh(1)`; the costate is
+/// `dJ/dx_0 = 2 tanh(1)`.
 #[test]
 fn a_linear_quadratic_optimal_control() {
     check(&Case {
         name: "linear quadratic",
-        text: "time t in [0, 1] state x start 1 control u dynamics { x' = u } minimize integral(x^2 + u^2)",
+        text: "time t in [0, 1] state x start 1 control u dynamics { x' = u } minimize \
+               integral(x^2 + u^2)",
         known: vec![
             ("the objective", Solved::objective, f64::tanh(1.0)),
             ("x(end)", |run| run.end("x"), 1.0 / f64::cosh(1.0)),
@@ -120,21 +131,28 @@ fn an_unknown_in_the_right_side() {
     });
 }
 
-/// Start and duration that are no unit: `x = t e^(t - 1)` solves `x' = x (1 + 1/t)`; the integral of `x/t` is `e^(T - 1) - 1`.
+/// Start and duration that are no unit: `x = t e^(t - 1)` solves `x' = x (1 + 1/t)`; the integral
+/// of `x/t` is `e^(T - 1) - 1`.
 #[test]
 fn a_start_time_that_is_not_zero() {
     let e = std::f64::consts::E;
     check(&Case {
         name: "late start",
-        text: "time t in [1, 2] state x start 1 dynamics { x' = x*(1 + 1/t) } minimize integral(x/t) + x(start)",
-        known: vec![("x(end)", |run| run.end("x"), 2.0 * e), ("the objective", Solved::objective, e)],
+        text: "time t in [1, 2] state x start 1 dynamics { x' = x*(1 + 1/t) } minimize \
+               integral(x/t) + x(start)",
+        known: vec![
+            ("x(end)", |run| run.end("x"), 2.0 * e),
+            ("the objective", Solved::objective, e),
+        ],
     });
 }
 
-/// Steps inside an interval are steps: without a control, 3 steps in each of 20 intervals are 60 intervals.
+/// Steps inside an interval are steps: without a control, 3 steps in each of 20 intervals are 60
+/// intervals.
 #[test]
 fn steps_inside_an_interval_are_steps() {
-    let text = "time t in [0, 1] state x start 1 state y start 0 dynamics { x' = -x^2 + y*t y' = x - y } \
+    let text = "time t in [0, 1] state x start 1 state y start 0 dynamics { x' = -x^2 + y*t y' = x \
+                - y } \
                 minimize integral(t*x) + integral(x)^2 + y(end)";
     for scheme in [
         "euler",
@@ -146,8 +164,9 @@ fn steps_inside_an_interval_are_steps() {
         "radau2",
         "gauss2",
     ] {
-        let solved =
-            |grid: &str| Solved::new(&format!("{text} method {{ grid {grid} scheme {scheme} }}"), &[], &[]);
+        let solved = |grid: &str| {
+            Solved::new(&format!("{text} method {{ grid {grid} scheme {scheme} }}"), &[], &[])
+        };
         let (one, other) = (solved("N = 20 steps 3"), solved("N = 60"));
         assert!((one.objective() - other.objective()).abs() < 1e-12, "{scheme}");
         for (k, x) in one.state("x").iter().enumerate() {
@@ -156,11 +175,14 @@ fn steps_inside_an_interval_are_steps() {
     }
 }
 
-/// With a control, steps are more accurate than their interval is: what is left is the error of the control.
+/// With a control, steps are more accurate than their interval is: what is left is the error of the
+/// control.
 #[test]
 fn steps_leave_the_control_as_it_is() {
-    let text = "time t in [0, 1] state x start 1 control u dynamics { x' = u } minimize integral(x^2 + u^2)";
-    let solved = |method: &str| Solved::new(&format!("{text} method {{ grid N = 10 {method} }}"), &[], &[]);
+    let text = "time t in [0, 1] state x start 1 control u dynamics { x' = u } minimize \
+                integral(x^2 + u^2)";
+    let solved =
+        |method: &str| Solved::new(&format!("{text} method {{ grid N = 10 {method} }}"), &[], &[]);
     let (steps, exact) = (solved("steps 400 scheme implicit_euler"), solved("scheme radau5"));
     assert_eq!(steps.control("u").len(), 10);
     for (u, v) in steps.control("u").iter().zip(exact.control("u")) {

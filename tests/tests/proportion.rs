@@ -1,4 +1,5 @@
-//! What a model costs before it is solved is in proportion to its text: counted as nodes of the graph where that can be done.
+//! What a model costs before it is solved is in proportion to its text: counted as nodes of the
+//! graph where that can be done.
 
 use std::time::{Duration, Instant};
 
@@ -8,7 +9,8 @@ use fdcc_tests::models::meaning;
 
 fn motion(right: &str, more: &str, method: &str) -> String {
     format!(
-        "time t in [0, 1]\nstate x start 0.5\ncontrol u in [-1, 1]\n{more}dynamics {{ x' = u + {right} }}\n\
+        "time t in [0, 1]\nstate x start 0.5\ncontrol u in [-1, 1]\n{more}dynamics {{ x' = u + \
+         {right} }}\n\
          minimize integral(u^2)\nmethod {{ N = 10 {method} }}\n"
     )
 }
@@ -38,7 +40,8 @@ fn nested_blends_grow_by_as_much_from_level_to_level() {
 #[test]
 fn blends_of_definitions_grow_by_as_much_too() {
     let nodes = |depth: usize| {
-        let step = |i: usize| format!("let l{i} = blend(abs(l{} - 0.1) + l{}, 0.1)\n", i - 1, i - 1);
+        let step =
+            |i: usize| format!("let l{i} = blend(abs(l{} - 0.1) + l{}, 0.1)\n", i - 1, i - 1);
         let lets: String = (1..=depth).map(step).collect();
         meaning(&motion(&format!("l{depth}"), &format!("let l0 = x\n{lets}"), "")).graph.len()
     };
@@ -52,7 +55,8 @@ fn a_second_blend_of_the_same_changes_nothing() {
     let once = motion("blend(abs(x), 0.1)", "", "");
     let twice = motion("blend(blend(abs(x), 0.1), 0.2)", "", "");
     let found = review(&twice).diagnostics;
-    let is_told = |code, severity| found.iter().any(|it| it.code == code && it.severity == severity);
+    let is_told =
+        |code, severity| found.iter().any(|it| it.code == code && it.severity == severity);
     assert!(is_told(Code::NotAllowedHere, Severity::Warning), "{found:?}");
     // The width of the second is a number more.
     let [once, twice] = [once, twice].map(|text| meaning(&text).graph.len());
@@ -85,7 +89,8 @@ fn seconds_to_compile(terms: usize) -> f64 {
     once().min(once())
 }
 
-/// Making machine code is another program's work, which cannot be counted. Four times as long a sum took forty times as long.
+/// Making machine code is another program's work, which cannot be counted. Four times as long a sum
+/// took forty times as long.
 #[test]
 fn machine_code_of_a_long_sum_takes_time_in_proportion() {
     let [short, long] = [60, 240].map(seconds_to_compile);

@@ -1,7 +1,7 @@
 //! Never wrong: what is proved about the surfaces of random models is compared with dense sampling.
 //!
-//! The rates `psi_t + psi_x f` on both sides are computed here from the model by itself, at points of the surface found by
-//! Newton's method from random places within the bounds.
+//! The rates `psi_t + psi_x f` on both sides are computed here from the model by itself, at points
+//! of the surface found by Newton's method from random places within the bounds.
 
 #[path = "proved/directions.rs"]
 mod directions;
@@ -27,7 +27,9 @@ fn expression(random: &mut Random, depth: usize) -> String {
     if depth == 0 {
         let names = ["x", "y", "t", "k"];
         let at = random.below(6);
-        return names.get(at).map_or_else(|| format!("({})", number(random)), |name| name.to_string());
+        return names
+            .get(at)
+            .map_or_else(|| format!("({})", number(random)), |name| name.to_string());
     }
     let a = expression(random, depth - 1);
     let b = expression(random, depth - 1);
@@ -85,8 +87,10 @@ fn model_text(random: &mut Random) -> String {
     let with_control = ["", " + u", " - 2*u"][random.below(3)];
     let second = if random.below(2) == 0 { String::new() } else { format!(" + ({in_y})*Sgn(s)") };
     format!(
-        "param k = 1.5\ntime t in [0, 2]\nstate x{x} start free\nstate y{y} start free\ncontrol u in [-{control:.1}, {control:.1}]\n\
-         surface s = {psi}\ndynamics {{\n  x' in {drift}{with_control} + ({in_x})*Sgn(s)\n  y' in {across}{second}\n}}\n\
+        "param k = 1.5\ntime t in [0, 2]\nstate x{x} start free\nstate y{y} start free\ncontrol u \
+         in [-{control:.1}, {control:.1}]\n\
+         surface s = {psi}\ndynamics {{\n  x' in {drift}{with_control} + ({in_x})*Sgn(s)\n  y' in \
+         {across}{second}\n}}\n\
          minimize integral(u^2)\n"
     )
 }
@@ -104,8 +108,8 @@ impl Sampled {
     fn new(model: &Model) -> Self {
         let mut graph = model.graph.clone();
         let input = |symbol| model.input_of(symbol).map(|at| at as usize);
-        let states =
-            [Symbol::State(0), Symbol::State(1)].map(|it| input(it).expect("the model has two states"));
+        let states = [Symbol::State(0), Symbol::State(1)]
+            .map(|it| input(it).expect("the model has two states"));
         let time = input(Symbol::Time).expect("the model has a time");
         let psi = model.surfaces[0].psi;
         let mut terms = vec![derivative(&mut graph, psi, time as u32)];
@@ -137,7 +141,8 @@ impl Sampled {
             let values = self.values(at, 0.0);
             let size = values[1].powi(2) + values[2].powi(2);
             if values[0].abs() < 1e-13 {
-                let inside = at.iter().zip(bounds).all(|(value, [low, high])| low <= value && value <= high);
+                let inside =
+                    at.iter().zip(bounds).all(|(value, [low, high])| low <= value && value <= high);
                 return inside.then_some(at);
             }
             at[0] -= values[0] * values[1] / size;
@@ -153,11 +158,15 @@ fn contradiction(class: &SurfaceClass, below: f64, above: f64) -> bool {
     match class {
         SurfaceClass::Apart => true,
         SurfaceClass::Crossed { strictly: true } => below * above < -slack,
-        SurfaceClass::Crossed { strictly: false } => below.min(above) < -slack && below.max(above) > slack,
+        SurfaceClass::Crossed { strictly: false } => {
+            below.min(above) < -slack && below.max(above) > slack
+        }
         SurfaceClass::Held => below < -slack || above > slack,
         SurfaceClass::Attracting => above - below > slack,
         SurfaceClass::Repelling => below > slack || above < -slack,
-        SurfaceClass::Degenerate | SurfaceClass::RepellingFor(_) | SurfaceClass::Unknown { .. } => false,
+        SurfaceClass::Degenerate | SurfaceClass::RepellingFor(_) | SurfaceClass::Unknown { .. } => {
+            false
+        }
     }
 }
 
@@ -181,11 +190,12 @@ fn what_is_proved_about_surfaces_is_true_at_every_point() {
         let sampled = Sampled::new(&model);
         let bounds = |at: usize| {
             let range = model.states[at].range;
-            [range.lower, range.upper].map(|end| evaluate(&model.graph, &[end], &sampled.fixed, &[])[0])
+            [range.lower, range.upper]
+                .map(|end| evaluate(&model.graph, &[end], &sampled.fixed, &[])[0])
         };
         let range = model.controls[0].range;
-        let control =
-            [range.lower, range.upper].map(|end| evaluate(&model.graph, &[end], &sampled.fixed, &[])[0]);
+        let control = [range.lower, range.upper]
+            .map(|end| evaluate(&model.graph, &[end], &sampled.fixed, &[])[0]);
         let mut bounds = [bounds(0), bounds(1), [0.0, 2.0], control];
         let mut wanted = class.clone();
         if let SurfaceClass::RepellingFor(choice) = class {
@@ -211,6 +221,9 @@ fn what_is_proved_about_surfaces_is_true_at_every_point() {
         *seen.entry(name).or_default() += 1;
     }
     for name in ["apart", "crossed", "held", "attracting", "repelling", "degenerate"] {
-        assert!(seen.get(name).is_some_and(|&count| count >= 10), "{name} is hardly ever proved: {seen:?}");
+        assert!(
+            seen.get(name).is_some_and(|&count| count >= 10),
+            "{name} is hardly ever proved: {seen:?}"
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! The table and figures of `docs/method/racecar.md`: the race car of Section 7, planned and driven.
+//! The table and figures of `docs/method/racecar.md`: the race car of Section 7, planned and
+//! driven.
 
 use fdcc_runtime::simulate::{Kind, Piece, Simulation};
 use fdcc_tests::pages::{check_file, check_tables};
@@ -21,11 +22,19 @@ fn shown(times: &[f64]) -> String {
     times.iter().map(|time| format!("{time:.3}")).collect::<Vec<_>>().join(", ")
 }
 
-/// Objective and duration of the plan, miss, then objective, miss and violation of the track of the replay.
+/// Objective and duration of the plan, miss, then objective, miss and violation of the track of the
+/// replay.
 fn numbers(race: &Race) -> [f64; 6] {
     let (planned, driven) = (&race.planned, &race.driven);
     let [missed, truly] = [planned.miss(), driven.miss()].map(|[x, y]| x.hypot(y));
-    [planned.objective(), planned.time[STEPS], missed, driven.objective(), truly, driven.outside().0]
+    [
+        planned.objective(),
+        planned.time[STEPS],
+        missed,
+        driven.objective(),
+        truly,
+        driven.outside().0,
+    ]
 }
 
 /// Conditions of optimality, to first order in the step; what is known of the controls.
@@ -120,12 +129,19 @@ fn curve(run: &Run, point: impl Fn(usize) -> [f64; 2]) -> Vec<[f64; 2]> {
 
 /// To scale.
 fn path(races: &[Race]) -> Figure {
-    let mut figure = Figure::new(Axis::new("x").between(-0.3, 10.2), Axis::new("y").between(-4.6, 2.52));
+    let mut figure =
+        Figure::new(Axis::new("x").between(-0.3, 10.2), Axis::new("y").between(-4.6, 2.52));
     for race in races {
         let place = |run: &Run, k: usize| [run.at(k)[0], run.at(k)[1]];
         figure = figure
-            .line(&format!("planned, {}", race.sigma), &curve(&race.planned, |k| place(&race.planned, k)))
-            .line(&format!("driven, {}", race.sigma), &curve(&race.driven, |k| place(&race.driven, k)));
+            .line(
+                &format!("planned, {}", race.sigma),
+                &curve(&race.planned, |k| place(&race.planned, k)),
+            )
+            .line(
+                &format!("driven, {}", race.sigma),
+                &curve(&race.driven, |k| place(&race.driven, k)),
+            );
     }
     let border = |side: f64| -> Vec<[f64; 2]> {
         let xs = (0..=210).map(|k| -0.3 + 0.05 * f64::from(k));
@@ -156,8 +172,10 @@ fn velocities(race: &Race) -> Figure {
     let mut figure = Figure::new(Axis::new("t"), Axis::new("velocity"));
     for (part, name) in ["along", "across"].into_iter().enumerate() {
         for (run, who) in [(&race.planned, "planned"), (&race.driven, "driven")] {
-            figure =
-                figure.line(&format!("{name}, {who}"), &curve(run, |k| [run.time[k], run.velocity(k)[part]]));
+            figure = figure.line(
+                &format!("{name}, {who}"),
+                &curve(run, |k| [run.time[k], run.velocity(k)[part]]),
+            );
         }
     }
     figure
@@ -171,7 +189,9 @@ fn friction(races: &[Race]) -> Figure {
         let run = &race.planned;
         let smoothed = |k: usize| run.velocity(k)[1] / run.velocity(k)[1].hypot(race.sigma);
         let points: Vec<[f64; 2]> = (0..run.points()).map(|k| [run.time[k], smoothed(k)]).collect();
-        let early = |points: Vec<[f64; 2]>| points.into_iter().filter(|it| it[0] < 1.45).collect::<Vec<_>>();
+        let early = |points: Vec<[f64; 2]>| {
+            points.into_iter().filter(|it| it[0] < 1.45).collect::<Vec<_>>()
+        };
         figure = figure
             .line(&format!("planned, {}", race.sigma), &early(points))
             .line(&format!("driven, {}", race.sigma), &early(selectors(&race.replay)));

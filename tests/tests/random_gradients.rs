@@ -1,10 +1,10 @@
-//! Gradients of random systems: forward against adjoint to 1e-10, both against differences of simulations, second derivatives
-//! against differences of gradients.
+//! Gradients of random systems: forward against adjoint to 1e-10, both against differences of
+//! simulations, second derivatives against differences of gradients.
 //!
-//! A family of systems is compiled once, all its coefficients parameters; each system is a choice of these. What differences
-//! cannot tell is skipped and counted: no trajectory to the end, other events beside a system (where the start is on a
-//! surface that slides, the second derivatives of both sides differ), differences with one and two steps that have nothing in
-//! common.
+//! A family of systems is compiled once, all its coefficients parameters; each system is a choice
+//! of these. What differences cannot tell is skipped and counted: no trajectory to the end, other
+//! events beside a system (where the start is on a surface that slides, the second derivatives of
+//! both sides differ), differences with one and two steps that have nothing in common.
 //!
 //! `SYSTEMS=20 cargo test --release -p fdcc-tests --test random_gradients` takes 20 times as many.
 
@@ -22,7 +22,8 @@ use fdcc_tests::random::Random;
 
 /// So many systems of families that are compiled in turn.
 fn check_all(families: &[Family], seed: u64, count: usize) -> Seen {
-    let times = std::env::var("SYSTEMS").map_or(1, |times| times.parse().expect("SYSTEMS is a number"));
+    let times =
+        std::env::var("SYSTEMS").map_or(1, |times| times.parse().expect("SYSTEMS is a number"));
     let mut random = Random::new(seed);
     let mut seen = Seen::default();
     for case in 0..times * count {
@@ -35,7 +36,8 @@ fn check_all(families: &[Family], seed: u64, count: usize) -> Seen {
 
 /// Affine systems with so many surfaces, as many states and more.
 fn check_affine(surfaces: usize, sizes: usize, count: usize) -> Seen {
-    let families: Vec<Family> = (0..sizes).map(|more| Family::affine(surfaces, surfaces + more)).collect();
+    let families: Vec<Family> =
+        (0..sizes).map(|more| Family::affine(surfaces, surfaces + more)).collect();
     check_all(&families, 2000 + surfaces as u64, count)
 }
 

@@ -1,11 +1,14 @@
-//! Random systems with one to four surfaces, or with a ball among them, against simple, slow references.
+//! Random systems with one to four surfaces, or with a ball among them, against simple, slow
+//! references.
 //!
-//! Many that are affine in each mode, with starts on surfaces and with surfaces that move, against a solution mode by mode: events,
-//! end, and every refusal. And a few against implicit Euler with Gauss-Seidel, which knows no events:
+//! Many that are affine in each mode, with starts on surfaces and with surfaces that move, against
+//! a solution mode by mode: events, end, and every refusal. And a few against implicit Euler with
+//! Gauss-Seidel, which knows no events:
 //!
-//! `x' = a + c cos(w t) - A x - B s`, `s_i in Sgn(x_i)`, `B` diagonally dominant, so the solution is unique. One step of the reference
-//! solves `x+ = x + h (a + c cos(w t+) - A x - B s)`, `s_i in Sgn(x+_i)`, surface by surface until nothing changes; its error is of
-//! order `h`. The first components may form a ball, `s in Dir(x)`.
+//! `x' = a + c cos(w t) - A x - B s`, `s_i in Sgn(x_i)`, `B` diagonally dominant, so the solution
+//! is unique. One step of the reference solves `x+ = x + h (a + c cos(w t+) - A x - B s)`, `s_i in
+//! Sgn(x+_i)`, surface by surface until nothing changes; its error is of order `h`. The first
+//! components may form a ball, `s in Dir(x)`.
 
 #[path = "random_simulations/affine.rs"]
 mod affine;
@@ -52,7 +55,8 @@ fn matrix(random: &mut Random, size: usize, diagonal: [f64; 2], beside: f64) -> 
 
 impl Friction {
     fn new(random: &mut Random, size: usize, ball: usize) -> Self {
-        let mut vector = |most: f64| -> Vec<f64> { (0..size).map(|_| random.between(-most, most)).collect() };
+        let mut vector =
+            |most: f64| -> Vec<f64> { (0..size).map(|_| random.between(-most, most)).collect() };
         let (start, constant, swing) = (vector(1.0), vector(0.5), vector(3.0));
         Friction {
             ball,
@@ -72,11 +76,19 @@ impl Friction {
             if i >= self.ball {
                 writeln!(states, "surface p{i} = x{i}").expect("text");
             }
-            write!(equations, "x{i}' in {} + {}*cos({}*t)", self.constant[i], self.swing[i], self.frequency)
-                .expect("text");
+            write!(
+                equations,
+                "x{i}' in {} + {}*cos({}*t)",
+                self.constant[i], self.swing[i], self.frequency
+            )
+            .expect("text");
             for j in 0..self.start.len() {
                 let (damping, friction) = (self.damping[i][j], self.friction[i][j]);
-                let set = if j < self.ball { format!("Dir(ball)[{}]", j + 1) } else { format!("Sgn(p{j})") };
+                let set = if j < self.ball {
+                    format!("Dir(ball)[{}]", j + 1)
+                } else {
+                    format!("Sgn(p{j})")
+                };
                 write!(equations, " - ({damping})*x{j} - ({friction})*{set}").expect("text");
             }
             equations.push('\n');
@@ -98,7 +110,8 @@ impl Friction {
         let mut x = self.start.clone();
         let mut s = vec![0.0; x.len()];
         for k in 1..=STEPS {
-            let free: Vec<f64> = (0..x.len()).map(|i| x[i] + h * self.rest(i, k as f64 * h, &x)).collect();
+            let free: Vec<f64> =
+                (0..x.len()).map(|i| x[i] + h * self.rest(i, k as f64 * h, &x)).collect();
             for _ in 0..200 {
                 let before = s.clone();
                 let wanted = |i: usize, s: &[f64]| {
@@ -116,7 +129,8 @@ impl Friction {
                 }
             }
             for i in 0..x.len() {
-                x[i] = free[i] - h * self.friction[i].iter().zip(&s).map(|(b, s)| b * s).sum::<f64>();
+                x[i] =
+                    free[i] - h * self.friction[i].iter().zip(&s).map(|(b, s)| b * s).sum::<f64>();
             }
         }
         x
@@ -136,7 +150,8 @@ fn random_systems_end_where_implicit_euler_ends() {
         for (got, slow) in simulation.end.iter().zip(system.reference()) {
             assert!((got - slow).abs() < 2e-3, "{got}, not {slow}\n{text}");
         }
-        entries += simulation.events.iter().filter(|event| event.kind == Kind::EntersSliding).count();
+        entries +=
+            simulation.events.iter().filter(|event| event.kind == Kind::EntersSliding).count();
         exits += simulation
             .events
             .iter()
@@ -170,7 +185,10 @@ fn random_systems_with_a_ball_end_where_implicit_euler_ends() {
         entries += of_ball.clone().filter(|event| event.kind == Kind::EntersSliding).count();
         exits += of_ball.filter(|event| event.kind == Kind::LeavesUp).count();
     }
-    assert!(entries > 30 && exits > 20, "the balls stick and slip: {entries} entries, {exits} exits");
+    assert!(
+        entries > 30 && exits > 20,
+        "the balls stick and slip: {entries} entries, {exits} exits"
+    );
 }
 
 /// What the systems had in them.
@@ -184,15 +202,18 @@ struct Seen {
 }
 
 fn simulated(system: &Affine) -> Simulation {
-    let compiled = compile_simulation(&meaning(&system.text())).expect("the model can be simulated");
+    let compiled =
+        compile_simulation(&meaning(&system.text())).expect("the model can be simulated");
     simulate(&compiled, &Controls::Guess, &Options { max_steps: 20_000, ..Options::default() })
 }
 
 /// How a simulation differs from the exact solution.
 fn difference(simulation: &Simulation, exact: &Exact) -> Option<String> {
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-7 * b.abs().max(1.0);
-    let events: Vec<_> = simulation.events.iter().map(|it| (it.time, it.surface, it.kind)).collect();
-    let agree = events.iter().zip(&exact.events).all(|(a, b)| near(a.0, b.0) && (a.1, a.2) == (b.1, b.2));
+    let events: Vec<_> =
+        simulation.events.iter().map(|it| (it.time, it.surface, it.kind)).collect();
+    let agree =
+        events.iter().zip(&exact.events).all(|(a, b)| near(a.0, b.0) && (a.1, a.2) == (b.1, b.2));
     if !agree || events.len() != exact.events.len() {
         return Some(format!("events {events:?}\n not {:?}", exact.events));
     }
@@ -203,8 +224,8 @@ fn difference(simulation: &Simulation, exact: &Exact) -> Option<String> {
     match (&simulation.status, &exact.ending) {
         (Status::Completed, Ending::Completed) => None,
         (Status::NotUnique { candidates, .. }, Ending::NotUnique(sides)) => {
-            let same =
-                candidates.len() == sides.len() && candidates.iter().all(|it| sides.contains(&it.sides));
+            let same = candidates.len() == sides.len()
+                && candidates.iter().all(|it| sides.contains(&it.sides));
             (!same).then(|| format!("{candidates:?}\n not {sides:?}"))
         }
         (status, _) => Some(format!("status {status:?}")),
@@ -231,7 +252,10 @@ fn check_systems(surfaces: usize, count: usize) -> Seen {
         seen.held_together += usize::from(exact.most_held > 1);
         seen.events += exact.events.len();
     }
-    assert!(seen.delicate * 12 < count && seen.refused * 30 > count && 2 * seen.events > count, "{seen:?}");
+    assert!(
+        seen.delicate * 12 < count && seen.refused * 30 > count && 2 * seen.events > count,
+        "{seen:?}"
+    );
     seen
 }
 

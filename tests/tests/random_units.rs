@@ -1,5 +1,5 @@
-//! Formulas that are well dimensioned by construction are never complained about; with one factor of a metre too many
-//! they always are.
+//! Formulas that are well dimensioned by construction are never complained about; with one factor
+//! of a metre too many they always are.
 
 use fdcc_compiler::check;
 use fdcc_grammar::{Code, parse};
@@ -62,8 +62,16 @@ impl Grower {
         let is_plain = powers == [0; 3];
         let is_square = powers.iter().all(|power| power % 2 == 0);
         match self.random.below(if is_plain { 13 } else { 11 }) {
-            0 | 1 => format!("({} + {})", self.formula(powers, depth - 1), self.formula(powers, depth - 1)),
-            2 => format!("({} - {})", self.formula(powers, depth - 1), self.formula(powers, depth - 1)),
+            0 | 1 => format!(
+                "({} + {})",
+                self.formula(powers, depth - 1),
+                self.formula(powers, depth - 1)
+            ),
+            2 => format!(
+                "({} - {})",
+                self.formula(powers, depth - 1),
+                self.formula(powers, depth - 1)
+            ),
             3 => {
                 let (own, rest) = self.split(powers, 1);
                 format!("{} * {}", self.formula(own, depth - 1), self.formula(rest, depth - 1))
@@ -73,12 +81,26 @@ impl Grower {
                 format!("{} / ({})", self.formula(own, depth - 1), self.formula(rest, depth - 1))
             }
             5 => format!("-abs({})", self.formula(powers, depth - 1)),
-            6 => format!("max({}, {})", self.formula(powers, depth - 1), self.formula(powers, depth - 1)),
+            6 => format!(
+                "max({}, {})",
+                self.formula(powers, depth - 1),
+                self.formula(powers, depth - 1)
+            ),
             7 => format!("sqrt({})", self.formula(powers.map(|power| 2 * power), depth - 1)),
-            8 if is_square => format!("({})^2", self.formula(powers.map(|power| power / 2), depth - 1)),
+            8 if is_square => {
+                format!("({})^2", self.formula(powers.map(|power| power / 2), depth - 1))
+            }
             8 => format!("half({})", self.formula(powers, depth - 1)),
-            9 => format!("length({}, {})", self.formula(powers, depth - 1), self.formula(powers, depth - 1)),
-            10 => format!("norm(({}, {}))", self.formula(powers, depth - 1), self.formula(powers, depth - 1)),
+            9 => format!(
+                "length({}, {})",
+                self.formula(powers, depth - 1),
+                self.formula(powers, depth - 1)
+            ),
+            10 => format!(
+                "norm(({}, {}))",
+                self.formula(powers, depth - 1),
+                self.formula(powers, depth - 1)
+            ),
             11 => format!("bump({})", self.formula(powers, depth - 1)),
             _ => format!("sin({})", self.formula(powers, depth - 1)),
         }
@@ -105,7 +127,8 @@ fn model(seed: u64, wrong_at: Option<usize>) -> (String, usize) {
     let (x, v, open) = (equation([1, -1, 0]), equation([1, -2, 0]), equation([2, -3, 1]));
     let force = equation([1, -2, 1]);
     let text = format!(
-        "{HEAD}dynamics {{\n x' = {x}\n m * v' = {force} + m*({v})\n open' = {open}\n}}\nminimize x(end)\n"
+        "{HEAD}dynamics {{\n x' = {x}\n m * v' = {force} + m*({v})\n open' = {open}\n}}\nminimize \
+         x(end)\n"
     );
     (text, grower.leaves)
 }
@@ -113,7 +136,8 @@ fn model(seed: u64, wrong_at: Option<usize>) -> (String, usize) {
 fn unit_errors(text: &str) -> Vec<String> {
     let parsed = parse(text);
     assert!(parsed.diagnostics.is_empty(), "{text}\n{:#?}", parsed.diagnostics);
-    let is_ours = |code: Code| matches!(code, Code::UnitMismatch | Code::UnitHere | Code::UnitOfPower);
+    let is_ours =
+        |code: Code| matches!(code, Code::UnitMismatch | Code::UnitHere | Code::UnitOfPower);
     let found = check(&parsed.tree).diagnostics.into_iter().filter(|it| is_ours(it.code));
     found.map(|it| it.message).collect()
 }

@@ -1,11 +1,13 @@
-//! The pages of `docs/diagnostics/` are true: each wrong model gives its diagnostic, each right one gives nothing.
+//! The pages of `docs/diagnostics/` are true: each wrong model gives its diagnostic, each right one
+//! gives nothing.
 
 use fdcc_grammar::{Code, Diagnostic, Severity, parse};
 use fdcc_tests::{blocks, documents};
 
 #[test]
 fn every_diagnostic_has_a_page_and_every_page_a_diagnostic() {
-    let pages: Vec<String> = documents("docs/diagnostics", "md").into_iter().map(|(name, _)| name).collect();
+    let pages: Vec<String> =
+        documents("docs/diagnostics", "md").into_iter().map(|(name, _)| name).collect();
     let codes: Vec<String> = Code::ALL.iter().map(Code::to_string).collect();
     assert_eq!(pages, codes);
 }
@@ -23,7 +25,8 @@ fn pages_have_the_title_of_their_diagnostic() {
 #[test]
 fn pages_say_why_and_show_both_models() {
     for (name, page) in documents("docs/diagnostics", "md") {
-        let headings: Vec<&str> = page.lines().filter_map(|line| line.strip_prefix("## ")).collect();
+        let headings: Vec<&str> =
+            page.lines().filter_map(|line| line.strip_prefix("## ")).collect();
         assert_eq!(headings, ["Wrong", "Right"], "{name}");
         let why = page.split("\n## ").next().unwrap_or_default();
         assert!(why.split_whitespace().count() > 25, "{name}: say why");

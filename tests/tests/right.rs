@@ -1,5 +1,6 @@
-//! Right models from mechanics, robotics, electronics, biology, chemistry, economics and transport: they can be solved, or
-//! simulated where nothing is to be minimised. That they draw neither errors nor warnings is tested in `semantics.rs`.
+//! Right models from mechanics, robotics, electronics, biology, chemistry, economics and transport:
+//! they can be solved, or simulated where nothing is to be minimised. That they draw neither errors
+//! nor warnings is tested in `semantics.rs`.
 
 use fdcc_compiler::{Model, compile, compile_simulation};
 use fdcc_runtime::nlp::Status;
@@ -13,9 +14,13 @@ const UNSOLVED: &[(&str, &str)] = &[
     ("decay_fit", "measured data"),
     (
         "gripper",
-        "the same as the sled; it was called solved, at an objective 10 % too high, while multipliers excused every error",
+        "the same as the sled; it was called solved, at an objective 10 % too high, while \
+         multipliers excused every error",
     ),
-    ("sled_on_ice", "stops under friction alone: there is no feasible point while friction is smoothed"),
+    (
+        "sled_on_ice",
+        "stops under friction alone: there is no feasible point while friction is smoothed",
+    ),
     ("two_stage", "phases"),
 ];
 

@@ -1,4 +1,5 @@
-//! The same problem in other units is solved to the same answer: a metre and a second are any numbers of units of the model.
+//! The same problem in other units is solved to the same answer: a metre and a second are any
+//! numbers of units of the model.
 
 use fdcc_runtime::nlp::Status;
 use fdcc_tests::models::{problem, solve};
@@ -17,7 +18,8 @@ const UNITS: [(f64, f64); 11] = [
     (1e3, 1e-3),
     (1e-3, 1e3),
 ];
-/// Without scaling some of these end after 592 iterations, others as "solved" with an objective that is off by a factor of up to 1e5.
+/// Without scaling some of these end after 592 iterations, others as "solved" with an objective
+/// that is off by a factor of up to 1e5.
 const MOST_ITERATIONS: usize = 200;
 
 /// From rest to rest one metre away with at most 1 m/s^2: two seconds.
@@ -33,7 +35,8 @@ const LEAST_TIME: &str = "
     minimize T
     method { grid N = 50 scheme midpoint }";
 
-/// Bryson & Ho, Applied Optimal Control (1975), section 3.11, example 2: 4 / (9 l) with l = 1/9. Nothing says how large speed and acceleration are.
+/// Bryson & Ho, Applied Optimal Control (1975), section 3.11, example 2: 4 / (9 l) with l = 1/9.
+/// Nothing says how large speed and acceleration are.
 const LEAST_EFFORT: &str = "
     time t in [0, s]
     state x in [-m, m/9] start 0
@@ -45,7 +48,8 @@ const LEAST_EFFORT: &str = "
     minimize integral(a^2/2)
     method { grid N = 200 scheme midpoint }";
 
-/// A bead on a wire, one metre down and pi/2 as far to the side: half a turn of a wheel, `pi sqrt(r/g)` with `2 r` = 1 m.
+/// A bead on a wire, one metre down and pi/2 as far to the side: half a turn of a wheel, `pi
+/// sqrt(r/g)` with `2 r` = 1 m.
 const LEAST_DESCENT: &str = "
     free T in [0.01*s, 10*s] guess s
     time t in [0, T]
@@ -65,7 +69,8 @@ fn the_same_in_all_units(text: &str, exact: impl Fn(f64, f64) -> f64) {
         let text = format!("const m = {metre:e}\nconst s = {second:e}\n{text}");
         let solution = solve(&problem(&text, &[], &[])).solution;
         let (found, exact) = (solution.objective, exact(metre, second));
-        let what = format!("{metre:e} {second:e}: {found:e} instead of {exact:e}, {:?}", solution.counts);
+        let what =
+            format!("{metre:e} {second:e}: {found:e} instead of {exact:e}, {:?}", solution.counts);
         assert_eq!(solution.status, Status::Solved, "{what}");
         assert!((found - exact).abs() <= 1e-3 * exact, "{what}");
         assert!(solution.counts.iterations <= MOST_ITERATIONS, "{what}");
@@ -92,21 +97,26 @@ fn the_bead_is_as_fast_as_on_a_cycloid() {
     the_same_in_all_units(LEAST_DESCENT, |_, second| exact * second);
 }
 
-/// A guess that is hardly any, and one that is off by a rounding, are not what the numbers are like.
+/// A guess that is hardly any, and one that is off by a rounding, are not what the numbers are
+/// like.
 #[test]
 fn a_small_guess_is_not_a_size() {
     let swing = |guess: &str| {
         format!(
             "time t in [0, 2] state x start 0 state v start 0 control u in [-5, 5] guess {guess} \
-             dynamics {{ x' = v v' = u - 0.2*v - sin(x) }} end x == 1 end v == 0 minimize integral(u^2) \
+             dynamics {{ x' = v v' = u - 0.2*v - sin(x) }} end x == 1 end v == 0 minimize \
+             integral(u^2) \
              method {{ grid N = 50 scheme midpoint }}"
         )
     };
     let disc = |guess: &str| {
         format!(
-            "time t in [0, 1] state x start 0.1 state y start 0 control u in [-5, 5] control w in [-5, 5] \
-             dynamics {{ x' = u y' = w }} guess {{ x = {guess} y = 0 }} path (x - 0.3)^2 + y^2 <= 1 + t \
-             end (x - 2)^2 + (y - 1)^2 <= 1 minimize integral(u^2 + w^2) method {{ grid N = 20 scheme midpoint }}"
+            "time t in [0, 1] state x start 0.1 state y start 0 control u in [-5, 5] control w in \
+             [-5, 5] \
+             dynamics {{ x' = u y' = w }} guess {{ x = {guess} y = 0 }} path (x - 0.3)^2 + y^2 <= \
+             1 + t \
+             end (x - 2)^2 + (y - 1)^2 <= 1 minimize integral(u^2 + w^2) method {{ grid N = 20 \
+             scheme midpoint }}"
         )
     };
     let unknown = |guess: &str| {
@@ -117,7 +127,11 @@ fn a_small_guess_is_not_a_size() {
     };
     let both = |of: &dyn Fn(&str) -> String, guesses: [&str; 2]| {
         let [plain, small] = guesses.map(|guess| solve(&problem(&of(guess), &[], &[])).solution);
-        assert_eq!((&plain.status, &small.status), (&Status::Solved, &Status::Solved), "{guesses:?}");
+        assert_eq!(
+            (&plain.status, &small.status),
+            (&Status::Solved, &Status::Solved),
+            "{guesses:?}"
+        );
         let (gap, most) = (plain.objective - small.objective, 3 * plain.counts.iterations + 10);
         assert!(gap.abs() < 1e-6 * plain.objective.abs(), "{guesses:?}: {gap:e}");
         assert!(small.counts.iterations < most, "{guesses:?}: {:?}", small.counts);

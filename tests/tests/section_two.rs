@@ -20,7 +20,8 @@ fn number(row: &Value, key: &str) -> f64 {
 
 /// The columns of a table with headings.
 fn csv(name: &str) -> (Vec<String>, Vec<Vec<f64>>) {
-    let text = std::fs::read_to_string(repository().join("tests/reference").join(name)).expect("the data");
+    let text =
+        std::fs::read_to_string(repository().join("tests/reference").join(name)).expect("the data");
     let mut lines = text.lines();
     let headings = lines.next().expect("headings").split(',').map(String::from).collect();
     let row = |line: &str| line.split(',').map(|word| word.parse().expect("a number")).collect();
@@ -58,9 +59,18 @@ fn euler_steps_of_the_smoothed_system_agree_with_another_program() {
         let (h, theta) = (number(&row, "h"), number(&row, "theta"));
         let missing = (theta - 0.5) * h;
         let sigma = number(&row, "sigma");
-        set(&mut system, &[("x0", number(&row, "x0")), ("missing", missing), ("sigma(zero)", sigma)]);
-        let (stepped, gradient) = stepped(&system, &Grid::theta(&system, theta, (2.0 / h).round() as usize));
-        assert_close(stepped.states[0][stepped.time.len() - 1], number(&row, "xT"), 1e-11, &row.to_string());
+        set(
+            &mut system,
+            &[("x0", number(&row, "x0")), ("missing", missing), ("sigma(zero)", sigma)],
+        );
+        let (stepped, gradient) =
+            stepped(&system, &Grid::theta(&system, theta, (2.0 / h).round() as usize));
+        assert_close(
+            stepped.states[0][stepped.time.len() - 1],
+            number(&row, "xT"),
+            1e-11,
+            &row.to_string(),
+        );
         assert_close(stepped.objective.expect("J"), number(&row, "J"), 1e-11, &row.to_string());
         assert_close(gradient.starts[0], number(&row, "dJ"), 1e-8, &row.to_string());
     }
@@ -92,8 +102,18 @@ fn the_curves_of_figure_2_2_are_those_of_another_program() {
         for (at, sigma) in WIDTHS.into_iter().enumerate() {
             set(&mut system, &[("sigma(zero)", sigma)]);
             let found = implicit_euler(&mut system, row[0], 200);
-            assert_close(found[0], row[2 + at], 1e-11, &format!("J({}) for sigma = {sigma}", row[0]));
-            assert_close(found[1], row[8 + at], 1e-8, &format!("J'({}) for sigma = {sigma}", row[0]));
+            assert_close(
+                found[0],
+                row[2 + at],
+                1e-11,
+                &format!("J({}) for sigma = {sigma}", row[0]),
+            );
+            assert_close(
+                found[1],
+                row[8 + at],
+                1e-8,
+                &format!("J'({}) for sigma = {sigma}", row[0]),
+            );
         }
     }
 }

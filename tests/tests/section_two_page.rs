@@ -1,4 +1,5 @@
-//! The tables and figures of `docs/method/stepping.md`; what they claim is checked where it is computed.
+//! The tables and figures of `docs/method/stepping.md`; what they claim is checked where it is
+//! computed.
 
 use fdcc_compiler::compile_sensitivities;
 use fdcc_runtime::simulate::{Controls, System};
@@ -6,8 +7,8 @@ use fdcc_runtime::stepping::{Grid, step_through};
 use fdcc_tests::models::meaning;
 use fdcc_tests::pages::{check_file, check_tables};
 use fdcc_tests::section_two::{
-    exact, implicit_euler, inclusion, inclusion_to_the_end, objective, set, smoothed, smoothed_to_the_end,
-    stepped,
+    exact, implicit_euler, inclusion, inclusion_to_the_end, objective, set, smoothed,
+    smoothed_to_the_end, stepped,
 };
 use fdcc_tests::svg::{Axis, Figure};
 
@@ -55,12 +56,14 @@ fn one_start() -> Rows {
     }
     let exact = [format!("{:.4}", truth[0]), format!("{:.4}", truth[1])];
     rows.push(
-        [vec!["exact".to_owned()], [exact.clone(), exact.clone(), exact.clone(), exact].concat()].concat(),
+        [vec!["exact".to_owned()], [exact.clone(), exact.clone(), exact.clone(), exact].concat()]
+            .concat(),
     );
     rows
 }
 
-/// How many local minima the computed objective has (the true one has one), and how far it is from the true one.
+/// How many local minima the computed objective has (the true one has one), and how far it is from
+/// the true one.
 fn minima() -> Rows {
     let mut system = inclusion();
     let known = [[4, 9, 24, 46], [5, 10, 24, 46], [5, 9, 23, 45]];
@@ -69,9 +72,11 @@ fn minima() -> Rows {
         let (mut counts, mut errors) = (Vec::new(), Vec::new());
         for (steps, known) in STEPS.into_iter().zip(known) {
             let starts = starts(-2.0, -0.6, 1400);
-            let values: Vec<f64> = starts.iter().map(|x0| value(&mut system, *x0, steps, theta)).collect();
+            let values: Vec<f64> =
+                starts.iter().map(|x0| value(&mut system, *x0, steps, theta)).collect();
             let count = values.windows(3).filter(|v| v[1] < v[0] && v[1] < v[2]).count();
-            let errors_here = starts.iter().zip(&values).map(|(x0, value)| (value - exact(*x0)[0]).abs());
+            let errors_here =
+                starts.iter().zip(&values).map(|(x0, value)| (value - exact(*x0)[0]).abs());
             assert_eq!(count, known, "minima for theta = {theta}, {steps} steps");
             counts.push(count.to_string());
             errors.push(format!("{:.3}", errors_here.fold(0.0, f64::max)));
@@ -84,13 +89,15 @@ fn minima() -> Rows {
 /// `J_h` from the trapezoidal sum.
 fn value(system: &mut System, x0: f64, steps: usize, theta: f64) -> f64 {
     set(system, &[("x0", x0)]);
-    let stepped = step_through(system, &Controls::Guess, &Grid::theta(system, theta, steps)).expect("steps");
+    let stepped =
+        step_through(system, &Controls::Guess, &Grid::theta(system, theta, steps)).expect("steps");
     let x = &stepped.states[0];
     let sum: f64 = x.windows(2).map(|x| (x[0] * x[0] + x[1] * x[1]) / steps as f64).sum();
     (x[steps] - 5.0 / 3.0).powi(2) + sum
 }
 
-/// The two derivatives of the end by the start, how often each occurs, and their mean: the true derivative, 1/3.
+/// The two derivatives of the end by the start, how often each occurs, and their mean: the true
+/// derivative, 1/3.
 fn shares() -> Rows {
     let mut system = inclusion_to_the_end();
     let mut rows = Vec::new();
@@ -145,7 +152,8 @@ fn widths() -> Rows {
         );
         let near: Vec<f64> =
             starts(-1.1, -0.9, 100).iter().map(|x0| slope(&mut to_the_end, *x0, 1.0)).collect();
-        let (least, most) = near.iter().fold((f64::INFINITY, 0.0_f64), |(l, m), s| (l.min(*s), m.max(*s)));
+        let (least, most) =
+            near.iter().fold((f64::INFINITY, 0.0_f64), |(l, m), s| (l.min(*s), m.max(*s)));
         rows.push(
             [
                 sigma.to_string(),
@@ -160,8 +168,8 @@ fn widths() -> Rows {
     rows
 }
 
-const FRICTION: &str =
-    "model friction time t in [0, 9] state x start 1 surface zero = x dynamics { x' in -Sgn(zero) }";
+const FRICTION: &str = "model friction time t in [0, 9] state x start 1 surface zero = x dynamics \
+                        { x' in -Sgn(zero) }";
 
 fn friction(theta: f64) -> [Vec<f64>; 2] {
     let system = compile_sensitivities(&meaning(FRICTION)).expect("the model can be simulated");
@@ -247,7 +255,8 @@ fn figure_2_2_is_what_is_computed() {
 
 #[test]
 fn the_figure_of_chattering_is_what_is_computed() {
-    let mut figure = Figure::new(Axis::new("t").between(0.9, 1.5), Axis::new("x").between(-0.03, 0.05));
+    let mut figure =
+        Figure::new(Axis::new("t").between(0.9, 1.5), Axis::new("x").between(-0.03, 0.05));
     for theta in [0.0, 0.4, 0.5, 0.6, 1.0] {
         let [time, x] = friction(theta);
         let points: Vec<[f64; 2]> = time.into_iter().zip(x).map(|(t, x)| [t, x]).collect();

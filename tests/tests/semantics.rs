@@ -1,5 +1,5 @@
-//! What a model means: the cases are documents in `semantics/`, the table of messages, and models whose
-//! functions are evaluated against formulas written out here.
+//! What a model means: the cases are documents in `semantics/`, the table of messages, and models
+//! whose functions are evaluated against formulas written out here.
 
 use fdcc_compiler::graph::evaluate;
 use fdcc_compiler::lower::lower;
@@ -35,19 +35,25 @@ fn models_give_neither_errors_nor_warnings() {
     }
 }
 
-/// The cases of the groups 01 to 05 and 07 in the table of messages. They are fragments, so other findings may stand
-/// beside the one that is meant; some are completed, because nothing follows from unknown names.
+/// The cases of the groups 01 to 05 and 07 in the table of messages. They are fragments, so other
+/// findings may stand beside the one that is meant; some are completed, because nothing follows
+/// from unknown names.
 #[test]
 fn messages_are_those_of_the_table() {
     let path = repository().join("tests/reference/diagnostics.json");
     let table = std::fs::read_to_string(path).expect("the table is there");
     let cases: serde_json::Value = serde_json::from_str(&table).expect("the table is JSON");
     let is_ours = |code: &str| {
-        ["FDC01", "FDC02", "FDC03", "FDC04", "FDC05", "FDC07"].iter().any(|group| code.starts_with(group))
+        ["FDC01", "FDC02", "FDC03", "FDC04", "FDC05", "FDC07"]
+            .iter()
+            .any(|group| code.starts_with(group))
     };
     let mut count = 0;
-    for case in
-        cases.as_array().expect("the table is a list").iter().filter(|case| is_ours(words(case, "code")))
+    for case in cases
+        .as_array()
+        .expect("the table is a list")
+        .iter()
+        .filter(|case| is_ours(words(case, "code")))
     {
         let code = words(case, "code");
         let source = &[words(case, "src"), &rest(code)].concat();
@@ -65,10 +71,11 @@ fn rest(code: &str) -> String {
     blocks.into_iter().find(|block| block.heading == code).map_or(String::new(), |block| block.text)
 }
 
-/// What the table says of features that there are not is left out; where its lines break, is a matter of the drawing.
+/// What the table says of features that there are not is left out; where its lines break, is a
+/// matter of the drawing.
 fn help(case: &serde_json::Value) -> String {
-    let text =
-        words(case, "help").replace("Use `scheme located` (switch times are\nunknowns), or check", "Check");
+    let text = words(case, "help")
+        .replace("Use `scheme located` (switch times are\nunknowns), or check", "Check");
     text.replace('\n', " ")
 }
 
@@ -95,7 +102,8 @@ fn place(source: &str, wanted: &str) -> (usize, usize) {
     };
     let is_word = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
     let whole = |at: &usize| {
-        let (before, after) = (source[..*at].chars().next_back(), source[at + text.len()..].chars().next());
+        let (before, after) =
+            (source[..*at].chars().next_back(), source[at + text.len()..].chars().next());
         let (first, last) = (text.chars().next(), text.chars().next_back());
         !(is_word(before) && is_word(first) || is_word(after) && is_word(last))
     };
@@ -144,7 +152,8 @@ fn assert_close(found: &[f64], expected: &[f64]) {
 #[test]
 fn the_race_car_has_the_equations_of_section_7() {
     let program = lower(&repository_model("racecar"));
-    let ([px, py, vx, vy, th], [a, s]): ([f64; 5], [f64; 2]) = ([1.3, 0.9, 0.7, -0.4, 0.6], [1.1, -0.8]);
+    let ([px, py, vx, vy, th], [a, s]): ([f64; 5], [f64; 2]) =
+        ([1.3, 0.9, 0.7, -0.4, 0.6], [1.1, -0.8]);
     let p = [10.0, 2.0, 2.0, 1.0, 0.5, 5.5, 0.1]; // alpha a_max s_max muN w T sigma
     let (tau, horizon, sigma) = (0.25, p[5], p[6]);
     let z = [&[tau, px, py, vx, vy, th, a, s], &p[..]].concat();
@@ -228,7 +237,8 @@ fn an_integral_that_enters_otherwise_becomes_a_hidden_state() {
     assert_eq!(problem.start, [Some(1.0), None, Some(0.0), Some(0.0)]);
     assert!(problem.states[2].hidden && !problem.states[1].hidden);
     let program = lower(&model);
-    let ends = values(&program, &program.boundary, &[1.0, 0.1, 0.0, 0.0, 0.5, 0.6, 2.5, 3.0, 4.0, 3.0]);
+    let ends =
+        values(&program, &program.boundary, &[1.0, 0.1, 0.0, 0.0, 0.5, 0.6, 2.5, 3.0, 4.0, 3.0]);
     assert_close(&ends, &[9.0, 2.5, 0.1]);
     assert_eq!(problem.boundary_bounds[0], Bounds { lower: f64::NEG_INFINITY, upper: 3.0 });
     assert_eq!(problem.boundary_bounds[1], Bounds { lower: -1.0, upper: 1.0 });
@@ -335,7 +345,10 @@ minimize v(end)";
     assert_close(&[problem.states[0].bounds.lower, problem.states[0].bounds.upper], &[-10.0, 20.0]);
     let start: Vec<f64> = problem.start.iter().flatten().copied().collect();
     assert_close(&start, &[5.0, PI / 2.0]);
-    assert_close(&[problem.boundary_bounds[0].upper, problem.boundary_bounds[1].upper], &[15.0, 3.0]);
+    assert_close(
+        &[problem.boundary_bounds[0].upper, problem.boundary_bounds[1].upper],
+        &[15.0, 3.0],
+    );
     let program = lower(&model(text));
     assert_close(&values(&program, &program.interval, &[0.2, 2e5]), &[0.0, 120.0]);
     assert_close(
@@ -361,7 +374,8 @@ minimize x(end)";
     assert_eq!(problem.parameters[1].name, "sigma(y)");
 }
 
-/// One width for the vector, one guard, and the same vector known again; a component by itself is another surface.
+/// One width for the vector, one guard, and the same vector known again; a component by itself is
+/// another surface.
 #[test]
 fn a_direction_is_one_surface_named_by_the_text_of_its_vector() {
     let text = "
@@ -395,7 +409,10 @@ minimize v.x(end)
 method { smooth sigma = 0.5 kernel sqrt }";
     let program = lower(&model(text));
     let root = 0.5_f64.sqrt();
-    assert_close(&values(&program, &program.dynamics, &[0.0, 0.3, -0.4, 0.5]), &[-0.3 / root, 0.4 / root]);
+    assert_close(
+        &values(&program, &program.dynamics, &[0.0, 0.3, -0.4, 0.5]),
+        &[-0.3 / root, 0.4 / root],
+    );
     assert_close(&values(&program, &program.guards, &[0.0, 0.3, -0.4, 0.5]), &[0.5]);
 }
 
@@ -430,7 +447,8 @@ minimize dot(a(end), (3, 4)) + normsq(b(end)) + cross(a(start), a(end)) + b[2](s
     let rates = values(&program, &program.dynamics, &[0.0, 3.0, 4.0, 0.5, 0.7, 0.9]);
     let cross = [0.7 * 3.0 - 0.9 * 2.0, 0.9 * 1.0 - 0.5 * 3.0, 0.5 * 2.0 - 0.7 * 1.0];
     assert_close(&rates, &[1.2, 1.6, cross[0] - 0.5, cross[1] - 0.7, cross[2] - 0.9]);
-    let ends = values(&program, &program.boundary, &[1.0, 2.0, 0.1, 0.2, 0.3, 5.0, 6.0, 1.0, 2.0, 3.0]);
+    let ends =
+        values(&program, &program.boundary, &[1.0, 2.0, 0.1, 0.2, 0.3, 5.0, 6.0, 1.0, 2.0, 3.0]);
     assert_close(&ends, &[15.0 + 24.0 + 14.0 + (6.0 - 10.0) + 0.2]);
 }
 
@@ -449,7 +467,8 @@ expect {
 surface s = x
 path in_front: selected(Sgn(s)) <= 2";
     let expectations = expectations(&model(text));
-    let simulated: Vec<&[usize]> = expectations.list.iter().map(|it| it.simulated.as_slice()).collect();
+    let simulated: Vec<&[usize]> =
+        expectations.list.iter().map(|it| it.simulated.as_slice()).collect();
     assert_eq!(simulated, [&[][..], &[0, 1]]);
     let mut ends = Columns::new(2, 1);
     ends.column_mut(0)[0] = 1.0;
@@ -465,14 +484,21 @@ path in_front: selected(Sgn(s)) <= 2";
 fn the_command_line_changes_parameters_and_method() {
     let mut car = repository_model("racecar");
     car.set_param("muN", "4").expect("muN is a parameter");
-    for (key, value) in
-        [("sigma", "0.02"), ("kernel", "tanh"), ("N", "500"), ("scheme", "euler"), ("continue", "0.1, 0.05")]
-    {
+    for (key, value) in [
+        ("sigma", "0.02"),
+        ("kernel", "tanh"),
+        ("N", "500"),
+        ("scheme", "euler"),
+        ("continue", "0.1, 0.05"),
+    ] {
         car.set_method(key, value).unwrap_or_else(|error| panic!("{key}: {error}"));
     }
     let problem = compile(&car).expect("it can be solved");
     assert_eq!((problem.parameters[3].value, problem.parameters[6].value), (4.0, 0.02));
-    assert_eq!((problem.method.intervals, problem.method.continuation.clone()), (500, vec![0.1, 0.05]));
+    assert_eq!(
+        (problem.method.intervals, problem.method.continuation.clone()),
+        (500, vec![0.1, 0.05])
+    );
     let refused = |result: Result<(), String>| result.expect_err("it must be refused");
     assert!(refused(car.set_param("mu", "4")).contains("there is no parameter `mu`"));
     assert!(refused(car.set_param("muM", "4")).contains("did you mean `muN`?"));
@@ -511,7 +537,8 @@ fn what_cannot_be_solved_yet_is_told_once() {
     }
 }
 
-/// Definitions that hang on each other thousands deep, sums of thousands of terms, functions that double.
+/// Definitions that hang on each other thousands deep, sums of thousands of terms, functions that
+/// double.
 #[test]
 fn long_and_deep_models_are_understood() {
     let lets: String = (0..5000).map(|at| format!("let a{at} = a{} + 1\n", at + 1)).collect();
@@ -520,7 +547,8 @@ fn long_and_deep_models_are_understood() {
         (1..40).map(|at| format!("fn f{at}(x) = f{}(x) + f{}(x)\n", at - 1, at - 1)).collect();
     let rest = "time t in [0, 1]\nstate x start 0\n";
     let text = format!(
-        "{lets}const a5000 = 1\nfn f0(x) = x\n{doubling}{rest}dynamics {{ x' = {sum} + f39(x) + a0 }}\nminimize x(end)"
+        "{lets}const a5000 = 1\nfn f0(x) = x\n{doubling}{rest}dynamics {{ x' = {sum} + f39(x) + a0 \
+         }}\nminimize x(end)"
     );
     let program = lower(&model(&text));
     let rate = values(&program, &program.dynamics, &[0.0, 1.0])[0];
@@ -538,13 +566,18 @@ fn calls_that_are_too_deep_are_refused() {
 
 #[test]
 fn findings_are_in_the_order_of_the_text() {
-    let text = "param a = b\nparam c = d\ntime t in [0, 1]\nstate x start 0\ndynamics { x' = e }\nend f == 0";
+    let text = "param a = b\nparam c = d\ntime t in [0, 1]\nstate x start 0\ndynamics { x' = e \
+                }\nend f == 0";
     let found = diagnostics(text);
-    let names: Vec<String> =
-        found.iter().filter(|it| it.code == Code::UnknownName).map(|it| it.message.clone()).collect();
+    let names: Vec<String> = found
+        .iter()
+        .filter(|it| it.code == Code::UnknownName)
+        .map(|it| it.message.clone())
+        .collect();
     assert_eq!(names, ["b", "d", "e", "f"].map(|name| format!("nothing called `{name}` here")));
     let source = SourceFile::new("model.fdc", text);
-    let lines: Vec<usize> = found.iter().map(|it| source.line_column(it.span().start).line).collect();
+    let lines: Vec<usize> =
+        found.iter().map(|it| source.line_column(it.span().start).line).collect();
     assert!(lines.is_sorted(), "{lines:?}");
 }
 
@@ -553,10 +586,15 @@ fn findings_are_in_the_order_of_the_text() {
 fn functions_that_multiply_are_refused_at_once() {
     let chain: String = (0..40).map(|i| format!("fn f{}(z) = f{i}(f{i}(z))\n", i + 1)).collect();
     let text = format!(
-        "time t in [0, 1]\nstate x start 0\ndynamics {{ x' = 1 }}\nfn f0(z) = z + t\n{chain}report {{ y = f40(x) }}\n"
+        "time t in [0, 1]\nstate x start 0\ndynamics {{ x' = 1 }}\nfn f0(z) = z + t\n{chain}report \
+         {{ y = f40(x) }}\n"
     );
     let parsed = fdcc_grammar::parse(&text);
     let found = fdcc_compiler::check(&parsed.tree).diagnostics;
     let codes: Vec<_> = found.iter().map(|it| it.code).collect();
-    assert_eq!(codes.iter().filter(|code| **code == fdcc_grammar::Code::TooDeep).count(), 1, "{codes:?}");
+    assert_eq!(
+        codes.iter().filter(|code| **code == fdcc_grammar::Code::TooDeep).count(),
+        1,
+        "{codes:?}"
+    );
 }

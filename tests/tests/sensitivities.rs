@@ -1,5 +1,5 @@
-//! Derivatives of the true system are what the files of `tests/gradients/` say, to 1e-8, from a source that is not this
-//! program; forward and adjoint agree to 1e-10.
+//! Derivatives of the true system are what the files of `tests/gradients/` say, to 1e-8, from a
+//! source that is not this program; forward and adjoint agree to 1e-10.
 //!
 //! ```text
 //! case WHAT, AND WHO SAYS SO
@@ -74,12 +74,15 @@ fn quantity(system: &System, name: &str) -> Quantity {
         let control = place(&system.controls, control).expect("a control");
         return Quantity::Control { row: row.parse().expect("a row"), control };
     }
-    Quantity::Parameter(system.parameters.iter().position(|it| it.name == name).expect("a parameter"))
+    Quantity::Parameter(
+        system.parameters.iter().position(|it| it.name == name).expect("a parameter"),
+    )
 }
 
 fn text_of(name: &str) -> String {
-    let own =
-        ["tests/gradients", "tests/simulations"].into_iter().flat_map(|folder| documents(folder, "fdc"));
+    let own = ["tests/gradients", "tests/simulations"]
+        .into_iter()
+        .flat_map(|folder| documents(folder, "fdc"));
     match { own }.find(|(other, _)| other == name) {
         Some((_, text)) => text,
         None => fdcc_tests::models::text_of(name),
@@ -122,7 +125,8 @@ fn difference(what: &str, got: f64, expected: f64) -> Option<String> {
 }
 
 fn first_order(system: &System, case: &Case) -> (Sensitivity, Vec<String>) {
-    let quantities: Vec<Quantity> = case.by.iter().map(|(name, _)| quantity(system, name)).collect();
+    let quantities: Vec<Quantity> =
+        case.by.iter().map(|(name, _)| quantity(system, name)).collect();
     let found = gradient(system, &case.controls(), &Options::default(), &quantities);
     let found = found.unwrap_or_else(|stopped| panic!("{}: {:?}", case.title, stopped.status));
     let mut wrong: Vec<String> = case
@@ -145,7 +149,8 @@ fn second_order(system: &System, case: &Case, found: &Sensitivity) -> Vec<String
     let quantities: Vec<Quantity> = names.iter().map(|name| quantity(system, name)).collect();
     let matrix = hessian(system, &case.controls(), &found.simulation, &quantities);
     let matrix = matrix.expect("it does not come to rest");
-    let place = |name: &str| names.iter().position(|other| *other == name).expect("one of those above");
+    let place =
+        |name: &str| names.iter().position(|other| *other == name).expect("one of those above");
     let entry = |[a, b]: [&str; 2]| matrix[place(a)][place(b)];
     let wrong = |(names, expected): &([&str; 2], f64)| {
         difference(&format!("by {}, {}", names[0], names[1]), entry(*names), *expected)

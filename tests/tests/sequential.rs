@@ -1,4 +1,5 @@
-//! Sequential quadratic programming finds what the interior point method and IPOPT find, and near a solution in few iterations.
+//! Sequential quadratic programming finds what the interior point method and IPOPT find, and near a
+//! solution in few iterations.
 
 use std::ops::ControlFlow;
 
@@ -21,7 +22,9 @@ fn assert_optimal(what: &str, problem: &Problem, outcome: &Outcome) {
 
 #[test]
 fn models_have_the_same_solution_by_both_methods() {
-    for name in ["coulomb_energy", "coulomb_rest", "crossing", "puck", "regulator", "double_integrator"] {
+    for name in
+        ["coulomb_energy", "coulomb_rest", "crossing", "puck", "regulator", "double_integrator"]
+    {
         let objective = |solver| {
             let problem = load(name, &[], &[("solver", solver)]);
             let outcome = solve(&problem);
@@ -44,8 +47,8 @@ fn classic(name: &str) -> Problem {
 /// Of the classical problems, those that take less than a second.
 #[test]
 fn classical_problems_have_the_optimum_of_ipopt() {
-    let table =
-        std::fs::read_to_string(repository().join("tests/peers/classics.csv")).expect("the table is there");
+    let table = std::fs::read_to_string(repository().join("tests/peers/classics.csv"))
+        .expect("the table is there");
     for name in [
         "bang_bang",
         "batch_reactor",
@@ -68,7 +71,8 @@ fn classical_problems_have_the_optimum_of_ipopt() {
         "stirred_tank",
         "van_der_pol",
     ] {
-        let row = table.lines().find_map(|line| line.strip_prefix(&format!("{name},Solve_Succeeded,")));
+        let row =
+            table.lines().find_map(|line| line.strip_prefix(&format!("{name},Solve_Succeeded,")));
         let expected: f64 = row.and_then(|row| row.split(',').next()?.parse().ok()).expect(name);
         let problem = classic(name);
         let outcome = solve(&problem);
@@ -91,15 +95,16 @@ fn a_convex_problem_takes_one_iteration() {
     assert_eq!(outcome.solution.counts.iterations, 1);
 }
 
-/// Solved once more with another value of a parameter, from the solution with the value in the model: iterations and objectives by both methods.
+/// Solved once more with another value of a parameter, from the solution with the value in the
+/// model: iterations and objectives by both methods.
 fn once_more(name: &str, settings: Changes, parameter: (&str, &str)) -> [(Counts, f64); 2] {
     let before = solve(&load(name, &[], settings));
     [Solver::InteriorPoint, Solver::Sequential].map(|solver| {
         let mut problem = load(name, &[parameter], settings);
         problem.method.solver = solver;
         let start = again(&problem, &before.solution, &[]);
-        let outcome =
-            homotopy::solve(&problem, Some(start), &mut |_, _| ControlFlow::Continue(())).expect(name);
+        let outcome = homotopy::solve(&problem, Some(start), &mut |_, _| ControlFlow::Continue(()))
+            .expect(name);
         assert_optimal(name, &problem, &outcome);
         (outcome.solution.counts, outcome.solution.objective)
     })
@@ -124,7 +129,8 @@ fn a_small_change_of_a_parameter_takes_few_iterations() {
     }
 }
 
-/// What was solved to a tighter tolerance takes no step at all, although its gradients may be scaled in another way.
+/// What was solved to a tighter tolerance takes no step at all, although its gradients may be
+/// scaled in another way.
 #[test]
 fn a_solution_is_recognised() {
     let problem = classic("brachistochrone");
@@ -134,26 +140,37 @@ fn a_solution_is_recognised() {
     let guess = Start { v: nlp.guess(), warm: None };
     let first = sqp::solve(&mut nlp, &guess, &options(1e-8), &mut watch);
     let second = sqp::solve(&mut nlp, &Start::after(&first), &options(1e-7), &mut watch);
-    assert_eq!((first.status, second.status, second.counts.iterations), (Status::Solved, Status::Solved, 0));
+    assert_eq!(
+        (first.status, second.status, second.counts.iterations),
+        (Status::Solved, Status::Solved, 0)
+    );
     assert_eq!(first.multipliers.rows.len(), nlp.row_bounds().len());
 }
 
 #[test]
 fn it_stops_when_asked_to() {
     let problem = load("puck", &[], &[SEQUENTIAL]);
-    for (stop, status) in [(Stop::Interrupted, Status::Interrupted), (Stop::TimeLimit, Status::TimeLimit)] {
+    for (stop, status) in
+        [(Stop::Interrupted, Status::Interrupted), (Stop::TimeLimit, Status::TimeLimit)]
+    {
         let outcome = homotopy::solve(&problem, None, &mut |progress, _| {
-            if progress.iteration == 3 { ControlFlow::Break(stop) } else { ControlFlow::Continue(()) }
+            if progress.iteration == 3 {
+                ControlFlow::Break(stop)
+            } else {
+                ControlFlow::Continue(())
+            }
         });
         let solution = outcome.expect("nothing is refused").solution;
         assert_eq!((solution.status, solution.counts.iterations), (status, 3));
     }
 }
 
-/// Within one second a mass cannot go 2 m with a force of 1 N: at most 0.25 m. The interior point method is asked as well before that is said.
+/// Within one second a mass cannot go 2 m with a force of 1 N: at most 0.25 m. The interior point
+/// method is asked as well before that is said.
 #[test]
 fn what_is_impossible_is_infeasible() {
-    let text = "time t in [0, 1] state x start 0 state v start 0 control u in [-1, 1] dynamics { x' = v v' = u*(1 + 0.1*x) } end x == 2 end v == 0
+    let text = "time t in [0, 1] state x start 0 state v start 0 control u in [-1, 1] dynamics { \
+                x' = v v' = u*(1 + 0.1*x) } end x == 2 end v == 0
         minimize integral(u^2) method { grid N = 20 solver = sqp }";
     let outcome = solve(&problem(text, &[], &[]));
     assert_eq!(outcome.solution.status, Status::Infeasible);

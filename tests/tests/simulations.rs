@@ -1,4 +1,5 @@
-//! Every model of `tests/simulations/` does what the file beside it says, to 1e-9, from a source that is not this program.
+//! Every model of `tests/simulations/` does what the file beside it says, to 1e-9, from a source
+//! that is not this program.
 //!
 //! ```text
 //! case WHAT, AND WHO SAYS SO
@@ -48,7 +49,9 @@ fn read<'t>(line: &'t str, case: &mut Case<'t>) -> Option<()> {
         ["set", name, "=", value] => case.set.push((name, value)),
         ["control", time, value] => case.controls.push((time.parse().ok()?, value.parse().ok()?)),
         ["events", "many"] => case.has_many_events = true,
-        ["at", time, name, "=", value] => case.at.push((time.parse().ok()?, name, value.parse().ok()?)),
+        ["at", time, name, "=", value] => {
+            case.at.push((time.parse().ok()?, name, value.parse().ok()?))
+        }
         ["event", time, surface, kind] => case.events.push((time.parse().ok()?, surface, kind)),
         ["status", status, time] => case.status = Some((status, time.parse().ok()?)),
         [name, "=", value] => case.end.push((name, value.parse().ok()?)),
@@ -82,7 +85,12 @@ fn status(simulation: &Simulation) -> (&'static str, f64) {
     }
 }
 
-fn run(text: &str, set: &[(&str, &str)], controls: &Controls, options: &Options) -> (System, Simulation) {
+fn run(
+    text: &str,
+    set: &[(&str, &str)],
+    controls: &Controls,
+    options: &Options,
+) -> (System, Simulation) {
     let system = compile_simulation(&changed(text, set, &[])).expect("the model can be simulated");
     let simulation = simulate(&system, controls, options);
     (system, simulation)
@@ -118,9 +126,11 @@ fn wanted(case: &Case) -> (Controls, Options) {
 
 fn check_events(name: &str, case: &Case, system: &System, simulation: &Simulation) {
     let seen = simulation.events.iter();
-    let seen: Vec<_> = seen.map(|it| (it.time, system.name_of(it.surface), kind(it.kind))).collect();
-    let agrees =
-        |(a, b): (&(f64, &str, &str), &(f64, &str, &str))| near(a.0, b.0) && (a.1, a.2) == (b.1, b.2);
+    let seen: Vec<_> =
+        seen.map(|it| (it.time, system.name_of(it.surface), kind(it.kind))).collect();
+    let agrees = |(a, b): (&(f64, &str, &str), &(f64, &str, &str))| {
+        near(a.0, b.0) && (a.1, a.2) == (b.1, b.2)
+    };
     let are_expected = seen.len() == case.events.len() && seen.iter().zip(&case.events).all(agrees);
     assert!(case.has_many_events || are_expected, "{name}: {seen:?}");
 }
@@ -160,7 +170,8 @@ fn text(name: &str) -> String {
     all.into_iter().find(|(own, _)| own == name).expect(name).1
 }
 
-/// `u = 2` drives with rate 1 for a second, `u = 0` stops within another, then the block sticks until `u = -3` moves it.
+/// `u = 2` drives with rate 1 for a second, `u = 0` stops within another, then the block sticks
+/// until `u = -3` moves it.
 #[test]
 fn held_controls_restart_the_integration_at_their_rows() {
     let controls = Controls::Held {
@@ -169,7 +180,8 @@ fn held_controls_restart_the_integration_at_their_rows() {
         is_stretched: true,
     };
     let (system, simulation) = run(&text("sticks"), &[], &controls, &Options::default());
-    let events: Vec<_> = simulation.events.iter().map(|event| (event.time, kind(event.kind))).collect();
+    let events: Vec<_> =
+        simulation.events.iter().map(|event| (event.time, kind(event.kind))).collect();
     let expected = [(2.0, "enters_sliding"), (2.5, "leaves_down")];
     assert!(events.len() == 2, "{events:?}");
     assert!(events.iter().zip(expected).all(|(a, b)| near(a.0, b.0) && a.1 == b.1), "{events:?}");
@@ -199,7 +211,8 @@ fn too_many_steps_end_with_the_trajectory_so_far() {
     assert!(matches!(simulation.status, Status::StepLimit) && simulation.time.len() > 5);
 }
 
-/// `A cos(t)`, `-A sin(t)` beside a decay from 1e6: nothing depends on the unit that lengths are written in.
+/// `A cos(t)`, `-A sin(t)` beside a decay from 1e6: nothing depends on the unit that lengths are
+/// written in.
 #[test]
 fn small_oscillators_are_as_exact_as_large_ones() {
     for amplitude in [1e-30, 1e-12, 1.0, 1e12] {
@@ -213,7 +226,10 @@ fn small_oscillators_are_as_exact_as_large_ones() {
             let exact = [("x", x * cosine + v * sine), ("v", v * cosine - x * sine)];
             for (name, exact) in exact {
                 let got = end(&system, &simulation, name);
-                assert!((got - exact).abs() <= 1e-8 * amplitude, "{amplitude}: {name} = {got}, not {exact}");
+                assert!(
+                    (got - exact).abs() <= 1e-8 * amplitude,
+                    "{amplitude}: {name} = {got}, not {exact}"
+                );
             }
         }
     }
@@ -224,7 +240,8 @@ fn small_oscillators_are_as_exact_as_large_ones() {
 fn small_oscillators_cross_surfaces_when_large_ones_do() {
     for amplitude in [1e-30, 1e-12, 1.0, 1e12] {
         let text = format!(
-            "time t in [0, 10]\nstate x start {amplitude:e}\nstate v start 0\nstate y start 0\nsurface s = x\n\
+            "time t in [0, 10]\nstate x start {amplitude:e}\nstate v start 0\nstate y start \
+             0\nsurface s = x\n\
              dynamics {{\n x' = v\n v' = -x\n y' in Sgn(s)\n}}\n"
         );
         let (_, simulation) = run(&text, &[], &Controls::Guess, &Options::default());
@@ -241,8 +258,10 @@ fn small_oscillators_cross_surfaces_when_large_ones_do() {
 /// ten times the steps of the oscillator alone, which takes 340.
 #[test]
 fn states_that_stay_at_zero_cost_little() {
-    let text = "time t in [0, 10]\nstate x start 1\nstate v start 0\nstate noise start 0\nstate energy start 0\n\
-                dynamics {\n x' = v\n v' = -x\n noise' = sin(t)^2 + cos(t)^2 - 1\n energy' = x^2 + v^2 - 1\n}\n";
+    let text = "time t in [0, 10]\nstate x start 1\nstate v start 0\nstate noise start 0\nstate \
+                energy start 0\n\
+                dynamics {\n x' = v\n v' = -x\n noise' = sin(t)^2 + cos(t)^2 - 1\n energy' = x^2 + \
+                v^2 - 1\n}\n";
     let (_, simulation) = run(text, &[], &Controls::Guess, &Options::default());
     assert!(matches!(simulation.status, Status::Completed), "{:?}", simulation.status);
     assert!(simulation.counts.steps < 3000, "{:?}", simulation.counts);
@@ -256,6 +275,7 @@ fn events_have_the_states_on_both_sides() {
         near(event.before[v], -20.0_f64.sqrt()) && near(event.after[v], 0.5 * 20.0_f64.sqrt()),
         "{event:?}"
     );
-    let rows: Vec<usize> = (0..simulation.time.len()).filter(|&k| simulation.time[k] == event.time).collect();
+    let rows: Vec<usize> =
+        (0..simulation.time.len()).filter(|&k| simulation.time[k] == event.time).collect();
     assert_eq!(rows.len(), 2, "the trajectory has both sides of a jump");
 }

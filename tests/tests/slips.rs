@@ -1,7 +1,8 @@
-//! Every kind of item with every missing and every superfluous piece: the text is read, or one message says what is wrong
-//! with it, in the words of `snapshots/slips.txt`.
+//! Every kind of item with every missing and every superfluous piece: the text is read, or one
+//! message says what is wrong with it, in the words of `snapshots/slips.txt`.
 //!
-//! The examples of `slips/items.md` stand between two right neighbours; each token is taken away and doubled in turn.
+//! The examples of `slips/items.md` stand between two right neighbours; each token is taken away
+//! and doubled in turn.
 
 use std::ops::Range;
 
@@ -47,7 +48,8 @@ fn slips(example: &str) -> Vec<Slip> {
         Slip { name, text: [before, &replacement, after].concat(), at: token.start }
     };
     let without = tokens.iter().map(|token| slip(token, '-', String::new()));
-    let twice = tokens.iter().map(|token| slip(token, '+', format!("{0} {0}", &example[token.clone()])));
+    let twice =
+        tokens.iter().map(|token| slip(token, '+', format!("{0} {0}", &example[token.clone()])));
     without.chain(twice).collect()
 }
 
@@ -58,7 +60,8 @@ fn tokens(text: &str) -> Vec<Range<usize>> {
     while at < text.len() {
         let rest = &text[at..];
         let is_number = rest.starts_with(|c: char| c.is_ascii_digit());
-        let ends = |c: char| !c.is_alphanumeric() && c != '_' && !(is_number && matches!(c, '.' | '-'));
+        let ends =
+            |c: char| !c.is_alphanumeric() && c != '_' && !(is_number && matches!(c, '.' | '-'));
         let word = rest.find(ends).unwrap_or(rest.len());
         let is_value = rest.starts_with(|c: char| c.is_alphanumeric());
         let sign = ["<=", ">=", "==", "=>", ":=", "->"].iter().any(|sign| rest.starts_with(sign));
@@ -111,7 +114,9 @@ fn problem(slip: &Slip, answer: &Answer) -> Option<String> {
     let reason = match &found[..] {
         [] if answer.items < 3 => "nothing is said",
         [] => return None,
-        [one] if answer.neighbours < 2 && !one.message.contains("never closed") => "a neighbour is lost",
+        [one] if answer.neighbours < 2 && !one.message.contains("never closed") => {
+            "a neighbour is lost"
+        }
         [one] if one.help.is_none() => "no help",
         [one] if answer.source.slice(one.span()).contains("after") => "told at the neighbour",
         [one] if one.message.contains("cannot stand here") => "no words of its own",

@@ -28,7 +28,9 @@ fn every_kernel_is_compiled_to_what_it_means_with_exact_derivatives() {
         points.column_mut(0).copy_from_slice(&[-3.0, -0.9, -0.4, 0.0, 0.3, 0.7, 2.5]);
         let multipliers = table(&mut Random::new(9), 2, 7, -1.0, 1.0);
         check_machine_code(&graph, &symbols, &*compiled, &points, &[1.5], &multipliers, 1e-14)
-            .and_then(|()| check_differences(&*compiled, &[0, 1], &points, &[1.5], &multipliers, 1e-8))
+            .and_then(|()| {
+                check_differences(&*compiled, &[0, 1], &points, &[1.5], &multipliers, 1e-8)
+            })
             .unwrap_or_else(|error| panic!("{}: {error}", kernel.name));
     }
 }
@@ -47,9 +49,18 @@ fn every_step_is_odd_rises_to_one_and_is_the_slope_of_its_absolute_value() {
             for k in 1..200 {
                 let z = 0.013 * sigma * f64::from(k);
                 let value = at(&graph, step, z, sigma);
-                assert!((value + at(&graph, step, -z, sigma)).abs() < 1e-15, "{name} is odd at {z}");
-                assert!((at(&graph, slope, z, sigma) - value).abs() < 1e-12, "{name}: slope at {z}");
-                assert!((at(&graph, slope, -z, sigma) + value).abs() < 1e-12, "{name}: slope at -{z}");
+                assert!(
+                    (value + at(&graph, step, -z, sigma)).abs() < 1e-15,
+                    "{name} is odd at {z}"
+                );
+                assert!(
+                    (at(&graph, slope, z, sigma) - value).abs() < 1e-12,
+                    "{name}: slope at {z}"
+                );
+                assert!(
+                    (at(&graph, slope, -z, sigma) + value).abs() < 1e-12,
+                    "{name}: slope at -{z}"
+                );
                 assert!(value >= at(&graph, step, 0.99 * z, sigma), "{name} rises at {z}");
                 assert!(value <= 1.0 + 1e-15, "{name} stays below 1 at {z}");
             }
@@ -78,7 +89,9 @@ fn every_direction_is_the_step_along_its_vector() {
         points.column_mut(1).copy_from_slice(&[0.0, 0.1, 0.14, -0.6, 0.3, 0.4]);
         let multipliers = table(&mut Random::new(9), 2, 6, -1.0, 1.0);
         check_machine_code(&graph, &symbols, &*compiled, &points, &[1.5], &multipliers, 1e-13)
-            .and_then(|()| check_differences(&*compiled, &[0, 1, 2], &points, &[1.5], &multipliers, 1e-8))
+            .and_then(|()| {
+                check_differences(&*compiled, &[0, 1, 2], &points, &[1.5], &multipliers, 1e-8)
+            })
             .unwrap_or_else(|error| panic!("{}: {error}", kernel.name));
     }
 }
@@ -92,7 +105,8 @@ fn every_step_approaches_the_sign_at_its_own_order() {
         let step = smooth::step(&mut graph, kernel, z, sigma);
         let absolute = smooth::absolute(&mut graph, kernel, z, sigma);
         for width in [0.1_f64, 0.05, 0.025] {
-            // 1 - tanh u = 2/(exp(2u) + 1); 1 - u/sqrt(u^2+1) <= 1/(2u^2); compact kernels are exact.
+            // 1 - tanh u = 2/(exp(2u) + 1); 1 - u/sqrt(u^2+1) <= 1/(2u^2); compact kernels are
+            // exact.
             let bound = match kernel.name {
                 "tanh" => 2.0 / ((2.0 / width).exp() + 1.0) + 1e-15,
                 "sqrt" => 0.5 * width * width,
@@ -118,7 +132,9 @@ fn smoothing_leaves_no_kink_and_tends_to_what_it_replaces() {
         let root = graph.max(smaller, x);
         let smoothed = smooth::smooth_nonsmooth(&mut graph, &[root], kernel, sigma)[0];
         let kinks = graph.reachable(&[smoothed]).into_iter().filter(|&id| {
-            [Builtin::Abs, Builtin::Min, Builtin::Max].iter().any(|&kink| graph.as_call(id, kink).is_some())
+            [Builtin::Abs, Builtin::Min, Builtin::Max]
+                .iter()
+                .any(|&kink| graph.as_call(id, kink).is_some())
         });
         assert_eq!(kinks.count(), 0, "{}", kernel.name);
         for z in [[-0.7, 0.2, 1e-6], [0.3, 0.9, 1e-6], [0.4, -0.8, 1e-6]] {

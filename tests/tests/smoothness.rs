@@ -1,4 +1,5 @@
-//! How smooth expressions are: a table of claims, and random expressions whose derivatives are followed to where they jump.
+//! How smooth expressions are: a table of claims, and random expressions whose derivatives are
+//! followed to where they jump.
 
 use fdcc_compiler::differentiate::derivative;
 use fdcc_compiler::graph::evaluate;
@@ -27,7 +28,8 @@ fn of(model: &Model) -> Smoothness {
 
 #[test]
 fn expressions_have_the_class_of_the_table() {
-    let (_, page) = documents("tests/tests/smoothness", "md").into_iter().next().expect("the table is there");
+    let (_, page) =
+        documents("tests/tests/smoothness", "md").into_iter().next().expect("the table is there");
     let functions = &blocks(&page)[0].text;
     let mut wrong = Vec::new();
     let mut count = 0;
@@ -105,7 +107,10 @@ fn no_derivative_jumps_that_is_called_continuous() {
                 evaluate(&graph, &[root], &point, &[])[0]
             };
             let jump = worst_jump(&value);
-            assert!(jump <= 1e-4, "derivative {derived} of {text} jumps by {jump}, claimed {claimed:?}");
+            assert!(
+                jump <= 1e-4,
+                "derivative {derived} of {text} jumps by {jump}, claimed {claimed:?}"
+            );
             root = derivative(&mut graph, root, input);
         }
     }

@@ -1,4 +1,5 @@
-//! Solutions are checked by conditions that know nothing of the solver; both factorisations find the same ones.
+//! Solutions are checked by conditions that know nothing of the solver; both factorisations find
+//! the same ones.
 
 use fdcc_runtime::nlp::Status;
 use fdcc_tests::models::{Changes, load, problem, refusal, solve, text_of};
@@ -100,8 +101,9 @@ fn a_wrong_multiplier_or_a_wrong_variable_is_noticed() {
     assert!(spoilt(&|solution| solution.objective += 1e-3).objective > 1e-4);
 }
 
-/// The smallest cost with a control that is constant on each of N intervals is `12 d^2 / (T^3 (1 - 1/N^2))`: the
-/// midpoint rule is exact then, and the mean square of the midpoints' distance from the middle is `T^2 (1 - 1/N^2)/12`.
+/// The smallest cost with a control that is constant on each of N intervals is `12 d^2 / (T^3 (1 -
+/// 1/N^2))`: the midpoint rule is exact then, and the mean square of the midpoints' distance from
+/// the middle is `T^2 (1 - 1/N^2)/12`.
 #[test]
 fn a_convex_problem_goes_to_the_conic_solver_and_its_optimum_is_global() {
     for (d, duration, intervals) in [(1.0, 2.0, 200.0), (2.0, 1.0, 10.0)] {
@@ -109,17 +111,31 @@ fn a_convex_problem_goes_to_the_conic_solver_and_its_optimum_is_global() {
         let parameters = [("d", d_text.as_str()), ("tf", tf.as_str())];
         let exact = 12.0 * d * d / (f64::powi(duration, 3) * (1.0 - 1.0 / (intervals * intervals)));
         for solver in ["auto", "convex", "interior_point"] {
-            let problem = load("double_integrator", &parameters, &[("N", n.as_str()), ("solver", solver)]);
+            let problem =
+                load("double_integrator", &parameters, &[("N", n.as_str()), ("solver", solver)]);
             let solved = Solved::of(problem);
             let conic = solver != "interior_point";
-            assert!((solved.objective() - exact).abs() < 1e-9 * exact, "{solver}: {}", solved.objective());
-            assert_eq!((solved.outcome.convex, solved.outcome.solution.global), (conic, conic), "{solver}");
-            assert_optimal(solver, &residuals(&solved.problem, &solved.outcome), solved.objective());
+            assert!(
+                (solved.objective() - exact).abs() < 1e-9 * exact,
+                "{solver}: {}",
+                solved.objective()
+            );
+            assert_eq!(
+                (solved.outcome.convex, solved.outcome.solution.global),
+                (conic, conic),
+                "{solver}"
+            );
+            assert_optimal(
+                solver,
+                &residuals(&solved.problem, &solved.outcome),
+                solved.objective(),
+            );
         }
     }
 }
 
-/// With a bound `b` the control is `-b` until `s`, where `tanh(2 - s) (1 - b s) = b`, and `-tanh(2 - t) x` from then on.
+/// With a bound `b` the control is `-b` until `s`, where `tanh(2 - s) (1 - b s) = b`, and `-tanh(2
+/// - t) x` from then on.
 fn regulator_cost(bound: f64) -> f64 {
     let excess = |s: f64| f64::tanh(2.0 - s) * (1.0 - bound * s) - bound;
     let (mut low, mut high) = (0.0, 2.0);
@@ -151,15 +167,18 @@ fn bounds_on_a_convex_problem_are_kept_by_both_solvers() {
 
 #[test]
 fn the_conic_solver_refuses_what_is_not_convex() {
-    let concave =
-        "time t in [0, 1] state x start 0 control u in [-1, 0] dynamics { x' = u } minimize integral(-u^2)";
-    let curved = "time t in [0, 1] state x start 0 control u in [-1, 1] dynamics { x' = u*x + u } minimize (x(end) - 0.3)^2";
+    let concave = "time t in [0, 1] state x start 0 control u in [-1, 0] dynamics { x' = u } \
+                   minimize integral(-u^2)";
+    let curved = "time t in [0, 1] state x start 0 control u in [-1, 1] dynamics { x' = u*x + u } \
+                  minimize (x(end) - 0.3)^2";
     for text in [concave, curved] {
         let refused = fdcc_tests::models::try_solve(&problem(text, &[], &[("solver", "convex")]));
         assert!(refused.is_err(), "{text}");
         let outcome = solve(&problem(text, &[], &[]));
         assert!(
-            !outcome.convex && !outcome.solution.global && outcome.solution.status == Status::Solved,
+            !outcome.convex
+                && !outcome.solution.global
+                && outcome.solution.status == Status::Solved,
             "{text}"
         );
     }

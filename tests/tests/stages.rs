@@ -13,7 +13,8 @@ fn refined(mut model: Model, methods: &[(&str, &str)]) -> Refined {
         model.set_method(key, value).unwrap_or_else(|error| panic!("{key} = {value}: {error}"));
     }
     let problem = compile(&model).expect("it can be solved");
-    solve(&problem, None, &mut |_, _| ControlFlow::Continue(())).unwrap_or_else(|_| panic!("not refused"))
+    solve(&problem, None, &mut |_, _| ControlFlow::Continue(()))
+        .unwrap_or_else(|_| panic!("not refused"))
 }
 
 fn stages(found: &Refined) -> usize {
@@ -27,16 +28,20 @@ fn nodes(found: &Refined) -> Option<usize> {
 }
 
 /// A regulator: `x = cosh(T - t)/cosh T` and the objective is `tanh T`.
-const REGULATOR: &str = "time t in [0, 5] state x start 1 control u dynamics { x' = u } minimize integral(x^2 + u^2) \
-     method { grid N = auto scheme radau controls = polynomial solver = interior_point tol = 1e-12 }";
+const REGULATOR: &str = "time t in [0, 5] state x start 1 control u dynamics { x' = u } minimize \
+                         integral(x^2 + u^2) \
+     method { grid N = auto scheme radau controls = polynomial solver = interior_point tol = 1e-12 \
+     }";
 
-/// Where everything is smooth the true error goes down to the tolerance by more stages; intervals are divided only where the control is steep at first.
+/// Where everything is smooth the true error goes down to the tolerance by more stages; intervals
+/// are divided only where the control is steep at first.
 #[test]
 fn a_smooth_solution_gets_stages_and_the_true_error_falls_to_the_tolerance() {
     for scheme in ["radau", "gauss"] {
         let mut before = 0;
         for tolerance in ["1e-4", "1e-6", "1e-8", "1e-10"] {
-            let found = refined(meaning(REGULATOR), &[("scheme", scheme), ("tolerance", tolerance)]);
+            let found =
+                refined(meaning(REGULATOR), &[("scheme", scheme), ("tolerance", tolerance)]);
             let trajectory = &found.outcome.trajectory;
             let off = |(t, x): (&f64, &f64)| (x - (5.0 - t).cosh() / 5f64.cosh()).abs();
             let states = trajectory.time.iter().zip(&trajectory.states[0]);
@@ -59,8 +64,10 @@ fn a_smooth_solution_gets_stages_and_the_true_error_falls_to_the_tolerance() {
 /// Long steps with ten digits: of `x'' = -25 x` each step is known, and so is its error.
 #[test]
 fn the_errors_of_long_steps_are_what_they_are() {
-    let text = "time t in [0, 10] state x start 1 state v start 0 dynamics { x' = v v' = -25*x } minimize x(end) \
-                method { grid N = auto scheme gauss controls = polynomial solver = interior_point tol = 1e-13 }";
+    let text = "time t in [0, 10] state x start 1 state v start 0 dynamics { x' = v v' = -25*x } \
+                minimize x(end) \
+                method { grid N = auto scheme gauss controls = polynomial solver = interior_point \
+                tol = 1e-13 }";
     let tolerance = 1e-9;
     let found = refined(meaning(text), &[("tolerance", "1e-9")]);
     let trajectory = &found.outcome.trajectory;
@@ -77,10 +84,12 @@ fn the_errors_of_long_steps_are_what_they_are() {
     assert!(exact <= tolerance && found.problem.method.intervals <= 80, "{exact}");
 }
 
-/// `x' = sqrt(s^2 + w^2)` with `s = t - 0.3`: rounded over `w` only, so that more stages gain nothing before an interval is as short as that.
+/// `x' = sqrt(s^2 + w^2)` with `s = t - 0.3`: rounded over `w` only, so that more stages gain
+/// nothing before an interval is as short as that.
 const KINK: &str = "time t in [0, 1] state x start 0 control u in [-1, 1] \
                     dynamics { x' = sqrt((t - 0.3)^2 + 1e-6) } minimize integral(u^2) \
-                    method { grid N = auto scheme radau controls = polynomial solver = interior_point tol = 1e-12 }";
+                    method { grid N = auto scheme radau controls = polynomial solver = \
+                    interior_point tol = 1e-12 }";
 
 fn integral_of_kink(t: f64) -> f64 {
     let w2 = 1e-6f64;
@@ -95,22 +104,26 @@ fn intervals_are_divided_at_a_kink_instead() {
         let found = refined(meaning(KINK), &methods);
         let (time, x) = (&found.outcome.trajectory.time, &found.outcome.trajectory.states[0]);
         let states = time.iter().zip(x);
-        let worst = states.fold(0.0f64, |worst, (t, x)| worst.max((x - integral_of_kink(*t)).abs()));
+        let worst =
+            states.fold(0.0f64, |worst, (t, x)| worst.max((x - integral_of_kink(*t)).abs()));
         assert!(worst <= tolerance, "{worst} for {tolerance}");
         let length = |pair: &[f64]| pair[1] - pair[0];
-        let shortest = time.windows(2).min_by(|a, b| length(a).total_cmp(&length(b))).expect("intervals");
+        let shortest =
+            time.windows(2).min_by(|a, b| length(a).total_cmp(&length(b))).expect("intervals");
         assert!((shortest[0] - 0.3).abs() < 0.03 && length(shortest) < 0.015, "{shortest:?}");
         assert!(time.windows(2).any(|pair| length(pair) > 0.099), "elsewhere nothing is divided");
         assert!(stages(&found) < 4, "{} stages", stages(&found));
     }
 }
 
-/// A car that brakes twice as well as it accelerates: `T = 30`, with a switch at two thirds of it, inside an interval of the first grid. The errors of the steps know
-/// nothing of that.
+/// A car that brakes twice as well as it accelerates: `T = 30`, with a switch at two thirds of it,
+/// inside an interval of the first grid. The errors of the steps know nothing of that.
 #[test]
 fn intervals_on_which_a_control_jumps_are_as_short_as_with_a_given_order() {
-    let found =
-        refined(of_file("tests/classics/bang_bang.fdc"), &[("scheme", "radau"), ("controls", "polynomial")]);
+    let found = refined(
+        of_file("tests/classics/bang_bang.fdc"),
+        &[("scheme", "radau"), ("controls", "polynomial")],
+    );
     let time = &found.outcome.trajectory.time;
     let last = time[time.len() - 1];
     assert!((last - 30.0).abs() < 1e-3, "{last}");
@@ -131,7 +144,8 @@ fn hard_problems_are_solved_as_with_a_given_order() {
     }
 }
 
-/// What is carried over to more stages is nearly the solution, multipliers included: they are costates times the weights of the nodes.
+/// What is carried over to more stages is nearly the solution, multipliers included: they are
+/// costates times the weights of the nodes.
 #[test]
 fn a_solve_with_another_stage_begins_near_its_solution() {
     for scheme in ["radau", "gauss"] {
@@ -159,9 +173,12 @@ fn a_solve_with_another_stage_begins_near_its_solution() {
 /// A fast transient without a control, `x' = -500 (x - cos t)`; see `refinement.rs`.
 #[test]
 fn a_stiff_layer_is_found_with_few_nodes() {
-    let text = "time t in [0, 2] state x start 0 dynamics { x' = -500*(x - cos(t)) } minimize integral(x)";
+    let text =
+        "time t in [0, 2] state x start 0 dynamics { x' = -500*(x - cos(t)) } minimize integral(x)";
     for tolerance in ["1e-3", "1e-6"] {
-        let found = |scheme| nodes(&refined(meaning(text), &[("scheme", scheme), ("tolerance", tolerance)]));
+        let found = |scheme| {
+            nodes(&refined(meaning(text), &[("scheme", scheme), ("tolerance", tolerance)]))
+        };
         let fixed = ["radau2", "radau3", "radau4", "radau5"].into_iter().filter_map(found).min();
         let (own, fixed) = (found("radau").expect("it is met"), fixed.expect("one is met"));
         assert!(2 * own <= 3 * fixed, "{tolerance}: {own} nodes, {fixed} with a given order");
@@ -179,29 +196,38 @@ fn smooth_problems_need_no_more_nodes_than_with_a_given_order() {
         let path = format!("tests/classics/{name}.fdc");
         for tolerance in ["1e-4", "1e-7"] {
             let found = |scheme| {
-                let methods = [("scheme", scheme), ("controls", "polynomial"), ("tolerance", tolerance)];
+                let methods =
+                    [("scheme", scheme), ("controls", "polynomial"), ("tolerance", tolerance)];
                 nodes(&refined(of_file(&path), &methods))
             };
-            let fixed = ["radau3", "radau5"].into_iter().filter_map(found).min().expect("one is met");
+            let fixed =
+                ["radau3", "radau5"].into_iter().filter_map(found).min().expect("one is met");
             let own = found("radau").expect("it is met");
             assert!(own <= fixed, "{name} {tolerance}: {own} nodes, {fixed} with a given order");
         }
     }
 }
 
-/// Friction, smoothed sharply: not more than half as many nodes again as with the best order, whichever that is.
+/// Friction, smoothed sharply: not more than half as many nodes again as with the best order,
+/// whichever that is.
 #[test]
 fn problems_with_layers_need_about_as_many_nodes_as_with_the_best_order() {
-    for (name, sigma) in [("block", "0.02"), ("turbo", "0.05"), ("stacked", "0.02"), ("stacked", "0.1")] {
+    for (name, sigma) in
+        [("block", "0.02"), ("turbo", "0.05"), ("stacked", "0.02"), ("stacked", "0.1")]
+    {
         let path = format!("models/{name}.fdc");
         for tolerance in ["1e-3", "1e-6"] {
             let found = |scheme| {
                 let methods = [("scheme", scheme), ("sigma", sigma), ("tolerance", tolerance)];
                 nodes(&refined(of_file(&path), &methods))
             };
-            let fixed = ["radau2", "radau3", "radau4", "radau5"].into_iter().filter_map(found).min();
+            let fixed =
+                ["radau2", "radau3", "radau4", "radau5"].into_iter().filter_map(found).min();
             let (own, fixed) = (found("radau").expect("it is met"), fixed.expect("one is met"));
-            assert!(2 * own <= 3 * fixed, "{name} {sigma} {tolerance}: {own} nodes, {fixed} at best");
+            assert!(
+                2 * own <= 3 * fixed,
+                "{name} {sigma} {tolerance}: {own} nodes, {fixed} at best"
+            );
         }
     }
 }

@@ -1,5 +1,5 @@
-//! How solves end: the statuses of problems that have no solution, and features of the language on problems whose
-//! answers are known.
+//! How solves end: the statuses of problems that have no solution, and features of the language on
+//! problems whose answers are known.
 
 use std::ops::ControlFlow;
 
@@ -21,7 +21,8 @@ fn blamed<'t>(text: &'t str, origin: &fdcc_runtime::problem::Origin) -> &'t str 
 
 /// From rest to rest over a distance `d` with `|u| <= 1` takes at least `2 sqrt(d)`.
 const TOO_FAST: &str = "time t in [0, 1.9] state x start 0 state v start 0 control u in [-1, 1] \
-     dynamics { x' = v v' = u } end x == 1 end v == 0 minimize integral(u^2) method { grid N = 40 scheme midpoint }";
+     dynamics { x' = v v' = u } end x == 1 end v == 0 minimize integral(u^2) method { grid N = 40 \
+     scheme midpoint }";
 
 #[test]
 fn a_goal_that_cannot_be_reached_in_time_is_infeasible() {
@@ -38,13 +39,17 @@ fn a_goal_that_cannot_be_reached_in_time_is_infeasible() {
 /// With `|x''| <= 1` from rest `x <= t^2/2`, but the path asks for `t^2`.
 #[test]
 fn a_path_that_cannot_be_followed_is_infeasible_and_what_limits_it_is_named() {
-    let text = "time t in [0, 2] state x start 0 state v start 0 control u in [-1, 1] dynamics { x' = v v' = u } \
+    let text = "time t in [0, 2] state x start 0 state v start 0 control u in [-1, 1] dynamics { \
+                x' = v v' = u } \
                 path ahead: x >= t^2 minimize integral(u^2) method { grid N = 40 scheme midpoint }";
     let found = outcome(text, &[]);
     assert_eq!(found.solution.status, Status::Infeasible);
     let limiting = found.limiting.expect("a row is violated");
     assert!(["ahead", "x'", "v'"].contains(&&*limiting.origin.label), "{limiting:?}");
-    assert!(limiting.violation > 0.01 && limiting.time.is_some_and(|time| time > 0.0), "{limiting:?}");
+    assert!(
+        limiting.violation > 0.01 && limiting.time.is_some_and(|time| time > 0.0),
+        "{limiting:?}"
+    );
 }
 
 #[test]
@@ -57,7 +62,8 @@ fn contradictory_conditions_are_infeasible() {
 
 #[test]
 fn an_objective_without_end_is_unbounded() {
-    let text = "time t in [0, 1] state x start 0 control u dynamics { x' = u } maximize x(end) method { grid N = 10 }";
+    let text = "time t in [0, 1] state x start 0 control u dynamics { x' = u } maximize x(end) \
+                method { grid N = 10 }";
     assert_eq!(outcome(text, &[]).solution.status, Status::Unbounded);
     assert_eq!(solve(&problem(text, &[], &[])).solution.status, Status::Unbounded);
 }
@@ -65,17 +71,28 @@ fn an_objective_without_end_is_unbounded() {
 #[test]
 fn what_is_not_finite_is_blamed_on_its_line() {
     for (text, culprit) in [
-        ("time t in [0, 1] state x start -1 dynamics { x' = sqrt(x) } minimize x(end)^2", "x' = sqrt(x)"),
-        ("time t in [0, 1] state x start 0 dynamics { x' = log(x) } minimize x(end)^2", "x' = log(x)"),
         (
-            "time t in [0, 1] state x start 1 dynamics { x' = -x } path far: log(x - 2) <= 0 minimize x(end)^2",
+            "time t in [0, 1] state x start -1 dynamics { x' = sqrt(x) } minimize x(end)^2",
+            "x' = sqrt(x)",
+        ),
+        (
+            "time t in [0, 1] state x start 0 dynamics { x' = log(x) } minimize x(end)^2",
+            "x' = log(x)",
+        ),
+        (
+            "time t in [0, 1] state x start 1 dynamics { x' = -x } path far: log(x - 2) <= 0 \
+             minimize x(end)^2",
             "log(x - 2)",
         ),
         (
-            "time t in [0, 1] state x start 1 dynamics { x' = -x } end sqrt(-x^2) <= 1 minimize x(end)^2",
+            "time t in [0, 1] state x start 1 dynamics { x' = -x } end sqrt(-x^2) <= 1 minimize \
+             x(end)^2",
             "sqrt(-x^2) <= 1",
         ),
-        ("time t in [0, 1] state x start 1 dynamics { x' = -x } minimize log(-x(end)^2)", "log(-x(end)^2)"),
+        (
+            "time t in [0, 1] state x start 1 dynamics { x' = -x } minimize log(-x(end)^2)",
+            "log(-x(end)^2)",
+        ),
     ] {
         match outcome(text, &[("N", "5"), ("scheme", "euler")]).solution.status {
             Status::NotFinite(place) => {
@@ -89,21 +106,30 @@ fn what_is_not_finite_is_blamed_on_its_line() {
 #[test]
 fn the_limit_on_iterations_is_kept_and_the_best_iterate_returned() {
     let found = solve(&load("racecar", &[], &[("max_iter", "3"), ("N", "100")]));
-    assert_eq!((found.solution.status, found.solution.counts.iterations), (Status::IterationLimit, 3));
+    assert_eq!(
+        (found.solution.status, found.solution.counts.iterations),
+        (Status::IterationLimit, 3)
+    );
     assert!(found.solution.v.iter().all(|value| value.is_finite()));
     assert_eq!(found.trajectory.time.len(), 101);
 }
 
 #[test]
 fn the_caller_can_stop_a_solve_and_gets_the_iterate() {
-    for (stop, status) in [(Stop::TimeLimit, Status::TimeLimit), (Stop::Interrupted, Status::Interrupted)] {
+    for (stop, status) in
+        [(Stop::TimeLimit, Status::TimeLimit), (Stop::Interrupted, Status::Interrupted)]
+    {
         // With widths of our own choice, and with the one that the model names.
         for (name, last) in [("racecar", 5), ("block", 2), ("racecar", 0)] {
             let problem = load(name, &[], &[("N", "100")]);
             let mut seen = 0;
             let found = homotopy::solve(&problem, None, &mut |progress, _| {
                 seen = progress.iteration;
-                if progress.iteration >= last { ControlFlow::Break(stop) } else { ControlFlow::Continue(()) }
+                if progress.iteration >= last {
+                    ControlFlow::Break(stop)
+                } else {
+                    ControlFlow::Continue(())
+                }
             });
             let found = found.expect("not refused");
             assert_eq!((&found.solution.status, seen), (&status, last), "{name}");
@@ -121,7 +147,10 @@ fn check(what: &str, text: &str, tolerance: f64, known: &[Known]) {
         let solved = Solved::new(&text, &[], &[("solver", solver)]);
         for (name, quantity, exact) in known {
             let got = quantity(&solved);
-            assert!((got - exact).abs() <= tolerance, "{what}, {solver}: {name} = {got}, exact {exact}");
+            assert!(
+                (got - exact).abs() <= tolerance,
+                "{what}, {solver}: {name} = {got}, exact {exact}"
+            );
         }
         let residuals = residuals(&solved.problem, &solved.outcome);
         assert!(
@@ -136,7 +165,8 @@ fn an_equality_on_the_path() {
     // The control must follow: x = t^2/2 gives x' = t = u, and the cost is the integral of t^2.
     check(
         "path equality",
-        "time t in [0, 1] state x start 0 control u dynamics { x' = u } path x == t^2/2 minimize integral(u^2)",
+        "time t in [0, 1] state x start 0 control u dynamics { x' = u } path x == t^2/2 minimize \
+         integral(u^2)",
         1e-4,
         &[("x(end)", |run| run.end("x"), 0.5), ("the objective", Solved::objective, 1.0 / 3.0)],
     );
@@ -146,7 +176,8 @@ fn an_equality_on_the_path() {
 fn a_control_that_its_bounds_fix() {
     check(
         "fixed control",
-        "time t in [0, 1] state x start 0 control u in [2, 2] control w in [-1, 1] dynamics { x' = u + w } minimize x(end)",
+        "time t in [0, 1] state x start 0 control u in [2, 2] control w in [-1, 1] dynamics { x' = \
+         u + w } minimize x(end)",
         1e-6,
         &[("x(end)", |run| run.end("x"), 1.0), ("u", |run| run.control("u")[7], 2.0)],
     );
@@ -156,7 +187,8 @@ fn a_control_that_its_bounds_fix() {
 fn a_model_without_controls() {
     check(
         "no control",
-        "free a in [0, 5] guess 1 time t in [0, 1] state x start a dynamics { x' = -x } minimize (x(end) - 1)^2",
+        "free a in [0, 5] guess 1 time t in [0, 1] state x start a dynamics { x' = -x } minimize \
+         (x(end) - 1)^2",
         // Midpoint: second order, 1e-2/12 of a relative error per unit of time.
         1e-4,
         &[("a", |run| run.value("a"), std::f64::consts::E), ("x(end)", |run| run.end("x"), 1.0)],
@@ -174,10 +206,12 @@ fn a_model_without_an_objective() {
     );
 }
 
-/// At each time `exp(u) - t u` is least at `u = ln(t)`, or at the bound; with implicit Euler `t` is that of the end of an interval.
+/// At each time `exp(u) - t u` is least at `u = ln(t)`, or at the bound; with implicit Euler `t` is
+/// that of the end of an interval.
 #[test]
 fn a_model_without_states() {
-    let text = "time t in [0, 1] control u in [-1, 1] minimize integral(exp(u) - t*u) method { grid N = 20 }";
+    let text = "time t in [0, 1] control u in [-1, 1] minimize integral(exp(u) - t*u) method { \
+                grid N = 20 }";
     let found = outcome(text, &[]).solution;
     assert_eq!(found.status, Status::Solved);
     let best = |t: f64| t.ln().max(-1.0);
@@ -202,7 +236,8 @@ fn several_unknowns() {
     check(
         "unknowns",
         "free a in [-9, 9] guess 0 free b in [-9, 9] guess 0 free c in [-9, 9] guess 0 \
-         time t in [0, 1] state x start a dynamics { x' = b } start x == 1 end x == 3 minimize (c - a*b)^2",
+         time t in [0, 1] state x start a dynamics { x' = b } start x == 1 end x == 3 minimize (c \
+         - a*b)^2",
         1e-6,
         &[
             ("a", |run| run.value("a"), 1.0),
@@ -212,7 +247,8 @@ fn several_unknowns() {
     );
 }
 
-/// `min x(0)^2 + (x(1) - 2)^2 + int u^2` with `x' = u`: with `u` constant, `u = 2/3` and `x(0) = 2/3`; the cost is 4/3.
+/// `min x(0)^2 + (x(1) - 2)^2 + int u^2` with `x' = u`: with `u` constant, `u = 2/3` and `x(0) =
+/// 2/3`; the cost is 4/3.
 #[test]
 fn a_start_that_is_free() {
     check(
@@ -220,7 +256,10 @@ fn a_start_that_is_free() {
         "time t in [0, 1] state x start free in [-5, 5] control u dynamics { x' = u } \
          minimize x(start)^2 + (x(end) - 2)^2 + integral(u^2)",
         1e-6,
-        &[("x(start)", |run| run.state("x")[0], 2.0 / 3.0), ("the objective", Solved::objective, 4.0 / 3.0)],
+        &[
+            ("x(start)", |run| run.state("x")[0], 2.0 / 3.0),
+            ("the objective", Solved::objective, 4.0 / 3.0),
+        ],
     );
 }
 
@@ -241,7 +280,8 @@ fn a_periodic_condition() {
 fn an_inequality_at_the_end() {
     check(
         "end inequality",
-        "time t in [0, 2] state x start 0 control u dynamics { x' = u } end x >= 1 minimize integral(u^2)",
+        "time t in [0, 2] state x start 0 control u dynamics { x' = u } end x >= 1 minimize \
+         integral(u^2)",
         1e-6,
         &[("x(end)", |run| run.end("x"), 1.0), ("the objective", Solved::objective, 0.5)],
     );
@@ -262,14 +302,19 @@ fn a_limit_on_an_integral() {
     );
 }
 
-/// `x' = u cos t` on [0, pi]: `u = sign(cos t)` gives 2. The switch at the middle of the grid costs nothing.
+/// `x' = u cos t` on [0, pi]: `u = sign(cos t)` gives 2. The switch at the middle of the grid costs
+/// nothing.
 #[test]
 fn time_in_the_dynamics_and_an_objective_to_maximise() {
     check(
         "time-dependent",
-        "time t in [0, pi] state x start 0 control u in [-1, 1] dynamics { x' = u*cos(t) } maximize x(end)",
+        "time t in [0, pi] state x start 0 control u in [-1, 1] dynamics { x' = u*cos(t) } \
+         maximize x(end)",
         1e-3,
-        &[("the objective", Solved::objective, 2.0), ("u at first", |run| run.control("u")[3], 1.0)],
+        &[
+            ("the objective", Solved::objective, 2.0),
+            ("u at first", |run| run.control("u")[3], 1.0),
+        ],
     );
 }
 
@@ -278,7 +323,8 @@ fn time_in_the_dynamics_and_an_objective_to_maximise() {
 fn bounds_on_a_state() {
     check(
         "state bound",
-        "time t in [0, 2] state x in [-1, 0.5] start 0 control u in [-1, 1] dynamics { x' = u } maximize integral(x)",
+        "time t in [0, 2] state x in [-1, 0.5] start 0 control u in [-1, 1] dynamics { x' = u } \
+         maximize integral(x)",
         1e-3,
         &[("x(end)", |run| run.end("x"), 0.5), ("the objective", Solved::objective, 0.875)],
     );

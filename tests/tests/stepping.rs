@@ -29,7 +29,8 @@ minimize m*x(end)^2 + v(end) + x(start)*v(end) + integral(v^2 + mu*F*x)
 method { smooth sigma = 0.05 grid N = 40 scheme SCHEME }
 ";
 
-const SCHEMES: [&str; 5] = ["euler", "implicit_euler", "implicit_euler lagged (x)", "midpoint", "trapezoid"];
+const SCHEMES: [&str; 5] =
+    ["euler", "implicit_euler", "implicit_euler lagged (x)", "midpoint", "trapezoid"];
 
 struct Case {
     system: System,
@@ -39,11 +40,13 @@ struct Case {
 
 impl Case {
     fn stepped(&self) -> Stepped {
-        step_through(&self.system, &self.controls, &self.grid).expect("the system can be stepped through")
+        step_through(&self.system, &self.controls, &self.grid)
+            .expect("the system can be stepped through")
     }
 
     fn gradient(&self) -> Gradient {
-        gradient(&self.system, &self.controls, &self.grid, &self.stepped()).expect("there is a gradient")
+        gradient(&self.system, &self.controls, &self.grid, &self.stepped())
+            .expect("there is a gradient")
     }
 
     fn objective(&self) -> f64 {
@@ -106,9 +109,14 @@ fn the_gradient_is_the_derivative_of_what_the_steps_compute() {
             let name = &case.system.parameters[at].name;
             assert_same(gradient.parameters[at], difference, &format!("{title}, {name}"));
         }
-        let [x0, v0] = ["x0", "v0"]
-            .map(|name| case.system.parameters.iter().position(|it| it.name == name).expect("a parameter"));
-        assert_eq!(gradient.starts[..2], [gradient.parameters[x0], gradient.parameters[v0]], "{title}");
+        let [x0, v0] = ["x0", "v0"].map(|name| {
+            case.system.parameters.iter().position(|it| it.name == name).expect("a parameter")
+        });
+        assert_eq!(
+            gradient.starts[..2],
+            [gradient.parameters[x0], gradient.parameters[v0]],
+            "{title}"
+        );
     }
 }
 
@@ -132,7 +140,8 @@ fn the_gradient_by_held_controls_is_that_of_their_rows() {
 #[test]
 fn the_block_of_these_gradients_sticks_for_a_third_of_the_time() {
     let is_implicit = |title: &str| title.contains("1 surfaces") && !title.starts_with("euler");
-    for (title, case) in cases(&Controls::Guess).into_iter().filter(|(title, _)| is_implicit(title)) {
+    for (title, case) in cases(&Controls::Guess).into_iter().filter(|(title, _)| is_implicit(title))
+    {
         let selectors = case.stepped().selectors.remove(0);
         let free = selectors.iter().filter(|s| s.abs() < 1.0).count();
         assert!(4 * free >= selectors.len(), "{title}: {free} of {}", selectors.len());
@@ -157,7 +166,9 @@ fn theta(system: &System, theta: f64, steps: usize) -> Result<Stepped, Failure> 
 #[test]
 fn implicit_euler_takes_the_limit_of_the_smoothing_on_two_surfaces_at_once() {
     let system = inclusion(
-        &simulation("codimension_two").replace("[0, 2]", "[0, END]").replace("time", "param END = 2\ntime"),
+        &simulation("codimension_two")
+            .replace("[0, 2]", "[0, END]")
+            .replace("time", "param END = 2\ntime"),
     );
     for (h, expected) in [(0.03, 8.5e-4), (0.01, 2.8e-4), (0.003, 1.1e-4), (0.001, 3.7e-5)] {
         let steps = (2.0_f64 / h).floor();
@@ -185,12 +196,15 @@ fn implicit_euler_converges_to_the_simulation_of_every_model() {
     for (name, text) in documents("tests/simulations", "fdc") {
         let Ok(system) = compile_simulation(&meaning(&text)) else { continue };
         let exact = simulate(&system, &Controls::Guess, &Options::default());
-        if !system.jumps.is_empty() || !system.balls.is_empty() || !matches!(exact.status, Status::Completed)
+        if !system.jumps.is_empty()
+            || !system.balls.is_empty()
+            || !matches!(exact.status, Status::Completed)
         {
             continue;
         }
         let [coarse, fine] = [500, 4000].map(|steps| {
-            let stepped = theta(&system, 1.0, steps).unwrap_or_else(|failure| panic!("{name}: {failure:?}"));
+            let stepped =
+                theta(&system, 1.0, steps).unwrap_or_else(|failure| panic!("{name}: {failure:?}"));
             let errors = exact
                 .end
                 .iter()
@@ -235,7 +249,8 @@ fn smooth_systems_get_the_order_of_the_scheme() {
         let errors = steps.map(|intervals| {
             let grid = Grid::new(&system, &Method { intervals, ..method.clone() });
             let stepped = step_through(&system, &Controls::Guess, &grid).expect("an end");
-            (stepped.states[0][intervals] - 1.0_f64.cos()).hypot(stepped.states[1][intervals] + 1.0_f64.sin())
+            (stepped.states[0][intervals] - 1.0_f64.cos())
+                .hypot(stepped.states[1][intervals] + 1.0_f64.sin())
         });
         let found = rate(&steps.map(|steps| 1.0 / steps as f64), &errors);
         assert!((found - order).abs() < 0.1, "{scheme}: order {found}");
@@ -246,9 +261,12 @@ fn smooth_systems_get_the_order_of_the_scheme() {
 fn what_cannot_be_stepped_through_is_refused() {
     let failure = |text: &str, steps| theta(&inclusion(text), 1.0, steps).err().expect("a failure");
     assert_eq!(failure(&text_of("bounce"), 10), Failure::Jumps);
-    let puck = compile_simulation(&meaning(&simulation("puck_stops"))).expect("the model can be simulated");
+    let puck = compile_simulation(&meaning(&simulation("puck_stops")))
+        .expect("the model can be simulated");
     assert_eq!(theta(&puck, 1.0, 10).err(), Some(Failure::Directions));
-    let text = |rate: &str| format!("model one time t in [0, 2] state x start 1 dynamics {{ x' = {rate} }}");
+    let text = |rate: &str| {
+        format!("model one time t in [0, 2] state x start 1 dynamics {{ x' = {rate} }}")
+    };
     assert!(
         matches!(failure(&text("log(x - 1.5)"), 10), Failure::NotFinite { time: 0.2, origin } if &*origin.label == "x'")
     );

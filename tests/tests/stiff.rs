@@ -1,6 +1,7 @@
 //! Stiff modes: few steps, and the values of closed forms and of the IVP test set.
 //!
-//! F. Mazzia, C. Magherini: Test Set for Initial Value Problem Solvers, release 2.4 (2008): problems `vdpol` and `rober`.
+//! F. Mazzia, C. Magherini: Test Set for Initial Value Problem Solvers, release 2.4 (2008):
+//! problems `vdpol` and `rober`.
 
 use fdcc_compiler::compile_simulation;
 use fdcc_runtime::simulate::{Controls, Integrator, Options, Simulation, Status, simulate};
@@ -66,7 +67,8 @@ dynamics {
     most_steps: 2000,
 };
 
-/// `x = t - 1`, then `3 (t - 1)`; the fast state `y` lags by `x' e`, `e = 1e-6`, and is 1/2 at `t = 7/6 + e`.
+/// `x = t - 1`, then `3 (t - 1)`; the fast state `y` lags by `x' e`, `e = 1e-6`, and is 1/2 at `t =
+/// 7/6 + e`.
 const CROSSINGS: Case = Case {
     text: "time t in [0, 2]
 state x start -1
@@ -87,7 +89,8 @@ dynamics {
     most_steps: 600,
 };
 
-/// Sliding with `s = cos(t)/2`, which a fast state follows: `y = (L^2 cos t + L sin t)/(2 L^2 + 2)`, `L = 1e6`.
+/// Sliding with `s = cos(t)/2`, which a fast state follows: `y = (L^2 cos t + L sin t)/(2 L^2 +
+/// 2)`, `L = 1e6`.
 const SLIDING: Case = Case {
     text: "time t in [0, 10]
 state x start 0
@@ -124,7 +127,10 @@ fn check(name: &str, case: &Case, simulation: &Simulation) {
     let agree = times.iter().zip(case.events).all(|(a, b)| (a - b).abs() <= case.tolerance);
     assert!(times.len() == case.events.len() && agree, "{name}: events at {times:?}");
     for (got, exact) in simulation.end.iter().zip(case.end) {
-        assert!((got - exact).abs() <= case.tolerance * exact.abs().max(1e-12), "{name}: {got}, not {exact}");
+        assert!(
+            (got - exact).abs() <= case.tolerance * exact.abs().max(1e-12),
+            "{name}: {got}, not {exact}"
+        );
     }
     let counts = simulation.counts;
     println!("{name} {counts:?} {:?}", simulation.end);
@@ -151,7 +157,8 @@ fn the_stiff_method_can_be_asked_for() {
 
 #[test]
 fn the_explicit_method_alone_needs_a_thousand_times_as_many() {
-    let options = Options { integrator: Integrator::Explicit, max_steps: 400_000, ..Options::default() };
+    let options =
+        Options { integrator: Integrator::Explicit, max_steps: 400_000, ..Options::default() };
     let simulation = run(&LINEAR, &options);
     assert!(matches!(simulation.status, Status::StepLimit) && simulation.counts.stiff == 0);
 }

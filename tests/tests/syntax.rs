@@ -1,4 +1,5 @@
-//! What the parser understands and what it says about the rest. The cases are documents in `tests/syntax/`.
+//! What the parser understands and what it says about the rest. The cases are documents in
+//! `tests/syntax/`.
 
 use fdcc_grammar::ast::*;
 use fdcc_grammar::{Code, Diagnostic, Parse, SourceFile, parse};
@@ -37,21 +38,27 @@ fn line_ends_tabs_and_byte_order_marks_change_nothing() {
             (tree.docs, tree.items.len(), diagnostics)
         };
         let expected = counts(&text);
-        for variant in [text.replace('\n', "\r\n"), text.replace("  ", "\t"), format!("\u{FEFF}{text}")] {
+        for variant in
+            [text.replace('\n', "\r\n"), text.replace("  ", "\t"), format!("\u{FEFF}{text}")]
+        {
             assert_eq!(counts(&variant), expected, "{name}");
         }
     }
 }
 
-/// The same mistakes are found at the same lines and columns, counted in characters, however the lines end.
+/// The same mistakes are found at the same lines and columns, counted in characters, however the
+/// lines end.
 #[test]
 fn columns_count_characters() {
     let text = "param μ_θ = 1 2\n\tstate größe start\n  end ψ == (α + β γ)\r\nparam ok = 1\n";
     let places = |text: &str| {
         let source = SourceFile::new("model.fdc", text);
         let place = |found: &Diagnostic| source.line_column(found.span().start);
-        let places =
-            parse(text).diagnostics.iter().map(|found| (place(found).line, place(found).column)).collect();
+        let places = parse(text)
+            .diagnostics
+            .iter()
+            .map(|found| (place(found).line, place(found).column))
+            .collect();
         let places: Vec<(usize, usize)> = places;
         places
     };
@@ -73,12 +80,15 @@ fn messages_are_those_of_the_table() {
     let table = std::fs::read_to_string(path).expect("the table is there");
     let cases: serde_json::Value = serde_json::from_str(&table).expect("the table is JSON");
     let cases = cases.as_array().expect("the table is a list");
-    let syntax: Vec<_> = cases.iter().filter(|case| text(case, "code").starts_with("FDC00")).collect();
+    let syntax: Vec<_> =
+        cases.iter().filter(|case| text(case, "code").starts_with("FDC00")).collect();
     assert!(!syntax.is_empty());
     for case in syntax {
         let source = text(case, "src");
         let diagnostics = parse(source).diagnostics;
-        let [found] = &diagnostics[..] else { panic!("one diagnostic is expected: {diagnostics:#?}") };
+        let [found] = &diagnostics[..] else {
+            panic!("one diagnostic is expected: {diagnostics:#?}")
+        };
         assert_eq!(found.code.as_str(), text(case, "code"));
         assert_eq!(found.message, text(case, "msg"));
         assert_eq!(format!("{:?}", found.severity).to_lowercase(), text(case, "sev"));
@@ -93,22 +103,31 @@ fn text<'v>(value: &'v serde_json::Value, key: &str) -> &'v str {
 
 fn labels(source: &str, diagnostic: &Diagnostic) -> Vec<(String, String)> {
     let source = SourceFile::new("model.fdc", source);
-    diagnostic.labels.iter().map(|label| (source.slice(label.span).to_owned(), label.text.clone())).collect()
+    diagnostic
+        .labels
+        .iter()
+        .map(|label| (source.slice(label.span).to_owned(), label.text.clone()))
+        .collect()
 }
 
 fn expected_labels(case: &serde_json::Value) -> Vec<(String, String)> {
     let labels = case["labels"].as_array().expect("a case has labels");
-    let part =
-        |label: &serde_json::Value, at: usize| label[at].as_str().expect("a label has two texts").to_owned();
+    let part = |label: &serde_json::Value, at: usize| {
+        label[at].as_str().expect("a label has two texts").to_owned()
+    };
     labels.iter().map(|label| (part(label, 0), part(label, 1))).collect()
 }
 
 #[test]
 fn a_broken_piece_costs_only_itself() {
-    let text = "param a = 1\nparam b =\nstate x start\nstat y start 0\ndynamics {\n  x' = a b\n  y' = 1\n}\nend x == 1\n";
+    let text = "param a = 1\nparam b =\nstate x start\nstat y start 0\ndynamics {\n  x' = a b\n  \
+                y' = 1\n}\nend x == 1\n";
     let Parse { tree, diagnostics, .. } = parse(text);
     let codes: Vec<Code> = diagnostics.iter().map(|diagnostic| diagnostic.code).collect();
-    assert_eq!(codes, [Code::Unfinished, Code::Unfinished, Code::UnknownItem, Code::MissingOperator]);
+    assert_eq!(
+        codes,
+        [Code::Unfinished, Code::Unfinished, Code::UnknownItem, Code::MissingOperator]
+    );
     let kinds: Vec<String> = tree.items.iter().map(|item| format!("{:?}", item.kind)).collect();
     assert_eq!(kinds.len(), 3, "{kinds:?}");
     assert!(
@@ -200,14 +219,19 @@ fn operators_bind_as_on_paper() {
 
 #[test]
 fn method_blocks_fall_into_settings() {
-    let text = "method { smooth sigma = 0.02 [m/s] kernel tanh  grid N = auto steps 2 scheme euler lagged (th, v)  \
+    let text = "method { smooth sigma = 0.02 [m/s] kernel tanh  grid N = auto steps 2 scheme euler \
+                lagged (th, v)  \
                 continue sigma = .1, .05  solver = sqp  scheme = midpoint }";
     let tree = parse(text).tree;
-    let ItemKind::Method { settings } = &tree.items[0].kind else { panic!("a method block: {tree:#?}") };
+    let ItemKind::Method { settings } = &tree.items[0].kind else {
+        panic!("a method block: {tree:#?}")
+    };
     let shown = settings.iter().map(|setting| {
         let value = match &setting.value {
             SettingValue::Expr(value) => written_out(value),
-            SettingValue::List(values) => values.iter().map(written_out).collect::<Vec<_>>().join(" "),
+            SettingValue::List(values) => {
+                values.iter().map(written_out).collect::<Vec<_>>().join(" ")
+            }
             SettingValue::Scheme { name, lagged } => {
                 lagged.iter().fold(name.name.clone(), |text, state| text + " " + &state.name)
             }
@@ -229,9 +253,14 @@ fn method_blocks_fall_into_settings() {
 
 #[test]
 fn spans_end_with_the_last_token() {
-    let text = "state v [m/s]   # a comment\n\ndynamics {\n  m * v' in F   # another\n}\nstate w start free\nend w == 1   \n\n";
+    let text = "state v [m/s]   # a comment\n\ndynamics {\n  m * v' in F   # another\n}\nstate w \
+                start free\nend w == 1   \n\n";
     let ends = parse(text).tree.items.into_iter().map(|item| text[item.span.range()].to_owned());
-    let expected =
-        ["state v [m/s]", "dynamics {\n  m * v' in F   # another\n}", "state w start free", "end w == 1"];
+    let expected = [
+        "state v [m/s]",
+        "dynamics {\n  m * v' in F   # another\n}",
+        "state w start free",
+        "end w == 1",
+    ];
     assert_eq!(ends.collect::<Vec<_>>(), expected);
 }

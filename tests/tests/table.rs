@@ -1,4 +1,5 @@
-//! Table 7.1: all ten rows, from the model and its own guess, judged by formulas written out by hand.
+//! Table 7.1: all ten rows, from the model and its own guess, judged by formulas written out by
+//! hand.
 //!
 //! ```text
 //! v+  = v  + h (a t(th) - muN S(n(th).v+) n(th))       t(th) = (cos th, sin th),  n(th) = (-sin th, cos th)
@@ -19,7 +20,8 @@ const WIDTH: f64 = 0.5;
 const ALPHA: f64 = 10.0;
 const LIMIT: f64 = 2.0;
 
-/// A row of the table: the width of the layer, the number of steps, and the better of the two known objectives.
+/// A row of the table: the width of the layer, the number of steps, and the better of the two known
+/// objectives.
 struct Row {
     sigma: f64,
     steps: usize,
@@ -29,7 +31,8 @@ struct Row {
 fn rows() -> Vec<Row> {
     let path = repository().join("tests/reference/table-7.1.json");
     let table: Value =
-        serde_json::from_str(&std::fs::read_to_string(path).expect("the table is there")).expect("JSON");
+        serde_json::from_str(&std::fs::read_to_string(path).expect("the table is there"))
+            .expect("JSON");
     let number = |row: &Value, key: &str| row[key].as_f64().expect("a number");
     let row = |row: &Value| Row {
         sigma: number(row, "sigma"),
@@ -53,7 +56,8 @@ struct Car {
 
 /// The whole run, with its duration; the last control is held.
 fn cars(solved: &Solved) -> (Vec<Car>, f64) {
-    let [x, y, vx, vy, th] = ["pos.x", "pos.y", "vel.x", "vel.y", "th"].map(|name| solved.state(name));
+    let [x, y, vx, vy, th] =
+        ["pos.x", "pos.y", "vel.x", "vel.y", "th"].map(|name| solved.state(name));
     let [a, s] = ["a", "s"].map(|name| solved.control(name));
     let car = |k: usize| {
         let held = k.min(a.len() - 1);

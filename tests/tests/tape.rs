@@ -1,7 +1,9 @@
 //! The tape of a simulation tells all of it: its pieces meet, and its changes are the events.
 
 use fdcc_compiler::compile_simulation;
-use fdcc_runtime::simulate::{Controls, Instant, Options, Piece, Simulation, Status, Tape, simulate};
+use fdcc_runtime::simulate::{
+    Controls, Instant, Options, Piece, Simulation, Status, Tape, simulate,
+};
 use fdcc_tests::documents;
 use fdcc_tests::models::changed;
 
@@ -35,7 +37,10 @@ fn the_pieces_of_a_tape_meet() {
         for pair in tape.pieces.windows(2) {
             let ([_, before], [after, _]) = (ends(&pair[0]), ends(&pair[1]));
             let is_near = (before.0 - after.0).abs() <= 1e-12 * before.0.abs().max(1.0);
-            assert!(is_near && before.1 == after.1 && before.2 == after.2, "{name}: {before:?}, {after:?}");
+            assert!(
+                is_near && before.1 == after.1 && before.2 == after.2,
+                "{name}: {before:?}, {after:?}"
+            );
         }
         if matches!(simulation.status, Status::Completed) {
             let last = ends(tape.pieces.last().expect("a simulation has pieces"))[1];
@@ -53,7 +58,8 @@ fn the_changes_of_a_tape_are_the_events() {
             Piece::Step { .. } => &[],
         });
         let changes: Vec<_> = changes.map(|it| (it.after.time, it.surface, it.kind)).collect();
-        let events: Vec<_> = simulation.events.iter().map(|it| (it.time, it.surface, it.kind)).collect();
+        let events: Vec<_> =
+            simulation.events.iter().map(|it| (it.time, it.surface, it.kind)).collect();
         if matches!(simulation.status, Status::Completed) {
             assert_eq!(changes, events, "{name}");
         }

@@ -29,8 +29,8 @@ const CRATES: &[(&str, &[&str])] = &[
 fn crates_depend_on_each_other_as_drawn() {
     let mut breaches = Vec::new();
     for (folder, allowed) in CRATES {
-        let manifest =
-            fs::read_to_string(repository().join(folder).join("Cargo.toml")).expect("a crate has a manifest");
+        let manifest = fs::read_to_string(repository().join(folder).join("Cargo.toml"))
+            .expect("a crate has a manifest");
         let own = manifest
             .lines()
             .skip_while(|line| *line != "[dependencies]")
@@ -40,7 +40,8 @@ fn crates_depend_on_each_other_as_drawn() {
         for name in own.filter_map(|line| line.split(['.', ' ', '=']).next()) {
             if !allowed.contains(&name) {
                 breaches.push(format!(
-                    "{folder}/Cargo.toml: {folder} must not depend on {name}; see \"Dependency rules\""
+                    "{folder}/Cargo.toml: {folder} must not depend on {name}; see \"Dependency \
+                     rules\""
                 ));
             }
         }
@@ -48,7 +49,8 @@ fn crates_depend_on_each_other_as_drawn() {
     all_well(breaches);
 }
 
-/// Crates of others, and the only places that may name them: theirs is the code to change when they change.
+/// Crates of others, and the only places that may name them: theirs is the code to change when they
+/// change.
 const FOREIGN: &[(&str, &[&str])] = &[
     ("pest", &["grammar/src/parse/"]),
     ("pest_derive", &["grammar/src/parse/"]),
@@ -63,12 +65,14 @@ const FOREIGN: &[(&str, &[&str])] = &[
     ("lsp_types", &["server/"]),
 ];
 
-/// `pest::x` and `use pest`, but not our own modules of the same name: `crate::clarabel`, `super::cranelift`.
+/// `pest::x` and `use pest`, but not our own modules of the same name: `crate::clarabel`,
+/// `super::cranelift`.
 fn names_crate(line: &str, name: &str) -> bool {
     line.match_indices(&format!("{name}::")).any(|(at, _)| {
         let before = &line[..at];
         let is_path = before.ends_with("::") && !before.trim_end_matches("::").is_empty();
-        let is_of_ours = is_path && before.trim_end_matches("::").ends_with(|c: char| c.is_alphanumeric());
+        let is_of_ours =
+            is_path && before.trim_end_matches("::").ends_with(|c: char| c.is_alphanumeric());
         !is_of_ours && !before.ends_with(|c: char| c.is_alphanumeric() || c == '_')
     })
 }
@@ -84,7 +88,8 @@ fn foreign_crates_are_named_in_one_place_each() {
     let mut breaches = Vec::new();
     for source in rust_sources() {
         for (name, places) in FOREIGN {
-            if places.iter().any(|place| source.path.starts_with(place)) || is_own_module(&source.path, name)
+            if places.iter().any(|place| source.path.starts_with(place))
+                || is_own_module(&source.path, name)
             {
                 continue;
             }
@@ -159,7 +164,8 @@ fn what_must_be_absent_is_absent() {
             }
             for (line, text) in code(&source.text) {
                 let found = words.iter().filter(|word| names(text, word));
-                breaches.extend(found.map(|word| format!("{}:{line}: `{word}`: {why}", source.path)));
+                breaches
+                    .extend(found.map(|word| format!("{}:{line}: `{word}`: {why}", source.path)));
             }
         }
     }
@@ -171,11 +177,13 @@ fn the_compiler_sees_only_the_contract_of_the_runtime() {
     let mut breaches = Vec::new();
     for source in rust_sources().iter().filter(|source| source.path.starts_with("compiler/")) {
         for (line, text) in code(&source.text) {
-            let is_contract =
-                ["fdcc_runtime::problem", "fdcc_runtime::simulate"].iter().any(|it| text.contains(it));
+            let is_contract = ["fdcc_runtime::problem", "fdcc_runtime::simulate"]
+                .iter()
+                .any(|it| text.contains(it));
             if text.contains("fdcc_runtime") && !is_contract {
                 breaches.push(format!(
-                    "{}:{line}: the compiler may use `fdcc_runtime::problem`, the types of `fdcc_runtime::simulate` and nothing else",
+                    "{}:{line}: the compiler may use `fdcc_runtime::problem`, the types of \
+                     `fdcc_runtime::simulate` and nothing else",
                     source.path
                 ));
             }
@@ -203,7 +211,11 @@ fn unsafe_code_is_in_its_places_and_says_why_it_is_sound() {
                 continue;
             }
             if !places.iter().any(|place| source.path.starts_with(place)) {
-                breaches.push(format!("{}:{line}: `unsafe` is for {} only", source.path, places.join(", ")));
+                breaches.push(format!(
+                    "{}:{line}: `unsafe` is for {} only",
+                    source.path,
+                    places.join(", ")
+                ));
             }
             let above = &lines[line.saturating_sub(6)..line - 1];
             if !above.iter().any(|line| line.contains("SAFETY:")) {
@@ -238,7 +250,10 @@ fn files_are_short() {
             ));
         }
         if exception.is_some() && lines <= MOST_LINES {
-            breaches.push(format!("{}: {lines} lines; take it off the list of longer files", source.path));
+            breaches.push(format!(
+                "{}: {lines} lines; take it off the list of longer files",
+                source.path
+            ));
         }
     }
     all_well(breaches);
@@ -247,7 +262,8 @@ fn files_are_short() {
 #[test]
 fn files_say_what_they_do() {
     let silent = |source: &&Source| !source.text.starts_with("//! ");
-    let breach = |source: &Source| format!("{}: begin with `//!` and what the file does", source.path);
+    let breach =
+        |source: &Source| format!("{}: begin with `//!` and what the file does", source.path);
     all_well(rust_sources().iter().filter(silent).map(breach).collect());
 }
 
@@ -266,7 +282,9 @@ fn nothing_is_left_over() {
     let mut breaches = Vec::new();
     for source in sources() {
         for (at, line) in source.text.lines().enumerate() {
-            for word in left_over.iter().map(|(a, b)| format!("{a}{b}")).filter(|word| line.contains(word)) {
+            for word in
+                left_over.iter().map(|(a, b)| format!("{a}{b}")).filter(|word| line.contains(word))
+            {
                 breaches.push(format!(
                     "{}:{}: `{word}` must not stay: finish it, or make the path relative",
                     source.path,

@@ -15,7 +15,11 @@ fn solved(text: &str) -> Solution {
 fn assert_solved(what: &str, solution: &Solution, objective: f64) {
     let difference = (solution.objective - objective).abs();
     assert_eq!(solution.status, Status::Solved, "{what}: {solution:?}");
-    assert!(difference <= 1e-6 * objective.abs(), "{what}: {} instead of {objective}", solution.objective);
+    assert!(
+        difference <= 1e-6 * objective.abs(),
+        "{what}: {} instead of {objective}",
+        solution.objective
+    );
 }
 
 /// A control that follows 1, and a state that it takes to `x(1)`; with `x' = u` the best control is
@@ -29,9 +33,15 @@ fn follows(bounds: &str, rate: &str, method: &str) -> String {
 
 #[test]
 fn wide_bounds_say_nothing_of_sizes() {
-    for bounds in
-        ["in [0, 1e5]", "in [0, 1e6]", "in [0, 1e8]", "in [-1e7, 1e9]", "in [-1e9, 1e5]", "in [0, 3]", ""]
-    {
+    for bounds in [
+        "in [0, 1e5]",
+        "in [0, 1e6]",
+        "in [0, 1e8]",
+        "in [-1e7, 1e9]",
+        "in [-1e9, 1e5]",
+        "in [0, 3]",
+        "",
+    ] {
         let convex = solved(&follows(bounds, "u", "N = 5"));
         assert_solved(bounds, &convex, 0.5);
         assert!(convex.global, "{bounds}");
@@ -55,9 +65,11 @@ fn a_guess_says_nothing_of_sizes() {
 /// a local minimum, too, on each interval by itself.
 #[test]
 fn an_indefinite_form_is_not_called_convex_and_its_saddle_is_left() {
-    for (range, weight) in [("1e7", "1"), ("1e6", "1"), ("2", "1"), ("1e7", "1e-6"), ("1e3", "1e6")] {
+    for (range, weight) in [("1e7", "1"), ("1e6", "1"), ("2", "1"), ("1e7", "1e-6"), ("1e3", "1e6")]
+    {
         let text = format!(
-            "time t in [0, 1] state x start 0 control p in [-{range}, {range}] control w in [-1, 1.01]\n\
+            "time t in [0, 1] state x start 0 control p in [-{range}, {range}] control w in [-1, \
+             1.01]\n\
              dynamics {{ x' = p + w }} minimize integral(p^2 - {weight}*w^2) method {{ N = 20 }}"
         );
         let solution = solved(&text);
@@ -82,7 +94,8 @@ fn convex_forms_are_recognised() {
     for cost in ["p^2 + w^2", "(p - w)^2", "p^2 + p*w + w^2", "1e-9*p^2 + 1e9*w^2", "p^2"] {
         let text = format!(
             "time t in [0, 1] state x start 0 control p in [-1, 1] control w in [-1, 1]\n\
-             dynamics {{ x' = p + w }} minimize integral({cost}) + (x(end) - 1)^2 method {{ N = 8 }}"
+             dynamics {{ x' = p + w }} minimize integral({cost}) + (x(end) - 1)^2 method {{ N = 8 \
+             }}"
         );
         assert!(solved(&text).global, "{cost}");
     }
@@ -127,7 +140,11 @@ fn what_is_out_of_reach_is_not_called_solved() {
                  end x{count} == {target}\nminimize integral(F^2)\nmethod {{ N = 50 {method} }}"
             );
             let solution = solved(&text);
-            assert_eq!(solution.status, Status::Infeasible, "{count} masses, {method}: {solution:?}");
+            assert_eq!(
+                solution.status,
+                Status::Infeasible,
+                "{count} masses, {method}: {solution:?}"
+            );
         }
     }
 }

@@ -1,4 +1,5 @@
-//! The work that every model costs, as a table under version control: a worse algorithm shows in its diff.
+//! The work that every model costs, as a table under version control: a worse algorithm shows in
+//! its diff.
 //!
 //! `UPDATE=1 cargo test` rewrites the table. It is no reference for anything but itself.
 
@@ -26,7 +27,8 @@ const HEADINGS: [&str; 12] = [
     "hessian",
 ];
 
-/// Each model as it stands, with each sequence of jumps that may happen, and the rows of Table 7.1 that are hardest for their size.
+/// Each model as it stands, with each sequence of jumps that may happen, and the rows of Table 7.1
+/// that are hardest for their size.
 fn cases() -> Vec<(String, Problem)> {
     let models = documents("models", "fdc").into_iter().filter(|(_, text)| refusal(text).is_none());
     let mut cases: Vec<(String, Problem)> =
@@ -83,7 +85,8 @@ fn table(rows: &[Vec<String>]) -> String {
             0 | 1 => format!("{cell:<width$}", width = width(column)),
             _ => format!("{cell:>width$}", width = width(column)),
         });
-        writeln!(text, "{}", cells.collect::<Vec<_>>().join("  ")).expect("a string takes everything");
+        writeln!(text, "{}", cells.collect::<Vec<_>>().join("  "))
+            .expect("a string takes everything");
     }
     text
 }

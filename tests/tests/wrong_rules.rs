@@ -1,8 +1,9 @@
-//! What the printed rules would give: the adjoint (5.9) without its transpose, the projections (6.13) with `u u^T` and with the normal,
-//! beside the right ones, on examples (c) and (d), whose numbers come from the reference problems.
+//! What the printed rules would give: the adjoint (5.9) without its transpose, the projections
+//! (6.13) with `u u^T` and with the normal, beside the right ones, on examples (c) and (d), whose
+//! numbers come from the reference problems.
 //!
-//! Written by hand in a few lines, so that the difference stays visible; and the costates of the program in the gauge of
-//! the limit of smoothed adjoints.
+//! Written by hand in a few lines, so that the difference stays visible; and the costates of the
+//! program in the gauge of the limit of smoothed adjoints.
 
 use fdcc_compiler::compile_sensitivities;
 use fdcc_runtime::sensitivity::{Costates, gradient};
@@ -37,8 +38,14 @@ fn apply(m: Matrix, v: Vector) -> Vector {
     m.map(|row| dot(row, v))
 }
 
-/// State and derivative after `x' = f(x)`, `S' = f_x S`, by the classical Runge-Kutta method with 4000 steps.
-fn flow(mut x: Vector, mut s: Matrix, time: f64, f: impl Fn(Vector) -> (Vector, Matrix)) -> (Vector, Matrix) {
+/// State and derivative after `x' = f(x)`, `S' = f_x S`, by the classical Runge-Kutta method with
+/// 4000 steps.
+fn flow(
+    mut x: Vector,
+    mut s: Matrix,
+    time: f64,
+    f: impl Fn(Vector) -> (Vector, Matrix),
+) -> (Vector, Matrix) {
     let h = time / 4000.0;
     let moved = |x: Vector, k: Vector, h: f64| [0, 1].map(|i| x[i] + h * k[i]);
     let moved_all = |s: Matrix, k: Matrix, h: f64| [0, 1].map(|i| moved(s[i], k[i], h));
@@ -67,10 +74,13 @@ fn near(got: Vector, expected: Vector) {
     assert!(error < 1e-9, "{got:?}, not {expected:?}");
 }
 
-/// `lambda(0)` of (c) for `x(T)`, where the jump at the event is `lambda- = jump(f2 - f1, d, g1) lambda+`.
+/// `lambda(0)` of (c) for `x(T)`, where the jump at the event is `lambda- = jump(f2 - f1, d, g1)
+/// lambda+`.
 fn adjoint_of_c(jump: impl Fn(Vector, Vector, f64) -> Matrix) -> Vector {
     let below = |[x, y]: Vector| ([1.0 + y / 4.0, 0.5 - x * y], [[0.0, 0.25], [-y, -x]]);
-    let above = |[_, y]: Vector, x: f64| ([0.5 - y * y / 4.0, -x + y / 2.0], [[0.0, -y / 2.0], [-1.0, 0.5]]);
+    let above = |[_, y]: Vector, x: f64| {
+        ([0.5 - y * y / 4.0, -x + y / 2.0], [[0.0, -y / 2.0], [-1.0, 0.5]])
+    };
     let event = 0.819094105236721;
     let (x, before) = flow([0.0, 0.2], UNIT, event, below);
     let (_, after) = flow(x, UNIT, 2.0 - event, |x| above(x, x[0]));
@@ -88,8 +98,8 @@ fn the_adjoint_jumps_with_the_transpose() {
     near(printed, [0.3852167811301185, -0.2166180944892755]);
 }
 
-/// `dx(4)/dx(0)` of (d), with a projection `P(u, d)` at the entry into sliding; `u = f2 - f1 = (1, -2)`. On the arc
-/// `sin p + 2 cos p - t` is constant, and `x(4)` is this constant and a number.
+/// `dx(4)/dx(0)` of (d), with a projection `P(u, d)` at the entry into sliding; `u = f2 - f1 = (1,
+/// -2)`. On the arc `sin p + 2 cos p - t` is constant, and `x(4)` is this constant and a number.
 fn sliding_of_d(projection: impl Fn(Vector, Vector) -> Matrix) -> Vector {
     let (entry, tangent) = ([-0.3, 0.91_f64.sqrt()], [-(0.91_f64.sqrt()), -0.3]);
     let along = apply(transposed(projection([1.0, -2.0], entry)), tangent);
@@ -112,7 +122,9 @@ fn costates(name: &str) -> Costates {
     let text = std::fs::read_to_string(path).expect("the model");
     let system = compile_sensitivities(&meaning(&format!("{text}\nminimize x(end)\n")));
     let system = system.expect("the model can be simulated");
-    gradient(&system, &Controls::Guess, &Options::default(), &[]).expect("it reaches the end").costates
+    gradient(&system, &Controls::Guess, &Options::default(), &[])
+        .expect("it reaches the end")
+        .costates
 }
 
 /// Between two times.

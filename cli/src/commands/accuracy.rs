@@ -1,4 +1,5 @@
-//! How exactly a simulation integrates, and with which method: the options of every command that simulates.
+//! How exactly a simulation integrates, and with which method: the options of every command that
+//! simulates.
 
 use clap::{Args, ValueEnum};
 use fdcc_runtime::simulate::{Integrator, Options};

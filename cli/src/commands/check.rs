@@ -32,7 +32,8 @@ pub struct Check {
     time_limit: Option<f64>,
 }
 
-/// More drawings than this nobody looks at; the summary counts all, and the other formats list them.
+/// More drawings than this nobody looks at; the summary counts all, and the other formats list
+/// them.
 const MOST_DRAWN: usize = 100;
 
 /// Short enough to feel immediate.
@@ -74,7 +75,8 @@ impl Check {
         watch::catch_interrupts();
         let mut before = None;
         while !watch::is_interrupted() && !output::is_closed() {
-            let now: Vec<Option<Vec<u8>>> = self.files.iter().map(|file| std::fs::read(file).ok()).collect();
+            let now: Vec<Option<Vec<u8>>> =
+                self.files.iter().map(|file| std::fs::read(file).ok()).collect();
             if before.as_ref() != Some(&now) {
                 output::clear_terminal();
                 self.once();
@@ -105,14 +107,18 @@ impl Check {
     }
 
     fn verdict(&self, diagnostics: &[Diagnostic]) -> Exit {
-        let denied = if self.deny == Some(Deny::Warnings) { Severity::Warning } else { Severity::Error };
+        let denied =
+            if self.deny == Some(Deny::Warnings) { Severity::Warning } else { Severity::Error };
         let is_wrong = diagnostics.iter().any(|diagnostic| diagnostic.severity >= denied);
         if is_wrong { Exit::ModelError } else { Exit::Fine }
     }
 
     fn report(&self, loaded: &[Loaded]) -> String {
-        let found =
-            || loaded.iter().flat_map(|it| it.diagnostics.iter().map(|diagnostic| (&it.source, diagnostic)));
+        let found = || {
+            loaded
+                .iter()
+                .flat_map(|it| it.diagnostics.iter().map(|diagnostic| (&it.source, diagnostic)))
+        };
         match self.format {
             Format::Human => {
                 let renderer = render::Renderer::for_stdout();
@@ -120,7 +126,9 @@ impl Check {
                     found().take(MOST_DRAWN).map(|(file, it)| renderer.render(it, file)).collect();
                 drawn + &summary(loaded)
             }
-            Format::Short => found().map(|(source, diagnostic)| short(source, diagnostic)).collect(),
+            Format::Short => {
+                found().map(|(source, diagnostic)| short(source, diagnostic)).collect()
+            }
             Format::Json => output::json(&found().map(diagnostics::entry).collect::<Vec<_>>()),
             Format::Sarif => output::json(&sarif::log(found())),
         }
@@ -147,10 +155,15 @@ fn summary(loaded: &[Loaded]) -> String {
         counts.iter().filter(|(n, _)| *n > 0).map(|(n, noun)| plural(*n, noun)).collect();
     let found = if found.is_empty() { "nothing wrong".to_owned() } else { found.join(", ") };
     let all: usize = loaded.iter().map(|it| it.diagnostics.len()).sum();
-    let shown = if all > MOST_DRAWN { format!("; the first {MOST_DRAWN} are shown") } else { String::new() };
+    let shown = if all > MOST_DRAWN {
+        format!("; the first {MOST_DRAWN} are shown")
+    } else {
+        String::new()
+    };
     let is_certain = |it: &&Diagnostic| it.fixes.iter().any(|fix| fix.certain);
     let certain = loaded.iter().flat_map(|it| &it.diagnostics).filter(is_certain).count();
-    let repairs = if certain > 0 { format!("; `fdcc fix` repairs {certain}") } else { String::new() };
+    let repairs =
+        if certain > 0 { format!("; `fdcc fix` repairs {certain}") } else { String::new() };
     if loaded.is_empty() {
         String::new()
     } else {

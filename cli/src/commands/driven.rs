@@ -25,7 +25,8 @@ pub struct Driven {
     file: String,
     #[command(flatten)]
     changes: Changes,
-    /// Controls: a .csv with the columns `t` and the controls, or the .sol.json of a solve; the guess if left out
+    /// Controls: a .csv with the columns `t` and the controls, or the .sol.json of a solve; the
+    /// guess if left out
     #[arg(long, value_name = "FILE")]
     control: Option<PathBuf>,
     /// Take the unknowns, parameters and open starts of an earlier .sol.json, but not its controls
@@ -52,7 +53,9 @@ impl Driven {
     pub fn read(&self) -> Result<Prepared, Exit> {
         let is_search = self.seed.is_some() || self.starts.is_some_and(|starts| starts > 1);
         if is_search && self.log != Some(Level::None) {
-            output::complain("`--seed` and `--starts` change nothing here: a simulation searches nothing");
+            output::complain(
+                "`--seed` and `--starts` change nothing here: a simulation searches nothing",
+            );
         }
         read_at_any_rate(&self.file, &Changes::default(), self.deadline())
     }
@@ -82,7 +85,8 @@ impl Driven {
         Options { watch, ..self.accuracy.options(model.time_size()) }
     }
 
-    /// Changes the model: what its solution says comes first, so that the command line has the last word.
+    /// Changes the model: what its solution says comes first, so that the command line has the last
+    /// word.
     pub fn adapt(&self, prepared: &mut Prepared) -> Result<Replay, Failure> {
         let replay = match &self.control {
             Some(path) => control::read(path, &prepared.model)?,

@@ -22,7 +22,11 @@ impl Explain {
                 Exit::Fine
             }
             Err(()) => {
-                output::complain(&format!("there is no diagnostic `{}`\n{}", self.code, similar(&self.code)));
+                output::complain(&format!(
+                    "there is no diagnostic `{}`\n{}",
+                    self.code,
+                    similar(&self.code)
+                ));
                 Exit::Usage
             }
         }

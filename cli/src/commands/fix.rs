@@ -39,8 +39,11 @@ impl Fix {
 fn verdict(source: &SourceFile, left: &[Diagnostic]) -> Exit {
     let errors = left.iter().filter(|it| it.severity == Severity::Error).count();
     let likely = left.iter().filter(|it| !it.fixes.is_empty()).count();
-    let proposals =
-        if likely > 0 { format!("; `--unsafe` has a proposal for {likely}") } else { String::new() };
+    let proposals = if likely > 0 {
+        format!("; `--unsafe` has a proposal for {likely}")
+    } else {
+        String::new()
+    };
     if errors > 0 || likely > 0 {
         output::tell(&format!("{}: {} left{proposals}\n", source.name, plural(errors, "error")));
     }

@@ -9,7 +9,8 @@ use crate::rewrite;
 /// Lay out models in the canonical way
 #[derive(Args)]
 pub struct Fmt {
-    /// Models to lay out; `-` is the standard input, and then the result goes to the standard output
+    /// Models to lay out; `-` is the standard input, and then the result goes to the standard
+    /// output
     #[arg(required = true, value_name = "FILE")]
     files: Vec<String>,
     /// Write nothing; print what would change, and exit with 1 if there is anything

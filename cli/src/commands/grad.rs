@@ -20,10 +20,12 @@ use std::path::PathBuf;
 pub struct Grad {
     #[command(flatten)]
     driven: Driven,
-    /// What to differentiate: an expression with a value at the end, such as `x(end)`; the objective if left out
+    /// What to differentiate: an expression with a value at the end, such as `x(end)`; the
+    /// objective if left out
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
     of: Option<String>,
-    /// By what: params, free unknowns, starts such as `x(start)`, controls; all params and unknowns if left out
+    /// By what: params, free unknowns, starts such as `x(start)`, controls; all params and unknowns
+    /// if left out
     #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
     wrt: Vec<String>,
     /// The second derivatives, too
@@ -53,7 +55,8 @@ impl Grad {
         }
     }
 
-    /// The model with the objective that `--of` asks for. What is wrong with that is shown under its own name.
+    /// The model with the objective that `--of` asks for. What is wrong with that is shown under
+    /// its own name.
     fn asked(&self, prepared: Prepared) -> Result<Prepared, Exit> {
         let Some(of) = &self.of else { return Ok(prepared) };
         if of.trim().is_empty() {
@@ -101,9 +104,9 @@ impl Grad {
     fn second(&self, by: &[By]) -> Result<bool, Failure> {
         let count: usize = by.iter().map(|by| by.quantities.len()).sum();
         match self.second && count > MOST_SECOND {
-            true => {
-                Err(Failure::Usage(format!("--second: by {MOST_SECOND} numbers at most, not by {count}")))
-            }
+            true => Err(Failure::Usage(format!(
+                "--second: by {MOST_SECOND} numbers at most, not by {count}"
+            ))),
             false => Ok(self.second),
         }
     }
@@ -111,7 +114,8 @@ impl Grad {
     fn by(&self, system: &System, controls: &Controls, model: &Model) -> Result<Vec<By>, Failure> {
         if self.wrt.is_empty() {
             let all = everything(system, model);
-            let nothing = "there is nothing to differentiate by; `--wrt x(start)` names the start of `x`";
+            let nothing =
+                "there is nothing to differentiate by; `--wrt x(start)` names the start of `x`";
             return if all.is_empty() { Err(Failure::Usage(nothing.into())) } else { Ok(all) };
         }
         let mut all: Vec<By> = Vec::new();

@@ -23,7 +23,8 @@ use std::process::ExitCode;
 
 use clap::Subcommand;
 
-/// How a command ended. The numbers are a contract with scripts; the worst of several is the largest.
+/// How a command ended. The numbers are a contract with scripts; the worst of several is the
+/// largest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Exit {
     /// Solved, or nothing wrong.

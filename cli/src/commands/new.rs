@@ -65,7 +65,9 @@ impl New {
         match files::create(&path, &named_after(&path, template)) {
             Ok(()) => {
                 let path = path.display();
-                output::print(&format!("wrote {path}\n\nnext:\n  fdcc check {path}\n  fdcc solve {path}\n"));
+                output::print(&format!(
+                    "wrote {path}\n\nnext:\n  fdcc check {path}\n  fdcc solve {path}\n"
+                ));
                 Exit::Fine
             }
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
@@ -103,7 +105,9 @@ fn file(path: Option<PathBuf>, template: Template) -> PathBuf {
 /// The template with the file's name for the model, if that can be a name.
 fn named_after(path: &Path, template: Template) -> String {
     let (name, text) = (template.name(), template.text());
-    let Some(stem) = path.file_stem().and_then(|stem| stem.to_str()) else { return text.to_owned() };
+    let Some(stem) = path.file_stem().and_then(|stem| stem.to_str()) else {
+        return text.to_owned();
+    };
     let named = text.replace(&format!("model {name}\n"), &format!("model {stem}\n"));
     let named = named.replace(&format!("{name}.fdc"), &format!("{stem}.fdc"));
     if parse(&named).diagnostics.is_empty() { named } else { text.to_owned() }

@@ -39,14 +39,16 @@ impl Changes {
 }
 
 fn split<'t>(text: &'t str, form: &str) -> Result<(&'t str, &'t str), String> {
-    let (name, value) = text.split_once('=').ok_or(format!("`{text}` is not of the form {form}"))?;
+    let (name, value) =
+        text.split_once('=').ok_or(format!("`{text}` is not of the form {form}"))?;
     Ok((name.trim(), value.trim()))
 }
 
 /// When a replay confirms a solution.
 #[derive(Args, Clone)]
 pub struct Gap {
-    /// The largest difference between solution and true system that is called confirmation: of a state for how far it moves, of a condition for the size of its terms
+    /// The largest difference between solution and true system that is called confirmation: of a
+    /// state for how far it moves, of a condition for the size of its terms
     #[arg(long, value_name = "G", default_value_t = 1e-3, value_parser = difference, allow_negative_numbers = true)]
     pub gap: f64,
 }
@@ -109,17 +111,28 @@ pub fn prepare(file: &str, options: &Options) -> Result<Prepared, Exit> {
     Ok(prepared)
 }
 
-/// Reads and checks a model and applies the changes. What is wrong with it is shown on the standard error.
+/// Reads and checks a model and applies the changes. What is wrong with it is shown on the standard
+/// error.
 pub fn read(file: &str, changes: &Changes) -> Result<Prepared, Exit> {
     load(file, changes, false, Deadline::NEVER)
 }
 
-/// The same, also if it has no unique trajectory: a simulation finds out where, and `show` says why.
-pub fn read_at_any_rate(file: &str, changes: &Changes, deadline: Deadline) -> Result<Prepared, Exit> {
+/// The same, also if it has no unique trajectory: a simulation finds out where, and `show` says
+/// why.
+pub fn read_at_any_rate(
+    file: &str,
+    changes: &Changes,
+    deadline: Deadline,
+) -> Result<Prepared, Exit> {
     load(file, changes, true, deadline)
 }
 
-fn load(file: &str, changes: &Changes, at_any_rate: bool, deadline: Deadline) -> Result<Prepared, Exit> {
+fn load(
+    file: &str,
+    changes: &Changes,
+    at_any_rate: bool,
+    deadline: Deadline,
+) -> Result<Prepared, Exit> {
     let loaded = Loaded::within(deadline, file).map_err(|stop| stopped(file, stop))?;
     let loaded = loaded.map_err(|error| {
         output::complain(&format!("{file} cannot be read: {error}"));
@@ -132,7 +145,9 @@ fn load(file: &str, changes: &Changes, at_any_rate: bool, deadline: Deadline) ->
     show(diagnostics.iter().filter(|it| it.severity >= Severity::Warning && !waits(it)), &source);
     let Some(mut model) = model else {
         if diagnostics.iter().all(|it| it.severity < Severity::Error) {
-            output::complain(&format!("{file}: there is nothing to compute; `fdcc check` says nothing else"));
+            output::complain(&format!(
+                "{file}: there is nothing to compute; `fdcc check` says nothing else"
+            ));
         }
         return Err(Exit::ModelError);
     };

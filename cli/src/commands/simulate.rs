@@ -53,11 +53,14 @@ impl Simulate {
         let mut times = self.times.iter().zip(&options.times);
         if let Some((outside, _)) = times.find(|(_, time)| **time < first || **time > last) {
             let [first, last] = [first, last].map(|time| time / unit);
-            return Err(Failure::Usage(format!("`--times`: {outside} is not between {first} and {last}")));
+            return Err(Failure::Usage(format!(
+                "`--times`: {outside} is not between {first} and {last}"
+            )));
         }
         let simulation = simulate(&system, &controls, &options);
         let is_complete = matches!(simulation.status, Status::Completed);
-        let document = Document::new(&system, &simulation, &prepared.source, (&prepared.model).into());
+        let document =
+            Document::new(&system, &simulation, &prepared.source, (&prepared.model).into());
         Ok((document, if is_complete { Exit::Fine } else { Exit::NotSolved }))
     }
 

@@ -24,7 +24,8 @@ pub struct Solve {
     /// Do not replay the controls on the true system
     #[arg(long, conflicts_with = "confirmed")]
     no_verify: bool,
-    /// End with exit code 2 also where the replay does not confirm the answer, or something contradicts that it is an optimum
+    /// End with exit code 2 also where the replay does not confirm the answer, or something
+    /// contradicts that it is an optimum
     #[arg(long)]
     confirmed: bool,
     #[command(flatten)]

@@ -18,16 +18,18 @@ mod grid;
 
 /// Solve once for each of several values, and print a table
 ///
-/// With `--json` the rows are one array of objects with `swept` (what was swept, numbers in SI units), `status`,
-/// `objective`, `free`, `iterations`, `kkt_error`, `constraint_violation` and `seconds`, as in the document of
-/// `solve`; with `--confirmed` also `confirmed`, `verification` and `optimality`. With `--out` the files are called
-/// MODEL.1.sol.json and so on, by row, and written when the row is solved.
+/// With `--json` the rows are one array of objects with `swept` (what was swept, numbers in SI
+/// units), `status`, `objective`, `free`, `iterations`, `kkt_error`, `constraint_violation` and
+/// `seconds`, as in the document of `solve`; with `--confirmed` also `confirmed`, `verification`
+/// and `optimality`. With `--out` the files are called MODEL.1.sol.json and so on, by row, and
+/// written when the row is solved.
 #[derive(Args)]
 pub struct Sweep {
     /// The model; `-` is the standard input
     #[arg(value_name = "FILE")]
     file: String,
-    /// A `param` or a key of the `method` block, with its values; several lists go together row by row
+    /// A `param` or a key of the `method` block, with its values; several lists go together row by
+    /// row
     ///
     /// Without any, the lists of the `sweep` block of the model.
     #[arg(value_name = "NAME=V1,V2,...")]
@@ -38,7 +40,8 @@ pub struct Sweep {
     /// How many solves run at a time; without it as many as there are processors
     #[arg(long, value_name = "J", value_parser = clap::value_parser!(u32).range(1..))]
     jobs: Option<u32>,
-    /// Replay each row on the true system; exit code 2 unless that confirms it and nothing contradicts that it is an optimum
+    /// Replay each row on the true system; exit code 2 unless that confirms it and nothing
+    /// contradicts that it is an optimum
     #[arg(long)]
     confirmed: bool,
     #[command(flatten)]
@@ -94,7 +97,8 @@ impl Sweep {
     /// The rows that ran, each with its number.
     fn solve(&self, rows: &[Row]) -> Result<Vec<(usize, Solved)>, Failure> {
         let bar = log::bar(self.level(), rows.len());
-        let ran = if self.is_continued { self.in_turn(rows, &bar) } else { self.in_parallel(rows, &bar) };
+        let ran =
+            if self.is_continued { self.in_turn(rows, &bar) } else { self.in_parallel(rows, &bar) };
         bar.finish_and_clear();
         let numbered = |(row, ran): (&Row, Option<Solved>)| Some((row.number, ran?));
         let solved: Vec<_> = rows.iter().zip(ran?).filter_map(numbered).collect();
@@ -123,8 +127,12 @@ impl Sweep {
     fn in_parallel(&self, rows: &[Row], bar: &ProgressBar) -> Result<Vec<Option<Solved>>, Failure> {
         let threads = self.jobs.map_or_else(parallel::processors, |jobs| jobs as usize);
         // After a failure there will be no table.
-        let solved =
-            parallel::in_order(rows.len(), threads, |i| self.one(&rows[i], None, bar), Result::is_err);
+        let solved = parallel::in_order(
+            rows.len(),
+            threads,
+            |i| self.one(&rows[i], None, bar),
+            Result::is_err,
+        );
         solved.into_iter().collect()
     }
 
@@ -163,7 +171,8 @@ impl Sweep {
 
     /// The table or the JSON.
     fn report(&self, grid: &Grid, solved: &[(usize, Solved)]) -> Result<Exit, Failure> {
-        let swept: Vec<Named<String>> = solved.iter().map(|(number, _)| grid.row(number - 1)).collect();
+        let swept: Vec<Named<String>> =
+            solved.iter().map(|(number, _)| grid.row(number - 1)).collect();
         let documents = swept.iter().zip(solved.iter().map(|(_, solved)| &solved.document));
         let text = if self.options.json {
             let row = |(swept, document)| table::row(swept, document, self.confirmed);
@@ -173,7 +182,11 @@ impl Sweep {
         };
         output::print(&text);
         let is_whole = solved.len() == grid.rows;
-        let worst = solved.iter().map(|(_, solved)| solved.exit(self.confirmed)).max().unwrap_or(Exit::Fine);
+        let worst = solved
+            .iter()
+            .map(|(_, solved)| solved.exit(self.confirmed))
+            .max()
+            .unwrap_or(Exit::Fine);
         Ok(if is_whole { worst } else { worst.max(Exit::NotSolved) })
     }
 }

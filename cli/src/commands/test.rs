@@ -53,14 +53,21 @@ impl Test {
             let (expectations, units) = (Vec::new(), Units::default());
             return Ok(Tested { file: file.into(), model, status: None, expectations, units });
         }
-        let solved = self.solve(&prepared, begin).map_err(|failure| failure.report(&prepared.source))?;
+        let solved =
+            self.solve(&prepared, begin).map_err(|failure| failure.report(&prepared.source))?;
         show(failure::diagnostic(&solved).iter(), &prepared.source);
         let checked = expectations::evaluate(&prepared.model, &solved);
         // What a solve did not reach is no news about the model.
         let checked = checked.into_iter().filter(|_| solved.is_good());
         let units = solved.document.units.clone();
         let expectations = checked.map(|it| line(it, &prepared)).collect();
-        Ok(Tested { file: file.into(), model, status: Some(solved.document.status), expectations, units })
+        Ok(Tested {
+            file: file.into(),
+            model,
+            status: Some(solved.document.status),
+            expectations,
+            units,
+        })
     }
 
     fn solve(&self, prepared: &Prepared, begin: Instant) -> Result<Solved, Failure> {

@@ -33,7 +33,9 @@ impl Verify {
         let found = Saved::read(&self.solution).and_then(|saved| Ok((self.file(&saved)?, saved)));
         let (file, saved) = match found {
             Ok(found) => found,
-            Err(failure) => return failure.report(&SourceFile::new(self.solution.display().to_string(), "")),
+            Err(failure) => {
+                return failure.report(&SourceFile::new(self.solution.display().to_string(), ""));
+            }
         };
         let prepared = match read(&file, &Changes::default()) {
             Ok(prepared) => prepared,
@@ -64,7 +66,8 @@ impl Verify {
 
     fn verify(&self, saved: &Saved, prepared: &Prepared) -> Result<Document, Failure> {
         let mut model = prepared.model.clone();
-        let numbers = saved.params.0.iter().filter_map(|(name, value)| Some((name.clone(), (*value)?)));
+        let numbers =
+            saved.params.0.iter().filter_map(|(name, value)| Some((name.clone(), (*value)?)));
         model.restore_params(&numbers.collect::<Vec<_>>());
         let problem = fdcc_compiler::compile(&model).map_err(Failure::Model)?;
         let verified = verify(&model, &problem, saved).map_err(|failure| match failure {
@@ -74,7 +77,9 @@ impl Verify {
         let same_source = saved.source_sha256 == sha256(&prepared.source.text);
         if !same_source {
             let name = &prepared.source.name;
-            output::complain(&format!("{name} is not the text that was solved; it is taken all the same"));
+            output::complain(&format!(
+                "{name} is not the text that was solved; it is taken all the same"
+            ));
         }
         let document = Document::new(&verified, saved, &prepared.source, same_source, self.gap.gap);
         Ok(document.in_units((&prepared.model).into()))

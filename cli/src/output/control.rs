@@ -1,4 +1,5 @@
-//! Control files: CSV with `t` and the controls, held from row to row, or the `.sol.json` of a solve.
+//! Control files: CSV with `t` and the controls, held from row to row, or the `.sol.json` of a
+//! solve.
 
 use super::saved::Saved;
 use crate::replay::Replay;
@@ -14,7 +15,8 @@ pub fn read(path: &Path, model: &Model) -> Result<Replay, Failure> {
     let replay = if is_json {
         Replay::new(&Saved::read(path)?, model)
     } else {
-        let text = fs::read_to_string(path).map_err(|error| failure(format!(" cannot be read: {error}")))?;
+        let text = fs::read_to_string(path)
+            .map_err(|error| failure(format!(" cannot be read: {error}")))?;
         from_csv(&text, model)
     };
     let checked = replay.and_then(|replay| replay.check().map(|()| replay));
@@ -24,7 +26,8 @@ pub fn read(path: &Path, model: &Model) -> Result<Replay, Failure> {
 fn from_csv(text: &str, model: &Model) -> Result<Replay, String> {
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let header = lines.next().ok_or("the file is empty; it needs a header such as `t,u`")?.1;
-    let names: Vec<&str> = header.trim_start_matches('\u{feff}').split(',').map(str::trim).collect();
+    let names: Vec<&str> =
+        header.trim_start_matches('\u{feff}').split(',').map(str::trim).collect();
     let columns = columns(&names, model)?;
     let (mut replay, mut twice) = (Replay::default(), None);
     for (at, line) in lines {
@@ -35,14 +38,22 @@ fn from_csv(text: &str, model: &Model) -> Result<Replay, String> {
         }
         let number = |column: usize| match cells[column].parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(format!("line {}: `{}` of `{}` is no number", at + 1, cells[column], names[column])),
+            _ => Err(format!(
+                "line {}: `{}` of `{}` is no number",
+                at + 1,
+                cells[column],
+                names[column]
+            )),
         };
         let time = number(0)?;
         let row = columns.iter().map(|&column| number(column)).collect::<Result<_, _>>()?;
         // The first of two rows at one time, on both sides of a jump, holds for no time.
         if replay.times.last() == Some(&time) {
             if twice == Some(time) {
-                return Err(format!("line {}: a third row at t = {time}; a jump has two sides", at + 1));
+                return Err(format!(
+                    "line {}: a third row at t = {time}; a jump has two sides",
+                    at + 1
+                ));
             }
             twice = Some(time);
             replay.times.pop();
@@ -54,7 +65,8 @@ fn from_csv(text: &str, model: &Model) -> Result<Replay, String> {
     Ok(replay)
 }
 
-/// The column of each control. States and reports may stand beside them, as in the `.csv` of a solve.
+/// The column of each control. States and reports may stand beside them, as in the `.csv` of a
+/// solve.
 fn columns(names: &[&str], model: &Model) -> Result<Vec<usize>, String> {
     let controls = || model.controls.iter().map(|control| control.place.name.as_str());
     if names[0] != "t" {
@@ -64,7 +76,11 @@ fn columns(names: &[&str], model: &Model) -> Result<Vec<usize>, String> {
             names[0]
         ));
     }
-    let others = model.states.iter().map(|state| &state.place).chain(model.report.iter().map(|it| &it.place));
+    let others = model
+        .states
+        .iter()
+        .map(|state| &state.place)
+        .chain(model.report.iter().map(|it| &it.place));
     let others: Vec<&str> = others.map(|place| place.name.as_str()).collect();
     for (at, name) in names.iter().enumerate().skip(1) {
         if names[..at].contains(name) {

@@ -9,8 +9,10 @@ use std::fmt::Write;
 /// value just before a jump.
 pub fn csv(document: &Document) -> String {
     let Document { states, controls, report, .. } = document;
-    let names =
-        [states, controls, report].into_iter().flat_map(|columns| &columns.0).map(|column| column.0.as_str());
+    let names = [states, controls, report]
+        .into_iter()
+        .flat_map(|columns| &columns.0)
+        .map(|column| column.0.as_str());
     let mut text = std::iter::once("t").chain(names).collect::<Vec<_>>().join(",") + "\n";
     let cell = |value: f64| format!(",{value}");
     let cells = |columns: &Named<Vec<f64>>, k: usize| -> String {
@@ -19,7 +21,10 @@ pub fn csv(document: &Document) -> String {
     };
     for (k, t) in document.time.iter().enumerate() {
         for before in document.befores(k) {
-            let states = states.0.iter().map(|(name, _)| cell(before.get(name).copied().unwrap_or(f64::NAN)));
+            let states = states
+                .0
+                .iter()
+                .map(|(name, _)| cell(before.get(name).copied().unwrap_or(f64::NAN)));
             let (states, gaps) = (states.collect::<String>(), ",".repeat(report.0.len()));
             writeln!(text, "{t}{states}{}{gaps}", cells(controls, k.saturating_sub(1)))
                 .expect("a string takes everything");

@@ -1,4 +1,5 @@
-//! Diagnostics as JSON. Lines and columns count from 1, columns in characters; an end is one past the last character.
+//! Diagnostics as JSON. Lines and columns count from 1, columns in characters; an end is one past
+//! the last character.
 
 use fdcc_grammar::{Diagnostic, Edit, Fix, Severity, SourceFile, Span};
 use serde::Serialize;
@@ -64,8 +65,15 @@ pub fn entry<'d>((source, diagnostic): (&'d SourceFile, &'d Diagnostic)) -> Entr
 }
 
 fn fix_entry<'d>(source: &SourceFile, fix: &'d Fix) -> FixEntry<'d> {
-    let edit = |edit: &'d Edit| EditEntry { span: place(source, edit.span), replacement: &edit.replacement };
-    FixEntry { title: &fix.title, certain: fix.certain, edits: fix.edits.iter().map(edit).collect() }
+    let edit = |edit: &'d Edit| EditEntry {
+        span: place(source, edit.span),
+        replacement: &edit.replacement,
+    };
+    FixEntry {
+        title: &fix.title,
+        certain: fix.certain,
+        edits: fix.edits.iter().map(edit).collect(),
+    }
 }
 
 fn place(source: &SourceFile, span: Span) -> Place {

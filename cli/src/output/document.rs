@@ -40,7 +40,8 @@ pub struct Document {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub control_nodes: Option<ControlNodes>,
     pub costates: Named<Vec<f64>>,
-    /// What the objective changes by with the bound of each path constraint, per time; one for each interval.
+    /// What the objective changes by with the bound of each path constraint, per time; one for each
+    /// interval.
     pub path_multipliers: Named<Vec<f64>>,
     /// What the objective changes by with the bound of each condition at the ends.
     pub end_multipliers: Named<f64>,
@@ -79,7 +80,8 @@ pub struct Document {
     pub verification: Option<Verification>,
 }
 
-/// Where time itself does not matter the Hamiltonian is constant; where the last time is unknown, its value is known as well.
+/// Where time itself does not matter the Hamiltonian is constant; where the last time is unknown,
+/// its value is known as well.
 #[derive(Clone, Debug, Serialize)]
 pub struct HamiltonianCheck {
     pub is_constant: bool,
@@ -104,7 +106,8 @@ impl HamiltonianCheck {
     }
 }
 
-/// The values between which a control is linear, or through which it is a polynomial on each interval.
+/// The values between which a control is linear, or through which it is a polynomial on each
+/// interval.
 #[derive(Clone, Debug, Serialize)]
 pub struct ControlNodes {
     pub time: Vec<f64>,
@@ -113,7 +116,10 @@ pub struct ControlNodes {
 
 impl ControlNodes {
     fn new(controls: &[Variable], nodes: &trajectory::ControlNodes) -> Self {
-        ControlNodes { time: nodes.time.clone(), values: named_columns(controls.iter().zip(&nodes.values)) }
+        ControlNodes {
+            time: nodes.time.clone(),
+            values: named_columns(controls.iter().zip(&nodes.values)),
+        }
     }
 }
 
@@ -175,15 +181,21 @@ pub struct Span {
 }
 
 impl Document {
-    pub fn new(problem: &Problem, outcome: &Outcome, source_sha256: &str, seconds: Seconds) -> Self {
+    pub fn new(
+        problem: &Problem,
+        outcome: &Outcome,
+        source_sha256: &str,
+        seconds: Seconds,
+    ) -> Self {
         let (solution, trajectory) = (&outcome.solution, &outcome.trajectory);
         let [free, params] = parameters(problem, &trajectory.parameters);
         let shown = |columns: &[Vec<f64>]| {
             named_columns(problem.states.iter().zip(columns).filter(|(state, _)| !state.hidden))
         };
         // Where an expression has no value, no error was measured.
-        let measured =
-            |error: f64| if matches!(solution.status, Status::NotFinite(_)) { f64::NAN } else { error };
+        let measured = |error: f64| {
+            if matches!(solution.status, Status::NotFinite(_)) { f64::NAN } else { error }
+        };
         Document {
             fdcc: env!("CARGO_PKG_VERSION").to_string(),
             model: problem.name.clone(),
@@ -203,7 +215,10 @@ impl Document {
             time: trajectory.time.clone(),
             states: shown(&trajectory.states),
             controls: named_columns(problem.controls.iter().zip(&trajectory.controls)),
-            control_nodes: trajectory.nodes.as_ref().map(|nodes| ControlNodes::new(&problem.controls, nodes)),
+            control_nodes: trajectory
+                .nodes
+                .as_ref()
+                .map(|nodes| ControlNodes::new(&problem.controls, nodes)),
             costates: shown(&trajectory.costates),
             path_multipliers: labelled(&*problem.path, 0, &trajectory.path_multipliers),
             end_multipliers: labelled(&*problem.boundary, 1, &trajectory.end_multipliers),
@@ -211,7 +226,12 @@ impl Document {
             step_errors: None,
             hamiltonian_check: HamiltonianCheck::new(&problem.controls, &trajectory.hamiltonian),
             sensitivities: Named::default(),
-            report: problem.report_names.iter().cloned().zip(trajectory.report.iter().cloned()).collect(),
+            report: problem
+                .report_names
+                .iter()
+                .cloned()
+                .zip(trajectory.report.iter().cloned())
+                .collect(),
             surfaces: surfaces(problem, outcome),
             jumps: Vec::new(),
             sequences: Vec::new(),
@@ -226,7 +246,8 @@ impl Document {
 
     /// The same with what contradicts that it is an optimum, as far as a replay is known.
     fn examined(self, problem: &Problem) -> Self {
-        let claims = problem.has_objective && matches!(self.status.as_str(), "solved" | "acceptable");
+        let claims =
+            problem.has_objective && matches!(self.status.as_str(), "solved" | "acceptable");
         Document { optimality: claims.then(|| self.optimality()), ..self }
     }
 
@@ -255,11 +276,15 @@ impl Document {
             let distance = |k: &usize| (self.time[*k] - time).abs();
             (0..self.time.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
         };
-        self.jumps.iter().filter(move |jump| nearest(jump.time) == Some(point)).map(|jump| &jump.before)
+        self.jumps
+            .iter()
+            .filter(move |jump| nearest(jump.time) == Some(point))
+            .map(|jump| &jump.before)
     }
 }
 
-/// The values of the parameters: those that were found, and those that were given. Widths of surfaces are neither.
+/// The values of the parameters: those that were found, and those that were given. Widths of
+/// surfaces are neither.
 fn parameters(problem: &Problem, values: &[f64]) -> [Named<f64>; 2] {
     let free: Vec<usize> = problem.unknowns.iter().map(|unknown| unknown.parameter).collect();
     let is_width = |i: &usize| problem.surfaces.iter().any(|surface| surface.sigma == *i);
@@ -270,18 +295,23 @@ fn parameters(problem: &Problem, values: &[f64]) -> [Named<f64>; 2] {
 
 /// By the words that the outputs of a function have in the model, from the first on that counts.
 fn labelled<T: Clone>(function: &dyn Function, first: usize, values: &[T]) -> Named<T> {
-    let label = |(row, value): (usize, &T)| (function.origin(first + row).label.to_string(), value.clone());
+    let label =
+        |(row, value): (usize, &T)| (function.origin(first + row).label.to_string(), value.clone());
     values.iter().enumerate().map(label).collect()
 }
 
-fn named_columns<'a>(columns: impl Iterator<Item = (&'a Variable, &'a Vec<f64>)>) -> Named<Vec<f64>> {
+fn named_columns<'a>(
+    columns: impl Iterator<Item = (&'a Variable, &'a Vec<f64>)>,
+) -> Named<Vec<f64>> {
     columns.map(|(control, column)| (control.name.clone(), column.clone())).collect()
 }
 
 fn surfaces(problem: &Problem, outcome: &Outcome) -> Named<Vec<Span>> {
     let spans = |spans: &Vec<fdcc_runtime::modes::Span>| {
         let spans = spans.iter();
-        spans.map(|s| Span { mode: mode_name(s.mode).to_string(), from: s.from, to: s.to }).collect()
+        spans
+            .map(|s| Span { mode: mode_name(s.mode).to_string(), from: s.from, to: s.to })
+            .collect()
     };
     let surfaces = problem.surfaces.iter().zip(&outcome.modes);
     surfaces.map(|(surface, modes)| (surface.name.clone(), spans(modes))).collect()
@@ -308,7 +338,9 @@ impl MethodUsed {
             steps: method.steps,
             sigma: outcome.sigma.first().copied(),
             sigmas: surfaces.map(|(surface, sigma)| (surface.name.clone(), *sigma)).collect(),
-            sigma_chosen: is_chosen(method) && is_good(&outcome.solution.status) && !outcome.sigma.is_empty(),
+            sigma_chosen: is_chosen(method)
+                && is_good(&outcome.solution.status)
+                && !outcome.sigma.is_empty(),
             kernel: method.kernel.clone(),
             solver: solver.to_string(),
             linear: linear_name(method.linear).to_string(),

@@ -66,7 +66,10 @@ impl Ending {
             }
             Status::Zeno { jump, surface, limit_time } => {
                 let jump = jump.map(|jump| system.jumps[jump].name.clone());
-                ("zeno", Why::Zeno { jump, surface: surface_name(surface), limit_time: *limit_time })
+                (
+                    "zeno",
+                    Why::Zeno { jump, surface: surface_name(surface), limit_time: *limit_time },
+                )
             }
             Status::NotFinite(origin) => {
                 let (line, of) = place(system, simulation, origin, source);
@@ -82,23 +85,32 @@ impl Ending {
     /// Why the last time was not reached, in words.
     pub fn why(&self) -> Option<String> {
         Some(match self.why.as_ref()? {
-            Why::NotUnique { surface, time, candidates, .. } => not_unique(surface, *time, candidates),
+            Why::NotUnique { surface, time, candidates, .. } => {
+                not_unique(surface, *time, candidates)
+            }
             Why::Zeno { jump, surface, limit_time } => zeno(jump.as_deref(), surface, *limit_time),
             Why::NotFinite { line, of, time, .. } => {
                 format!("not finite: `{of}` (line {line}) at t = {}", significant(*time, 12))
             }
             Why::StepLimit { .. } => {
-                "step limit: its events may pile up, its tolerances may be too small, or it is stiff and the method is explicit"
+                "step limit: its events may pile up, its tolerances may be too small, or it is \
+                 stiff and the method is explicit"
                     .into()
-            },
+            }
             Why::TimeLimit { time, .. } => format!("time limit: it came to t = {}", short(*time)),
             Why::Interrupted { time, .. } => format!("interrupted at t = {}", short(*time)),
         })
     }
 }
 
-/// The line and the name of what has no value; a start without one is to blame before all that is computed from it.
-fn place(system: &System, simulation: &Simulation, origin: &Origin, source: &SourceFile) -> (usize, String) {
+/// The line and the name of what has no value; a start without one is to blame before all that is
+/// computed from it.
+fn place(
+    system: &System,
+    simulation: &Simulation,
+    origin: &Origin,
+    source: &SourceFile,
+) -> (usize, String) {
     let line = |origin: &Origin| source.line_column(origin.span.0).line;
     let start = system.states.iter().zip(&system.start).find(|(_, start)| !start.is_finite());
     match start.filter(|_| simulation.end_time == system.interval[0]) {
@@ -121,7 +133,8 @@ fn zeno(jump: Option<&str>, surface: &str, limit_time: f64) -> String {
     match jump {
         Some(jump) => {
             format!(
-                "zeno: the jumps `{jump}` pile up at t = {time}; say what follows with `then hold {surface}`"
+                "zeno: the jumps `{jump}` pile up at t = {time}; say what follows with `then hold \
+                 {surface}`"
             )
         }
         None => format!("zeno: `{surface}` is crossed infinitely often before t = {time}"),
@@ -138,7 +151,8 @@ fn candidate(system: &System, candidate: &Candidate) -> String {
     match candidate.sides.as_slice() {
         [(_, side)] => word(*side).to_string(),
         several => {
-            let named = several.iter().map(|(i, side)| format!("{} {}", system.name_of(*i), word(*side)));
+            let named =
+                several.iter().map(|(i, side)| format!("{} {}", system.name_of(*i), word(*side)));
             named.collect::<Vec<_>>().join(", ")
         }
     }

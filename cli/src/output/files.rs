@@ -1,7 +1,7 @@
 //! The one place that writes files, and the files of a solution.
 //!
-//! A file is as it was or as it should be, whatever stops the program: its new content is put beside it under another
-//! name, is brought to the disk, and takes its name in one step.
+//! A file is as it was or as it should be, whatever stops the program: its new content is put
+//! beside it under another name, is brought to the disk, and takes its name in one step.
 
 use super::document::Document;
 use super::{csv, html, json};
@@ -11,16 +11,23 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Writes `NAME.sol.json`, `NAME.csv` and `NAME.html` to a folder, which is made if need be; returns their paths.
+/// Writes `NAME.sol.json`, `NAME.csv` and `NAME.html` to a folder, which is made if need be;
+/// returns their paths.
 pub fn write(document: &Document, folder: &Path, name: &str) -> Result<Vec<String>, Failure> {
-    let files = [("sol.json", json(document)), ("csv", csv::csv(document)), ("html", html::html(document))];
+    let files =
+        [("sol.json", json(document)), ("csv", csv::csv(document)), ("html", html::html(document))];
     write_all(folder, name, &files)
 }
 
 /// Writes files `NAME.ENDING` to a folder, which is made if need be; returns their paths.
-pub fn write_all(folder: &Path, name: &str, files: &[(&str, String)]) -> Result<Vec<String>, Failure> {
-    let failure =
-        |place: &Path, error| Failure::File(format!("cannot write to {}: {error}", place.display()));
+pub fn write_all(
+    folder: &Path,
+    name: &str,
+    files: &[(&str, String)],
+) -> Result<Vec<String>, Failure> {
+    let failure = |place: &Path, error| {
+        Failure::File(format!("cannot write to {}: {error}", place.display()))
+    };
     fs::create_dir_all(folder).map_err(|error| failure(folder, error))?;
     let mut paths = Vec::new();
     for (ending, text) in files {
@@ -38,7 +45,8 @@ pub fn create(path: &Path, text: &str) -> io::Result<()> {
     replace(path, text).inspect_err(|_| drop(fs::remove_file(path)))
 }
 
-/// Gives a file this text, or leaves it as it is. A symbolic link stays one: the file that it leads to is replaced.
+/// Gives a file this text, or leaves it as it is. A symbolic link stays one: the file that it leads
+/// to is replaced.
 pub fn replace(path: &Path, text: &str) -> io::Result<()> {
     let path = followed(path)?;
     // What may not be written, such as a read-only file, is not replaced either.

@@ -30,7 +30,8 @@ pub struct Document {
     pub second: Option<Named<Named<f64>>>,
     pub compare: Compare,
     pub differentiable: bool,
-    /// Whether it is differentiable, both ways to compute the gradient agree, and the trajectory stays on no kink.
+    /// Whether it is differentiable, both ways to compute the gradient agree, and the trajectory
+    /// stays on no kink.
     pub trusted: bool,
     /// Whether it stays on a kink.
     #[serde(skip)]
@@ -150,7 +151,12 @@ impl Document {
     }
 
     /// No gradient: the simulation does not reach the end.
-    pub fn without(of: &str, system: &System, simulation: &Simulation, source: &SourceFile) -> Self {
+    pub fn without(
+        of: &str,
+        system: &System,
+        simulation: &Simulation,
+        source: &SourceFile,
+    ) -> Self {
         Document {
             fdcc: env!("CARGO_PKG_VERSION").to_string(),
             model: system.name.clone(),
@@ -188,7 +194,9 @@ impl Reason {
             "grazing" => format!("`{surface}` is grazed at t = {time}"),
             "corner" => format!("`{surface}` meets another surface at t = {time}"),
             "coincident" => {
-                format!("`{surface}` is met at t = {time}, when the controls change or at the start")
+                format!(
+                    "`{surface}` is met at t = {time}, when the controls change or at the start"
+                )
             }
             _ => format!("`{surface}` is met at the end, t = {time}"),
         }
@@ -209,7 +217,8 @@ fn doubts(system: &System, exact: &Exact) -> Vec<String> {
     let mut doubts = Vec::new();
     if !exact.agrees() {
         let agreement = scientific(exact.found.agreement, 1);
-        doubts.push(format!("forward and adjoint differ by {agreement}: do not trust this gradient"));
+        doubts
+            .push(format!("forward and adjoint differ by {agreement}: do not trust this gradient"));
     }
     let mut agreed = exact.found.troubles.iter().filter(|_| exact.is_differentiable);
     if let Some(first) = agreed.next() {
@@ -225,7 +234,8 @@ fn doubts(system: &System, exact: &Exact) -> Vec<String> {
 fn bent(kink: &Kink, source: &SourceFile) -> String {
     let line = source.line_column(kink.of.span.0).line;
     format!(
-        "from t = {} on the state stays on a kink of `{}` (line {line}: `abs`, `min`, `max` or a knot of `piecewise`): the derivatives are \
+        "from t = {} on the state stays on a kink of `{}` (line {line}: `abs`, `min`, `max` or a \
+         knot of `piecewise`): the derivatives are \
          those of one side of it",
         short(kink.time),
         kink.of.label
@@ -258,8 +268,9 @@ const TRAP: f64 = 0.1;
 
 /// What is to be said where another gradient is far off.
 fn trap(what: &str, stepped: &Stepped, exact: &[f64]) -> Option<String> {
-    let largest =
-        |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most: f64, it| most.max(it.abs()));
+    let largest = |values: &mut dyn Iterator<Item = f64>| {
+        values.fold(0.0, |most: f64, it| most.max(it.abs()))
+    };
     let size = largest(&mut exact.iter().copied());
     let error = largest(&mut stepped.gradient.iter().zip(exact).map(|(own, exact)| own - exact));
     if error > 10.0 * size {
@@ -269,7 +280,8 @@ fn trap(what: &str, stepped: &Stepped, exact: &[f64]) -> Option<String> {
         ));
     }
     let percent = significant(100.0 * error / size, 2);
-    (error > TRAP * size).then(|| format!("the {what} gradient is off by {percent} % of the exact one"))
+    (error > TRAP * size)
+        .then(|| format!("the {what} gradient is off by {percent} % of the exact one"))
 }
 
 /// The Hessian under the names of both its directions.

@@ -13,11 +13,19 @@ impl Document {
     pub fn words(&self) -> String {
         let Some(value) = self.value else {
             let why = self.ending.why().unwrap_or_default();
-            return format!(" NO GRADIENT of {}: the simulation does not reach the end\n {why}\n", self.of);
+            return format!(
+                " NO GRADIENT of {}: the simulation does not reach the end\n {why}\n",
+                self.of
+            );
         };
-        let head =
-            format!(" {} = {}   {}\n", self.of, self.units.value("objective", value, 12), self.verdict());
-        let warnings: String = self.warnings.iter().map(|warning| format!(" warning: {warning}\n")).collect();
+        let head = format!(
+            " {} = {}   {}\n",
+            self.of,
+            self.units.value("objective", value, 12),
+            self.verdict()
+        );
+        let warnings: String =
+            self.warnings.iter().map(|warning| format!(" warning: {warning}\n")).collect();
         let parts = [head + &warnings, self.derivatives(), self.second(), self.events()];
         parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n")
     }
@@ -37,11 +45,14 @@ impl Document {
 
     fn derivatives(&self) -> String {
         let mut columns = self.own();
-        let mut add =
-            |head: String, column: &Named<Derivative>| columns.push((head, self.cells(column, &self.rows())));
+        let mut add = |head: String, column: &Named<Derivative>| {
+            columns.push((head, self.cells(column, &self.rows())))
+        };
         if let Some(other) = &self.compare.smoothed {
-            let sigma =
-                other.sigma.map(|it| format!("sigma {}, ", self.units.width("", it))).unwrap_or_default();
+            let sigma = other
+                .sigma
+                .map(|it| format!("sigma {}, ", self.units.width("", it)))
+                .unwrap_or_default();
             add(format!("smoothed ({sigma}N {})", other.n), &other.gradient);
         }
         if let Some(other) = &self.compare.discretised {
@@ -51,12 +62,18 @@ impl Document {
             let unit = |(name, _): &(String, Derivative)| self.in_its_unit(name).1;
             columns.push(("unit".into(), self.gradient.0.iter().map(unit).collect()));
         }
-        let labels = self.gradient.0.iter().zip(self.rows()).map(|((name, it), row)| it.label(name, row));
+        let labels =
+            self.gradient.0.iter().zip(self.rows()).map(|((name, it), row)| it.label(name, row));
         let row = |(at, label): (usize, String)| {
-            std::iter::once(label).chain(columns.iter().map(|(_, cells)| cells[at].clone())).collect()
+            std::iter::once(label)
+                .chain(columns.iter().map(|(_, cells)| cells[at].clone()))
+                .collect()
         };
         let rows = labels.enumerate().map(row).collect();
-        table(std::iter::once("by").chain(columns.iter().map(|(head, _)| head.as_str())).collect(), rows)
+        table(
+            std::iter::once("by").chain(columns.iter().map(|(head, _)| head.as_str())).collect(),
+            rows,
+        )
     }
 
     /// Both ways to compute it where there is a derivative, else both sides.
@@ -64,10 +81,14 @@ impl Document {
         let rows = self.rows();
         let Some(sides) = &self.one_sided else {
             let both = [("exact", &self.gradient), ("adjoint", &self.adjoint)];
-            return both.map(|(head, column)| (head.to_string(), self.cells(column, &rows))).to_vec();
+            return both
+                .map(|(head, column)| (head.to_string(), self.cells(column, &rows)))
+                .to_vec();
         };
         let digits = |name: &str, side: Option<f64>| {
-            side.map_or("-".to_string(), |value| significant(value * self.in_its_unit(name).0, DIGITS))
+            side.map_or("-".to_string(), |value| {
+                significant(value * self.in_its_unit(name).0, DIGITS)
+            })
         };
         let below = sides.0.iter().map(|(name, sides)| digits(name, sides.below)).collect();
         let above = sides.0.iter().map(|(name, sides)| digits(name, sides.above)).collect();
@@ -81,7 +102,8 @@ impl Document {
         column.0.iter().zip(rows).map(cell).collect()
     }
 
-    /// How many of its unit one in SI of a derivative by a name is, and that unit. A start is in the unit of its state.
+    /// How many of its unit one in SI of a derivative by a name is, and that unit. A start is in
+    /// the unit of its state.
     fn in_its_unit(&self, name: &str) -> (f64, String) {
         self.units.of_derivative("objective", name.strip_suffix("(start)").unwrap_or(name))
     }
@@ -104,7 +126,12 @@ impl Document {
 
     fn events(&self) -> String {
         let row = |it: &super::ending::EventEntry| {
-            vec![it.surface.clone(), it.what(), self.units.value("time", it.time, DIGITS), short(it.margin)]
+            vec![
+                it.surface.clone(),
+                it.what(),
+                self.units.value("time", it.time, DIGITS),
+                short(it.margin),
+            ]
         };
         table(vec!["surface", "event", "at t", "margin"], self.events.iter().map(row).collect())
     }
@@ -115,9 +142,9 @@ impl Derivative {
     fn largest(&self) -> usize {
         match self {
             Derivative::Number(_) => 0,
-            Derivative::Rows(rows) => {
-                (0..rows.len()).max_by(|i, j| rows[*i].abs().total_cmp(&rows[*j].abs())).unwrap_or(0)
-            }
+            Derivative::Rows(rows) => (0..rows.len())
+                .max_by(|i, j| rows[*i].abs().total_cmp(&rows[*j].abs()))
+                .unwrap_or(0),
         }
     }
 
@@ -132,7 +159,9 @@ impl Derivative {
     fn label(&self, name: &str, row: usize) -> String {
         match self {
             Derivative::Number(_) => name.to_string(),
-            Derivative::Rows(rows) => format!("{name} (largest: row {} of {})", row + 1, rows.len()),
+            Derivative::Rows(rows) => {
+                format!("{name} (largest: row {} of {})", row + 1, rows.len())
+            }
         }
     }
 }

@@ -1,11 +1,13 @@
-//! One HTML page per solution: a summary and a plot per signal, as inline SVG. No script, no network.
+//! One HTML page per solution: a summary and a plot per signal, as inline SVG. No script, no
+//! network.
 
 use super::document::{Document, switching};
 use super::number::scientific;
 use super::plot::{escape, plot};
 use super::units::Units;
 
-const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;max-width:1300px;margin:2em auto;padding:0 1em;color:#222}\
+const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;max-width:1300px;margin:2em \
+                     auto;padding:0 1em;color:#222}\
 h1{font-size:1.5em}h2{font-size:1.15em;margin-top:1.6em}table{border-collapse:collapse}\
 td{padding:.15em 1em .15em 0;vertical-align:top}td:first-child{color:#666;white-space:nowrap}\
 .plots{display:flex;flex-wrap:wrap;gap:.6em}figure{margin:0}figcaption{font-weight:600}\
@@ -26,15 +28,20 @@ pub fn html(document: &Document) -> String {
             let is_state = std::ptr::eq(signals, &document.states);
             let plots = signals.0.iter().map(|(name, values)| {
                 let befores = if is_state { befores(document, name, units) } else { Vec::new() };
-                let values: Vec<f64> = values.iter().map(|value| units.scaled(name, *value)).collect();
+                let values: Vec<f64> =
+                    values.iter().map(|value| units.scaled(name, *value)).collect();
                 plot(document, &units.title(name), &values, &befores)
             });
-            format!("<h2>{title}</h2>\n<div class=\"plots\">\n{}</div>\n", plots.collect::<String>())
+            format!(
+                "<h2>{title}</h2>\n<div class=\"plots\">\n{}</div>\n",
+                plots.collect::<String>()
+            )
         })
         .collect();
     let title = escape(&document.model);
     format!(
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<title>{title}</title>\n\
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta \
+         charset=\"utf-8\"/>\n<title>{title}</title>\n\
          <style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n{}{}{sections}</body>\n</html>\n",
         summary(document),
         legend(document)
@@ -43,7 +50,9 @@ pub fn html(document: &Document) -> String {
 
 /// The values of a state just before jumps, in its unit, with the grid points of those after them.
 fn befores(document: &Document, name: &str, units: &Units) -> Vec<(usize, f64)> {
-    let at = |k: usize| document.befores(k).filter_map(move |before| Some((k, before.get(name).copied()?)));
+    let at = |k: usize| {
+        document.befores(k).filter_map(move |before| Some((k, before.get(name).copied()?)))
+    };
     let all = (0..document.time.len()).flat_map(at);
     all.map(|(k, value)| (k, units.scaled(name, value))).collect()
 }
@@ -68,13 +77,16 @@ fn rows(document: &Document) -> Vec<(String, String)> {
     rows.push(row("objective", value("objective", document.objective, 10)));
     rows.extend(document.free.0.iter().map(|(name, it)| row(name, value(name, *it, 10))));
     let jumps = document.jumps.iter();
-    rows.extend(
-        jumps.map(|it| row(&format!("jump {}", it.jump), format!("at t = {}", value("time", it.time, 10)))),
-    );
+    rows.extend(jumps.map(|it| {
+        row(&format!("jump {}", it.jump), format!("at t = {}", value("time", it.time, 10)))
+    }));
     rows.push(row("iterations", document.iterations.to_string()));
     rows.push(row("constraint violation", scientific(document.constraint_violation, 1)));
     rows.push(row("optimality error", scientific(document.kkt_error, 1)));
-    rows.push(row("method", format!("{}, N = {}, kernel {}", method.scheme, method.n, method.kernel)));
+    rows.push(row(
+        "method",
+        format!("{}, N = {}, kernel {}", method.scheme, method.n, method.kernel),
+    ));
     let surfaces = document.surfaces.0.iter().zip(&method.sigmas.0);
     rows.extend(surfaces.map(|((name, spans), (_, sigma))| {
         row(

@@ -32,7 +32,8 @@ use serde::Serialize;
 /// Why nothing more is printed.
 static UNPRINTED: OnceLock<std::io::Error> = OnceLock::new();
 
-/// Prints to the standard output. Where that fails, [`ended`] says so in the end: a command still writes its files.
+/// Prints to the standard output. Where that fails, [`ended`] says so in the end: a command still
+/// writes its files.
 pub fn print(text: &str) {
     if UNPRINTED.get().is_none() {
         let mut stream = std::io::stdout();
@@ -53,8 +54,8 @@ pub fn is_closed() -> bool {
     UNPRINTED.get().is_some()
 }
 
-/// How a command ends that would have ended so. A reader that has gone away, as in `fdcc check ... | head`, has seen what it
-/// wanted; a disk that is full has lost the result.
+/// How a command ends that would have ended so. A reader that has gone away, as in `fdcc check ...
+/// | head`, has seen what it wanted; a disk that is full has lost the result.
 pub fn ended(exit: Exit) -> Exit {
     match UNPRINTED.get() {
         None => exit,

@@ -28,8 +28,11 @@ fn trim(text: String) -> String {
         Some((number, exponent)) => (number.to_string(), format!("e{exponent}")),
         None => (text, String::new()),
     };
-    let number =
-        if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { &number };
+    let number = if number.contains('.') {
+        number.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        &number
+    };
     format!("{number}{exponent}")
 }
 

@@ -1,7 +1,10 @@
-//! What contradicts that an answer is an optimum, whatever its replay says: conditions that every optimum meets.
+//! What contradicts that an answer is an optimum, whatever its replay says: conditions that every
+//! optimum meets.
 //!
-//! A replay shows that a trajectory is possible. That nothing better is near it, only the multipliers say; and where the gradient through a thin layer is lost,
-//! they are wrong though all conditions of the discrete problem are met. The measures and their limits are in `docs/method/costate.md`.
+//! A replay shows that a trajectory is possible. That nothing better is near it, only the
+//! multipliers say; and where the gradient through a thin layer is lost, they are wrong though all
+//! conditions of the discrete problem are met. The measures and their limits are in
+//! `docs/method/costate.md`.
 
 use super::document::HamiltonianCheck;
 use super::number::short;
@@ -52,22 +55,25 @@ pub enum Kind {
 }
 
 impl Optimality {
-    /// Of a solution with this Hamiltonian. `gap` is by how much its replay differs: the states of a coarse grid excuse as much. Where the optimum of the discrete
-    /// problem is proved to be global, what its Hamiltonian misses is the grid alone.
+    /// Of a solution with this Hamiltonian. `gap` is by how much its replay differs: the states of
+    /// a coarse grid excuse as much. Where the optimum of the discrete problem is proved to be
+    /// global, what its Hamiltonian misses is the grid alone.
     pub fn new(hamiltonian: &HamiltonianCheck, gap: Option<f64>, is_global: bool) -> Self {
         let constant = hamiltonian.deviation.filter(|_| !is_global);
         let pause = hamiltonian.pause.filter(|_| !is_global).map(|gain| gain.max(0.0));
-        let kind = hamiltonian.expected.map_or(Kind::HamiltonianConstant, |_| Kind::HamiltonianValue);
+        let kind =
+            hamiltonian.expected.map_or(Kind::HamiltonianConstant, |_| Kind::HamiltonianValue);
         let limit = OFF.max(gap.unwrap_or(0.0));
-        let constant = constant.map(|figure| Check::new(kind, None, (figure, hamiltonian.size), limit));
-        let signs = hamiltonian
-            .violations
-            .0
-            .iter()
-            .map(|(name, part)| Check::new(Kind::Minimum, Some(name.clone()), (*part, 1.0), VIOLATED));
-        let pause = pause.map(|figure| Check::new(Kind::Pause, None, (figure, hamiltonian.size), limit));
+        let constant =
+            constant.map(|figure| Check::new(kind, None, (figure, hamiltonian.size), limit));
+        let signs = hamiltonian.violations.0.iter().map(|(name, part)| {
+            Check::new(Kind::Minimum, Some(name.clone()), (*part, 1.0), VIOLATED)
+        });
+        let pause =
+            pause.map(|figure| Check::new(Kind::Pause, None, (figure, hamiltonian.size), limit));
         let checks: Vec<Check> = constant.into_iter().chain(pause).chain(signs).collect();
-        let told: Vec<String> = checks.iter().filter(|it| it.contradicts).map(Check::words).collect();
+        let told: Vec<String> =
+            checks.iter().filter(|it| it.contradicts).map(Check::words).collect();
         let contradicted = !told.is_empty();
         let says = if contradicted { told.join(", ") } else { "nothing contradicts".into() };
         Optimality { says, contradicted, checks }

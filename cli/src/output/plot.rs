@@ -34,7 +34,8 @@ impl Axes {
 /// The range of the finite values, widened by a fraction of itself; never empty.
 fn range(values: &[f64], margin: f64) -> [f64; 2] {
     let finite = values.iter().copied().filter(|value| value.is_finite());
-    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    let (low, high) =
+        finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
     match high - low {
         width if width > 0.0 && width.is_finite() => [low - margin * width, high + margin * width],
         _ if low.is_finite() => [low - low.abs().max(1.0), low + low.abs().max(1.0)],
@@ -45,7 +46,8 @@ fn range(values: &[f64], margin: f64) -> [f64; 2] {
 /// A figure with its caption. `befores` are values just before jumps, with the places of those
 /// after them.
 pub fn plot(document: &Document, name: &str, values: &[f64], befores: &[(usize, f64)]) -> String {
-    let all: Vec<f64> = values.iter().copied().chain(befores.iter().map(|before| before.1)).collect();
+    let all: Vec<f64> =
+        values.iter().copied().chain(befores.iter().map(|before| before.1)).collect();
     let time: Vec<f64> = document.time.iter().map(|t| document.units.scaled("time", *t)).collect();
     let axes = Axes::new(&time, &all);
     format!(
@@ -67,7 +69,8 @@ fn shades(document: &Document, axes: &Axes) -> String {
         let (width, height) = (end - x, BOTTOM - TOP);
         let title = format!("<title>{} is held</title>", escape(name));
         format!(
-            "<rect class=\"held\" x=\"{x:.1}\" y=\"{TOP}\" width=\"{width:.1}\" height=\"{height}\">{title}</rect>"
+            "<rect class=\"held\" x=\"{x:.1}\" y=\"{TOP}\" width=\"{width:.1}\" \
+             height=\"{height}\">{title}</rect>"
         )
     };
     held.map(shade).collect()
@@ -92,15 +95,18 @@ fn ticks(axes: &Axes, unit: &str) -> String {
     values.concat() + &times.concat()
 }
 
-/// A polyline through grid values; steps for a signal that has one value per interval. A value that is not finite
-/// leaves a gap, a jump has both of its sides.
+/// A polyline through grid values; steps for a signal that has one value per interval. A value that
+/// is not finite leaves a gap, a jump has both of its sides.
 fn path(time: &[f64], values: &[f64], befores: &[(usize, f64)], axes: &Axes) -> String {
     let is_stepwise = values.len() < time.len();
     let mut path = String::new();
     let mut command = 'M';
-    let before =
-        |k: usize| befores.iter().filter(move |before| before.0 == k).map(move |before| (k, before.1));
-    for (k, value) in values.iter().enumerate().flat_map(|(k, value)| before(k).chain([(k, *value)])) {
+    let before = |k: usize| {
+        befores.iter().filter(move |before| before.0 == k).map(move |before| (k, before.1))
+    };
+    for (k, value) in
+        values.iter().enumerate().flat_map(|(k, value)| before(k).chain([(k, *value)]))
+    {
         if !value.is_finite() || !time[k].is_finite() {
             command = 'M';
             continue;

@@ -5,9 +5,11 @@ use serde_json::{Value, json};
 
 /// One run of `fdcc check`.
 pub fn log<'d>(found: impl Iterator<Item = (&'d SourceFile, &'d Diagnostic)>) -> Value {
-    let rule = |code: &Code| json!({ "id": code.as_str(), "shortDescription": { "text": code.title() } });
+    let rule =
+        |code: &Code| json!({ "id": code.as_str(), "shortDescription": { "text": code.title() } });
     let rules: Vec<Value> = Code::ALL.iter().map(rule).collect();
-    let results: Vec<Value> = found.map(|(source, diagnostic)| result(source, diagnostic)).collect();
+    let results: Vec<Value> =
+        found.map(|(source, diagnostic)| result(source, diagnostic)).collect();
     json!({
         "$schema": "https://json.schemastore.org/sarif-2.1.0.json",
         "version": "2.1.0",

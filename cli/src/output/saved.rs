@@ -73,7 +73,8 @@ impl Saved {
     /// Reads a `.sol.json`.
     pub fn read(path: &Path) -> Result<Saved, Failure> {
         let failure = |what: String| Failure::File(format!("{}{what}", path.display()));
-        let text = fs::read_to_string(path).map_err(|error| failure(format!(" cannot be read: {error}")))?;
+        let text = fs::read_to_string(path)
+            .map_err(|error| failure(format!(" cannot be read: {error}")))?;
         serde_json::from_str(&text).map_err(|error| failure(format!(" is not a solution: {error}")))
     }
 }
@@ -120,9 +121,14 @@ fn saved_jump(it: &Happened) -> SavedJump {
 }
 
 fn saved_nodes(nodes: &ControlNodes) -> SavedNodes {
-    SavedNodes { time: nodes.time.iter().copied().map(finite).collect(), values: columns(&nodes.values) }
+    SavedNodes {
+        time: nodes.time.iter().copied().map(finite).collect(),
+        values: columns(&nodes.values),
+    }
 }
 
 fn columns(of: &Named<Vec<f64>>) -> Named<Column> {
-    of.0.iter().map(|(name, column)| (name.clone(), column.iter().copied().map(finite).collect())).collect()
+    of.0.iter()
+        .map(|(name, column)| (name.clone(), column.iter().copied().map(finite).collect()))
+        .collect()
 }

@@ -36,10 +36,16 @@ struct Counts {
 }
 
 impl Document {
-    pub fn new(system: &System, simulation: &Simulation, source: &SourceFile, units: Units) -> Self {
+    pub fn new(
+        system: &System,
+        simulation: &Simulation,
+        source: &SourceFile,
+        units: Units,
+    ) -> Self {
         let ends = simulation.end.iter().zip(&system.states);
         let integrals = ends.filter(|(_, state)| state.hidden);
-        let columns = simulation.states.iter().zip(&system.states).filter(|(_, state)| !state.hidden);
+        let columns =
+            simulation.states.iter().zip(&system.states).filter(|(_, state)| !state.hidden);
         let mut end = vec![("time".to_string(), simulation.end_time)];
         end.extend(state(system, &simulation.end).0);
         let counts = simulation.counts;

@@ -20,7 +20,8 @@ pub struct Row<'d> {
     kkt_error: f64,
     constraint_violation: f64,
     seconds: Seconds,
-    /// Whether the replay confirms it and nothing contradicts that it is an optimum; only where that was asked.
+    /// Whether the replay confirms it and nothing contradicts that it is an optimum; only where
+    /// that was asked.
     #[serde(skip_serializing_if = "Option::is_none")]
     confirmed: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -66,20 +67,28 @@ fn value(text: &str) -> Value<'_> {
 const DIGITS: usize = 7;
 
 /// The table: what was swept, then what came out.
-pub fn table<'d>(rows: impl Iterator<Item = (&'d Named<String>, &'d Document)>, confirmed: bool) -> String {
+pub fn table<'d>(
+    rows: impl Iterator<Item = (&'d Named<String>, &'d Document)>,
+    confirmed: bool,
+) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING);
     for (swept, document) in rows {
         let names = swept.0.iter().map(|(name, _)| name.as_str());
-        let found = ["objective"].into_iter().chain(document.free.0.iter().map(|(name, _)| name.as_str()));
+        let found =
+            ["objective"].into_iter().chain(document.free.0.iter().map(|(name, _)| name.as_str()));
         let found = found.map(|name| document.units.title(name));
-        let results = ["iterations", "seconds", "status"].into_iter().chain(confirmed.then_some("confirmed"));
+        let results =
+            ["iterations", "seconds", "status"].into_iter().chain(confirmed.then_some("confirmed"));
         table.set_header(names.map(str::to_string).chain(found).chain(results.map(str::to_string)));
         let confirmed = confirmed.then(|| answer(document).to_string());
         table.add_row(cells(swept, document).into_iter().chain(confirmed));
     }
     let last = table.column_count().saturating_sub(1 + usize::from(confirmed));
-    table.column_iter_mut().take(last).for_each(|column| column.set_cell_alignment(CellAlignment::Right));
+    table
+        .column_iter_mut()
+        .take(last)
+        .for_each(|column| column.set_cell_alignment(CellAlignment::Right));
     let lines = table.lines().map(|line| line.trim_end().to_string() + "\n");
     lines.collect()
 }
@@ -96,8 +105,11 @@ fn answer(document: &Document) -> &'static str {
 
 fn cells(swept: &Named<String>, document: &Document) -> Vec<String> {
     let values = swept.0.iter().map(|(_, value)| value.clone());
-    let free =
-        document.free.0.iter().map(|(name, value)| aligned(document.units.scaled(name, *value), DIGITS));
+    let free = document
+        .free
+        .0
+        .iter()
+        .map(|(name, value)| aligned(document.units.scaled(name, *value), DIGITS));
     let rest = [
         document.iterations.to_string(),
         format!("{:.3}", document.seconds.total),

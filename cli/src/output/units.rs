@@ -1,4 +1,5 @@
-//! Values for people: in the unit in which the model declares the name, with the unit beside it. JSON stays in SI and says so.
+//! Values for people: in the unit in which the model declares the name, with the unit beside it.
+//! JSON stays in SI and says so.
 
 use super::named::Named;
 use super::number::{short, significant};
@@ -57,9 +58,11 @@ impl Units {
         }
     }
 
-    /// How many of its unit one in SI of such a derivative is, and that unit: `J per kg`, `J` by a number, `1 per kg`.
+    /// How many of its unit one in SI of such a derivative is, and that unit: `J per kg`, `J` by a
+    /// number, `1 per kg`.
     pub fn of_derivative(&self, of: &str, by: &str) -> (f64, String) {
-        let unit = |name: &str| self.of(name).map(|it| it.unit.as_str()).filter(|unit| !unit.is_empty());
+        let unit =
+            |name: &str| self.of(name).map(|it| it.unit.as_str()).filter(|unit| !unit.is_empty());
         let text = match (unit(of), unit(by)) {
             (None, None) => String::new(),
             (Some(of), None) => of.into(),
@@ -102,7 +105,9 @@ impl Units {
 
     /// `x = 1 m  v = 0.5 m/s`
     pub fn pairs(&self, values: &Named<f64>, digits: usize) -> String {
-        let pair = |(name, value): &(String, f64)| format!("{name} = {}", self.value(name, *value, digits));
+        let pair = |(name, value): &(String, f64)| {
+            format!("{name} = {}", self.value(name, *value, digits))
+        };
         values.0.iter().map(pair).collect::<Vec<_>>().join("  ")
     }
 }
@@ -127,8 +132,11 @@ mod tests {
             scale,
             ..NamedUnit::default()
         };
-        let names =
-            vec![named("v", "km/h", "m/s", 1.0 / 3.6), named("phi", "deg", "", 0.5), named("n", "", "", 1.0)];
+        let names = vec![
+            named("v", "km/h", "m/s", 1.0 / 3.6),
+            named("phi", "deg", "", 0.5),
+            named("n", "", "", 1.0),
+        ];
         let conditions = vec![named("end pos == goal", "mm", "m", 1e-3)];
         Units(names, conditions, None)
     }

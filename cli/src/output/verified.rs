@@ -1,4 +1,5 @@
-//! A replay of a solution on the true system: the short form in every solve, the document and the words of `fdcc verify`.
+//! A replay of a solution on the true system: the short form in every solve, the document and the
+//! words of `fdcc verify`.
 
 use super::document::Span;
 use super::ending::{Ending, EventEntry, events, state};
@@ -25,11 +26,13 @@ pub struct Verification {
     pub completed: bool,
     /// The objective of the replay.
     pub objective: Option<f64>,
-    /// The largest difference to the solution over states and grid points, as a part of how far the state moves.
+    /// The largest difference to the solution over states and grid points, as a part of how far the
+    /// state moves.
     pub state_gap: Option<f64>,
     /// Of which state that is; nothing where none differs.
     pub differs: Option<Differs>,
-    /// The largest violation of a bound, a path or an end condition, as a part of the size of its terms.
+    /// The largest violation of a bound, a path or an end condition, as a part of the size of its
+    /// terms.
     pub relative_violation: Option<f64>,
     /// The same in SI.
     pub constraint_violation: Option<f64>,
@@ -64,7 +67,8 @@ impl Verification {
         let worst = verified.worst().map(|condition| (condition.part, worst(verified, condition)));
         let (part, worst) = worst.unzip();
         let largest = verified.largest_gap().filter(|it| it.difference > 0.0);
-        let differs = |it: &Gap| Differs { state: it.name.clone(), difference: it.difference, time: it.time };
+        let differs =
+            |it: &Gap| Differs { state: it.name.clone(), difference: it.difference, time: it.time };
         let (gap, part) = (largest.map_or(0.0, |it| it.part), part.unwrap_or(0.0));
         let is_whole = verified.is_whole;
         Verification {
@@ -75,7 +79,8 @@ impl Verification {
             state_gap: is_whole.then_some(gap),
             differs: largest.filter(|_| is_whole).map(differs),
             relative_violation: is_whole.then_some(part),
-            constraint_violation: is_whole.then_some(worst.as_ref().map_or(0.0, |worst| worst.violation)),
+            constraint_violation: is_whole
+                .then_some(worst.as_ref().map_or(0.0, |worst| worst.violation)),
             worst: worst.filter(|_| is_whole),
             events: verified.simulation.events.len(),
         }
@@ -176,8 +181,10 @@ impl Document {
             let time = it.point.map(|point| simulation.time[point]);
             (it.label.clone(), ConditionEntry { violation: it.violation, relative: it.part, time })
         });
-        let span = |stay: &Stay| Span { mode: name(stay.mode).to_string(), from: stay.from, to: stay.to };
-        let surfaces = stays.iter().enumerate().map(|(at, stays)| (system.name_of(at).to_string(), stays));
+        let span =
+            |stay: &Stay| Span { mode: name(stay.mode).to_string(), from: stay.from, to: stay.to };
+        let surfaces =
+            stays.iter().enumerate().map(|(at, stays)| (system.name_of(at).to_string(), stays));
         let mut surfaces: Vec<(String, Vec<Span>)> =
             surfaces.map(|(name, stays)| (name, stays.iter().map(span).collect())).collect();
         // The components of a ball are one surface.
@@ -221,14 +228,19 @@ impl Document {
                 let differs = self.verification.difference(&self.units);
                 let differs = differs.unwrap_or_else(|| "no state differs".into());
                 let violated = worst.as_ref().zip(self.verification.violation(&self.units));
-                let violated =
-                    violated.map(|(worst, amount)| format!("violates `{}` by {amount}", worst.condition));
+                let violated = violated
+                    .map(|(worst, amount)| format!("violates `{}` by {amount}", worst.condition));
                 let violated = violated.unwrap_or_else(|| "meets all conditions".into());
-                format!(" {word} on the true system: {differs}, {violated} (asked for: {})\n", short(*asked))
+                format!(
+                    " {word} on the true system: {differs}, {violated} (asked for: {})\n",
+                    short(*asked)
+                )
             }
             why => {
                 let why = why.unwrap_or_else(|| "it ended early".into());
-                format!(" NOT CONFIRMED: the replay on the true system does not reach the end\n {why}\n")
+                format!(
+                    " NOT CONFIRMED: the replay on the true system does not reach the end\n {why}\n"
+                )
             }
         };
         let place = worst.as_ref().filter(|worst| worst.time.is_some());
@@ -244,7 +256,9 @@ impl Document {
         let of = |value: Option<f64>| value.map_or("-".to_string(), text);
         match (self.objective, self.verification.objective) {
             (_, None) => String::new(),
-            (own, replayed) => format!(" objective {}   of the solution {}\n", of(replayed), of(own)),
+            (own, replayed) => {
+                format!(" objective {}   of the solution {}\n", of(replayed), of(own))
+            }
         }
     }
 
@@ -258,7 +272,8 @@ impl Document {
     }
 
     fn met(&self) -> String {
-        let time = |time: Option<f64>| time.map(|it| self.units.value("time", it, 6)).unwrap_or_default();
+        let time =
+            |time: Option<f64>| time.map(|it| self.units.value("time", it, 6)).unwrap_or_default();
         let row = |(name, it): &(String, ConditionEntry)| {
             let violation = self.units.violation(name, it.violation, 6);
             vec![name.clone(), violation, short(it.relative), time(it.time)]
@@ -270,7 +285,9 @@ impl Document {
     fn modes(&self) -> String {
         let rows = self.surfaces.0.iter().flat_map(|(name, spans)| {
             let digits = |time: f64| self.units.value("time", time, 9);
-            spans.iter().map(move |it| vec![name.clone(), it.mode.clone(), digits(it.from), digits(it.to)])
+            spans
+                .iter()
+                .map(move |it| vec![name.clone(), it.mode.clone(), digits(it.from), digits(it.to)])
         });
         table(["surface", "mode", "from", "to"].to_vec(), rows.collect())
     }
@@ -285,6 +302,9 @@ pub fn table(head: Vec<&str>, rows: Vec<Vec<String>>) -> String {
     table.load_style(presets::NOTHING);
     table.set_header(head);
     table.add_rows(rows);
-    table.column_iter_mut().skip(1).for_each(|column| column.set_cell_alignment(CellAlignment::Right));
+    table
+        .column_iter_mut()
+        .skip(1)
+        .for_each(|column| column.set_cell_alignment(CellAlignment::Right));
     table.lines().map(|line| line.trim_end().to_string() + "\n").collect()
 }

@@ -9,7 +9,8 @@ pub fn lines(document: &Document) -> Vec<String> {
     if document.sequences.is_empty() {
         return Vec::new();
     }
-    let when = |it: &Happened| format!("{} at t = {}", it.jump, document.units.value("time", it.time, 6));
+    let when =
+        |it: &Happened| format!("{} at t = {}", it.jump, document.units.value("time", it.time, 6));
     let happened = match document.jumps.len() {
         0 => "none is best".into(),
         _ => document.jumps.iter().map(when).collect::<Vec<_>>().join(", "),
@@ -18,7 +19,8 @@ pub fn lines(document: &Document) -> Vec<String> {
     lines.extend(with_others(document));
     if document.sequences_left_out {
         lines.push(
-            "       longer sequences: not tried; `at most n` in the model says how often a jump may happen"
+            "       longer sequences: not tried; `at most n` in the model says how often a jump \
+             may happen"
                 .into(),
         );
     }
@@ -44,7 +46,8 @@ fn with_others(document: &Document) -> Vec<String> {
     match failed.as_slice() {
         [] => {}
         [one] => lines.push(format!("       {}: {}", one.words, one.status.replace('_', " "))),
-        many => lines.push(format!("       {}: no trajectory found", plural(many.len(), "other sequence"))),
+        many => lines
+            .push(format!("       {}: no trajectory found", plural(many.len(), "other sequence"))),
     }
     lines
 }

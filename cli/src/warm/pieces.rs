@@ -1,4 +1,5 @@
-//! An earlier solution with jumps, cut at them, for the problem in which its pieces are side by side.
+//! An earlier solution with jumps, cut at them, for the problem in which its pieces are side by
+//! side.
 
 use super::normalised;
 use crate::output::named::Named;
@@ -8,20 +9,26 @@ use fdcc_runtime::problem::Problem;
 use fdcc_runtime::starts::Earlier;
 use fdcc_runtime::warm::from_earlier;
 
-/// The start from the solution, whose jumps are those of the problem; nothing if it is not whole. `between` is what holds between the jumps.
+/// The start from the solution, whose jumps are those of the problem; nothing if it is not whole.
+/// `between` is what holds between the jumps.
 pub fn start(saved: &Saved, between: &Problem, problem: &Problem) -> Option<Start> {
     let pieces = saved.jumps.len() + 1;
     let intervals = (saved.time.len().checked_sub(1)?) / pieces;
     let cut = Cut { saved, pieces, intervals };
     let shown = between.states.iter().filter(|state| !state.hidden);
     let states = cut.all(shown.map(|state| cut.state(&state.name)).collect());
-    let controls = cut.all(between.controls.iter().map(|control| cut.control(&control.name)).collect());
+    let controls =
+        cut.all(between.controls.iter().map(|control| cut.control(&control.name)).collect());
     let names = between.unknowns.iter().map(|unknown| &between.parameters[unknown.parameter].name);
-    let mut unknowns: Vec<Option<f64>> = names.map(|name| saved.free.get(name).copied().flatten()).collect();
+    let mut unknowns: Vec<Option<f64>> =
+        names.map(|name| saved.free.get(name).copied().flatten()).collect();
     unknowns.extend(cut.lengths());
     let times = normalised(saved.time.get(..=intervals)?);
     (intervals * pieces + 1 == saved.time.len() && cut.is_at_jumps()).then(|| {
-        from_earlier(problem, &Earlier { times, states, controls, unknowns, widths: saved.widths(problem) })
+        from_earlier(
+            problem,
+            &Earlier { times, states, controls, unknowns, widths: saved.widths(problem) },
+        )
     })
 }
 
@@ -36,7 +43,8 @@ struct Cut<'s> {
 type Columns = Vec<Option<Vec<f64>>>;
 
 impl Cut<'_> {
-    /// Whether the pieces begin where jumps happen: a surface that was crossed without a jump ended a piece, too.
+    /// Whether the pieces begin where jumps happen: a surface that was crossed without a jump ended
+    /// a piece, too.
     fn is_at_jumps(&self) -> bool {
         let begins = self.saved.time.iter().step_by(self.intervals.max(1)).skip(1);
         self.saved.jumps.iter().zip(begins).all(|(jump, begin)| jump.time == *begin)

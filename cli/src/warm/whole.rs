@@ -1,4 +1,5 @@
-//! Whether an earlier solution has a number wherever it should: half of one is no place to start from.
+//! Whether an earlier solution has a number wherever it should: half of one is no place to start
+//! from.
 
 use crate::output::saved::{Column, Saved};
 use fdcc_runtime::problem::Problem;

@@ -7,7 +7,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
-/// The quickest way from 0 to 1 with the least `integral(u^2)` is straight: `u = 1`, `x = t`, on every grid.
+/// The quickest way from 0 to 1 with the least `integral(u^2)` is straight: `u = 1`, `x = t`, on
+/// every grid.
 pub const RAMP: &str = "\
 model ramp
 param goal = 1

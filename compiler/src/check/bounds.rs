@@ -1,4 +1,5 @@
-//! FDC0401: bounds that contradict each other, a start outside its bounds, or time that runs backwards.
+//! FDC0401: bounds that contradict each other, a start outside its bounds, or time that runs
+//! backwards.
 
 use super::Facts;
 use crate::model::{Range, State};
@@ -10,15 +11,20 @@ use fdcc_grammar::{Code, Diagnostic, Edit, Fix, Label, Span};
 
 /// Reports all of them together: they have one cause, a slip of the pen, and one repair.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
-    let mut slips = Slips { labels: Vec::new(), repairs: Vec::new(), swap: Fix::certain("swap the bounds") };
+    let mut slips =
+        Slips { labels: Vec::new(), repairs: Vec::new(), swap: Fix::certain("swap the bounds") };
     for item in &facts.items {
         look(facts.meaning, item, &mut slips);
     }
     rows(facts.meaning, &mut slips);
     let mut labels = slips.labels.into_iter();
     if let Some(first) = labels.next() {
-        let mut diagnostic =
-            Diagnostic::new(Code::EmptyBounds, "these bounds leave no room", first.span, first.text);
+        let mut diagnostic = Diagnostic::new(
+            Code::EmptyBounds,
+            "these bounds leave no room",
+            first.span,
+            first.text,
+        );
         diagnostic.labels.extend(labels);
         diagnostic.fixes.extend(Some(slips.swap).filter(|swap| !swap.edits.is_empty()));
         found.push(diagnostic.help(slips.repairs.join("\n")));
@@ -33,8 +39,10 @@ struct Slips {
 }
 
 fn look(meaning: &Elaborator<'_>, item: &Item, slips: &mut Slips) {
-    let first = crate::resolve::scope::declared(item).and_then(|name| meaning.scope.find(&name.name));
-    let Some(index) = first.filter(|&at| std::ptr::eq(meaning.scope.declarations[at].item, item)) else {
+    let first =
+        crate::resolve::scope::declared(item).and_then(|name| meaning.scope.find(&name.name));
+    let Some(index) = first.filter(|&at| std::ptr::eq(meaning.scope.declarations[at].item, item))
+    else {
         return;
     };
     if let ItemKind::Time { interval, .. } = &item.kind {
@@ -44,12 +52,17 @@ fn look(meaning: &Elaborator<'_>, item: &Item, slips: &mut Slips) {
     let scale = scale(item);
     match &item.kind {
         ItemKind::Control { name, bounds: Some(bounds), parts, .. } => {
-            let ranges = meaning.model.controls[index..].iter().take(parts.len().max(1)).map(|it| it.range);
+            let ranges =
+                meaning.model.controls[index..].iter().take(parts.len().max(1)).map(|it| it.range);
             reversed(meaning, ("control", name, scale), bounds, ranges, slips)
         }
-        ItemKind::Free { name, bounds: Some(bounds), .. } => {
-            reversed(meaning, ("free", name, scale), bounds, [meaning.model.frees[index].range], slips)
-        }
+        ItemKind::Free { name, bounds: Some(bounds), .. } => reversed(
+            meaning,
+            ("free", name, scale),
+            bounds,
+            [meaning.model.frees[index].range],
+            slips,
+        ),
         ItemKind::Param { name, value, bounds: Some(bounds), .. } => {
             let range = meaning.model.params[index].range;
             reversed(meaning, ("param", name, scale), bounds, [range], slips);
@@ -59,9 +72,16 @@ fn look(meaning: &Elaborator<'_>, item: &Item, slips: &mut Slips) {
             }
         }
         ItemKind::State { name, bounds, start, parts, .. } => {
-            let states = meaning.model.states.get(index..index + parts.len().max(1)).unwrap_or_default();
+            let states =
+                meaning.model.states.get(index..index + parts.len().max(1)).unwrap_or_default();
             if let Some(bounds) = bounds {
-                reversed(meaning, ("state", name, scale), bounds, states.iter().map(|it| it.range), slips);
+                reversed(
+                    meaning,
+                    ("state", name, scale),
+                    bounds,
+                    states.iter().map(|it| it.range),
+                    slips,
+                );
             }
             if let Some(Start::Value(value)) = start {
                 starts(meaning, states, (value.span, scale), slips);
@@ -71,7 +91,12 @@ fn look(meaning: &Elaborator<'_>, item: &Item, slips: &mut Slips) {
     }
 }
 
-fn starts(meaning: &Elaborator<'_>, states: &[State], (span, scale): (Span, f64), slips: &mut Slips) {
+fn starts(
+    meaning: &Elaborator<'_>,
+    states: &[State],
+    (span, scale): (Span, f64),
+    slips: &mut Slips,
+) {
     for state in states {
         let given = state.start.map_or(f64::NAN, |start| meaning.numeric(start));
         let subject = Subject { name: &state.place.name, verb: "starts", span, scale };
@@ -100,10 +125,16 @@ fn reversed(
     ranges: impl IntoIterator<Item = Range>,
     slips: &mut Slips,
 ) {
-    let bad = ranges.into_iter().map(|range| numbers(meaning, range)).find(|[lower, upper]| lower > upper);
+    let bad = ranges
+        .into_iter()
+        .map(|range| numbers(meaning, range))
+        .find(|[lower, upper]| lower > upper);
     if let Some([lower, upper]) = bad {
-        let text =
-            format!("lower bound {} is above upper bound {}", shown(lower / scale), shown(upper / scale));
+        let text = format!(
+            "lower bound {} is above upper bound {}",
+            shown(lower / scale),
+            shown(upper / scale)
+        );
         slips.labels.push(Label { span: bounds.span, text });
         let (lower, upper) = (text::expr(&bounds.lower), text::expr(&bounds.upper));
         slips.repairs.push(format!("swap them: `{word} {} in [{upper}, {lower}]`", name.name));
@@ -121,7 +152,13 @@ struct Subject<'a> {
     scale: f64,
 }
 
-fn outside(meaning: &Elaborator<'_>, subject: Subject<'_>, given: f64, range: Range, slips: &mut Slips) {
+fn outside(
+    meaning: &Elaborator<'_>,
+    subject: Subject<'_>,
+    given: f64,
+    range: Range,
+    slips: &mut Slips,
+) {
     let [lower, upper] = numbers(meaning, range);
     let (side, change, limit) = match () {
         _ if lower > upper => return,
@@ -130,15 +167,20 @@ fn outside(meaning: &Elaborator<'_>, subject: Subject<'_>, given: f64, range: Ra
         _ => return,
     };
     let [limit, given] = [limit, given].map(|it| shown(it / subject.scale));
-    slips.labels.push(Label { span: subject.span, text: format!("{} {side} {limit}", subject.verb) });
+    slips
+        .labels
+        .push(Label { span: subject.span, text: format!("{} {side} {limit}", subject.verb) });
     let other = if subject.verb == "starts" { "start at" } else { "give it" };
-    slips.repairs.push(format!("for `{}`, {change} the bound to {given} or {other} {limit}", subject.name));
+    slips
+        .repairs
+        .push(format!("for `{}`, {change} the bound to {given} or {other} {limit}", subject.name));
 }
 
 fn backwards(meaning: &Elaborator<'_>, interval: &Interval, scale: f64, slips: &mut Slips) {
     let [first, last] = meaning.interval.map(|end| meaning.numeric(end));
     if first >= last {
-        let text = format!("ends at {}, but starts at {}", shown(last / scale), shown(first / scale));
+        let text =
+            format!("ends at {}, but starts at {}", shown(last / scale), shown(first / scale));
         slips.labels.push(Label { span: interval.span, text });
         slips.repairs.push("give time a first value below its last".into());
     }
@@ -149,12 +191,16 @@ fn rows(meaning: &Elaborator<'_>, slips: &mut Slips) {
     for row in meaning.model.path.iter().chain(&meaning.model.boundary) {
         let [lower, upper] = numbers(meaning, row.range);
         if lower > upper {
-            let text =
-                format!("no number is both above {} and below {}", text::number(lower), text::number(upper));
+            let text = format!(
+                "no number is both above {} and below {}",
+                text::number(lower),
+                text::number(upper)
+            );
             slips.labels.push(Label { span: row.place.span, text });
-            slips
-                .repairs
-                .push(format!("for `{}`, the left limit must be below the right one", row.place.name));
+            slips.repairs.push(format!(
+                "for `{}`, the left limit must be below the right one",
+                row.place.name
+            ));
         }
     }
 }

@@ -1,8 +1,10 @@
-//! FDC0410: starts, ends, bounds and path conditions that exclude each other at the start or at the end.
+//! FDC0410: starts, ends, bounds and path conditions that exclude each other at the start or at the
+//! end.
 //!
-//! Every symbol has an interval: its bounds, a start value, a parameter's value. Conditions are taken in turn. One whose value
-//! cannot lie where it must, by interval arithmetic over what is known by then, contradicts what has made it known; any other
-//! one that is affine in a single unknown makes more known.
+//! Every symbol has an interval: its bounds, a start value, a parameter's value. Conditions are
+//! taken in turn. One whose value cannot lie where it must, by interval arithmetic over what is
+//! known by then, contradicts what has made it known; any other one that is affine in a single
+//! unknown makes more known.
 
 use super::Facts;
 use crate::differentiate::derivative;
@@ -42,7 +44,9 @@ fn rows(meaning: &mut Elaborator<'_>) -> Vec<(Row, &'static str)> {
     for end in [false, true] {
         let path = meaning.model.path.clone();
         let moved = meaning.move_to_end(path.iter().map(|row| row.value).collect(), end);
-        all.extend(path.into_iter().zip(moved).map(|(row, value)| (Row { value, ..row }, point(end))));
+        all.extend(
+            path.into_iter().zip(moved).map(|(row, value)| (Row { value, ..row }, point(end))),
+        );
     }
     all
 }
@@ -96,11 +100,15 @@ impl Known {
 fn of_symbol(meaning: &Elaborator<'_>, symbol: Symbol) -> (Interval, Vec<Span>) {
     let model = &meaning.model;
     let (range, place, start) = match symbol {
-        Symbol::Param(at) => return (point(meaning.param_values[at]), vec![model.params[at].place.span]),
+        Symbol::Param(at) => {
+            return (point(meaning.param_values[at]), vec![model.params[at].place.span]);
+        }
         Symbol::Selector(_) => return (Interval::new(-1.0, 1.0), Vec::new()),
         Symbol::Free(at) => (model.frees[at].range, &model.frees[at].place, None),
         Symbol::Control(at) => (model.controls[at].range, &model.controls[at].place, None),
-        Symbol::State(at) | Symbol::AtEnd(at) => (model.states[at].range, &model.states[at].place, None),
+        Symbol::State(at) | Symbol::AtEnd(at) => {
+            (model.states[at].range, &model.states[at].place, None)
+        }
         Symbol::AtStart(at) => (model.states[at].range, &model.states[at].place, Some(at)),
         _ => return (Interval::ALL, Vec::new()),
     };
@@ -135,15 +143,21 @@ fn are_apart(a: Interval, b: Interval) -> bool {
     !a.is_empty() && gap > TOLERANCE * size.fold(1.0, |most: f64, it| most.max(it.abs()))
 }
 
-/// The only unknown of an expression that is affine in it, and where it lies if the expression lies in an interval.
-fn affine(meaning: &mut Elaborator<'_>, value: ExprId, allowed: Interval) -> Option<(u32, Interval)> {
+/// The only unknown of an expression that is affine in it, and where it lies if the expression lies
+/// in an interval.
+fn affine(
+    meaning: &mut Elaborator<'_>,
+    value: ExprId,
+    allowed: Interval,
+) -> Option<(u32, Interval)> {
     let [input] = unknowns(meaning, value)[..] else { return None };
     let slope = derivative(&mut meaning.graph, value, input);
     if !unknowns(meaning, slope).is_empty() {
         return None;
     }
     let slope = meaning.numeric(slope);
-    let mut inputs: Vec<f64> = meaning.symbols.iter().map(|symbol| of_param(meaning, *symbol)).collect();
+    let mut inputs: Vec<f64> =
+        meaning.symbols.iter().map(|symbol| of_param(meaning, *symbol)).collect();
     inputs[input as usize] = 0.0;
     let offset = evaluate(&meaning.graph, &[value], &inputs, &[])[0];
     let ends = [allowed.lower, allowed.upper].map(|end| (end - offset) / slope);
@@ -175,5 +189,8 @@ fn told(row: &Row, point: &str, others: &[Span]) -> Diagnostic {
             found = found.label(*span, "by this");
         }
     }
-    found.help("no trajectory satisfies both: change a value, widen the bounds, or leave one condition out")
+    found.help(
+        "no trajectory satisfies both: change a value, widen the bounds, or leave one \
+                condition out",
+    )
 }

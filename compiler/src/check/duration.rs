@@ -103,7 +103,8 @@ impl<'a> Declared<'a> {
             self.least(facts),
             text::number(self.longest(facts))
         );
-        self.guess(facts).map_or(text.clone(), |guess| format!("{text} guess {}", text::number(guess)))
+        self.guess(facts)
+            .map_or(text.clone(), |guess| format!("{text} guess {}", text::number(guess)))
     }
 
     /// The range where there is none, or the lower bound that is not above 0.
@@ -123,8 +124,13 @@ impl<'a> Declared<'a> {
 
     /// The upper bound; or ten times the guess, which should be long enough.
     fn longest(&self, facts: &Facts<'_, '_>) -> f64 {
-        let upper = self.in_its_unit(facts.meaning.numeric(facts.meaning.model.frees[self.free].range.upper));
-        if upper.is_finite() { upper } else { self.guess(facts).map_or(100.0, |guess| 10.0 * guess) }
+        let upper = self
+            .in_its_unit(facts.meaning.numeric(facts.meaning.model.frees[self.free].range.upper));
+        if upper.is_finite() {
+            upper
+        } else {
+            self.guess(facts).map_or(100.0, |guess| 10.0 * guess)
+        }
     }
 
     fn guess(&self, facts: &Facts<'_, '_>) -> Option<f64> {

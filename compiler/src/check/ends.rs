@@ -6,7 +6,8 @@ use fdcc_grammar::ast::{Ident, ItemKind};
 use fdcc_grammar::{Code, Diagnostic};
 use std::collections::HashSet;
 
-/// Reports states without `start`, without a `start` or `end` condition, and without a link into them.
+/// Reports states without `start`, without a `start` or `end` condition, and without a link into
+/// them.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let mut tied: HashSet<&str> = HashSet::new();
     for item in &facts.items {
@@ -47,7 +48,17 @@ fn untied(name: &Ident, parts: usize) -> Diagnostic {
         _ => format!("state {name_}(...) start ({})", vec!["0"; parts].join(", ")),
     };
     let free = if parts == 0 { format!("state {name_}") } else { format!("state {name_}(...)") };
-    Diagnostic::new(Code::NoBoundary, message, name.span, format!("what is {name_}(0)?")).help(format!(
-        "for rest write `{rest}`\nif the optimiser may choose it, say so: `{free} start free in [-1, 1]`"
+    Diagnostic::new(
+        Code::NoBoundary,
+        message,
+        name.span,
+        format!(
+            "what is \
+        {name_}(0)?"
+        ),
+    )
+    .help(format!(
+        "for rest write `{rest}`\nif the optimiser may choose it, say so: `{free} start free in \
+         [-1, 1]`"
     ))
 }

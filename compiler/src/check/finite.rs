@@ -22,8 +22,10 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
 }
 
 fn of_item(meaning: &Elaborator<'_>, item: &Item, found: &mut Vec<Diagnostic>) {
-    let declared = crate::resolve::scope::declared(item).and_then(|name| meaning.scope.find(&name.name));
-    let Some(at) = declared.filter(|&at| std::ptr::eq(meaning.scope.declarations[at].item, item)) else {
+    let declared =
+        crate::resolve::scope::declared(item).and_then(|name| meaning.scope.find(&name.name));
+    let Some(at) = declared.filter(|&at| std::ptr::eq(meaning.scope.declarations[at].item, item))
+    else {
         return;
     };
     let mut values = |parts: &[ExprId], what: &str, span: Span| {
@@ -67,11 +69,20 @@ fn of_item(meaning: &Elaborator<'_>, item: &Item, found: &mut Vec<Diagnostic>) {
 }
 
 /// A lower bound may be `-inf` and an upper one `inf`.
-fn of_bounds(meaning: &Elaborator<'_>, bounds: Option<&Interval>, range: Range, found: &mut Vec<Diagnostic>) {
+fn of_bounds(
+    meaning: &Elaborator<'_>,
+    bounds: Option<&Interval>,
+    range: Range,
+    found: &mut Vec<Diagnostic>,
+) {
     let Some(bounds) = bounds else { return };
-    let ends = [(range.lower, &bounds.lower, f64::NEG_INFINITY), (range.upper, &bounds.upper, f64::INFINITY)];
+    let ends = [
+        (range.lower, &bounds.lower, f64::NEG_INFINITY),
+        (range.upper, &bounds.upper, f64::INFINITY),
+    ];
     for (id, text, open) in ends {
-        let bad = value(meaning, id).filter(|it| !it.is_finite() && (*it != open || !is_infinity(text)));
+        let bad =
+            value(meaning, id).filter(|it| !it.is_finite() && (*it != open || !is_infinity(text)));
         found.extend(bad.map(|value| told("a bound", value, text.span)));
     }
 }
@@ -115,7 +126,9 @@ fn value(meaning: &Elaborator<'_>, id: ExprId) -> Option<f64> {
 
 fn told(what: &str, value: f64, span: Span) -> Diagnostic {
     let (message, label) = match value.is_nan() {
-        true => (format!("{what} is not a number"), "0/0, or a root or logarithm of a negative number"),
+        true => {
+            (format!("{what} is not a number"), "0/0, or a root or logarithm of a negative number")
+        }
         false => (format!("{what} is infinite"), "a division by 0, or beyond 1.8e308"),
     };
     let found = Diagnostic::new(Code::NotANumber, message, span, label);

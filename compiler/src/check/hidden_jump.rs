@@ -26,7 +26,11 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
                 knot.order == 0 && joints::order(meaning, &view, piece, site, knot) == Order::Jumps
             };
             if let Some(knot) = site.knots.iter().find(jumps) {
-                let item = facts.items.iter().map(|item| item.span).find(|span| holds(*span, knot_use.used));
+                let item = facts
+                    .items
+                    .iter()
+                    .map(|item| item.span)
+                    .find(|span| holds(*span, knot_use.used));
                 found.push(jump(meaning, site, knot, knot_use, &piece.role, item));
             }
         }
@@ -43,8 +47,10 @@ fn jump(
 ) -> Diagnostic {
     let name = owner(meaning, site).map_or("this `piecewise`".into(), |name| format!("`{name}`"));
     let size = text::number((knot.limits[1] - knot.limits[0]).abs());
-    let message =
-        format!("{name} jumps by {size} at `{}`, but it is used as an ordinary function", knot_text(knot));
+    let message = format!(
+        "{name} jumps by {size} at `{}`, but it is used as an ordinary function",
+        knot_text(knot)
+    );
     let [left, right] = knot.limits.map(text::number);
     let label = format!("left limit {left}, right limit {right}");
     let found = Diagnostic::new(Code::HiddenJump, message, knot.arm.guard_span, label);
@@ -52,16 +58,21 @@ fn jump(
         true => found,
         false => found.label(place.used, format!("used in {}", role.describe())),
     };
-    let surface =
-        ["boost", "switch", "switching"].into_iter().find(|name| meaning.scope.find(name).is_none());
+    let surface = ["boost", "switch", "switching"]
+        .into_iter()
+        .find(|name| meaning.scope.find(name).is_none());
     let surface = surface.unwrap_or("switch_");
     let written = match role {
-        Role::Equation(equation) => rewritten(meaning, site, knot, place, equation).map(|it| (*equation, it)),
+        Role::Equation(equation) => {
+            rewritten(meaning, site, knot, place, equation).map(|it| (*equation, it))
+        }
         _ => None,
     };
     let found = found.help(repair(surface, knot, written.as_ref()));
     match (written, item) {
-        (Some((equation, written)), Some(item)) => found.fix(as_switch(surface, equation, &written, item)),
+        (Some((equation, written)), Some(item)) => {
+            found.fix(as_switch(surface, equation, &written, item))
+        }
         _ => found,
     }
 }
@@ -90,20 +101,27 @@ fn repair(surface: &str, knot: &Knot<'_>, written: Option<&(&Equation, Switch)>)
         Some((equation, (psi, [below, above]))) => {
             let left = sets::left_side(equation);
             format!(
-                "{head}\n  surface {surface} = {psi}\n  {left} in match {surface} {{ below => {below}, above => {above} }}"
+                "{head}\n  surface {surface} = {psi}\n  {left} in match {surface} {{ below => \
+                 {below}, above => {above} }}"
             )
         }
         None => {
             let psi = difference(&knot.arm.left, &knot.arm.right);
             format!(
-                "{head}\n  surface {surface} = {psi}\nand choose the side with `match {surface} {{ below => ..., above => ... }}`"
+                "{head}\n  surface {surface} = {psi}\nand choose the side with `match {surface} {{ \
+                 below => ..., above => ... }}`"
             )
         }
     }
 }
 
 /// The surface before the item of the equation, and the match in the place of its right side.
-fn as_switch(surface: &str, equation: &Equation, (psi, [below, above]): &Switch, item: Span) -> Fix {
+fn as_switch(
+    surface: &str,
+    equation: &Equation,
+    (psi, [below, above]): &Switch,
+    item: Span,
+) -> Fix {
     let right = Span { start: equation.relation_span.start, end: equation.right.span.end };
     let choice = format!("in match {surface} {{ below => {below}, above => {above} }}");
     let fix = Fix::likely(format!("declare the surface `{surface}`"));
@@ -132,11 +150,13 @@ fn rewritten(
     let psi = difference(&replace(&arm.left, &actual), &replace(&arm.right, &actual));
     let sides = [&arm.value, &**otherwise].map(|value| {
         let value = replace(value, &actual);
-        let right = substitute(&equation.right, &|expr| (expr.span == place.used).then(|| value.clone()));
+        let right =
+            substitute(&equation.right, &|expr| (expr.span == place.used).then(|| value.clone()));
         text::styled(&without_ones(right), Style::Compact)
     });
     let [first, second] = sides;
-    let ordered = if knot.arm.relation == Relation::LessEqual { [first, second] } else { [second, first] };
+    let ordered =
+        if knot.arm.relation == Relation::LessEqual { [first, second] } else { [second, first] };
     Some((psi, ordered))
 }
 
@@ -148,7 +168,8 @@ fn arguments<'e>(
     used: Span,
 ) -> Option<Vec<(&'e str, &'e Expr)>> {
     let Some(owner) = site.owner else { return Some(Vec::new()) };
-    let ItemKind::Fn { arguments: formal, body, .. } = &meaning.scope.declarations[owner].item.kind else {
+    let ItemKind::Fn { arguments: formal, body, .. } = &meaning.scope.declarations[owner].item.kind
+    else {
         return None;
     };
     let mut call = None;
@@ -164,12 +185,16 @@ fn arguments<'e>(
     });
     let given: Option<Vec<&Expr>> = given.collect();
     let fits = body.span == site.expr.span && given.as_ref()?.len() == formal.len();
-    fits.then(|| formal.iter().map(|name| name.name.as_str()).zip(given.into_iter().flatten()).collect())
+    fits.then(|| {
+        formal.iter().map(|name| name.name.as_str()).zip(given.into_iter().flatten()).collect()
+    })
 }
 
 fn replace(expr: &Expr, actual: &[(&str, &Expr)]) -> Expr {
     substitute(expr, &|inner| match &inner.kind {
-        ExprKind::Name(name) => actual.iter().find(|pair| pair.0 == name).map(|pair| pair.1.clone()),
+        ExprKind::Name(name) => {
+            actual.iter().find(|pair| pair.0 == name).map(|pair| pair.1.clone())
+        }
         _ => None,
     })
 }
@@ -181,12 +206,16 @@ fn substitute(expr: &Expr, new: &dyn Fn(&Expr) -> Option<Expr>) -> Expr {
     }
     let kind = match &expr.kind {
         ExprKind::Negate(inner) => ExprKind::Negate(Box::new(substitute(inner, new))),
-        ExprKind::Binary(operator, left, right) => {
-            ExprKind::Binary(*operator, Box::new(substitute(left, new)), Box::new(substitute(right, new)))
-        }
+        ExprKind::Binary(operator, left, right) => ExprKind::Binary(
+            *operator,
+            Box::new(substitute(left, new)),
+            Box::new(substitute(right, new)),
+        ),
         ExprKind::Part(base, part) => ExprKind::Part(Box::new(substitute(base, new)), part.clone()),
         ExprKind::Index(base, index) => ExprKind::Index(Box::new(substitute(base, new)), *index),
-        ExprKind::Tuple(parts) => ExprKind::Tuple(parts.iter().map(|part| substitute(part, new)).collect()),
+        ExprKind::Tuple(parts) => {
+            ExprKind::Tuple(parts.iter().map(|part| substitute(part, new)).collect())
+        }
         ExprKind::Call(callee, arguments) => {
             let arguments = arguments.iter().map(|argument| match argument {
                 Argument::Expr(value) => Argument::Expr(substitute(value, new)),
@@ -207,7 +236,10 @@ fn without_ones(expr: Expr) -> Expr {
     match operator {
         BinaryOperator::Multiply if is_one(&left) => right,
         BinaryOperator::Multiply | BinaryOperator::Divide if is_one(&right) => left,
-        _ => Expr { kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)), span: expr.span },
+        _ => Expr {
+            kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)),
+            span: expr.span,
+        },
     }
 }
 

@@ -20,11 +20,13 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
 
 fn idle(name: &Ident, first: &Ident) -> Diagnostic {
     let message = format!("jump `{}` never acts", name.name);
-    let why = format!("`{}` resets at every such crossing, and one jump acts at a time", first.name);
+    let why =
+        format!("`{}` resets at every such crossing, and one jump acts at a time", first.name);
     Diagnostic::new(Code::IdleJump, message, name.span, "the same surface in the same direction")
         .label(first.span, why)
         .help(format!(
-            "reset everything in `{0}`, or say how often it may act: `at most n`; then `{1}` follows",
+            "reset everything in `{0}`, or say how often it may act: `at most n`; then `{1}` \
+             follows",
             first.name, name.name
         ))
 }

@@ -1,5 +1,5 @@
-//! Whether a knot of a `piecewise` is one of what is made with it: `x*step(x)` does not jump at 0, nor does `step(x)` where
-//! the bounds keep `x` away from there.
+//! Whether a knot of a `piecewise` is one of what is made with it: `x*step(x)` does not jump at 0,
+//! nor does `step(x)` where the bounds keep `x` away from there.
 
 use crate::builtins::Builtin;
 use crate::graph::{Expr, ExprId};
@@ -8,7 +8,8 @@ use crate::resolve::elaborator::{Elaborator, Piece};
 use crate::resolve::knots::{Knot, Site};
 use crate::surfaces::{Order, View, at_guards};
 
-/// How smooth a value is where a guard of a definition in it changes. Of a value that is not known, what the definition says.
+/// How smooth a value is where a guard of a definition in it changes. Of a value that is not known,
+/// what the definition says.
 pub(super) fn order(
     meaning: &Elaborator<'_>,
     view: &View<'_>,

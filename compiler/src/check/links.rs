@@ -24,10 +24,19 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     }
 }
 
-fn find_phase<'a>(facts: &Facts<'a, '_>, phase: &Ident, found: &mut Vec<Diagnostic>) -> Option<&'a [Item]> {
+fn find_phase<'a>(
+    facts: &Facts<'a, '_>,
+    phase: &Ident,
+    found: &mut Vec<Diagnostic>,
+) -> Option<&'a [Item]> {
     let scope = &facts.meaning.scope;
     let Some(at) = scope.find(&phase.name) else {
-        found.push(scope.unknown(&phase.name, phase.span, &[], &format!("phase {} {{ ... }}", phase.name)));
+        found.push(scope.unknown(
+            &phase.name,
+            phase.span,
+            &[],
+            &format!("phase {} {{ ... }}", phase.name),
+        ));
         return None;
     };
     let item = scope.declarations[at].item;
@@ -47,20 +56,30 @@ fn check_target(assignment: &Assignment, target: &[Item], found: &mut Vec<Diagno
     let is_it = |item: &&Item| declared(item).is_some_and(|it| it.name == name.name);
     if !target.iter().any(|item| is_it(&item) && matches!(item.kind, ItemKind::State { .. })) {
         let message = format!("the phase after the link has no state `{}`", name.name);
-        let diagnostic = Diagnostic::new(Code::UnknownName, message, name.span, "not a state there");
+        let diagnostic =
+            Diagnostic::new(Code::UnknownName, message, name.span, "not a state there");
         found.push(diagnostic.help(format!("declare it in that phase: `state {}`", name.name)));
     }
 }
 
-fn check_source(assignment: &Assignment, source: &[Item], outer: &[&str], found: &mut Vec<Diagnostic>) {
+fn check_source(
+    assignment: &Assignment,
+    source: &[Item],
+    outer: &[&str],
+    found: &mut Vec<Diagnostic>,
+) {
     walk::names(&assignment.value, &mut |name, span| {
         let known = source.iter().filter_map(declared).any(|it| it.name == name)
             || outer.contains(&name)
             || name == "pi";
         if !known && !crate::resolve::is_function(name) {
             let message = format!("nothing called `{name}` in the phase before the link");
-            let diagnostic = Diagnostic::new(Code::UnknownName, message, span, "not declared there");
-            found.push(diagnostic.help("the right side of a link is read at the end of the phase before it"));
+            let diagnostic =
+                Diagnostic::new(Code::UnknownName, message, span, "not declared there");
+            found.push(
+                diagnostic
+                    .help("the right side of a link is read at the end of the phase before it"),
+            );
         }
     });
 }

@@ -1,8 +1,9 @@
 //! FDC0112: two names that are different to a computer and the same to a reader.
 //!
-//! Names are compared in the normal form NFKC, and then letter by letter by the skeletons of Unicode's table of confusables.
-//! Greek letters stand for themselves: `ν` beside `v` and `ρ` beside `p` are what formulas are made of. So do names of ASCII
-//! letters alone: `l` and `I` are lengths and currents.
+//! Names are compared in the normal form NFKC, and then letter by letter by the skeletons of
+//! Unicode's table of confusables. Greek letters stand for themselves: `ν` beside `v` and `ρ`
+//! beside `p` are what formulas are made of. So do names of ASCII letters alone: `l` and `I` are
+//! lengths and currents.
 
 use crate::resolve::scope;
 use fdcc_grammar::ast::{self, Ident, Item, ItemKind};
@@ -44,8 +45,9 @@ fn shape(name: &str) -> String {
 
 fn told(name: &Ident, first: &Ident) -> Diagnostic {
     let message = format!("`{}` looks like `{}`, but is another name", name.name, first.name);
-    let codes =
-        |text: &str| text.chars().map(|it| format!("U+{:04X}", it as u32)).collect::<Vec<_>>().join(" ");
+    let codes = |text: &str| {
+        text.chars().map(|it| format!("U+{:04X}", it as u32)).collect::<Vec<_>>().join(" ")
+    };
     Diagnostic::new(Code::Lookalike, message, name.span, codes(&name.name))
         .label(first.span, codes(&first.name))
         .help("rename one of them, or type both with the same letters")

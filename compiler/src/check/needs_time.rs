@@ -14,7 +14,10 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
         return;
     }
     let moves = |kind: &ItemKind| {
-        matches!(kind, ItemKind::State { .. } | ItemKind::Control { .. } | ItemKind::Dynamics { .. })
+        matches!(
+            kind,
+            ItemKind::State { .. } | ItemKind::Control { .. } | ItemKind::Dynamics { .. }
+        )
     };
     if let Some(first) = facts.items.iter().find(|item| moves(&item.kind)) {
         let span = declared(first).map_or(first.span, |name| name.span);
@@ -24,9 +27,10 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
             span,
             "changes over time, but from when to when?",
         );
-        found.push(
-            diagnostic.help("write `time t in [0, 1]`, or `free T in [0.1, 100]` and `time t in [0, T]`"),
-        );
+        found
+            .push(diagnostic.help(
+                "write `time t in [0, 1]`, or `free T in [0.1, 100]` and `time t in [0, T]`",
+            ));
     }
 }
 

@@ -1,5 +1,5 @@
-//! FDC0201, FDC0202, FDC0204: where a set may stand. `in` takes a set, `=` a value; constraints and objectives
-//! take values only.
+//! FDC0201, FDC0202, FDC0204: where a set may stand. `in` takes a set, `=` a value; constraints and
+//! objectives take values only.
 
 use super::Facts;
 use crate::resolve::elaborator::Role;
@@ -13,7 +13,9 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let told = facts.told();
     for piece in &facts.meaning.pieces {
         match (piece.role, piece.traits.sets.first()) {
-            (Role::Equation(equation), Some(set)) if equation.relation == EquationRelation::Equal => {
+            (Role::Equation(equation), Some(set))
+                if equation.relation == EquationRelation::Equal =>
+            {
                 found.push(equality(equation, set))
             }
             (Role::Equation(equation), None) if equation.relation == EquationRelation::In => {
@@ -72,9 +74,13 @@ fn no_set(equation: &Equation) -> Diagnostic {
 
 fn needs_a_value(facts: &Facts<'_, '_>, role: &Role<'_>, set: &SetUse) -> Diagnostic {
     let message = format!("{} uses a set-valued function", role.describe());
-    let label = format!("undefined while `{}` is held at 0, which happens for whole time spans", set.surface);
+    let label = format!(
+        "undefined while `{}` is held at 0, which happens for whole time spans",
+        set.surface
+    );
     let mut found = Diagnostic::new(Code::SetValuedHere, message, set.span, label);
-    let declared = facts.meaning.scope.find(&set.surface).map(|at| facts.meaning.scope.declarations[at]);
+    let declared =
+        facts.meaning.scope.find(&set.surface).map(|at| facts.meaning.scope.declarations[at]);
     if let Some(declared) = declared {
         found = found.label(declared.name.span, "surface declared here");
     }
@@ -88,7 +94,8 @@ fn needs_a_value(facts: &Facts<'_, '_>, role: &Role<'_>, set: &SetUse) -> Diagno
         SetForm::Match => (format!("match {} {{ ... }}", set.surface), "abs"),
     };
     found.help(format!(
-        "for friction work write `integral(mu * N * {size}({psi}))`: the same number, and continuous\n\
+        "for friction work write `integral(mu * N * {size}({psi}))`: the same number, and \
+         continuous\n\
          for the friction force that acts, name it: `let f = selected({whole})`"
     ))
 }

@@ -11,7 +11,8 @@ use fdcc_grammar::ast::{Condition, ExprKind};
 use fdcc_grammar::{Code, Diagnostic, Fix};
 use std::cell::LazyCell;
 
-/// Reports the worst knot of each `piecewise` in a path constraint, an end condition or the objective.
+/// Reports the worst knot of each `piecewise` in a path constraint, an end condition or the
+/// objective.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let meaning = &facts.meaning;
     let view = LazyCell::new(|| view_of(meaning));
@@ -21,8 +22,10 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
         }
         for place in &piece.traits.knots {
             let Some(site) = meaning.sites.get(&place.site) else { continue };
-            let orders =
-                site.knots.iter().map(|knot| (joints::order(meaning, &view, piece, site, knot), knot));
+            let orders = site
+                .knots
+                .iter()
+                .map(|knot| (joints::order(meaning, &view, piece, site, knot), knot));
             if let Some((Order::Times(times @ 0..2), knot)) = orders.min_by_key(|it| it.0) {
                 found.push(Kink { site, knot, times, place, role: &piece.role }.told(meaning));
             }
@@ -30,7 +33,8 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     }
 }
 
-/// A knot in something that should be smooth, which is `times` times continuously differentiable there.
+/// A knot in something that should be smooth, which is `times` times continuously differentiable
+/// there.
 struct Kink<'k, 'a> {
     site: &'k Site<'a>,
     knot: &'k Knot<'a>,
@@ -48,7 +52,8 @@ impl Kink<'_, '_> {
         let at = hidden_jump::knot_text(knot);
         let label = format!("{what} jumps from {left} to {right} at {at}");
         let found = Diagnostic::new(Code::NotSmooth, message, knot.arm.guard_span, label);
-        let found = if place.used == site.expr.span { found } else { found.label(place.used, "used here") };
+        let found =
+            if place.used == site.expr.span { found } else { found.label(place.used, "used here") };
         let name = hidden_jump::owner(meaning, site).unwrap_or("piecewise { ... }");
         let fix = Fix::likely("round the knot").insert(place.used.start, "blend(");
         found.fix(fix.insert(place.used.end, format!(", {WIDTH})"))).help(format!(

@@ -1,8 +1,9 @@
 //! FDC0404: names that nothing mentions.
 //!
-//! Mentions are followed through definitions: what only an unused `let` mentions is unused. A control or an
-//! unknown must be mentioned by the problem itself; a guess or a report does not count. Names that begin with
-//! `_` are silent, and so are states, whose equation is their use, and time.
+//! Mentions are followed through definitions: what only an unused `let` mentions is unused. A
+//! control or an unknown must be mentioned by the problem itself; a guess or a report does not
+//! count. Names that begin with `_` are silent, and so are states, whose equation is their use, and
+//! time.
 
 use crate::resolve::scope::{declared, kind_word};
 use crate::resolve::walk;
@@ -60,7 +61,8 @@ fn unused(item: &Item, anywhere: &HashSet<&str>, problem: &HashSet<&str>) -> Opt
     Some(found.help(format!("remove it, or name it `_{name_}` to keep it.{why}")))
 }
 
-/// The new name, where nothing has to follow it: a guess or another unused definition may use the old one.
+/// The new name, where nothing has to follow it: a guess or another unused definition may use the
+/// old one.
 fn with_fix(item: &Item, found: Diagnostic, mentions: &HashSet<&str>) -> Diagnostic {
     match declared(item).filter(|name| !mentions.contains(name.name.as_str())) {
         Some(name) => {
@@ -122,7 +124,9 @@ fn mentioned(item: &Item) -> Vec<&str> {
         ItemKind::Jump { surface, then_hold, .. } => {
             names.extend(std::iter::once(surface).chain(then_hold).map(|it| it.name.as_str()))
         }
-        ItemKind::Guess { bindings } => names.extend(bindings.iter().map(|it| it.name.name.as_str())),
+        ItemKind::Guess { bindings } => {
+            names.extend(bindings.iter().map(|it| it.name.name.as_str()))
+        }
         _ => {}
     }
     names

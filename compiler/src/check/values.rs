@@ -15,6 +15,11 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
 
 /// The finding, also for a run that gave no value.
 pub(crate) fn missing(name: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(Code::NoValue, format!("parameter `{name}` has no value"), span, "how large is it?")
-        .help(format!("write `param {name} = 1`, or give it for one run: `--set {name}=1`"))
+    Diagnostic::new(
+        Code::NoValue,
+        format!("parameter `{name}` has no value"),
+        span,
+        "how large is it?",
+    )
+    .help(format!("write `param {name} = 1`, or give it for one run: `--set {name}=1`"))
 }

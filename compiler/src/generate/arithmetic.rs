@@ -1,5 +1,5 @@
-//! What formulas are made of. They are written once, and carried out in two ways that give the same bits: as machine code
-//! (`cranelift/pairs.rs`), and at once (`steps.rs`).
+//! What formulas are made of. They are written once, and carried out in two ways that give the same
+//! bits: as machine code (`cranelift/pairs.rs`), and at once (`steps.rs`).
 
 use super::elementary;
 use crate::builtins::{Builtin, Inline, Lowering};
@@ -60,19 +60,33 @@ pub(super) trait Arithmetic {
     ) -> Self::Number;
 
     /// a b - c
-    fn multiply_subtract(&mut self, a: Self::Number, b: Self::Number, c: Self::Number) -> Self::Number {
+    fn multiply_subtract(
+        &mut self,
+        a: Self::Number,
+        b: Self::Number,
+        c: Self::Number,
+    ) -> Self::Number {
         let minus = self.negate(c);
         self.multiply_add(a, b, minus)
     }
     /// c - a b
-    fn subtract_product(&mut self, a: Self::Number, b: Self::Number, c: Self::Number) -> Self::Number {
+    fn subtract_product(
+        &mut self,
+        a: Self::Number,
+        b: Self::Number,
+        c: Self::Number,
+    ) -> Self::Number {
         let minus = self.negate(a);
         self.multiply_add(minus, b, c)
     }
 }
 
 /// A builtin of these operands.
-pub(super) fn call<A: Arithmetic>(on: &mut A, builtin: Builtin, operands: &[A::Number]) -> A::Number {
+pub(super) fn call<A: Arithmetic>(
+    on: &mut A,
+    builtin: Builtin,
+    operands: &[A::Number],
+) -> A::Number {
     let row = builtin.row();
     match row.lowering {
         Lowering::Inline(inline) => instructions(on, inline, operands),
@@ -103,8 +117,14 @@ fn instructions<A: Arithmetic>(on: &mut A, inline: Inline, a: &[A::Number]) -> A
     }
 }
 
-/// `a` if the first of `order` is at most the second, else `b`; but what is not a number goes through.
-fn extremum<A: Arithmetic>(on: &mut A, a: A::Number, b: A::Number, order: [A::Number; 2]) -> A::Number {
+/// `a` if the first of `order` is at most the second, else `b`; but what is not a number goes
+/// through.
+fn extremum<A: Arithmetic>(
+    on: &mut A,
+    a: A::Number,
+    b: A::Number,
+    order: [A::Number; 2],
+) -> A::Number {
     let first = on.less_or_equal(order[0], order[1]);
     let chosen = on.select(first, a, b);
     let undefined = on.is_nan(a);

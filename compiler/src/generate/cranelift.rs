@@ -7,8 +7,8 @@
 //!         load columns [2 pair, 2 pair + 1], compute, store
 //! ```
 //!
-//! All numbers are `F64X2`: the same quantity at two neighbouring points. What is called instead of written out is in
-//! [`library()`].
+//! All numbers are `F64X2`: the same quantity at two neighbouring points. What is called instead of
+//! written out is in [`library()`].
 
 mod kernel;
 mod library;
@@ -20,8 +20,8 @@ use ::cranelift::codegen::isa::{CallConv, OwnedTargetIsa};
 use ::cranelift::jit::{JITBuilder, JITModule};
 use ::cranelift::module::{Linkage, Module, default_libcall_names};
 use ::cranelift::prelude::{
-    AbiParam, Block, Configurable, FloatCC, FunctionBuilder, FunctionBuilderContext, InstBuilder, IntCC,
-    MemFlagsData, Signature, StackSlotData, StackSlotKind, Type, Value, settings, types,
+    AbiParam, Block, Configurable, FloatCC, FunctionBuilder, FunctionBuilderContext, InstBuilder,
+    IntCC, MemFlagsData, Signature, StackSlotData, StackSlotKind, Type, Value, settings, types,
 };
 
 use super::schedule::Schedule;
@@ -30,9 +30,9 @@ use kernel::build_kernel;
 use library::{Library, library};
 use pairs::Pairs;
 
-/// A good choice of registers compares each value with those that are alive beside it, which takes more than the square of
-/// the length. Beyond so many instructions that would be most of the time of a solve, and one pass is enough: its code
-/// takes longer for each point, and is there at once.
+/// A good choice of registers compares each value with those that are alive beside it, which takes
+/// more than the square of the length. Beyond so many instructions that would be most of the time
+/// of a solve, and one pass is enough: its code takes longer for each point, and is there at once.
 const LONG: usize = 20_000;
 
 /// What a kernel is called with. The machine code reads the fields by their offsets.
@@ -67,7 +67,8 @@ unsafe impl Sync for Code {}
 impl Drop for Code {
     fn drop(&mut self) {
         if let Some(module) = self.module.take() {
-            // SAFETY: a kernel is only called while it and its machine, which owns what it calls, are there.
+            // SAFETY: a kernel is only called while it and its machine, which owns what it calls,
+            // are there.
             #[allow(unsafe_code)]
             unsafe {
                 module.free_memory();
@@ -86,8 +87,8 @@ impl Kernel {
         Kernel(machine.compile(function, |library| machine.trampoline(library)))
     }
 
-    /// What is called, as long as the kernel and its machine are there. All tables that it uses must have its columns, of the
-    /// same even stride, which is at least twice the number of pairs.
+    /// What is called, as long as the kernel and its machine are there. All tables that it uses
+    /// must have its columns, of the same even stride, which is at least twice the number of pairs.
     pub(super) fn entry(&self) -> unsafe extern "C" fn(*const Tables) {
         // SAFETY: the address is that of a finished function with the signature of all kernels.
         #[allow(unsafe_code)]
@@ -104,7 +105,8 @@ pub(super) fn text(machine: &Machine, graph: &Graph, schedule: &Schedule) -> Str
 
 fn built(machine: &Machine, graph: &Graph, schedule: &Schedule) -> Function {
     let signature = machine.signature(&[types::I64], &[]);
-    machine.function(signature, |builder| build_kernel(graph, schedule, Pairs::new(builder, machine)))
+    machine
+        .function(signature, |builder| build_kernel(graph, schedule, Pairs::new(builder, machine)))
 }
 
 /// The machine that code is for, and what the code may call.
@@ -121,8 +123,10 @@ impl Machine {
     /// The one that this runs on.
     pub(super) fn host() -> Self {
         let [isa, hasty] = ["backtracking", "single_pass"].map(host);
-        let has_fma =
-            isa.isa_flags().iter().any(|flag| flag.name == "has_fma" && flag.as_bool() == Some(true));
+        let has_fma = isa
+            .isa_flags()
+            .iter()
+            .any(|flag| flag.name == "has_fma" && flag.as_bool() == Some(true));
         Machine { fused: !cfg!(target_arch = "x86_64") || has_fma, isa, hasty, library: library() }
     }
 
@@ -146,7 +150,8 @@ impl Machine {
         function
     }
 
-    /// Compiles a function that calls what stands at `address` for each of the [`Library`] that it names.
+    /// Compiles a function that calls what stands at `address` for each of the [`Library`] that it
+    /// names.
     fn compile(&self, function: Function, address: impl Fn(&Library) -> *const u8) -> Code {
         let isa = if function.dfg.num_insts() > LONG { &self.hasty } else { &self.isa };
         let mut builder = JITBuilder::with_isa(isa.clone(), default_libcall_names());
@@ -161,8 +166,11 @@ impl Machine {
                 .declare_function(library.name, Linkage::Import, &signature)
                 .expect("each name is there once");
         }
-        let id = module.declare_anonymous_function(&function.signature).expect("no name, so no clash");
-        module.define_function(id, &mut Context::for_function(function)).expect("functions are well formed");
+        let id =
+            module.declare_anonymous_function(&function.signature).expect("no name, so no clash");
+        module
+            .define_function(id, &mut Context::for_function(function))
+            .expect("functions are well formed");
         module.finalize_definitions().expect("all functions are defined or imported by address");
         let entry = module.get_finalized_function(id);
         Code { module: Some(module), entry }

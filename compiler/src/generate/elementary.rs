@@ -1,15 +1,17 @@
 //! Sine, cosine, exponential and hyperbolic tangent, written out for neighbouring points.
 //!
-//! Cody and Waite: subtract the nearest multiple of a constant that is held in several parts, then a
-//! polynomial on the small rest. Errors, tested against the standard library: at most 2 units in the last place
-//! for `exp`, 2 (and 1e-30) for `sin` and `cos`, 4 for `tanh`. Arguments too large for that go to the standard library.
+//! Cody and Waite: subtract the nearest multiple of a constant that is held in several parts, then
+//! a polynomial on the small rest. Errors, tested against the standard library: at most 2 units in
+//! the last place for `exp`, 2 (and 1e-30) for `sin` and `cos`, 4 for `tanh`. Arguments too large
+//! for that go to the standard library.
 
 use super::arithmetic::Arithmetic;
 
 /// 1.5 * 2^52: adding it rounds to a whole number, which then stands in the last bits.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
-/// pi/2 in parts of 33 bits, the last one full: whole multiples up to 2^20 of the first two are exact (fdlibm).
+/// pi/2 in parts of 33 bits, the last one full: whole multiples up to 2^20 of the first two are
+/// exact (fdlibm).
 const HALF_PI: [f64; 3] = [
     f64::from_bits(0x3FF9_21FB_5440_0000),
     f64::from_bits(0x3DD0_B461_1A60_0000),
@@ -28,7 +30,8 @@ const SINE: [f64; 6] = [
     1.589_690_995_211_550_102_21e-10,
 ];
 #[allow(clippy::excessive_precision)] // as published
-/// cos(r) = 1 - r^2/2 + r^4 (C1 + C2 r^2 + ...) for |r| <= pi/4 (fdlibm, k_cos.c: error below 2^-58).
+/// cos(r) = 1 - r^2/2 + r^4 (C1 + C2 r^2 + ...) for |r| <= pi/4 (fdlibm, k_cos.c: error below
+/// 2^-58).
 const COSINE: [f64; 6] = [
     4.166_666_666_666_660_190_37e-2,
     -1.388_888_888_887_410_957_49e-3,
@@ -46,7 +49,8 @@ const LARGEST_EXPONENT: f64 = 708.0;
 /// Beyond, `tanh` rounds to 1.
 const LARGEST_TANGENT: f64 = 20.0;
 
-/// (exp(r) - 1 - r) / r^2 = 1/2! + r/3! + ...: for |r| <= log(2)/2 the rest after r^13/13! is below 2^-57.
+/// (exp(r) - 1 - r) / r^2 = 1/2! + r/3! + ...: for |r| <= log(2)/2 the rest after r^13/13! is below
+/// 2^-57.
 const EXPONENTIAL: [f64; 12] = [
     1.0 / 2.0,
     1.0 / 6.0,
@@ -82,8 +86,8 @@ extern "C" fn library_exp(x: f64) -> f64 {
 
 /// Sine and cosine of the same angle: each is needed for the other's derivative anyway.
 ///
-/// With q = round(2 x / pi) and r = x - q pi/2, the values are those of r, exchanged if q is odd, and negated
-/// if bit 1 of q (sine) or of q + 1 (cosine) is set.
+/// With q = round(2 x / pi) and r = x - q pi/2, the values are those of r, exchanged if q is odd,
+/// and negated if bit 1 of q (sine) or of q + 1 (cosine) is set.
 pub(super) fn sine_and_cosine<A: Arithmetic>(on: &mut A, x: A::Number) -> [A::Number; 2] {
     let (quotient, r) = reduce(on, x, std::f64::consts::FRAC_2_PI, &HALF_PI);
     let square = on.multiply(r, r);
@@ -126,7 +130,8 @@ pub(super) fn exponential<A: Arithmetic>(on: &mut A, x: A::Number) -> A::Number 
     exponential
 }
 
-/// tanh(|x|) = e / (e + 2) with e = exp(2 |x|) - 1 = 2^k (exp(r) - 1) + (2^k - 1), without cancellation.
+/// tanh(|x|) = e / (e + 2) with e = exp(2 |x|) - 1 = 2^k (exp(r) - 1) + (2^k - 1), without
+/// cancellation.
 pub(super) fn hyperbolic_tangent<A: Arithmetic>(on: &mut A, x: A::Number) -> A::Number {
     let magnitude = on.absolute(x);
     let limit = on.number(LARGEST_TANGENT);
@@ -153,7 +158,12 @@ fn small_exponential_minus_one<A: Arithmetic>(on: &mut A, r: A::Number) -> A::Nu
 }
 
 /// The nearest whole multiple (in the last bits of the first result) and what remains of `x`.
-fn reduce<A: Arithmetic>(on: &mut A, x: A::Number, inverse: f64, parts: &[f64]) -> (A::Number, A::Number) {
+fn reduce<A: Arithmetic>(
+    on: &mut A,
+    x: A::Number,
+    inverse: f64,
+    parts: &[f64],
+) -> (A::Number, A::Number) {
     let (inverse, rounder) = (on.number(inverse), on.number(ROUNDER));
     let shifted = on.multiply_add(x, inverse, rounder);
     let multiple = on.subtract(shifted, rounder);

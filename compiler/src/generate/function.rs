@@ -15,8 +15,8 @@ use crate::program::Differentiated;
 pub(super) struct CompiledFunction {
     source: Arc<Source>,
     symbols: Differentiated,
-    /// For values; then also the Jacobian; then also the Hessian. Nobody calls all of them: the reports want values, the
-    /// interior point values and everything.
+    /// For values; then also the Jacobian; then also the Hessian. Nobody calls all of them: the
+    /// reports want values, the interior point values and everything.
     ways: [Way; 3],
 }
 
@@ -100,7 +100,8 @@ impl CompiledFunction {
     /// Whether there is machine code, or it is time to make it.
     fn is_worth_code(&self, order: usize, points: usize) -> bool {
         let Way { kernel, done, .. } = &self.ways[order];
-        kernel.get().is_some() || done.fetch_add(points + ENTRY, Ordering::Relaxed) + points + ENTRY > PAYS
+        kernel.get().is_some()
+            || done.fetch_add(points + ENTRY, Ordering::Relaxed) + points + ENTRY > PAYS
     }
 
     fn check_inputs(&self, points: &Columns, parameters: &[f64]) {
@@ -116,8 +117,9 @@ impl CompiledFunction {
         if !self.is_worth_code(order, call.count) {
             return self.steps(order).run(&mut call);
         }
-        // SAFETY: all tables have been checked to have the columns that the kernel uses, of the same
-        // even stride, which is at least twice the number of pairs; the machine is alive in `source`.
+        // SAFETY: all tables have been checked to have the columns that the kernel uses, of the
+        // same even stride, which is at least twice the number of pairs; the machine is alive in
+        // `source`.
         #[allow(unsafe_code)]
         unsafe {
             self.kernel(order).entry()(&call.tables());
@@ -126,7 +128,12 @@ impl CompiledFunction {
 }
 
 /// The numbers of a table that must be as long as the points and have `columns` columns.
-fn output<'c>(table: &'c mut Columns, columns: usize, points: &Columns, name: &str) -> &'c mut [f64] {
+fn output<'c>(
+    table: &'c mut Columns,
+    columns: usize,
+    points: &Columns,
+    name: &str,
+) -> &'c mut [f64] {
     check_table(table, columns, points, name);
     table.as_mut_slice()
 }
@@ -169,10 +176,17 @@ impl Function for CompiledFunction {
         self.run(0, Call::new(points, parameters, [values, &mut [], &mut []]));
     }
 
-    fn jacobian(&self, points: &Columns, parameters: &[f64], values: &mut Columns, jacobian: &mut Columns) {
+    fn jacobian(
+        &self,
+        points: &Columns,
+        parameters: &[f64],
+        values: &mut Columns,
+        jacobian: &mut Columns,
+    ) {
         self.check_inputs(points, parameters);
         let values = output(values, self.outputs(), points, "values");
-        let jacobian = output(jacobian, self.symbols.jacobian.0.entries.len(), points, "the Jacobian");
+        let jacobian =
+            output(jacobian, self.symbols.jacobian.0.entries.len(), points, "the Jacobian");
         self.run(1, Call::new(points, parameters, [values, jacobian, &mut []]));
     }
 
@@ -189,7 +203,8 @@ impl Function for CompiledFunction {
         check_table(multipliers, self.outputs(), points, "multipliers");
         let multipliers = multipliers.as_slice();
         let values = output(values, self.outputs(), points, "values");
-        let jacobian = output(jacobian, self.symbols.jacobian.0.entries.len(), points, "the Jacobian");
+        let jacobian =
+            output(jacobian, self.symbols.jacobian.0.entries.len(), points, "the Jacobian");
         let hessian = output(hessian, self.symbols.hessian.0.entries.len(), points, "the Hessian");
         let call = Call::new(points, parameters, [values, jacobian, hessian]);
         self.run(2, Call { multipliers, ..call });

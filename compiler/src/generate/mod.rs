@@ -1,4 +1,5 @@
-//! From expressions to functions of the runtime: values, Jacobian and Hessian are computed step by step until machine code pays.
+//! From expressions to functions of the runtime: values, Jacobian and Hessian are computed step by
+//! step until machine code pays.
 
 mod arithmetic;
 mod cranelift;
@@ -27,7 +28,8 @@ struct Source {
 /// All functions of a program, ready to be called.
 pub fn generate(graph: Graph, functions: Vec<Differentiated>) -> Vec<Arc<dyn Function>> {
     let source = Arc::new(Source { graph, machine: Machine::host() });
-    let compiled = functions.into_iter().map(|function| CompiledFunction::new(source.clone(), function));
+    let compiled =
+        functions.into_iter().map(|function| CompiledFunction::new(source.clone(), function));
     compiled.map(|function| Arc::new(function) as Arc<dyn Function>).collect()
 }
 
@@ -53,9 +55,13 @@ fn highest_order(function: &Differentiated) -> usize {
 /// What the kernel for derivatives up to an order does.
 fn work(graph: &Graph, function: &Differentiated, order: usize) -> Schedule {
     let Differentiated { function, jacobian, hessian, .. } = function;
-    let tables =
-        [(Table::Values, &function.outputs), (Table::Jacobian, &jacobian.1), (Table::Hessian, &hessian.1)];
-    let results = tables.into_iter().take(order + 1).flat_map(|(table, outputs)| places(table, outputs));
+    let tables = [
+        (Table::Values, &function.outputs),
+        (Table::Jacobian, &jacobian.1),
+        (Table::Hessian, &hessian.1),
+    ];
+    let results =
+        tables.into_iter().take(order + 1).flat_map(|(table, outputs)| places(table, outputs));
     schedule(graph, &function.layout, &results.collect::<Vec<_>>())
 }
 

@@ -1,5 +1,5 @@
-//! Arithmetic at once, on a few points side by side. To the last bit it is that of the machine code: pair by pair, with the same
-//! roundings.
+//! Arithmetic at once, on a few points side by side. To the last bit it is that of the machine
+//! code: pair by pair, with the same roundings.
 
 use super::arithmetic::Arithmetic;
 
@@ -32,7 +32,11 @@ impl<const POINTS: usize> Numbers<POINTS> {
 
 /// a b + c, with one rounding.
 #[cfg_attr(target_arch = "x86_64", target_feature(enable = "fma"))]
-fn fused<const POINTS: usize>(a: &Block<POINTS>, b: &Block<POINTS>, c: &Block<POINTS>) -> Block<POINTS> {
+fn fused<const POINTS: usize>(
+    a: &Block<POINTS>,
+    b: &Block<POINTS>,
+    c: &Block<POINTS>,
+) -> Block<POINTS> {
     each(|i| a[i].mul_add(b[i], c[i]))
 }
 
@@ -79,7 +83,12 @@ impl<const POINTS: usize> Arithmetic for Numbers<POINTS> {
     fn square_root(&mut self, a: Block<POINTS>) -> Block<POINTS> {
         each(|i| a[i].sqrt())
     }
-    fn multiply_add(&mut self, a: Block<POINTS>, b: Block<POINTS>, c: Block<POINTS>) -> Block<POINTS> {
+    fn multiply_add(
+        &mut self,
+        a: Block<POINTS>,
+        b: Block<POINTS>,
+        c: Block<POINTS>,
+    ) -> Block<POINTS> {
         if !self.fused {
             return each(|i| a[i] * b[i] + c[i]);
         }
@@ -96,7 +105,12 @@ impl<const POINTS: usize> Arithmetic for Numbers<POINTS> {
     fn is_nan(&mut self, a: Block<POINTS>) -> Block<POINTS> {
         each(|i| mask(a[i].is_nan()))
     }
-    fn select(&mut self, mask: Block<POINTS>, yes: Block<POINTS>, no: Block<POINTS>) -> Block<POINTS> {
+    fn select(
+        &mut self,
+        mask: Block<POINTS>,
+        yes: Block<POINTS>,
+        no: Block<POINTS>,
+    ) -> Block<POINTS> {
         each_bits(|i| select(mask[i], yes[i], no[i]))
     }
 
@@ -128,7 +142,9 @@ impl<const POINTS: usize> Arithmetic for Numbers<POINTS> {
             return fast;
         }
         let slow = slow(self);
-        std::array::from_fn(|which| each(|i| if is_fast(i) { fast[which][i] } else { slow[which][i] }))
+        std::array::from_fn(|which| {
+            each(|i| if is_fast(i) { fast[which][i] } else { slow[which][i] })
+        })
     }
     fn call1(
         &mut self,

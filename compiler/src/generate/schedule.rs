@@ -1,8 +1,8 @@
 //! Which nodes a kernel computes, in which order, and where its results go.
 //!
-//! What depends on parameters alone is computed once, before the loop over the points. Inside, every result is
-//! computed depth first and stored at once, so that few values are alive at a time. A product that is used
-//! once, by a sum, becomes part of a fused multiply-add.
+//! What depends on parameters alone is computed once, before the loop over the points. Inside,
+//! every result is computed depth first and stored at once, so that few values are alive at a time.
+//! A product that is used once, by a sum, becomes part of a fused multiply-add.
 
 use fdcc_runtime::problem::Layout;
 
@@ -123,7 +123,11 @@ impl<'a> Nodes<'a> {
             let Some(operation) = self.operation(id) else { continue };
             if operands_done {
                 done[id.index()] = true;
-                let list = if self.varying[id.index()] { &mut schedule.inside } else { &mut schedule.before };
+                let list = if self.varying[id.index()] {
+                    &mut schedule.inside
+                } else {
+                    &mut schedule.before
+                };
                 list.push((id, operation));
             } else {
                 stack.push((id, true));
@@ -170,7 +174,8 @@ impl<'a> Nodes<'a> {
         }
     }
 
-    /// The factors of a product that nobody but `user` needs, and that does not belong before the loop.
+    /// The factors of a product that nobody but `user` needs, and that does not belong before the
+    /// loop.
     fn product_of_its_own(&self, user: ExprId, id: ExprId) -> Option<[ExprId; 2]> {
         let same_place = self.varying[id.index()] == self.varying[user.index()];
         match *self.graph.as_call(id, Builtin::Mul)? {
@@ -216,7 +221,8 @@ mod tests {
         let product = graph.mul(x, y);
         let root = graph.add(product, x);
         let schedule = schedule(&graph, &LAYOUT, &[(root, PLACE), (product, PLACE)]);
-        let fused = |(_, operation): &_| !matches!(operation, Operation::Point(_) | Operation::Call(..));
+        let fused =
+            |(_, operation): &_| !matches!(operation, Operation::Point(_) | Operation::Call(..));
         assert!(!schedule.inside.iter().any(fused));
     }
 

@@ -1,6 +1,7 @@
 //! A schedule carried out at once, step after step, on a few points side by side.
 //!
-//! Machine code is several times as fast, but it takes as long to make as this takes for thousands of points.
+//! Machine code is several times as fast, but it takes as long to make as this takes for thousands
+//! of points.
 
 use smallvec::SmallVec;
 
@@ -10,10 +11,12 @@ use super::numbers::{Block, Numbers};
 use super::schedule::{Operation, Place, Schedule};
 use crate::graph::{ExprId, Graph};
 
-/// Points side by side, where there are many: so many that finding out what to do is little beside doing it.
+/// Points side by side, where there are many: so many that finding out what to do is little beside
+/// doing it.
 const MANY: usize = 16;
 
-/// A schedule whose operands and results are places in one list: constants, then what each step computes.
+/// A schedule whose operands and results are places in one list: constants, then what each step
+/// computes.
 pub(super) struct Steps {
     constants: Vec<f64>,
     steps: Vec<Step>,
@@ -32,7 +35,8 @@ struct Step {
 
 impl Steps {
     pub(super) fn new(graph: &Graph, schedule: &Schedule, fused: bool) -> Self {
-        let all: Vec<&(ExprId, Operation)> = schedule.before.iter().chain(&schedule.inside).collect();
+        let all: Vec<&(ExprId, Operation)> =
+            schedule.before.iter().chain(&schedule.inside).collect();
         let read = all.iter().flat_map(|(_, operation)| operation.operands());
         let stored = schedule.constant.iter().map(|(id, _)| id);
         let mut list = List { constants: Vec::new(), places: vec![0; graph.len()] };
@@ -41,7 +45,8 @@ impl Steps {
             list.places[id.index()] = list.constants.len() + at;
         }
         let place = |id: &ExprId| list.places[id.index()];
-        let varying = schedule.varying.iter().flat_map(|(id, to)| to.iter().map(move |to| (place(id), *to)));
+        let varying =
+            schedule.varying.iter().flat_map(|(id, to)| to.iter().map(move |to| (place(id), *to)));
         let constant = schedule.constant.iter().map(|(id, to)| (place(id), *to));
         let results = varying.chain(constant).collect();
         let step = |(_, operation): &(ExprId, Operation)| Step {
@@ -62,7 +67,8 @@ impl Steps {
 
     fn run_on<const POINTS: usize>(&self, call: &mut Call) {
         let (before, inside) = self.steps.split_at(self.before);
-        let mut list: Vec<Block<POINTS>> = Vec::with_capacity(self.constants.len() + self.steps.len());
+        let mut list: Vec<Block<POINTS>> =
+            Vec::with_capacity(self.constants.len() + self.steps.len());
         list.extend(self.constants.iter().map(|&number| [number; POINTS]));
         let mut numbers = Numbers { fused: self.fused, points: POINTS };
         before.iter().for_each(|step| list.push(step.value(call, 0, &mut numbers, &list)));
@@ -90,15 +96,22 @@ impl Step {
         let operand = |which: usize| list[self.operands[which]];
         match &self.operation {
             Operation::Point(column) => on.read(&call.points[column * call.stride + first..]),
-            Operation::Multiplier(column) => on.read(&call.multipliers[column * call.stride + first..]),
+            Operation::Multiplier(column) => {
+                on.read(&call.multipliers[column * call.stride + first..])
+            }
             Operation::Parameter(index) => on.number(call.parameters[*index]),
             Operation::Call(builtin, _) => {
-                let operands: SmallVec<[Block<POINTS>; 4]> = (0..self.operands.len()).map(operand).collect();
+                let operands: SmallVec<[Block<POINTS>; 4]> =
+                    (0..self.operands.len()).map(operand).collect();
                 arithmetic::call(on, *builtin, &operands)
             }
             Operation::MultiplyAdd(_) => on.multiply_add(operand(0), operand(1), operand(2)),
-            Operation::MultiplySubtract(_) => on.multiply_subtract(operand(0), operand(1), operand(2)),
-            Operation::SubtractProduct(_) => on.subtract_product(operand(0), operand(1), operand(2)),
+            Operation::MultiplySubtract(_) => {
+                on.multiply_subtract(operand(0), operand(1), operand(2))
+            }
+            Operation::SubtractProduct(_) => {
+                on.subtract_product(operand(0), operand(1), operand(2))
+            }
         }
     }
 }
@@ -114,7 +127,8 @@ impl List {
     /// A number enters once; what is computed comes later.
     fn enter_constant(&mut self, graph: &Graph, id: ExprId) {
         if let Some(number) = graph.as_number(id)
-            && self.constants.get(self.places[id.index()]).map(|it| it.to_bits()) != Some(number.to_bits())
+            && self.constants.get(self.places[id.index()]).map(|it| it.to_bits())
+                != Some(number.to_bits())
         {
             self.places[id.index()] = self.constants.len();
             self.constants.push(number);

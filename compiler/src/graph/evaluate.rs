@@ -13,7 +13,8 @@ pub fn evaluate(graph: &Graph, roots: &[ExprId], inputs: &[f64], multipliers: &[
             Expr::Input(position) => inputs[*position as usize],
             Expr::Multiplier(output) => multipliers[*output as usize],
             Expr::Call(builtin, operands) => {
-                let operands: SmallVec<[f64; 4]> = operands.iter().map(|id| values[id.index()]).collect();
+                let operands: SmallVec<[f64; 4]> =
+                    operands.iter().map(|id| values[id.index()]).collect();
                 (builtin.row().value)(&operands)
             }
         };

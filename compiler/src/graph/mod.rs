@@ -1,7 +1,8 @@
-//! Hash-consed expressions: equal expressions have equal ids, and nothing is ever changed or removed.
+//! Hash-consed expressions: equal expressions have equal ids, and nothing is ever changed or
+//! removed.
 //!
-//! A node refers only to nodes made before it, so ascending ids are an order of evaluation and every pass
-//! over a graph is a loop, never a recursion. Each node is simplified as it is made.
+//! A node refers only to nodes made before it, so ascending ids are an order of evaluation and
+//! every pass over a graph is a loop, never a recursion. Each node is simplified as it is made.
 
 pub mod evaluate;
 pub mod print;
@@ -140,18 +141,22 @@ impl Graph {
         if let Some(&id) = self.ids.get(&expr) {
             return id;
         }
-        let id = ExprId(u32::try_from(self.nodes.len()).expect("fewer than 2^32 expressions fit in memory"));
+        let id = ExprId(
+            u32::try_from(self.nodes.len()).expect("fewer than 2^32 expressions fit in memory"),
+        );
         self.nodes.push(expr.clone());
         self.ids.insert(expr, id);
         id
     }
 
-    /// Everything the roots need, themselves included, operands first. Little of a large graph costs little.
+    /// Everything the roots need, themselves included, operands first. Little of a large graph
+    /// costs little.
     pub fn reachable(&self, roots: &[ExprId]) -> Vec<ExprId> {
         self.few_reachable(roots).unwrap_or_else(|| self.all_reachable(roots))
     }
 
-    /// What is reachable, if it is only a few: the last first, so that the operands of a node find their places behind it.
+    /// What is reachable, if it is only a few: the last first, so that the operands of a node find
+    /// their places behind it.
     fn few_reachable(&self, roots: &[ExprId]) -> Option<Vec<ExprId>> {
         let mut found = roots.to_vec();
         found.sort_unstable_by(|a, b| b.cmp(a));
@@ -177,7 +182,9 @@ impl Graph {
         roots.iter().for_each(|root| needed[root.index()] = true);
         for index in (0..needed.len()).rev().filter(|&index| self.nodes[index].is_call()) {
             if needed[index] {
-                self.operands(ExprId(index as u32)).iter().for_each(|operand| needed[operand.index()] = true);
+                self.operands(ExprId(index as u32))
+                    .iter()
+                    .for_each(|operand| needed[operand.index()] = true);
             }
         }
         (0..needed.len()).filter(|&index| needed[index]).map(|index| ExprId(index as u32)).collect()
@@ -195,14 +202,19 @@ impl Graph {
     }
 
     /// The roots with some inputs replaced.
-    pub fn substitute(&mut self, roots: &[ExprId], inputs: &dyn Fn(u32) -> Option<ExprId>) -> Vec<ExprId> {
+    pub fn substitute(
+        &mut self,
+        roots: &[ExprId],
+        inputs: &dyn Fn(u32) -> Option<ExprId>,
+    ) -> Vec<ExprId> {
         self.rewrite(roots, |graph, original, rebuilt| match graph.expr(original) {
             Expr::Input(position) => inputs(*position).unwrap_or(rebuilt),
             _ => rebuilt,
         })
     }
 
-    /// Copies expressions of another graph, at a cost that depends on them alone. `inputs` gives each input its meaning here.
+    /// Copies expressions of another graph, at a cost that depends on them alone. `inputs` gives
+    /// each input its meaning here.
     pub fn import(
         &mut self,
         from: &Graph,
@@ -222,7 +234,8 @@ impl Graph {
                     leaf => self.intern(leaf.clone()),
                 });
                 if let Expr::Call(builtin, operands) = from.expr(id) {
-                    let operands: Operands = operands.iter().map(|operand| known[operand]).collect();
+                    let operands: Operands =
+                        operands.iter().map(|operand| known[operand]).collect();
                     let copy = self.call(*builtin, &operands);
                     known.insert(id, copy);
                 }
@@ -231,8 +244,9 @@ impl Graph {
         roots.iter().map(|root| known[root]).collect()
     }
 
-    /// The roots rebuilt bottom up. `replace` is given each node as it was and as it is with its operands replaced; the
-    /// latter may have collapsed to something that was replaced already, so it must ask the former what to do.
+    /// The roots rebuilt bottom up. `replace` is given each node as it was and as it is with its
+    /// operands replaced; the latter may have collapsed to something that was replaced already, so
+    /// it must ask the former what to do.
     pub fn rewrite(
         &mut self,
         roots: &[ExprId],
@@ -242,7 +256,8 @@ impl Graph {
         for id in self.reachable(roots) {
             let rebuilt = match self.expr(id).clone() {
                 Expr::Call(builtin, operands) => {
-                    let operands: Operands = operands.iter().map(|operand| replaced[operand]).collect();
+                    let operands: Operands =
+                        operands.iter().map(|operand| replaced[operand]).collect();
                     self.call(builtin, &operands)
                 }
                 _ => id,
@@ -326,7 +341,8 @@ mod tests {
         let (x, y) = (graph.input(0), graph.input(1));
         let quotient = graph.div(x, y);
         let (seven, product) = (graph.number(7.0), graph.mul(x, y));
-        let result = graph.substitute(&[quotient], &|position| Some(if position == 0 { product } else { y }));
+        let result = graph
+            .substitute(&[quotient], &|position| Some(if position == 0 { product } else { y }));
         let again = graph.substitute(&result, &|position| (position == 0).then_some(seven));
         assert_eq!((result[0], again[0]), (x, seven));
     }

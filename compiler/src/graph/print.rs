@@ -1,4 +1,5 @@
-//! Readable infix text: one line for each root, with nodes that are used more than once named `v1`, `v2`, ...
+//! Readable infix text: one line for each root, with nodes that are used more than once named `v1`,
+//! `v2`, ...
 
 use super::{Expr, ExprId, Graph};
 use crate::builtins::{Builtin, Notation};
@@ -14,7 +15,8 @@ const PREFIX: u8 = 2;
 /// The roots as lines `name = text`, after the lines of what they share.
 pub fn print(graph: &Graph, roots: &[(String, ExprId)], input: &dyn Fn(u32) -> String) -> String {
     let ids: Vec<ExprId> = roots.iter().map(|(_, id)| *id).collect();
-    let mut printer = Printer { graph, input, texts: HashMap::new(), lines: String::new(), named: 0 };
+    let mut printer =
+        Printer { graph, input, texts: HashMap::new(), lines: String::new(), named: 0 };
     let needed = graph.reachable(&ids);
     let uses = count_uses(graph, &needed);
     needed.iter().for_each(|&id| printer.node(id, uses[&id]));
@@ -72,7 +74,9 @@ impl Printer<'_> {
         let row = builtin.row();
         match row.notation {
             _ if builtin == Builtin::Mul => (self.product(operands[0], operands[1]), PREFIX),
-            Notation::Infix(binding) => (self.infix(row.name, binding, operands[0], operands[1]), binding),
+            Notation::Infix(binding) => {
+                (self.infix(row.name, binding, operands[0], operands[1]), binding)
+            }
             Notation::Prefix => (format!("{}{}", row.name, self.text(operands[0], ATOM)), PREFIX),
             _ if builtin == Builtin::SelectLe => (self.selection(operands), 0),
             _ => (format!("{}({})", row.name, self.list(operands)), ATOM),
@@ -93,7 +97,8 @@ impl Printer<'_> {
         (self.texts[&id].1 != ATOM).then_some(operands[1])
     }
 
-    /// The right operand of `-`, `/` and `^` must bind more tightly than the operator, and the left one of `^`.
+    /// The right operand of `-`, `/` and `^` must bind more tightly than the operator, and the left
+    /// one of `^`.
     fn infix(&self, operator: &str, binding: u8, a: ExprId, b: ExprId) -> String {
         let right = if matches!(operator, "+" | "*") { binding } else { binding + 1 };
         let left = if operator == "^" { binding + 1 } else { binding };

@@ -1,5 +1,6 @@
-//! A quick hash for small keys that nobody chooses to be alike: rotate, add, multiply. The hash that withstands an adversary took a
-//! good part of the time of building a graph; here the worst that one could gain is a slow check of his own model.
+//! A quick hash for small keys that nobody chooses to be alike: rotate, add, multiply. The hash
+//! that withstands an adversary took a good part of the time of building a graph; here the worst
+//! that one could gain is a slow check of his own model.
 //!
 //! Nothing depends on the order of a table, so nothing that is printed depends on the hash.
 

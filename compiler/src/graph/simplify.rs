@@ -1,8 +1,9 @@
 //! Local identities, each stated above its code. A node is simplified when it is made.
 //!
-//! Normal forms: a product carries at most one number, in front; a negation stands outside products; a quotient
-//! is a product with a reciprocal, so that one division serves everything over the same denominator; operands
-//! of `+` and `*` are sorted. Each identity holds wherever the left side has a finite value, up to rounding.
+//! Normal forms: a product carries at most one number, in front; a negation stands outside
+//! products; a quotient is a product with a reciprocal, so that one division serves everything over
+//! the same denominator; operands of `+` and `*` are sorted. Each identity holds wherever the left
+//! side has a finite value, up to rounding.
 use super::{Expr, ExprId, Graph, Operands};
 use crate::builtins::{Builtin, Parity};
 
@@ -27,9 +28,11 @@ fn keep(graph: &mut Graph, builtin: Builtin, operands: &[ExprId]) -> ExprId {
     graph.intern(Expr::Call(builtin, Operands::from_slice(operands)))
 }
 
-// f(numbers) = number, if finite or a side without a bound: anything else is left to be met, and reported, when it is evaluated.
+// f(numbers) = number, if finite or a side without a bound: anything else is left to be met, and
+// reported, when it is evaluated.
 fn fold(graph: &mut Graph, builtin: Builtin, operands: &[ExprId]) -> Option<ExprId> {
-    let numbers: Option<Vec<f64>> = operands.iter().map(|&operand| graph.as_number(operand)).collect();
+    let numbers: Option<Vec<f64>> =
+        operands.iter().map(|&operand| graph.as_number(operand)).collect();
     let numbers = numbers?;
     let value = (builtin.row().value)(&numbers);
     let is_open = value.is_infinite() && numbers.iter().any(|number| number.is_infinite());
@@ -79,7 +82,9 @@ fn split(graph: &Graph, a: ExprId) -> (f64, ExprId) {
         return (-1.0, operands[0]);
     }
     match graph.as_call(a, Builtin::Mul) {
-        Some(operands) => graph.as_number(operands[0]).map_or((1.0, a), |factor| (factor, operands[1])),
+        Some(operands) => {
+            graph.as_number(operands[0]).map_or((1.0, a), |factor| (factor, operands[1]))
+        }
         None => (1.0, a),
     }
 }
@@ -128,7 +133,8 @@ fn add(graph: &mut Graph, a: ExprId, b: ExprId) -> ExprId {
     if c == -1.0 {
         return graph.sub(b, x);
     }
-    merge_selections(graph, Builtin::Add, a, b).unwrap_or_else(|| keep(graph, Builtin::Add, &[a, b]))
+    merge_selections(graph, Builtin::Add, a, b)
+        .unwrap_or_else(|| keep(graph, Builtin::Add, &[a, b]))
 }
 
 fn add_number(graph: &mut Graph, number: f64, b: ExprId) -> ExprId {
@@ -174,7 +180,8 @@ fn sub(graph: &mut Graph, a: ExprId, b: ExprId) -> ExprId {
         let sum = graph.add(x, b);
         return graph.neg(sum);
     }
-    merge_selections(graph, Builtin::Sub, a, b).unwrap_or_else(|| keep(graph, Builtin::Sub, &[a, b]))
+    merge_selections(graph, Builtin::Sub, a, b)
+        .unwrap_or_else(|| keep(graph, Builtin::Sub, &[a, b]))
 }
 
 fn mul(graph: &mut Graph, a: ExprId, b: ExprId) -> ExprId {
@@ -226,7 +233,8 @@ fn gate(graph: &mut Graph, a: ExprId, factor: ExprId) -> Option<ExprId> {
     })
 }
 
-// select(p <= q, x, y) + select(p <= q, u, v) = select(p <= q, x + u, y + v), and so for differences
+// select(p <= q, x, y) + select(p <= q, u, v) = select(p <= q, x + u, y + v), and so for
+// differences
 fn merge_selections(graph: &mut Graph, operator: Builtin, a: ExprId, b: ExprId) -> Option<ExprId> {
     let &[p, q, x, y] = graph.as_call(a, Builtin::SelectLe)? else { return None };
     let &[r, s, u, v] = graph.as_call(b, Builtin::SelectLe)? else { return None };
@@ -265,7 +273,8 @@ fn reciprocal_of(graph: &Graph, a: ExprId) -> Option<ExprId> {
 }
 
 fn pow(graph: &mut Graph, base: ExprId, exponent: ExprId) -> Option<ExprId> {
-    let exponent = graph.as_number(exponent).filter(|number| number.abs() <= LARGEST_EXPANDED_EXPONENT)?;
+    let exponent =
+        graph.as_number(exponent).filter(|number| number.abs() <= LARGEST_EXPANDED_EXPONENT)?;
     let halves = 2.0 * exponent;
     if halves.fract() != 0.0 {
         return None;

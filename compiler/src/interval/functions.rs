@@ -32,12 +32,14 @@ pub(crate) fn apply(builtin: Builtin, operands: &[Interval]) -> Interval {
         Builtin::Tanh => a.grow(f64::tanh).intersect(UNIT),
         Builtin::LogCosh => at_least(0.0, a.abs().grow(|x| (Builtin::LogCosh.row().value)(&[x]))),
         Builtin::Abs => a.abs(),
-        Builtin::Min => {
-            Interval { lower: a.lower.min(operands[1].lower), upper: a.upper.min(operands[1].upper) }
-        }
-        Builtin::Max => {
-            Interval { lower: a.lower.max(operands[1].lower), upper: a.upper.max(operands[1].upper) }
-        }
+        Builtin::Min => Interval {
+            lower: a.lower.min(operands[1].lower),
+            upper: a.upper.min(operands[1].upper),
+        },
+        Builtin::Max => Interval {
+            lower: a.lower.max(operands[1].lower),
+            upper: a.upper.max(operands[1].upper),
+        },
         Builtin::SelectLe => select(operands),
     }
 }
@@ -126,8 +128,9 @@ mod tests {
                     .collect();
                 let value = (builtin.row().value)(&point);
                 let image = apply(*builtin, &boxes);
-                let fine =
-                    !builtin.row().domain.contains(&point) || !value.is_finite() || image.contains(value);
+                let fine = !builtin.row().domain.contains(&point)
+                    || !value.is_finite()
+                    || image.contains(value);
                 assert!(fine, "{} at {point:?} is {value}, not in {image:?}", builtin.row().name);
             }
         }
@@ -140,7 +143,8 @@ mod tests {
         assert_eq!(image(Builtin::Sin, 1.0, 2.0).upper, 1.0);
         assert_eq!(image(Builtin::Cos, 3.0, 4.0).lower, -1.0);
         assert!(
-            image(Builtin::Tan, 1.0, 2.0) == Interval::ALL && image(Builtin::Tan, -1.0, 1.0).is_bounded()
+            image(Builtin::Tan, 1.0, 2.0) == Interval::ALL
+                && image(Builtin::Tan, -1.0, 1.0).is_bounded()
         );
     }
 

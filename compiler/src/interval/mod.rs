@@ -1,8 +1,9 @@
-//! Intervals: sets `[lower, upper]` of real numbers, infinite ends allowed, for proofs about expressions.
+//! Intervals: sets `[lower, upper]` of real numbers, infinite ends allowed, for proofs about
+//! expressions.
 //!
-//! Every operation rounds outwards, so an interval contains every value that its operands can give; a sign read off
-//! it is proved. An operand outside the domain of a function gives no value; an interval with nothing in it is
-//! [`Interval::EMPTY`].
+//! Every operation rounds outwards, so an interval contains every value that its operands can give;
+//! a sign read off it is proved. An operand outside the domain of a function gives no value; an
+//! interval with nothing in it is [`Interval::EMPTY`].
 
 mod functions;
 mod prove;
@@ -168,7 +169,9 @@ impl Div for Interval {
 
     fn div(self, other: Interval) -> Interval {
         match other {
-            _ if self.is_empty() || other.is_empty() || other == Interval::point(0.0) => Interval::EMPTY,
+            _ if self.is_empty() || other.is_empty() || other == Interval::point(0.0) => {
+                Interval::EMPTY
+            }
             _ if other.lower < 0.0 && other.upper > 0.0 => Interval::ALL,
             _ => self * reciprocal(other),
         }
@@ -204,8 +207,8 @@ fn around(values: &[f64], steps: u32) -> Interval {
     outward(lower, upper, steps)
 }
 
-/// Widened by some units in the last place; 0 is exact wherever it comes out, but for underflow, which is not a proof
-/// of anything here.
+/// Widened by some units in the last place; 0 is exact wherever it comes out, but for underflow,
+/// which is not a proof of anything here.
 fn outward(lower: f64, upper: f64, steps: u32) -> Interval {
     if lower.is_nan() || upper.is_nan() {
         return Interval::ALL;

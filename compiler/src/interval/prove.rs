@@ -1,8 +1,9 @@
 //! Claims about an expression over a part of a box, proved by dividing the box.
 //!
-//! The part is where some other expressions lie in given ranges (a surface: `psi` in [0, 0]). A piece on which one of them
-//! is out of range is dropped, one on which the claim is seen to hold is done, any other is cut in two, as long as the
-//! budget lasts. So a proof is a proof, and its absence says nothing.
+//! The part is where some other expressions lie in given ranges (a surface: `psi` in [0, 0]). A
+//! piece on which one of them is out of range is dropped, one on which the claim is seen to hold is
+//! done, any other is cut in two, as long as the budget lasts. So a proof is a proof, and its
+//! absence says nothing.
 
 use super::{Interval, Tape};
 use crate::graph::{ExprId, Graph};
@@ -42,7 +43,8 @@ impl Claim {
     }
 }
 
-/// Operations that all proofs about one surface may take together, and pieces that one of them may look at.
+/// Operations that all proofs about one surface may take together, and pieces that one of them may
+/// look at.
 const BUDGET: usize = 40_000;
 const MOST_PIECES: usize = 400;
 
@@ -63,7 +65,11 @@ impl Prover {
     }
 
     /// The same over a smaller box, with what is left of the budget.
-    pub fn within(&mut self, smaller: &[(u32, Interval)], run: impl FnOnce(&mut Prover) -> bool) -> bool {
+    pub fn within(
+        &mut self,
+        smaller: &[(u32, Interval)],
+        run: impl FnOnce(&mut Prover) -> bool,
+    ) -> bool {
         let domain = self.domain.clone();
         smaller.iter().for_each(|&(input, part)| self.domain[input as usize] = part);
         let result = run(self);
@@ -88,7 +94,8 @@ impl Prover {
             self.budget -= tape.cost();
             let values = tape.evaluate(&piece);
             let (of_constraints, of_claims) = values.split_at(self.constraints.len());
-            let outside = |(value, it): (&Interval, &(ExprId, Interval))| value.intersect(it.1).is_empty();
+            let outside =
+                |(value, it): (&Interval, &(ExprId, Interval))| value.intersect(it.1).is_empty();
             let done = of_constraints.iter().zip(&self.constraints).any(outside)
                 || of_claims.iter().zip(claims).all(|(value, claim)| claim.1.holds(*value));
             if !done && !divide(&piece, &inputs, &self.domain, &mut pending) {
@@ -105,7 +112,12 @@ impl Prover {
 }
 
 /// Cuts the widest side, relative to the whole; says whether there is one.
-fn divide(piece: &[Interval], inputs: &[u32], whole: &[Interval], pending: &mut Vec<Vec<Interval>>) -> bool {
+fn divide(
+    piece: &[Interval],
+    inputs: &[u32],
+    whole: &[Interval],
+    pending: &mut Vec<Vec<Interval>>,
+) -> bool {
     let size = |&input: &u32| {
         let (part, whole) = (piece[input as usize], whole[input as usize]);
         let size = if part.is_bounded() { part.upper - part.lower } else { f64::INFINITY };

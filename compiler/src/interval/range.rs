@@ -1,6 +1,7 @@
 //! The values of expressions over a box: one pass over the nodes they need, in ascending order.
 //!
-//! A node that is used twice is computed once, and `a * a` is seen as a square: equal expressions have equal ids.
+//! A node that is used twice is computed once, and `a * a` is seen as a square: equal expressions
+//! have equal ids.
 
 use super::{Interval, apply};
 use crate::builtins::Builtin;
@@ -34,7 +35,9 @@ impl Tape {
             Expr::Call(Builtin::Mul, operands) if operands[0] == operands[1] => {
                 Step::Square(at(&operands[0]))
             }
-            Expr::Call(builtin, operands) => Step::Call(*builtin, operands.iter().map(at).collect()),
+            Expr::Call(builtin, operands) => {
+                Step::Call(*builtin, operands.iter().map(at).collect())
+            }
         };
         Tape {
             steps: needed.iter().map(step).collect(),
@@ -62,7 +65,10 @@ impl Tape {
     }
 
     /// The same over the box with these intervals, by input.
-    pub fn evaluate_over(&mut self, domain: impl Fn(usize) -> Interval) -> impl Iterator<Item = Interval> {
+    pub fn evaluate_over(
+        &mut self,
+        domain: impl Fn(usize) -> Interval,
+    ) -> impl Iterator<Item = Interval> {
         for (at, step) in self.steps.iter().enumerate() {
             self.values[at] = match step {
                 Step::Number(value) => Interval::point(*value),

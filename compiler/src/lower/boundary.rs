@@ -42,7 +42,14 @@ pub(crate) fn lower(
         .collect();
     let by = solved_for(model, &layout);
     (
-        VectorFunction { name: "boundary".into(), layout, outputs, origins, by, order: Order::Second },
+        VectorFunction {
+            name: "boundary".into(),
+            layout,
+            outputs,
+            origins,
+            by,
+            order: Order::Second,
+        },
         conditions,
     )
 }

@@ -1,4 +1,5 @@
-//! The functions of a problem once more, differentiated by the parameters, and the numbers that parameters give.
+//! The functions of a problem once more, differentiated by the parameters, and the numbers that
+//! parameters give.
 
 use super::inputs::{self, Sizes};
 use super::{Program, boundary};
@@ -30,11 +31,23 @@ fn given(model: &Model, program: &mut Program) -> VectorFunction {
     let inputs = inputs::of_parameters(model, &mut program.graph, &layout);
     let outputs = inputs.apply(&mut program.graph, &outputs);
     let origins = vec![Origin::default(); outputs.len()];
-    VectorFunction { name: "given".into(), layout, outputs, origins, by: Vec::new(), order: Order::First }
+    VectorFunction {
+        name: "given".into(),
+        layout,
+        outputs,
+        origins,
+        by: Vec::new(),
+        order: Order::First,
+    }
 }
 
 /// Expressions over the symbols of the model.
-fn outputs(model: &Model, ends: &[boundary::Condition], hidden: usize, graph: &mut Graph) -> Vec<ExprId> {
+fn outputs(
+    model: &Model,
+    ends: &[boundary::Condition],
+    hidden: usize,
+    graph: &mut Graph,
+) -> Vec<ExprId> {
     let zero = graph.number(0.0);
     let mut outputs: Vec<ExprId> = Vec::new();
     outputs.extend(model.params.iter().map(|param| param.value.unwrap_or(zero)));
@@ -54,13 +67,15 @@ fn outputs(model: &Model, ends: &[boundary::Condition], hidden: usize, graph: &m
     outputs
 }
 
-/// Whether neither the right side nor a path constraint depends on the time but through states and controls.
+/// Whether neither the right side nor a path constraint depends on the time but through states and
+/// controls.
 pub(crate) fn is_autonomous(program: &Program) -> bool {
     let outputs = [&program.dynamics, &program.path].map(|it| it.outputs.clone()).concat();
     !program.graph.inputs_of(&outputs).contains(&0)
 }
 
-/// The unknown that is the last time, and nothing else: no right side, path constraint or first time depends on it.
+/// The unknown that is the last time, and nothing else: no right side, path constraint or first
+/// time depends on it.
 pub(crate) fn last_time(model: &Model, program: &Program) -> Option<usize> {
     let Expr::Input(last) = *model.graph.expr(model.interval[1]) else { return None };
     let Symbol::Free(unknown) = model.symbols[last as usize] else { return None };

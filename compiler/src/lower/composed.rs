@@ -1,11 +1,12 @@
-//! Explicit Runge-Kutta schemes, composed: their whole step becomes one function, which explicit Euler then takes.
+//! Explicit Runge-Kutta schemes, composed: their whole step becomes one function, which explicit
+//! Euler then takes.
 //!
 //! ```text
 //! K_j = F(tau + c_j h, x + h sum_{i<j} a_ji K_i, u),     x_{k+1} = x_k + h sum_j b_j K_j
 //! ```
 //!
-//! The integrand of the objective takes the same stages. Derivatives of the step come from the graph like all others, so no stage
-//! is an unknown of the programme.
+//! The integrand of the objective takes the same stages. Derivatives of the step come from the
+//! graph like all others, so no stage is an unknown of the programme.
 
 use crate::graph::{ExprId, Graph};
 use fdcc_runtime::problem::{Layout, Method, Scheme};
@@ -32,7 +33,8 @@ fn tableau(scheme: Scheme) -> Option<&'static Tableau> {
     }
 }
 
-/// The right sides `F` over normalised time, states first, as the increments of a step of the scheme.
+/// The right sides `F` over normalised time, states first, as the increments of a step of the
+/// scheme.
 pub(super) fn compose(
     graph: &mut Graph,
     method: &Method,
@@ -69,8 +71,16 @@ fn moved(
 }
 
 /// A sum of one output over the stages.
-fn combination(graph: &mut Graph, weights: &[f64], stages: &[Vec<ExprId>], output: usize) -> ExprId {
-    let terms: Vec<ExprId> =
-        weights.iter().zip(stages).map(|(weight, stage)| graph.scale(*weight, stage[output])).collect();
+fn combination(
+    graph: &mut Graph,
+    weights: &[f64],
+    stages: &[Vec<ExprId>],
+    output: usize,
+) -> ExprId {
+    let terms: Vec<ExprId> = weights
+        .iter()
+        .zip(stages)
+        .map(|(weight, stage)| graph.scale(*weight, stage[output]))
+        .collect();
     graph.sum(&terms)
 }

@@ -14,7 +14,9 @@ pub(super) fn write_out(model: &Model, graph: &mut Graph, function: &mut VectorF
     let inputs = inputs::of_parameters(model, graph, &function.layout);
     let mut derived: HashMap<u32, ExprId> = HashMap::new();
     for &index in &model.param_order {
-        let Some(value) = model.params[index].value.filter(|&value| is_computed(model, graph, value)) else {
+        let Some(value) =
+            model.params[index].value.filter(|&value| is_computed(model, graph, value))
+        else {
             continue;
         };
         let value = inputs.apply(graph, &[value]);
@@ -22,7 +24,8 @@ pub(super) fn write_out(model: &Model, graph: &mut Graph, function: &mut VectorF
         derived.insert((first + index) as u32, written);
     }
     if !derived.is_empty() {
-        function.outputs = graph.substitute(&function.outputs, &|input| derived.get(&input).copied());
+        function.outputs =
+            graph.substitute(&function.outputs, &|input| derived.get(&input).copied());
     }
 }
 

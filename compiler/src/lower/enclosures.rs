@@ -29,7 +29,11 @@ pub(super) fn enclosures(graph: &mut Graph, layout: &Layout, watched: &Watched) 
     let Watched { flow, guards, kinks, rates, path, guess } = watched;
     let along = 0..layout.states().end;
     let mut of = |function: &VectorFunction, by: &Range<usize>| -> Vec<Enclosure> {
-        function.outputs.iter().map(|&output| enclosure(graph, &function.layout, output, by)).collect()
+        function
+            .outputs
+            .iter()
+            .map(|&output| enclosure(graph, &function.layout, output, by))
+            .collect()
     };
     Enclosures {
         flow: of(flow, &(0..0)),
@@ -45,7 +49,8 @@ pub(super) fn enclosures(graph: &mut Graph, layout: &Layout, watched: &Watched) 
 /// Of one output, with its derivatives by those of some inputs that it depends on.
 fn enclosure(graph: &mut Graph, layout: &Layout, output: ExprId, by: &Range<usize>) -> Enclosure {
     let read = graph.inputs_of(&[output]);
-    let by: Vec<u32> = read.iter().copied().filter(|&input| by.contains(&(input as usize))).collect();
+    let by: Vec<u32> =
+        read.iter().copied().filter(|&input| by.contains(&(input as usize))).collect();
     let mut roots = vec![output];
     roots.extend(gradient(graph, output, &by));
     let is_affine = graph.inputs_of(&roots[1..]).iter().all(|input| !by.contains(input));
@@ -59,7 +64,10 @@ fn enclosure(graph: &mut Graph, layout: &Layout, output: ExprId, by: &Range<usiz
             assert_eq!(domain.len(), inputs, "intervals of the inputs");
             let mut tape = tape.lock().unwrap_or_else(PoisonError::into_inner);
             let values = tape.evaluate_over(|at| Interval::new(domain[at][0], domain[at][1]));
-            ranges.iter_mut().zip(values).for_each(|(range, value)| *range = [value.lower, value.upper]);
+            ranges
+                .iter_mut()
+                .zip(values)
+                .for_each(|(range, value)| *range = [value.lower, value.upper]);
         }),
     }
 }

@@ -1,7 +1,7 @@
 //! What a model expects of its solution, as a function that can be evaluated once there is one.
 //!
-//! Inputs `[x(start), x(end) | p, integrals, simulated]`; three outputs for each expectation: left side, right side,
-//! tolerance.
+//! Inputs `[x(start), x(end) | p, integrals, simulated]`; three outputs for each expectation: left
+//! side, right side, tolerance.
 
 use super::inputs::{self, Sizes};
 use super::{Objective, objective, origin};
@@ -65,8 +65,10 @@ pub fn expectations(model: &Model) -> Expectations {
         at_ends.replace(model, symbol, place);
     }
     let values = at_ends.apply(&mut graph, &values);
-    let functions =
-        [values_only("expectations", layout, values), values_only("integrands", sizes.grid(), integrands)];
+    let functions = [
+        values_only("expectations", layout, values),
+        values_only("integrands", sizes.grid(), integrands),
+    ];
     let compiled = crate::machine_code(graph, functions.to_vec());
     let [function, integrands] =
         <[_; 2]>::try_from(compiled).unwrap_or_else(|_| unreachable!("two functions were given"));
@@ -84,5 +86,12 @@ fn simulated_in(model: &Model, graph: &Graph, roots: &[ExprId]) -> Vec<usize> {
 
 fn values_only(name: &str, layout: Layout, outputs: Vec<ExprId>) -> VectorFunction {
     let origins = vec![Origin::default(); outputs.len()];
-    VectorFunction { name: name.into(), layout, outputs, origins, by: Vec::new(), order: Order::Second }
+    VectorFunction {
+        name: name.into(),
+        layout,
+        outputs,
+        origins,
+        by: Vec::new(),
+        order: Order::Second,
+    }
 }

@@ -1,8 +1,8 @@
 //! The guess of states and controls over normalised time.
 //!
-//! Where the model is silent: a state runs straight from its start to its end, as far as conditions such as
-//! `end x == 1` give them; a control stays in the middle of its bounds, unless they are so wide
-//! that they say nothing of its size.
+//! Where the model is silent: a state runs straight from its start to its end, as far as conditions
+//! such as `end x == 1` give them; a control stays in the middle of its bounds, unless they are so
+//! wide that they say nothing of its size.
 
 use super::inputs::{Sizes, of_curve};
 use super::origin;
@@ -37,10 +37,18 @@ pub(crate) fn lower(model: &Model, graph: &mut Graph, sizes: &Sizes) -> VectorFu
         outputs.push(inputs.apply(graph, &[value])[0]);
         origins.push(origin(&control.place));
     }
-    VectorFunction { name: "guess".into(), layout, outputs, origins, by: Vec::new(), order: Order::Second }
+    VectorFunction {
+        name: "guess".into(),
+        layout,
+        outputs,
+        origins,
+        by: Vec::new(),
+        order: Order::Second,
+    }
 }
 
-/// The guess of all states and controls over real time, parameters and unknowns, and the input that each stands for.
+/// The guess of all states and controls over real time, parameters and unknowns, and the input that
+/// each stands for.
 pub(crate) fn over_time(
     model: &Model,
     graph: &mut Graph,
@@ -65,9 +73,9 @@ pub(crate) fn over_time(
     }
     for (index, control) in model.controls.iter().enumerate() {
         guessed.0.push(
-            control
-                .guess
-                .unwrap_or_else(|| middle(graph, control.range, model.unit_size(&control.place.name))),
+            control.guess.unwrap_or_else(|| {
+                middle(graph, control.range, model.unit_size(&control.place.name))
+            }),
         );
         guessed.1.extend(model.input_of(Symbol::Control(index)));
     }
@@ -84,7 +92,8 @@ pub(crate) fn at_start(model: &Model, graph: &mut Graph, sizes: &Sizes) -> Vec<E
     })
 }
 
-/// The guess of all states over the symbols of the model: as written, or straight from start to end.
+/// The guess of all states over the symbols of the model: as written, or straight from start to
+/// end.
 pub(crate) fn straight_guesses(model: &Model, graph: &mut Graph) -> Vec<ExprId> {
     let time = model.input_of(Symbol::Time).expect("time is a symbol");
     let [now, first, last] = [graph.input(time), model.interval[0], model.interval[1]];
@@ -126,7 +135,8 @@ fn ends(model: &Model, graph: &mut Graph, index: usize, state: &State) -> [ExprI
 pub(crate) fn fixed_by_a_row(model: &Model, graph: &mut Graph, symbol: Symbol) -> Option<ExprId> {
     let input = model.input_of(symbol)?;
     let symbol = graph.input(input);
-    let row = model.boundary.iter().find(|row| row.value == symbol && row.range.lower == row.range.upper);
+    let row =
+        model.boundary.iter().find(|row| row.value == symbol && row.range.lower == row.range.upper);
     row.map(|row| row.range.upper)
 }
 

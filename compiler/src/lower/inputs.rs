@@ -1,7 +1,8 @@
 //! Where the symbols of a model stand among the inputs of its functions.
 //!
-//! `p = [params | unknowns | sigma(switch)... | sigma(abs)]`, a width for each surface or `Dir`; the last only where `abs`, `min` and `max` are
-//! smoothed and there is no surface to share a width with.
+//! `p = [params | unknowns | sigma(switch)... | sigma(abs)]`, a width for each surface or `Dir`;
+//! the last only where `abs`, `min` and `max` are smoothed and there is no surface to share a width
+//! with.
 
 use super::kernel;
 use crate::graph::{ExprId, Graph};
@@ -162,7 +163,12 @@ fn place_signals(model: &Model, graph: &mut Graph, layout: &Layout, inputs: &mut
 }
 
 /// States at both ends and parameters; integrals are hidden states at the end.
-pub(crate) fn at_ends(model: &Model, graph: &mut Graph, layout: &Layout, hidden: &[usize]) -> Inputs {
+pub(crate) fn at_ends(
+    model: &Model,
+    graph: &mut Graph,
+    layout: &Layout,
+    hidden: &[usize],
+) -> Inputs {
     let mut inputs = of_parameters(model, graph, layout);
     let states = layout.x / 2;
     let ends: Vec<ExprId> = layout.states().map(|at| graph.input(at as u32)).collect();

@@ -1,12 +1,14 @@
-//! Kinks of the right side that are no surfaces: of `abs`, `min`, `max`, and the knots of `piecewise`.
+//! Kinks of the right side that are no surfaces: of `abs`, `min`, `max`, and the knots of
+//! `piecewise`.
 //!
 //! ```text
 //! |e| = -e, e     min(a, b) = a, b     max(a, b) = b, a     select_le(a, b, x, y) = x, y     where e = a - b is below, above 0
 //! ```
 //!
-//! Each `e` that time, a state or a control moves gets a selector behind those of the surfaces, which says on which side of 0 it is. So the right side is
-//! smooth on each side and goes on smoothly beyond, and what crosses a kink can be found and differentiated like what crosses a surface.
-//! Where `e` is the function of a surface, the selector of that surface says it already.
+//! Each `e` that time, a state or a control moves gets a selector behind those of the surfaces,
+//! which says on which side of 0 it is. So the right side is smooth on each side and goes on
+//! smoothly beyond, and what crosses a kink can be found and differentiated like what crosses a
+//! surface. Where `e` is the function of a surface, the selector of that surface says it already.
 
 use crate::blend::sides;
 use crate::graph::{ExprId, Graph};
@@ -22,14 +24,20 @@ pub(super) struct Kinks {
     pub origins: Vec<Origin>,
 }
 
-/// Takes the kinks out of a function whose layout has the selectors of the surfaces last. `guards` are the functions of
-/// the surfaces that stand alone; others have none.
-pub(super) fn take_out(graph: &mut Graph, flow: &mut VectorFunction, guards: &[Option<ExprId>]) -> Kinks {
+/// Takes the kinks out of a function whose layout has the selectors of the surfaces last. `guards`
+/// are the functions of the surfaces that stand alone; others have none.
+pub(super) fn take_out(
+    graph: &mut Graph,
+    flow: &mut VectorFunction,
+    guards: &[Option<ExprId>],
+) -> Kinks {
     let mut kinks = Kinks::default();
     let mut rewritten = Vec::new();
     for (&output, origin) in flow.outputs.iter().zip(&flow.origins) {
         let root = graph.rewrite(&[output], |graph, original, rebuilt| {
-            let Some((zero, [below, above])) = sides(graph, original, rebuilt) else { return rebuilt };
+            let Some((zero, [below, above])) = sides(graph, original, rebuilt) else {
+                return rebuilt;
+            };
             match side_of(graph, zero, flow, guards, (&mut kinks, origin)) {
                 Some(selector) => {
                     let middle = graph.number(0.0);

@@ -1,4 +1,5 @@
-//! From a [`Model`] to the vector functions of a [`Problem`](fdcc_runtime::problem::Problem), over one graph.
+//! From a [`Model`] to the vector functions of a [`Problem`](fdcc_runtime::problem::Problem), over
+//! one graph.
 //!
 //! ```text
 //! flow      f(t, x, u, p, s)                                 real time, selectors s as inputs
@@ -70,7 +71,8 @@ pub fn lower(model: &Model) -> Program {
     let objective = objective::split(model, &mut graph);
     let sizes = Sizes::new(model, objective.hidden.len());
     let flow = flow(model, &mut graph, &sizes, &objective);
-    let over_grid = OverGrid { model, sizes: &sizes, inputs: inputs::over_grid(model, &mut graph, &sizes) };
+    let over_grid =
+        OverGrid { model, sizes: &sizes, inputs: inputs::over_grid(model, &mut graph, &sizes) };
     let dynamics = over_grid.dynamics(&mut graph, &objective);
     let path = over_grid.function(
         &mut graph,
@@ -107,13 +109,22 @@ pub fn lower(model: &Model) -> Program {
 impl Program {
     /// The functions that a problem compiles, in the order in which [`problem()`] takes them back.
     pub fn functions(&self) -> [&VectorFunction; 7] {
-        [&self.dynamics, &self.path, &self.boundary, &self.guess, &self.interval, &self.guards, &self.report]
+        [
+            &self.dynamics,
+            &self.path,
+            &self.boundary,
+            &self.guess,
+            &self.interval,
+            &self.guards,
+            &self.report,
+        ]
     }
 }
 
 /// `psi` of a surface, `|psi|` of a ball.
 fn size(graph: &mut Graph, model: &Model, switch: &Switch) -> ExprId {
-    let psis: Vec<ExprId> = model.surfaces[switch.surfaces.clone()].iter().map(|it| it.psi).collect();
+    let psis: Vec<ExprId> =
+        model.surfaces[switch.surfaces.clone()].iter().map(|it| it.psi).collect();
     if !switch.is_ball {
         return psis[0];
     }
@@ -142,15 +153,19 @@ impl OverGrid<'_> {
         let outputs = self.inputs.apply(graph, &outputs);
         let layout = self.sizes.grid();
         let by = if is_solved { inputs::solved_for(self.model, &layout) } else { Vec::new() };
-        let outputs =
-            if is_solved { smoothed(self.model, graph, &outputs, self.sizes, &layout) } else { outputs };
+        let outputs = if is_solved {
+            smoothed(self.model, graph, &outputs, self.sizes, &layout)
+        } else {
+            outputs
+        };
         VectorFunction { name: name.into(), layout, outputs, origins, by, order: Order::Second }
     }
 
     fn dynamics(&self, graph: &mut Graph, objective: &Objective) -> VectorFunction {
         let outputs = rates(self.model, objective);
         let mut function = self.function(graph, "dynamics", outputs.into_iter(), true);
-        let outputs = function.outputs.iter().map(|&output| graph.mul(self.inputs.duration, output));
+        let outputs =
+            function.outputs.iter().map(|&output| graph.mul(self.inputs.duration, output));
         let rates: Vec<ExprId> = outputs.collect();
         function.outputs = composed::compose(graph, &self.model.method, &function.layout, rates);
         function
@@ -160,7 +175,8 @@ impl OverGrid<'_> {
 /// Right sides: of the states, of the integrals that became states, of the running cost.
 fn rates(model: &Model, objective: &Objective) -> Vec<(ExprId, Origin)> {
     let states = model.states.iter().map(|state| (state.rate, origin(&state.equation)));
-    let integral = |&at: &usize| (model.integrals[at].integrand, origin(&model.integrals[at].place));
+    let integral =
+        |&at: &usize| (model.integrals[at].integrand, origin(&model.integrals[at].place));
     let running = objective.running.map(|cost| (cost, objective.origin.clone()));
     states.chain(objective.hidden.iter().map(integral)).chain(running).collect()
 }
@@ -168,9 +184,17 @@ fn rates(model: &Model, objective: &Objective) -> Vec<(ExprId, Origin)> {
 fn flow(model: &Model, graph: &mut Graph, sizes: &Sizes, objective: &Objective) -> VectorFunction {
     let layout = sizes.flow();
     let inputs = inputs::of_flow(model, graph, &layout);
-    let (outputs, origins): (Vec<ExprId>, Vec<Origin>) = rates(model, objective).into_iter().unzip();
+    let (outputs, origins): (Vec<ExprId>, Vec<Origin>) =
+        rates(model, objective).into_iter().unzip();
     let outputs = inputs.apply(graph, &outputs);
-    VectorFunction { name: "flow".into(), layout, outputs, origins, by: Vec::new(), order: Order::Second }
+    VectorFunction {
+        name: "flow".into(),
+        layout,
+        outputs,
+        origins,
+        by: Vec::new(),
+        order: Order::Second,
+    }
 }
 
 fn interval(model: &Model, graph: &mut Graph, sizes: &Sizes) -> VectorFunction {
@@ -178,7 +202,14 @@ fn interval(model: &Model, graph: &mut Graph, sizes: &Sizes) -> VectorFunction {
     let inputs = inputs::of_parameters(model, graph, &layout);
     let outputs = inputs.apply(graph, &model.interval);
     let origins = ["t0", "tf"].map(|label| Origin { label: label.into(), span: (0, 0) }).to_vec();
-    VectorFunction { name: "interval".into(), layout, outputs, origins, by: Vec::new(), order: Order::Second }
+    VectorFunction {
+        name: "interval".into(),
+        layout,
+        outputs,
+        origins,
+        by: Vec::new(),
+        order: Order::Second,
+    }
 }
 
 /// The outputs with `abs`, `min` and `max` rounded, where smoothing is on.

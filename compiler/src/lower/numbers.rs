@@ -18,8 +18,8 @@ pub struct Numbers {
     places: HashMap<Symbol, usize>,
 }
 
-/// Computes parameters in their order, then the guesses of the unknowns. Says which parameters have no value, and which
-/// widths those of the command line leave no room.
+/// Computes parameters in their order, then the guesses of the unknowns. Says which parameters have
+/// no value, and which widths those of the command line leave no room.
 pub fn numbers(model: &Model) -> Result<Numbers, Vec<Diagnostic>> {
     let missing = model.params.iter().filter(|param| param.value.is_none());
     let missing: Vec<Diagnostic> =
@@ -65,8 +65,8 @@ impl Numbers {
         }
     }
 
-    /// Unknowns without a guess are in the middle of their bounds, or 1. A guess may use other unknowns, so the
-    /// guesses are computed until nothing changes.
+    /// Unknowns without a guess are in the middle of their bounds, or 1. A guess may use other
+    /// unknowns, so the guesses are computed until nothing changes.
     fn guess_unknowns(&mut self, model: &Model) {
         for (index, free) in model.frees.iter().enumerate() {
             let bounds = self.bounds(model, free.range);

@@ -1,7 +1,8 @@
 //! The objective taken apart: `J = M(x(start), x(end), p) + sum_k c_k integral(e_k)`.
 //!
-//! Where `c_k` depends on parameters alone the integral is running cost, `sum_k c_k e_k`. Where an integral enters
-//! otherwise, or stands in a condition, it becomes one more state `q' = e_k, q(start) = 0`.
+//! Where `c_k` depends on parameters alone the integral is running cost, `sum_k c_k e_k`. Where an
+//! integral enters otherwise, or stands in a condition, it becomes one more state `q' = e_k,
+//! q(start) = 0`.
 
 use super::origin;
 use crate::differentiate::derivative;

@@ -54,7 +54,8 @@ pub fn problem(
     }
 }
 
-/// Start rows were made after the model, so their bounds may be numbers of the program's graph alone.
+/// Start rows were made after the model, so their bounds may be numbers of the program's graph
+/// alone.
 fn row_bounds(
     program: &Program,
     numbers: &Numbers,
@@ -102,8 +103,10 @@ pub(super) fn parameters(model: &Model, count: usize, numbers: &Numbers) -> Vec<
         unit: model.unit_size(&place.name),
         origin: origin(place),
     };
-    let params = model.params.iter().enumerate().map(|(at, it)| parameter(&it.place, Symbol::Param(at)));
-    let frees = model.frees.iter().enumerate().map(|(at, it)| parameter(&it.place, Symbol::Free(at)));
+    let params =
+        model.params.iter().enumerate().map(|(at, it)| parameter(&it.place, Symbol::Param(at)));
+    let frees =
+        model.frees.iter().enumerate().map(|(at, it)| parameter(&it.place, Symbol::Free(at)));
     let mut all: Vec<Parameter> = params.chain(frees).collect();
     let width = width(&model.method);
     for switch in model.switches() {

@@ -8,8 +8,8 @@
 //! kinks     e(t, x, u, p) of abs(e), a - b of min(a, b) and max(a, b) in the flow
 //! ```
 //!
-//! Every integral of the model is one more state, so the objective is a function of both ends. A simulation needs few
-//! derivatives, sensitivities need all of them, up to the second.
+//! Every integral of the model is one more state, so the objective is a function of both ends. A
+//! simulation needs few derivatives, sensitivities need all of them, up to the second.
 
 use super::derived::write_out;
 use super::enclosures::{Watched, enclosures};
@@ -78,8 +78,11 @@ pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) 
     let [flow, rates, guards, _, _, guess, _, _, kinks] = functions.as_slice() else {
         unreachable!("a system has nine functions")
     };
-    let enclosures =
-        enclosures(&mut graph, &layout, &Watched { flow, guards, kinks, rates, path: &path, guess });
+    let enclosures = enclosures(
+        &mut graph,
+        &layout,
+        &Watched { flow, guards, kinks, rates, path: &path, guess },
+    );
     (graph, Simulated { functions, enclosures, layout, hidden, surfaces })
 }
 
@@ -129,16 +132,27 @@ impl OverTime<'_> {
         by: impl Iterator<Item = usize>,
     ) -> VectorFunction {
         let by = by.map(|at| at as u32).collect();
-        VectorFunction { name: name.into(), layout: self.layout, outputs, origins, by, order: Order::First }
+        VectorFunction {
+            name: name.into(),
+            layout: self.layout,
+            outputs,
+            origins,
+            by,
+            order: Order::First,
+        }
     }
 
     fn flow(&mut self) -> VectorFunction {
         let model = self.model;
         let rates = model.states.iter().map(|state| (state.rate, origin(&state.equation)));
-        let integrals = model.integrals.iter().map(|integral| (integral.integrand, origin(&integral.place)));
+        let integrals =
+            model.integrals.iter().map(|integral| (integral.integrand, origin(&integral.place)));
         let layout = self.layout;
-        let mut flow =
-            self.function("flow", rates.chain(integrals), layout.states().chain(layout.selectors()));
+        let mut flow = self.function(
+            "flow",
+            rates.chain(integrals),
+            layout.states().chain(layout.selectors()),
+        );
         if self.purpose == Purpose::Smoothed {
             flow.outputs = smoothed(model, self.graph, &flow.outputs, self.sizes, &layout);
         }
@@ -163,9 +177,13 @@ impl OverTime<'_> {
         let mut kinks = Kinks::default();
         if self.purpose != Purpose::Smoothed {
             let guards = self.guards().outputs;
-            let is_alone = |at: usize| self.model.balls.iter().all(|ball| !ball.surfaces.contains(&at));
-            let guards: Vec<Option<ExprId>> =
-                guards.into_iter().enumerate().map(|(at, psi)| is_alone(at).then_some(psi)).collect();
+            let is_alone =
+                |at: usize| self.model.balls.iter().all(|ball| !ball.surfaces.contains(&at));
+            let guards: Vec<Option<ExprId>> = guards
+                .into_iter()
+                .enumerate()
+                .map(|(at, psi)| is_alone(at).then_some(psi))
+                .collect();
             kinks = take_out(self.graph, flow, &guards);
         }
         self.layout.s += kinks.zeros.len();
@@ -191,7 +209,8 @@ impl OverTime<'_> {
     /// What a jump does not name stays as it is.
     fn resets(&mut self) -> VectorFunction {
         let inputs = self.inputs();
-        let same: Vec<ExprId> = self.layout.states().map(|at| self.graph.input(at as u32)).collect();
+        let same: Vec<ExprId> =
+            self.layout.states().map(|at| self.graph.input(at as u32)).collect();
         let mut outputs = Vec::new();
         for jump in &self.model.jumps {
             let values: Vec<ExprId> = jump.resets.iter().map(|reset| reset.1).collect();
@@ -216,7 +235,8 @@ impl OverTime<'_> {
         VectorFunction { layout, ..self.over_inputs("objective", outputs, origins, 0..0) }
     }
 
-    /// What is declared, else what a condition such as `start x == 1` gives, else the guess; 0 for integrals.
+    /// What is declared, else what a condition such as `start x == 1` gives, else the guess; 0 for
+    /// integrals.
     fn start(&mut self) -> VectorFunction {
         let layout = Layout { p: self.sizes.parameters, ..Layout::default() };
         let inputs = inputs::of_parameters(self.model, self.graph, &layout);
@@ -241,8 +261,8 @@ pub(crate) fn system(
     numbers: &Numbers,
     functions: Vec<Arc<dyn Function>>,
 ) -> simulate::System {
-    let [flow, rates, guards, resets, objective, guess, interval, start, kinks]: [Arc<dyn Function>; 9] =
-        functions.try_into().unwrap_or_else(|_| unreachable!("a system has nine functions"));
+    let [flow, rates, guards, resets, objective, guess, interval, start, kinks]: [Arc<dyn Function>;
+        9] = functions.try_into().unwrap_or_else(|_| unreachable!("a system has nine functions"));
     let first_sigma = model.params.len() + model.frees.len();
     let parameters = parameters(model, simulated.layout.p, numbers);
     let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();

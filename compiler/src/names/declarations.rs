@@ -20,7 +20,8 @@ fn items(all: &[Item], phase: Option<usize>, names: &mut Names) {
 }
 
 fn own(item: &Item, phase: Option<usize>, names: &mut Names) {
-    let entry = |names: &mut Names, name: &Ident, kind| declare(names, name, kind, item.span, phase);
+    let entry =
+        |names: &mut Names, name: &Ident, kind| declare(names, name, kind, item.span, phase);
     match &item.kind {
         ItemKind::Fn { name, arguments, .. } => {
             let function = entry(names, name, Kind::Function);
@@ -83,7 +84,13 @@ pub(super) fn declare(
     within: Option<usize>,
 ) -> usize {
     let at = names.definitions.len();
-    names.definitions.push(Definition { name: name.name.clone(), kind, span: name.span, item, within });
+    names.definitions.push(Definition {
+        name: name.name.clone(),
+        kind,
+        span: name.span,
+        item,
+        within,
+    });
     let (span, meaning) = (name.span, Meaning::Declared(at));
     names.occurrences.push(Occurrence { span, meaning, role: Role::Definition });
     at

@@ -1,7 +1,9 @@
-//! Every name of a text with its role: what it is, where it is declared, where it is read and written.
+//! Every name of a text with its role: what it is, where it is declared, where it is read and
+//! written.
 //!
-//! Made from the tree alone, by the rules of `resolve` for what a name stands for, so that a text with mistakes has an
-//! index too. Editors ask nothing else: definition, references, renaming, colours, symbols and completion are queries.
+//! Made from the tree alone, by the rules of `resolve` for what a name stands for, so that a text
+//! with mistakes has an index too. Editors ask nothing else: definition, references, renaming,
+//! colours, symbols and completion are queries.
 
 mod declarations;
 mod enclosing;
@@ -176,14 +178,17 @@ impl Names {
 
     /// What belongs to a definition.
     pub fn parts_of(&self, definition: usize) -> impl Iterator<Item = usize> {
-        (0..self.definitions.len()).filter(move |&at| self.definitions[at].within == Some(definition))
+        (0..self.definitions.len())
+            .filter(move |&at| self.definitions[at].within == Some(definition))
     }
 
     /// A definition as results call it: `pos.x`, `coast.h`.
     pub fn full_name(&self, definition: usize) -> String {
         let it = &self.definitions[definition];
         match it.within {
-            Some(outer) if it.kind == Kind::Part => format!("{}.{}", self.full_name(outer), it.name),
+            Some(outer) if it.kind == Kind::Part => {
+                format!("{}.{}", self.full_name(outer), it.name)
+            }
             _ => it.name.clone(),
         }
     }
@@ -200,6 +205,10 @@ impl Names {
 
     /// A name that no declaration explains.
     fn built_in(name: &str) -> Meaning {
-        if matches!(name, "pi" | "inf") || is_function(name) { Meaning::BuiltIn } else { Meaning::Unknown }
+        if matches!(name, "pi" | "inf") || is_function(name) {
+            Meaning::BuiltIn
+        } else {
+            Meaning::Unknown
+        }
     }
 }

@@ -22,7 +22,8 @@ type Known = HashMap<Option<usize>, HashMap<String, usize>>;
 
 fn known(names: &Names) -> Known {
     let mut known = Known::new();
-    let in_expressions = |kind: Kind| !matches!(kind, Kind::Model | Kind::Jump | Kind::Path | Kind::Report);
+    let in_expressions =
+        |kind: Kind| !matches!(kind, Kind::Model | Kind::Jump | Kind::Path | Kind::Report);
     for (at, it) in names.definitions.iter().enumerate().filter(|it| in_expressions(it.1.kind)) {
         known.entry(it.within).or_default().entry(it.name.clone()).or_insert(at);
     }
@@ -78,21 +79,28 @@ impl Walker<'_> {
             ItemKind::Dynamics { equations } => {
                 equations.iter().for_each(|it| self.name(&it.state, Role::Write))
             }
-            ItemKind::Metric { weights } => weights.iter().for_each(|it| self.name(&it.0, Role::Read)),
-            ItemKind::Guess { bindings } => bindings.iter().for_each(|it| self.name(&it.name, Role::Write)),
+            ItemKind::Metric { weights } => {
+                weights.iter().for_each(|it| self.name(&it.0, Role::Read))
+            }
+            ItemKind::Guess { bindings } => {
+                bindings.iter().for_each(|it| self.name(&it.name, Role::Write))
+            }
             ItemKind::Jump { surface, then_hold, assignments, .. } => {
                 std::iter::once(surface).chain(then_hold).for_each(|it| self.name(it, Role::Read));
                 assignments.iter().for_each(|it| self.name(&it.name, Role::Write));
             }
-            ItemKind::Sweep { lists } => lists.iter().for_each(|it| match is_method_key(&it.name.name) {
-                true => self.add(it.name.span, Meaning::Setting, Role::Write),
-                false => self.name(&it.name, Role::Write),
-            }),
+            ItemKind::Sweep { lists } => {
+                lists.iter().for_each(|it| match is_method_key(&it.name.name) {
+                    true => self.add(it.name.span, Meaning::Setting, Role::Write),
+                    false => self.name(&it.name, Role::Write),
+                })
+            }
             _ => {}
         }
     }
 
-    /// The left sides are states of the phase that begins, the right sides belong to the one that ends.
+    /// The left sides are states of the phase that begins, the right sides belong to the one that
+    /// ends.
     fn link(&mut self, from: &Ident, to: &Ident, assignments: &[Assignment]) {
         self.name(from, Role::Read);
         self.name(to, Role::Read);
@@ -136,7 +144,8 @@ impl Walker<'_> {
         self.add(name.span, found.map_or(Meaning::Unknown, Meaning::Declared), role);
     }
 
-    /// What a name stands for in a phase, or outside of all: what is outside comes first, as in `resolve`.
+    /// What a name stands for in a phase, or outside of all: what is outside comes first, as in
+    /// `resolve`.
     fn find(&self, name: &str, phase: Option<usize>) -> Option<usize> {
         self.part_of(None, name).or_else(|| self.part_of(Some(phase?), name))
     }
@@ -146,7 +155,8 @@ impl Walker<'_> {
         self.known.get(&owner)?.get(name).copied()
     }
 
-    /// All names in an expression, perhaps the body of a function. In a loop: sums are trees as deep as they are long.
+    /// All names in an expression, perhaps the body of a function. In a loop: sums are trees as
+    /// deep as they are long.
     fn expression<'a>(&mut self, value: &'a Expr, function: Option<usize>) {
         let mut locals: Vec<Local<'a>> = Vec::new();
         let mut stack: Vec<(&'a Expr, Option<usize>)> = vec![(value, None)];
@@ -215,7 +225,8 @@ impl Walker<'_> {
         found.map_or_else(|| Names::built_in(name), Meaning::Declared)
     }
 
-    /// `pos.x`, `obs.t`, `k.t`, `coast.pos.x`; gives back what the parts are taken of if that is no name.
+    /// `pos.x`, `obs.t`, `k.t`, `coast.pos.x`; gives back what the parts are taken of if that is no
+    /// name.
     fn parts<'a>(
         &mut self,
         whole: &'a Expr,

@@ -1,7 +1,7 @@
 //! The smoothed layer of a surface: how steep the right side is in it.
 //!
-//! The right side is `a + b s` in the selector `s` of `psi`. Smoothed, `s = S(psi/sigma)`, and in the layer the distance
-//! `psi` obeys `psi' = ... + (grad psi . b) S(psi/sigma)`, with the slope
+//! The right side is `a + b s` in the selector `s` of `psi`. Smoothed, `s = S(psi/sigma)`, and in
+//! the layer the distance `psi` obeys `psi' = ... + (grad psi . b) S(psi/sigma)`, with the slope
 //!
 //! ```text
 //! L = J S'(0) / sigma,     J = -grad psi . b   where that is positive: the surface attracts.
@@ -59,8 +59,13 @@ impl Rehearsal<'_> {
 
     /// The surfaces by themselves that attract somewhere along the guess, steepest first.
     pub(super) fn layers(&mut self) -> Vec<Layer> {
-        let alone: Vec<usize> =
-            self.model.switches().iter().filter(|it| !it.is_ball).map(|it| it.surfaces.start).collect();
+        let alone: Vec<usize> = self
+            .model
+            .switches()
+            .iter()
+            .filter(|it| !it.is_ball)
+            .map(|it| it.surfaces.start)
+            .collect();
         let known = |surface| Some((surface, self.force_and_drift(surface)?));
         let known: Vec<(usize, [ExprId; 2])> = alone.into_iter().filter_map(known).collect();
         let roots: Vec<ExprId> = known.iter().flat_map(|it| it.1).collect();
@@ -68,7 +73,8 @@ impl Rehearsal<'_> {
             self.points.iter().map(|at| evaluate(&self.graph, &roots, at, &[])).collect();
         let layer = |(at, (surface, [force, _])): (usize, (usize, [ExprId; 2]))| {
             let values = || points.iter().map(|values| (values[2 * at], values[2 * at + 1]));
-            let jump = values().map(|it| it.0).filter(|force| force.is_finite()).fold(0.0, f64::max);
+            let jump =
+                values().map(|it| it.0).filter(|force| force.is_finite()).fold(0.0, f64::max);
             let is_held = values().any(|(force, drift)| drift.abs() < force);
             let name = self.model.surfaces[surface].place.name.clone();
             (jump > 0.0).then_some(Layer { surface, name, jump, force, is_held, is_proved: false })
@@ -114,7 +120,9 @@ impl Rehearsal<'_> {
         let is_it = |index: &usize| {
             let Some(input) = self.model.input_of(Symbol::Param(*index)) else { return false };
             let input = input as usize;
-            self.points.iter().all(|inputs| is_close(inputs[input], layer.jump) && doubles(inputs, input))
+            self.points
+                .iter()
+                .all(|inputs| is_close(inputs[input], layer.jump) && doubles(inputs, input))
         };
         let index = (0..self.model.params.len()).find(is_it)?;
         Some(&self.model.params[index].place.name)

@@ -1,4 +1,5 @@
-//! What the guess tells before anything is solved: the model with its numbers, at some times along the guess.
+//! What the guess tells before anything is solved: the model with its numbers, at some times along
+//! the guess.
 //!
 //! A guess is no solution, so what it shows is said with its numbers and never as an error.
 
@@ -157,7 +158,9 @@ impl<'m> Rehearsal<'m> {
 fn span(setting: &Setting) -> Span {
     let value = match &setting.value {
         SettingValue::Expr(value) => value.span,
-        SettingValue::List(values) => values.iter().map(|value| value.span).fold(setting.key.span, Span::to),
+        SettingValue::List(values) => {
+            values.iter().map(|value| value.span).fold(setting.key.span, Span::to)
+        }
         SettingValue::Scheme { name, lagged } => lagged.last().unwrap_or(name).span,
     };
     let end = setting.unit.as_ref().map_or(value, |unit| unit.span);

@@ -26,12 +26,18 @@ pub(super) fn check(rehearsal: &Rehearsal<'_>, found: &mut Vec<Diagnostic>) {
     }
 }
 
-fn outside(rehearsal: &Rehearsal<'_>, symbol: Symbol, place: &Place, range: Range) -> Option<Diagnostic> {
+fn outside(
+    rehearsal: &Rehearsal<'_>,
+    symbol: Symbol,
+    place: &Place,
+    range: Range,
+) -> Option<Diagnostic> {
     let input = rehearsal.model.input_of(symbol)?;
     let values = || rehearsal.points.iter().map(|inputs| inputs[input as usize]);
     let bound = |bound: ExprId| rehearsal.numbers.value(rehearsal.model, bound);
     let (lower, upper) = (bound(range.lower), bound(range.upper));
-    let (least, most) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    let (least, most) =
+        (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
     let beyond = |value: f64, limit: f64| TOLERANCE * (1.0 + limit.abs()) < value - limit;
     let scale = rehearsal.unit(&place.name).map_or(1.0, |unit| units::scale(unit, &mut Vec::new()));
     let shown = |value: f64| text::number(short(value / scale));
@@ -46,12 +52,16 @@ fn outside(rehearsal: &Rehearsal<'_>, symbol: Symbol, place: &Place, range: Rang
     };
     let (guess, bounds) = places(rehearsal, &place.name)?;
     let is_number = matches!(symbol, Symbol::Free(_));
-    let reached =
-        if is_number { reached.replace("falls to", "is").replace("rises to", "is") } else { reached };
+    let reached = if is_number {
+        reached.replace("falls to", "is").replace("rises to", "is")
+    } else {
+        reached
+    };
     let message = format!("the guess of `{}` is outside its bounds", place.name);
     let found = Diagnostic::new(Code::GuessOutside, message, guess, format!("{reached} here"));
     Some(found.label(bounds, format!("but it is {limit}")).help(
-        "the solver moves a guess into the bounds before it begins, and what it begins with is no longer what is written; \
+        "the solver moves a guess into the bounds before it begins, and what it begins with is no \
+         longer what is written; \
          guess a value inside, or widen the bounds",
     ))
 }
@@ -64,7 +74,8 @@ fn places(rehearsal: &Rehearsal<'_>, name: &str) -> Option<(Span, Span)> {
         ItemKind::Guess { bindings } => Some(bindings),
         _ => None,
     });
-    let binding = bindings.flatten().find(|binding| binding.name.name == whole).map(|it| it.value.span);
+    let binding =
+        bindings.flatten().find(|binding| binding.name.name == whole).map(|it| it.value.span);
     let (own, bounds) = match &rehearsal.declaration(name)?.kind {
         ItemKind::State { bounds, .. } => (None, span(bounds)?),
         ItemKind::Control { bounds, guess, .. } | ItemKind::Free { bounds, guess, .. } => {

@@ -1,7 +1,8 @@
 //! FDC0503: a smoothing width that leaves no room outside the layer.
 //!
-//! Where the whole motion stays inside `|psi| <= sigma`, the solver sees a linear damper and no friction. Bounds of states
-//! prove it, by interval arithmetic; a guess shows it. A guess that lies on the surface says nothing: it may be held.
+//! Where the whole motion stays inside `|psi| <= sigma`, the solver sees a linear damper and no
+//! friction. Bounds of states prove it, by interval arithmetic; a guess shows it. A guess that lies
+//! on the surface says nothing: it may be held.
 
 use super::layer::short;
 use super::{Rehearsal, Sigma};
@@ -20,7 +21,8 @@ pub(super) fn check(rehearsal: &Rehearsal<'_>, found: &mut Vec<Diagnostic>) {
     let Some(sigma) = rehearsal.sigma() else { return };
     for surface in &rehearsal.model.surfaces {
         let bound = rehearsal.farthest_within_bounds(surface).filter(|it| *it < sigma.width);
-        let guessed = rehearsal.farthest_in_the_guess(surface).filter(|it| *it <= INSIDE * sigma.width);
+        let guessed =
+            rehearsal.farthest_in_the_guess(surface).filter(|it| *it <= INSIDE * sigma.width);
         let name = &surface.place.name;
         if let Some(farthest) = bound {
             return found.push(no_room(name, (farthest, "within the bounds"), &sigma));
@@ -38,7 +40,9 @@ impl Rehearsal<'_> {
         let range = |range: Range| Interval::new(bound(range.lower), bound(range.upper));
         let domain = |symbol: &Symbol| match symbol {
             Symbol::State(at) => range(self.model.states[*at].range),
-            Symbol::Time => Interval::new(bound(self.model.interval[0]), bound(self.model.interval[1])),
+            Symbol::Time => {
+                Interval::new(bound(self.model.interval[0]), bound(self.model.interval[1]))
+            }
             Symbol::Param(_) => Interval::point(self.numbers.of(*symbol)),
             _ => Interval::ALL,
         };
@@ -54,9 +58,11 @@ impl Rehearsal<'_> {
             return None;
         }
         let largest = |values: Vec<f64>| values.into_iter().map(f64::abs).fold(0.0, f64::max);
-        let is_state = |input: &u32| matches!(self.model.symbols[*input as usize], Symbol::State(_));
+        let is_state =
+            |input: &u32| matches!(self.model.symbols[*input as usize], Symbol::State(_));
         let inputs = self.model.graph.inputs_of(&[surface.psi]);
-        let size = |input: u32| largest(self.points.iter().map(|point| point[input as usize]).collect());
+        let size =
+            |input: u32| largest(self.points.iter().map(|point| point[input as usize]).collect());
         let size = inputs.into_iter().filter(is_state).map(size).fold(0.0, f64::max);
         let farthest = largest(self.along(surface.psi));
         (farthest > HELD * size).then_some(farthest)

@@ -1,7 +1,7 @@
 //! FDC0504: states whose sizes are many orders of magnitude apart.
 //!
-//! The size of a state is read off its bounds, or else off its guess. The solver scales equations, not states: its
-//! tolerance means the same for all of them.
+//! The size of a state is read off its bounds, or else off its guess. The solver scales equations,
+//! not states: its tolerance means the same for all of them.
 
 use super::Rehearsal;
 use super::layer::short;
@@ -22,7 +22,8 @@ pub(super) fn check(rehearsal: &Rehearsal<'_>, found: &mut Vec<Diagnostic>) {
         return;
     }
     let place = |at: usize| &rehearsal.model.states[at].place;
-    let message = format!("`{}` and `{}` are of very different sizes", place(large).name, place(small).name);
+    let message =
+        format!("`{}` and `{}` are of very different sizes", place(large).name, place(small).name);
     let shown = |value: f64| format!("about {} in SI units", number(short(value)));
     let diagnostic = Diagnostic::new(Code::Scales, message, place(large).span, shown(most));
     let diagnostic = match place(large).span == place(small).span {
@@ -30,16 +31,19 @@ pub(super) fn check(rehearsal: &Rehearsal<'_>, found: &mut Vec<Diagnostic>) {
         false => diagnostic.label(place(small).span, shown(least)),
     };
     found.push(diagnostic.help(format!(
-        "their ratio is {:e}, and one tolerance cannot fit both; write `{}` as a multiple of a typical size",
+        "their ratio is {:e}, and one tolerance cannot fit both; write `{}` as a multiple of a \
+         typical size",
         short(most / least),
         place(large).name
     )));
 }
 
-/// The largest absolute value between finite bounds, or along the guess; none where it is 0 or unknown.
+/// The largest absolute value between finite bounds, or along the guess; none where it is 0 or
+/// unknown.
 fn size(rehearsal: &Rehearsal<'_>, state: usize) -> Option<f64> {
     let range = rehearsal.model.states[state].range;
-    let bounds = [range.lower, range.upper].map(|it| rehearsal.numbers.value(rehearsal.model, it).abs());
+    let bounds =
+        [range.lower, range.upper].map(|it| rehearsal.numbers.value(rehearsal.model, it).abs());
     let bounded = bounds[0].max(bounds[1]);
     let input = rehearsal.model.input_of(Symbol::State(state))? as usize;
     let guessed = rehearsal.points.iter().map(|inputs| inputs[input].abs()).fold(0.0, f64::max);

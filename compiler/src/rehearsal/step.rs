@@ -1,7 +1,7 @@
 //! FDC0501: an explicit step that is too long for the smoothed layer.
 //!
-//! With the slope `L` of the layer, an Euler step of length `h` multiplies the distance to the surface by `1 - h L`: beyond
-//! `h L = 1` it lands on the other side, beyond 2 it moves away.
+//! With the slope `L` of the layer, an Euler step of length `h` multiplies the distance to the
+//! surface by `1 - h L`: beyond `h L = 1` it lands on the other side, beyond 2 it moves away.
 
 use super::layer::{Layer, short};
 use super::{Rehearsal, Sigma, span};
@@ -27,7 +27,13 @@ pub(super) fn check(rehearsal: &mut Rehearsal<'_>, found: &mut Vec<Diagnostic>) 
     }
 }
 
-fn too_long(rehearsal: &Rehearsal<'_>, layer: &Layer, sigma: &Sigma, step: f64, slope: f64) -> Diagnostic {
+fn too_long(
+    rehearsal: &Rehearsal<'_>,
+    layer: &Layer,
+    sigma: &Sigma,
+    step: f64,
+    slope: f64,
+) -> Diagnostic {
     let shown = |value: f64| number(short(value));
     let width = sigma.text(sigma.width);
     let message = format!("the step is too long for the smoothed layer of `{}`", layer.name);
@@ -49,7 +55,8 @@ fn too_long(rehearsal: &Rehearsal<'_>, layer: &Layer, sigma: &Sigma, step: f64, 
 }
 
 impl Rehearsal<'_> {
-    /// `h = T/N = 0.012 at T = 6`, where the duration is one unknown; `h = 4/500 = 0.008` where it is a number.
+    /// `h = T/N = 0.012 at T = 6`, where the duration is one unknown; `h = 4/500 = 0.008` where it
+    /// is a number.
     fn step_text(&self, step: f64) -> String {
         let [duration, step] = [self.duration, step].map(|it| self.time_text(it));
         match self.free_duration() {

@@ -1,8 +1,8 @@
 //! FDC0502: a sweep that does not take the step to 0 fast enough against the width of the layer.
 //!
-//! Gradients of a smoothed model converge to the true ones where `h/sigma -> 0` if surfaces are only crossed
-//! (Theorem 5.2), and where `h/sigma^2 -> 0` if one is held (Theorem 6.1). Which of them a surface is, is proved where that can
-//! be; otherwise the guess shows it.
+//! Gradients of a smoothed model converge to the true ones where `h/sigma -> 0` if surfaces are
+//! only crossed (Theorem 5.2), and where `h/sigma^2 -> 0` if one is held (Theorem 6.1). Which of
+//! them a surface is, is proved where that can be; otherwise the guess shows it.
 
 use super::Rehearsal;
 use super::layer::{Layer, short};
@@ -32,13 +32,19 @@ pub(super) fn check(rehearsal: &mut Rehearsal<'_>, found: &mut Vec<Diagnostic>) 
     // What is proved about a surface goes before what the guess shows.
     layers.iter_mut().for_each(|layer| match class(&view, layer.surface) {
         Some(Class::Held) => (layer.is_held, layer.is_proved) = (true, true),
-        Some(Class::Crossed { .. } | Class::Apart) => (layer.is_held, layer.is_proved) = (false, true),
+        Some(Class::Crossed { .. } | Class::Apart) => {
+            (layer.is_held, layer.is_proved) = (false, true)
+        }
         _ => {}
     });
     let Some(layer) = layers.iter().find(|it| it.is_held).or(layers.first()) else { return };
     let step = |row: usize| rehearsal.duration / lists.intervals(rehearsal, row);
-    let ratios: Vec<f64> =
-        lists.sigma.iter().enumerate().map(|(row, sigma)| step(row) / sigma.powi(layer.power())).collect();
+    let ratios: Vec<f64> = lists
+        .sigma
+        .iter()
+        .enumerate()
+        .map(|(row, sigma)| step(row) / sigma.powi(layer.power()))
+        .collect();
     if ratios.windows(2).all(|pair| pair[1] > pair[0] * (1.0 + 1e-9)) {
         found.push(too_slow(rehearsal, layer, &lists, &ratios));
     }
@@ -47,8 +53,9 @@ pub(super) fn check(rehearsal: &mut Rehearsal<'_>, found: &mut Vec<Diagnostic>) 
 fn lists<'m>(rehearsal: &Rehearsal<'m>) -> Option<Lists<'m>> {
     let sweep = &rehearsal.model.sweep;
     let find = |name: &str| sweep.iter().find(|swept| swept.place.name == name);
-    let numbers =
-        |swept: &Swept| swept.values.iter().map(|value| value.parse().ok()).collect::<Option<Vec<f64>>>();
+    let numbers = |swept: &Swept| {
+        swept.values.iter().map(|value| value.parse().ok()).collect::<Option<Vec<f64>>>()
+    };
     let place = find("N").or(find("sigma"))?;
     // With `N = auto` the grid follows the layer by itself.
     let intervals = match find("N") {
@@ -74,7 +81,12 @@ impl Layer {
     }
 }
 
-fn too_slow(rehearsal: &Rehearsal<'_>, layer: &Layer, lists: &Lists<'_>, ratios: &[f64]) -> Diagnostic {
+fn too_slow(
+    rehearsal: &Rehearsal<'_>,
+    layer: &Layer,
+    lists: &Lists<'_>,
+    ratios: &[f64],
+) -> Diagnostic {
     let (ratio, what) = match layer.is_held {
         true => ("h/sigma^2", "on a held surface"),
         false => ("h/sigma", "across a surface"),
@@ -87,7 +99,8 @@ fn too_slow(rehearsal: &Rehearsal<'_>, layer: &Layer, lists: &Lists<'_>, ratios:
     let label = format!("{ratio} = {}{duration}", shown.join(", "));
     let power = layer.power() + 1;
     let first = lists.intervals(rehearsal, 0);
-    let better = lists.sigma.iter().map(|sigma| (first * (lists.sigma[0] / sigma).powi(power)).round());
+    let better =
+        lists.sigma.iter().map(|sigma| (first * (lists.sigma[0] / sigma).powi(power)).round());
     let better = better.map(number).collect::<Vec<_>>().join(", ");
     let what = match (layer.is_held, layer.is_proved) {
         (true, true) => "held wherever it is met, and Theorem 6.1 asks for h = o(sigma^2)",

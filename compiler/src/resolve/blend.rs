@@ -1,4 +1,5 @@
-//! `blend(e, width)`: an expression with its knots and kinks rounded; `blend(f, width)` is a function so rounded.
+//! `blend(e, width)`: an expression with its knots and kinks rounded; `blend(f, width)` is a
+//! function so rounded.
 
 use super::context::Context;
 use super::elaborator::Elaborator;
@@ -46,7 +47,8 @@ impl<'a> Elaborator<'a> {
         match rounded(&mut self.graph, value.parts.as_slice(), size, &mut self.guards) {
             Some(parts) => Value { parts: Parts::from_list(&parts), traits, named: value.named },
             None => {
-                // Within a function that depends on its arguments; it is told where the function is examined by itself.
+                // Within a function that depends on its arguments; it is told where the function is
+                // examined by itself.
                 if self.examining || self.locals.len() == self.frame {
                     self.diagnostics.push(nothing_to_round(inner, span));
                 }
@@ -59,8 +61,10 @@ impl<'a> Elaborator<'a> {
 /// The width of a `blend` that is not above 0.
 pub(crate) fn no_width(width: Span, size: f64) -> Diagnostic {
     let message = format!("a width of {} rounds nothing", text::number(size));
-    Diagnostic::new(Code::NotAllowedHere, message, width, "must be above 0")
-        .help("write over which width each knot is to be rounded, in the unit of its guard, for example 0.05")
+    Diagnostic::new(Code::NotAllowedHere, message, width, "must be above 0").help(
+        "write over which width each knot is to be rounded, in the unit of its guard, for \
+               example 0.05",
+    )
 }
 
 fn nothing_to_round(inner: Span, span: Span) -> Diagnostic {
@@ -73,5 +77,7 @@ fn nothing_to_round(inner: Span, span: Span) -> Diagnostic {
     found.severity = Severity::Warning;
     let before = Span { start: span.start, end: inner.start };
     let after = Span { start: inner.end, end: span.end };
-    found.help("leave `blend` out").fix(Fix::likely("leave `blend` out").remove(before).remove(after))
+    found
+        .help("leave `blend` out")
+        .fix(Fix::likely("leave `blend` out").remove(before).remove(after))
 }

@@ -1,4 +1,5 @@
-//! Calls: the builtin functions of numbers and vectors, the model's own functions, and the special forms.
+//! Calls: the builtin functions of numbers and vectors, the model's own functions, and the special
+//! forms.
 
 use super::context::Context;
 use super::elaborator::{DEEPEST, Elaborator};
@@ -40,8 +41,10 @@ fn arity(name: &str) -> Option<usize> {
 
 /// All functions and forms that the language itself calls by a name.
 pub fn function_names() -> Vec<&'static str> {
-    let table =
-        builtins::ALL.iter().map(|it| it.row()).filter(|row| row.notation == builtins::Notation::Function);
+    let table = builtins::ALL
+        .iter()
+        .map(|it| it.row())
+        .filter(|row| row.notation == builtins::Notation::Function);
     table.map(|row| row.name).chain(VECTOR_FUNCTIONS.iter().chain(FORMS).map(|row| row.0)).collect()
 }
 
@@ -106,7 +109,12 @@ impl<'a> Elaborator<'a> {
     }
 
     /// `blend(f, width)(x)`; nothing else gives a function.
-    fn call_of_value(&mut self, expr: &'a Expr, callee: &'a Expr, arguments: &'a [Argument]) -> Value {
+    fn call_of_value(
+        &mut self,
+        expr: &'a Expr,
+        callee: &'a Expr,
+        arguments: &'a [Argument],
+    ) -> Value {
         if let ExprKind::Call(inner, given) = &callee.kind
             && matches!(&inner.kind, ExprKind::Name(name) if name == "blend")
         {
@@ -120,13 +128,24 @@ impl<'a> Elaborator<'a> {
             return self.rounded(value, function.span, width, callee.span);
         }
         self.plain_arguments(arguments);
-        let found =
-            Diagnostic::new(Code::WrongKind, "only a function can be called", expr.span, "called here");
+        let found = Diagnostic::new(
+            Code::WrongKind,
+            "only a function can be called",
+            expr.span,
+            "called here",
+        );
         self.fail(found.help("for a product write `*`; fdc has no implicit multiplication"))
     }
 
-    fn not_a_function(&mut self, name: &str, kind: &str, span: Span, arguments: &'a [Argument]) -> Value {
-        // The names inside are used, but what is said of them may follow from there being no function.
+    fn not_a_function(
+        &mut self,
+        name: &str,
+        kind: &str,
+        span: Span,
+        arguments: &'a [Argument],
+    ) -> Value {
+        // The names inside are used, but what is said of them may follow from there being no
+        // function.
         let told = self.diagnostics.len();
         self.plain_arguments(arguments);
         self.diagnostics.truncate(told);
@@ -134,7 +153,8 @@ impl<'a> Elaborator<'a> {
         let found = Diagnostic::new(Code::WrongKind, message, span, format!("a {kind}"));
         let help = match kind {
             "state" => format!(
-                "its values at the ends are `{name}(start)` and `{name}(end)`; for a product write `{name} * ...`"
+                "its values at the ends are `{name}(start)` and `{name}(end)`; for a product write \
+                 `{name} * ...`"
             ),
             _ => format!("for a product write `{name} * ...`"),
         };
@@ -159,7 +179,11 @@ impl<'a> Elaborator<'a> {
             let span = argument_span(argument);
             let bilinear = name == "dot" || name == "cross";
             if !bilinear
-                && !self.single_valued(&value.traits.sets, span, &format!("the argument of `{name}`"))
+                && !self.single_valued(
+                    &value.traits.sets,
+                    span,
+                    &format!("the argument of `{name}`"),
+                )
             {
                 return Value::default();
             }
@@ -221,7 +245,12 @@ impl<'a> Elaborator<'a> {
         (values.len() == arguments.len()).then_some(values)
     }
 
-    fn apply_builtin(&mut self, builtin: Builtin, values: &[Value], arguments: &'a [Argument]) -> Value {
+    fn apply_builtin(
+        &mut self,
+        builtin: Builtin,
+        values: &[Value],
+        arguments: &'a [Argument],
+    ) -> Value {
         let traits = Self::joined(values);
         if builtin == Builtin::Abs {
             let value = values[0].clone();
@@ -325,7 +354,9 @@ impl<'a> Elaborator<'a> {
         let name = self.scope.declarations[at].name;
         let fits = self.count_is(&name.name, formal.len(), arguments.len(), span, Some(name.span));
         let values = self.plain_arguments(arguments);
-        let (true, Some(values), false) = (fits, values, self.circular[at]) else { return Value::default() };
+        let (true, Some(values), false) = (fits, values, self.circular[at]) else {
+            return Value::default();
+        };
         if self.applied.len() > MOST_APPLICATIONS {
             return self.too_much(span);
         }
@@ -337,18 +368,26 @@ impl<'a> Elaborator<'a> {
     /// Functions that call each other twice, and so on, would take for ever.
     fn too_much(&mut self, span: Span) -> Value {
         if !self.diagnostics.iter().any(|it| it.code == Code::TooDeep) {
-            let message =
-                format!("the functions of this model are applied more than {MOST_APPLICATIONS} times");
+            let message = format!(
+                "the functions of this model are applied more than {MOST_APPLICATIONS} times"
+            );
             let found = Diagnostic::new(Code::TooDeep, message, span, "too much by here");
-            let help =
-                "functions that call each other several times multiply; write a loop-like chain as a formula";
+            let help = "functions that call each other several times multiply; write a loop-like \
+                        chain as a formula";
             self.diagnostics.push(found.help(help));
         }
         Value::default()
     }
 
-    /// A function of the model for given arguments; remembered, because definitions build on each other.
-    pub fn apply(&mut self, at: usize, formal: &'a [Ident], body: &'a Expr, values: Vec<Value>) -> Value {
+    /// A function of the model for given arguments; remembered, because definitions build on each
+    /// other.
+    pub fn apply(
+        &mut self,
+        at: usize,
+        formal: &'a [Ident],
+        body: &'a Expr,
+        values: Vec<Value>,
+    ) -> Value {
         let key = (at, self.examining, values);
         if let Some(known) = self.applied.get(&key) {
             return known.clone();
@@ -356,8 +395,9 @@ impl<'a> Elaborator<'a> {
         if self.depth > DEEPEST {
             return Value::default();
         }
-        let value = self
-            .with_arguments(at, formal, key.2.clone(), |this| this.evaluate_in(Context::DEFINITION, body));
+        let value = self.with_arguments(at, formal, key.2.clone(), |this| {
+            this.evaluate_in(Context::DEFINITION, body)
+        });
         self.applied.insert(key, value.clone());
         value
     }

@@ -1,7 +1,8 @@
 //! Conditions: `a <= b`, `a <= b <= c`, `abs(e) <= c`, componentwise for vectors.
 //!
-//! Each becomes rows `lower <= value <= upper`. A side that is a constant of the problem becomes the bound,
-//! otherwise `left - right` is compared with 0. `abs(e) <= c` is read as `-c <= e <= c`: no kink.
+//! Each becomes rows `lower <= value <= upper`. A side that is a constant of the problem becomes
+//! the bound, otherwise `left - right` is compared with 0. `abs(e) <= c` is read as `-c <= e <= c`:
+//! no kink.
 
 use super::context::Context;
 use super::elaborator::{Elaborator, Role};
@@ -27,7 +28,8 @@ impl<'a> Elaborator<'a> {
     /// A condition at the start or the end.
     pub fn boundary(&mut self, condition: &'a Condition, at_end: bool) {
         let word = if at_end { "end" } else { "start" };
-        let place = Place { name: format!("{word} {}", text::condition(condition)), span: condition.span };
+        let place =
+            Place { name: format!("{word} {}", text::condition(condition)), span: condition.span };
         let rows = self.condition(condition, Role::Boundary(word), Context::BOUNDARY, place);
         self.at_end.extend(rows.iter().map(|_| at_end));
         self.model.boundary.extend(rows);
@@ -36,10 +38,13 @@ impl<'a> Elaborator<'a> {
     /// Moves all boundary rows to their ends, in one walk for each end.
     pub fn move_boundary(&mut self) {
         for end in [false, true] {
-            let rows: Vec<usize> = (0..self.at_end.len()).filter(|&row| self.at_end[row] == end).collect();
+            let rows: Vec<usize> =
+                (0..self.at_end.len()).filter(|&row| self.at_end[row] == end).collect();
             let values = rows.iter().map(|&row| self.model.boundary[row].value).collect();
             let moved = self.move_to_end(values, end);
-            rows.into_iter().zip(moved).for_each(|(row, value)| self.model.boundary[row].value = value);
+            rows.into_iter()
+                .zip(moved)
+                .for_each(|(row, value)| self.model.boundary[row].value = value);
         }
     }
 
@@ -62,7 +67,11 @@ impl<'a> Elaborator<'a> {
                     (outer[1].0.clone(), self.sides([middle, right], role, context)[1].clone());
                 let [lower, middle_side] = outer;
                 if first == second && Self::is_constant(&lower.0) && Self::is_constant(&last.0) {
-                    let ends = if *first == Relation::GreaterEqual { [last, lower] } else { [lower, last] };
+                    let ends = if *first == Relation::GreaterEqual {
+                        [last, lower]
+                    } else {
+                        [lower, last]
+                    };
                     self.between(ends, middle_side, *first, &place, &mut rows);
                 } else {
                     self.pair([lower, middle_side], *first, &place, &mut rows);
@@ -80,9 +89,18 @@ impl<'a> Elaborator<'a> {
     }
 
     /// `a relation b` for each component.
-    fn pair(&mut self, sides: [Side<'a>; 2], relation: Relation, place: &Place, rows: &mut Vec<Row>) {
-        let [left, right] =
-            if relation == Relation::GreaterEqual { [1, 0].map(|at| sides[at].clone()) } else { sides };
+    fn pair(
+        &mut self,
+        sides: [Side<'a>; 2],
+        relation: Relation,
+        place: &Place,
+        rows: &mut Vec<Row>,
+    ) {
+        let [left, right] = if relation == Relation::GreaterEqual {
+            [1, 0].map(|at| sides[at].clone())
+        } else {
+            sides
+        };
         if relation != Relation::Equal
             && let Some(inner) = inside_abs(left.1)
         {
@@ -143,8 +161,10 @@ impl<'a> Elaborator<'a> {
         place: &Place,
         rows: &mut Vec<Row>,
     ) {
-        let context =
-            Context { allowed: left.0.traits.reads.or(self.context.allowed), ..Context::DEFINITION };
+        let context = Context {
+            allowed: left.0.traits.reads.or(self.context.allowed),
+            ..Context::DEFINITION
+        };
         let e = (self.evaluate_in(context, inner), inner);
         let Some((values, bounds)) = self.same_size(&e, &right) else { return };
         let is_constant = Self::is_constant(&right.0);
@@ -167,26 +187,35 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The components of both sides; a number stands for all components.
-    fn same_size(&mut self, left: &Side<'a>, right: &Side<'a>) -> Option<(Vec<ExprId>, Vec<ExprId>)> {
+    fn same_size(
+        &mut self,
+        left: &Side<'a>,
+        right: &Side<'a>,
+    ) -> Option<(Vec<ExprId>, Vec<ExprId>)> {
         let (a, b) = (left.0.parts.as_slice(), right.0.parts.as_slice());
         if a.is_empty() || b.is_empty() {
             return None;
         }
-        // `pos == 0` speaks of all parts of `pos`; but one signal cannot equal several different numbers.
+        // `pos == 0` speaks of all parts of `pos`; but one signal cannot equal several different
+        // numbers.
         let is_lonely = |one: &Value, many: &Value| {
             one.parts.as_slice().len() == 1 && !Self::is_constant(one) && Self::is_constant(many)
         };
         let is_mixed_up = is_lonely(&left.0, &right.0) || is_lonely(&right.0, &left.0);
         if a.len() != b.len() && (is_mixed_up || a.len() != 1 && b.len() != 1) {
-            let message = format!("comparing {} with {}", left.0.parts.describe(), right.0.parts.describe());
-            let found = Diagnostic::new(Code::ShapeMismatch, message, left.1.span, left.0.parts.describe())
-                .label(right.1.span, right.0.parts.describe());
-            self.diagnostics
-                .push(found.help("both sides need the same size; a number is compared with each part"));
+            let message =
+                format!("comparing {} with {}", left.0.parts.describe(), right.0.parts.describe());
+            let found =
+                Diagnostic::new(Code::ShapeMismatch, message, left.1.span, left.0.parts.describe())
+                    .label(right.1.span, right.0.parts.describe());
+            self.diagnostics.push(
+                found.help("both sides need the same size; a number is compared with each part"),
+            );
             return None;
         }
         let size = a.len().max(b.len());
-        let stretch = |parts: &[ExprId]| (0..size).map(|at| parts[at.min(parts.len() - 1)]).collect();
+        let stretch =
+            |parts: &[ExprId]| (0..size).map(|at| parts[at.min(parts.len() - 1)]).collect();
         Some((stretch(a), stretch(b)))
     }
 

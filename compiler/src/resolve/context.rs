@@ -17,8 +17,12 @@ pub(crate) struct Context {
     pub is_bound: bool,
 }
 
-const SIGNAL: Reads =
-    Reads::TIME.or(Reads::STATE).or(Reads::CONTROL).or(Reads::PARAM).or(Reads::FREE).or(Reads::SELECTOR);
+const SIGNAL: Reads = Reads::TIME
+    .or(Reads::STATE)
+    .or(Reads::CONTROL)
+    .or(Reads::PARAM)
+    .or(Reads::FREE)
+    .or(Reads::SELECTOR);
 const AT_AN_END: Reads = Reads::TIME.or(Reads::STATE).or(Reads::PARAM).or(Reads::FREE);
 const WHOLE: Reads = Reads::PARAM.or(Reads::FREE).or(Reads::WHOLE);
 
@@ -34,19 +38,23 @@ impl Context {
     pub const SETTING: Context = Context::new("a setting", Reads::PARAM);
     pub const TIME: Context = Context::new("the bounds of time", Reads::PARAM.or(Reads::FREE));
     pub const START: Context = Context::new("a start value", Reads::PARAM.or(Reads::FREE));
-    pub const FREE_GUESS: Context = Context::new("the guess of an unknown", Reads::PARAM.or(Reads::FREE));
+    pub const FREE_GUESS: Context =
+        Context::new("the guess of an unknown", Reads::PARAM.or(Reads::FREE));
     pub const DYNAMICS: Context = Context::new("the dynamics", SIGNAL);
     pub const PATH: Context = Context::new("a path constraint", SIGNAL);
     pub const INTEGRAND: Context = Context::new("an integral", SIGNAL);
     pub const REPORT: Context = Context::new("a report", SIGNAL);
     pub const SURFACE: Context = Context::new("a surface", AT_AN_END);
     pub const AT_AN_END: Context = Context::new("a value at the start or the end", AT_AN_END);
-    pub const BOUNDARY: Context = Context::new("a start or end condition", AT_AN_END.or(Reads::WHOLE));
+    pub const BOUNDARY: Context =
+        Context::new("a start or end condition", AT_AN_END.or(Reads::WHOLE));
     pub const OBJECTIVE: Context = Context::new("the objective", WHOLE);
     pub const SENSITIVITY: Context = Context::new("a sensitivity", WHOLE);
     pub const EXPECT: Context = Context::new("an expectation", WHOLE.or(Reads::SIMULATION));
-    pub const GUESS: Context =
-        Context { is_guess: true, ..Context::new("a guess", Reads::TIME.or(Reads::PARAM).or(Reads::FREE)) };
+    pub const GUESS: Context = Context {
+        is_guess: true,
+        ..Context::new("a guess", Reads::TIME.or(Reads::PARAM).or(Reads::FREE))
+    };
 }
 
 impl Elaborator<'_> {
@@ -77,7 +85,9 @@ fn explain(what: &str, beyond: Reads, context: Context) -> (&'static str, String
     } else if context.is_guess {
         (
             "has no guess above this line",
-            format!("a guess may use time, `free` names and guesses above it: guess `{what}` first"),
+            format!(
+                "a guess may use time, `free` names and guesses above it: guess `{what}` first"
+            ),
         )
     } else if beyond.has(Reads::CONTROL) && whole {
         (
@@ -99,6 +109,9 @@ fn explain(what: &str, beyond: Reads, context: Context) -> (&'static str, String
             "take it along the path instead, with `integral` or `path`".into(),
         )
     } else {
-        ("chosen by the optimiser", format!("{} is made of numbers, `const` and `param`", context.name))
+        (
+            "chosen by the optimiser",
+            format!("{} is made of numbers, `const` and `param`", context.name),
+        )
     }
 }

@@ -15,7 +15,8 @@ impl<'a> Elaborator<'a> {
             self.declare(at);
         }
         for state in 0..self.model.states.len() {
-            let ends = [Symbol::AtStart(state), Symbol::AtEnd(state)].map(|symbol| self.symbol(symbol));
+            let ends =
+                [Symbol::AtStart(state), Symbol::AtEnd(state)].map(|symbol| self.symbol(symbol));
             self.at_ends[0].push(ends[0]);
             self.at_ends[1].push(ends[1]);
         }
@@ -98,7 +99,10 @@ impl<'a> Elaborator<'a> {
 
     /// No bounds.
     fn everything(&mut self) -> Range {
-        Range { lower: self.graph.number(f64::NEG_INFINITY), upper: self.graph.number(f64::INFINITY) }
+        Range {
+            lower: self.graph.number(f64::NEG_INFINITY),
+            upper: self.graph.number(f64::INFINITY),
+        }
     }
 
     /// The value of a definition; all that it mentions has been defined.
@@ -137,7 +141,11 @@ impl<'a> Elaborator<'a> {
     fn keep_definition(&mut self, at: usize, arguments: &[Ident], parts: &Parts) {
         let name = self.scope.declarations[at].name.name.clone();
         let arguments = arguments.iter().map(|it| it.name.clone()).collect();
-        self.model.definitions.push(Definition { name, arguments, parts: parts.as_slice().to_vec() });
+        self.model.definitions.push(Definition {
+            name,
+            arguments,
+            parts: parts.as_slice().to_vec(),
+        });
     }
 
     fn define_param(&mut self, at: usize, value: &'a Expr) {
@@ -169,8 +177,9 @@ impl<'a> Elaborator<'a> {
         if self.circular[at] {
             return;
         }
-        let values =
-            self.arguments[..arguments.len()].iter().map(|&part| Value::scalar(part, Traits::default()));
+        let values = self.arguments[..arguments.len()]
+            .iter()
+            .map(|&part| Value::scalar(part, Traits::default()));
         let values = values.collect();
         self.examining = true;
         let value = self.apply(at, arguments, body, values);
@@ -188,7 +197,9 @@ impl<'a> Elaborator<'a> {
                     self.model.params[index].range = range;
                 }
             }
-            ItemKind::Free { bounds, guess, .. } => self.bound_free(at, bounds.as_ref(), guess.as_ref()),
+            ItemKind::Free { bounds, guess, .. } => {
+                self.bound_free(at, bounds.as_ref(), guess.as_ref())
+            }
             ItemKind::State { parts, bounds, start, .. } => {
                 self.bound_state(at, parts.len().max(1), bounds.as_ref(), start.as_ref())
             }
@@ -224,14 +235,17 @@ impl<'a> Elaborator<'a> {
         }
         match start {
             Some(Start::Value(value)) => {
-                let value_of = self.evaluate_for(Role::Number("a start value"), Context::START, value);
+                let value_of =
+                    self.evaluate_for(Role::Number("a start value"), Context::START, value);
                 let parts = self.expect_parts(&value_of, size, value.span);
                 let states = self.model.states[first..].iter_mut();
                 states.zip(parts).for_each(|(state, part)| state.start = Some(part));
             }
             Some(Start::Free { bounds: Some(bounds), .. }) => {
                 let ranges = self.ranges(Context::BOUND, bounds, size);
-                (0..size).for_each(|part| self.model.states[first + part].start_range = Some(ranges[part]));
+                (0..size).for_each(|part| {
+                    self.model.states[first + part].start_range = Some(ranges[part])
+                });
             }
             _ => {}
         }
@@ -288,9 +302,10 @@ impl<'a> Elaborator<'a> {
         let first: ExprId = *self.values[at].parts.as_slice().first()?;
         let crate::graph::Expr::Input(input) = self.graph.expr(first) else { return None };
         match self.symbols[*input as usize] {
-            Symbol::State(index) | Symbol::Control(index) | Symbol::Param(index) | Symbol::Free(index) => {
-                Some(index)
-            }
+            Symbol::State(index)
+            | Symbol::Control(index)
+            | Symbol::Param(index)
+            | Symbol::Free(index) => Some(index),
             _ => None,
         }
     }
@@ -305,5 +320,8 @@ fn places(name: &Ident, parts: &[Ident]) -> Vec<Place> {
     if parts.is_empty() {
         return vec![place(name)];
     }
-    parts.iter().map(|part| Place { name: format!("{}.{}", name.name, part.name), span: name.span }).collect()
+    parts
+        .iter()
+        .map(|part| Place { name: format!("{}.{}", name.name, part.name), span: name.span })
+        .collect()
 }

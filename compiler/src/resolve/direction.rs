@@ -1,5 +1,5 @@
-//! `Dir(e)`: the direction `e/|e|` of a vector, and the unit ball where it is 0. Each component of `e` is a surface
-//! with a selector; together they are a [`Ball`]. Of a number it is `Sgn`.
+//! `Dir(e)`: the direction `e/|e|` of a vector, and the unit ball where it is 0. Each component of
+//! `e` is a surface with a selector; together they are a [`Ball`]. Of a number it is `Sgn`.
 
 use super::context::Context;
 use super::elaborator::Elaborator;
@@ -13,12 +13,14 @@ use fdcc_grammar::ast::{Expr, ExprKind};
 impl<'a> Elaborator<'a> {
     /// `Dir(vector)`; named by the text of the vector.
     pub fn direction(&mut self, vector: &'a Expr, span: Span) -> Value {
-        let is_surface = matches!(&vector.kind, ExprKind::Name(name) if self.surface_named(name).is_some());
+        let is_surface =
+            matches!(&vector.kind, ExprKind::Name(name) if self.surface_named(name).is_some());
         if is_surface {
             return self.sgn(vector, span);
         }
         let value = self.evaluate_in(Context::SURFACE, vector);
-        let is_single = self.single_valued(&value.traits.sets, vector.span, "the argument of `Dir`");
+        let is_single =
+            self.single_valued(&value.traits.sets, vector.span, "the argument of `Dir`");
         let name = text::expr(vector);
         let mut selectors = Parts::Unknown;
         let mut set = SetUse { surface: name.as_str().into(), span, form: SetForm::Dir };
@@ -38,13 +40,15 @@ impl<'a> Elaborator<'a> {
 
     /// The ball of a vector, made at its first use.
     fn ball(&mut self, name: String, span: Span, value: &Value, parts: &[ExprId]) -> usize {
-        let psi = |ball: &Ball| ball.surfaces.clone().map(|at| self.surfaces[at].psi).collect::<Vec<_>>();
+        let psi =
+            |ball: &Ball| ball.surfaces.clone().map(|at| self.surfaces[at].psi).collect::<Vec<_>>();
         let wanted: Vec<Option<ExprId>> = parts.iter().copied().map(Some).collect();
         if let Some(known) = self.balls.iter().position(|ball| psi(ball) == wanted) {
             return known;
         }
         let name = self.free_name(&name);
-        let is_word = name.chars().all(|letter| letter.is_alphanumeric() || "_. #".contains(letter));
+        let is_word =
+            name.chars().all(|letter| letter.is_alphanumeric() || "_. #".contains(letter));
         let whole = if is_word { name.clone() } else { format!("({name})") };
         let first = self.surfaces.len();
         for (at, &part) in parts.iter().enumerate() {

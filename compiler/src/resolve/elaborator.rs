@@ -1,6 +1,8 @@
-//! The state of resolution: names, graph and findings, with the ways to report and to compute a number.
+//! The state of resolution: names, graph and findings, with the ways to report and to compute a
+//! number.
 //!
-//! Evaluating an expression never fails: what went wrong is told once, and its value is unknown from there on.
+//! Evaluating an expression never fails: what went wrong is told once, and its value is unknown
+//! from there on.
 
 use super::context::Context;
 use super::scope::Scope;
@@ -85,7 +87,8 @@ pub(crate) struct Elaborator<'a> {
     pub surface_of: HashMap<usize, usize>,
     /// Integrals.
     pub integrals: Vec<Integral>,
-    /// By what the value of a text is multiplied, because it stands beside something in another unit than that of SI.
+    /// By what the value of a text is multiplied, because it stands beside something in another
+    /// unit than that of SI.
     pub readings: &'a Readings,
     /// The input of each integral.
     pub integral_inputs: Vec<ExprId>,
@@ -105,9 +108,11 @@ pub(crate) struct Elaborator<'a> {
     pub written: Vec<(&'a ast::Expr, ExprId)>,
     /// The states whose equations are understood.
     pub known_rates: HashSet<usize>,
-    /// What has been resolved so far; graph, symbols, surfaces and integrals are moved in at the end.
+    /// What has been resolved so far; graph, symbols, surfaces and integrals are moved in at the
+    /// end.
     pub model: Model,
-    /// Whether each boundary row of the model is at the end; its symbols are those of any time until all are known.
+    /// Whether each boundary row of the model is at the end; its symbols are those of any time
+    /// until all are known.
     pub at_end: Vec<bool>,
     /// Values and their uses.
     pub pieces: Vec<Piece<'a>>,
@@ -231,9 +236,12 @@ impl<'a> Elaborator<'a> {
             Parts::Unknown => None,
             Parts::Vector(_) => {
                 let label = value.parts.describe();
-                let found = Diagnostic::new(Code::ShapeMismatch, "a number is needed here", span, label);
+                let found =
+                    Diagnostic::new(Code::ShapeMismatch, "a number is needed here", span, label);
                 self.fail_shape(
-                    found.help("take a part such as `.x` or `[1]`, or reduce it with `norm` or `dot`"),
+                    found.help(
+                        "take a part such as `.x` or `[1]`, or reduce it with `norm` or `dot`",
+                    ),
                 );
                 None
             }
@@ -247,9 +255,15 @@ impl<'a> Elaborator<'a> {
             Parts::Scalar(part) => vec![*part; wanted],
             Parts::Vector(parts) if parts.len() == wanted => parts.to_vec(),
             parts => {
-                let needed = if wanted == 1 { "a number".into() } else { format!("a vector of {wanted}") };
+                let needed =
+                    if wanted == 1 { "a number".into() } else { format!("a vector of {wanted}") };
                 let message = format!("{} where {needed} is needed", parts.describe());
-                self.fail_shape(Diagnostic::new(Code::ShapeMismatch, message, span, parts.describe()));
+                self.fail_shape(Diagnostic::new(
+                    Code::ShapeMismatch,
+                    message,
+                    span,
+                    parts.describe(),
+                ));
                 Vec::new()
             }
         }

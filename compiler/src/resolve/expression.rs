@@ -52,7 +52,9 @@ impl<'a> Elaborator<'a> {
             ExprKind::Prime(base) => self.prime(base, expr.span),
             ExprKind::Tuple(parts) => self.tuple(parts),
             ExprKind::Piecewise { arms, otherwise } => self.piecewise(expr, arms, otherwise),
-            ExprKind::Match { surface, below, above, .. } => self.matched(expr, surface, below, above),
+            ExprKind::Match { surface, below, above, .. } => {
+                self.matched(expr, surface, below, above)
+            }
         }
     }
 
@@ -78,7 +80,9 @@ impl<'a> Elaborator<'a> {
     }
 
     fn name(&mut self, name: &'a str, span: Span) -> Value {
-        if let Some((_, value)) = self.locals[self.frame..].iter().rev().find(|local| local.0 == name) {
+        if let Some((_, value)) =
+            self.locals[self.frame..].iter().rev().find(|local| local.0 == name)
+        {
             return value.clone();
         }
         let Some(at) = self.scope.find(name) else {
@@ -111,7 +115,8 @@ impl<'a> Elaborator<'a> {
     }
 
     fn unknown_name(&mut self, name: &str, span: Span) -> Value {
-        let locals: Vec<&str> = self.locals[self.frame..].iter().map(|local| local.0).chain(["pi"]).collect();
+        let locals: Vec<&str> =
+            self.locals[self.frame..].iter().map(|local| local.0).chain(["pi"]).collect();
         let found = self.scope.unknown(name, span, &locals, &format!("param {name} = 1"));
         self.fail(found)
     }
@@ -201,7 +206,12 @@ impl<'a> Elaborator<'a> {
         } else {
             format!("{length} parts, counted from 1")
         };
-        let found = Diagnostic::new(Code::UnknownPart, format!("there is no part `[{index}]`"), span, label);
+        let found = Diagnostic::new(
+            Code::UnknownPart,
+            format!("there is no part `[{index}]`"),
+            span,
+            label,
+        );
         let help = if length == 0 {
             "leave the index out".to_string()
         } else {
@@ -219,7 +229,9 @@ impl<'a> Elaborator<'a> {
                 span,
                 "only a guess may use `'` here",
             );
-            return self.fail(found.help("write out the right side of its equation, or name it with `let`"));
+            return self.fail(
+                found.help("write out the right side of its equation, or name it with `let`"),
+            );
         }
         let value = self.evaluate(base);
         let Some(time) = self.time else { return Value::default() };
@@ -242,6 +254,7 @@ impl<'a> Elaborator<'a> {
 
 /// One component.
 fn pick(value: Value, index: usize) -> Value {
-    let parts = value.parts.as_slice().get(index).map_or(Parts::Unknown, |part| Parts::Scalar(*part));
+    let parts =
+        value.parts.as_slice().get(index).map_or(Parts::Unknown, |part| Parts::Scalar(*part));
     Value { parts, traits: value.traits, named: None }
 }

@@ -28,7 +28,9 @@ impl<'a> Elaborator<'a> {
                 self.blend(function, width, expr.span)
             }
             ("sliding", [Argument::Expr(surface)]) => self.sliding(surface, expr.span),
-            ("sensitivity", [Argument::Expr(of), Argument::Expr(by)]) => self.sensitivity(of, by, expr.span),
+            ("sensitivity", [Argument::Expr(of), Argument::Expr(by)]) => {
+                self.sensitivity(of, by, expr.span)
+            }
             _ => {
                 let message = format!("these are no arguments for `{name}`");
                 let found = Diagnostic::new(
@@ -71,7 +73,9 @@ impl<'a> Elaborator<'a> {
             return None;
         }
         let value = self.evaluate_in(Context::SURFACE, psi);
-        if !self.single_valued(&value.traits.sets, psi.span, "the argument of `Sgn`") || self.examining {
+        if !self.single_valued(&value.traits.sets, psi.span, "the argument of `Sgn`")
+            || self.examining
+        {
             return None;
         }
         let part = self.expect_number(&value, psi.span)?;
@@ -116,11 +120,19 @@ impl<'a> Elaborator<'a> {
         self.admit("selected", value, span)
     }
 
-    /// `match surface { below => a, above => b }` is `a (1 - s)/2 + b (1 + s)/2` with the selector `s`.
-    pub fn matched(&mut self, expr: &'a Expr, surface: &'a Ident, below: &'a Expr, above: &'a Expr) -> Value {
+    /// `match surface { below => a, above => b }` is `a (1 - s)/2 + b (1 + s)/2` with the selector
+    /// `s`.
+    pub fn matched(
+        &mut self,
+        expr: &'a Expr,
+        surface: &'a Ident,
+        below: &'a Expr,
+        above: &'a Expr,
+    ) -> Value {
         let (a, b) = (self.evaluate(below), self.evaluate(above));
         let at = self.match_surface(surface);
-        let set = SetUse { surface: surface.name.as_str().into(), span: expr.span, form: SetForm::Match };
+        let set =
+            SetUse { surface: surface.name.as_str().into(), span: expr.span, form: SetForm::Match };
         let inner: Vec<SetUse> = a.traits.sets.iter().chain(&b.traits.sets).cloned().collect();
         if !self.product_of_sets(std::slice::from_ref(&set), &inner, expr.span) {
             return Value::default();
@@ -128,7 +140,8 @@ impl<'a> Elaborator<'a> {
         let selector = self.selector(at, set);
         let traits = selector.traits.clone().join(&a.traits).join(&b.traits);
         let (left, right) = (a.parts.as_slice(), b.parts.as_slice());
-        let (Parts::Scalar(s), false, false) = (&selector.parts, left.is_empty(), right.is_empty()) else {
+        let (Parts::Scalar(s), false, false) = (&selector.parts, left.is_empty(), right.is_empty())
+        else {
             return Value::unknown(traits);
         };
         if left.len() != right.len() {
@@ -163,9 +176,12 @@ impl<'a> Elaborator<'a> {
             return Some(at);
         }
         let found = match self.scope.find(&surface.name) {
-            None => {
-                self.scope.unknown(&surface.name, surface.span, &[], &format!("surface {} = x", surface.name))
-            }
+            None => self.scope.unknown(
+                &surface.name,
+                surface.span,
+                &[],
+                &format!("surface {} = x", surface.name),
+            ),
             Some(at) => {
                 let kind = scope::kind_word(self.scope.declarations[at].item);
                 let message = format!("`{}` is a {kind}, not a surface", surface.name);
@@ -308,7 +324,9 @@ impl<'a> Elaborator<'a> {
         let message = format!("a sensitivity cannot be taken by `{}`", text::expr(by));
         let label = "not a parameter, an unknown or a start";
         let found = Diagnostic::new(Code::NotAllowedHere, message, by.span, label);
-        self.fail(found.help("name a `param` or a `free`, or the start of a state, such as `x(start)`"))
+        self.fail(
+            found.help("name a `param` or a `free`, or the start of a state, such as `x(start)`"),
+        )
     }
 
     /// Something that only a simulation can tell.

@@ -1,4 +1,5 @@
-//! The `guess` block: curves for states and controls, numbers for unknowns, each seeing those above it.
+//! The `guess` block: curves for states and controls, numbers for unknowns, each seeing those above
+//! it.
 
 use super::context::Context;
 use super::elaborator::{Elaborator, Role};
@@ -36,7 +37,8 @@ impl<'a> Elaborator<'a> {
         }
         if !is_free {
             let parts = super::value::Parts::from_list(&parts);
-            self.locals.push((&binding.name.name, Value { parts, traits: value.traits, named: Some(at) }));
+            self.locals
+                .push((&binding.name.name, Value { parts, traits: value.traits, named: Some(at) }));
         }
     }
 
@@ -44,20 +46,28 @@ impl<'a> Elaborator<'a> {
     fn guessed(&mut self, binding: &'a Binding) -> Option<usize> {
         let name = &binding.name;
         let Some(at) = self.scope.find(&name.name) else {
-            let found =
-                self.scope.unknown(&name.name, name.span, &[], &format!("state {} start 0", name.name));
+            let found = self.scope.unknown(
+                &name.name,
+                name.span,
+                &[],
+                &format!("state {} start 0", name.name),
+            );
             self.diagnostics.push(found);
             return None;
         };
         let item = self.scope.declarations[at].item;
-        if matches!(item.kind, ItemKind::State { .. } | ItemKind::Control { .. } | ItemKind::Free { .. }) {
+        if matches!(
+            item.kind,
+            ItemKind::State { .. } | ItemKind::Control { .. } | ItemKind::Free { .. }
+        ) {
             return Some(at);
         }
         let kind = scope::kind_word(item);
         let message = format!("`{}` is a {kind} and cannot be guessed", name.name);
         let found = Diagnostic::new(Code::WrongKind, message, name.span, format!("a {kind}"));
-        self.diagnostics
-            .push(found.help("guesses are for states, controls and `free` names; a helper is a `let`"));
+        self.diagnostics.push(
+            found.help("guesses are for states, controls and `free` names; a helper is a `let`"),
+        );
         None
     }
 }

@@ -1,4 +1,5 @@
-//! Everything that is not a declaration: time, dynamics, conditions, objective, report, expectations.
+//! Everything that is not a declaration: time, dynamics, conditions, objective, report,
+//! expectations.
 
 use super::context::Context;
 use super::elaborator::{Elaborator, Role};
@@ -6,11 +7,14 @@ use super::value::Value;
 use super::{scope, text};
 use crate::graph::ExprId;
 use crate::model::{Comparison, Expectation, Place, Report};
-use fdcc_grammar::ast::{Binding, Check, Equation, Expr, Ident, Interval, Item, ItemKind, Relation, Sense};
+use fdcc_grammar::ast::{
+    Binding, Check, Equation, Expr, Ident, Interval, Item, ItemKind, Relation, Sense,
+};
 use fdcc_grammar::{Code, Diagnostic, Span};
 
 impl<'a> Elaborator<'a> {
-    /// Resolves items in an order in which each finds what it needs: time before conditions, guesses last.
+    /// Resolves items in an order in which each finds what it needs: time before conditions,
+    /// guesses last.
     pub fn resolve_items(&mut self, items: &[&'a Item]) {
         for item in items {
             if let ItemKind::Time { interval, .. } = &item.kind {
@@ -23,21 +27,29 @@ impl<'a> Elaborator<'a> {
 
     fn item(&mut self, item: &'a Item) {
         match &item.kind {
-            ItemKind::Dynamics { equations } => equations.iter().for_each(|equation| self.equation(equation)),
+            ItemKind::Dynamics { equations } => {
+                equations.iter().for_each(|equation| self.equation(equation))
+            }
             ItemKind::Start { condition } => self.boundary(condition, false),
             ItemKind::End { condition } => self.boundary(condition, true),
             ItemKind::Path { name, condition } => self.path(name.as_ref(), condition),
-            ItemKind::Objective { sense, keyword, value } => self.objective(*sense, *keyword, value),
+            ItemKind::Objective { sense, keyword, value } => {
+                self.objective(*sense, *keyword, value)
+            }
             ItemKind::Guess { bindings } => self.guess(bindings),
             ItemKind::Method { settings } => self.settings(settings),
             ItemKind::Sweep { lists } => self.sweep(lists),
-            ItemKind::Report { bindings } => bindings.iter().for_each(|binding| self.report(binding)),
+            ItemKind::Report { bindings } => {
+                bindings.iter().for_each(|binding| self.report(binding))
+            }
             ItemKind::Expect { checks } => checks.iter().for_each(|check| self.expectation(check)),
             ItemKind::Metric { weights } => {
                 weights.iter().for_each(|(name, weight)| self.weight(name, weight))
             }
             ItemKind::Jump { .. } => self.jump(item),
-            ItemKind::Data { file_span, .. } => self.not_yet(*file_span, "a model with measured data"),
+            ItemKind::Data { file_span, .. } => {
+                self.not_yet(*file_span, "a model with measured data")
+            }
             _ => {}
         }
     }
@@ -52,7 +64,12 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The declaration of a name that must be of some kind; reports the others.
-    pub fn declared_as(&mut self, name: &Ident, wanted: &str, fits: fn(&ItemKind) -> bool) -> Option<usize> {
+    pub fn declared_as(
+        &mut self,
+        name: &Ident,
+        wanted: &str,
+        fits: fn(&ItemKind) -> bool,
+    ) -> Option<usize> {
         let Some(at) = self.scope.find(&name.name) else {
             let rest = if wanted == "surface" { "= x" } else { "start 0" };
             let example = format!("{wanted} {} {rest}", name.name);
@@ -66,17 +83,23 @@ impl<'a> Elaborator<'a> {
         }
         let kind = scope::kind_word(declaration.item);
         let message = format!("`{}` is a {kind}, not a {wanted}", name.name);
-        let found =
-            Diagnostic::new(Code::WrongKind, message, name.span, format!("a {wanted} is needed here"))
-                .label(declaration.name.span, format!("declared as a {kind}"));
-        self.diagnostics
-            .push(found.help(format!("declare `{}` as a {wanted}, or name another one", name.name)));
+        let found = Diagnostic::new(
+            Code::WrongKind,
+            message,
+            name.span,
+            format!("a {wanted} is needed here"),
+        )
+        .label(declaration.name.span, format!("declared as a {kind}"));
+        self.diagnostics.push(
+            found.help(format!("declare `{}` as a {wanted}, or name another one", name.name)),
+        );
         None
     }
 
     /// `factor * x' = right`.
     fn equation(&mut self, equation: &'a Equation) {
-        let state = self.declared_as(&equation.state, "state", |kind| matches!(kind, ItemKind::State { .. }));
+        let state = self
+            .declared_as(&equation.state, "state", |kind| matches!(kind, ItemKind::State { .. }));
         let right = self.evaluate_for(Role::Equation(equation), Context::DYNAMICS, &equation.right);
         let right = match &equation.factor {
             Some(factor) => self.divided(right, equation, factor),
@@ -87,7 +110,8 @@ impl<'a> Elaborator<'a> {
         let before = self.model.states[first].equation.span;
         if before != self.model.states[first].place.span {
             let message = format!("`{}` has two equations", equation.state.name);
-            let found = Diagnostic::new(Code::DuplicateName, message, equation.span, "a second equation");
+            let found =
+                Diagnostic::new(Code::DuplicateName, message, equation.span, "a second equation");
             self.diagnostics.push(found.label(before, "the first one").help("keep one of them"));
             return;
         }
@@ -107,15 +131,19 @@ impl<'a> Elaborator<'a> {
             return Value::default();
         }
         let traits = right.traits.clone().join(&by.traits);
-        let (Some(by), false) = (self.expect_number(&by, factor.span), right.parts.as_slice().is_empty())
+        let (Some(by), false) =
+            (self.expect_number(&by, factor.span), right.parts.as_slice().is_empty())
         else {
             return Value::unknown(traits);
         };
         if self.graph.as_number(by) == Some(0.0) {
             let message = format!("`{}'` is multiplied by 0", equation.state.name);
             let found = Diagnostic::new(Code::NotAllowedHere, message, factor.span, "always 0");
-            return self
-                .fail(found.help("an equation without derivative is a constraint: write `path ... == ...`"));
+            return self.fail(
+                found.help(
+                    "an equation without derivative is a constraint: write `path ... == ...`",
+                ),
+            );
         }
         self.map(Value { traits, ..right }, |graph, part| graph.div(part, by))
     }
@@ -123,8 +151,13 @@ impl<'a> Elaborator<'a> {
     fn objective(&mut self, sense: Sense, keyword: Span, value: &'a Expr) {
         let value_of = self.evaluate_for(Role::Objective, Context::OBJECTIVE, value);
         if let Some((place, _)) = &self.model.objective {
-            let found = Diagnostic::new(Code::DuplicateName, "a second objective", keyword, "declared again")
-                .label(place.span, "the first one");
+            let found = Diagnostic::new(
+                Code::DuplicateName,
+                "a second objective",
+                keyword,
+                "declared again",
+            )
+            .label(place.span, "the first one");
             self.diagnostics.push(found.help("add them up in one `minimize`, with weights"));
             return;
         }
@@ -141,14 +174,17 @@ impl<'a> Elaborator<'a> {
         for (at, &part) in parts.iter().enumerate() {
             let name = self.component(&binding.name.name, &value, at);
             self.model.names.push((name.clone(), part));
-            self.model.report.push(Report { place: Place { name, span: binding.name.span }, value: part });
+            self.model
+                .report
+                .push(Report { place: Place { name, span: binding.name.span }, value: part });
         }
     }
 
     /// `name`, or `name.x` and `name[1]` for a component of a vector.
     pub fn component(&self, name: &str, value: &Value, at: usize) -> String {
         let size = value.parts.as_slice().len();
-        let parts = value.named.map_or(&[][..], |named| scope::parts(self.scope.declarations[named].item));
+        let parts =
+            value.named.map_or(&[][..], |named| scope::parts(self.scope.declarations[named].item));
         match parts.get(at) {
             _ if size < 2 => name.into(),
             Some(part) if parts.len() == size => format!("{name}.{}", part.name),
@@ -179,7 +215,11 @@ impl<'a> Elaborator<'a> {
         );
         let values: Option<[ExprId; 3]> = values.and_then(|values| values.try_into().ok());
         let place = Place { name, span: check.span };
-        self.model.expectations.extend(values.map(|values| Expectation { place, comparison, values }));
+        self.model.expectations.extend(values.map(|values| Expectation {
+            place,
+            comparison,
+            values,
+        }));
     }
 
     /// A weight of the metric; a vector has it in all its components.

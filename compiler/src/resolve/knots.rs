@@ -1,8 +1,9 @@
 //! Where the pieces of a `piecewise` meet, and how smoothly.
 //!
-//! A guard `a <= b` that is affine in some input `z` changes at `z* = z - g(z)/g'(z)`, `g = a - b`. There the pieces
-//! on both sides are compared, with their first and second derivatives by `z`, at a few values of the other
-//! inputs. Guards that are affine in nothing are passed over: better silent than wrong.
+//! A guard `a <= b` that is affine in some input `z` changes at `z* = z - g(z)/g'(z)`, `g = a - b`.
+//! There the pieces on both sides are compared, with their first and second derivatives by `z`, at
+//! a few values of the other inputs. Guards that are affine in nothing are passed over: better
+//! silent than wrong.
 
 use super::elaborator::Elaborator;
 use super::value::Traits;
@@ -29,7 +30,8 @@ pub(crate) struct Site<'a> {
     pub owner: Option<usize>,
     /// Where it is less than C^2.
     pub knots: Vec<Knot<'a>>,
-    /// The two sides of each guard, by its arm, for all arguments that the definition was evaluated with.
+    /// The two sides of each guard, by its arm, for all arguments that the definition was evaluated
+    /// with.
     pub guards: BTreeSet<(usize, [ExprId; 2])>,
 }
 
@@ -56,12 +58,14 @@ impl<'a> Elaborator<'a> {
             let site = Site { expr, owner: self.owner, knots, guards: BTreeSet::new() };
             self.sites.insert(expr.span, site);
         }
-        let sides = guards.iter().enumerate().map(|(at, guard)| (at, [guard.smaller, guard.larger]));
+        let sides =
+            guards.iter().enumerate().map(|(at, guard)| (at, [guard.smaller, guard.larger]));
         self.sites.get_mut(&expr.span).expect("it is there by now").guards.extend(sides);
     }
 
     fn knot(&mut self, at: usize, guards: &[Guard<'a>], arms: &[&[ExprId]]) -> Option<Knot<'a>> {
-        let gaps: Vec<ExprId> = guards.iter().map(|it| self.graph.sub(it.smaller, it.larger)).collect();
+        let gaps: Vec<ExprId> =
+            guards.iter().map(|it| self.graph.sub(it.smaller, it.larger)).collect();
         let variable = self.affine_variable(gaps[at])?;
         let slope = derivative(&mut self.graph, gaps[at], variable);
         let candidates = (0..SAMPLES).filter_map(|sample| {
@@ -76,11 +80,13 @@ impl<'a> Elaborator<'a> {
     /// An input in which the guard is affine.
     fn affine_variable(&mut self, gap: ExprId) -> Option<u32> {
         let inputs = self.graph.inputs_of(&[gap]);
-        let varying =
-            inputs.into_iter().filter(|&input| !matches!(self.symbols[input as usize], Symbol::Param(_)));
+        let varying = inputs
+            .into_iter()
+            .filter(|&input| !matches!(self.symbols[input as usize], Symbol::Param(_)));
         varying.collect::<Vec<_>>().into_iter().find(|&input| {
             let slope = derivative(&mut self.graph, gap, input);
-            !self.graph.inputs_of(&[slope]).contains(&input) && self.graph.as_number(slope) != Some(0.0)
+            !self.graph.inputs_of(&[slope]).contains(&input)
+                && self.graph.as_number(slope) != Some(0.0)
         })
     }
 
@@ -125,7 +131,11 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The lowest derivative in which two pieces differ, up to the second.
-    fn first_jump(&mut self, mut sides: [ExprId; 2], meeting: &Meeting) -> Option<(usize, [f64; 2])> {
+    fn first_jump(
+        &mut self,
+        mut sides: [ExprId; 2],
+        meeting: &Meeting,
+    ) -> Option<(usize, [f64; 2])> {
         for order in 0..=2 {
             let limits = evaluate(&self.graph, &sides, &meeting.point, &[]);
             let size = 1.0 + limits[0].abs().max(limits[1].abs());

@@ -6,7 +6,8 @@ use fdcc_runtime::problem::{ControlShape, Linear, Method, Scheme, Solver};
 pub(crate) fn misfit(method: &Method) -> Option<(&'static str, String, &'static str)> {
     if let Some([steps, most]) = method.excess() {
         let key = if method.steps > method.intervals { "steps" } else { "N" };
-        let help = "a grid that fine resolves nothing more; write smaller numbers for `N` and `steps`";
+        let help =
+            "a grid that fine resolves nothing more; write smaller numbers for `N` and `steps`";
         return Some((key, too_many(method, steps, most), help));
     }
     let (key, what, help) = mismatch(method)?;
@@ -35,7 +36,8 @@ fn mismatch(method: &Method) -> Option<(&'static str, &'static str, &'static str
     if method.is_raised && !method.is_refined {
         return Some((
             "scheme",
-            "`radau` and `gauss` without a number find their order together with the grid, and this grid is given",
+            "`radau` and `gauss` without a number find their order together with the grid, and \
+             this grid is given",
             "write the number of stages, such as `radau3`, or `N = auto`",
         ));
     }

@@ -1,7 +1,8 @@
 //! From syntax tree to [`Model`]: names, shapes and units, with everything that is wrong with them.
 //!
-//! One walk evaluates every expression straight into the graph. A mistake is told where it is and gives the
-//! unknown value, from which nothing follows: so several mistakes are told at once, and none because of another.
+//! One walk evaluates every expression straight into the graph. A mistake is told where it is and
+//! gives the unknown value, from which nothing follows: so several mistakes are told at once, and
+//! none because of another.
 
 mod blend;
 mod calls;
@@ -38,9 +39,13 @@ use fdcc_grammar::Diagnostic;
 use fdcc_grammar::ast::Item;
 use scope::Scope;
 
-/// Resolves the items of one phase together with those around it. `items` are resolved; the declarations of
-/// `outer` are known to them.
-pub(crate) fn resolve<'a>(outer: &[&'a Item], items: &[&'a Item], readings: &'a Readings) -> Elaborator<'a> {
+/// Resolves the items of one phase together with those around it. `items` are resolved; the
+/// declarations of `outer` are known to them.
+pub(crate) fn resolve<'a>(
+    outer: &[&'a Item],
+    items: &[&'a Item],
+    readings: &'a Readings,
+) -> Elaborator<'a> {
     let mut diagnostics: Vec<Diagnostic> = Vec::new();
     let all: Vec<&Item> = outer.iter().chain(items).copied().collect();
     let scope = Scope::new(&all, &mut diagnostics);
@@ -57,8 +62,10 @@ impl Elaborator<'_> {
     pub(crate) fn into_model(mut self) -> Model {
         let zero = self.graph.number(0.0);
         // A function that is unknown for want of a feature: such a model is never lowered.
-        let surface =
-            |entry: elaborator::SurfaceEntry| Surface { place: entry.place, psi: entry.psi.unwrap_or(zero) };
+        let surface = |entry: elaborator::SurfaceEntry| Surface {
+            place: entry.place,
+            psi: entry.psi.unwrap_or(zero),
+        };
         let surfaces: Vec<Surface> = self.surfaces.into_iter().map(surface).collect();
         Model {
             smooth: self.model.smooth || !surfaces.is_empty(),
@@ -79,7 +86,8 @@ pub fn closest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&
     let (length, lower) = (name.chars().count(), name.to_lowercase());
     let distance = |candidate: &'n str| {
         let resized = length.abs_diff(candidate.chars().count());
-        // What differs in length alone by more is not worth a comparison: large models have thousands of names.
+        // What differs in length alone by more is not worth a comparison: large models have
+        // thousands of names.
         if candidate == name || resized > length / 3 {
             return None;
         }

@@ -1,7 +1,7 @@
 //! `+ - * / ^` and componentwise functions: shapes, and what becomes of sets.
 //!
-//! A right side stays affine in every selector: sets may be added and multiplied by single values, and by sets
-//! of other surfaces. Anything else is told here.
+//! A right side stays affine in every selector: sets may be added and multiplied by single values,
+//! and by sets of other surfaces. Anything else is told here.
 
 use super::elaborator::Elaborator;
 use super::text;
@@ -15,7 +15,12 @@ pub(crate) type Operand<'a> = (Value, &'a Expr);
 
 impl<'a> Elaborator<'a> {
     /// `left operator right`.
-    pub fn binary(&mut self, operator: BinaryOperator, left: Operand<'a>, right: Operand<'a>) -> Value {
+    pub fn binary(
+        &mut self,
+        operator: BinaryOperator,
+        left: Operand<'a>,
+        right: Operand<'a>,
+    ) -> Value {
         let traits = left.0.traits.clone().join(&right.0.traits);
         if !self.sets_allow(operator, &left, &right) {
             return Value::default();
@@ -25,7 +30,12 @@ impl<'a> Elaborator<'a> {
         Value { parts, traits, named }
     }
 
-    fn combine(&mut self, operator: BinaryOperator, left: &Operand<'a>, right: &Operand<'a>) -> Parts {
+    fn combine(
+        &mut self,
+        operator: BinaryOperator,
+        left: &Operand<'a>,
+        right: &Operand<'a>,
+    ) -> Parts {
         use BinaryOperator::{Add, Divide, Multiply, Power, Subtract};
         let (a, b) = (&left.0.parts, &right.0.parts);
         let apply: fn(&mut Graph, ExprId, ExprId) -> ExprId = match operator {
@@ -58,7 +68,12 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Whether the operands keep the right side affine in the selectors.
-    fn sets_allow(&mut self, operator: BinaryOperator, left: &Operand<'a>, right: &Operand<'a>) -> bool {
+    fn sets_allow(
+        &mut self,
+        operator: BinaryOperator,
+        left: &Operand<'a>,
+        right: &Operand<'a>,
+    ) -> bool {
         let (a, b) = (&left.0.traits.sets, &right.0.traits.sets);
         match operator {
             BinaryOperator::Add | BinaryOperator::Subtract => true,
@@ -77,12 +92,15 @@ impl<'a> Elaborator<'a> {
     /// Reports sets where only a single value can stand.
     pub fn single_valued(&mut self, sets: &[SetUse], span: Span, place: &str) -> bool {
         let Some(set) = sets.first() else { return true };
-        let message =
-            format!("{place} is set-valued, so the right side is not affine in `{}`", set.form.name());
+        let message = format!(
+            "{place} is set-valued, so the right side is not affine in `{}`",
+            set.form.name()
+        );
         let label = format!("a set while `{}` is held at 0", set.surface);
         let found = Diagnostic::new(Code::NotAffine, message, span, label);
         self.diagnostics.push(found.help(
-            "a set may be added, and multiplied by what has a single value. For the value that acts write `selected(...)`",
+            "a set may be added, and multiplied by what has a single value. For the value that \
+             acts write `selected(...)`",
         ));
         false
     }
@@ -97,12 +115,14 @@ impl<'a> Elaborator<'a> {
                 same.form.name()
             );
             let found = Diagnostic::new(Code::NotAffine, message, span, "twice the same set");
-            self.diagnostics.push(
-                found.help("off the surface `Sgn(s)^2` is 1, and so is `normsq(Dir(v))`: leave it out, or multiply by a single value"),
-            );
+            self.diagnostics.push(found.help(
+                "off the surface `Sgn(s)^2` is 1, and so is `normsq(Dir(v))`: leave it \
+                            out, or multiply by a single value",
+            ));
             return false;
         }
-        let message = format!("a product of the sets of `{}` and `{}`", first.surface, second.surface);
+        let message =
+            format!("a product of the sets of `{}` and `{}`", first.surface, second.surface);
         let found = Diagnostic::new(Code::SetProduct, message, span, "two sets multiplied");
         self.diagnostics.push(found.help(
             "where both are held at once, fdcc takes the product of the two selected values; \
@@ -152,9 +172,10 @@ fn mismatch(operator: BinaryOperator, left: &Operand<'_>, right: &Operand<'_>) -
         BinaryOperator::Divide => {
             (format!("dividing {a} by {b}"), "divide by a number, such as `norm(...)`".into())
         }
-        BinaryOperator::Power => {
-            (format!("{a} to the power of {b}"), "for the squared length write `normsq(...)`".into())
-        }
+        BinaryOperator::Power => (
+            format!("{a} to the power of {b}"),
+            "for the squared length write `normsq(...)`".into(),
+        ),
     };
     Diagnostic::new(Code::ShapeMismatch, message, left.1.span, a).label(right.1.span, b).help(help)
 }

@@ -1,6 +1,7 @@
 //! The order in which definitions are evaluated, so that use before declaration is fine.
 //!
-//! A depth-first walk over "is mentioned in"; a mention of something that is still open closes a circle.
+//! A depth-first walk over "is mentioned in"; a mention of something that is still open closes a
+//! circle.
 
 use super::scope::Scope;
 use super::walk;
@@ -14,7 +15,8 @@ enum Mark {
     Done,
 }
 
-/// The declarations that have a definition, each after those it mentions; and those that lie on a circle.
+/// The declarations that have a definition, each after those it mentions; and those that lie on a
+/// circle.
 pub(crate) struct Order {
     /// Indices of declarations.
     pub sequence: Vec<usize>,
@@ -63,8 +65,10 @@ fn descend(
                 stack.push((need, 0));
             }
             Mark::Open => {
-                let from =
-                    stack.iter().position(|open| open.0 == need).expect("an open definition is on the stack");
+                let from = stack
+                    .iter()
+                    .position(|open| open.0 == need)
+                    .expect("an open definition is on the stack");
                 let circle: Vec<usize> = stack[from..].iter().map(|open| open.0).collect();
                 circle.iter().for_each(|&at| order.circular[at] = true);
                 report(&circle, span);
@@ -78,27 +82,47 @@ fn descend(
 fn mentioned(scope: &Scope<'_>, at: usize) -> Vec<(usize, Span)> {
     let item = scope.declarations[at].item;
     let mut needs = Vec::new();
-    let mut add =
-        |value| walk::names(value, &mut |name, span| needs.extend(scope.find(name).map(|at| (at, span))));
+    let mut add = |value| {
+        walk::names(value, &mut |name, span| needs.extend(scope.find(name).map(|at| (at, span))))
+    };
     match &item.kind {
         ItemKind::Let { value, .. } | ItemKind::Const { value, .. } => add(value),
         ItemKind::Fn { body, .. } => add(body),
         ItemKind::Surface { value, .. } => add(value),
-        ItemKind::Param { value: Some(value), .. } | ItemKind::Free { guess: Some(value), .. } => add(value),
+        ItemKind::Param { value: Some(value), .. } | ItemKind::Free { guess: Some(value), .. } => {
+            add(value)
+        }
         _ => {}
     }
     if let ItemKind::Fn { arguments, .. } = &item.kind {
-        needs.retain(|need| arguments.iter().all(|it| it.name != scope.declarations[need.0].name.name));
+        needs.retain(|need| {
+            arguments.iter().all(|it| it.name != scope.declarations[need.0].name.name)
+        });
     }
     needs
 }
 
 fn circular(scope: &Scope<'_>, circle: &[usize], span: Span) -> Diagnostic {
     let first = scope.declarations[circle[0]].name;
-    let names: Vec<&str> =
-        circle.iter().chain(&circle[..1]).map(|&at| scope.declarations[at].name.name.as_str()).collect();
+    let names: Vec<&str> = circle
+        .iter()
+        .chain(&circle[..1])
+        .map(|&at| scope.declarations[at].name.name.as_str())
+        .collect();
     let message = format!("the definition of `{}` needs itself", first.name);
-    Diagnostic::new(Code::CircularDefinition, message, first.span, format!("needs {}", names[1..].join(", which needs ")))
-        .label(span, "this closes the circle")
-        .help("break the circle: give one of them a value of its own; something that changes with its own value is a `state`")
+    Diagnostic::new(
+        Code::CircularDefinition,
+        message,
+        first.span,
+        format!(
+            "needs \
+        {}",
+            names[1..].join(", which needs ")
+        ),
+    )
+    .label(span, "this closes the circle")
+    .help(
+        "break the circle: give one of them a value of its own; something that changes with \
+               its own value is a `state`",
+    )
 }

@@ -1,4 +1,5 @@
-//! `piecewise { a <= b => x  otherwise => y }` as nested selections; the first arm that holds counts.
+//! `piecewise { a <= b => x  otherwise => y }` as nested selections; the first arm that holds
+//! counts.
 
 use super::elaborator::Elaborator;
 use super::knots::Guard;
@@ -31,7 +32,8 @@ impl<'a> Elaborator<'a> {
         let (Some(guards), true) = (sides.into_iter().collect::<Option<Vec<_>>>(), known) else {
             return Value::unknown(traits);
         };
-        let arms: Vec<&[ExprId]> = values.iter().chain([&rest]).map(|value| value.parts.as_slice()).collect();
+        let arms: Vec<&[ExprId]> =
+            values.iter().chain([&rest]).map(|value| value.parts.as_slice()).collect();
         self.find_knots(whole, &guards, &arms);
         self.guards.written.extend(guards.iter().map(|guard| [guard.smaller, guard.larger]));
         let parts: Vec<ExprId> =
@@ -55,7 +57,8 @@ impl<'a> Elaborator<'a> {
         }
         let single = self.single_valued(&left.traits.sets, arm.left.span, "a guard")
             && self.single_valued(&right.traits.sets, arm.right.span, "a guard");
-        let (a, b) = (self.expect_number(&left, arm.left.span), self.expect_number(&right, arm.right.span));
+        let (a, b) =
+            (self.expect_number(&left, arm.left.span), self.expect_number(&right, arm.right.span));
         let (a, b) = (a.filter(|_| single)?, b?);
         let (smaller, larger) = if arm.relation == Relation::LessEqual { (a, b) } else { (b, a) };
         Some(Guard { arm, smaller, larger, traits: left.traits.join(&right.traits) })
@@ -68,8 +71,12 @@ fn values_differ(a: &Value, b: &Value) -> bool {
 }
 
 fn equality(arm: &Arm) -> Diagnostic {
-    let repaired =
-        format!("{} <= {} => {}", text::expr(&arm.left), text::expr(&arm.right), text::expr(&arm.value));
+    let repaired = format!(
+        "{} <= {} => {}",
+        text::expr(&arm.left),
+        text::expr(&arm.right),
+        text::expr(&arm.value)
+    );
     Diagnostic::new(
         Code::EqualityGuard,
         "comparing real numbers with `==` in a guard",
@@ -77,5 +84,7 @@ fn equality(arm: &Arm) -> Diagnostic {
         "true at a single point only, so this arm never matters",
     )
     .fix(Fix::likely("write `<=`").replace(arm.relation_span, "<="))
-    .help(format!("an arm needs a range: write `{repaired}`\n`==` is for conditions such as `end v == 0`"))
+    .help(format!(
+        "an arm needs a range: write `{repaired}`\n`==` is for conditions such as `end v == 0`"
+    ))
 }

@@ -26,7 +26,8 @@ pub(crate) struct Scope<'a> {
     compared: Cell<usize>,
 }
 
-/// Beyond this many unknown names nobody reads proposals, and each costs a comparison with all declarations.
+/// Beyond this many unknown names nobody reads proposals, and each costs a comparison with all
+/// declarations.
 const MOST_PROPOSALS: usize = 50;
 
 impl<'a> Scope<'a> {
@@ -44,7 +45,12 @@ impl<'a> Scope<'a> {
     fn declare(&mut self, new: Declaration<'a>, diagnostics: &mut Vec<Diagnostic>) {
         if is_built_in(new) {
             let message = format!("`{}` is built in and cannot be declared", new.name.name);
-            let found = Diagnostic::new(Code::DuplicateName, message, new.name.span, "already has a meaning");
+            let found = Diagnostic::new(
+                Code::DuplicateName,
+                message,
+                new.name.span,
+                "already has a meaning",
+            );
             diagnostics.push(found.help(format!("rename it, for example `{}_`", new.name.name)));
             return;
         }
@@ -63,8 +69,12 @@ impl<'a> Scope<'a> {
 
     /// "There is no such name", with the nearest one that there is, or else how to declare it.
     pub fn unknown(&self, name: &str, span: Span, extra: &[&str], declaration: &str) -> Diagnostic {
-        let found =
-            Diagnostic::new(Code::UnknownName, format!("nothing called `{name}` here"), span, "not declared");
+        let found = Diagnostic::new(
+            Code::UnknownName,
+            format!("nothing called `{name}` here"),
+            span,
+            "not declared",
+        );
         let known = self.declarations.iter().map(|it| it.name.name.as_str());
         self.compared.set(self.compared.get() + 1);
         // `T` is no slip for `t`.
@@ -74,7 +84,9 @@ impl<'a> Scope<'a> {
             return found.help(format!("declare it, for example `{declaration}`"));
         };
         let found = match self.find(near) {
-            Some(at) => found.label(self.declarations[at].name.span, format!("did you mean `{near}`?")),
+            Some(at) => {
+                found.label(self.declarations[at].name.span, format!("did you mean `{near}`?"))
+            }
             None => found,
         };
         let change = format!("change `{name}` to `{near}`");

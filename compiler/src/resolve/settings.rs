@@ -19,7 +19,8 @@ pub(crate) const KEYS: &[(&str, &str)] = &[
     ("steps", "a whole number from 1"),
     (
         "scheme",
-        "one of euler, implicit_euler, midpoint, trapezoid, rk4, radau, radau1 to radau5, gauss, gauss1 to gauss5, fesd",
+        "one of euler, implicit_euler, midpoint, trapezoid, rk4, radau, radau1 to radau5, gauss, \
+         gauss1 to gauss5, fesd",
     ),
     ("controls", "one of constant, linear, polynomial"),
     ("solver", "one of interior_point, sqp, convex"),
@@ -58,7 +59,9 @@ pub(crate) fn set(method: &mut Method, key: &str, given: &Given) -> Result<(), R
     let positive = || number(given).filter(|value| *value > 0.0).ok_or_else(refused);
     let count = || count(given).ok_or_else(refused);
     let word = || match given {
-        Given::Word(word) if NOT_YET.contains(&word.as_str()) && expected.contains(word.as_str()) => {
+        Given::Word(word)
+            if NOT_YET.contains(&word.as_str()) && expected.contains(word.as_str()) =>
+        {
             Err(Refused::NotYet)
         }
         Given::Word(word) => Ok(word.as_str()),
@@ -107,7 +110,9 @@ fn scheme(word: &str) -> Option<Scheme> {
 
 /// `radau1` to `radau5`, `gauss1` to `gauss5`.
 fn collocation(word: &str) -> Option<Scheme> {
-    let stages = |name: &str| word.strip_prefix(name)?.parse().ok().filter(|s| (1..=MOST_STAGES).contains(s));
+    let stages = |name: &str| {
+        word.strip_prefix(name)?.parse().ok().filter(|s| (1..=MOST_STAGES).contains(s))
+    };
     stages("radau").map(Scheme::Radau).or_else(|| stages("gauss").map(Scheme::Gauss))
 }
 
@@ -176,7 +181,8 @@ pub(crate) fn is_key(key: &str) -> bool {
 pub(crate) fn words(key: &str) -> Vec<String> {
     let expected = KEYS.iter().find(|row| row.0 == key).map_or("", |row| row.1);
     let Some(list) = expected.strip_prefix("one of ") else { return Vec::new() };
-    let is_taken = |word: &String| set(&mut Model::empty().method, key, &Given::Word(word.clone())).is_ok();
+    let is_taken =
+        |word: &String| set(&mut Model::empty().method, key, &Given::Word(word.clone())).is_ok();
     list.split(", ").flat_map(spelt_out).filter(is_taken).collect()
 }
 
@@ -200,14 +206,19 @@ pub(crate) fn keys() -> String {
 
 /// The nearest word that a key takes.
 pub(crate) fn nearest_word(expected: &'static str, given: &str) -> Option<&'static str> {
-    closest(given, expected.trim_start_matches("one of ").split([',', ' ']).filter(|word| word.len() > 2))
+    closest(
+        given,
+        expected.trim_start_matches("one of ").split([',', ' ']).filter(|word| word.len() > 2),
+    )
 }
 
 fn shown(given: &Given) -> String {
     match given {
         Given::Number(value) => text::number(*value),
         Given::Word(word) => word.clone(),
-        Given::List(values) => values.iter().map(|value| text::number(*value)).collect::<Vec<_>>().join(", "),
+        Given::List(values) => {
+            values.iter().map(|value| text::number(*value)).collect::<Vec<_>>().join(", ")
+        }
     }
 }
 
@@ -217,8 +228,12 @@ impl<'a> Elaborator<'a> {
         self.each_setting(settings);
         let Some((key, what, help)) = misfit(&self.model.method) else { return };
         if let Some(setting) = settings.iter().find(|setting| setting.key.name == key) {
-            let found =
-                Diagnostic::new(Code::UnknownSetting, what, setting.key.span, "not with the other settings");
+            let found = Diagnostic::new(
+                Code::UnknownSetting,
+                what,
+                setting.key.span,
+                "not with the other settings",
+            );
             let found = match (key, self.given(setting)) {
                 ("scheme", Some((Given::Word(family), span))) => with_stages(found, span, &family),
                 _ => found,
@@ -252,13 +267,17 @@ impl<'a> Elaborator<'a> {
         match &setting.value {
             SettingValue::Scheme { name, .. } => Some((Given::Word(name.name.clone()), name.span)),
             SettingValue::Expr(expr) => match &expr.kind {
-                ExprKind::Name(name) if self.is_word(name) => Some((Given::Word(name.clone()), expr.span)),
+                ExprKind::Name(name) if self.is_word(name) => {
+                    Some((Given::Word(name.clone()), expr.span))
+                }
                 _ => self.setting_number(expr).map(|value| (Given::Number(value), expr.span)),
             },
             SettingValue::List(list) => {
-                let numbers: Option<Vec<f64>> = list.iter().map(|expr| self.setting_number(expr)).collect();
-                let span =
-                    list.first().map_or(setting.key.span, |first| first.span.to(list[list.len() - 1].span));
+                let numbers: Option<Vec<f64>> =
+                    list.iter().map(|expr| self.setting_number(expr)).collect();
+                let span = list
+                    .first()
+                    .map_or(setting.key.span, |first| first.span.to(list[list.len() - 1].span));
                 numbers.map(|numbers| (Given::List(numbers), span))
             }
         }
@@ -309,13 +328,21 @@ impl<'a> Elaborator<'a> {
     fn lagged(&mut self, scheme: &Ident, names: &'a [Ident]) {
         if !names.is_empty() && scheme.name != "implicit_euler" {
             let message = format!("`{}` lags no states", scheme.name);
-            let found =
-                Diagnostic::new(Code::UnknownSetting, message, names[0].span, "only for `implicit_euler`");
-            self.diagnostics
-                .push(found.help("leave `lagged (...)` out, or write `scheme implicit_euler lagged (...)`"));
+            let found = Diagnostic::new(
+                Code::UnknownSetting,
+                message,
+                names[0].span,
+                "only for `implicit_euler`",
+            );
+            self.diagnostics.push(
+                found.help(
+                    "leave `lagged (...)` out, or write `scheme implicit_euler lagged (...)`",
+                ),
+            );
         }
         for name in names {
-            let state = self.declared_as(name, "state", |kind| matches!(kind, ItemKind::State { .. }));
+            let state =
+                self.declared_as(name, "state", |kind| matches!(kind, ItemKind::State { .. }));
             if let Some((at, first)) = state.and_then(|at| Some((at, self.index_of(at)?))) {
                 let size = self.values[at].parts.as_slice().len();
                 self.model.method.lagged.extend(first..first + size);

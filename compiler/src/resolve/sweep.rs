@@ -36,20 +36,29 @@ impl<'a> Elaborator<'a> {
     /// A value: a number in SI, or a word.
     fn swept_value(&mut self, list: &ast::Swept, is_param: bool, expr: &'a Expr) -> Option<String> {
         let given = match &expr.kind {
-            ExprKind::Name(word) if !is_param && self.scope.find(word).is_none() => Given::Word(word.clone()),
+            ExprKind::Name(word) if !is_param && self.scope.find(word).is_none() => {
+                Given::Word(word.clone())
+            }
             _ => {
                 let value = self.evaluate_for(Role::Number("a sweep"), Context::SETTING, expr);
                 let part = self.expect_number(&value, expr.span)?;
                 Given::Number(self.numeric(part))
             }
         };
-        if !is_param && let Err(refused) = set(&mut self.model.method.clone(), &list.name.name, &given) {
+        if !is_param
+            && let Err(refused) = set(&mut self.model.method.clone(), &list.name.name, &given)
+        {
             let help = match refused {
                 Refused::Value(expected) => format!("give it {expected}"),
                 _ => "it cannot be solved yet".into(),
             };
             let message = format!("`{}` cannot be `{}`", list.name.name, text::expr(expr));
-            let found = Diagnostic::new(Code::UnknownSetting, message, expr.span, "this value is not taken");
+            let found = Diagnostic::new(
+                Code::UnknownSetting,
+                message,
+                expr.span,
+                "this value is not taken",
+            );
             self.diagnostics.push(found.help(help));
             return None;
         }
@@ -63,12 +72,19 @@ impl<'a> Elaborator<'a> {
     fn unknown_swept(&mut self, list: &ast::Swept) {
         let name = &list.name;
         let message = format!("there is no parameter or setting `{}` to sweep", name.name);
-        let params =
-            self.scope.declarations.iter().filter(|it| matches!(it.item.kind, ItemKind::Param { .. }));
-        let near =
-            closest(&name.name, params.map(|it| it.name.name.as_str())).or_else(|| nearest_key(&name.name));
-        let found =
-            Diagnostic::new(Code::UnknownSetting, message, name.span, "neither a `param` nor a setting");
+        let params = self
+            .scope
+            .declarations
+            .iter()
+            .filter(|it| matches!(it.item.kind, ItemKind::Param { .. }));
+        let near = closest(&name.name, params.map(|it| it.name.name.as_str()))
+            .or_else(|| nearest_key(&name.name));
+        let found = Diagnostic::new(
+            Code::UnknownSetting,
+            message,
+            name.span,
+            "neither a `param` nor a setting",
+        );
         self.diagnostics.push(match near {
             Some(near) => found
                 .help(format!("did you mean `{near}`?"))
@@ -81,13 +97,17 @@ impl<'a> Elaborator<'a> {
     fn rows_match(&mut self, lists: &'a [ast::Swept]) {
         let Some(first) = lists.iter().find(|list| list.values.len() > 1) else { return };
         let rows = first.values.len();
-        let Some(other) = lists.iter().find(|list| ![1, rows].contains(&list.values.len())) else { return };
+        let Some(other) = lists.iter().find(|list| ![1, rows].contains(&list.values.len())) else {
+            return;
+        };
         let message = "the lists of a sweep have different lengths";
         let label = |list: &ast::Swept| format!("{} values", list.values.len());
-        let found = Diagnostic::new(Code::ShapeMismatch, message, span_of(&other.values), label(other));
+        let found =
+            Diagnostic::new(Code::ShapeMismatch, message, span_of(&other.values), label(other));
         let found = found.label(span_of(&first.values), label(first));
-        self.diagnostics
-            .push(found.help("the lists go together row by row: give all the same length, or one value"));
+        self.diagnostics.push(
+            found.help("the lists go together row by row: give all the same length, or one value"),
+        );
     }
 }
 

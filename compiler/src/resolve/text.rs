@@ -1,7 +1,8 @@
 //! Expressions back to text, for labels and for the repairs that messages propose.
 //!
-//! Operators keep the blanks they were written with, which the gap between two operands tells; whatever was not
-//! in the text is written as the house style has it: `*`, `/` and `^` tight, `+` and `-` with blanks.
+//! Operators keep the blanks they were written with, which the gap between two operands tells;
+//! whatever was not in the text is written as the house style has it: `*`, `/` and `^` tight, `+`
+//! and `-` with blanks.
 
 use super::walk;
 use fdcc_grammar::ast::{Argument, BinaryOperator, Condition, Expr, ExprKind, Relation, Unit};
@@ -121,7 +122,8 @@ impl Printer {
         let (first, rest) = walk::spine(value);
         let lowest = rest.first().map_or(ATOM, |(_, operator, _)| strength(*operator));
         // Parentheses that a left operand needs open at the very beginning.
-        let opened = rest.windows(2).filter(|pair| strength(pair[0].1) < strength(pair[1].1)).count();
+        let opened =
+            rest.windows(2).filter(|pair| strength(pair[0].1) < strength(pair[1].1)).count();
         self.out.push_str(&"(".repeat(opened));
         self.write(first, if lowest == POWER { ATOM } else { lowest });
         for (index, link) in rest.iter().enumerate() {
@@ -142,7 +144,10 @@ impl Printer {
         let blank = if tight { "" } else { " " };
         self.out.push_str(&format!("{blank}{}{blank}", sign(operator)));
         let exact = matches!(operator, BinaryOperator::Subtract | BinaryOperator::Divide) as u8;
-        self.write(right, if operator == BinaryOperator::Power { POWER } else { strength(operator) + exact });
+        self.write(
+            right,
+            if operator == BinaryOperator::Power { POWER } else { strength(operator) + exact },
+        );
     }
 
     fn atom(&mut self, value: &Expr) {
@@ -200,19 +205,24 @@ impl Printer {
             Argument::Expr(value) => self.write(value, 0),
             Argument::End(_) => self.out.push_str("end"),
             Argument::Start(_) => self.out.push_str("start"),
-            Argument::Iteration(name, data) => self.out.push_str(&format!("{} in {}", name.name, data.name)),
+            Argument::Iteration(name, data) => {
+                self.out.push_str(&format!("{} in {}", name.name, data.name))
+            }
         }
     }
 }
 
 /// A unit with its brackets: `[kg m/s^2]`, `[1/s]`.
 pub(crate) fn unit(unit: &Unit) -> String {
-    let factor = |name: &str, power: u32| if power == 1 { name.into() } else { format!("{name}^{power}") };
+    let factor =
+        |name: &str, power: u32| if power == 1 { name.into() } else { format!("{name}^{power}") };
     let above = unit.factors.iter().filter(|(_, power)| *power >= 0);
-    let above: Vec<String> = above.map(|(name, power)| factor(&name.name, power.unsigned_abs())).collect();
+    let above: Vec<String> =
+        above.map(|(name, power)| factor(&name.name, power.unsigned_abs())).collect();
     let below = unit.factors.iter().filter(|(_, power)| *power < 0);
-    let below: String =
-        below.map(|(name, power)| format!("/{}", factor(&name.name, power.unsigned_abs()))).collect();
+    let below: String = below
+        .map(|(name, power)| format!("/{}", factor(&name.name, power.unsigned_abs())))
+        .collect();
     let above = if above.is_empty() { "1".into() } else { above.join(" ") };
     format!("[{above}{below}]")
 }

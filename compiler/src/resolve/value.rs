@@ -1,4 +1,5 @@
-//! What an expression turned out to be: entries of the graph, and what the checks must know about them.
+//! What an expression turned out to be: entries of the graph, and what the checks must know about
+//! them.
 
 use crate::graph::ExprId;
 use fdcc_grammar::Span;
@@ -119,7 +120,8 @@ pub(crate) struct SetUse {
 pub(crate) struct KnotUse {
     /// The `piecewise` itself.
     pub site: Span,
-    /// Where the value that holds it is used: a call of a function, the name of a `let`, or the site.
+    /// Where the value that holds it is used: a call of a function, the name of a `let`, or the
+    /// site.
     pub used: Span,
 }
 

@@ -1,8 +1,11 @@
 //! Ways through the syntax tree that several passes need.
 //!
-//! Sums of ten thousand terms are trees of that depth; [`spine`] and [`visit`] go along them in a loop.
+//! Sums of ten thousand terms are trees of that depth; [`spine`] and [`visit`] go along them in a
+//! loop.
 
-use fdcc_grammar::ast::{Argument, BinaryOperator, Expr, ExprKind, Interval, Item, ItemKind, Start};
+use fdcc_grammar::ast::{
+    Argument, BinaryOperator, Expr, ExprKind, Interval, Item, ItemKind, Start,
+};
 use fdcc_grammar::{Span, ast};
 
 /// One step of a chain: the whole left operand, the operator, the right operand.
@@ -56,7 +59,8 @@ pub(crate) fn push_children<'a>(value: &'a Expr, into: &mut Vec<&'a Expr>) {
     }
 }
 
-/// Calls `see` with every name that an expression mentions, data sets and surfaces of `match` among them.
+/// Calls `see` with every name that an expression mentions, data sets and surfaces of `match` among
+/// them.
 pub(crate) fn names<'a>(value: &'a Expr, see: &mut dyn FnMut(&'a str, Span)) {
     visit(value, &mut |inner| match &inner.kind {
         ExprKind::Name(name) => see(name, inner.span),
@@ -93,9 +97,9 @@ pub(crate) fn expressions(item: &Item) -> Vec<&Expr> {
             all.extend(value);
             all.extend(ends(bounds));
         }
-        ItemKind::Const { value, .. } | ItemKind::Let { value, .. } | ItemKind::Surface { value, .. } => {
-            all.push(value)
-        }
+        ItemKind::Const { value, .. }
+        | ItemKind::Let { value, .. }
+        | ItemKind::Surface { value, .. } => all.push(value),
         ItemKind::Fn { body, .. } => all.push(body),
         ItemKind::Free { bounds, guess, .. } | ItemKind::Control { bounds, guess, .. } => {
             all.extend(ends(bounds));
@@ -110,16 +114,18 @@ pub(crate) fn expressions(item: &Item) -> Vec<&Expr> {
                 None => {}
             }
         }
-        ItemKind::Dynamics { equations } => {
-            equations.iter().for_each(|equation| all.extend(equation.factor.iter().chain([&equation.right])))
-        }
+        ItemKind::Dynamics { equations } => equations
+            .iter()
+            .for_each(|equation| all.extend(equation.factor.iter().chain([&equation.right]))),
         ItemKind::Metric { weights } => all.extend(weights.iter().map(|weight| &weight.1)),
         ItemKind::Jump { at_most, assignments, .. } => {
             all.extend(at_most);
             all.extend(assignments.iter().map(|it| &it.value));
         }
         ItemKind::Link { assignments, .. } => all.extend(assignments.iter().map(|it| &it.value)),
-        ItemKind::Start { condition } | ItemKind::End { condition } | ItemKind::Path { condition, .. } => {
+        ItemKind::Start { condition }
+        | ItemKind::End { condition }
+        | ItemKind::Path { condition, .. } => {
             all.push(&condition.first);
             all.extend(condition.rest.iter().map(|it| &it.1));
         }

@@ -9,8 +9,8 @@
 //! -S_ii - ... > |a|  with -S for S: pushes away in every direction
 //! ```
 //!
-//! Isotropic friction is `B = -c I`; there all of this is exact, and 0 is held if and only if `|a| <= c`: the force that it
-//! takes lies in the ball.
+//! Isotropic friction is `B = -c I`; there all of this is exact, and 0 is held if and only if `|a|
+//! <= c`: the force that it takes lies in the ball.
 
 use super::class::{Claims, Class, decide};
 use super::local::Local;

@@ -27,7 +27,8 @@ pub enum Class {
     Held,
     /// Its gradient vanishes on it, so nothing is decided there.
     Degenerate,
-    /// The sides never push away from it; which of held and crossed it is depends on state and control.
+    /// The sides never push away from it; which of held and crossed it is depends on state and
+    /// control.
     Attracting,
     /// Both sides push away from it, whatever the control.
     Repelling,
@@ -84,7 +85,8 @@ pub(crate) fn classify(local: &mut Local) -> Class {
     decide(local, &claims)
 }
 
-/// The first class whose claims are proved. What a few points contradict is not even tried to be proved.
+/// The first class whose claims are proved. What a few points contradict is not even tried to be
+/// proved.
 pub(crate) fn decide(local: &Local, claims: &Claims) -> Class {
     let points = sample::points(local);
     if points.is_empty() && local.prover().proves(&local.graph, &[(local.psi, Claim::Nowhere)]) {
@@ -136,18 +138,21 @@ fn is_true(local: &Local, claims: &[(ExprId, Claim)], point: &[f64]) -> bool {
 pub(crate) fn for_some(local: &Local, claims: &[(ExprId, Claim)]) -> Option<Choice> {
     let roots: Vec<ExprId> = claims.iter().map(|it| it.0).collect();
     let free = local.graph.inputs_of(&roots).into_iter();
-    let chosen = |at: &u32| matches!(local.symbols[*at as usize], Symbol::Control(_) | Symbol::Free(_));
+    let chosen =
+        |at: &u32| matches!(local.symbols[*at as usize], Symbol::Control(_) | Symbol::Free(_));
     let inputs: Vec<u32> = free.filter(chosen).collect();
     if inputs.is_empty() {
         return None;
     }
     let mut prover = local.prover();
-    let choices = candidates(&inputs.iter().map(|&at| local.domain[at as usize]).collect::<Vec<_>>());
+    let choices =
+        candidates(&inputs.iter().map(|&at| local.domain[at as usize]).collect::<Vec<_>>());
     choices.into_iter().find_map(|values| {
         let fixed: Vec<(u32, Interval)> =
             inputs.iter().zip(&values).map(|(&at, &value)| (at, Interval::point(value))).collect();
         let holds = prover.within(&fixed, |prover| prover.proves(&local.graph, claims));
-        let named = inputs.iter().zip(values).map(|(&at, value)| (local.symbols[at as usize], value));
+        let named =
+            inputs.iter().zip(values).map(|(&at, value)| (local.symbols[at as usize], value));
         holds.then(|| named.collect())
     })
 }
@@ -158,7 +163,11 @@ fn candidates(domains: &[Interval]) -> Vec<Vec<f64>> {
         .iter()
         .map(|it| {
             let end = |end: f64, other: f64| if end.is_finite() { end } else { other };
-            [end(it.upper, it.lower.max(-1.0) + 2.0), end(it.lower, it.upper.min(1.0) - 2.0), it.middle()]
+            [
+                end(it.upper, it.lower.max(-1.0) + 2.0),
+                end(it.lower, it.upper.min(1.0) - 2.0),
+                it.middle(),
+            ]
         })
         .collect();
     if values.len() > 3 {
@@ -166,7 +175,10 @@ fn candidates(domains: &[Interval]) -> Vec<Vec<f64>> {
     }
     let mut all: Vec<Vec<f64>> = vec![Vec::new()];
     for choice in values {
-        all = all.iter().flat_map(|it| choice.map(|value| [it.as_slice(), &[value]].concat())).collect();
+        all = all
+            .iter()
+            .flat_map(|it| choice.map(|value| [it.as_slice(), &[value]].concat()))
+            .collect();
     }
     all
 }

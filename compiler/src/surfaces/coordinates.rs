@@ -1,11 +1,13 @@
-//! Whether the jump of the right side is parallel to the gradient, and in which coordinates or metric it is.
+//! Whether the jump of the right side is parallel to the gradient, and in which coordinates or
+//! metric it is.
 //!
 //! ```text
 //! M (f_above - f_below) = -c grad psi^T with c >= 0        Lemma 3.1, in the inner product of M
 //! ```
 //!
-//! For a diagonal `M` the weights are `-g_i/j_i`. Where the gradient has other parts only because the surface turns with
-//! other states, a frame that turns with it mends it: `psi` itself is one of its velocities, the other is across.
+//! For a diagonal `M` the weights are `-g_i/j_i`. Where the gradient has other parts only because
+//! the surface turns with other states, a frame that turns with it mends it: `psi` itself is one of
+//! its velocities, the other is across.
 
 use super::local::Local;
 use super::view::View;
@@ -22,13 +24,15 @@ pub(crate) enum Coordinates {
     Metric(Vec<(usize, ExprId)>),
     /// With its own function as a coordinate in place of the only state that is acted on.
     Replaced(usize),
-    /// In a frame that turns with the surface: the two velocities of the frame are `psi` and this one.
+    /// In a frame that turns with the surface: the two velocities of the frame are `psi` and this
+    /// one.
     Frame { across: ExprId },
     /// In none that was found.
     Unknown,
 }
 
-/// The jump of the right side against the gradient, both on the surface; states where one of them is not 0.
+/// The jump of the right side against the gradient, both on the surface; states where one of them
+/// is not 0.
 pub(crate) struct Parts {
     /// State, gradient, jump.
     pub rows: Vec<(usize, Polynomial, Polynomial)>,
@@ -61,14 +65,19 @@ impl Parts {
 
     /// The states that the gradient has, but the jump has not.
     pub fn turning(&self) -> Vec<usize> {
-        self.rows.iter().filter(|row| row.2.is_zero() && !row.1.is_zero()).map(|row| row.0).collect()
+        self.rows
+            .iter()
+            .filter(|row| row.2.is_zero() && !row.1.is_zero())
+            .map(|row| row.0)
+            .collect()
     }
 }
 
 /// Finds out.
 pub(crate) fn coordinates(local: &mut Local, view: &View<'_>, parts: &Parts) -> Coordinates {
     let all: Vec<&(usize, Polynomial, Polynomial)> = parts.rows.iter().collect();
-    let weights: Vec<Polynomial> = parts.rows.iter().map(|row| weight(local, view, row.0)).collect();
+    let weights: Vec<Polynomial> =
+        parts.rows.iter().map(|row| weight(local, view, row.0)).collect();
     if is_parallel(local, &all, &weights) {
         return Coordinates::Own;
     }
@@ -92,7 +101,11 @@ fn weight(local: &mut Local, view: &View<'_>, state: usize) -> Polynomial {
 }
 
 /// Whether `w_i j_i g_k = w_k j_k g_i` for all pairs.
-fn is_parallel(local: &mut Local, rows: &[&(usize, Polynomial, Polynomial)], weights: &[Polynomial]) -> bool {
+fn is_parallel(
+    local: &mut Local,
+    rows: &[&(usize, Polynomial, Polynomial)],
+    weights: &[Polynomial],
+) -> bool {
     let mut is_zero = |i: usize, k: usize| -> Option<bool> {
         let left = weights[i].times(&rows[i].2)?.times(&rows[k].1)?;
         let right = weights[k].times(&rows[k].2)?.times(&rows[i].1)?;
@@ -107,7 +120,8 @@ fn is_parallel(local: &mut Local, rows: &[&(usize, Polynomial, Polynomial)], wei
 fn metric(local: &mut Local, parts: &Parts) -> Option<Vec<(usize, ExprId)>> {
     let weights: Vec<(Monomial, f64)> =
         parts.rows.iter().map(|row| ratio(&row.1, &row.2)).collect::<Option<_>>()?;
-    let atoms: BTreeSet<ExprId> = weights.iter().flat_map(|it| &it.0).map(|power| power.0).collect();
+    let atoms: BTreeSet<ExprId> =
+        weights.iter().flat_map(|it| &it.0).map(|power| power.0).collect();
     let is_constant = |atom: &ExprId| {
         local
             .graph
@@ -116,8 +130,9 @@ fn metric(local: &mut Local, parts: &Parts) -> Option<Vec<(usize, ExprId)>> {
             .all(|&at| matches!(local.symbols[at as usize], Symbol::Param(_)))
             && local.prover().range(&local.graph, *atom).is_positive()
     };
-    let power =
-        |monomial: &Monomial, atom: ExprId| monomial.iter().find(|it| it.0 == atom).map_or(0, |it| it.1);
+    let power = |monomial: &Monomial, atom: ExprId| {
+        monomial.iter().find(|it| it.0 == atom).map_or(0, |it| it.1)
+    };
     let common = |atom: &ExprId| {
         let least = weights.iter().map(|it| power(&it.0, *atom)).min().unwrap_or(0);
         (*atom, -least)
@@ -126,13 +141,16 @@ fn metric(local: &mut Local, parts: &Parts) -> Option<Vec<(usize, ExprId)>> {
     let first = weights.first()?.1;
     let scaled: Vec<Polynomial> = weights
         .iter()
-        .map(|(monomial, factor)| Polynomial::product(monomial.clone()).scaled(factor / first, &lifted))
+        .map(|(monomial, factor)| {
+            Polynomial::product(monomial.clone()).scaled(factor / first, &lifted)
+        })
         .collect();
     let left: BTreeSet<ExprId> =
         scaled.iter().flat_map(|it| it.terms.keys()).flatten().map(|it| it.0).collect();
     let fits = weights.iter().all(|it| it.1 > 0.0) && left.iter().all(is_constant);
-    let named =
-        |(row, form): (&(usize, Polynomial, Polynomial), Polynomial)| (row.0, form.to_expr(&mut local.graph));
+    let named = |(row, form): (&(usize, Polynomial, Polynomial), Polynomial)| {
+        (row.0, form.to_expr(&mut local.graph))
+    };
     fits.then(|| parts.rows.iter().zip(scaled).map(named).collect())
 }
 
@@ -153,8 +171,8 @@ fn replaced(parts: &Parts) -> Option<usize> {
     (is_alone && slope.as_number().is_some_and(|slope| slope != 0.0)).then_some(*state)
 }
 
-/// The other velocity of a frame: the jump is parallel to the gradient in two components of one vector, where the gradient
-/// is of length 1 and does not depend on that vector.
+/// The other velocity of a frame: the jump is parallel to the gradient in two components of one
+/// vector, where the gradient is of length 1 and does not depend on that vector.
 fn frame(local: &mut Local, view: &View<'_>, parts: &Parts) -> Option<ExprId> {
     let moved: Vec<&(usize, Polynomial, Polynomial)> =
         parts.rows.iter().filter(|row| !row.2.is_zero()).collect();

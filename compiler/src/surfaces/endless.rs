@@ -1,4 +1,5 @@
-//! Resets that can pile up: `psi` stays 0, its rate is turned round and shrinks, and the flow brings it back.
+//! Resets that can pile up: `psi` stays 0, its rate is turned round and shrinks, and the flow
+//! brings it back.
 //!
 //! ```text
 //! psi(r(x)) = 0,   psi'(r(x)) = -e psi'(x) with 0 < e < 1,   psi'' < 0 where psi' = 0      (falling)
@@ -35,8 +36,11 @@ pub(crate) fn restitution(local: &mut Local, view: &View<'_>, jump: &Jump) -> Op
     };
     let is_constant = !local.graph.inputs_of(&[factor]).iter().any(moves);
     let range = local.prover().range(&local.graph, factor);
-    let shrinks =
-        is_constant && range.lower >= 0.0 && range.lower < 1.0 && 0.0 < range.upper && range.upper <= 1.0;
+    let shrinks = is_constant
+        && range.lower >= 0.0
+        && range.lower < 1.0
+        && 0.0 < range.upper
+        && range.upper <= 1.0;
     (shrinks && returns(local, view, incoming, jump.direction)).then_some(factor)
 }
 
@@ -59,7 +63,9 @@ fn returns(local: &mut Local, view: &View<'_>, rate: ExprId, direction: Directio
     for (input, slope) in inputs.into_iter().zip(slopes) {
         let speed = match local.symbols[input as usize] {
             Symbol::Time => local.graph.number(1.0),
-            Symbol::State(state) if view.has_rate[state] => local.import(view, view.states[state].rate),
+            Symbol::State(state) if view.has_rate[state] => {
+                local.import(view, view.states[state].rate)
+            }
             Symbol::Param(_) | Symbol::Free(_) => continue,
             _ => return false,
         };

@@ -5,8 +5,8 @@
 //! psi' = a - c s = 0         has a solution |s| <= 1       if and only if   |a| <= c               (vectors)
 //! ```
 //!
-//! Both sides are multiplied by the positive denominators and by the number in front of the left one, and a product is taken
-//! apart: `abs(s)*v_t^2 <= muN` for the race car.
+//! Both sides are multiplied by the positive denominators and by the number in front of the left
+//! one, and a product is taken apart: `abs(s)*v_t^2 <= muN` for the race car.
 
 use super::ball::LocalBall;
 use super::local::Local;
@@ -19,7 +19,11 @@ use crate::polynomial::{Monomial, NormalForms, Polynomial};
 use std::collections::BTreeMap;
 
 /// The condition, with names that are made up for it; nothing if it would be too long to read.
-pub(crate) fn holding(local: &mut Local, view: &View<'_>, own: &[(String, ExprId)]) -> Option<String> {
+pub(crate) fn holding(
+    local: &mut Local,
+    view: &View<'_>,
+    own: &[(String, ExprId)],
+) -> Option<String> {
     let [below, above] = local.written;
     let sum = local.graph.add(below, above);
     let mut forms = NormalForms::with_squares();
@@ -48,15 +52,18 @@ pub(crate) fn within_reach(ball: &mut LocalBall, view: &View<'_>) -> Option<Stri
     let drift = ball.drift.clone();
     let local = &mut ball.local;
     let mut forms = NormalForms::with_squares();
-    let mut forms: Vec<Polynomial> = drift.iter().map(|&it| forms.of(&mut local.graph, it)).collect();
+    let mut forms: Vec<Polynomial> =
+        drift.iter().map(|&it| forms.of(&mut local.graph, it)).collect();
     forms.push(local.form(reach));
     let factor = common_denominator(local, &forms.iter().collect::<Vec<_>>());
-    let sizes: Vec<f64> = forms[..drift.len()].iter().filter_map(|it| Some(it.as_term()?.1.abs())).collect();
+    let sizes: Vec<f64> =
+        forms[..drift.len()].iter().filter_map(|it| Some(it.as_term()?.1.abs())).collect();
     let is_alike = sizes.len() == drift.len() && sizes.iter().all(|size| *size == sizes[0]);
     let number = if is_alike { 1.0 / sizes[0] } else { 1.0 };
     local.in_words(view, &[], |local, words| {
         let scaled = forms.iter().map(|form| form.scaled(number, &factor));
-        let mut texts: Vec<String> = scaled.map(|it| words.polynomial(&mut local.graph, &it, 0)).collect();
+        let mut texts: Vec<String> =
+            scaled.map(|it| words.polynomial(&mut local.graph, &it, 0)).collect();
         let reach = texts.pop()?;
         let text = format!("norm({}) <= {reach}", vector(&texts, view));
         (text.chars().count() <= LONGEST).then_some(text)
@@ -66,7 +73,8 @@ pub(crate) fn within_reach(ball: &mut LocalBall, view: &View<'_>) -> Option<Stri
 /// `F` for all of its parts, `(F.x, u)` for other numbers.
 fn vector(parts: &[String], view: &View<'_>) -> String {
     let name = parts[0].split_once('.').map_or("", |it| it.0);
-    let places = view.states.iter().map(|it| &it.place).chain(view.controls.iter().map(|it| &it.place));
+    let places =
+        view.states.iter().map(|it| &it.place).chain(view.controls.iter().map(|it| &it.place));
     let all = places.filter(|place| place.name.split_once('.').is_some_and(|it| it.0 == name));
     match all.map(|place| &place.name).eq(parts) {
         true => name.to_string(),

@@ -1,11 +1,13 @@
-//! One surface by itself: a small graph with its function, its gradient and the rates on both sides.
+//! One surface by itself: a small graph with its function, its gradient and the rates on both
+//! sides.
 //!
 //! ```text
 //! below = psi_t + psi_x f(s = -1),   above = psi_t + psi_x f(s = +1),   jump = above - below
 //! ```
 //!
-//! Where `psi` is affine in a state with a constant factor, that state is replaced by what it is on the surface, so that
-//! all of these hold there and nowhere else. The selectors of other surfaces may be anything in [-1, 1].
+//! Where `psi` is affine in a state with a constant factor, that state is replaced by what it is on
+//! the surface, so that all of these hold there and nowhere else. The selectors of other surfaces
+//! may be anything in [-1, 1].
 
 use super::view::View;
 use super::words::Words;
@@ -99,7 +101,8 @@ impl Local {
         true
     }
 
-    /// Takes the surface `at` besides those before it: its rate, if that is known. Where all are 0 it is 0 as well.
+    /// Takes the surface `at` besides those before it: its rate, if that is known. Where all are 0
+    /// it is 0 as well.
     pub fn add_surface(&mut self, view: &View<'_>, at: usize) -> Option<ExprId> {
         let psi = self.import(view, view.surfaces[at].1?);
         self.psi = psi;

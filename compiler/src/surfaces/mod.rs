@@ -1,7 +1,8 @@
 //! What a surface does to the trajectories that meet it, before anything runs.
 //!
-//! Each surface is taken out of the model by itself ([`local`]), its class is proved over the bounds of states and controls
-//! ([`class`]), with parameters at their values; what cannot be proved is called unknown.
+//! Each surface is taken out of the model by itself ([`local`]), its class is proved over the
+//! bounds of states and controls ([`class`]), with parameters at their values; what cannot be
+//! proved is called unknown.
 
 pub(crate) mod ball;
 pub(crate) mod class;

@@ -29,7 +29,8 @@ pub struct SurfaceReport {
     pub holding: Option<String>,
 }
 
-/// All surfaces of a model, with its parameters at these values; the components of a `Dir` are one, its vector.
+/// All surfaces of a model, with its parameters at these values; the components of a `Dir` are one,
+/// its vector.
 pub(crate) fn surfaces(model: &Model, numbers: &Numbers) -> Vec<SurfaceReport> {
     let view = View::of_model(model, numbers);
     let switches = model.switches().into_iter();
@@ -69,7 +70,11 @@ fn report(view: &View<'_>, at: usize, model: &Model) -> SurfaceReport {
     let function = text(&mut local, psi);
     let mut gradient: Vec<String> = Vec::new();
     for (state, slope) in local.gradient.clone() {
-        gradient.push(format!("d/d{} = {}", view.states[state].place.name, text(&mut local, slope)));
+        gradient.push(format!(
+            "d/d{} = {}",
+            view.states[state].place.name,
+            text(&mut local, slope)
+        ));
     }
     if local.graph.as_number(local.in_time) != Some(0.0) {
         let slope = local.in_time;
@@ -96,7 +101,9 @@ fn report(view: &View<'_>, at: usize, model: &Model) -> SurfaceReport {
 
 /// The class in words.
 fn in_words(class: &Class, view: &View<'_>) -> String {
-    let value = |it: &(Symbol, f64)| format!("{} = {}", view.name(it.0), crate::resolve::text::number(it.1));
+    let value = |it: &(Symbol, f64)| {
+        format!("{} = {}", view.name(it.0), crate::resolve::text::number(it.1))
+    };
     let text = match class {
         Class::Apart => "out of reach: the bounds keep every state away from it",
         Class::Crossed { strictly: true } => "crossed",
@@ -110,7 +117,9 @@ fn in_words(class: &Class, view: &View<'_>) -> String {
             return format!("repelling for some controls: pushes away on both sides at {values}");
         }
         Class::Unknown { mixed: true } => "repelling for some states within their bounds",
-        Class::Unknown { mixed: false } => "unknown: nothing is proved for all states within their bounds",
+        Class::Unknown { mixed: false } => {
+            "unknown: nothing is proved for all states within their bounds"
+        }
     };
     text.into()
 }

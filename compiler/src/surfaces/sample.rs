@@ -12,8 +12,12 @@ const STEPS: usize = 30;
 /// Points within the bounds and path constraints at which `psi` is 0 to the last digits.
 pub(crate) fn points(local: &Local) -> Vec<Vec<f64>> {
     let found = (0..TRIALS).filter_map(|trial| {
-        let mut point: Vec<f64> =
-            local.domain.iter().enumerate().map(|(at, domain)| inside(*domain, trial, at as u64)).collect();
+        let mut point: Vec<f64> = local
+            .domain
+            .iter()
+            .enumerate()
+            .map(|(at, domain)| inside(*domain, trial, at as u64))
+            .collect();
         onto_surface(local, &mut point).then_some(point)
     });
     found.collect()
@@ -32,16 +36,23 @@ pub(crate) fn zeros(local: &mut Local, expr: ExprId) -> Vec<Vec<f64>> {
     let is_fixed = |at: u32| matches!(local.symbols[at as usize], Symbol::Param(_));
     let moves: Vec<bool> = inputs.iter().map(|&at| !is_fixed(at)).collect();
     let found = (0..TRIALS).filter_map(|trial| {
-        let mut point: Vec<f64> =
-            local.domain.iter().enumerate().map(|(at, domain)| inside(*domain, trial, at as u64)).collect();
+        let mut point: Vec<f64> = local
+            .domain
+            .iter()
+            .enumerate()
+            .map(|(at, domain)| inside(*domain, trial, at as u64))
+            .collect();
         for _ in 0..STEPS {
             let values = evaluate(&local.graph, &roots, &point, &[]);
             if values[0].abs() <= 1e-12 {
-                let is_inside = point.iter().zip(&local.domain).all(|(value, domain)| near(*value, *domain));
+                let is_inside =
+                    point.iter().zip(&local.domain).all(|(value, domain)| near(*value, *domain));
                 return is_inside.then_some(point);
             }
-            let steps: Vec<(u32, f64)> =
-                (0..inputs.len()).filter(|&at| moves[at]).map(|at| (inputs[at], values[1 + at])).collect();
+            let steps: Vec<(u32, f64)> = (0..inputs.len())
+                .filter(|&at| moves[at])
+                .map(|at| (inputs[at], values[1 + at]))
+                .collect();
             let size: f64 = steps.iter().map(|step| step.1 * step.1).sum();
             steps.iter().for_each(|(at, slope)| point[*at as usize] -= values[0] * slope / size);
         }
@@ -52,7 +63,8 @@ pub(crate) fn zeros(local: &mut Local, expr: ExprId) -> Vec<Vec<f64>> {
 
 /// A number in an interval that depends on nothing but the trial.
 fn inside(domain: Interval, trial: u64, at: u64) -> f64 {
-    let mut state = trial.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ (at + 1).wrapping_mul(0xD1B5_4A32_D192_ED03);
+    let mut state =
+        trial.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ (at + 1).wrapping_mul(0xD1B5_4A32_D192_ED03);
     state ^= state >> 32;
     state = state.wrapping_mul(0xD6E8_FEB8_6659_FD93);
     state ^= state >> 32;
@@ -65,7 +77,8 @@ fn inside(domain: Interval, trial: u64, at: u64) -> f64 {
     }
 }
 
-/// Moves the states along the gradient until `psi` vanishes; says whether that worked within all bounds.
+/// Moves the states along the gradient until `psi` vanishes; says whether that worked within all
+/// bounds.
 fn onto_surface(local: &Local, point: &mut [f64]) -> bool {
     for &(input, value) in local.replaced.iter().rev() {
         point[input as usize] = evaluate(&local.graph, &[value], point, &[])[0];
@@ -79,7 +92,8 @@ fn onto_surface(local: &Local, point: &mut [f64]) -> bool {
         .filter_map(|it| local.input_of(Symbol::State(it.0)))
         .map(|it| it as usize)
         .collect();
-    let roots: Vec<ExprId> = std::iter::once(local.psi).chain(local.gradient.iter().map(|it| it.1)).collect();
+    let roots: Vec<ExprId> =
+        std::iter::once(local.psi).chain(local.gradient.iter().map(|it| it.1)).collect();
     for _ in 0..STEPS {
         let values = evaluate(&local.graph, &roots, point, &[]);
         let size: f64 = values[1..].iter().map(|slope| slope * slope).sum();

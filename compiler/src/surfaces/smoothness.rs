@@ -5,8 +5,10 @@
 //! e = P + Q sqrt(a):                  e is C^m at a = 0, where Q vanishes to the m-th order
 //! ```
 //!
-//! What is said is proved, or is what the single functions promise. Both are decided for the whole expression, so `x*abs(x)` is C^1 and `max(x, 0)^3` is C^2. Knots that the bounds keep out of
-//! reach do not count. Where no point of `g = 0` is found, what the single function promises is what is said.
+//! What is said is proved, or is what the single functions promise. Both are decided for the whole
+//! expression, so `x*abs(x)` is C^1 and `max(x, 0)^3` is C^2. Knots that the bounds keep out of
+//! reach do not count. Where no point of `g = 0` is found, what the single function promises is
+//! what is said.
 
 use super::local::Local;
 use super::sample;
@@ -114,7 +116,8 @@ pub(crate) fn of_expression(view: &View<'_>, name: &str, id: ExprId) -> Smoothne
     let order = found.first().map_or(Order::Always, |knot| knot.0);
     let worst: Vec<Polynomial> =
         found.into_iter().filter(|knot| knot.0 == order).map(|knot| knot.1).collect();
-    let mut knots: Vec<String> = worst.iter().map(|zero| equation(&mut local, view, zero)).collect();
+    let mut knots: Vec<String> =
+        worst.iter().map(|zero| equation(&mut local, view, zero)).collect();
     knots.sort();
     knots.dedup();
     Smoothness { name: name.into(), order, knots }
@@ -152,12 +155,15 @@ fn knots(local: &mut Local, root: ExprId) -> Vec<(Order, Polynomial)> {
     }
     let all: Vec<ExprId> = zeros.keys().copied().collect();
     for (zero, may_jump) in zeros {
-        found.extend(across(local, root, zero, may_jump, &all).map(|order| (order, local.form(zero))));
+        found.extend(
+            across(local, root, zero, may_jump, &all).map(|order| (order, local.form(zero))),
+        );
     }
     found
 }
 
-/// Adds a function where something switches, and whether that may jump; multiples of a function are the same.
+/// Adds a function where something switches, and whether that may jump; multiples of a function are
+/// the same.
 fn note(local: &mut Local, zeros: &mut BTreeMap<ExprId, bool>, gap: ExprId, may_jump: bool) {
     let form = local.form(gap);
     let Some((_, lead)) = form.terms.iter().find(|term| !term.0.is_empty()) else { return };
@@ -172,8 +178,15 @@ fn may_vanish(local: &Local, function: ExprId) -> bool {
         && !prover.proves(&local.graph, &[(function, Claim::Negative)])
 }
 
-/// The order across `zero`: the first derivative in which the two sides differ, at some points of it.
-fn across(local: &mut Local, root: ExprId, zero: ExprId, may_jump: bool, all: &[ExprId]) -> Option<Order> {
+/// The order across `zero`: the first derivative in which the two sides differ, at some points of
+/// it.
+fn across(
+    local: &mut Local,
+    root: ExprId,
+    zero: ExprId,
+    may_jump: bool,
+    all: &[ExprId],
+) -> Option<Order> {
     if !may_vanish(local, zero) {
         return None;
     }
@@ -184,9 +197,11 @@ fn across(local: &mut Local, root: ExprId, zero: ExprId, may_jump: bool, all: &[
         return Some(promised);
     }
     let varying = steepest(local, zero, &points);
-    let orders = points.iter().zip(varying).filter_map(|(point, input)| at_point(local, root, point, input));
+    let orders =
+        points.iter().zip(varying).filter_map(|(point, input)| at_point(local, root, point, input));
     let found = orders.min();
-    let is_alone = all.iter().all(|other| same_inputs(local, zero, *other) || apart(local, zero, *other));
+    let is_alone =
+        all.iter().all(|other| same_inputs(local, zero, *other) || apart(local, zero, *other));
     match found {
         Some(order) if order <= promised => found,
         _ if is_alone && is_affine(local, zero) => found,
@@ -195,11 +210,14 @@ fn across(local: &mut Local, root: ExprId, zero: ExprId, may_jump: bool, all: &[
     }
 }
 
-/// Whether two functions depend on the same single input: then the knots of one are single places for the other.
+/// Whether two functions depend on the same single input: then the knots of one are single places
+/// for the other.
 fn same_inputs(local: &Local, zero: ExprId, other: ExprId) -> bool {
     let varying = |id: ExprId| {
         let inputs = local.graph.inputs_of(&[id]).into_iter();
-        inputs.filter(|&at| !matches!(local.symbols[at as usize], Symbol::Param(_))).collect::<Vec<u32>>()
+        inputs
+            .filter(|&at| !matches!(local.symbols[at as usize], Symbol::Param(_)))
+            .collect::<Vec<u32>>()
     };
     let own = varying(zero);
     own.len() == 1 && varying(other) == own
@@ -211,7 +229,8 @@ fn apart(local: &mut Local, zero: ExprId, other: ExprId) -> bool {
     local.graph.as_number(difference).is_some()
 }
 
-/// Whether a function is affine in some input, with a constant factor: then a few places stand for all of its zeros.
+/// Whether a function is affine in some input, with a constant factor: then a few places stand for
+/// all of its zeros.
 fn is_affine(local: &mut Local, zero: ExprId) -> bool {
     let mut inputs = local.graph.inputs_of(&[zero]);
     inputs.retain(|&at| !matches!(local.symbols[at as usize], Symbol::Param(_)));
@@ -259,14 +278,18 @@ fn sides(local: &mut Local, root: ExprId, point: &[f64], input: u32) -> [ExprId;
 /// The order at one point, in the direction of one input.
 fn at_point(local: &mut Local, root: ExprId, point: &[f64], input: u32) -> Option<Order> {
     let sides = sides(local, root, point, input);
-    if sides.map(|side| local.form(side).to_expr(&mut local.graph)).windows(2).all(|pair| pair[0] == pair[1])
+    if sides
+        .map(|side| local.form(side).to_expr(&mut local.graph))
+        .windows(2)
+        .all(|pair| pair[0] == pair[1])
     {
         return None;
     }
     Some(first_difference(local, sides, point, input))
 }
 
-/// What two sides of a place are together: the order before the first derivative in which they differ.
+/// What two sides of a place are together: the order before the first derivative in which they
+/// differ.
 fn first_difference(local: &mut Local, mut sides: [ExprId; 2], point: &[f64], input: u32) -> Order {
     for times in 0..=HIGHEST {
         let values = evaluate(&local.graph, &sides, point, &[]);
@@ -313,9 +336,11 @@ fn on_side(local: &mut Local, root: ExprId, near: &[f64]) -> ExprId {
 /// For each point the input by which a function changes most.
 fn steepest(local: &mut Local, zero: ExprId, points: &[Vec<f64>]) -> Vec<u32> {
     let inputs = local.graph.inputs_of(&[zero]);
-    let movable = inputs.into_iter().filter(|&at| !matches!(local.symbols[at as usize], Symbol::Param(_)));
+    let movable =
+        inputs.into_iter().filter(|&at| !matches!(local.symbols[at as usize], Symbol::Param(_)));
     let movable: Vec<u32> = movable.collect();
-    let slopes: Vec<ExprId> = movable.iter().map(|&at| derivative(&mut local.graph, zero, at)).collect();
+    let slopes: Vec<ExprId> =
+        movable.iter().map(|&at| derivative(&mut local.graph, zero, at)).collect();
     let steepest = |point: &Vec<f64>| {
         let values = evaluate(&local.graph, &slopes, point, &[]);
         let best = (0..movable.len()).max_by(|&a, &b| values[a].abs().total_cmp(&values[b].abs()));
@@ -325,7 +350,12 @@ fn steepest(local: &mut Local, zero: ExprId, points: &[Vec<f64>]) -> Vec<u32> {
 }
 
 /// A square root at 0: the order to which its factor vanishes there.
-fn at_root(local: &mut Local, root: ExprId, node: ExprId, operand: ExprId) -> Option<(Order, Polynomial)> {
+fn at_root(
+    local: &mut Local,
+    root: ExprId,
+    node: ExprId,
+    operand: ExprId,
+) -> Option<(Order, Polynomial)> {
     if !may_vanish(local, operand) {
         return None;
     }
@@ -345,7 +375,10 @@ fn factor(local: &mut Local, root: ExprId, node: ExprId, operand: ExprId) -> Opt
     let symbol = local.add_input();
     let negative = local.graph.neg(symbol);
     let [plus, minus] = [symbol, negative].map(|with| {
-        local.graph.rewrite(&[root], |_, original, rebuilt| if original == node { with } else { rebuilt })[0]
+        local
+            .graph
+            .rewrite(&[root], |_, original, rebuilt| if original == node { with } else { rebuilt })
+            [0]
     });
     let difference = local.graph.sub(plus, minus);
     let odd = local.form(difference).divided(&Polynomial::atom(symbol))?;
@@ -363,7 +396,8 @@ fn vanishing(local: &mut Local, factor: ExprId, zero: ExprId, points: &[Vec<f64>
     let varying = steepest(local, zero, points);
     for times in 0..=HIGHEST {
         let vanishes = points.iter().zip(&varying).all(|(point, input)| {
-            let roots = [along(local, factor, *input, times), derivative(&mut local.graph, zero, *input)];
+            let roots =
+                [along(local, factor, *input, times), derivative(&mut local.graph, zero, *input)];
             let values = evaluate(&local.graph, &roots, point, &[]);
             values[0].abs() <= 1e-9 && values[1].abs() > 1e-6
         });
@@ -376,7 +410,8 @@ fn vanishing(local: &mut Local, factor: ExprId, zero: ExprId, points: &[Vec<f64>
 
 /// `a^p` at 0, for a power that is no whole number.
 fn at_power(local: &mut Local, base: ExprId, exponent: ExprId) -> Option<(Order, Polynomial)> {
-    let power = local.graph.as_number(exponent).filter(|power| power.fract() != 0.0 && *power > 0.0)?;
+    let power =
+        local.graph.as_number(exponent).filter(|power| power.fract() != 0.0 && *power > 0.0)?;
     let reached = may_vanish(local, base);
     let order = (power.floor() as u32).min(HIGHEST);
     reached.then(|| (Order::Times(order), local.form(base)))

@@ -82,7 +82,9 @@ impl<'m> View<'m> {
     pub fn domain(&self, symbol: Symbol) -> Interval {
         match symbol {
             Symbol::Time => Interval::new(self.number(self.interval[0]), self.end()),
-            Symbol::State(at) | Symbol::AtStart(at) | Symbol::AtEnd(at) => self.bounds(self.states[at].range),
+            Symbol::State(at) | Symbol::AtStart(at) | Symbol::AtEnd(at) => {
+                self.bounds(self.states[at].range)
+            }
             Symbol::Control(at) => self.bounds(self.controls[at].range),
             Symbol::Free(at) => self.bounds(self.frees[at].range),
             Symbol::Param(at) => Interval::point(self.values[at]),
@@ -113,7 +115,12 @@ impl<'m> View<'m> {
 }
 
 /// The states whose rates the selector of each surface enters, found in one pass over the graph.
-pub(crate) fn moved(graph: &Graph, symbols: &[Symbol], states: &[State], surfaces: usize) -> Vec<Vec<usize>> {
+pub(crate) fn moved(
+    graph: &Graph,
+    symbols: &[Symbol],
+    states: &[State],
+    surfaces: usize,
+) -> Vec<Vec<usize>> {
     let rates: Vec<ExprId> = states.iter().map(|state| state.rate).collect();
     let mut selectors: HashMap<ExprId, Vec<usize>> = HashMap::new();
     for id in graph.reachable(&rates) {
@@ -122,7 +129,13 @@ pub(crate) fn moved(graph: &Graph, symbols: &[Symbol], states: &[State], surface
                 Symbol::Selector(at) => vec![at],
                 _ => continue,
             },
-            _ => graph.operands(id).iter().filter_map(|it| selectors.get(it)).flatten().copied().collect(),
+            _ => graph
+                .operands(id)
+                .iter()
+                .filter_map(|it| selectors.get(it))
+                .flatten()
+                .copied()
+                .collect(),
         };
         own.sort_unstable();
         own.dedup();

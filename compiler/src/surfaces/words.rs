@@ -1,7 +1,7 @@
 //! Expressions in the words of the model: `2*x`, `-2*muN`, `u - 9.81`, `abs(s)*v_t^2`.
 //!
-//! What is printed is the normal form. Parts of it that have a name in the model, or were written out there, are
-//! replaced by that name where this makes the text shorter.
+//! What is printed is the normal form. Parts of it that have a name in the model, or were written
+//! out there, are replaced by that name where this makes the text shorter.
 
 use crate::builtins::{Builtin, Notation};
 use crate::graph::{Expr, ExprId, Graph};
@@ -41,13 +41,18 @@ impl Words<'_> {
         let plain = self.sum(graph, form, depth);
         let worth = self.named.iter().map(|it| is_worth_naming(graph, &it.1)).collect::<Vec<_>>();
         let named = self.named.iter().zip(worth).filter(|it| it.1).map(|it| it.0);
-        let factored = named.filter_map(|(name, part)| self.factored(graph, form, name, part, depth));
+        let factored =
+            named.filter_map(|(name, part)| self.factored(graph, form, name, part, depth));
         let shortest = factored.min_by_key(|text| text.chars().count());
         shortest.filter(|text| text.chars().count() < plain.chars().count()).unwrap_or(plain)
     }
 
     /// `form` as a product: a single term, and powers of named parts.
-    pub fn as_product(&self, graph: &Graph, form: &Polynomial) -> Option<(Polynomial, Vec<(&str, i32)>)> {
+    pub fn as_product(
+        &self,
+        graph: &Graph,
+        form: &Polynomial,
+    ) -> Option<(Polynomial, Vec<(&str, i32)>)> {
         let (mut rest, mut powers) = (form.clone(), Vec::new());
         for (name, part) in self.named.iter().filter(|it| is_worth_naming(graph, &it.1)) {
             let mut power = 0;
@@ -90,7 +95,8 @@ impl Words<'_> {
     }
 
     fn sum(&self, graph: &mut Graph, form: &Polynomial, depth: usize) -> String {
-        let mut terms: Vec<(&Monomial, f64)> = form.terms.iter().map(|(it, &factor)| (it, factor)).collect();
+        let mut terms: Vec<(&Monomial, f64)> =
+            form.terms.iter().map(|(it, &factor)| (it, factor)).collect();
         // Positive terms first, constants last.
         terms.sort_by_key(|(monomial, factor)| (*factor < 0.0, monomial.is_empty()));
         let mut text = String::new();
@@ -102,7 +108,8 @@ impl Words<'_> {
                 (false, false) => " + ",
             };
             text += sign;
-            let term = Polynomial::default().plus(factor.abs(), &Polynomial::product(monomial.clone()));
+            let term =
+                Polynomial::default().plus(factor.abs(), &Polynomial::product(monomial.clone()));
             text += &match form.terms.len() {
                 1 => self.product(graph, monomial, factor.abs(), None, depth),
                 _ => self.polynomial(graph, &term, depth + 1),
@@ -158,7 +165,9 @@ impl Words<'_> {
                 format!("(if {} <= {} then {} else {})", parts[0], parts[1], parts[2], parts[3])
             }
             (_, Notation::Infix(_)) if parts[0] == "1" => format!("(1/({}))", parts[1]),
-            (_, Notation::Infix(_)) => format!("(({}){}({}))", parts[0], builtin.row().name, parts[1]),
+            (_, Notation::Infix(_)) => {
+                format!("(({}){}({}))", parts[0], builtin.row().name, parts[1])
+            }
             _ => format!("{}({})", builtin.row().name, parts.join(", ")),
         }
     }

@@ -1,4 +1,5 @@
-//! What a call measures: the builtin functions, the special forms, and the model's own functions, each time anew.
+//! What a call measures: the builtin functions, the special forms, and the model's own functions,
+//! each time anew.
 
 use super::declared::Declared;
 use super::dimension::Dimension;
@@ -36,7 +37,8 @@ impl<'a> Inference<'a> {
         let given: Vec<Operand<'a>> = self.given(arguments);
         match &declaration.item.kind {
             ItemKind::Fn { arguments: formal, body, .. } if !self.circular[at] => {
-                let call = Call { span: expr.span, name: declaration.name, arguments: formal, body };
+                let call =
+                    Call { span: expr.span, name: declaration.name, arguments: formal, body };
                 self.apply(call, given.into_iter().map(|it| it.0).collect())
             }
             ItemKind::Fn { .. } => Value::new(),
@@ -60,7 +62,8 @@ impl<'a> Inference<'a> {
         given
     }
 
-    /// A function of the model for these arguments; remembered, because functions build on each other.
+    /// A function of the model for these arguments; remembered, because functions build on each
+    /// other.
     fn apply(&mut self, call: Call<'a>, values: Vec<Value>) -> Value {
         let key = (call.name.span, values, self.gaps.is_some());
         if let Some((value, gaps)) = self.applied.get(&key).cloned() {
@@ -149,7 +152,9 @@ impl<'a> Inference<'a> {
                 self.compare(Reason::Together(name), at, times);
                 values.0.clone()
             }
-            (_, [only]) if crate::builtins::find(name).is_some() => self.without_unit(name, expr, only),
+            (_, [only]) if crate::builtins::find(name).is_some() => {
+                self.without_unit(name, expr, only)
+            }
             _ => Value::new(),
         }
     }
@@ -171,7 +176,10 @@ impl<'a> Inference<'a> {
     }
 
     fn powers(&self, value: &[Part], exponent: Option<Ratio>) -> Value {
-        value.iter().map(|part| exponent.map_or(Part::ANY, |exponent| part.power(exponent))).collect()
+        value
+            .iter()
+            .map(|part| exponent.map_or(Part::ANY, |exponent| part.power(exponent)))
+            .collect()
     }
 
     /// All parts must have one unit; which.
@@ -180,7 +188,11 @@ impl<'a> Inference<'a> {
         let Some(first) = value.first() else { return Value::new() };
         let first = (vec![first.clone()], side.clone());
         value[1..].iter().fold(first.0.clone(), |one, part| {
-            self.equal(Reason::Together(name), &(one, side.clone()), &(vec![part.clone()], side.clone()))
+            self.equal(
+                Reason::Together(name),
+                &(one, side.clone()),
+                &(vec![part.clone()], side.clone()),
+            )
         })
     }
 

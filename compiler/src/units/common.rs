@@ -1,7 +1,9 @@
-//! What several texts that do not fit have in common: perhaps a definition, and then it is what is wrong.
+//! What several texts that do not fit have in common: perhaps a definition, and then it is what is
+//! wrong.
 //!
-//! The definition is taken for unknown and its uses are asked for its unit first. If they agree on one, so that fewer texts
-//! are left that do not fit, its value is what does not fit. Texts that have nothing to do with each other are told together.
+//! The definition is taken for unknown and its uses are asked for its unit first. If they agree on
+//! one, so that fewer texts are left that do not fit, its value is what does not fit. Texts that
+//! have nothing to do with each other are told together.
 
 use super::requirement::{Reason, Requirement};
 use super::{Known, Walk};
@@ -23,18 +25,25 @@ pub(crate) struct Found<'a> {
     pub suspect: Option<Span>,
 }
 
-/// The chosen text, or the definition that it and others contradict, and everything that has nothing to do with it.
+/// The chosen text, or the definition that it and others contradict, and everything that has
+/// nothing to do with it.
 pub(crate) fn found<'a>(tree: &'a ast::Model, known: &Known, walk: Walk<'a>) -> Found<'a> {
-    let Some(first) = walk.first else { return Found { walk, mistakes: Vec::new(), suspect: None } };
+    let Some(first) = walk.first else {
+        return Found { walk, mistakes: Vec::new(), suspect: None };
+    };
     if walk.contradictions.len() == 1 {
         return Found { walk, mistakes: vec![first], suspect: None };
     }
     let definitions = definitions(tree);
     let of = |at: usize| (at, used(&walk.inference.requirements[at], &definitions));
-    let used: HashMap<usize, Vec<Definition<'a>>> = walk.contradictions.iter().copied().map(of).collect();
+    let used: HashMap<usize, Vec<Definition<'a>>> =
+        walk.contradictions.iter().copied().map(of).collect();
     let origins = origins(&walk, &used);
     let mut uses: HashMap<Span, usize> = HashMap::new();
-    origins.iter().flat_map(|at| &used[at]).for_each(|it| *uses.entry(it.name.span).or_default() += 1);
+    origins
+        .iter()
+        .flat_map(|at| &used[at])
+        .for_each(|it| *uses.entry(it.name.span).or_default() += 1);
     let is_shared = |it: &&Definition<'_>| uses.get(&it.name.span).is_some_and(|&count| count > 1);
     let shared = used[&first].iter().filter(is_shared).filter(|it| it.is_number());
     let tried: Vec<Span> = shared.map(|it| it.name.span).take(MOST_TRIALS).collect();
@@ -52,14 +61,17 @@ pub(crate) fn found<'a>(tree: &'a ast::Model, known: &Known, walk: Walk<'a>) -> 
     Found { mistakes, suspect: None, walk }
 }
 
-/// The texts that do not fit by themselves: no other lies in them, nor in a definition that they use.
+/// The texts that do not fit by themselves: no other lies in them, nor in a definition that they
+/// use.
 fn origins(walk: &Walk<'_>, used: &HashMap<usize, Vec<Definition<'_>>>) -> Vec<usize> {
     let site = |at: usize| walk.inference.requirements[at].site;
     let wrong: Vec<Span> = walk.contradictions.iter().map(|&at| site(at)).collect();
     let holds = |outer: Span, inner: &Span| outer.start <= inner.start && inner.end <= outer.end;
     let follows = |at: usize| {
         wrong.iter().any(|it| *it != site(at) && holds(site(at), it))
-            || used[&at].iter().any(|definition| wrong.iter().any(|it| holds(definition.value.span, it)))
+            || used[&at]
+                .iter()
+                .any(|definition| wrong.iter().any(|it| holds(definition.value.span, it)))
     };
     walk.contradictions.iter().copied().filter(|&at| !follows(at)).collect()
 }
@@ -74,8 +86,7 @@ fn trial<'a>(
     let mut known = known.clone();
     known.suspects.insert(name);
     let walk = Walk::new(tree, known, false);
-    let is_it =
-        |at: &&usize| matches!(walk.inference.requirements[**at].reason, Reason::Uses(it) if it.span == name);
+    let is_it = |at: &&usize| matches!(walk.inference.requirements[**at].reason, Reason::Uses(it) if it.span == name);
     let blamed = walk.contradictions.iter().find(is_it).copied()?;
     let is_better = walk.contradictions.len() + uses <= so_far.contradictions.len() + 1;
     is_better.then(|| Found { walk, mistakes: vec![blamed], suspect: Some(name) })
@@ -102,7 +113,8 @@ fn definitions(tree: &ast::Model) -> HashMap<&str, Definition<'_>> {
         _ => None,
     });
     let all = tree.items.iter().chain(inner.flatten());
-    let definition = |item| Some(Definition { name: scope::declared(item)?, item, value: value_of(item)? });
+    let definition =
+        |item| Some(Definition { name: scope::declared(item)?, item, value: value_of(item)? });
     all.filter_map(definition).map(|it| (it.name.name.as_str(), it)).collect()
 }
 
@@ -127,7 +139,8 @@ fn used<'a>(
     while let Some(text) = texts.get(next).copied() {
         next += 1;
         walk::names(text, &mut |name, _| {
-            let Some(definition) = definitions.get(name).filter(|it| seen.insert(it.name.span)) else {
+            let Some(definition) = definitions.get(name).filter(|it| seen.insert(it.name.span))
+            else {
                 return;
             };
             texts.push(definition.value);

@@ -1,4 +1,5 @@
-//! The units of declared names: those that are written, those of their definitions, and those that are to be found.
+//! The units of declared names: those that are written, those of their definitions, and those that
+//! are to be found.
 
 use super::declared::Form;
 use super::expression::written;
@@ -20,7 +21,11 @@ impl<'a> Inference<'a> {
         self.circular = order.circular;
         let fresh = |at: &usize| new[*at];
         (0..new.len()).filter(fresh).for_each(|at| self.declare(self.scope.declarations[at]));
-        order.sequence.into_iter().filter(fresh).for_each(|at| self.define(self.scope.declarations[at]));
+        order
+            .sequence
+            .into_iter()
+            .filter(fresh)
+            .for_each(|at| self.define(self.scope.declarations[at]));
         (0..new.len()).filter(fresh).for_each(|at| self.bound(self.scope.declarations[at]));
     }
 
@@ -72,7 +77,8 @@ impl<'a> Inference<'a> {
         self.values.insert(it.name.span, value);
     }
 
-    /// A definition has the unit that is written after its name, or that of its value. A plain number is a name for it.
+    /// A definition has the unit that is written after its name, or that of its value. A plain
+    /// number is a name for it.
     fn defined(&mut self, it: Declaration<'a>, value: &'a Expr, unit: Option<&Unit>) -> Value {
         let given = self.operand(value);
         let own: Value = if let Some(unit) = unit {
@@ -99,18 +105,24 @@ impl<'a> Inference<'a> {
     fn bound(&mut self, it: Declaration<'a>) {
         let subject = self.subject(it);
         match &it.item.kind {
-            ItemKind::Param { bounds, .. } => self.interval("a bound", it.name, &subject, bounds.as_ref()),
+            ItemKind::Param { bounds, .. } => {
+                self.interval("a bound", it.name, &subject, bounds.as_ref())
+            }
             ItemKind::Time { interval, .. } => {
                 self.interval("an end", it.name, &subject, Some(interval));
             }
             ItemKind::Free { bounds, guess, .. } | ItemKind::Control { bounds, guess, .. } => {
                 self.interval("a bound", it.name, &subject, bounds.as_ref());
-                guess.iter().for_each(|guess| self.value_for("the guess", it.name, &subject, guess));
+                guess
+                    .iter()
+                    .for_each(|guess| self.value_for("the guess", it.name, &subject, guess));
             }
             ItemKind::State { bounds, start, .. } => {
                 self.interval("a bound", it.name, &subject, bounds.as_ref());
                 match start {
-                    Some(Start::Value(value)) => self.value_for("the start", it.name, &subject, value),
+                    Some(Start::Value(value)) => {
+                        self.value_for("the start", it.name, &subject, value)
+                    }
                     Some(Start::Free { bounds, .. }) => {
                         self.interval("a bound of the start", it.name, &subject, bounds.as_ref());
                     }
@@ -139,7 +151,13 @@ impl<'a> Inference<'a> {
     }
 
     /// A value that is given to a name.
-    pub fn value_for(&mut self, what: &'static str, name: &'a Ident, subject: &Operand<'a>, value: &'a Expr) {
+    pub fn value_for(
+        &mut self,
+        what: &'static str,
+        name: &'a Ident,
+        subject: &Operand<'a>,
+        value: &'a Expr,
+    ) {
         let given = self.operand(value);
         self.compare(Reason::Given(what, name), subject, &given);
     }
@@ -165,9 +183,13 @@ fn is_number<'e>(given: impl Iterator<Item = &'e Expr>) -> bool {
 /// Every unit that an item writes.
 pub(crate) fn units_in<'a>(item: &'a Item, into: &mut Vec<&'a Unit>) {
     match &item.kind {
-        ItemKind::Data { columns, .. } => into.extend(columns.iter().filter_map(|it| it.1.as_ref())),
+        ItemKind::Data { columns, .. } => {
+            into.extend(columns.iter().filter_map(|it| it.1.as_ref()))
+        }
         ItemKind::Phase { items, .. } => items.iter().for_each(|item| units_in(item, into)),
-        ItemKind::Method { settings } => into.extend(settings.iter().filter_map(|it| it.unit.as_ref())),
+        ItemKind::Method { settings } => {
+            into.extend(settings.iter().filter_map(|it| it.unit.as_ref()))
+        }
         _ => into.extend(scope::unit(item)),
     }
     for expr in walk::expressions(item) {

@@ -1,7 +1,8 @@
-//! The unit in which a plain number beside an expression is read: that of the declarations of its names.
+//! The unit in which a plain number beside an expression is read: that of the declarations of its
+//! names.
 //!
-//! Values are held in SI. A name declared in mm counts in mm, so `x <= 3` is 3 mm; the formula `2*x` counts in nothing of
-//! its own, and a plain number beside it is refused.
+//! Values are held in SI. A name declared in mm counts in mm, so `x <= 3` is 3 mm; the formula
+//! `2*x` counts in nothing of its own, and a plain number beside it is refused.
 
 use super::dimension::Dimension;
 use super::notation;
@@ -17,7 +18,8 @@ const ROUNDING: f64 = 1e-12;
 pub(crate) enum Form {
     /// A name, a part of it, its value at an end, its absolute value, a sum of such in one unit.
     Name,
-    /// A number with its unit. In a formula that is no unit of a name; beside it alone a plain number has it.
+    /// A number with its unit. In a formula that is no unit of a name; beside it alone a plain
+    /// number has it.
     Quantity,
     /// Any other formula.
     Formula,
@@ -40,7 +42,8 @@ impl Declared {
 
     /// The unit of a declared name or of a quantity.
     pub fn of(unit: &Unit) -> Self {
-        let factors = unit.factors.iter().map(|(name, power)| (name.name.clone(), Ratio::whole(*power)));
+        let factors =
+            unit.factors.iter().map(|(name, power)| (name.name.clone(), Ratio::whole(*power)));
         Declared::SI.combined(&factors.collect::<Vec<_>>(), Ratio::ONE, Form::Name)
     }
 
@@ -125,7 +128,8 @@ impl Declared {
         self.form != Form::Mixed && self.scale() == Scale(1.0)
     }
 
-    /// Whether it is made of units that measure nothing, such as degrees and percent, and is not empty.
+    /// Whether it is made of units that measure nothing, such as degrees and percent, and is not
+    /// empty.
     pub fn is_share(&self) -> bool {
         !self.factors.is_empty() && self.factors.iter().all(|it| measures_nothing(&it.0))
     }
@@ -137,9 +141,10 @@ impl Declared {
 
     /// As it would be written, if it measures that.
     pub fn text(&self, dimension: &Dimension) -> Option<String> {
-        let measured = self.factors.iter().try_fold(Dimension::none(), |product, (name, power)| {
-            product.combined(&table::named(name)?.1, *power)
-        })?;
+        let measured =
+            self.factors.iter().try_fold(Dimension::none(), |product, (name, power)| {
+                product.combined(&table::named(name)?.1, *power)
+            })?;
         let is_one = self.form != Form::Mixed && !self.factors.is_empty() && measured == *dimension;
         is_one.then(|| notation::joined(self.factors.clone()))
     }

@@ -1,7 +1,9 @@
-//! What a unit measures: a product of powers of the seven SI base units, and of units that are not known yet.
+//! What a unit measures: a product of powers of the seven SI base units, and of units that are not
+//! known yet.
 //!
-//! As exponents it is a linear form, `e = sum_i r_i a_i` with rational `r_i`: a product adds forms, a power scales them,
-//! and two quantities can be added if their forms are equal. Inference solves linear equations between such forms.
+//! As exponents it is a linear form, `e = sum_i r_i a_i` with rational `r_i`: a product adds forms,
+//! a power scales them, and two quantities can be added if their forms are equal. Inference solves
+//! linear equations between such forms.
 
 use super::ratio::Ratio;
 
@@ -35,7 +37,8 @@ impl Dimension {
 
     /// Whole powers of the base units.
     pub(crate) fn of_base(powers: [i8; 7]) -> Self {
-        let factor = |(at, power): (usize, &i8)| (Atom::Base(at as u8), Ratio::whole(i32::from(*power)));
+        let factor =
+            |(at, power): (usize, &i8)| (Atom::Base(at as u8), Ratio::whole(i32::from(*power)));
         Dimension(powers.iter().enumerate().filter(|it| *it.1 != 0).map(factor).collect())
     }
 

@@ -53,11 +53,15 @@ impl<'a> Inference<'a> {
     }
 
     fn name(&mut self, name: &str) -> Value {
-        if let Some((_, value)) = self.locals[self.frame..].iter().rev().find(|local| local.0 == name) {
+        if let Some((_, value)) =
+            self.locals[self.frame..].iter().rev().find(|local| local.0 == name)
+        {
             return value.clone();
         }
         match self.scope.find(name) {
-            Some(at) => self.values.get(&self.scope.declarations[at].name.span).cloned().unwrap_or_default(),
+            Some(at) => {
+                self.values.get(&self.scope.declarations[at].name.span).cloned().unwrap_or_default()
+            }
             // Without bounds in every unit.
             None if name == "inf" => vec![Part { plain: true, ..Part::ANY }],
             None if name == "pi" => vec![Part::number(std::f64::consts::PI)],
@@ -130,13 +134,15 @@ impl<'a> Inference<'a> {
                     BinaryOperator::Power => left.powf(right),
                 })
             }
-            ExprKind::Name(name) => match &self.scope.declarations[self.scope.find(name)?].item.kind {
-                ItemKind::Const { value, unit: None, .. } => match value.kind {
-                    ExprKind::Number(value) => Some(value),
+            ExprKind::Name(name) => {
+                match &self.scope.declarations[self.scope.find(name)?].item.kind {
+                    ItemKind::Const { value, unit: None, .. } => match value.kind {
+                        ExprKind::Number(value) => Some(value),
+                        _ => None,
+                    },
                     _ => None,
-                },
-                _ => None,
-            },
+                }
+            }
             _ => None,
         }
     }

@@ -1,7 +1,8 @@
 //! The state of inference, and how two sides are made to agree.
 //!
-//! One walk over the text collects [`Requirement`]s; solving them comes afterwards. A text that was found wrong is passed
-//! over in the next walk and counts as unknown: so a mistake is told once, and nothing follows from it.
+//! One walk over the text collects [`Requirement`]s; solving them comes afterwards. A text that was
+//! found wrong is passed over in the next walk and counts as unknown: so a mistake is told once,
+//! and nothing follows from it.
 
 use super::declared::Declared;
 use super::dimension::{Atom, Dimension};
@@ -45,7 +46,8 @@ pub(crate) struct Inference<'a> {
     pub rows: Vec<(&'a str, &'a Item)>,
     /// The functions we are in.
     pub calls: Vec<Call<'a>>,
-    /// Results of functions, by function, arguments and whether their gaps are asked for, with these.
+    /// Results of functions, by function, arguments and whether their gaps are asked for, with
+    /// these.
     pub applied: HashMap<(Span, Vec<Value>, bool), (Value, Value)>,
     /// What is 0 where something within a `blend` has a knot or a kink; none outside of one.
     pub gaps: Option<Value>,
@@ -121,12 +123,14 @@ impl<'a> Inference<'a> {
         Part { plain: true, ..Part::of(Dimension::atom(atom)) }
     }
 
-    /// A curve such as `t/T` may be guessed for a length: it goes up to 1 in the unit of what is guessed.
+    /// A curve such as `t/T` may be guessed for a length: it goes up to 1 in the unit of what is
+    /// guessed.
     pub fn stretched(&mut self, curve: &[Part], subject: &[Part]) -> Value {
         pairwise(curve, subject, |curve, subject| {
             self.numbers.push(PlainNumber { declared: None, place: subject.dimension.clone() });
             let atom = Atom::Number(self.numbers.len() as u32 - 1);
-            let dimension = curve.dimension.as_ref().and_then(|it| it.times(&Dimension::atom(atom)));
+            let dimension =
+                curve.dimension.as_ref().and_then(|it| it.times(&Dimension::atom(atom)));
             Part { dimension, ..curve.clone() }
         })
     }
@@ -139,10 +143,13 @@ impl<'a> Inference<'a> {
     /// Both must have one unit; what they have then.
     pub fn equal(&mut self, reason: Reason<'a>, left: &Operand<'a>, right: &Operand<'a>) -> Value {
         let site = left.1.span.to(right.1.span);
-        pairwise(&left.0, &right.0, |a, b| self.equal_parts(reason, site, (a, &left.1), (b, &right.1)))
+        pairwise(&left.0, &right.0, |a, b| {
+            self.equal_parts(reason, site, (a, &left.1), (b, &right.1))
+        })
     }
 
-    /// The same, but a plain number takes the unit of the other side, and a name that is one keeps it.
+    /// The same, but a plain number takes the unit of the other side, and a name that is one keeps
+    /// it.
     pub fn compare(&mut self, reason: Reason<'a>, left: &Operand<'a>, right: &Operand<'a>) {
         let site = left.1.span.to(right.1.span);
         pairwise(&left.0, &right.0, |a, b| {
@@ -158,7 +165,8 @@ impl<'a> Inference<'a> {
         self.read(right, left);
     }
 
-    /// Where the other side is not in SI, the number is only multiplied: it is not that quantity elsewhere.
+    /// Where the other side is not in SI, the number is only multiplied: it is not that quantity
+    /// elsewhere.
     fn place(&mut self, number: &Part, other: &Part) {
         if let (Some(at), Some(dimension), false) =
             (number.as_number(), &other.dimension, other.plain || !other.declared.is_si())

@@ -30,8 +30,8 @@ impl<'a> Inference<'a> {
         self.items(&outer);
     }
 
-    /// Everything that is not a declaration: first what a unit is most surely found from, settings last, when all that
-    /// switches is known.
+    /// Everything that is not a declaration: first what a unit is most surely found from, settings
+    /// last, when all that switches is known.
     pub fn items(&mut self, items: &[&'a Item]) {
         let mut sorted: Vec<&'a Item> = items.to_vec();
         sorted.sort_by_key(|item| authority(&item.kind));
@@ -50,7 +50,9 @@ impl<'a> Inference<'a> {
                 let value = self.evaluate(value);
                 self.values.insert(*keyword, value);
             }
-            ItemKind::Guess { bindings } => bindings.iter().for_each(|it| self.guess(&it.name, &it.value)),
+            ItemKind::Guess { bindings } => {
+                bindings.iter().for_each(|it| self.guess(&it.name, &it.value))
+            }
             ItemKind::Report { bindings } => bindings.iter().for_each(|it| {
                 let value = self.evaluate(&it.value);
                 self.values.insert(it.name.span, value);
@@ -128,7 +130,11 @@ impl<'a> Inference<'a> {
         let Some(it) = self.declared(name) else { return };
         let subject = (self.subject(it).0, named(name.span));
         self.read_curve(&(value.clone(), text.clone()), &subject);
-        let value = if value.iter().all(|it| it.plain) { value } else { self.stretched(&value, &subject.0) };
+        let value = if value.iter().all(|it| it.plain) {
+            value
+        } else {
+            self.stretched(&value, &subject.0)
+        };
         self.compare(Reason::Given("the guess", name), &subject, &(value, text));
     }
 
@@ -136,10 +142,12 @@ impl<'a> Inference<'a> {
         self.assigned("the new value", &reset.name, &reset.value);
     }
 
-    /// A link reads its right side in the phase before it, and gives it to a state of the phase after it.
+    /// A link reads its right side in the phase before it, and gives it to a state of the phase
+    /// after it.
     fn handed_over(&mut self, from: &Ident, to: &Ident, assignment: &'a Assignment) {
         let target = self.phases.get(to.name.as_str());
-        let target = target.and_then(|scope| Some(scope.declarations[scope.find(&assignment.name.name)?]));
+        let target =
+            target.and_then(|scope| Some(scope.declarations[scope.find(&assignment.name.name)?]));
         let Some(source) = self.phases.remove(from.name.as_str()) else { return };
         let outer: Scope<'a> = std::mem::replace(&mut self.scope, source);
         let given = self.operand(&assignment.value);
@@ -172,7 +180,8 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// `smooth sigma = 5 [m/s]` is a width of what switches; a plain number is one of every surface.
+    /// `smooth sigma = 5 [m/s]` is a width of what switches; a plain number is one of every
+    /// surface.
     fn setting(&mut self, setting: &'a Setting) {
         let widths: Vec<&'a Expr> = match &setting.value {
             SettingValue::Expr(value) => vec![value],
@@ -189,7 +198,8 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// `sigma = 10, 5 [cm/s]` is a list of widths; any other list is one of values for what it names.
+    /// `sigma = 10, 5 [cm/s]` is a list of widths; any other list is one of values for what it
+    /// names.
     fn swept(&mut self, list: &'a Swept) {
         let unit = list.values.last().and_then(quantity);
         let is_width = list.name.name == "sigma" && self.declared(&list.name).is_none();
@@ -218,8 +228,8 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// What a width of smoothing measures; nothing where there is no surface. Where surfaces differ, one number cannot have
-    /// the unit of all, and goes with everything.
+    /// What a width of smoothing measures; nothing where there is no surface. Where surfaces
+    /// differ, one number cannot have the unit of all, and goes with everything.
     pub fn of_a_width(&self) -> Value {
         let sum = |one: Part, other: &Part| {
             let declared = one.declared.sum(&other.declared);
@@ -245,7 +255,10 @@ fn quantity(expr: &Expr) -> Option<&Unit> {
 fn authority(kind: &ItemKind) -> u8 {
     match kind {
         ItemKind::Dynamics { .. } => 0,
-        ItemKind::Start { .. } | ItemKind::End { .. } | ItemKind::Path { .. } | ItemKind::Jump { .. } => 1,
+        ItemKind::Start { .. }
+        | ItemKind::End { .. }
+        | ItemKind::Path { .. }
+        | ItemKind::Jump { .. } => 1,
         ItemKind::Method { .. } | ItemKind::Sweep { .. } => 4,
         ItemKind::Guess { .. } | ItemKind::Report { .. } | ItemKind::Expect { .. } => 3,
         _ => 2,

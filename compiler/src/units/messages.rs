@@ -1,4 +1,5 @@
-//! FDC0701, FDC0702, FDC0703: what a mistake with units is, where each unit comes from, and what to do.
+//! FDC0701, FDC0702, FDC0703: what a mistake with units is, where each unit comes from, and what to
+//! do.
 
 use super::mistake::Mistake;
 use super::notation::{Notation, written};
@@ -17,13 +18,16 @@ pub(crate) struct Speaker<'a> {
 }
 
 impl<'a> Speaker<'a> {
-    /// The whole finding. `wanted`: whether the surroundings need of the wrong text what its argument is.
+    /// The whole finding. `wanted`: whether the surroundings need of the wrong text what its
+    /// argument is.
     pub fn diagnostic(&self, mistake: &Mistake<'a>, wanted: bool) -> Diagnostic {
         let it = &mistake.requirement;
         let repairs = Repairs { speaker: self, mistake, wanted };
         let blame = repairs.blame();
         let found = match it.reason {
-            Reason::NoUnit(_) | Reason::Exponent | Reason::FixedPower => self.alone(it, blame.as_ref()),
+            Reason::NoUnit(_) | Reason::Exponent | Reason::FixedPower => {
+                self.alone(it, blame.as_ref())
+            }
             _ if it.left.span == it.right.span => self.within_one(it),
             _ => self.two_sided(it, blame.as_ref()),
         };
@@ -49,7 +53,8 @@ impl<'a> Speaker<'a> {
 
     fn two_sided(&self, it: &Requirement<'a>, blame: Option<&Blame<'a>>) -> Diagnostic {
         let is_use = matches!(it.reason, Reason::Uses(_));
-        let of = |side: usize| blame.filter(|blame| blame.side == side && !(is_use && it.right.plain));
+        let of =
+            |side: usize| blame.filter(|blame| blame.side == side && !(is_use && it.right.plain));
         let [mut left, right] = [self.label(&it.left, of(0)), self.label(&it.right, of(1))];
         left += match it.reason {
             Reason::Uses(_) => ", where it is used",
@@ -83,7 +88,9 @@ impl<'a> Speaker<'a> {
     fn called(&self, found: Diagnostic, it: &Requirement<'a>) -> Diagnostic {
         let Some(call) = it.calls.last() else { return found };
         let label = match it.reason {
-            Reason::NoUnit(_) => format!("called with {} here", self.notation.noun(&it.left.dimension)),
+            Reason::NoUnit(_) => {
+                format!("called with {} here", self.notation.noun(&it.left.dimension))
+            }
             _ => "called here".into(),
         };
         found.label(call.span, label)
@@ -99,7 +106,9 @@ impl<'a> Speaker<'a> {
             Reason::Alternatives => format!("one alternative is {a}, another is {b}"),
             Reason::Together("metric") => format!("the metric adds {a} and {b}"),
             Reason::Together(name) => format!("`{name}` of {a} and {b}"),
-            Reason::Given("the width", name) => format!("`{}` is a width of {a}, not {b}", name.name),
+            Reason::Given("the width", name) => {
+                format!("`{}` is a width of {a}, not {b}", name.name)
+            }
             Reason::Given(what, name) => format!("`{}` is {a}, but {what} is {b}", name.name),
             Reason::Blend => format!("`blend` rounds over {a}, but its width is {b}"),
             Reason::Uses(name) => format!("`{}` is used as {a}, but its value is {b}", name.name),
@@ -118,7 +127,8 @@ impl<'a> Speaker<'a> {
         if side.plain && side.dimension.is_none() && blame.is_none() {
             return "a number without a unit".into();
         }
-        let unit = self.own_unit(side).map_or_else(|| self.notation.explained(&side.dimension), written);
+        let unit =
+            self.own_unit(side).map_or_else(|| self.notation.explained(&side.dimension), written);
         match blame {
             Some(blame) => format!("{unit}, because `{}` has no unit", blame.culprit.name.name),
             None => unit,

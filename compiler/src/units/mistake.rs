@@ -20,14 +20,19 @@ pub(crate) struct Culprit<'a> {
 
 /// A requirement that does not hold.
 pub(crate) struct Mistake<'a> {
-    /// With what its sides turned out to measure; where that is not known, with the unknown left out.
+    /// With what its sides turned out to measure; where that is not known, with the unknown left
+    /// out.
     pub requirement: Requirement<'a>,
     /// The plain numbers in the left and in the right side.
     pub culprits: [Vec<Culprit<'a>>; 2],
 }
 
 impl<'a> Mistake<'a> {
-    pub fn new(requirement: &Requirement<'a>, inference: &Inference<'a>, solution: &Solution) -> Self {
+    pub fn new(
+        requirement: &Requirement<'a>,
+        inference: &Inference<'a>,
+        solution: &Solution,
+    ) -> Self {
         let sides = [&requirement.left, &requirement.right];
         let culprits = sides.map(|side| culprits(&side.dimension, inference, solution));
         let [left, right] = sides.map(|side| found(&without_stretch(side, inference), solution));
@@ -37,8 +42,7 @@ impl<'a> Mistake<'a> {
 
 /// The side without what stretches a guessed curve.
 fn without_stretch<'a>(side: &Side<'a>, inference: &Inference<'a>) -> Side<'a> {
-    let is_stretch =
-        |atom: Atom| matches!(atom, Atom::Number(at) if inference.numbers[at as usize].declared.is_none());
+    let is_stretch = |atom: Atom| matches!(atom, Atom::Number(at) if inference.numbers[at as usize].declared.is_none());
     let stretch = side.dimension.factors().iter().map(|it| it.0).find(|&atom| is_stretch(atom));
     let rest = stretch.and_then(|atom| side.dimension.substituted(atom, &Dimension::none()));
     Side { dimension: rest.unwrap_or_else(|| side.dimension.clone()), ..side.clone() }
@@ -47,17 +51,22 @@ fn without_stretch<'a>(side: &Side<'a>, inference: &Inference<'a>) -> Side<'a> {
 fn found<'a>(side: &Side<'a>, solution: &Solution) -> Side<'a> {
     let dimension = solution.settled(&side.dimension).unwrap_or_default();
     let mut open = dimension.factors().iter().filter(|it| !matches!(it.0, Atom::Base(_)));
-    let known =
-        open.try_fold(dimension.clone(), |known, &(atom, _)| known.substituted(atom, &Dimension::none()));
+    let known = open.try_fold(dimension.clone(), |known, &(atom, _)| {
+        known.substituted(atom, &Dimension::none())
+    });
     Side { dimension: known.unwrap_or_default(), ..side.clone() }
 }
 
-fn culprits<'a>(side: &Dimension, inference: &Inference<'a>, solution: &Solution) -> Vec<Culprit<'a>> {
+fn culprits<'a>(
+    side: &Dimension,
+    inference: &Inference<'a>,
+    solution: &Solution,
+) -> Vec<Culprit<'a>> {
     let form = solution.reduced(side).unwrap_or_default();
     let culprit = |&(atom, power): &(Atom, Ratio)| match atom {
-        Atom::Number(at) if solution.is_plain(at) => {
-            inference.numbers[at as usize].declared.map(|(name, item)| Culprit { name, item, power })
-        }
+        Atom::Number(at) if solution.is_plain(at) => inference.numbers[at as usize]
+            .declared
+            .map(|(name, item)| Culprit { name, item, power }),
         _ => None,
     };
     form.factors().iter().filter_map(culprit).collect()

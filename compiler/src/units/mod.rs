@@ -1,9 +1,10 @@
 //! Units: gradual, inferred, checked.
 //!
-//! A text without any unit is never bothered. As soon as one is written, every name has a dimension, written or to be found:
-//! each sum, comparison and equation is a linear equation between exponents of units, and [`solve`] finds what follows.
-//! A number without a unit has none, except where it stands alone against something that has one: in a bound, a start, a
-//! guess or a comparison it takes the unit of the other side.
+//! A text without any unit is never bothered. As soon as one is written, every name has a
+//! dimension, written or to be found: each sum, comparison and equation is a linear equation
+//! between exponents of units, and [`solve`] finds what follows. A number without a unit has none,
+//! except where it stands alone against something that has one: in a bound, a start, a guess or a
+//! comparison it takes the unit of the other side.
 
 mod calls;
 mod common;
@@ -160,12 +161,14 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The first contradiction, or one inside it, or in a function that is called inside it, from which it may follow.
+/// The first contradiction, or one inside it, or in a function that is called inside it, from which
+/// it may follow.
 fn innermost(requirements: &[Requirement<'_>], contradictions: &[usize]) -> Option<usize> {
     let mut first = *contradictions.first()?;
     for _ in contradictions {
         let outer = requirements[first].site;
-        let is_inside = |place: Span| outer.start <= place.start && place.end <= outer.end && place != outer;
+        let is_inside =
+            |place: Span| outer.start <= place.start && place.end <= outer.end && place != outer;
         let is_inner = |&&at: &&usize| {
             let it = &requirements[at];
             is_inside(it.site) || it.calls.iter().any(|call| is_inside(call.span))

@@ -58,17 +58,20 @@ impl Findings<'_, '_> {
         for item in items {
             match &item.kind {
                 ItemKind::Phase { items, .. } => all.extend(self.names(items)),
-                ItemKind::Report { bindings } => {
-                    all.extend(bindings.iter().filter_map(|it| self.single(it.name.span, &it.name.name)))
+                ItemKind::Report { bindings } => all.extend(
+                    bindings.iter().filter_map(|it| self.single(it.name.span, &it.name.name)),
+                ),
+                ItemKind::Objective { keyword, .. } => {
+                    all.extend(self.single(*keyword, "objective"))
                 }
-                ItemKind::Objective { keyword, .. } => all.extend(self.single(*keyword, "objective")),
                 _ => all.extend(self.of_item(item)),
             }
         }
         all
     }
 
-    /// Of every condition and expectation what it compares, as the first name in it is written that measures the same.
+    /// Of every condition and expectation what it compares, as the first name in it is written that
+    /// measures the same.
     pub fn conditions(&self, items: &[Item], names: &[NamedUnit]) -> Vec<NamedUnit> {
         let named = |name: String, span: Span, sides: &[&Expr]| {
             Some(as_written(self.found(span, name, self.value(span).first()?)?, sides, names))
@@ -80,8 +83,12 @@ impl Findings<'_, '_> {
         };
         let of_item = |item: &Item| {
             let (name, condition) = match &item.kind {
-                ItemKind::Start { condition } => (format!("start {}", text::condition(condition)), condition),
-                ItemKind::End { condition } => (format!("end {}", text::condition(condition)), condition),
+                ItemKind::Start { condition } => {
+                    (format!("start {}", text::condition(condition)), condition)
+                }
+                ItemKind::End { condition } => {
+                    (format!("end {}", text::condition(condition)), condition)
+                }
                 ItemKind::Path { name: Some(name), condition } => (name.name.clone(), condition),
                 ItemKind::Path { condition, .. } => (text::condition(condition), condition),
                 _ => return None,
@@ -151,9 +158,18 @@ impl Findings<'_, '_> {
     }
 
     fn found(&self, span: Span, name: String, part: &Part) -> Option<NamedUnit> {
-        let dimension = self.solution.settled(part.dimension.as_ref()?).filter(Dimension::is_known)?;
+        let dimension =
+            self.solution.settled(part.dimension.as_ref()?).filter(Dimension::is_known)?;
         let unit = self.notation.unit(&dimension);
-        Some(NamedUnit { name, span, si: unit.clone(), unit, scale: 1.0, dimension, ..NamedUnit::default() })
+        Some(NamedUnit {
+            name,
+            span,
+            si: unit.clone(),
+            unit,
+            scale: 1.0,
+            dimension,
+            ..NamedUnit::default()
+        })
     }
 }
 
@@ -171,8 +187,9 @@ fn as_written(found: NamedUnit, sides: &[&Expr], names: &[NamedUnit]) -> NamedUn
     let mut like = None;
     for side in sides {
         walk::names(side, &mut |name, _| {
-            let is_it =
-                |it: &&NamedUnit| it.name.split('.').next() == Some(name) && it.dimension == found.dimension;
+            let is_it = |it: &&NamedUnit| {
+                it.name.split('.').next() == Some(name) && it.dimension == found.dimension
+            };
             like = like.or(names.iter().filter(|it| it.written).find(is_it));
         });
     }

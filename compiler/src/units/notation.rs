@@ -59,7 +59,8 @@ impl Notation {
         let mut seen = HashMap::new();
         for unit in units {
             let is_si = table::scale(unit, &mut Vec::new()) == 1.0;
-            let is_angle = unit.factors.iter().any(|factor| matches!(factor.0.name.as_str(), "rad" | "sr"));
+            let is_angle =
+                unit.factors.iter().any(|factor| matches!(factor.0.name.as_str(), "rad" | "sr"));
             if let (Some(dimension), true, false) = (table::dimension(unit), is_si, is_angle) {
                 seen.entry(dimension).or_insert_with(|| factors(unit));
             }
@@ -93,7 +94,9 @@ impl Notation {
         let mut factors = self.factors(above);
         for (name, power) in self.factors(below) {
             match factors.iter_mut().find(|it| it.0 == name) {
-                Some(same) => same.1 = power.negative().and_then(|it| same.1.plus(it)).unwrap_or(Ratio::ZERO),
+                Some(same) => {
+                    same.1 = power.negative().and_then(|it| same.1.plus(it)).unwrap_or(Ratio::ZERO)
+                }
                 None => factors.push((name, power.negative().unwrap_or(power))),
             }
         }
@@ -102,7 +105,8 @@ impl Notation {
 
     /// `a force`, `a quantity in m^2/s^3`.
     pub fn noun(&self, dimension: &Dimension) -> String {
-        noun(dimension).map_or_else(|| format!("a quantity in {}", self.unit(dimension)), str::to_string)
+        noun(dimension)
+            .map_or_else(|| format!("a quantity in {}", self.unit(dimension)), str::to_string)
     }
 
     /// `N  (kg m/s^2)`, `m/s`, `no unit`.
@@ -116,14 +120,16 @@ impl Notation {
     }
 }
 
-/// In base units, or shorter with a power of a derived one: `N^2 s`. Nobody writes `kg/s^2` for `N/m`.
+/// In base units, or shorter with a power of a derived one: `N^2 s`. Nobody writes `kg/s^2` for
+/// `N/m`.
 fn short(dimension: &Dimension) -> Factors {
     let plain = base(dimension);
     if noun(dimension) == Some("a spring constant") {
         return vec![("N".into(), Ratio::ONE), ("m".into(), Ratio::whole(-1))];
     }
     let powers = [1, -1, 2, -2].map(Ratio::whole);
-    let all = ["N", "J", "W", "Pa", "V"].into_iter().flat_map(|name| powers.map(|power| (name, power)));
+    let all =
+        ["N", "J", "W", "Pa", "V"].into_iter().flat_map(|name| powers.map(|power| (name, power)));
     let with = |(name, power): (&str, Ratio)| {
         let rest = dimension.combined(&table::named(name)?.1, power.negative()?)?;
         let mut factors = vec![(name.to_string(), power)];
@@ -151,9 +157,11 @@ pub(crate) fn written(unit: &Unit) -> String {
     joined(factors(unit))
 }
 
-/// Factors with positive powers, then each of the others behind a `/`, which turns over the next factor only.
+/// Factors with positive powers, then each of the others behind a `/`, which turns over the next
+/// factor only.
 pub(crate) fn joined(factors: Factors) -> String {
-    let (below, above): (Factors, Factors) = factors.into_iter().partition(|factor| factor.1.is_negative());
+    let (below, above): (Factors, Factors) =
+        factors.into_iter().partition(|factor| factor.1.is_negative());
     let power = |name: &str, power: Ratio| match power == Ratio::ONE {
         true => name.to_string(),
         false => format!("{name}^{power}"),

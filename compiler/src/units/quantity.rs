@@ -16,15 +16,20 @@ pub struct Quantity {
 /// Reads a number and its unit.
 pub fn parse_quantity(text: &str) -> Result<Quantity, String> {
     let (number, unit) = match text.split_once('[') {
-        Some((number, rest)) => (number, Some(rest.trim_end().strip_suffix(']').ok_or("a `]` is missing")?)),
+        Some((number, rest)) => {
+            (number, Some(rest.trim_end().strip_suffix(']').ok_or("a `]` is missing")?))
+        }
         None => (text, None),
     };
-    let value: f64 = number.trim().parse().map_err(|_| format!("`{}` is not a number", number.trim()))?;
+    let value: f64 =
+        number.trim().parse().map_err(|_| format!("`{}` is not a number", number.trim()))?;
     if !value.is_finite() {
         return Err(format!("`{}` is not a finite number", number.trim()));
     }
     match unit.map(product).transpose()? {
-        Some((scale, dimension)) => Ok(Quantity { value: value * scale, dimension: Some(dimension) }),
+        Some((scale, dimension)) => {
+            Ok(Quantity { value: value * scale, dimension: Some(dimension) })
+        }
         None => Ok(Quantity { value, dimension: None }),
     }
 }
@@ -47,7 +52,8 @@ fn product(text: &str) -> Result<(f64, Dimension), String> {
 
 fn power(word: &str) -> Result<(f64, Dimension, i32), String> {
     let (name, exponent) = word.split_once('^').unwrap_or((word, "1"));
-    let exponent: i32 = exponent.parse().map_err(|_| format!("`{exponent}` is not a whole power"))?;
+    let exponent: i32 =
+        exponent.parse().map_err(|_| format!("`{exponent}` is not a whole power"))?;
     let base = if name == "1" { Some((1.0, Dimension::none())) } else { named(name) };
     let (scale, dimension) = base.ok_or_else(|| format!("`{name}` is no unit known here"))?;
     Ok((scale, dimension, exponent))

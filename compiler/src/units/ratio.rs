@@ -1,6 +1,7 @@
 //! Exponents of units: rational numbers, so that `sqrt` of a square metre is a metre.
 //!
-//! Everything is checked: an exponent that grows beyond all sense is `None`, and nothing is said about it.
+//! Everything is checked: an exponent that grows beyond all sense is `None`, and nothing is said
+//! about it.
 
 /// A fraction in lowest terms with a positive denominator.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -21,7 +22,8 @@ impl Ratio {
         Ratio { numerator: value, denominator: 1 }
     }
 
-    /// The fraction that a decimal such as `0.5` or `1.3333333333333333` stands for, if it is a simple one.
+    /// The fraction that a decimal such as `0.5` or `1.3333333333333333` stands for, if it is a
+    /// simple one.
     pub fn from_decimal(value: f64) -> Option<Self> {
         let fits = |denominator: &i64| {
             let scaled = value * *denominator as f64;
@@ -33,8 +35,12 @@ impl Ratio {
 
     fn reduced(numerator: i64, denominator: i64) -> Option<Self> {
         let divisor = greatest_common_divisor(numerator, denominator) * denominator.signum();
-        let (numerator, denominator) = (numerator.checked_div(divisor)?, denominator.checked_div(divisor)?);
-        Some(Ratio { numerator: numerator.try_into().ok()?, denominator: denominator.try_into().ok()? })
+        let (numerator, denominator) =
+            (numerator.checked_div(divisor)?, denominator.checked_div(divisor)?);
+        Some(Ratio {
+            numerator: numerator.try_into().ok()?,
+            denominator: denominator.try_into().ok()?,
+        })
     }
 
     pub fn plus(self, other: Ratio) -> Option<Self> {
@@ -44,7 +50,10 @@ impl Ratio {
 
     pub fn times(self, other: Ratio) -> Option<Self> {
         let product = |a: i32, b: i32| i64::from(a) * i64::from(b);
-        Ratio::reduced(product(self.numerator, other.numerator), product(self.denominator, other.denominator))
+        Ratio::reduced(
+            product(self.numerator, other.numerator),
+            product(self.denominator, other.denominator),
+        )
     }
 
     pub fn over(self, other: Ratio) -> Option<Self> {
@@ -97,7 +106,8 @@ mod tests {
 
     #[test]
     fn decimals_are_the_fractions_they_stand_for() {
-        let cases = [(0.5, "(1/2)"), (-1.5, "(-3/2)"), (1.0 / 3.0, "(1/3)"), (2.0, "2"), (0.0, "0")];
+        let cases =
+            [(0.5, "(1/2)"), (-1.5, "(-3/2)"), (1.0 / 3.0, "(1/3)"), (2.0, "2"), (0.0, "0")];
         for (decimal, expected) in cases {
             assert_eq!(Ratio::from_decimal(decimal).expect("a simple one").to_string(), expected);
         }

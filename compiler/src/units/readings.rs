@@ -1,8 +1,9 @@
 //! In which unit each plain number of the text is read; FDC0704 where it would have to be guessed.
 //!
-//! One rule for all places: a number without a unit takes the declared unit of the name beside it. Beside a formula it is in
-//! SI, which is refused where the names of the formula are declared in other units: `end integral(dose) >= 80` with a dose
-//! in mg/d would ask for 80 kg. What resolution multiplies a text with is found here and nowhere else.
+//! One rule for all places: a number without a unit takes the declared unit of the name beside it.
+//! Beside a formula it is in SI, which is refused where the names of the formula are declared in
+//! other units: `end integral(dose) >= 80` with a dose in mg/d would ask for 80 kg. What resolution
+//! multiplies a text with is found here and nowhere else.
 
 use super::declared::Form;
 use super::dimension::Dimension;
@@ -35,7 +36,8 @@ pub(crate) struct Bare<'a> {
 enum Why {
     /// That is a formula, or the function is called with different things.
     Formula,
-    /// It is a term, whose sum has that unit; told here only if there is no other mistake: 1 is not 1 deg.
+    /// It is a term, whose sum has that unit; told here only if there is no other mistake: 1 is not
+    /// 1 deg.
     Term,
     /// It is a curve without a unit: this one.
     Curve(Part),
@@ -48,26 +50,38 @@ impl<'a> Inference<'a> {
         if let (ExprKind::Tuple(parts), true) = (&expr.kind, number.0.len() > 1) {
             for (at, (text, part)) in parts.iter().zip(&number.0).enumerate() {
                 let Some(other) = beside.0.get(at).or(beside.0.last()) else { return };
-                self.read(&(vec![part.clone()], side(text)), &(vec![other.clone()], beside.1.clone()));
+                self.read(
+                    &(vec![part.clone()], side(text)),
+                    &(vec![other.clone()], beside.1.clone()),
+                );
             }
             return;
         }
-        let (Some(other), true) = (beside.0.first(), number.0.iter().any(Part::is_bare)) else { return };
+        let (Some(other), true) = (beside.0.first(), number.0.iter().any(Part::is_bare)) else {
+            return;
+        };
         let is_same = |it: &Part| it.declared == other.declared && !it.plain;
-        if !beside.0.iter().all(is_same) || !number.0.iter().all(|it| it.plain) || !other.gives_unit() {
+        if !beside.0.iter().all(is_same)
+            || !number.0.iter().all(|it| it.plain)
+            || !other.gives_unit()
+        {
             let odd = beside.0.iter().find(|it| !it.plain && !it.declared.is_si());
-            odd.cloned().into_iter().for_each(|odd| self.refuse(&number.1, &beside.1, odd, Why::Formula));
+            odd.cloned()
+                .into_iter()
+                .for_each(|odd| self.refuse(&number.1, &beside.1, odd, Why::Formula));
         } else if !self.take(expr.span, other.declared.scale().0) {
             self.refuse(&number.1, &beside.1, other.clone(), Why::Formula);
         }
     }
 
-    /// Notes by what a text is multiplied; not where it has another reading already, or one for each call.
+    /// Notes by what a text is multiplied; not where it has another reading already, or one for
+    /// each call.
     pub fn take(&mut self, place: Span, scale: f64) -> bool {
         self.calls.is_empty() && *self.readings.entry(place).or_insert(scale) == scale
     }
 
-    /// A term without a unit in a sum that has one, though it measures nothing: `phi + 30` with an angle in degrees.
+    /// A term without a unit in a sum that has one, though it measures nothing: `phi + 30` with an
+    /// angle in degrees.
     pub fn read_term(&mut self, left: (&Part, &Side<'a>), right: (&Part, &Side<'a>)) {
         for ((number, text), (part, beside)) in [(left, right), (right, left)] {
             if number.is_bare() && !part.plain && !part.declared.is_si() {
@@ -95,7 +109,11 @@ impl<'a> Inference<'a> {
 }
 
 /// The findings, once it is known what each formula measures.
-pub(crate) fn found(inference: &Inference<'_>, solution: &Solution, notation: &Notation) -> Vec<Diagnostic> {
+pub(crate) fn found(
+    inference: &Inference<'_>,
+    solution: &Solution,
+    notation: &Notation,
+) -> Vec<Diagnostic> {
     let settled = |part: &Part| part.dimension.as_ref().and_then(|it| solution.settled(it));
     let mut all = Vec::new();
     for it in &inference.bare {
@@ -108,7 +126,8 @@ pub(crate) fn found(inference: &Inference<'_>, solution: &Solution, notation: &N
             }
             Why::Term => !measures && is_share,
             Why::Curve(curve) => {
-                settled(curve).is_some_and(|it| it.is_none()) && (measures || !curve.declared.has_share())
+                settled(curve).is_some_and(|it| it.is_none())
+                    && (measures || !curve.declared.has_share())
             }
         };
         if is_wrong {
@@ -152,8 +171,9 @@ impl Bare<'_> {
             false => format!("`1 [{unit}] * ({number})`"),
         };
         let Some(first) = units.first() else {
-            return found
-                .help("give the number a unit, for example `3 [mm]`, or declare the names in SI units");
+            return found.help(
+                "give the number a unit, for example `3 [mm]`, or declare the names in SI units",
+            );
         };
         let choices = units.iter().map(with).collect::<Vec<_>>().join(" or ");
         let found = found.help(format!("say which unit is meant: {choices}"));

@@ -31,7 +31,8 @@ pub(crate) struct Blame<'a> {
 }
 
 impl<'a> Repairs<'_, 'a> {
-    /// The name whose unit is most likely missing: one that would then have a meaning, on the right if on both sides.
+    /// The name whose unit is most likely missing: one that would then have a meaning, on the right
+    /// if on both sides.
     pub fn blame(&self) -> Option<Blame<'a>> {
         let of = |side: usize| {
             let culprit = *self.mistake.culprits[side].first()?;
@@ -56,9 +57,12 @@ impl<'a> Repairs<'_, 'a> {
         }
         match self.mistake.requirement.reason {
             Reason::NoUnit(_) => Some(self.scaled_argument()),
-            Reason::Exponent => Some(format!("an exponent has no unit: divide it by {}", self.scale().0)),
+            Reason::Exponent => {
+                Some(format!("an exponent has no unit: divide it by {}", self.scale().0))
+            }
             Reason::FixedPower => Some(format!(
-                "the unit of the power would change with the exponent: write the exponent as a number or a `const`, or divide the base by {}",
+                "the unit of the power would change with the exponent: write the exponent as a \
+                 number or a `const`, or divide the base by {}",
                 self.scale().0
             )),
             _ => self
@@ -167,7 +171,10 @@ impl<'a> Repairs<'_, 'a> {
         if let Some(name) = self.name_of(&excess) {
             return Some(match it.reason {
                 Reason::Equation(state) => {
-                    format!("divide the right side by `{name}`, or write `{name} * {}' ...`", state.name)
+                    format!(
+                        "divide the right side by `{name}`, or write `{name} * {}' ...`",
+                        state.name
+                    )
                 }
                 _ => format!("`{right}` divided by `{name}` would be {noun}"),
             });
@@ -187,7 +194,9 @@ impl<'a> Repairs<'_, 'a> {
     fn missing_factor(&self) -> Option<String> {
         let it = &self.mistake.requirement;
         if it.left.span == it.right.span {
-            return Some("divide each part by a scale of its own, so that all have the same unit".into());
+            return Some(
+                "divide each part by a scale of its own, so that all have the same unit".into(),
+            );
         }
         let unit = self.speaker.notation.quotient(&it.left.dimension, &it.right.dimension);
         let right = it.right.expr?;
@@ -210,7 +219,8 @@ impl<'a> Repairs<'_, 'a> {
         let inside = it.calls.last().filter(|call| call.body.span == it.site);
         let call = match inside {
             Some(inside) => {
-                let arguments: Vec<&str> = inside.arguments.iter().map(|it| it.name.as_str()).collect();
+                let arguments: Vec<&str> =
+                    inside.arguments.iter().map(|it| it.name.as_str()).collect();
                 let factor = if self.wanted { format!("{name} * ") } else { String::new() };
                 format!("fn {}({}) = {factor}{call}", inside.name.name, arguments.join(", "))
             }
@@ -220,7 +230,9 @@ impl<'a> Repairs<'_, 'a> {
     }
 
     fn divided(&self, argument: &Expr, name: &str) -> String {
-        let Reason::NoUnit(function) = self.mistake.requirement.reason else { return String::new() };
+        let Reason::NoUnit(function) = self.mistake.requirement.reason else {
+            return String::new();
+        };
         let inner = text::expr(argument);
         match &argument.kind {
             ExprKind::Binary(BinaryOperator::Add | BinaryOperator::Subtract, ..) => {
@@ -248,7 +260,8 @@ impl<'a> Repairs<'_, 'a> {
     }
 
     fn unused(&self, name: &str) -> String {
-        let is_taken = self.speaker.tree.items.iter().filter_map(scope::declared).any(|it| it.name == name);
+        let is_taken =
+            self.speaker.tree.items.iter().filter_map(scope::declared).any(|it| it.name == name);
         if is_taken { format!("{name}_0") } else { name.into() }
     }
 }
@@ -256,7 +269,9 @@ impl<'a> Repairs<'_, 'a> {
 /// Where the unit of a plain number would stand: behind its value, or behind the name of a `let`.
 fn unit_place(culprit: &Culprit<'_>) -> Option<u32> {
     match &culprit.item.kind {
-        ItemKind::Param { value: Some(value), .. } | ItemKind::Const { value, .. } => Some(value.span.end),
+        ItemKind::Param { value: Some(value), .. } | ItemKind::Const { value, .. } => {
+            Some(value.span.end)
+        }
         ItemKind::Let { .. } => Some(culprit.name.span.end),
         ItemKind::Free { bounds: Some(bounds), .. } => Some(bounds.span.end),
         _ => None,
@@ -267,9 +282,13 @@ fn unit_place(culprit: &Culprit<'_>) -> Option<u32> {
 fn with_unit(culprit: &Culprit<'_>, unit: &str) -> Option<String> {
     let name = &culprit.name.name;
     let text = match &culprit.item.kind {
-        ItemKind::Param { value: Some(value), .. } => format!("param {name} = {}", text::expr(value)),
+        ItemKind::Param { value: Some(value), .. } => {
+            format!("param {name} = {}", text::expr(value))
+        }
         ItemKind::Const { value, .. } => format!("const {name} = {}", text::expr(value)),
-        ItemKind::Let { value, .. } => return Some(format!("let {name} [{unit}] = {}", text::expr(value))),
+        ItemKind::Let { value, .. } => {
+            return Some(format!("let {name} [{unit}] = {}", text::expr(value)));
+        }
         ItemKind::Free { bounds: Some(it), .. } => {
             format!("free {name} in [{}, {}]", text::expr(&it.lower), text::expr(&it.upper))
         }

@@ -1,4 +1,5 @@
-//! What the text demands of units: two sides that must be equal, with all that a message needs to say about them.
+//! What the text demands of units: two sides that must be equal, with all that a message needs to
+//! say about them.
 
 use super::declared::Declared;
 use super::dimension::Dimension;

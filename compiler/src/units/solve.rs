@@ -1,7 +1,8 @@
-//! Linear equations between dimensions, solved one after another: each holds already, or tells one unknown, or is wrong.
+//! Linear equations between dimensions, solved one after another: each holds already, or tells one
+//! unknown, or is wrong.
 //!
-//! What is as good as a declaration comes first, and equations with names that were given as plain numbers come last: so a
-//! mistake never spoils what the declared units say.
+//! What is as good as a declaration comes first, and equations with names that were given as plain
+//! numbers come last: so a mistake never spoils what the declared units say.
 
 use super::dimension::{Atom, Dimension};
 use super::ratio::Ratio;
@@ -61,7 +62,8 @@ impl Solution {
         }
     }
 
-    /// Whether a form without unknowns vanishes, whichever of the plain numbers take the units of their places.
+    /// Whether a form without unknowns vanishes, whichever of the plain numbers take the units of
+    /// their places.
     fn holds(&self, rest: &Dimension) -> bool {
         let numbers = rest.factors().iter().filter_map(|it| match it.0 {
             Atom::Number(at) => Some((it.0, self.numbers[at as usize].clone())),
@@ -69,17 +71,23 @@ impl Solution {
         });
         let mut possible = vec![rest.clone()];
         for (atom, place) in numbers {
-            let choices = [Some(Dimension::none()), place.filter(|_| possible.len() < MOST_CHOICES)];
+            let choices =
+                [Some(Dimension::none()), place.filter(|_| possible.len() < MOST_CHOICES)];
             let both = |form: &Dimension| {
                 choices.iter().flatten().map(|it| form.substituted(atom, it)).collect::<Vec<_>>()
             };
-            let Some(next) = possible.iter().flat_map(both).collect::<Option<Vec<_>>>() else { return true };
+            let Some(next) = possible.iter().flat_map(both).collect::<Option<Vec<_>>>() else {
+                return true;
+            };
             possible = next;
         }
-        possible.iter().any(|form| self.settled(form).is_none_or(|it| it.is_none() || !it.is_known()))
+        possible
+            .iter()
+            .any(|form| self.settled(form).is_none_or(|it| it.is_none() || !it.is_known()))
     }
 
-    /// The form with everything that was found put in; `None` if its exponents grow beyond all sense.
+    /// The form with everything that was found put in; `None` if its exponents grow beyond all
+    /// sense.
     pub fn reduced(&self, form: &Dimension) -> Option<Dimension> {
         self.replaced(form, |atom| match atom {
             Atom::Unknown(at) => self.unknowns[at as usize].clone(),
@@ -96,9 +104,13 @@ impl Solution {
         })
     }
 
-    /// Replaces atoms until none is left to be replaced. What is found never leads back to itself; what places say may,
-    /// so there is an end to it.
-    fn replaced(&self, form: &Dimension, value: impl Fn(Atom) -> Option<Dimension>) -> Option<Dimension> {
+    /// Replaces atoms until none is left to be replaced. What is found never leads back to itself;
+    /// what places say may, so there is an end to it.
+    fn replaced(
+        &self,
+        form: &Dimension,
+        value: impl Fn(Atom) -> Option<Dimension>,
+    ) -> Option<Dimension> {
         let mut form = form.clone();
         let most = 2 * (self.unknowns.len() + self.numbers.len()) + 1;
         for _ in 0..most {
@@ -130,8 +142,10 @@ mod tests {
     #[test]
     fn unknowns_are_found_whatever_the_order() {
         // a b = m, b^2 = s, so a = m / s^(1/2)
-        let product = unknown(0).times(&unknown(1)).and_then(|it| it.over(&base(1))).expect("small");
-        let square = unknown(1).power(Ratio::whole(2)).and_then(|it| it.over(&base(2))).expect("small");
+        let product =
+            unknown(0).times(&unknown(1)).and_then(|it| it.over(&base(1))).expect("small");
+        let square =
+            unknown(1).power(Ratio::whole(2)).and_then(|it| it.over(&base(2))).expect("small");
         for equations in [[product.clone(), square.clone()], [square, product]] {
             let equations = equations.map(|it| (Rank::Formula, it));
             let mut solution = Solution::new(2, Vec::new());
@@ -146,8 +160,9 @@ mod tests {
     fn a_plain_number_is_none_or_has_the_unit_of_its_place() {
         let number = Dimension::atom(Atom::Number(0));
         let metre = |form: &Dimension| form.over(&base(1)).expect("small");
-        let contradiction =
-            |place, form| !Solution::new(0, vec![place]).contradictions(&[(Rank::Doubtful, form)]).is_empty();
+        let contradiction = |place, form| {
+            !Solution::new(0, vec![place]).contradictions(&[(Rank::Doubtful, form)]).is_empty()
+        };
         assert!(contradiction(None, metre(&number)));
         assert!(!contradiction(Some(base(1)), metre(&number)));
         assert!(!contradiction(Some(base(1)), number));

@@ -1,7 +1,8 @@
 //! **The table** of units: how many SI units one of them is, and what it measures.
 //!
-//! Values are held in SI, so a unit is one factor: `1 [km/h] = 1000/3600 [m/s]`. Names are looked up as they
-//! stand first and then with a prefix taken off, so `min` is a minute and `mm` a millimetre.
+//! Values are held in SI, so a unit is one factor: `1 [km/h] = 1000/3600 [m/s]`. Names are looked
+//! up as they stand first and then with a prefix taken off, so `min` is a minute and `mm` a
+//! millimetre.
 
 use super::dimension::Dimension;
 use super::ratio::Ratio;
@@ -102,8 +103,8 @@ pub(crate) fn names() -> Vec<&'static str> {
 /// One unit name, such as `km`: its SI value and what it measures.
 pub(crate) fn named(name: &str) -> Option<(f64, Dimension)> {
     let whole = UNITS.iter().find(|row| row.0 == name).map(|row| (row.1, row.3));
-    let found =
-        whole.or_else(|| PREFIXES.iter().find_map(|&(prefix, factor)| prefixed(name, prefix, factor)));
+    let found = whole
+        .or_else(|| PREFIXES.iter().find_map(|&(prefix, factor)| prefixed(name, prefix, factor)));
     found.map(|(value, powers)| (value, Dimension::of_base(powers)))
 }
 
@@ -138,18 +139,25 @@ pub(crate) fn derived(dimension: &Dimension) -> Option<&'static str> {
 }
 
 fn unknown(name: &str, span: Span) -> Diagnostic {
-    let found =
-        Diagnostic::new(Code::UnknownUnit, format!("`{name}` is no unit known here"), span, "not a unit");
+    let found = Diagnostic::new(
+        Code::UnknownUnit,
+        format!("`{name}` is no unit known here"),
+        span,
+        "not a unit",
+    );
     if matches!(name, "degC" | "°C" | "degF" | "°F" | "celsius" | "Celsius") {
         return found.help(
-            "a unit here is a factor, and this scale begins elsewhere: write temperatures in kelvin, `293.15 [K]` for 20 °C",
+            "a unit here is a factor, and this scale begins elsewhere: write temperatures in \
+             kelvin, `293.15 [K]` for 20 °C",
         );
     }
     match crate::resolve::closest(name, UNITS.iter().map(|row| row.0)) {
         Some(near) => found
             .help(format!("did you mean `[{near}]`?"))
             .fix(Fix::likely(format!("change `{name}` to `{near}`")).replace(span, near)),
-        None => found
-            .help("SI units with their prefixes, and `deg rpm min h bar L ft mi mph lb`; write `[kg m/s^2]`"),
+        None => found.help(
+            "SI units with their prefixes, and `deg rpm min h bar L ft mi mph lb`; write \
+                   `[kg m/s^2]`",
+        ),
     }
 }

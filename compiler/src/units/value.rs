@@ -37,8 +37,8 @@ impl Part {
         Part { declared: self.declared.into_name(), ..self }
     }
 
-    /// The same as a name without a unit of its own. Of terms in different units, none is that of the sum: it is in SI,
-    /// as it is shown.
+    /// The same as a name without a unit of its own. Of terms in different units, none is that of
+    /// the sum: it is in SI, as it is shown.
     pub fn into_definition(self) -> Self {
         match self.declared.form {
             Form::Mixed => Part { declared: Declared::SI, ..self },
@@ -108,7 +108,11 @@ impl Part {
 pub(crate) type Value = Vec<Part>;
 
 /// Applies something to parts that belong together; a number goes with every part of a vector.
-pub(crate) fn pairwise(a: &[Part], b: &[Part], mut apply: impl FnMut(&Part, &Part) -> Part) -> Value {
+pub(crate) fn pairwise(
+    a: &[Part],
+    b: &[Part],
+    mut apply: impl FnMut(&Part, &Part) -> Part,
+) -> Value {
     let size = a.len().max(b.len());
     if a.is_empty() || b.is_empty() || a.len() != b.len() && a.len() != 1 && b.len() != 1 {
         return Value::new();

@@ -1,7 +1,9 @@
-//! Surfaces that the state crosses against the direction of their jump: nothing is reset, but a piece ends there.
+//! Surfaces that the state crosses against the direction of their jump: nothing is reset, but a
+//! piece ends there.
 //!
-//! A ball that is thrown from below the rim rises through it before it can fall on it. On the way up `psi <= 0`, then `psi >= 0` until the jump. A
-//! sequence has the number `n + i` where the surface of jump `i`, of `n`, is crossed so. Only before the first jump on a surface this is
+//! A ball that is thrown from below the rim rises through it before it can fall on it. On the way
+//! up `psi <= 0`, then `psi >= 0` until the jump. A sequence has the number `n + i` where the
+//! surface of jump `i`, of `n`, is crossed so. Only before the first jump on a surface this is
 //! looked for, and only where the state may begin beyond it.
 
 use crate::graph::{ExprId, Graph};
@@ -50,7 +52,8 @@ impl Beginning {
     }
 }
 
-/// For each jump, over the bounds of all unknowns and starts. Where a surface has jumps in both directions each crossing is one of them.
+/// For each jump, over the bounds of all unknowns and starts. Where a surface has jumps in both
+/// directions each crossing is one of them.
 pub(super) fn beginnings(model: &Model, numbers: &Numbers) -> Vec<Beginning> {
     let mut graph = model.graph.clone();
     let (widest, guessed) = (boxed(model, numbers), at_guess(model, numbers));
@@ -58,11 +61,13 @@ pub(super) fn beginnings(model: &Model, numbers: &Numbers) -> Vec<Beginning> {
     let mut of = |jump: &Jump| {
         let psi = model.surfaces[jump.surface].psi;
         let [known, guess] = [false, true].map(|is_guess| {
-            let state = |at: usize| if is_guess { Some(guesses[at]) } else { model.states[at].start };
+            let state =
+                |at: usize| if is_guess { Some(guesses[at]) } else { model.states[at].start };
             at_start(model, &mut graph, psi, &state)
         });
-        let [reach, guess] = [(known, &widest), (guess, &guessed)]
-            .map(|(psi, domain)| height(jump.direction, Tape::new(&graph, &[psi]).evaluate(domain)[0]));
+        let [reach, guess] = [(known, &widest), (guess, &guessed)].map(|(psi, domain)| {
+            height(jump.direction, Tape::new(&graph, &[psi]).evaluate(domain)[0])
+        });
         let has_both = super::sides::has_both(&model.jumps, jump);
         Beginning {
             may_be_before: has_both || !is_below(reach.upper),

@@ -1,10 +1,12 @@
-//! Conditions at the ends of the pieces: what ties each to the next, and what is written of the whole.
+//! Conditions at the ends of the pieces: what ties each to the next, and what is written of the
+//! whole.
 
 use super::Unrolling;
 use crate::model::{Place, Range, Row};
 
 impl Unrolling<'_> {
-    /// `psi = 0` and the resets at each jump, that the last piece has a length, and what is written of the ends.
+    /// `psi = 0` and the resets at each jump, that the last piece has a length, and what is written
+    /// of the ends.
     pub(super) fn boundary(&mut self) -> Vec<Row> {
         let mut rows = Vec::new();
         for j in 0..self.sequence.len() {

@@ -1,14 +1,16 @@
 //! A model with jumps as one without: the pieces of time between the jumps run side by side.
 //!
-//! Jumps `1..n` at unknown times divide time into `n + 1` pieces of unknown lengths `D_j` that begin at `T_j`. Each has states and controls
-//! of its own over the same `tau` in [0, 1], tied together at their ends:
+//! Jumps `1..n` at unknown times divide time into `n + 1` pieces of unknown lengths `D_j` that
+//! begin at `T_j`. Each has states and controls of its own over the same `tau` in [0, 1], tied
+//! together at their ends:
 //!
 //! ```text
 //! x_j' = D_j f(T_j + tau D_j, x_j, u_j, p)      psi(T_j+1, x_j(1), p) = 0      x_j+1(0) = r(T_j+1, x_j(1), p)
 //! ```
 //!
-//! Which jumps happen, and in which order, is given ([`sequences()`]). The result is a model like any other: smooth between the jumps, and
-//! differentiated through them by the dependence of all pieces on the lengths.
+//! Which jumps happen, and in which order, is given ([`sequences()`]). The result is a model like
+//! any other: smooth between the jumps, and differentiated through them by the dependence of all
+//! pieces on the lengths.
 
 mod crossings;
 mod hold;
@@ -23,14 +25,16 @@ pub use sequences::{Sequences, sequences};
 use crate::graph::{ExprId, Graph};
 use crate::lower::{numbers, straight_guesses};
 use crate::model::{
-    Ball, Control, Expectation, Free, Integral, Jump, Model, Place, Range, Report, State, Surface, Symbol,
+    Ball, Control, Expectation, Free, Integral, Jump, Model, Place, Range, Report, State, Surface,
+    Symbol,
 };
 use crossings::Beginning;
 use fdcc_grammar::Diagnostic;
 use hold::Held;
 use piece::Piece;
 
-/// What holds between the jumps of a model: the model without them, and without surfaces at which nothing else happens.
+/// What holds between the jumps of a model: the model without them, and without surfaces at which
+/// nothing else happens.
 pub(crate) fn between_jumps(model: &Model) -> Model {
     if model.jumps.is_empty() {
         return model.clone();
@@ -61,7 +65,8 @@ fn used_surfaces(model: &Model) -> Vec<usize> {
     roots.extend(model.integrals.iter().map(|it| it.integrand));
     roots.extend(model.report.iter().map(|it| it.value));
     let read = model.graph.inputs_of(&roots);
-    let is_read = |at: usize| model.input_of(Symbol::Selector(at)).is_some_and(|it| read.contains(&it));
+    let is_read =
+        |at: usize| model.input_of(Symbol::Selector(at)).is_some_and(|it| read.contains(&it));
     let in_ball = |at: usize| model.balls.iter().any(|ball| ball.surfaces.contains(&at));
     (0..model.surfaces.len()).filter(|&at| is_read(at) || in_ball(at)).collect()
 }
@@ -80,17 +85,32 @@ pub fn unrolled(model: &Model, sequence: &[usize]) -> Result<Model, Vec<Diagnost
     let held = Held::new(&whole, &mut graph, sequence, &limits);
     let lengths = lengths(&between, sequence, &mut graph, &mut symbols);
     let pieces = Piece::all(&between, &mut graph, &mut symbols, &lengths);
-    let mut unrolling =
-        Unrolling { whole: &whole, model: &between, sequence, held, begins, limits, graph, lengths, pieces };
+    let mut unrolling = Unrolling {
+        whole: &whole,
+        model: &between,
+        sequence,
+        held,
+        begins,
+        limits,
+        graph,
+        lengths,
+        pieces,
+    };
     let parts = unrolling.parts();
     Ok(Model { graph: unrolling.graph, symbols, ..parts })
 }
 
 /// `D_j`: an unknown for each piece but the last, which is what they leave of the time.
-fn lengths(model: &Model, sequence: &[usize], graph: &mut Graph, symbols: &mut Vec<Symbol>) -> Vec<ExprId> {
+fn lengths(
+    model: &Model,
+    sequence: &[usize],
+    graph: &mut Graph,
+    symbols: &mut Vec<Symbol>,
+) -> Vec<ExprId> {
     let first = model.frees.len();
-    let mut lengths: Vec<ExprId> =
-        (0..sequence.len()).map(|j| piece::input(graph, symbols, Symbol::Free(first + j))).collect();
+    let mut lengths: Vec<ExprId> = (0..sequence.len())
+        .map(|j| piece::input(graph, symbols, Symbol::Free(first + j)))
+        .collect();
     let known = graph.sum(&lengths);
     let whole = graph.sub(model.interval[1], model.interval[0]);
     lengths.push(graph.sub(whole, known));
@@ -130,7 +150,10 @@ impl<'m> Unrolling<'m> {
             it.start + j * model.surfaces.len()..it.end + j * model.surfaces.len()
         };
         let balls = (0..count).flat_map(|j| {
-            model.balls.iter().map(move |ball| Ball { surfaces: each(&ball.surfaces, j), ..ball.clone() })
+            model
+                .balls
+                .iter()
+                .map(move |ball| Ball { surfaces: each(&ball.surfaces, j), ..ball.clone() })
         });
         let mut method = model.method.clone();
         let lagged = |j| model.method.lagged.iter().map(move |it| it + j * model.states.len());
@@ -160,7 +183,10 @@ impl<'m> Unrolling<'m> {
         let whole = self.graph.sub(self.model.interval[1], self.model.interval[0]);
         let guess = self.graph.scale(1.0 / self.pieces.len() as f64, whole);
         frees.extend((0..self.sequence.len()).map(|j| self.jump(j)).map(|jump| Free {
-            place: Place { name: format!("time before {}", jump.place.name), span: jump.place.span },
+            place: Place {
+                name: format!("time before {}", jump.place.name),
+                span: jump.place.span,
+            },
             range: Range { lower: zero, upper: infinity },
             guess: Some(guess),
         }));
@@ -196,7 +222,11 @@ impl<'m> Unrolling<'m> {
         for j in 0..self.pieces.len() {
             for control in &self.model.controls {
                 let guess = control.guess.map(|guess| self.in_piece(j, guess));
-                controls.push(Control { place: self.named(j, &control.place), guess, ..control.clone() });
+                controls.push(Control {
+                    place: self.named(j, &control.place),
+                    guess,
+                    ..control.clone()
+                });
             }
         }
         controls

@@ -60,10 +60,12 @@ impl Piece {
             _ => None,
         });
         let mut inside: Vec<Option<ExprId>> = inside.collect();
-        let all = |of: &mut dyn FnMut(usize) -> Symbol| (0..sizes[0]).map(of).collect::<Vec<Symbol>>();
+        let all =
+            |of: &mut dyn FnMut(usize) -> Symbol| (0..sizes[0]).map(of).collect::<Vec<Symbol>>();
         let starts = all(&mut |at| Symbol::AtStart(at + j * sizes[0]));
         let ends = all(&mut |at| Symbol::AtEnd(at + j * sizes[0]));
-        let [starts, ends] = [starts, ends].map(|it| it.into_iter().map(&mut of).collect::<Vec<ExprId>>());
+        let [starts, ends] =
+            [starts, ends].map(|it| it.into_iter().map(&mut of).collect::<Vec<ExprId>>());
         let passed = graph.mul(tau, length);
         let now = graph.add(begin, passed);
         let mut at_end = vec![None; inside.len()];

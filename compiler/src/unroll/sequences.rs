@@ -8,7 +8,8 @@ use crate::model::{Jump, Model, Symbol};
 use crate::resolve::not_yet;
 use fdcc_grammar::Diagnostic;
 
-/// A jump is tried so often where the model does not say how often it may happen, or says a number that is out of reach.
+/// A jump is tried so often where the model does not say how often it may happen, or says a number
+/// that is out of reach.
 const TRIED: usize = 3;
 /// Longer sequences are not tried.
 const LONGEST: usize = 8;
@@ -17,16 +18,18 @@ const MOST: usize = 32;
 
 /// What may happen in a model with jumps.
 pub struct Sequences {
-    /// Jumps that happen one after the other, as indices into [`Model::jumps`] and behind these into [`crossings`](super::crossings()); the short
-    /// ones first.
+    /// Jumps that happen one after the other, as indices into [`Model::jumps`] and behind these
+    /// into [`crossings`](super::crossings()); the short ones first.
     pub all: Vec<Vec<usize>>,
-    /// Whether the surface of each jump may be crossed against its direction, because the state may begin beyond it.
+    /// Whether the surface of each jump may be crossed against its direction, because the state may
+    /// begin beyond it.
     pub may_cross: Vec<bool>,
     /// Whether the model allows others that are left out.
     pub is_cut: bool,
 }
 
-/// All sequences in which no jump happens more often than it may; or says what cannot be solved yet.
+/// All sequences in which no jump happens more often than it may; or says what cannot be solved
+/// yet.
 pub fn sequences(model: &Model) -> Result<Sequences, Vec<Diagnostic>> {
     if let Some(jump) = model.jumps.iter().find(|jump| reads_controls(model, jump)) {
         return Err(vec![not_yet(jump.place.span, "a jump that reads a control")]);
@@ -34,7 +37,8 @@ pub fn sequences(model: &Model) -> Result<Sequences, Vec<Diagnostic>> {
     let numbers = numbers(model)?;
     let (most, is_cut) = most(model, &numbers);
     let begins = beginnings(model, &numbers);
-    let may_cross = begins.iter().zip(&most).map(|(it, most)| it.may_be_beyond && *most > 0).collect();
+    let may_cross =
+        begins.iter().zip(&most).map(|(it, most)| it.may_be_beyond && *most > 0).collect();
     let mut found = Sequences { all: vec![Vec::new()], may_cross, is_cut };
     let mut next = 0;
     while next < found.all.len() {
@@ -51,7 +55,8 @@ pub fn sequences(model: &Model) -> Result<Sequences, Vec<Diagnostic>> {
     Ok(found)
 }
 
-/// Whether a jump may happen once more after others, or its surface be crossed the other way before the first one.
+/// Whether a jump may happen once more after others, or its surface be crossed the other way before
+/// the first one.
 fn may_follow(earlier: &[usize], event: usize, most: &[usize], begins: &[Beginning]) -> bool {
     match event.checked_sub(most.len()) {
         Some(jump) => {

@@ -1,8 +1,9 @@
 //! Path constraints of the pieces: what is written, and that no other jump happens on the way.
 //!
-//! Until a `falling` jump happens `psi >= 0`, until a `rising` one `psi <= 0`; the other way round where the state begins beyond the surface, until it
-//! crosses that. On the surface itself, at the end of a piece, such a condition
-//! holds by what ends the piece, and would be told twice: there it gives way.
+//! Until a `falling` jump happens `psi >= 0`, until a `rising` one `psi <= 0`; the other way round
+//! where the state begins beyond the surface, until it crosses that. On the surface itself, at the
+//! end of a piece, such a condition holds by what ends the piece, and would be told twice: there it
+//! gives way.
 
 use super::Unrolling;
 use super::hold::approach;
@@ -79,7 +80,11 @@ impl Unrolling<'_> {
                 (false, Direction::Falling) | (true, Direction::Rising) => self.not_below(),
                 (false, Direction::Rising) | (true, Direction::Falling) => self.not_above(),
             };
-            rows.push(Row { place: jump.place.clone(), value: whole.surfaces[jump.surface].psi, range });
+            rows.push(Row {
+                place: jump.place.clone(),
+                value: whole.surfaces[jump.surface].psi,
+                range,
+            });
         }
         rows.retain(|row| !self.is_written(row));
         rows
@@ -121,7 +126,8 @@ impl Unrolling<'_> {
 
     /// Whether an earlier jump may have moved the state through the surface.
     fn is_moved(&self, j: usize, index: usize) -> bool {
-        let read = self.whole.graph.inputs_of(&[self.whole.surfaces[self.whole.jumps[index].surface].psi]);
+        let read =
+            self.whole.graph.inputs_of(&[self.whole.surfaces[self.whole.jumps[index].surface].psi]);
         let resets = self.sequence[..j].iter().flat_map(|it| &self.whole.jumps[*it].resets);
         resets.map(|reset| self.input_of_state(reset.0)).any(|state| read.contains(&state))
     }
@@ -144,13 +150,14 @@ impl Unrolling<'_> {
         approach(self.model, &mut self.graph, self.whole.surfaces[jump.surface].psi)
     }
 
-    /// That a piece comes to its end in the direction of the jump, or two jumps could be one upon the other. Nothing is said where
-    /// the speed depends on a control: at the end there is none.
+    /// That a piece comes to its end in the direction of the jump, or two jumps could be one upon
+    /// the other. Nothing is said where the speed depends on a control: at the end there is none.
     pub(super) fn direction(&mut self, j: usize) -> Option<Row> {
         let jump = self.jump(j);
         let rate = self.approach_of(jump);
-        let is_of_state =
-            |at: &u32| !matches!(self.model.symbols[*at as usize], Symbol::Control(_) | Symbol::Selector(_));
+        let is_of_state = |at: &u32| {
+            !matches!(self.model.symbols[*at as usize], Symbol::Control(_) | Symbol::Selector(_))
+        };
         if !self.graph.inputs_of(&[rate]).iter().all(is_of_state) {
             return None;
         }
@@ -158,11 +165,13 @@ impl Unrolling<'_> {
             Direction::Falling => self.not_above(),
             Direction::Rising => self.not_below(),
         };
-        let place = Place { name: format!("direction of {}", jump.place.name), span: jump.place.span };
+        let place =
+            Place { name: format!("direction of {}", jump.place.name), span: jump.place.span };
         Some(Row { place, value: self.at_end(j, rate), range })
     }
 
-    /// A constraint in a piece; where the piece ends on this very surface, it gives way there, and where the surface is held, everywhere.
+    /// A constraint in a piece; where the piece ends on this very surface, it gives way there, and
+    /// where the surface is held, everywhere.
     fn until(&mut self, j: usize, row: Row) -> Row {
         if self.is_held(j, &row) {
             return Row { value: within(&mut self.graph, row.range), ..row };
@@ -179,7 +188,8 @@ impl Unrolling<'_> {
         Row { value: self.graph.select_le(tau, last, value, inside), ..row }
     }
 
-    /// Whether a value is known where the function of a surface is 0: both depend on one state only, or their slopes are in proportion.
+    /// Whether a value is known where the function of a surface is 0: both depend on one state
+    /// only, or their slopes are in proportion.
     pub(super) fn is_guard(&mut self, psi: ExprId, value: ExprId) -> bool {
         let varies = |symbol: &Symbol| !matches!(symbol, Symbol::Param(_) | Symbol::Free(_));
         let moving = |graph: &Graph, of: ExprId| -> Vec<u32> {
@@ -201,7 +211,8 @@ impl Unrolling<'_> {
 
 /// Whether slopes are numbers, and one list a multiple of the other.
 fn in_proportion(graph: &Graph, own: &[ExprId], its: &[ExprId]) -> bool {
-    let numbers = |of: &[ExprId]| of.iter().map(|id| graph.as_number(*id)).collect::<Option<Vec<f64>>>();
+    let numbers =
+        |of: &[ExprId]| of.iter().map(|id| graph.as_number(*id)).collect::<Option<Vec<f64>>>();
     let (Some(own), Some(its)) = (numbers(own), numbers(its)) else { return false };
     own.iter().zip(&its).all(|(a, b)| (a * its[0] - b * own[0]).abs() <= 1e-12 * (a * its[0]).abs())
 }

@@ -1,4 +1,5 @@
-//! Comments at the ends of neighbouring lines stand below each other, at one of two columns where the lines are short.
+//! Comments at the ends of neighbouring lines stand below each other, at one of two columns where
+//! the lines are short.
 
 use super::lines::Line;
 
@@ -10,7 +11,8 @@ pub(super) fn line_up(lines: &mut [Line<'_>]) {
     let mut start = 0;
     while start < lines.len() {
         let has_comment = is_in_group(&lines[start]);
-        let follows = |at: &usize| has_comment && is_in_group(&lines[*at]) && !lines[*at].blank_before;
+        let follows =
+            |at: &usize| has_comment && is_in_group(&lines[*at]) && !lines[*at].blank_before;
         let end = (start + 1..lines.len()).find(|at| !follows(at)).unwrap_or(lines.len());
         line_up_group(&mut lines[start..end]);
         start = end;

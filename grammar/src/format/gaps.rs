@@ -37,7 +37,8 @@ pub(super) fn gap(text: &str, from: usize, to: usize) -> Gap<'_> {
     let breaks = lines.len() > 1;
     let behind = if from == 0 { None } else { remarks[0] };
     let first = usize::from(from != 0);
-    // What stands before a word on its line is neither a comment nor an empty line; at the end of the text there is no word.
+    // What stands before a word on its line is neither a comment nor an empty line; at the end of
+    // the text there is no word.
     let last = if to == text.len() || !breaks { lines.len() } else { lines.len() - 1 };
     Gap { behind, between: remarks.get(first..last).unwrap_or_default().to_vec(), breaks }
 }

@@ -43,7 +43,9 @@ impl Line<'_> {
     pub fn width_before(&self, end: usize) -> usize {
         let words = self.words[..end].iter().enumerate();
         self.indent
-            + words.map(|(at, word)| if at == 0 { 0 } else { word.blanks } + word.width()).sum::<usize>()
+            + words
+                .map(|(at, word)| if at == 0 { 0 } else { word.blanks } + word.width())
+                .sum::<usize>()
     }
 
     /// What lines up: a line that is an entry as a whole.
@@ -104,11 +106,13 @@ fn multi_line_blocks(words: &[Word<'_>], gaps: &[Gap<'_>]) -> BTreeSet<usize> {
     let mut found = BTreeSet::new();
     let mut breaks = 0;
     for (at, word) in words.iter().enumerate() {
-        let is_empty = at > 0 && words[at - 1].text == "{" && word.text == "}" && !gaps[at].has_comments();
+        let is_empty =
+            at > 0 && words[at - 1].text == "{" && word.text == "}" && !gaps[at].has_comments();
         breaks += usize::from(gaps[at].breaks && !is_empty);
         match word.text {
             "{" => open.push((word.start, breaks)),
-            "}" => found.extend(open.pop().filter(|(_, before)| breaks > *before).map(|(start, _)| start)),
+            "}" => found
+                .extend(open.pop().filter(|(_, before)| breaks > *before).map(|(start, _)| start)),
             _ => {}
         }
     }
@@ -127,7 +131,8 @@ impl<'t> Builder<'t> {
     fn read(&mut self, words: &[Word<'t>], gaps: &[Gap<'t>], written_out: &BTreeSet<usize>) {
         for (at, word) in words.iter().enumerate() {
             let closes = word.text == "}" && self.depth.pop() == Some(true);
-            let begins = word.row.is_some() && self.depth.last().is_none_or(|is_written_out| *is_written_out);
+            let begins = word.row.is_some()
+                && self.depth.last().is_none_or(|is_written_out| *is_written_out);
             self.remarks(
                 &gaps[at],
                 if closes {
@@ -191,14 +196,21 @@ impl<'t> Builder<'t> {
     }
 
     fn comment_line(&mut self, remark: &Remark<'t>, continues: bool, further: usize) {
-        let blank_before = self.blank && !self.lines.is_empty() && !self.opened() && further != CONTINUED;
+        let blank_before =
+            self.blank && !self.lines.is_empty() && !self.opened() && further != CONTINUED;
         let comment = Some(Comment { text: remark.text, blanks: 0, continues });
-        self.lines.push(Line { indent: self.indent() + further, words: Vec::new(), comment, blank_before });
+        self.lines.push(Line {
+            indent: self.indent() + further,
+            words: Vec::new(),
+            comment,
+            blank_before,
+        });
         self.blank = false;
     }
 }
 
-/// Empty lines around the items of the file that are blocks; comments right above an item belong to it.
+/// Empty lines around the items of the file that are blocks; comments right above an item belong to
+/// it.
 fn separate_blocks(lines: &mut [Line<'_>]) {
     for at in 0..lines.len() {
         let is_item = lines[at].indent == 0;
@@ -212,7 +224,9 @@ fn separate_blocks(lines: &mut [Line<'_>]) {
         }
         if is_item && lines[at].ends_with("{") && !lines[at].begins_with("}") {
             let belongs = |line: &Line<'_>| {
-                line.words.is_empty() && line.indent == 0 && line.comment.is_some_and(|it| !it.continues)
+                line.words.is_empty()
+                    && line.indent == 0
+                    && line.comment.is_some_and(|it| !it.continues)
             };
             let mut first = at;
             while first > 0 && !lines[first].blank_before && belongs(&lines[first - 1]) {

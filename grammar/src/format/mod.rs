@@ -1,14 +1,18 @@
 //! `fdcc fmt`: a text in the canonical layout.
 //!
-//! The layout is made of the words as they were written, so nothing is lost or rewritten: numbers, parentheses and
-//! comments stay as they are. What it depends on is unchanged by it, so that formatting twice changes nothing:
+//! The layout is made of the words as they were written, so nothing is lost or rewritten: numbers,
+//! parentheses and comments stay as they are. What it depends on is unchanged by it, so that
+//! formatting twice changes nothing:
 //!
-//! 1. an item or entry stands on a line of its own, two blanks further in for each block around it (`lines`);
+//! 1. an item or entry stands on a line of its own, two blanks further in for each block around it
+//!    (`lines`);
 //! 2. a block stays on one line if it was written on one line and fits;
-//! 3. blanks between words follow from the words, but for `*` and `/`, which are written `a*b` or `a * b` (`spacing`);
+//! 3. blanks between words follow from the words, but for `*` and `/`, which are written `a*b` or
+//!    `a * b` (`spacing`);
 //! 4. neighbours line up in columns (`table`), and so do comments (`comments`);
 //! 5. lines of more than 110 characters are broken at operators and commas (`wrap`);
-//! 6. one empty line is kept where there were some; a block that is an item of the file has one before and behind.
+//! 6. one empty line is kept where there were some; a block that is an item of the file has one
+//!    before and behind.
 
 mod comments;
 mod gaps;
@@ -24,14 +28,16 @@ use lines::{Line, lines};
 /// No line of code is longer if it can be broken.
 const WIDTH: usize = 110;
 
-/// The text in the canonical layout, or why it cannot be read. Line ends stay those of the first line.
+/// The text in the canonical layout, or why it cannot be read. Line ends stay those of the first
+/// line.
 pub fn format(text: &str) -> Result<String, Vec<Diagnostic>> {
     let errors: Vec<Diagnostic> =
         parse(text).diagnostics.into_iter().filter(|it| it.severity == Severity::Error).collect();
     if !errors.is_empty() {
         return Err(errors);
     }
-    let has_carriage_returns = text.split_once('\n').is_some_and(|(first, _)| first.ends_with('\r'));
+    let has_carriage_returns =
+        text.split_once('\n').is_some_and(|(first, _)| first.ends_with('\r'));
     let plain = text.trim_start_matches('\u{FEFF}').replace("\r\n", "\n").replace('\r', "\n");
     let formatted = lay_out(&plain);
     Ok(if has_carriage_returns { formatted.replace('\n', "\r\n") } else { formatted })

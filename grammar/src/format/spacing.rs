@@ -34,7 +34,14 @@ pub(super) fn words<'t>(text: &str, leaves: &[Leaf<'t>]) -> Vec<Word<'t>> {
         let before = at.checked_sub(1).map(|at| (&leaves[at], ties[at]));
         let blanks = before.map_or(0, |(before, tie)| blanks(before, tie, leaf, ties[at]));
         let breaks = before.filter(|_| blanks > 0).and_then(|(before, _)| breaks(before, leaf));
-        Word { text: leaf.text, start: leaf.start, blanks, breaks, row: leaf.row, column: leaf.column }
+        Word {
+            text: leaf.text,
+            start: leaf.start,
+            blanks,
+            breaks,
+            row: leaf.row,
+            column: leaf.column,
+        }
     };
     leaves.iter().enumerate().map(word).collect()
 }

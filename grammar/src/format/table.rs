@@ -1,4 +1,5 @@
-//! Columns: neighbouring rows of one kind have their names, units, bounds and values below each other.
+//! Columns: neighbouring rows of one kind have their names, units, bounds and values below each
+//! other.
 
 use super::lines::Line;
 use crate::parse::{Column, Row};

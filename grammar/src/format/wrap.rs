@@ -1,5 +1,5 @@
-//! Lines that are too long, broken before operators and behind commas: outside brackets rather than inside, before
-//! comparisons rather than sums, before sums rather than products.
+//! Lines that are too long, broken before operators and behind commas: outside brackets rather than
+//! inside, before comparisons rather than sums, before sums rather than products.
 
 use super::WIDTH;
 use super::lines::{CONTINUED, Line};
@@ -20,8 +20,8 @@ pub(super) fn wrap(lines: Vec<Line<'_>>) -> Vec<Line<'_>> {
     wrapped
 }
 
-/// The word before which a line that is too long is broken: of the most willing ones the last that still leaves the
-/// line short enough, or the first if none does.
+/// The word before which a line that is too long is broken: of the most willing ones the last that
+/// still leaves the line short enough, or the first if none does.
 fn place_to_break(line: &Line<'_>) -> Option<usize> {
     if line.width() <= WIDTH {
         return None;

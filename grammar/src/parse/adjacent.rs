@@ -11,7 +11,11 @@ pub(super) fn missing_operator(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let (previous, next) = (place.previous()?, place.next()?);
     let in_range = place.expects(&[Rule::comma]) && place.innermost_bracket() == Some("[");
     let before_derivative = place.expects(&[Rule::prime]) && place.text(place.at + 1) == "'";
-    if !(place.after_operand() || before_derivative) || next.begins_line || !begins_value(next) || in_range {
+    if !(place.after_operand() || before_derivative)
+        || next.begins_line
+        || !begins_value(next)
+        || in_range
+    {
         return None;
     }
     if let Some(found) = bare_unit(place).or_else(|| foreign_choice(previous)) {
@@ -19,22 +23,29 @@ pub(super) fn missing_operator(place: &Place<'_, '_>) -> Option<Diagnostic> {
     }
     let (left, right) = (value_before(place), value_after(place));
     let (first, last) = (&place.tokens[left], &place.tokens[right]);
-    let [left, right] = [short(place, left, place.at - 1, previous), short(place, place.at, right, next)];
+    let [left, right] =
+        [short(place, left, place.at - 1, previous), short(place, place.at, right, next)];
     let message = format!("missing operator between `{left}` and `{right}`");
     let comma = if place.innermost_bracket() == Some("(") || place.word == "sweep" {
         "; a comma parts two values"
     } else {
         ""
     };
-    let help =
-        format!("write `{left} * {right}` or `{left} / {right}`; fdc has no implicit multiplication{comma}");
+    let help = format!(
+        "write `{left} * {right}` or `{left} / {right}`; fdc has no implicit multiplication{comma}"
+    );
     let span = first.span().to(last.span());
     let between = Span { start: previous.span().end, end: next.span().start };
     let fix = Fix::likely("write `*`").replace(between, " * ");
-    Some(Diagnostic::new(Code::MissingOperator, message, span, "two values side by side").help(help).fix(fix))
+    Some(
+        Diagnostic::new(Code::MissingOperator, message, span, "two values side by side")
+            .help(help)
+            .fix(fix),
+    )
 }
 
-/// `param l = 50 cm`: what follows the number of a declaration to the end of its line is most likely a unit.
+/// `param l = 50 cm`: what follows the number of a declaration to the end of its line is most
+/// likely a unit.
 fn bare_unit(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let (number, first) = (place.previous()?, place.next()?);
     let is_declared = matches!(place.word, "param" | "const")
@@ -45,7 +56,8 @@ fn bare_unit(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let rest = place.tokens[place.at + 1..].iter().take_while(|token| !token.begins_line);
     let rest: Vec<&Token<'_>> = rest.collect();
     let is_unit = |token: &&Token<'_>| {
-        matches!(token.kind, Kind::Word | Kind::Number) || matches!(token.text, "/" | "*" | "^" | "-")
+        matches!(token.kind, Kind::Word | Kind::Number)
+            || matches!(token.text, "/" | "*" | "^" | "-")
     };
     if !rest.iter().all(is_unit) || rest.iter().any(|token| words::reserved(token.text).is_some()) {
         return None;
@@ -55,11 +67,19 @@ fn bare_unit(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let fix = Fix::likely("put the unit in brackets").insert(span.start, "[").insert(span.end, "]");
     let message = format!("missing brackets around the unit of `{}`", number.text);
     let unit = rest.iter().fold(first.text.to_owned(), |unit, token| {
-        let blank = if token.kind == Kind::Word && unit.ends_with(char::is_alphanumeric) { " " } else { "" };
+        let blank = if token.kind == Kind::Word && unit.ends_with(char::is_alphanumeric) {
+            " "
+        } else {
+            ""
+        };
         unit + blank + token.text
     });
     let help = format!("a unit stands in brackets: `{} [{unit}]`", number.text);
-    Some(Diagnostic::new(Code::MissingOperator, message, span, "meant as a unit?").help(help).fix(fix))
+    Some(
+        Diagnostic::new(Code::MissingOperator, message, span, "meant as a unit?")
+            .help(help)
+            .fix(fix),
+    )
 }
 
 /// `if x > 0 then a else b`: a choice as other languages write it.
@@ -68,7 +88,8 @@ fn foreign_choice(word: &Token<'_>) -> Option<Diagnostic> {
         return None;
     }
     let message = format!("`{}` has no meaning in fdc", word.text);
-    let help = "write `piecewise { x <= 0 => a  otherwise => b }`; where the right side of an equation jumps, declare a `surface` and `match` on it";
+    let help = "write `piecewise { x <= 0 => a  otherwise => b }`; where the right side of an \
+                equation jumps, declare a `surface` and `match` on it";
     Some(Diagnostic::new(Code::Unfinished, message, word.span(), "meant as a choice?").help(help))
 }
 
@@ -91,7 +112,8 @@ fn value_before(place: &Place<'_, '_>) -> usize {
         first.checked_sub(back).filter(|at| *at >= place.piece.start).map(|at| &place.tokens[at])
     };
     let is_call = place.tokens[first].kind == Kind::Open && before(1).is_some_and(begins_value);
-    let is_part = before(1).is_some_and(|token| token.text == ".") && before(2).is_some_and(begins_value);
+    let is_part =
+        before(1).is_some_and(|token| token.text == ".") && before(2).is_some_and(begins_value);
     first - usize::from(is_call) - 2 * usize::from(is_part)
 }
 

@@ -14,7 +14,10 @@ pub(super) fn child<'p>(pair: &Pair<'p, Rule>, rule: Rule) -> Option<Pair<'p, Ru
 }
 
 /// All pairs of a rule directly below a pair.
-pub(super) fn children<'p>(pair: &Pair<'p, Rule>, rule: Rule) -> impl Iterator<Item = Pair<'p, Rule>> {
+pub(super) fn children<'p>(
+    pair: &Pair<'p, Rule>,
+    rule: Rule,
+) -> impl Iterator<Item = Pair<'p, Rule>> {
     pair.clone().into_inner().filter(move |inner| inner.as_rule() == rule)
 }
 
@@ -56,7 +59,8 @@ impl Reader<'_> {
     fn unit_factor(&self, pair: &Pair<'_, Rule>, sign: i32) -> Option<(Ident, i32)> {
         let name = self.name(&child(pair, Rule::unit_name)?);
         // A power too large to be read is one that no unit has.
-        let power = child(pair, Rule::exponent).map_or(1, |power| power.as_str().parse().unwrap_or(i16::MAX));
+        let power = child(pair, Rule::exponent)
+            .map_or(1, |power| power.as_str().parse().unwrap_or(i16::MAX));
         Some((name, sign * i32::from(power)))
     }
 
@@ -89,7 +93,11 @@ impl Reader<'_> {
         {
             self.report(crossed_chain(self.span(&pair)));
         }
-        Condition { first, rest: relations.into_iter().zip(sides).collect(), span: self.span(&pair) }
+        Condition {
+            first,
+            rest: relations.into_iter().zip(sides).collect(),
+            span: self.span(&pair),
+        }
     }
 
     /// The equations of a `dynamics` block.
@@ -102,7 +110,10 @@ impl Reader<'_> {
         let is_in = becomes.as_str() == "in";
         Equation {
             factor: child(pair, Rule::factor).map(|factor| self.expression(factor)),
-            state: ident(self, &child(pair, Rule::derivative).expect("an equation has a derivative")),
+            state: ident(
+                self,
+                &child(pair, Rule::derivative).expect("an equation has a derivative"),
+            ),
             relation: if is_in { EquationRelation::In } else { EquationRelation::Equal },
             relation_span: self.span(&becomes),
             right: self.one(pair),

@@ -42,9 +42,17 @@ pub(super) fn unopened_after(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let Some(first) = place.next().filter(begins) else { return Some(unopened(closer)) };
     let opener = closer.opener();
     let message = format!("`{opener}` is missing before `{}`", first.text);
-    let found =
-        Diagnostic::new(Code::Unclosed, message, first.span(), format!("`{opener}` should stand here"));
-    Some(found.label(closer.span(), "this closes it").help(format!("add `{opener}` before `{}`", first.text)))
+    let found = Diagnostic::new(
+        Code::Unclosed,
+        message,
+        first.span(),
+        format!("`{opener}` should stand here"),
+    );
+    Some(
+        found
+            .label(closer.span(), "this closes it")
+            .help(format!("add `{opener}` before `{}`", first.text)),
+    )
 }
 
 fn unclosed(opener: &Token<'_>, last: Span) -> Diagnostic {
@@ -57,7 +65,8 @@ fn unclosed(opener: &Token<'_>, last: Span) -> Diagnostic {
 /// The bracket that is missing, at the latest place where it can stand.
 fn closed(opener: &Token<'_>, at: u32) -> Fix {
     let line = if opener.text == "{" { "\n" } else { "" };
-    Fix::likely(format!("add `{}`", opener.closer())).insert(at, format!("{line}{}", opener.closer()))
+    Fix::likely(format!("add `{}`", opener.closer()))
+        .insert(at, format!("{line}{}", opener.closer()))
 }
 
 fn mismatched(opener: &Token<'_>, closer: &Token<'_>) -> Diagnostic {
@@ -65,7 +74,10 @@ fn mismatched(opener: &Token<'_>, closer: &Token<'_>) -> Diagnostic {
     Diagnostic::new(Code::Unclosed, message, opener.span(), "opened here")
         .label(closer.span(), format!("`{}` should come first", opener.closer()))
         .help(format!("add `{}` where it should end", opener.closer()))
-        .fix(Fix::likely(format!("add `{}`", opener.closer())).insert(closer.span().start, opener.closer()))
+        .fix(
+            Fix::likely(format!("add `{}`", opener.closer()))
+                .insert(closer.span().start, opener.closer()),
+        )
 }
 
 fn unopened(closer: &Token<'_>) -> Diagnostic {

@@ -1,9 +1,9 @@
 //! Cuts a text that cannot be read as a whole into pieces that can be tried one by one.
 //!
-//! A file and a phase are cut where an item word begins; a block such as `dynamics { ... }` where an entry begins.
-//! Item words are reserved, so they begin an item wherever the text before them is complete, and at the beginning of
-//! a line even inside brackets that somebody forgot to close. `start`, `end`, `guess` and `free` also stand inside
-//! items and need a closer look.
+//! A file and a phase are cut where an item word begins; a block such as `dynamics { ... }` where
+//! an entry begins. Item words are reserved, so they begin an item wherever the text before them is
+//! complete, and at the beginning of a line even inside brackets that somebody forgot to close.
+//! `start`, `end`, `guess` and `free` also stand inside items and need a closer look.
 
 use std::ops::Range;
 
@@ -60,11 +60,13 @@ impl<'t> SoFar<'_, 't> {
         !self.has_brace && (self.has_switch || words::entry_form(self.word()).is_some())
     }
 
-    /// Whether a word stands between the brackets of a unit, where any word may stand, and two of them side by side.
+    /// Whether a word stands between the brackets of a unit, where any word may stand, and two of
+    /// them side by side.
     fn is_in_unit(&self, at: usize) -> bool {
         let mut ahead = self.tokens[at..self.end].iter().take(LONGEST_UNIT);
         let is_bracket = |token: &&Token<'_>| matches!(token.kind, Kind::Open | Kind::Close);
-        self.open.last() == Some(&"]") && ahead.find(is_bracket).is_some_and(|bracket| bracket.text == "]")
+        self.open.last() == Some(&"]")
+            && ahead.find(is_bracket).is_some_and(|bracket| bracket.text == "]")
     }
 
     /// Keeps account of the open brackets. A closer also closes what was left open inside its pair.
@@ -84,10 +86,15 @@ impl<'t> SoFar<'_, 't> {
     }
 }
 
-fn cut(tokens: &[Token<'_>], range: Piece, begins: impl Fn(&SoFar<'_, '_>, usize) -> bool) -> Vec<Piece> {
+fn cut(
+    tokens: &[Token<'_>],
+    range: Piece,
+    begins: impl Fn(&SoFar<'_, '_>, usize) -> bool,
+) -> Vec<Piece> {
     let mut pieces = Vec::new();
     let (head, end) = (range.start, range.end);
-    let mut so_far = SoFar { tokens, head, end, open: Vec::new(), has_brace: false, has_switch: false };
+    let mut so_far =
+        SoFar { tokens, head, end, open: Vec::new(), has_brace: false, has_switch: false };
     for at in range.clone() {
         if at > so_far.head && begins(&so_far, at) {
             pieces.push(so_far.head..at);
@@ -126,8 +133,7 @@ fn begins_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
 
 /// Whether what stands before could be the end of a piece.
 fn can_begin(so_far: &SoFar<'_, '_>, at: usize) -> bool {
-    let is_start_free =
-        matches!(&so_far.tokens[..at], [.., start, free] if start.text == "start" && free.text == "free");
+    let is_start_free = matches!(&so_far.tokens[..at], [.., start, free] if start.text == "start" && free.text == "free");
     so_far.tokens[at].begins_line || can_end(&so_far.tokens[at - 1]) || is_start_free
 }
 
@@ -145,9 +151,13 @@ fn can_end(token: &Token<'_>) -> bool {
 fn continues_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     let next = so_far.text(at + 1);
     // A misspelt item may be any.
-    let item = |words: &[&str]| words.contains(&so_far.word()) || words::reserved(so_far.word()).is_none();
+    let item =
+        |words: &[&str]| words.contains(&so_far.word()) || words::reserved(so_far.word()).is_none();
     match so_far.tokens[at].text {
-        "free" => so_far.tokens[at - 1].text == "start" || (item(&["state"]) && ["", "in"].contains(&next)),
+        "free" => {
+            so_far.tokens[at - 1].text == "start"
+                || (item(&["state"]) && ["", "in"].contains(&next))
+        }
         "guess" => item(&["free", "control"]) && next != "{",
         "start" => is_argument(so_far, at) || (item(&["state"]) && !has_relation(so_far, at)),
         "end" => is_argument(so_far, at),
@@ -160,8 +170,8 @@ fn is_argument(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     matches!(so_far.tokens[at].text, "start" | "end") && matches!(so_far.text(at + 1), ")" | ",")
 }
 
-/// Whether a comparison follows before the next item: then `start` is a condition, not a state's value. The comparisons
-/// of a `piecewise` are between braces.
+/// Whether a comparison follows before the next item: then `start` is a condition, not a state's
+/// value. The comparisons of a `piecewise` are between braces.
 fn has_relation(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     let mut braces = 0;
     for (at, token) in so_far.tokens[..so_far.end].iter().enumerate().skip(at + 1) {
@@ -176,18 +186,21 @@ fn has_relation(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     false
 }
 
-/// Whether a line begins with nearly an item word and a name, as in `stat v`. Two names side by side are never right.
+/// Whether a line begins with nearly an item word and a name, as in `stat v`. Two names side by
+/// side are never right.
 fn is_misspelt_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     let token = &so_far.tokens[at];
     let next = so_far.tokens[..so_far.end].get(at + 1);
     token.begins_line
-        && next.is_some_and(|next| next.kind == Kind::Word && !next.begins_line && !words::goes_on(next.text))
+        && next.is_some_and(|next| {
+            next.kind == Kind::Word && !next.begins_line && !words::goes_on(next.text)
+        })
         && !words::inner_words(so_far.word()).contains(&token.text)
         && words::closest_item(token.text).is_some()
 }
 
-/// Whether a line begins with a name behind a text that is complete: no item goes on like that. `unit v`, `dynamcs {`,
-/// `m = 2`, `x >= 0`.
+/// Whether a line begins with a name behind a text that is complete: no item goes on like that.
+/// `unit v`, `dynamcs {`, `m = 2`, `x >= 0`.
 fn is_unknown_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     let inner_words = words::inner_words(so_far.word());
     so_far.tokens[at].begins_line
@@ -202,21 +215,26 @@ fn is_nameless_block(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     let before = &so_far.tokens[at - 1];
     let is_block = words::entry_form(so_far.word()).is_some() || matches!(so_far.word(), "phase");
     let is_switch = at.checked_sub(2).is_some_and(|at| so_far.tokens[at].text == "match");
-    so_far.tokens[at].begins_line && can_end(before) && !is_switch && (!is_block || before.text == "}")
+    so_far.tokens[at].begins_line
+        && can_end(before)
+        && !is_switch
+        && (!is_block || before.text == "}")
 }
 
 fn begins_entry(so_far: &SoFar<'_, '_>, at: usize, block: &str) -> bool {
     let token = &so_far.tokens[at];
     let complete = can_end(&so_far.tokens[at - 1]);
-    if looks_like_entry(so_far, at, block) && (token.begins_line || (complete && so_far.open.is_empty())) {
+    if looks_like_entry(so_far, at, block)
+        && (token.begins_line || (complete && so_far.open.is_empty()))
+    {
         return true;
     }
     let is_next = token.kind != Kind::Sign || loses_its_name(so_far, at);
     token.begins_line && so_far.open.is_empty() && complete && is_next
 }
 
-/// Whether a sign at the beginning of a line belongs to an entry without a name: `' = v` or, behind an entry that has
-/// one, `= 2`.
+/// Whether a sign at the beginning of a line belongs to an entry without a name: `' = v` or, behind
+/// an entry that has one, `= 2`.
 fn loses_its_name(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     let defines = |text: &str| matches!(text, "=" | ":=" | "in");
     let has_sign = || so_far.tokens[so_far.head..at].iter().any(|token| defines(token.text));
@@ -232,7 +250,9 @@ fn looks_like_entry(so_far: &SoFar<'_, '_>, at: usize, block: &str) -> bool {
     let is_name = so_far.tokens[at].kind == Kind::Word && words::reserved(first).is_none();
     match block {
         "dynamics" => {
-            is_name && so_far.text(at - 1) != "*" && (second == "'" || (second == "*" && fourth == "'"))
+            is_name
+                && so_far.text(at - 1) != "*"
+                && (second == "'" || (second == "*" && fourth == "'"))
         }
         "guess" | "report" | "sweep" => is_name && second == "=",
         "jump" | "link" => is_name && second == ":=",

@@ -29,7 +29,8 @@ fn is_repeated(place: &Place<'_, '_>, second: &Token<'_>) -> bool {
             !second.begins_line && (always || !is_value || is_end(place))
         }
         Kind::Word => {
-            let is_value = place.after_operand() || (place.expects(&[Rule::assigns]) && behind != ":=");
+            let is_value =
+                place.after_operand() || (place.expects(&[Rule::assigns]) && behind != ":=");
             !second.begins_line && !is_value
         }
         _ => false,

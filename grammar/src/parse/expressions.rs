@@ -1,9 +1,11 @@
 //! Expressions: the flat list of the grammar becomes a tree.
 //!
-//! From weak to strong: `+ -`, `* /`, `-x`, `^`. So `-x^2 = -(x^2)`, `2^3^2 = 2^(3^2)`, and `2^-1` is a half.
+//! From weak to strong: `+ -`, `* /`, `-x`, `^`. So `-x^2 = -(x^2)`, `2^3^2 = 2^(3^2)`, and `2^-1`
+//! is a half.
 //!
-//! Long sums and products become balanced trees: a sum of a thousand terms is ten levels deep, and everything that
-//! walks a tree by recursion may do so, because no tree is deeper than [`MOST_LEVELS`].
+//! Long sums and products become balanced trees: a sum of a thousand terms is ten levels deep, and
+//! everything that walks a tree by recursion may do so, because no tree is deeper than
+//! [`MOST_LEVELS`].
 
 use pest::iterators::Pair;
 
@@ -46,7 +48,8 @@ impl Reader<'_> {
 
     fn tree(&mut self, pair: Pair<'_, Rule>) -> Tree {
         let (mut terms, mut factors, mut powers) = (Chain::new(), Chain::new(), Vec::new());
-        let (mut term_operator, mut factor_operator) = (BinaryOperator::Add, BinaryOperator::Multiply);
+        let (mut term_operator, mut factor_operator) =
+            (BinaryOperator::Add, BinaryOperator::Multiply);
         let mut minuses = Vec::new();
         for pair in pair.into_inner() {
             match (pair.as_rule(), pair.as_str()) {
@@ -60,7 +63,8 @@ impl Reader<'_> {
                 (Rule::operator, sign) => {
                     factors.push((factor_operator, self.power(std::mem::take(&mut powers))));
                     terms.push((term_operator, self.chain(std::mem::take(&mut factors))));
-                    term_operator = if sign == "+" { BinaryOperator::Add } else { BinaryOperator::Subtract };
+                    term_operator =
+                        if sign == "+" { BinaryOperator::Add } else { BinaryOperator::Subtract };
                     factor_operator = BinaryOperator::Multiply;
                 }
                 _ => powers.push((std::mem::take(&mut minuses), self.operand(pair))),
@@ -79,7 +83,9 @@ impl Reader<'_> {
                 Some(exponent) => self.binary(BinaryOperator::Power, operand, exponent),
                 None => operand,
             };
-            result = Some(minuses.into_iter().rev().fold(power, |inner, minus| self.negate(minus, inner)));
+            result = Some(
+                minuses.into_iter().rev().fold(power, |inner, minus| self.negate(minus, inner)),
+            );
         }
         result.expect("the grammar has at least one operand")
     }
@@ -92,7 +98,9 @@ impl Reader<'_> {
     fn binary(&mut self, operator: BinaryOperator, left: Tree, right: Tree) -> Tree {
         let span = left.expr.span.to(right.expr.span);
         let levels = left.levels.max(right.levels);
-        self.node(span, levels, || ExprKind::Binary(operator, Box::new(left.expr), Box::new(right.expr)))
+        self.node(span, levels, || {
+            ExprKind::Binary(operator, Box::new(left.expr), Box::new(right.expr))
+        })
     }
 
     /// From the left as long as it is short, balanced where it is long.
@@ -106,7 +114,8 @@ impl Reader<'_> {
         operands.fold(first, |left, (operator, right)| self.binary(operator, left, right))
     }
 
-    /// `a - (b + c - d)` for the chain `a - b - c + d`: on the right of `-` and `/` the signs turn around.
+    /// `a - (b + c - d)` for the chain `a - b - c + d`: on the right of `-` and `/` the signs turn
+    /// around.
     fn balance(&mut self, left: Chain, mut right: Chain) -> Tree {
         let joint = right[0].0;
         if matches!(joint, BinaryOperator::Subtract | BinaryOperator::Divide) {
@@ -184,14 +193,17 @@ impl Reader<'_> {
 
     /// Parentheses leave no trace but the wider span, and a tuple where there is a comma.
     fn group(&mut self, pair: &Pair<'_, Rule>, span: Span) -> Tree {
-        let mut trees: Vec<Tree> = children(pair, Rule::expression).map(|inner| self.tree(inner)).collect();
+        let mut trees: Vec<Tree> =
+            children(pair, Rule::expression).map(|inner| self.tree(inner)).collect();
         if trees.len() == 1 {
             let mut tree = trees.remove(0);
             tree.expr.span = span;
             return tree;
         }
         let levels = trees.iter().map(|tree| tree.levels).max().unwrap_or(0);
-        self.node(span, levels, || ExprKind::Tuple(trees.into_iter().map(|tree| tree.expr).collect()))
+        self.node(span, levels, || {
+            ExprKind::Tuple(trees.into_iter().map(|tree| tree.expr).collect())
+        })
     }
 
     fn piecewise(&mut self, pair: &Pair<'_, Rule>, span: Span) -> Tree {
@@ -200,7 +212,10 @@ impl Reader<'_> {
         let otherwise = child(pair, Rule::expression).expect("a piecewise ends with `otherwise`");
         let otherwise = self.tree(otherwise);
         levels = levels.max(otherwise.levels);
-        self.node(span, levels, || ExprKind::Piecewise { arms, otherwise: Box::new(otherwise.expr) })
+        self.node(span, levels, || ExprKind::Piecewise {
+            arms,
+            otherwise: Box::new(otherwise.expr),
+        })
     }
 
     fn arm(&mut self, pair: &Pair<'_, Rule>, levels: &mut usize) -> Arm {
@@ -231,7 +246,8 @@ impl Reader<'_> {
         self.node(span, levels, || ExprKind::Match { surface, sides, below, above })
     }
 
-    /// One more level. Where that is one too many, the place is reported once and the branch ends in a number.
+    /// One more level. Where that is one too many, the place is reported once and the branch ends
+    /// in a number.
     fn node(&mut self, span: Span, below: usize, kind: impl FnOnce() -> ExprKind) -> Tree {
         if below >= MOST_LEVELS {
             self.report(too_deep(span));
@@ -244,7 +260,8 @@ impl Reader<'_> {
         let value: f64 = pair.as_str().parse().expect("the grammar's numbers are Rust's numbers");
         if value.is_infinite() {
             let message = format!("`{}` is larger than any number", pair.as_str());
-            let diagnostic = Diagnostic::new(Code::Unfinished, message, self.span(pair), "above 1.8e308");
+            let diagnostic =
+                Diagnostic::new(Code::Unfinished, message, self.span(pair), "above 1.8e308");
             self.report(diagnostic.help("write a smaller exponent"));
         }
         value

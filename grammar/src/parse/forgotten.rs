@@ -1,5 +1,5 @@
-//! Words that were forgotten, recognised by what stands there without them: `state v 0`, `in` before a range,
-//! `then` before `hold`, a comparison between two values.
+//! Words that were forgotten, recognised by what stands there without them: `state v 0`, `in`
+//! before a range, `then` before `hold`, a comparison between two values.
 
 use super::Rule;
 use super::messages::{PIECEWISE, Place};
@@ -10,15 +10,25 @@ use crate::{Code, Diagnostic, Fix};
 /// `word` is missing before a token.
 fn missing_before(word: &str, token: &Token<'_>, help: impl Into<String>) -> Diagnostic {
     let message = format!("`{word}` is missing before `{}`", token.text);
-    Diagnostic::new(Code::Unfinished, message, token.span(), format!("`{word}` should stand before this"))
-        .help(help)
-        .fix(Fix::certain(format!("write `{word}`")).insert(token.span().start, format!("{word} ")))
+    Diagnostic::new(
+        Code::Unfinished,
+        message,
+        token.span(),
+        format!("`{word}` should stand before this"),
+    )
+    .help(help)
+    .fix(Fix::certain(format!("write `{word}`")).insert(token.span().start, format!("{word} ")))
 }
 
 /// Something is missing after a token.
 fn missing_after(place: &Place<'_, '_>, thing: &str, token: &Token<'_>) -> Diagnostic {
     let message = format!("{thing} is missing after `{}`", token.text);
-    place.example(Diagnostic::new(Code::Unfinished, message, token.span(), format!("{thing} should follow")))
+    place.example(Diagnostic::new(
+        Code::Unfinished,
+        message,
+        token.span(),
+        format!("{thing} should follow"),
+    ))
 }
 
 /// `(end)` without a name before it.
@@ -53,7 +63,8 @@ const PAIRS: &[(&str, &str, &str)] = &[
     ("hold", "then", "write `then hold ground`, with the surface that is held after the last jump"),
 ];
 
-/// What is missing between the words of a jump or a setting; those are no reserved words, so they pass for names.
+/// What is missing between the words of a jump or a setting; those are no reserved words, so they
+/// pass for names.
 pub(super) fn in_header(place: &Place<'_, '_>) -> Option<Diagnostic> {
     if !matches!(place.word, "jump" | "method") {
         return None;
@@ -61,11 +72,13 @@ pub(super) fn in_header(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let until = (place.at + 1).min(place.piece.end);
     let pairs = place.tokens[place.piece.start..until].windows(2);
     for (first, second) in pairs.map(|pair| (&pair[0], &pair[1])) {
-        let between = |row: &&(&str, &[&str], &str)| row.0 == first.text && row.1.contains(&second.text);
+        let between =
+            |row: &&(&str, &[&str], &str)| row.0 == first.text && row.1.contains(&second.text);
         if let Some((_, _, thing)) = BETWEEN.iter().find(between) {
             return Some(missing_after(place, thing, first));
         }
-        if let Some((_, before, help)) = PAIRS.iter().find(|row| row.0 == second.text && row.1 != first.text)
+        if let Some((_, before, help)) =
+            PAIRS.iter().find(|row| row.0 == second.text && row.1 != first.text)
         {
             return Some(missing_before(before, second, *help));
         }
@@ -75,8 +88,9 @@ pub(super) fn in_header(place: &Place<'_, '_>) -> Option<Diagnostic> {
 
 /// `smooth sigma = 0.1 tanh`, `grid N = 100 2 euler (th)`
 fn word_of_setting(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let next =
-        place.next().filter(|next| !next.begins_line && place.before().iter().any(|it| it.text == "="))?;
+    let next = place
+        .next()
+        .filter(|next| !next.begins_line && place.before().iter().any(|it| it.text == "="))?;
     let has = |word: &str| place.tokens[place.piece.clone()].iter().any(|token| token.text == word);
     let is_name = next.kind == Kind::Word && !words::inner_words("method").contains(&next.text);
     let (word, help) = match place.text(place.piece.start) {
@@ -98,11 +112,16 @@ pub(super) fn of_range(place: &Place<'_, '_>) -> Option<Diagnostic> {
         Some(next) if is_open(next) => place.at,
         _ => place.piece.start + place.before().iter().rposition(is_open)?,
     };
-    let close = open + place.tokens[open..place.piece.end].iter().position(|token| token.text == "]")?;
+    let close =
+        open + place.tokens[open..place.piece.end].iter().position(|token| token.text == "]")?;
     let has_comma = place.tokens[open..close].iter().any(|token| token.text == ",");
     let before = place.text(open.checked_sub(1)?);
     let declares = matches!(place.word, "param" | "free" | "time" | "state" | "control");
-    if !has_comma || close < place.at || !declares || matches!(before, "in" | "=" | "start" | "guess") {
+    if !has_comma
+        || close < place.at
+        || !declares
+        || matches!(before, "in" | "=" | "start" | "guess")
+    {
         return None;
     }
     let range: Vec<&str> = place.tokens[open..=close].iter().map(|token| token.text).collect();
@@ -141,7 +160,8 @@ pub(super) fn of_value(place: &Place<'_, '_>) -> Option<Diagnostic> {
     (begins_value && !is_there).then(|| missing_before(word, next, help))
 }
 
-/// `w' in boost { below => ... }`, `y = { x <= 1 => ... }`: the word of a block inside an expression.
+/// `w' in boost { below => ... }`, `y = { x <= 1 => ... }`: the word of a block inside an
+/// expression.
 pub(super) fn of_switch(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let next = place.next().filter(|next| next.text == "{")?;
     let behind = &place.tokens[place.at..place.piece.end];
@@ -150,7 +170,8 @@ pub(super) fn of_switch(place: &Place<'_, '_>) -> Option<Diagnostic> {
     }
     let help = "two sides of a surface: `match boost { below => u, above => 3*u }`; \
                 ranges of a number: `piecewise { x <= 1 => 0  otherwise => x - 1 }`";
-    let is_name = |token: &&Token<'_>| token.kind == Kind::Word && words::reserved(token.text).is_none();
+    let is_name =
+        |token: &&Token<'_>| token.kind == Kind::Word && words::reserved(token.text).is_none();
     Some(match place.text(place.at + 1) {
         "below" | "above" => missing_before("match", place.previous().filter(is_name)?, help),
         _ => missing_before("piecewise", next, help),
@@ -178,7 +199,9 @@ pub(super) fn comparison(place: &Place<'_, '_>) -> Option<Diagnostic> {
         _ if place.expects(&[Rule::guard_relation]) && !compares => {
             Some(missing_after(place, "a comparison", previous).help(PIECEWISE))
         }
-        _ if place.expects(&[Rule::relation]) && !behind.iter().chain(place.before()).any(is_relation) => {
+        _ if place.expects(&[Rule::relation])
+            && !behind.iter().chain(place.before()).any(is_relation) =>
+        {
             Some(missing_after(place, "a comparison (`<=`, `>=` or `==`)", previous))
         }
         _ => None,
@@ -187,7 +210,8 @@ pub(super) fn comparison(place: &Place<'_, '_>) -> Option<Diagnostic> {
 
 /// `metric v1: m1 v2: m2`, `columns t [s] x [m]`
 pub(super) fn comma(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let (previous, next) = (place.previous()?, place.next().filter(|next| next.kind == Kind::Word)?);
+    let (previous, next) =
+        (place.previous()?, place.next().filter(|next| next.kind == Kind::Word)?);
     let is_next = match place.word {
         "metric" => place.text(place.at + 1) == ":",
         "data" => place.expects(&[Rule::comma, Rule::column]) && !next.begins_line,

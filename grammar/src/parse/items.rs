@@ -7,13 +7,14 @@ use super::blocks::{child, children, ident};
 use crate::ast::*;
 use crate::{Diagnostic, Parse, Span};
 
-/// The items and the model line of a text that has been read. An equation by itself is a block of one; other entries say
-/// nothing without their block.
+/// The items and the model line of a text that has been read. An equation by itself is a block of
+/// one; other entries say nothing without their block.
 pub(super) fn parse_of(pairs: Pairs<'_, Rule>) -> Parse {
     let mut parse = Parse::default();
     let top = pairs.into_iter().next().expect("the grammar has one top");
-    let is_entry =
-        |rule| !matches!(rule, Rule::file | Rule::only_model | Rule::only_item | Rule::only_phase_item);
+    let is_entry = |rule| {
+        !matches!(rule, Rule::file | Rule::only_model | Rule::only_item | Rule::only_phase_item)
+    };
     if is_entry(top.as_rule()) && top.as_rule() != Rule::only_equation {
         return parse;
     }
@@ -36,7 +37,8 @@ pub(super) struct Reader<'d> {
 }
 
 impl Reader<'_> {
-    /// Where a pair stands in the text. A pair may have swallowed the blanks behind it, its last leaf has not.
+    /// Where a pair stands in the text. A pair may have swallowed the blanks behind it, its last
+    /// leaf has not.
     pub(super) fn span(&self, pair: &Pair<'_, Rule>) -> Span {
         let mut last = pair.clone();
         while let Some(inner) = last.clone().into_inner().next_back() {
@@ -68,7 +70,9 @@ impl Reader<'_> {
 
     fn kind(&mut self, pair: &Pair<'_, Rule>) -> ItemKind {
         match pair.as_rule() {
-            Rule::phase => ItemKind::Phase { name: ident(self, pair), items: self.phase_items(pair) },
+            Rule::phase => {
+                ItemKind::Phase { name: ident(self, pair), items: self.phase_items(pair) }
+            }
             Rule::dynamics => ItemKind::Dynamics { equations: self.equations(pair) },
             Rule::equation => ItemKind::Dynamics { equations: vec![self.equation(pair)] },
             Rule::guess => ItemKind::Guess { bindings: self.bindings(pair) },
@@ -91,16 +95,26 @@ impl Reader<'_> {
         let name = ident(self, pair);
         let (unit, bounds) = (self.unit(pair), self.interval(pair));
         match pair.as_rule() {
-            Rule::parameter => ItemKind::Param { name, value: self.expression_in(pair), unit, bounds },
+            Rule::parameter => {
+                ItemKind::Param { name, value: self.expression_in(pair), unit, bounds }
+            }
             Rule::constant => ItemKind::Const { name, value: self.one(pair), unit },
             Rule::definition => ItemKind::Let { name, unit, value: self.one(pair) },
-            Rule::function => ItemKind::Fn { name, arguments: self.names(pair), body: self.one(pair) },
+            Rule::function => {
+                ItemKind::Fn { name, arguments: self.names(pair), body: self.one(pair) }
+            }
             Rule::data => self.data(pair, name),
             Rule::free => ItemKind::Free { name, bounds, unit, guess: self.guess_value(pair) },
-            Rule::time => ItemKind::Time { name, interval: bounds.expect("a time has an interval"), unit },
-            Rule::state => {
-                ItemKind::State { name, parts: self.names(pair), unit, bounds, start: self.start(pair) }
+            Rule::time => {
+                ItemKind::Time { name, interval: bounds.expect("a time has an interval"), unit }
             }
+            Rule::state => ItemKind::State {
+                name,
+                parts: self.names(pair),
+                unit,
+                bounds,
+                start: self.start(pair),
+            },
             Rule::control => ItemKind::Control {
                 name,
                 parts: self.names(pair),
@@ -114,7 +128,8 @@ impl Reader<'_> {
 
     fn data(&self, pair: &Pair<'_, Rule>, name: Ident) -> ItemKind {
         let string = child(pair, Rule::string).expect("a data set has a file");
-        let columns = children(pair, Rule::column).map(|column| (ident(self, &column), self.unit(&column)));
+        let columns =
+            children(pair, Rule::column).map(|column| (ident(self, &column), self.unit(&column)));
         let file = string.as_str().trim_matches('"').to_owned();
         ItemKind::Data { name, file, file_span: self.span(&string), columns: columns.collect() }
     }
@@ -133,14 +148,19 @@ impl Reader<'_> {
     }
 
     fn phase_items(&mut self, pair: &Pair<'_, Rule>) -> Vec<Item> {
-        let keyword_or_punctuation = [Rule::kw_phase, Rule::name, Rule::left_brace, Rule::right_brace];
-        let items =
-            pair.clone().into_inner().filter(|inner| !keyword_or_punctuation.contains(&inner.as_rule()));
+        let keyword_or_punctuation =
+            [Rule::kw_phase, Rule::name, Rule::left_brace, Rule::right_brace];
+        let items = pair
+            .clone()
+            .into_inner()
+            .filter(|inner| !keyword_or_punctuation.contains(&inner.as_rule()));
         items.filter_map(|inner| self.item(inner)).collect()
     }
 
     fn weights(&mut self, pair: &Pair<'_, Rule>) -> Vec<(Ident, Expr)> {
-        children(pair, Rule::weight).map(|weight| (ident(self, &weight), self.one(&weight))).collect()
+        children(pair, Rule::weight)
+            .map(|weight| (ident(self, &weight), self.one(&weight)))
+            .collect()
     }
 
     fn path(&mut self, pair: &Pair<'_, Rule>) -> ItemKind {
@@ -160,7 +180,11 @@ impl Reader<'_> {
         ItemKind::Jump {
             name,
             surface,
-            direction: if direction.as_str() == "falling" { Direction::Falling } else { Direction::Rising },
+            direction: if direction.as_str() == "falling" {
+                Direction::Falling
+            } else {
+                Direction::Rising
+            },
             direction_span: self.span(&direction),
             at_most: child(pair, Rule::at_most).map(|limit| self.one(&limit)),
             then_hold: child(pair, Rule::then_hold).map(|hold| ident(self, &hold)),

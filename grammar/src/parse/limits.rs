@@ -1,4 +1,5 @@
-//! What is checked before the grammar sees a text, so that no text can exhaust its stack or its time.
+//! What is checked before the grammar sees a text, so that no text can exhaust its stack or its
+//! time.
 
 use super::Rule;
 use super::cut::Piece;
@@ -36,7 +37,8 @@ pub(super) fn exceeded(tokens: &[Token<'_>], piece: &Piece) -> Option<Failure> {
 
 /// Whether an item is too long, be it one of a phase.
 fn is_too_long(tokens: &[Token<'_>]) -> bool {
-    let is_item_word = |token: &Token<'_>| token.kind == Kind::Word && words::form(token.text).is_some();
+    let is_item_word =
+        |token: &Token<'_>| token.kind == Kind::Word && words::form(token.text).is_some();
     tokens.len() > MOST_TOKENS && tokens.split(is_item_word).any(|item| item.len() > MOST_TOKENS)
 }
 

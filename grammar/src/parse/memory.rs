@@ -1,7 +1,7 @@
 //! What was read of a text before, so that a change costs no more than the item that it is in.
 //!
-//! What the grammar makes of a piece depends on nothing but its characters, so a piece that is written the same as before
-//! is the same as before, wherever it stands now.
+//! What the grammar makes of a piece depends on nothing but its characters, so a piece that is
+//! written the same as before is the same as before, wherever it stands now.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -17,8 +17,8 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// What a piece says, its places counted from its first byte; or where the grammar gave up and what it would have
-    /// gone on with.
+    /// What a piece says, its places counted from its first byte; or where the grammar gave up and
+    /// what it would have gone on with.
     pub(super) fn read(&mut self, rule: Rule, text: &str) -> Result<&Parse, (usize, Vec<Rule>)> {
         Ok(match self.place(rule, text) {
             Entry::Occupied(read) => read.into_mut(),

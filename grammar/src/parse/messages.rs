@@ -1,7 +1,8 @@
 //! Why a piece cannot be read, in our own words.
 //!
-//! The grammar says where it gave up and what it would have gone on with; the tokens say what stands around that
-//! place. Together they choose one message: what is missing or superfluous, where, and how the right form looks.
+//! The grammar says where it gave up and what it would have gone on with; the tokens say what
+//! stands around that place. Together they choose one message: what is missing or superfluous,
+//! where, and how the right form looks.
 
 use super::cut::Piece;
 use super::limits::{Failure, MOST_BRACKETS, MOST_LETTERS, MOST_TOKENS};
@@ -80,7 +81,9 @@ impl<'t> Place<'_, 't> {
     /// The right form, as help.
     pub fn example(&self, diagnostic: Diagnostic) -> Diagnostic {
         match self.form {
-            Some(form) => diagnostic.help(format!("{} looks like this: `{}`", form.noun, form.example)),
+            Some(form) => {
+                diagnostic.help(format!("{} looks like this: `{}`", form.noun, form.example))
+            }
             None => diagnostic,
         }
     }
@@ -93,7 +96,8 @@ pub(super) const PIECEWISE: &str =
     "a piecewise looks like this: `piecewise { x <= 1 => 0  otherwise => x - 1 }`";
 const MATCH: &str = "a match looks like this: `match boost { below => u, above => 3*u }`";
 
-/// What can be missing, in the order in which it is looked for, and help where it is not the item's own form.
+/// What can be missing, in the order in which it is looked for, and help where it is not the item's
+/// own form.
 #[rustfmt::skip]
 const MISSING: &[(&[Rule], &str, Option<&str>)] = &[
     (&[Rule::relation], "a comparison (`<=`, `>=` or `==`)", None),
@@ -112,7 +116,8 @@ const MISSING: &[(&[Rule], &str, Option<&str>)] = &[
     (&[Rule::kw_hold], "`hold`", None),
     (&[Rule::kw_csv], "`csv(\"...\")`", None),
     (&[Rule::kw_columns], "`columns`", None),
-    (&[Rule::kw_sigma], "`sigma`", Some("only the smoothing is continued: `continue sigma = 0.1, 0.05, 0.025`")),
+    (&[Rule::kw_sigma], "`sigma`", Some("only the smoothing is continued: `continue sigma = 0.1, \
+                                         0.05, 0.025`")),
     (&[Rule::string], "a file name in quotes", None),
     (&[Rule::interval], "a range `[from, to]`", None),
     (OPERANDS, "a value", None),
@@ -198,22 +203,28 @@ fn too_many_brackets(bracket: &Token<'_>) -> Diagnostic {
 fn too_long(first: &Token<'_>) -> Diagnostic {
     let message = format!("an item of more than {MOST_TOKENS} words and signs");
     Diagnostic::new(Code::TooLarge, message, first.span(), "this item is too long to be read").help(
-        "measurements belong in a CSV file, read with `data`; long expressions fall into parts with `let`",
+        "measurements belong in a CSV file, read with `data`; long expressions fall into parts \
+         with `let`",
     )
 }
 
 /// FDC0009 for a single word or number.
 fn long_word(word: &Token<'_>) -> Diagnostic {
     let (what, parts, help) = match word.kind {
-        Kind::Number => ("number", "digits", "write it with fewer digits and an exponent, such as `1.5e20`"),
+        Kind::Number => {
+            ("number", "digits", "write it with fewer digits and an exponent, such as `1.5e20`")
+        }
         _ => ("word", "letters", "choose a shorter name"),
     };
     let message = format!("a {what} of more than {MOST_LETTERS} {parts}");
-    let first = Span::new(word.start, word.start + word.text.chars().next().map_or(0, char::len_utf8));
-    Diagnostic::new(Code::TooLarge, message, first, format!("this {what} is too long to be read")).help(help)
+    let first =
+        Span::new(word.start, word.start + word.text.chars().next().map_or(0, char::len_utf8));
+    Diagnostic::new(Code::TooLarge, message, first, format!("this {what} is too long to be read"))
+        .help(help)
 }
 
-/// FDC0002: the piece stopped too early. A parameter may end after its name, but not go on without `=`.
+/// FDC0002: the piece stopped too early. A parameter may end after its name, but not go on without
+/// `=`.
 fn missing(place: &Place<'_, '_>) -> Option<Diagnostic> {
     if place.expects(&[Rule::EOI]) && !(place.expects(&[Rule::equals]) && place.next().is_some()) {
         return None;
@@ -221,8 +232,12 @@ fn missing(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let (_, thing, help) = MISSING.iter().find(|(rules, ..)| place.expects(rules))?;
     let previous = place.previous()?;
     let message = format!("{thing} is missing after `{}`", previous.text);
-    let diagnostic =
-        Diagnostic::new(Code::Unfinished, message, previous.span(), format!("{thing} should follow"));
+    let diagnostic = Diagnostic::new(
+        Code::Unfinished,
+        message,
+        previous.span(),
+        format!("{thing} should follow"),
+    );
     let before_previous = place.at.checked_sub(2).map_or("", |at| place.text(at));
     Some(match help {
         _ if matches!(previous.text, "below" | "above" | "match") => diagnostic.help(MATCH),

@@ -1,6 +1,7 @@
 //! From text to tree: the text is cut into items, and the grammar reads one after the other.
 //!
-//! Nothing outside this folder knows that the grammar is written for pest, and nothing of pest's own wording is shown.
+//! Nothing outside this folder knows that the grammar is written for pest, and nothing of pest's
+//! own wording is shown.
 
 mod adjacent;
 mod blocks;
@@ -65,11 +66,14 @@ pub fn parse_with(memory: &mut Memory, text: &str) -> Parse {
     parse
 }
 
-/// What the grammar makes of a text, or the byte where it gave up and what it would have gone on with.
+/// What the grammar makes of a text, or the byte where it gave up and what it would have gone on
+/// with.
 fn pairs(rule: Rule, text: &str) -> Result<Pairs<'_, Rule>, (usize, Vec<Rule>)> {
     Grammar::parse(rule, text).map_err(|error| {
         let (InputLocation::Pos(at) | InputLocation::Span((at, _))) = error.location;
-        let ErrorVariant::ParsingError { positives, .. } = error.variant else { return (at, Vec::new()) };
+        let ErrorVariant::ParsingError { positives, .. } = error.variant else {
+            return (at, Vec::new());
+        };
         (at, positives)
     })
 }
@@ -78,10 +82,11 @@ fn pairs(rule: Rule, text: &str) -> Result<Pairs<'_, Rule>, (usize, Vec<Rule>)> 
 fn refuse(text: &str) -> Option<Diagnostic> {
     if text.len() > MOST_BYTES {
         let message = format!("a file of {} MB is too large to be a model", text.len() / 1_000_000);
-        let diagnostic = Diagnostic::new(Code::TooLarge, message, Span::default(), "the file begins here");
-        return Some(
-            diagnostic.help("a model has at most 4 MB; measurements belong in a CSV file, read with `data`"),
-        );
+        let diagnostic =
+            Diagnostic::new(Code::TooLarge, message, Span::default(), "the file begins here");
+        return Some(diagnostic.help(
+            "a model has at most 4 MB; measurements belong in a CSV file, read with `data`",
+        ));
     }
     let (at, control) =
         text.char_indices().find(|(_, c)| c.is_control() && !matches!(c, '\t' | '\n' | '\r'))?;
@@ -93,8 +98,17 @@ fn refuse(text: &str) -> Option<Diagnostic> {
 
 fn empty_model() -> Diagnostic {
     let message = "there is no item in this file";
-    Diagnostic::new(Code::EmptyModel, message, Span::default(), "nothing but blanks and comments from here on")
-        .help("a model has a time, states and dynamics, for example\n  time t in [0, 1]\n  state x start 0\n  dynamics { x' = 1 }")
+    Diagnostic::new(
+        Code::EmptyModel,
+        message,
+        Span::default(),
+        "nothing but blanks and comments \
+        from here on",
+    )
+    .help(
+        "a model has a time, states and dynamics, for example\n  time t in [0, 1]\n  state x \
+               start 0\n  dynamics { x' = 1 }",
+    )
 }
 
 /// The `#!` lines before the first item.

@@ -20,17 +20,20 @@ impl Parse {
 }
 
 impl Parse {
-    /// Adds an entry that begins at byte `start` of this block to it; nothing if the entry cannot be used.
+    /// Adds an entry that begins at byte `start` of this block to it; nothing if the entry cannot
+    /// be used.
     pub(super) fn adopt(&mut self, entry: &Parse, start: usize) -> Option<()> {
         let mut moved = Parse::default();
         moved.append(entry, start);
-        let (Some(block), true) = (self.tree.items.first_mut(), moved.diagnostics.is_empty()) else {
+        let (Some(block), true) = (self.tree.items.first_mut(), moved.diagnostics.is_empty())
+        else {
             return None;
         };
         match (&mut block.kind, moved.tree.items.pop()?) {
-            (ItemKind::Dynamics { equations }, Item { kind: ItemKind::Dynamics { equations: new }, .. }) => {
-                equations.extend(new)
-            }
+            (
+                ItemKind::Dynamics { equations },
+                Item { kind: ItemKind::Dynamics { equations: new }, .. },
+            ) => equations.extend(new),
             (ItemKind::Phase { items, .. }, item) => items.push(item),
             _ => return None,
         }

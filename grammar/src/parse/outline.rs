@@ -1,8 +1,8 @@
-//! The words of a readable text with what each is for, as `format` needs it: everything that was written, nothing of
-//! what it means.
+//! The words of a readable text with what each is for, as `format` needs it: everything that was
+//! written, nothing of what it means.
 //!
-//! The quick reading of `tokens` gives the words, the grammar their parts in the whole: which begins an entry, which a
-//! column of it, and which minus is a sign.
+//! The quick reading of `tokens` gives the words, the grammar their parts in the whole: which
+//! begins an entry, which a column of it, and which minus is a sign.
 
 use std::collections::BTreeMap;
 
@@ -179,7 +179,8 @@ impl Marks {
         }
     }
 
-    /// The settings of a method; a plain one lines up, and what follows `smooth` and `grid` belongs to them.
+    /// The settings of a method; a plain one lines up, and what follows `smooth` and `grid` belongs
+    /// to them.
     fn read_settings(&mut self, method: &Pair<'_, Rule>) {
         let mut goes_on: &[Rule] = &[];
         for child in method.clone().into_inner() {

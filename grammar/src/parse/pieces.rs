@@ -1,8 +1,9 @@
 //! Reads a text piece by piece.
 //!
-//! The text is cut into pieces, each of which the grammar reads by itself, unless the memory has it. A piece that cannot
-//! be read gives one diagnostic and is painted over with blanks, which keeps every other place where it was; blocks and
-//! phases are first tried entry by entry, so that one wrong equation does not cost the others.
+//! The text is cut into pieces, each of which the grammar reads by itself, unless the memory has
+//! it. A piece that cannot be read gives one diagnostic and is painted over with blanks, which
+//! keeps every other place where it was; blocks and phases are first tried entry by entry, so that
+//! one wrong equation does not cost the others.
 
 use std::collections::HashSet;
 
@@ -46,7 +47,8 @@ pub(super) fn read(text: &str, tokens: &[Token<'_>], memory: &mut Memory) -> Par
     parse
 }
 
-/// Phases do not nest. Of one inside of so many others nothing is read: each costs a look at all that it holds.
+/// Phases do not nest. Of one inside of so many others nothing is read: each costs a look at all
+/// that it holds.
 const MOST_PHASES: usize = 4;
 
 /// A block of fewer words and signs is read as soon as it is put together.
@@ -75,7 +77,8 @@ struct Reading<'t, 'm> {
 }
 
 impl<'t> Reading<'t, '_> {
-    /// Makes a piece readable if that can be done by leaving out broken entries, and reports what was wrong.
+    /// Makes a piece readable if that can be done by leaving out broken entries, and reports what
+    /// was wrong.
     fn mend(&mut self, piece: &Piece, rule: Rule, block: Option<&'t str>) -> bool {
         let before = self.diagnostics.len();
         if before < MOST_DIAGNOSTICS {
@@ -109,28 +112,31 @@ impl<'t> Reading<'t, '_> {
         }
         let tokens = &self.tokens[piece.clone()];
         let braces = |text| tokens.iter().filter(|token| token.text == text).count();
-        let head = tokens.split(|token| matches!(token.text, "=" | "'" | ":=")).next().unwrap_or(tokens);
+        let head =
+            tokens.split(|token| matches!(token.text, "=" | "'" | ":=")).next().unwrap_or(tokens);
         let has_brace = head.iter().any(|token| token.text == "{");
-        let lacks_brace =
-            matches!(failure, Failure::Stopped(_, expected) if expected.contains(&Rule::left_brace));
-        self.unopened += usize::from(lacks_brace && !has_brace) + braces("{").saturating_sub(braces("}"));
+        let lacks_brace = matches!(failure, Failure::Stopped(_, expected) if expected.contains(&Rule::left_brace));
+        self.unopened +=
+            usize::from(lacks_brace && !has_brace) + braces("{").saturating_sub(braces("}"));
         self.explained = piece.end + usize::from(closer.is_some());
     }
 
     /// A bracket that closes nothing, on the line where the piece ends.
     fn closer_behind(&self, piece: &Piece) -> Option<&'t Token<'t>> {
-        self.tokens[..self.until]
-            .get(piece.end)
-            .filter(|token| token.kind == Kind::Close && !token.begins_line && self.is_unopened(piece))
+        self.tokens[..self.until].get(piece.end).filter(|token| {
+            token.kind == Kind::Close && !token.begins_line && self.is_unopened(piece)
+        })
     }
 
     /// Whether the brackets of a piece are in order, so that one behind it closes nothing.
     fn is_unopened(&self, piece: &Piece) -> bool {
-        let count = |kind| self.tokens[piece.clone()].iter().filter(|token| token.kind == kind).count();
+        let count =
+            |kind| self.tokens[piece.clone()].iter().filter(|token| token.kind == kind).count();
         count(Kind::Open) == count(Kind::Close)
     }
 
-    /// Whether a piece is what follows from a mistake that has been told: a bracket whose partner was missed.
+    /// Whether a piece is what follows from a mistake that has been told: a bracket whose partner
+    /// was missed.
     fn is_consequence(&mut self, piece: &Piece) -> bool {
         let first = &self.tokens[piece.start];
         if first.kind != Kind::Close {
@@ -184,8 +190,8 @@ impl<'t> Reading<'t, '_> {
         read.map(|_| ()).map_err(|(at, expected)| Failure::Stopped(bytes.start + at, expected))
     }
 
-    /// A long block that is new, put together from its head and its entries, most of which are not; nothing where that
-    /// cannot be done, and the grammar has to see the whole.
+    /// A long block that is new, put together from its head and its entries, most of which are not;
+    /// nothing where that cannot be done, and the grammar has to see the whole.
     fn composed(&mut self, piece: &Piece, rule: Rule) -> Option<Parse> {
         let word = self.tokens[piece.start].text;
         let is_long = piece.len() > FEW_TOKENS && matches!(word, "dynamics" | "phase");
@@ -223,7 +229,8 @@ impl<'t> Reading<'t, '_> {
         let bytes = self.bytes(piece);
         // Line breaks stay: whether a parenthesis is a call depends on its line.
         let keep = |byte| if matches!(byte, b'\n' | b'\r') { char::from(byte) } else { ' ' };
-        let blanks: String = self.rest.as_bytes()[bytes.clone()].iter().copied().map(keep).collect();
+        let blanks: String =
+            self.rest.as_bytes()[bytes.clone()].iter().copied().map(keep).collect();
         self.rest.replace_range(bytes, &blanks);
     }
 }

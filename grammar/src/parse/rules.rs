@@ -46,5 +46,8 @@ fn every_rule_is_used_by_an_example() {
     let names = Rule::all_rules().iter().map(|rule| format!("{rule:?}"));
     let expected = names.filter(|name| !without.contains(name) && !name.starts_with("only_"));
     let missing: Vec<String> = expected.filter(|name| !used.contains(name)).collect();
-    assert!(used.len() > 100 && missing.is_empty(), "write an example in docs/reference for {missing:?}");
+    assert!(
+        used.len() > 100 && missing.is_empty(),
+        "write an example in docs/reference for {missing:?}"
+    );
 }

@@ -29,8 +29,10 @@ const FOREIGN: &[(&str, Option<&str>, &str)] = &[
 /// A character that the language does not use.
 pub(super) fn foreign_character(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let token = place.next().filter(|token| token.kind == Kind::Foreign)?;
-    let visible = token.text.chars().all(|c| !c.is_whitespace() && c.escape_debug().count() == 1 || c == '"');
-    let shown = if visible { token.text.to_owned() } else { token.text.escape_unicode().to_string() };
+    let visible =
+        token.text.chars().all(|c| !c.is_whitespace() && c.escape_debug().count() == 1 || c == '"');
+    let shown =
+        if visible { token.text.to_owned() } else { token.text.escape_unicode().to_string() };
     let message = format!("`{shown}` has no meaning in fdc");
     let known = FOREIGN.iter().find(|(character, ..)| *character == token.text);
     let (instead, help) = known.map_or((None, "remove it"), |(_, instead, help)| (*instead, *help));
@@ -45,7 +47,8 @@ pub(super) fn foreign_character(place: &Place<'_, '_>) -> Option<Diagnostic> {
 
 /// `// text`: a comment of other languages.
 pub(super) fn foreign_comment(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let is_pair = |a: &Token<'_>, b: &Token<'_>| a.text == "/" && b.text == "/" && a.end() == b.start;
+    let is_pair =
+        |a: &Token<'_>, b: &Token<'_>| a.text == "/" && b.text == "/" && a.end() == b.start;
     let (next, after) = (place.next()?, place.tokens.get(place.at + 1));
     let before = place.previous().filter(|before| is_pair(before, next));
     let span = match (before, after) {
@@ -53,7 +56,8 @@ pub(super) fn foreign_comment(place: &Place<'_, '_>) -> Option<Diagnostic> {
         (None, Some(after)) if is_pair(next, after) => next.span().to(after.span()),
         _ => return None,
     };
-    let found = Diagnostic::new(Code::Unfinished, "`//` begins no comment", span, "meant as a comment?");
+    let found =
+        Diagnostic::new(Code::Unfinished, "`//` begins no comment", span, "meant as a comment?");
     Some(found.help("a comment begins with `#`").fix(Fix::certain("write `#`").replace(span, "#")))
 }
 
@@ -61,7 +65,8 @@ pub(super) fn foreign_comment(place: &Place<'_, '_>) -> Option<Diagnostic> {
 fn apart(place: &Place<'_, '_>, sign: &str) -> String {
     let is_word = sign.starts_with(char::is_alphabetic);
     let end = place.tokens[place.at].end();
-    let before = place.previous().is_some_and(|before| before.end() == place.tokens[place.at].start);
+    let before =
+        place.previous().is_some_and(|before| before.end() == place.tokens[place.at].start);
     let after = place.tokens.get(place.at + 1).is_some_and(|after| after.start == end);
     let blank = |touches: bool| if is_word && touches { " " } else { "" };
     format!("{}{sign}{}", blank(before), blank(after))
@@ -69,8 +74,8 @@ fn apart(place: &Place<'_, '_>, sign: &str) -> String {
 
 /// Items whose word is followed by a name.
 const DECLARATIONS: &[&str] = &[
-    "model", "param", "const", "let", "fn", "data", "free", "time", "state", "control", "surface", "jump",
-    "phase",
+    "model", "param", "const", "let", "fn", "data", "free", "time", "state", "control", "surface",
+    "jump", "phase",
 ];
 
 /// FDC0003: a reserved word where a name or a value should stand.
@@ -83,7 +88,9 @@ pub(super) fn reserved_name(place: &Place<'_, '_>) -> Option<Diagnostic> {
     if plays_its_part(place.tokens, place.at) {
         return None;
     }
-    if !declares && (is_renamed_elsewhere(place.tokens, token) || !(parameter || place.expects_operand())) {
+    if !declares
+        && (is_renamed_elsewhere(place.tokens, token) || !(parameter || place.expects_operand()))
+    {
         return None;
     }
     let noun = match place.form.map(|form| form.noun) {
@@ -94,8 +101,11 @@ pub(super) fn reserved_name(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let message = format!("`{}` is a reserved word and cannot name {noun}", token.text);
     let label = format!("reserved: it {}", word.role);
     let uses = uses(place.tokens, place.at);
-    let others =
-        if uses.len() > 1 { format!("\n`fdcc fix` renames all {} uses", uses.len()) } else { String::new() };
+    let others = if uses.len() > 1 {
+        format!("\n`fdcc fix` renames all {} uses", uses.len())
+    } else {
+        String::new()
+    };
     let help = format!("rename it, for example `{}`{others}", word.instead);
     let found = Diagnostic::new(Code::ReservedWord, message, token.span(), label).help(help);
     Some(found.fix(rename(place.tokens, &uses, word.instead)))
@@ -111,7 +121,8 @@ fn rename(tokens: &[Token<'_>], uses: &[usize], instead: &str) -> Fix {
     uses.iter().fold(fix, |fix, at| fix.replace(tokens[*at].span(), new.as_str()))
 }
 
-/// Whether a reserved word is used as it should be, so that something is missing before it: `time in [0, 1]`.
+/// Whether a reserved word is used as it should be, so that something is missing before it: `time
+/// in [0, 1]`.
 fn plays_its_part(tokens: &[Token<'_>], at: usize) -> bool {
     let text = |at: usize| tokens.get(at).map_or("", |token| token.text);
     let (before, after) = (at.checked_sub(1).map_or("", text), text(at + 1));
@@ -127,11 +138,13 @@ fn plays_its_part(tokens: &[Token<'_>], at: usize) -> bool {
 /// Whether a token stands where a declaration has its name.
 fn is_declared(tokens: &[Token<'_>], at: usize) -> bool {
     let before = |back: usize| at.checked_sub(back).map_or("", |at| tokens[at].text);
-    let follows = DECLARATIONS.contains(&before(1)) && !tokens[at].begins_line && before(2) != "start";
+    let follows =
+        DECLARATIONS.contains(&before(1)) && !tokens[at].begins_line && before(2) != "start";
     follows && !plays_its_part(tokens, at)
 }
 
-/// Whether a reserved word is used as a value because it has been declared as a name; the declaration is reported.
+/// Whether a reserved word is used as a value because it has been declared as a name; the
+/// declaration is reported.
 pub(super) fn is_renamed_elsewhere(tokens: &[Token<'_>], token: &Token<'_>) -> bool {
     words::reserved(token.text).is_some()
         && (0..tokens.len()).any(|at| tokens[at].text == token.text && is_declared(tokens, at))
@@ -148,13 +161,16 @@ fn uses(tokens: &[Token<'_>], place: usize) -> Vec<usize> {
             Kind::Sign => before.text != "'",
             Kind::Open => before.text != "{" && !is_argument,
             Kind::Word => {
-                !tokens[at].begins_line && matches!(before.text, "minimize" | "maximize" | "path" | "in")
+                !tokens[at].begins_line
+                    && matches!(before.text, "minimize" | "maximize" | "path" | "in")
             }
             _ => false,
         };
         as_value || is_declared(tokens, at)
     };
-    (1..tokens.len()).filter(|at| tokens[*at].text == word && (*at == place || is_use(*at))).collect()
+    (1..tokens.len())
+        .filter(|at| tokens[*at].text == word && (*at == place || is_use(*at)))
+        .collect()
 }
 
 /// `=` for `==`, `==` for `=`, and comparisons that conditions do not have.
@@ -165,11 +181,17 @@ pub(super) fn wrong_sign(place: &Place<'_, '_>) -> Option<Diagnostic> {
         "=" if compares => {
             ("`=` does not compare", "a condition needs `==` here", "write `==`, `<=` or `>=`")
         }
-        "<" if compares => ("a condition includes its limit", "`<` leaves the limit out", "write `<=`"),
-        ">" if compares => ("a condition includes its limit", "`>` leaves the limit out", "write `>=`"),
-        "!=" => {
-            ("`!=` is no condition", "a solver cannot keep away from a single point", "write `<=` or `>=`")
+        "<" if compares => {
+            ("a condition includes its limit", "`<` leaves the limit out", "write `<=`")
         }
+        ">" if compares => {
+            ("a condition includes its limit", "`>` leaves the limit out", "write `>=`")
+        }
+        "!=" => (
+            "`!=` is no condition",
+            "a solver cannot keep away from a single point",
+            "write `<=` or `>=`",
+        ),
         "==" if place.expects(&[Rule::equals, Rule::becomes]) => {
             ("`==` compares, it does not define", "a definition has a single `=`", "write `=`")
         }
@@ -191,7 +213,9 @@ pub(super) fn wrong_sign(place: &Place<'_, '_>) -> Option<Diagnostic> {
     };
     let diagnostic = Diagnostic::new(Code::Unfinished, message, token.span(), label).help(help);
     Some(match right_sign(place, token) {
-        Some((span, sign)) => diagnostic.fix(Fix::certain(format!("write `{sign}`")).replace(span, sign)),
+        Some((span, sign)) => {
+            diagnostic.fix(Fix::certain(format!("write `{sign}`")).replace(span, sign))
+        }
         None => diagnostic,
     })
 }
@@ -220,8 +244,12 @@ pub(super) fn misspelt_word(place: &Place<'_, '_>) -> Option<Diagnostic> {
         return None;
     }
     let message = format!("`{}` is not a word of {}", token.text, place.form?.noun);
-    let diagnostic =
-        Diagnostic::new(Code::Unfinished, message, token.span(), format!("did you mean `{meant}`?"));
+    let diagnostic = Diagnostic::new(
+        Code::Unfinished,
+        message,
+        token.span(),
+        format!("did you mean `{meant}`?"),
+    );
     let fix = Fix::certain(format!("write `{meant}`")).replace(token.span(), meant);
     Some(diagnostic.help(format!("change `{}` to `{meant}`", token.text)).fix(fix))
 }
@@ -233,8 +261,12 @@ pub(super) fn second_derivative(place: &Place<'_, '_>) -> Option<Diagnostic> {
         return None;
     }
     let message = "a second derivative needs a state of its own";
-    let diagnostic =
-        Diagnostic::new(Code::Unfinished, message, next.span(), "only first derivatives stand here");
+    let diagnostic = Diagnostic::new(
+        Code::Unfinished,
+        message,
+        next.span(),
+        "only first derivatives stand here",
+    );
     Some(diagnostic.help("declare a velocity and write two equations, `x' = v` and `v' = ...`"))
 }
 
@@ -242,7 +274,8 @@ pub(super) fn second_derivative(place: &Place<'_, '_>) -> Option<Diagnostic> {
 pub(super) fn wrong_range(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let next = place.next().filter(|_| place.expects(&[Rule::interval]))?;
     let message = "a range is written in brackets";
-    let diagnostic = Diagnostic::new(Code::Unfinished, message, next.span(), "`[` should stand here");
+    let diagnostic =
+        Diagnostic::new(Code::Unfinished, message, next.span(), "`[` should stand here");
     Some(diagnostic.help("write `in [from, to]`; both ends belong to it"))
 }
 
@@ -254,19 +287,26 @@ pub(super) fn wrong_vector(place: &Place<'_, '_>) -> Option<Diagnostic> {
         return None;
     }
     let message = "a vector is written in parentheses";
-    let diagnostic = Diagnostic::new(Code::Unfinished, message, next.span(), "`(` should stand here");
+    let diagnostic =
+        Diagnostic::new(Code::Unfinished, message, next.span(), "`(` should stand here");
     Some(diagnostic.help("write `(a, b)`; brackets are for units, ranges and parts"))
 }
 
 /// `x' = v * v' in F`: the second of two equations has lost its beginning.
 pub(super) fn second_equation(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let next = place.next().filter(|next| matches!(next.text, "=" | "in"))?;
-    if place.word != "dynamics" || !place.before().iter().any(|token| matches!(token.text, "=" | "in")) {
+    if place.word != "dynamics"
+        || !place.before().iter().any(|token| matches!(token.text, "=" | "in"))
+    {
         return None;
     }
     let message = "an equation has one `=` or `in`";
-    let diagnostic = Diagnostic::new(Code::Unfinished, message, next.span(), "this is the second one");
-    Some(diagnostic.help("an equation begins with a state or a factor, as in `x' = v` and `m * v' = F`"))
+    let diagnostic =
+        Diagnostic::new(Code::Unfinished, message, next.span(), "this is the second one");
+    Some(
+        diagnostic
+            .help("an equation begins with a state or a factor, as in `x' = v` and `m * v' = F`"),
+    )
 }
 
 /// `sigma = 0.1, 0.05`
@@ -277,17 +317,23 @@ pub(super) fn second_value(place: &Place<'_, '_>) -> Option<Diagnostic> {
     }
     if begins_setting(place, place.at + 1) {
         let message = "settings stand side by side, without commas";
-        let found = Diagnostic::new(Code::Unfinished, message, next.span(), "another setting follows");
+        let found =
+            Diagnostic::new(Code::Unfinished, message, next.span(), "another setting follows");
         return Some(
-            found.help("leave the comma out").fix(Fix::certain("leave it out").replace(next.span(), "")),
+            found
+                .help("leave the comma out")
+                .fix(Fix::certain("leave it out").replace(next.span(), "")),
         );
     }
-    let diagnostic =
-        Diagnostic::new(Code::Unfinished, "a setting has one value", next.span(), "a second value follows");
-    Some(
-        diagnostic
-            .help("several widths are gone through one after the other with `continue sigma = 0.1, 0.05`"),
-    )
+    let diagnostic = Diagnostic::new(
+        Code::Unfinished,
+        "a setting has one value",
+        next.span(),
+        "a second value follows",
+    );
+    Some(diagnostic.help(
+        "several widths are gone through one after the other with `continue sigma = 0.1, 0.05`",
+    ))
 }
 
 /// `N = 100` or `scheme rk4`
@@ -308,5 +354,8 @@ pub(super) fn misplaced_item(place: &Place<'_, '_>) -> Option<Diagnostic> {
         _ => return None,
     };
     let message = format!("`{}` cannot stand here", first.text);
-    Some(Diagnostic::new(Code::Unfinished, message, first.span(), "this has another place").help(help))
+    Some(
+        Diagnostic::new(Code::Unfinished, message, first.span(), "this has another place")
+            .help(help),
+    )
 }

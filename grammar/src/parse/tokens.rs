@@ -1,7 +1,7 @@
 //! A quick reading of a text into words, numbers, brackets and signs, without any grammar.
 //!
-//! The grammar reads what is right. Tokens are for what is wrong: where a broken item ends, which bracket has no
-//! partner, what stands before and after the place where the grammar gave up.
+//! The grammar reads what is right. Tokens are for what is wrong: where a broken item ends, which
+//! bracket has no partner, what stands before and after the place where the grammar gave up.
 
 use crate::Span;
 use pest::unicode::{XID_CONTINUE, XID_START};
@@ -134,7 +134,8 @@ fn string_length(text: &str) -> Option<usize> {
 /// The length of `12`, `1.5`, `.5`, `1e-3`.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
-    let digits = |from: usize| from + bytes[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+    let digits =
+        |from: usize| from + bytes[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
     let mut end = digits(0);
     if bytes.get(end) == Some(&b'.') {
         end = digits(end + 1);

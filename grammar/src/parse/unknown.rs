@@ -1,4 +1,5 @@
-//! FDC0005 and its like: a line that begins with a word which introduces nothing, and an entry without its name.
+//! FDC0005 and its like: a line that begins with a word which introduces nothing, and an entry
+//! without its name.
 
 use super::messages::Place;
 use super::tokens::Kind;
@@ -19,7 +20,9 @@ pub(super) fn unknown_item(place: &Place<'_, '_>) -> Option<Diagnostic> {
             "which block is it?",
         );
         return Some(
-            found.help("a block begins with its word, such as `dynamics {`, `guess {` or `method {`"),
+            found.help(
+                "a block begins with its word, such as `dynamics {`, `guess {` or `method {`",
+            ),
         );
     }
     if first.kind != Kind::Word {
@@ -30,7 +33,9 @@ pub(super) fn unknown_item(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let found = Diagnostic::new(Code::UnknownItem, message, first.span(), label).help(help);
     let next = place.tokens[..place.piece.end].get(place.at + 1).map_or("", |token| token.text);
     Some(match words::closest_item(first.text).filter(|_| !DEFINES.contains(&next)) {
-        Some(word) => found.fix(Fix::certain(format!("write `{word}`")).replace(first.span(), word)),
+        Some(word) => {
+            found.fix(Fix::certain(format!("write `{word}`")).replace(first.span(), word))
+        }
         None => found,
     })
 }
@@ -43,30 +48,43 @@ fn meant(place: &Place<'_, '_>, word: &str) -> (String, String) {
     let next = if place.piece.len() > 1 { place.text(place.piece.start + 1) } else { "" };
     let which = || "which kind of item is it?".to_owned();
     let relations = ["<=", ">=", "==", "<", ">"];
-    let has = |signs: &[&str]| place.tokens[place.piece.clone()].iter().any(|it| signs.contains(&it.text));
+    let has = |signs: &[&str]| {
+        place.tokens[place.piece.clone()].iter().any(|it| signs.contains(&it.text))
+    };
     match (words::closest_item(word), next) {
-        (_, "'") => ("an equation outside `dynamics`".into(), format!("write `dynamics {{ {word}' = ... }}`")),
-        (_, "=") => (which(), format!("write `let {word} = ...` for an expression, `param {word} = ...` for a number")),
-        (_, ":=") => ("an assignment outside `jump` and `link`".into(), format!("write `let {word} = ...` for a definition")),
-        (Some(meant), _) => (format!("did you mean `{meant}`?"), format!("change `{word}` to `{meant}`")),
+        (_, "'") => ("an equation outside `dynamics`".into(), format!("write `dynamics {{ {word}' \
+            = ... }}`")),
+        (_, "=") => (which(), format!("write `let {word} = ...` for an expression, `param {word} = \
+                                       ...` for a number")),
+        (_, ":=") => ("an assignment outside `jump` and `link`".into(), format!("write `let {word} \
+            = ...` for a definition")),
+        (Some(meant), _) => (format!("did you mean `{meant}`?"), format!("change `{word}` to \
+            `{meant}`")),
         (_, "->") => (which(), format!("write `link {word} -> ...`")),
         (_, "on") => (which(), format!("write `jump {word} on ...`")),
         (_, "{") => (which(), format!("write `phase {word} {{ ... }}` for a phase")),
-        (_, ":") if has(&relations) => (which(), format!("write `path {word}: ...` for a condition with a name")),
+        (_, ":") if has(&relations) => (which(), format!("write `path {word}: ...` for a condition \
+                                                          with a name")),
         (_, ":") => (which(), format!("write `metric {word}: ...` for a weight")),
-        (_, "(") if has(&["="]) => (which(), format!("write `fn {word}(...) = ...` for a function")),
+        (_, "(") if has(&["="]) => (which(), format!("write `fn {word}(...) = ...` for a \
+                                                      function")),
         (_, "(") if has(&["start"]) => (which(), format!("write `state {word}(...) start ...`")),
-        (_, "[") if has(&["="]) => (which(), format!("write `let {word} [...] = ...` for an expression")),
+        (_, "[") if has(&["="]) => (which(), format!("write `let {word} [...] = ...` for an \
+                                                      expression")),
         (_, "[") if has(&["start"]) => (which(), format!("write `state {word} [...] start ...`")),
-        (_, "[") if has(&["in"]) => (which(), format!("write `control {word} [...] in ...` for a control")),
-        (_, "in") => (which(), format!("write `control {word} in ...`, `free {word} in ...` or `time {word} in ...`")),
+        (_, "[") if has(&["in"]) => (which(), format!("write `control {word} [...] in ...` for a \
+                                                       control")),
+        (_, "in") => (which(), format!("write `control {word} in ...`, `free {word} in ...` or \
+                                        `time {word} in ...`")),
         (_, "start") => (which(), format!("write `state {word} start ...`")),
         _ if has(&relations) => {
-            ("a condition: at which time?".into(), "begin with `path` for all times, `start` or `end` for one".into())
+            ("a condition: at which time?".into(), "begin with `path` for all times, `start` or \
+                                                    `end` for one".into())
         }
         _ => (
             "no item begins with this word".into(),
-            "an item begins with a word such as `param`, `state`, `control`, `dynamics`, `path` or `minimize`".into(),
+            "an item begins with a word such as `param`, `state`, `control`, `dynamics`, `path` or \
+             `minimize`".into(),
         ),
     }
 }
@@ -78,6 +96,7 @@ pub(super) fn nameless_entry(place: &Place<'_, '_>) -> Option<Diagnostic> {
         return None;
     }
     let message = format!("a name is missing before `{}`", first.text);
-    let found = Diagnostic::new(Code::Unfinished, message, first.span(), "a name should stand before this");
+    let found =
+        Diagnostic::new(Code::Unfinished, message, first.span(), "a name should stand before this");
     Some(place.example(found))
 }

@@ -1,4 +1,5 @@
-//! Reading item by item finds what the grammar makes of the whole file: the same tree, and a mistake where there is one.
+//! Reading item by item finds what the grammar makes of the whole file: the same tree, and a
+//! mistake where there is one.
 
 use super::tokens::tokens;
 use super::{Rule, items, pairs, parse, rules};
@@ -37,7 +38,11 @@ fn is_accepted(text: &str) -> bool {
     if !whole.tree.items.is_empty() {
         assert_eq!(read.diagnostics, whole.diagnostics, "the grammar accepts\n{text}");
     }
-    assert_eq!((read.tree.name, read.tree.items), (whole.tree.name, whole.tree.items), "the tree of\n{text}");
+    assert_eq!(
+        (read.tree.name, read.tree.items),
+        (whole.tree.name, whole.tree.items),
+        "the tree of\n{text}"
+    );
     true
 }
 
@@ -46,7 +51,8 @@ struct Random(u64);
 
 impl Random {
     fn below(&mut self, limit: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         ((self.0 >> 33) as usize) % limit
     }
 }
@@ -74,7 +80,8 @@ fn items_together_are_the_file() {
         assert!(is_accepted(text), "{text}");
     }
     let texts = rules::examples().chain(FOUND.split("\n----\n"));
-    let right: Vec<&str> = texts.filter(|text| is_accepted(text) && !tokens(text).is_empty()).collect();
+    let right: Vec<&str> =
+        texts.filter(|text| is_accepted(text) && !tokens(text).is_empty()).collect();
     assert!(right.len() > 200, "{} texts", right.len());
     let mut random = Random(1);
     for _ in 0..SHUFFLED {

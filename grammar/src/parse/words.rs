@@ -42,27 +42,39 @@ pub const WORDS: &[Word] = &[
     item("const", "introduces a constant", "c", "a constant", "const g = 9.81 [m/s^2]"),
     item("let", "gives an expression a name", "l", "a definition", "let drag = c * v^2"),
     item("fn", "introduces a function", "f", "a function", "fn along(th) = (cos(th), sin(th))"),
-    item("data", "introduces measurements", "samples", "a data set", "data obs = csv(\"slider.csv\") columns t [s], x [m]"),
-    item("free", "introduces a free quantity", "unknown", "a free quantity", "free T in [0.1, 10] guess 2"),
+    item("data", "introduces measurements", "samples", "a data set", "data obs = \
+        csv(\"slider.csv\") columns t [s], x [m]"),
+    item("free", "introduces a free quantity", "unknown", "a free quantity", "free T in [0.1, 10] \
+        guess 2"),
     item("time", "introduces the time", "t", "a time", "time t in [0, 4] [s]"),
     item("state", "introduces a state", "x", "a state", "state v [m/s] start 0"),
     item("control", "introduces a control", "u", "a control", "control F in [-12, 12] [N]"),
     item("surface", "introduces a switching surface", "area", "a surface", "surface slip = v"),
-    item("dynamics", "introduces the equations of motion", "motion", "a dynamics block", "dynamics { x' = v }"),
+    item("dynamics", "introduces the equations of motion", "motion", "a dynamics block", "dynamics \
+        { x' = v }"),
     item("metric", "introduces weights", "weight", "a metric", "metric v1: m1, v2: m2"),
-    item("jump", "introduces a state reset", "step", "a jump", "jump bounce on ground falling at most 1 { v := -e * v }"),
-    item("start", "introduces a condition at the initial time", "t_start", "a start condition", "start x >= 0"),
-    item("end", "introduces a condition at the final time", "t_end", "an end condition", "end x == 1"),
-    item("path", "introduces a condition at all times", "route", "a path constraint", "path track: abs(y) <= w/2"),
-    item("minimize", "introduces the objective", "smallest", "an objective", "minimize integral(F^2)"),
+    item("jump", "introduces a state reset", "step", "a jump", "jump bounce on ground falling at \
+        most 1 { v := -e * v }"),
+    item("start", "introduces a condition at the initial time", "t_start", "a start \
+        condition", "start x >= 0"),
+    item("end", "introduces a condition at the final time", "t_end", "an end condition", "end x == \
+        1"),
+    item("path", "introduces a condition at all times", "route", "a path constraint", "path track: \
+        abs(y) <= w/2"),
+    item("minimize", "introduces the objective", "smallest", "an objective", "minimize \
+        integral(F^2)"),
     item("maximize", "introduces the objective", "largest", "an objective", "maximize h(end)"),
     item("guess", "introduces a first trajectory", "first", "a guess", "guess { x = t/T }"),
-    item("phase", "introduces a phase", "stage", "a phase", "phase boost { time t in [0, 1]  state h start 0 }"),
+    item("phase", "introduces a phase", "stage", "a phase", "phase boost { time t in [0, 1]  state \
+        h start 0 }"),
     item("link", "connects two phases", "joint", "a link", "link boost -> coast { h := h }"),
-    item("method", "says how to solve", "how", "a method block", "method { grid N = 100 scheme implicit_euler }"),
-    item("sweep", "lists values for several runs", "strokes", "a sweep", "sweep { sigma = 0.1, 0.05  N = 1000, 8000 }"),
+    item("method", "says how to solve", "how", "a method block", "method { grid N = 100 scheme \
+        implicit_euler }"),
+    item("sweep", "lists values for several runs", "strokes", "a sweep", "sweep { sigma = 0.1, \
+        0.05  N = 1000, 8000 }"),
     item("report", "lists curves to write out", "output", "a report", "report { power = F * v }"),
-    item("expect", "lists what the answer must satisfy", "expected", "an expect block", "expect { x(end) == 1 within 1e-6 }"),
+    item("expect", "lists what the answer must satisfy", "expected", "an expect block", "expect { \
+        x(end) == 1 within 1e-6 }"),
     inner("in", "introduces a range or a set", "inside"),
     inner("match", "tells the sides of a surface apart", "fit"),
     inner("piecewise", "introduces a function in pieces", "pieces"),
@@ -95,7 +107,9 @@ pub(super) fn entry_form(block: &str) -> Option<&'static Form> {
         "sweep" => Some(&Form { noun: "a list of values", example: "sigma = 0.1, 0.05" }),
         "report" => Some(&Form { noun: "a report", example: "power = F * v" }),
         "jump" | "link" => Some(&Form { noun: "an assignment", example: "v := -e * v" }),
-        "method" => Some(&Form { noun: "a setting", example: "grid N = 100 scheme implicit_euler" }),
+        "method" => {
+            Some(&Form { noun: "a setting", example: "grid N = 100 scheme implicit_euler" })
+        }
         "expect" => Some(&Form { noun: "a check", example: "x(end) == 1 within 1e-6" }),
         _ => None,
     }
@@ -154,7 +168,8 @@ pub(super) fn closest<'w>(word: &str, among: impl IntoIterator<Item = &'w str>) 
     let allowed = (length / 3).clamp(1, 2);
     let similar = among.into_iter().filter(|known| known.len().abs_diff(length) <= allowed);
     let distances = similar.map(|known| (known, strsim::osa_distance(word, known)));
-    let (best, _) =
-        distances.filter(|(_, distance)| *distance <= allowed).min_by_key(|(_, distance)| *distance)?;
+    let (best, _) = distances
+        .filter(|(_, distance)| *distance <= allowed)
+        .min_by_key(|(_, distance)| *distance)?;
     Some(best)
 }

@@ -1,9 +1,12 @@
 //! To the grid and the width that the model names, from coarse grids and wide layers.
 //!
-//! The width shrinks on the coarsest grid, roughly, then the last width is solved on one finer grid after the other, each time more accurately, and each solve
-//! is begun where the one before ended ([`prolong`]): far from the solution an iteration costs little, and on the finest grid few are left. Where this fails, widths shrink on the finest grid,
-//! from half the size of the switching function on, or from far above the width; where that fails, too, it is tried at once and with all patience. So a failure
-//! on a coarse grid or in a wide layer is never the last word: what the model names has been tried.
+//! The width shrinks on the coarsest grid, roughly, then the last width is solved on one finer grid
+//! after the other, each time more accurately, and each solve is begun where the one before ended
+//! ([`prolong`]): far from the solution an iteration costs little, and on the finest grid few are
+//! left. Where this fails, widths shrink on the finest grid, from half the size of the switching
+//! function on, or from far above the width; where that fails, too, it is tried at once and with
+//! all patience. So a failure on a coarse grid or in a wide layer is never the last word: what the
+//! model names has been tried.
 
 use super::Watch;
 use super::run::{Goal, Run, is_good, is_lost, is_retried};
@@ -17,8 +20,9 @@ use crate::transcribe::TranscribedNlp;
 const COARSE: usize = 250;
 /// Widths on the way, relative to the one that is named.
 const WIDER: [f64; 3] = [8.0, 4.0, 2.0];
-/// More is not asked of a solve with another width, nor of the coarsest grid; from grid to grid it is `FINER` times as much, but never more than `CLOSE`:
-/// which of several close minima is found is decided on finer grids.
+/// More is not asked of a solve with another width, nor of the coarsest grid; from grid to grid it
+/// is `FINER` times as much, but never more than `CLOSE`: which of several close minima is found is
+/// decided on finer grids.
 const ROUGH: f64 = 1e-2;
 /// The same where there is no coarse grid, and no finer one will put right what was found.
 const CAREFUL: f64 = 1e-3;
@@ -28,7 +32,8 @@ const CLOSE: f64 = 1e-5;
 /// A solve on the way that takes longer leads nowhere.
 const MOST_ITERATIONS: usize = 300;
 const WIDE: f64 = 0.5;
-/// A guess or a failure on which the switching function is nearly 0 says nothing of its size: there are at least so many.
+/// A guess or a failure on which the switching function is nearly 0 says nothing of its size: there
+/// are at least so many.
 const FEWEST_HALVINGS: f64 = 8.0;
 const MOST_HALVINGS: f64 = 12.0;
 
@@ -55,7 +60,8 @@ impl Run<'_> {
             return self.shrink(nlp, start, widths, goal, watch);
         }
         let first = self.climb(nlp, start.clone(), (&grids, &shrinking), patience, watch);
-        let is_out_of_iterations = first.status == Status::IterationLimit && goal.limit <= patience.limit;
+        let is_out_of_iterations =
+            first.status == Status::IterationLimit && goal.limit <= patience.limit;
         if !is_retried(&first.status) || is_out_of_iterations {
             return first;
         }
@@ -137,7 +143,8 @@ impl Run<'_> {
     }
 }
 
-/// Coarser grids, the coarsest first, and the grid itself; that one alone where its intervals differ in length.
+/// Coarser grids, the coarsest first, and the grid itself; that one alone where its intervals
+/// differ in length.
 pub(super) fn grids(problem: &Problem) -> Vec<usize> {
     let method = &problem.method;
     let coarser = |n: &usize| (method.mesh.is_empty() && *n >= COARSE).then_some(n / 2);

@@ -1,8 +1,11 @@
-//! Widths of our own choice, where the model names none: each surface gets a fraction of the size that its switching function has along the trajectory
-//! found so far, one solve after another; a warm start takes those of the earlier solution. Where a step is too long it is halved; where even short steps fail, the last width that could be solved is the answer.
-//! Where the first and widest layer cannot be solved, that is no verdict: thinner ones are begun with at once.
+//! Widths of our own choice, where the model names none: each surface gets a fraction of the size
+//! that its switching function has along the trajectory found so far, one solve after another; a
+//! warm start takes those of the earlier solution. Where a step is too long it is halved; where
+//! even short steps fail, the last width that could be solved is the answer. Where the first and
+//! widest layer cannot be solved, that is no verdict: thinner ones are begun with at once.
 //!
-//! A guess that rests on a surface says nothing of the size of its function. Then the first solution says it, and the first solve is repeated with it.
+//! A guess that rests on a surface says nothing of the size of its function. Then the first
+//! solution says it, and the first solve is repeated with it.
 
 use super::Watch;
 use super::approach::grids;
@@ -18,7 +21,8 @@ const THINNER: [f64; 3] = [0.1, 0.03, 0.01];
 /// From one width to the next; after a failure the square root of it, and so on.
 const DECREASE: f64 = 0.3;
 const MOST_FAILURES: usize = 3;
-/// Without a guess of its size the first width is a fraction of this; how large the function is, is found out at most so often.
+/// Without a guess of its size the first width is a fraction of this; how large the function is, is
+/// found out at most so often.
 const UNKNOWN: f64 = 1.0;
 const MOST_SIZINGS: usize = 3;
 /// A first width may be so many times the one that fits the size, or that part of it.
@@ -70,10 +74,12 @@ impl Run<'_> {
         best
     }
 
-    /// The widest layer; where the guess said nothing of the size of a switching function, with the size that it turns out to have.
+    /// The widest layer; where the guess said nothing of the size of a switching function, with the
+    /// size that it turns out to have.
     fn sized(&mut self, nlp: &mut TranscribedNlp, start: &Start, watch: &mut Watch) -> Solution {
         let mut best = self.first(nlp, start.clone(), watch);
-        let mut is_open: Vec<bool> = nlp.guard_sizes(&start.v).iter().map(|size| *size == 0.0).collect();
+        let mut is_open: Vec<bool> =
+            nlp.guard_sizes(&start.v).iter().map(|size| *size == 0.0).collect();
         for _ in 0..MOST_SIZINGS {
             let (before, sizes) = (self.sigma.clone(), nlp.guard_sizes(&best.v));
             self.resize(&is_open, &sizes);
@@ -106,8 +112,14 @@ impl Run<'_> {
         }
     }
 
-    /// A function that is held says nothing of its size: its width follows that of the others, and is open no longer.
-    fn undo_where_held(&mut self, is_open: &mut [bool], before: &[f64], shrinks: &dyn Fn(usize) -> bool) {
+    /// A function that is held says nothing of its size: its width follows that of the others, and
+    /// is open no longer.
+    fn undo_where_held(
+        &mut self,
+        is_open: &mut [bool],
+        before: &[f64],
+        shrinks: &dyn Fn(usize) -> bool,
+    ) {
         let narrower = |at: usize| self.sigma[at] < before[at];
         let is_held: Vec<bool> = (0..before.len()).map(|at| narrower(at) && shrinks(at)).collect();
         let moving = (0..before.len()).filter(|at| is_open[*at] && !is_held[*at]);
@@ -131,7 +143,8 @@ impl Run<'_> {
         self.solve(nlp, &start, self.goal(), watch)
     }
 
-    /// What was found with the widest layer; where it is lost, with thinner ones, relative to the size of each switching function where it was lost.
+    /// What was found with the widest layer; where it is lost, with thinner ones, relative to the
+    /// size of each switching function where it was lost.
     fn or_thinner(
         &mut self,
         nlp: &mut TranscribedNlp,
@@ -146,7 +159,10 @@ impl Run<'_> {
                 break;
             }
             self.set_relative(nlp, &sizes, thinner);
-            self.sigma.iter_mut().zip(&widest).for_each(|(sigma, widest)| *sigma = sigma.min(*widest));
+            self.sigma
+                .iter_mut()
+                .zip(&widest)
+                .for_each(|(sigma, widest)| *sigma = sigma.min(*widest));
             if self.sigma != widest {
                 (last, factor) = (self.solve(nlp, start, self.goal(), watch), thinner);
             }
@@ -166,8 +182,8 @@ impl Run<'_> {
         }
     }
 
-    /// Smaller widths, by the factor `decrease`; but not below `factor` times the size of the switching function. On a
-    /// held surface that size is the layer itself, and says nothing.
+    /// Smaller widths, by the factor `decrease`; but not below `factor` times the size of the
+    /// switching function. On a held surface that size is the layer itself, and says nothing.
     fn decrease(&mut self, nlp: &TranscribedNlp, v: &[f64], factor: f64, decrease: f64) {
         for (sigma, size) in self.sigma.iter_mut().zip(nlp.guard_sizes(v)) {
             *sigma = (factor * size).clamp(decrease * *sigma, *sigma);

@@ -1,7 +1,8 @@
-//! Solving a problem: choose the solver, and lead it to the grid and to the smoothing widths of the model by easier ones.
+//! Solving a problem: choose the solver, and lead it to the grid and to the smoothing widths of the
+//! model by easier ones.
 //!
-//! [`approach`] goes over coarse grids and wide layers to those that the model names; [`chosen`] finds widths where it names none; [`run`] is what both do
-//! again and again: one solve.
+//! [`approach`] goes over coarse grids and wide layers to those that the model names; [`chosen`]
+//! finds widths where it names none; [`run`] is what both do again and again: one solve.
 
 mod approach;
 mod chosen;
@@ -32,8 +33,8 @@ pub struct Outcome {
     pub convex: bool,
     /// The worst row, by name and time, if the point is not feasible.
     pub limiting: Option<Limiting>,
-    /// Whether it is proved that no point meets the conditions of the transcribed problem; only with [`Status::Infeasible`], which by itself says what
-    /// was found from one start.
+    /// Whether it is proved that no point meets the conditions of the transcribed problem; only
+    /// with [`Status::Infeasible`], which by itself says what was found from one start.
     pub is_impossible: bool,
     /// All solves that led to this end, in their order.
     pub attempts: Vec<Attempt>,
@@ -53,7 +54,8 @@ pub struct Attempt {
 pub struct Limiting {
     /// Where it stands in the model.
     pub origin: Origin,
-    /// Where it is a step of a differential equation: the condition that stands against the equations most.
+    /// Where it is a step of a differential equation: the condition that stands against the
+    /// equations most.
     pub condition: Option<Origin>,
     /// The time of its largest violation, if it belongs to one.
     pub time: Option<f64>,
@@ -83,7 +85,11 @@ pub struct Level<'a> {
 pub type Watch<'a> = dyn FnMut(&Progress, Level) -> ControlFlow<Stop> + 'a;
 
 /// Solves a problem with its own method, from its own guess or from `start`.
-pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Result<Outcome, Refusal> {
+pub fn solve(
+    problem: &Problem,
+    start: Option<Start>,
+    watch: &mut Watch,
+) -> Result<Outcome, Refusal> {
     let mut nlp = TranscribedNlp::new(problem);
     let mut run = Run::new(problem);
     run.apply_sigma(&mut nlp);
@@ -107,8 +113,11 @@ pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Resu
     // Of a convex programme every local optimum is a global one.
     solution.global = is_open && is_convex && solution.status == Status::Solved;
     let is_lost = matches!(solution.status, Status::Infeasible | Status::NumericalFailure);
-    let proof =
-        if is_lost && is_convex { conic.or_else(|| convex::solve(&mut nlp, &start, &options)) } else { None };
+    let proof = if is_lost && is_convex {
+        conic.or_else(|| convex::solve(&mut nlp, &start, &options))
+    } else {
+        None
+    };
     let is_impossible = proof.is_some_and(|it| it.status == Status::Infeasible);
     if is_impossible {
         solution.status = Status::Infeasible;
@@ -118,7 +127,8 @@ pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Resu
     Ok(outcome)
 }
 
-/// Solves a problem from a start that is near its solution, with the widths that another solve has ended with.
+/// Solves a problem from a start that is near its solution, with the widths that another solve has
+/// ended with.
 pub(crate) fn solve_near(
     problem: &Problem,
     start: Start,

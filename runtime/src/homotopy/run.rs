@@ -1,4 +1,5 @@
-//! One solve after the other, with what they share: the widths, the work done, and the person who watches.
+//! One solve after the other, with what they share: the widths, the work done, and the person who
+//! watches.
 
 use super::{Attempt, Level, Watch};
 use crate::nlp::{Counts, Options, Progress, Solution, Start, Status, interior_point, sqp};
@@ -34,7 +35,8 @@ pub(super) fn is_retried(status: &Status) -> bool {
     !is_good(status) && !matches!(status, Status::TimeLimit | Status::Interrupted)
 }
 
-/// Whether it found nothing feasible, or no way on: that says something of this grid, this width and this start only.
+/// Whether it found nothing feasible, or no way on: that says something of this grid, this width
+/// and this start only.
 pub(crate) fn is_lost(status: &Status) -> bool {
     matches!(status, Status::Infeasible | Status::NumericalFailure)
 }

@@ -1,4 +1,5 @@
-//! What every factorisation must do, on random chains of stages: solve its system, and know its inertia.
+//! What every factorisation must do, on random chains of stages: solve its system, and know its
+//! inertia.
 
 use super::riccati::Riccati;
 use super::sparse_ldl::SparseLdl;
@@ -42,10 +43,13 @@ impl Case {
         let hessian = hessian_structure(stages, coupled_ends);
         let jacobian = jacobian_structure(stages);
         let scale = if indefinite { 1.0 } else { 0.05 };
-        let hessian_values = random.vector(hessian.len()).iter().map(|value| scale * value).collect();
+        let hessian_values =
+            random.vector(hessian.len()).iter().map(|value| scale * value).collect();
         let jacobian_values = diagonally_dominant(&jacobian, stages, random);
-        let sigma = random.vector(stages.variables()).iter().map(|value| 1.0 + 0.5 * value).collect();
-        let d = (0..stages.rows()).map(|row| row_diagonal(stages, row, penalised, random)).collect();
+        let sigma =
+            random.vector(stages.variables()).iter().map(|value| 1.0 + 0.5 * value).collect();
+        let d =
+            (0..stages.rows()).map(|row| row_diagonal(stages, row, penalised, random)).collect();
         let mut fixed = vec![false; stages.variables()];
         fixed[0] = true;
         if stages.controls > 1 {
@@ -55,7 +59,8 @@ impl Case {
     }
 
     fn dense(&self) -> DMatrix<f64> {
-        let (variables, size) = (self.stages.variables(), self.stages.variables() + self.stages.rows());
+        let (variables, size) =
+            (self.stages.variables(), self.stages.variables() + self.stages.rows());
         let mut matrix = DMatrix::zeros(size, size);
         for ((i, j), value) in self.hessian.entries().zip(&self.hessian_values) {
             matrix[(i, j)] += value;
@@ -102,8 +107,10 @@ impl Case {
         let dense = self.dense();
         let eigenvalues = SymmetricEigen::new(dense.clone()).eigenvalues;
         let positive = eigenvalues.iter().filter(|value| **value > 0.0).count();
-        let expected = if positive == self.stages.variables() { Inertia::Correct } else { Inertia::Wrong };
-        let found = factor.factor(&self.hessian_values, &self.jacobian_values, &self.sigma, &self.d);
+        let expected =
+            if positive == self.stages.variables() { Inertia::Correct } else { Inertia::Wrong };
+        let found =
+            factor.factor(&self.hessian_values, &self.jacobian_values, &self.sigma, &self.d);
         assert_eq!(found, expected, "{name}: inertia of {:?}", self.stages);
         if found != Inertia::Correct {
             return;
@@ -198,7 +205,10 @@ fn diagonally_dominant(jacobian: &Triplets, stages: Stages, random: &mut Random)
             && i % stages.row_step() < stages.defect_rows()
             && j == stages.inner(k).start + i % stages.row_step()
     };
-    jacobian.entries().map(|(i, j)| 0.5 * random.next() + if strong(i, j) { 2.0 } else { 0.0 }).collect()
+    jacobian
+        .entries()
+        .map(|(i, j)| 0.5 * random.next() + if strong(i, j) { 2.0 } else { 0.0 })
+        .collect()
 }
 
 fn row_diagonal(stages: Stages, row: usize, penalised: bool, random: &mut Random) -> f64 {
@@ -219,11 +229,14 @@ fn both_factorisations_solve_their_system_and_know_its_inertia() {
         };
         let (intervals, local_rows) = (1 + (case / 10) % 5, (case / 2) % 3);
         let inner = if case % 3 == 1 { (case / 6) % 4 } else { 0 };
-        let stages = Stages { intervals, states, controls, inner, globals, local_rows, coupling_rows };
+        let stages =
+            Stages { intervals, states, controls, inner, globals, local_rows, coupling_rows };
         let case = Case::new(stages, case % 5 == 0, case % 7 == 0, case % 2 == 0, &mut random);
         let equality: Vec<bool> = case.d.iter().map(|d| *d == 0.0).collect();
-        let riccati =
-            || Riccati::new(stages, &case.hessian, &case.jacobian, &case.fixed, &equality).expect("a chain");
+        let riccati = || {
+            Riccati::new(stages, &case.hessian, &case.jacobian, &case.fixed, &equality)
+                .expect("a chain")
+        };
         let (mut plain, mut riccati) = (riccati().without_fused(), riccati());
         let mut ldl = SparseLdl::new(&case.hessian, &case.jacobian, &case.fixed, stages.rows());
         case.check("riccati", &mut riccati, 1, &mut random);
@@ -261,18 +274,25 @@ fn products_are_those_of_all_entries() {
         let (v, w) = x.split_at(stages.variables());
         let expected = case.times(&x);
         let products = |stages| Products::new(stages, &case.hessian, &case.jacobian);
-        for mut products in [products(Some(stages)), products(Some(stages)).without_fused(), products(None)] {
+        for mut products in
+            [products(Some(stages)), products(Some(stages)).without_fused(), products(None)]
+        {
             let mut found = vec![0.0; x.len()];
             let (a, b) = found.split_at_mut(stages.variables());
             products.multiply_add((&case.hessian_values, &case.jacobian_values), (v, w), (a, b));
-            let worst = found.iter().zip(&expected).fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs()));
+            let worst = found
+                .iter()
+                .zip(&expected)
+                .fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs()));
             assert!(worst < 1e-13, "{worst} for {stages:?}");
             let mut gradient = vec![0.0; v.len()];
             products.transposed_multiply_add(&case.jacobian_values, w, &mut gradient);
             let mut expected = vec![0.0; v.len()];
             case.jacobian.transposed_multiply_add(&case.jacobian_values, w, &mut expected);
-            let worst =
-                gradient.iter().zip(&expected).fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs()));
+            let worst = gradient
+                .iter()
+                .zip(&expected)
+                .fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs()));
             assert!(worst < 1e-13, "transposed: {worst} for {stages:?}");
         }
     }

@@ -1,26 +1,29 @@
 //! What a factorisation costs, and which of the two is cheaper.
 //!
-//! The recursion carries all of its border `theta` through every interval. With `w = (x, theta, u)`, `kept = (x, theta)` and `next = (y, x+)` it takes about
+//! The recursion carries all of its border `theta` through every interval. With `w = (x, theta,
+//! u)`, `kept = (x, theta)` and `next = (y, x+)` it takes about
 //!
 //! ```text
 //!     N ( next^2 (2 w + next) + 3/2 next w^2 + kept^2 w + n w^2 )
 //! ```
 //!
-//! multiplications ([`super::riccati`]). That is little while the border is small; but pieces of time between jumps stand side by side, and each end
-//! and each length of a piece is one more row or variable of the border, which hardly any state has to do with.
+//! multiplications ([`super::riccati`]). That is little while the border is small; but pieces of
+//! time between jumps stand side by side, and each end and each length of a piece is one more row
+//! or variable of the border, which hardly any state has to do with.
 
 use super::sparse_ldl::SparseLdl;
 use super::{Stages, Triplets};
 
-/// So many multiplications the recursion makes while the sparse factorisation makes one; measured were 6 to 12. What is in doubt is the recursion's, whose
-/// inertia is exact.
+/// So many multiplications the recursion makes while the sparse factorisation makes one; measured
+/// were 6 to 12. What is in doubt is the recursion's, whose inertia is exact.
 const DENSE_SPEED: f64 = 16.0;
 
-/// The recursion treats what is inside an interval as dense: of many steps in one, or many stages, that may be most of its work and memory.
+/// The recursion treats what is inside an interval as dense: of many steps in one, or many stages,
+/// that may be most of its work and memory.
 const FEW_INNER: usize = 100;
 
-/// Whether the sparse factorisation takes less time than the recursion. It is analysed for that only if the border is larger than a stage, or if there is much inside
-/// an interval.
+/// Whether the sparse factorisation takes less time than the recursion. It is analysed for that
+/// only if the border is larger than a stage, or if there is much inside an interval.
 pub(crate) fn is_sparse_cheaper(stages: Stages, hessian: &Triplets, jacobian: &Triplets) -> bool {
     if border(stages) <= stages.states + stages.controls && stages.inner <= FEW_INNER {
         return false;
@@ -38,7 +41,8 @@ fn multiplications(stages: Stages) -> f64 {
     let Stages { intervals, states, controls, .. } = stages;
     let kept = (states + border(stages)) as f64;
     let (n, w, next) = (states as f64, kept + controls as f64, stages.defect_rows() as f64);
-    let interval = next * next * (2.0 * w + next) + 1.5 * next * w * w + kept * kept * w + n * w * w;
+    let interval =
+        next * next * (2.0 * w + next) + 1.5 * next * w * w + kept * kept * w + n * w * w;
     intervals as f64 * interval
 }
 
@@ -59,8 +63,13 @@ mod tests {
             coupling_rows: count,
         };
         let (step, globals) = (stages.variable_step(), stages.globals());
-        let repeat =
-            |row, column, row_step, column_step| Family { row, column, row_step, column_step, count: 100 };
+        let repeat = |row, column, row_step, column_step| Family {
+            row,
+            column,
+            row_step,
+            column_step,
+            count: 100,
+        };
         let mut hessian: Vec<Family> = (0..step).map(|i| repeat(i, i, step, step)).collect();
         let mut jacobian = Vec::new();
         for i in 0..count {
@@ -86,7 +95,8 @@ mod tests {
             coupling_rows: 1,
         };
         let (step, rows) = (stages.variable_step(), stages.row_step());
-        let family = |row, column, row_step| Family { row, column, row_step, column_step: step, count: 100 };
+        let family =
+            |row, column, row_step| Family { row, column, row_step, column_step: step, count: 100 };
         let hessian = (0..step).map(|i| family(i, i, step)).collect();
         // Each step sees its own value and the next one.
         let mut jacobian: Vec<Family> =

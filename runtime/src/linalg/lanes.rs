@@ -1,4 +1,5 @@
-//! One number of each of four neighbouring intervals, which share a register of machines with fused multiply-add.
+//! One number of each of four neighbouring intervals, which share a register of machines with fused
+//! multiply-add.
 
 /// One number of each of several neighbouring intervals.
 #[derive(Clone, Copy, Debug)]
@@ -85,7 +86,8 @@ impl Lanes {
     }
 }
 
-/// Gives each interval its numbers, one after the other; `targets` has as many stretches of the length of `source` as there are intervals.
+/// Gives each interval its numbers, one after the other; `targets` has as many stretches of the
+/// length of `source` as there are intervals.
 #[inline(always)]
 pub(crate) fn part(source: &[Lanes], targets: &mut [f64]) {
     match targets.len() / source.len().max(1) {
@@ -105,7 +107,8 @@ fn part_among(count: usize, source: &[Lanes], targets: &mut [f64]) {
     }
 }
 
-/// `a b + c`. `FUSED` says that the machine does it in one instruction; without one `mul_add` would be a call.
+/// `a b + c`. `FUSED` says that the machine does it in one instruction; without one `mul_add` would
+/// be a call.
 #[inline(always)]
 pub(crate) fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
     if FUSED { a.mul_add(b, c) } else { a * b + c }

@@ -12,8 +12,8 @@ impl Lu {
         Lu { factors: vec![0.0; n * n], pivots: vec![0; n] }
     }
 
-    /// Factors `matrix`; `false` if it is singular. `n` must be the size: a caller that knows it as a constant gets
-    /// unrolled loops.
+    /// Factors `matrix`; `false` if it is singular. `n` must be the size: a caller that knows it as
+    /// a constant gets unrolled loops.
     #[inline(always)]
     pub(crate) fn factor(&mut self, n: usize, matrix: &[f64]) -> bool {
         self.factors[..n * n].copy_from_slice(&matrix[..n * n]);
@@ -80,7 +80,8 @@ fn swap_rows(b: &mut [f64], columns: usize, first: usize, second: usize) {
 fn subtract_row(b: &mut [f64], columns: usize, i: usize, k: usize, factor: f64) {
     let (low, high) = (i.min(k), i.max(k));
     let (before, after) = b.split_at_mut(high * columns);
-    let (first, second) = (&mut before[low * columns..low * columns + columns], &mut after[..columns]);
+    let (first, second) =
+        (&mut before[low * columns..low * columns + columns], &mut after[..columns]);
     let (target, source) = if i < k { (first, second) } else { (second, first) };
     for (t, s) in target.iter_mut().zip(source) {
         *t -= factor * *s;

@@ -5,10 +5,10 @@
 //!     [ J                 -diag(d) ] [ dlambda ] = [ b ]
 //! ```
 //!
-//! `H` is the Lagrangian Hessian, `J` the Jacobian of all rows. `sigma >= 0` holds barrier terms and primal
-//! regularisation; `d >= 0` holds what the elimination of a slack leaves (inequality rows), dual
-//! regularisation, or the penalty of a restoration phase. Inertia is right if there are as many positive
-//! eigenvalues as variables and as many negative ones as rows.
+//! `H` is the Lagrangian Hessian, `J` the Jacobian of all rows. `sigma >= 0` holds barrier terms
+//! and primal regularisation; `d >= 0` holds what the elimination of a slack leaves (inequality
+//! rows), dual regularisation, or the penalty of a restoration phase. Inertia is right if there are
+//! as many positive eigenvalues as variables and as many negative ones as rows.
 
 #[cfg(test)]
 mod conformance;

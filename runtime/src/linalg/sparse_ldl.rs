@@ -23,9 +23,11 @@ impl SparseLdl {
     pub fn new(hessian: &Triplets, jacobian: &Triplets, fixed: &[bool], rows: usize) -> Self {
         let variables = fixed.len();
         let size = variables + rows;
-        let hessian_places =
-            hessian.entries().map(|(i, j)| (!fixed[i] && !fixed[j]).then_some((i.min(j), i.max(j))));
-        let jacobian_places = jacobian.entries().map(|(i, j)| (!fixed[j]).then_some((j, variables + i)));
+        let hessian_places = hessian
+            .entries()
+            .map(|(i, j)| (!fixed[i] && !fixed[j]).then_some((i.min(j), i.max(j))));
+        let jacobian_places =
+            jacobian.entries().map(|(i, j)| (!fixed[j]).then_some((j, variables + i)));
         let places: Vec<_> =
             hessian_places.chain(jacobian_places).chain((0..size).map(|i| Some((i, i)))).collect();
         let (pattern, mut targets) = Columns::of_places(&places, size, size);

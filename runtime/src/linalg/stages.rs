@@ -5,8 +5,8 @@
 //! rows        defects_0 local_0   defects_1 local_1   ...   coupling
 //! ```
 //!
-//! Rows of interval `k` see only `x_k, u_k, y_k, x_{k+1}` and the globals `g`; there are as many defects as inner variables `y_k`
-//! and states, and they are regular in `(y_k, x_{k+1})`.
+//! Rows of interval `k` see only `x_k, u_k, y_k, x_{k+1}` and the globals `g`; there are as many
+//! defects as inner variables `y_k` and states, and they are regular in `(y_k, x_{k+1})`.
 //! Coupling rows see only `x_0, x_N` and `g`. The Hessian couples only what some row couples.
 
 use std::ops::Range;
@@ -20,7 +20,8 @@ pub struct Stages {
     pub states: usize,
     /// Controls per interval.
     pub controls: usize,
-    /// Inner variables per interval, which its defects determine: the states at the nodes of a collocation scheme.
+    /// Inner variables per interval, which its defects determine: the states at the nodes of a
+    /// collocation scheme.
     pub inner: usize,
     /// Variables that belong to no stage.
     pub globals: usize,

@@ -1,7 +1,7 @@
 //! `P A P' = L D L'` of one small dense symmetric indefinite matrix, with its inertia.
 //!
-//! Bunch-Kaufman pivoting (Golub & Van Loan, 4th ed., algorithm 4.4.4): `D` has blocks of size 1 and 2, so that
-//! no matrix is refused but a singular one, and the signs of `D` are the inertia.
+//! Bunch-Kaufman pivoting (Golub & Van Loan, 4th ed., algorithm 4.4.4): `D` has blocks of size 1
+//! and 2, so that no matrix is refused but a singular one, and the signs of `D` are the inertia.
 
 /// Factors of an `n x n` symmetric matrix.
 #[derive(Clone, Debug, Default)]
@@ -23,8 +23,8 @@ impl SymmetricFactor {
         SymmetricFactor { n, factors: vec![0.0; n * n], exchanges: vec![0; n], blocks: vec![0; n] }
     }
 
-    /// Factors the symmetric `matrix` (only its lower triangle is read). Returns the number of negative
-    /// eigenvalues, or `None` if the matrix is singular to working precision.
+    /// Factors the symmetric `matrix` (only its lower triangle is read). Returns the number of
+    /// negative eigenvalues, or `None` if the matrix is singular to working precision.
     pub(crate) fn factor(&mut self, matrix: &[f64]) -> Option<usize> {
         let n = self.n;
         self.factors.copy_from_slice(matrix);
@@ -70,15 +70,16 @@ impl SymmetricFactor {
             .fold((k, 0.0), |a, b| if b.1 > a.1 { b } else { a })
     }
 
-    /// Largest entry of row/column `r` of the trailing matrix that begins at `k`, without its diagonal.
+    /// Largest entry of row/column `r` of the trailing matrix that begins at `k`, without its
+    /// diagonal.
     fn largest_off_diagonal(&self, r: usize, k: usize) -> f64 {
         let left = (k..r).map(|j| self.at(r, j).abs());
         let below = (r + 1..self.n).map(|i| self.at(i, r).abs());
         left.chain(below).fold(0.0, f64::max)
     }
 
-    /// Exchanges rows and columns `a < b` of the trailing matrix that begins at `k`. The columns of `L` before it
-    /// stay as they are: the solves exchange as they go.
+    /// Exchanges rows and columns `a < b` of the trailing matrix that begins at `k`. The columns of
+    /// `L` before it stay as they are: the solves exchange as they go.
     fn exchange(&mut self, k: usize, a: usize, b: usize) {
         if a == b {
             return;
@@ -132,7 +133,8 @@ impl SymmetricFactor {
             let (p, q) = (self.at(i, k), self.at(i, k + 1));
             let (l1, l2) = ((c * p - b * q) / determinant, (a * q - b * p) / determinant);
             for j in k + 2..=i {
-                // Rows above i already hold their L, so their products with D are recomputed from it.
+                // Rows above i already hold their L, so their products with D are recomputed from
+                // it.
                 let (s, t) = if j == i { (p, q) } else { self.times_block(j, k, a, b, c) };
                 self.factors[i * n + j] -= l1 * s + l2 * t;
             }

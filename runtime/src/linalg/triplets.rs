@@ -1,7 +1,8 @@
 //! Sparse matrices as families of entries that repeat from stage to stage.
 //!
-//! A family stands for the entries `(row + k row_step, column + k column_step)`, `k = 0 .. count`. A transcribed
-//! problem has a few dozen families, whatever the length of its grid. Entries at the same place are added.
+//! A family stands for the entries `(row + k row_step, column + k column_step)`, `k = 0 .. count`.
+//! A transcribed problem has a few dozen families, whatever the length of its grid. Entries at the
+//! same place are added.
 
 /// How many stages of a chain are passed over at a time.
 const STRETCH: usize = 128;
@@ -48,9 +49,9 @@ impl Triplets {
 
     /// Row and column of every value, in order.
     pub fn entries(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        self.families
-            .iter()
-            .flat_map(|f| (0..f.count).map(|k| (f.row + k * f.row_step, f.column + k * f.column_step)))
+        self.families.iter().flat_map(|f| {
+            (0..f.count).map(|k| (f.row + k * f.row_step, f.column + k * f.column_step))
+        })
     }
 
     /// `y += A x`
@@ -93,8 +94,8 @@ impl Triplets {
         });
     }
 
-    /// Calls `action` with every family and its values, stretch by stretch of the chain: what belongs to a stretch stays in
-    /// the fastest memory while all families pass over it.
+    /// Calls `action` with every family and its values, stretch by stretch of the chain: what
+    /// belongs to a stretch stays in the fastest memory while all families pass over it.
     fn for_each_stretch<'v>(&self, values: &'v [f64], mut action: impl FnMut(Family, &'v [f64])) {
         let longest = self.families.iter().map(|family| family.count).max().unwrap_or(0);
         for start in (0..longest).step_by(STRETCH) {
@@ -102,8 +103,10 @@ impl Triplets {
             for family in &self.families {
                 let end = family.count.min(start + STRETCH);
                 if start < end {
-                    let (row, column) =
-                        (family.row + start * family.row_step, family.column + start * family.column_step);
+                    let (row, column) = (
+                        family.row + start * family.row_step,
+                        family.column + start * family.column_step,
+                    );
                     action(Family { row, column, ..*family }, &values[first + start..first + end]);
                 }
                 first += family.count;

@@ -63,8 +63,9 @@ impl Assessment {
         let size = objective.abs().max(terms).max(NO_OBJECTIVE * quantities.objective);
         let of_rows = row_sizes(nlp, &quantities, v, &at.jacobian, &sizes);
         let variables = nlp.variable_bounds().iter().zip(v);
-        let sides =
-            variables.zip(&quantities.variables).map(|((bounds, value), i)| (bounds, *value, sizes[*i]));
+        let sides = variables
+            .zip(&quantities.variables)
+            .map(|((bounds, value), i)| (bounds, *value, sizes[*i]));
         let both = multipliers.lower.iter().zip(&multipliers.upper);
         let mut sums = Sums::default();
         sides.zip(both).for_each(|((bounds, value, size), (lower, upper))| {
@@ -76,7 +77,8 @@ impl Assessment {
         });
         let slope = slope(nlp, &quantities, &at, multipliers, &sizes);
         // Without an objective there is nothing to gain.
-        let relative = |value: f64| if objective == 0.0 && terms == 0.0 { 0.0 } else { value / size };
+        let relative =
+            |value: f64| if objective == 0.0 && terms == 0.0 { 0.0 } else { value / size };
         let (owed, slope) = (relative(sums.owed), relative(slope));
         Assessment { violation: sums.violation, owed, slope, size }
     }
@@ -146,7 +148,8 @@ impl Sums {
             self.owed += (lower + upper) * outside;
             return;
         }
-        for (multiplier, distance) in [(lower, value - bounds.lower), (upper, bounds.upper - value)] {
+        for (multiplier, distance) in [(lower, value - bounds.lower), (upper, bounds.upper - value)]
+        {
             // What is far from its bound moves by no more than its own size.
             self.owed += multiplier * distance.abs().min(size);
         }
@@ -178,7 +181,8 @@ fn row_sizes(
     let kinds = quantities.rows.iter().max().map_or(0, |last| last + 1);
     let mut largest = vec![0.0f64; kinds];
     for ((i, terms), bounds) in quantities.rows.iter().zip(terms).zip(nlp.row_bounds()) {
-        let ends = [bounds.lower, bounds.upper].map(f64::abs).into_iter().filter(|end| end.is_finite());
+        let ends =
+            [bounds.lower, bounds.upper].map(f64::abs).into_iter().filter(|end| end.is_finite());
         largest[*i] = largest[*i].max(ends.fold(terms, f64::max));
     }
     for (i, size) in largest.iter_mut().enumerate().skip(quantities.stepped) {
@@ -190,7 +194,13 @@ fn row_sizes(
 
 /// The mean size of the terms of second order of the rows of one kind: a square that has to be 0
 /// has no others there.
-fn curvature(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64], sizes: &[f64], kind: usize) -> f64 {
+fn curvature(
+    nlp: &mut dyn Nlp,
+    quantities: &Quantities,
+    v: &[f64],
+    sizes: &[f64],
+    kind: usize,
+) -> f64 {
     let is_its = |i: &usize| if *i == kind { 1.0 } else { 0.0 };
     let weights: Vec<f64> = quantities.rows.iter().map(is_its).collect();
     let (count, mut at) = (weights.iter().sum::<f64>(), Derivatives::new(nlp));
@@ -200,13 +210,20 @@ fn curvature(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64], sizes: &[f64
     nlp.derivatives(v, 0.0, &weights, &mut at);
     let size = |j: usize| sizes[quantities.variables[j]];
     let terms = nlp.hessian_structure().entries().zip(&at.hessian);
-    let terms = terms.map(|((i, j), h)| if i == j { 0.5 } else { 1.0 } * (h * size(i) * size(j)).abs());
+    let terms =
+        terms.map(|((i, j), h)| if i == j { 0.5 } else { 1.0 } * (h * size(i) * size(j)).abs());
     terms.sum::<f64>() / count
 }
 
 /// The terms of the objective to second order around the point: near a minimum its gradient says
 /// little of them.
-fn expansion(nlp: &dyn Nlp, quantities: &Quantities, at: &Derivatives, v: &[f64], sizes: &[f64]) -> f64 {
+fn expansion(
+    nlp: &dyn Nlp,
+    quantities: &Quantities,
+    at: &Derivatives,
+    v: &[f64],
+    sizes: &[f64],
+) -> f64 {
     let size = |j: usize| v[j].abs() + PART * sizes[quantities.variables[j]];
     let first: f64 = at.gradient.iter().enumerate().map(|(j, slope)| slope.abs() * size(j)).sum();
     let second = nlp.hessian_structure().entries().zip(&at.hessian).map(|((i, j), curvature)| {
@@ -226,11 +243,17 @@ fn slope(
     sizes: &[f64],
 ) -> f64 {
     let mut gradient = at.gradient.clone();
-    nlp.jacobian_structure().transposed_multiply_add(&at.jacobian, &multipliers.rows, &mut gradient);
+    nlp.jacobian_structure().transposed_multiply_add(
+        &at.jacobian,
+        &multipliers.rows,
+        &mut gradient,
+    );
     let sides = multipliers.lower.iter().zip(&multipliers.upper);
     let of_variables = nlp.variable_bounds().iter().zip(&quantities.variables);
-    let parts = gradient.iter().zip(sides).zip(of_variables).map(|((slope, (lower, upper)), (bounds, i))| {
-        if bounds.is_equality() { 0.0 } else { (slope - lower + upper).abs() * sizes[*i] }
-    });
+    let parts = gradient.iter().zip(sides).zip(of_variables).map(
+        |((slope, (lower, upper)), (bounds, i))| {
+            if bounds.is_equality() { 0.0 } else { (slope - lower + upper).abs() * sizes[*i] }
+        },
+    );
     parts.sum()
 }

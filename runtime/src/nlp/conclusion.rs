@@ -53,11 +53,7 @@ fn judged(status: Status, found: &Assessment, is_saddle: bool, tol: f64) -> Stat
     match status {
         Status::Solved if found.is_convincing(tol) && !is_saddle => Status::Solved,
         Status::Solved | Status::Acceptable | Status::NumericalFailure => {
-            if found.is_acceptable(tol) {
-                Status::Acceptable
-            } else {
-                Status::NumericalFailure
-            }
+            if found.is_acceptable(tol) { Status::Acceptable } else { Status::NumericalFailure }
         }
         // What meets all conditions is feasible, whatever a search for less violation says.
         Status::Infeasible if found.is_feasible(tol) => Status::NumericalFailure,

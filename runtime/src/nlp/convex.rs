@@ -1,14 +1,16 @@
 //! Convex programmes go to the conic solver, and their answer is a global optimum.
 //!
-//! A programme whose rows are affine and whose objective is a convex quadratic is read off its own derivatives at
-//! one point `v0`: `P = hessian`, `q = gradient - P v0`, `A = jacobian`, constants from the row values.
+//! A programme whose rows are affine and whose objective is a convex quadratic is read off its own
+//! derivatives at one point `v0`: `P = hessian`, `q = gradient - P v0`, `A = jacobian`, constants
+//! from the row values.
 
 use super::conclusion::{Ended, conclude};
 use super::convexity;
 use super::scaling::Scaled;
 use super::sides::Sides;
 use super::{
-    Counts, Derivatives, Multipliers, Nlp, Options, Quantities, Solution, Start, Status, constraint_violation,
+    Counts, Derivatives, Multipliers, Nlp, Options, Quantities, Solution, Start, Status,
+    constraint_violation,
 };
 use crate::clarabel::{Columns, ConicProgram, ConicSolution, ConicStatus, solve_conic};
 use crate::linalg::Triplets;
@@ -97,11 +99,16 @@ fn ended(nlp: &mut dyn Nlp, sides: &Sides, found: ConicSolution) -> Ended {
     clamp(nlp, &mut v);
     let multipliers = sides.multipliers(&found.z);
     let status = match status {
-        Status::Infeasible if !proves_infeasible(nlp, &multipliers.rows) => Status::NumericalFailure,
+        Status::Infeasible if !proves_infeasible(nlp, &multipliers.rows) => {
+            Status::NumericalFailure
+        }
         status => status,
     };
-    let counts =
-        Counts { iterations: found.iterations, factorizations: found.iterations, ..Counts::default() };
+    let counts = Counts {
+        iterations: found.iterations,
+        factorizations: found.iterations,
+        ..Counts::default()
+    };
     let kkt_error = stationarity(nlp, &v, &multipliers).max(constraint_violation(nlp, &v));
     let (mu, is_saddle, decrement) = (0.0, false, f64::INFINITY);
     Ended { status, v, multipliers, mu, kkt_error, is_saddle, decrement, counts }
@@ -110,8 +117,9 @@ fn ended(nlp: &mut dyn Nlp, sides: &Sides, found: ConicSolution) -> Ended {
 /// A variable without a bound is thought to be within so many of its units.
 const FARTHEST: f64 = 1e6;
 
-/// Whether multipliers of affine rows prove that no point within the bounds meets them (Farkas' lemma; Boyd & Vandenberghe, Convex Optimization, section 5.8): at all these points the sum of the
-/// rows, each times its multiplier, is larger than their bounds allow.
+/// Whether multipliers of affine rows prove that no point within the bounds meets them (Farkas'
+/// lemma; Boyd & Vandenberghe, Convex Optimization, section 5.8): at all these points the sum of
+/// the rows, each times its multiplier, is larger than their bounds allow.
 fn proves_infeasible(nlp: &mut dyn Nlp, lambda: &[f64]) -> bool {
     let origin = vec![0.0; nlp.variable_bounds().len()];
     let (mut rows, mut at) = (vec![0.0; lambda.len()], Derivatives::new(nlp));
@@ -146,12 +154,17 @@ fn stationarity(nlp: &mut dyn Nlp, v: &[f64], multipliers: &Multipliers) -> f64 
     let mut derivatives = Derivatives::new(nlp);
     nlp.derivatives(v, 1.0, &multipliers.rows, &mut derivatives);
     let mut gradient = derivatives.gradient;
-    nlp.jacobian_structure().transposed_multiply_add(&derivatives.jacobian, &multipliers.rows, &mut gradient);
+    nlp.jacobian_structure().transposed_multiply_add(
+        &derivatives.jacobian,
+        &multipliers.rows,
+        &mut gradient,
+    );
     let bounds = multipliers.upper.iter().zip(&multipliers.lower);
     gradient.iter().zip(bounds).fold(0.0, |a, (g, (upper, lower))| a.max((g + upper - lower).abs()))
 }
 
 fn upper_columns(structure: &Triplets, values: &[f64], size: usize) -> Columns {
-    let entries = structure.entries().zip(values).map(|((i, j), value)| (i.min(j), i.max(j), *value));
+    let entries =
+        structure.entries().zip(values).map(|((i, j), value)| (i.min(j), i.max(j), *value));
     Columns::of_entries(&entries.collect::<Vec<_>>(), size, size)
 }

@@ -25,7 +25,8 @@ pub(super) fn is_proved(entries: impl Iterator<Item = (usize, usize, f64)>, size
     let mut known = HashSet::new();
     blocks(&places, size).into_iter().all(|block| {
         // Most intervals of a grid have the same block.
-        let is_new = known.insert(block.values.iter().map(|value| value.to_bits()).collect::<Vec<_>>());
+        let is_new =
+            known.insert(block.values.iter().map(|value| value.to_bits()).collect::<Vec<_>>());
         !is_new || block.is_semidefinite()
     })
 }
@@ -56,8 +57,10 @@ fn blocks(places: &BTreeMap<(usize, usize), f64>, size: usize) -> Vec<Block> {
     for (&(i, j), value) in entries() {
         let root = root(&mut parents, i);
         let size = members[&root].len();
-        let values =
-            || Block { size, values: if size <= LARGEST { vec![0.0; size * size] } else { Vec::new() } };
+        let values = || Block {
+            size,
+            values: if size <= LARGEST { vec![0.0; size * size] } else { Vec::new() },
+        };
         let block = blocks.entry(root).or_insert_with(values);
         for (row, column) in [(position[i], position[j]), (position[j], position[i])] {
             if let Some(entry) = block.values.get_mut(row * size + column) {
@@ -79,7 +82,8 @@ fn root(parents: &mut [usize], mut i: usize) -> usize {
 impl Block {
     fn is_semidefinite(&self) -> bool {
         let is_known = !self.values.is_empty() && self.values.iter().all(|value| value.is_finite());
-        is_known && (self.is_definite() || self.size <= LARGEST_EXACT && self.is_exactly_semidefinite())
+        is_known
+            && (self.is_definite() || self.size <= LARGEST_EXACT && self.is_exactly_semidefinite())
     }
 
     /// Cholesky's method on the block with a diagonal between 1 and 4, lowered by what bounds all
@@ -119,8 +123,9 @@ impl Block {
             let pivot = matrix[k * n + k].clone();
             for &i in &rest {
                 for &j in &rest {
-                    let eliminated =
-                        (&pivot * &matrix[i * n + j] - &matrix[i * n + k] * &matrix[k * n + j]) / &before;
+                    let eliminated = (&pivot * &matrix[i * n + j]
+                        - &matrix[i * n + k] * &matrix[k * n + j])
+                        / &before;
                     matrix[i * n + j] = eliminated;
                 }
             }
@@ -157,7 +162,8 @@ fn integers(values: &[f64]) -> Option<Vec<BigInt>> {
     /// Entries of so different size are no quadratic form that anybody wrote.
     const LARGEST_SHIFT: i32 = 600;
     let parts: Vec<(i64, i32)> = values.iter().map(|value| mantissa_and_exponent(*value)).collect();
-    let least = parts.iter().filter(|(mantissa, _)| *mantissa != 0).map(|it| it.1).min().unwrap_or(0);
+    let least =
+        parts.iter().filter(|(mantissa, _)| *mantissa != 0).map(|it| it.1).min().unwrap_or(0);
     let whole = |(mantissa, exponent): &(i64, i32)| {
         let shift = if *mantissa == 0 { 0 } else { exponent - least };
         (shift <= LARGEST_SHIFT).then(|| BigInt::from(*mantissa) << shift)
@@ -181,7 +187,8 @@ mod tests {
     /// Of a matrix given by its lower triangle, row by row.
     fn proved(rows: &[&[f64]]) -> bool {
         let entries = rows.iter().enumerate();
-        let entries = entries.flat_map(|(i, row)| row.iter().enumerate().map(move |(j, a)| (i, j, *a)));
+        let entries =
+            entries.flat_map(|(i, row)| row.iter().enumerate().map(move |(j, a)| (i, j, *a)));
         is_proved(entries, rows.len())
     }
 
@@ -205,8 +212,9 @@ mod tests {
         let n = 40;
         let smallest = 1.0 - (std::f64::consts::PI / (n as f64 + 1.0)).cos();
         let band = |diagonal: f64| {
-            let entry =
-                |i: usize| [(i, i, diagonal), (i, i.saturating_sub(1), if i > 0 { 0.5 } else { 0.0 })];
+            let entry = |i: usize| {
+                [(i, i, diagonal), (i, i.saturating_sub(1), if i > 0 { 0.5 } else { 0.0 })]
+            };
             is_proved((0..n).flat_map(entry), n)
         };
         assert!(band(1.0 - smallest * (1.0 - 1e-11)));

@@ -1,13 +1,15 @@
 //! Multipliers at a point that is nearly a solution, of which nothing else is known.
 //!
-//! They are those that make the gradient of the Lagrangian smallest in the variables that are at no bound,
+//! They are those that make the gradient of the Lagrangian smallest in the variables that are at no
+//! bound,
 //!
 //! ```text
 //!     minimise  1/2 sum of w_i (g + J' lambda)_i^2      <=>      [ 1/W   J' ] [ r      ]   [ -g ]
 //!                                                                [ J     -D ] [ lambda ] = [  0 ]
 //! ```
 //!
-//! where rows that are at no bound have a `D` so large that they have none. What is left in a variable at a bound is the multiplier of that bound.
+//! where rows that are at no bound have a `D` so large that they have none. What is left in a
+//! variable at a bound is the multiplier of that bound.
 
 use super::{Derivatives, Multipliers, Nlp};
 use crate::linalg::sparse_ldl::SparseLdl;
@@ -27,7 +29,8 @@ pub(crate) fn multipliers(nlp: &mut dyn Nlp, v: &[f64]) -> Option<Multipliers> {
     nlp.derivatives(v, 1.0, &known.rows, &mut derivatives);
     nlp.values(v, &mut rows);
     let fixed: Vec<bool> = nlp.variable_bounds().iter().map(Bounds::is_equality).collect();
-    let mut factor = SparseLdl::new(nlp.hessian_structure(), nlp.jacobian_structure(), &fixed, rows.len());
+    let mut factor =
+        SparseLdl::new(nlp.hessian_structure(), nlp.jacobian_structure(), &fixed, rows.len());
     let sigma: Vec<f64> = pairs(nlp.variable_bounds(), v, |side| side.map_or(1.0, |_| WEIGHTLESS));
     let d: Vec<f64> = pairs(nlp.row_bounds(), &rows, |side| side.map_or(WEIGHTLESS, |_| SHIFT));
     let flat = vec![0.0; derivatives.hessian.len()];

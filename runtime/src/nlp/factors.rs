@@ -1,8 +1,12 @@
 //! Factors that make the numbers of a programme moderate, whatever the units of the model.
 //!
-//! A quantity whose size ([`sizes`](super::sizes)) is between 1/16 and 16 is left alone, others are brought to the nearer of these. The steps of a state are divided by what it is divided by. The
-//! objective is scaled so that its gradient, summed over the times of a quantity, is between 1 and 100. As in Ipopt (Waechter & Biegler 2006, section 3.8) rows with gradients above 100 at the
-//! start are scaled down to that; path constraints and boundary conditions whose gradients are all below 1/100, at the start and near it, are scaled up to 1. All but the factors of steep rows are powers of two, which round nothing.
+//! A quantity whose size ([`sizes`](super::sizes)) is between 1/16 and 16 is left alone, others are
+//! brought to the nearer of these. The steps of a state are divided by what it is divided by. The
+//! objective is scaled so that its gradient, summed over the times of a quantity, is between 1 and
+//! 100. As in Ipopt (Waechter & Biegler 2006, section 3.8) rows with gradients above 100 at the
+//!      start are scaled down to that; path constraints and boundary conditions whose gradients are
+//!      all below 1/100, at the start and near it, are scaled up to 1. All but the factors of steep
+//!      rows are powers of two, which round nothing.
 
 use super::sizes::{largest, near, sizes, sizes_of_answer, slopes};
 use super::{Derivatives, Nlp, Quantities};

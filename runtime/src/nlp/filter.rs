@@ -1,4 +1,5 @@
-//! The filter: pairs (violation `theta`, objective `phi`) that a new iterate must improve on (Waechter & Biegler 2006, algorithm A and section 2.3).
+//! The filter: pairs (violation `theta`, objective `phi`) that a new iterate must improve on
+//! (Waechter & Biegler 2006, algorithm A and section 2.3).
 
 const VIOLATION_MARGIN: f64 = 1e-5;
 const OBJECTIVE_MARGIN: f64 = 1e-8;
@@ -29,7 +30,11 @@ pub(crate) struct Filter {
 impl Filter {
     pub(crate) fn new(first_violation: f64) -> Self {
         let scale = first_violation.max(1.0);
-        Filter { entries: Vec::new(), largest: LARGEST_VIOLATION * scale, small: SMALL_VIOLATION * scale }
+        Filter {
+            entries: Vec::new(),
+            largest: LARGEST_VIOLATION * scale,
+            small: SMALL_VIOLATION * scale,
+        }
     }
 
     /// Forgets all entries: the barrier problem has changed.
@@ -39,12 +44,16 @@ impl Filter {
 
     pub(crate) fn accepts(&self, violation: f64, objective: f64) -> bool {
         violation <= self.largest
-            && self.entries.iter().all(|(theta, phi)| violation < *theta || lies_below(objective, *phi))
+            && self
+                .entries
+                .iter()
+                .all(|(theta, phi)| violation < *theta || lies_below(objective, *phi))
     }
 
     /// Forbids what is not clearly better than this.
     pub(crate) fn add(&mut self, violation: f64, objective: f64) {
-        let entry = ((1.0 - VIOLATION_MARGIN) * violation, objective - OBJECTIVE_MARGIN * violation);
+        let entry =
+            ((1.0 - VIOLATION_MARGIN) * violation, objective - OBJECTIVE_MARGIN * violation);
         self.entries.retain(|old| old.0 < entry.0 || old.1 < entry.1);
         self.entries.push(entry);
     }
@@ -55,21 +64,23 @@ impl Filter {
         if from.slope < 0.0 {
             bound = bound.min(OBJECTIVE_MARGIN * from.theta / -from.slope);
             if from.theta <= self.small {
-                let switch =
-                    SWITCH_FACTOR * from.theta.powf(VIOLATION_POWER) / (-from.slope).powf(SLOPE_POWER);
+                let switch = SWITCH_FACTOR * from.theta.powf(VIOLATION_POWER)
+                    / (-from.slope).powf(SLOPE_POWER);
                 bound = bound.min(switch);
             }
         }
         (SMALLEST_STEP * bound).max(1e-14)
     }
 
-    /// Whether a trial point is good enough; adds the point that the step began at unless the objective decides.
+    /// Whether a trial point is good enough; adds the point that the step began at unless the
+    /// objective decides.
     pub(crate) fn judge(&mut self, from: Reference, alpha: f64, theta: f64, phi: f64) -> bool {
         if !phi.is_finite() || !self.accepts(theta, phi) {
             return false;
         }
         let objective_decides = from.slope < 0.0
-            && alpha * (-from.slope).powf(SLOPE_POWER) > SWITCH_FACTOR * from.theta.powf(VIOLATION_POWER);
+            && alpha * (-from.slope).powf(SLOPE_POWER)
+                > SWITCH_FACTOR * from.theta.powf(VIOLATION_POWER);
         let armijo = lies_below(phi, from.phi + ARMIJO * alpha * from.slope);
         if objective_decides && from.theta <= self.small {
             return armijo;

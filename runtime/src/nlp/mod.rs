@@ -4,8 +4,8 @@
 //!     minimise  f(v)    subject to   lower <= c(v) <= upper,   lower <= v <= upper
 //! ```
 //!
-//! Multipliers `lambda` are those of the Lagrangian `f + lambda' c - z_lower' v + z_upper' v`: they are minus the
-//! rate at which the optimal objective grows with the right-hand side of a row.
+//! Multipliers `lambda` are those of the Lagrangian `f + lambda' c - z_lower' v + z_upper' v`: they
+//! are minus the rate at which the optimal objective grows with the right-hand side of a row.
 
 mod assessment;
 mod conclusion;
@@ -73,7 +73,8 @@ pub struct Quantities {
     pub objective: f64,
 }
 
-/// A nonlinear programme. Evaluations take `&mut self` for working memory only: equal inputs give equal outputs.
+/// A nonlinear programme. Evaluations take `&mut self` for working memory only: equal inputs give
+/// equal outputs.
 pub trait Nlp {
     /// One per variable.
     fn variable_bounds(&self) -> &[Bounds];
@@ -202,11 +203,13 @@ impl Warm {
 impl Start {
     /// Where another solve of the same size ended.
     pub fn after(solution: &Solution) -> Self {
-        let warm = Warm { multipliers: solution.multipliers.clone(), mu: solution.mu, widths: Vec::new() };
+        let warm =
+            Warm { multipliers: solution.multipliers.clone(), mu: solution.mu, widths: Vec::new() };
         Start { v: solution.v.clone(), warm: Some(warm) }
     }
 
-    /// The same for a programme that is not quite the same: other conditions may be active at its solution, and the barrier leaves them room to become so.
+    /// The same for a programme that is not quite the same: other conditions may be active at its
+    /// solution, and the barrier leaves them room to become so.
     pub fn near(solution: &Solution) -> Self {
         Start::after(solution).with_room()
     }
@@ -233,7 +236,11 @@ impl Multipliers {
     /// Zeros of the right sizes.
     pub fn zeros(nlp: &dyn Nlp) -> Self {
         let bounds = vec![0.0; nlp.variable_bounds().len()];
-        Multipliers { rows: vec![0.0; nlp.row_bounds().len()], lower: bounds.clone(), upper: bounds }
+        Multipliers {
+            rows: vec![0.0; nlp.row_bounds().len()],
+            lower: bounds.clone(),
+            upper: bounds,
+        }
     }
 }
 
@@ -296,7 +303,8 @@ pub struct Solution {
 pub fn worst_row(nlp: &mut dyn Nlp, v: &[f64]) -> Option<(usize, f64)> {
     let mut rows = vec![0.0; nlp.row_bounds().len()];
     nlp.values(v, &mut rows);
-    let violations = nlp.row_bounds().iter().zip(&rows).map(|(bounds, value)| bounds.violation(*value));
+    let violations =
+        nlp.row_bounds().iter().zip(&rows).map(|(bounds, value)| bounds.violation(*value));
     violations.enumerate().fold(None, |worst, (row, violation)| match worst {
         Some((_, largest)) if largest >= violation => worst,
         _ => Some((row, violation)),
@@ -306,6 +314,7 @@ pub fn worst_row(nlp: &mut dyn Nlp, v: &[f64]) -> Option<(usize, f64)> {
 /// Largest violation of rows and bounds at `v`.
 pub fn constraint_violation(nlp: &mut dyn Nlp, v: &[f64]) -> f64 {
     let rows = worst_row(nlp, v).map_or(0.0, |(_, violation)| violation);
-    let bounds = nlp.variable_bounds().iter().zip(v).map(|(bounds, value)| bounds.violation(*value));
+    let bounds =
+        nlp.variable_bounds().iter().zip(v).map(|(bounds, value)| bounds.violation(*value));
     bounds.fold(rows, f64::max)
 }

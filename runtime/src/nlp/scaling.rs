@@ -4,7 +4,8 @@
 //!     minimise  s f(V w)   subject to   R lower <= R c(V w) <= R upper,   lower <= V w <= upper
 //! ```
 //!
-//! Newton's step is the same in all units; regularisation, tolerances and the norm of violations are not.
+//! Newton's step is the same in all units; regularisation, tolerances and the norm of violations
+//! are not.
 
 use super::factors::Factors;
 use super::{Derivatives, Multipliers, Nlp, Place, Quantities, Start};
@@ -35,11 +36,13 @@ impl<'a> Scaled<'a> {
     /// With these factors.
     pub(super) fn with(inner: &'a mut dyn Nlp, factors: Factors) -> Self {
         let Factors { variables, rows, .. } = &factors;
-        let scaled = |bounds: &Bounds, s: f64| Bounds { lower: bounds.lower * s, upper: bounds.upper * s };
+        let scaled =
+            |bounds: &Bounds, s: f64| Bounds { lower: bounds.lower * s, upper: bounds.upper * s };
         let of_variables = inner.variable_bounds().iter().zip(variables);
         let of_rows = inner.row_bounds().iter().zip(rows);
         let entries = inner.jacobian_structure().entries().map(|(row, i)| rows[row] * variables[i]);
-        let curvatures = inner.hessian_structure().entries().map(|(i, j)| variables[i] * variables[j]);
+        let curvatures =
+            inner.hessian_structure().entries().map(|(i, j)| variables[i] * variables[j]);
         Scaled {
             variable_bounds: of_variables.map(|(bounds, s)| scaled(bounds, 1.0 / s)).collect(),
             row_bounds: of_rows.map(|(bounds, s)| scaled(bounds, *s)).collect(),

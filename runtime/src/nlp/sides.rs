@@ -4,7 +4,8 @@
 //!     A v + s = b,      s = 0 for equalities, which come first,      s >= 0 for the others
 //! ```
 //!
-//! A row of `A` is a row of the programme or a single variable, with a minus where the bound is a lower one.
+//! A row of `A` is a row of the programme or a single variable, with a minus where the bound is a
+//! lower one.
 
 use super::{Multipliers, Nlp};
 use crate::clarabel::Columns;
@@ -17,7 +18,8 @@ pub(super) enum Source {
     Variable(usize),
 }
 
-/// One side of one constraint: `sign * (c - bound) <= 0`, or `= 0` for an equality, whose sign is 0.
+/// One side of one constraint: `sign * (c - bound) <= 0`, or `= 0` for an equality, whose sign is
+/// 0.
 #[derive(Clone, Copy)]
 pub(super) struct Side {
     pub(super) source: Source,
@@ -46,20 +48,29 @@ pub(super) struct Sides {
 impl Sides {
     pub(super) fn new(nlp: &dyn Nlp) -> Self {
         let rows = nlp.row_bounds().iter().enumerate().map(|(i, bounds)| (Source::Row(i), *bounds));
-        let variables =
-            nlp.variable_bounds().iter().enumerate().map(|(i, bounds)| (Source::Variable(i), *bounds));
+        let variables = nlp
+            .variable_bounds()
+            .iter()
+            .enumerate()
+            .map(|(i, bounds)| (Source::Variable(i), *bounds));
         let (mut list, mut inequalities) = (Vec::new(), Vec::new());
         for (source, Bounds { lower, upper }) in rows.chain(variables) {
             if lower == upper {
                 list.push(Side { source, sign: 0.0, bound: lower });
                 continue;
             }
-            let finite = [(1.0, upper), (-1.0, lower)].into_iter().filter(|(_, bound)| bound.is_finite());
+            let finite =
+                [(1.0, upper), (-1.0, lower)].into_iter().filter(|(_, bound)| bound.is_finite());
             inequalities.extend(finite.map(|(sign, bound)| Side { source, sign, bound }));
         }
         let equalities = list.len();
         list.extend(inequalities);
-        Sides { list, equalities, variables: nlp.variable_bounds().len(), rows: nlp.row_bounds().len() }
+        Sides {
+            list,
+            equalities,
+            variables: nlp.variable_bounds().len(),
+            rows: nlp.row_bounds().len(),
+        }
     }
 
     /// The entries of `A`.
@@ -69,9 +80,8 @@ impl Sides {
         for (i, side) in self.list.iter().enumerate() {
             match side.source {
                 Source::Variable(j) => entries.push((i, j, side.factor())),
-                Source::Row(row) => {
-                    entries.extend(of_row[row].iter().map(|(j, value)| (i, *j, side.factor() * value)))
-                }
+                Source::Row(row) => entries
+                    .extend(of_row[row].iter().map(|(j, value)| (i, *j, side.factor() * value))),
             }
         }
         entries

@@ -1,15 +1,17 @@
 //! How large the quantities of a programme are, as far as can be told before it is solved.
 //!
-//! The size of a quantity is the largest value of its guess; where that is 0, the length of its range; where that is infinite, how far a condition on it
-//! alone takes it; where there is none, what the others make of it,
+//! The size of a quantity is the largest value of its guess; where that is 0, the length of its
+//! range; where that is infinite, how far a condition on it alone takes it; where there is none,
+//! what the others make of it,
 //!
 //! ```text
 //!     of a state     S_i = sum of |steps of x_i|               with all whose size is known moved by a part of it;
 //!     of a control   S_j = min over i of S_i / sum of |slopes of x_i's steps|, there too
 //! ```
 //!
-//! A small guess may be meant as none, and a solve that begins at an earlier solution finds quantities at rest: it is the size only as far as range, conditions
-//! and equations do not say more. Beyond 1 they do not raise it.
+//! A small guess may be meant as none, and a solve that begins at an earlier solution finds
+//! quantities at rest: it is the size only as far as range, conditions and equations do not say
+//! more. Beyond 1 they do not raise it.
 
 use super::{Derivatives, Nlp, Quantities};
 use crate::problem::Bounds;
@@ -60,13 +62,18 @@ pub(super) fn sizes(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64]) -> Ve
 /// part in it.
 pub(super) fn sizes_of_answer(quantities: &Quantities, v: &[f64]) -> Vec<f64> {
     let largest = largest(&quantities.variables, v.iter().map(|value| value.abs()));
-    let is_there = |(size, unit): (&f64, &f64)| if *size >= LEAST_ANSWER * unit { *size } else { 0.0 };
+    let is_there =
+        |(size, unit): (&f64, &f64)| if *size >= LEAST_ANSWER * unit { *size } else { 0.0 };
     largest.iter().zip(&quantities.units).map(is_there).collect()
 }
 
 /// Gives those whose size is unknown what has been found.
 fn fill(sizes: &mut [f64], found: impl Fn(usize) -> f64) {
-    sizes.iter_mut().enumerate().filter(|(_, size)| **size == 0.0).for_each(|(i, size)| *size = found(i));
+    sizes
+        .iter_mut()
+        .enumerate()
+        .filter(|(_, size)| **size == 0.0)
+        .for_each(|(i, size)| *size = found(i));
 }
 
 /// The sizes with those of states that the equations tell, else of controls.
@@ -109,7 +116,8 @@ fn demands(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64]) -> Vec<f64> {
     for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&slopes.jacobian) {
         let (quantity, most, entries) = &mut steepest[row];
         if *slope != 0.0 {
-            (*quantity, *most, *entries) = (quantities.variables[column], slope.abs(), *entries + 1);
+            (*quantity, *most, *entries) =
+                (quantities.variables[column], slope.abs(), *entries + 1);
         }
     }
     let mut demands = vec![0.0f64; quantities.variables.iter().max().map_or(0, |last| last + 1)];
@@ -152,7 +160,8 @@ fn range(bounds: &Bounds) -> f64 {
     if bounds.is_equality() { 0.0 } else { bounds.upper - bounds.lower }
 }
 
-/// How far the equations take states of unknown size, which are 0: all that is left of a step is its right side.
+/// How far the equations take states of unknown size, which are 0: all that is left of a step is
+/// its right side.
 fn find_states(nlp: &mut dyn Nlp, quantities: &Quantities, near: &[f64], sizes: &mut [f64]) {
     let mut rows = vec![0.0; quantities.rows.len()];
     nlp.values(near, &mut rows);
@@ -179,7 +188,8 @@ fn find_controls(nlp: &mut dyn Nlp, quantities: &Quantities, near: &[f64], sizes
     let intervals = intervals(nlp);
     for ((i, j), slopes) in influences {
         let most = sizes[i] / (intervals * mean(&slopes));
-        sizes[j] = if most.is_finite() && (sizes[j] == 0.0 || most < sizes[j]) { most } else { sizes[j] };
+        sizes[j] =
+            if most.is_finite() && (sizes[j] == 0.0 || most < sizes[j]) { most } else { sizes[j] };
     }
 }
 

@@ -26,9 +26,14 @@ struct Dense {
 }
 
 impl Dense {
-    fn new(variables: Vec<Bounds>, rows: Vec<Bounds>, functions: (Values, Slopes, Curvature)) -> Self {
+    fn new(
+        variables: Vec<Bounds>,
+        rows: Vec<Bounds>,
+        functions: (Values, Slopes, Curvature),
+    ) -> Self {
         let n = variables.len();
-        let jacobian = (0..rows.len()).flat_map(|i| (0..n).map(move |j| Family::single(i, j))).collect();
+        let jacobian =
+            (0..rows.len()).flat_map(|i| (0..n).map(move |j| Family::single(i, j))).collect();
         let hessian = (0..n).flat_map(|i| (0..=i).map(move |j| Family::single(i, j))).collect();
         let (jacobian, hessian) = (Triplets { families: jacobian }, Triplets { families: hessian });
         Dense { variables, rows, jacobian, hessian, functions }
@@ -36,9 +41,11 @@ impl Dense {
 
     /// The answers of all methods.
     fn solve(mut self, start: &[f64]) -> [Solution; 2] {
-        let options = Options { tol: 1e-9, max_iter: 300, linear: Linear::Automatic, is_final: true };
+        let options =
+            Options { tol: 1e-9, max_iter: 300, linear: Linear::Automatic, is_final: true };
         let start = Start { v: start.to_vec(), warm: None };
-        METHODS.map(|method| method(&mut self, &start, &options, &mut |_| ControlFlow::Continue(())))
+        METHODS
+            .map(|method| method(&mut self, &start, &options, &mut |_| ControlFlow::Continue(())))
     }
 }
 
@@ -59,8 +66,15 @@ impl Nlp for Dense {
         None
     }
     fn quantities(&self) -> Quantities {
-        let (variables, rows) = ((0..self.variables.len()).collect(), (0..self.rows.len()).collect());
-        Quantities { units: vec![1.0; self.variables.len()], objective: 1.0, variables, rows, stepped: 0 }
+        let (variables, rows) =
+            ((0..self.variables.len()).collect(), (0..self.rows.len()).collect());
+        Quantities {
+            units: vec![1.0; self.variables.len()],
+            objective: 1.0,
+            variables,
+            rows,
+            stepped: 0,
+        }
     }
     fn values(&mut self, v: &[f64], rows: &mut [f64]) -> f64 {
         (self.functions.0)(v, rows)
@@ -101,7 +115,9 @@ fn hock_schittkowski_71() -> Dense {
         }
     };
     let curvature: Curvature = |x, w, l, h| {
-        let pair = |a: usize, b: usize| (0..4).filter(|i| *i != a && *i != b).map(|i| x[i]).product::<f64>();
+        let pair = |a: usize, b: usize| {
+            (0..4).filter(|i| *i != a && *i != b).map(|i| x[i]).product::<f64>()
+        };
         let f = [2.0 * x[3], x[3], 0.0, x[3], 0.0, 0.0, 2.0 * x[0] + x[1] + x[2], x[0], x[0], 0.0];
         let mut place = 0;
         for i in 0..4 {
@@ -142,15 +158,22 @@ fn an_infeasible_programme_is_recognised_at_its_smallest_violation() {
     };
     let curvature: Curvature = |_, _, l, h| h[0] = 2.0 * l[0];
     let row = between(f64::NEG_INFINITY, 0.0);
-    for solution in Dense::new(vec![Bounds::FREE], vec![row], (values, slopes, curvature)).solve(&[3.0]) {
+    for solution in
+        Dense::new(vec![Bounds::FREE], vec![row], (values, slopes, curvature)).solve(&[3.0])
+    {
         assert_eq!(solution.status, Status::Infeasible);
-        assert!((solution.constraint_violation - 1.0).abs() < 1e-3, "{}", solution.constraint_violation);
+        assert!(
+            (solution.constraint_violation - 1.0).abs() < 1e-3,
+            "{}",
+            solution.constraint_violation
+        );
     }
 }
 
-/// Waechter & Biegler 2000, where line searches without restoration jam: x1^2 - x2 = 1, x1 - x3 = 1/2, x2, x3 >= 0.
-/// The only solution is (1, 0, 1/2). From the left, the violation |x1 - 1/2| along x1^2 - x2 = 1 has a local minimum at x1 = -1, where IPOPT
-/// 3.14 ends and quadratic programmes alone do; a step on trust leads past it.
+/// Waechter & Biegler 2000, where line searches without restoration jam: x1^2 - x2 = 1, x1 - x3 =
+/// 1/2, x2, x3 >= 0. The only solution is (1, 0, 1/2). From the left, the violation |x1 - 1/2|
+/// along x1^2 - x2 = 1 has a local minimum at x1 = -1, where IPOPT 3.14 ends and quadratic
+/// programmes alone do; a step on trust leads past it.
 #[test]
 fn where_line_searches_jam_the_solution_is_found() {
     let values: Values = |x, rows| {
@@ -170,13 +193,18 @@ fn where_line_searches_jam_the_solution_is_found() {
     let jammed = Dense::new(bounds, vec![Bounds::fixed(0.0); 2], (values, slopes, curvature));
     let [found, stuck] = jammed.solve(&[-4.0, 1.0, 1.0]);
     assert_eq!(found.status, Status::Solved);
-    let near = found.v.iter().zip([1.0, 0.0, 0.5]).all(|(found, expected)| (found - expected).abs() < 1e-6);
+    let near = found
+        .v
+        .iter()
+        .zip([1.0, 0.0, 0.5])
+        .all(|(found, expected)| (found - expected).abs() < 1e-6);
     assert!(near, "{:?}", found.v);
     assert_eq!(stuck.status, Status::Infeasible);
     assert!((stuck.v[0] + 1.0).abs() < 1e-3 && stuck.counts.restorations > 0, "{:?}", stuck.v);
 }
 
-/// (x - 1)^2 with x >= 2, begun at its solution as the conic solver leaves it: without a barrier parameter.
+/// (x - 1)^2 with x >= 2, begun at its solution as the conic solver leaves it: without a barrier
+/// parameter.
 #[test]
 fn a_start_without_a_barrier_parameter_is_one_all_the_same() {
     let values: Values = |x, _| (x[0] - 1.0).powi(2);
@@ -184,7 +212,8 @@ fn a_start_without_a_barrier_parameter_is_one_all_the_same() {
     let curvature: Curvature = |_, factor, _, h| h[0] = 2.0 * factor;
     let mut dense = Dense::new(vec![at_least(2.0)], vec![], (values, slopes, curvature));
     let multipliers = Multipliers { lower: vec![2.0], ..Multipliers::zeros(&dense) };
-    let start = Start { v: vec![2.0], warm: Some(Warm { multipliers, mu: 0.0, widths: Vec::new() }) };
+    let start =
+        Start { v: vec![2.0], warm: Some(Warm { multipliers, mu: 0.0, widths: Vec::new() }) };
     let options = Options { tol: 1e-9, max_iter: 300, linear: Linear::Automatic, is_final: true };
     for method in METHODS {
         let solution = method(&mut dense, &start, &options, &mut |_| ControlFlow::Continue(()));
@@ -199,8 +228,8 @@ fn an_unbounded_programme_is_recognised() {
     let values: Values = |x, _| x[0] + 0.5 * x[1] * x[1];
     let slopes: Slopes = |x, g, _| g.copy_from_slice(&[1.0, x[1]]);
     let curvature: Curvature = |_, w, _, h| h.copy_from_slice(&[0.0, 0.0, w]);
-    for solution in
-        Dense::new(vec![Bounds::FREE; 2], Vec::new(), (values, slopes, curvature)).solve(&[0.0, 1.0])
+    for solution in Dense::new(vec![Bounds::FREE; 2], Vec::new(), (values, slopes, curvature))
+        .solve(&[0.0, 1.0])
     {
         assert_eq!(solution.status, Status::Unbounded);
     }
@@ -212,13 +241,16 @@ fn a_start_where_a_function_is_not_finite_is_reported() {
     let values: Values = |x, _| (x[0] - 1.0).sqrt();
     let slopes: Slopes = |x, g, _| g[0] = 0.5 / (x[0] - 1.0).sqrt();
     let curvature: Curvature = |x, w, _, h| h[0] = -0.25 * w * (x[0] - 1.0).powf(-1.5);
-    for solution in Dense::new(vec![Bounds::FREE], Vec::new(), (values, slopes, curvature)).solve(&[0.0]) {
+    for solution in
+        Dense::new(vec![Bounds::FREE], Vec::new(), (values, slopes, curvature)).solve(&[0.0])
+    {
         assert!(matches!(solution.status, Status::NotFinite(_)));
     }
 }
 
-/// Nocedal & Wright, example 15.4 (Powell): minimise 2 (x^2 + y^2 - 1) - x on the unit circle. From a point of the circle the whole Newton step raises both the
-/// objective and the violation (the Maratos effect), however near the solution (1, 0) is.
+/// Nocedal & Wright, example 15.4 (Powell): minimise 2 (x^2 + y^2 - 1) - x on the unit circle. From
+/// a point of the circle the whole Newton step raises both the objective and the violation (the
+/// Maratos effect), however near the solution (1, 0) is.
 #[test]
 fn whole_steps_are_taken_along_a_curved_row() {
     let values: Values = |x, rows| {
@@ -231,17 +263,22 @@ fn whole_steps_are_taken_along_a_curved_row() {
     };
     let curvature: Curvature =
         |_, w, l, h| h.copy_from_slice(&[4.0 * w + 2.0 * l[0], 0.0, 4.0 * w + 2.0 * l[0]]);
-    let circle = || Dense::new(vec![Bounds::FREE; 2], vec![Bounds::fixed(1.0)], (values, slopes, curvature));
+    let circle =
+        || Dense::new(vec![Bounds::FREE; 2], vec![Bounds::fixed(1.0)], (values, slopes, curvature));
     for angle in [1.0f64, 0.1, 0.01] {
         for solution in circle().solve(&[angle.cos(), angle.sin()]) {
             assert_eq!(solution.status, Status::Solved);
-            assert!((solution.v[0] - 1.0).abs() < 1e-6 && solution.counts.iterations <= 12, "{solution:?}");
+            assert!(
+                (solution.v[0] - 1.0).abs() < 1e-6 && solution.counts.iterations <= 12,
+                "{solution:?}"
+            );
         }
     }
 }
 
-/// Far from convex where nothing holds, but not where x + y = 1: minimise x y (-1/2 (x - y)^2 + 1/2 on the line is concave along it, so the bounds decide).
-/// With x, y in [0, 1] the minimum 0 is at either end.
+/// Far from convex where nothing holds, but not where x + y = 1: minimise x y (-1/2 (x - y)^2 + 1/2
+/// on the line is concave along it, so the bounds decide). With x, y in [0, 1] the minimum 0 is at
+/// either end.
 #[test]
 fn a_concave_objective_ends_at_a_bound() {
     let values: Values = |x, rows| {
@@ -253,8 +290,13 @@ fn a_concave_objective_ends_at_a_bound() {
         j.copy_from_slice(&[1.0, 1.0]);
     };
     let curvature: Curvature = |_, w, _, h| h.copy_from_slice(&[0.0, w, 0.0]);
-    let line = Dense::new(vec![between(0.0, 1.0); 2], vec![Bounds::fixed(1.0)], (values, slopes, curvature));
-    // The objective is 0 where x or y is, and so are its terms: what is left of them is not small beside that.
+    let line = Dense::new(
+        vec![between(0.0, 1.0); 2],
+        vec![Bounds::fixed(1.0)],
+        (values, slopes, curvature),
+    );
+    // The objective is 0 where x or y is, and so are its terms: what is left of them is not small
+    // beside that.
     for solution in line.solve(&[0.7, 0.3]) {
         assert!(matches!(solution.status, Status::Solved | Status::Acceptable), "{solution:?}");
         assert!(solution.objective.abs() < 1e-7, "{solution:?}");

@@ -4,7 +4,8 @@
 pub const FIRST_GRID: usize = 50;
 /// More intervals need more memory than a computer has to spare: about 5 kB each.
 const MOST_INTERVALS: usize = 1_000_000;
-/// The same for all steps together where an interval has several: the variables inside it cost more.
+/// The same for all steps together where an interval has several: the variables inside it cost
+/// more.
 const MOST_STEPS: usize = 200_000;
 /// The most stages of a collocation scheme.
 pub const MOST_STAGES: usize = 5;
@@ -20,7 +21,8 @@ pub enum Scheme {
     Midpoint,
     /// Trapezoidal rule with a constant control on each interval.
     Trapezoid,
-    /// The classical Runge-Kutta scheme; [`Problem::dynamics`](super::Problem::dynamics) has its increment, of which it is an explicit Euler step.
+    /// The classical Runge-Kutta scheme; [`Problem::dynamics`](super::Problem::dynamics) has its
+    /// increment, of which it is an explicit Euler step.
     RungeKutta4,
     /// Radau IIA collocation with so many stages, 1 to 5.
     Radau(usize),
@@ -57,7 +59,8 @@ impl Scheme {
         }
     }
 
-    /// Whether controls of this shape mean anything to the scheme: it must see enough points of an interval.
+    /// Whether controls of this shape mean anything to the scheme: it must see enough points of an
+    /// interval.
     pub fn allows(self, shape: ControlShape) -> bool {
         match shape {
             ControlShape::Constant => true,
@@ -117,9 +120,11 @@ pub struct Method {
     pub intervals: usize,
     /// Normalised times of the grid, from 0 to 1; none if all intervals have one length.
     pub mesh: Vec<f64>,
-    /// `N = auto`: the grid is refined until the sum of the errors of its steps is below `tolerance`.
+    /// `N = auto`: the grid is refined until the sum of the errors of its steps is below
+    /// `tolerance`.
     pub is_refined: bool,
-    /// `scheme = radau` or `gauss` without a number: stages are added where that is worth more than dividing intervals.
+    /// `scheme = radau` or `gauss` without a number: stages are added where that is worth more than
+    /// dividing intervals.
     pub is_raised: bool,
     /// The sum of the relative errors of all steps that a refined grid may have.
     pub tolerance: f64,
@@ -127,7 +132,8 @@ pub struct Method {
     pub steps: usize,
     /// Smoothing width, if the model names one.
     pub sigma: Option<f64>,
-    /// Widths to pass through before `sigma`, decreasing; the last is the target if `sigma` is absent.
+    /// Widths to pass through before `sigma`, decreasing; the last is the target if `sigma` is
+    /// absent.
     pub continuation: Vec<f64>,
     /// The name of the smoothing kernel.
     pub kernel: String,
@@ -144,15 +150,16 @@ pub struct Method {
 }
 
 impl Method {
-    /// How many steps there are in all, and how many there may be, if that is less. Nobody may make room for them before
-    /// this is asked.
+    /// How many steps there are in all, and how many there may be, if that is less. Nobody may make
+    /// room for them before this is asked.
     pub fn excess(&self) -> Option<[usize; 2]> {
         let most = if self.steps == 1 { MOST_INTERVALS } else { MOST_STEPS };
         let steps = self.intervals.saturating_mul(self.steps);
         (steps > most).then_some([steps, most])
     }
 
-    /// Puts the method to the first of the grids that are tried, as far as the choice is ours: a polynomial on each interval says much with few of them.
+    /// Puts the method to the first of the grids that are tried, as far as the choice is ours: a
+    /// polynomial on each interval says much with few of them.
     pub fn begin(&mut self) {
         let is_polynomial = self.controls == ControlShape::Polynomial;
         if self.is_raised {

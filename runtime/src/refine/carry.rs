@@ -1,15 +1,22 @@
-//! A solution on a grid as the start on another one, which divides its intervals or has another number of stages on them.
+//! A solution on a grid as the start on another one, which divides its intervals or has another
+//! number of stages on them.
 //!
-//! States and controls are read off the polynomials that they are on the old intervals. The multiplier of a step is the costate, on every grid;
-//! that of a node is the costate times the weight of the node. Multipliers of path constraints and bounds stand for pieces of time, and are shared by
-//! what is there now; the nearest in time is taken.
+//! States and controls are read off the polynomials that they are on the old intervals. The
+//! multiplier of a step is the costate, on every grid; that of a node is the costate times the
+//! weight of the node. Multipliers of path constraints and bounds stand for pieces of time, and are
+//! shared by what is there now; the nearest in time is taken.
 
 use crate::nlp::{Multipliers, Start, Warm};
 use crate::transcribe::TranscribedNlp;
 use crate::transcribe::interval::{Interval, Signal, Slot};
 
 /// The start on `to`, each interval of which is one of the `parts` of an interval of `from`.
-pub(super) fn carried(from: &TranscribedNlp, start: &Start, to: &TranscribedNlp, parts: &[usize]) -> Start {
+pub(super) fn carried(
+    from: &TranscribedNlp,
+    start: &Start,
+    to: &TranscribedNlp,
+    parts: &[usize],
+) -> Start {
     let carry = Carry { from, to, places: places(parts) };
     let warm = start.warm.as_ref().map(|Warm { multipliers, mu, widths }| {
         let multipliers = Multipliers {
@@ -25,7 +32,8 @@ pub(super) fn carried(from: &TranscribedNlp, start: &Start, to: &TranscribedNlp,
 /// The interval that each part is in, and which of its parts it is.
 fn places(parts: &[usize]) -> Vec<Place> {
     let all = parts.iter().enumerate();
-    all.flat_map(|(interval, &parts)| (0..parts).map(move |part| Place { interval, part, parts })).collect()
+    all.flat_map(|(interval, &parts)| (0..parts).map(move |part| Place { interval, part, parts }))
+        .collect()
 }
 
 #[derive(Clone, Copy)]
@@ -49,7 +57,8 @@ struct Carry<'a> {
 }
 
 impl Carry<'_> {
-    /// Calls `action` with each variable of the new grid but the unknowns: itself, its slot, and where it is on the old grid.
+    /// Calls `action` with each variable of the new grid but the unknowns: itself, its slot, and
+    /// where it is on the old grid.
     fn each(&self, mut action: impl FnMut(usize, usize, Place, f64)) {
         let chain = self.to.chain();
         for (slot, time) in self.to.interval().slots.iter().map(|slot| slot.time).enumerate() {
@@ -58,7 +67,8 @@ impl Carry<'_> {
             }
         }
         let last = Place { interval: self.from.chain().intervals, part: 0, parts: 1 };
-        (0..chain.states).for_each(|slot| action(chain.state(chain.intervals).start + slot, slot, last, 0.0));
+        (0..chain.states)
+            .for_each(|slot| action(chain.state(chain.intervals).start + slot, slot, last, 0.0));
     }
 
     fn values(&self, v: &[f64]) -> Vec<f64> {
@@ -98,7 +108,11 @@ impl Carry<'_> {
         let (from, to) = (self.from.chain(), self.to.chain());
         let mut carried = vec![0.0; to.rows()];
         for (k, place) in self.places.iter().enumerate() {
-            self.defects(*place, &multipliers[from.defects(place.interval)], &mut carried[to.defects(k)]);
+            self.defects(
+                *place,
+                &multipliers[from.defects(place.interval)],
+                &mut carried[to.defects(k)],
+            );
             self.path(*place, &multipliers[from.local(place.interval)], &mut carried[to.local(k)]);
         }
         carried[to.coupling()].copy_from_slice(&multipliers[from.coupling()]);
@@ -134,7 +148,8 @@ impl Carry<'_> {
     }
 }
 
-/// Rows of an interval, one for each state: those of a node, or of the end of a step that is no node.
+/// Rows of an interval, one for each state: those of a node, or of the end of a step that is no
+/// node.
 struct Block {
     row: usize,
     time: f64,
@@ -160,7 +175,8 @@ fn blocks(interval: &Interval) -> Vec<Block> {
 
 /// The blocks on both sides of a time, with their parts in a linear interpolation.
 fn between(blocks: &[Block], time: f64) -> Vec<(&Block, f64)> {
-    let next = blocks.iter().position(|block| block.time >= time).unwrap_or(blocks.len() - 1).max(1);
+    let next =
+        blocks.iter().position(|block| block.time >= time).unwrap_or(blocks.len() - 1).max(1);
     let [before, after] = [next - 1, next].map(|at| &blocks[at.min(blocks.len() - 1)]);
     let length = after.time - before.time;
     let part = if length > 0.0 { (time - before.time) / length } else { 1.0 };

@@ -1,9 +1,11 @@
 //! Where few long intervals say too little of a control: it jumps or has a kink inside.
 //!
-//! The errors of the steps do not show that: they are those of the control as it is. But a polynomial of degree `n` on an interval that cannot do without its
-//! leading coefficient `a`, however high the degree, is no piece of a smooth function: it is at least `|a| 2^(1 - 2n)` away from all of lower degree, on [0, 1].
-//! Such intervals are divided until they are as short as where the order is given; decay of coefficients as a sign of smoothness: Liu, Hager and Rao,
-//! IEEE Trans. Control Syst. Technol. 26 (2018) 1475-1483.
+//! The errors of the steps do not show that: they are those of the control as it is. But a
+//! polynomial of degree `n` on an interval that cannot do without its leading coefficient `a`,
+//! however high the degree, is no piece of a smooth function: it is at least `|a| 2^(1 - 2n)` away
+//! from all of lower degree, on [0, 1]. Such intervals are divided until they are as short as where
+//! the order is given; decay of coefficients as a sign of smoothness: Liu, Hager and Rao, IEEE
+//! Trans. Control Syst. Technol. 26 (2018) 1475-1483.
 
 use crate::homotopy::Outcome;
 use crate::problem::{ControlShape, FIRST_GRID, Problem};
@@ -37,7 +39,8 @@ pub(super) fn parts(problem: &Problem, outcome: &Outcome) -> Vec<usize> {
 fn rough(nlp: &TranscribedNlp, v: &[f64], control: usize) -> Vec<bool> {
     let slots = nlp.interval().slots.iter().enumerate();
     let own = slots.filter(|(_, slot)| slot.signal == Signal::Control(control));
-    let (places, times): (Vec<usize>, Vec<f64>) = own.map(|(place, slot)| (place, slot.time)).unzip();
+    let (places, times): (Vec<usize>, Vec<f64>) =
+        own.map(|(place, slot)| (place, slot.time)).unzip();
     let values: Vec<Vec<f64>> = (0..nlp.chain().intervals)
         .map(|k| places.iter().map(|place| v[nlp.chain().state(k).start + place]).collect())
         .collect();

@@ -1,7 +1,8 @@
-//! The error of each step, by an accurate integration of the smoothed system from the beginning of each interval.
+//! The error of each step, by an accurate integration of the smoothed system from the beginning of
+//! each interval.
 //!
-//! All intervals are integrated side by side by the classical Runge-Kutta scheme, with twice as many steps until the ends
-//! stay where they are.
+//! All intervals are integrated side by side by the classical Runge-Kutta scheme, with twice as
+//! many steps until the ends stay where they are.
 
 use crate::homotopy::Outcome;
 use crate::problem::{Columns, Problem};
@@ -10,13 +11,15 @@ use crate::transcribe::interval::add_up;
 
 const FEWEST_STEPS: usize = 4;
 const MOST_STEPS: usize = 256;
-/// The integration is accurate enough when twice the steps change the errors by this part of the tolerance.
+/// The integration is accurate enough when twice the steps change the errors by this part of the
+/// tolerance.
 const ACCURATE: f64 = 0.05;
 
 /// The largest relative error of a state, or of the running cost, over each interval.
 pub(super) fn step_errors(problem: &Problem, outcome: &Outcome) -> Vec<f64> {
     let nlp = TranscribedNlp::new(problem);
-    let flow = Flow { problem, nlp: &nlp, v: &outcome.solution.v, p: &outcome.trajectory.parameters };
+    let flow =
+        Flow { problem, nlp: &nlp, v: &outcome.solution.v, p: &outcome.trajectory.parameters };
     let (ends, scales) = (flow.ends_of_steps(), flow.scales(outcome.solution.objective));
     let mut errors = flow.errors(FEWEST_STEPS, &ends, &scales);
     let mut steps = FEWEST_STEPS;
@@ -54,7 +57,8 @@ impl Flow<'_> {
             add_up(combination, chain, self.v, ends.column_mut(state));
         }
         for node in self.nlp.interval().nodes.iter().filter(|_| problem.running_cost) {
-            let mut points = Columns::new(1 + problem.layout.x + problem.layout.u, self.intervals());
+            let mut points =
+                Columns::new(1 + problem.layout.x + problem.layout.u, self.intervals());
             node.point.set_times(self.nlp.mesh(), &mut points);
             node.point.load(chain, problem.dynamics.layout(), self.v, &mut points);
             let mut rates = Columns::new(problem.dynamics.outputs(), self.intervals());

@@ -1,8 +1,10 @@
-//! `N = auto`: solve, estimate the error of each step, refine the grid where it is large, and solve again from there.
+//! `N = auto`: solve, estimate the error of each step, refine the grid where it is large, and solve
+//! again from there.
 //!
-//! The error of a step is the difference between its end and that of an accurate integration of the same smoothed system from
-//! the same state with the same control ([`estimate`]). What is refined is [`plan`]'s to say: intervals are divided, or, where the model leaves the order
-//! open, all get more stages, which is taken back where it does not pay.
+//! The error of a step is the difference between its end and that of an accurate integration of the
+//! same smoothed system from the same state with the same control ([`estimate`]). What is refined
+//! is [`plan`]'s to say: intervals are divided, or, where the model leaves the order open, all get
+//! more stages, which is taken back where it does not pay.
 
 mod carry;
 mod controls;
@@ -24,7 +26,8 @@ const MOST_ROUNDS: usize = 30;
 const FINEST_FIRST: usize = 8 * FIRST_GRID;
 /// Of a solve that may be given up.
 const MOST_ITERATIONS: usize = 500;
-/// The first stages that are added may gain little where the next gain much. So many times the least nodes may be foreseen and one more is still tried.
+/// The first stages that are added may gain little where the next gain much. So many times the
+/// least nodes may be foreseen and one more is still tried.
 const PATIENCE: f64 = 1.5;
 
 /// A solution and the grid that it was found on.
@@ -38,7 +41,11 @@ pub struct Refined {
 }
 
 /// Solves a problem, on a grid of our own choice where it asks for that.
-pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Result<Refined, Refusal> {
+pub fn solve(
+    problem: &Problem,
+    start: Option<Start>,
+    watch: &mut Watch,
+) -> Result<Refined, Refusal> {
     if !problem.method.is_refined {
         let outcome = homotopy::solve(problem, start, watch)?;
         return Ok(Refined { problem: problem.clone(), outcome, error: None });
@@ -56,9 +63,14 @@ pub fn solve(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Resu
     Ok(Refined { problem: grid.problem, outcome: grid.outcome, error })
 }
 
-/// The first grid that can be solved, with its solution. Few intervals may be too few for a solution; then there are as many as where the order is given, and
-/// where nothing is found on these, either, they are halved again and again: a coarse grid says nothing of the problem.
-fn first(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Result<(Problem, Outcome), Refusal> {
+/// The first grid that can be solved, with its solution. Few intervals may be too few for a
+/// solution; then there are as many as where the order is given, and where nothing is found on
+/// these, either, they are halved again and again: a coarse grid says nothing of the problem.
+fn first(
+    problem: &Problem,
+    start: Option<Start>,
+    watch: &mut Watch,
+) -> Result<(Problem, Outcome), Refusal> {
     let is_few = problem.method.intervals < FIRST_GRID;
     let trial = if is_few { on_trial(problem) } else { problem.clone() };
     let mut found = (problem.clone(), homotopy::solve(&trial, start.clone(), watch)?);
@@ -72,7 +84,8 @@ fn first(problem: &Problem, start: Option<Start>, watch: &mut Watch) -> Result<(
     Ok(found)
 }
 
-/// The same from the same start on more intervals, a multiple of those of the problem; `before` is what was tried.
+/// The same from the same start on more intervals, a multiple of those of the problem; `before` is
+/// what was tried.
 fn finer(
     problem: &Problem,
     start: &Option<Start>,
@@ -151,13 +164,16 @@ impl Grid {
         self.errors.nodes(self.problem.method.tolerance)
     }
 
-    /// The best of the same intervals with more stages; nothing if fewer nodes are foreseen without them.
+    /// The best of the same intervals with more stages; nothing if fewer nodes are foreseen without
+    /// them.
     fn raised(&mut self, watch: &mut Watch) -> Result<Option<Grid>, Refusal> {
         let now = self.problem.method.scheme.stages();
         let first = self.errors.best_stages(self.problem.method.tolerance);
         let mut tried: Vec<Grid> = Vec::new();
         for stages in (first..=MOST_STAGES).filter(|_| first > now) {
-            let Some(next) = tried.last_mut().unwrap_or(self).with_stages(stages, watch)? else { break };
+            let Some(next) = tried.last_mut().unwrap_or(self).with_stages(stages, watch)? else {
+                break;
+            };
             let (nodes, is_enough) = (next.nodes() as f64, next.is_enough());
             tried.push(next);
             // What a raise has shown is news for the grids before it, too.
@@ -174,7 +190,8 @@ impl Grid {
         Ok(best)
     }
 
-    /// The same intervals with so many stages, and what they gain; nothing if they cannot be solved.
+    /// The same intervals with so many stages, and what they gain; nothing if they cannot be
+    /// solved.
     fn with_stages(&mut self, stages: usize, watch: &mut Watch) -> Result<Option<Grid>, Refusal> {
         let mut problem = self.problem.clone();
         let intervals = problem.method.intervals;
@@ -183,7 +200,8 @@ impl Grid {
         self.outcome.solution.counts = outcome.solution.counts;
         // What is solved is not given away for what is nearly solved.
         if !is_good(&outcome)
-            || outcome.solution.status != Status::Solved && self.outcome.solution.status == Status::Solved
+            || outcome.solution.status != Status::Solved
+                && self.outcome.solution.status == Status::Solved
         {
             self.errors.gains = vec![1.0; intervals];
             return Ok(None);
@@ -194,7 +212,8 @@ impl Grid {
         Ok(Some(next))
     }
 
-    /// More intervals; nothing if they are too many, or cannot be solved: that is no reason to lose the answer on these.
+    /// More intervals; nothing if they are too many, or cannot be solved: that is no reason to lose
+    /// the answer on these.
     fn divided(&mut self, parts: &[usize], watch: &mut Watch) -> Result<Option<Grid>, Refusal> {
         if parts.iter().sum::<usize>() > MOST {
             return Ok(None);
@@ -210,7 +229,12 @@ impl Grid {
     }
 
     /// The solution on another grid, from that on this one and with its widths.
-    fn again(&self, problem: &Problem, parts: &[usize], watch: &mut Watch) -> Result<Outcome, Refusal> {
+    fn again(
+        &self,
+        problem: &Problem,
+        parts: &[usize],
+        watch: &mut Watch,
+    ) -> Result<Outcome, Refusal> {
         let (from, to) = (TranscribedNlp::new(&self.problem), TranscribedNlp::new(problem));
         let start = carried(&from, &Start::near(&self.outcome.solution), &to, parts);
         homotopy::solve_near(problem, start, &self.outcome, watch)

@@ -1,20 +1,26 @@
-//! What is done where the errors of the steps are too large: intervals are divided, or the order is raised on all of them.
+//! What is done where the errors of the steps are too large: intervals are divided, or the order is
+//! raised on all of them.
 //!
-//! With an error `e_k ~ C_k h_k^(p+1)` for a scheme of order `p`, dividing interval `k` into `m_k` parts leaves `e_k / m_k^p`; the sum of all is at the
-//! tolerance with the fewest intervals where `m_k` is in proportion to `e_k^(1/(p+1))`.
+//! With an error `e_k ~ C_k h_k^(p+1)` for a scheme of order `p`, dividing interval `k` into `m_k`
+//! parts leaves `e_k / m_k^p`; the sum of all is at the tolerance with the fewest intervals where
+//! `m_k` is in proportion to `e_k^(1/(p+1))`.
 //!
-//! One more stage multiplies `e_k` by a gain `g_k`, where the solution is smooth over the interval: by about `(h_k/R_k)^2`, where `R_k` is its
-//! scale there; at a kink or in a layer shorter than the interval it gains nothing. That ratio of two local errors tells smooth from rough (Gui
-//! and Babuska, Numer. Math. 49 (1986) 659-683); each raise measures it, dividing into `m` parts divides it by `m^2`, and before the first
-//! raise the best is hoped for. The number of stages is that for which the fewest nodes, intervals times stages, are foreseen.
+//! One more stage multiplies `e_k` by a gain `g_k`, where the solution is smooth over the interval:
+//! by about `(h_k/R_k)^2`, where `R_k` is its scale there; at a kink or in a layer shorter than the
+//! interval it gains nothing. That ratio of two local errors tells smooth from rough (Gui and
+//! Babuska, Numer. Math. 49 (1986) 659-683); each raise measures it, dividing into `m` parts
+//! divides it by `m^2`, and before the first raise the best is hoped for. The number of stages is
+//! that for which the fewest nodes, intervals times stages, are foreseen.
 
 use crate::problem::{MOST_STAGES, Scheme};
 
 /// Of what the tolerance allows, so much is planned for.
 const PLANNED: f64 = 0.7;
-/// An interval is divided into no more parts at a time: far from the limit errors fall in other ways.
+/// An interval is divided into no more parts at a time: far from the limit errors fall in other
+/// ways.
 const MOST_PARTS: f64 = 4.0;
-/// More parts of an interval than that are not counted: an error may be larger than any number of them could lower.
+/// More parts of an interval than that are not counted: an error may be larger than any number of
+/// them could lower.
 const BEYOND: f64 = 1e6;
 /// What gains no more than that by another stage is not smooth.
 const ROUGH: f64 = 0.3;
@@ -50,7 +56,8 @@ impl Errors {
         self.steps.iter().map(|error| (factor * error.powf(q)).max(1.0)).collect()
     }
 
-    /// Intervals times stages when they are divided until the tolerance is met. Where the solution is rough, most halvings leave the error in one of the halves.
+    /// Intervals times stages when they are divided until the tolerance is met. Where the solution
+    /// is rough, most halvings leave the error in one of the halves.
     pub(super) fn nodes(&self, tolerance: f64) -> usize {
         let order = self.scheme.order() as f64;
         let parts = self.ideal(tolerance).into_iter().zip(&self.gains).map(|(parts, gain)| {
@@ -77,8 +84,9 @@ impl Errors {
     /// The gains of one more stage that `after`, on the same intervals with more, has shown.
     pub(super) fn gains_to(&self, after: &Errors) -> Vec<f64> {
         let each = 1.0 / (after.scheme.stages() - self.scheme.stages()) as f64;
-        let gain =
-            |(before, after): (&f64, &f64)| if after < before { (after / before).powf(each) } else { 1.0 };
+        let gain = |(before, after): (&f64, &f64)| {
+            if after < before { (after / before).powf(each) } else { 1.0 }
+        };
         self.steps.iter().zip(&after.steps).map(gain).collect()
     }
 
@@ -114,8 +122,12 @@ mod tests {
         let steps: Vec<f64> = (1..=40).map(|k| 1e-3 * f64::from(k * k)).collect();
         let tolerance = 0.05 * steps.iter().sum::<f64>();
         let parts = of_order(Scheme::Midpoint, &steps).parts(tolerance);
-        let left: f64 = steps.iter().zip(&parts).map(|(error, parts)| error / (parts * parts) as f64).sum();
-        assert!(parts.iter().all(|parts| *parts <= 4) && left < 1.6 * tolerance, "{parts:?} {left}");
+        let left: f64 =
+            steps.iter().zip(&parts).map(|(error, parts)| error / (parts * parts) as f64).sum();
+        assert!(
+            parts.iter().all(|parts| *parts <= 4) && left < 1.6 * tolerance,
+            "{parts:?} {left}"
+        );
     }
 
     #[test]
@@ -123,7 +135,8 @@ mod tests {
         assert_eq!(errors(2, &[1e300; 50], &[1.0; 50]).nodes(1e-3), 2 * 50 * 1_000_000);
     }
 
-    /// Errors that stages lower on all intervals ask for stages; errors that they do not lower, on a few, ask for division.
+    /// Errors that stages lower on all intervals ask for stages; errors that they do not lower, on
+    /// a few, ask for division.
     #[test]
     fn smooth_errors_ask_for_stages_and_rough_ones_for_division() {
         assert_eq!(errors(3, &[1e-5; 10], &[1e-3; 10]).best_stages(1e-6), 4);
@@ -133,11 +146,13 @@ mod tests {
         assert_eq!(errors(3, &steps, &gains).best_stages(1e-6), 3);
     }
 
-    /// `e = C (h/R)^(2s)`: one more stage multiplies by `(h/R)^2`, on half the interval by a quarter of that.
+    /// `e = C (h/R)^(2s)`: one more stage multiplies by `(h/R)^2`, on half the interval by a
+    /// quarter of that.
     #[test]
     fn gains_are_those_of_the_theory() {
         let error = |h: f64, stages: i32| (h / 2.0).powi(2 * stages);
-        let (two, four) = (errors(2, &[error(1.0, 2)], &[0.0]), errors(4, &[error(1.0, 4)], &[0.0]));
+        let (two, four) =
+            (errors(2, &[error(1.0, 2)], &[0.0]), errors(4, &[error(1.0, 4)], &[0.0]));
         let gains = two.gains_to(&four);
         assert!((gains[0] - 0.25).abs() < 1e-15);
         let known = Errors { gains, ..four };

@@ -27,7 +27,10 @@ impl Pairs {
         self.columns.column(i * (i + 1) / 2 + j)
     }
 
-    pub fn map(&self, mut of: impl FnMut(usize, usize, DVectorView<'_, f64>) -> DVector<f64>) -> Self {
+    pub fn map(
+        &self,
+        mut of: impl FnMut(usize, usize, DVectorView<'_, f64>) -> DVector<f64>,
+    ) -> Self {
         Pairs::new(self.count, |i, j| of(i, j, self.at(i, j)))
     }
 
@@ -53,7 +56,8 @@ pub(super) struct Moved {
 }
 
 impl Bend<'_> {
-    /// The state that meets the stop, from what it is at a fixed time; `directions` are `(t, x, u, p)`.
+    /// The state that meets the stop, from what it is at a fixed time; `directions` are `(t, x, u,
+    /// p)`.
     pub fn meet(&self, s: &DMatrix<f64>, x: &Pairs, directions: &[DVector<f64>]) -> Moved {
         if self.stop.cause == Cause::Start {
             return Moved { s: s.clone(), x: x.clone(), tau: self.clock(directions) };
@@ -81,7 +85,10 @@ impl Bend<'_> {
                 let whole = self.moved(directions, &moved.s);
                 let (by_state, by_time) = (by.columns(1, states), by.column(0));
                 moved.x = moved.x.map(|i, j, x| {
-                    let bent = hessians.along(&whole[i], &whole[j]).rows(jump * states, states).into_owned();
+                    let bent = hessians
+                        .along(&whole[i], &whole[j])
+                        .rows(jump * states, states)
+                        .into_owned();
                     by_state * x + by_time * moved.tau.at(i, j)[0] + bent
                 });
                 for (i, whole) in whole.iter().enumerate() {
@@ -94,12 +101,18 @@ impl Bend<'_> {
     }
 
     /// Back to the fixed time, along the right side after the stop; `directions` are those there.
-    pub fn leave(&self, onward: &Linearization, moved: &Moved, directions: &[DVector<f64>]) -> Pairs {
+    pub fn leave(
+        &self,
+        onward: &Linearization,
+        moved: &Moved,
+        directions: &[DVector<f64>],
+    ) -> Pairs {
         let swept = self.swept(onward, directions);
         moved.x.map(|i, j, x| x - swept(i, j) - &onward.rate * moved.tau.at(i, j)[0])
     }
 
-    /// `f_i tau_j + f_j tau_i + f_t tau_i tau_j` with derivatives along the path at fixed time and along the flow.
+    /// `f_i tau_j + f_j tau_i + f_t tau_i tau_j` with derivatives along the path at fixed time and
+    /// along the flow.
     fn swept(
         &self,
         point: &Linearization,
@@ -111,10 +124,13 @@ impl Bend<'_> {
         let by_flow = point.by() * along_flow;
         let by_direction: Vec<DVector<f64>> = directions.iter().map(|it| point.by() * it).collect();
         let tau = self.tau.clone();
-        move |i, j| &by_direction[i] * tau[j] + &by_direction[j] * tau[i] + &by_flow * (tau[i] * tau[j])
+        move |i, j| {
+            &by_direction[i] * tau[j] + &by_direction[j] * tau[i] + &by_flow * (tau[i] * tau[j])
+        }
     }
 
-    /// `tau_ij`. Where a selector reaches its end nothing depends on it, because the right side has no jump there.
+    /// `tau_ij`. Where a selector reaches its end nothing depends on it, because the right side has
+    /// no jump there.
     fn second_tau(
         &self,
         arriving: &Linearization,
@@ -133,7 +149,8 @@ impl Bend<'_> {
         };
         let table = self.table(self.stop.before);
         let by = Jacobian::of(&**function, &table, &self.linearizer.parameters).by;
-        let (normal, by_time) = (by.row(row).columns(1, system.layout.x).into_owned(), by[(row, 0)]);
+        let (normal, by_time) =
+            (by.row(row).columns(1, system.layout.x).into_owned(), by[(row, 0)]);
         let speed = (&normal * &arriving.rate)[0] + by_time;
         let hessians = Hessians::of(&**function, &table, &self.linearizer.parameters);
         let whole = self.moved(directions, s);
@@ -147,7 +164,8 @@ impl Bend<'_> {
     fn clock(&self, directions: &[DVector<f64>]) -> Pairs {
         let layout = self.linearizer.system.layout;
         let tau = self.linearizer.tau(self.stop.before.time);
-        let parameters = |i: usize| directions[i].rows(layout.parameters().start, layout.p).into_owned();
+        let parameters =
+            |i: usize| directions[i].rows(layout.parameters().start, layout.p).into_owned();
         Pairs::new(directions.len(), |i, j| {
             let ends = self.linearizer.interval_curvature(&parameters(i), &parameters(j));
             DVector::from_element(1, (1.0 - tau) * ends[0] + tau * ends[1])
@@ -159,7 +177,8 @@ impl Bend<'_> {
         self.linearizer.table(&self.tape.regimes[at.regime], &at.selectors, at.time, &state)
     }
 
-    /// Directions with the moved time and state, `[t | x | u | p | s]`; selectors enter neither surfaces nor resets.
+    /// Directions with the moved time and state, `[t | x | u | p | s]`; selectors enter neither
+    /// surfaces nor resets.
     fn moved(&self, directions: &[DVector<f64>], s: &DMatrix<f64>) -> Vec<DVector<f64>> {
         let inputs = self.linearizer.system.layout.inputs();
         let one = |(i, direction): (usize, &DVector<f64>)| {

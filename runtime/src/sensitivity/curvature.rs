@@ -1,4 +1,5 @@
-//! Second derivatives of the right side in a regime, selectors eliminated, along pairs of directions.
+//! Second derivatives of the right side in a regime, selectors eliminated, along pairs of
+//! directions.
 //!
 //! With `W_i` a direction of `(t, x, u, p)` completed by `s_i = s_w W_i`
 //!
@@ -34,7 +35,14 @@ impl Hessians {
         let mut values = Columns::new(outputs, outputs);
         let mut jacobian = Columns::new(function.jacobian_pattern().entries.len(), outputs);
         let mut entries = Columns::new(pattern.len(), outputs);
-        function.derivatives(&points, parameters, &multipliers, &mut values, &mut jacobian, &mut entries);
+        function.derivatives(
+            &points,
+            parameters,
+            &multipliers,
+            &mut values,
+            &mut jacobian,
+            &mut entries,
+        );
         Hessians { entries, pattern, outputs }
     }
 
@@ -43,10 +51,17 @@ impl Hessians {
         let mut sum = DVector::zeros(self.outputs);
         for (entry, &(row, column)) in self.pattern.iter().enumerate() {
             let (row, column) = (row as usize, column as usize);
-            let weight =
-                if row == column { a[row] * b[row] } else { a[row] * b[column] + a[column] * b[row] };
+            let weight = if row == column {
+                a[row] * b[row]
+            } else {
+                a[row] * b[column] + a[column] * b[row]
+            };
             if weight != 0.0 {
-                self.entries.column(entry).iter().zip(sum.iter_mut()).for_each(|(h, sum)| *sum += weight * h);
+                self.entries
+                    .column(entry)
+                    .iter()
+                    .zip(sum.iter_mut())
+                    .for_each(|(h, sum)| *sum += weight * h);
             }
         }
         sum
@@ -74,11 +89,13 @@ impl<'l, 'a> Curvature<'l, 'a> {
         let table = linearizer.table(regime, &point.selectors, time, x);
         let flow = Hessians::of(&*linearizer.system.flow, &table, &linearizer.parameters);
         let sliding = sliding(regime);
-        let rates = if sliding.is_empty() { None } else { rates(linearizer, point, &table, sliding) };
+        let rates =
+            if sliding.is_empty() { None } else { rates(linearizer, point, &table, sliding) };
         Curvature { linearizer, point, flow, rates, time }
     }
 
-    /// A direction `(t, x, u, p)` with the controls that follow the guess and the selectors: `[t | x | u | p | s]`.
+    /// A direction `(t, x, u, p)` with the controls that follow the guess and the selectors: `[t |
+    /// x | u | p | s]`.
     pub fn complete(&self, direction: &DVector<f64>) -> DVector<f64> {
         let layout = self.linearizer.system.layout;
         let mut whole = direction.clone().resize_vertically(layout.inputs(), 0.0);
@@ -142,7 +159,8 @@ impl Linearizer<'_> {
         let layout = self.system.layout;
         let [first, last] = self.system.interval;
         let (tau, duration) = (self.tau(time), last - first);
-        let parameters = |whole: &DVector<f64>| whole.rows(layout.parameters().start, layout.p).into_owned();
+        let parameters =
+            |whole: &DVector<f64>| whole.rows(layout.parameters().start, layout.p).into_owned();
         let ends = &self.ends_by;
         let slopes = |whole: &DVector<f64>| {
             let ends = ends * parameters(whole);
@@ -151,14 +169,15 @@ impl Linearizer<'_> {
         };
         let ((tau_a, stretch_a), (tau_b, stretch_b)) = (slopes(a), slopes(b));
         let bent = self.interval_curvature(&parameters(a), &parameters(b));
-        let tau_ab =
-            (-bent[0] - tau_a * stretch_b - tau_b * stretch_a - tau * (bent[1] - bent[0])) / duration;
+        let tau_ab = (-bent[0] - tau_a * stretch_b - tau_b * stretch_a - tau * (bent[1] - bent[0]))
+            / duration;
         let mut table = Columns::new(1, 1);
         table.column_mut(0)[0] = tau;
         let over_curve = |tau: f64, whole: &DVector<f64>| parameters(whole).insert_row(0, tau);
         let hessians = Hessians::of(&*self.system.guess, &table, &self.parameters);
         let bend = hessians.along(&over_curve(tau_a, a), &over_curve(tau_b, b));
-        let by_tau = Jacobian::of(&*self.system.guess, &table, &self.parameters).by.column(0).into_owned();
+        let by_tau =
+            Jacobian::of(&*self.system.guess, &table, &self.parameters).by.column(0).into_owned();
         (bend + by_tau * tau_ab).rows(layout.x, layout.u).into_owned()
     }
 }

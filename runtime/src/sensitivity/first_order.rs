@@ -30,7 +30,8 @@ impl Objective {
         for (at, value) in system.start.iter().chain(&simulation.end).enumerate() {
             point.column_mut(at)[0] = *value;
         }
-        let Jacobian { values, by } = Jacobian::of(&*system.objective, &point, &linearizer.parameters);
+        let Jacobian { values, by } =
+            Jacobian::of(&*system.objective, &point, &linearizer.parameters);
         (!values.is_empty()).then(|| Objective {
             value: values[0],
             by_start: by.row(0).columns(0, states).into_owned(),
@@ -102,7 +103,8 @@ pub(super) fn size(
     sizes.iter().copied().fold(0.0, f64::max)
 }
 
-/// The whole gradient, backward; `visit` sees the adjoint at the end of every piece, then that at the first time.
+/// The whole gradient, backward; `visit` sees the adjoint at the end of every piece, then that at
+/// the first time.
 pub(super) fn adjoint(
     pieces: &LinearTape,
     objective: &Objective,

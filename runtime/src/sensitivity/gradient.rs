@@ -26,8 +26,9 @@ pub struct Sensitivity {
     pub forward: Vec<f64>,
     /// By each quantity, from the adjoint.
     pub adjoint: Vec<f64>,
-    /// The largest difference between the two, relative to the largest sum of the sizes that a derivative is made of, at
-    /// the end or on the way, `sum |lambda_i| |dx_i|`. Where `forward` is empty, along a sum of the quantities with mixed signs.
+    /// The largest difference between the two, relative to the largest sum of the sizes that a
+    /// derivative is made of, at the end or on the way, `sum |lambda_i| |dx_i|`. Where `forward` is
+    /// empty, along a sum of the quantities with mixed signs.
     pub agreement: f64,
     /// The derivative of each state at the end by each quantity; empty like `forward`.
     pub end: Vec<Vec<f64>>,
@@ -39,7 +40,8 @@ pub struct Sensitivity {
     pub kink: Option<Kink>,
 }
 
-/// `dJ/dx(t)`, in the canonical gauge on sliding arcs (`lambda . df/ds = 0`); two entries at one time where it jumps.
+/// `dJ/dx(t)`, in the canonical gauge on sliding arcs (`lambda . df/ds = 0`); two entries at one
+/// time where it jumps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Costates {
     /// Ascending.
@@ -62,7 +64,8 @@ impl Costates {
     }
 }
 
-/// Differentiates; nothing but the simulation where it does not reach the end or there is no objective.
+/// Differentiates; nothing but the simulation where it does not reach the end or there is no
+/// objective.
 pub fn gradient(
     system: &System,
     controls: &Controls,
@@ -72,7 +75,8 @@ pub fn gradient(
     let simulation = simulate(system, controls, &Options { tape: true, ..options.clone() });
     let linearizer = Linearizer::new(system, controls);
     let objective = Objective::new(&linearizer, &simulation);
-    let (Some(tape), Some(objective), Status::Completed) = (&simulation.tape, objective, &simulation.status)
+    let (Some(tape), Some(objective), Status::Completed) =
+        (&simulation.tape, objective, &simulation.status)
     else {
         return Err(Box::new(simulation));
     };
@@ -80,8 +84,11 @@ pub fn gradient(
     let (whole, costates) = backward(&pieces, &objective, Gradient::zero(system, controls));
     let adjoint: Vec<f64> = quantities.iter().map(|quantity| whole.by(quantity)).collect();
     let is_each = quantities.len() <= MOST_FORWARD;
-    let weights =
-        if is_each { DMatrix::identity(adjoint.len(), adjoint.len()) } else { signs(adjoint.len()) };
+    let weights = if is_each {
+        DMatrix::identity(adjoint.len(), adjoint.len())
+    } else {
+        signs(adjoint.len())
+    };
     let directions = Directions::new(system, quantities, &weights);
     let (mut on_the_way, mut largest): (f64, f64) = (0.0, 0.0);
     let end = first_order::forward(&pieces, &directions, &mut |at, s| {
@@ -133,7 +140,7 @@ fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
 
 fn agreement(forward: &[f64], adjoint: &[f64], size: f64) -> f64 {
     let differences = forward.iter().zip(adjoint).map(|(a, b)| (a - b).abs());
-    let largest =
-        differences.fold(0.0, |sum: f64, value| if value.is_nan() { f64::NAN } else { sum.max(value) });
+    let largest = differences
+        .fold(0.0, |sum: f64, value| if value.is_nan() { f64::NAN } else { sum.max(value) });
     if size > 0.0 { largest / size } else { largest }
 }

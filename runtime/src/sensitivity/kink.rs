@@ -1,7 +1,8 @@
-//! A trajectory that stays on a kink of the right side which is no surface: only derivatives of one side are known there.
+//! A trajectory that stays on a kink of the right side which is no surface: only derivatives of one
+//! side are known there.
 //!
-//! With `e = 0` at the kink, it does no harm where nothing moves `e`: where `e_(x, u, p)` is a combination of the normals of the
-//! surfaces that the state slides on.
+//! With `e = 0` at the kink, it does no harm where nothing moves `e`: where `e_(x, u, p)` is a
+//! combination of the normals of the surfaces that the state slides on.
 
 use super::linearization::{Jacobian, Linearizer, sliding};
 use super::trouble::{TANGENT, TOUCHING};
@@ -37,13 +38,17 @@ pub(super) fn first_kink(linearizer: &Linearizer, tape: &Tape) -> Option<Kink> {
     })
 }
 
-/// Whether a kink is met almost along itself, so that the second derivative of the time is nothing to rely on; or together with another stop, so that
-/// their order is not fixed; or moved by controls that follow the guess.
+/// Whether a kink is met almost along itself, so that the second derivative of the time is nothing
+/// to rely on; or together with another stop, so that their order is not fixed; or moved by
+/// controls that follow the guess.
 pub(super) fn is_doubtful(linearizer: &Linearizer, tape: &Tape, at: usize) -> bool {
-    let Piece::Stop { cause: Cause::Bends(kink), before, .. } = &tape.pieces[at] else { return false };
+    let Piece::Stop { cause: Cause::Bends(kink), before, .. } = &tape.pieces[at] else {
+        return false;
+    };
     let controls = linearizer.system.layout.controls();
     let here = Here::new(linearizer, tape, before);
-    let follows = linearizer.is_guessed() && here.by.row(*kink).columns_range(controls).amax() > 0.0;
+    let follows =
+        linearizer.is_guessed() && here.by.row(*kink).columns_range(controls).amax() > 0.0;
     let is_near = |piece: &Piece| {
         let [first, last] = linearizer.system.interval;
         matches!(piece, Piece::Stop { before: other, .. } if (other.time - before.time).abs() <= TOUCHING * (last - first))

@@ -1,13 +1,14 @@
 //! The right side in a regime with its derivatives by everything, selectors eliminated.
 //!
-//! With `w = (t, x, u, p)` and `r = psi'` on the sliding surfaces `A`, the selectors solve `r_A(w, s_A) = 0`, so
+//! With `w = (t, x, u, p)` and `r = psi'` on the sliding surfaces `A`, the selectors solve `r_A(w,
+//! s_A) = 0`, so
 //!
 //! ```text
 //! s_w = -r_s^-1 r_w,      f*_w = f_w + f_s s_w
 //! ```
 //!
-//! Controls that follow the guess are functions of time and parameters, `u = g(tau(t, p), p)`; their derivatives are
-//! folded into those by `t` and `p`.
+//! Controls that follow the guess are functions of time and parameters, `u = g(tau(t, p), p)`;
+//! their derivatives are folded into those by `t` and `p`.
 
 use crate::problem::{Columns, Function, Layout};
 use crate::simulate::{Ball, Controls, Mode, Regime, System};
@@ -73,7 +74,8 @@ pub(super) struct Linearizer<'a> {
     /// `d(t0, tf)/dp`.
     pub ends_by: DMatrix<f64>,
     controls: &'a Controls,
-    /// Values and derivatives of the right side as its function gives them, again and again in the same memory.
+    /// Values and derivatives of the right side as its function gives them, again and again in the
+    /// same memory.
     pub results: RefCell<[Columns; 2]>,
 }
 
@@ -152,8 +154,9 @@ impl<'a> Linearizer<'a> {
         if last > first { (t - first) / (last - first) } else { 0.0 }
     }
 
-    /// Gives the selectors of moving balls their values, `psi/|psi|`; their slopes, `(I - s s')/|psi| psi_w`. At 0, where a ball sets
-    /// out or lands, they are those that the table has, and constant.
+    /// Gives the selectors of moving balls their values, `psi/|psi|`; their slopes, `(I - s
+    /// s')/|psi| psi_w`. At 0, where a ball sets out or lands, they are those that the table has,
+    /// and constant.
     fn follow_directions(
         &self,
         table: &mut Columns,
@@ -163,7 +166,8 @@ impl<'a> Linearizer<'a> {
         let is_moving = |ball: &&Ball| regime.modes[ball.surfaces.start] == Mode::Moving;
         let moving: Vec<&Ball> = self.system.balls.iter().filter(is_moving).collect();
         let layout = self.system.layout;
-        let mut slopes = (!moving.is_empty()).then(|| DMatrix::zeros(layout.s, layout.selectors().start))?;
+        let mut slopes =
+            (!moving.is_empty()).then(|| DMatrix::zeros(layout.s, layout.selectors().start))?;
         let guards = Jacobian::of(&*self.system.guards, table, &self.parameters);
         let first = table.columns() - layout.s;
         for ball in moving {
@@ -175,7 +179,10 @@ impl<'a> Linearizer<'a> {
                 continue;
             }
             let s = psi / psi.norm();
-            ball.surfaces.clone().zip(s.iter()).for_each(|(i, s)| table.column_mut(first + i)[0] = *s);
+            ball.surfaces
+                .clone()
+                .zip(s.iter())
+                .for_each(|(i, s)| table.column_mut(first + i)[0] = *s);
             slopes.rows_mut(at, count).copy_from(&((by - &s * s.tr_mul(&by)) / psi.norm()));
         }
         Some(slopes)
@@ -321,8 +328,9 @@ impl Jacobian {
         Jacobian { values, by }
     }
 
-    /// Takes the motion of some states out of `psi'`. (Second derivatives of `psi` by a state that stands still are not
-    /// taken out of the slopes; surfaces that are curved there would need them.)
+    /// Takes the motion of some states out of `psi'`. (Second derivatives of `psi` by a state that
+    /// stands still are not taken out of the slopes; surfaces that are curved there would need
+    /// them.)
     fn without_motion(mut self, flow: &Jacobian, guards: &Jacobian, states: &[usize]) -> Self {
         for surface in 0..self.values.len() {
             for &state in states {

@@ -1,11 +1,12 @@
-//! Exact derivatives of the true system: forward sensitivities and adjoints through crossings, sliding and resets.
+//! Exact derivatives of the true system: forward sensitivities and adjoints through crossings,
+//! sliding and resets.
 //!
 //! ```text
 //! simulate (with a tape) -> linear maps, piece by piece (sweep) -> forward, adjoint (first_order), Hessian (second_order)
 //! ```
 //!
-//! A step is differentiated as it was computed ([`step`](self)), an event by its saltation matrix, sliding with the oblique
-//! projection. [`gradient()`] is the entry.
+//! A step is differentiated as it was computed ([`step`](self)), an event by its saltation matrix,
+//! sliding with the oblique projection. [`gradient()`] is the entry.
 
 mod bend;
 mod curvature;

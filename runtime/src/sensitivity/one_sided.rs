@@ -1,7 +1,8 @@
-//! Derivatives from both sides, where there is no derivative: each from trajectories with the modes of its side.
+//! Derivatives from both sides, where there is no derivative: each from trajectories with the modes
+//! of its side.
 //!
-//! The gradients at `q + d`, `q + d/4`, `q + d/16` approach the one-sided derivative like `d` where events move smoothly and like
-//! `sqrt d` at a grazing; Aitken's extrapolation takes out either.
+//! The gradients at `q + d`, `q + d/4`, `q + d/16` approach the one-sided derivative like `d` where
+//! events move smoothly and like `sqrt d` at a grazing; Aitken's extrapolation takes out either.
 
 use super::first_order::{self, Objective};
 use super::linearization::Linearizer;
@@ -41,11 +42,17 @@ fn value(system: &System, controls: &Controls, quantity: &Quantity) -> f64 {
 }
 
 /// By the adjoint alone.
-fn derivative(system: &System, controls: &Controls, options: &Options, quantity: &Quantity) -> Option<f64> {
+fn derivative(
+    system: &System,
+    controls: &Controls,
+    options: &Options,
+    quantity: &Quantity,
+) -> Option<f64> {
     let simulation = simulate(system, controls, &Options { tape: true, ..options.clone() });
     let linearizer = Linearizer::new(system, controls);
     let objective = Objective::new(&linearizer, &simulation)?;
-    let tape = simulation.tape.as_ref().filter(|_| matches!(simulation.status, Status::Completed))?;
+    let tape =
+        simulation.tape.as_ref().filter(|_| matches!(simulation.status, Status::Completed))?;
     let zero = Gradient::zero(system, controls);
     let gradient =
         first_order::adjoint(&LinearTape::new(&linearizer, tape), &objective, zero, &mut |_, _| ());

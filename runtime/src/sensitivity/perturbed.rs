@@ -1,9 +1,11 @@
-//! A system and its controls with one quantity moved: for derivatives from one side, and for tests by differences.
+//! A system and its controls with one quantity moved: for derivatives from one side, and for tests
+//! by differences.
 
 use super::quantity::Quantity;
 use crate::simulate::{Controls, System};
 
-/// The system and the controls where a quantity is larger by `amount`. Rows of controls keep their normalised times.
+/// The system and the controls where a quantity is larger by `amount`. Rows of controls keep their
+/// normalised times.
 pub fn perturbed(
     system: &System,
     controls: &Controls,

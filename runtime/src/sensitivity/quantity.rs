@@ -11,7 +11,8 @@ pub enum Quantity {
     Parameter(usize),
     /// The start of a state, whatever it is computed from.
     Start(usize),
-    /// A control in a row of [`Controls::Held`]. Where the interval moves, the rows keep their normalised times.
+    /// A control in a row of [`Controls::Held`]. Where the interval moves, the rows keep their
+    /// normalised times.
     Control {
         /// The row.
         row: usize,
@@ -49,7 +50,9 @@ impl Directions {
             controls: BTreeMap::new(),
         };
         for (quantity, weights) in quantities.iter().zip(weights.row_iter()) {
-            for (column, &weight) in weights.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
+            for (column, &weight) in
+                weights.iter().enumerate().filter(|(_, weight)| **weight != 0.0)
+            {
                 directions.add(quantity, column, weight);
             }
         }
@@ -82,7 +85,8 @@ impl Directions {
     }
 }
 
-/// The derivative of a scalar by everything there is: by `p`, by the start, by the controls of each row.
+/// The derivative of a scalar by everything there is: by `p`, by the start, by the controls of each
+/// row.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Gradient {
     pub parameters: Vec<f64>,

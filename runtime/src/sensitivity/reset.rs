@@ -1,11 +1,13 @@
-//! What a stop does to the state itself, linearised: its resets one after the other, then coming to rest on a surface.
+//! What a stop does to the state itself, linearised: its resets one after the other, then coming to
+//! rest on a surface.
 
 use super::linearization::{Jacobian, Linearizer};
 use super::stop::StopOnTape;
 use crate::simulate::{Instant, Kind, Mode, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-/// The derivatives of the state after a stop by the state, the time and the inputs `(u, p)` before it.
+/// The derivatives of the state after a stop by the state, the time and the inputs `(u, p)` before
+/// it.
 pub(super) struct Reset {
     pub by_state: DMatrix<f64>,
     pub by_time: DVector<f64>,
@@ -45,7 +47,8 @@ impl Reset {
         let by_state = slopes.columns(1, states);
         self.by_state = by_state * &self.by_state;
         self.by_time = by_state * &self.by_time + slopes.column(0);
-        self.by_inputs = by_state * &self.by_inputs + slopes.columns(1 + states, self.by_inputs.ncols());
+        self.by_inputs =
+            by_state * &self.by_inputs + slopes.columns(1 + states, self.by_inputs.ncols());
     }
 }
 
@@ -63,7 +66,8 @@ fn straight_on(linearizer: &Linearizer, tape: &Tape, from: &Instant, gap: f64) -
     slopes
 }
 
-/// Where the state comes to rest on a surface: the Newton steps on `psi` and on `psi'` that bring it there.
+/// Where the state comes to rest on a surface: the Newton steps on `psi` and on `psi'` that bring
+/// it there.
 fn rest_slopes(linearizer: &Linearizer, tape: &Tape, stop: &StopOnTape) -> Vec<DMatrix<f64>> {
     let [old, new] = [stop.before, stop.after].map(|at| &tape.regimes[at.regime]);
     let comes = |i: &usize| new.modes[*i] == Mode::Held && old.modes[*i] != Mode::Held;

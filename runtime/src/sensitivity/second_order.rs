@@ -1,7 +1,8 @@
 //! Second derivatives through events: second-order saltation, one pair of directions at a time.
 //!
-//! Between events `X_ij' = f*_x X_ij + f*_ww[W_i, W_j]`, differentiated step by step as the first order is. At a stop, with
-//! `a = f-`, `b = f+`, `y` the state at the moved time and `z = r(t, y, p)`
+//! Between events `X_ij' = f*_x X_ij + f*_ww[W_i, W_j]`, differentiated step by step as the first
+//! order is. At a stop, with `a = f-`, `b = f+`, `y` the state at the moved time and `z = r(t, y,
+//! p)`
 //!
 //! ```text
 //! y_i = S_i + a tau_i        y_ij = X_ij + a_i tau_j + a_j tau_i + a_t tau_i tau_j + a tau_ij
@@ -10,8 +11,8 @@
 //! S+_i = z_i - b tau_i       X+_ij = z_ij - (b_i tau_j + b_j tau_i + b_t tau_i tau_j + b tau_ij)
 //! ```
 //!
-//! which is the rule of section 5 of `method/beyond-the-paper.md` where nothing depends on time and parameters. At an exit `a = b`
-//! and `tau` is that of the selector that reaches its end.
+//! which is the rule of section 5 of `method/beyond-the-paper.md` where nothing depends on time and
+//! parameters. At an exit `a = b` and `tau` is that of the selector that reaches its end.
 
 use super::bend::{Bend, Pairs};
 use super::curvature::{Curvature, Hessians};
@@ -26,9 +27,10 @@ use crate::problem::Columns;
 use crate::simulate::{Cause, Controls, Instant, Mode, Piece, Regime, Simulation, System, Tape};
 use nalgebra::{DMatrix, DVector};
 
-/// The Hessian of the objective by some quantities; nothing where the state comes to rest after infinitely many jumps, and
-/// nothing yet where a `Dir` moves. Nor is there one by a direction that leaves a surface on which the state starts and slides, nor
-/// where a kink is met together with something else.
+/// The Hessian of the objective by some quantities; nothing where the state comes to rest after
+/// infinitely many jumps, and nothing yet where a `Dir` moves. Nor is there one by a direction that
+/// leaves a surface on which the state starts and slides, nor where a kink is met together with
+/// something else.
 pub fn hessian(
     system: &System,
     controls: &Controls,
@@ -41,14 +43,16 @@ pub fn hessian(
     let directions = Directions::each(system, quantities);
     let mut second = Second::new(&linearizer, tape, &directions);
     (0..tape.pieces.len()).for_each(|at| second.pass(at));
-    if second.leaves_at_start || (0..tape.pieces.len()).any(|at| is_doubtful(&linearizer, tape, at)) {
+    if second.leaves_at_start || (0..tape.pieces.len()).any(|at| is_doubtful(&linearizer, tape, at))
+    {
         return None;
     }
     let matrix = second.of_objective(&objective, simulation);
     Some(matrix.row_iter().map(|row| row.iter().copied().collect()).collect())
 }
 
-/// Whether the state comes to rest after infinitely many jumps, or something moves in a direction that is not fixed.
+/// Whether the state comes to rest after infinitely many jumps, or something moves in a direction
+/// that is not fixed.
 fn has_no_second_order(tape: &Tape) -> bool {
     let lacks = |mode: &Mode| matches!(mode, Mode::Held | Mode::Moving);
     tape.regimes.iter().any(|regime| regime.modes.iter().any(lacks))
@@ -69,8 +73,9 @@ impl<'t> Second<'t> {
     fn new(linearizer: &'t Linearizer<'t>, tape: &'t Tape, directions: &'t Directions) -> Self {
         let s = first_order::start(linearizer, directions);
         let parameters = |i: usize| directions.parameters.column(i).into_owned();
-        let x =
-            Pairs::new(directions.count(), |i, j| linearizer.start_curvature(&parameters(i), &parameters(j)));
+        let x = Pairs::new(directions.count(), |i, j| {
+            linearizer.start_curvature(&parameters(i), &parameters(j))
+        });
         Second { linearizer, tape, directions, s, x, leaves_at_start: false }
     }
 
@@ -94,7 +99,10 @@ impl<'t> Second<'t> {
         match piece {
             Piece::Step { start, h, stages, rule, .. } => {
                 let regime = self.regime(start);
-                self.step(regime, &LinearStep::new(self.linearizer, regime, start, *h, stages, *rule));
+                self.step(
+                    regime,
+                    &LinearStep::new(self.linearizer, regime, start, *h, stages, *rule),
+                );
             }
             Piece::Stop { cause, before, after, changes } => {
                 let stop = StopOnTape { cause: *cause, before, after, changes };
@@ -143,7 +151,8 @@ impl<'t> Second<'t> {
         self.s = projected;
         let state = DVector::from_column_slice(&at.state);
         let table = self.linearizer.table(regime, &at.selectors, at.time, &state);
-        let hessians = Hessians::of(&*self.linearizer.system.guards, &table, &self.linearizer.parameters);
+        let hessians =
+            Hessians::of(&*self.linearizer.system.guards, &table, &self.linearizer.parameters);
         let inputs = self.linearizer.system.layout.inputs();
         let whole = self.directions_at(regime, &self.s);
         let whole: Vec<_> = whole.into_iter().map(|it| it.resize_vertically(inputs, 0.0)).collect();
@@ -164,13 +173,15 @@ impl<'t> Second<'t> {
         let hessians = Hessians::of(&*system.objective, &point, &self.linearizer.parameters);
         let parameters = |i: usize| self.directions.parameters.column(i);
         let whole = |i: usize| {
-            let ends = start.column(i).iter().chain(end.column(i).iter()).copied().collect::<Vec<_>>();
+            let ends =
+                start.column(i).iter().chain(end.column(i).iter()).copied().collect::<Vec<_>>();
             let all: Vec<f64> = ends.into_iter().chain(parameters(i).iter().copied()).collect();
             DVector::from_vec(all)
         };
         DMatrix::from_fn(self.directions.count(), self.directions.count(), |i, j| {
-            let bent_start =
-                self.linearizer.start_curvature(&parameters(i).into_owned(), &parameters(j).into_owned());
+            let bent_start = self
+                .linearizer
+                .start_curvature(&parameters(i).into_owned(), &parameters(j).into_owned());
             (&objective.by_start * bent_start)[0]
                 + (&objective.by_end * bent_end.at(i, j))[0]
                 + hessians.along(&whole(i), &whole(j))[0]
@@ -180,7 +191,9 @@ impl<'t> Second<'t> {
     /// First derivatives of both ends, second ones of the last: the end of the interval moves, too.
     fn at_end(&self) -> (DMatrix<f64>, DMatrix<f64>, Pairs) {
         let start = first_order::start(self.linearizer, self.directions);
-        let Some(last) = last_instant(self.tape) else { return (start.clone(), start, self.x.clone()) };
+        let Some(last) = last_instant(self.tape) else {
+            return (start.clone(), start, self.x.clone());
+        };
         // The cause is of no matter: nothing but the clock moves the end.
         let stop = StopOnTape { cause: Cause::Repels, before: &last, after: &last, changes: &[] };
         let timing = Timing::of_clock(self.linearizer, self.linearizer.system.interval[1]);

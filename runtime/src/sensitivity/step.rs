@@ -1,15 +1,16 @@
 //! One step of a Runge-Kutta method as a linear map, `S+ = Phi S + Gamma W`, and its transpose.
 //!
-//! The derivative of the stages that were computed, not of the solution (H. G. Bock's internal differentiation), so
-//! forward and adjoint differ by rounding only. With `A_i = f*_x` and `G_i = f*_(u,p)` at stage `i`
+//! The derivative of the stages that were computed, not of the solution (H. G. Bock's internal
+//! differentiation), so forward and adjoint differ by rounding only. With `A_i = f*_x` and `G_i =
+//! f*_(u,p)` at stage `i`
 //!
 //! ```text
 //! Y_i = S + h sum_j a_ij K_j,    K_j = A_j Y_j + g_j,    g_j = G_j W,    S+ = S + h sum_j b_j K_j
 //! mu_j = A_j^T kappa_j,    kappa_j = h (b_j lambda+ + sum_i a_ij mu_i) = dJ/dg_j,    lambda = lambda+ + sum_j mu_j
 //! ```
 //!
-//! Where the method is implicit, the `Y_i` are the solution of one linear system with the blocks `I - h a_ij A_j`, and the
-//! `mu_j` that of its transpose.
+//! Where the method is implicit, the `Y_i` are the solution of one linear system with the blocks `I
+//! - h a_ij A_j`, and the `mu_j` that of its transpose.
 
 use super::linearization::{Linearization, Linearizer};
 use crate::simulate::{Instant, Regime, Rule, radau, setting_out, tableau};
@@ -19,7 +20,8 @@ use std::sync::LazyLock;
 /// Newton's steps for the stages of an implicit method.
 const MOST_ITERATIONS: usize = 20;
 
-/// Nodes and weights of the stages that enter the end of a step; none for a straight line, which is shorter than rounding.
+/// Nodes and weights of the stages that enter the end of a step; none for a straight line, which is
+/// shorter than rounding.
 struct Tableau {
     c: Vec<f64>,
     a: Vec<Vec<f64>>,
@@ -30,7 +32,10 @@ static EXPLICIT: LazyLock<Tableau> = LazyLock::new(|| Tableau::new(&tableau::C, 
 static RADAU: LazyLock<Tableau> = LazyLock::new(|| Tableau::new(&radau::C, radau::A));
 static COLLOCATION: LazyLock<Tableau> = LazyLock::new(|| {
     let weights = setting_out::weights(&setting_out::FINE);
-    Tableau::new(&setting_out::FINE, weights.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()))
+    Tableau::new(
+        &setting_out::FINE,
+        weights.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()),
+    )
 });
 static STRAIGHT: LazyLock<Tableau> = LazyLock::new(|| Tableau::new(&[], [[0.0; 0]; 0]));
 
@@ -87,7 +92,9 @@ impl LinearStep {
         };
         match rule {
             Rule::Explicit | Rule::Straight => step.take_explicit(linearizer, regime, start),
-            Rule::Radau | Rule::Collocation => step.take_implicit(linearizer, regime, start, stages),
+            Rule::Radau | Rule::Collocation => {
+                step.take_implicit(linearizer, regime, start, stages)
+            }
         }
         step
     }
@@ -117,15 +124,19 @@ impl LinearStep {
     ) {
         let x = DVector::from_column_slice(&start.state);
         let times = self.tableau.c.iter().map(|c| start.time + c * self.h);
-        self.points = times.zip(stages.iter().map(|stage| DVector::from_column_slice(stage))).collect();
+        self.points =
+            times.zip(stages.iter().map(|stage| DVector::from_column_slice(stage))).collect();
         for _ in 0..MOST_ITERATIONS {
-            let evaluate =
-                |(time, at): &(f64, DVector<f64>)| linearizer.at(regime, &start.selectors, *time, at);
+            let evaluate = |(time, at): &(f64, DVector<f64>)| {
+                linearizer.at(regime, &start.selectors, *time, at)
+            };
             self.stages = self.points.iter().map(evaluate).collect();
             let system = self.system().lu();
             let change = system.solve(&self.defect(&x));
             self.implicit = Some(system);
-            let Some(change) = change.filter(|it| it.amax() > 1e-14 * (1.0 + x.amax())) else { return };
+            let Some(change) = change.filter(|it| it.amax() > 1e-14 * (1.0 + x.amax())) else {
+                return;
+            };
             for (stage, point) in self.points.iter_mut().enumerate() {
                 point.1 -= change.rows(stage * x.len(), x.len());
             }
@@ -163,8 +174,13 @@ impl LinearStep {
         self.stages.iter().map(|point| point.by_inputs() * w).collect()
     }
 
-    /// The derivatives of the stages, then that of the end, from those of the start and what acts at the stages.
-    pub fn forward(&self, s: &DMatrix<f64>, forcing: &[DMatrix<f64>]) -> (Vec<DMatrix<f64>>, DMatrix<f64>) {
+    /// The derivatives of the stages, then that of the end, from those of the start and what acts
+    /// at the stages.
+    pub fn forward(
+        &self,
+        s: &DMatrix<f64>,
+        forcing: &[DMatrix<f64>],
+    ) -> (Vec<DMatrix<f64>>, DMatrix<f64>) {
         let at_stages = match &self.implicit {
             None => self.stages_in_order(s, forcing),
             Some(system) => self.stages_at_once(s, forcing, system),
@@ -242,7 +258,11 @@ impl LinearStep {
         kappa
     }
 
-    fn pulled_at_once(&self, after: &DVector<f64>, system: &LU<f64, Dyn, Dyn>) -> Vec<DVector<f64>> {
+    fn pulled_at_once(
+        &self,
+        after: &DVector<f64>,
+        system: &LU<f64, Dyn, Dyn>,
+    ) -> Vec<DVector<f64>> {
         let n = after.len();
         let mut right = DVector::zeros(n * self.stages.len());
         for (stage, point) in self.stages.iter().enumerate() {

@@ -1,15 +1,18 @@
-//! An event, a change of controls or the start as a linear map of derivatives: the saltation matrix.
+//! An event, a change of controls or the start as a linear map of derivatives: the saltation
+//! matrix.
 //!
-//! The time of an event on `g(t, x, p) = 0` moves by `tau = -(g_x S + g_p P) / (g_x f- + g_t)`. The state there is reset to
-//! `r(t, x, p)` (the identity at crossings, entries and exits) and goes on with `f+`, so at a fixed time after it
+//! The time of an event on `g(t, x, p) = 0` moves by `tau = -(g_x S + g_p P) / (g_x f- + g_t)`. The
+//! state there is reset to `r(t, x, p)` (the identity at crossings, entries and exits) and goes on
+//! with `f+`, so at a fixed time after it
 //!
 //! ```text
 //! S+ = r_x S + r_p P + c tau,     c = r_x f- + r_t - f+
 //! ```
 //!
-//! At crossings this is (3.6) in either direction, at entries into sliding (3.5), at exits and kinks the identity, because `f- = f+`
-//! there. Transposed: `lambda- = r_x^T lambda+ + (c^T lambda+) tau_x^T`. Where a change of controls or an end of the interval moves
-//! with parameters, `tau` is its derivative.
+//! At crossings this is (3.6) in either direction, at entries into sliding (3.5), at exits and
+//! kinks the identity, because `f- = f+` there. Transposed: `lambda- = r_x^T lambda+ + (c^T
+//! lambda+) tau_x^T`. Where a change of controls or an end of the interval moves with parameters,
+//! `tau` is its derivative.
 
 use super::linearization::{Jacobian, Linearization, Linearizer};
 use super::reset::Reset;
@@ -83,7 +86,9 @@ impl Timing {
     pub fn new(linearizer: &Linearizer, tape: &Tape, stop: &StopOnTape) -> Self {
         match stop.cause {
             Cause::Controls if !linearizer.is_stretched() => return Timing::fixed(linearizer),
-            Cause::Start | Cause::Controls => return Timing::of_clock(linearizer, stop.before.time),
+            Cause::Start | Cause::Controls => {
+                return Timing::of_clock(linearizer, stop.before.time);
+            }
             _ => {}
         }
         let regime = &tape.regimes[stop.before.regime];
@@ -141,7 +146,12 @@ impl Timing {
 }
 
 /// `psi_z` of a surface; of a ball that comes to 0, that of its length.
-fn normal(linearizer: &Linearizer, by: &DMatrix<f64>, selectors: &[f64], surface: usize) -> RowDVector<f64> {
+fn normal(
+    linearizer: &Linearizer,
+    by: &DMatrix<f64>,
+    selectors: &[f64],
+    surface: usize,
+) -> RowDVector<f64> {
     match linearizer.system.balls.iter().find(|ball| ball.surfaces.contains(&surface)) {
         Some(ball) => {
             let zero = RowDVector::zeros(by.ncols());

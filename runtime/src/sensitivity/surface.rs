@@ -1,11 +1,13 @@
-//! The projection that keeps derivatives on the sliding surfaces, the rule (3.5) with its explicit parameters.
+//! The projection that keeps derivatives on the sliding surfaces, the rule (3.5) with its explicit
+//! parameters.
 //!
 //! ```text
 //! S <- S - D (d D)^-1 (d S + psi_p P),     D = f_s,  d = psi_x
 //! ```
 //!
-//! It is oblique, along the directions in which selectors push. Its transpose puts an adjoint into the canonical gauge,
-//! `D^T lambda = 0`, the limit of the smoothed adjoints (errata A7): continuous at entries, with a jump at exits.
+//! It is oblique, along the directions in which selectors push. Its transpose puts an adjoint into
+//! the canonical gauge, `D^T lambda = 0`, the limit of the smoothed adjoints (errata A7):
+//! continuous at entries, with a jump at exits.
 
 use super::linearization::{Jacobian, Linearizer, sliding};
 use crate::simulate::{Instant, Regime};
@@ -47,7 +49,8 @@ impl Projection {
         s - &self.along * (&self.normals * s + &self.by_inputs * w)
     }
 
-    /// Moves a second derivative back to the surface, given `psi_zz` of the sliding surfaces along its pair of directions.
+    /// Moves a second derivative back to the surface, given `psi_zz` of the sliding surfaces along
+    /// its pair of directions.
     pub fn correct(&self, x: DVectorView<'_, f64>, bent: &DVector<f64>) -> DVector<f64> {
         x - &self.along * (&self.normals * x + bent)
     }

@@ -1,7 +1,7 @@
 //! The tape, linearised piece by piece.
 //!
-//! Each piece is a linear map `S+ = M S + N W`, with `W` the directions of `(u, p)` that act in it; forward sensitivities
-//! apply the maps in order, the adjoint applies their transposes in reverse.
+//! Each piece is a linear map `S+ = M S + N W`, with `W` the directions of `(u, p)` that act in it;
+//! forward sensitivities apply the maps in order, the adjoint applies their transposes in reverse.
 
 use super::linearization::Linearizer;
 use super::sparse_step::SparseStep;
@@ -11,7 +11,8 @@ use super::surface::Projection;
 use crate::simulate::{Instant, Piece, Regime, Tape};
 use nalgebra::{DMatrix, DVector};
 
-/// More pieces than this are linearised anew for each sweep, so that memory does not grow with the length of a tape.
+/// More pieces than this are linearised anew for each sweep, so that memory does not grow with the
+/// length of a tape.
 const MOST_KEPT: usize = 20_000;
 
 /// All pieces of a tape.
@@ -37,7 +38,8 @@ impl<'t> LinearTape<'t> {
     }
 }
 
-/// A piece as a linear map, followed by the projection to the surfaces on which the state slides after it.
+/// A piece as a linear map, followed by the projection to the surfaces on which the state slides
+/// after it.
 pub(super) struct LinearPiece<'t> {
     pub map: Map<'t>,
     /// Whose controls act before the projection.
@@ -58,7 +60,9 @@ impl<'t> LinearPiece<'t> {
     pub fn new(linearizer: &Linearizer<'t>, tape: &'t Tape, at: usize) -> Self {
         let regime = |instant: &Instant| &tape.regimes[instant.regime];
         match &tape.pieces[at] {
-            Piece::Step { start, h, rule, .. } if SparseStep::fits(linearizer, regime(start), *rule) => {
+            Piece::Step { start, h, rule, .. }
+                if SparseStep::fits(linearizer, regime(start), *rule) =>
+            {
                 LinearPiece {
                     map: Map::Sparse(SparseStep::new(linearizer, regime(start), start, *h)),
                     regime: regime(start),
@@ -67,7 +71,14 @@ impl<'t> LinearPiece<'t> {
                 }
             }
             Piece::Step { start, h, stages, rule, .. } => LinearPiece {
-                map: Map::Step(LinearStep::new(linearizer, regime(start), start, *h, stages, *rule)),
+                map: Map::Step(LinearStep::new(
+                    linearizer,
+                    regime(start),
+                    start,
+                    *h,
+                    stages,
+                    *rule,
+                )),
                 regime: regime(start),
                 regime_after: regime(start),
                 projection: Projection::new(linearizer, regime(start), &tape.pieces[at].end()),
@@ -98,8 +109,8 @@ impl<'t> LinearPiece<'t> {
         }
     }
 
-    /// The adjoint on the surfaces, in the canonical gauge, from the one after the piece. What inputs contribute goes to
-    /// `add`, with the regime in which they act.
+    /// The adjoint on the surfaces, in the canonical gauge, from the one after the piece. What
+    /// inputs contribute goes to `add`, with the regime in which they act.
     pub fn unproject(
         &self,
         after: DVector<f64>,
@@ -112,7 +123,11 @@ impl<'t> LinearPiece<'t> {
     }
 
     /// The adjoint before the piece, from the one before the projection.
-    pub fn adjoint(&self, after: &DVector<f64>, add: &mut dyn FnMut(&Regime, &DVector<f64>)) -> DVector<f64> {
+    pub fn adjoint(
+        &self,
+        after: &DVector<f64>,
+        add: &mut dyn FnMut(&Regime, &DVector<f64>),
+    ) -> DVector<f64> {
         let (before, inputs) = match &self.map {
             Map::Sparse(step) => step.adjoint(after),
             Map::Step(step) => step.adjoint(after),

@@ -1,7 +1,8 @@
 //! Where a trajectory has no derivative, or is so near such a place that one cannot tell.
 //!
-//! Four ways: it touches a surface without crossing it, it meets two surfaces at one time, it meets a surface when the controls
-//! change or when it starts, it meets one at the end. All are suspicions; [`one_sided()`](super::one_sided()) decides.
+//! Four ways: it touches a surface without crossing it, it meets two surfaces at one time, it meets
+//! a surface when the controls change or when it starts, it meets one at the end. All are
+//! suspicions; [`one_sided()`](super::one_sided()) decides.
 
 use super::linearization::{Jacobian, Linearizer};
 use super::sweep::LinearTape;
@@ -92,7 +93,8 @@ impl Watch<'_> {
         let regime = &self.tape.regimes[at.regime];
         let table = self.linearizer.table(regime, &at.selectors, at.time, &state);
         let system = self.linearizer.system;
-        let Jacobian { values, by } = Jacobian::of(&*system.guards, &table, &self.linearizer.parameters);
+        let Jacobian { values, by } =
+            Jacobian::of(&*system.guards, &table, &self.linearizer.parameters);
         let normals = by.columns(1, state.len());
         let visible = system.states.iter().zip(flow.iter()).filter(|(state, _)| !state.hidden);
         let size = visible.map(|(_, rate)| rate * rate).sum::<f64>().sqrt();
@@ -127,7 +129,8 @@ impl Watch<'_> {
         (0..modes.len()).filter(|&i| self.is_beside(at, i))
     }
 
-    /// Surfaces that come nearest inside a step, almost at distance 0; by the cubic through both ends.
+    /// Surfaces that come nearest inside a step, almost at distance 0; by the cubic through both
+    /// ends.
     fn touches(&self, start: &Instant, h: f64, end: &[f64], found: &mut Vec<Trouble>) {
         let turns = |at: &usize, [first, last]: &[DVector<f64>; 2]| first[*at] * last[*at] < 0.0;
         let rates = self.rates(start, h, end);
@@ -172,7 +175,9 @@ impl Watch<'_> {
                 .into_iter()
                 .filter(|i| !changes.iter().any(|it| it.surface == *i))
                 .for_each(|surface| note(TroubleKind::Coincident, surface)),
-            Cause::Controls => met.into_iter().for_each(|surface| note(TroubleKind::Coincident, surface)),
+            Cause::Controls => {
+                met.into_iter().for_each(|surface| note(TroubleKind::Coincident, surface))
+            }
             Cause::Repels => note(TroubleKind::Grazing, changes.first().map_or(0, |it| it.surface)),
             Cause::Leaves(_) | Cause::Bends(_) => {}
         }
@@ -188,7 +193,8 @@ impl Watch<'_> {
         let own = time_of(&self.tape.pieces[at]);
         let is_near = |piece: &&Piece| (time_of(piece) - own).abs() <= TOGETHER * (last - first);
         let is_other = |piece: &&Piece| matches!(piece, Piece::Stop { cause, .. } if is_it(cause) && !matches!(cause, Cause::Start | Cause::Leaves(_) | Cause::Bends(_)));
-        let before = self.tape.pieces[..at].iter().rev().take_while(is_near).any(|it| is_other(&it));
+        let before =
+            self.tape.pieces[..at].iter().rev().take_while(is_near).any(|it| is_other(&it));
         before || self.tape.pieces[at + 1..].iter().take_while(is_near).any(|it| is_other(&it))
     }
 
@@ -196,7 +202,9 @@ impl Watch<'_> {
         let distances = self.distances(end);
         let [first, last] = self.linearizer.system.interval;
         let stops = self.tape.pieces.iter().rev().find_map(|piece| match piece {
-            Piece::Stop { cause: Cause::Reaches(surface), before, .. } => Some((*surface, before.time)),
+            Piece::Stop { cause: Cause::Reaches(surface), before, .. } => {
+                Some((*surface, before.time))
+            }
             _ => None,
         });
         let just_before = stops.filter(|(_, time)| last - time <= TOGETHER * (last - first));
@@ -206,7 +214,8 @@ impl Watch<'_> {
     }
 }
 
-/// Where the cubic with values and slopes at 0 and 1 has its extremum, and the value there, if the slopes have opposite signs.
+/// Where the cubic with values and slopes at 0 and 1 has its extremum, and the value there, if the
+/// slopes have opposite signs.
 fn extremum((value, slope): (f64, f64), (end, end_slope): (f64, f64)) -> (f64, f64) {
     let quadratic = 3.0 * (end - value) - 2.0 * slope - end_slope;
     let cubic = 2.0 * (value - end) + slope + end_slope;

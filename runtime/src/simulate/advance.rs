@@ -17,7 +17,8 @@ pub(super) struct Pace {
     pub is_continued: bool,
     /// Which method takes the next step.
     method: Method,
-    /// How many steps of the explicit method in a row were as long as its stability allows, and how many not since.
+    /// How many steps of the explicit method in a row were as long as its stability allows, and how
+    /// many not since.
     at_border: usize,
     off_border: usize,
     /// How many kinks in a row were met at one time.
@@ -26,8 +27,9 @@ pub(super) struct Pace {
     step: Step,
 }
 
-/// The explicit pair is stable for `h |lambda|` up to about 3.3. With small tolerances the slow part of a stiff solution keeps it
-/// well below that, but a solution that is not stiff farther still: this much at a tolerance of 1e-10.
+/// The explicit pair is stable for `h |lambda|` up to about 3.3. With small tolerances the slow
+/// part of a stiff solution keeps it well below that, but a solution that is not stiff farther
+/// still: this much at a tolerance of 1e-10.
 const BORDER: f64 = 3.25;
 const SMALL_BORDER: f64 = 1.0;
 
@@ -38,7 +40,8 @@ const NOT_STIFF_AFTER: usize = 6;
 /// A trajectory of more numbers than this, a quarter of a gigabyte, is of no use to anybody.
 const MOST_NUMBERS: usize = 1 << 25;
 
-/// After so many kinks at one time the next step passes over them: what stays on a kink but for rounding crosses it for ever.
+/// After so many kinks at one time the next step passes over them: what stays on a kink but for
+/// rounding crosses it for ever.
 const MOST_BENDS: usize = 8;
 
 /// A step of the explicit pair may be off by this part of what the tolerances of the other states
@@ -57,13 +60,16 @@ impl Pace {
     /// Chooses the method of the next step by what the last one says of stiffness.
     fn choose(&mut self, step: &Step, rtol: f64) {
         let stiffness = step.stiffness();
-        let is_at_border = stiffness > (SMALL_BORDER * (rtol / 1e-10).powf(0.2)).clamp(SMALL_BORDER, BORDER);
+        let is_at_border =
+            stiffness > (SMALL_BORDER * (rtol / 1e-10).powf(0.2)).clamp(SMALL_BORDER, BORDER);
         self.at_border += usize::from(is_at_border);
         self.off_border = if is_at_border { 0 } else { self.off_border + 1 };
         match self.method {
             Method::Explicit if self.off_border >= NOT_STIFF_AFTER => self.at_border = 0,
             Method::Explicit if self.at_border >= STIFF_AFTER => self.method = Method::Stiff,
-            Method::Stiff if stiffness < NOT_STIFF => (self.method, self.at_border) = (Method::Explicit, 0),
+            Method::Stiff if stiffness < NOT_STIFF => {
+                (self.method, self.at_border) = (Method::Explicit, 0)
+            }
             Method::Explicit | Method::Stiff => {}
         }
     }
@@ -83,23 +89,27 @@ fn factor(step: &Step) -> f64 {
 }
 
 impl Run<'_> {
-    /// A first length: E. Hairer, S. P. Norsett, G. Wanner: Solving Ordinary Differential Equations I, 2nd ed., II.4.
+    /// A first length: E. Hairer, S. P. Norsett, G. Wanner: Solving Ordinary Differential Equations
+    /// I, 2nd ed., II.4.
     pub fn first_length(&mut self) -> f64 {
         let span = self.field.system.interval[1] - self.t;
         let x = self.x.clone();
         let rate = self.field.rate(self.t, &x);
         // How long what is 0 stays small, only a step tells.
         let moving: Vec<usize> = (0..x.len()).filter(|i| x[*i] != 0.0).collect();
-        let scales: Vec<f64> = moving.iter().map(|&i| self.field.tolerance.of(i, [x[i]; 2], 0.0)).collect();
+        let scales: Vec<f64> =
+            moving.iter().map(|&i| self.field.tolerance.of(i, [x[i]; 2], 0.0)).collect();
         let size = |values: &[f64]| {
             let scaled = moving.iter().zip(&scales).map(|(&i, scale)| (values[i] / scale).abs());
             scaled.fold(0.0, f64::max)
         };
         let (at, slope) = (size(&x), size(&rate));
-        let short = if at < 1e-5 || slope < 1e-5 { 1e-6 * span } else { (0.01 * at / slope).min(span) };
+        let short =
+            if at < 1e-5 || slope < 1e-5 { 1e-6 * span } else { (0.01 * at / slope).min(span) };
         let next: Vec<f64> = x.iter().zip(&rate).map(|(x, rate)| x + short * rate).collect();
         let after = self.field.rate(self.t + short, &next);
-        let change: Vec<f64> = after.iter().zip(&rate).map(|(after, rate)| (after - rate) / short).collect();
+        let change: Vec<f64> =
+            after.iter().zip(&rate).map(|(after, rate)| (after - rate) / short).collect();
         let bend = slope.max(size(&change));
         let long = if bend > 1e-15 { (0.01 / bend).powf(0.2) } else { span };
         let length = long.min(100.0 * short).min(span);
@@ -184,7 +194,8 @@ impl Run<'_> {
         }
     }
 
-    /// Takes a step whose error is small enough, to the stop at most and no longer than a fall allows; chooses the length of the next.
+    /// Takes a step whose error is small enough, to the stop at most and no longer than a fall
+    /// allows; chooses the length of the next.
     fn accepted(&mut self, step: &mut Step, rest: f64, longest: f64) -> Result<(), Status> {
         let wanted = self.pace.h;
         // Two steps of equal length are better than a long and a very short one.
@@ -193,7 +204,8 @@ impl Run<'_> {
         h = h.min(self.options.max_step);
         let mut is_short = h < wanted;
         // Near 0 the direction of a ball is stiff in a way of its own.
-        let method = if self.field.moving().is_empty() { self.pace.method } else { Method::Explicit };
+        let method =
+            if self.field.moving().is_empty() { self.pace.method } else { Method::Explicit };
         step.begin(&mut self.field, self.t, &self.x, method, self.pace.is_continued);
         let selectors = self.field.selectors.clone();
         // What was uncertain in a short step says nothing about a long one.
@@ -228,14 +240,16 @@ impl Run<'_> {
         if step.method == Method::Explicit {
             self.field.find_doubts(step.t, &step.start, step.h, SHARE);
         } else {
-            // An implicit step damps what the rates of a fast state are off by, and passes on none of it.
+            // An implicit step damps what the rates of a fast state are off by, and passes on none
+            // of it.
             self.field.find_doubts(step.t, &step.start, 0.0, 0.0);
             self.field.tolerance.damp(|i| 1.0 + step.h * step.newton.own_slope(i));
         }
         step.measure(&self.field.tolerance);
     }
 
-    /// Why steps become too short: the sliding ends to be unique, or something grows beyond all bounds.
+    /// Why steps become too short: the sliding ends to be unique, or something grows beyond all
+    /// bounds.
     fn stuck(&mut self) -> Status {
         let surfaces = self.surfaces_here();
         if let Err(status) = self.settle(surfaces).and_then(|()| self.finite_here()) {
@@ -244,7 +258,9 @@ impl Run<'_> {
         let rate = self.field.rate(self.t, &self.x);
         let growth = |i: &usize| (rate[*i] / (1.0 + self.x[*i].abs())).abs();
         let worst = (0..self.x.len()).max_by(|i, j| growth(i).total_cmp(&growth(j)));
-        Status::NotFinite(worst.map_or_else(Origin::default, |row| self.field.system.flow.origin(row)))
+        Status::NotFinite(
+            worst.map_or_else(Origin::default, |row| self.field.system.flow.origin(row)),
+        )
     }
 
     /// Where in a step the surfaces that the state slides on cease to attract, to rounding.

@@ -5,8 +5,9 @@
 //! |s| <= 1,   r = lambda s,   lambda >= 0,   lambda (1 - |s|) = 0
 //! ```
 //!
-//! For a given lambda the selectors of the ball are free in a linear system with `B + lambda I`. If `B` is positive definite in
-//! some metric, `|s|` falls with lambda: one root for each ball, and the solution is the only one.
+//! For a given lambda the selectors of the ball are free in a linear system with `B + lambda I`. If
+//! `B` is positive definite in some metric, `|s|` falls with lambda: one root for each ball, and
+//! the solution is the only one.
 
 use super::complementarity::{is_p_matrix, selectors};
 use super::direction::length;
@@ -42,7 +43,8 @@ pub(super) fn is_unique(b: &DMatrix<f64>, balls: &[Range<usize>]) -> bool {
             let rows: Vec<usize> = group.iter().flat_map(|&unit| units[unit].clone()).collect();
             let part = b.select_rows(&rows).select_columns(&rows);
             let sizes: Vec<usize> = group.iter().map(|&unit| units[unit].len()).collect();
-            is_positive_definite(&part, &sizes) || sizes.iter().all(|&size| size == 1) && is_p_matrix(&part)
+            is_positive_definite(&part, &sizes)
+                || sizes.iter().all(|&size| size == 1) && is_p_matrix(&part)
         })
 }
 
@@ -51,21 +53,28 @@ fn norm(b: &DMatrix<f64>, rows: &Range<usize>, columns: &Range<usize>) -> f64 {
     b.view((rows.start, columns.start), (rows.len(), columns.len())).amax()
 }
 
-/// The units that act on each other, directly or through others. One group after the other can be solved.
+/// The units that act on each other, directly or through others. One group after the other can be
+/// solved.
 fn coupled(b: &DMatrix<f64>, units: &[Range<usize>]) -> Vec<Vec<usize>> {
     let size = units.len();
-    let mut acts = DMatrix::from_fn(size, size, |i, j| i == j || norm(b, &units[i], &units[j]) > 0.0);
+    let mut acts =
+        DMatrix::from_fn(size, size, |i, j| i == j || norm(b, &units[i], &units[j]) > 0.0);
     for through in 0..size {
         for (i, j) in (0..size).flat_map(|i| (0..size).map(move |j| (i, j))) {
             acts[(i, j)] |= acts[(i, through)] && acts[(through, j)];
         }
     }
-    let group = |i: usize| -> Vec<usize> { (0..size).filter(|&j| acts[(i, j)] && acts[(j, i)]).collect() };
-    (0..size).map(|i| (i, group(i))).filter(|(i, group)| group[0] == *i).map(|(_, group)| group).collect()
+    let group =
+        |i: usize| -> Vec<usize> { (0..size).filter(|&j| acts[(i, j)] && acts[(j, i)]).collect() };
+    (0..size)
+        .map(|i| (i, group(i)))
+        .filter(|(i, group)| group[0] == *i)
+        .map(|(_, group)| group)
+        .collect()
 }
 
-/// Whether `D B` has a positive definite symmetric part for positive factors `D`, one for each unit: those that come nearest to
-/// making `D B` symmetric, or those that make its diagonal 1.
+/// Whether `D B` has a positive definite symmetric part for positive factors `D`, one for each
+/// unit: those that come nearest to making `D B` symmetric, or those that make its diagonal 1.
 fn is_positive_definite(b: &DMatrix<f64>, sizes: &[usize]) -> bool {
     let firsts: Vec<usize> = (0..sizes.len()).map(|unit| sizes[..unit].iter().sum()).collect();
     let units: Vec<Range<usize>> =
@@ -86,7 +95,8 @@ fn is_definite_with(b: &DMatrix<f64>, units: &[Range<usize>], weights: &[f64]) -
     if !scale.iter().all(|value| value.is_finite()) {
         return false;
     }
-    let scaled = DMatrix::from_fn(b.nrows(), b.nrows(), |i, j| symmetric[(i, j)] * scale[i] * scale[j]);
+    let scaled =
+        DMatrix::from_fn(b.nrows(), b.nrows(), |i, j| symmetric[(i, j)] * scale[i] * scale[j]);
     (scaled - DMatrix::from_diagonal_element(b.nrows(), b.nrows(), SINGULAR)).cholesky().is_some()
 }
 
@@ -107,7 +117,11 @@ fn symmetric_weights(b: &DMatrix<f64>, units: &[Range<usize>]) -> Vec<f64> {
 }
 
 /// The selectors that solve the problem; `None` where they are not found.
-pub(super) fn solution(a: &DVector<f64>, b: &DMatrix<f64>, balls: &[Range<usize>]) -> Option<DVector<f64>> {
+pub(super) fn solution(
+    a: &DVector<f64>,
+    b: &DMatrix<f64>,
+    balls: &[Range<usize>],
+) -> Option<DVector<f64>> {
     if balls.is_empty() {
         return selectors(a, b);
     }
@@ -149,17 +163,25 @@ fn multiplier(
     (at_high <= 0.0).then(|| bisect(&mut excess, [0.0, at_low], [largest, at_high]))
 }
 
-/// The selectors for given lambdas: those of the balls are eliminated, the others remain in their intervals.
-fn given(a: &DVector<f64>, b: &DMatrix<f64>, balls: &[Range<usize>], lambda: &[f64]) -> Option<DVector<f64>> {
+/// The selectors for given lambdas: those of the balls are eliminated, the others remain in their
+/// intervals.
+fn given(
+    a: &DVector<f64>,
+    b: &DMatrix<f64>,
+    balls: &[Range<usize>],
+    lambda: &[f64],
+) -> Option<DVector<f64>> {
     let mut shifted = b.clone();
     let inside: Vec<usize> = balls.iter().flat_map(|ball| ball.clone()).collect();
     let outside: Vec<usize> = (0..a.len()).filter(|i| !inside.contains(i)).collect();
     for (ball, lambda) in balls.iter().zip(lambda) {
         ball.clone().for_each(|i| shifted[(i, i)] += lambda);
     }
-    let part = |rows: &[usize], columns: &[usize]| shifted.select_rows(rows).select_columns(columns);
+    let part =
+        |rows: &[usize], columns: &[usize]| shifted.select_rows(rows).select_columns(columns);
     let own = part(&inside, &inside).lu();
-    let (from_a, from_outside) = (own.solve(&a.select_rows(&inside))?, own.solve(&part(&inside, &outside))?);
+    let (from_a, from_outside) =
+        (own.solve(&a.select_rows(&inside))?, own.solve(&part(&inside, &outside))?);
     let back = part(&outside, &inside);
     let s_outside = match outside.is_empty() {
         true => DVector::zeros(0),
@@ -192,7 +214,10 @@ mod tests {
     fn solved(a: &[f64], b: &[f64], balls: &[Range<usize>]) -> Vec<f64> {
         let b = DMatrix::from_row_slice(a.len(), a.len(), b);
         assert!(is_unique(&b, balls));
-        solution(&DVector::from_column_slice(a), &b, balls).expect("there is one").as_slice().to_vec()
+        solution(&DVector::from_column_slice(a), &b, balls)
+            .expect("there is one")
+            .as_slice()
+            .to_vec()
     }
 
     #[test]
@@ -204,7 +229,8 @@ mod tests {
         assert!((large[0] - 0.6).abs() < 1e-15 && (large[1] - 0.8).abs() < 1e-15, "{large:?}");
     }
 
-    /// Every random problem of a positive definite matrix: the residual of `r = lambda s` and of the interval.
+    /// Every random problem of a positive definite matrix: the residual of `r = lambda s` and of
+    /// the interval.
     #[test]
     fn solutions_satisfy_the_conditions() {
         let b = [2.0, 0.3, 0.5, -0.3, 1.5, -0.2, 0.1, 0.4, 1.0];
@@ -217,13 +243,17 @@ mod tests {
             let (size, along) = (length(&s[..2]), r[0] * s[0] + r[1] * s[1]);
             let across = (r[0] - along * s[0]).hypot(r[1] - along * s[1]);
             let is_inside = size < 1.0 - 1e-12 && length(&r[..2]) < 1e-12;
-            assert!(is_inside || (size - 1.0).abs() < 1e-14 && along > -1e-12 && across < 1e-12, "{a:?}");
+            assert!(
+                is_inside || (size - 1.0).abs() < 1e-14 && along > -1e-12 && across < 1e-12,
+                "{a:?}"
+            );
             let fits = (s[2].abs() < 1.0 && r[2].abs() < 1e-12) || r[2] * s[2] >= -1e-12;
             assert!(fits, "{a:?}: {s:?} {r:?}");
         }
     }
 
-    /// Two discs on each other, the upper one light: `B` is far from symmetric, the kinetic energy makes it so.
+    /// Two discs on each other, the upper one light: `B` is far from symmetric, the kinetic energy
+    /// makes it so.
     #[test]
     fn weights_of_the_kinetic_energy_are_found() {
         let b = DMatrix::from_row_slice(2, 2, &[30.0, -0.1, -30.0, 0.2]);

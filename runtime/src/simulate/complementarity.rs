@@ -1,9 +1,11 @@
-//! Which selectors solve `-1 <= s <= 1`, `r(s) = a - B s`, `r_i > 0 => s_i = 1`, `r_i < 0 => s_i = -1`.
+//! Which selectors solve `-1 <= s <= 1`, `r(s) = a - B s`, `r_i > 0 => s_i = 1`, `r_i < 0 => s_i =
+//! -1`.
 //!
 //! With `s = z - 1` and a multiplier `y` of `z <= 2` this is the linear complementarity problem
-//! `w = M (z, y) + q`, `M = [B I; -I 0]`, `q = (-B 1 - a, 2)`, solved by Lemke's method (R. W. Cottle, J.-S. Pang,
-//! R. E. Stone: The Linear Complementarity Problem, 4.4). If `B` is a P-matrix the solution is unique. With an artificial variable
-//! in the rows of `z` alone the method ends on no ray, whatever `B` is: along one neither `z` nor, by complementarity, `y` can grow.
+//! `w = M (z, y) + q`, `M = [B I; -I 0]`, `q = (-B 1 - a, 2)`, solved by Lemke's method (R. W.
+//! Cottle, J.-S. Pang, R. E. Stone: The Linear Complementarity Problem, 4.4). If `B` is a P-matrix
+//! the solution is unique. With an artificial variable in the rows of `z` alone the method ends on
+//! no ray, whatever `B` is: along one neither `z` nor, by complementarity, `y` can grow.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -19,10 +21,12 @@ pub(super) fn is_p_matrix(b: &DMatrix<f64>) -> bool {
     if !b.iter().all(|value| value.is_finite()) {
         return false;
     }
-    // Surfaces may have very different units; a positive factor of a row changes no sign of a minor.
+    // Surfaces may have very different units; a positive factor of a row changes no sign of a
+    // minor.
     let b = &row_scaled(b);
     let least = SINGULAR * b.amax();
-    if (b + b.transpose() - DMatrix::from_diagonal_element(size, size, least)).cholesky().is_some() {
+    if (b + b.transpose() - DMatrix::from_diagonal_element(size, size, least)).cholesky().is_some()
+    {
         return true;
     }
     let dominates = |i: usize| {
@@ -41,11 +45,13 @@ fn row_scaled(matrix: &DMatrix<f64>) -> DMatrix<f64> {
 fn minors_are_positive(b: &DMatrix<f64>) -> bool {
     (1_u32..1 << b.nrows()).all(|subset| {
         let rows: Vec<usize> = (0..b.nrows()).filter(|i| subset & (1 << i) != 0).collect();
-        b.select_rows(&rows).select_columns(&rows).determinant() > SINGULAR * b.amax().powi(rows.len() as i32)
+        b.select_rows(&rows).select_columns(&rows).determinant()
+            > SINGULAR * b.amax().powi(rows.len() as i32)
     })
 }
 
-/// Selectors for the affine rates `a - B s`; some, if there are several. `None` if rounding leads the method astray.
+/// Selectors for the affine rates `a - B s`; some, if there are several. `None` if rounding leads
+/// the method astray.
 pub(crate) fn selectors(a: &DVector<f64>, b: &DMatrix<f64>) -> Option<DVector<f64>> {
     let size = a.len();
     let scale = |i: usize| b.row(i).amax().max(a[i].abs()).max(f64::MIN_POSITIVE);
@@ -83,7 +89,8 @@ fn lemke(m: &DMatrix<f64>, q: &DVector<f64>) -> Option<DVector<f64>> {
     None
 }
 
-/// Columns `w`, `z`, the artificial variable, the right side; and which column each row is solved for.
+/// Columns `w`, `z`, the artificial variable, the right side; and which column each row is solved
+/// for.
 struct Tableau {
     rows: DMatrix<f64>,
     basis: Vec<usize>,
@@ -143,7 +150,10 @@ mod tests {
         let size = a.len();
         let b = DMatrix::from_row_slice(size, size, b);
         assert!(is_p_matrix(&b));
-        selectors(&DVector::from_column_slice(a), &b).expect("a P-matrix has a solution").as_slice().to_vec()
+        selectors(&DVector::from_column_slice(a), &b)
+            .expect("a P-matrix has a solution")
+            .as_slice()
+            .to_vec()
     }
 
     #[test]
@@ -201,6 +211,10 @@ mod tests {
 
     #[test]
     fn surfaces_of_which_one_follows_from_the_others_are_no_p_matrix() {
-        assert!(!is_p_matrix(&DMatrix::from_row_slice(3, 3, &[1.0, 0.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, 2.0])));
+        assert!(!is_p_matrix(&DMatrix::from_row_slice(
+            3,
+            3,
+            &[1.0, 0.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, 2.0]
+        )));
     }
 }

@@ -11,7 +11,8 @@ pub enum Controls {
         times: Vec<f64>,
         /// One row of controls for each time.
         rows: Vec<Vec<f64>>,
-        /// Whether the times are parts of the interval and move with its ends, as those of a solution; else they stand still.
+        /// Whether the times are parts of the interval and move with its ends, as those of a
+        /// solution; else they stand still.
         is_stretched: bool,
     },
 }
@@ -41,7 +42,9 @@ impl Controls {
     pub(crate) fn row(&self, index: Option<usize>) -> &[f64] {
         match self {
             Controls::Guess => &[],
-            Controls::Held { rows, .. } => index.and_then(|index| rows.get(index)).map_or(&[], Vec::as_slice),
+            Controls::Held { rows, .. } => {
+                index.and_then(|index| rows.get(index)).map_or(&[], Vec::as_slice)
+            }
         }
     }
 }

@@ -1,7 +1,10 @@
-//! Which modes follow at a point on some surfaces: the mixed linear complementarity problem, or a refusal.
+//! Which modes follow at a point on some surfaces: the mixed linear complementarity problem, or a
+//! refusal.
 //!
-//! The rates `r(s)` of the surfaces are linearised until nothing changes (selectors may multiply each other). If `B` is a P-matrix,
-//! or positive definite where there are balls, the solution is the only one. Otherwise all combinations of sides are tried, and only a single consistent one is taken.
+//! The rates `r(s)` of the surfaces are linearised until nothing changes (selectors may multiply
+//! each other). If `B` is a P-matrix, or positive definite where there are balls, the solution is
+//! the only one. Otherwise all combinations of sides are tried, and only a single consistent one is
+//! taken.
 
 use super::ball::{blocks, is_unique, solution};
 use super::direction::length;
@@ -35,8 +38,14 @@ struct Choice {
     s: DVector<f64>,
 }
 
-/// The modes of `surfaces` after a point that is on all of them. Balls that move from there find their direction in the field.
-pub(super) fn decide(field: &mut Field, t: f64, x: &[f64], surfaces: &[usize]) -> Result<Vec<Mode>, Status> {
+/// The modes of `surfaces` after a point that is on all of them. Balls that move from there find
+/// their direction in the field.
+pub(super) fn decide(
+    field: &mut Field,
+    t: f64,
+    x: &[f64],
+    surfaces: &[usize],
+) -> Result<Vec<Mode>, Status> {
     if surfaces.is_empty() {
         return Ok(Vec::new());
     }
@@ -68,8 +77,14 @@ impl Corner<'_, '_> {
         let (rate, by_selector) = self.field.with_selectors(self.t, self.x, &all);
         let (r, b) = surface_rates(&self.normals, &rate, &by_selector, self.surfaces);
         let size = |at: usize, i: usize| {
-            let terms =
-                self.normals.by_state.row(i).iter().zip(&rate).map(|(d, f)| (d * f).abs()).sum::<f64>();
+            let terms = self
+                .normals
+                .by_state
+                .row(i)
+                .iter()
+                .zip(&rate)
+                .map(|(d, f)| (d * f).abs())
+                .sum::<f64>();
             TIE * (terms + self.normals.by_time[i].abs() + b.row(at).amax()).max(f64::MIN_POSITIVE)
         };
         let ties = self.surfaces.iter().enumerate().map(|(at, &i)| size(at, i)).collect();
@@ -94,11 +109,13 @@ impl Corner<'_, '_> {
         None
     }
 
-    /// Modes for sides, selectors and rates; a ball at the end of its selectors with no rate slides, too.
+    /// Modes for sides, selectors and rates; a ball at the end of its selectors with no rate
+    /// slides, too.
     fn choice(&self, sides: &[i8], s: DVector<f64>, r: &DVector<f64>, tie: &[f64]) -> Choice {
         let mut modes: Vec<Mode> = sides.iter().copied().map(mode).collect();
         for ball in self.balls.clone() {
-            let [own, rate, tie] = [s.as_slice(), r.as_slice(), tie].map(|all| length(&all[ball.clone()]));
+            let [own, rate, tie] =
+                [s.as_slice(), r.as_slice(), tie].map(|all| length(&all[ball.clone()]));
             let moves = own >= 1.0 - 1e-12 && rate > tie;
             modes[ball].fill(if moves { Mode::Moving } else { Mode::Sliding });
         }
@@ -131,7 +148,8 @@ impl Corner<'_, '_> {
     }
 
     fn candidate(&self, choice: &Choice) -> Candidate {
-        let is_first = |at: &usize| self.balls.iter().all(|ball| !ball.contains(at) || ball.start == *at);
+        let is_first =
+            |at: &usize| self.balls.iter().all(|ball| !ball.contains(at) || ball.start == *at);
         let side = |at: usize| match choice.modes[at] {
             Mode::Above | Mode::Moving => 1,
             Mode::Below => -1,
@@ -141,10 +159,11 @@ impl Corner<'_, '_> {
         Candidate { sides: firsts.map(|at| (self.surfaces[at], side(at))).collect() }
     }
 
-    /// Whether the surfaces that are held attract. Where several are held and do not, the state may also leave on a spiral,
-    /// which is no combination of sides.
+    /// Whether the surfaces that are held attract. Where several are held and do not, the state may
+    /// also leave on a spiral, which is no combination of sides.
     fn attracts(&mut self, choice: &Choice) -> bool {
-        let held: Vec<usize> = (0..choice.s.len()).filter(|&i| choice.modes[i] == Mode::Sliding).collect();
+        let held: Vec<usize> =
+            (0..choice.s.len()).filter(|&i| choice.modes[i] == Mode::Sliding).collect();
         let surfaces: Vec<usize> = held.iter().map(|&at| self.surfaces[at]).collect();
         let b = self.rates(&choice.s).1.select_rows(&held).select_columns(&held);
         held.len() < 2 || is_unique(&b, &blocks(&self.field.system.balls, &surfaces))
@@ -203,7 +222,10 @@ impl Corner<'_, '_> {
         let psi = self.field.psi(self.t + h, &end);
         (self.field.modes, self.field.selectors) = before;
         (self.field.departure, self.field.direction) = of_balls;
-        self.surfaces.iter().zip(sides).all(|(&i, &side)| side == 0 || f64::from(side) * psi[i] > 0.0)
+        self.surfaces
+            .iter()
+            .zip(sides)
+            .all(|(&i, &side)| side == 0 || f64::from(side) * psi[i] > 0.0)
     }
 }
 
@@ -224,7 +246,8 @@ impl Choice {
     }
 }
 
-/// The side of a selector; at the end of its interval with no rate it slides, as long as it stays there.
+/// The side of a selector; at the end of its interval with no rate it slides, as long as it stays
+/// there.
 fn side(s: f64, rate: f64, tie: f64) -> i8 {
     if s >= 1.0 - 1e-12 && rate > tie {
         1

@@ -24,7 +24,11 @@ impl<'a> Field<'a> {
 
     /// The balls with a direction of motion.
     pub fn moving(&self) -> Vec<&'a Ball> {
-        self.system.balls.iter().filter(|ball| self.modes[ball.surfaces.start] == Mode::Moving).collect()
+        self.system
+            .balls
+            .iter()
+            .filter(|ball| self.modes[ball.surfaces.start] == Mode::Moving)
+            .collect()
     }
 
     /// Whether some ball leaves 0 at a time.

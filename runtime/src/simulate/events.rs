@@ -1,4 +1,5 @@
-//! What an event does: modes change, jumps reset the state, jumps that pile up end the run or hold a surface.
+//! What an event does: modes change, jumps reset the state, jumps that pile up end the run or hold
+//! a surface.
 
 use super::decide::decide;
 use super::field::Mode;
@@ -6,7 +7,8 @@ use super::locate::Condition;
 use super::result::{Event, Kind, Status};
 use super::run::Run;
 
-/// More jumps than this at one time never end, nor does what reaches a surface so often without leaving it.
+/// More jumps than this at one time never end, nor does what reaches a surface so often without
+/// leaving it.
 const MOST_AT_ONCE: usize = 100;
 
 impl Run<'_> {
@@ -59,7 +61,9 @@ impl Run<'_> {
             Mode::Sliding => true,
             Mode::Held => false,
             Mode::Below | Mode::Above => is_zero(*i),
-            Mode::Moving => self.field.ball_of(*i).is_some_and(|ball| ball.surfaces.clone().all(is_zero)),
+            Mode::Moving => {
+                self.field.ball_of(*i).is_some_and(|ball| ball.surfaces.clone().all(is_zero))
+            }
         };
         (0..self.field.modes.len()).filter(is_here).collect()
     }
@@ -80,8 +84,13 @@ impl Run<'_> {
             self.jump(jump)?;
             surfaces = self.surfaces_here();
         }
-        let jump =
-            self.field.system.jumps.iter().position(|jump| surfaces.contains(&jump.surface)).unwrap_or(0);
+        let jump = self
+            .field
+            .system
+            .jumps
+            .iter()
+            .position(|jump| surfaces.contains(&jump.surface))
+            .unwrap_or(0);
         self.piled_up(jump, self.t)
     }
 
@@ -89,7 +98,8 @@ impl Run<'_> {
     fn end_of_crossings(&mut self, surfaces: &[usize]) -> Result<(), Status> {
         let [first, last] = self.field.system.interval;
         let here = self.record.events.iter().rev().take_while(|event| event.time == self.t);
-        let is_crossing = |event: &&Event| matches!(event.kind, Kind::CrossesUp | Kind::CrossesDown);
+        let is_crossing =
+            |event: &&Event| matches!(event.kind, Kind::CrossesUp | Kind::CrossesDown);
         let crossed: Vec<usize> = here.filter(is_crossing).map(|event| event.surface).collect();
         for &surface in surfaces.iter().filter(|surface| crossed.contains(surface)) {
             if let Some(limit_time) = self.crossings[surface].limit(self.t, last - first, false) {
@@ -114,7 +124,8 @@ impl Run<'_> {
         fitting.next().map(|(at, _)| at)
     }
 
-    /// Resets the state. Afterwards every surface that the state is not on has the side where the state is.
+    /// Resets the state. Afterwards every surface that the state is not on has the side where the
+    /// state is.
     fn jump(&mut self, jump: usize) -> Result<(), Status> {
         let of = &self.field.system.jumps[jump];
         let surface = of.surface;
@@ -147,7 +158,8 @@ impl Run<'_> {
         }
     }
 
-    /// Whether the state goes so little away from the surface between two jumps that rounding will soon hide it.
+    /// Whether the state goes so little away from the surface between two jumps that rounding will
+    /// soon hide it.
     fn is_small(&mut self, jump: usize, surface: usize) -> bool {
         let normals = self.field.normals(self.t, &self.x);
         let rate = self.field.rate(self.t, &self.x);
@@ -155,7 +167,8 @@ impl Run<'_> {
         way <= 1e3 * normals.noise(surface, &self.x)
     }
 
-    /// Whether a state that is still on a surface after a reset moves on to the other side, whichever field acts.
+    /// Whether a state that is still on a surface after a reset moves on to the other side,
+    /// whichever field acts.
     fn goes_through(&mut self, surface: usize, onward: Mode) -> bool {
         if !self.surfaces_here().contains(&surface) {
             return false;
@@ -184,8 +197,9 @@ impl Run<'_> {
     }
 
     fn piled_up(&mut self, jump: usize, limit_time: f64) -> Result<(), Status> {
-        let held =
-            self.field.system.jumps[jump].then_hold.filter(|_| limit_time < self.field.system.interval[1]);
+        let held = self.field.system.jumps[jump]
+            .then_hold
+            .filter(|_| limit_time < self.field.system.interval[1]);
         let Some(held) = held else {
             let surface = self.field.system.jumps[jump].surface;
             return Err(Status::Zeno { jump: Some(jump), surface, limit_time });
@@ -200,8 +214,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Brings the state to rest on a surface: the states that the jump resets and that move the surface stand still from
-    /// now on.
+    /// Brings the state to rest on a surface: the states that the jump resets and that move the
+    /// surface stand still from now on.
     fn hold(&mut self, jump: usize, surface: usize) {
         let resets = self.field.system.jumps[jump].resets.clone();
         let mut still: Vec<usize> = Vec::new();
@@ -211,10 +225,12 @@ impl Run<'_> {
             correct(&mut self.x, &slope, normals.psi[surface]);
             let rate = self.field.rate(self.t, &self.x);
             let by_state = self.field.by_state(self.t, &self.x);
-            let mut pushes: Vec<f64> = (normals.by_state.row(surface) * by_state).iter().copied().collect();
+            let mut pushes: Vec<f64> =
+                (normals.by_state.row(surface) * by_state).iter().copied().collect();
             (0..pushes.len()).filter(|i| !resets.contains(i)).for_each(|i| pushes[i] = 0.0);
             correct(&mut self.x, &pushes, normals.rate(surface, &rate));
-            still = resets.iter().copied().filter(|&i| pushes[i] != 0.0 || slope[i] != 0.0).collect();
+            still =
+                resets.iter().copied().filter(|&i| pushes[i] != 0.0 || slope[i] != 0.0).collect();
         }
         self.field.held.extend(still);
         self.field.set_mode(surface, Mode::Held);
@@ -257,8 +273,8 @@ impl Run<'_> {
         self.record.point(self.t, &self.x);
     }
 
-    /// The least `|d f + psi_t| / (|d| |f| + |psi_t|)` of the fields on both sides; at an exit that of the side not taken,
-    /// for the other is tangent there.
+    /// The least `|d f + psi_t| / (|d| |f| + |psi_t|)` of the fields on both sides; at an exit that
+    /// of the side not taken, for the other is tangent there.
     fn margin(&mut self, surface: usize) -> f64 {
         let normals = self.field.normals(self.t, &self.x);
         let mut selectors = self.field.selectors.clone();
@@ -266,9 +282,10 @@ impl Run<'_> {
         let mut cosines = [-1.0, 1.0].map(|side| {
             selectors[surface] = side;
             let (rate, _) = self.field.with_selectors(self.t, &self.x, &selectors);
-            let shown = rate.iter().zip(&self.field.system.states).filter(|(_, state)| !state.hidden);
-            let size =
-                shown.map(|(rate, _)| rate * rate).sum::<f64>().sqrt() * normals.by_state.row(surface).norm();
+            let shown =
+                rate.iter().zip(&self.field.system.states).filter(|(_, state)| !state.hidden);
+            let size = shown.map(|(rate, _)| rate * rate).sum::<f64>().sqrt()
+                * normals.by_state.row(surface).norm();
             let largest = size + normals.by_time[surface].abs();
             if largest > 0.0 { normals.rate(surface, &rate).abs() / largest } else { 0.0 }
         });

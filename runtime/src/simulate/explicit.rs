@@ -34,7 +34,8 @@ fn combine(into: &mut [f64], x: &[f64], h: f64, stages: &[Vec<f64>], weights: &[
 pub(super) fn error(step: &Step, tolerance: &Tolerance) -> f64 {
     let mut largest = 0.0_f64;
     for (i, (x, end)) in step.start.iter().zip(&step.end).enumerate() {
-        let scaled = (step.h * sum(i, &step.stages, &ERROR)).abs() / tolerance.of(i, [*x, *end], step.h);
+        let scaled =
+            (step.h * sum(i, &step.stages, &ERROR)).abs() / tolerance.of(i, [*x, *end], step.h);
         if !scaled.is_finite() || !end.is_finite() {
             return f64::INFINITY;
         }
@@ -56,12 +57,16 @@ fn extend(step: &mut Step) {
     }
 }
 
-/// `h |lambda|` of the largest eigenvalue, as the last two stages show it; beyond 3.3 the pair is not stable.
+/// `h |lambda|` of the largest eigenvalue, as the last two stages show it; beyond 3.3 the pair is
+/// not stable.
 ///
 /// E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, 2nd ed., IV.2, (2.21).
 pub(super) fn stiffness(step: &Step) -> f64 {
-    let distance = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
-    let (rates, states) =
-        (distance(&step.stages[STAGES - 1], &step.stages[STAGES - 2]), distance(&step.end, &step.near_end));
+    let distance =
+        |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+    let (rates, states) = (
+        distance(&step.stages[STAGES - 1], &step.stages[STAGES - 2]),
+        distance(&step.end, &step.near_end),
+    );
     if states > 0.0 { step.h * rates / states } else { 0.0 }
 }

@@ -28,7 +28,8 @@ pub(super) struct Extremes(pub Vec<[Extreme; 2]>);
 
 impl Extremes {
     pub fn new(conditions: usize) -> Self {
-        let none = [f64::INFINITY, f64::NEG_INFINITY].map(|value| Extreme { value, time: f64::NAN });
+        let none =
+            [f64::INFINITY, f64::NEG_INFINITY].map(|value| Extreme { value, time: f64::NAN });
         Extremes(vec![none; conditions])
     }
 
@@ -40,7 +41,10 @@ impl Extremes {
             if search.is_known(known, until) {
                 continue;
             }
-            known.iter_mut().zip([-1.0, 1.0]).for_each(|(known, side)| search.raise(known, side, until));
+            known
+                .iter_mut()
+                .zip([-1.0, 1.0])
+                .for_each(|(known, side)| search.raise(known, side, until));
         }
     }
 }
@@ -82,7 +86,8 @@ impl Search<'_, '_> {
             let enough = side * known.value + EXACT * known.value.abs();
             // Two lines bound the values from above.
             let until_highest = (values[2] - values[0] - falls * (to - from)) / (grows - falls);
-            let is_done = falls >= 0.0 || grows <= 0.0 || values[0] + grows * until_highest <= enough;
+            let is_done =
+                falls >= 0.0 || grows <= 0.0 || values[0] + grows * until_highest <= enough;
             if !is_done && to - from > f64::EPSILON {
                 parts.extend([[middle, to], [from, middle]]);
             }

@@ -1,7 +1,8 @@
 //! The right side in a mode: every selector is given, is a direction, or keeps its surface at 0.
 //!
-//! On the sliding surfaces `A` the selectors solve `r_A(s) = d_A f(t, x, s) + psi_t = 0` with `d = dpsi/dx`, by Newton's
-//! method on `B = -d_A df/ds_A`; one iteration where selectors do not multiply each other.
+//! On the sliding surfaces `A` the selectors solve `r_A(s) = d_A f(t, x, s) + psi_t = 0` with `d =
+//! dpsi/dx`, by Newton's method on `B = -d_A df/ds_A`; one iteration where selectors do not
+//! multiply each other.
 
 use super::controls::Controls;
 use super::memory::Memory;
@@ -192,7 +193,12 @@ impl<'a> Field<'a> {
     }
 
     /// `f` and `df/ds` where all selectors are given.
-    pub fn with_selectors(&mut self, t: f64, x: &[f64], selectors: &[f64]) -> (Vec<f64>, DMatrix<f64>) {
+    pub fn with_selectors(
+        &mut self,
+        t: f64,
+        x: &[f64],
+        selectors: &[f64],
+    ) -> (Vec<f64>, DMatrix<f64>) {
         self.derivatives(t, x, selectors, self.system.layout.selectors())
     }
 
@@ -203,12 +209,17 @@ impl<'a> Field<'a> {
     }
 
     /// `f` and `df/dx` where all selectors are given.
-    pub fn by_state_with(&mut self, t: f64, x: &[f64], selectors: &[f64]) -> (Vec<f64>, DMatrix<f64>) {
+    pub fn by_state_with(
+        &mut self,
+        t: f64,
+        x: &[f64],
+        selectors: &[f64],
+    ) -> (Vec<f64>, DMatrix<f64>) {
         self.derivatives(t, x, selectors, self.system.layout.states())
     }
 
-    /// The derivative of the right side in the current mode, in which the selectors of sliding surfaces follow the state:
-    /// `f_x + f_s s_x` with `psi'_s s_x = -psi'_x`.
+    /// The derivative of the right side in the current mode, in which the selectors of sliding
+    /// surfaces follow the state: `f_x + f_s s_x` with `psi'_s s_x = -psi'_x`.
     pub fn jacobian_of_mode(&mut self, t: f64, x: &[f64]) -> DMatrix<f64> {
         let (states, selectors) = (self.system.layout.states(), self.system.layout.selectors());
         let now = self.selectors_at(t, x);
@@ -221,7 +232,8 @@ impl<'a> Field<'a> {
         let (_, rates) = self.jacobian(&*self.system.rates, 0..selectors.end);
         let rates = rates.select_rows(&sliding);
         let places: Vec<usize> = sliding.iter().map(|&i| selectors.start + i).collect();
-        let follows = rates.select_columns(&places).lu().solve(&rates.columns(states.start, states.len()));
+        let follows =
+            rates.select_columns(&places).lu().solve(&rates.columns(states.start, states.len()));
         match follows {
             Some(follows) => by_state - by_inputs.select_columns(&places) * follows,
             None => by_state,
@@ -269,14 +281,16 @@ impl<'a> Field<'a> {
         self.held.iter().for_each(|&state| rate[state] = 0.0);
     }
 
-    /// The right side of the last point with the sides of that point: beyond a kink the one of before may have no value.
+    /// The right side of the last point with the sides of that point: beyond a kink the one of
+    /// before may have no value.
     fn rate_on_its_side(&mut self, rate: &mut [f64]) {
         let mut point = column_values(&self.point);
         self.system.choose_sides(&mut point, &self.parameters);
         rate.copy_from_slice(&value(&*self.system.flow, &point, &self.parameters));
     }
 
-    /// The selectors of the current mode, each a side, part of a direction, or what keeps its surface; leaves everything as it is.
+    /// The selectors of the current mode, each a side, part of a direction, or what keeps its
+    /// surface; leaves everything as it is.
     pub fn selectors_at(&mut self, t: f64, x: &[f64]) -> Vec<f64> {
         let before = (self.selectors.clone(), self.evaluations);
         if !self.sliding().is_empty() || !self.moving().is_empty() {
@@ -326,7 +340,8 @@ impl<'a> Field<'a> {
             let (_, by_selector) = self.with_selectors(t, x, &selectors);
             let directions = by_selector.select_columns(&sliding);
             let matrix = normals.by_state.select_rows(&sliding) * &directions;
-            let psi = DVector::from_iterator(sliding.len(), sliding.iter().map(|&i| normals.psi[i]));
+            let psi =
+                DVector::from_iterator(sliding.len(), sliding.iter().map(|&i| normals.psi[i]));
             let Some(along) = matrix.lu().solve(&psi) else { return };
             let change = directions * along;
             if !change.iter().all(|value| value.is_finite()) {

@@ -45,7 +45,8 @@ pub(super) fn both(a: Interval, b: Interval) -> Interval {
 /// The length of a vector.
 pub(super) fn length(vector: impl Iterator<Item = Interval>) -> Interval {
     let size = |a: Interval| a[0].abs().max(a[1].abs());
-    let least = |a: Interval| if a[0] <= 0.0 && a[1] >= 0.0 { 0.0 } else { a[0].abs().min(a[1].abs()) };
+    let least =
+        |a: Interval| if a[0] <= 0.0 && a[1] >= 0.0 { 0.0 } else { a[0].abs().min(a[1].abs()) };
     let squares = vector.map(|a| [least(a).powi(2), size(a).powi(2)]);
     squares.fold([0.0; 2], plus).map(f64::sqrt)
 }

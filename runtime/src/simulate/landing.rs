@@ -4,8 +4,9 @@
 //! |psi|' = s r,   |psi| s' = (I - s s') r,   r = dpsi/dx f + psi_t
 //! ```
 //!
-//! So no step goes more than nine tenths of the way that is left, nor farther than an explicit step is stable for
-//! `s' ~ -B s/|psi|`. Each takes a part of `|psi|`; the last `1e-12` of it is a straight line.
+//! So no step goes more than nine tenths of the way that is left, nor farther than an explicit step
+//! is stable for `s' ~ -B s/|psi|`. Each takes a part of `|psi|`; the last `1e-12` of it is a
+//! straight line.
 
 use super::direction::length;
 use super::field::{Field, Mode, surface_rates};
@@ -33,7 +34,8 @@ pub(super) struct Fall<'a> {
 }
 
 impl<'a> Field<'a> {
-    /// The moving ball that is the first to reach 0, as things go at present; notes which steps are stable.
+    /// The moving ball that is the first to reach 0, as things go at present; notes which steps are
+    /// stable.
     pub fn fall(&mut self, t: f64, x: &[f64]) -> Option<Fall<'a>> {
         self.stable = f64::INFINITY;
         if self.moving().is_empty() || self.sets_out(t) {
@@ -71,8 +73,9 @@ impl Run<'_> {
         step.begin(&mut self.field, self.t, &self.x, Method::Explicit, false);
         (step.h, step.rule) = (fall.time, Rule::Straight);
         let (rate, h) = (step.stages[0].clone(), step.h);
-        let point =
-            |theta: f64| self.x.iter().zip(&rate).map(|(x, rate)| x + theta * h * rate).collect::<Vec<f64>>();
+        let point = |theta: f64| {
+            self.x.iter().zip(&rate).map(|(x, rate)| x + theta * h * rate).collect::<Vec<f64>>()
+        };
         let (middle, mut end) = (point(0.5), point(1.0));
         self.project_to_zero(fall.ball, &mut end);
         step.end_smoothly(&middle, &end, &rate);
@@ -120,8 +123,8 @@ impl Run<'_> {
         }
     }
 
-    /// How steeply `|psi|` falls: the cosine between the field and the way to 0, of the direction in which it moved or, at
-    /// rest, of the direction opposite to the selectors.
+    /// How steeply `|psi|` falls: the cosine between the field and the way to 0, of the direction
+    /// in which it moved or, at rest, of the direction opposite to the selectors.
     fn ball_margin(&mut self, ball: &Ball) -> f64 {
         let mut selectors = self.field.selectors.clone();
         let sign = if self.field.modes[ball.surfaces.start] == Mode::Moving { 1.0 } else { -1.0 };

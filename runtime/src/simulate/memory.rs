@@ -51,7 +51,8 @@ impl Memory {
         let by_selectors =
             flow.entries.iter().enumerate().map(entry).filter(|it| selectors.contains(&it.input));
         let by_selectors = by_selectors.map(|it| Entry { input: it.input - selectors.start, ..it });
-        let slopes = guards.entries.iter().enumerate().map(entry).filter(|it| inputs.contains(&it.input));
+        let slopes =
+            guards.entries.iter().enumerate().map(entry).filter(|it| inputs.contains(&it.input));
         Memory {
             flow: Columns::new(system.flow.outputs(), 1),
             by_inputs: Columns::new(flow.entries.len(), 1),
@@ -95,7 +96,9 @@ impl Memory {
                 continue;
             };
             self.change[row] += value * rate[state];
-            for entry in self.by_selectors.iter().filter(|it| it.row == state && !held.contains(&state)) {
+            for entry in
+                self.by_selectors.iter().filter(|it| it.row == state && !held.contains(&state))
+            {
                 if let Some(column) = self.place[entry.input] {
                     self.matrix[row * size + column] -= value * self.by_inputs.column(entry.at)[0];
                 }

@@ -57,8 +57,8 @@ impl Field<'_> {
         let by_state = matrix.columns(1, x.len()).into_owned();
         let mut normals = Normals { psi, by_time, by_state, floors };
         for i in 0..normals.psi.len() {
-            let of_terms =
-                normals.rounding(i, &self.tolerance.sizes) + ROUNDING * (normals.by_time[i] * t).abs();
+            let of_terms = normals.rounding(i, &self.tolerance.sizes)
+                + ROUNDING * (normals.by_time[i] * t).abs();
             normals.floors[i] += of_terms;
         }
         normals
@@ -69,7 +69,9 @@ impl Field<'_> {
     pub fn find_rounding(&mut self, t: f64, x: &[f64]) {
         let mut tube = Tube::at(self, t, x);
         let enclosures = &self.system.enclosures;
-        for (known, of) in self.rounding.iter_mut().zip(enclosures.guards.iter().chain(&enclosures.kinks)) {
+        for (known, of) in
+            self.rounding.iter_mut().zip(enclosures.guards.iter().chain(&enclosures.kinks))
+        {
             tube.evaluate(of);
             let width = tube.ranges[0][1] - tube.ranges[0][0];
             *known = if width.is_finite() { known.max(2.0 * width) } else { *known };

@@ -1,11 +1,13 @@
-//! The Radau IIA method of order 5, for stiff modes: stage values `x0 + z_i`, by simplified Newton's method.
+//! The Radau IIA method of order 5, for stiff modes: stage values `x0 + z_i`, by simplified
+//! Newton's method.
 //!
 //! ```text
 //! z_i = h sum_j a_ij f(t + c_j h, x0 + z_j),     (I - h A x J) dz = h A F - z,     x(t + h) = x0 + z_3
 //! (g/h I - J) err = f(t, x0) + (e_1 z_1 + e_2 z_2 + e_3 z_3)/h
 //! ```
 //!
-//! E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, 2nd ed., IV.5 (the method) and IV.8 (all else).
+//! E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, 2nd ed., IV.5 (the method) and
+//! IV.8 (all else).
 
 use super::field::Field;
 use super::step::{Extension, Step};
@@ -23,8 +25,16 @@ pub(crate) const C: [f64; STAGES] = [(4.0 - ROOT_6) / 10.0, (4.0 + ROOT_6) / 10.
 
 /// Weights of the stages.
 pub(crate) const A: [[f64; STAGES]; STAGES] = [
-    [(88.0 - 7.0 * ROOT_6) / 360.0, (296.0 - 169.0 * ROOT_6) / 1800.0, (-2.0 + 3.0 * ROOT_6) / 225.0],
-    [(296.0 + 169.0 * ROOT_6) / 1800.0, (88.0 + 7.0 * ROOT_6) / 360.0, (-2.0 - 3.0 * ROOT_6) / 225.0],
+    [
+        (88.0 - 7.0 * ROOT_6) / 360.0,
+        (296.0 - 169.0 * ROOT_6) / 1800.0,
+        (-2.0 + 3.0 * ROOT_6) / 225.0,
+    ],
+    [
+        (296.0 + 169.0 * ROOT_6) / 1800.0,
+        (88.0 + 7.0 * ROOT_6) / 360.0,
+        (-2.0 - 3.0 * ROOT_6) / 225.0,
+    ],
     [(16.0 - ROOT_6) / 36.0, (16.0 + ROOT_6) / 36.0, 1.0 / 9.0],
 ];
 
@@ -32,7 +42,8 @@ pub(crate) const A: [[f64; STAGES]; STAGES] = [
 const EIGENVALUE: f64 = 3.637_834_252_744_496;
 
 /// Weights of the error.
-const ERROR: [f64; STAGES] = [-(13.0 + 7.0 * ROOT_6) / 3.0, (-13.0 + 7.0 * ROOT_6) / 3.0, -1.0 / 3.0];
+const ERROR: [f64; STAGES] =
+    [-(13.0 + 7.0 * ROOT_6) / 3.0, (-13.0 + 7.0 * ROOT_6) / 3.0, -1.0 / 3.0];
 
 /// What the last steps leave of error, all within the tolerance, is estimated at this much at most.
 const INHERITED: f64 = 2.0;
@@ -60,11 +71,18 @@ pub(super) struct Newton {
 
 impl Newton {
     /// Prepares for steps from a point.
-    pub fn begin(&mut self, field: &mut Field, t: f64, x: &[f64], before: Option<(Extension, f64)>) {
+    pub fn begin(
+        &mut self,
+        field: &mut Field,
+        t: f64,
+        x: &[f64],
+        before: Option<(Extension, f64)>,
+    ) {
         let (n, all) = (x.len(), STAGES * x.len());
         if self.at.len() != n {
             let zeros = |size: usize| vec![0.0; size];
-            (self.z, self.change, self.rates, self.at) = (zeros(all), zeros(all), zeros(all), zeros(n));
+            (self.z, self.change, self.rates, self.at) =
+                (zeros(all), zeros(all), zeros(all), zeros(n));
             (self.matrix, self.lu, self.error_lu) = (zeros(all * all), Lu::new(all), Lu::new(n));
         }
         self.jacobian = field.jacobian_of_mode(t, x);
@@ -93,8 +111,9 @@ impl Newton {
         let n = start.len();
         for (at, z) in self.z.iter_mut().enumerate() {
             let (stage, i) = (at / n, at % n);
-            let ahead =
-                |(before, length): &(Extension, f64)| before.component(i, 1.0 + C[stage] * h / length);
+            let ahead = |(before, length): &(Extension, f64)| {
+                before.component(i, 1.0 + C[stage] * h / length)
+            };
             *z = self.before.as_ref().map_or(0.0, |before| ahead(before) - start[i]);
         }
     }
@@ -132,7 +151,8 @@ impl Newton {
             if !change.is_finite() || change >= last {
                 return last <= enough;
             }
-            let rest = if last.is_finite() { change * change / (last - change) } else { 10.0 * change };
+            let rest =
+                if last.is_finite() { change * change / (last - change) } else { 10.0 * change };
             if rest <= enough {
                 return true;
             }
@@ -158,7 +178,10 @@ impl Newton {
 
     /// The largest sum of a row of `J`, which bounds its eigenvalues.
     pub fn stiffness(&self) -> f64 {
-        self.jacobian.row_iter().map(|row| row.iter().map(|entry| entry.abs()).sum()).fold(0.0, f64::max)
+        self.jacobian
+            .row_iter()
+            .map(|row| row.iter().map(|entry| entry.abs()).sum())
+            .fold(0.0, f64::max)
     }
 }
 
@@ -186,8 +209,8 @@ pub(super) fn attempt(step: &mut Step, field: &mut Field) {
     extend(step);
 }
 
-/// Whether the estimate is no more than the distance of the start from a slow manifold, which the step damps: then the
-/// same estimate from a start that is corrected by it is small.
+/// Whether the estimate is no more than the distance of the start from a slow manifold, which the
+/// step damps: then the same estimate from a start that is corrected by it is small.
 fn is_inherited(step: &mut Step, field: &mut Field) -> bool {
     let Step { t, h, start, newton, .. } = step;
     newton.at.iter_mut().enumerate().for_each(|(i, at)| *at = start[i] + newton.change[i]);
@@ -202,8 +225,10 @@ pub(super) fn size(step: &Step, tolerance: &Tolerance) -> f64 {
     let of = |i: usize| tolerance.of(i, [step.start[i], step.end[i]], step.h);
     let scaled = |i: usize| (step.newton.change[i] / of(i)).abs();
     let largest = (0..step.start.len()).map(scaled);
-    largest
-        .fold(0.0, |largest, value| if value.is_finite() { f64::max(largest, value) } else { f64::INFINITY })
+    largest.fold(
+        0.0,
+        |largest, value| if value.is_finite() { f64::max(largest, value) } else { f64::INFINITY },
+    )
 }
 
 /// The collocation polynomial.
@@ -216,6 +241,10 @@ fn extend(step: &mut Step) {
         let slope = |stage: usize| (z(stage) / C[stage] - a) / (1.0 - C[stage]);
         let c = (slope(0) - slope(1)) / (C[0] - C[1]);
         let coefficients = [a, slope(0) - C[0] * c, c, 0.0];
-        step.extension.dense.iter_mut().zip(coefficients).for_each(|(column, value)| column[i] = value);
+        step.extension
+            .dense
+            .iter_mut()
+            .zip(coefficients)
+            .for_each(|(column, value)| column[i] = value);
     }
 }

@@ -134,7 +134,8 @@ pub struct Event {
     pub surface: usize,
     /// What.
     pub kind: Kind,
-    /// How far from grazing: the cosine between a field and the normal of its surface, the least of those that meet.
+    /// How far from grazing: the cosine between a field and the normal of its surface, the least of
+    /// those that meet.
     pub margin: f64,
     /// The state before it.
     pub before: Vec<f64>,

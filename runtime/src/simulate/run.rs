@@ -50,7 +50,11 @@ impl<'a> Run<'a> {
             options,
             record: Record::new(options, system.layout.x),
             tape: Writer::new(options.tape),
-            extremes: Extremes::new(if options.extremes { system.enclosures.path.len() } else { 0 }),
+            extremes: Extremes::new(if options.extremes {
+                system.enclosures.path.len()
+            } else {
+                0
+            }),
             t: system.interval[0],
             x: system.start.clone(),
             jumps: vec![0; system.jumps.len()],

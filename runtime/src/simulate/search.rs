@@ -67,13 +67,19 @@ impl Signal<'_, '_> {
     /// Value and rate over a part of the step.
     fn bounds(&mut self, part: [f64; 2]) -> [Interval; 2] {
         let (enclosure, side) = match self.condition {
-            Condition::Reaches(i) => (&self.field.system.enclosures.guards[i], self.field.modes[i].side()),
+            Condition::Reaches(i) => {
+                (&self.field.system.enclosures.guards[i], self.field.modes[i].side())
+            }
             Condition::Bends(k) => (&self.field.system.enclosures.kinks[k], self.field.side_of(k)),
             Condition::Leaves(i) => return sliding::bounds(self, part, i),
         };
         let [value, rate] = self.tube.bounds(self.field, self.step, part, enclosure);
         let has_no_value = value[0] > value[1];
-        if has_no_value { [[f64::INFINITY; 2], ALL] } else { [scaled(side, value), scaled(side, rate)] }
+        if has_no_value {
+            [[f64::INFINITY; 2], ALL]
+        } else {
+            [scaled(side, value), scaled(side, rate)]
+        }
     }
 
     /// Whether the condition holds from the beginning until a part of the step, as one look at the
@@ -96,13 +102,22 @@ impl Signal<'_, '_> {
                     let middle = 0.5 * (part.ends[0] + part.ends[1]);
                     let value = self.value(middle);
                     largest = largest.max(value.abs());
-                    parts.push(Part { ends: [middle, part.ends[1]], values: [value, part.values[1]] });
-                    parts.push(Part { ends: [part.ends[0], middle], values: [part.values[0], value] });
+                    parts.push(Part {
+                        ends: [middle, part.ends[1]],
+                        values: [value, part.values[1]],
+                    });
+                    parts.push(Part {
+                        ends: [part.ends[0], middle],
+                        values: [part.values[0], value],
+                    });
                 }
             }
         }
         let is_flat = largest <= FLAT * noise;
-        parts.last().filter(|_| !is_flat).map_or(Search::Holds, |part| Search::HoldsUntil(part.ends[0]))
+        parts
+            .last()
+            .filter(|_| !is_flat)
+            .map_or(Search::Holds, |part| Search::HoldsUntil(part.ends[0]))
     }
 
     fn judge(&mut self, part: Part, noise: f64) -> Verdict {

@@ -1,5 +1,6 @@
-//! A step in which a ball leaves 0 or is near it. There `s = psi/|psi|` turns with a rate of order `1/|psi|`, which no explicit
-//! step can follow, but the solution is smooth. It is found by collocation at Radau points, with selectors and lengths as unknowns:
+//! A step in which a ball leaves 0 or is near it. There `s = psi/|psi|` turns with a rate of order
+//! `1/|psi|`, which no explicit step can follow, but the solution is smooth. It is found by
+//! collocation at Radau points, with selectors and lengths as unknowns:
 //!
 //! ```text
 //! X_i = x + h sum_j a_ij f(t_j, X_j, s_j)
@@ -7,7 +8,8 @@
 //! r(X_i, s_i) = 0                                 the surfaces that are slid on
 //! ```
 //!
-//! by Newton's method, from the direction at the beginning. Five points against four give the error.
+//! by Newton's method, from the direction at the beginning. Five points against four give the
+//! error.
 
 use super::field::Field;
 use super::step::Step;
@@ -23,7 +25,8 @@ pub(crate) const FINE: [f64; 5] = [
     1.0,
 ];
 
-const COARSE: [f64; 4] = [0.088_587_959_512_703_95, 0.409_466_864_440_734_7, 0.787_659_461_760_847, 1.0];
+const COARSE: [f64; 4] =
+    [0.088_587_959_512_703_95, 0.409_466_864_440_734_7, 0.787_659_461_760_847, 1.0];
 
 /// Newton's method is given up after so many iterations.
 const MOST_ITERATIONS: usize = 20;
@@ -43,8 +46,8 @@ struct Slope {
     by_selector: DMatrix<f64>,
 }
 
-/// The equations of one step. The unknowns of a point are its state, the selectors of the moving balls and of the sliding
-/// surfaces, and the lengths.
+/// The equations of one step. The unknowns of a point are its state, the selectors of the moving
+/// balls and of the sliding surfaces, and the lengths.
 struct Collocation<'f, 'a> {
     field: &'f mut Field<'a>,
     t: f64,
@@ -78,9 +81,15 @@ pub(super) fn attempt(step: &mut Step, field: &mut Field) {
 }
 
 impl<'f, 'a> Collocation<'f, 'a> {
-    fn new(field: &'f mut Field<'a>, [t, h]: [f64; 2], x: &'f [f64], times: &'static [f64]) -> Self {
+    fn new(
+        field: &'f mut Field<'a>,
+        [t, h]: [f64; 2],
+        x: &'f [f64],
+        times: &'static [f64],
+    ) -> Self {
         let (balls, sliding) = (field.moving(), field.sliding());
-        let unknown = balls.iter().flat_map(|ball| ball.surfaces.clone()).chain(sliding.clone()).collect();
+        let unknown =
+            balls.iter().flat_map(|ball| ball.surfaces.clone()).chain(sliding.clone()).collect();
         Collocation { field, t, x, h, balls, sliding, unknown, times, weights: weights(times) }
     }
 
@@ -97,7 +106,8 @@ impl<'f, 'a> Collocation<'f, 'a> {
             let change = matrix.lu().solve(&residual)?;
             let size = self.subtract(&change, &mut nodes);
             if size <= 0.01 {
-                let are_positive = nodes.iter().flat_map(|node| &node.lengths).all(|length| *length > 0.0);
+                let are_positive =
+                    nodes.iter().flat_map(|node| &node.lengths).all(|length| *length > 0.0);
                 return are_positive.then_some(nodes);
             } else if !size.is_finite() {
                 return None;
@@ -109,7 +119,11 @@ impl<'f, 'a> Collocation<'f, 'a> {
     /// Nearly the solution if no selector changed.
     fn in_one_direction(&mut self) -> Vec<Node> {
         let selectors = self.field.selectors.clone();
-        let node = Node { added: vec![0.0; self.x.len()], selectors, lengths: vec![0.0; self.balls.len()] };
+        let node = Node {
+            added: vec![0.0; self.x.len()],
+            selectors,
+            lengths: vec![0.0; self.balls.len()],
+        };
         let mut nodes = vec![node; self.times.len()];
         for _ in 0..3 {
             let rates: Vec<Vec<f64>> = (0..nodes.len()).map(|j| self.rate(j, &nodes[j])).collect();
@@ -131,8 +145,10 @@ impl<'f, 'a> Collocation<'f, 'a> {
 
     /// `h sum_j a_ij f_j`.
     fn added(&self, i: usize, rates: &[Vec<f64>]) -> Vec<f64> {
-        let weighted = |(j, rate): (usize, &Vec<f64>), state: usize| self.weights[(i, j)] * rate[state];
-        let total = |state: usize| rates.iter().enumerate().map(|it| weighted(it, state)).sum::<f64>();
+        let weighted =
+            |(j, rate): (usize, &Vec<f64>), state: usize| self.weights[(i, j)] * rate[state];
+        let total =
+            |state: usize| rates.iter().enumerate().map(|it| weighted(it, state)).sum::<f64>();
         (0..self.x.len()).map(|state| self.h * total(state)).collect()
     }
 
@@ -148,7 +164,9 @@ impl<'f, 'a> Collocation<'f, 'a> {
                 let weight = -self.h * self.weights[(i, j)];
                 let mut block = matrix.view_mut((i * width, j * width), (states, width));
                 block.columns_mut(0, states).copy_from(&(&slope.by_state * weight));
-                block.columns_mut(states, self.unknown.len()).copy_from(&(&slope.by_selector * weight));
+                block
+                    .columns_mut(states, self.unknown.len())
+                    .copy_from(&(&slope.by_selector * weight));
             }
             let (from, height) = (j * width + states, width - states);
             let (values, rows) = self.conditions(j, node, &slope);
@@ -168,13 +186,15 @@ impl<'f, 'a> Collocation<'f, 'a> {
     fn slope(&mut self, j: usize, node: &Node) -> Slope {
         let (t, x) = (self.t + self.times[j] * self.h, sum(self.x, &node.added));
         let (rate, by_state) = self.field.by_state_with(t, &x, &node.selectors);
-        let by_selector = self.field.with_selectors(t, &x, &node.selectors).1.select_columns(&self.unknown);
+        let by_selector =
+            self.field.with_selectors(t, &x, &node.selectors).1.select_columns(&self.unknown);
         Slope { rate, by_state, by_selector }
     }
 
     /// What holds in one point, with its derivatives.
     fn conditions(&mut self, j: usize, node: &Node, slope: &Slope) -> (DVector<f64>, DMatrix<f64>) {
-        let normals = self.field.normals(self.t + self.times[j] * self.h, &sum(self.x, &node.added));
+        let normals =
+            self.field.normals(self.t + self.times[j] * self.h, &sum(self.x, &node.added));
         let (states, count) = (self.x.len(), self.unknown.len());
         let mut residual = DVector::zeros(count + self.balls.len());
         let mut rows = DMatrix::zeros(residual.len(), self.width());
@@ -209,7 +229,10 @@ impl<'f, 'a> Collocation<'f, 'a> {
             let mut change = change.rows(j * self.width(), self.width()).into_iter();
             let before = node.added.clone();
             node.added.iter_mut().zip(&mut change).for_each(|(value, change)| *value -= change);
-            self.unknown.iter().zip(&mut change).for_each(|(&at, change)| node.selectors[at] -= change);
+            self.unknown
+                .iter()
+                .zip(&mut change)
+                .for_each(|(&at, change)| node.selectors[at] -= change);
             node.lengths.iter_mut().zip(&mut change).for_each(|(value, change)| *value -= change);
             let size = self.field.tolerance.error(self.x, &before, &node.added, self.h);
             largest = if size.is_nan() { f64::NAN } else { largest.max(size) };
@@ -226,17 +249,20 @@ fn sum(x: &[f64], added: &[f64]) -> Vec<f64> {
 pub(crate) fn weights(times: &[f64]) -> DMatrix<f64> {
     let size = times.len();
     let powers = DMatrix::from_fn(size, size, |j, q| times[j].powi(q as i32));
-    let integrals = DMatrix::from_fn(size, size, |i, q| times[i].powi(q as i32 + 1) / (q + 1) as f64);
+    let integrals =
+        DMatrix::from_fn(size, size, |i, q| times[i].powi(q as i32 + 1) / (q + 1) as f64);
     integrals * powers.try_inverse().expect("the times differ")
 }
 
 /// What is added to the start inside the step: the polynomial through the start and the points.
 fn interpolated(nodes: &[Node], theta: f64) -> Vec<f64> {
     let others = |j: usize| FINE.iter().enumerate().filter(move |(i, _)| *i != j).map(|(_, c)| *c);
-    let factor =
-        |j: usize| others(j).fold(theta / FINE[j], |product, c| product * (theta - c) / (FINE[j] - c));
+    let factor = |j: usize| {
+        others(j).fold(theta / FINE[j], |product, c| product * (theta - c) / (FINE[j] - c))
+    };
     let factors: Vec<f64> = (0..nodes.len()).map(factor).collect();
-    let total =
-        |state: usize| nodes.iter().zip(&factors).map(|(node, factor)| factor * node.added[state]).sum();
+    let total = |state: usize| {
+        nodes.iter().zip(&factors).map(|(node, factor)| factor * node.added[state]).sum()
+    };
     (0..nodes[0].added.len()).map(total).collect()
 }

@@ -1,7 +1,7 @@
 //! On which side of each kink of the right side the state is.
 //!
-//! The right side is continuous there, so a side that is wrong by rounding does no harm. On the kink itself the side is the one to
-//! which the state goes.
+//! The right side is continuous there, so a side that is wrong by rounding does no harm. On the
+//! kink itself the side is the one to which the state goes.
 
 use super::field::Field;
 

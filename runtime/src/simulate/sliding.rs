@@ -89,7 +89,8 @@ fn linearised(
     let middle = DMatrix::from_fn(size, size, |i, j| 0.5 * (slopes[i][j][0] + slopes[i][j][1]));
     let inverse = middle.try_inverse().filter(|it| it.iter().all(|entry| entry.is_finite()))?;
     let column = |j: usize| slopes.iter().map(|row| row[j]).collect::<Vec<_>>();
-    let columns: Vec<Vec<Interval>> = (0..size).map(|j| preconditioned(&inverse, &column(j))).collect();
+    let columns: Vec<Vec<Interval>> =
+        (0..size).map(|j| preconditioned(&inverse, &column(j))).collect();
     let matrix = (0..size).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
     let values = preconditioned(&inverse, &values);
     Some((Nearly { matrix, inverse }, values))
@@ -113,7 +114,8 @@ impl Nearly {
         for _ in 0..2 {
             for i in 0..size {
                 let others = (0..size).filter(|j| *j != i);
-                let terms = others.map(|j| times(self.matrix[i][j], minus(inside[j], [start[j]; 2])));
+                let terms =
+                    others.map(|j| times(self.matrix[i][j], minus(inside[j], [start[j]; 2])));
                 let sum = terms.fold(values[i], plus);
                 found[i] = minus([start[i]; 2], quotient(sum, self.matrix[i][i]));
                 inside[i] = both(found[i], inside[i]);

@@ -28,7 +28,8 @@ impl Extension {
     /// The Bernstein coefficients of a component.
     pub fn coefficients(&self, i: usize) -> [f64; 5] {
         let [a, b, c, d] = self.dense.each_ref().map(|column| column[i]);
-        let added = [0.0, (a + b) / 4.0, a / 2.0 + b / 3.0 + (c + d) / 6.0, (3.0 * a + b + c) / 4.0, a];
+        let added =
+            [0.0, (a + b) / 4.0, a / 2.0 + b / 3.0 + (c + d) / 6.0, (3.0 * a + b + c) / 4.0, a];
         added.map(|added| self.start[i] + added)
     }
 
@@ -88,7 +89,14 @@ impl Step {
     }
 
     /// Prepares for the next step, which may continue this one.
-    pub fn begin(&mut self, field: &mut Field, t: f64, x: &[f64], method: Method, is_continued: bool) {
+    pub fn begin(
+        &mut self,
+        field: &mut Field,
+        t: f64,
+        x: &[f64],
+        method: Method,
+        is_continued: bool,
+    ) {
         let is_same = is_continued && self.method == method;
         (self.t, self.method) = (t, method);
         self.start.copy_from_slice(x);
@@ -126,12 +134,15 @@ impl Step {
     pub fn measure(&mut self, tolerance: &Tolerance) {
         match self.rule {
             Rule::Explicit => self.error = explicit::error(self, tolerance),
-            Rule::Radau if self.error != radau::NOT_SOLVED => self.error = radau::size(self, tolerance),
+            Rule::Radau if self.error != radau::NOT_SOLVED => {
+                self.error = radau::size(self, tolerance)
+            }
             Rule::Radau | Rule::Collocation | Rule::Straight => {}
         }
     }
 
-    /// Ends the step along a curve that is known in its middle and at its end, with the rate there; that at the start is known.
+    /// Ends the step along a curve that is known in its middle and at its end, with the rate there;
+    /// that at the start is known.
     pub fn end_smoothly(&mut self, middle: &[f64], end: &[f64], last: &[f64]) {
         for i in 0..end.len() {
             let (start, first) = (self.start[i], self.stages[0][i]);

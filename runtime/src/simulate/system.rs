@@ -4,9 +4,11 @@
 //! x' = f(t, x, u, p, s),   s in Sgn(psi(t, x, p)) or Dir(psi),   x+ = r_j(t, x-, p) where psi is crossed
 //! ```
 //!
-//! A system for sensitivities has the first and second derivatives of all functions by all their inputs, too.
+//! A system for sensitivities has the first and second derivatives of all functions by all their
+//! inputs, too.
 //!
-//! The last states are the integrals of the model, which start at 0; so the objective is a function of both ends.
+//! The last states are the integrals of the model, which start at 0; so the objective is a function
+//! of both ends.
 
 use crate::problem::{Columns, Function, Layout, Origin, Parameter, Surface, Variable};
 use std::ops::Range;
@@ -106,14 +108,16 @@ pub struct System {
     pub rates: Arc<dyn Function>,
     /// `psi`, with the inputs of `flow`; differentiated by `t` and `x`.
     pub guards: Arc<dyn Function>,
-    /// `r`, with the inputs of `flow`, as many outputs as states for each jump; differentiated by `t` and `x`.
+    /// `r`, with the inputs of `flow`, as many outputs as states for each jump; differentiated by
+    /// `t` and `x`.
     pub resets: Arc<dyn Function>,
     /// The objective as written, over `[x(start), x(end) | p]`; no output if there is none.
     pub objective: Arc<dyn Function>,
     /// Guess of states, then controls, over normalised time `[tau | p]`.
     pub guess: Arc<dyn Function>,
-    /// Over the inputs of `flow`, what is 0 where `flow` has a kink that is no surface, such as that of `abs`; the selectors behind those of
-    /// the surfaces say on which side of each the state is. Kinks inside others come first; differentiated by `t` and `x`.
+    /// Over the inputs of `flow`, what is 0 where `flow` has a kink that is no surface, such as
+    /// that of `abs`; the selectors behind those of the surfaces say on which side of each the
+    /// state is. Kinks inside others come first; differentiated by `t` and `x`.
     pub kinks: Arc<dyn Function>,
     /// Bounds of the functions that are watched along a step.
     pub enclosures: Enclosures,
@@ -130,7 +134,8 @@ impl System {
         first..first + self.surfaces.len()
     }
 
-    /// Ends a point `[t | x | u | s]` with the side of each kink that it is on, below where it is on the kink itself.
+    /// Ends a point `[t | x | u | s]` with the side of each kink that it is on, below where it is
+    /// on the kink itself.
     pub fn choose_sides(&self, point: &mut [f64], parameters: &[f64]) {
         let first = point.len() - self.kinks.outputs();
         // Each pass is right for one more kink inside others.
@@ -157,7 +162,11 @@ impl System {
     /// The same system with other parameters, its interval and its start computed anew.
     pub fn with_parameters(&self, values: &[f64]) -> Self {
         let mut other = self.clone();
-        other.parameters.iter_mut().zip(values).for_each(|(parameter, value)| parameter.value = *value);
+        other
+            .parameters
+            .iter_mut()
+            .zip(values)
+            .for_each(|(parameter, value)| parameter.value = *value);
         other.start = value(&*self.start_of, &[], values);
         other.interval.copy_from_slice(&value(&*self.interval_of, &[], values));
         other

@@ -1,7 +1,8 @@
 //! The pair of order 5(4) of Dormand and Prince with its continuous extension of order 4.
 //!
-//! J. R. Dormand, P. J. Prince: A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6 (1980) 19-26;
-//! dense output: E. Hairer, S. P. Norsett, G. Wanner: Solving Ordinary Differential Equations I, 2nd ed., II.6.
+//! J. R. Dormand, P. J. Prince: A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6
+//! (1980) 19-26; dense output: E. Hairer, S. P. Norsett, G. Wanner: Solving Ordinary Differential
+//! Equations I, 2nd ed., II.6.
 
 /// Number of stages; the last is the first of the next step.
 pub(crate) const STAGES: usize = 7;
@@ -21,8 +22,15 @@ pub(crate) const A: [[f64; 6]; STAGES] = [
 ];
 
 /// Order 5 minus order 4.
-pub(super) const ERROR: [f64; STAGES] =
-    [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
+pub(super) const ERROR: [f64; STAGES] = [
+    71.0 / 57600.0,
+    0.0,
+    -71.0 / 16695.0,
+    71.0 / 1920.0,
+    -17253.0 / 339200.0,
+    22.0 / 525.0,
+    -1.0 / 40.0,
+];
 
 /// The last coefficient of the continuous extension.
 pub(super) const DENSE: [f64; STAGES] = [

@@ -1,7 +1,9 @@
-//! What a simulation did, piece by piece, so that it can be differentiated: steps, and stops between them.
+//! What a simulation did, piece by piece, so that it can be differentiated: steps, and stops
+//! between them.
 //!
-//! Between two stops the modes, the states that stand still and the row of the controls do not change; that is a [`Regime`].
-//! A stop is an event, a change of the controls, or both ends of the simulation's first instant.
+//! Between two stops the modes, the states that stand still and the row of the controls do not
+//! change; that is a [`Regime`]. A stop is an event, a change of the controls, or both ends of the
+//! simulation's first instant.
 
 use super::field::{Field, Mode};
 use super::locate::Condition;
@@ -176,7 +178,8 @@ impl Writer {
     fn regime(&mut self, field: &Field) -> usize {
         let Some(tape) = &mut self.tape else { return 0 };
         let row = field.row;
-        let is_last = |last: &Regime| last.modes == field.modes && last.held == field.held && last.row == row;
+        let is_last =
+            |last: &Regime| last.modes == field.modes && last.held == field.held && last.row == row;
         if !tape.regimes.last().is_some_and(is_last) {
             tape.regimes.push(Regime { modes: field.modes.clone(), held: field.held.clone(), row });
         }

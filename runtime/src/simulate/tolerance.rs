@@ -67,7 +67,10 @@ impl Tolerance {
     pub fn error(&self, x: &[f64], one: &[f64], other: &[f64], h: f64) -> f64 {
         let scaled = |i: usize| (one[i] - other[i]).abs() / self.of(i, [x[i], one[i]], h);
         let all = (0..x.len()).map(scaled);
-        all.fold(0.0, |largest, value| if value > largest || value.is_nan() { value } else { largest })
+        all.fold(
+            0.0,
+            |largest, value| if value > largest || value.is_nan() { value } else { largest },
+        )
     }
 }
 
@@ -90,8 +93,11 @@ impl Field<'_> {
         }
         for (i, mode) in self.modes.iter().enumerate() {
             let s = self.selectors[i];
-            let off =
-                if matches!(mode, Mode::Sliding | Mode::Moving) { SOLVED * (1.0 + s.abs()) } else { 0.0 };
+            let off = if matches!(mode, Mode::Sliding | Mode::Moving) {
+                SOLVED * (1.0 + s.abs())
+            } else {
+                0.0
+            };
             tube.inputs[layout.selectors().start + i] = [s - off, s + off];
         }
         for (i, rate) in self.system.enclosures.flow.iter().enumerate() {

@@ -44,7 +44,13 @@ impl Tube {
     }
 
     /// Value and rate of what an enclosure encloses, during a part of a step.
-    pub fn bounds(&mut self, field: &Field, step: &Step, part: [f64; 2], of: &Enclosure) -> [Interval; 2] {
+    pub fn bounds(
+        &mut self,
+        field: &Field,
+        step: &Step,
+        part: [f64; 2],
+        of: &Enclosure,
+    ) -> [Interval; 2] {
         let moves = self.go_to(field, step, part, of);
         self.evaluate(of);
         let slopes = self.ranges[1..].iter().zip(&of.by);
@@ -61,7 +67,13 @@ impl Tube {
 
     /// Intervals of what an enclosure reads; whether a control among it changes, nobody knows how
     /// fast.
-    pub fn go_to(&mut self, field: &Field, step: &Step, [from, to]: [f64; 2], of: &Enclosure) -> bool {
+    pub fn go_to(
+        &mut self,
+        field: &Field,
+        step: &Step,
+        [from, to]: [f64; 2],
+        of: &Enclosure,
+    ) -> bool {
         let layout = field.system.layout;
         let mut moves = false;
         for &input in &of.reads {

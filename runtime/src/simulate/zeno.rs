@@ -21,7 +21,8 @@ impl Pile {
         self.last.last().map_or(f64::INFINITY, |last| time - last)
     }
 
-    /// Notes a jump; the limit time once the jumps pile up. Jumps so small that rounding will soon hide them are believed at once.
+    /// Notes a jump; the limit time once the jumps pile up. Jumps so small that rounding will soon
+    /// hide them are believed at once.
     pub fn limit(&mut self, time: f64, span: f64, is_small: bool) -> Option<f64> {
         self.last.push(time);
         if self.last.len() > 4 {
@@ -37,7 +38,8 @@ impl Pile {
         let (before, ratio) = (second / first, third / second);
         let rest = third * ratio / (1.0 - ratio);
         let change = (ratio - before).abs();
-        let is_steady = 1.0 - ratio > REGULAR && change <= (STEADY * ratio).min(0.5 * (1.0 - ratio));
+        let is_steady =
+            1.0 - ratio > REGULAR && change <= (STEADY * ratio).min(0.5 * (1.0 - ratio));
         (is_steady && (is_small || rest <= NEAR * span)).then_some(time + rest)
     }
 }

@@ -24,7 +24,10 @@ impl Jacobian {
         for (entry, &(row, column)) in pattern.entries.iter().enumerate() {
             by[(row as usize, column as usize)] = entries.column(entry)[0];
         }
-        Jacobian { values: DVector::from_fn(function.outputs(), |row, _| values.column(row)[0]), by }
+        Jacobian {
+            values: DVector::from_fn(function.outputs(), |row, _| values.column(row)[0]),
+            by,
+        }
     }
 }
 

@@ -1,14 +1,15 @@
 //! The gradient of what the steps compute: their exact derivative, step by step backwards.
 //!
-//! With `y = (x+, s_A)`, where `A` are the selectors that keep their guards at 0 (all others are constant), a step solves
-//! `R(y; x, s0, u, p, t, h) = (F, psi_A) = 0`. From `lambda = dJ/dx+` and `rho = dJ/ds_A`
+//! With `y = (x+, s_A)`, where `A` are the selectors that keep their guards at 0 (all others are
+//! constant), a step solves `R(y; x, s0, u, p, t, h) = (F, psi_A) = 0`. From `lambda = dJ/dx+` and
+//! `rho = dJ/ds_A`
 //!
 //! ```text
 //! R_y^T (mu, nu) = (lambda, rho),      dJ/dq += -(mu, nu) . R_q    for everything q that the step was given
 //! ```
 //!
-//! The cost does not depend on how many parameters and controls there are. Times and the step follow the interval:
-//! `t = t0(p) + tau (tf(p) - t0(p))`.
+//! The cost does not depend on how many parameters and controls there are. Times and the step
+//! follow the interval: `t = t0(p) + tau (tf(p) - t0(p))`.
 
 use super::field::{Field, Jacobian};
 use super::linearized::Linearized;
@@ -29,7 +30,8 @@ pub struct Gradient {
     pub controls: Vec<Vec<f64>>,
 }
 
-/// The gradient of the objective that [`super::step_through`] found; the system must be one for sensitivities.
+/// The gradient of the objective that [`super::step_through`] found; the system must be one for
+/// sensitivities.
 pub fn gradient(
     system: &System,
     controls: &Controls,
@@ -41,7 +43,8 @@ pub fn gradient(
     }
     let field = Field::new(system, controls);
     let ends = ends(&stepped.start, stepped.end());
-    let objective = Jacobian::of(&*system.objective, &ends, &field.parameters).by.row(0).transpose();
+    let objective =
+        Jacobian::of(&*system.objective, &ends, &field.parameters).by.row(0).transpose();
     let mut back = Adjoint::new(&field, grid, controls, &objective);
     for step in stepped.taken.iter().rev() {
         back.pass(step)?;
@@ -65,7 +68,12 @@ struct Adjoint<'a> {
 }
 
 impl<'a> Adjoint<'a> {
-    fn new(field: &'a Field, grid: &'a Grid, controls: &Controls, objective: &DVector<f64>) -> Self {
+    fn new(
+        field: &'a Field,
+        grid: &'a Grid,
+        controls: &Controls,
+        objective: &DVector<f64>,
+    ) -> Self {
         let layout = field.system.layout;
         let rows = match controls {
             Controls::Guess => 0,
@@ -112,7 +120,8 @@ impl<'a> Adjoint<'a> {
         let solution = local.bordered(free).transpose().lu().solve(&known);
         let solution = solution.filter(|solution| solution.iter().all(|value| value.is_finite()));
         let solution = solution.ok_or(Failure::Singular { step: step.index, time: step.new.t })?;
-        let (mu, nu) = (solution.rows(0, layout.x).into_owned(), solution.rows(layout.x, free.len()));
+        let (mu, nu) =
+            (solution.rows(0, layout.x).into_owned(), solution.rows(layout.x, free.len()));
         let by_flow = local.flow.by.tr_mul(&mu) * local.weight;
         let by_all = by_flow - local.guards.by.select_rows(free).tr_mul(&nu);
         self.add_times(step, node.time, by_all[0], node.weight * mu.dot(&local.flow.values));
@@ -130,10 +139,12 @@ impl<'a> Adjoint<'a> {
         by_all
     }
 
-    /// Through the time of an evaluation, a part of a step after its beginning, and through the step.
+    /// Through the time of an evaluation, a part of a step after its beginning, and through the
+    /// step.
     fn add_times(&mut self, step: &Step, part: f64, by_time: f64, by_step: f64) {
         self.first_time += by_time;
-        self.duration += self.grid.tau(step.index, part) * by_time + by_step / self.grid.count() as f64;
+        self.duration +=
+            self.grid.tau(step.index, part) * by_time + by_step / self.grid.count() as f64;
     }
 
     /// Parameters, and controls or what their guess is made of.
@@ -144,11 +155,13 @@ impl<'a> Adjoint<'a> {
         let middle = self.grid.middle(step.index);
         match self.field.row(middle) {
             _ if layout.u == 0 => {}
-            Some(row) => {
-                self.controls[row].iter_mut().zip(by_controls.iter()).for_each(|(sum, by)| *sum += by)
-            }
+            Some(row) => self.controls[row]
+                .iter_mut()
+                .zip(by_controls.iter())
+                .for_each(|(sum, by)| *sum += by),
             None => {
-                let guess = Jacobian::of(&*self.field.system.guess, &[middle], &self.field.parameters).by;
+                let guess =
+                    Jacobian::of(&*self.field.system.guess, &[middle], &self.field.parameters).by;
                 let guess = guess.view((layout.x, 1), (layout.u, layout.p));
                 self.parameters += guess.transpose() * by_controls;
             }
@@ -161,8 +174,8 @@ impl<'a> Adjoint<'a> {
         let start = Jacobian::of(&*system.start_of, &[], parameters).by;
         let interval = Jacobian::of(&*system.interval_of, &[], parameters).by.transpose();
         self.parameters += start.transpose() * &self.state;
-        self.parameters +=
-            interval.column(0) * (self.first_time - self.duration) + interval.column(1) * self.duration;
+        self.parameters += interval.column(0) * (self.first_time - self.duration)
+            + interval.column(1) * self.duration;
         Gradient {
             parameters: self.parameters.as_slice().to_vec(),
             starts: self.state.as_slice().to_vec(),

@@ -27,7 +27,9 @@ impl Linearized {
         let (flow, guards) = (field.flow(point), field.guards(point));
         let (layout, weight) = (field.system.layout, h * node.weight);
         let blended = |by: &DMatrix<f64>| {
-            DMatrix::from_fn(by.nrows(), layout.x, |i, j| by[(i, layout.states().start + j)] * node.blend[j])
+            DMatrix::from_fn(by.nrows(), layout.x, |i, j| {
+                by[(i, layout.states().start + j)] * node.blend[j]
+            })
         };
         let by_end = DMatrix::identity(layout.x, layout.x) - weight * blended(&flow.by);
         let by_selectors = -weight * flow.by.columns_range(field.system.surface_selectors());
@@ -40,8 +42,12 @@ impl Linearized {
         let states = self.by_end.nrows();
         let mut matrix = DMatrix::zeros(states + free.len(), states + free.len());
         matrix.view_mut((0, 0), (states, states)).copy_from(&self.by_end);
-        matrix.view_mut((0, states), (states, free.len())).copy_from(&self.by_selectors.select_columns(free));
-        matrix.view_mut((states, 0), (free.len(), states)).copy_from(&self.normals.select_rows(free));
+        matrix
+            .view_mut((0, states), (states, free.len()))
+            .copy_from(&self.by_selectors.select_columns(free));
+        matrix
+            .view_mut((states, 0), (free.len(), states))
+            .copy_from(&self.normals.select_rows(free));
         matrix
     }
 }

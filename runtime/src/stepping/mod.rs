@@ -1,11 +1,13 @@
-//! Fixed steps through the differential inclusion itself, without events, and the exact gradient of what they compute.
+//! Fixed steps through the differential inclusion itself, without events, and the exact gradient of
+//! what they compute.
 //!
 //! ```text
 //! Grid -- rule --> one step (a mixed complementarity problem) -- run --> Stepped -- gradient (adjoint) --> Gradient
 //! ```
 //!
-//! Values converge with the step; gradients do not, however small it is (`docs/method/stepping.md`). That is what this is
-//! for: to show it beside the true gradient. A system without surfaces gets the ordinary one-step methods.
+//! Values converge with the step; gradients do not, however small it is
+//! (`docs/method/stepping.md`). That is what this is for: to show it beside the true gradient. A
+//! system without surfaces gets the ordinary one-step methods.
 
 mod field;
 mod gradient;

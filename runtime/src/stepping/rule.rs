@@ -4,7 +4,8 @@
 //! x+ = x + h [b0 f(t, x, s0) + b f(t + c h, z, s)],    z = (1 - w) x + w x+,    s0 in Sgn(psi(t, x)),  s in Sgn(psi(t + c h, z))
 //! ```
 //!
-//! The schemes of transcription are of this form, and so is the theta scheme: `b0 = 0`, `b = 1`, `c = w = theta`.
+//! The schemes of transcription are of this form, and so is the theta scheme: `b0 = 0`, `b = 1`, `c
+//! = w = theta`.
 
 use crate::problem::Method;
 use crate::simulate::System;
@@ -27,7 +28,8 @@ impl Grid {
         Grid::with_nodes(nodes(method, system.layout.x), method.intervals, method.steps)
     }
 
-    /// `x+ = x + h f(t + theta h, (1 - theta) x + theta x+)`: 0 is explicit Euler, 1/2 the midpoint rule, 1 implicit Euler.
+    /// `x+ = x + h f(t + theta h, (1 - theta) x + theta x+)`: 0 is explicit Euler, 1/2 the midpoint
+    /// rule, 1 implicit Euler.
     pub fn theta(system: &System, theta: f64, intervals: usize) -> Self {
         let node = Node { weight: 1.0, time: theta, blend: vec![theta; system.layout.x] };
         Grid::with_nodes(vec![node], intervals, 1)
@@ -35,7 +37,8 @@ impl Grid {
 
     fn with_nodes(nodes: Vec<Node>, intervals: usize, steps: usize) -> Self {
         let is_explicit = |node: &Node| node.time == 0.0 && node.blend.iter().all(|w| *w == 0.0);
-        let (explicit, mut implicit): (Vec<Node>, Vec<Node>) = nodes.into_iter().partition(is_explicit);
+        let (explicit, mut implicit): (Vec<Node>, Vec<Node>) =
+            nodes.into_iter().partition(is_explicit);
         assert!(implicit.len() <= 1, "a step solves one complementarity problem");
         let explicit = explicit.iter().map(|node| node.weight).reduce(|sum, weight| sum + weight);
         Grid { explicit, implicit: implicit.pop(), intervals, steps }

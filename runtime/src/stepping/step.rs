@@ -1,12 +1,14 @@
-//! One step: an explicit part, and a mixed complementarity problem for the end and the selectors of the implicit part.
+//! One step: an explicit part, and a mixed complementarity problem for the end and the selectors of
+//! the implicit part.
 //!
 //! ```text
 //! F(x+, s) = x+ - x - h [b0 f(t, x, s0) + b f(t + c h, z, s)] = 0,    s in Sgn(psi(t + c h, z))
 //! ```
 //!
-//! Newton's method with the inclusion kept as it is: with `d = -F_x^-1 F` and `D = -F_x^-1 F_s` the end moves by
-//! `d + D (s' - s)`, the guards by `psi_x w` times that, and the new selectors `s'` solve a linear complementarity problem.
-//! Steps are shortened until `F` shrinks; where it cannot, because only the selectors were wrong, they are not.
+//! Newton's method with the inclusion kept as it is: with `d = -F_x^-1 F` and `D = -F_x^-1 F_s` the
+//! end moves by `d + D (s' - s)`, the guards by `psi_x w` times that, and the new selectors `s'`
+//! solve a linear complementarity problem. Steps are shortened until `F` shrinks; where it cannot,
+//! because only the selectors were wrong, they are not.
 
 use super::field::{Field, Point};
 use super::linearized::Linearized;
@@ -18,8 +20,8 @@ use nalgebra::DVector;
 
 const MOST_ITERATIONS: usize = 100;
 
-/// A change of the end and an error of `F` below this part of the end are the last: what is left after it is their square.
-/// Selectors are not asked, because they may be many for one end.
+/// A change of the end and an error of `F` below this part of the end are the last: what is left
+/// after it is their square. Selectors are not asked, because they may be many for one end.
 const LAST_CHANGE: f64 = 1e-10;
 
 /// Selectors closer to 1 than this are 1.
@@ -78,10 +80,9 @@ impl Step {
 /// On a surface the selector that the step before ended with (0 before the first), else the side.
 fn explicit_selectors(field: &Field, old: &Point, carried: &[bool]) -> DVector<f64> {
     let psi = field.psi(old);
-    DVector::from_fn(
-        carried.len(),
-        |i, _| if carried[i] || psi[i] == 0.0 { old.s[i] } else { psi[i].signum() },
-    )
+    DVector::from_fn(carried.len(), |i, _| {
+        if carried[i] || psi[i] == 0.0 { old.s[i] } else { psi[i].signum() }
+    })
 }
 
 /// Blames the first component that has no value.

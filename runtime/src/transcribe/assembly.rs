@@ -15,8 +15,8 @@ pub(super) struct Repeated {
 pub(super) struct Destination {
     /// The first value of the family.
     pub(super) first: usize,
-    /// Whether nothing was put there before, so that what comes first replaces what an earlier evaluation left. What is evaluated has to come in
-    /// the order in which it was placed.
+    /// Whether nothing was put there before, so that what comes first replaces what an earlier
+    /// evaluation left. What is evaluated has to come in the order in which it was placed.
     pub(super) is_new: bool,
 }
 
@@ -51,7 +51,8 @@ impl Builder {
         let first = *self.places.entry((row, column, count)).or_insert_with(|| {
             is_new = true;
             let (row_step, column_step) = if count == 1 { (0, 0) } else { (row.step, column.step) };
-            let family = Family { row: row.first, column: column.first, row_step, column_step, count };
+            let family =
+                Family { row: row.first, column: column.first, row_step, column_step, count };
             self.structure.families.push(family);
             self.values += count;
             self.values - count
@@ -60,7 +61,12 @@ impl Builder {
     }
 
     /// The same in the lower triangle of a symmetric matrix.
-    pub(super) fn symmetric_place(&mut self, a: Repeated, b: Repeated, count: usize) -> Destination {
+    pub(super) fn symmetric_place(
+        &mut self,
+        a: Repeated,
+        b: Repeated,
+        count: usize,
+    ) -> Destination {
         if a.first >= b.first { self.place(a, b, count) } else { self.place(b, a, count) }
     }
 

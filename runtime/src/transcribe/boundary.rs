@@ -22,8 +22,10 @@ impl Ends {
         hessian: &mut Builder,
     ) -> Self {
         let function = Arc::clone(&problem.boundary);
-        let variable = |input: u32| Repeated { first: variable(problem, stages, input as usize), step: 0 };
-        let (mut row_moves, mut gradient_moves, mut hessian_moves) = (Vec::new(), Vec::new(), Vec::new());
+        let variable =
+            |input: u32| Repeated { first: variable(problem, stages, input as usize), step: 0 };
+        let (mut row_moves, mut gradient_moves, mut hessian_moves) =
+            (Vec::new(), Vec::new(), Vec::new());
         for (column, &(output, input)) in function.jacobian_pattern().entries.iter().enumerate() {
             let place = variable(input);
             match (output as usize).checked_sub(1) {
@@ -87,19 +89,26 @@ impl Ends {
     pub(super) fn add_last_gradient(&self, stages: Stages, gradient: &mut [f64]) {
         let last = stages.state(stages.intervals);
         for entry in self.gradient_moves.iter().filter(|entry| last.contains(&entry.target.first)) {
-            gradient[entry.target.first] += entry.coefficient * self.tables.jacobian.column(entry.column)[0];
+            gradient[entry.target.first] +=
+                entry.coefficient * self.tables.jacobian.column(entry.column)[0];
         }
     }
 
     /// The first output with a value or derivative that is not finite, for these multipliers.
-    pub(super) fn not_finite(&mut self, stages: Stages, parameters: &[f64], rows: usize) -> Option<usize> {
+    pub(super) fn not_finite(
+        &mut self,
+        stages: Stages,
+        parameters: &[f64],
+        rows: usize,
+    ) -> Option<usize> {
         self.differentiate(stages, parameters, 1.0, &vec![1.0; rows]);
         let bad = |table: &Columns, column: usize| !table.column(column)[0].is_finite();
         let values = (0..self.tables.values.columns()).find(|i| bad(&self.tables.values, *i));
         let pattern = &self.tables.function.jacobian_pattern().entries;
         let slopes = || pattern.iter().enumerate().find(|(i, _)| bad(&self.tables.jacobian, *i));
-        let curvature =
-            || (0..self.tables.hessian.columns()).any(|i| bad(&self.tables.hessian, i)).then_some(0);
+        let curvature = || {
+            (0..self.tables.hessian.columns()).any(|i| bad(&self.tables.hessian, i)).then_some(0)
+        };
         values.or_else(|| slopes().map(|(_, (row, _))| *row as usize)).or_else(curvature)
     }
 }
@@ -125,7 +134,8 @@ pub(super) fn given_at_the_end(problem: &Problem, stages: Stages) -> Vec<(usize,
         let ((place, entry), None) = (own.next()?, own.next()) else { return None };
         let target = variable(problem, stages, entry.1 as usize);
         let (slope, at_zero) = (slopes.column(place)[0], values.column(output)[0]);
-        let is_simple = bounds.is_equality() && function.degree(output) == Degree::Affine && slope != 0.0;
+        let is_simple =
+            bounds.is_equality() && function.degree(output) == Degree::Affine && slope != 0.0;
         (is_simple && last.contains(&target)).then(|| (target, (bounds.lower - at_zero) / slope))
     };
     problem.boundary_bounds.iter().enumerate().filter_map(given).collect()

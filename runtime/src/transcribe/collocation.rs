@@ -1,15 +1,18 @@
-//! Collocation: on each interval the states are polynomials that satisfy the differential equation at the nodes `c_j`.
+//! Collocation: on each interval the states are polynomials that satisfy the differential equation
+//! at the nodes `c_j`.
 //!
-//! With the Lagrange polynomials `l_j` over `0, c_1 ... c_s`, the states `X_j` at the nodes, `X_0 = x_k`, and `h = 1/N`:
+//! With the Lagrange polynomials `l_j` over `0, c_1 ... c_s`, the states `X_j` at the nodes, `X_0 =
+//! x_k`, and `h = 1/N`:
 //!
 //! ```text
 //!     sum_j l_j'(c_i) X_j - h F(tau_k + c_i h, X_i, u_k) = 0        i = 1 ... s
 //!     x_{k+1} - sum_j l_j(1) X_j = 0                                where the last node is not the end
 //! ```
 //!
-//! That is the implicit Runge-Kutta scheme of these nodes, written with derivatives of the polynomial instead of its
-//! integrals: each row sees one evaluation of the right side only. Integrals take the weights of the nodes, so that they have the
-//! order of the scheme: `2s - 1` for Radau IIA, `2s` for Gauss.
+//! That is the implicit Runge-Kutta scheme of these nodes, written with derivatives of the
+//! polynomial instead of its integrals: each row sees one evaluation of the right side only.
+//! Integrals take the weights of the nodes, so that they have the order of the scheme: `2s - 1` for
+//! Radau IIA, `2s` for Gauss.
 
 use crate::problem::{MOST_STAGES, Scheme};
 
@@ -18,7 +21,12 @@ const GAUSS: [&[f64]; MOST_STAGES] = [
     &[0.5],
     &[0.211_324_865_405_187_1, 0.788_675_134_594_812_9],
     &[0.112_701_665_379_258_31, 0.5, 0.887_298_334_620_741_7],
-    &[0.069_431_844_202_973_71, 0.330_009_478_207_571_87, 0.669_990_521_792_428_1, 0.930_568_155_797_026_3],
+    &[
+        0.069_431_844_202_973_71,
+        0.330_009_478_207_571_87,
+        0.669_990_521_792_428_1,
+        0.930_568_155_797_026_3,
+    ],
     &[
         0.046_910_077_030_668_004,
         0.230_765_344_947_158_45,
@@ -28,7 +36,8 @@ const GAUSS: [&[f64]; MOST_STAGES] = [
     ],
 ];
 
-/// Roots of `P_s(2c - 1) - P_{s-1}(2c - 1)`, of order `2s - 1`; the last is the end of the interval.
+/// Roots of `P_s(2c - 1) - P_{s-1}(2c - 1)`, of order `2s - 1`; the last is the end of the
+/// interval.
 const RADAU: [&[f64]; MOST_STAGES] = [
     &[1.0],
     &[1.0 / 3.0, 1.0],
@@ -54,8 +63,9 @@ pub(crate) fn nodes(scheme: Scheme) -> Option<&'static [f64]> {
 
 /// The weights of the nodes: the integrals of their Lagrange polynomials over the interval.
 pub(crate) fn weights(nodes: &[f64]) -> Vec<f64> {
-    let integral =
-        |polynomial: Vec<f64>| polynomial.iter().enumerate().map(|(power, c)| c / (power + 1) as f64).sum();
+    let integral = |polynomial: Vec<f64>| {
+        polynomial.iter().enumerate().map(|(power, c)| c / (power + 1) as f64).sum()
+    };
     (0..nodes.len()).map(|j| integral(lagrange(nodes, j))).collect()
 }
 
@@ -71,12 +81,18 @@ pub(crate) fn values(points: &[f64], time: f64) -> Vec<f64> {
 /// The derivatives of the Lagrange polynomials over `points` at a time.
 pub(crate) fn slopes(points: &[f64], time: f64) -> Vec<f64> {
     let slope = |polynomial: Vec<f64>| {
-        polynomial.iter().enumerate().skip(1).rev().fold(0.0, |sum, (power, c)| sum * time + power as f64 * c)
+        polynomial
+            .iter()
+            .enumerate()
+            .skip(1)
+            .rev()
+            .fold(0.0, |sum, (power, c)| sum * time + power as f64 * c)
     };
     (0..points.len()).map(|j| slope(lagrange(points, j))).collect()
 }
 
-/// The coefficients of the polynomial that is 1 at `points[j]` and 0 at the others, constant term first.
+/// The coefficients of the polynomial that is 1 at `points[j]` and 0 at the others, constant term
+/// first.
 fn lagrange(points: &[f64], j: usize) -> Vec<f64> {
     let others = points.iter().enumerate().filter(|(l, _)| *l != j);
     others.fold(vec![1.0], |polynomial, (_, root)| {
@@ -104,7 +120,10 @@ mod tests {
             let terms = polynomial.iter().enumerate();
             terms.map(|(power, c)| c * end.powi(power as i32 + 1) / (power + 1) as f64).sum()
         };
-        nodes.iter().map(|c| (0..nodes.len()).map(|j| integral(lagrange(nodes, j), *c)).collect()).collect()
+        nodes
+            .iter()
+            .map(|c| (0..nodes.len()).map(|j| integral(lagrange(nodes, j), *c)).collect())
+            .collect()
     }
 
     fn assert_near(a: f64, b: f64, what: &str) {
@@ -118,8 +137,9 @@ mod tests {
             let c = nodes(scheme).expect("a collocation scheme");
             let (s, b, a) = (c.len(), weights(c), matrix(c));
             let moment = |q: usize| (0..s).map(|i| b[i] * c[i].powi(q as i32 - 1)).sum::<f64>();
-            (1..=order)
-                .for_each(|q| assert_near(moment(q), 1.0 / q as f64, &format!("B({q}) of {scheme:?}")));
+            (1..=order).for_each(|q| {
+                assert_near(moment(q), 1.0 / q as f64, &format!("B({q}) of {scheme:?}"))
+            });
             assert!(
                 (moment(order + 1) - 1.0 / (order + 1) as f64).abs() > 1e-7,
                 "{scheme:?}: no more than B"
@@ -127,7 +147,11 @@ mod tests {
             for q in 1..=s {
                 for i in 0..s {
                     let sum = (0..s).map(|j| a[i][j] * c[j].powi(q as i32 - 1)).sum();
-                    assert_near(sum, c[i].powi(q as i32) / q as f64, &format!("C({q}) of {scheme:?}"));
+                    assert_near(
+                        sum,
+                        c[i].powi(q as i32) / q as f64,
+                        &format!("C({q}) of {scheme:?}"),
+                    );
                 }
             }
             for q in 1..=order - s {
@@ -143,7 +167,8 @@ mod tests {
         }
     }
 
-    /// Hairer & Wanner, Solving ODEs II, tables IV.5.5 and IV.5.6 (Radau IIA of order 5, Gauss of order 4).
+    /// Hairer & Wanner, Solving ODEs II, tables IV.5.5 and IV.5.6 (Radau IIA of order 5, Gauss of
+    /// order 4).
     #[test]
     fn the_matrices_are_those_of_the_literature() {
         let r = 6.0f64.sqrt();
@@ -160,7 +185,8 @@ mod tests {
         (0..4).for_each(|at| assert_near(found[at / 2][at % 2], gauss[at / 2][at % 2], "Gauss"));
     }
 
-    /// Slopes over `0, c` are the inverse of the Runge-Kutta matrix, and what the end gets is `1 + b A^-1 (X - x)`.
+    /// Slopes over `0, c` are the inverse of the Runge-Kutta matrix, and what the end gets is `1 +
+    /// b A^-1 (X - x)`.
     #[test]
     fn derivatives_of_the_polynomial_are_the_same_scheme() {
         for (scheme, _) in schemes() {
@@ -172,7 +198,10 @@ mod tests {
                 assert!(slopes[i].iter().sum::<f64>().abs() < 1e-12, "constants have no slope");
                 for j in 0..s {
                     let product: f64 = (0..s).map(|l| a[i][l] * slopes[l][j + 1]).sum();
-                    assert!((product - f64::from(u8::from(i == j))).abs() < 1e-12, "A D = I of {scheme:?}");
+                    assert!(
+                        (product - f64::from(u8::from(i == j))).abs() < 1e-12,
+                        "A D = I of {scheme:?}"
+                    );
                 }
             }
             let end = values(&points, 1.0);
@@ -183,8 +212,9 @@ mod tests {
         }
     }
 
-    /// `R(z) = 1 + z b' (I - z A)^-1 1`: on the imaginary axis `|R| = 1` for Gauss and at most 1 for Radau, which forgets what is
-    /// infinitely fast: `R(-inf) = l_0(1)` is 0 for Radau, and 1 or -1 for Gauss.
+    /// `R(z) = 1 + z b' (I - z A)^-1 1`: on the imaginary axis `|R| = 1` for Gauss and at most 1
+    /// for Radau, which forgets what is infinitely fast: `R(-inf) = l_0(1)` is 0 for Radau, and 1
+    /// or -1 for Gauss.
     #[test]
     fn radau_is_l_stable_and_gauss_keeps_the_size() {
         for (scheme, _) in schemes() {

@@ -58,7 +58,8 @@ impl TranscribedNlp<'_> {
         values
     }
 
-    /// Gives a state on which no right side depends the values that make its defects 0. These are linear in it,
+    /// Gives a state on which no right side depends the values that make its defects 0. These are
+    /// linear in it,
     ///
     /// ```text
     ///     rows + B (change of x_k) + A (change of y_k, x_{k+1}) = 0
@@ -83,8 +84,10 @@ impl TranscribedNlp<'_> {
         let mut change = 0.0;
         for k in 0..stages.intervals {
             let residual = |block: usize| rows[stages.defects(k).start + block * states + state];
-            let known = |block: usize| if residual(block).is_finite() { residual(block) } else { 0.0 };
-            let mut changes: Vec<f64> = (0..size).map(|block| -known(block) - b[block] * change).collect();
+            let known =
+                |block: usize| if residual(block).is_finite() { residual(block) } else { 0.0 };
+            let mut changes: Vec<f64> =
+                (0..size).map(|block| -known(block) - b[block] * change).collect();
             factors.solve(size, &mut changes, 1);
             for (place, change) in places.iter().zip(&changes) {
                 v[stages.state(k).start + place] += change;

@@ -1,14 +1,15 @@
-//! What a scheme makes of one interval: its variables, where the functions of the problem are evaluated, and which rows
-//! they enter.
+//! What a scheme makes of one interval: its variables, where the functions of the problem are
+//! evaluated, and which rows they enter.
 //!
 //! ```text
 //! variables   x_k [w_k]   u_k   y_k | x_{k+1} [w_{k+1}]
 //! rows        links - factor h F(node), one block for each node; then links alone
 //! ```
 //!
-//! `y_k` holds the states inside the interval: at the ends of steps, where there are several, and at the inner nodes of a collocation
-//! scheme. The controls `u_k` are one value, the values at the
-//! nodes, or, where controls are linear, the values at the end of the interval, which `w_{k+1}` hands on to the next.
+//! `y_k` holds the states inside the interval: at the ends of steps, where there are several, and
+//! at the inner nodes of a collocation scheme. The controls `u_k` are one value, the values at the
+//! nodes, or, where controls are linear, the values at the end of the interval, which `w_{k+1}`
+//! hands on to the next.
 
 use super::mesh::Mesh;
 use super::{collocation, tableau};
@@ -89,7 +90,8 @@ impl Interval {
         };
         let row = places.row(places.steps);
         for control in 0..places.carried - places.states {
-            let (handed_on, next) = (places.carried + control, places.step() + places.states + control);
+            let (handed_on, next) =
+                (places.carried + control, places.step() + places.states + control);
             links.push(Link { row: row + control, place: next, value: 1.0 });
             links.push(Link { row: row + control, place: handed_on, value: -1.0 });
         }
@@ -143,14 +145,19 @@ impl Point {
     /// Takes the states and controls of all intervals from the variables of the programme.
     pub(crate) fn load(&self, stages: Stages, layout: &Layout, v: &[f64], points: &mut Columns) {
         let signals = self.states.iter().chain(&self.controls).enumerate();
-        signals.for_each(|(i, combination)| add_up(combination, stages, v, points.column_mut(layout.t + i)));
+        signals.for_each(|(i, combination)| {
+            add_up(combination, stages, v, points.column_mut(layout.t + i))
+        });
     }
 }
 
-/// The value of a combination in each interval. A variable without a factor is not touched: it might not be finite.
+/// The value of a combination in each interval. A variable without a factor is not touched: it
+/// might not be finite.
 pub(crate) fn add_up(combination: &Combination, stages: Stages, v: &[f64], target: &mut [f64]) {
     let column = |place: usize| v[place..].iter().step_by(stages.variable_step());
-    let Some(((place, factor), others)) = combination.split_first() else { return target.fill(0.0) };
+    let Some(((place, factor), others)) = combination.split_first() else {
+        return target.fill(0.0);
+    };
     target.iter_mut().zip(column(*place)).for_each(|(value, x)| *value = factor * x);
     for (place, factor) in others {
         target.iter_mut().zip(column(*place)).for_each(|(value, x)| *value += factor * x);
@@ -238,12 +245,16 @@ impl Places {
     }
 
     fn slots(&self) -> Vec<Slot> {
-        let states = |time: f64| (0..self.states).map(move |i| Slot { signal: Signal::State(i), time });
-        let controls = |time: f64| (0..self.controls).map(move |i| Slot { signal: Signal::Control(i), time });
+        let states =
+            |time: f64| (0..self.states).map(move |i| Slot { signal: Signal::State(i), time });
+        let controls =
+            |time: f64| (0..self.controls).map(move |i| Slot { signal: Signal::Control(i), time });
         let mut slots: Vec<Slot> = states(0.0).collect();
         match (self.shape, self.nodes) {
             (ControlShape::Linear, _) => slots.extend(controls(0.0).chain(controls(1.0))),
-            (ControlShape::Polynomial, Some(nodes)) => slots.extend(nodes.iter().flat_map(|c| controls(*c))),
+            (ControlShape::Polynomial, Some(nodes)) => {
+                slots.extend(nodes.iter().flat_map(|c| controls(*c)))
+            }
             _ => slots.extend(controls(0.0)),
         }
         slots.extend(self.inner().into_iter().flat_map(|(time, _)| states(time)));
@@ -252,10 +263,15 @@ impl Places {
 
     fn point(&self, time: f64, state: impl Fn(usize) -> Combination) -> Point {
         let states = (0..self.states).map(state).collect();
-        Point { time, states, controls: (0..self.controls).map(|i| self.control(i, time)).collect() }
+        Point {
+            time,
+            states,
+            controls: (0..self.controls).map(|i| self.control(i, time)).collect(),
+        }
     }
 
-    /// Times and places of the states through which the solution of a step is a polynomial; of a step without nodes, its ends.
+    /// Times and places of the states through which the solution of a step is a polynomial; of a
+    /// step without nodes, its ends.
     fn support(&self, step: usize) -> (Vec<f64>, Vec<usize>) {
         let inner = self.inner_nodes().iter().enumerate();
         let inner = inner.map(|(node, time)| (*time, self.node(step, node)));
@@ -292,7 +308,9 @@ impl Places {
         let nodes = self.nodes.filter(|_| self.shape == ControlShape::Polynomial).unwrap_or(&[0.5]);
         let parts = nodes.iter().zip(collocation::weights(nodes));
         let terms = parts.flat_map(|(time, weight)| {
-            self.control(control, *time).into_iter().map(move |(place, factor)| (place, weight * factor))
+            self.control(control, *time)
+                .into_iter()
+                .map(move |(place, factor)| (place, weight * factor))
         });
         terms.collect()
     }
@@ -308,7 +326,12 @@ impl Places {
                     ends.into_iter().filter(|(_, factor)| *factor != 0.0).collect()
                 };
                 let weight = node.weight / self.steps as f64;
-                Node { point: self.point(self.time(step, node.time), ends), weight, row, factor: weight }
+                Node {
+                    point: self.point(self.time(step, node.time), ends),
+                    weight,
+                    row,
+                    factor: weight,
+                }
             }));
             self.link(row, &[(now, -1.0), (next, 1.0)], &mut links);
         }

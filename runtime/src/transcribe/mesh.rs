@@ -27,7 +27,9 @@ impl Mesh {
 
     /// The length of interval `k`, relative to that of a uniform grid.
     pub(crate) fn relative(&self, k: usize) -> f64 {
-        self.points.as_ref().map_or(1.0, |points| (points[k + 1] - points[k]) * self.intervals as f64)
+        self.points
+            .as_ref()
+            .map_or(1.0, |points| (points[k + 1] - points[k]) * self.intervals as f64)
     }
 
     /// All relative lengths; nothing where they are 1.

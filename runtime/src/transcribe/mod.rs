@@ -5,8 +5,9 @@
 //! rows        defects_0 path_1   defects_1 path_2   ...   defects_{N-1} path_N   boundary conditions
 //! ```
 //!
-//! What stands in one interval is the scheme's business: [`interval`]. Path constraints hold at every grid point after the start, and
-//! at the nodes of a collocation scheme. Start values that are numbers are fixed variables.
+//! What stands in one interval is the scheme's business: [`interval`]. Path constraints hold at
+//! every grid point after the start, and at the nodes of a collocation scheme. Start values that
+//! are numbers are fixed variables.
 
 mod assembly;
 mod boundary;
@@ -39,7 +40,8 @@ pub struct TranscribedNlp<'p> {
     row_bounds: Vec<Bounds>,
     jacobian: Triplets,
     hessian: Triplets,
-    /// Values of the Jacobian that never change, such as those of `x_{k+1} - x_k`: the first of each family.
+    /// Values of the Jacobian that never change, such as those of `x_{k+1} - x_k`: the first of
+    /// each family.
     constant: Vec<(usize, f64)>,
     /// The right side, once per node of the scheme.
     nodes: Vec<Sampled>,
@@ -110,8 +112,9 @@ impl<'p> TranscribedNlp<'p> {
         parameters
     }
 
-    /// The gradient of the objective, with each `x_k` counting only in the interval that begins at it, and `x_N` only
-    /// in the Mayer objective. Belongs to the point of the last call of `derivatives`.
+    /// The gradient of the objective, with each `x_k` counting only in the interval that begins at
+    /// it, and `x_N` only in the Mayer objective. Belongs to the point of the last call of
+    /// `derivatives`.
     pub(crate) fn gradient_from_here_on(&self) -> Vec<f64> {
         let mut gradient = vec![0.0; self.stages.variables()];
         self.nodes.iter().for_each(|node| node.add_own_gradient(self.stages, &mut gradient));
@@ -121,7 +124,8 @@ impl<'p> TranscribedNlp<'p> {
 
     /// Whether a row is a step of a differential equation.
     pub fn is_defect(&self, row: usize) -> bool {
-        row < self.stages.coupling().start && row % self.stages.row_step() < self.stages.defect_rows()
+        row < self.stages.coupling().start
+            && row % self.stages.row_step() < self.stages.defect_rows()
     }
 
     /// The largest absolute value of each switching function along `v`.
@@ -144,7 +148,10 @@ impl<'p> TranscribedNlp<'p> {
         for (unknown, variable) in self.problem.unknowns.iter().zip(self.stages.globals()) {
             self.parameters[unknown.parameter] = v[variable];
         }
-        self.nodes.iter_mut().chain(&mut self.path).for_each(|sampled| sampled.load(self.stages, v));
+        self.nodes
+            .iter_mut()
+            .chain(&mut self.path)
+            .for_each(|sampled| sampled.load(self.stages, v));
         self.ends.load(self.stages, v);
     }
 }
@@ -172,7 +179,8 @@ fn stages(problem: &Problem, interval: &Interval) -> Stages {
 fn nodes(problem: &Problem, interval: &Interval, matrices: &mut Matrices) -> Vec<Sampled> {
     let sampled = |node: &Node| {
         let targets = dynamics_targets(problem, matrices.stages, node);
-        let sampled = Sampled::new(problem, &problem.dynamics, node.point.clone(), targets, matrices);
+        let sampled =
+            Sampled::new(problem, &problem.dynamics, node.point.clone(), targets, matrices);
         sampled.per_length(&matrices.mesh)
     };
     interval.nodes.iter().map(sampled).collect()
@@ -189,7 +197,8 @@ fn path(problem: &Problem, interval: &Interval, matrices: &mut Matrices) -> Vec<
     interval.path.iter().enumerate().map(sampled).collect()
 }
 
-/// Outputs of the right side go to the rows of their node; the integrand goes to the objective with `b/N`.
+/// Outputs of the right side go to the rows of their node; the integrand goes to the objective with
+/// `b/N`.
 fn dynamics_targets(problem: &Problem, stages: Stages, node: &Node) -> Vec<Target> {
     let scale = |factor: f64| factor / stages.intervals as f64;
     let rows = node.row..node.row + problem.layout.x;
@@ -234,8 +243,10 @@ impl Nlp for TranscribedNlp<'_> {
         let step = stages.variable_step();
         rows.fill(0.0);
         for link in &self.interval.links {
-            let rows = rows[link.row..].iter_mut().step_by(stages.row_step()).take(stages.intervals);
-            rows.zip(v[link.place..].iter().step_by(step)).for_each(|(row, x)| *row += link.value * x);
+            let rows =
+                rows[link.row..].iter_mut().step_by(stages.row_step()).take(stages.intervals);
+            rows.zip(v[link.place..].iter().step_by(step))
+                .for_each(|(row, x)| *row += link.value * x);
         }
         let mut objective = self.ends.values(stages, &self.parameters, rows);
         for sampled in self.nodes.iter_mut().chain(&mut self.path) {
@@ -277,12 +288,18 @@ impl Nlp for TranscribedNlp<'_> {
         let (stages, rows) = (self.stages, self.row_bounds.len());
         for node in &mut self.nodes {
             if let Some((output, k)) = node.not_finite(stages, &self.parameters, rows) {
-                return Some(Place { origin: self.problem.dynamics.origin(output), grid_point: Some(k) });
+                return Some(Place {
+                    origin: self.problem.dynamics.origin(output),
+                    grid_point: Some(k),
+                });
             }
         }
         for path in &mut self.path {
             if let Some((output, k)) = path.not_finite(stages, &self.parameters, rows) {
-                return Some(Place { origin: self.problem.path.origin(output), grid_point: Some(k + 1) });
+                return Some(Place {
+                    origin: self.problem.path.origin(output),
+                    grid_point: Some(k + 1),
+                });
             }
         }
         let output = self.ends.not_finite(stages, &self.parameters, rows)?;

@@ -5,11 +5,13 @@ use super::interval::Signal;
 use crate::nlp::Quantities;
 
 impl TranscribedNlp<'_> {
-    /// Variables: states, controls, unknowns. Rows: steps of states, of controls that go on from interval to interval, path constraints, boundary conditions.
+    /// Variables: states, controls, unknowns. Rows: steps of states, of controls that go on from
+    /// interval to interval, path constraints, boundary conditions.
     pub(super) fn all_quantities(&self) -> Quantities {
         let stages = self.stages;
         let signals = self.problem.layout.x + self.problem.controls.len();
-        let slots: Vec<usize> = self.interval.slots.iter().map(|slot| self.quantity(slot.signal)).collect();
+        let slots: Vec<usize> =
+            self.interval.slots.iter().map(|slot| self.quantity(slot.signal)).collect();
         let mut variables = slots.repeat(stages.intervals);
         variables.extend_from_slice(&slots[..stages.states]);
         variables.extend((0..stages.globals).map(|unknown| signals + unknown));

@@ -1,7 +1,8 @@
 //! A function of the problem, evaluated once in every interval, and where its derivatives go.
 //!
-//! It sees a [`Point`] of the interval, whose states and controls are sums of variables with factors. By the chain rule each
-//! derivative by a state or control splits into one by each of these variables, with its factor.
+//! It sees a [`Point`] of the interval, whose states and controls are sums of variables with
+//! factors. By the chain rule each derivative by a state or control splits into one by each of
+//! these variables, with its factor.
 
 use super::assembly::{Builder, Contribution, Destination, Repeated};
 use super::interval::Point;
@@ -52,8 +53,15 @@ impl Sampled {
         let mut tables = Tables::new(function, matrices.stages.intervals);
         point.set_times(&matrices.mesh, &mut tables.points);
         let (row_moves, gradient_moves, hessian_moves) = (Vec::new(), Vec::new(), Vec::new());
-        let mut sampled =
-            Sampled { tables, point, lengths: None, targets, row_moves, gradient_moves, hessian_moves };
+        let mut sampled = Sampled {
+            tables,
+            point,
+            lengths: None,
+            targets,
+            row_moves,
+            gradient_moves,
+            hessian_moves,
+        };
         sampled.map_jacobian(problem, matrices);
         sampled.map_hessian(problem, matrices);
         sampled
@@ -68,7 +76,11 @@ impl Sampled {
     fn scale(lengths: &Option<Vec<f64>>, table: &mut Columns) {
         let Some(lengths) = lengths else { return };
         for i in 0..table.columns() {
-            table.column_mut(i).iter_mut().zip(lengths).for_each(|(value, length)| *value *= length);
+            table
+                .column_mut(i)
+                .iter_mut()
+                .zip(lengths)
+                .for_each(|(value, length)| *value *= length);
         }
     }
 
@@ -80,11 +92,16 @@ impl Sampled {
                     Target::Row(row, scale) => {
                         let row = Repeated { first: row, step: stages.row_step() };
                         let target = matrices.jacobian.place(row, variable, stages.intervals);
-                        self.row_moves.push(Contribution { column, coefficient: scale * factor, target });
+                        self.row_moves.push(Contribution {
+                            column,
+                            coefficient: scale * factor,
+                            target,
+                        });
                     }
                     Target::Objective(scale) => {
                         let target = Destination::taken(variable.first);
-                        let contribution = Contribution { column, coefficient: scale * factor, target };
+                        let contribution =
+                            Contribution { column, coefficient: scale * factor, target };
                         self.gradient_moves.push((contribution, variable.step));
                     }
                 }
@@ -116,7 +133,8 @@ impl Sampled {
         let layout = self.tables.function.layout();
         let step = stages.variable_step();
         if let Some(parameter) = input.checked_sub(layout.parameters().start) {
-            let unknown = problem.unknowns.iter().position(|unknown| unknown.parameter == parameter);
+            let unknown =
+                problem.unknowns.iter().position(|unknown| unknown.parameter == parameter);
             let first = stages.globals().start + unknown.expect("differentiated by unknowns only");
             return vec![(Repeated { first, step: 0 }, 1.0)];
         }
@@ -134,7 +152,12 @@ impl Sampled {
     }
 
     /// Adds the outputs to the rows; returns their part of the objective.
-    pub(super) fn add_values(&mut self, stages: Stages, parameters: &[f64], rows: &mut [f64]) -> f64 {
+    pub(super) fn add_values(
+        &mut self,
+        stages: Stages,
+        parameters: &[f64],
+        rows: &mut [f64],
+    ) -> f64 {
         self.tables.evaluate(parameters);
         Self::scale(&self.lengths, &mut self.tables.values);
         let mut objective = 0.0;
@@ -165,7 +188,10 @@ impl Sampled {
                 Target::Objective(scale) => column.fill(weight * scale),
                 Target::Row(row, scale) => {
                     let source = multipliers[row..].iter().step_by(stages.row_step());
-                    column.iter_mut().zip(source).for_each(|(value, lambda)| *value = scale * lambda);
+                    column
+                        .iter_mut()
+                        .zip(source)
+                        .for_each(|(value, lambda)| *value = scale * lambda);
                 }
             }
         }
@@ -190,7 +216,8 @@ impl Sampled {
 
     /// The gradient by the states at the beginning of each interval only.
     pub(super) fn add_own_gradient(&self, stages: Stages, gradient: &mut [f64]) {
-        let own = self.gradient_moves.iter().filter(|(entry, _)| entry.target.first < stages.states);
+        let own =
+            self.gradient_moves.iter().filter(|(entry, _)| entry.target.first < stages.states);
         own.for_each(|entry| self.add_gradient(entry, gradient));
     }
 
@@ -202,14 +229,15 @@ impl Sampled {
         rows: usize,
     ) -> Option<(usize, usize)> {
         self.differentiate(stages, parameters, 0.0, &vec![0.0; rows]);
-        let place =
-            |table: &Columns, column: usize| table.column(column).iter().position(|value| !value.is_finite());
-        let values =
-            (0..self.tables.values.columns()).filter_map(|i| Some((i, place(&self.tables.values, i)?)));
+        let place = |table: &Columns, column: usize| {
+            table.column(column).iter().position(|value| !value.is_finite())
+        };
+        let values = (0..self.tables.values.columns())
+            .filter_map(|i| Some((i, place(&self.tables.values, i)?)));
         let pattern = &self.tables.function.jacobian_pattern().entries;
         let slopes = pattern.iter().enumerate();
-        let slopes =
-            slopes.filter_map(|(i, (row, _))| Some((*row as usize, place(&self.tables.jacobian, i)?)));
+        let slopes = slopes
+            .filter_map(|(i, (row, _))| Some((*row as usize, place(&self.tables.jacobian, i)?)));
         if let Some(found) = values.chain(slopes).min_by_key(|(_, k)| *k) {
             return Some(found);
         }

@@ -1,4 +1,5 @@
-//! **The table** of one-step schemes without stages of their own; those with are in [`super::collocation`].
+//! **The table** of one-step schemes without stages of their own; those with are in
+//! [`super::collocation`].
 //!
 //! With `F = (tf - t0) f` over normalised time and `h = 1/N`, every scheme here is
 //!
@@ -6,8 +7,8 @@
 //!     x_{k+1} - x_k - h sum_j b_j F(tau_k + c_j h, (1 - w_j) x_k + w_j x_{k+1}, u_k) = 0
 //! ```
 //!
-//! with a blend `w_j` per state. The integral of a cost takes the same nodes and weights, so that it has the order
-//! of the scheme.
+//! with a blend `w_j` per state. The integral of a cost takes the same nodes and weights, so that
+//! it has the order of the scheme.
 
 use crate::problem::{Method, Scheme};
 

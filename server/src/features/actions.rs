@@ -42,7 +42,8 @@ fn touches(one: Span, other: Span) -> bool {
 }
 
 fn quick_fix(context: &Context<'_>, found: &Diagnostic, fix: &Fix) -> CodeAction {
-    let diagnostic = shown(found, context.analysis(), &context.document.uri, &context.session.agreed);
+    let diagnostic =
+        shown(found, context.analysis(), &context.document.uri, &context.session.agreed);
     CodeAction {
         title: sentence(&fix.title),
         kind: Some(CodeActionKind::QuickFix),
@@ -75,7 +76,8 @@ fn difference(old: &str, new: &str) -> Option<Edit> {
         return None;
     }
     let same = |a: (char, char)| a.0 == a.1;
-    let head: usize = old.chars().zip(new.chars()).take_while(|it| same(*it)).map(|it| it.0.len_utf8()).sum();
+    let head: usize =
+        old.chars().zip(new.chars()).take_while(|it| same(*it)).map(|it| it.0.len_utf8()).sum();
     let backwards = old[head..].chars().rev().zip(new[head..].chars().rev());
     let tail: usize = backwards.take_while(|it| same(*it)).map(|it| it.0.len_utf8()).sum();
     let span = Span::new(head, old.len() - tail);

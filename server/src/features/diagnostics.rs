@@ -16,7 +16,11 @@ use lsp_types::{
 /// What is sent unasked.
 pub fn publishable(document: &Document, agreed: &Agreed) -> PublishDiagnosticsParams {
     let diagnostics = all(document, agreed);
-    PublishDiagnosticsParams { uri: document.uri.clone(), version: Some(document.version), diagnostics }
+    PublishDiagnosticsParams {
+        uri: document.uri.clone(),
+        version: Some(document.version),
+        diagnostics,
+    }
 }
 
 /// `textDocument/diagnostic`
@@ -31,11 +35,21 @@ pub fn report(
 
 fn all(document: &Document, agreed: &Agreed) -> Vec<lsp_types::Diagnostic> {
     let analysis = document.analysis();
-    analysis.reviewed.diagnostics.iter().map(|it| shown(it, analysis, &document.uri, agreed)).collect()
+    analysis
+        .reviewed
+        .diagnostics
+        .iter()
+        .map(|it| shown(it, analysis, &document.uri, agreed))
+        .collect()
 }
 
 /// A finding in the words of the protocol.
-pub fn shown(found: &Diagnostic, analysis: &Analysis, uri: &Uri, agreed: &Agreed) -> lsp_types::Diagnostic {
+pub fn shown(
+    found: &Diagnostic,
+    analysis: &Analysis,
+    uri: &Uri,
+    agreed: &Agreed,
+) -> lsp_types::Diagnostic {
     let related = |label: &Label| DiagnosticRelatedInformation {
         location: Location { uri: uri.clone(), range: analysis.text.range(label.span) },
         message: label.text.clone(),

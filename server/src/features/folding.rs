@@ -4,10 +4,15 @@ use crate::client::Failure;
 use crate::context::Context;
 use fdcc_compiler::names::enclosing;
 use fdcc_grammar::{Span, comments};
-use lsp_types::{FoldingRange, FoldingRangeKind, FoldingRangeParams, SelectionRange, SelectionRangeParams};
+use lsp_types::{
+    FoldingRange, FoldingRangeKind, FoldingRangeParams, SelectionRange, SelectionRangeParams,
+};
 
 /// `textDocument/foldingRange`: blocks, and comments of several lines.
-pub fn folding(context: &Context<'_>, _: FoldingRangeParams) -> Result<Option<Vec<FoldingRange>>, Failure> {
+pub fn folding(
+    context: &Context<'_>,
+    _: FoldingRangeParams,
+) -> Result<Option<Vec<FoldingRange>>, Failure> {
     let text = &context.analysis().text;
     let comments = comments(&text.text);
     let mut all = Vec::new();
@@ -16,8 +21,9 @@ pub fn folding(context: &Context<'_>, _: FoldingRangeParams) -> Result<Option<Ve
         let (first, last) = (text.line(block.start), text.line(block.end - 1));
         all.extend(fold(first, last.saturating_sub(1), None));
     }
-    let is_alone =
-        |it: &&Span| text.text[text.line_span(text.line(it.start)).range()].trim_start().starts_with('#');
+    let is_alone = |it: &&Span| {
+        text.text[text.line_span(text.line(it.start)).range()].trim_start().starts_with('#')
+    };
     let lines: Vec<u32> = comments.iter().filter(is_alone).map(|it| text.line(it.start)).collect();
     for run in lines.chunk_by(|one, next| one + 1 == *next) {
         all.extend(fold(run[0], run[run.len() - 1], Some(FoldingRangeKind::Comment)));
@@ -27,7 +33,12 @@ pub fn folding(context: &Context<'_>, _: FoldingRangeParams) -> Result<Option<Ve
 }
 
 fn fold(start_line: u32, end_line: u32, kind: Option<FoldingRangeKind>) -> Option<FoldingRange> {
-    (start_line < end_line).then(|| FoldingRange { start_line, end_line, kind, ..FoldingRange::default() })
+    (start_line < end_line).then(|| FoldingRange {
+        start_line,
+        end_line,
+        kind,
+        ..FoldingRange::default()
+    })
 }
 
 /// Every `{ ... }`, also where the rest cannot be read.

@@ -4,11 +4,15 @@ use crate::client::Failure;
 use crate::context::Context;
 use fdcc_grammar::{Edit, Span, format};
 use lsp_types::{
-    DocumentFormattingParams, DocumentOnTypeFormattingParams, DocumentRangeFormattingParams, TextEdit,
+    DocumentFormattingParams, DocumentOnTypeFormattingParams, DocumentRangeFormattingParams,
+    TextEdit,
 };
 
 /// `textDocument/formatting`
-pub fn whole(context: &Context<'_>, _: DocumentFormattingParams) -> Result<Option<Vec<TextEdit>>, Failure> {
+pub fn whole(
+    context: &Context<'_>,
+    _: DocumentFormattingParams,
+) -> Result<Option<Vec<TextEdit>>, Failure> {
     let all = Span::new(0, context.analysis().text.text.len());
     Ok(within(context, all))
 }
@@ -21,7 +25,8 @@ pub fn range(
     Ok(within(context, context.analysis().text.span(params.range)))
 }
 
-/// `textDocument/onTypeFormatting`: after a closing brace or a new line, what stands on the line before is laid out.
+/// `textDocument/onTypeFormatting`: after a closing brace or a new line, what stands on the line
+/// before is laid out.
 pub fn on_type(
     context: &Context<'_>,
     params: DocumentOnTypeFormattingParams,
@@ -43,7 +48,8 @@ fn within(context: &Context<'_>, wanted: Span) -> Option<Vec<TextEdit>> {
     Some(edits.map(|it| context.text_edit(&it)).collect())
 }
 
-/// What has to be changed where two texts differ in blanks only; the whole text if they differ in more.
+/// What has to be changed where two texts differ in blanks only; the whole text if they differ in
+/// more.
 fn changes(old: &str, new: &str) -> Vec<Edit> {
     let mut edits = Vec::new();
     let (mut at, mut there) = (0, 0);

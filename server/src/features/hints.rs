@@ -1,4 +1,5 @@
-//! What the text does not say, shown in it: units that were found, when a surface is held, how smooth a `piecewise` is.
+//! What the text does not say, shown in it: units that were found, when a surface is held, how
+//! smooth a `piecewise` is.
 
 use crate::client::Failure;
 use crate::context::Context;
@@ -7,7 +8,10 @@ use fdcc_compiler::{Model, NamedUnit, Order, SurfaceReport, portrait};
 use lsp_types::{InlayHint, InlayHintKind, InlayHintParams};
 
 /// `textDocument/inlayHint`
-pub fn hints(context: &Context<'_>, params: InlayHintParams) -> Result<Option<Vec<InlayHint>>, Failure> {
+pub fn hints(
+    context: &Context<'_>,
+    params: InlayHintParams,
+) -> Result<Option<Vec<InlayHint>>, Failure> {
     let analysis = context.analysis();
     let wanted = analysis.text.span(params.range);
     let mut found: Vec<(u32, String)> = Vec::new();
@@ -23,7 +27,9 @@ pub fn hints(context: &Context<'_>, params: InlayHintParams) -> Result<Option<Ve
         };
         let surfaces = || analysis.surfaces();
         found.extend(
-            definitions().filter(|it| it.kind == Kind::Surface).filter_map(|it| held(it, surfaces())),
+            definitions()
+                .filter(|it| it.kind == Kind::Surface)
+                .filter_map(|it| held(it, surfaces())),
         );
         found.extend(definitions().filter_map(|it| smoothness(it, model, &analysis.text.text)));
     }
@@ -41,9 +47,11 @@ fn hint(context: &Context<'_>, at: u32, text: String) -> InlayHint {
     }
 }
 
-/// Behind a name whose unit follows from the equations. Parts of a vector would all stand at one place.
+/// Behind a name whose unit follows from the equations. Parts of a vector would all stand at one
+/// place.
 fn unit(it: &NamedUnit) -> Option<(u32, String)> {
-    let is_shown = !it.written && !it.unit.is_empty() && it.name != "objective" && !it.name.contains('.');
+    let is_shown =
+        !it.written && !it.unit.is_empty() && it.name != "objective" && !it.name.contains('.');
     is_shown.then(|| (it.span.end, format!("[{}]", it.unit)))
 }
 
@@ -60,8 +68,8 @@ fn held(it: &Definition, surfaces: &[SurfaceReport]) -> Option<(u32, String)> {
 
 /// Behind a definition in pieces: `C^2`.
 fn smoothness(it: &Definition, model: &Model, text: &str) -> Option<(u32, String)> {
-    let has_pieces =
-        matches!(it.kind, Kind::Function | Kind::Let) && text[it.item.range()].contains("piecewise");
+    let has_pieces = matches!(it.kind, Kind::Function | Kind::Let)
+        && text[it.item.range()].contains("piecewise");
     let found = portrait(model, &it.name).filter(|_| has_pieces)?.smoothness?;
     let text = match found.order {
         Order::Always => "smooth".into(),

@@ -20,11 +20,15 @@ pub fn definition(
 }
 
 /// `textDocument/references`
-pub fn references(context: &Context<'_>, params: ReferenceParams) -> Result<Option<Vec<Location>>, Failure> {
+pub fn references(
+    context: &Context<'_>,
+    params: ReferenceParams,
+) -> Result<Option<Vec<Location>>, Failure> {
     let names = context.analysis().names();
     let offset = context.offset(params.text_document_position_params.position);
     let Some(definition) = names.definition_at(offset) else { return Ok(None) };
-    let wanted = |it: &&Occurrence| it.role != Role::Definition || params.context.include_declaration;
+    let wanted =
+        |it: &&Occurrence| it.role != Role::Definition || params.context.include_declaration;
     Ok(Some(names.of(definition).filter(wanted).map(|it| context.location(it.span)).collect()))
 }
 
@@ -37,8 +41,11 @@ pub fn highlights(
     let offset = context.offset(params.text_document_position_params.position);
     let Some(definition) = names.definition_at(offset) else { return Ok(None) };
     let highlight = |it: &Occurrence| {
-        let kind =
-            if it.role == Role::Read { DocumentHighlightKind::Read } else { DocumentHighlightKind::Write };
+        let kind = if it.role == Role::Read {
+            DocumentHighlightKind::Read
+        } else {
+            DocumentHighlightKind::Write
+        };
         DocumentHighlight { range: context.range(it.span), kind: Some(kind) }
     };
     Ok(Some(names.of(definition).map(highlight).collect()))

@@ -1,4 +1,5 @@
-//! Where a cursor stands, found from the text before it alone: what is being written can seldom be read.
+//! Where a cursor stands, found from the text before it alone: what is being written can seldom be
+//! read.
 
 use fdcc_grammar::words;
 
@@ -43,7 +44,11 @@ impl<'t> Place<'t> {
             .rfind(|c| !is_of_word(c))
             .map_or(0, |at| at + text[at..].chars().next().map_or(1, char::len_utf8));
         // `3x` is no beginning of a name.
-        let start = if text[start..].starts_with(|c: char| c.is_ascii_digit()) { text.len() } else { start };
+        let start = if text[start..].starts_with(|c: char| c.is_ascii_digit()) {
+            text.len()
+        } else {
+            start
+        };
         let mut place = Place::default();
         place.read(&text[..start]);
         place.path = path(&place.before);
@@ -119,10 +124,12 @@ impl<'t> Place<'t> {
     }
 
     fn opened(&mut self, bracket: char, is_close: bool) {
-        let block = match self.before.iter().rev().take(3).find(|it| matches!(**it, "piecewise" | "match")) {
-            Some(word) => word,
-            None => self.item,
-        };
+        let block =
+            match self.before.iter().rev().take(3).find(|it| matches!(**it, "piecewise" | "match"))
+            {
+                Some(word) => word,
+                None => self.item,
+            };
         if bracket == '{' && block == "phase" {
             self.phase = Some(self.back(0));
         }
@@ -136,7 +143,8 @@ impl<'t> Place<'t> {
         }
     }
 
-    /// An item begins with its word; `start`, `end`, `free` and `guess` also stand inside of others.
+    /// An item begins with its word; `start`, `end`, `free` and `guess` also stand inside of
+    /// others.
     fn word(&mut self, word: &'t str) {
         let is_inner = matches!(word, "start" | "end" | "free" | "guess") && !self.begins_line;
         if self.is_among_items() && !is_inner && words::items().any(|it| it.text == word) {

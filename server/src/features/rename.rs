@@ -1,4 +1,5 @@
-//! Another name for something, wherever it stands. Done only if every name means afterwards what it meant before.
+//! Another name for something, wherever it stands. Done only if every name means afterwards what it
+//! meant before.
 
 use crate::analysis::Analysis;
 use crate::client::Failure;
@@ -24,7 +25,10 @@ pub fn prepare(
 }
 
 /// `textDocument/rename`
-pub fn rename(context: &Context<'_>, params: RenameParams) -> Result<Option<WorkspaceEdit>, Failure> {
+pub fn rename(
+    context: &Context<'_>,
+    params: RenameParams,
+) -> Result<Option<WorkspaceEdit>, Failure> {
     let analysis = context.analysis();
     let offset = context.offset(params.text_document_position_params.position);
     let definition = renamable(analysis, offset)?;
@@ -40,7 +44,8 @@ fn renamable(analysis: &Analysis, offset: u32) -> Result<usize, Failure> {
     let names = analysis.names();
     match names.at(offset).map(|it| it.meaning) {
         Some(Meaning::Declared(_)) if !analysis.is_readable => Err(Failure::request(
-            "this text has mistakes of syntax, and a name in what cannot be read would be missed; mend them first",
+            "this text has mistakes of syntax, and a name in what cannot be read would be missed; \
+             mend them first",
         )),
         Some(Meaning::Declared(definition)) => Ok(definition),
         Some(Meaning::Unknown) => {
@@ -57,7 +62,11 @@ fn check_name(name: &str) -> Result<(), Failure> {
     let is_name = parsed.diagnostics.is_empty()
         && matches!(&parsed.tree.items[..], [item] if matches!(&item.kind, ItemKind::Param { name: it, .. } if it.name == name));
     let why = parsed.diagnostics.first().map_or("a name is one word", |it| it.message.as_str());
-    if is_name { Ok(()) } else { Err(Failure::request(format!("`{name}` cannot be a name: {why}"))) }
+    if is_name {
+        Ok(())
+    } else {
+        Err(Failure::request(format!("`{name}` cannot be a name: {why}")))
+    }
 }
 
 fn edits(names: &Names, definition: usize, new_name: &str) -> Vec<Edit> {
@@ -74,18 +83,19 @@ fn check_meaning(analysis: &Analysis, edits: &[Edit], new_name: &str) -> Result<
     let meanings = |names: &Names| -> Vec<(Meaning, Role)> {
         names.occurrences.iter().map(|it| (it.meaning, it.role)).collect()
     };
-    let is_free =
-        analysis.names().definitions.iter().all(|it| it.name != new_name) || !declares_twice(&after);
+    let is_free = analysis.names().definitions.iter().all(|it| it.name != new_name)
+        || !declares_twice(&after);
     match is_free && meanings(analysis.names()) == meanings(&after) {
         true => Ok(()),
-        false => {
-            Err(Failure::request(format!("`{new_name}` already means something here; choose another name")))
-        }
+        false => Err(Failure::request(format!(
+            "`{new_name}` already means something here; choose another name"
+        ))),
     }
 }
 
 /// Whether two names of one kind of place are the same.
 fn declares_twice(names: &Names) -> bool {
     let all = &names.definitions;
-    (0..all.len()).any(|at| all[..at].iter().any(|it| it.name == all[at].name && it.within == all[at].within))
+    (0..all.len())
+        .any(|at| all[..at].iter().any(|it| it.name == all[at].name && it.within == all[at].within))
 }

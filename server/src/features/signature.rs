@@ -7,11 +7,15 @@ use crate::features::place::Place;
 use fdcc_compiler::names::Kind;
 use fdcc_compiler::vocabulary;
 use lsp_types::{
-    MarkupContent, MarkupKind, ParameterInformation, SignatureHelp, SignatureHelpParams, SignatureInformation,
+    MarkupContent, MarkupKind, ParameterInformation, SignatureHelp, SignatureHelpParams,
+    SignatureInformation,
 };
 
 /// `textDocument/signatureHelp`
-pub fn help(context: &Context<'_>, params: SignatureHelpParams) -> Result<Option<SignatureHelp>, Failure> {
+pub fn help(
+    context: &Context<'_>,
+    params: SignatureHelpParams,
+) -> Result<Option<SignatureHelp>, Failure> {
     let offset = context.offset(params.text_document_position_params.position) as usize;
     let place = Place::at_end_of(&context.analysis().text.text[..offset]);
     let calls = place.open.iter().rev().filter(|it| it.bracket == '(');
@@ -38,14 +42,17 @@ fn own(context: &Context<'_>, name: &str) -> Option<SignatureInformation> {
 
 fn declared(analysis: &Analysis, name: &str) -> Option<SignatureInformation> {
     let names = analysis.names();
-    let at = names.definitions.iter().position(|it| it.kind == Kind::Function && it.name == name)?;
-    let arguments: Vec<&str> = names.parts_of(at).map(|at| names.definitions[at].name.as_str()).collect();
+    let at =
+        names.definitions.iter().position(|it| it.kind == Kind::Function && it.name == name)?;
+    let arguments: Vec<&str> =
+        names.parts_of(at).map(|at| names.definitions[at].name.as_str()).collect();
     let declaration = &analysis.text.text[names.definitions[at].item.range()];
     Some(information(name, &arguments, format!("```fdc\n{declaration}\n```")))
 }
 
 fn information(name: &str, arguments: &[&str], doc: String) -> SignatureInformation {
-    let parameter = |it: &&str| ParameterInformation { label: (*it).to_owned().into(), documentation: None };
+    let parameter =
+        |it: &&str| ParameterInformation { label: (*it).to_owned().into(), documentation: None };
     let documentation = Some(MarkupContent { kind: MarkupKind::Markdown, value: doc }.into());
     SignatureInformation {
         label: format!("{name}({})", arguments.join(", ")),

@@ -34,14 +34,16 @@ impl Outline<'_> {
                 ..self.symbol(&name.name, SymbolKind::Module, item.span, name.span)
             }),
             ItemKind::Dynamics { equations } => {
-                let entries =
-                    equations.iter().map(|it| (format!("{}'", it.state.name), it.span, it.state.span));
+                let entries = equations
+                    .iter()
+                    .map(|it| (format!("{}'", it.state.name), it.span, it.state.span));
                 Some(self.block("dynamics", item.span, entries))
             }
             ItemKind::Guess { bindings } => Some(self.bindings("guess", item.span, bindings)),
             ItemKind::Report { bindings } => Some(self.bindings("report", item.span, bindings)),
             ItemKind::Method { settings } => {
-                let entries = settings.iter().map(|it| (it.key.name.clone(), it.key.span, it.key.span));
+                let entries =
+                    settings.iter().map(|it| (it.key.name.clone(), it.key.span, it.key.span));
                 Some(self.block("method", item.span, entries))
             }
             ItemKind::Objective { sense, keyword, .. } => {
@@ -53,7 +55,8 @@ impl Outline<'_> {
     }
 
     fn bindings(&self, word: &str, whole: Span, bindings: &[Binding]) -> DocumentSymbol {
-        let entry = |it: &Binding| (it.name.name.clone(), it.name.span.to(it.value.span), it.name.span);
+        let entry =
+            |it: &Binding| (it.name.name.clone(), it.name.span.to(it.value.span), it.name.span);
         self.block(word, whole, bindings.iter().map(entry))
     }
 
@@ -64,8 +67,9 @@ impl Outline<'_> {
         whole: Span,
         entries: impl Iterator<Item = (String, Span, Span)>,
     ) -> DocumentSymbol {
-        let entry =
-            |(name, whole, span): (String, Span, Span)| self.symbol(&name, SymbolKind::Field, whole, span);
+        let entry = |(name, whole, span): (String, Span, Span)| {
+            self.symbol(&name, SymbolKind::Field, whole, span)
+        };
         let children = Some(entries.map(entry).collect());
         DocumentSymbol { children, ..self.symbol(word, SymbolKind::Namespace, whole, whole) }
     }

@@ -1,13 +1,15 @@
 //! Colours by meaning: states, controls, parameters, unknowns, surfaces and units apart.
 //!
-//! Words, numbers and comments are coloured by the editor's own grammar; here is what only the meaning tells.
+//! Words, numbers and comments are coloured by the editor's own grammar; here is what only the
+//! meaning tells.
 
 use crate::client::Failure;
 use crate::context::Context;
 use fdcc_compiler::names::{Kind, Meaning, Names, Occurrence, Role};
 use fdcc_grammar::Span;
 use lsp_types::{
-    SemanticToken, SemanticTokens, SemanticTokensLegend, SemanticTokensParams, SemanticTokensRangeParams,
+    SemanticToken, SemanticTokens, SemanticTokensLegend, SemanticTokensParams,
+    SemanticTokensRangeParams,
 };
 
 /// The kinds, in the order of their numbers.
@@ -41,7 +43,10 @@ pub fn legend() -> SemanticTokensLegend {
 }
 
 /// `textDocument/semanticTokens/full`
-pub fn full(context: &Context<'_>, _: SemanticTokensParams) -> Result<Option<SemanticTokens>, Failure> {
+pub fn full(
+    context: &Context<'_>,
+    _: SemanticTokensParams,
+) -> Result<Option<SemanticTokens>, Failure> {
     Ok(Some(within(context, Span::new(0, context.analysis().text.text.len()))))
 }
 
@@ -56,7 +61,10 @@ pub fn range(
 fn within(context: &Context<'_>, wanted: Span) -> SemanticTokens {
     let names = context.analysis().names();
     let (mut data, mut before) = (Vec::new(), lsp_types::Position::default());
-    for it in names.occurrences.iter().filter(|it| wanted.start <= it.span.start && it.span.end <= wanted.end)
+    for it in names
+        .occurrences
+        .iter()
+        .filter(|it| wanted.start <= it.span.start && it.span.end <= wanted.end)
     {
         let Some(word) = type_of(names, it) else { continue };
         let range = context.range(it.span);
@@ -65,8 +73,10 @@ fn within(context: &Context<'_>, wanted: Span) -> SemanticTokens {
             delta_line: range.start.line - before.line,
             delta_start: range.start.character - if is_same_line { before.character } else { 0 },
             length: range.end.character - range.start.character,
-            token_type: TYPES.iter().position(|known| *known == word).expect("every kind is in the legend")
-                as u32,
+            token_type: TYPES
+                .iter()
+                .position(|known| *known == word)
+                .expect("every kind is in the legend") as u32,
             token_modifiers_bitset: modifiers(it),
         });
         before = range.start;

@@ -22,7 +22,11 @@ pub fn symbols(session: &Session, params: &WorkspaceSymbolParams) -> Vec<SymbolI
 
 fn symbol(context: &Context<'_>, all: &[Definition], it: &Definition) -> SymbolInformation {
     let container_name = it.within.map(|outer| all[outer].name.clone());
-    let named =
-        BaseSymbolInformation { name: it.name.clone(), kind: kind(it.kind), tags: None, container_name };
+    let named = BaseSymbolInformation {
+        name: it.name.clone(),
+        kind: kind(it.kind),
+        tags: None,
+        container_name,
+    };
     SymbolInformation::new(None, context.location(it.span), named)
 }

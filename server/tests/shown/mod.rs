@@ -11,7 +11,11 @@ pub fn shown(tag: &str, result: &Value, text: &str) -> String {
         "diagnostics" => each(&result["items"], diagnostic),
         "definition" | "references" => each(result, |it| located(&it["range"], text)),
         "highlights" => each(result, |it| {
-            format!("{} {}", located(&it["range"], text), if it["kind"] == 3 { "written" } else { "read" })
+            format!(
+                "{} {}",
+                located(&it["range"], text),
+                if it["kind"] == 3 { "written" } else { "read" }
+            )
         }),
         "prepare" => vec![located(&result["range"], text)],
         "rename" => edits(&result["changes"]["file:///model.fdc"]),
@@ -28,22 +32,28 @@ pub fn shown(tag: &str, result: &Value, text: &str) -> String {
             let changes = edits(&it["edit"]["changes"]["file:///model.fdc"]).join("; ");
             format!("{} ({}{preferred}): {changes}", string(&it["title"]), string(&it["kind"]))
         }),
-        "hover" => {
-            string(&result["contents"]["value"]).replace("```", "~~~").lines().map(str::to_owned).collect()
-        }
+        "hover" => string(&result["contents"]["value"])
+            .replace("```", "~~~")
+            .lines()
+            .map(str::to_owned)
+            .collect(),
         "completion" => each(&result["items"], |it| {
-            let detail = it["detail"].as_str().map_or(String::new(), |detail| format!(": {detail}"));
+            let detail =
+                it["detail"].as_str().map_or(String::new(), |detail| format!(": {detail}"));
             format!("{}{detail}", string(&it["label"]))
         }),
         "signature" => {
             let signature = &result["signatures"][0];
-            let active = &signature["parameters"][number(&result["activeParameter"]) as usize]["label"];
+            let active =
+                &signature["parameters"][number(&result["activeParameter"]) as usize]["label"];
             vec![
                 format!("{} at {active}", string(&signature["label"])),
                 string(&signature["documentation"]["value"]).replace("```", "~~~"),
             ]
         }
-        "hints" => each(result, |it| format!("{} {}", place(&it["position"]), string(&it["label"]))),
+        "hints" => {
+            each(result, |it| format!("{} {}", place(&it["position"]), string(&it["label"])))
+        }
         "lens" => each(result, |it| {
             format!(
                 "{} {} ({})",
@@ -106,7 +116,11 @@ fn diagnostic(it: &Value) -> String {
     let message = string(&it["message"]).replace('\n', " / ");
     let related = each(&it["relatedInformation"], |other| match other.is_null() {
         true => String::new(),
-        false => format!("; {} {}", place(&other["location"]["range"]["start"]), string(&other["message"])),
+        false => format!(
+            "; {} {}",
+            place(&other["location"]["range"]["start"]),
+            string(&other["message"])
+        ),
     });
     format!(
         "{}-{} {} {}{tags}: {message}{}",
@@ -132,7 +146,11 @@ fn applied(list: &Value, text: &str) -> String {
     let mut edits: Vec<(usize, usize, String)> = all
         .iter()
         .map(|it| {
-            (offset(&it["range"]["start"], text), offset(&it["range"]["end"], text), string(&it["newText"]))
+            (
+                offset(&it["range"]["start"], text),
+                offset(&it["range"]["end"], text),
+                string(&it["newText"]),
+            )
         })
         .collect();
     edits.sort();

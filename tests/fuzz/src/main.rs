@@ -1,4 +1,5 @@
-//! Texts chosen by coverage, through parse, check, layout and repair: `tests/src/fuzzed.rs` says what must hold.
+//! Texts chosen by coverage, through parse, check, layout and repair: `tests/src/fuzzed.rs` says
+//! what must hold.
 //!
 //! How to run it is told in `docs/recipes/fuzz.md`.
 

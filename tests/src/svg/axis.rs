@@ -27,7 +27,8 @@ impl Axis {
     /// With room for these values, if no range was asked for.
     pub(super) fn fitted(&self, values: impl Iterator<Item = f64>) -> Axis {
         let drawn = values.map(|value| self.drawn(value)).filter(|value| value.is_finite());
-        let (low, high) = drawn.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let (low, high) =
+            drawn.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         assert!(low <= high || self.range.is_some(), "an axis needs a finite value");
         let margin = if high > low { 0.03 * (high - low) } else { 0.5 };
         let undrawn = |value: f64| if self.is_logarithmic { 10_f64.powf(value) } else { value };
@@ -59,7 +60,8 @@ impl Axis {
     pub(super) fn ticks(&self) -> Vec<(f64, String)> {
         let [low, high] = self.ends();
         let step = round_step(high - low, self.is_logarithmic);
-        let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
+        let (first, last) =
+            ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
         let digits = (-step.log10().floor()).max(0.0) as usize;
         let tick = |at: i64| match self.is_logarithmic {
             true => (10_f64.powf(at as f64 * step), format!("1e{}", at as f64 * step)),
@@ -72,8 +74,10 @@ impl Axis {
 /// 1, 2 or 5 times a power of ten, so that there are about six of them; whole decades.
 fn round_step(width: f64, is_logarithmic: bool) -> f64 {
     let power = 10_f64.powf((width / 6.0).log10().floor());
-    let step =
-        [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power).into_iter().find(|step| width / step <= 7.0);
+    let step = [1.0, 2.0, 5.0, 10.0]
+        .map(|factor| factor * power)
+        .into_iter()
+        .find(|step| width / step <= 7.0);
     let step = step.unwrap_or(10.0 * power);
     if is_logarithmic { step.max(1.0) } else { step }
 }
@@ -85,8 +89,14 @@ mod tests {
     #[test]
     fn ticks_are_round_numbers_inside_the_range() {
         let labels = |axis: Axis| axis.ticks().into_iter().map(|tick| tick.1).collect::<Vec<_>>();
-        assert_eq!(labels(Axis::new("x").between(-1.1, -0.9)), ["-1.10", "-1.05", "-1.00", "-0.95", "-0.90"]);
-        assert_eq!(labels(Axis::new("h").logarithmic().between(8e-4, 0.2)), ["1e-3", "1e-2", "1e-1"]);
+        assert_eq!(
+            labels(Axis::new("x").between(-1.1, -0.9)),
+            ["-1.10", "-1.05", "-1.00", "-0.95", "-0.90"]
+        );
+        assert_eq!(
+            labels(Axis::new("h").logarithmic().between(8e-4, 0.2)),
+            ["1e-3", "1e-2", "1e-1"]
+        );
     }
 
     #[test]

@@ -21,8 +21,9 @@ pub fn problem(base: &str, [line, reading]: [&str; 2]) -> Option<String> {
             .then(|| format!("{line}: not refused with {reading}: {:?}", codes(base, &lines))),
         Some(meant) => {
             let (read, meant) = (numbers(base, &lines), numbers(base, &[meant]));
-            (read.is_none() || !is_same(read.as_ref()?, meant.as_ref()?))
-                .then(|| format!("{line}: {read:?}\n instead of {meant:?}, {:?}", codes(base, &lines)))
+            (read.is_none() || !is_same(read.as_ref()?, meant.as_ref()?)).then(|| {
+                format!("{line}: {read:?}\n instead of {meant:?}, {:?}", codes(base, &lines))
+            })
         }
     }
 }
@@ -35,7 +36,8 @@ fn text(base: &str, lines: &[&str]) -> String {
     };
     // One objective is enough.
     let is_asked = lines.iter().any(|line| line.starts_with("minimize"));
-    let base: Vec<&str> = base.lines().filter(|line| !(is_asked && line.starts_with("minimize"))).collect();
+    let base: Vec<&str> =
+        base.lines().filter(|line| !(is_asked && line.starts_with("minimize"))).collect();
     format!("{}\n{}", base.join("\n"), items.map(item).collect::<String>())
 }
 
@@ -50,7 +52,8 @@ fn codes(base: &str, lines: &[&str]) -> Vec<String> {
 fn numbers(base: &str, lines: &[&str]) -> Option<Vec<f64>> {
     let mut model = review(&text(base, lines)).model?;
     for line in lines {
-        let given = line.split_once(' ').and_then(|(option, rest)| Some((option, rest.split_once('=')?)));
+        let given =
+            line.split_once(' ').and_then(|(option, rest)| Some((option, rest.split_once('=')?)));
         match given {
             Some(("--set", (name, value))) => model.set_param(name, value).ok()?,
             Some(("--method", (key, value))) => model.set_method(key, value).ok()?,
@@ -60,7 +63,9 @@ fn numbers(base: &str, lines: &[&str]) -> Option<Vec<f64>> {
     let inputs: Vec<f64> = (0..model.symbols.len()).map(|at| 0.37 + 0.11 * at as f64).collect();
     let mut all = evaluate(&model.graph, &roots(&model), &inputs, &[]);
     all.extend(model.method.sigma.iter().chain(&model.method.continuation));
-    all.extend(model.sweep.iter().flat_map(|it| &it.values).filter_map(|it| it.parse::<f64>().ok()));
+    all.extend(
+        model.sweep.iter().flat_map(|it| &it.values).filter_map(|it| it.parse::<f64>().ok()),
+    );
     Some(all)
 }
 
@@ -76,13 +81,23 @@ fn roots(model: &Model) -> Vec<ExprId> {
     all.extend(model.surfaces.iter().map(|it| it.psi));
     all.extend(model.jumps.iter().flat_map(|it| it.resets.iter().map(|reset| reset.1)));
     all.extend(
-        model.path.iter().chain(&model.boundary).flat_map(|it| [it.value, it.range.lower, it.range.upper]),
+        model
+            .path
+            .iter()
+            .chain(&model.boundary)
+            .flat_map(|it| [it.value, it.range.lower, it.range.upper]),
     );
     all.extend(model.objective.iter().map(|it| it.1));
     all.extend(model.widths.iter().map(|it| it.1));
     all.extend(model.report.iter().map(|it| it.value));
     all.extend(model.expectations.iter().flat_map(|it| it.values));
-    all.extend(model.definitions.iter().filter(|it| it.arguments.is_empty()).flat_map(|it| it.parts.clone()));
+    all.extend(
+        model
+            .definitions
+            .iter()
+            .filter(|it| it.arguments.is_empty())
+            .flat_map(|it| it.parts.clone()),
+    );
     all
 }
 

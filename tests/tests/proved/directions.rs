@@ -1,5 +1,5 @@
-//! What is proved about the vector of a `Dir`, against sampling: drift `a` and pull `B` of `psi' = a + B s` are read off the
-//! model by itself, at points where `psi` is 0.
+//! What is proved about the vector of a `Dir`, against sampling: drift `a` and pull `B` of `psi' =
+//! a + B s` are read off the model by itself, at points where `psi` is 0.
 
 use fdcc_compiler::graph::{ExprId, Graph, evaluate};
 use fdcc_compiler::model::{Model, Symbol};
@@ -16,7 +16,8 @@ const ROUNDING: f64 = 1e-7;
 /// The states `v.x, v.y, q.x, q.y` within [-2, 2], a control `u`.
 fn model_text(random: &mut Random) -> String {
     let size = |random: &mut Random| random.between(0.3, 4.0);
-    let psi = ["v", "v - q", "v - (0.5, 1)", "v - (0, 3)", "v - (sin(q.y), q.x/2)"][random.below(5)];
+    let psi =
+        ["v", "v - q", "v - (0.5, 1)", "v - (0, 3)", "v - (sin(q.y), q.x/2)"][random.below(5)];
     let drift = |random: &mut Random| {
         let scale = random.between(0.0, 2.0);
         let term = ["u", "1", "q.x", "q.x*q.y", "sin(q.y) - v.x", "4 + u", "v.y"][random.below(7)];
@@ -32,14 +33,17 @@ fn model_text(random: &mut Random) -> String {
             let (a, b) = (size(random), size(random));
             let (c, d) = (random.between(-3.0, 3.0), random.between(-3.0, 3.0));
             format!(
-                "({sign}{a:.1}*Dir({psi}).x + ({c:.1})*Dir({psi}).y, ({d:.1})*Dir({psi}).x {} {b:.1}*Dir({psi}).y)",
+                "({sign}{a:.1}*Dir({psi}).x + ({c:.1})*Dir({psi}).y, ({d:.1})*Dir({psi}).x {} \
+                 {b:.1}*Dir({psi}).y)",
                 if sign.is_empty() { "+" } else { "-" }
             )
         }
     };
     format!(
-        "time t in [0, 2]\nstate v(x, y) in [-2, 2] start free\nstate q(x, y) in [-2, 2] start free\n\
-         control u in [-1, 1]\ndynamics {{\n  v' in ({one}, {other}) + {pull}\n  q' = (u, 0.3*q.x)\n}}\n\
+        "time t in [0, 2]\nstate v(x, y) in [-2, 2] start free\nstate q(x, y) in [-2, 2] start \
+         free\n\
+         control u in [-1, 1]\ndynamics {{\n  v' in ({one}, {other}) + {pull}\n  q' = (u, \
+         0.3*q.x)\n}}\n\
          minimize integral(u^2)\n"
     )
 }
@@ -92,7 +96,8 @@ impl Sampled {
         at[0] -= psi[0];
         at[1] -= psi[1];
         let psi = self.values(self.psi, &at, [0.0; 2]);
-        (psi[0].abs() + psi[1].abs() < 1e-12 && at[..2].iter().all(|it| it.abs() <= 2.0)).then_some(at)
+        (psi[0].abs() + psi[1].abs() < 1e-12 && at[..2].iter().all(|it| it.abs() <= 2.0))
+            .then_some(at)
     }
 
     /// `a`, and the columns of `B`.
@@ -110,7 +115,8 @@ impl Sampled {
 fn contradiction(class: &SurfaceClass, a: [f64; 2], [b, c]: [[f64; 2]; 2]) -> bool {
     let determinant = b[0] * c[1] - b[1] * c[0];
     // a + s_1 b + s_2 c = 0
-    let holding = [(a[1] * c[0] - a[0] * c[1]) / determinant, (a[0] * b[1] - a[1] * b[0]) / determinant];
+    let holding =
+        [(a[1] * c[0] - a[0] * c[1]) / determinant, (a[0] * b[1] - a[1] * b[0]) / determinant];
     let along = |drift: [f64; 2], at: usize| {
         let angle = at as f64 / DIRECTIONS as f64 * std::f64::consts::TAU;
         let d = [angle.cos(), angle.sin()];
@@ -126,7 +132,9 @@ fn contradiction(class: &SurfaceClass, a: [f64; 2], [b, c]: [[f64; 2]; 2]) -> bo
         }
         SurfaceClass::Attracting => directions.into_iter().any(|at| along([0.0; 2], at) > ROUNDING),
         SurfaceClass::Repelling => directions.into_iter().any(|at| along(a, at) < -ROUNDING),
-        SurfaceClass::Degenerate | SurfaceClass::RepellingFor(_) | SurfaceClass::Unknown { .. } => false,
+        SurfaceClass::Degenerate | SurfaceClass::RepellingFor(_) | SurfaceClass::Unknown { .. } => {
+            false
+        }
     }
 }
 
@@ -138,7 +146,11 @@ fn what_is_proved_about_directions_is_true_at_every_point() {
         let text = model_text(&mut random);
         let checked = check(&parse(&text).tree);
         let errors = checked.diagnostics.iter().filter(|it| it.severity == Severity::Error);
-        assert!(errors.clone().all(|it| it.code == Code::Repelling), "{text}\n{:#?}", checked.diagnostics);
+        assert!(
+            errors.clone().all(|it| it.code == Code::Repelling),
+            "{text}\n{:#?}",
+            checked.diagnostics
+        );
         let model = checked.model.expect("what is not unique has a meaning");
         let class = surfaces(&model).expect("there are no parameters")[0].class.clone();
         assert_eq!(errors.count() > 0, class == SurfaceClass::Repelling, "{text}");
@@ -150,7 +162,10 @@ fn what_is_proved_about_directions_is_true_at_every_point() {
         for _ in 0..POINTS {
             let Some(at) = sampled.point(control, &mut random) else { continue };
             let (drift, pull) = sampled.drift_and_pull(&at);
-            assert!(!contradiction(&wanted, drift, pull), "{class:?} at {at:?}: {drift:?}, {pull:?}\n{text}");
+            assert!(
+                !contradiction(&wanted, drift, pull),
+                "{class:?} at {at:?}: {drift:?}, {pull:?}\n{text}"
+            );
         }
         let name = match class {
             SurfaceClass::Apart => "apart",
@@ -163,7 +178,12 @@ fn what_is_proved_about_directions_is_true_at_every_point() {
         };
         *seen.entry(name).or_default() += 1;
     }
-    for name in ["apart", "crossed", "held", "attracting", "repelling", "repelling for some controls"] {
-        assert!(seen.get(name).is_some_and(|&count| count >= 10), "{name} is hardly ever proved: {seen:?}");
+    for name in
+        ["apart", "crossed", "held", "attracting", "repelling", "repelling for some controls"]
+    {
+        assert!(
+            seen.get(name).is_some_and(|&count| count >= 10),
+            "{name} is hardly ever proved: {seen:?}"
+        );
     }
 }

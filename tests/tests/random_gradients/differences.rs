@@ -70,9 +70,19 @@ pub fn check(case: &Case, random: &mut Random, seen: &mut Seen) {
         seen.stopped += 1;
         return;
     };
-    let says =
-        || format!("{:?}\n{:?}\n{quantities:?}\n{found:#?}", case.system.parameter_values(), case.controls);
-    assert!(found.agreement <= AGREEMENT, "forward is not adjoint: {}\n{}", found.agreement, says());
+    let says = || {
+        format!(
+            "{:?}\n{:?}\n{quantities:?}\n{found:#?}",
+            case.system.parameter_values(),
+            case.controls
+        )
+    };
+    assert!(
+        found.agreement <= AGREEMENT,
+        "forward is not adjoint: {}\n{}",
+        found.agreement,
+        says()
+    );
     seen.note(&found.simulation);
     if !found.troubles.is_empty() {
         seen.troubled += 1;
@@ -80,7 +90,9 @@ pub fn check(case: &Case, random: &mut Random, seen: &mut Seen) {
     }
     let check = Check { case, quantities: &quantities, found: &found };
     let second = random.below(3) == 0;
-    let wrong = check.first_order(seen).and_then(|()| if second { check.second_order(seen) } else { Ok(()) });
+    let wrong = check
+        .first_order(seen)
+        .and_then(|()| if second { check.second_order(seen) } else { Ok(()) });
     if let Err(wrong) = wrong {
         panic!(
             "{wrong}\n{:?}\n{}",
@@ -98,10 +110,13 @@ impl Seen {
     fn note(&mut self, simulation: &Simulation) {
         self.differentiated += 1;
         self.events += simulation.events.len();
-        self.jumps += simulation.events.iter().filter(|it| matches!(it.kind, Kind::Jump(_))).count();
+        self.jumps +=
+            simulation.events.iter().filter(|it| matches!(it.kind, Kind::Jump(_))).count();
         let tape = simulation.tape.as_ref().expect("it was asked for");
-        let held =
-            tape.regimes.iter().map(|it| it.modes.iter().filter(|mode| **mode == Mode::Sliding).count());
+        let held = tape
+            .regimes
+            .iter()
+            .map(|it| it.modes.iter().filter(|mode| **mode == Mode::Sliding).count());
         self.held_together += usize::from(held.max().unwrap_or(0) > 1);
     }
 }
@@ -128,7 +143,13 @@ impl Check<'_> {
         perturbed(&self.case.system, &self.case.controls, quantity, by)
     }
 
-    fn compare(&self, name: &str, got: f64, values: [f64; 4], seen: &mut Seen) -> Result<(), String> {
+    fn compare(
+        &self,
+        name: &str,
+        got: f64,
+        values: [f64; 4],
+        seen: &mut Seen,
+    ) -> Result<(), String> {
         let (expected, change) = extrapolated(values);
         seen.compared += 1;
         if change > UNSETTLED * (1.0 + expected.abs()) {
@@ -168,10 +189,13 @@ impl Check<'_> {
             let (system, controls) = self.moved(&self.quantities[0], by);
             gradient(&system, &controls, &options(), self.quantities).ok()
         });
-        let has_same_events =
-            |sides: &[Sensitivity; 4]| self.has_same_events(sides.each_ref().map(|it| &it.simulation));
-        let starts_sliding = self.found.simulation.events.iter().any(|it| it.kind == Kind::StartsSliding);
-        let Some((sides, matrix)) = sides.filter(has_same_events).filter(|_| !starts_sliding).zip(matrix)
+        let has_same_events = |sides: &[Sensitivity; 4]| {
+            self.has_same_events(sides.each_ref().map(|it| &it.simulation))
+        };
+        let starts_sliding =
+            self.found.simulation.events.iter().any(|it| it.kind == Kind::StartsSliding);
+        let Some((sides, matrix)) =
+            sides.filter(has_same_events).filter(|_| !starts_sliding).zip(matrix)
         else {
             seen.compared += 1;
             seen.skipped += 1;
@@ -187,7 +211,8 @@ impl Check<'_> {
 
     /// Whether all have the events of the trajectory itself.
     fn has_same_events(&self, sides: [&Simulation; 4]) -> bool {
-        let kinds = |it: &Simulation| it.events.iter().map(|it| (it.surface, it.kind)).collect::<Vec<_>>();
+        let kinds =
+            |it: &Simulation| it.events.iter().map(|it| (it.surface, it.kind)).collect::<Vec<_>>();
         let own = kinds(&self.found.simulation);
         sides.iter().all(|it| kinds(it) == own)
     }

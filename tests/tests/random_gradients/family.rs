@@ -49,7 +49,8 @@ fn affine_text(surfaces: usize, size: usize) -> String {
     }
     let ends: String = (1..size).map(|i| format!(" + x{i}(end)")).collect();
     format!(
-        "{text}dynamics {{\n{equations}}}\nminimize x0(end)^2{ends} + integral(x0^2 + u*selected(Sgn(p0)))\n"
+        "{text}dynamics {{\n{equations}}}\nminimize x0(end)^2{ends} + integral(x0^2 + \
+         u*selected(Sgn(p0)))\n"
     )
 }
 
@@ -66,7 +67,9 @@ fn affine_coefficients(random: &mut Random, surfaces: usize, size: usize) -> Coe
     };
     let mut all = Coefficients::new();
     let rows = |all: &mut Coefficients, name: &str, rows: &[Vec<f64>]| {
-        rows.iter().enumerate().for_each(|(i, row)| all.extend(numbers(format!("{name}{i}_"), row)));
+        rows.iter()
+            .enumerate()
+            .for_each(|(i, row)| all.extend(numbers(format!("{name}{i}_"), row)));
     };
     rows(&mut all, "a", &system.drift);
     system.push.iter().enumerate().for_each(|(k, push)| rows(&mut all, &format!("b{k}_"), push));
@@ -125,7 +128,8 @@ const CURVED_RANGES: [[f64; 2]; 17] = [
 ];
 
 fn curved_coefficients(random: &mut Random) -> Coefficients {
-    let drawn: Vec<f64> = CURVED_RANGES.iter().map(|[low, high]| random.between(*low, *high)).collect();
+    let drawn: Vec<f64> =
+        CURVED_RANGES.iter().map(|[low, high]| random.between(*low, *high)).collect();
     let mut all: Coefficients = numbers("k".to_string(), &drawn).collect();
     all.insert("T".to_string(), random.between(2.0, 4.0));
     all
@@ -145,7 +149,8 @@ impl Family {
 
     fn new(text: &str, draw: Box<dyn Fn(&mut Random) -> Coefficients>) -> Self {
         let names = draw(&mut Random::new(1)).into_iter();
-        let params: String = names.map(|(name, value)| format!("param {name} = {value}\n")).collect();
+        let params: String =
+            names.map(|(name, value)| format!("param {name} = {value}\n")).collect();
         let system = compile_sensitivities(&meaning(&format!("{params}{text}")));
         Family { system: system.expect("the model can be simulated"), draw }
     }

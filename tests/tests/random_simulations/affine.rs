@@ -4,8 +4,8 @@
 //! x' = A x + a + sum_i s_i (A_i x + b_i),   s_i in Sgn(psi_i),   psi_i = c_i x + e_i t - d_i,   c_i b_j = -D_ij
 //! ```
 //!
-//! `D` decides what the surfaces do, with the `A_i` where they are not 0: where it is a P-matrix the solution is unique. It
-//! need not be one, and need not remain one.
+//! `D` decides what the surfaces do, with the `A_i` where they are not 0: where it is a P-matrix
+//! the solution is unique. It need not be one, and need not remain one.
 
 use fdcc_tests::random::Random;
 use std::fmt::Write;
@@ -32,11 +32,13 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Solves `matrix z = right` for several right sides, by elimination with pivots; none if a pivot is small.
+/// Solves `matrix z = right` for several right sides, by elimination with pivots; none if a pivot
+/// is small.
 pub fn solve(mut matrix: Matrix, mut right: Matrix) -> Option<Matrix> {
     let size = matrix.len();
     for at in 0..size {
-        let pivot = (at..size).max_by(|&i, &j| matrix[i][at].abs().total_cmp(&matrix[j][at].abs()))?;
+        let pivot =
+            (at..size).max_by(|&i, &j| matrix[i][at].abs().total_cmp(&matrix[j][at].abs()))?;
         matrix.swap(at, pivot);
         right.swap(at, pivot);
         if matrix[at][at].abs() < 1e-3 {
@@ -50,7 +52,10 @@ pub fn solve(mut matrix: Matrix, mut right: Matrix) -> Option<Matrix> {
             }
         }
     }
-    right.iter_mut().enumerate().for_each(|(i, row)| row.iter_mut().for_each(|entry| *entry /= matrix[i][i]));
+    right
+        .iter_mut()
+        .enumerate()
+        .for_each(|(i, row)| row.iter_mut().for_each(|entry| *entry /= matrix[i][i]));
     Some(right)
 }
 
@@ -117,8 +122,10 @@ impl Affine {
         // The second time takes off what rounding left of the first.
         for _ in 0..if begins_on.is_empty() { 0 } else { 2 } {
             let on: Matrix = begins_on.iter().map(|&i| rows[i].clone()).collect();
-            let away =
-                begins_on.iter().map(|&i| vec![-dot(&rows[i], &start) - normal[i][size + 1]]).collect();
+            let away = begins_on
+                .iter()
+                .map(|&i| vec![-dot(&rows[i], &start) - normal[i][size + 1]])
+                .collect();
             start.iter_mut().zip(&shortest(&on, away)?[0]).for_each(|(x, by)| *x += by);
         }
         start.extend([0.0, 1.0]);

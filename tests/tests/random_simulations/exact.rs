@@ -1,8 +1,9 @@
 //! The solution of an affine system from event to event.
 //!
-//! At an event all 3^k combinations of sides are tried. What no program could tell reliably (a root that is nearly double, two
-//! events at nearly one time, a rate that is nearly 0) is given up as delicate. Surfaces that hold each other without a P-matrix
-//! are no unique continuation: solutions may leave on spirals, which no combination of sides describes.
+//! At an event all 3^k combinations of sides are tried. What no program could tell reliably (a root
+//! that is nearly double, two events at nearly one time, a rate that is nearly 0) is given up as
+//! delicate. Surfaces that hold each other without a P-matrix are no unique continuation: solutions
+//! may leave on spirals, which no combination of sides describes.
 
 use crate::affine::{Affine, LAST, Matrix, dot};
 use crate::flow::{Condition, Flow, NEAR};
@@ -33,12 +34,16 @@ pub struct Exact {
     pub most_held: usize,
 }
 
-/// Whether all principal minors are positive: the first entry is, and so are those without it and those of its Schur complement.
+/// Whether all principal minors are positive: the first entry is, and so are those without it and
+/// those of its Schur complement.
 fn is_p_matrix(matrix: &[Vec<f64>]) -> bool {
     let Some((first, rest)) = matrix.split_first() else { return true };
     let without: Matrix = rest.iter().map(|row| row[1..].to_vec()).collect();
-    let reduced = |row: &Vec<f64>| (1..row.len()).map(|j| row[j] - row[0] / first[0] * first[j]).collect();
-    first[0] > 0.0 && is_p_matrix(&without) && is_p_matrix(&rest.iter().map(reduced).collect::<Matrix>())
+    let reduced =
+        |row: &Vec<f64>| (1..row.len()).map(|j| row[j] - row[0] / first[0] * first[j]).collect();
+    first[0] > 0.0
+        && is_p_matrix(&without)
+        && is_p_matrix(&rest.iter().map(reduced).collect::<Matrix>())
 }
 
 /// A system on its way.
@@ -89,7 +94,8 @@ impl Way<'_> {
 
     /// When in a step what is held ceases to attract.
     fn attraction_ends(&self, flow: &Flow, h: f64) -> Result<Option<f64>, Ending> {
-        let attracts = |h: f64| is_p_matrix(&self.system.attraction(&flow.after(&self.y, h), &flow.held));
+        let attracts =
+            |h: f64| is_p_matrix(&self.system.attraction(&flow.after(&self.y, h), &flow.held));
         if attracts(h) {
             return Ok(None);
         }
@@ -129,7 +135,8 @@ impl Way<'_> {
             return Err(Ending::Delicate);
         }
         if self.sides[surface] == 0 {
-            let side = if flow.value(Condition::Within(surface, 1.0), &self.y) < 1.0 { 1 } else { -1 };
+            let side =
+                if flow.value(Condition::Within(surface, 1.0), &self.y) < 1.0 { 1 } else { -1 };
             self.change(surface, side, false);
             return Ok(());
         }
@@ -170,7 +177,8 @@ impl Way<'_> {
             }
         }
         let [only] = found.as_slice() else { return Err(Ending::NotUnique(found)) };
-        let held: Vec<usize> = only.iter().filter(|(_, side)| *side == 0).map(|(i, _)| *i).collect();
+        let held: Vec<usize> =
+            only.iter().filter(|(_, side)| *side == 0).map(|(i, _)| *i).collect();
         if !is_p_matrix(&self.system.attraction(&self.y, &held)) {
             return Err(Ending::NotUnique(found));
         }
@@ -178,7 +186,8 @@ impl Way<'_> {
         Ok(())
     }
 
-    /// By how much sides are consistent: `1 - |s|` where held, the rate away from the surface elsewhere.
+    /// By how much sides are consistent: `1 - |s|` where held, the rate away from the surface
+    /// elsewhere.
     fn margin(&self, here: &[usize], sides: &[i8]) -> f64 {
         let flow = Flow::new(self.system, sides);
         let Some(selectors) = flow.selectors(&self.y) else { return -1.0 };

@@ -1,7 +1,7 @@
 //! A mode of an affine system, followed by means that are simple and slow.
 //!
-//! Where nothing is held `y' = M y`, so `y(t + h) = sum_k (h M)^k y / k!`; where something is, the classical Runge-Kutta method takes
-//! steps as short as it must.
+//! Where nothing is held `y' = M y`, so `y(t + h) = sum_k (h M)^k y / k!`; where something is, the
+//! classical Runge-Kutta method takes steps as short as it must.
 
 use crate::affine::{Affine, Matrix, dot, solve};
 
@@ -62,7 +62,9 @@ impl<'a> Flow<'a> {
         let mut rate: Vec<f64> = self.matrix.iter().map(|row| dot(row, y)).collect();
         let selectors = self.selectors(y).unwrap_or_else(|| vec![f64::NAN; self.held.len()]);
         for (&i, s) in self.held.iter().zip(selectors) {
-            rate.iter_mut().zip(&self.system.push[i]).for_each(|(rate, row)| *rate += s * dot(row, y));
+            rate.iter_mut()
+                .zip(&self.system.push[i])
+                .for_each(|(rate, row)| *rate += s * dot(row, y));
         }
         rate
     }
@@ -93,13 +95,15 @@ impl<'a> Flow<'a> {
     }
 
     fn runge_kutta(&self, y: &[f64], h: f64) -> Vec<f64> {
-        let moved =
-            |by: f64, rate: &[f64]| -> Vec<f64> { y.iter().zip(rate).map(|(y, f)| y + by * f).collect() };
+        let moved = |by: f64, rate: &[f64]| -> Vec<f64> {
+            y.iter().zip(rate).map(|(y, f)| y + by * f).collect()
+        };
         let a = self.rate(y);
         let b = self.rate(&moved(0.5 * h, &a));
         let c = self.rate(&moved(0.5 * h, &b));
         let d = self.rate(&moved(h, &c));
-        let mean: Vec<f64> = (0..y.len()).map(|i| (a[i] + 2.0 * (b[i] + c[i]) + d[i]) / 6.0).collect();
+        let mean: Vec<f64> =
+            (0..y.len()).map(|i| (a[i] + 2.0 * (b[i] + c[i]) + d[i]) / 6.0).collect();
         moved(h, &mean)
     }
 
@@ -125,7 +129,13 @@ impl<'a> Flow<'a> {
     }
 
     /// Where in a step to `end` a condition first becomes negative; an error if that is delicate.
-    pub fn first(&self, condition: Condition, y: &[f64], end: &[f64], h: f64) -> Result<Option<f64>, ()> {
+    pub fn first(
+        &self,
+        condition: Condition,
+        y: &[f64],
+        end: &[f64],
+        h: f64,
+    ) -> Result<Option<f64>, ()> {
         let value = |h: f64| self.value(condition, &self.after(y, h));
         let slope = |h: f64| self.slope(condition, &self.after(y, h));
         let (at_start, at_end) = (self.value(condition, y), self.value(condition, end));
@@ -145,7 +155,8 @@ impl<'a> Flow<'a> {
     }
 }
 
-/// Where a function changes its sign: the secant of the bracket, an end that stays counts half (the Illinois rule).
+/// Where a function changes its sign: the secant of the bracket, an end that stays counts half (the
+/// Illinois rule).
 fn root(f: &dyn Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let (mut at_low, mut at_high) = (f(low), f(high));
     for _ in 0..60 {

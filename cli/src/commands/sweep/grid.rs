@@ -1,4 +1,5 @@
-//! The values of a sweep: lists of one length go together row by row, and a list of one value holds for all rows.
+//! The values of a sweep: lists of one length go together row by row, and a list of one value holds
+//! for all rows.
 
 use crate::output::named::Named;
 use fdcc_compiler::Model;
@@ -23,9 +24,13 @@ impl Grid {
     /// The lists of the model's own `sweep` block.
     pub fn of(model: &Model) -> Result<Self, String> {
         if model.sweep.is_empty() {
-            return Err("nothing is swept: give NAME=V1,V2,... or write a `sweep` block in the model".into());
+            return Err(
+                "nothing is swept: give NAME=V1,V2,... or write a `sweep` block in the model"
+                    .into(),
+            );
         }
-        let lists = model.sweep.iter().map(|swept| (swept.place.name.clone(), swept.values.clone()));
+        let lists =
+            model.sweep.iter().map(|swept| (swept.place.name.clone(), swept.values.clone()));
         Self::new(in_units(lists.collect(), |name, value| model.as_given(name, value)))
     }
 
@@ -44,7 +49,8 @@ impl Grid {
 
     /// The values of one row.
     pub fn row(&self, index: usize) -> Named<String> {
-        let value = |values: &Vec<String>| values[if values.len() == 1 { 0 } else { index }].clone();
+        let value =
+            |values: &Vec<String>| values[if values.len() == 1 { 0 } else { index }].clone();
         self.lists.iter().map(|(name, values)| (name.clone(), value(values))).collect()
     }
 
@@ -57,9 +63,8 @@ impl Grid {
             } else if let Err(message) = model.set_method(name, value) {
                 let is_key = fdcc_compiler::is_method_key(name);
                 let no_param = model.set_param(name, "0").err().filter(|_| !is_key);
-                return Err(
-                    no_param.map_or(message.clone(), |no_param| format!("{no_param}\n      {message}"))
-                );
+                return Err(no_param
+                    .map_or(message.clone(), |no_param| format!("{no_param}\n      {message}")));
             }
         }
         model.fits_together()
@@ -76,8 +81,9 @@ fn in_units(lists: Vec<List>, with_unit: impl Fn(&str, &str) -> String) -> Vec<L
 }
 
 fn list(text: &str) -> Result<List, String> {
-    let (name, values) =
-        text.split_once('=').ok_or_else(|| format!("`{text}` is not of the form NAME=V1,V2,..."))?;
+    let (name, values) = text
+        .split_once('=')
+        .ok_or_else(|| format!("`{text}` is not of the form NAME=V1,V2,..."))?;
     let values: Vec<String> = values.split(',').map(|value| value.trim().to_string()).collect();
     match values.iter().position(String::is_empty) {
         Some(at) => Err(format!("value {} of `{}` is empty", at + 1, name.trim())),
@@ -89,6 +95,7 @@ fn different_lengths(lists: &[List]) -> String {
     let lengths = lists.iter().map(|(name, values)| format!("`{name}` has {}", values.len()));
     let lengths = lengths.collect::<Vec<_>>().join(", ");
     format!(
-        "the lists go together row by row, but their lengths differ: {lengths}; give all the same length, or one value"
+        "the lists go together row by row, but their lengths differ: {lengths}; give all the same \
+         length, or one value"
     )
 }

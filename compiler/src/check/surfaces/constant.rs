@@ -10,7 +10,8 @@ impl Subject<'_, '_, '_> {
     pub fn constant(&self) -> Option<Diagnostic> {
         let psi = self.view.surfaces[self.at].1?;
         let symbols = &self.facts.meaning.symbols;
-        let is_fixed = |input: u32| matches!(symbols[input as usize], Symbol::Param(_) | Symbol::Free(_));
+        let is_fixed =
+            |input: u32| matches!(symbols[input as usize], Symbol::Param(_) | Symbol::Free(_));
         if !self.facts.meaning.graph.inputs_of(&[psi]).into_iter().all(is_fixed) {
             return None;
         }
@@ -21,10 +22,9 @@ impl Subject<'_, '_, '_> {
         };
         let message = format!("surface `{}` never changes sides", self.name());
         let found = Diagnostic::new(Code::ConstantSurface, message, self.function(), label);
-        Some(
-            found.help(
-                "a surface depends on states or on time; for a choice that is made once, write a `param`",
-            ),
-        )
+        Some(found.help(
+            "a surface depends on states or on time; for a choice that is made once, write a \
+                 `param`",
+        ))
     }
 }

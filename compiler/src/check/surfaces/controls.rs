@@ -32,7 +32,8 @@ impl Subject<'_, '_, '_> {
 
     fn two_slopes(&mut self, symbol: Symbol, slopes: [ExprId; 2]) -> Diagnostic {
         let control = self.view.name(symbol);
-        let message = format!("control `{control}` acts differently on the two sides of `{}`", self.name());
+        let message =
+            format!("control `{control}` acts differently on the two sides of `{}`", self.name());
         let [below, above] = slopes.map(|slope| self.text(slope));
         let label = format!("d/d{control} is {below} below and {above} above");
         let span = match self.place.map(|place| (&place.set.kind, place.term.span)) {
@@ -41,8 +42,10 @@ impl Subject<'_, '_, '_> {
             None => self.declared(),
         };
         Diagnostic::new(Code::ControlJumps, message, span, label).help(
-            "Section 7 of the method needs d/du of the right side to be continuous. Without it, controls \
-             at the crossing time get a smeared gradient. Check the answer with `fdcc sweep --continue sigma`.",
+            "Section 7 of the method needs d/du of the right side to be continuous. Without it, \
+             controls \
+             at the crossing time get a smeared gradient. Check the answer with `fdcc sweep \
+             --continue sigma`.",
         )
     }
 }

@@ -1,4 +1,5 @@
-//! FDC0303: a surface that attracts, but is one-sided Lipschitz only in other coordinates or in another metric.
+//! FDC0303: a surface that attracts, but is one-sided Lipschitz only in other coordinates or in
+//! another metric.
 
 use super::Subject;
 use crate::resolve::text::{self, number};
@@ -17,7 +18,8 @@ impl Subject<'_, '_, '_> {
         let [first, second] = labels(&found, &moved, &turning);
         let (attracts, held) = (self.attracts(), self.held(&found));
         let joint = if matches!(found, Coordinates::Unknown) { "; " } else { ", and " };
-        let help = format!("nothing to change. The surface attracts: {attracts}{joint}{reason}{held}");
+        let help =
+            format!("nothing to change. The surface attracts: {attracts}{joint}{reason}{held}");
         let diagnostic = Diagnostic::new(Code::OtherCoordinates, message, self.function(), first);
         let diagnostic = match self.place {
             Some(place) => diagnostic.label(place.term.span, second),
@@ -28,12 +30,14 @@ impl Subject<'_, '_, '_> {
 
     /// The vectors that states belong to, each once.
     fn vectors(&self, states: Vec<usize>) -> String {
-        let mut names: Vec<&str> = states.into_iter().map(|state| vector(self.view, state)).collect();
+        let mut names: Vec<&str> =
+            states.into_iter().map(|state| vector(self.view, state)).collect();
         names.dedup();
         names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
     }
 
-    /// In which coordinates the test holds, and why that is enough; nothing where it holds in those of the model.
+    /// In which coordinates the test holds, and why that is enough; nothing where it holds in those
+    /// of the model.
     fn message(&mut self, found: &Coordinates, moved: &str) -> Option<(String, String)> {
         let name = self.name().to_string();
         Some(match found {
@@ -43,24 +47,33 @@ impl Subject<'_, '_, '_> {
                 (
                     format!("`{name}` is one-sided Lipschitz in another metric"),
                     format!(
-                        "in the metric of the kinetic energy the test of Lemma 3.1 holds:\nsay so with `metric {metric}`."
+                        "in the metric of the kinetic energy the test of Lemma 3.1 holds:\nsay so \
+                         with `metric {metric}`."
                     ),
                 )
             }
             Coordinates::Replaced(state) => {
                 let state = &self.view.states[*state].place.name;
                 let message = format!(
-                    "`{name}` is one-sided Lipschitz with `{name}` as a coordinate in place of `{state}`"
+                    "`{name}` is one-sided Lipschitz with `{name}` as a coordinate in place of \
+                     `{state}`"
                 );
                 (message, "in these\ncoordinates the test of Lemma 3.1 holds.".into())
             }
             Coordinates::Frame { across } => {
                 let frame = self.frame(*across);
-                (format!("`{name}` is one-sided Lipschitz in body-frame velocities, not in {moved}"), frame)
+                (
+                    format!(
+                        "`{name}` is one-sided Lipschitz in body-frame velocities, not in \
+                          {moved}"
+                    ),
+                    frame,
+                )
             }
             Coordinates::Unknown => (
                 format!("`{name}` attracts, but is not one-sided Lipschitz in these coordinates"),
-                "solutions are unique all the same: formulas (3.5) and (3.6)\ndo not depend on coordinates."
+                "solutions are unique all the same: formulas (3.5) and (3.6)\ndo not depend on \
+                 coordinates."
                     .into(),
             ),
         })
@@ -81,7 +94,9 @@ impl Subject<'_, '_, '_> {
     fn metric(&mut self, weights: &[(usize, crate::graph::ExprId)]) -> String {
         let weights: Vec<String> = weights
             .iter()
-            .map(|&(state, weight)| format!("{}: {}", self.view.states[state].place.name, self.text(weight)))
+            .map(|&(state, weight)| {
+                format!("{}: {}", self.view.states[state].place.name, self.text(weight))
+            })
             .collect();
         weights.join(", ")
     }
@@ -92,7 +107,8 @@ impl Subject<'_, '_, '_> {
         let form = self.local.form(across);
         let negative = form.scaled(-1.0, &Vec::new());
         let written = self.facts.meaning.written.iter().find_map(|&(expr, id)| {
-            let known = |input: u32| self.local.input_of(self.view.symbols[input as usize]).is_some();
+            let known =
+                |input: u32| self.local.input_of(self.view.symbols[input as usize]).is_some();
             let fits = self.view.graph.inputs_of(&[id]).into_iter().all(known);
             let copy = fits.then(|| self.local.import(self.view, id))?;
             let own = self.local.form(copy);

@@ -16,30 +16,37 @@ impl Subject<'_, '_, '_> {
         if !always && for_some(&self.local, &[(jump, Claim::Positive)]).is_none() {
             return None;
         }
-        let message = format!("surface `{}` is crossed, but it is not one-sided Lipschitz", self.name());
+        let message =
+            format!("surface `{}` is crossed, but it is not one-sided Lipschitz", self.name());
         let span = self.place.map_or(self.declared(), |place| place.name);
         let [below, above] = [self.local.below, self.local.above].map(|rate| self.text(rate));
-        let label = format!("rates {below} and {above} have one sign: the surface is always crossed");
+        let label =
+            format!("rates {below} and {above} have one sign: the surface is always crossed");
         let mut found = Diagnostic::new(Code::NotContracting, message, span, label);
         let what = self.what_drifts();
         let jump_text = self.text(jump);
         if let (Some((condition, declared)), false) = (self.positive_for(jump), always) {
-            let text =
-                format!("for {condition} the jump {jump_text} is positive, so two nearby {what} drift apart");
+            let text = format!(
+                "for {condition} the jump {jump_text} is positive, so two nearby {what} drift apart"
+            );
             found = found.label(declared, text);
         }
         if strictly {
             found.severity = Severity::Advice;
             let help = format!(
-                "nothing to change: the solution is unique, and the jump formula (3.6) is used, not (3.5).\n\
-                 Across the surface the distance of two nearby {what} grows by the factor ({above})/({below})."
+                "nothing to change: the solution is unique, and the jump formula (3.6) is used, \
+                 not (3.5).\n\
+                 Across the surface the distance of two nearby {what} grows by the factor \
+                 ({above})/({below})."
             );
             return Some(found.help(help));
         }
         let common = self.common_factor().unwrap_or_else(|| jump_text.clone());
         Some(found.help(format!(
-            "the solution is still unique wherever {common} != 0. The jump formula (3.6) is used, not (3.5).\n\
-             At {common} == 0 on the surface nothing moves: add `path` or a bound to keep `{common}` away from 0 there."
+            "the solution is still unique wherever {common} != 0. The jump formula (3.6) is used, \
+             not (3.5).\n\
+             At {common} == 0 on the surface nothing moves: add `path` or a bound to keep \
+             `{common}` away from 0 there."
         )))
     }
 
@@ -95,6 +102,10 @@ impl Subject<'_, '_, '_> {
                 || whole.trim_start_matches('v').chars().all(|it| it.is_numeric() || it == '_')
         };
         let states = &self.local.gradient;
-        if states.iter().all(|it| is_speed(&self.view.states[it.0].place.name)) { "speeds" } else { "states" }
+        if states.iter().all(|it| is_speed(&self.view.states[it.0].place.name)) {
+            "speeds"
+        } else {
+            "states"
+        }
     }
 }

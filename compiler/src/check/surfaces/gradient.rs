@@ -20,11 +20,15 @@ impl Subject<'_, '_, '_> {
         let never = trouble.never.map_or_else(String::new, |sign| {
             let side = if sign < 0.0 { "below" } else { "above" };
             format!(
-                "\nNote that `{function}` never changes sign: as written this switch can never go {side}."
+                "\nNote that `{function}` never changes sign: as written this switch can never go \
+                 {side}."
             )
         });
-        let help = format!("Lemma 3.1 needs a nonzero gradient where the surface is zero. {instead}{never}");
-        let found = Diagnostic::new(Code::VanishingGradient, message, self.function(), label).help(help);
+        let help = format!(
+            "Lemma 3.1 needs a nonzero gradient where the surface is zero. {instead}{never}"
+        );
+        let found =
+            Diagnostic::new(Code::VanishingGradient, message, self.function(), label).help(help);
         match written.and_then(|value| Some((value, root_of(value)?))) {
             Some((value, root)) => {
                 let root = text::expr(root);
@@ -53,7 +57,9 @@ impl Subject<'_, '_, '_> {
 /// The base of a written square: it is what was meant, because a square never changes its sign.
 fn root_of(value: &Expr) -> Option<&Expr> {
     match &value.kind {
-        ExprKind::Binary(BinaryOperator::Power, base, power) if power.kind == ExprKind::Number(2.0) => {
+        ExprKind::Binary(BinaryOperator::Power, base, power)
+            if power.kind == ExprKind::Number(2.0) =>
+        {
             Some(base)
         }
         _ => None,

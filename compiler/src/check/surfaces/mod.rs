@@ -67,8 +67,13 @@ impl<'a> Subject<'_, 'a, '_> {
         }
         self.local.add_sides(self.view, self.at);
         // A fact that interests nobody while something is wrong.
-        let is_wrong =
-            self.facts.meaning.diagnostics.iter().chain(&*found).any(|it| it.severity == Severity::Error);
+        let is_wrong = self
+            .facts
+            .meaning
+            .diagnostics
+            .iter()
+            .chain(&*found)
+            .any(|it| it.severity == Severity::Error);
         if matches!(class, Class::Held | Class::Attracting) && !is_wrong {
             found.extend(self.other_coordinates());
         }
@@ -114,7 +119,9 @@ impl<'a> Subject<'_, 'a, '_> {
     fn start(&self, name: &str) -> Option<&'a Expr> {
         let whole = name.split('.').next().unwrap_or(name);
         self.facts.items.iter().find_map(|item| match &item.kind {
-            ItemKind::State { name, start: Some(Start::Value(value)), .. } if name.name == whole => {
+            ItemKind::State { name, start: Some(Start::Value(value)), .. }
+                if name.name == whole =>
+            {
                 Some(value)
             }
             _ => None,

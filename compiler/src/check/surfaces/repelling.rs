@@ -51,7 +51,9 @@ impl Subject<'_, '_, '_> {
             (Some((_, bounds)), false) => {
                 let values: Vec<String> = choice
                     .iter()
-                    .map(|&(symbol, value)| format!("{} = {}", self.view.name(symbol), number(value)))
+                    .map(|&(symbol, value)| {
+                        format!("{} = {}", self.view.name(symbol), number(value))
+                    })
                     .collect();
                 let at = values.join(", ");
                 found.label(
@@ -100,7 +102,8 @@ impl Subject<'_, '_, '_> {
         };
         let psi = if self.written().is_some() { name.to_string() } else { format!("({name})") };
         format!(
-            "from `{name} == 0` the state may leave up, leave down or stay: the solution is not unique \
+            "from `{name} == 0` the state may leave up, leave down or stay: the solution is not \
+             unique \
              and no gradient exists.{friction}\n\
              If leaving the surface is intended, start off it and add `path away: {psi} >= eps`."
         )

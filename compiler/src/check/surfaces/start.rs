@@ -34,8 +34,10 @@ impl Subject<'_, '_, '_> {
             Diagnostic::new(Code::StartOnSurface, message, span, label)
                 .label(self.function(), "the surface")
                 .help(
-                    "the state at t = 0 is fixed, so no derivative with respect to it is needed: harmless.\n\
-                 If you free it, the gradient results (Theorems 5.2 and 6.1) no longer apply at t = 0.",
+                    "the state at t = 0 is fixed, so no derivative with respect to it is needed: \
+                     harmless.\n\
+                 If you free it, the gradient results (Theorems 5.2 and 6.1) no longer apply at t \
+                 = 0.",
                 ),
         )
     }

@@ -1,4 +1,5 @@
-//! Where the surfaces are used: the term of a right side that holds `Sgn(surface)`, `Dir(vector)` or `match surface`.
+//! Where the surfaces are used: the term of a right side that holds `Sgn(surface)`, `Dir(vector)`
+//! or `match surface`.
 
 use crate::check::Facts;
 use crate::resolve::text::{self, Style};
@@ -58,7 +59,9 @@ fn surface_of(set: &Expr) -> Option<(String, Span)> {
     match &set.kind {
         ExprKind::Match { surface, .. } => Some((surface.name.clone(), surface.span)),
         ExprKind::Call(callee, arguments) => match (&callee.kind, arguments.as_slice()) {
-            (ExprKind::Name(name), [Argument::Expr(psi)]) if matches!(name.as_str(), "Sgn" | "Dir") => {
+            (ExprKind::Name(name), [Argument::Expr(psi)])
+                if matches!(name.as_str(), "Sgn" | "Dir") =>
+            {
                 Some((text::expr(psi), psi.span))
             }
             _ => None,
@@ -92,9 +95,16 @@ impl Use<'_> {
 fn flip(value: &Expr, term: &Expr) -> Option<Expr> {
     let kind = match &value.kind {
         _ if value.span == term.span => negated(value),
-        ExprKind::Binary(operator @ (BinaryOperator::Add | BinaryOperator::Subtract), left, right) => {
-            let other =
-                if *operator == BinaryOperator::Add { BinaryOperator::Subtract } else { BinaryOperator::Add };
+        ExprKind::Binary(
+            operator @ (BinaryOperator::Add | BinaryOperator::Subtract),
+            left,
+            right,
+        ) => {
+            let other = if *operator == BinaryOperator::Add {
+                BinaryOperator::Subtract
+            } else {
+                BinaryOperator::Add
+            };
             match right.span == term.span {
                 true => ExprKind::Binary(other, left.clone(), right.clone()),
                 false => ExprKind::Binary(*operator, Box::new(flip(left, term)?), right.clone()),
@@ -110,7 +120,11 @@ fn negated(value: &Expr) -> ExprKind {
     match &value.kind {
         ExprKind::Negate(inner) => inner.kind.clone(),
         ExprKind::Number(number) => ExprKind::Number(-number),
-        ExprKind::Binary(operator @ (BinaryOperator::Multiply | BinaryOperator::Divide), left, right) => {
+        ExprKind::Binary(
+            operator @ (BinaryOperator::Multiply | BinaryOperator::Divide),
+            left,
+            right,
+        ) => {
             let left = Expr { kind: negated(left), span: left.span };
             ExprKind::Binary(*operator, Box::new(left), right.clone())
         }

@@ -1,4 +1,5 @@
-//! FDC0302 for the vector of a `Dir`: it pushes away from 0 in every direction, so what leaves it is not determined.
+//! FDC0302 for the vector of a `Dir`: it pushes away from 0 in every direction, so what leaves it
+//! is not determined.
 
 use super::uses::Use;
 use crate::model::{Ball, Symbol};
@@ -25,26 +26,39 @@ fn repelling(ball: &Ball, place: Option<&Use<'_>>) -> Diagnostic {
     let name = &ball.place.name;
     let message = format!("`Dir({name})` pushes solutions away from 0 in every direction");
     let span = place.map_or(ball.place.span, |place| place.term.span);
-    let mut found =
-        Diagnostic::new(Code::Repelling, message, span, format!("acts along `{name}`, not against it"));
+    let mut found = Diagnostic::new(
+        Code::Repelling,
+        message,
+        span,
+        format!("acts along `{name}`, not against it"),
+    );
     found.fixes.extend(place.and_then(|place| place.flip()));
     let friction = match place.and_then(|place| place.flipped()) {
         Some(equation) => format!(" For friction the sign is negative: `{equation}`."),
         None => String::new(),
     };
     found.help(format!(
-        "where `{name}` is 0 the state may leave in any direction or stay: the solution is not unique \
+        "where `{name}` is 0 the state may leave in any direction or stay: the solution is not \
+         unique \
          and no gradient exists.{friction}"
     ))
 }
 
 /// For some values of controls and unknowns.
-fn for_some(view: &View<'_>, ball: &Ball, place: Option<&Use<'_>>, choice: &[(Symbol, f64)]) -> Diagnostic {
+fn for_some(
+    view: &View<'_>,
+    ball: &Ball,
+    place: Option<&Use<'_>>,
+    choice: &[(Symbol, f64)],
+) -> Diagnostic {
     let mut found = repelling(ball, place);
-    let values: Vec<String> =
-        choice.iter().map(|&(symbol, value)| format!("{} = {}", view.name(symbol), number(value))).collect();
+    let values: Vec<String> = choice
+        .iter()
+        .map(|&(symbol, value)| format!("{} = {}", view.name(symbol), number(value)))
+        .collect();
     found.message += " for some controls";
-    found.labels[0].text += &format!("; for example at {} it outweighs the rest", values.join(", "));
+    found.labels[0].text +=
+        &format!("; for example at {} it outweighs the rest", values.join(", "));
     found.severity = Severity::Warning;
     found.fixes.clear();
     found

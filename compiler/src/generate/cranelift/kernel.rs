@@ -44,7 +44,8 @@ struct Frame {
     pairs: Value,
     /// Bytes from column to column.
     stride: Value,
-    /// Where the points at hand begin in the tables `points, multipliers, values, jacobian, hessian`.
+    /// Where the points at hand begin in the tables `points, multipliers, values, jacobian,
+    /// hessian`.
     cursors: [Value; 5],
     /// Those of them that are used.
     used: Vec<usize>,
@@ -57,7 +58,8 @@ impl Frame {
         builder.switch_to_block(entry);
         builder.seal_block(entry);
         let tables = builder.block_params(entry)[0];
-        let mut field = |offset: usize| builder.ins().load(types::I64, memory(), tables, offset as i32);
+        let mut field =
+            |offset: usize| builder.ins().load(types::I64, memory(), tables, offset as i32);
         let parameters = field(offset_of!(Tables, parameters));
         let pairs = field(offset_of!(Tables, pairs));
         let stride = field(offset_of!(Tables, stride));
@@ -71,7 +73,8 @@ impl Frame {
         Frame { parameters, pairs, stride, cursors, used: used(schedule) }
     }
 
-    /// A multiplication at every use is as cheap as an offset that is kept on the stack, and sooner compiled.
+    /// A multiplication at every use is as cheap as an offset that is kept on the stack, and sooner
+    /// compiled.
     fn address(&self, builder: &mut FunctionBuilder, cursor: usize, column: usize) -> Value {
         let column = builder.ins().iconst(types::I64, column as i64);
         let offset = builder.ins().imul(self.stride, column);
@@ -108,7 +111,8 @@ fn used(schedule: &Schedule) -> Vec<usize> {
         Operation::Multiplier(_) => Some(MULTIPLIERS),
         _ => None,
     });
-    let places = schedule.varying.values().flatten().chain(schedule.constant.iter().map(|(_, place)| place));
+    let places =
+        schedule.varying.values().flatten().chain(schedule.constant.iter().map(|(_, place)| place));
     let used: BTreeSet<usize> = read.chain(places.map(|place| cursor_of(place.table))).collect();
     used.into_iter().collect()
 }
@@ -180,7 +184,8 @@ impl Emitter<'_, '_> {
         self.pairs.store(value, address);
     }
 
-    /// Numbers are written anew at every use: reading one again is as cheap as keeping it on the stack.
+    /// Numbers are written anew at every use: reading one again is as cheap as keeping it on the
+    /// stack.
     fn value(&mut self, id: ExprId) -> Pair {
         match self.graph.as_number(id) {
             Some(number) => self.pairs.number(number),

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::{
-    Block, ConstantData, Endianness, FloatCC, FuncRef, FunctionBuilder, InstBuilder, IntCC, Machine,
-    MemFlagsData, StackSlot, StackSlotData, StackSlotKind, Type, Value, library::trampoline_signature,
-    memory, types,
+    Block, ConstantData, Endianness, FloatCC, FuncRef, FunctionBuilder, InstBuilder, IntCC,
+    Machine, MemFlagsData, StackSlot, StackSlotData, StackSlotKind, Type, Value,
+    library::trampoline_signature, memory, types,
 };
 use crate::generate::arithmetic::Arithmetic;
 
@@ -199,7 +199,12 @@ impl Arithmetic for Pairs<'_> {
     fn call1(&mut self, name: &'static str, _: extern "C" fn(f64) -> f64, a: Pair) -> Pair {
         self.call(name, &[a])
     }
-    fn call2(&mut self, name: &'static str, _: extern "C" fn(f64, f64) -> f64, operands: [Pair; 2]) -> Pair {
+    fn call2(
+        &mut self,
+        name: &'static str,
+        _: extern "C" fn(f64, f64) -> f64,
+        operands: [Pair; 2],
+    ) -> Pair {
         self.call(name, &operands)
     }
 }

@@ -7,7 +7,8 @@ unsafe extern "C" {
 }
 
 /// The grammar.
-// SAFETY: the function is the one that tree-sitter generated; it returns a pointer to a table that lives for ever.
+// SAFETY: the function is the one that tree-sitter generated; it returns a pointer to a table that
+// lives for ever.
 pub const LANGUAGE: LanguageFn = unsafe { LanguageFn::from_raw(tree_sitter_fdc) };
 
 /// Each query with its name.

@@ -1,12 +1,15 @@
-//! The matrix of the optimality conditions times a vector, without its diagonals, for a batch of intervals at a time.
+//! The matrix of the optimality conditions times a vector, without its diagonals, for a batch of
+//! intervals at a time.
 //!
 //! ```text
 //!     [ H  J' ] [ dv      ]
 //!     [ J  0  ] [ dlambda ]
 //! ```
 //!
-//! What an interval sees of the vector is `[x_k u_k y_k x_{k+1} | globals | rows]`. Each number of the product is a sum of terms, whose list is the same for
-//! all intervals, so that those of a batch share every operation and their sums stay in registers. Entries that belong to no interval are added one by one.
+//! What an interval sees of the vector is `[x_k u_k y_k x_{k+1} | globals | rows]`. Each number of
+//! the product is a sum of terms, whose list is the same for all intervals, so that those of a
+//! batch share every operation and their sums stay in registers. Entries that belong to no interval
+//! are added one by one.
 
 mod sight;
 mod sums;
@@ -122,7 +125,12 @@ impl Products {
     }
 
     #[inline(always)]
-    fn transposed_intervals<const FUSED: bool>(&mut self, jacobian: &[f64], w: &[f64], a: &mut [f64]) {
+    fn transposed_intervals<const FUSED: bool>(
+        &mut self,
+        jacobian: &[f64],
+        w: &[f64],
+        a: &mut [f64],
+    ) {
         let Products { sight, seen, found, .. } = self;
         for batch in sight.batches() {
             sight.see_rows(&batch, w, seen);

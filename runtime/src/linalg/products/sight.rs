@@ -5,7 +5,8 @@ use std::ops::Range;
 
 /// Intervals of a batch.
 pub(super) const BATCH: usize = 16;
-/// One number of each interval of a batch; the last batch of a chain may have fewer, and leaves zeros or what was there.
+/// One number of each interval of a batch; the last batch of a chain may have fewer, and leaves
+/// zeros or what was there.
 pub(super) type Numbers = [f64; BATCH];
 pub(super) const NOTHING: Numbers = [0.0; BATCH];
 
@@ -17,8 +18,15 @@ pub(super) struct Sight {
     window: usize,
 }
 
-const NO_STAGES: Stages =
-    Stages { intervals: 0, states: 0, controls: 0, inner: 0, globals: 0, local_rows: 0, coupling_rows: 0 };
+const NO_STAGES: Stages = Stages {
+    intervals: 0,
+    states: 0,
+    controls: 0,
+    inner: 0,
+    globals: 0,
+    local_rows: 0,
+    coupling_rows: 0,
+};
 
 impl Sight {
     /// Without stages there is nothing to see.

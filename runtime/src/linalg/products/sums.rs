@@ -64,7 +64,9 @@ impl Sums {
             for term in &self.terms[first..*end as usize] {
                 let (start, seen) = (term.source as usize + batch.start, &seen[term.seen as usize]);
                 match values[start..].first_chunk::<BATCH>() {
-                    Some(values) if batch.len() == BATCH => add_products::<FUSED>(values, seen, &mut sum),
+                    Some(values) if batch.len() == BATCH => {
+                        add_products::<FUSED>(values, seen, &mut sum)
+                    }
                     _ => {
                         let mut last = NOTHING;
                         last[..batch.len()].copy_from_slice(&values[start..][..batch.len()]);
@@ -80,7 +82,11 @@ impl Sums {
     pub(super) fn each_other(&self, values: &[f64], mut action: impl FnMut(f64, usize, usize)) {
         for (family, source) in &self.others {
             for (k, value) in values[*source..][..family.count].iter().enumerate() {
-                action(*value, family.row + k * family.row_step, family.column + k * family.column_step);
+                action(
+                    *value,
+                    family.row + k * family.row_step,
+                    family.column + k * family.column_step,
+                );
             }
         }
     }

@@ -13,7 +13,8 @@ struct Move {
     target: u32,
 }
 
-/// A value of a local row: its variable is `variable + k step`, which has this position in interval `k`.
+/// A value of a local row: its variable is `variable + k step`, which has this position in interval
+/// `k`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LocalEntry {
     pub(super) row: usize,
@@ -34,7 +35,12 @@ pub(super) struct Assembly {
 }
 
 impl Assembly {
-    pub(super) fn new(stages: Stages, sizes: Sizes, hessian: &Triplets, jacobian: &Triplets) -> Option<Self> {
+    pub(super) fn new(
+        stages: Stages,
+        sizes: Sizes,
+        hessian: &Triplets,
+        jacobian: &Triplets,
+    ) -> Option<Self> {
         let mut assembly = Assembly {
             hessian: Vec::new(),
             defects: Vec::new(),
@@ -64,7 +70,8 @@ impl Assembly {
     }
 
     fn add_row(&mut self, stages: Stages, sizes: Sizes, family: &Family, source: u32) -> bool {
-        let Some(position) = local_position(stages, sizes, family.column, family.column_step) else {
+        let Some(position) = local_position(stages, sizes, family.column, family.column_step)
+        else {
             return false;
         };
         match family.row.checked_sub(stages.defect_rows()) {
@@ -103,7 +110,8 @@ impl Assembly {
         }
     }
 
-    /// Fills the dense blocks, and the values of the local rows, of `count` intervals from `first` on.
+    /// Fills the dense blocks, and the values of the local rows, of `count` intervals from `first`
+    /// on.
     #[inline(always)]
     pub(super) fn gather(
         &self,
@@ -142,7 +150,8 @@ fn add_moves(moves: &[Move], (first, count): (usize, usize), values: &[f64], blo
     if count < Lanes::COUNT {
         for entry in moves {
             let values = &values[from(entry)..][..count];
-            blocks[entry.target as usize].add(Lanes::from(|l| values.get(l).copied().unwrap_or(0.0)));
+            blocks[entry.target as usize]
+                .add(Lanes::from(|l| values.get(l).copied().unwrap_or(0.0)));
         }
         return;
     }
@@ -152,8 +161,12 @@ fn add_moves(moves: &[Move], (first, count): (usize, usize), values: &[f64], blo
     }
 }
 
-/// Calls `action` with every family and the place of its first value; `None` as soon as one returns `false`.
-pub(super) fn each_family(triplets: &Triplets, mut action: impl FnMut(&Family, u32) -> bool) -> Option<()> {
+/// Calls `action` with every family and the place of its first value; `None` as soon as one returns
+/// `false`.
+pub(super) fn each_family(
+    triplets: &Triplets,
+    mut action: impl FnMut(&Family, u32) -> bool,
+) -> Option<()> {
     let mut source = 0;
     for family in &triplets.families {
         if !action(family, source) {
@@ -169,7 +182,8 @@ pub(super) fn is_coupling(stages: &Stages, family: &Family) -> bool {
     family.count == 1 && family.row_step == 0 && family.column_step == 0 && stages.intervals > 0
 }
 
-/// Position in `(x, theta, u, y, x+)` of a variable that is at `index` in interval 0 and moves by `step`.
+/// Position in `(x, theta, u, y, x+)` of a variable that is at `index` in interval 0 and moves by
+/// `step`.
 fn local_position(stages: Stages, sizes: Sizes, index: usize, step: usize) -> Option<usize> {
     let globals = stages.globals();
     if globals.contains(&index) {

@@ -1,7 +1,9 @@
-//! Both ends of the recursion: the value function of the last state, and the small system of the first.
+//! Both ends of the recursion: the value function of the last state, and the small system of the
+//! first.
 //!
-//! The border is `theta = (g, nu, copy of x_0)`; every coupling row keeps its multiplier in it. The copy exists
-//! only where curvature couples `x_0` with `x_N`; at the end it is identified with `x_0` itself.
+//! The border is `theta = (g, nu, copy of x_0)`; every coupling row keeps its multiplier in it. The
+//! copy exists only where curvature couples `x_0` with `x_N`; at the end it is identified with
+//! `x_0` itself.
 
 use super::assemble::{each_family, is_coupling};
 use crate::linalg::{Stages, SymmetricFactor, Triplets};
@@ -37,7 +39,12 @@ pub(super) struct Border {
 }
 
 impl Border {
-    pub(super) fn new(stages: Stages, hessian: &Triplets, jacobian: &Triplets, fixed: &[bool]) -> Self {
+    pub(super) fn new(
+        stages: Stages,
+        hessian: &Triplets,
+        jacobian: &Triplets,
+        fixed: &[bool],
+    ) -> Self {
         let size = stages.states + stages.globals + stages.coupling_rows;
         let mut border = Border {
             stages,
@@ -64,7 +71,9 @@ impl Border {
 
     /// Size of `theta`.
     pub(super) fn theta(&self) -> usize {
-        self.stages.globals + self.stages.coupling_rows + if self.copy { self.stages.states } else { 0 }
+        self.stages.globals
+            + self.stages.coupling_rows
+            + if self.copy { self.stages.states } else { 0 }
     }
 
     /// Number of rows that the border holds.
@@ -118,14 +127,26 @@ impl Border {
         (self.terminal_jacobian, self.initial_jacobian) = (terminal, initial);
     }
 
-    /// Sends an entry to the terminal value function or to the initial system, on both sides of the diagonal.
-    fn add(&self, row: End, column: End, source: usize, terminal: &mut Vec<Move>, initial: &mut Vec<Move>) {
+    /// Sends an entry to the terminal value function or to the initial system, on both sides of the
+    /// diagonal.
+    fn add(
+        &self,
+        row: End,
+        column: End,
+        source: usize,
+        terminal: &mut Vec<Move>,
+        initial: &mut Vec<Move>,
+    ) {
         let is_first = |end| matches!(end, End::First(_));
         let is_last = |end| matches!(end, End::Last(_));
         let at_start = (is_first(row) || is_first(column)) && !is_last(row) && !is_last(column);
-        let (list, size) =
-            if at_start { (initial, self.size()) } else { (terminal, self.stages.states + self.theta()) };
-        let position = |end| if at_start { self.initial_position(end) } else { self.terminal_position(end) };
+        let (list, size) = if at_start {
+            (initial, self.size())
+        } else {
+            (terminal, self.stages.states + self.theta())
+        };
+        let position =
+            |end| if at_start { self.initial_position(end) } else { self.terminal_position(end) };
         let (i, j) = (position(row), position(column));
         list.push(Move { source, target: i * size + j });
         if i != j {

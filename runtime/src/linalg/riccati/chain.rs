@@ -1,12 +1,14 @@
-//! The recursion along the chain, compiled several times: for common sizes as constants, whose loops unroll, and for
-//! machines with and without fused multiply-add and registers of four numbers.
+//! The recursion along the chain, compiled several times: for common sizes as constants, whose
+//! loops unroll, and for machines with and without fused multiply-add and registers of four
+//! numbers.
 
 use super::Riccati;
 use super::sizes::Sizes;
 use super::solve::Travel;
 use crate::linalg::lanes::Lanes;
 
-/// **The table** of sizes that are compiled as constants: states, controls, border; without inner variables. All others go by the sizes that they are given (0, 0, 0).
+/// **The table** of sizes that are compiled as constants: states, controls, border; without inner
+/// variables. All others go by the sizes that they are given (0, 0, 0).
 macro_rules! with_constant_sizes {
     ($this:ident.$function:ident($($arguments:expr),*)) => {
         match $this.sizes {
@@ -29,8 +31,8 @@ pub(super) struct Matrix<'a> {
 }
 
 impl Riccati {
-    /// Factors all intervals; returns how many negative eigenvalues there are beyond one per row, or `None` at a zero pivot
-    /// or when the border cannot make up for them.
+    /// Factors all intervals; returns how many negative eigenvalues there are beyond one per row,
+    /// or `None` at a zero pivot or when the border cannot make up for them.
     pub(super) fn factor_chain(&mut self, matrix: Matrix) -> Option<usize> {
         #[cfg(target_arch = "x86_64")]
         if self.fused {
@@ -89,17 +91,29 @@ impl Riccati {
     }
 
     #[inline(always)]
-    fn factor_intervals<const FUSED: bool>(&mut self, sizes: Sizes, matrix: Matrix) -> Option<usize> {
-        let Riccati { stages, assembly, fixed, border, factors, condensed, block, value, .. } = self;
+    fn factor_intervals<const FUSED: bool>(
+        &mut self,
+        sizes: Sizes,
+        matrix: Matrix,
+    ) -> Option<usize> {
+        let Riccati { stages, assembly, fixed, border, factors, condensed, block, value, .. } =
+            self;
         let mut negative = 0;
         for first in (0..stages.intervals).step_by(Lanes::COUNT).rev() {
             let intervals = first..(first + Lanes::COUNT).min(stages.intervals);
-            condensed.fill::<FUSED>(sizes, (stages, assembly), matrix, intervals.clone(), factors)?;
+            condensed.fill::<FUSED>(
+                sizes,
+                (stages, assembly),
+                matrix,
+                intervals.clone(),
+                factors,
+            )?;
             for k in intervals.rev() {
                 let penalties = if factors.penalised { &matrix.d[stages.defects(k)] } else { &[] };
                 let fixed = &fixed[stages.control(k)];
                 let q = condensed.quadratic_mut(sizes, k - first);
-                negative += block.factor::<FUSED>(sizes, q, factors, (k, fixed, penalties), value)?;
+                negative +=
+                    block.factor::<FUSED>(sizes, q, factors, (k, fixed, penalties), value)?;
                 // The border cannot have fewer than no negative eigenvalues.
                 if negative > border.rows() {
                     return None;

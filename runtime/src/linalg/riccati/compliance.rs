@@ -1,6 +1,7 @@
 //! Rows with a penalty `D` (in restoration), with the names of [`super::interval`].
 //!
-//! They let `x+` give way, each as much as it likes, so that they are not divided by `E` beforehand:
+//! They let `x+` give way, each as much as it likes, so that they are not divided by `E`
+//! beforehand:
 //!
 //! ```text
 //!     [ M  E' ] [ T F A ]   [ -N 0 I ]        [ x+     ]   [ T F ] [ w ]   [ A  ]

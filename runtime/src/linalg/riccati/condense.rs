@@ -1,11 +1,12 @@
-//! What can be done about an interval before anything is known of those behind it, for several at a time.
+//! What can be done about an interval before anything is known of those behind it, for several at a
+//! time.
 //!
 //! ```text
 //!     T = -E^-1 R     F = E^-1     Q = H_ww + N' T + T' (N + M T)     H_ww, M += J' diag(1/d) J
 //! ```
 //!
-//! Here `N` and `M` are `H_{+w}` and `H_{++}` alone, and `J` are local rows. Where rows are penalised, `Q` is `H_ww` alone, and
-//! `[-R E]` stands in place of `[T F]`.
+//! Here `N` and `M` are `H_{+w}` and `H_{++}` alone, and `J` are local rows. Where rows are
+//! penalised, `Q` is `H_ww` alone, and `[-R E]` stands in place of `[T F]`.
 
 use super::assemble::Assembly;
 use super::chain::Matrix;
@@ -43,7 +44,8 @@ impl Condensed {
         }
     }
 
-    /// Condenses these intervals, at most [`Lanes::COUNT`]; the response goes to the factors. `None` if some `E` is singular.
+    /// Condenses these intervals, at most [`Lanes::COUNT`]; the response goes to the factors.
+    /// `None` if some `E` is singular.
     #[inline(always)]
     pub(super) fn fill<const FUSED: bool>(
         &mut self,

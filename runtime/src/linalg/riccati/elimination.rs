@@ -3,7 +3,8 @@
 use super::kernels::View;
 use crate::linalg::lanes::Lanes;
 
-/// Row `i` of `Y += A B`: `y` is that row, `inner` the number of columns of `A`. `B` lies row by row.
+/// Row `i` of `Y += A B`: `y` is that row, `inner` the number of columns of `A`. `B` lies row by
+/// row.
 #[inline(always)]
 pub(super) fn add_row_product<const FUSED: bool>(
     (a, i): (View<Lanes>, usize),
@@ -28,7 +29,8 @@ pub(super) fn add_row_product<const FUSED: bool>(
 
 /// The same for `WIDTH` columns of the row, which stay in registers.
 ///
-/// Hardly any variable enters all equations, and an entry that is zero in all intervals of one batch is so in the next: it is skipped.
+/// Hardly any variable enters all equations, and an entry that is zero in all intervals of one
+/// batch is so in the next: it is skipped.
 #[inline(always)]
 fn add_row_block<const FUSED: bool, const WIDTH: usize>(
     (a, i): (View<Lanes>, usize),
@@ -51,8 +53,8 @@ fn add_row_block<const FUSED: bool, const WIDTH: usize>(
     y.copy_from_slice(&sum);
 }
 
-/// Replaces the rows of `x` by those of `E^-1 X`, by elimination with pivots that are chosen in each interval; `e` is destroyed. `false` if `E` is
-/// singular in one of them.
+/// Replaces the rows of `x` by those of `E^-1 X`, by elimination with pivots that are chosen in
+/// each interval; `e` is destroyed. `false` if `E` is singular in one of them.
 #[inline(always)]
 pub(super) fn divide<const FUSED: bool>(
     n: usize,
@@ -91,14 +93,20 @@ fn scale(values: &mut [Lanes], by: Lanes) {
 
 /// Adds a multiple of row `k` to row `i`.
 #[inline(always)]
-fn add_row<const FUSED: bool>(matrix: &mut [Lanes], length: usize, (i, k): (usize, usize), factor: Lanes) {
+fn add_row<const FUSED: bool>(
+    matrix: &mut [Lanes],
+    length: usize,
+    (i, k): (usize, usize),
+    factor: Lanes,
+) {
     for j in 0..length {
         matrix[i * length + j] =
             Lanes::multiply_add::<FUSED>(factor, matrix[k * length + j], matrix[i * length + j]);
     }
 }
 
-/// Exchanges row `k` with rows that have a larger entry in column `k`, in the intervals where they have: hardly anywhere, as steps are short.
+/// Exchanges row `k` with rows that have a larger entry in column `k`, in the intervals where they
+/// have: hardly anywhere, as steps are short.
 #[inline(always)]
 fn bring_up_pivots(n: usize, k: usize, e: &mut [Lanes], (x, columns): (&mut [Lanes], usize)) {
     for i in k + 1..n {
@@ -109,7 +117,12 @@ fn bring_up_pivots(n: usize, k: usize, e: &mut [Lanes], (x, columns): (&mut [Lan
 }
 
 #[cold]
-fn exchange_rows(n: usize, (i, k): (usize, usize), e: &mut [Lanes], (x, columns): (&mut [Lanes], usize)) {
+fn exchange_rows(
+    n: usize,
+    (i, k): (usize, usize),
+    e: &mut [Lanes],
+    (x, columns): (&mut [Lanes], usize),
+) {
     for l in 0..Lanes::COUNT {
         let size = |row: usize| e[row * n + k].0[l].abs();
         if size(i) > size(k) {

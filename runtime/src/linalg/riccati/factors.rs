@@ -5,7 +5,8 @@ use std::ops::Range;
 
 /// See [`super::interval`] for the names.
 pub(super) struct Factors {
-    /// `[T F; N M]`, with columns for `(w, y, x+)`; where rows are penalised, all of the response to `(w, b)`.
+    /// `[T F; N M]`, with columns for `(w, y, x+)`; where rows are penalised, all of the response
+    /// to `(w, b)`.
     response: Vec<f64>,
     /// `A`, square in `(y, x+)`; empty until a row is penalised.
     compliance: Vec<f64>,
@@ -22,7 +23,12 @@ pub(super) struct Factors {
 }
 
 impl Factors {
-    pub(super) fn new(sizes: Sizes, intervals: usize, local_rows: usize, local_values: usize) -> Self {
+    pub(super) fn new(
+        sizes: Sizes,
+        intervals: usize,
+        local_rows: usize,
+        local_values: usize,
+    ) -> Self {
         let zeros = |length: usize| vec![0.0; intervals * length];
         let m = sizes.m;
         Factors {
@@ -87,7 +93,12 @@ impl Factors {
         stretch(&self.compliance, k, n * n)
     }
 
-    pub(super) fn keep_compliance<'a>(&mut self, n: usize, k: usize, rows: impl Iterator<Item = &'a [f64]>) {
+    pub(super) fn keep_compliance<'a>(
+        &mut self,
+        n: usize,
+        k: usize,
+        rows: impl Iterator<Item = &'a [f64]>,
+    ) {
         // The recursion goes backward: the first interval is the last one that needs room.
         let end = (k + 1) * n * n;
         if self.compliance.len() < end {

@@ -1,8 +1,9 @@
 //! One step of the recursion.
 //!
-//! With `z = (x, theta)`, `w = (z, u)`, defects `R w + E x+ - D lambda = b`, next value function `V+ = (P, Lambda, Theta)` and
-//! `pull`, the gradient by `x+` that a right side brings, the next state and the multipliers are removed together
-//! (inner variables with them: `x+` stands for `(y, x+)` here, of which `V+` sees only the second part):
+//! With `z = (x, theta)`, `w = (z, u)`, defects `R w + E x+ - D lambda = b`, next value function
+//! `V+ = (P, Lambda, Theta)` and `pull`, the gradient by `x+` that a right side brings, the next
+//! state and the multipliers are removed together (inner variables with them: `x+` stands for `(y,
+//! x+)` here, of which `V+` sees only the second part):
 //!
 //! ```text
 //!     N = H_{+w} + [0 Lambda' 0]       M = H_{++} + P       c = F b       p = pull + M c       T = -E^-1 R       F = E^-1
@@ -13,7 +14,8 @@
 //!     gain = -Q_uu^-1 Q_uz,     V = Q_zz + Q_zu gain       z = (x, theta)
 //! ```
 //!
-//! All of `Q` but `W' V+ W`, where `(x+, theta) = W w`, is there before `V+` is known: [`super::condense`]. Rows with a penalty give way: [`super::compliance`].
+//! All of `Q` but `W' V+ W`, where `(x+, theta) = W w`, is there before `V+` is known:
+//! [`super::condense`]. Rows with a penalty give way: [`super::compliance`].
 
 use super::compliance::Compliance;
 use super::factors::Factors;
@@ -76,9 +78,9 @@ impl Block {
         }
     }
 
-    /// Factors interval `k`, of which `q` and the response are there without `V+`. `value` comes in as `V+` and leaves as `V`; `penalties` are
-    /// `D`, empty where there are none. Returns how many negative eigenvalues there are beyond one per row, or `None` at
-    /// a zero pivot.
+    /// Factors interval `k`, of which `q` and the response are there without `V+`. `value` comes in
+    /// as `V+` and leaves as `V`; `penalties` are `D`, empty where there are none. Returns how many
+    /// negative eigenvalues there are beyond one per row, or `None` at a zero pivot.
     #[inline(always)]
     pub(super) fn factor<const FUSED: bool>(
         &mut self,
@@ -105,7 +107,13 @@ impl Block {
 
     /// `Q += W' V W`: the lower triangle, and all of `Q_uu`.
     #[inline(always)]
-    fn add_next<const FUSED: bool>(&mut self, sizes: Sizes, response: &[f64], value: &Value, q: &mut [f64]) {
+    fn add_next<const FUSED: bool>(
+        &mut self,
+        sizes: Sizes,
+        response: &[f64],
+        value: &Value,
+        q: &mut [f64],
+    ) {
         let (n, w, kept, all) = (sizes.n, sizes.reduced(), sizes.kept(), sizes.all());
         let (t, units) = (&response[sizes.inner * all..][..n * all], &self.units[..sizes.q * w]);
         let pushed = &mut self.pushed[..kept * w];
@@ -143,7 +151,8 @@ impl Block {
         let product = Signed { sign: -1.0, a: View::rows(&self.inverse, m), b: side, inner: m };
         add_product::<FUSED, false>(&product, 0..m, (&mut *wide, w));
         value.rows[..kept * w].copy_from_slice(&q[..kept * w]);
-        let product = Signed { sign: 1.0, a: side.transposed(), b: View::rows(&*wide, w), inner: m };
+        let product =
+            Signed { sign: 1.0, a: side.transposed(), b: View::rows(&*wide, w), inner: m };
         add_product::<FUSED, true>(&product, 0..kept, (&mut value.rows[..kept * w], w));
         for j in 0..m {
             gain[j * kept..][..kept].copy_from_slice(&wide[j * w..][..kept]);
@@ -151,7 +160,8 @@ impl Block {
         Some(negative)
     }
 
-    /// Inverts `Q_uu`, which is in `side`, and counts its negative eigenvalues. Near a solution it is positive definite.
+    /// Inverts `Q_uu`, which is in `side`, and counts its negative eigenvalues. Near a solution it
+    /// is positive definite.
     #[inline(always)]
     fn invert_controls<const FUSED: bool>(&mut self, sizes: Sizes, side: &[f64]) -> Option<usize> {
         let (m, w, kept) = (sizes.m, sizes.reduced(), sizes.kept());
@@ -159,7 +169,11 @@ impl Block {
         for i in 0..m {
             inverse[i * m..][..m].copy_from_slice(&side[i * w + kept..][..m]);
         }
-        if invert_positive::<FUSED>(m, inverse) { Some(0) } else { self.invert_indefinite(m, &side[kept..]) }
+        if invert_positive::<FUSED>(m, inverse) {
+            Some(0)
+        } else {
+            self.invert_indefinite(m, &side[kept..])
+        }
     }
 
     /// The same for the first `m` columns of `m` rows.

@@ -1,6 +1,8 @@
-//! Products of small matrices, written so that constant sizes unroll and that neighbouring numbers share a register.
+//! Products of small matrices, written so that constant sizes unroll and that neighbouring numbers
+//! share a register.
 //!
-//! `FUSED` says that the machine multiplies and adds in one instruction; without one `mul_add` would be a call.
+//! `FUSED` says that the machine multiplies and adds in one instruction; without one `mul_add`
+//! would be a call.
 
 use crate::linalg::lanes::multiply_add;
 use std::ops::Range;
@@ -61,7 +63,8 @@ impl Product for Signed<'_> {
     }
 }
 
-/// Row `i` of `Y += sign A B`: `y` is that row, `inner` the number of columns of `A`. `B` lies row by row.
+/// Row `i` of `Y += sign A B`: `y` is that row, `inner` the number of columns of `A`. `B` lies row
+/// by row.
 #[inline(always)]
 pub(super) fn add_row_product<const FUSED: bool>(
     sign: f64,
@@ -75,7 +78,8 @@ pub(super) fn add_row_product<const FUSED: bool>(
     add_rows::<FUSED, 1>(&Signed { sign, a, b, inner }, (0, end), (y, end));
 }
 
-/// Adds these rows of a product to `Y`, whose rows have this length; of a `LOWER` triangle at least what is not above the diagonal.
+/// Adds these rows of a product to `Y`, whose rows have this length; of a `LOWER` triangle at least
+/// what is not above the diagonal.
 #[inline(always)]
 pub(super) fn add_product<const FUSED: bool, const LOWER: bool>(
     product: &impl Product,
@@ -124,7 +128,8 @@ fn add_rows<const FUSED: bool, const ROWS: usize>(
     }
 }
 
-/// The same for a block, whose sums stay in registers: what a row of the right matrix has is read once for all rows of the block.
+/// The same for a block, whose sums stay in registers: what a row of the right matrix has is read
+/// once for all rows of the block.
 #[inline(always)]
 fn add_block<const FUSED: bool, const ROWS: usize, const WIDTH: usize>(
     product: &impl Product,
@@ -152,7 +157,8 @@ fn add_block<const FUSED: bool, const ROWS: usize, const WIDTH: usize>(
 /// Columns that are taken together in a lower triangle.
 const STEP: usize = 8;
 
-/// Where row `i` of the lower triangle ends, so that its numbers share registers. Short rows are taken whole: loops of equal length unroll.
+/// Where row `i` of the lower triangle ends, so that its numbers share registers. Short rows are
+/// taken whole: loops of equal length unroll.
 #[inline(always)]
 pub(super) fn lower_end(i: usize, length: usize) -> usize {
     if length <= STEP { length } else { (i / STEP * STEP + STEP).min(length) }
@@ -177,7 +183,8 @@ pub(super) fn dot<const FUSED: bool>(a: &[f64], b: &[f64]) -> f64 {
     total
 }
 
-/// Inverts the symmetric `a` in place; `false`, and `a` is destroyed, unless it is safely positive definite.
+/// Inverts the symmetric `a` in place; `false`, and `a` is destroyed, unless it is safely positive
+/// definite.
 #[inline(always)]
 pub(super) fn invert_positive<const FUSED: bool>(n: usize, a: &mut [f64]) -> bool {
     if n == 2 {

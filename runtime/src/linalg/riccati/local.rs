@@ -1,4 +1,5 @@
-//! Local rows in a solve: they are taken out of the right side before the recursion, and have their multipliers afterwards.
+//! Local rows in a solve: they are taken out of the right side before the recursion, and have their
+//! multipliers afterwards.
 
 use super::Riccati;
 

@@ -1,18 +1,19 @@
 //! Stage-wise factorisation of the optimality conditions: cost linear in the number of stages.
 //!
-//! The value function of the stages from `k` on is kept as a quadratic in `z = (x_k, theta)`, where the border
-//! `theta = (g, nu, x0)` holds the globals, the multipliers of the coupling rows and, where the ends of the chain
-//! are coupled by curvature, a copy of the initial state:
+//! The value function of the stages from `k` on is kept as a quadratic in `z = (x_k, theta)`, where
+//! the border `theta = (g, nu, x0)` holds the globals, the multipliers of the coupling rows and,
+//! where the ends of the chain are coupled by curvature, a copy of the initial state:
 //!
 //! ```text
 //!     V_k(x, theta) = 1/2 [x; theta]' [ P       Lambda ] [x; theta]  +  [v_x; v_theta]' [x; theta]
 //!                                     [ Lambda' Theta  ]
 //! ```
 //!
-//! Going backward, [`interval`] puts the Hessian over `(x_k, theta, u_k, y_k, x_{k+1})` together with `V_{k+1}`, removes
-//! `(y_k, x_{k+1})` by the linearised defects and then `u_k` by its own block; [`solve`] uses what is kept of that
-//! ([`factors`]). What is left at `k = 0` is one small dense symmetric system in `(x_0, theta)`: [`border`]. Signs of
-//! all pivots give the inertia exactly (Haynsworth), so a control block may be indefinite as long as the whole is right.
+//! Going backward, [`interval`] puts the Hessian over `(x_k, theta, u_k, y_k, x_{k+1})` together
+//! with `V_{k+1}`, removes `(y_k, x_{k+1})` by the linearised defects and then `u_k` by its own
+//! block; [`solve`] uses what is kept of that ([`factors`]). What is left at `k = 0` is one small
+//! dense symmetric system in `(x_0, theta)`: [`border`]. Signs of all pivots give the inertia
+//! exactly (Haynsworth), so a control block may be indefinite as long as the whole is right.
 
 mod assemble;
 mod border;
@@ -60,9 +61,9 @@ pub struct Riccati {
 }
 
 impl Riccati {
-    /// Prepares the recursion, or says why the structure does not allow it: no states, a state that is fixed inside the
-    /// chain, an equality at every stage, or entries that couple distant stages. `equality_rows[i]` says that
-    /// row `i` has no slack.
+    /// Prepares the recursion, or says why the structure does not allow it: no states, a state that
+    /// is fixed inside the chain, an equality at every stage, or entries that couple distant
+    /// stages. `equality_rows[i]` says that row `i` has no slack.
     pub fn new(
         stages: Stages,
         hessian: &Triplets,
@@ -83,9 +84,10 @@ impl Riccati {
             return Err("an equality holds at every stage");
         }
         let border = Border::new(stages, hessian, jacobian, fixed);
-        let sizes = Sizes { n: stages.states, m: stages.controls, inner: stages.inner, q: border.theta() };
-        let assembly =
-            Assembly::new(stages, sizes, hessian, jacobian).ok_or("entries couple distant stages")?;
+        let sizes =
+            Sizes { n: stages.states, m: stages.controls, inner: stages.inner, q: border.theta() };
+        let assembly = Assembly::new(stages, sizes, hessian, jacobian)
+            .ok_or("entries couple distant stages")?;
         let local_values = assembly.local_entries.len();
         Ok(Riccati {
             stages,

@@ -46,12 +46,14 @@ impl Sizes {
     pub(super) fn gathered(&self) -> usize {
         self.parts().iter().sum()
     }
-    /// Where the variable that is so many behind the first of its interval stands in `(x, theta, u, y, x+)`.
+    /// Where the variable that is so many behind the first of its interval stands in `(x, theta, u,
+    /// y, x+)`.
     #[inline(always)]
     pub(super) fn position(&self, index: usize) -> usize {
         if index < self.n { index } else { index + self.q }
     }
-    /// Where the Hessian entry of two positions in `(x, theta, u, y, x+)` is gathered: lower triangles only, `H_ww` in `Q`.
+    /// Where the Hessian entry of two positions in `(x, theta, u, y, x+)` is gathered: lower
+    /// triangles only, `H_ww` in `Q`.
     pub(super) fn hessian_place(&self, a: usize, b: usize) -> usize {
         let ([square, ..], w) = (self.parts(), self.reduced());
         let (row, column) = (a.max(b), a.min(b));

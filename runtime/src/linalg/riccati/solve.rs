@@ -1,4 +1,5 @@
-//! The backward and forward passes of a solve, through one interval; the names are those of [`super::interval`].
+//! The backward and forward passes of a solve, through one interval; the names are those of
+//! [`super::interval`].
 //!
 //! ```text
 //!     backward    c = F b      p = v_x + g_+ + M c      g = g_w + v_theta + T' p + N' c
@@ -6,8 +7,8 @@
 //!     forward     u = gain z + u_0        x+ = T w + c      lambda = -F' (N w + M (x+ - c) + p)
 //! ```
 //!
-//! Here `x+` is `(y, x+)`. From one pass to the other, `p` waits in the place of `x+`, `c` in that of `b` and `u_0` in that of `u`.
-//! Local rows are not seen here: [`super::local`].
+//! Here `x+` is `(y, x+)`. From one pass to the other, `p` waits in the place of `x+`, `c` in that
+//! of `b` and `u_0` in that of `u`. Local rows are not seen here: [`super::local`].
 
 use super::Riccati;
 use super::compliance::{give_way, push_back_where_given_way};
@@ -40,14 +41,16 @@ impl Travel {
     }
 }
 
-/// Scratch for one pass: what travels, a vector over `(x, theta, u, y, x+)`, and two over `(y, x+)`.
+/// Scratch for one pass: what travels, a vector over `(x, theta, u, y, x+)`, and two over `(y,
+/// x+)`.
 struct Scratch<'a> {
     travelling: &'a mut [f64],
     all: &'a mut [f64],
     pushes: &'a mut [f64],
 }
 
-/// Sizes up to this are kept in arrays of known length, which a compiler that knows the sizes keeps in registers.
+/// Sizes up to this are kept in arrays of known length, which a compiler that knows the sizes keeps
+/// in registers.
 const FEW: usize = 16;
 
 impl<'a> Scratch<'a> {
@@ -139,10 +142,17 @@ impl Riccati {
         }
         let feed_forward = &mut a[n..n + m];
         feed_forward.fill(0.0);
-        add_row_product::<FUSED>(-1.0, (View::rows(by_u, 0), 0), View::rows(inverse, m), m, feed_forward);
+        add_row_product::<FUSED>(
+            -1.0,
+            (View::rows(by_u, 0), 0),
+            View::rows(inverse, m),
+            m,
+            feed_forward,
+        );
     }
 
-    /// What pushes against the interval but for the one behind: `p` and `c`, which is kept in the place of `b`; `pull` and `-b` where rows give way.
+    /// What pushes against the interval but for the one behind: `p` and `c`, which is kept in the
+    /// place of `b`; `pull` and `-b` where rows give way.
     #[inline(always)]
     fn push<const FUSED: bool>(
         &self,
@@ -162,7 +172,13 @@ impl Riccati {
         }
         defects.copy_from_slice(c);
         // M is symmetric.
-        add_row_product::<FUSED>(1.0, (View::rows(c, 0), 0), View::rows(&curvature[w..], all), next, p);
+        add_row_product::<FUSED>(
+            1.0,
+            (View::rows(c, 0), 0),
+            View::rows(&curvature[w..], all),
+            next,
+            p,
+        );
     }
 
     /// Forward: what travels is `(x_k, theta)` and becomes `(x_{k+1}, theta)`.
@@ -202,7 +218,13 @@ impl Riccati {
 
 /// `T w`
 #[inline(always)]
-fn follow<const FUSED: bool>(factors: &Factors, sizes: Sizes, k: usize, known: &[f64], step: &mut [f64]) {
+fn follow<const FUSED: bool>(
+    factors: &Factors,
+    sizes: Sizes,
+    k: usize,
+    known: &[f64],
+    step: &mut [f64],
+) {
     let (w, all) = (sizes.reduced(), sizes.all());
     let response = factors.response(sizes, k);
     for i in 0..sizes.next() {
@@ -225,7 +247,13 @@ fn push_back<const FUSED: bool>(
         back[i] = p[i] + dot::<FUSED>(&curvature[i * all..][..w], &known[..w]);
     }
     // M is symmetric.
-    add_row_product::<FUSED>(1.0, (View::rows(step, 0), 0), View::rows(&curvature[w..], all), next, back);
+    add_row_product::<FUSED>(
+        1.0,
+        (View::rows(step, 0), 0),
+        View::rows(&curvature[w..], all),
+        next,
+        back,
+    );
     for i in 0..next {
         step[i] += c[i];
     }

@@ -15,12 +15,14 @@ use crate::nlp::filter::Filter;
 use crate::nlp::{Counts, Nlp, Options, Progress, Status, Stop, Watch};
 use std::ops::ControlFlow;
 
-/// Multipliers above this, relative to the objective, come from rows that depend on each other, unless these are nearly satisfied.
+/// Multipliers above this, relative to the objective, come from rows that depend on each other,
+/// unless these are nearly satisfied.
 const LARGEST_MULTIPLIER: f64 = 1e8;
 const NEARLY_FEASIBLE: f64 = 1e-4;
 /// A step this small, relative to the iterate, is rounding.
 const TINY_STEP: f64 = 10.0 * f64::EPSILON;
-/// More steps of rounding than that in a row, at the last barrier parameter or because they were cut down to it, lead nowhere.
+/// More steps of rounding than that in a row, at the last barrier parameter or because they were
+/// cut down to it, lead nowhere.
 const MOST_TINY_STEPS: usize = 5;
 /// A restoration phase that is stuck is begun anew so many times.
 const MOST_RESTARTS: usize = 4;
@@ -33,7 +35,8 @@ pub(super) enum Outcome {
     Done(Status),
 }
 
-/// The state of a solve. It does not own the programme, so that a restoration phase can be run by another one.
+/// The state of a solve. It does not own the programme, so that a restoration phase can be run by
+/// another one.
 pub(super) struct Algorithm {
     pub(super) space: Space,
     pub(super) at: Iterate,
@@ -54,7 +57,8 @@ pub(super) struct Algorithm {
     pub(super) watchdog: Watchdog,
     /// How often the filter was emptied at a feasible point.
     pub(super) emptied: usize,
-    /// Whether rows were given the values that they have, because a violation below the acceptable one could not be mended.
+    /// Whether rows were given the values that they have, because a violation below the acceptable
+    /// one could not be mended.
     pub(super) is_relaxed: bool,
     pub(super) target: Target,
     /// How often a saddle was left.
@@ -117,8 +121,9 @@ impl Algorithm {
         }
     }
 
-    /// A restoration phase, begun anew from where it is if it gets stuck itself. It ends the solve if the smallest
-    /// violation near by is one; if it is none, the filter has become too strict and is emptied.
+    /// A restoration phase, begun anew from where it is if it gets stuck itself. It ends the solve
+    /// if the smallest violation near by is one; if it is none, the filter has become too strict
+    /// and is emptied.
     fn restore_or_stop(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Option<Status> {
         for _ in 0..MOST_RESTARTS {
             match self.restore(nlp, REQUIRED_DECREASE, watch) {
@@ -134,8 +139,9 @@ impl Algorithm {
         self.loosen_or_stop(nlp)
     }
 
-    /// Where a feasible point leads nowhere, or no restoration gets on: first bounds are moved outwards by the tolerance, because what they enclose may have no
-    /// interior, then only the filter is emptied.
+    /// Where a feasible point leads nowhere, or no restoration gets on: first bounds are moved
+    /// outwards by the tolerance, because what they enclose may have no interior, then only the
+    /// filter is emptied.
     fn loosen_or_stop(&mut self, nlp: &mut dyn Nlp) -> Option<Status> {
         self.emptied += 1;
         if self.emptied > MOST_RESTARTS {
@@ -156,8 +162,9 @@ impl Algorithm {
         self.filter.clear();
     }
 
-    /// Accepts the smallest violation near by, if it is acceptable, as none: a smoothed block comes to rest only in the limit. Then
-    /// an optimum is no more than acceptable either. `true` if the violation is too large, or this was done before.
+    /// Accepts the smallest violation near by, if it is acceptable, as none: a smoothed block comes
+    /// to rest only in the limit. Then an optimum is no more than acceptable either. `true` if the
+    /// violation is too large, or this was done before.
     pub(super) fn relax(&mut self, nlp: &mut dyn Nlp) -> bool {
         if self.is_relaxed || self.values.largest() > ACCEPTABLE_ERROR {
             return true;
@@ -208,8 +215,8 @@ impl Algorithm {
         if has_step { self.take_step(nlp) } else { Outcome::Blocked }
     }
 
-    /// The Newton step with the right inertia; `false` if the linear system could not be solved. Where rows seem to depend on each other the regularised one,
-    /// if there is one.
+    /// The Newton step with the right inertia; `false` if the linear system could not be solved.
+    /// Where rows seem to depend on each other the regularised one, if there is one.
     fn find_step(&mut self) -> bool {
         let found = self.newton_step(false);
         if found && self.rows_seem_dependent() && !self.newton_step(true) {
@@ -218,12 +225,17 @@ impl Algorithm {
         found
     }
 
-    /// Whether a step from a point that is far from feasible leads to multipliers out of proportion: rows that depend on each other cannot
-    /// all be met, and rounding may hide that from the inertia.
+    /// Whether a step from a point that is far from feasible leads to multipliers out of
+    /// proportion: rows that depend on each other cannot all be met, and rounding may hide that
+    /// from the inertia.
     fn rows_seem_dependent(&self) -> bool {
         let most = LARGEST_MULTIPLIER * objective_scale(self.values.objective);
-        let mut ahead =
-            self.at.lambda.iter().zip(&self.step.lambda).map(|(lambda, step)| (lambda + step).abs());
+        let mut ahead = self
+            .at
+            .lambda
+            .iter()
+            .zip(&self.step.lambda)
+            .map(|(lambda, step)| (lambda + step).abs());
         self.values.largest() > NEARLY_FEASIBLE && ahead.any(|lambda| lambda > most)
     }
 
@@ -320,14 +332,19 @@ impl Algorithm {
         self.step.y.iter().zip(&self.at.y).all(small)
     }
 
-    /// A step that is rounding is taken without a search, and lowers the barrier parameter; when that is as low as it
-    /// gets and the multipliers have settled as well, nothing more can be gained.
+    /// A step that is rounding is taken without a search, and lowers the barrier parameter; when
+    /// that is as low as it gets and the multipliers have settled as well, nothing more can be
+    /// gained.
     fn accept_tiny(&mut self, nlp: &mut dyn Nlp, alpha: f64, dual: f64) -> Outcome {
         self.tiny_steps = if self.barrier.lower() { 0 } else { self.tiny_steps + 1 };
         if self.tiny_steps > MOST_TINY_STEPS {
             let error = self.residuals.error(0.0);
             let is_small = error <= ACCEPTABLE_ERROR;
-            return Outcome::Done(if is_small { self.stalled(nlp) } else { Status::NumericalFailure });
+            return Outcome::Done(if is_small {
+                self.stalled(nlp)
+            } else {
+                Status::NumericalFailure
+            });
         }
         let y: Vec<f64> = self.at.y.iter().zip(&self.step.y).map(|(y, d)| y + alpha * d).collect();
         let mut values = Values::default();

@@ -1,14 +1,17 @@
-//! The barrier function, its parameter, and how far a step may go (Waechter & Biegler 2006, section 2.1, 3.7).
+//! The barrier function, its parameter, and how far a step may go (Waechter & Biegler 2006, section
+//! 2.1, 3.7).
 //!
-//! The parameter never rises, and falls where its problem is solved: `E_mu <= accuracy * mu`. Near a solution of it Newton's method takes whole steps, and would
-//! do so from a rough solution, too; far from one a parameter that falls too early costs more than it saves. So there are two paces.
+//! The parameter never rises, and falls where its problem is solved: `E_mu <= accuracy * mu`. Near
+//! a solution of it Newton's method takes whole steps, and would do so from a rough solution, too;
+//! far from one a parameter that falls too early costs more than it saves. So there are two paces.
 
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::residuals::Residuals;
 use super::space::Space;
 use super::vectors::dot;
 
-/// How exactly a barrier problem is solved before `mu` falls, which it does to the smaller of `factor * mu` and `mu^power`.
+/// How exactly a barrier problem is solved before `mu` falls, which it does to the smaller of
+/// `factor * mu` and `mu^power`.
 struct Pace {
     accuracy: f64,
     factor: f64,
@@ -77,7 +80,8 @@ impl Barrier {
 
     fn lower_by(&mut self, pace: &Pace) -> bool {
         let next = (pace.factor * self.mu).min(self.mu.powf(pace.power));
-        // The tolerance would be met between the last two: the objective would be as far off as chance has it.
+        // The tolerance would be met between the last two: the objective would be as far off as
+        // chance has it.
         let next = if next < CLOSE * self.smallest { self.smallest } else { next };
         let lowered = next < self.mu;
         self.mu = next.min(self.mu);
@@ -97,7 +101,8 @@ impl Barrier {
         }
     }
 
-    /// Slope of `phi` along a step; `slopes` must be those of the iterate, and `push` its gradient but for that of the objective.
+    /// Slope of `phi` along a step; `slopes` must be those of the iterate, and `push` its gradient
+    /// but for that of the objective.
     pub(super) fn slope(space: &Space, slopes: &Slopes, push: &[f64], step: &Step) -> f64 {
         let gradient = dot(&slopes.derivatives.gradient, &step.y[..space.variables]);
         let costs = space.attached.iter().zip(&step.y[space.variables..]).skip(space.slacks);
@@ -114,8 +119,11 @@ impl Barrier {
             if towards * primal > tau * distance {
                 primal = tau * distance / towards;
             }
-            let (z, dz) =
-                if direction > 0.0 { (at.lower[i], step.lower[i]) } else { (at.upper[i], step.upper[i]) };
+            let (z, dz) = if direction > 0.0 {
+                (at.lower[i], step.lower[i])
+            } else {
+                (at.upper[i], step.upper[i])
+            };
             if -dz * dual > tau * z {
                 dual = tau * z / -dz;
             }
@@ -153,7 +161,8 @@ impl Terms {
     }
 }
 
-/// Sum of logarithms, with one logarithm for many factors. Products take turns, so that none has to wait for the one before.
+/// Sum of logarithms, with one logarithm for many factors. Products take turns, so that none has to
+/// wait for the one before.
 struct LogarithmSum {
     sum: f64,
     products: [f64; 4],
@@ -184,7 +193,8 @@ impl LogarithmSum {
 mod tests {
     use super::*;
 
-    /// What 0.1 becomes after two steps, given by what was taken of them and whether they were Newton's own, at a point with this error.
+    /// What 0.1 becomes after two steps, given by what was taken of them and whether they were
+    /// Newton's own, at a point with this error.
     fn after(steps: [(f64, bool); 2], error: f64) -> f64 {
         let mut barrier = Barrier::new(0.1, 1e-8);
         steps.iter().for_each(|(fraction, is_newton)| barrier.note(*fraction, *is_newton));

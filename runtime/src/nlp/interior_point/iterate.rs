@@ -123,8 +123,8 @@ impl Slopes {
         self.update_lagrangian(space, &at.lambda) && are_finite(&self.derivatives.hessian)
     }
 
-    /// The gradient of the Lagrangian with these multipliers; fixed variables have none. `false` if it is not finite, which it is only
-    /// where all of the Jacobian is.
+    /// The gradient of the Lagrangian with these multipliers; fixed variables have none. `false` if
+    /// it is not finite, which it is only where all of the Jacobian is.
     fn update_lagrangian(&mut self, space: &Space, lambda: &[f64]) -> bool {
         let Slopes { derivatives, products, lagrangian } = self;
         let (variables, attached) = lagrangian.split_at_mut(space.variables);

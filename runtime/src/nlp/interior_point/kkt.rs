@@ -1,7 +1,7 @@
 //! The Newton step on the optimality conditions of the barrier problem.
 //!
-//! Bounds contribute `Sigma = z / distance`; an attached variable `j` of row `i` is eliminated and leaves
-//! `1 / Sigma_j` on the diagonal of its row. What is factored is (see [`crate::linalg`])
+//! Bounds contribute `Sigma = z / distance`; an attached variable `j` of row `i` is eliminated and
+//! leaves `1 / Sigma_j` on the diagonal of its row. What is factored is (see [`crate::linalg`])
 //!
 //! ```text
 //!     [ H + Sigma + delta_w    J'               ] [ dv ]     [ r_v                           ]
@@ -26,8 +26,8 @@ const LARGEST_REGULARIZATION: f64 = 1e40;
 const FIRST_GROWTH: f64 = 100.0;
 const GROWTH: f64 = 8.0;
 const DECAY: f64 = 1.0 / 3.0;
-/// A line search that keeps less than the first fraction of a step raises the caution, one that keeps more than the
-/// second lowers it.
+/// A line search that keeps less than the first fraction of a step raises the caution, one that
+/// keeps more than the second lowers it.
 const CUT_SHORT: f64 = 0.1;
 const NOT_CUT: f64 = 0.5;
 const CAUTION_GROWTH: f64 = 4.0;
@@ -59,7 +59,8 @@ pub(super) struct Kkt {
     /// Diagonals of the factored matrix.
     diagonal: Vec<f64>,
     d: Vec<f64>,
-    /// Gradient over `y` of the barrier function but for the objective, and of the barrier Lagrangian.
+    /// Gradient over `y` of the barrier function but for the objective, and of the barrier
+    /// Lagrangian.
     push: Vec<f64>,
     gradient: Vec<f64>,
     /// `1 / distance` of each finite bound.
@@ -77,17 +78,21 @@ pub(super) struct Kkt {
 }
 
 impl Kkt {
-    /// Prepares the factorisation the caller asks for; the recursion wherever the structure allows it.
+    /// Prepares the factorisation the caller asks for; the recursion wherever the structure allows
+    /// it.
     pub(super) fn new(nlp: &dyn Nlp, space: &Space, linear: Linear) -> Self {
         // Elastic rows are no longer exact equalities, and need no special care in the recursion.
         let elastic = space.attached.len() > space.slacks;
-        let equality: Vec<bool> = space.equality.iter().map(|equality| *equality && !elastic).collect();
+        let equality: Vec<bool> =
+            space.equality.iter().map(|equality| *equality && !elastic).collect();
         let (hessian, jacobian) = (nlp.hessian_structure(), nlp.jacobian_structure());
         let recursion = match (linear, nlp.stages()) {
             (Linear::SparseLdl, _) | (_, None) => None,
             // What belongs to the only interval cannot be told from what belongs to the ends.
             (_, Some(stages)) if stages.intervals == 1 => None,
-            (_, Some(stages)) => Riccati::new(stages, hessian, jacobian, &space.fixed, &equality).ok(),
+            (_, Some(stages)) => {
+                Riccati::new(stages, hessian, jacobian, &space.fixed, &equality).ok()
+            }
         };
         let rows = space.target.len();
         let is_recursion = recursion.is_some();
@@ -117,19 +122,26 @@ impl Kkt {
         }
     }
 
-    /// Goes over from the recursion to the sparse factorisation, which loses fewer digits where a state has almost no room;
-    /// `false` if it is there already.
+    /// Goes over from the recursion to the sparse factorisation, which loses fewer digits where a
+    /// state has almost no room; `false` if it is there already.
     pub(super) fn fall_back(&mut self, nlp: &dyn Nlp, space: &Space) -> bool {
         let was_recursion = std::mem::take(&mut self.is_recursion);
         if was_recursion {
             let (hessian, jacobian) = (nlp.hessian_structure(), nlp.jacobian_structure());
-            self.factor = Box::new(SparseLdl::new(hessian, jacobian, &space.fixed, space.target.len()));
+            self.factor =
+                Box::new(SparseLdl::new(hessian, jacobian, &space.fixed, space.target.len()));
         }
         was_recursion
     }
 
     /// Computes the diagonals that belong to the iterate.
-    pub(super) fn assemble(&mut self, space: &Space, at: &Iterate, slopes: &Slopes, barrier: &Barrier) {
+    pub(super) fn assemble(
+        &mut self,
+        space: &Space,
+        at: &Iterate,
+        slopes: &Slopes,
+        barrier: &Barrier,
+    ) {
         let Kkt { sigma, push, gradient, inverses, .. } = self;
         sigma.fill(0.0);
         push.fill(0.0);
@@ -146,13 +158,14 @@ impl Kkt {
         }
     }
 
-    /// Gradient over `y` of the barrier function but for the objective, at the iterate that was assembled last.
+    /// Gradient over `y` of the barrier function but for the objective, at the iterate that was
+    /// assembled last.
     pub(super) fn push(&self) -> &[f64] {
         &self.push
     }
 
-    /// Factors with the smallest regularisation that gives the right inertia; `false` if none does. Rows that depend on each other are
-    /// regularised from the beginning.
+    /// Factors with the smallest regularisation that gives the right inertia; `false` if none does.
+    /// Rows that depend on each other are regularised from the beginning.
     pub(super) fn factor_with_inertia(
         &mut self,
         space: &Space,
@@ -161,15 +174,19 @@ impl Kkt {
         are_dependent: bool,
         counts: &mut Counts,
     ) -> bool {
-        // Curvature that was wrong a moment ago is likely to be wrong again: zero is tried only every other time.
+        // Curvature that was wrong a moment ago is likely to be wrong again: zero is tried only
+        // every other time.
         let start = if self.was_needed { self.smaller_regularization() } else { 0.0 };
         self.regularization = start.max(self.caution);
-        let (first, mut rows) = (self.regularization, if are_dependent { DEPENDENT_ROWS } else { 0.0 });
+        let (first, mut rows) =
+            (self.regularization, if are_dependent { DEPENDENT_ROWS } else { 0.0 });
         loop {
             match self.factor_once(space, slopes, rows, counts) {
                 Inertia::Correct => break,
                 Inertia::Singular if rows == 0.0 => rows = ROW_REGULARIZATION * mu.powf(0.25),
-                Inertia::Wrong | Inertia::Singular => self.regularization = self.next_regularization(),
+                Inertia::Wrong | Inertia::Singular => {
+                    self.regularization = self.next_regularization()
+                }
             }
             if self.regularization > LARGEST_REGULARIZATION {
                 return false;
@@ -245,15 +262,19 @@ impl Kkt {
         Some(product / (length * length) - self.regularization)
     }
 
-    /// Learns from a line search: steps that are cut again and again often come from a nearly singular Hessian, and
-    /// are made shorter by regularising it although its inertia is right. Where that does not help it is given up.
+    /// Learns from a line search: steps that are cut again and again often come from a nearly
+    /// singular Hessian, and are made shorter by regularising it although its inertia is right.
+    /// Where that does not help it is given up.
     pub(super) fn judge(&mut self, fraction: f64) {
         if fraction < CUT_SHORT {
             let raised = (CAUTION_GROWTH * self.caution).max(FIRST_REGULARIZATION);
             self.caution = if raised > MOST_CAUTION { 0.0 } else { raised };
         } else if fraction > NOT_CUT {
-            self.caution =
-                if self.caution < FIRST_REGULARIZATION { 0.0 } else { self.caution / CAUTION_GROWTH };
+            self.caution = if self.caution < FIRST_REGULARIZATION {
+                0.0
+            } else {
+                self.caution / CAUTION_GROWTH
+            };
         }
     }
 
@@ -270,7 +291,13 @@ impl Kkt {
         }
     }
 
-    fn factor_once(&mut self, space: &Space, slopes: &Slopes, rows: f64, counts: &mut Counts) -> Inertia {
+    fn factor_once(
+        &mut self,
+        space: &Space,
+        slopes: &Slopes,
+        rows: f64,
+        counts: &mut Counts,
+    ) -> Inertia {
         counts.factorizations += 1;
         counts.regularizations += usize::from(self.regularization > 0.0);
         for (target, sigma) in self.diagonal.iter_mut().zip(&self.sigma) {
@@ -284,7 +311,8 @@ impl Kkt {
         self.factor.factor(&derivatives.hessian, &derivatives.jacobian, &self.diagonal, &self.d)
     }
 
-    /// The Newton step that removes `residuals`; `false` if the linear system could not be solved accurately.
+    /// The Newton step that removes `residuals`; `false` if the linear system could not be solved
+    /// accurately.
     pub(super) fn step(&mut self, system: &System, residuals: &[f64], step: &mut Step) -> bool {
         let System { space, at, slopes, mu } = *system;
         self.fill_right_side(space, residuals);
@@ -301,8 +329,11 @@ impl Kkt {
         let Step { y, lower, upper, .. } = step;
         let mut inverses = self.inverses.iter();
         space.for_each_bound(&at.y, |i, _, direction| {
-            let (z, dz) =
-                if direction > 0.0 { (at.lower[i], &mut lower[i]) } else { (at.upper[i], &mut upper[i]) };
+            let (z, dz) = if direction > 0.0 {
+                (at.lower[i], &mut lower[i])
+            } else {
+                (at.upper[i], &mut upper[i])
+            };
             let inverse = inverses.next().expect("there is one for each bound");
             *dz = (mu - direction * z * y[i]) * inverse - z;
         });
@@ -319,7 +350,8 @@ impl Kkt {
         }
         for (j, attached) in space.attached.iter().enumerate() {
             let i = space.variables + j;
-            b[attached.row] += attached.sign * self.gradient[i] / (self.sigma[i] + self.regularization);
+            b[attached.row] +=
+                attached.sign * self.gradient[i] / (self.sigma[i] + self.regularization);
         }
     }
 
@@ -331,7 +363,10 @@ impl Kkt {
         let (mut before, mut now) = (f64::INFINITY, f64::INFINITY);
         for _ in 0..MOST_REFINEMENTS {
             self.factor.solve(&mut self.residual);
-            self.solution.iter_mut().zip(&self.residual).for_each(|(x, correction)| *x += correction);
+            self.solution
+                .iter_mut()
+                .zip(&self.residual)
+                .for_each(|(x, correction)| *x += correction);
             self.compute_residual(space, slopes);
             now = largest(&self.residual);
             if now <= REFINED * right && right.is_finite() {
@@ -366,8 +401,14 @@ impl Kkt {
         }
     }
 
-    /// Least-squares multipliers: those that make the gradient of the Lagrangian smallest. Zeros where they would be huge.
-    pub(super) fn estimate_multipliers(&mut self, space: &Space, at: &mut Iterate, slopes: &Slopes) {
+    /// Least-squares multipliers: those that make the gradient of the Lagrangian smallest. Zeros
+    /// where they would be huge.
+    pub(super) fn estimate_multipliers(
+        &mut self,
+        space: &Space,
+        at: &mut Iterate,
+        slopes: &Slopes,
+    ) {
         const HUGE: f64 = 1e3;
         let zeros = vec![0.0; slopes.derivatives.hessian.len()];
         self.sigma.fill(1.0);
@@ -387,7 +428,8 @@ impl Kkt {
         self.regularization = 0.0;
         let residuals = vec![0.0; at.lambda.len()];
         self.fill_right_side(space, &residuals);
-        let inertia = self.factor.factor(&zeros, &slopes.derivatives.jacobian, &self.diagonal, &self.d);
+        let inertia =
+            self.factor.factor(&zeros, &slopes.derivatives.jacobian, &self.diagonal, &self.d);
         if inertia != Inertia::Correct {
             return;
         }

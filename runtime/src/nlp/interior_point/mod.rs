@@ -1,8 +1,8 @@
 //! A primal-dual interior point method with a filter line search, in Ipopt's vocabulary.
 //!
-//! After A. Waechter and L. T. Biegler, "On the implementation of an interior-point filter line-search algorithm for
-//! large-scale nonlinear programming", Mathematical Programming 106 (2006) 25-57. The loop is in
-//! [`algorithm`]; each noun of it has a file.
+//! After A. Waechter and L. T. Biegler, "On the implementation of an interior-point filter
+//! line-search algorithm for large-scale nonlinear programming", Mathematical Programming 106
+//! (2006) 25-57. The loop is in [`algorithm`]; each noun of it has a file.
 
 mod algorithm;
 mod barrier;
@@ -26,8 +26,9 @@ use crate::linalg::is_sparse_cheaper;
 use crate::problem::Linear;
 use algorithm::Algorithm;
 
-/// Solves the programme from `start`. Progress is reported unscaled, once per iteration. Nobody is told "infeasible" for want of luck: where an attempt ends
-/// without a solution others are made, each along another path, with the iterations that are left.
+/// Solves the programme from `start`. Progress is reported unscaled, once per iteration. Nobody is
+/// told "infeasible" for want of luck: where an attempt ends without a solution others are made,
+/// each along another path, with the iterations that are left.
 pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watch) -> Solution {
     let is_automatic = options.linear == Linear::Automatic;
     let mut options = Options { linear: factorization(nlp, options.linear), ..*options };
@@ -47,12 +48,14 @@ pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Wa
     best
 }
 
-/// The factorisation to begin with: the recursion wherever there are stages, unless its border makes it too dear.
+/// The factorisation to begin with: the recursion wherever there are stages, unless its border
+/// makes it too dear.
 fn factorization(nlp: &dyn Nlp, linear: Linear) -> Linear {
     match (linear, nlp.stages()) {
         (Linear::Automatic, None) => Linear::SparseLdl,
         (Linear::Automatic, Some(stages)) => {
-            let is_dear = is_sparse_cheaper(stages, nlp.hessian_structure(), nlp.jacobian_structure());
+            let is_dear =
+                is_sparse_cheaper(stages, nlp.hessian_structure(), nlp.jacobian_structure());
             if is_dear { Linear::SparseLdl } else { Linear::Riccati }
         }
         (named, _) => named,
@@ -107,7 +110,8 @@ fn another(
     if counts.iterations >= options.max_iter {
         return first;
     }
-    let options = Options { max_iter: options.max_iter.saturating_sub(counts.iterations), ..*options };
+    let options =
+        Options { max_iter: options.max_iter.saturating_sub(counts.iterations), ..*options };
     let second = attempt(nlp, &options, &mut |progress| {
         watch(&Progress { iteration: counts.iterations + progress.iteration, ..*progress })
     });
@@ -129,7 +133,12 @@ fn another(
 }
 
 /// One attempt, without another opinion.
-pub(super) fn attempt(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watch) -> Solution {
+pub(super) fn attempt(
+    nlp: &mut dyn Nlp,
+    start: &Start,
+    options: &Options,
+    watch: &mut Watch,
+) -> Solution {
     from(start, Algorithm::run)(nlp, options, watch)
 }
 
@@ -171,5 +180,9 @@ fn attempt_scaled(
     let mut v = at.y[..space.variables].to_vec();
     scaled.unscale(&mut v, &mut multipliers);
     let kkt_error = residuals.error(0.0);
-    conclude(nlp, Ended { status, v, multipliers, mu, kkt_error, is_saddle, decrement, counts }, options)
+    conclude(
+        nlp,
+        Ended { status, v, multipliers, mu, kkt_error, is_saddle, decrement, counts },
+        options,
+    )
 }

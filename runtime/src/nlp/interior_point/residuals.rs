@@ -1,10 +1,12 @@
-//! How far an iterate is from satisfying the optimality conditions (Waechter & Biegler 2006, equation 5).
+//! How far an iterate is from satisfying the optimality conditions (Waechter & Biegler 2006,
+//! equation 5).
 //!
 //! ```text
 //!     E_mu = max( ||grad L||_inf / s_d ,  ||residuals||_inf ,  ||distance * multiplier - mu||_inf / s_c )
 //! ```
 //!
-//! An error this small says little of the objective where multipliers are large, so there is a second one: what violations are worth,
+//! An error this small says little of the objective where multipliers are large, so there is a
+//! second one: what violations are worth,
 //!
 //! ```text
 //!     owed = ( |lambda' residuals| + sum (multiplier * how far its bound was moved) ) / max(1, |f|)
@@ -53,8 +55,11 @@ impl Residuals {
     /// `E_mu`
     pub(super) fn error(&self, mu: f64) -> f64 {
         let no_bounds = self.largest_product == 0.0 && self.smallest_product == 0.0;
-        let products =
-            if no_bounds { 0.0 } else { larger(self.largest_product - mu, mu - self.smallest_product) };
+        let products = if no_bounds {
+            0.0
+        } else {
+            larger(self.largest_product - mu, mu - self.smallest_product)
+        };
         larger(larger(self.dual, self.primal), products / self.product_scale)
     }
 }
@@ -72,7 +77,8 @@ pub(super) fn owed(space: &Space, at: &Iterate, values: &Values) -> f64 {
     let violations = at.lambda.iter().zip(&values.residuals);
     let mut moved = 0.0;
     space.for_each_bound(&at.y, |i, _, direction| {
-        let (bound, z) = if direction > 0.0 { (&space.lower, &at.lower) } else { (&space.upper, &at.upper) };
+        let (bound, z) =
+            if direction > 0.0 { (&space.lower, &at.lower) } else { (&space.upper, &at.upper) };
         moved += space.moved(bound[i]) * z[i];
     });
     let rows: f64 = violations.map(|(lambda, residual)| lambda * residual).sum();

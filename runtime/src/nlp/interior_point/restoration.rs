@@ -6,8 +6,9 @@
 //!     minimise  rho sum (p + n) + zeta/2 || D (v - v_R) ||^2    subject to   rows - p + n = 0,  p, n >= 0
 //! ```
 //!
-//! (Waechter & Biegler 2006, section 3.3), until a point is acceptable to the filter it was called from. If it ends
-//! at an optimum of its own, the problem is locally infeasible: no small move reduces the violation.
+//! (Waechter & Biegler 2006, section 3.3), until a point is acceptable to the filter it was called
+//! from. If it ends at an optimum of its own, the problem is locally infeasible: no small move
+//! reduces the violation.
 
 use super::algorithm::{Algorithm, Outcome};
 use super::iterate::{Iterate, Values};
@@ -60,13 +61,22 @@ impl<'a> Proximity<'a> {
         hessian.families.extend(appended);
         let derivatives = Derivatives::new(inner);
         let weights = reference.iter().map(weight).collect();
-        Proximity { inner, reference: reference.to_vec(), zeta, weights, hessian, diagonal, derivatives }
+        Proximity {
+            inner,
+            reference: reference.to_vec(),
+            zeta,
+            weights,
+            hessian,
+            diagonal,
+            derivatives,
+        }
     }
 }
 
 /// The diagonal, in families that respect the stages.
 fn diagonal_families(stages: Option<Stages>, variables: usize) -> Vec<Family> {
-    let repeat = |i, step, count| Family { row: i, column: i, row_step: step, column_step: step, count };
+    let repeat =
+        |i, step, count| Family { row: i, column: i, row_step: step, column_step: step, count };
     match stages {
         None => vec![repeat(0, 1, variables)],
         Some(stages) => {
@@ -123,7 +133,8 @@ impl Nlp for Proximity<'_> {
 }
 
 impl Algorithm {
-    /// Looks for a feasible point near the start before the objective has a word, then iterates to the end.
+    /// Looks for a feasible point near the start before the objective has a word, then iterates to
+    /// the end.
     pub(super) fn run_from_feasible(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Status {
         let is_violated = self.values.is_finite() && self.values.largest() > self.options.tol;
         if is_violated && !self.space.has_crossed_bounds() {
@@ -141,8 +152,14 @@ impl Algorithm {
         self.run(nlp, watch)
     }
 
-    /// Runs a restoration phase from the current iterate, until at most the fraction `decrease` of the violation is left.
-    pub(super) fn restore(&mut self, nlp: &mut dyn Nlp, decrease: f64, watch: &mut Watch) -> Restored {
+    /// Runs a restoration phase from the current iterate, until at most the fraction `decrease` of
+    /// the violation is left.
+    pub(super) fn restore(
+        &mut self,
+        nlp: &mut dyn Nlp,
+        decrease: f64,
+        watch: &mut Watch,
+    ) -> Restored {
         self.watchdog.end();
         let violation = self.values.violation;
         self.filter.add(violation, self.barrier.value(&self.values));
@@ -152,8 +169,9 @@ impl Algorithm {
         let mut proximity = Proximity::new(nlp, &variables, mu.sqrt());
         let mut inner = self.elastic(&mut proximity, mu);
         let restored = loop {
-            let outcome = inner
-                .iterate(&mut proximity, &mut |progress| watch(&Progress { restoration: true, ..*progress }));
+            let outcome = inner.iterate(&mut proximity, &mut |progress| {
+                watch(&Progress { restoration: true, ..*progress })
+            });
             match outcome {
                 Outcome::Continue => {}
                 Outcome::Blocked => break Restored::Blocked,
@@ -184,8 +202,8 @@ impl Algorithm {
         inner
     }
 
-    /// The wish to stay near weighs `zeta = sqrt(mu)` and vanishes with the barrier: it must not make a point look
-    /// infeasible that is merely far from a feasible one.
+    /// The wish to stay near weighs `zeta = sqrt(mu)` and vanishes with the barrier: it must not
+    /// make a point look infeasible that is merely far from a feasible one.
     fn loosen(&mut self, proximity: &mut Proximity) {
         let zeta = self.barrier.mu.sqrt();
         if zeta < proximity.zeta {
@@ -197,7 +215,8 @@ impl Algorithm {
         }
     }
 
-    /// Whether the elastic iterate, without its elastic variables, satisfies the filter of this algorithm and violates rows by at most this.
+    /// Whether the elastic iterate, without its elastic variables, satisfies the filter of this
+    /// algorithm and violates rows by at most this.
     fn accepts(&mut self, nlp: &mut dyn Nlp, at: &Iterate, most: f64) -> bool {
         let y = &at.y[..self.space.len()];
         let mut values = Values::default();
@@ -226,12 +245,15 @@ impl Algorithm {
     pub(super) fn resume(&mut self, nlp: &mut dyn Nlp) {
         self.barrier.note(0.0, false);
         let mu = self.barrier.mu;
-        self.at.set_bound_multipliers(&self.space, |distance| (mu / distance).min(LARGEST_BOUND_MULTIPLIER));
+        self.at.set_bound_multipliers(&self.space, |distance| {
+            (mu / distance).min(LARGEST_BOUND_MULTIPLIER)
+        });
         self.estimate_multipliers(nlp);
     }
 }
 
-/// Elastic variables that minimise the barrier function at a fixed point (equation 33), and their multipliers.
+/// Elastic variables that minimise the barrier function at a fixed point (equation 33), and their
+/// multipliers.
 fn elastic_start(space: &Space, at: &Iterate, residuals: &[f64], mu: f64) -> Iterate {
     let mut start = at.clone();
     for (i, residual) in residuals.iter().enumerate() {

@@ -125,11 +125,13 @@ impl Algorithm {
             let part = 0.5f64.powi(halvings as i32);
             for _ in 0..2 {
                 let alpha = part.min(self.barrier.longest_steps(&self.space, &self.at, step).0);
-                let y: Vec<f64> = self.at.y.iter().zip(&step.y).map(|(y, d)| y + alpha * d).collect();
+                let y: Vec<f64> =
+                    self.at.y.iter().zip(&step.y).map(|(y, d)| y + alpha * d).collect();
                 let mut values = Values::default();
                 let is_good = values.evaluate(nlp, &self.space, &y, &mut self.counts)
                     && values.violation <= LARGEST_VIOLATION
-                    && self.barrier_lagrangian(&values) < lagrangian - LEAST_GAIN * gain * alpha * alpha;
+                    && self.barrier_lagrangian(&values)
+                        < lagrangian - LEAST_GAIN * gain * alpha * alpha;
                 if is_good {
                     (self.at.y, self.values, self.fresh) = (y, values, false);
                     self.counts.iterations += 1;

@@ -1,4 +1,5 @@
-//! The line search that asks the filter about pairs (violation, barrier objective) (Waechter & Biegler 2006, algorithm A and section 2.4).
+//! The line search that asks the filter about pairs (violation, barrier objective) (Waechter &
+//! Biegler 2006, algorithm A and section 2.4).
 
 use super::barrier::Barrier;
 use super::iterate::{Iterate, Slopes, Step, Values};
@@ -32,7 +33,12 @@ pub(super) struct Accepted {
 
 impl Search<'_> {
     /// Backtracks from the longest step; `None` where the step has become too short.
-    pub(super) fn run(&mut self, filter: &mut Filter, step: &mut Step, longest: f64) -> Option<Accepted> {
+    pub(super) fn run(
+        &mut self,
+        filter: &mut Filter,
+        step: &mut Step,
+        longest: f64,
+    ) -> Option<Accepted> {
         let from = self.reference(step);
         let smallest = filter.smallest_step(from);
         let (mut alpha, mut trials) = (longest, 0);
@@ -65,7 +71,8 @@ impl Search<'_> {
         }
     }
 
-    /// The longest step, whether it is acceptable or not; `true` with it if it is acceptable to an earlier point.
+    /// The longest step, whether it is acceptable or not; `true` with it if it is acceptable to an
+    /// earlier point.
     pub(super) fn full(
         &mut self,
         filter: &mut Filter,
@@ -90,7 +97,8 @@ impl Search<'_> {
         filter.judge(from, alpha, values.violation, self.barrier.value(values))
     }
 
-    /// Second-order correction: the same matrix against the residuals of the trial point (section 2.4).
+    /// Second-order correction: the same matrix against the residuals of the trial point (section
+    /// 2.4).
     fn correct(
         &mut self,
         filter: &mut Filter,
@@ -100,7 +108,8 @@ impl Search<'_> {
         first: Values,
     ) -> Option<Accepted> {
         let mut corrected = step.clone();
-        let mut residuals: Vec<f64> = self.values.residuals.iter().map(|value| alpha * value).collect();
+        let mut residuals: Vec<f64> =
+            self.values.residuals.iter().map(|value| alpha * value).collect();
         let (mut last, mut theta) = (first, from.theta);
         let mut alpha = alpha;
         for trials in 1..=MOST_CORRECTIONS {

@@ -1,4 +1,5 @@
-//! The variables an interior point method works with: those of the programme, and those attached to its rows.
+//! The variables an interior point method works with: those of the programme, and those attached to
+//! its rows.
 //!
 //! `y = [v | slacks | p | n]`. Every row becomes an equality
 //!
@@ -6,9 +7,10 @@
 //!     c_i(v) - target_i + sum over attached j of sign_j y_j = 0
 //! ```
 //!
-//! An inequality has a slack (`sign -1`, the bounds of the row, target 0). In a restoration phase every row has two
-//! elastic variables more, `-p + n` with `p, n >= 0` and a cost. An attached variable appears in its row only, so
-//! it is eliminated by a division, and the linear algebra never sees it.
+//! An inequality has a slack (`sign -1`, the bounds of the row, target 0). In a restoration phase
+//! every row has two elastic variables more, `-p + n` with `p, n >= 0` and a cost. An attached
+//! variable appears in its row only, so it is eliminated by a division, and the linear algebra
+//! never sees it.
 
 use crate::nlp::Nlp;
 use crate::problem::Bounds;
@@ -159,7 +161,8 @@ impl Space {
     pub(super) fn push_inside(&self, y: &mut [f64], push: f64) {
         for i in 0..y.len() {
             let (lower, upper) = (self.lower[i], self.upper[i]);
-            let room = if upper - lower < f64::INFINITY { push * (upper - lower) } else { f64::INFINITY };
+            let room =
+                if upper - lower < f64::INFINITY { push * (upper - lower) } else { f64::INFINITY };
             let from = |bound: f64| (push * bound.abs().max(1.0)).min(room);
             if lower > f64::NEG_INFINITY {
                 y[i] = y[i].max(lower + from(lower));
@@ -170,7 +173,8 @@ impl Space {
         }
     }
 
-    /// Calls `action(i, distance, direction)` for every finite bound: `direction` is +1 for a lower bound, -1 for an upper.
+    /// Calls `action(i, distance, direction)` for every finite bound: `direction` is +1 for a lower
+    /// bound, -1 for an upper.
     #[inline]
     pub(super) fn for_each_bound(&self, y: &[f64], mut action: impl FnMut(usize, f64, f64)) {
         for i in self.bounded_below.iter().map(|i| *i as usize) {

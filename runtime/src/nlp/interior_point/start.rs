@@ -1,4 +1,5 @@
-//! Where the iteration begins: inside all bounds, with multipliers from the caller or from least squares.
+//! Where the iteration begins: inside all bounds, with multipliers from the caller or from least
+//! squares.
 
 use super::algorithm::Algorithm;
 use super::iterate::Iterate;
@@ -21,7 +22,8 @@ pub(super) fn prepare(nlp: &mut dyn Nlp, start: &Start, options: Options) -> Alg
     };
     let y = first_point(nlp, &space, &start.v, push);
     let (length, rows) = (space.len(), space.target.len());
-    let mut at = Iterate { y, lambda: vec![0.0; rows], lower: vec![0.0; length], upper: vec![0.0; length] };
+    let mut at =
+        Iterate { y, lambda: vec![0.0; rows], lower: vec![0.0; length], upper: vec![0.0; length] };
     match &start.warm {
         Some(warm) => warm_multipliers(&space, &warm.multipliers, mu, &mut at),
         None => at.set_bound_multipliers(&space, |_| 1.0),
@@ -47,7 +49,9 @@ fn first_point(nlp: &mut dyn Nlp, space: &Space, start: &[f64], push: f64) -> Ve
     space.push_inside(&mut pushed, push);
     let mut rows = vec![0.0; space.target.len()];
     nlp.values(&pushed, &mut rows);
-    y.extend(space.attached.iter().map(|a| if rows[a.row].is_finite() { rows[a.row] } else { 0.0 }));
+    y.extend(
+        space.attached.iter().map(|a| if rows[a.row].is_finite() { rows[a.row] } else { 0.0 }),
+    );
     space.push_inside(&mut y, push);
     y
 }
@@ -56,8 +60,11 @@ fn warm_multipliers(space: &Space, known: &Multipliers, mu: f64, at: &mut Iterat
     at.lambda.copy_from_slice(&known.rows);
     let Iterate { y, lambda, lower, upper } = at;
     space.for_each_bound(y, |i, distance, direction| {
-        let (z, known) =
-            if direction > 0.0 { (&mut lower[i], &known.lower) } else { (&mut upper[i], &known.upper) };
+        let (z, known) = if direction > 0.0 {
+            (&mut lower[i], &known.lower)
+        } else {
+            (&mut upper[i], &known.upper)
+        };
         let value = match i.checked_sub(space.variables) {
             None => known[i],
             // A slack's multipliers follow from those of its row: -lambda - z_lower + z_upper = 0.

@@ -1,4 +1,5 @@
-//! What is asked of long vectors at every iteration. Neighbours belong to different sums, which share registers and do not wait for one another.
+//! What is asked of long vectors at every iteration. Neighbours belong to different sums, which
+//! share registers and do not wait for one another.
 
 /// Sums that are kept at a time.
 const WIDTH: usize = 8;
@@ -102,7 +103,9 @@ mod tests {
     fn what_is_not_finite_is_noticed() {
         for place in 0..19 {
             let mut values: Vec<f64> = (0..19).map(|i| f64::from(i) - 9.5).collect();
-            assert!((largest(&values), sum_of_sizes(&values), are_finite(&values)) == (9.5, 90.5, true));
+            assert!(
+                (largest(&values), sum_of_sizes(&values), are_finite(&values)) == (9.5, 90.5, true)
+            );
             values[place] = f64::NAN;
             assert!(largest(&values).is_nan() && !are_finite(&values));
             assert!(largest_sum([&[0.0; 19], &values], &[0.0; 19]).is_nan());

@@ -1,8 +1,9 @@
 //! The watchdog: after many shortened steps, full steps are tried without asking the filter.
 //!
-//! Where the rows are very nonlinear, as at the edge of a smoothed layer, the filter may force tiny steps although a
-//! full one would lead to a better region. A few full steps are taken on trust; if none of them is acceptable to the
-//! point where the trust began, the iteration returns to it (Waechter & Biegler 2006, section 3.2).
+//! Where the rows are very nonlinear, as at the edge of a smoothed layer, the filter may force tiny
+//! steps although a full one would lead to a better region. A few full steps are taken on trust; if
+//! none of them is acceptable to the point where the trust began, the iteration returns to it
+//! (Waechter & Biegler 2006, section 3.2).
 
 use super::iterate::{Iterate, Values};
 use crate::nlp::filter::Reference;

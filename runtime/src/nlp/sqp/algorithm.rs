@@ -15,15 +15,18 @@ use std::ops::ControlFlow;
 const ACCEPTABLE_ERROR: f64 = 1e-6;
 /// Variables beyond this, at a point that is feasible relative to them, have left the problem.
 const DIVERGED: f64 = 1e10;
-/// Where a direction leads nowhere, more and more is added to the Hessian, from the first to the last of these, before violations alone are looked at.
+/// Where a direction leads nowhere, more and more is added to the Hessian, from the first to the
+/// last of these, before violations alone are looked at.
 const FIRST_CAUTION: f64 = 1e-8;
 const MOST_CAUTION: f64 = 10.0;
 const CAUTION_GROWTH: f64 = 10.0;
 const CAUTION_DECAY: f64 = 0.01;
-/// A line search that keeps less than the first fraction of a step asks for more caution, one that keeps more than the second for less.
+/// A line search that keeps less than the first fraction of a step asks for more caution, one that
+/// keeps more than the second for less.
 const CUT_SHORT: f64 = 0.1;
 const NOT_CUT: f64 = 0.5;
-/// A whole step is taken without a line search if no more than this is left of the optimality error.
+/// A whole step is taken without a line search if no more than this is left of the optimality
+/// error.
 const HALVED: f64 = 0.5;
 
 /// The state of a solve.
@@ -51,7 +54,12 @@ pub(super) struct Algorithm {
 }
 
 impl Algorithm {
-    pub(super) fn new(nlp: &mut dyn Nlp, v: &[f64], multipliers: Multipliers, options: Options) -> Self {
+    pub(super) fn new(
+        nlp: &mut dyn Nlp,
+        v: &[f64],
+        multipliers: Multipliers,
+        options: Options,
+    ) -> Self {
         let mut counts = Counts::default();
         let at = Point::new(nlp, v.to_vec(), &mut counts);
         Algorithm {
@@ -75,7 +83,12 @@ impl Algorithm {
 
     /// Iterates to the end.
     pub(super) fn run(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Status {
-        if nlp.variable_bounds().iter().chain(nlp.row_bounds()).any(|bounds| bounds.lower > bounds.upper) {
+        if nlp
+            .variable_bounds()
+            .iter()
+            .chain(nlp.row_bounds())
+            .any(|bounds| bounds.lower > bounds.upper)
+        {
             return Status::Infeasible;
         }
         loop {
@@ -156,7 +169,8 @@ impl Algorithm {
         self.restore(nlp)
     }
 
-    /// Follows the solution of the subproblem; if there is none, or it leads nowhere, what was added to the Hessian for it.
+    /// Follows the solution of the subproblem; if there is none, or it leads nowhere, what was
+    /// added to the Hessian for it.
     fn advance(&mut self, nlp: &mut dyn Nlp) -> Result<(), f64> {
         let (working, convexity) = self.convexify(nlp).ok_or(f64::INFINITY)?;
         let tolerance = self.accuracy();
@@ -171,7 +185,8 @@ impl Algorithm {
         Ok(())
     }
 
-    /// The whole step, if it halves the smallest optimality error so far: near the solution the filter compares what is rounding.
+    /// The whole step, if it halves the smallest optimality error so far: near the solution the
+    /// filter compares what is rounding.
     fn whole_step(&mut self, nlp: &mut dyn Nlp, direction: &Direction) -> Option<Accepted> {
         let v = self.at.v.iter().zip(&direction.d).map(|(v, d)| v + d).collect();
         let point = Point::new(nlp, v, &mut self.counts);
@@ -191,7 +206,9 @@ impl Algorithm {
         let from = Reference { theta: at.violation, phi: at.objective, slope };
         let smallest = filter.smallest_step(from);
         let search = Search { nlp, at, d: &direction.d, curvature, counts };
-        search.run(smallest, |point, alpha| filter.judge(from, alpha, point.violation, point.objective))
+        search.run(smallest, |point, alpha| {
+            filter.judge(from, alpha, point.violation, point.objective)
+        })
     }
 
     /// Learns from a line search.
@@ -204,7 +221,8 @@ impl Algorithm {
         }
     }
 
-    /// The equations suffice to make the Hessian convex, or the bounds that are active now are taken for equations as well.
+    /// The equations suffice to make the Hessian convex, or the bounds that are active now are
+    /// taken for equations as well.
     fn convexify(&mut self, nlp: &dyn Nlp) -> Option<(Working, Convexity)> {
         let Algorithm { at, derivatives, multipliers, curvature, counts, .. } = self;
         let caution = self.caution;
@@ -221,7 +239,8 @@ impl Algorithm {
         let Accepted { point, alpha, trials } = accepted;
         self.counts.iterations += 1;
         self.progress.step = largest(direction.d.iter().copied());
-        (self.progress.alpha_primal, self.progress.alpha_dual, self.progress.trials) = (alpha, alpha, trials);
+        (self.progress.alpha_primal, self.progress.alpha_dual, self.progress.trials) =
+            (alpha, alpha, trials);
         self.at = point;
         let Multipliers { rows, lower, upper } = &direction.multipliers;
         mix(&mut self.multipliers.rows, rows, alpha);
@@ -230,7 +249,11 @@ impl Algorithm {
     }
 
     pub(super) fn stuck(&self) -> Status {
-        if self.residuals.error() <= ACCEPTABLE_ERROR { Status::Acceptable } else { Status::NumericalFailure }
+        if self.residuals.error() <= ACCEPTABLE_ERROR {
+            Status::Acceptable
+        } else {
+            Status::NumericalFailure
+        }
     }
 
     /// What is asked of the conic solver.

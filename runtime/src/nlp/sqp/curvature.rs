@@ -1,4 +1,5 @@
-//! A convex `B` that gives the subproblem the solution that the Hessian `H` of the Lagrangian would.
+//! A convex `B` that gives the subproblem the solution that the Hessian `H` of the Lagrangian
+//! would.
 //!
 //! Where conditions `A d + r = 0` are expected to hold at the solution,
 //!
@@ -6,9 +7,10 @@
 //!     1/2 d'H d    and    1/2 d'H d + rho/2 ||A d + r||^2
 //! ```
 //!
-//! are the same at it, and `B = H + rho A'A` is positive definite for a large `rho` if `H` is so where `A d = 0` (Debreu 1952). Where it is
-//! not, `delta` is added to the diagonal, which makes the step shorter. Whether `B` is positive definite is known without forming it: it is
-//! exactly if the inertia of
+//! are the same at it, and `B = H + rho A'A` is positive definite for a large `rho` if `H` is so
+//! where `A d = 0` (Debreu 1952). Where it is not, `delta` is added to the diagonal, which makes
+//! the step shorter. Whether `B` is positive definite is known without forming it: it is exactly if
+//! the inertia of
 //!
 //! ```text
 //!     [ H + delta    A'     ]
@@ -51,8 +53,14 @@ impl Curvature {
     pub(super) fn new(nlp: &dyn Nlp) -> Self {
         let (variables, rows) = (nlp.variable_bounds().len(), nlp.row_bounds().len());
         let fixed: Vec<bool> = nlp.variable_bounds().iter().map(Bounds::is_equality).collect();
-        let factor = SparseLdl::new(nlp.hessian_structure(), nlp.jacobian_structure(), &fixed, rows);
-        Curvature { factor, last: Convexity::default(), sigma: vec![0.0; variables], d: vec![0.0; rows] }
+        let factor =
+            SparseLdl::new(nlp.hessian_structure(), nlp.jacobian_structure(), &fixed, rows);
+        Curvature {
+            factor,
+            last: Convexity::default(),
+            sigma: vec![0.0; variables],
+            d: vec![0.0; rows],
+        }
     }
 
     /// `B` with this `delta`, if that will do.
@@ -86,7 +94,8 @@ impl Curvature {
         None
     }
 
-    /// The smallest `rho` in steps, where the largest is large enough; a smaller one than the last is tried first.
+    /// The smallest `rho` in steps, where the largest is large enough; a smaller one than the last
+    /// is tried first.
     fn smallest_rho(
         &mut self,
         derivatives: &Derivatives,
@@ -95,7 +104,9 @@ impl Curvature {
         counts: &mut Counts,
     ) -> Convexity {
         let mut rho = (self.last.rho / RHO_GROWTH).max(SMALLEST_RHO);
-        while !self.is_convex(derivatives, working, Convexity { delta, rho }, counts) && rho < LARGEST_RHO {
+        while !self.is_convex(derivatives, working, Convexity { delta, rho }, counts)
+            && rho < LARGEST_RHO
+        {
             rho *= RHO_GROWTH;
         }
         self.last.rho = rho;
@@ -121,7 +132,8 @@ impl Curvature {
         self.factor.factor(hessian, jacobian, &self.sigma, &self.d) == Inertia::Correct
     }
 
-    /// The smallest step, measured by `B`, that removes the residuals of expected rows: a second-order correction.
+    /// The smallest step, measured by `B`, that removes the residuals of expected rows: a
+    /// second-order correction.
     pub(super) fn correction(&mut self, residuals: &[f64]) -> Vec<f64> {
         let mut right = vec![0.0; self.sigma.len()];
         right.extend(residuals.iter().map(|residual| -residual));

@@ -1,4 +1,5 @@
-//! How far an iterate is from satisfying the optimality conditions, measured as the interior point method measures it.
+//! How far an iterate is from satisfying the optimality conditions, measured as the interior point
+//! method measures it.
 //!
 //! ```text
 //!     E = max( ||grad f + J' lambda - z_lower + z_upper||_inf / s_d ,  ||violation||_inf ,  ||distance * multiplier||_inf / s_c )
@@ -18,7 +19,12 @@ pub(super) struct Residuals {
 }
 
 impl Residuals {
-    pub(super) fn new(nlp: &dyn Nlp, at: &Point, derivatives: &Derivatives, known: &Multipliers) -> Self {
+    pub(super) fn new(
+        nlp: &dyn Nlp,
+        at: &Point,
+        derivatives: &Derivatives,
+        known: &Multipliers,
+    ) -> Self {
         let size = |values: &[f64]| values.iter().map(|value| value.abs()).sum::<f64>();
         let (bounds, rows) = (size(&known.lower) + size(&known.upper), size(&known.rows));
         let count = 2 * known.lower.len() + known.rows.len();
@@ -40,7 +46,11 @@ impl Residuals {
 /// The gradient of the Lagrangian; fixed variables have none.
 fn stationarity(nlp: &dyn Nlp, derivatives: &Derivatives, known: &Multipliers) -> Vec<f64> {
     let mut gradient = derivatives.gradient.clone();
-    nlp.jacobian_structure().transposed_multiply_add(&derivatives.jacobian, &known.rows, &mut gradient);
+    nlp.jacobian_structure().transposed_multiply_add(
+        &derivatives.jacobian,
+        &known.rows,
+        &mut gradient,
+    );
     for (i, (value, bounds)) in gradient.iter_mut().zip(nlp.variable_bounds()).enumerate() {
         *value += known.upper[i] - known.lower[i];
         *value = if bounds.is_equality() { 0.0 } else { *value };
@@ -59,7 +69,8 @@ fn products(nlp: &dyn Nlp, at: &Point, known: &Multipliers) -> Vec<f64> {
     rows.chain(variables).collect()
 }
 
-/// A multiplier above zero belongs to the upper bound, one below to the lower; where that bound is not, it should be zero.
+/// A multiplier above zero belongs to the upper bound, one below to the lower; where that bound is
+/// not, it should be zero.
 fn product(bounds: &Bounds, value: f64, multiplier: f64) -> f64 {
     if bounds.is_equality() || multiplier == 0.0 {
         return 0.0;
@@ -70,10 +81,7 @@ fn product(bounds: &Bounds, value: f64, multiplier: f64) -> f64 {
 
 /// The largest absolute value; what is not a number is larger than all numbers.
 pub(super) fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values.into_iter().fold(
-        0.0,
-        |most: f64, value| {
-            if most.is_nan() || value.abs() <= most { most } else { value.abs() }
-        },
-    )
+    values.into_iter().fold(0.0, |most: f64, value| {
+        if most.is_nan() || value.abs() <= most { most } else { value.abs() }
+    })
 }

@@ -21,8 +21,9 @@ pub(super) struct Accepted {
 }
 
 impl Search<'_> {
-    /// Halves the step until it `is_good`. Where the whole step raises the violation, it is first corrected for the curvature of the rows. `None` where
-    /// the step has become shorter than `smallest`.
+    /// Halves the step until it `is_good`. Where the whole step raises the violation, it is first
+    /// corrected for the curvature of the rows. `None` where the step has become shorter than
+    /// `smallest`.
     pub(super) fn run(
         mut self,
         smallest: f64,

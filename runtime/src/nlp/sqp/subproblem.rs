@@ -5,7 +5,8 @@
 //!     subject to   sides of J d + c and d + v   [ each side of a row violated by s >= 0 ]
 //! ```
 //!
-//! With slacks `s` it always has a solution, and for a large price `nu` that has no slack unless there is no other.
+//! With slacks `s` it always has a solution, and for a large price `nu` that has no slack unless
+//! there is no other.
 
 use super::curvature::Convexity;
 use super::point::{Point, violation};
@@ -52,7 +53,8 @@ impl Subproblem<'_> {
         let found = solve_conic(program, tolerance, MOST_ITERATIONS);
         counts.factorizations += found.iterations;
         let has_solution = matches!(found.status, ConicStatus::Solved | ConicStatus::Roughly);
-        (has_solution && found.x.iter().all(|x| x.is_finite())).then(|| self.direction(sides, found))
+        (has_solution && found.x.iter().all(|x| x.is_finite()))
+            .then(|| self.direction(sides, found))
     }
 
     fn program(&self, sides: &Sides) -> ConicProgram {
@@ -65,16 +67,20 @@ impl Subproblem<'_> {
         }
     }
 
-    /// The upper triangle of `H + delta + rho A'A`. Fixed variables do not move, whatever stands there.
+    /// The upper triangle of `H + delta + rho A'A`. Fixed variables do not move, whatever stands
+    /// there.
     fn hessian(&self) -> Columns {
         let (nlp, Convexity { delta, rho }) = (self.nlp, self.convexity);
         let structure = nlp.hessian_structure().entries().zip(&self.derivatives.hessian);
-        let mut entries: Vec<_> = structure.map(|((i, j), value)| (i.min(j), i.max(j), *value)).collect();
+        let mut entries: Vec<_> =
+            structure.map(|((i, j), value)| (i.min(j), i.max(j), *value)).collect();
         for (i, expected) in self.working.variables.iter().enumerate() {
             entries.push((i, i, delta + expected.map_or(0.0, |_| rho)));
         }
         let rows = by_rows(nlp, &self.derivatives.jacobian);
-        for (row, _) in rows.iter().zip(&self.working.rows).filter(|(_, expected)| expected.is_some()) {
+        for (row, _) in
+            rows.iter().zip(&self.working.rows).filter(|(_, expected)| expected.is_some())
+        {
             for (i, a) in row {
                 let products = row.iter().filter(|(j, _)| i <= j);
                 entries.extend(products.map(|(j, b)| (*i, *j, rho * a * b)));
@@ -113,7 +119,8 @@ impl Subproblem<'_> {
         Direction { d, multipliers, violation: violation(self.nlp.row_bounds(), &rows) }
     }
 
-    /// From multipliers of the subproblem with `B` to those of the one with `H`: what is left of `A d + r` pulls with the weight `rho`.
+    /// From multipliers of the subproblem with `B` to those of the one with `H`: what is left of `A
+    /// d + r` pulls with the weight `rho`.
     fn correct(&self, d: &[f64], rows: &[f64], multipliers: &mut Multipliers) {
         let rho = self.convexity.rho;
         let of_rows = self.working.rows.iter().zip(rows).zip(self.nlp.row_bounds());
@@ -125,7 +132,8 @@ impl Subproblem<'_> {
         for (i, (expected, d)) in self.working.variables.iter().zip(d).enumerate() {
             if let Some(r) = expected {
                 let pull = rho * (r + d);
-                let of_side = if pull > 0.0 { &mut multipliers.lower } else { &mut multipliers.upper };
+                let of_side =
+                    if pull > 0.0 { &mut multipliers.lower } else { &mut multipliers.upper };
                 of_side[i] = (of_side[i] - pull.abs()).max(0.0);
             }
         }
@@ -141,7 +149,8 @@ fn allowed(bounds: &Bounds, lambda: f64) -> f64 {
     }
 }
 
-/// Allows each side of a row to be violated at the price `nu`: an equality from above and from below.
+/// Allows each side of a row to be violated at the price `nu`: an equality from above and from
+/// below.
 fn elastic(program: ConicProgram, sides: &Sides, nu: f64) -> ConicProgram {
     let ConicProgram { p, mut q, a, mut b, equalities } = program;
     let (mut p, mut entries) = (p, a.entries());

@@ -1,4 +1,5 @@
-//! The conditions that are expected to hold as equations at the solution of the subproblem: a guess of its active set.
+//! The conditions that are expected to hold as equations at the solution of the subproblem: a guess
+//! of its active set.
 
 use super::point::Point;
 use crate::nlp::{Multipliers, Nlp};
@@ -17,18 +18,20 @@ impl Working {
     /// Rows that are equations whatever happens.
     pub(super) fn equations(nlp: &dyn Nlp, at: &Point) -> Self {
         let rows = nlp.row_bounds().iter().zip(&at.rows);
-        let residual = |(bounds, row): (&Bounds, &f64)| bounds.is_equality().then(|| row - bounds.lower);
+        let residual =
+            |(bounds, row): (&Bounds, &f64)| bounds.is_equality().then(|| row - bounds.lower);
         Working { rows: rows.map(residual).collect(), variables: vec![None; at.v.len()] }
     }
 
-    /// Those, and the bounds whose multiplier is larger than the distance from them. Fixed variables stay where they are.
+    /// Those, and the bounds whose multiplier is larger than the distance from them. Fixed
+    /// variables stay where they are.
     pub(super) fn active(nlp: &dyn Nlp, at: &Point, known: &Multipliers) -> Self {
         let rows = nlp.row_bounds().iter().zip(&at.rows).zip(&known.rows);
         let rows = rows.map(|((bounds, row), lambda)| residual(bounds, *row, *lambda));
         let multipliers = known.lower.iter().zip(&known.upper).map(|(lower, upper)| upper - lower);
         let variables = nlp.variable_bounds().iter().zip(&at.v).zip(multipliers);
-        let variables =
-            variables.map(|((bounds, v), z)| residual(bounds, *v, z).filter(|_| !bounds.is_equality()));
+        let variables = variables
+            .map(|((bounds, v), z)| residual(bounds, *v, z).filter(|_| !bounds.is_equality()));
         Working { rows: rows.collect(), variables: variables.collect() }
     }
 
@@ -36,7 +39,8 @@ impl Working {
     pub(super) fn tight(nlp: &dyn Nlp, at: &Point, known: &Multipliers, price: f64) -> Self {
         let mut working = Working::active(nlp, at, known);
         let rows = working.rows.iter_mut().zip(&known.rows);
-        rows.filter(|(_, lambda)| lambda.abs() >= PAID * price).for_each(|(expected, _)| *expected = None);
+        rows.filter(|(_, lambda)| lambda.abs() >= PAID * price)
+            .for_each(|(expected, _)| *expected = None);
         working
     }
 }

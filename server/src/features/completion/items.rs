@@ -11,7 +11,8 @@ pub struct Proposal {
     kind: CompletionItemKind,
     detail: Option<String>,
     doc: Option<String>,
-    /// What is written instead of the label: with places to go on at, where the client knows these, and without.
+    /// What is written instead of the label: with places to go on at, where the client knows these,
+    /// and without.
     snippet: Option<String>,
     plain: Option<String>,
     /// Names first, then functions, then words.
@@ -22,7 +23,8 @@ impl Proposal {
     /// In the words of the protocol.
     pub fn shown(self, snippets: bool) -> CompletionItem {
         let is_snippet = snippets && self.snippet.is_some();
-        let documentation = self.doc.map(|value| MarkupContent { kind: MarkupKind::Markdown, value }.into());
+        let documentation =
+            self.doc.map(|value| MarkupContent { kind: MarkupKind::Markdown, value }.into());
         CompletionItem {
             sort_text: Some(format!("{}{}", self.rank, self.label)),
             label: self.label,
@@ -128,7 +130,10 @@ const SNIPPETS: &[(&str, &str)] = &[
     ("surface", "surface ${1:slip} = ${2:x}"),
     ("dynamics", "dynamics {\n  ${1:x}' = ${2:0}\n}"),
     ("metric", "metric ${1:x}: ${2:1}"),
-    ("jump", "jump ${1:bounce} on ${2:ground} ${3:falling} at most ${4:1} {\n  ${5:v} := ${6:-v}\n}"),
+    (
+        "jump",
+        "jump ${1:bounce} on ${2:ground} ${3:falling} at most ${4:1} {\n  ${5:v} := ${6:-v}\n}",
+    ),
     ("start", "start ${1:x} == ${2:0}"),
     ("end", "end ${1:x} == ${2:0}"),
     ("path", "path ${1:name}: ${2:x} <= ${3:1}"),
@@ -174,11 +179,15 @@ mod tests {
     #[test]
     fn every_item_has_a_snippet_that_can_be_read() {
         for it in fdcc_grammar::words::items() {
-            let snippet = item(it).snippet.unwrap_or_else(|| panic!("SNIPPETS needs `{}`", it.text));
+            let snippet =
+                item(it).snippet.unwrap_or_else(|| panic!("SNIPPETS needs `{}`", it.text));
             let text = filled(&snippet);
             let parsed = fdcc_grammar::parse(&text);
-            let errors: Vec<_> =
-                parsed.diagnostics.iter().filter(|it| it.severity == fdcc_grammar::Severity::Error).collect();
+            let errors: Vec<_> = parsed
+                .diagnostics
+                .iter()
+                .filter(|it| it.severity == fdcc_grammar::Severity::Error)
+                .collect();
             assert!(errors.is_empty(), "{text}: {errors:?}");
         }
     }

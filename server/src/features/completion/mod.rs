@@ -47,7 +47,9 @@ fn proposals(place: &Place<'_>, scope: &Scope) -> Vec<Proposal> {
     match place.block() {
         _ if place.is_among_items() && begins => words::items().map(item).collect(),
         Some(block) if begins => entries(block, scope),
-        Some("method") => ["kernel", "steps", "scheme", "lagged"].into_iter().map(keyword).collect(),
+        Some("method") => {
+            ["kernel", "steps", "scheme", "lagged"].into_iter().map(keyword).collect()
+        }
         _ => expression(place, scope),
     }
 }
@@ -57,7 +59,9 @@ fn in_brackets(place: &Place<'_>, open: &Open<'_>, scope: &Scope) -> Option<Vec<
     let is_first = place.back(0) == "(";
     match (open.bracket, open.before) {
         ('[', "in" | "=" | ",") => None,
-        ('[', _) if open.is_close && open.before.ends_with(|c: char| c.is_alphabetic()) => Some(Vec::new()),
+        ('[', _) if open.is_close && open.before.ends_with(|c: char| c.is_alphabetic()) => {
+            Some(Vec::new())
+        }
         ('[', _) => Some(vocabulary::units().into_iter().map(items::unit).collect()),
         ('(', "Sgn" | "sliding") if is_first => Some(scope.proposals(|kind| kind == Kind::Surface)),
         ('(', "lagged") => Some(scope.proposals(|kind| kind == Kind::State)),
@@ -73,8 +77,12 @@ fn after_word(place: &Place<'_>, scope: &Scope) -> Option<Vec<Proposal>> {
     match (place.back(1), place.back(0)) {
         (_, "match") => surfaces(),
         (_, "on" | "hold") if place.item == "jump" => surfaces(),
-        ("on", _) if place.item == "jump" => Some(["falling", "rising"].into_iter().map(keyword).collect()),
-        (_, "link" | "->") if place.item == "link" => Some(scope.proposals(|kind| kind == Kind::Phase)),
+        ("on", _) if place.item == "jump" => {
+            Some(["falling", "rising"].into_iter().map(keyword).collect())
+        }
+        (_, "link" | "->") if place.item == "link" => {
+            Some(scope.proposals(|kind| kind == Kind::Phase))
+        }
         (_, key @ ("kernel" | "scheme")) if place.item == "method" => taken(key),
         (key, "=") if place.block() == Some("method") => {
             taken(key).filter(|it: &Vec<Proposal>| !it.is_empty())
@@ -83,8 +91,8 @@ fn after_word(place: &Place<'_>, scope: &Scope) -> Option<Vec<Proposal>> {
         // Here a name is made up.
         (
             _,
-            "model" | "param" | "const" | "let" | "fn" | "data" | "state" | "control" | "surface" | "phase"
-            | "jump" | "time",
+            "model" | "param" | "const" | "let" | "fn" | "data" | "state" | "control" | "surface"
+            | "phase" | "jump" | "time",
         ) => Some(Vec::new()),
         (before, "free") if before != "start" => Some(Vec::new()),
         _ => None,
@@ -96,9 +104,10 @@ fn entries(block: &str, scope: &Scope) -> Vec<Proposal> {
     let kinds = |kinds: &'static [Kind]| scope.proposals(move |kind| kinds.contains(&kind));
     match block {
         "dynamics" => kinds(&[Kind::State]).into_iter().map(|it| entry(it, "' = ")).collect(),
-        "guess" => {
-            kinds(&[Kind::State, Kind::Control, Kind::Free]).into_iter().map(|it| entry(it, " = ")).collect()
-        }
+        "guess" => kinds(&[Kind::State, Kind::Control, Kind::Free])
+            .into_iter()
+            .map(|it| entry(it, " = "))
+            .collect(),
         "jump" | "link" => kinds(&[Kind::State]).into_iter().map(|it| entry(it, " := ")).collect(),
         "sweep" => {
             let settings = vocabulary::settings().iter().map(|row| own(row.0, row.1));
@@ -119,7 +128,10 @@ fn entries(block: &str, scope: &Scope) -> Vec<Proposal> {
 /// Anything that has a value, and the words that go on with the item.
 fn expression(place: &Place<'_>, scope: &Scope) -> Vec<Proposal> {
     let is_value = |kind| {
-        !matches!(kind, Kind::Model | Kind::Jump | Kind::Path | Kind::Report | Kind::Part | Kind::Column)
+        !matches!(
+            kind,
+            Kind::Model | Kind::Jump | Kind::Path | Kind::Report | Kind::Part | Kind::Column
+        )
     };
     let mut all = scope.proposals(is_value);
     all.extend(scope.locals(place));

@@ -1,5 +1,5 @@
-//! Names that can be written: those of the text as it is, and those of the last one that could be read, since what
-//! is being written hides what stands behind it.
+//! Names that can be written: those of the text as it is, and those of the last one that could be
+//! read, since what is being written hides what stands behind it.
 
 use super::items::{Proposal, name};
 use crate::context::Context;
@@ -58,9 +58,9 @@ impl<'c> Scope<'c> {
         self.found(|names, at| {
             let it = &names.definitions[at];
             match it.kind {
-                Kind::Argument => {
-                    it.within.is_some_and(|outer| Some(&names.definitions[outer].name.as_str()) == function)
-                }
+                Kind::Argument => it
+                    .within
+                    .is_some_and(|outer| Some(&names.definitions[outer].name.as_str()) == function),
                 Kind::Row => place.open.iter().any(|open| open.before == "sum"),
                 _ => false,
             }

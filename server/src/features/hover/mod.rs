@@ -1,4 +1,5 @@
-//! What is known about the word under the cursor: what it is, in which unit, within which bounds, how it varies.
+//! What is known about the word under the cursor: what it is, in which unit, within which bounds,
+//! how it varies.
 //!
 //! Where the text has mistakes at the moment, the last model without any is asked.
 

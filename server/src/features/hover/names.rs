@@ -2,7 +2,9 @@
 
 use crate::context::Context;
 use fdcc_compiler::names::{Definition, Kind};
-use fdcc_compiler::{Model, NamedUnit, Order, Portrait, Smoothness, SurfaceReport, portrait, surfaces};
+use fdcc_compiler::{
+    Model, NamedUnit, Order, Portrait, Smoothness, SurfaceReport, portrait, surfaces,
+};
 use fdcc_grammar::comments;
 
 /// Longer declarations are cut.
@@ -13,15 +15,20 @@ pub fn told(context: &Context<'_>, definition: usize) -> String {
     let names = context.analysis().names();
     let it = &names.definitions[definition];
     let full = names.full_name(definition);
-    let mut text = format!("```fdc\n{}\n```\n{}", declaration(context, it), headline(context, it, &full));
+    let mut text =
+        format!("```fdc\n{}\n```\n{}", declaration(context, it), headline(context, it, &full));
     if let Some(comment) = comment(context, it) {
         text += &format!("\n\n{comment}");
     }
     let model = context.model_of(names.phase_of(definition));
     let facts = match it.kind {
         Kind::Surface => model.map(|model| surface(model, &full)).unwrap_or_default(),
-        Kind::Argument | Kind::Column | Kind::Row | Kind::Phase | Kind::Model | Kind::Data => Vec::new(),
-        _ => model.and_then(|model| portrait(model, &full)).map(|it| facts(&it)).unwrap_or_default(),
+        Kind::Argument | Kind::Column | Kind::Row | Kind::Phase | Kind::Model | Kind::Data => {
+            Vec::new()
+        }
+        _ => {
+            model.and_then(|model| portrait(model, &full)).map(|it| facts(&it)).unwrap_or_default()
+        }
     };
     for fact in facts {
         text += &format!("\n\n{fact}");
@@ -37,7 +44,8 @@ fn declaration(context: &Context<'_>, it: &Definition) -> String {
         Kind::Phase => format!("phase {}", it.name),
         Kind::Model => format!("model {}", it.name),
         _ if text.lines().count() > MOST_LINES => {
-            text.lines().take(MOST_LINES).map(|line| format!("{line}\n")).collect::<String>() + "..."
+            text.lines().take(MOST_LINES).map(|line| format!("{line}\n")).collect::<String>()
+                + "..."
         }
         _ => text.to_owned(),
     }
@@ -45,7 +53,8 @@ fn declaration(context: &Context<'_>, it: &Definition) -> String {
 
 /// `state, in m/s (found from the equations)`
 fn headline(context: &Context<'_>, it: &Definition, full: &str) -> String {
-    let named: Vec<&NamedUnit> = context.units().iter().filter(|unit| is_unit_of(unit, full)).collect();
+    let named: Vec<&NamedUnit> =
+        context.units().iter().filter(|unit| is_unit_of(unit, full)).collect();
     // Another phase may have the same name with another unit.
     let own: Vec<&NamedUnit> = named.iter().copied().filter(|unit| unit.span == it.span).collect();
     let units = if own.is_empty() { named } else { own };
@@ -85,7 +94,11 @@ fn facts(it: &Portrait) -> Vec<String> {
 
 /// `C^2 at x == pi`
 pub fn smoothness(it: &Smoothness) -> String {
-    let place = if it.knots.is_empty() { String::new() } else { format!(" at `{}`", it.knots.join("`, `")) };
+    let place = if it.knots.is_empty() {
+        String::new()
+    } else {
+        format!(" at `{}`", it.knots.join("`, `"))
+    };
     match it.order {
         Order::Always => "smooth: it has all derivatives".into(),
         order => format!("{order}{place}"),
@@ -95,7 +108,9 @@ pub fn smoothness(it: &Smoothness) -> String {
 /// Gradient, jump, class and the condition for being held.
 fn surface(model: &Model, name: &str) -> Vec<String> {
     let reports = surfaces(model).unwrap_or_default();
-    let Some(report) = reports.into_iter().find(|it| it.place.name == name) else { return Vec::new() };
+    let Some(report) = reports.into_iter().find(|it| it.place.name == name) else {
+        return Vec::new();
+    };
     let SurfaceReport { gradient, jump, meaning, holding, .. } = report;
     let mut facts = vec![format!("**{meaning}**")];
     if !gradient.is_empty() {

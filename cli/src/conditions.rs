@@ -2,12 +2,12 @@
 //! too, and the ends.
 //!
 //! A violation counts for the size of the terms of its condition there: what each input moves it by
-//! ([`terms`](crate::terms)), and the bound.
+//! ([`terms`](fdcc::terms)), and the bound.
 
-use crate::motion::Motion;
 use crate::output::saved::Saved;
-use crate::terms::{Terms, terms};
 use crate::verification::Points;
+use fdcc::motion::Motion;
+use fdcc::terms::{Terms, terms};
 use fdcc_runtime::problem::{Bounds, Columns, Function, Parameter, Problem, Variable};
 use fdcc_runtime::simulate::{Simulation, System};
 

@@ -1,9 +1,9 @@
 //! How far a solution is from its replay: each state over the grid, for how far it moves.
 
 use crate::alignment::Alignment;
-use crate::motion::Motion;
 use crate::output::saved::{Saved, SavedJump};
 use crate::pieces::pieces_of_one;
+use fdcc::motion::Motion;
 use fdcc_runtime::problem::Variable;
 use fdcc_runtime::simulate::{Simulation, System};
 

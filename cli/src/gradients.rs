@@ -2,7 +2,7 @@
 //! the discretised problem.
 
 use crate::output::words::scheme_name;
-use crate::quantities::By;
+use fdcc::quantities::By;
 use fdcc_compiler::Model;
 use fdcc_runtime::problem::{Columns, Scheme};
 use fdcc_runtime::sensitivity::{Quantity, hessian};

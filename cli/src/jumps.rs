@@ -4,10 +4,10 @@
 use crate::output::named::Named;
 use crate::output::saved::Saved;
 use crate::output::tried::{Ended, Happened, Tried};
-use crate::parallel;
 use crate::search::{Found, Search, all_attempts, first_stopped, is_stopped, unless_stopped};
 use crate::solver::Failure;
 use crate::warm;
+use fdcc::parallel;
 use fdcc_compiler::{
     Model, Sequences, compile, compile_simulation, crossings, sequences, unrolled,
 };

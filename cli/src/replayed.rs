@@ -1,13 +1,13 @@
 //! What expectations ask of the true system: for how long a surface is held, and exact derivatives,
 //! along the replay of a solution.
 
-use crate::exact::Exact;
 use crate::output::saved::Saved;
-use crate::quantities::is_computed;
 use crate::replay::Replay;
 use crate::solver::{Failure, Solved};
-use crate::stays::held;
 use crate::verification::{Verified, verify};
+use fdcc::exact::Exact;
+use fdcc::quantities::is_computed;
+use fdcc::stays::held;
 use fdcc_compiler::Model;
 use fdcc_compiler::graph::ExprId;
 use fdcc_compiler::model::{Simulated, Symbol};

@@ -6,9 +6,9 @@ use crate::output::{
     self,
     tried::{Ended, Happened, Tried},
 };
-use crate::parallel;
 use crate::solver::Failure;
 use crate::watch::Deadline;
+use fdcc::parallel;
 use fdcc_runtime::homotopy::{Attempt, Outcome, Refusal};
 use fdcc_runtime::nlp::{Start, Status};
 use fdcc_runtime::problem::Problem;

@@ -1,6 +1,5 @@
 //! One solve: compile, choose the starting points, run the solver, keep the best outcome.
 
-use crate::bounds;
 use crate::commands::{Exit, Options, Prepared, show};
 use crate::jumps::{self, Unrolled};
 use crate::log::Log;
@@ -9,11 +8,12 @@ use crate::output::document::{Document, Seconds};
 use crate::output::saved::Saved;
 use crate::output::units::Units;
 use crate::output::verified::Verification;
-use crate::parallel;
 use crate::search::{Found, Search};
 use crate::verification::verify;
 use crate::warm;
 use crate::watch::Deadline;
+use fdcc::bounds;
+use fdcc::parallel;
 use fdcc_compiler::Model;
 use fdcc_grammar::{Diagnostic, SourceFile};
 use fdcc_runtime::homotopy::Outcome;

@@ -8,7 +8,7 @@ use crate::output::saved::Saved;
 use crate::pieces::pieces_of_one;
 use crate::replay::Replay;
 use crate::solver::Failure;
-use crate::stays::{Stay, stays};
+use fdcc::stays::{Stay, stays};
 use fdcc_compiler::Model;
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::simulate::{Controls, Options, Simulation, Status, System, simulate};

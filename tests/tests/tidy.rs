@@ -20,9 +20,10 @@ const CRATES: &[(&str, &[&str])] = &[
     ("grammar", &[]),
     ("runtime", &[]),
     ("compiler", &["fdcc-grammar", "fdcc-runtime"]),
-    ("server", &["fdcc-grammar", "fdcc-compiler"]),
-    ("cli", &["fdcc-grammar", "fdcc-compiler", "fdcc-runtime", "fdcc-server"]),
-    ("tests", &["fdcc-grammar", "fdcc-compiler", "fdcc-runtime"]),
+    ("fdcc", &["fdcc-grammar", "fdcc-compiler", "fdcc-runtime"]),
+    ("server", &["fdcc-grammar", "fdcc-compiler", "fdcc"]),
+    ("cli", &["fdcc-grammar", "fdcc-compiler", "fdcc-runtime", "fdcc", "fdcc-server"]),
+    ("tests", &["fdcc-grammar", "fdcc-compiler", "fdcc-runtime", "fdcc"]),
 ];
 
 #[test]

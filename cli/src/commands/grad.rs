@@ -3,13 +3,13 @@
 use super::Exit;
 use super::driven::Driven;
 use super::options::{Prepared, show, usage};
-use crate::exact::Exact;
 use crate::gradients::Question;
 use crate::output::gradient::{Document, Found};
 use crate::output::{self, files};
-use crate::quantities::{By, everything, named};
 use crate::solver::Failure;
 use clap::Args;
+use fdcc::exact::Exact;
+use fdcc::quantities::{By, everything, named};
 use fdcc_compiler::Model;
 use fdcc_grammar::{Severity, SourceFile, parse};
 use fdcc_runtime::simulate::{Controls, System};

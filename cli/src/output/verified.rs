@@ -9,9 +9,9 @@ use super::saved::Saved;
 use super::units::Units;
 use crate::conditions::Condition;
 use crate::gaps::{Gap, TIME_OF};
-use crate::stays::{Stay, name};
 use crate::verification::Verified;
 use comfy_table::{CellAlignment, Table, presets};
+use fdcc::stays::{Stay, name};
 use fdcc_grammar::SourceFile;
 use serde::Serialize;
 

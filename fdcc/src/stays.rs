@@ -4,8 +4,11 @@ use fdcc_runtime::simulate::{Mode, Piece, Tape};
 
 /// A time span in one mode of a surface.
 pub struct Stay {
+    /// On which side, or held.
     pub mode: Mode,
+    /// When it begins, in SI.
     pub from: f64,
+    /// When it ends, in SI.
     pub to: f64,
 }
 

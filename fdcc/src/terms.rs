@@ -12,6 +12,7 @@ use fdcc_runtime::problem::{Bounds, Columns, Function};
 /// The size of the terms of a condition at a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Terms {
+    /// In SI.
     pub size: f64,
     /// A smaller violation is rounding.
     pub rounding: f64,

@@ -15,6 +15,7 @@ const MOST_SIDES: usize = 64;
 
 /// A gradient and what is to be thought of it.
 pub struct Exact {
+    /// Derivatives as they were computed, with their simulation.
     pub found: Sensitivity,
     /// Below and above each quantity, where there are reasons for doubt; else nothing.
     pub sides: Vec<[Option<f64>; 2]>,

@@ -5,7 +5,7 @@ use crate::output::number::short;
 use crate::output::plural;
 use crate::output::tried::Tried;
 use crate::solver::Solved;
-use fdcc_runtime::homotopy::Attempt;
+use fdcc_runtime::solve::Attempt;
 
 /// So many of the sequences of jumps are named.
 const SEQUENCES: usize = 6;

@@ -8,7 +8,7 @@ use crate::solver::Solved;
 use fdcc_compiler::model::Comparison;
 use fdcc_compiler::{Expected, Model, expectations};
 use fdcc_runtime::problem::{Columns, Origin};
-use fdcc_runtime::quadrature::integrals;
+use fdcc_runtime::solution::integrals;
 
 /// One line of the `expect` block and what became of it.
 pub struct Checked {

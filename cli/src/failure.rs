@@ -4,9 +4,9 @@ use crate::attempts;
 use crate::output::units::Units;
 use crate::solver::Solved;
 use fdcc_grammar::{Code, Diagnostic, Span};
-use fdcc_runtime::homotopy::{Limiting, Outcome};
 use fdcc_runtime::nlp::{Place, Status};
 use fdcc_runtime::problem::{Problem, Variable};
+use fdcc_runtime::solve::{Limiting, Outcome};
 
 /// What a failed solve says, if it is about a line of the model.
 pub fn diagnostic(solved: &Solved) -> Option<Diagnostic> {

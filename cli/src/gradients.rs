@@ -4,10 +4,10 @@
 use crate::output::words::scheme_name;
 use fdcc::quantities::By;
 use fdcc_compiler::Model;
+use fdcc_runtime::fixed_step::{self, Failure, Grid, step_through};
 use fdcc_runtime::problem::{Columns, Scheme};
 use fdcc_runtime::sensitivity::{Quantity, hessian};
 use fdcc_runtime::simulate::{Controls, Simulation, System};
-use fdcc_runtime::stepping::{self, Failure, Grid, step_through};
 
 /// What is to be differentiated by what.
 pub struct Question<'a> {
@@ -77,7 +77,7 @@ impl Question<'_> {
         }
         let grid = Grid::new(system, &self.model.method);
         let found = step_through(system, &self.controls, &grid)
-            .and_then(|stepped| stepping::gradient(system, &self.controls, &grid, &stepped));
+            .and_then(|stepped| fixed_step::gradient(system, &self.controls, &grid, &stepped));
         let whole = found.map_err(|failure| why(&failure))?;
         let by = |quantity: Quantity| match quantity {
             Quantity::Parameter(at) => whole.parameters[at],

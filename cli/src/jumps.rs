@@ -11,12 +11,12 @@ use fdcc::parallel;
 use fdcc_compiler::{
     Model, Sequences, compile, compile_simulation, crossings, sequences, unrolled,
 };
-use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::nlp::Start;
-use fdcc_runtime::pieces::{Jump, joined};
 use fdcc_runtime::problem::{ControlShape, Problem};
 use fdcc_runtime::simulate::{Controls, Event, Kind, Options, Status, System, simulate};
-use fdcc_runtime::starts;
+use fdcc_runtime::solution::phases::{Jump, joined};
+use fdcc_runtime::solve::Outcome;
+use fdcc_runtime::solve::multistart;
 
 /// What was solved in place of a model with jumps: its pieces side by side.
 pub struct Unrolled {
@@ -75,7 +75,7 @@ pub fn solve(
         search.log.ended(&alternative.words(model), &Ended::of(&found.problem, &found.outcome));
     }
     let solutions = found.iter().map(|it| &it.outcome.solution).enumerate();
-    let best = solutions.reduce(|a, b| if starts::is_better(b.1, a.1) { b } else { a });
+    let best = solutions.reduce(|a, b| if multistart::is_better(b.1, a.1) { b } else { a });
     let best = best.expect("that no jump happens is one of them").0;
     let tried = all
         .iter()

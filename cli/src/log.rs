@@ -5,8 +5,8 @@ use crate::output::number::{scientific, significant};
 use crate::output::tell;
 use crate::output::tried::Ended;
 use crate::output::units::Units;
-use fdcc_runtime::homotopy;
 use fdcc_runtime::nlp::Progress;
+use fdcc_runtime::solve;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::Duration;
@@ -58,7 +58,7 @@ impl Log {
     }
 
     /// One iteration.
-    pub fn iteration(&mut self, progress: &Progress, level: homotopy::Level) {
+    pub fn iteration(&mut self, progress: &Progress, level: solve::Level) {
         let (label, iteration) = (&self.label, progress.iteration);
         let violation = progress.primal_infeasibility;
         self.bar.set_message(format!("{label}iteration {iteration}  violation {violation:.1e}"));
@@ -125,7 +125,7 @@ fn progress(bar: ProgressBar, level: Level, template: &str) -> ProgressBar {
     bar
 }
 
-fn line(p: &Progress, level: homotopy::Level, scale: f64) -> String {
+fn line(p: &Progress, level: solve::Level, scale: f64) -> String {
     let logarithm =
         |value: f64| if value > 0.0 { format!("{:.1}", value.log10()) } else { "-".to_string() };
     let (mu, regularization) = (logarithm(p.mu), logarithm(p.regularization));

@@ -9,11 +9,11 @@ use crate::output::{
 use crate::solver::Failure;
 use crate::watch::Deadline;
 use fdcc::parallel;
-use fdcc_runtime::homotopy::{Attempt, Outcome, Refusal};
 use fdcc_runtime::nlp::{Start, Status};
 use fdcc_runtime::problem::Problem;
-use fdcc_runtime::refine::{self, Refined};
-use fdcc_runtime::starts;
+use fdcc_runtime::solve::multistart;
+use fdcc_runtime::solve::refinement::{self, Refined};
+use fdcc_runtime::solve::{Attempt, Outcome, Refusal};
 
 /// The best answer of all that were looked for.
 pub struct Found {
@@ -63,7 +63,7 @@ impl Search<'_> {
             .enumerate()
             .for_each(|(index, ended)| self.log.ended(&of_start(index), ended));
         let best = |a: Refined, b: Refined| {
-            if starts::is_better(&b.outcome.solution, &a.outcome.solution) { b } else { a }
+            if multistart::is_better(&b.outcome.solution, &a.outcome.solution) { b } else { a }
         };
         let outcomes = all.iter().map(|it| &it.outcome);
         let (attempts, stopped) = (all_attempts(outcomes.clone()), first_stopped(outcomes));
@@ -88,7 +88,7 @@ impl Search<'_> {
         let one = |index: usize| {
             let start = match index {
                 0 => start.clone(),
-                _ => Some(starts::perturbed(
+                _ => Some(multistart::perturbed(
                     problem,
                     start.clone().map(|start| start.v),
                     index as u32,
@@ -150,7 +150,7 @@ fn run(
     deadline: Deadline,
     log: &mut Log,
 ) -> Result<Refined, Failure> {
-    let found = refine::solve(problem, start, &mut |progress, level| {
+    let found = refinement::solve(problem, start, &mut |progress, level| {
         log.iteration(progress, level);
         deadline.check()
     });

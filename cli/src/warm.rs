@@ -8,8 +8,8 @@ use crate::output::saved::{Column, Saved};
 use crate::solver::{Failure, Solved};
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::problem::{Method, Problem};
-use fdcc_runtime::starts::Earlier;
-use fdcc_runtime::warm::{again, from_earlier};
+use fdcc_runtime::solve::warm_start::Earlier;
+use fdcc_runtime::solve::warm_start::{again, from_earlier};
 use std::path::Path;
 
 /// Reads a `.sol.json` and interpolates it on the grid of the problem. Signals that it does not

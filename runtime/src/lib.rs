@@ -8,29 +8,18 @@
 
 pub mod problem;
 
-mod clarabel;
 pub mod linalg;
 
 pub mod nlp;
+
 pub mod transcribe;
 
-pub mod lagrangian;
-mod minimum;
-pub mod modes;
-pub mod quadrature;
-pub mod trajectory;
+pub mod solution;
 
-mod pause;
+pub mod solve;
 
 pub mod simulate;
-pub mod stepping;
 
 pub mod sensitivity;
 
-mod prolong;
-pub mod starts;
-pub mod warm;
-
-pub mod homotopy;
-pub mod pieces;
-pub mod refine;
+pub mod fixed_step;

@@ -4,9 +4,9 @@
 //! The first run is that of a fresh process, whose memory is cold; of the others the median is
 //! told.
 
-use fdcc_runtime::homotopy::solve;
 use fdcc_runtime::nlp::Stop;
 use fdcc_runtime::problem::{Problem, often_called};
+use fdcc_runtime::solve::solve;
 use std::hint::black_box;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};

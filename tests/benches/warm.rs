@@ -6,10 +6,10 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use fdcc_runtime::homotopy::{self, Outcome};
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::problem::{Problem, Solver};
-use fdcc_runtime::warm::again;
+use fdcc_runtime::solve::warm_start::again;
+use fdcc_runtime::solve::{self, Outcome};
 use fdcc_tests::models::{Changes, load};
 
 /// A model, the settings it is solved with, a parameter, its values before and after.
@@ -68,6 +68,6 @@ fn fastest(problem: &Problem, start: &Option<Start>) -> (Outcome, f64) {
 
 fn solve(problem: &Problem, start: Option<Start>) -> (Outcome, f64) {
     let begin = Instant::now();
-    let outcome = homotopy::solve(problem, start, &mut |_, _| ControlFlow::Continue(()));
+    let outcome = solve::solve(problem, start, &mut |_, _| ControlFlow::Continue(()));
     (outcome.expect("neither is the conic solver"), begin.elapsed().as_secs_f64())
 }

@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 
 use fdcc_compiler::Model;
 use fdcc_grammar::{Diagnostic, Severity, parse};
-use fdcc_runtime::homotopy::{self, Outcome, Refusal};
 use fdcc_runtime::problem::Problem;
+use fdcc_runtime::solve::{self, Outcome, Refusal};
 
 use crate::repository;
 
@@ -83,5 +83,5 @@ pub fn solve(problem: &Problem) -> Outcome {
 
 /// Solves from the model's own guess, or is refused.
 pub fn try_solve(problem: &Problem) -> Result<Outcome, Refusal> {
-    homotopy::solve(problem, None, &mut |_, _| ControlFlow::Continue(()))
+    solve::solve(problem, None, &mut |_, _| ControlFlow::Continue(()))
 }

@@ -6,9 +6,9 @@
 //! lambda > 0 only at an upper bound, lambda < 0 only at a lower bound;  z >= 0, and > 0 only at its bound
 //! ```
 
-use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::nlp::Multipliers;
 use fdcc_runtime::problem::{Bounds, Problem};
+use fdcc_runtime::solve::Outcome;
 
 use crate::transcribed::Transcribed;
 

@@ -2,9 +2,9 @@
 //! for fixed steps through that.
 
 use fdcc_compiler::{compile_sensitivities, compile_smoothed};
+use fdcc_runtime::fixed_step::{Grid, gradient as gradient_of_steps, step_through};
 use fdcc_runtime::sensitivity::{Costates, Quantity, Sensitivity, gradient};
 use fdcc_runtime::simulate::{Controls, Options, System};
-use fdcc_runtime::stepping::{Grid, gradient as gradient_of_steps, step_through};
 
 use crate::documents;
 use crate::models::changed;

@@ -9,8 +9,8 @@
 //! rule of the steps is.
 
 use fdcc_compiler::{compile_sensitivities, compile_smoothed};
+use fdcc_runtime::fixed_step::{Gradient, Grid, Stepped, gradient, step_through};
 use fdcc_runtime::simulate::{Controls, System};
-use fdcc_runtime::stepping::{Gradient, Grid, Stepped, gradient, step_through};
 
 use crate::models::meaning;
 

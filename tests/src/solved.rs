@@ -1,8 +1,8 @@
 //! A solved problem, asked in the words of the model.
 
-use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::Problem;
+use fdcc_runtime::solve::Outcome;
 
 use crate::models::{Changes, problem, solve};
 

@@ -1,10 +1,10 @@
 //! What one attempt loses another one wins; and where no feasible point exists, that is said in
 //! reasonable time.
 
-use fdcc_runtime::homotopy::{self, Outcome};
 use fdcc_runtime::nlp::{Status, Stop};
-use fdcc_runtime::refine;
-use fdcc_runtime::starts;
+use fdcc_runtime::solve::multistart;
+use fdcc_runtime::solve::refinement;
+use fdcc_runtime::solve::{self, Outcome};
 use fdcc_tests::models::{problem, solve};
 use fdcc_tests::repository;
 use std::f64::consts::PI;
@@ -41,7 +41,7 @@ fn a_step_on_trust_into_nowhere_is_taken_back() {
         let problem =
             problem(&text("tests/right/lotka.fdc"), &[], &[("scheme", "rk4"), ("N", intervals)]);
         let mut farthest = 0.0_f64;
-        let outcome = homotopy::solve(&problem, None, &mut |progress, _| {
+        let outcome = solve::solve(&problem, None, &mut |progress, _| {
             farthest = farthest.max(if progress.restoration { progress.objective } else { 0.0 });
             ControlFlow::Continue(())
         });
@@ -109,9 +109,9 @@ fn what_no_attempt_from_the_guess_finds_is_found_from_other_starts() {
     for scheme in ["radau2", "radau3", "gauss2"] {
         let problem = problem(&text, &[], &[("scheme", scheme), ("N", "50")]);
         let is_solved = |index: u32| {
-            let start = starts::perturbed(&problem, None, index);
+            let start = multistart::perturbed(&problem, None, index);
             let outcome =
-                homotopy::solve(&problem, Some(start), &mut |_, _| ControlFlow::Continue(()));
+                solve::solve(&problem, Some(start), &mut |_, _| ControlFlow::Continue(()));
             outcome.expect("it is not refused").solution.status == Status::Solved
         };
         assert!((1..8).any(is_solved), "{scheme}");
@@ -128,7 +128,7 @@ fn who_stops_a_later_attempt_is_not_told_that_there_is_no_solution() {
     let problem = problem(text, &[], &[("solver", "interior_point")]);
     let count = |limit: usize| {
         let mut seen = 0;
-        let outcome = homotopy::solve(&problem, None, &mut |_, _| {
+        let outcome = solve::solve(&problem, None, &mut |_, _| {
             seen += 1;
             if seen > limit {
                 ControlFlow::Break(Stop::Interrupted)
@@ -156,16 +156,15 @@ fn a_grid_of_our_own_choice_that_is_too_coarse_is_no_verdict() {
              dynamics {{ th' = w w' in -sin(th) - {mu}*Sgn(slip) + u }} end th == pi end w == 0 \
              minimize integral(u^2)"
         );
-        let found =
-            |intervals: &str| {
-                let sigma = sigma.map(|sigma| ("sigma", sigma));
-                let method: Vec<(&str, &str)> =
-                    [("N", intervals), ("tolerance", "1")].into_iter().chain(sigma).collect();
-                refine::solve(&problem(&text, &[], &method), None, &mut |_, _| {
-                    ControlFlow::Continue(())
-                })
-                .expect("it is not refused")
-            };
+        let found = |intervals: &str| {
+            let sigma = sigma.map(|sigma| ("sigma", sigma));
+            let method: Vec<(&str, &str)> =
+                [("N", intervals), ("tolerance", "1")].into_iter().chain(sigma).collect();
+            refinement::solve(&problem(&text, &[], &method), None, &mut |_, _| {
+                ControlFlow::Continue(())
+            })
+            .expect("it is not refused")
+        };
         let named = found("50").outcome;
         assert_eq!(
             (named.solution.status, named.is_impossible),

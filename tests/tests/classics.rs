@@ -7,7 +7,7 @@ use fdcc_compiler::model::Comparison;
 use fdcc_compiler::{Model, expectations};
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::Columns;
-use fdcc_runtime::quadrature::integrals;
+use fdcc_runtime::solution::integrals;
 use fdcc_tests::models::{meaning, problem, solve};
 use fdcc_tests::{Solved, documents, repository};
 

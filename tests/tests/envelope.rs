@@ -2,7 +2,7 @@
 //! differences of solutions.
 
 use fdcc_compiler::compile_by_parameters;
-use fdcc_runtime::lagrangian::{Hamiltonian, by_parameters};
+use fdcc_runtime::solution::{Hamiltonian, by_parameters};
 use fdcc_runtime::transcribe::TranscribedNlp;
 use fdcc_tests::models::changed;
 use fdcc_tests::{Solved, repository};

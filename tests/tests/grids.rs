@@ -1,8 +1,8 @@
 //! Fine grids are reached over coarse ones, with every scheme and every shape of controls: few
 //! iterations are left for the grid of the model.
 
-use fdcc_runtime::homotopy;
 use fdcc_runtime::nlp::Status;
+use fdcc_runtime::solve;
 use fdcc_tests::models::load;
 use std::ops::ControlFlow;
 
@@ -10,14 +10,14 @@ use std::ops::ControlFlow;
 fn iterations(method: &[(&str, &str)]) -> Vec<(usize, usize)> {
     let problem = load("racecar", &[], method);
     let mut grids: Vec<(usize, usize)> = Vec::new();
-    let mut watch = |_: &_, level: homotopy::Level| {
+    let mut watch = |_: &_, level: solve::Level| {
         match grids.last_mut() {
             Some((intervals, count)) if *intervals == level.intervals => *count += 1,
             _ => grids.push((level.intervals, 1)),
         }
         ControlFlow::Continue(())
     };
-    let outcome = homotopy::solve(&problem, None, &mut watch).expect("it is not refused");
+    let outcome = solve::solve(&problem, None, &mut watch).expect("it is not refused");
     assert_eq!(outcome.solution.status, Status::Solved, "{method:?}");
     grids
 }

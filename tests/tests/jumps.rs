@@ -3,10 +3,10 @@
 
 use fdcc_compiler::{compile, compile_by_parameters, sequences, unrolled};
 use fdcc_grammar::Code;
-use fdcc_runtime::homotopy::Outcome;
-use fdcc_runtime::lagrangian::by_parameters;
 use fdcc_runtime::nlp::Status;
-use fdcc_runtime::pieces::{Jump, joined};
+use fdcc_runtime::solution::by_parameters;
+use fdcc_runtime::solution::phases::{Jump, joined};
+use fdcc_runtime::solve::Outcome;
 use fdcc_tests::Solved;
 use fdcc_tests::models::{Changes, changed, meaning, text_of};
 

@@ -1,6 +1,6 @@
 //! `N = auto`: grids that follow the solution down to a tolerance.
 
-use fdcc_runtime::refine::{Refined, solve};
+use fdcc_runtime::solve::refinement::{Refined, solve};
 use fdcc_tests::models::problem;
 use fdcc_tests::optimality::residuals;
 use std::ops::ControlFlow;

@@ -1,6 +1,6 @@
 //! Section 2 of Stewart & Anitescu (2005): values that converge and gradients that do not.
 
-use fdcc_runtime::stepping::Grid;
+use fdcc_runtime::fixed_step::Grid;
 use fdcc_tests::repository;
 use fdcc_tests::section_two::{
     exact, implicit_euler, inclusion, inclusion_to_the_end, objective, set, smoothed, stepped,

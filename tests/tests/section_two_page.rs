@@ -2,8 +2,8 @@
 //! computed.
 
 use fdcc_compiler::compile_sensitivities;
+use fdcc_runtime::fixed_step::{Grid, step_through};
 use fdcc_runtime::simulate::{Controls, System};
-use fdcc_runtime::stepping::{Grid, step_through};
 use fdcc_tests::models::meaning;
 use fdcc_tests::pages::{check_file, check_tables};
 use fdcc_tests::section_two::{

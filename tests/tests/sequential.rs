@@ -3,11 +3,11 @@
 
 use std::ops::ControlFlow;
 
-use fdcc_runtime::homotopy::{self, Outcome};
 use fdcc_runtime::nlp::{Counts, Nlp, Options, Start, Status, Stop, sqp};
 use fdcc_runtime::problem::{Linear, Problem, Solver};
+use fdcc_runtime::solve::warm_start::again;
+use fdcc_runtime::solve::{self, Outcome};
 use fdcc_runtime::transcribe::TranscribedNlp;
-use fdcc_runtime::warm::again;
 use fdcc_tests::models::{Changes, load, problem, solve};
 use fdcc_tests::optimality::residuals;
 use fdcc_tests::repository;
@@ -103,8 +103,8 @@ fn once_more(name: &str, settings: Changes, parameter: (&str, &str)) -> [(Counts
         let mut problem = load(name, &[parameter], settings);
         problem.method.solver = solver;
         let start = again(&problem, &before.solution, &[]);
-        let outcome = homotopy::solve(&problem, Some(start), &mut |_, _| ControlFlow::Continue(()))
-            .expect(name);
+        let outcome =
+            solve::solve(&problem, Some(start), &mut |_, _| ControlFlow::Continue(())).expect(name);
         assert_optimal(name, &problem, &outcome);
         (outcome.solution.counts, outcome.solution.objective)
     })
@@ -153,7 +153,7 @@ fn it_stops_when_asked_to() {
     for (stop, status) in
         [(Stop::Interrupted, Status::Interrupted), (Stop::TimeLimit, Status::TimeLimit)]
     {
-        let outcome = homotopy::solve(&problem, None, &mut |progress, _| {
+        let outcome = solve::solve(&problem, None, &mut |progress, _| {
             if progress.iteration == 3 {
                 ControlFlow::Break(stop)
             } else {

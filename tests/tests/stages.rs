@@ -1,9 +1,9 @@
 //! `N = auto` with `scheme = radau` or `gauss`: the order is found together with the grid.
 
 use fdcc_compiler::{Model, compile};
-use fdcc_runtime::homotopy::Level;
 use fdcc_runtime::nlp::{Progress, Status};
-use fdcc_runtime::refine::{Refined, solve};
+use fdcc_runtime::solve::Level;
+use fdcc_runtime::solve::refinement::{Refined, solve};
 use fdcc_tests::models::meaning;
 use fdcc_tests::repository;
 use std::ops::ControlFlow;

@@ -3,8 +3,8 @@
 
 use std::ops::ControlFlow;
 
-use fdcc_runtime::homotopy::{self, Outcome};
 use fdcc_runtime::nlp::{Status, Stop};
+use fdcc_runtime::solve::{self, Outcome};
 use fdcc_tests::Solved;
 use fdcc_tests::models::{Changes, load, problem, solve};
 use fdcc_tests::optimality::residuals;
@@ -123,7 +123,7 @@ fn the_caller_can_stop_a_solve_and_gets_the_iterate() {
         for (name, last) in [("racecar", 5), ("block", 2), ("racecar", 0)] {
             let problem = load(name, &[], &[("N", "100")]);
             let mut seen = 0;
-            let found = homotopy::solve(&problem, None, &mut |progress, _| {
+            let found = solve::solve(&problem, None, &mut |progress, _| {
                 seen = progress.iteration;
                 if progress.iteration >= last {
                     ControlFlow::Break(stop)

@@ -1,9 +1,9 @@
 //! Fixed steps through inclusions: what they compute, the gradient of it, and what they refuse.
 
 use fdcc_compiler::{compile_sensitivities, compile_simulation, compile_smoothed};
+use fdcc_runtime::fixed_step::{Failure, Gradient, Grid, Stepped, gradient, step_through};
 use fdcc_runtime::problem::Method;
 use fdcc_runtime::simulate::{Controls, Options, Status, System, simulate};
-use fdcc_runtime::stepping::{Failure, Gradient, Grid, Stepped, gradient, step_through};
 use fdcc_tests::models::{meaning, problem, text_of};
 use fdcc_tests::{documents, rate};
 

@@ -56,8 +56,8 @@ const FOREIGN: &[(&str, &[&str])] = &[
     ("pest", &["grammar/src/parse/"]),
     ("pest_derive", &["grammar/src/parse/"]),
     ("cranelift", &["compiler/src/generate/cranelift.rs", "compiler/src/generate/cranelift/"]),
-    ("clarabel", &["runtime/src/clarabel.rs"]),
-    ("amd", &["runtime/src/linalg/multifrontal/tree.rs"]),
+    ("clarabel", &["runtime/src/nlp/convex/clarabel.rs"]),
+    ("amd", &["runtime/src/linalg/sparse_ldl/tree.rs"]),
     ("miette", &["cli/src/render.rs"]),
     ("similar", &["cli/src/difference.rs"]),
     ("serde", &["cli/src/output/", "server/src/dispatch.rs"]),
@@ -145,7 +145,7 @@ const ABSENT: &[(&[&str], &[&str], &str)] = &[
     ),
     (
         &["runtime/src/linalg/", "runtime/src/nlp/interior_point/"],
-        &["crate::transcribe", "crate::trajectory", "crate::homotopy", "Problem"],
+        &["crate::transcribe", "crate::solution", "crate::solve", "Problem"],
         "the solver has never heard of time: it sees an `Nlp`",
     ),
     (

@@ -10,7 +10,7 @@ use crate::watch::catch_interrupts;
 use crate::{failure, verdict};
 use clap::Args;
 use fdcc_compiler::{Model, compile_by_parameters};
-use fdcc_runtime::lagrangian::by_parameters;
+use fdcc_runtime::solution::by_parameters;
 use std::time::Instant;
 
 /// Find an optimal trajectory

@@ -7,11 +7,11 @@ use super::tried::{Ended, Happened, Tried};
 use super::units::Units;
 use super::verified::Verification;
 use super::words::{linear_name, mode_name, scheme_name, shape_name, solver_name, status_name};
-use fdcc_runtime::homotopy::Outcome;
-use fdcc_runtime::lagrangian::Hamiltonian;
 use fdcc_runtime::nlp::{self, Status};
 use fdcc_runtime::problem::{Function, Method, Problem, Variable};
-use fdcc_runtime::trajectory;
+use fdcc_runtime::solution;
+use fdcc_runtime::solution::Hamiltonian;
+use fdcc_runtime::solve::Outcome;
 use serde::Serialize;
 
 /// One solve. Numbers are written so that they read back to the same bits.
@@ -115,7 +115,7 @@ pub struct ControlNodes {
 }
 
 impl ControlNodes {
-    fn new(controls: &[Variable], nodes: &trajectory::ControlNodes) -> Self {
+    fn new(controls: &[Variable], nodes: &solution::ControlNodes) -> Self {
         ControlNodes {
             time: nodes.time.clone(),
             values: named_columns(controls.iter().zip(&nodes.values)),
@@ -307,7 +307,7 @@ fn named_columns<'a>(
 }
 
 fn surfaces(problem: &Problem, outcome: &Outcome) -> Named<Vec<Span>> {
-    let spans = |spans: &Vec<fdcc_runtime::modes::Span>| {
+    let spans = |spans: &Vec<fdcc_runtime::solution::modes::Span>| {
         let spans = spans.iter();
         spans
             .map(|s| Span { mode: mode_name(s.mode).to_string(), from: s.from, to: s.to })

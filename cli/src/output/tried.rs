@@ -2,8 +2,8 @@
 
 use super::named::Named;
 use super::words::status_name;
-use fdcc_runtime::homotopy::Outcome;
 use fdcc_runtime::problem::Problem;
+use fdcc_runtime::solve::Outcome;
 use serde::Serialize;
 
 /// How the solve from one of several starting points ended.

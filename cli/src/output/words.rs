@@ -1,9 +1,9 @@
 //! The words that models, files and verdicts have for statuses, modes and settings.
 
-use fdcc_runtime::homotopy::Outcome;
-use fdcc_runtime::modes::Mode;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{ControlShape, Linear, Scheme, Solver};
+use fdcc_runtime::solution::modes::Mode;
+use fdcc_runtime::solve::Outcome;
 
 /// The name of a status in files and verdicts. `infeasible` is what is proved to be so.
 pub fn status_name(outcome: &Outcome) -> &'static str {

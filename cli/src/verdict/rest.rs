@@ -5,7 +5,7 @@ use crate::output::units::Units;
 use crate::solver::Solved;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Columns, Problem};
-use fdcc_runtime::trajectory::Trajectory;
+use fdcc_runtime::solution::Trajectory;
 
 /// Only a condition makes the function of a surface this small, relative to its layer.
 const NOTHING: f64 = 1e-4;

@@ -6,8 +6,8 @@ use crate::output::named::Named;
 use crate::output::saved::{Column, Saved, SavedJump};
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::problem::Problem;
-use fdcc_runtime::starts::Earlier;
-use fdcc_runtime::warm::from_earlier;
+use fdcc_runtime::solve::warm_start::Earlier;
+use fdcc_runtime::solve::warm_start::from_earlier;
 
 /// The start from the solution, whose jumps are those of the problem; nothing if it is not whole.
 /// `between` is what holds between the jumps.

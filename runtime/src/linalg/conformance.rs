@@ -1,9 +1,12 @@
 //! What every factorisation must do, on random chains of stages: solve its system, and know its
 //! inertia.
 
+use super::products::Products;
 use super::riccati::Riccati;
 use super::sparse_ldl::SparseLdl;
-use super::{Factor, Family, Inertia, Products, Stages, Triplets};
+use super::structure::factor::{Factor, Inertia};
+use super::structure::stages::Stages;
+use super::structure::triplets::{Family, Triplets};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 struct Random(u64);

@@ -12,7 +12,8 @@
 //! or variable of the border, which hardly any state has to do with.
 
 use super::sparse_ldl::SparseLdl;
-use super::{Stages, Triplets};
+use super::structure::stages::Stages;
+use super::structure::triplets::Triplets;
 
 /// So many multiplications the recursion makes while the sparse factorisation makes one; measured
 /// were 6 to 12. What is in doubt is the recursion's, whose inertia is exact.
@@ -49,7 +50,7 @@ fn multiplications(stages: Stages) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::Family;
+    use crate::linalg::structure::triplets::Family;
 
     /// Pieces of one state each, which share their length with no other, tied end to start.
     fn pieces(count: usize) -> (Stages, Triplets, Triplets) {

@@ -10,15 +10,11 @@
 mod assessment;
 mod conclusion;
 pub mod convex;
-mod convexity;
 mod error_scale;
-pub(crate) mod estimate;
-mod factors;
 mod filter;
 pub mod interior_point;
+pub(crate) mod multiplier_estimate;
 mod scaling;
-mod sides;
-mod sizes;
 pub mod sqp;
 #[cfg(test)]
 mod tests;

@@ -1,10 +1,10 @@
 //! Small programmes with known answers, which every method finds by itself.
 
-use super::{interior_point, sqp};
-use crate::linalg::{Family, Stages, Triplets};
-use crate::nlp::{
+use super::{
     Derivatives, Multipliers, Nlp, Options, Place, Quantities, Solution, Start, Status, Warm, Watch,
 };
+use super::{interior_point, sqp};
+use crate::linalg::{Family, Stages, Triplets};
 use crate::problem::{Bounds, Linear};
 use std::ops::ControlFlow;
 

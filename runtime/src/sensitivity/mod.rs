@@ -8,28 +8,15 @@
 //! A step is differentiated as it was computed ([`step`](self)), an event by its saltation matrix,
 //! sliding with the oblique projection. [`gradient()`] is the entry.
 
-mod bend;
-mod curvature;
 mod first_order;
-mod gradient;
-mod kink;
-mod linearization;
-mod one_sided;
-mod perturbed;
-mod quantity;
-mod reset;
+mod linearized;
+mod nondifferentiability;
 mod second_order;
-mod sparse_step;
-mod step;
-mod stop;
-mod surface;
-mod sweep;
-mod trouble;
 
-pub use gradient::{Costates, Sensitivity, gradient};
-pub use kink::Kink;
-pub use one_sided::one_sided;
-pub use perturbed::perturbed;
-pub use quantity::Quantity;
+pub use first_order::gradient::{Costates, Sensitivity, gradient};
+pub use first_order::one_sided::one_sided;
+pub use first_order::perturbed::perturbed;
+pub use first_order::quantity::Quantity;
+pub use nondifferentiability::kink::Kink;
+pub use nondifferentiability::{Trouble, TroubleKind};
 pub use second_order::hessian;
-pub use trouble::{Trouble, TroubleKind};

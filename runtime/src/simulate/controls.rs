@@ -19,7 +19,7 @@ pub enum Controls {
 
 impl Controls {
     /// Where controls may jump strictly between two times.
-    pub(super) fn breaks(&self, first: f64, last: f64) -> Vec<f64> {
+    pub(crate) fn breaks(&self, first: f64, last: f64) -> Vec<f64> {
         match self {
             Controls::Guess => Vec::new(),
             Controls::Held { times, .. } => {

@@ -1,6 +1,5 @@
 //! What a simulation is asked for and what it says: plain data.
 
-use super::extremes::Extreme;
 use super::tape::Tape;
 use crate::nlp::Stop;
 use crate::problem::Origin;
@@ -42,7 +41,7 @@ impl Watch {
         Watch(Some(Arc::new(ask)))
     }
 
-    pub(super) fn ask(&self) -> Result<(), Status> {
+    pub(crate) fn ask(&self) -> Result<(), Status> {
         match self.0.as_ref().map(|ask| ask()) {
             Some(ControlFlow::Break(stop)) => Err(Status::Stopped(stop)),
             _ => Ok(()),
@@ -80,7 +79,7 @@ pub enum Integrator {
 
 impl Options {
     /// The method of the first step.
-    pub(super) fn method(&self) -> Method {
+    pub(crate) fn method(&self) -> Method {
         match self.integrator {
             Integrator::Automatic | Integrator::Explicit => Method::Explicit,
             Integrator::Stiff => Method::Stiff,
@@ -190,6 +189,15 @@ pub struct Counts {
     pub stiff: usize,
     /// Evaluations of the right side.
     pub evaluations: usize,
+}
+
+/// A value, and when it is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extreme {
+    /// The value.
+    pub value: f64,
+    /// The time.
+    pub time: f64,
 }
 
 /// A simulation, as far as it came.

@@ -2,7 +2,7 @@
 
 use super::TranscribedNlp;
 use super::interval::Signal;
-use crate::linalg::lu::Lu;
+use crate::linalg::dense::lu::Lu;
 use crate::nlp::Nlp;
 use crate::problem::Columns;
 

@@ -82,6 +82,11 @@ impl<'p> TranscribedNlp<'p> {
         }
     }
 
+    /// What is transcribed.
+    pub(crate) fn problem(&self) -> &'p Problem {
+        self.problem
+    }
+
     /// Sizes of the chain.
     pub fn chain(&self) -> Stages {
         self.stages
@@ -126,12 +131,6 @@ impl<'p> TranscribedNlp<'p> {
     pub fn is_defect(&self, row: usize) -> bool {
         row < self.stages.coupling().start
             && row % self.stages.row_step() < self.stages.defect_rows()
-    }
-
-    /// The largest absolute value of each switching function along `v`.
-    pub fn guard_sizes(&self, v: &[f64]) -> Vec<f64> {
-        let guards = crate::trajectory::guards(self.problem, self, v);
-        guards.iter().map(|psi| psi.iter().fold(0.0, |a: f64, value| a.max(value.abs()))).collect()
     }
 
     /// A step of an equation, or a control that goes on into the next interval.

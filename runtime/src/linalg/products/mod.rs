@@ -14,8 +14,9 @@
 mod sight;
 mod sums;
 
-use super::lanes::is_fused;
-use super::{Stages, Triplets};
+use super::dense::lanes::is_fused;
+use super::structure::stages::Stages;
+use super::structure::triplets::Triplets;
 use sight::{NOTHING, Numbers, Sight};
 use sums::Sums;
 

@@ -1,6 +1,6 @@
 //! What an interval sees of the vectors of a chain: `[x_k u_k y_k x_{k+1} | globals | rows]`.
 
-use crate::linalg::Stages;
+use crate::linalg::structure::stages::Stages;
 use std::ops::Range;
 
 /// Intervals of a batch.

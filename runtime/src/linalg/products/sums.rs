@@ -1,8 +1,8 @@
 //! Sums over the values of a matrix, each a list of terms that is the same for all intervals.
 
 use super::sight::{BATCH, NOTHING, Numbers, Sight};
-use crate::linalg::lanes::multiply_add;
-use crate::linalg::{Family, Triplets};
+use crate::linalg::dense::lanes::multiply_add;
+use crate::linalg::structure::triplets::{Family, Triplets};
 use std::ops::Range;
 
 /// Sums over the values of one matrix.

@@ -3,8 +3,9 @@
 //! Local positions of an interval are those of `(x_k, theta, u_k, y_k, x_{k+1})`.
 
 use super::sizes::Sizes;
-use crate::linalg::lanes::Lanes;
-use crate::linalg::{Family, Stages, Triplets};
+use crate::linalg::dense::lanes::Lanes;
+use crate::linalg::structure::stages::Stages;
+use crate::linalg::structure::triplets::{Family, Triplets};
 
 /// Where one value of an interval goes: `target += values[source + k]`.
 #[derive(Clone, Copy, Debug)]

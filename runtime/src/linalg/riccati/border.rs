@@ -6,7 +6,9 @@
 //! `x_0` itself.
 
 use super::assemble::{each_family, is_coupling};
-use crate::linalg::{Stages, SymmetricFactor, Triplets};
+use crate::linalg::dense::symmetric::SymmetricFactor;
+use crate::linalg::structure::stages::Stages;
+use crate::linalg::structure::triplets::Triplets;
 
 /// `matrix[target] += values[source]`
 #[derive(Clone, Copy)]

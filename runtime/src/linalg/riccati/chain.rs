@@ -5,7 +5,7 @@
 use super::Riccati;
 use super::sizes::Sizes;
 use super::solve::Travel;
-use crate::linalg::lanes::Lanes;
+use crate::linalg::dense::lanes::Lanes;
 
 /// **The table** of sizes that are compiled as constants: states, controls, border; without inner
 /// variables. All others go by the sizes that they are given (0, 0, 0).

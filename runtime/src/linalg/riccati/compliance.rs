@@ -11,7 +11,7 @@
 use super::factors::Factors;
 use super::kernels::{Signed, View, add_product, add_row_product, dot};
 use super::sizes::Sizes;
-use crate::linalg::SymmetricFactor;
+use crate::linalg::dense::symmetric::SymmetricFactor;
 
 /// Working memory where rows are penalised.
 pub(super) struct Compliance {

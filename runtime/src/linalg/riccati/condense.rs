@@ -14,8 +14,8 @@ use super::elimination::{add_row_product, divide};
 use super::factors::Factors;
 use super::kernels::{View, lower_end};
 use super::sizes::Sizes;
-use crate::linalg::Stages;
-use crate::linalg::lanes::{Lanes, part};
+use crate::linalg::dense::lanes::{Lanes, part};
+use crate::linalg::structure::stages::Stages;
 use std::ops::Range;
 
 /// A few intervals, condensed, and the memory for it.

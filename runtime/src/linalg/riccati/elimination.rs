@@ -1,7 +1,7 @@
 //! Products and elimination for four intervals at a time.
 
 use super::kernels::View;
-use crate::linalg::lanes::Lanes;
+use crate::linalg::dense::lanes::Lanes;
 
 /// Row `i` of `Y += A B`: `y` is that row, `inner` the number of columns of `A`. `B` lies row by
 /// row.

@@ -22,7 +22,7 @@ use super::factors::Factors;
 use super::kernels::{Product, Signed, View, add_product, invert_positive, lower_end};
 use super::sizes::Sizes;
 use super::value::Value;
-use crate::linalg::SymmetricFactor;
+use crate::linalg::dense::symmetric::SymmetricFactor;
 
 /// `V W`, where `W = [T; 0 I 0]`.
 struct Pushed<'a> {

@@ -4,7 +4,7 @@
 //! `FUSED` says that the machine multiplies and adds in one instruction; without one `mul_add`
 //! would be a call.
 
-use crate::linalg::lanes::multiply_add;
+use crate::linalg::dense::lanes::multiply_add;
 use std::ops::Range;
 
 /// A matrix inside a slice: entry `(i, j)` is `values[i * row + j * column]`.

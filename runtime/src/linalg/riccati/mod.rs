@@ -29,8 +29,10 @@ mod sizes;
 mod solve;
 mod value;
 
-use super::lanes::is_fused;
-use super::{Factor, Inertia, Stages, Triplets};
+use super::dense::lanes::is_fused;
+use super::structure::factor::{Factor, Inertia};
+use super::structure::stages::Stages;
+use super::structure::triplets::Triplets;
 use assemble::Assembly;
 use border::Border;
 use chain::Matrix;

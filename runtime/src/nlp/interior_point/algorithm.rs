@@ -1,13 +1,13 @@
 //! The loop: look, decide, step.
 
 use super::barrier::{Barrier, Terms};
-use super::finish::{ACCEPTABLE_ERROR, Target};
+use super::formulation::Space;
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::kkt::{Kkt, System};
+use super::line_search::{Accepted, Search};
 use super::residuals::Residuals;
 use super::restoration::{REQUIRED_DECREASE, Restored};
-use super::search::{Accepted, Search};
-use super::space::Space;
+use super::termination::{ACCEPTABLE_ERROR, Target};
 use super::vectors::largest;
 use super::watchdog::Watchdog;
 use crate::nlp::error_scale::objective_scale;

@@ -5,9 +5,9 @@
 //! a solution of it Newton's method takes whole steps, and would do so from a rough solution, too;
 //! far from one a parameter that falls too early costs more than it saves. So there are two paces.
 
+use super::formulation::Space;
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::residuals::Residuals;
-use super::space::Space;
 use super::vectors::dot;
 
 /// How exactly a barrier problem is solved before `mu` falls, which it does to the smaller of

@@ -1,7 +1,7 @@
 //! A point of the primal-dual iteration and what is known there.
 
 use super::barrier::Terms;
-use super::space::Space;
+use super::formulation::Space;
 use super::vectors::{are_finite, largest, sum_of_sizes};
 use crate::linalg::{Products, Triplets};
 use crate::nlp::{Counts, Derivatives, Nlp};

@@ -11,8 +11,8 @@
 //! Inertia is corrected as in Waechter & Biegler 2006, algorithm IC.
 
 use super::barrier::Barrier;
+use super::formulation::Space;
 use super::iterate::{Iterate, Slopes, Step};
-use super::space::Space;
 use super::vectors::{are_finite, dot, largest};
 use crate::linalg::riccati::Riccati;
 use crate::linalg::sparse_ldl::SparseLdl;

@@ -6,21 +6,21 @@
 
 mod algorithm;
 mod barrier;
-mod finish;
+mod formulation;
+mod initialization;
 mod iterate;
 mod kkt;
+mod line_search;
 mod residuals;
 mod restoration;
 mod saddle;
-mod search;
-mod space;
-mod start;
+mod termination;
 mod vectors;
 mod watchdog;
 
 use super::conclusion::{Ended, conclude};
-use super::factors::Factors;
 use super::scaling::Scaled;
+use super::scaling::factors::Factors;
 use super::{Multipliers, Nlp, Options, Progress, Solution, Start, Status, Watch};
 use crate::linalg::is_sparse_cheaper;
 use crate::problem::Linear;
@@ -167,7 +167,7 @@ fn attempt_scaled(
     let mut watch = |progress: &Progress| {
         watch(&Progress { objective: progress.objective / objective_scale, ..*progress })
     };
-    let mut algorithm = start::prepare(&mut scaled, &start, *options);
+    let mut algorithm = initialization::prepare(&mut scaled, &start, *options);
     let status = run(&mut algorithm, &mut scaled, &mut watch);
     let mu = algorithm.barrier.mu;
     let Algorithm { at, counts, residuals, space, is_saddle, decrement, .. } = algorithm;

@@ -12,8 +12,8 @@
 //!     owed = ( |lambda' residuals| + sum (multiplier * how far its bound was moved) ) / max(1, |f|)
 //! ```
 
+use super::formulation::Space;
 use super::iterate::{Iterate, Slopes, Values};
-use super::space::Space;
 use super::vectors::{largest_sum, sum_of_sizes};
 use crate::nlp::error_scale::{error_scale, objective_scale};
 

@@ -11,9 +11,9 @@
 //! reduces the violation.
 
 use super::algorithm::{Algorithm, Outcome};
+use super::formulation::Space;
 use super::iterate::{Iterate, Values};
 use super::residuals::Residuals;
-use super::space::Space;
 use crate::nlp::filter::Filter;
 
 use crate::linalg::{Family, Stages, Triplets};

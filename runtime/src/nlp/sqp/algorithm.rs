@@ -6,8 +6,8 @@ use super::residuals::{Residuals, largest};
 use super::search::{Accepted, Search};
 use super::subproblem::{Direction, Subproblem};
 use super::working::Working;
+use crate::nlp::convex::one_sided::Sides;
 use crate::nlp::filter::{Filter, Reference};
-use crate::nlp::sides::Sides;
 use crate::nlp::{Counts, Derivatives, Multipliers, Nlp, Options, Progress, Status, Stop, Watch};
 use std::ops::ControlFlow;
 

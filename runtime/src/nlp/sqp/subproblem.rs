@@ -11,8 +11,9 @@
 use super::curvature::Convexity;
 use super::point::{Point, violation};
 use super::working::Working;
-use crate::clarabel::{Columns, ConicProgram, ConicSolution, ConicStatus, solve_conic};
-use crate::nlp::sides::{Sides, Source, by_rows};
+use crate::linalg::Columns;
+use crate::nlp::convex::clarabel::{ConicProgram, ConicSolution, ConicStatus, solve_conic};
+use crate::nlp::convex::one_sided::{Sides, Source, by_rows};
 use crate::nlp::{Counts, Derivatives, Multipliers, Nlp};
 use crate::problem::Bounds;
 

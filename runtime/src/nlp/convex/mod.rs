@@ -1,0 +1,173 @@
+//! Convex programmes go to the conic solver, and their answer is a global optimum.
+//!
+//! A programme whose rows are affine and whose objective is a convex quadratic is read off its own
+//! derivatives at one point `v0`: `P = hessian`, `q = gradient - P v0`, `A = jacobian`, constants
+//! from the row values.
+
+pub(super) mod clarabel;
+mod convexity;
+pub(super) mod one_sided;
+
+use super::conclusion::{Ended, conclude};
+use super::scaling::Scaled;
+use super::{
+    Counts, Derivatives, Multipliers, Nlp, Options, Quantities, Solution, Start, Status,
+    constraint_violation,
+};
+use crate::linalg::{Columns, Triplets};
+use crate::problem::{Bounds, Degree, Problem};
+use clarabel::{ConicProgram, ConicSolution, ConicStatus, solve_conic};
+use one_sided::Sides;
+
+/// Whether the transcription of a problem is affine in its rows and quadratic in its objective.
+pub fn is_quadratic_programme(problem: &Problem) -> bool {
+    let states = problem.layout.x;
+    let affine = |degree: Degree| degree == Degree::Affine;
+    let dynamics = (0..states).all(|row| affine(problem.dynamics.degree(row)));
+    let path = (0..problem.path.outputs()).all(|row| affine(problem.path.degree(row)));
+    let boundary = (1..problem.boundary.outputs()).all(|row| affine(problem.boundary.degree(row)));
+    let cost = !problem.running_cost || problem.dynamics.degree(states) <= Degree::Quadratic;
+    dynamics && path && boundary && cost && problem.boundary.degree(0) <= Degree::Quadratic
+}
+
+/// Whether the objective of a quadratic programme is proved to be convex in the variables that are
+/// free ([`convexity`]).
+pub fn is_proved(nlp: &mut dyn Nlp) -> bool {
+    let size = nlp.variable_bounds().len();
+    let mut derivatives = Derivatives::new(nlp);
+    let multipliers = vec![0.0; nlp.row_bounds().len()];
+    nlp.derivatives(&vec![0.0; size], 1.0, &multipliers, &mut derivatives);
+    let is_free = |i: usize| !nlp.variable_bounds()[i].is_equality();
+    let entries = nlp.hessian_structure().entries().zip(&derivatives.hessian);
+    let free = entries.filter(|((i, j), _)| is_free(*i) && is_free(*j));
+    convexity::is_proved(free.map(|((i, j), value)| (i, j, *value)), size)
+}
+
+/// Solves a convex quadratic programme; `None` where there is nothing to choose. The caller has
+/// made sure that it is one.
+pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options) -> Option<Solution> {
+    let mut scaled = Scaled::new(nlp, &start.v);
+    let v = scaled.start(start).v;
+    let mut ended = solve_scaled(&mut scaled, &v, options)?;
+    scaled.unscale(&mut ended.v, &mut ended.multipliers);
+    let mut solution = conclude(nlp, ended, options);
+    solution.global = solution.status == Status::Solved;
+    Some(solution)
+}
+
+fn solve_scaled(nlp: &mut dyn Nlp, v: &[f64], options: &Options) -> Option<Ended> {
+    if v.is_empty() {
+        return None;
+    }
+    let mut derivatives = Derivatives::new(nlp);
+    let multipliers = vec![0.0; nlp.row_bounds().len()];
+    nlp.derivatives(v, 1.0, &multipliers, &mut derivatives);
+    let sides = Sides::new(nlp);
+    let program = ConicProgram {
+        q: linear_part(nlp, &derivatives, v),
+        a: sides.columns(nlp, &derivatives.jacobian),
+        b: right_side(nlp, &derivatives.jacobian, &sides, v),
+        p: upper_columns(nlp.hessian_structure(), &derivatives.hessian, v.len()),
+        equalities: sides.equalities,
+    };
+    let found = solve_conic(program, (0.1 * options.tol).max(1e-10), options.max_iter);
+    Some(ended(nlp, &sides, found))
+}
+
+fn linear_part(nlp: &dyn Nlp, derivatives: &Derivatives, v: &[f64]) -> Vec<f64> {
+    let mut curved = vec![0.0; v.len()];
+    nlp.hessian_structure().symmetric_multiply_add(&derivatives.hessian, v, &mut curved);
+    derivatives.gradient.iter().zip(&curved).map(|(gradient, curved)| gradient - curved).collect()
+}
+
+/// `b`, from which the constant parts of the rows have been taken.
+fn right_side(nlp: &mut dyn Nlp, jacobian: &[f64], sides: &Sides, v: &[f64]) -> Vec<f64> {
+    let count = nlp.row_bounds().len();
+    let (mut rows, mut linear) = (vec![0.0; count], vec![0.0; count]);
+    nlp.values(v, &mut rows);
+    nlp.jacobian_structure().multiply_add(jacobian, v, &mut linear);
+    rows.iter_mut().zip(&linear).for_each(|(row, linear)| *row -= linear);
+    sides.right_side(&rows, &vec![0.0; v.len()])
+}
+
+fn ended(nlp: &mut dyn Nlp, sides: &Sides, found: ConicSolution) -> Ended {
+    let status = match found.status {
+        ConicStatus::Solved => Status::Solved,
+        ConicStatus::Infeasible => Status::Infeasible,
+        ConicStatus::Unbounded => Status::Unbounded,
+        ConicStatus::IterationLimit => Status::IterationLimit,
+        ConicStatus::Roughly | ConicStatus::Failed => Status::NumericalFailure,
+    };
+    let mut v = found.x;
+    clamp(nlp, &mut v);
+    let multipliers = sides.multipliers(&found.z);
+    let status = match status {
+        Status::Infeasible if !proves_infeasible(nlp, &multipliers.rows) => {
+            Status::NumericalFailure
+        }
+        status => status,
+    };
+    let counts = Counts {
+        iterations: found.iterations,
+        factorizations: found.iterations,
+        ..Counts::default()
+    };
+    let kkt_error = stationarity(nlp, &v, &multipliers).max(constraint_violation(nlp, &v));
+    let (mu, is_saddle, decrement) = (0.0, false, f64::INFINITY);
+    Ended { status, v, multipliers, mu, kkt_error, is_saddle, decrement, counts }
+}
+
+/// A variable without a bound is thought to be within so many of its units.
+const FARTHEST: f64 = 1e6;
+
+/// Whether multipliers of affine rows prove that no point within the bounds meets them (Farkas'
+/// lemma; Boyd & Vandenberghe, Convex Optimization, section 5.8): at all these points the sum of
+/// the rows, each times its multiplier, is larger than their bounds allow.
+fn proves_infeasible(nlp: &mut dyn Nlp, lambda: &[f64]) -> bool {
+    let origin = vec![0.0; nlp.variable_bounds().len()];
+    let (mut rows, mut at) = (vec![0.0; lambda.len()], Derivatives::new(nlp));
+    nlp.values(&origin, &mut rows);
+    nlp.derivatives(&origin, 0.0, &vec![0.0; lambda.len()], &mut at);
+    let mut slopes = origin;
+    nlp.jacobian_structure().transposed_multiply_add(&at.jacobian, lambda, &mut slopes);
+    let Quantities { variables, units, .. } = nlp.quantities();
+    let least = |(i, slope): (usize, &f64)| {
+        let (bounds, farthest) = (nlp.variable_bounds()[i], FARTHEST * units[variables[i]]);
+        slope * if *slope > 0.0 { bounds.lower.max(-farthest) } else { bounds.upper.min(farthest) }
+    };
+    let least: f64 = slopes.iter().enumerate().map(least).sum();
+    let excess = |((lambda, row), bounds): ((&f64, &f64), &Bounds)| match *lambda {
+        0.0 => 0.0,
+        above if above > 0.0 => above * (row - bounds.upper),
+        below => below * (row - bounds.lower),
+    };
+    let excesses: f64 = lambda.iter().zip(&rows).zip(nlp.row_bounds()).map(excess).sum();
+    excesses + least > 0.0
+}
+
+/// The conic solver keeps bounds only to its tolerance.
+fn clamp(nlp: &dyn Nlp, v: &mut [f64]) {
+    for (value, bounds) in v.iter_mut().zip(nlp.variable_bounds()) {
+        *value = value.max(bounds.lower).min(bounds.upper);
+    }
+}
+
+/// Largest component of the gradient of the Lagrangian.
+fn stationarity(nlp: &mut dyn Nlp, v: &[f64], multipliers: &Multipliers) -> f64 {
+    let mut derivatives = Derivatives::new(nlp);
+    nlp.derivatives(v, 1.0, &multipliers.rows, &mut derivatives);
+    let mut gradient = derivatives.gradient;
+    nlp.jacobian_structure().transposed_multiply_add(
+        &derivatives.jacobian,
+        &multipliers.rows,
+        &mut gradient,
+    );
+    let bounds = multipliers.upper.iter().zip(&multipliers.lower);
+    gradient.iter().zip(bounds).fold(0.0, |a, (g, (upper, lower))| a.max((g + upper - lower).abs()))
+}
+
+fn upper_columns(structure: &Triplets, values: &[f64], size: usize) -> Columns {
+    let entries =
+        structure.entries().zip(values).map(|((i, j), value)| (i.min(j), i.max(j), *value));
+    Columns::of_entries(&entries.collect::<Vec<_>>(), size, size)
+}

@@ -1,0 +1,162 @@
+//! Factors that make the numbers of a programme moderate, whatever the units of the model.
+//!
+//! A quantity whose size ([`sizes`](super::nominal)) is between 1/16 and 16 is left alone, others are
+//! brought to the nearer of these. The steps of a state are divided by what it is divided by. The
+//! objective is scaled so that its gradient, summed over the times of a quantity, is between 1 and
+//! 100. As in Ipopt (Waechter & Biegler 2006, section 3.8) rows with gradients above 100 at the
+//!      start are scaled down to that; path constraints and boundary conditions whose gradients are
+//!      all below 1/100, at the start and near it, are scaled up to 1. All but the factors of steep
+//!      rows are powers of two, which round nothing.
+
+use super::nominal::{largest, near, sizes, sizes_of_answer, slopes};
+use crate::nlp::{Derivatives, Nlp, Quantities};
+
+/// Quantities up to this size, and down to its inverse, are moderate.
+const MODERATE: f64 = 16.0;
+/// The same of gradients of rows.
+const MODERATE_GRADIENT: f64 = 100.0;
+/// The least and the largest gradient of the objective.
+const LEAST_OBJECTIVE: f64 = 1.0;
+const LARGEST_OBJECTIVE: f64 = 100.0;
+/// Sizes and slopes below this are none.
+const SMALLEST: f64 = 1e-30;
+/// Rows are not scaled down below this.
+const LEAST_FACTOR: f64 = 1e-8;
+/// Factors of the objective beyond this, or below its inverse, come from slopes that are rounding.
+const LARGEST_FACTOR: f64 = 1e12;
+
+/// What the numbers of a programme are multiplied by.
+#[derive(Clone)]
+pub(in crate::nlp) struct Factors {
+    pub(in crate::nlp) objective: f64,
+    /// `v` of the programme is so many times the variables of the scaled one.
+    pub(in crate::nlp) variables: Vec<f64>,
+    pub(in crate::nlp) rows: Vec<f64>,
+}
+
+impl Factors {
+    /// Those for a solve that begins at `v`, of which little is known.
+    pub(in crate::nlp) fn new(nlp: &mut dyn Nlp, v: &[f64]) -> Self {
+        let (quantities, v) = (nlp.quantities(), inside(nlp, v));
+        let sizes = sizes(nlp, &quantities, &v);
+        Factors::of_sizes(nlp, &quantities, &v, &sizes)
+    }
+
+    /// Those for a solve that begins at the answer of another.
+    pub(in crate::nlp) fn of_answer(nlp: &mut dyn Nlp, v: &[f64]) -> Self {
+        let (quantities, v) = (nlp.quantities(), inside(nlp, v));
+        let sizes = sizes_of_answer(&quantities, &v);
+        Factors::of_sizes(nlp, &quantities, &v, &sizes)
+    }
+
+    /// The largest ratio of the factors of a variable or of the objective.
+    pub(in crate::nlp) fn distance(&self, other: &Factors) -> f64 {
+        let own = self.variables.iter().chain([&self.objective]);
+        let ratios = own.zip(other.variables.iter().chain([&other.objective])).map(|(a, b)| a / b);
+        ratios.fold(1.0, |most, ratio| most.max(ratio).max(1.0 / ratio))
+    }
+
+    fn of_sizes(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64], sizes: &[f64]) -> Self {
+        let at_start = slopes(nlp, v);
+        let units: Vec<f64> = sizes.iter().map(|size| unit(*size)).collect();
+        let variables: Vec<f64> = quantities.variables.iter().map(|i| units[*i]).collect();
+        let mut steepness = Steepness::new(nlp, quantities, &variables, &at_start);
+        // What is flat at the start may be so by chance.
+        if steepness.is_flat(quantities) {
+            let near = near(nlp, quantities, v, sizes);
+            let at_near = slopes(nlp, &near);
+            steepness = steepness.or(Steepness::new(nlp, quantities, &variables, &at_near));
+        }
+        let objective = objective(steepness.objective);
+        Factors { objective, rows: rows(quantities, &units, steepness), variables }
+    }
+}
+
+/// The point of the bounds that is nearest to `v`.
+fn inside(nlp: &dyn Nlp, v: &[f64]) -> Vec<f64> {
+    v.iter().zip(nlp.variable_bounds()).map(|(v, it)| v.max(it.lower).min(it.upper)).collect()
+}
+
+/// The gradients of objective and rows in scaled variables.
+struct Steepness {
+    /// Summed over the times of each quantity; the largest sum.
+    objective: f64,
+    rows: Vec<f64>,
+    /// The largest of the rows that are one quantity.
+    conditions: Vec<f64>,
+}
+
+impl Steepness {
+    fn new(nlp: &dyn Nlp, quantities: &Quantities, variables: &[f64], at: &Derivatives) -> Self {
+        let mut rows = vec![0.0f64; quantities.rows.len()];
+        for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&at.jacobian) {
+            rows[row] = rows[row].max((variables[column] * slope).abs());
+        }
+        let conditions = largest(&quantities.rows, rows.iter().copied());
+        Steepness { objective: objective_slope(quantities, variables, at), rows, conditions }
+    }
+
+    /// Whether something would be scaled up.
+    fn is_flat(&self, quantities: &Quantities) -> bool {
+        let conditions = self.conditions.iter().skip(quantities.stepped);
+        self.objective < LEAST_OBJECTIVE
+            || conditions.into_iter().any(|slope| *slope < 1.0 / MODERATE_GRADIENT)
+    }
+
+    /// The same with what is steeper elsewhere.
+    fn or(mut self, other: Steepness) -> Self {
+        let steeper = |a: f64, b: f64| if b.is_finite() { a.max(b) } else { a };
+        self.objective = steeper(self.objective, other.objective);
+        let conditions = self.conditions.iter_mut().zip(other.conditions);
+        conditions.for_each(|(slope, other)| *slope = steeper(*slope, other));
+        self
+    }
+}
+
+/// What a quantity of this size is divided by; 1 where it is moderate or nothing is known.
+fn unit(size: f64) -> f64 {
+    if size == 0.0 || !size.is_finite() {
+        return 1.0;
+    }
+    let size = power_of_two(size.clamp(SMALLEST, 1.0 / SMALLEST));
+    size / size.clamp(1.0 / MODERATE, MODERATE)
+}
+
+fn power_of_two(value: f64) -> f64 {
+    value.log2().round().exp2()
+}
+
+/// The gradient of the objective, summed over the times of each quantity; the largest sum.
+fn objective_slope(quantities: &Quantities, variables: &[f64], at: &Derivatives) -> f64 {
+    let mut sums = vec![0.0; variables.len()];
+    for ((i, unit), slope) in quantities.variables.iter().zip(variables).zip(&at.gradient) {
+        sums[*i] += (unit * slope).abs();
+    }
+    sums.into_iter().fold(0.0, f64::max)
+}
+
+fn objective(slope: f64) -> f64 {
+    if slope == 0.0 || !slope.is_finite() {
+        return 1.0;
+    }
+    let factor = slope.clamp(LEAST_OBJECTIVE, LARGEST_OBJECTIVE) / slope;
+    power_of_two(factor.clamp(1.0 / LARGEST_FACTOR, LARGEST_FACTOR))
+}
+
+fn rows(quantities: &Quantities, units: &[f64], steepness: Steepness) -> Vec<f64> {
+    let upwards: Vec<f64> = steepness.conditions.into_iter().map(upwards).collect();
+    let factor = |(i, slope): (&usize, f64)| {
+        let factor = if *i < quantities.stepped { 1.0 / units[*i] } else { upwards[*i] };
+        factor * downwards(factor * slope)
+    };
+    quantities.rows.iter().zip(steepness.rows).map(factor).collect()
+}
+
+fn upwards(slope: f64) -> f64 {
+    let is_small = slope > 0.0 && slope < 1.0 / MODERATE_GRADIENT;
+    if is_small { power_of_two(1.0 / slope.max(SMALLEST)) } else { 1.0 }
+}
+
+fn downwards(slope: f64) -> f64 {
+    if slope > MODERATE_GRADIENT { (MODERATE_GRADIENT / slope).max(LEAST_FACTOR) } else { 1.0 }
+}

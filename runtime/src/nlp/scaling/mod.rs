@@ -1,0 +1,154 @@
+//! A programme in other units, with numbers of moderate size ([`factors`](self::factors)).
+//!
+//! ```text
+//!     minimise  s f(V w)   subject to   R lower <= R c(V w) <= R upper,   lower <= V w <= upper
+//! ```
+//!
+//! Newton's step is the same in all units; regularisation, tolerances and the norm of violations
+//! are not.
+
+pub(in crate::nlp) mod factors;
+mod nominal;
+
+use super::{Derivatives, Multipliers, Nlp, Place, Quantities, Start};
+use crate::linalg::{Stages, Triplets};
+use crate::problem::Bounds;
+use factors::Factors;
+
+/// The scaled programme.
+pub(crate) struct Scaled<'a> {
+    inner: &'a mut dyn Nlp,
+    factors: Factors,
+    variable_bounds: Vec<Bounds>,
+    row_bounds: Vec<Bounds>,
+    /// A point and multipliers of the programme inside.
+    point: Vec<f64>,
+    multipliers: Vec<f64>,
+    /// Factors of Jacobian and Hessian values; none where all are 1, as is usual.
+    entries: Vec<f64>,
+    curvatures: Vec<f64>,
+}
+
+impl<'a> Scaled<'a> {
+    /// With the factors for a solve that begins at `v`.
+    pub(crate) fn new(inner: &'a mut dyn Nlp, v: &[f64]) -> Self {
+        let factors = Factors::new(inner, v);
+        Scaled::with(inner, factors)
+    }
+
+    /// With these factors.
+    pub(in crate::nlp) fn with(inner: &'a mut dyn Nlp, factors: Factors) -> Self {
+        let Factors { variables, rows, .. } = &factors;
+        let scaled =
+            |bounds: &Bounds, s: f64| Bounds { lower: bounds.lower * s, upper: bounds.upper * s };
+        let of_variables = inner.variable_bounds().iter().zip(variables);
+        let of_rows = inner.row_bounds().iter().zip(rows);
+        let entries = inner.jacobian_structure().entries().map(|(row, i)| rows[row] * variables[i]);
+        let curvatures =
+            inner.hessian_structure().entries().map(|(i, j)| variables[i] * variables[j]);
+        Scaled {
+            variable_bounds: of_variables.map(|(bounds, s)| scaled(bounds, 1.0 / s)).collect(),
+            row_bounds: of_rows.map(|(bounds, s)| scaled(bounds, *s)).collect(),
+            point: variables.clone(),
+            multipliers: rows.clone(),
+            entries: unless_one(entries.collect()),
+            curvatures: unless_one(curvatures.collect()),
+            inner,
+            factors,
+        }
+    }
+
+    /// What the objective is multiplied by.
+    pub(crate) fn objective(&self) -> f64 {
+        self.factors.objective
+    }
+
+    /// A start of the programme inside as one of this programme.
+    pub(crate) fn start(&self, start: &Start) -> Start {
+        let Factors { objective, variables, rows } = &self.factors;
+        let mut start = start.clone();
+        start.v.iter_mut().zip(variables).for_each(|(value, s)| *value /= s);
+        if let Some(Multipliers { rows: of_rows, lower, upper }) =
+            start.warm.as_mut().map(|warm| &mut warm.multipliers)
+        {
+            of_rows.iter_mut().zip(rows).for_each(|(value, s)| *value *= objective / s);
+            for bounds in [lower, upper] {
+                bounds.iter_mut().zip(variables).for_each(|(value, s)| *value *= objective * s);
+            }
+        }
+        start
+    }
+
+    /// A point and multipliers of this programme as those of the programme inside.
+    pub(crate) fn unscale(&self, v: &mut [f64], multipliers: &mut Multipliers) {
+        let Factors { objective, variables, rows } = &self.factors;
+        v.iter_mut().zip(variables).for_each(|(value, s)| *value *= s);
+        multipliers.rows.iter_mut().zip(rows).for_each(|(value, s)| *value *= s / objective);
+        for bounds in [&mut multipliers.lower, &mut multipliers.upper] {
+            bounds.iter_mut().zip(variables).for_each(|(value, s)| *value /= objective * s);
+        }
+    }
+
+    fn load(&mut self, w: &[f64]) {
+        let both = w.iter().zip(&self.factors.variables);
+        self.point.iter_mut().zip(both).for_each(|(v, (w, s))| *v = w * s);
+    }
+}
+
+/// Nothing where all are 1.
+fn unless_one(factors: Vec<f64>) -> Vec<f64> {
+    if factors.iter().all(|s| *s == 1.0) { Vec::new() } else { factors }
+}
+
+impl Nlp for Scaled<'_> {
+    fn variable_bounds(&self) -> &[Bounds] {
+        &self.variable_bounds
+    }
+    fn row_bounds(&self) -> &[Bounds] {
+        &self.row_bounds
+    }
+    fn jacobian_structure(&self) -> &Triplets {
+        self.inner.jacobian_structure()
+    }
+    fn hessian_structure(&self) -> &Triplets {
+        self.inner.hessian_structure()
+    }
+    fn stages(&self) -> Option<Stages> {
+        self.inner.stages()
+    }
+    fn quantities(&self) -> Quantities {
+        let mut quantities = self.inner.quantities();
+        // All variables of a quantity have one factor.
+        let mut units = quantities.units.clone();
+        for (i, s) in quantities.variables.iter().zip(&self.factors.variables) {
+            units[*i] = quantities.units[*i] / s;
+        }
+        quantities.units = units;
+        quantities.objective *= self.factors.objective;
+        quantities
+    }
+    fn values(&mut self, w: &[f64], rows: &mut [f64]) -> f64 {
+        self.load(w);
+        let objective = self.inner.values(&self.point, rows);
+        rows.iter_mut().zip(&self.factors.rows).for_each(|(value, s)| *value *= s);
+        self.factors.objective * objective
+    }
+    fn derivatives(&mut self, w: &[f64], weight: f64, multipliers: &[f64], out: &mut Derivatives) {
+        self.load(w);
+        let Factors { objective, variables, rows } = &self.factors;
+        for ((target, multiplier), s) in self.multipliers.iter_mut().zip(multipliers).zip(rows) {
+            *target = multiplier * s;
+        }
+        self.inner.derivatives(&self.point, weight * objective, &self.multipliers, out);
+        out.gradient.iter_mut().zip(variables).for_each(|(value, s)| *value *= objective * s);
+        out.jacobian.iter_mut().zip(&self.entries).for_each(|(value, s)| *value *= s);
+        out.hessian.iter_mut().zip(&self.curvatures).for_each(|(value, s)| *value *= s);
+    }
+    fn row_place(&self, row: usize) -> Place {
+        self.inner.row_place(row)
+    }
+    fn not_finite(&mut self, w: &[f64]) -> Option<Place> {
+        self.load(w);
+        self.inner.not_finite(&self.point)
+    }
+}

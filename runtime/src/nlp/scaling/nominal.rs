@@ -1,0 +1,207 @@
+//! How large the quantities of a programme are, as far as can be told before it is solved.
+//!
+//! The size of a quantity is the largest value of its guess; where that is 0, the length of its
+//! range; where that is infinite, how far a condition on it alone takes it; where there is none,
+//! what the others make of it,
+//!
+//! ```text
+//!     of a state     S_i = sum of |steps of x_i|               with all whose size is known moved by a part of it;
+//!     of a control   S_j = min over i of S_i / sum of |slopes of x_i's steps|, there too
+//! ```
+//!
+//! A small guess may be meant as none, and a solve that begins at an earlier solution finds
+//! quantities at rest: it is the size only as far as range, conditions and equations do not say
+//! more. Beyond 1 they do not raise it.
+
+use crate::nlp::{Derivatives, Nlp, Quantities};
+use crate::problem::Bounds;
+use std::collections::BTreeMap;
+
+/// Multiples of it spread evenly between 0 and 1.
+const GOLDEN: f64 = 0.618_033_988_749_895;
+/// A guess below this is small.
+const SMALL: f64 = 1.0 / 16.0;
+/// A quantity with a small guess has at least this part of its range.
+const LEAST_PART: f64 = 1e-2;
+/// A range of more units is no statement about a size.
+const LONGEST_RANGE: f64 = 1e4;
+/// What is smaller than this part of its unit at an answer may be rounding.
+const LEAST_ANSWER: f64 = 1e-4;
+/// Estimates beyond this, or below its inverse, are rounding or poles.
+const LARGEST_ESTIMATE: f64 = 1e8;
+
+/// The size of each quantity; 0 where nothing is known.
+pub(in crate::nlp) fn sizes(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64]) -> Vec<f64> {
+    let guesses = largest(&quantities.variables, v.iter().map(|value| value.abs()));
+    let mut ranges = largest(&quantities.variables, nlp.variable_bounds().iter().map(range));
+    let wide = |(range, unit): &(&mut f64, &f64)| **range > LONGEST_RANGE * **unit;
+    ranges.iter_mut().zip(&quantities.units).filter(wide).for_each(|(range, _)| *range = 0.0);
+    let mut sizes: Vec<f64> =
+        guesses.iter().zip(ranges).map(|(guess, range)| stated(*guess, range)).collect();
+    if sizes.contains(&0.0) {
+        let demands = demands(nlp, quantities, v);
+        fill(&mut sizes, |i| if demands[i] > 0.0 { demands[i].max(guesses[i]) } else { 0.0 });
+    }
+    while sizes.contains(&0.0) {
+        let known = sizes.clone();
+        let found = estimates(nlp, quantities, v, &known);
+        if found == known {
+            // A signal begins somewhere; an unknown that nothing is known of is left as it is.
+            fill(&mut sizes, |i| if i < quantities.stepped { guesses[i] } else { 0.0 });
+        } else {
+            fill(&mut sizes, |i| if found[i] > 0.0 { believed(found[i], guesses[i]) } else { 0.0 });
+        }
+        if sizes == known {
+            break;
+        }
+    }
+    sizes
+}
+
+/// The size of each quantity at an answer; 0 where it is nothing. What guess and bounds said has no
+/// part in it.
+pub(in crate::nlp) fn sizes_of_answer(quantities: &Quantities, v: &[f64]) -> Vec<f64> {
+    let largest = largest(&quantities.variables, v.iter().map(|value| value.abs()));
+    let is_there =
+        |(size, unit): (&f64, &f64)| if *size >= LEAST_ANSWER * unit { *size } else { 0.0 };
+    largest.iter().zip(&quantities.units).map(is_there).collect()
+}
+
+/// Gives those whose size is unknown what has been found.
+fn fill(sizes: &mut [f64], found: impl Fn(usize) -> f64) {
+    sizes
+        .iter_mut()
+        .enumerate()
+        .filter(|(_, size)| **size == 0.0)
+        .for_each(|(i, size)| *size = found(i));
+}
+
+/// The sizes with those of states that the equations tell, else of controls.
+fn estimates(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64], known: &[f64]) -> Vec<f64> {
+    let mut sizes = known.to_vec();
+    let near = near(nlp, quantities, v, known);
+    find_states(nlp, quantities, &near, &mut sizes);
+    if sizes == known {
+        find_controls(nlp, quantities, &near, &mut sizes);
+    }
+    sizes
+}
+
+/// What guess and range say; 0 where that is nothing.
+fn stated(guess: f64, range: f64) -> f64 {
+    if guess >= SMALL {
+        guess
+    } else if guess > 0.0 && range > 0.0 {
+        guess.max((LEAST_PART * range).min(1.0))
+    } else {
+        range
+    }
+}
+
+/// What an estimate says beside a small guess, or without one.
+fn believed(estimate: f64, guess: f64) -> f64 {
+    if guess > 0.0 {
+        estimate.min(1.0).max(guess)
+    } else {
+        estimate.clamp(1.0 / LARGEST_ESTIMATE, LARGEST_ESTIMATE)
+    }
+}
+
+/// How far each quantity has to move for conditions on it alone.
+fn demands(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64]) -> Vec<f64> {
+    let slopes = slopes(nlp, v);
+    let mut rows = vec![0.0; quantities.rows.len()];
+    nlp.values(v, &mut rows);
+    let mut steepest = vec![(0, 0.0f64, 0); rows.len()];
+    for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&slopes.jacobian) {
+        let (quantity, most, entries) = &mut steepest[row];
+        if *slope != 0.0 {
+            (*quantity, *most, *entries) =
+                (quantities.variables[column], slope.abs(), *entries + 1);
+        }
+    }
+    let mut demands = vec![0.0f64; quantities.variables.iter().max().map_or(0, |last| last + 1)];
+    let conditions = nlp.row_bounds().iter().zip(&rows).zip(&quantities.rows).zip(steepest);
+    for (((bounds, value), row), (quantity, slope, entries)) in conditions {
+        let distance = bounds.violation(*value) / slope;
+        if *row >= quantities.stepped && entries == 1 && distance.is_finite() {
+            demands[quantity] = demands[quantity].max(distance);
+        }
+    }
+    demands
+}
+
+/// Each variable moved by a part of the size of its quantity, within its bounds.
+pub(in crate::nlp) fn near(
+    nlp: &dyn Nlp,
+    quantities: &Quantities,
+    v: &[f64],
+    sizes: &[f64],
+) -> Vec<f64> {
+    let moved = v.iter().zip(nlp.variable_bounds()).zip(&quantities.variables).enumerate();
+    let moved = moved.map(|(i, ((v, bounds), quantity))| {
+        let (v, size) = (v.max(bounds.lower).min(bounds.upper), sizes[*quantity]);
+        let (least, most) = ((v - size).max(bounds.lower), (v + size).min(bounds.upper));
+        least + (i as f64 * GOLDEN).fract() * (most - least)
+    });
+    moved.collect()
+}
+
+/// Derivatives of objective and rows.
+pub(in crate::nlp) fn slopes(nlp: &mut dyn Nlp, v: &[f64]) -> Derivatives {
+    let mut slopes = Derivatives::new(nlp);
+    nlp.derivatives(v, 0.0, &vec![0.0; nlp.row_bounds().len()], &mut slopes);
+    slopes
+}
+
+/// The largest value that belongs to each number in `of`.
+pub(in crate::nlp) fn largest(of: &[usize], values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut largest = vec![0.0f64; of.iter().max().map_or(0, |last| last + 1)];
+    of.iter().zip(values).for_each(|(i, value)| largest[*i] = largest[*i].max(value));
+    largest
+}
+
+fn range(bounds: &Bounds) -> f64 {
+    if bounds.is_equality() { 0.0 } else { bounds.upper - bounds.lower }
+}
+
+/// How far the equations take states of unknown size, which are 0: all that is left of a step is
+/// its right side.
+fn find_states(nlp: &mut dyn Nlp, quantities: &Quantities, near: &[f64], sizes: &mut [f64]) {
+    let mut rows = vec![0.0; quantities.rows.len()];
+    nlp.values(near, &mut rows);
+    let mut steps: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    for (i, row) in quantities.rows.iter().zip(rows) {
+        if *i < quantities.stepped && sizes[*i] == 0.0 && row.is_finite() {
+            steps.entry(*i).or_default().push(row.abs());
+        }
+    }
+    let intervals = intervals(nlp);
+    steps.into_iter().for_each(|(i, steps)| sizes[i] = intervals * mean(&steps));
+}
+
+/// How much of a control of unknown size changes a state by its own size.
+fn find_controls(nlp: &mut dyn Nlp, quantities: &Quantities, near: &[f64], sizes: &mut [f64]) {
+    let slopes = slopes(nlp, near);
+    let mut influences: BTreeMap<(usize, usize), Vec<f64>> = BTreeMap::new();
+    for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&slopes.jacobian) {
+        let (i, j) = (quantities.rows[row], quantities.variables[column]);
+        if i < quantities.stepped && sizes[i] > 0.0 && sizes[j] == 0.0 && slope.is_finite() {
+            influences.entry((i, j)).or_default().push(slope.abs());
+        }
+    }
+    let intervals = intervals(nlp);
+    for ((i, j), slopes) in influences {
+        let most = sizes[i] / (intervals * mean(&slopes));
+        sizes[j] =
+            if most.is_finite() && (sizes[j] == 0.0 || most < sizes[j]) { most } else { sizes[j] };
+    }
+}
+
+fn intervals(nlp: &dyn Nlp) -> f64 {
+    nlp.stages().map_or(1.0, |stages| stages.intervals as f64)
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}

@@ -1,0 +1,146 @@
+//! The entry: a simulation, its gradient in both ways, and what they say of each other.
+
+use super::Objective;
+use super::quantity::{Directions, Gradient, Quantity};
+use crate::sensitivity::linearized::linearization::Linearizer;
+use crate::sensitivity::linearized::variational_equation::LinearTape;
+use crate::sensitivity::nondifferentiability::kink::{Kink, first_kink};
+use crate::sensitivity::nondifferentiability::{Trouble, troubles};
+use crate::simulate::{Controls, Options, Simulation, Status, System, simulate};
+use nalgebra::DMatrix;
+
+/// With more quantities than this, forward sensitivities are computed along one sum of them only.
+const MOST_FORWARD: usize = 64;
+
+/// What decays to this part of the sizes it could have is as good as 0, and so is its rounding.
+const FORGOTTEN: f64 = 1e-12;
+
+/// The gradient of the objective of a system.
+#[derive(Clone, Debug)]
+pub struct Sensitivity {
+    /// The simulation, with its tape.
+    pub simulation: Simulation,
+    /// The objective.
+    pub value: f64,
+    /// By each quantity, from forward sensitivities; empty if there are more than 64.
+    pub forward: Vec<f64>,
+    /// By each quantity, from the adjoint.
+    pub adjoint: Vec<f64>,
+    /// The largest difference between the two, relative to the largest sum of the sizes that a
+    /// derivative is made of, at the end or on the way, `sum |lambda_i| |dx_i|`. Where `forward` is
+    /// empty, along a sum of the quantities with mixed signs.
+    pub agreement: f64,
+    /// The derivative of each state at the end by each quantity; empty like `forward`.
+    pub end: Vec<Vec<f64>>,
+    /// The adjoint of the objective.
+    pub costates: Costates,
+    /// Where the trajectory may have no derivative.
+    pub troubles: Vec<Trouble>,
+    /// A kink that the trajectory stays on: then the derivatives are those of one side of it.
+    pub kink: Option<Kink>,
+}
+
+/// `dJ/dx(t)`, in the canonical gauge on sliding arcs (`lambda . df/ds = 0`); two entries at one
+/// time where it jumps.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Costates {
+    /// Ascending.
+    pub time: Vec<f64>,
+    /// One column for each state, integrals last.
+    pub columns: Vec<Vec<f64>>,
+}
+
+impl Costates {
+    fn largest(&self) -> f64 {
+        self.columns.iter().flatten().fold(0.0, |largest, value| largest.max(value.abs()))
+    }
+
+    /// The largest `sum_i |lambda_i| |dx_i|` over some directions `dx`.
+    fn pairing(&self, at: usize, dx: &DMatrix<f64>) -> f64 {
+        let sum = |column: nalgebra::DVectorView<'_, f64>| -> f64 {
+            self.columns.iter().zip(column.iter()).map(|(lambda, dx)| (lambda[at] * dx).abs()).sum()
+        };
+        dx.column_iter().map(sum).fold(0.0, f64::max)
+    }
+}
+
+/// Differentiates; nothing but the simulation where it does not reach the end or there is no
+/// objective.
+pub fn gradient(
+    system: &System,
+    controls: &Controls,
+    options: &Options,
+    quantities: &[Quantity],
+) -> Result<Sensitivity, Box<Simulation>> {
+    let simulation = simulate(system, controls, &Options { tape: true, ..options.clone() });
+    let linearizer = Linearizer::new(system, controls);
+    let objective = Objective::new(&linearizer, &simulation);
+    let (Some(tape), Some(objective), Status::Completed) =
+        (&simulation.tape, objective, &simulation.status)
+    else {
+        return Err(Box::new(simulation));
+    };
+    let pieces = LinearTape::new(&linearizer, tape);
+    let (whole, costates) = backward(&pieces, &objective, Gradient::zero(system, controls));
+    let adjoint: Vec<f64> = quantities.iter().map(|quantity| whole.by(quantity)).collect();
+    let is_each = quantities.len() <= MOST_FORWARD;
+    let weights = if is_each {
+        DMatrix::identity(adjoint.len(), adjoint.len())
+    } else {
+        signs(adjoint.len())
+    };
+    let directions = Directions::new(system, quantities, &weights);
+    let (mut on_the_way, mut largest): (f64, f64) = (0.0, 0.0);
+    let end = super::forward(&pieces, &directions, &mut |at, s| {
+        on_the_way = on_the_way.max(costates.pairing(at + 1, s));
+        largest = largest.max(s.amax());
+    });
+    let all = on_the_way.max(FORGOTTEN * largest * costates.largest());
+    let forward = super::along(&linearizer, &objective, &directions, &end);
+    let along = weights.tr_mul(&DMatrix::from_column_slice(adjoint.len(), 1, &adjoint));
+    let size = super::size(&linearizer, &objective, &directions, &end).max(all);
+    Ok(Sensitivity {
+        value: objective.value,
+        agreement: agreement(&forward, along.as_slice(), size),
+        end: if is_each { rows(&end) } else { Vec::new() },
+        forward: if is_each { forward } else { Vec::new() },
+        adjoint,
+        costates,
+        troubles: troubles(&pieces),
+        kink: first_kink(&linearizer, tape),
+        simulation,
+    })
+}
+
+fn backward(pieces: &LinearTape, objective: &Objective, zero: Gradient) -> (Gradient, Costates) {
+    let LinearTape { linearizer, tape, .. } = *pieces;
+    let mut seen: Vec<(f64, Vec<f64>)> = Vec::new();
+    let first = linearizer.system.interval[0];
+    let gradient = super::adjoint(pieces, objective, zero, &mut |at, lambda| {
+        let time = at.map_or(first, |at| tape.pieces[at].end_time());
+        seen.push((time, lambda.iter().copied().collect()));
+    });
+    seen.reverse();
+    let column = |state: usize| seen.iter().map(|entry| entry.1[state]).collect();
+    let columns = (0..linearizer.system.layout.x).map(column).collect();
+    (gradient, Costates { time: seen.iter().map(|entry| entry.0).collect(), columns })
+}
+
+/// A sum with signs from a fixed sequence of bits (the golden ratio's multiples).
+fn signs(count: usize) -> DMatrix<f64> {
+    DMatrix::from_fn(count, 1, |row, _| {
+        let turn = (row + 1) as f64 * 0.618_033_988_749_894_9;
+        if turn.fract() < 0.5 { -1.0 } else { 1.0 }
+    })
+}
+
+fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+}
+
+fn agreement(forward: &[f64], adjoint: &[f64], size: f64) -> f64 {
+    let differences = forward.iter().zip(adjoint).map(|(a, b)| (a - b).abs());
+    let largest = differences
+        .fold(0.0, |sum: f64, value| if value.is_nan() { f64::NAN } else { sum.max(value) });
+    if size > 0.0 { largest / size } else { largest }
+}

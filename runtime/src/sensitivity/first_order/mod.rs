@@ -1,0 +1,140 @@
+//! First derivatives of an output at the end, forward and adjoint.
+//!
+//! ```text
+//! dJ = J_x0 dx0 + J_xT (S(T) + f T_p dp) + J_p dp
+//! lambda(T) = J_xT^T, backward through all pieces; dJ/dx0 = J_x0 + lambda(t0)
+//! ```
+
+pub(crate) mod gradient;
+pub(crate) mod one_sided;
+pub(crate) mod perturbed;
+pub(crate) mod quantity;
+
+use super::linearized::event::Timing;
+use super::linearized::linearization::{Jacobian, Linearizer};
+use super::linearized::variational_equation::LinearTape;
+use crate::problem::Columns;
+use crate::simulate::{Instant, Piece, Regime, Simulation, Tape};
+use nalgebra::{DMatrix, DVector, RowDVector};
+use quantity::{Directions, Gradient};
+
+/// The objective at the ends of a simulation, linearised.
+pub(crate) struct Objective {
+    pub value: f64,
+    pub by_start: RowDVector<f64>,
+    pub by_end: RowDVector<f64>,
+    pub by_parameters: RowDVector<f64>,
+}
+
+impl Objective {
+    /// Nothing if the system has no objective.
+    pub fn new(linearizer: &Linearizer, simulation: &Simulation) -> Option<Self> {
+        let system = linearizer.system;
+        let states = system.layout.x;
+        let mut point = Columns::new(2 * states, 1);
+        for (at, value) in system.start.iter().chain(&simulation.end).enumerate() {
+            point.column_mut(at)[0] = *value;
+        }
+        let Jacobian { values, by } =
+            Jacobian::of(&*system.objective, &point, &linearizer.parameters);
+        (!values.is_empty()).then(|| Objective {
+            value: values[0],
+            by_start: by.row(0).columns(0, states).into_owned(),
+            by_end: by.row(0).columns(states, states).into_owned(),
+            by_parameters: by.row(0).columns(2 * states, system.layout.p).into_owned(),
+        })
+    }
+}
+
+/// The last instant of a tape.
+pub(crate) fn last_instant(tape: &Tape) -> Option<Instant> {
+    tape.pieces.last().map(Piece::end)
+}
+
+/// `dx(t0)` in each direction.
+pub(crate) fn start(linearizer: &Linearizer, directions: &Directions) -> DMatrix<f64> {
+    linearizer.start_by_parameters() * &directions.parameters + &directions.starts
+}
+
+/// `dx(T)` in each direction, along the tape; `visit` sees `S` at the end of every piece.
+pub(crate) fn forward(
+    pieces: &LinearTape,
+    directions: &Directions,
+    visit: &mut dyn FnMut(usize, &DMatrix<f64>),
+) -> DMatrix<f64> {
+    let LinearTape { linearizer, tape, .. } = *pieces;
+    let mut s = start(linearizer, directions);
+    for at in 0..tape.pieces.len() {
+        s = pieces.with(at, |piece| piece.forward(&s, &|regime| directions.inputs(regime)));
+        visit(at, &s);
+    }
+    s + end_shift(linearizer, tape) * &directions.parameters
+}
+
+/// `f T_p`: how the state at the end moves because the end does.
+fn end_shift(linearizer: &Linearizer, tape: &Tape) -> DMatrix<f64> {
+    let Some(last) = last_instant(tape) else {
+        return DMatrix::zeros(linearizer.system.layout.x, linearizer.system.layout.p);
+    };
+    let timing = Timing::of_clock(linearizer, linearizer.system.interval[1]);
+    let controls = linearizer.system.layout.u;
+    let moved = timing.by_inputs.columns(controls, linearizer.system.layout.p);
+    linearizer.at_instant(tape, &last).rate * moved
+}
+
+/// The derivative in each direction.
+pub(crate) fn along(
+    linearizer: &Linearizer,
+    objective: &Objective,
+    directions: &Directions,
+    end: &DMatrix<f64>,
+) -> Vec<f64> {
+    let gradient = &objective.by_start * start(linearizer, directions)
+        + &objective.by_end * end
+        + &objective.by_parameters * &directions.parameters;
+    gradient.iter().copied().collect()
+}
+
+/// The largest sum of the sizes of the terms in [`along`]: what rounding is to be compared with.
+pub(crate) fn size(
+    linearizer: &Linearizer,
+    objective: &Objective,
+    directions: &Directions,
+    end: &DMatrix<f64>,
+) -> f64 {
+    let sizes = objective.by_start.abs() * start(linearizer, directions).abs()
+        + objective.by_end.abs() * end.abs()
+        + objective.by_parameters.abs() * directions.parameters.abs();
+    sizes.iter().copied().fold(0.0, f64::max)
+}
+
+/// The whole gradient, backward; `visit` sees the adjoint at the end of every piece, then that at
+/// the first time.
+pub(crate) fn adjoint(
+    pieces: &LinearTape,
+    objective: &Objective,
+    mut gradient: Gradient,
+    visit: &mut dyn FnMut(Option<usize>, &DVector<f64>),
+) -> Gradient {
+    let LinearTape { linearizer, tape, .. } = *pieces;
+    let controls = linearizer.system.layout.u;
+    let mut lambda: DVector<f64> = objective.by_end.transpose();
+    let at_end = end_shift(linearizer, tape).tr_mul(&lambda) + objective.by_parameters.transpose();
+    gradient.parameters.iter_mut().zip(at_end.iter()).for_each(|(sum, value)| *sum += value);
+    for at in (0..tape.pieces.len()).rev() {
+        let mut add = |regime: &Regime, by: &DVector<f64>| {
+            gradient.add_inputs(regime, controls, by.iter().copied());
+        };
+        lambda = pieces.with(at, |piece| {
+            let on_surfaces = piece.unproject(lambda, &mut add);
+            visit(Some(at), &on_surfaces);
+            piece.adjoint(&on_surfaces, &mut add)
+        });
+    }
+    visit(None, &lambda);
+    let by_start = lambda + objective.by_start.transpose();
+    gradient.starts.iter_mut().zip(by_start.iter()).for_each(|(sum, value)| *sum += value);
+    let through_start = linearizer.start_by_parameters().tr_mul(&by_start);
+    gradient.parameters.iter_mut().zip(through_start.iter()).for_each(|(sum, value)| *sum += value);
+    gradient
+}

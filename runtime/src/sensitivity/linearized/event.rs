@@ -1,0 +1,174 @@
+//! An event, a change of controls or the start as a linear map of derivatives: the saltation
+//! matrix.
+//!
+//! The time of an event on `g(t, x, p) = 0` moves by `tau = -(g_x S + g_p P) / (g_x f- + g_t)`. The
+//! state there is reset to `r(t, x, p)` (the identity at crossings, entries and exits) and goes on
+//! with `f+`, so at a fixed time after it
+//!
+//! ```text
+//! S+ = r_x S + r_p P + c tau,     c = r_x f- + r_t - f+
+//! ```
+//!
+//! At crossings this is (3.6) in either direction, at entries into sliding (3.5), at exits and
+//! kinks the identity, because `f- = f+` there. Transposed: `lambda- = r_x^T lambda+ + (c^T
+//! lambda+) tau_x^T`. Where a change of controls or an end of the interval moves with parameters,
+//! `tau` is its derivative.
+
+use super::linearization::{Jacobian, Linearization, Linearizer};
+use super::reset::Reset;
+use crate::problem::Function;
+use crate::simulate::{Cause, Change, Instant, Tape};
+use nalgebra::{DMatrix, DVector, RowDVector};
+
+/// A stop, linearised.
+pub(crate) struct LinearStop {
+    /// `r_x`.
+    pub by_state: DMatrix<f64>,
+    /// `r_(u, p)`.
+    pub by_inputs: DMatrix<f64>,
+    /// `c`.
+    pub shift: DVector<f64>,
+    /// `tau = tau_x S + tau_(u, p) W`.
+    pub timing: Timing,
+}
+
+/// How the time of a stop depends on what was before.
+pub(crate) struct Timing {
+    pub by_state: RowDVector<f64>,
+    pub by_inputs: RowDVector<f64>,
+}
+
+/// What happens at a stop.
+pub(crate) struct StopOnTape<'t> {
+    pub cause: Cause,
+    pub before: &'t Instant,
+    pub after: &'t Instant,
+    pub changes: &'t [Change],
+}
+
+impl LinearStop {
+    pub fn new(linearizer: &Linearizer, tape: &Tape, stop: &StopOnTape) -> Self {
+        let StopOnTape { before, after, .. } = *stop;
+        let Reset { by_state, by_time, by_inputs } = Reset::new(linearizer, tape, stop);
+        let arriving = match stop.cause {
+            Cause::Start => DVector::zeros(before.state.len()),
+            _ => &by_state * linearizer.rate_at_instant(tape, before),
+        };
+        let shift = match stop.cause {
+            Cause::Bends(_) => DVector::zeros(arriving.len()),
+            _ => arriving + by_time - linearizer.rate_at_instant(tape, after),
+        };
+        let timing = Timing::new(linearizer, tape, stop);
+        LinearStop { by_state, by_inputs, shift, timing }
+    }
+
+    /// `w` are the directions of `(u, p)` before the stop.
+    pub fn forward(&self, s: &DMatrix<f64>, w: &DMatrix<f64>) -> DMatrix<f64> {
+        let moved = self.timing.of(s, w);
+        &self.by_state * s + &self.by_inputs * w + &self.shift * moved
+    }
+
+    /// The adjoint before the stop and the derivative by the `(u, p)` before it.
+    pub fn adjoint(&self, after: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
+        let by_time = self.shift.dot(after);
+        let before = self.by_state.tr_mul(after) + self.timing.by_state.transpose() * by_time;
+        let inputs = self.by_inputs.tr_mul(after) + self.timing.by_inputs.transpose() * by_time;
+        (before, inputs)
+    }
+}
+
+impl Timing {
+    /// `tau`, one entry for each direction.
+    pub fn of(&self, s: &DMatrix<f64>, w: &DMatrix<f64>) -> RowDVector<f64> {
+        &self.by_state * s + &self.by_inputs * w
+    }
+
+    pub fn new(linearizer: &Linearizer, tape: &Tape, stop: &StopOnTape) -> Self {
+        match stop.cause {
+            Cause::Controls if !linearizer.is_stretched() => return Timing::fixed(linearizer),
+            Cause::Start | Cause::Controls => {
+                return Timing::of_clock(linearizer, stop.before.time);
+            }
+            _ => {}
+        }
+        let regime = &tape.regimes[stop.before.regime];
+        let reached = linearizer.at_instant(tape, stop.before);
+        let slopes_of = |function: &dyn Function| {
+            let x = DVector::from_column_slice(&stop.before.state);
+            let table = linearizer.table(regime, &reached.selectors, stop.before.time, &x);
+            let by = Jacobian::of(function, &table, &linearizer.parameters).by;
+            by.columns(0, reached.by().ncols()).into_owned()
+        };
+        match stop.cause {
+            Cause::Reaches(surface) => {
+                let by = slopes_of(&*linearizer.system.guards);
+                let slopes = normal(linearizer, &by, &reached.selectors, surface);
+                Timing::implicit(&slopes, &reached.rate)
+            }
+            Cause::Bends(kink) => {
+                let by = slopes_of(&*linearizer.system.kinks);
+                Timing::implicit(&by.row(kink).into_owned(), &reached.rate)
+            }
+            Cause::Leaves(surface) => {
+                Timing::implicit(&reached.selectors_by.row(surface).into_owned(), &reached.rate)
+            }
+            _ => Timing::implicit(&RowDVector::zeros(reached.by().ncols()), &reached.rate),
+        }
+    }
+
+    /// A time that does not move.
+    fn fixed(linearizer: &Linearizer) -> Self {
+        let layout = linearizer.system.layout;
+        let by_inputs = RowDVector::zeros(layout.u + layout.p);
+        Timing { by_state: RowDVector::zeros(layout.x), by_inputs }
+    }
+
+    /// A time that is a fixed part of the interval.
+    pub fn of_clock(linearizer: &Linearizer, time: f64) -> Self {
+        let layout = linearizer.system.layout;
+        let tau = linearizer.tau(time);
+        let ends = &linearizer.ends_by;
+        let moved = ends.row(0) * (1.0 - tau) + ends.row(1) * tau;
+        let mut timing = Timing::fixed(linearizer);
+        timing.by_inputs.columns_mut(layout.u, layout.p).copy_from(&moved);
+        timing
+    }
+
+    /// The time at which `g = 0`, from `g_(t | x | u | p)`; it does not move if nothing moves `g`.
+    fn implicit(slopes: &RowDVector<f64>, rate: &DVector<f64>) -> Self {
+        let states = rate.len();
+        let normal = slopes.columns(1, states);
+        let speed = (normal * rate)[0] + slopes[0];
+        let factor = if speed == 0.0 { 0.0 } else { -1.0 / speed };
+        let rest = slopes.columns(1 + states, slopes.len() - 1 - states);
+        Timing { by_state: normal * factor, by_inputs: rest * factor }
+    }
+}
+
+/// `psi_z` of a surface; of a ball that comes to 0, that of its length.
+fn normal(
+    linearizer: &Linearizer,
+    by: &DMatrix<f64>,
+    selectors: &[f64],
+    surface: usize,
+) -> RowDVector<f64> {
+    match linearizer.system.balls.iter().find(|ball| ball.surfaces.contains(&surface)) {
+        Some(ball) => {
+            let zero = RowDVector::zeros(by.ncols());
+            ball.surfaces.clone().fold(zero, |sum, i| sum + by.row(i) * selectors[i])
+        }
+        None => by.row(surface).into_owned(),
+    }
+}
+
+impl Linearizer<'_> {
+    pub fn rate_at_instant(&self, tape: &Tape, at: &Instant) -> DVector<f64> {
+        let x = DVector::from_column_slice(&at.state);
+        self.rate(&tape.regimes[at.regime], &at.selectors, at.time, &x)
+    }
+
+    pub fn at_instant(&self, tape: &Tape, at: &Instant) -> Linearization {
+        let x = DVector::from_column_slice(&at.state);
+        self.at(&tape.regimes[at.regime], &at.selectors, at.time, &x)
+    }
+}

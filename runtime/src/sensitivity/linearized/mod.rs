@@ -1,0 +1,10 @@
+//! A tape, linearised: each step and each event as a linear map, and the product of all, which solves
+//! the variational equation.
+
+pub(crate) mod event;
+pub(crate) mod linearization;
+mod reset;
+mod sparse_step;
+pub(crate) mod step;
+pub(crate) mod surface;
+pub(crate) mod variational_equation;

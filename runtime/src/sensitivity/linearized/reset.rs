@@ -1,0 +1,104 @@
+//! What a stop does to the state itself, linearised: its resets one after the other, then coming to
+//! rest on a surface.
+
+use super::event::StopOnTape;
+use super::linearization::{Jacobian, Linearizer};
+use crate::simulate::{Instant, Kind, Mode, Tape};
+use nalgebra::{DMatrix, DVector, RowDVector};
+
+/// The derivatives of the state after a stop by the state, the time and the inputs `(u, p)` before
+/// it.
+pub(crate) struct Reset {
+    pub by_state: DMatrix<f64>,
+    pub by_time: DVector<f64>,
+    pub by_inputs: DMatrix<f64>,
+}
+
+impl Reset {
+    pub fn new(linearizer: &Linearizer, tape: &Tape, stop: &StopOnTape) -> Self {
+        let states = stop.before.state.len();
+        let mut reset = Reset {
+            by_state: DMatrix::identity(states, states),
+            by_time: DVector::zeros(states),
+            by_inputs: DMatrix::zeros(states, linearizer.inputs()),
+        };
+        let mut from = stop.before;
+        for change in stop.changes {
+            if let Kind::Jump(jump) = change.kind {
+                reset.then(&jump_slopes(linearizer, tape, from, jump));
+            }
+            if change.after.time == stop.before.time {
+                from = &change.after;
+            }
+        }
+        let gap = stop.after.time - stop.before.time;
+        if gap > 0.0 {
+            reset.then(&straight_on(linearizer, tape, from, gap));
+        }
+        for slopes in rest_slopes(linearizer, tape, stop) {
+            reset.then(&slopes);
+        }
+        reset
+    }
+
+    /// Puts a map with the derivatives `[t | x | u | p]` behind.
+    fn then(&mut self, slopes: &DMatrix<f64>) {
+        let states = self.by_time.len();
+        let by_state = slopes.columns(1, states);
+        self.by_state = by_state * &self.by_state;
+        self.by_time = by_state * &self.by_time + slopes.column(0);
+        self.by_inputs =
+            by_state * &self.by_inputs + slopes.columns(1 + states, self.by_inputs.ncols());
+    }
+}
+
+/// `r_(t | x | u | p)` of one jump.
+fn jump_slopes(linearizer: &Linearizer, tape: &Tape, from: &Instant, jump: usize) -> DMatrix<f64> {
+    let states = from.state.len();
+    let all = jacobian(linearizer, tape, from, &*linearizer.system.resets).by;
+    all.view((jump * states, 0), (states, 1 + states + linearizer.inputs())).into_owned()
+}
+
+/// Where jumps pile up the state goes straight on until their limit: `x + gap f`.
+fn straight_on(linearizer: &Linearizer, tape: &Tape, from: &Instant, gap: f64) -> DMatrix<f64> {
+    let mut slopes = linearizer.at_instant(tape, from).by() * gap;
+    (0..from.state.len()).for_each(|state| slopes[(state, 1 + state)] += 1.0);
+    slopes
+}
+
+/// Where the state comes to rest on a surface: the Newton steps on `psi` and on `psi'` that bring
+/// it there.
+fn rest_slopes(linearizer: &Linearizer, tape: &Tape, stop: &StopOnTape) -> Vec<DMatrix<f64>> {
+    let [old, new] = [stop.before, stop.after].map(|at| &tape.regimes[at.regime]);
+    let comes = |i: &usize| new.modes[*i] == Mode::Held && old.modes[*i] != Mode::Held;
+    let Some(surface) = (0..new.modes.len()).find(comes) else { return Vec::new() };
+    let states = stop.after.state.len();
+    let psi = jacobian(linearizer, tape, stop.before, &*linearizer.system.guards).by;
+    let rates = jacobian(linearizer, tape, stop.before, &*linearizer.system.rates).by;
+    let columns = 1 + states + linearizer.inputs();
+    let [psi, rates] = [psi, rates].map(|by| by.row(surface).columns(0, columns).into_owned());
+    let along = psi.columns(1, states).into_owned();
+    let mut pushes = rates.columns(1, states).into_owned();
+    (0..states).filter(|i| !new.held.contains(i)).for_each(|i| pushes[i] = 0.0);
+    vec![correction(&along, &psi), correction(&pushes, &rates)]
+}
+
+/// The derivative of `x - a c / |a|^2` where `c = 0`, given `c_(t | x | u | p)`.
+fn correction(along: &RowDVector<f64>, slopes: &RowDVector<f64>) -> DMatrix<f64> {
+    let states = along.len();
+    let mut matrix = DMatrix::zeros(states, slopes.len());
+    matrix.view_mut((0, 1), (states, states)).fill_with_identity();
+    let square = along.norm_squared();
+    if square > 0.0 { matrix - along.transpose() * slopes / square } else { matrix }
+}
+
+fn jacobian(
+    linearizer: &Linearizer,
+    tape: &Tape,
+    at: &Instant,
+    function: &dyn crate::problem::Function,
+) -> Jacobian {
+    let x = DVector::from_column_slice(&at.state);
+    let table = linearizer.table(&tape.regimes[at.regime], &at.selectors, at.time, &x);
+    Jacobian::of(function, &table, &linearizer.parameters)
+}

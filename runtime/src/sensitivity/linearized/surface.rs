@@ -1,0 +1,63 @@
+//! The projection that keeps derivatives on the sliding surfaces, the rule (3.5) with its explicit
+//! parameters.
+//!
+//! ```text
+//! S <- S - D (d D)^-1 (d S + psi_p P),     D = f_s,  d = psi_x
+//! ```
+//!
+//! It is oblique, along the directions in which selectors push. Its transpose puts an adjoint into
+//! the canonical gauge, `D^T lambda = 0`, the limit of the smoothed adjoints (errata A7):
+//! continuous at entries, with a jump at exits.
+
+use super::linearization::{Jacobian, Linearizer, sliding};
+use crate::simulate::{Instant, Regime};
+use nalgebra::{DMatrix, DVector, DVectorView};
+
+/// The projection at one state.
+pub(crate) struct Projection {
+    /// On which the state slides.
+    pub surfaces: Vec<usize>,
+    /// `D (d D)^-1`.
+    along: DMatrix<f64>,
+    /// `d`.
+    normals: DMatrix<f64>,
+    /// `psi_(u, p)`.
+    by_inputs: DMatrix<f64>,
+}
+
+impl Projection {
+    /// Nothing where the regime does not slide.
+    pub fn new(linearizer: &Linearizer, regime: &Regime, at: &Instant) -> Option<Self> {
+        let sliding = sliding(regime);
+        if sliding.is_empty() {
+            return None;
+        }
+        let layout = linearizer.system.layout;
+        let x = DVector::from_column_slice(&at.state);
+        let point = linearizer.at(regime, &at.selectors, at.time, &x);
+        let table = linearizer.table(regime, &point.selectors, at.time, &x);
+        let guards = Jacobian::of(&*linearizer.system.guards, &table, &linearizer.parameters);
+        let by = guards.by.select_rows(&sliding);
+        let normals = by.columns(1, layout.x).into_owned();
+        let by_inputs = by.columns(1 + layout.x, layout.u + layout.p).into_owned();
+        let directions = point.by_selectors().select_columns(&sliding);
+        let inverse = (&normals * &directions).try_inverse()?;
+        Some(Projection { surfaces: sliding, along: directions * inverse, normals, by_inputs })
+    }
+
+    pub fn forward(&self, s: &DMatrix<f64>, w: &DMatrix<f64>) -> DMatrix<f64> {
+        s - &self.along * (&self.normals * s + &self.by_inputs * w)
+    }
+
+    /// Moves a second derivative back to the surface, given `psi_zz` of the sliding surfaces along
+    /// its pair of directions.
+    pub fn correct(&self, x: DVectorView<'_, f64>, bent: &DVector<f64>) -> DVector<f64> {
+        x - &self.along * (&self.normals * x + bent)
+    }
+
+    /// The adjoint before the projection and the derivative by `(u, p)`.
+    pub fn adjoint(&self, after: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
+        let along = self.along.tr_mul(after);
+        (after - self.normals.tr_mul(&along), -self.by_inputs.tr_mul(&along))
+    }
+}

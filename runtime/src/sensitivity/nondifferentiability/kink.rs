@@ -1,0 +1,113 @@
+//! A trajectory that stays on a kink of the right side which is no surface: only derivatives of one
+//! side are known there.
+//!
+//! With `e = 0` at the kink, it does no harm where nothing moves `e`: where `e_(x, u, p)` is a
+//! combination of the normals of the surfaces that the state slides on.
+
+use super::{TANGENT, TOUCHING};
+use crate::problem::Origin;
+use crate::sensitivity::linearized::linearization::{Jacobian, Linearizer, sliding};
+use crate::simulate::{Cause, Instant, Piece, Tape};
+use nalgebra::{DMatrix, DVector, RowDVector};
+
+/// A kink that a trajectory stays on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kink {
+    /// The right side.
+    pub of: Origin,
+    /// Since when.
+    pub time: f64,
+}
+
+/// The first.
+pub(crate) fn first_kink(linearizer: &Linearizer, tape: &Tape) -> Option<Kink> {
+    let kinks = &linearizer.system.kinks;
+    if kinks.outputs() == 0 {
+        return None;
+    }
+    tape.pieces.iter().find_map(|piece| {
+        let Piece::Step { start, h, .. } = piece else { return None };
+        if *h == 0.0 {
+            return None;
+        }
+        let here = Here::new(linearizer, tape, start);
+        let end = Here::new(linearizer, tape, &piece.end());
+        let stays = |k: &usize| here.is_on(*k) && end.is_on(*k) && !here.is_fixed(*k);
+        let kink = (0..kinks.outputs()).find(stays)?;
+        Some(Kink { of: kinks.origin(kink), time: start.time })
+    })
+}
+
+/// Whether a kink is met almost along itself, so that the second derivative of the time is nothing
+/// to rely on; or together with another stop, so that their order is not fixed; or moved by
+/// controls that follow the guess.
+pub(crate) fn is_doubtful(linearizer: &Linearizer, tape: &Tape, at: usize) -> bool {
+    let Piece::Stop { cause: Cause::Bends(kink), before, .. } = &tape.pieces[at] else {
+        return false;
+    };
+    let controls = linearizer.system.layout.controls();
+    let here = Here::new(linearizer, tape, before);
+    let follows =
+        linearizer.is_guessed() && here.by.row(*kink).columns_range(controls).amax() > 0.0;
+    let is_near = |piece: &Piece| {
+        let [first, last] = linearizer.system.interval;
+        matches!(piece, Piece::Stop { before: other, .. } if (other.time - before.time).abs() <= TOUCHING * (last - first))
+    };
+    let others = tape.pieces[..at].iter().rev().take(2).chain(tape.pieces[at + 1..].iter().take(2));
+    follows || here.is_along(*kink) || others.into_iter().any(is_near)
+}
+
+/// The kinks at one instant.
+struct Here {
+    e: DVector<f64>,
+    /// `e_(t, x, u, p, s)`
+    by: DMatrix<f64>,
+    state: DVector<f64>,
+    rate: DVector<f64>,
+    /// `psi_(x, u, p)` of the surfaces that the state slides on.
+    normals: DMatrix<f64>,
+}
+
+impl Here {
+    fn new(linearizer: &Linearizer, tape: &Tape, at: &Instant) -> Self {
+        let regime = &tape.regimes[at.regime];
+        let state = DVector::from_column_slice(&at.state);
+        let table = linearizer.table(regime, &at.selectors, at.time, &state);
+        let system = linearizer.system;
+        let Jacobian { values, by } = Jacobian::of(&*system.kinks, &table, &linearizer.parameters);
+        let guards = Jacobian::of(&*system.guards, &table, &linearizer.parameters).by;
+        let moving = 1..system.layout.selectors().start;
+        let normals = guards.select_rows(&sliding(regime)).columns_range(moving).into_owned();
+        Here { e: values, by, state, rate: linearizer.rate_at_instant(tape, at), normals }
+    }
+
+    /// Neither away from it nor leaving it.
+    fn is_on(&self, kink: usize) -> bool {
+        let size = (self.by_state(kink).abs() * self.state.abs())[0];
+        self.e[kink].abs() <= TOUCHING * (1.0 + size) && self.is_along(kink)
+    }
+
+    fn is_along(&self, kink: usize) -> bool {
+        let (by_state, by_time) = (self.by_state(kink), self.by[(kink, 0)]);
+        let size = by_state.norm() * self.rate.norm() + by_time.abs();
+        ((by_state * &self.rate)[0] + by_time).abs() <= TANGENT * size
+    }
+
+    fn by_state(&self, kink: usize) -> RowDVector<f64> {
+        self.by.row(kink).columns(1, self.state.len()).into_owned()
+    }
+
+    /// Whether sliding keeps the kink in its place.
+    fn is_fixed(&self, kink: usize) -> bool {
+        let along = self.by.row(kink).columns(1, self.normals.ncols()).transpose();
+        let rest = match self.normals.nrows() {
+            0 => along.norm(),
+            _ => {
+                let normals = self.normals.transpose();
+                let parts = normals.clone().svd(true, true).solve(&along, TOUCHING);
+                parts.map_or(along.norm(), |parts| (&along - normals * parts).norm())
+            }
+        };
+        rest <= TOUCHING * along.norm()
+    }
+}

@@ -1,0 +1,232 @@
+//! Where a trajectory has no derivative, or is so near such a place that one cannot tell.
+//!
+//! Four ways: it touches a surface without crossing it, it meets two surfaces at one time, it meets
+//! a surface when the controls change or when it starts, it meets one at the end. All are
+//! suspicions; [`one_sided()`](super::first_order::one_sided()) decides.
+
+pub(crate) mod kink;
+
+use super::linearized::linearization::{Jacobian, Linearizer};
+use super::linearized::variational_equation::LinearTape;
+use crate::problem::Columns;
+use crate::simulate::{Cause, Instant, Mode, Piece, Tape};
+use nalgebra::DVector;
+
+/// Cosines between a field and a normal below this are grazing.
+pub(crate) const TANGENT: f64 = 1e-6;
+
+/// Distances from a surface, relative to what `psi` is made of, below this are 0.
+pub(crate) const TOUCHING: f64 = 1e-9;
+
+/// Differences of times, relative to the interval, below this are 0.
+const TOGETHER: f64 = 1e-10;
+
+/// What is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TroubleKind {
+    /// A surface is touched, or met at almost no angle.
+    Grazing,
+    /// Two surfaces are met at one time.
+    Corner,
+    /// A surface is met when the controls change, or at the start.
+    Coincident,
+    /// A surface is met at the end.
+    End,
+}
+
+/// A place without derivative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trouble {
+    /// What is wrong.
+    pub kind: TroubleKind,
+    /// At which surface.
+    pub surface: usize,
+    /// When.
+    pub time: f64,
+}
+
+/// All suspicions, in the order of time.
+pub(crate) fn troubles(pieces: &LinearTape) -> Vec<Trouble> {
+    let LinearTape { linearizer, tape, .. } = *pieces;
+    let watch = Watch { linearizer, tape };
+    let mut found = Vec::new();
+    for (at, piece) in tape.pieces.iter().enumerate() {
+        match piece {
+            Piece::Step { start, h, end, .. } => watch.touches(start, *h, end, &mut found),
+            Piece::Stop { .. } => watch.stop(at, &mut found),
+        }
+    }
+    if let Some(last) = tape.pieces.last() {
+        let end = last.end();
+        let near = watch.met_at_the_end(&end);
+        found.extend(near.map(|(surface, time)| Trouble { kind: TroubleKind::End, surface, time }));
+    }
+    found.dedup();
+    found
+}
+
+struct Watch<'t> {
+    linearizer: &'t Linearizer<'t>,
+    tape: &'t Tape,
+}
+
+/// Surfaces at an instant: value, rate, size of the terms of the value, size of those of the rate.
+struct Distances {
+    value: Vec<f64>,
+    rate: Vec<f64>,
+    size: Vec<f64>,
+    speed: Vec<f64>,
+}
+
+impl Distances {
+    fn is_tangent(&self, surface: usize) -> bool {
+        self.rate[surface].abs() <= TANGENT * self.speed[surface]
+    }
+
+    fn touches(&self, surface: usize) -> bool {
+        self.value[surface].abs() <= TOUCHING * (1.0 + self.size[surface])
+    }
+}
+
+impl Watch<'_> {
+    fn distances(&self, at: &Instant) -> Distances {
+        let flow = self.linearizer.rate_at_instant(self.tape, at);
+        let state = DVector::from_column_slice(&at.state);
+        let regime = &self.tape.regimes[at.regime];
+        let table = self.linearizer.table(regime, &at.selectors, at.time, &state);
+        let system = self.linearizer.system;
+        let Jacobian { values, by } =
+            Jacobian::of(&*system.guards, &table, &self.linearizer.parameters);
+        let normals = by.columns(1, state.len());
+        let visible = system.states.iter().zip(flow.iter()).filter(|(state, _)| !state.hidden);
+        let size = visible.map(|(_, rate)| rate * rate).sum::<f64>().sqrt();
+        let (surfaces, by_time) = (0..values.len(), by.column(0));
+        Distances {
+            value: values.iter().copied().collect(),
+            rate: (normals * &flow + by_time).iter().copied().collect(),
+            size: (normals.abs() * state.abs()).iter().copied().collect(),
+            speed: surfaces.map(|i| normals.row(i).norm() * size + by_time[i].abs()).collect(),
+        }
+    }
+
+    /// `psi'` at both ends of a step, at the selectors of its start.
+    fn rates(&self, start: &Instant, h: f64, end: &[f64]) -> [DVector<f64>; 2] {
+        let regime = &self.tape.regimes[start.regime];
+        [(start.time, start.state.as_slice()), (start.time + h, end)].map(|(time, state)| {
+            let state = DVector::from_column_slice(state);
+            let table = self.linearizer.table(regime, &start.selectors, time, &state);
+            let rates = &self.linearizer.system.rates;
+            let mut values = Columns::new(rates.outputs(), 1);
+            rates.value(&table, &self.linearizer.parameters, &mut values);
+            DVector::from_fn(rates.outputs(), |row, _| values.column(row)[0])
+        })
+    }
+
+    fn is_beside(&self, at: &Instant, surface: usize) -> bool {
+        matches!(self.tape.regimes[at.regime].modes[surface], Mode::Below | Mode::Above)
+    }
+
+    fn beside(&self, at: &Instant) -> impl Iterator<Item = usize> {
+        let modes = &self.tape.regimes[at.regime].modes;
+        (0..modes.len()).filter(|&i| self.is_beside(at, i))
+    }
+
+    /// Surfaces that come nearest inside a step, almost at distance 0; by the cubic through both
+    /// ends.
+    fn touches(&self, start: &Instant, h: f64, end: &[f64], found: &mut Vec<Trouble>) {
+        let turns = |at: &usize, [first, last]: &[DVector<f64>; 2]| first[*at] * last[*at] < 0.0;
+        let rates = self.rates(start, h, end);
+        for surface in self.beside(start).filter(|at| turns(at, &rates)) {
+            let end = Instant { time: start.time + h, state: end.to_vec(), ..start.clone() };
+            let [first, last] = [start, &end].map(|at| self.distances(at));
+            // A surface that has just been left is still near: its rate is 0 up to rounding.
+            if first.touches(surface) && first.is_tangent(surface) {
+                continue;
+            }
+            let [a, b] = [&first, &last].map(|it| (it.value[surface], h * it.rate[surface]));
+            let (part, nearest) = extremum(a, b);
+            let size = 1.0 + first.size[surface].max(last.size[surface]);
+            if nearest.abs() <= TOUCHING * size {
+                let time = start.time + part * h;
+                found.push(Trouble { kind: TroubleKind::Grazing, surface, time });
+            }
+        }
+    }
+
+    fn stop(&self, at: usize, found: &mut Vec<Trouble>) {
+        let Piece::Stop { cause, before, changes, .. } = &self.tape.pieces[at] else { return };
+        let time = before.time;
+        let mut note = |kind, surface| found.push(Trouble { kind, surface, time });
+        let distances = self.distances(before);
+        let met: Vec<usize> = self.beside(before).filter(|&i| distances.touches(i)).collect();
+        match *cause {
+            Cause::Reaches(surface) => {
+                if distances.is_tangent(surface) {
+                    note(TroubleKind::Grazing, surface);
+                }
+                if met.iter().any(|&other| other != surface)
+                    || self.meets_stop(at, |it| *it != Cause::Controls)
+                {
+                    note(TroubleKind::Corner, surface);
+                }
+                if self.meets_stop(at, |it| *it == Cause::Controls) {
+                    note(TroubleKind::Coincident, surface);
+                }
+            }
+            Cause::Start => met
+                .into_iter()
+                .filter(|i| !changes.iter().any(|it| it.surface == *i))
+                .for_each(|surface| note(TroubleKind::Coincident, surface)),
+            Cause::Controls => {
+                met.into_iter().for_each(|surface| note(TroubleKind::Coincident, surface))
+            }
+            Cause::Repels => note(TroubleKind::Grazing, changes.first().map_or(0, |it| it.surface)),
+            Cause::Leaves(_) | Cause::Bends(_) => {}
+        }
+    }
+
+    /// Whether the stop before or after is at the same time.
+    fn meets_stop(&self, at: usize, is_it: impl Fn(&Cause) -> bool) -> bool {
+        let [first, last] = self.linearizer.system.interval;
+        let time_of = |piece: &Piece| match piece {
+            Piece::Stop { before, .. } => before.time,
+            Piece::Step { start, .. } => start.time,
+        };
+        let own = time_of(&self.tape.pieces[at]);
+        let is_near = |piece: &&Piece| (time_of(piece) - own).abs() <= TOGETHER * (last - first);
+        let is_other = |piece: &&Piece| matches!(piece, Piece::Stop { cause, .. } if is_it(cause) && !matches!(cause, Cause::Start | Cause::Leaves(_) | Cause::Bends(_)));
+        let before =
+            self.tape.pieces[..at].iter().rev().take_while(is_near).any(|it| is_other(&it));
+        before || self.tape.pieces[at + 1..].iter().take_while(is_near).any(|it| is_other(&it))
+    }
+
+    fn met_at_the_end(&self, end: &Instant) -> impl Iterator<Item = (usize, f64)> {
+        let distances = self.distances(end);
+        let [first, last] = self.linearizer.system.interval;
+        let stops = self.tape.pieces.iter().rev().find_map(|piece| match piece {
+            Piece::Stop { cause: Cause::Reaches(surface), before, .. } => {
+                Some((*surface, before.time))
+            }
+            _ => None,
+        });
+        let just_before = stops.filter(|(_, time)| last - time <= TOGETHER * (last - first));
+        let here: Vec<usize> = self.beside(end).filter(|&i| distances.touches(i)).collect();
+        let here = here.into_iter().filter(move |i| just_before.is_none_or(|it| it.0 != *i));
+        just_before.into_iter().chain(here.map(move |surface| (surface, last)))
+    }
+}
+
+/// Where the cubic with values and slopes at 0 and 1 has its extremum, and the value there, if the
+/// slopes have opposite signs.
+fn extremum((value, slope): (f64, f64), (end, end_slope): (f64, f64)) -> (f64, f64) {
+    let quadratic = 3.0 * (end - value) - 2.0 * slope - end_slope;
+    let cubic = 2.0 * (value - end) + slope + end_slope;
+    let at = |part: f64| value + part * (slope + part * (quadratic + part * cubic));
+    let slope_at = |part: f64| slope + part * (2.0 * quadratic + 3.0 * part * cubic);
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if (slope_at(middle) > 0.0) == (slope > 0.0) { low = middle } else { high = middle }
+    }
+    (low, at(low))
+}

@@ -1,0 +1,192 @@
+//! The second-order part of a stop: to the moved time, through the resets, back to the fixed time.
+
+use super::curvature::Hessians;
+use crate::problem::Columns;
+use crate::sensitivity::linearized::event::StopOnTape;
+use crate::sensitivity::linearized::linearization::{Jacobian, Linearization, Linearizer};
+use crate::simulate::{Cause, Instant, Kind, Tape};
+use nalgebra::{DMatrix, DVector, DVectorView, RowDVector};
+
+/// One vector for each pair of directions.
+#[derive(Clone)]
+pub(crate) struct Pairs {
+    count: usize,
+    /// Columns are the pairs `(i, j)` with `j <= i`, row by row.
+    pub columns: DMatrix<f64>,
+}
+
+impl Pairs {
+    pub fn new(count: usize, mut of: impl FnMut(usize, usize) -> DVector<f64>) -> Self {
+        let pairs = (0..count).flat_map(|i| (0..=i).map(move |j| (i, j)));
+        let vectors: Vec<DVector<f64>> = pairs.map(|(i, j)| of(i, j)).collect();
+        Pairs { count, columns: DMatrix::from_columns(&vectors) }
+    }
+
+    pub fn at(&self, i: usize, j: usize) -> DVectorView<'_, f64> {
+        let (i, j) = (i.max(j), i.min(j));
+        self.columns.column(i * (i + 1) / 2 + j)
+    }
+
+    pub fn map(
+        &self,
+        mut of: impl FnMut(usize, usize, DVectorView<'_, f64>) -> DVector<f64>,
+    ) -> Self {
+        Pairs::new(self.count, |i, j| of(i, j, self.at(i, j)))
+    }
+
+    /// The same pairs with other vectors.
+    pub fn with(&self, columns: DMatrix<f64>) -> Self {
+        Pairs { count: self.count, columns }
+    }
+}
+
+/// A stop whose time moves by `tau` in each direction.
+pub(crate) struct Bend<'b> {
+    pub linearizer: &'b Linearizer<'b>,
+    pub tape: &'b Tape,
+    pub stop: &'b StopOnTape<'b>,
+    pub tau: &'b RowDVector<f64>,
+}
+
+/// Derivatives of the state at the moved time of a stop, and second ones of that time.
+pub(crate) struct Moved {
+    pub s: DMatrix<f64>,
+    pub x: Pairs,
+    tau: Pairs,
+}
+
+impl Bend<'_> {
+    /// The state that meets the stop, from what it is at a fixed time; `directions` are `(t, x, u,
+    /// p)`.
+    pub fn meet(&self, s: &DMatrix<f64>, x: &Pairs, directions: &[DVector<f64>]) -> Moved {
+        if self.stop.cause == Cause::Start {
+            return Moved { s: s.clone(), x: x.clone(), tau: self.clock(directions) };
+        }
+        let arriving = self.linearizer.at_instant(self.tape, self.stop.before);
+        let swept = self.swept(&arriving, directions);
+        let x = x.map(|i, j, x| x + swept(i, j));
+        let s = s + &arriving.rate * self.tau;
+        let tau = self.second_tau(&arriving, &s, &x, directions);
+        let x = x.map(|i, j, x| x + &arriving.rate * tau.at(i, j)[0]);
+        Moved { s, x, tau }
+    }
+
+    /// Through all resets, one after the other.
+    pub fn reset(&self, mut moved: Moved, directions: &[DVector<f64>]) -> Moved {
+        let system = self.linearizer.system;
+        let states = system.layout.x;
+        let mut from = self.stop.before;
+        for change in self.stop.changes {
+            if let Kind::Jump(jump) = change.kind {
+                let table = self.table(from);
+                let by = Jacobian::of(&*system.resets, &table, &self.linearizer.parameters).by;
+                let by = by.rows(jump * states, states);
+                let hessians = Hessians::of(&*system.resets, &table, &self.linearizer.parameters);
+                let whole = self.moved(directions, &moved.s);
+                let (by_state, by_time) = (by.columns(1, states), by.column(0));
+                moved.x = moved.x.map(|i, j, x| {
+                    let bent = hessians
+                        .along(&whole[i], &whole[j])
+                        .rows(jump * states, states)
+                        .into_owned();
+                    by_state * x + by_time * moved.tau.at(i, j)[0] + bent
+                });
+                for (i, whole) in whole.iter().enumerate() {
+                    moved.s.set_column(i, &(by * whole));
+                }
+            }
+            from = &change.after;
+        }
+        moved
+    }
+
+    /// Back to the fixed time, along the right side after the stop; `directions` are those there.
+    pub fn leave(
+        &self,
+        onward: &Linearization,
+        moved: &Moved,
+        directions: &[DVector<f64>],
+    ) -> Pairs {
+        let swept = self.swept(onward, directions);
+        moved.x.map(|i, j, x| x - swept(i, j) - &onward.rate * moved.tau.at(i, j)[0])
+    }
+
+    /// `f_i tau_j + f_j tau_i + f_t tau_i tau_j` with derivatives along the path at fixed time and
+    /// along the flow.
+    fn swept(
+        &self,
+        point: &Linearization,
+        directions: &[DVector<f64>],
+    ) -> impl Fn(usize, usize) -> DVector<f64> {
+        let mut along_flow = DVector::zeros(point.by().ncols());
+        along_flow[0] = 1.0;
+        along_flow.rows_mut(1, point.rate.len()).copy_from(&point.rate);
+        let by_flow = point.by() * along_flow;
+        let by_direction: Vec<DVector<f64>> = directions.iter().map(|it| point.by() * it).collect();
+        let tau = self.tau.clone();
+        move |i, j| {
+            &by_direction[i] * tau[j] + &by_direction[j] * tau[i] + &by_flow * (tau[i] * tau[j])
+        }
+    }
+
+    /// `tau_ij`. Where a selector reaches its end nothing depends on it, because the right side has
+    /// no jump there.
+    fn second_tau(
+        &self,
+        arriving: &Linearization,
+        s: &DMatrix<f64>,
+        x: &Pairs,
+        directions: &[DVector<f64>],
+    ) -> Pairs {
+        let system = self.linearizer.system;
+        let (function, row) = match self.stop.cause {
+            Cause::Reaches(surface) => (&system.guards, surface),
+            Cause::Bends(kink) => (&system.kinks, kink),
+            Cause::Controls if !self.linearizer.is_stretched() => {
+                return Pairs::new(directions.len(), |_, _| DVector::zeros(1));
+            }
+            _ => return self.clock(directions),
+        };
+        let table = self.table(self.stop.before);
+        let by = Jacobian::of(&**function, &table, &self.linearizer.parameters).by;
+        let (normal, by_time) =
+            (by.row(row).columns(1, system.layout.x).into_owned(), by[(row, 0)]);
+        let speed = (&normal * &arriving.rate)[0] + by_time;
+        let hessians = Hessians::of(&**function, &table, &self.linearizer.parameters);
+        let whole = self.moved(directions, s);
+        x.map(|i, j, x| {
+            let bent = hessians.along(&whole[i], &whole[j])[row];
+            DVector::from_element(1, -((&normal * x)[0] + bent) / speed)
+        })
+    }
+
+    /// `tau_ij` of a time that is a fixed part of the interval.
+    fn clock(&self, directions: &[DVector<f64>]) -> Pairs {
+        let layout = self.linearizer.system.layout;
+        let tau = self.linearizer.tau(self.stop.before.time);
+        let parameters =
+            |i: usize| directions[i].rows(layout.parameters().start, layout.p).into_owned();
+        Pairs::new(directions.len(), |i, j| {
+            let ends = self.linearizer.interval_curvature(&parameters(i), &parameters(j));
+            DVector::from_element(1, (1.0 - tau) * ends[0] + tau * ends[1])
+        })
+    }
+
+    fn table(&self, at: &Instant) -> Columns {
+        let state = DVector::from_column_slice(&at.state);
+        self.linearizer.table(&self.tape.regimes[at.regime], &at.selectors, at.time, &state)
+    }
+
+    /// Directions with the moved time and state, `[t | x | u | p | s]`; selectors enter neither
+    /// surfaces nor resets.
+    fn moved(&self, directions: &[DVector<f64>], s: &DMatrix<f64>) -> Vec<DVector<f64>> {
+        let inputs = self.linearizer.system.layout.inputs();
+        let one = |(i, direction): (usize, &DVector<f64>)| {
+            let mut whole = direction.clone().resize_vertically(inputs, 0.0);
+            whole[0] = self.tau[i];
+            whole.rows_mut(1, s.nrows()).copy_from(&s.column(i));
+            whole
+        };
+        directions.iter().enumerate().map(one).collect()
+    }
+}

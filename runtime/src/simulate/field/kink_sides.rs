@@ -1,0 +1,34 @@
+//! On which side of each kink of the right side the state is.
+//!
+//! The right side is continuous there, so a side that is wrong by rounding does no harm. On the
+//! kink itself the side is the one to which the state goes.
+
+use super::Field;
+
+impl Field<'_> {
+    /// -1 below a kink, 1 above.
+    pub fn side_of(&self, kink: usize) -> f64 {
+        self.selectors[self.modes.len() + kink]
+    }
+
+    /// The state crosses a kink.
+    pub fn bend(&mut self, kink: usize) {
+        let place = self.modes.len() + kink;
+        self.selectors[place] = -self.selectors[place];
+    }
+
+    /// Finds the sides anew.
+    pub fn find_sides_of_kinks(&mut self, t: f64, x: &[f64]) {
+        let first = self.modes.len();
+        // Each pass is right for one more kink inside others.
+        for _ in 0..self.system.kinks.outputs() {
+            let bends = self.bends(t, x);
+            let rate = self.rate(t, x);
+            for kink in 0..bends.psi.len() {
+                let is_off = bends.psi[kink].abs() > 10.0 * bends.noise(kink, x);
+                let ahead = if is_off { bends.psi[kink] } else { bends.rate(kink, &rate) };
+                self.selectors[first + kink] = if ahead > 0.0 { 1.0 } else { -1.0 };
+            }
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! The functions of surfaces and kinks at a point: values, derivatives, and what rounding may make
+//! of 0.
+
+use super::Field;
+use super::tube::Tube;
+use crate::problem::Function;
+use nalgebra::DMatrix;
+
+/// What rounding makes of a sum, as a part of its terms.
+const ROUNDING: f64 = 1e-14;
+
+/// The functions of the surfaces with their derivatives.
+pub(crate) struct Normals {
+    pub psi: Vec<f64>,
+    pub by_time: Vec<f64>,
+    /// One row for each surface.
+    pub by_state: DMatrix<f64>,
+    /// What rounding may make of 0 for each surface, as far as the states have been large or the
+    /// terms are.
+    floors: Vec<f64>,
+}
+
+impl Normals {
+    /// `psi'` along a rate.
+    pub fn rate(&self, surface: usize, rate: &[f64]) -> f64 {
+        let along: f64 = self.by_state.row(surface).iter().zip(rate).map(|(d, f)| d * f).sum();
+        along + self.by_time[surface]
+    }
+
+    /// What rounding may make of `psi = 0`.
+    pub fn noise(&self, surface: usize, x: &[f64]) -> f64 {
+        self.floors[surface] + self.rounding(surface, x)
+    }
+
+    /// What rounding of the terms `dpsi/dx x` may make of their sum.
+    pub fn rounding(&self, surface: usize, x: &[f64]) -> f64 {
+        ROUNDING * self.by_state.row(surface).iter().zip(x).map(|(d, x)| (d * x).abs()).sum::<f64>()
+    }
+}
+
+impl Field<'_> {
+    /// The functions of the surfaces with their derivatives.
+    pub fn normals(&mut self, t: f64, x: &[f64]) -> Normals {
+        self.normals_of(&*self.system.guards, 0, t, x)
+    }
+
+    /// What is 0 at the kinks, with its derivatives.
+    pub fn bends(&mut self, t: f64, x: &[f64]) -> Normals {
+        self.normals_of(&*self.system.kinks, self.modes.len(), t, x)
+    }
+
+    fn normals_of(&mut self, function: &dyn Function, first: usize, t: f64, x: &[f64]) -> Normals {
+        self.set_point(t, x, None);
+        let (psi, matrix) = self.jacobian(function, 0..1 + x.len());
+        let by_time: Vec<f64> = matrix.column(0).iter().copied().collect();
+        let floors = self.rounding[first..][..psi.len()].to_vec();
+        let by_state = matrix.columns(1, x.len()).into_owned();
+        let mut normals = Normals { psi, by_time, by_state, floors };
+        for i in 0..normals.psi.len() {
+            let of_terms = normals.rounding(i, &self.tolerance.sizes)
+                + ROUNDING * (normals.by_time[i] * t).abs();
+            normals.floors[i] += of_terms;
+        }
+        normals
+    }
+
+    /// Finds what rounding makes of the surfaces and kinks near a point: the widths of their
+    /// enclosures there.
+    pub fn find_rounding(&mut self, t: f64, x: &[f64]) {
+        let mut tube = Tube::at(self, t, x);
+        let enclosures = &self.system.enclosures;
+        for (known, of) in
+            self.rounding.iter_mut().zip(enclosures.guards.iter().chain(&enclosures.kinks))
+        {
+            tube.evaluate(of);
+            let width = tube.ranges[0][1] - tube.ranges[0][0];
+            *known = if width.is_finite() { known.max(2.0 * width) } else { *known };
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! How exact a step must be, state by state:
+//!
+//! ```text
+//! rtol |x| + atol + h d,   atol: what is asked for, or 1e-12 of the largest that the state has been
+//! ```
+//!
+//! So it does not matter in which unit a state is written. `d` is by how much its rate is
+//! uncertain, because of rounding and because the other
+//! states are only as exact as they have to be: no step is short enough to be more exact than that.
+
+use super::Field;
+use super::tube::Tube;
+use crate::simulate::mode::Mode;
+use crate::simulate::result::Options;
+
+/// The absolute tolerance as a part of the size of a state.
+const PART: f64 = 1e-12;
+
+/// A state that has been no larger than this counts as if it had: what begins with 0 may grow so
+/// slowly that no step is short enough.
+const LEAST: f64 = 1e-60;
+
+/// Selectors that solve a linear system are known so well.
+const SOLVED: f64 = 1e-13;
+
+/// So many states may pass on to each other that they are uncertain.
+const PASSES: usize = 3;
+
+/// The tolerances of all states.
+pub(crate) struct Tolerance {
+    pub rtol: f64,
+    atol: Option<f64>,
+    /// The largest that each has been.
+    pub sizes: Vec<f64>,
+    /// By how much their rates are uncertain.
+    doubts: Vec<f64>,
+}
+
+impl Tolerance {
+    pub fn new(options: &Options, start: &[f64]) -> Self {
+        let sizes = start.iter().map(|x| x.abs()).collect();
+        Tolerance { rtol: options.rtol, atol: options.atol, sizes, doubts: vec![0.0; start.len()] }
+    }
+
+    /// Notes how large the states are.
+    pub fn see(&mut self, x: &[f64]) {
+        self.sizes.iter_mut().zip(x).for_each(|(size, x)| *size = size.max(x.abs()));
+    }
+
+    /// Of a state that is `before` and `after` a step of length `h`.
+    pub fn of(&self, i: usize, [before, after]: [f64; 2], h: f64) -> f64 {
+        let size = before.abs().max(after.abs());
+        let atol = self.atol.unwrap_or(PART * size.max(self.sizes[i]).max(LEAST));
+        atol + self.rtol * size + h * self.doubts[i]
+    }
+
+    /// From now on rates are certain.
+    pub fn forget_doubts(&mut self) {
+        self.doubts.fill(0.0);
+    }
+
+    /// Divides what rates are uncertain by.
+    pub fn damp(&mut self, by: impl Fn(usize) -> f64) {
+        self.doubts.iter_mut().enumerate().for_each(|(i, doubt)| *doubt /= by(i));
+    }
+
+    /// The largest difference of two states near `x` in units of the tolerance.
+    pub fn error(&self, x: &[f64], one: &[f64], other: &[f64], h: f64) -> f64 {
+        let scaled = |i: usize| (one[i] - other[i]).abs() / self.of(i, [x[i], one[i]], h);
+        let all = (0..x.len()).map(scaled);
+        all.fold(
+            0.0,
+            |largest, value| if value > largest || value.is_nan() { value } else { largest },
+        )
+    }
+}
+
+impl Field<'_> {
+    /// Finds by how much rates are uncertain if states may be off by a part of their tolerance, and
+    /// by what their own rates make of them in a time `h`.
+    pub fn find_doubts(&mut self, t: f64, x: &[f64], h: f64, part: f64) {
+        self.tolerance.forget_doubts();
+        for _ in 0..PASSES {
+            self.widen_doubts(t, x, h, part);
+        }
+    }
+
+    fn widen_doubts(&mut self, t: f64, x: &[f64], h: f64, part: f64) {
+        let layout = self.system.layout;
+        let mut tube = Tube::at(self, t, x);
+        for i in 0..layout.x {
+            let off = part * self.tolerance.of(i, [x[i]; 2], 0.0) + h * self.tolerance.doubts[i];
+            tube.inputs[layout.t + i] = [x[i] - off, x[i] + off];
+        }
+        for (i, mode) in self.modes.iter().enumerate() {
+            let s = self.selectors[i];
+            let off = if matches!(mode, Mode::Sliding | Mode::Moving) {
+                SOLVED * (1.0 + s.abs())
+            } else {
+                0.0
+            };
+            tube.inputs[layout.selectors().start + i] = [s - off, s + off];
+        }
+        for (i, rate) in self.system.enclosures.flow.iter().enumerate() {
+            tube.evaluate(rate);
+            let width = tube.ranges[0][1] - tube.ranges[0][0];
+            let stands_still = self.held.contains(&i);
+            self.tolerance.doubts[i] = if width.is_finite() && !stands_still { width } else { 0.0 };
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! The least and the greatest value of each path condition along a simulation, between steps, too.
+//!
+//! A part of a step is done where intervals say that nothing in it is beyond what is known already.
+
+use super::interval::scaled;
+use crate::simulate::field::Field;
+use crate::simulate::field::tube::Tube;
+use crate::simulate::result::Extreme;
+use crate::simulate::steps::Step;
+use crate::simulate::system::Enclosure;
+
+/// How exact an extreme is, as a part of the values near it.
+const EXACT: f64 = 1e-9;
+
+/// More parts than this of one step are not looked at.
+const MOST_PARTS: usize = 200;
+
+/// The least, then the greatest value of each path condition so far; none if nobody asks.
+pub(crate) struct Extremes(pub Vec<[Extreme; 2]>);
+
+impl Extremes {
+    pub fn new(conditions: usize) -> Self {
+        let none =
+            [f64::INFINITY, f64::NEG_INFINITY].map(|value| Extreme { value, time: f64::NAN });
+        Extremes(vec![none; conditions])
+    }
+
+    /// Looks along a step, until a part of it.
+    pub fn follow(&mut self, field: &Field, step: &Step, until: f64) {
+        for (of, known) in field.system.enclosures.path.iter().zip(&mut self.0) {
+            let tube = Tube::new(field);
+            let mut search = Search { field, step, of, tube };
+            if search.is_known(known, until) {
+                continue;
+            }
+            known
+                .iter_mut()
+                .zip([-1.0, 1.0])
+                .for_each(|(known, side)| search.raise(known, side, until));
+        }
+    }
+}
+
+/// A condition along a step.
+struct Search<'s, 'a> {
+    field: &'s Field<'a>,
+    step: &'s Step,
+    of: &'s Enclosure,
+    tube: Tube,
+}
+
+impl Search<'_, '_> {
+    /// Whether no value is beyond those that are known, as one look tells.
+    fn is_known(&mut self, [least, greatest]: &[Extreme; 2], until: f64) -> bool {
+        let [low, high] = self.tube.bounds(self.field, self.step, [0.0, until], self.of)[0];
+        low > high || low >= least.value && high <= greatest.value
+    }
+
+    /// The value at a part of the step; not a number where there is none.
+    fn value(&mut self, theta: f64) -> f64 {
+        let [low, high] = self.tube.bounds(self.field, self.step, [theta; 2], self.of)[0];
+        if low <= high { 0.5 * (low + high) } else { f64::NAN }
+    }
+
+    /// Finds what is beyond the known value: greater with `side` 1, less with -1.
+    fn raise(&mut self, known: &mut Extreme, side: f64, until: f64) {
+        let mut parts = vec![[0.0, until]];
+        for _ in 0..MOST_PARTS {
+            let Some([from, to]) = parts.pop() else { return };
+            let bounds = self.tube.bounds(self.field, self.step, [from, to], self.of);
+            let [[_, most], [falls, grows]] = bounds.map(|range| scaled(side, range));
+            let enough = side * known.value + EXACT * known.value.abs();
+            if most <= enough || bounds[0][0] > bounds[0][1] {
+                continue;
+            }
+            let middle = 0.5 * (from + to);
+            let values = [from, middle, to].map(|theta| self.seen(known, side, theta));
+            let enough = side * known.value + EXACT * known.value.abs();
+            // Two lines bound the values from above.
+            let until_highest = (values[2] - values[0] - falls * (to - from)) / (grows - falls);
+            let is_done =
+                falls >= 0.0 || grows <= 0.0 || values[0] + grows * until_highest <= enough;
+            if !is_done && to - from > f64::EPSILON {
+                parts.extend([[middle, to], [from, middle]]);
+            }
+        }
+    }
+
+    /// A value, noted if it is beyond the known one.
+    fn seen(&mut self, known: &mut Extreme, side: f64, theta: f64) -> f64 {
+        let value = self.value(theta);
+        if side * value > side * known.value {
+            *known = Extreme { value, time: self.step.t + theta * self.step.h };
+        }
+        side * value
+    }
+}

@@ -1,0 +1,201 @@
+//! The first event inside a step.
+//!
+//! Every condition is a function `g >= 0` of time: `side * psi` beside a surface or a kink, `1 -
+//! |s|` on a surface. Along the dense output
+//! none of them is negative before the event that is found (see [`search`](self::search)). The
+//! root is refined on steps of the pair
+//! itself, so it is as accurate as the integration.
+
+mod bisection;
+pub(crate) mod extremes;
+mod interval;
+mod search;
+mod sliding;
+mod tube;
+
+use super::field::Field;
+use super::field::correct;
+use super::field::direction::length;
+use super::steps::Step;
+use crate::simulate::field::tube::Tube;
+use crate::simulate::mode::Mode;
+use crate::simulate::tape::Cause;
+pub(crate) use bisection::bisect;
+use search::{Search, Signal};
+
+/// What may end a mode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Condition {
+    /// The state reaches a surface.
+    Reaches(usize),
+    /// The selector of a sliding surface reaches the end of its interval.
+    Leaves(usize),
+    /// The state reaches a kink of the right side.
+    Bends(usize),
+}
+
+impl From<Condition> for Cause {
+    fn from(condition: Condition) -> Self {
+        match condition {
+            Condition::Reaches(surface) => Cause::Reaches(surface),
+            Condition::Leaves(surface) => Cause::Leaves(surface),
+            Condition::Bends(kink) => Cause::Bends(kink),
+        }
+    }
+}
+
+/// An event, with the state there.
+pub(crate) struct Found {
+    pub condition: Condition,
+    /// How long the step is that ends there.
+    pub h: f64,
+    pub state: Vec<f64>,
+}
+
+/// What is known of the events in a step.
+pub(crate) enum First {
+    /// There is none.
+    None,
+    /// The first.
+    At(Found),
+    /// There is none before this part of the step; what comes then takes too long to find out.
+    NotBefore(f64),
+}
+
+/// The first event of a step.
+pub(crate) fn first(field: &mut Field, step: &Step) -> First {
+    let (mut until, mut found, mut is_known) = (1.0, None, true);
+    for condition in conditions(field) {
+        let tube = Tube::new(field);
+        let mut signal = Signal { field, step, condition, tube };
+        if signal.clearly_holds(until) {
+            continue;
+        }
+        let noise = noise(signal.field, step, condition);
+        match signal.first_failure(until, noise) {
+            Search::Holds => {}
+            Search::Fails(ends) => {
+                until = root(&mut |theta| signal.value(theta), ends, noise);
+                (found, is_known) = (Some(condition), true);
+            }
+            Search::HoldsUntil(theta) => (until, found, is_known) = (theta, None, false),
+        }
+    }
+    match found {
+        Some(condition) => First::At(refine(field, step, condition, until)),
+        None if is_known => First::None,
+        None => First::NotBefore(until),
+    }
+}
+
+/// All that may end the mode.
+fn conditions(field: &Field) -> Vec<Condition> {
+    let is_first = |i: usize| field.ball_of(i).is_none_or(|ball| ball.surfaces.start == i);
+    let of = |(i, mode): (usize, &Mode)| match mode {
+        Mode::Below | Mode::Above => Some(Condition::Reaches(i)),
+        Mode::Sliding if is_first(i) => Some(Condition::Leaves(i)),
+        Mode::Sliding | Mode::Moving | Mode::Held => None,
+    };
+    let kinks = if field.is_blind { 0 } else { field.system.kinks.outputs() };
+    field.modes.iter().enumerate().filter_map(of).chain((0..kinks).map(Condition::Bends)).collect()
+}
+
+/// What rounding may make of 0.
+fn noise(field: &mut Field, step: &Step, condition: Condition) -> f64 {
+    field.find_rounding(step.t, &step.start);
+    match condition {
+        Condition::Reaches(i) => field.normals(step.t, &step.start).noise(i, &step.start),
+        Condition::Leaves(_) => 1e-12,
+        Condition::Bends(k) => field.bends(step.t, &step.start).noise(k, &step.start),
+    }
+}
+
+/// `1 - |s|` of a sliding surface or of a ball at rest.
+pub(crate) fn reserve(field: &Field, surface: usize) -> f64 {
+    match field.ball_of(surface) {
+        Some(ball) => 1.0 - length(&field.selectors[ball.surfaces.clone()]),
+        None => 1.0 - field.selectors[surface].abs(),
+    }
+}
+
+/// What is not negative before a condition ends.
+pub(crate) fn value(field: &mut Field, condition: Condition, t: f64, x: &[f64]) -> f64 {
+    match condition {
+        Condition::Reaches(i) => field.modes[i].side() * field.psi(t, x)[i],
+        Condition::Leaves(i) => {
+            field.rate(t, x);
+            reserve(field, i)
+        }
+        Condition::Bends(k) => field.side_of(k) * field.bends(t, x).psi[k],
+    }
+}
+
+/// The root between a time where `g` is positive, or 0 by rounding, and one where it is negative.
+fn root(g: &mut dyn FnMut(f64) -> f64, [mut low, mut high]: [f64; 2], noise: f64) -> f64 {
+    let mut at_low = g(low);
+    let mut at_high = g(high);
+    let begin = low;
+    // A mode begins on its surface, as far as rounding can tell: the positive part may be shorter
+    // than any sample.
+    let mut span = high - begin;
+    while at_low <= noise {
+        span *= 0.5;
+        if span < 1e-12 {
+            return begin;
+        }
+        let value = g(begin + span);
+        if value > noise {
+            (low, at_low) = (begin + span, value);
+        } else {
+            (high, at_high) = (begin + span, value);
+        }
+    }
+    bisect(g, [low, at_low], [high, at_high])
+}
+
+/// The secant method on steps that end at the event.
+fn refine(field: &mut Field, step: &Step, condition: Condition, theta: f64) -> Found {
+    let mut trial = step.clone();
+    let mut end = |theta: f64| {
+        let state = if theta == 0.0 {
+            step.start.clone()
+        } else {
+            trial.attempt(field, theta * step.h);
+            trial.end.clone()
+        };
+        let value = value(field, condition, step.t + theta * step.h, &state);
+        (state, value)
+    };
+    let (mut state, mut value) = end(theta);
+    let mut best = theta;
+    let mut other = theta * (1.0 - 1e-6);
+    let mut at_other = if theta > 0.0 { end(other).1 } else { 0.0 };
+    for _ in 0..6 {
+        let next = best - value * (best - other) / (value - at_other);
+        let is_near = (next - theta).abs() <= 1e-3 * theta && next <= 1.0;
+        if value == 0.0 || !is_near || next == best {
+            break;
+        }
+        let (next_state, next_value) = end(next);
+        if next_value.abs() >= value.abs() {
+            break;
+        }
+        (other, at_other) = (best, value);
+        (best, state, value) = (next, next_state, next_value);
+    }
+    let h = best * step.h;
+    if let Condition::Reaches(surface) = condition {
+        bring_to(field, surface, step.t + h, &mut state);
+    }
+    Found { condition, h, state }
+}
+
+/// Newton's steps onto a surface that is reached but for rounding, which is as large as the state
+/// was on the way.
+fn bring_to(field: &mut Field, surface: usize, t: f64, state: &mut [f64]) {
+    for _ in 0..2 {
+        let normals = field.normals(t, state);
+        let slope: Vec<f64> = normals.by_state.row(surface).iter().copied().collect();
+        correct(state, &slope, normals.psi[surface]);
+    }
+}

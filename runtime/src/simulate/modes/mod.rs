@@ -1,0 +1,263 @@
+//! Which modes follow at a point on some surfaces: the mixed linear complementarity problem, or a
+//! refusal.
+//!
+//! The rates `r(s)` of the surfaces are linearised until nothing changes (selectors may multiply
+//! each other). If `B` is a P-matrix, or positive definite where there are balls, the solution is
+//! the only one. Otherwise all combinations of sides are tried, and only a single consistent one is
+//! taken.
+
+pub(crate) mod ball;
+pub(crate) mod complementarity;
+
+use super::field::direction::length;
+use super::field::normals::Normals;
+use super::field::{Field, surface_rates};
+use super::result::{Candidate, Status};
+use super::steps::Step;
+use crate::simulate::mode::Mode;
+use ball::{blocks, is_unique, solution};
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+/// Rates below this part of what they are made of are 0.
+pub(crate) const TIE: f64 = 1e-11;
+
+/// Beyond this many surfaces at a point, combinations are too many to list.
+const MOST_COMBINED: usize = 6;
+
+/// A point on some surfaces.
+struct Corner<'f, 'a> {
+    field: &'f mut Field<'a>,
+    t: f64,
+    x: &'f [f64],
+    surfaces: &'f [usize],
+    normals: Normals,
+    /// Where the balls stand among the surfaces.
+    balls: Vec<Range<usize>>,
+}
+
+/// The modes of the surfaces, with the selectors that belong to them.
+struct Choice {
+    modes: Vec<Mode>,
+    s: DVector<f64>,
+}
+
+/// The modes of `surfaces` after a point that is on all of them. Balls that move from there find
+/// their direction in the field.
+pub(crate) fn decide(
+    field: &mut Field,
+    t: f64,
+    x: &[f64],
+    surfaces: &[usize],
+) -> Result<Vec<Mode>, Status> {
+    if surfaces.is_empty() {
+        return Ok(Vec::new());
+    }
+    let normals = field.normals(t, x);
+    field.follow_directions(t, x);
+    let balls = blocks(&field.system.balls, surfaces);
+    let mut corner = Corner { field, t, x, surfaces, normals, balls };
+    let choice = match corner.unique() {
+        Some(choice) => choice,
+        None => corner.only_combination()?,
+    };
+    choice.note_directions(field, surfaces);
+    Ok(choice.modes)
+}
+
+fn mode(side: i8) -> Mode {
+    match side {
+        1 => Mode::Above,
+        -1 => Mode::Below,
+        _ => Mode::Sliding,
+    }
+}
+
+impl Corner<'_, '_> {
+    /// Rates of the surfaces, `B`, and what counts as 0, for selectors of the surfaces.
+    fn rates(&mut self, s: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>, Vec<f64>) {
+        let mut all = self.field.selectors.clone();
+        self.surfaces.iter().zip(s.iter()).for_each(|(&i, s)| all[i] = *s);
+        let (rate, by_selector) = self.field.with_selectors(self.t, self.x, &all);
+        let (r, b) = surface_rates(&self.normals, &rate, &by_selector, self.surfaces);
+        let size = |at: usize, i: usize| {
+            let terms = self
+                .normals
+                .by_state
+                .row(i)
+                .iter()
+                .zip(&rate)
+                .map(|(d, f)| (d * f).abs())
+                .sum::<f64>();
+            TIE * (terms + self.normals.by_time[i].abs() + b.row(at).amax()).max(f64::MIN_POSITIVE)
+        };
+        let ties = self.surfaces.iter().enumerate().map(|(at, &i)| size(at, i)).collect();
+        (r, b, ties)
+    }
+
+    /// The modes, if the linearised problem has one solution on the way to that of the whole.
+    fn unique(&mut self) -> Option<Choice> {
+        let mut s = DVector::zeros(self.surfaces.len());
+        for _ in 0..50 {
+            let (r, b, tie) = self.rates(&s);
+            if !is_unique(&b, &self.balls) || !r.iter().all(|value| value.is_finite()) {
+                return None;
+            }
+            let next = solution(&(&r + &b * &s), &b, &self.balls)?;
+            if (&next - &s).amax() <= 1e-13 {
+                let sides: Vec<i8> = (0..s.len()).map(|i| side(next[i], r[i], tie[i])).collect();
+                return Some(self.choice(&sides, next, &r, &tie));
+            }
+            s = next;
+        }
+        None
+    }
+
+    /// Modes for sides, selectors and rates; a ball at the end of its selectors with no rate
+    /// slides, too.
+    fn choice(&self, sides: &[i8], s: DVector<f64>, r: &DVector<f64>, tie: &[f64]) -> Choice {
+        let mut modes: Vec<Mode> = sides.iter().copied().map(mode).collect();
+        for ball in self.balls.clone() {
+            let [own, rate, tie] =
+                [s.as_slice(), r.as_slice(), tie].map(|all| length(&all[ball.clone()]));
+            let moves = own >= 1.0 - 1e-12 && rate > tie;
+            modes[ball].fill(if moves { Mode::Moving } else { Mode::Sliding });
+        }
+        Choice { modes, s }
+    }
+
+    fn is_in_ball(&self, at: usize) -> bool {
+        self.balls.iter().any(|ball| ball.contains(&at))
+    }
+
+    /// The only consistent combination of sides; what the balls do follows from them.
+    fn only_combination(&mut self) -> Result<Choice, Status> {
+        let size = self.surfaces.len();
+        let alone: Vec<usize> = (0..size).filter(|&at| !self.is_in_ball(at)).collect();
+        let count = if alone.len() <= MOST_COMBINED { 3_usize.pow(alone.len() as u32) } else { 0 };
+        let sides = |number: usize| -> Vec<i8> {
+            let mut sides = vec![0; size];
+            for (digit, &at) in alone.iter().enumerate() {
+                sides[at] = [1, -1, 0][number / 3_usize.pow(digit as u32) % 3];
+            }
+            sides
+        };
+        let mut found: Vec<Choice> =
+            (0..count).filter_map(|number| self.consistent(&sides(number))).collect();
+        if found.len() == 1 && self.attracts(&found[0]) {
+            return Ok(found.swap_remove(0));
+        }
+        let candidates = found.iter().map(|choice| self.candidate(choice)).collect();
+        Err(Status::NotUnique { surface: self.surfaces[0], candidates })
+    }
+
+    fn candidate(&self, choice: &Choice) -> Candidate {
+        let is_first =
+            |at: &usize| self.balls.iter().all(|ball| !ball.contains(at) || ball.start == *at);
+        let side = |at: usize| match choice.modes[at] {
+            Mode::Above | Mode::Moving => 1,
+            Mode::Below => -1,
+            Mode::Sliding | Mode::Held => 0,
+        };
+        let firsts = (0..choice.modes.len()).filter(is_first);
+        Candidate { sides: firsts.map(|at| (self.surfaces[at], side(at))).collect() }
+    }
+
+    /// Whether the surfaces that are held attract. Where several are held and do not, the state may
+    /// also leave on a spiral, which is no combination of sides.
+    fn attracts(&mut self, choice: &Choice) -> bool {
+        let held: Vec<usize> =
+            (0..choice.s.len()).filter(|&i| choice.modes[i] == Mode::Sliding).collect();
+        let surfaces: Vec<usize> = held.iter().map(|&at| self.surfaces[at]).collect();
+        let b = self.rates(&choice.s).1.select_rows(&held).select_columns(&held);
+        held.len() < 2 || is_unique(&b, &blocks(&self.field.system.balls, &surfaces))
+    }
+
+    /// What happens if the state goes on with these sides, if it can.
+    fn consistent(&mut self, sides: &[i8]) -> Option<Choice> {
+        let mut s = DVector::from_iterator(sides.len(), sides.iter().map(|side| f64::from(*side)));
+        let free: Vec<usize> = (0..sides.len()).filter(|&i| sides[i] == 0).collect();
+        for _ in 0..if free.is_empty() { 0 } else { 20 } {
+            let (r, b, _) = self.rates(&s);
+            let b = b.select_rows(&free).select_columns(&free);
+            let change = self.change(&s.select_rows(&free), &r.select_rows(&free), b, &free)?;
+            free.iter().zip(change.iter()).for_each(|(&i, change)| s[i] += change);
+        }
+        let (r, _, tie) = self.rates(&s);
+        let fits = |i: usize| {
+            if self.is_in_ball(i) {
+                s[i].is_finite()
+            } else if sides[i] == 0 {
+                s[i].abs() < 1.0 && r[i].abs() <= tie[i]
+            } else {
+                f64::from(sides[i]) * r[i] >= -tie[i]
+            }
+        };
+        let is_tie = |i: usize| sides[i] != 0 && r[i].abs() <= tie[i];
+        let (all_fit, has_tie) = ((0..sides.len()).all(fits), (0..sides.len()).any(is_tie));
+        let choice = self.choice(sides, s, &r, &tie);
+        (all_fit && (!has_tie || self.goes_there(sides, &choice))).then_some(choice)
+    }
+
+    /// By how much the free selectors change in one iteration; those of balls stay in them.
+    fn change(
+        &self,
+        s: &DVector<f64>,
+        r: &DVector<f64>,
+        b: DMatrix<f64>,
+        free: &[usize],
+    ) -> Option<DVector<f64>> {
+        if self.balls.is_empty() {
+            return b.lu().solve(r);
+        }
+        let surfaces: Vec<usize> = free.iter().map(|&at| self.surfaces[at]).collect();
+        let balls = blocks(&self.field.system.balls, &surfaces);
+        is_unique(&b, &balls).then(|| solution(&(r + &b * s), &b, &balls))?.map(|next| next - s)
+    }
+
+    /// Where rates vanish a short step tells on which side it ends.
+    fn goes_there(&mut self, sides: &[i8], choice: &Choice) -> bool {
+        let before = (self.field.modes.clone(), self.field.selectors.clone());
+        let of_balls = (self.field.departure.clone(), self.field.direction.clone());
+        choice.begin(self.field, self.surfaces, self.t);
+        let [first, last] = self.field.system.interval;
+        let h = 1e-5 * (last - first);
+        let end = Step::take(self.field, self.t, self.x, h).end;
+        let psi = self.field.psi(self.t + h, &end);
+        (self.field.modes, self.field.selectors) = before;
+        (self.field.departure, self.field.direction) = of_balls;
+        self.surfaces
+            .iter()
+            .zip(sides)
+            .all(|(&i, &side)| side == 0 || f64::from(side) * psi[i] > 0.0)
+    }
+}
+
+impl Choice {
+    /// Puts a field into these modes.
+    fn begin(&self, field: &mut Field, surfaces: &[usize], t: f64) {
+        self.note_directions(field, surfaces);
+        for (&surface, &mode) in surfaces.iter().zip(&self.modes) {
+            field.set_mode(surface, mode);
+            field.departure[surface] = t;
+        }
+    }
+
+    /// Notes in which direction balls set out.
+    fn note_directions(&self, field: &mut Field, surfaces: &[usize]) {
+        let moves = |at: &usize| self.modes[*at] == Mode::Moving;
+        (0..surfaces.len()).filter(moves).for_each(|at| field.direction[surfaces[at]] = self.s[at]);
+    }
+}
+
+/// The side of a selector; at the end of its interval with no rate it slides, as long as it stays
+/// there.
+fn side(s: f64, rate: f64, tie: f64) -> i8 {
+    if s >= 1.0 - 1e-12 && rate > tie {
+        1
+    } else if s <= -1.0 + 1e-12 && rate < -tie {
+        -1
+    } else {
+        0
+    }
+}

@@ -1,0 +1,291 @@
+//! One step forward: its length, the method that takes it, and where in it the mode ends.
+
+use super::Run;
+use crate::problem::Origin;
+use crate::simulate::field::surface_rates;
+use crate::simulate::location;
+use crate::simulate::location::{Condition, First};
+use crate::simulate::modes::ball::{blocks, is_unique};
+use crate::simulate::result::{Integrator, Method, Status};
+use crate::simulate::steps::Step;
+use crate::simulate::tape::Cause;
+
+/// What a step leaves for the next.
+pub(crate) struct Pace {
+    /// The length to be tried.
+    pub h: f64,
+    /// Whether the next step continues the last one in the same mode.
+    pub is_continued: bool,
+    /// Which method takes the next step.
+    method: Method,
+    /// How many steps of the explicit method in a row were as long as its stability allows, and how
+    /// many not since.
+    at_border: usize,
+    off_border: usize,
+    /// How many kinks in a row were met at one time.
+    bends: usize,
+    /// The last step.
+    step: Step,
+}
+
+/// The explicit pair is stable for `h |lambda|` up to about 3.3. With small tolerances the slow
+/// part of a stiff solution keeps it well below that, but a solution that is not stiff farther
+/// still: this much at a tolerance of 1e-10.
+const BORDER: f64 = 3.25;
+const SMALL_BORDER: f64 = 1.0;
+
+/// So many steps at the border, not interrupted by so many off it, make a system stiff.
+const STIFF_AFTER: usize = 15;
+const NOT_STIFF_AFTER: usize = 6;
+
+/// A trajectory of more numbers than this, a quarter of a gigabyte, is of no use to anybody.
+const MOST_NUMBERS: usize = 1 << 25;
+
+/// After so many kinks at one time the next step passes over them: what stays on a kink but for
+/// rounding crosses it for ever.
+const MOST_BENDS: usize = 8;
+
+/// A step of the explicit pair may be off by this part of what the tolerances of the other states
+/// make of its own.
+const SHARE: f64 = 0.01;
+
+/// Below this the explicit pair takes steps of the same length without any doubt.
+const NOT_STIFF: f64 = 0.5;
+
+impl Pace {
+    pub fn new(states: usize, method: Method) -> Self {
+        let step = Step::new(states);
+        Pace { h: 0.0, is_continued: false, method, at_border: 0, off_border: 0, bends: 0, step }
+    }
+
+    /// Chooses the method of the next step by what the last one says of stiffness.
+    fn choose(&mut self, step: &Step, rtol: f64) {
+        let stiffness = step.stiffness();
+        let is_at_border =
+            stiffness > (SMALL_BORDER * (rtol / 1e-10).powf(0.2)).clamp(SMALL_BORDER, BORDER);
+        self.at_border += usize::from(is_at_border);
+        self.off_border = if is_at_border { 0 } else { self.off_border + 1 };
+        match self.method {
+            Method::Explicit if self.off_border >= NOT_STIFF_AFTER => self.at_border = 0,
+            Method::Explicit if self.at_border >= STIFF_AFTER => self.method = Method::Stiff,
+            Method::Stiff if stiffness < NOT_STIFF => {
+                (self.method, self.at_border) = (Method::Explicit, 0)
+            }
+            Method::Explicit | Method::Stiff => {}
+        }
+    }
+}
+
+/// How much shorter or longer a step with some error should be.
+fn factor(step: &Step) -> f64 {
+    let order = match step.method {
+        Method::Explicit => 5.0,
+        Method::Stiff => 4.0,
+    };
+    if step.error.is_finite() {
+        (0.9 * step.error.max(1e-10).powf(-1.0 / order)).clamp(0.1, 5.0)
+    } else {
+        0.1
+    }
+}
+
+impl Run<'_> {
+    /// A first length: E. Hairer, S. P. Norsett, G. Wanner: Solving Ordinary Differential Equations
+    /// I, 2nd ed., II.4.
+    pub fn first_length(&mut self) -> f64 {
+        let span = self.field.system.interval[1] - self.t;
+        let x = self.x.clone();
+        let rate = self.field.rate(self.t, &x);
+        // How long what is 0 stays small, only a step tells.
+        let moving: Vec<usize> = (0..x.len()).filter(|i| x[*i] != 0.0).collect();
+        let scales: Vec<f64> =
+            moving.iter().map(|&i| self.field.tolerance.of(i, [x[i]; 2], 0.0)).collect();
+        let size = |values: &[f64]| {
+            let scaled = moving.iter().zip(&scales).map(|(&i, scale)| (values[i] / scale).abs());
+            scaled.fold(0.0, f64::max)
+        };
+        let (at, slope) = (size(&x), size(&rate));
+        let short =
+            if at < 1e-5 || slope < 1e-5 { 1e-6 * span } else { (0.01 * at / slope).min(span) };
+        let next: Vec<f64> = x.iter().zip(&rate).map(|(x, rate)| x + short * rate).collect();
+        let after = self.field.rate(self.t + short, &next);
+        let change: Vec<f64> =
+            after.iter().zip(&rate).map(|(after, rate)| (after - rate) / short).collect();
+        let bend = slope.max(size(&change));
+        let long = if bend > 1e-15 { (0.01 / bend).powf(0.2) } else { span };
+        let length = long.min(100.0 * short).min(span);
+        if length > 0.0 { length } else { 1e-6 * span }
+    }
+
+    /// One accepted step towards `stop`, or up to the first event in it.
+    pub fn advance(&mut self, stop: f64) -> Result<(), Status> {
+        let mut step = std::mem::take(&mut self.pace.step);
+        let result = self.advance_by(&mut step, stop);
+        self.pace.step = step;
+        result
+    }
+
+    fn advance_by(&mut self, step: &mut Step, stop: f64) -> Result<(), Status> {
+        self.options.watch.ask()?;
+        if self.record.size() > MOST_NUMBERS {
+            return Err(Status::StepLimit);
+        }
+        let rest = stop - self.t;
+        let fall = self.field.fall(self.t, &self.x);
+        if let Some(fall) = fall.as_ref().filter(|fall| fall.is_near && fall.time <= rest) {
+            return self.land(fall);
+        }
+        self.accepted(step, rest, fall.map_or(f64::INFINITY, |fall| fall.longest))?;
+        self.counts.steps += 1;
+        self.counts.stiff += usize::from(step.method == Method::Stiff);
+        if self.options.integrator == Integrator::Automatic && self.field.moving().is_empty() {
+            self.pace.choose(step, self.options.rtol);
+        }
+        if let Some(found) = self.first_event(step) {
+            self.go(step, [step.t + found.h, found.h], &found.state);
+            return self.stop(found.condition.into(), |run| run.handle(found.condition));
+        }
+        if let Some(theta) = self.attraction_ends(step) {
+            step.attempt(&mut self.field, theta * step.h);
+            self.go(step, [step.t + step.h, step.h], &step.end);
+            self.record.point(self.t, &self.x);
+            return self.stop(Cause::Repels, |run| {
+                let surfaces = run.surfaces_here();
+                run.settle(surfaces)
+            });
+        }
+        let time = if step.h >= rest { stop } else { step.t + step.h };
+        self.go(step, [time, step.h], &step.end);
+        self.record.point(self.t, &self.x);
+        self.pace.is_continued = true;
+        Ok(())
+    }
+
+    /// The first event in a step, which becomes shorter where it is not known beyond.
+    /// Kinks that follow each other without any way between them are not looked for after a while.
+    fn first_event(&mut self, step: &mut Step) -> Option<location::Found> {
+        self.field.is_blind = self.pace.bends > MOST_BENDS;
+        let found = loop {
+            match location::first(&mut self.field, step) {
+                First::None => break None,
+                First::At(found) => break Some(found),
+                First::NotBefore(theta) => step.attempt(&mut self.field, theta * step.h),
+            }
+        };
+        let is_bend = |it: &location::Found| matches!(it.condition, Condition::Bends(_));
+        let is_there = |it: &location::Found| it.h <= 4.0 * f64::EPSILON * step.t.abs();
+        let is_idle = found.as_ref().is_some_and(|it| is_bend(it) && is_there(it));
+        self.pace.bends = if is_idle { self.pace.bends + 1 } else { 0 };
+        found
+    }
+
+    /// Goes to the state at a time, `h` after the beginning of a step.
+    pub fn go(&mut self, step: &Step, [time, h]: [f64; 2], end: &[f64]) {
+        let field = &mut self.field;
+        self.record.inside(time, &mut |wanted| step.exactly_at(field, (wanted - step.t).max(0.0)));
+        if h > 0.0 {
+            self.extremes.follow(&self.field, step, h / step.h);
+        }
+        self.t = time;
+        self.x.copy_from_slice(end);
+        self.field.project(self.t, &mut self.x);
+        self.field.tolerance.see(&self.x);
+        if h > 0.0 {
+            self.tape.step(&mut self.field, step, h, &self.x);
+        }
+    }
+
+    /// Takes a step whose error is small enough, to the stop at most and no longer than a fall
+    /// allows; chooses the length of the next.
+    fn accepted(&mut self, step: &mut Step, rest: f64, longest: f64) -> Result<(), Status> {
+        let wanted = self.pace.h;
+        // Two steps of equal length are better than a long and a very short one.
+        let mut h = if wanted >= rest * (1.0 - 1e-12) { rest } else { wanted.min(0.5 * rest) };
+        h = h.min(longest);
+        h = h.min(self.options.max_step);
+        let mut is_short = h < wanted;
+        // Near 0 the direction of a ball is stiff in a way of its own.
+        let method =
+            if self.field.moving().is_empty() { self.pace.method } else { Method::Explicit };
+        step.begin(&mut self.field, self.t, &self.x, method, self.pace.is_continued);
+        let selectors = self.field.selectors.clone();
+        // What was uncertain in a short step says nothing about a long one.
+        self.field.tolerance.forget_doubts();
+        let mut has_doubts = false;
+        loop {
+            if self.counts.steps + self.counts.rejected >= self.options.max_steps {
+                return Err(Status::StepLimit);
+            }
+            step.attempt(&mut self.field, h);
+            if step.error > 1.0 && !has_doubts {
+                self.doubt(step);
+                has_doubts = true;
+            }
+            let next = h * factor(step);
+            if step.error <= 1.0 {
+                // A step that a stop made short says nothing against long ones.
+                self.pace.h = if is_short { next.max(wanted) } else { next };
+                return Ok(());
+            }
+            self.field.selectors.copy_from_slice(&selectors);
+            self.counts.rejected += 1;
+            (h, is_short) = (next, false);
+            if h <= 4.0 * f64::EPSILON * self.t.abs().max(h * 1e3).max(f64::MIN_POSITIVE) {
+                return Err(self.stuck());
+            }
+        }
+    }
+
+    /// Asks whether an error is more than what the rates are uncertain by.
+    fn doubt(&mut self, step: &mut Step) {
+        if step.method == Method::Explicit {
+            self.field.find_doubts(step.t, &step.start, step.h, SHARE);
+        } else {
+            // An implicit step damps what the rates of a fast state are off by, and passes on none
+            // of it.
+            self.field.find_doubts(step.t, &step.start, 0.0, 0.0);
+            self.field.tolerance.damp(|i| 1.0 + step.h * step.newton.own_slope(i));
+        }
+        step.measure(&self.field.tolerance);
+    }
+
+    /// Why steps become too short: the sliding ends to be unique, or something grows beyond all
+    /// bounds.
+    fn stuck(&mut self) -> Status {
+        let surfaces = self.surfaces_here();
+        if let Err(status) = self.settle(surfaces).and_then(|()| self.finite_here()) {
+            return status;
+        }
+        let rate = self.field.rate(self.t, &self.x);
+        let growth = |i: &usize| (rate[*i] / (1.0 + self.x[*i].abs())).abs();
+        let worst = (0..self.x.len()).max_by(|i, j| growth(i).total_cmp(&growth(j)));
+        Status::NotFinite(
+            worst.map_or_else(Origin::default, |row| self.field.system.flow.origin(row)),
+        )
+    }
+
+    /// Where in a step the surfaces that the state slides on cease to attract, to rounding.
+    fn attraction_ends(&mut self, step: &Step) -> Option<f64> {
+        let is_sliding = !self.field.sliding().is_empty();
+        if !is_sliding || self.attracts(step, 1.0) || !self.attracts(step, 0.0) {
+            return None;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        while high - low > 2.0 * f64::EPSILON {
+            let middle = 0.5 * (low + high);
+            if self.attracts(step, middle) { low = middle } else { high = middle }
+        }
+        Some(high)
+    }
+
+    fn attracts(&mut self, step: &Step, theta: f64) -> bool {
+        let (t, x) = (step.t + theta * step.h, step.at(theta));
+        let sliding = self.field.sliding();
+        let normals = self.field.normals(t, &x);
+        self.field.follow_directions(t, &x);
+        let selectors = self.field.selectors.clone();
+        let (rate, by_selector) = self.field.with_selectors(t, &x, &selectors);
+        let b = surface_rates(&normals, &rate, &by_selector, &sliding).1;
+        is_unique(&b, &blocks(&self.field.system.balls, &sliding))
+    }
+}

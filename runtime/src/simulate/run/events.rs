@@ -1,0 +1,297 @@
+//! What an event does: modes change, jumps reset the state, jumps that pile up end the run or hold
+//! a surface.
+
+use super::Run;
+use crate::simulate::field::correct;
+use crate::simulate::location::Condition;
+use crate::simulate::mode::Mode;
+use crate::simulate::modes::decide;
+use crate::simulate::result::{Event, Kind, Status};
+
+/// More jumps than this at one time never end, nor does what reaches a surface so often without
+/// leaving it.
+const MOST_AT_ONCE: usize = 100;
+
+impl Run<'_> {
+    /// What follows where a condition ceases to hold.
+    pub fn handle(&mut self, condition: Condition) -> Result<(), Status> {
+        self.record.point(self.t, &self.x);
+        match condition {
+            Condition::Leaves(surface) => self.leave(surface),
+            Condition::Bends(kink) => self.field.bend(kink),
+            Condition::Reaches(surface) => self.reach(surface)?,
+        }
+        Ok(())
+    }
+
+    /// A surface holds the state no longer.
+    fn leave(&mut self, surface: usize) {
+        let selectors = self.field.selectors_at(self.t, &self.x);
+        if let Some(ball) = self.field.ball_of(surface) {
+            let range = ball.surfaces.clone();
+            self.field.direction[range.clone()].copy_from_slice(&selectors[range]);
+            self.change_ball(ball, Mode::Moving);
+        } else {
+            self.change(surface, if selectors[surface] > 0.0 { Mode::Above } else { Mode::Below });
+        }
+    }
+
+    /// The state comes to a surface.
+    fn reach(&mut self, surface: usize) -> Result<(), Status> {
+        let mut surfaces = self.surfaces_here();
+        if !surfaces.contains(&surface) {
+            surfaces.push(surface);
+            surfaces.sort_unstable();
+        }
+        let before = self.record.events.len();
+        self.settle(surfaces)?;
+        self.idle = if self.record.events.len() == before { self.idle + 1 } else { 0 };
+        let jump = self.field.system.jumps.iter().position(|jump| jump.surface == surface);
+        // It jumps, but less than rounding shows.
+        match jump.filter(|_| self.idle > MOST_AT_ONCE) {
+            Some(jump) => self.piled_up(jump, self.t),
+            None => Ok(()),
+        }
+    }
+
+    /// The surfaces that the state is on.
+    pub fn surfaces_here(&mut self) -> Vec<usize> {
+        let normals = self.field.normals(self.t, &self.x);
+        let is_zero = |i: usize| normals.psi[i].abs() <= 10.0 * normals.noise(i, &self.x);
+        let is_here = |i: &usize| match self.field.modes[*i] {
+            Mode::Sliding => true,
+            Mode::Held => false,
+            Mode::Below | Mode::Above => is_zero(*i),
+            Mode::Moving => {
+                self.field.ball_of(*i).is_some_and(|ball| ball.surfaces.clone().all(is_zero))
+            }
+        };
+        (0..self.field.modes.len()).filter(is_here).collect()
+    }
+
+    /// Decides the modes at a point on some surfaces, with the jumps that follow.
+    pub fn settle(&mut self, mut surfaces: Vec<usize>) -> Result<(), Status> {
+        for _ in 0..MOST_AT_ONCE {
+            surfaces.retain(|&surface| !self.stays_beside(surface));
+            let modes = decide(&mut self.field, self.t, &self.x, &surfaces)?;
+            let jump = surfaces.iter().zip(&modes).find_map(|(&i, &mode)| self.jump_at(i, mode));
+            let Some(jump) = jump else {
+                surfaces.iter().zip(modes).for_each(|(&i, mode)| self.change(i, mode));
+                let mut x = std::mem::take(&mut self.x);
+                self.field.project(self.t, &mut x);
+                self.x = x;
+                return self.end_of_crossings(&surfaces);
+            };
+            self.jump(jump)?;
+            surfaces = self.surfaces_here();
+        }
+        let jump = self
+            .field
+            .system
+            .jumps
+            .iter()
+            .position(|jump| surfaces.contains(&jump.surface))
+            .unwrap_or(0);
+        self.piled_up(jump, self.t)
+    }
+
+    /// A surface that is crossed ever faster ends the simulation like jumps that pile up.
+    fn end_of_crossings(&mut self, surfaces: &[usize]) -> Result<(), Status> {
+        let [first, last] = self.field.system.interval;
+        let here = self.record.events.iter().rev().take_while(|event| event.time == self.t);
+        let is_crossing =
+            |event: &&Event| matches!(event.kind, Kind::CrossesUp | Kind::CrossesDown);
+        let crossed: Vec<usize> = here.filter(is_crossing).map(|event| event.surface).collect();
+        for &surface in surfaces.iter().filter(|surface| crossed.contains(surface)) {
+            if let Some(limit_time) = self.crossings[surface].limit(self.t, last - first, false) {
+                return Err(Status::Zeno { jump: None, surface, limit_time });
+            }
+        }
+        Ok(())
+    }
+
+    /// The jump of a surface that is about to be crossed.
+    fn jump_at(&self, surface: usize, next: Mode) -> Option<usize> {
+        let is_falling = match (next, self.field.modes[surface], self.has_begun) {
+            (Mode::Below, Mode::Above, _) | (Mode::Below, _, false) => true,
+            (Mode::Above, Mode::Below, _) | (Mode::Above, _, false) => false,
+            _ => return None,
+        };
+        let jumps = self.field.system.jumps.iter().enumerate();
+        let mut fitting = jumps.filter(|(at, jump)| {
+            let is_left = jump.at_most.is_none_or(|limit| (self.jumps[*at] as f64) < limit);
+            jump.surface == surface && jump.is_falling == is_falling && is_left
+        });
+        fitting.next().map(|(at, _)| at)
+    }
+
+    /// Resets the state. Afterwards every surface that the state is not on has the side where the
+    /// state is.
+    fn jump(&mut self, jump: usize) -> Result<(), Status> {
+        let of = &self.field.system.jumps[jump];
+        let surface = of.surface;
+        let margin = self.margin(surface);
+        let after = self.field.reset(jump, self.t, &self.x);
+        let before = std::mem::replace(&mut self.x, after);
+        self.jumps[jump] += 1;
+        let sides = [Mode::Above, Mode::Below];
+        let [back, onward] = if of.is_falling { sides } else { [sides[1], sides[0]] };
+        self.field.set_mode(surface, back);
+        self.find_sides();
+        self.field.find_sides_of_kinks(self.t, &self.x);
+        if self.goes_through(surface, onward) {
+            self.field.set_mode(surface, onward);
+        }
+        self.event_from(before, surface, Kind::Jump(jump), margin);
+        let is_last = of.at_most.is_some_and(|limit| self.jumps[jump] as f64 >= limit);
+        if let Some(held) = of.then_hold.filter(|_| is_last) {
+            self.hold(jump, held);
+            self.record.point(self.t, &self.x);
+        }
+        if is_last {
+            return Ok(());
+        }
+        let [first, last] = self.field.system.interval;
+        let is_small = self.is_small(jump, surface);
+        match self.piles[jump].limit(self.t, last - first, is_small) {
+            Some(limit) => self.piled_up(jump, limit),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether the state goes so little away from the surface between two jumps that rounding will
+    /// soon hide it.
+    fn is_small(&mut self, jump: usize, surface: usize) -> bool {
+        let normals = self.field.normals(self.t, &self.x);
+        let rate = self.field.rate(self.t, &self.x);
+        let way = normals.rate(surface, &rate).abs() * self.piles[jump].since_last(self.t);
+        way <= 1e3 * normals.noise(surface, &self.x)
+    }
+
+    /// Whether a state that is still on a surface after a reset moves on to the other side,
+    /// whichever field acts.
+    fn goes_through(&mut self, surface: usize, onward: Mode) -> bool {
+        if !self.surfaces_here().contains(&surface) {
+            return false;
+        }
+        let normals = self.field.normals(self.t, &self.x);
+        let mut selectors = self.field.selectors.clone();
+        [-1.0, 1.0].into_iter().all(|side| {
+            selectors[surface] = side;
+            let (rate, _) = self.field.with_selectors(self.t, &self.x, &selectors);
+            onward.side() * normals.rate(surface, &rate) > 1e4 * normals.rounding(surface, &rate)
+        })
+    }
+
+    /// Gives every surface that the state is not on the side of the state.
+    pub fn find_sides(&mut self) {
+        let normals = self.field.normals(self.t, &self.x);
+        for i in 0..self.field.modes.len() {
+            let is_off = normals.psi[i].abs() > 10.0 * normals.noise(i, &self.x);
+            if let Some(ball) = self.field.ball_of(i).filter(|_| is_off) {
+                self.field.set_moving(ball);
+            } else if is_off && self.field.modes[i] != Mode::Held {
+                let mode = if normals.psi[i] > 0.0 { Mode::Above } else { Mode::Below };
+                self.field.set_mode(i, mode);
+            }
+        }
+    }
+
+    fn piled_up(&mut self, jump: usize, limit_time: f64) -> Result<(), Status> {
+        let held = self.field.system.jumps[jump]
+            .then_hold
+            .filter(|_| limit_time < self.field.system.interval[1]);
+        let Some(held) = held else {
+            let surface = self.field.system.jumps[jump].surface;
+            return Err(Status::Zeno { jump: Some(jump), surface, limit_time });
+        };
+        let before = self.x.clone();
+        let rate = self.field.rate(self.t, &self.x);
+        let rest = limit_time - self.t;
+        self.x.iter_mut().zip(rate).for_each(|(x, rate)| *x += rest * rate);
+        self.t = limit_time;
+        self.hold(jump, held);
+        self.event_from(before, held, Kind::EntersSliding, 0.0);
+        Ok(())
+    }
+
+    /// Brings the state to rest on a surface: the states that the jump resets and that move the
+    /// surface stand still from now on.
+    fn hold(&mut self, jump: usize, surface: usize) {
+        let resets = self.field.system.jumps[jump].resets.clone();
+        let mut still: Vec<usize> = Vec::new();
+        for _ in 0..5 {
+            let normals = self.field.normals(self.t, &self.x);
+            let slope: Vec<f64> = normals.by_state.row(surface).iter().copied().collect();
+            correct(&mut self.x, &slope, normals.psi[surface]);
+            let rate = self.field.rate(self.t, &self.x);
+            let by_state = self.field.by_state(self.t, &self.x);
+            let mut pushes: Vec<f64> =
+                (normals.by_state.row(surface) * by_state).iter().copied().collect();
+            (0..pushes.len()).filter(|i| !resets.contains(i)).for_each(|i| pushes[i] = 0.0);
+            correct(&mut self.x, &pushes, normals.rate(surface, &rate));
+            still =
+                resets.iter().copied().filter(|&i| pushes[i] != 0.0 || slope[i] != 0.0).collect();
+        }
+        self.field.held.extend(still);
+        self.field.set_mode(surface, Mode::Held);
+    }
+
+    /// Changes a mode and notes the event.
+    fn change(&mut self, surface: usize, next: Mode) {
+        if let Some(ball) = self.field.ball_of(surface) {
+            return if surface == ball.surfaces.start {
+                self.change_ball(ball, next)
+            };
+        }
+        let before = self.field.modes[surface];
+        let kind = match (before, next) {
+            (_, Mode::Sliding) if !self.has_begun => Some(Kind::StartsSliding),
+            _ if !self.has_begun => None,
+            (Mode::Below, Mode::Above) => Some(Kind::CrossesUp),
+            (Mode::Above, Mode::Below) => Some(Kind::CrossesDown),
+            (Mode::Below | Mode::Above, Mode::Sliding) => Some(Kind::EntersSliding),
+            (Mode::Sliding, Mode::Above) => Some(Kind::LeavesUp),
+            (Mode::Sliding, Mode::Below) => Some(Kind::LeavesDown),
+            _ => None,
+        };
+        let margin = self.margin(surface);
+        self.field.set_mode(surface, next);
+        if let Some(kind) = kind {
+            self.event(surface, kind, margin);
+        }
+    }
+
+    /// Notes an event that leaves the state as it is.
+    pub fn event(&mut self, surface: usize, kind: Kind, margin: f64) {
+        self.event_from(self.x.clone(), surface, kind, margin);
+    }
+
+    fn event_from(&mut self, before: Vec<f64>, surface: usize, kind: Kind, margin: f64) {
+        let event = Event { time: self.t, surface, kind, margin, before, after: self.x.clone() };
+        self.tape.change(&mut self.field, &event);
+        self.record.events.push(event);
+        self.record.point(self.t, &self.x);
+    }
+
+    /// The least `|d f + psi_t| / (|d| |f| + |psi_t|)` of the fields on both sides; at an exit that
+    /// of the side not taken, for the other is tangent there.
+    fn margin(&mut self, surface: usize) -> f64 {
+        let normals = self.field.normals(self.t, &self.x);
+        let mut selectors = self.field.selectors.clone();
+        let own = selectors[surface];
+        let mut cosines = [-1.0, 1.0].map(|side| {
+            selectors[surface] = side;
+            let (rate, _) = self.field.with_selectors(self.t, &self.x, &selectors);
+            let shown =
+                rate.iter().zip(&self.field.system.states).filter(|(_, state)| !state.hidden);
+            let size = shown.map(|(rate, _)| rate * rate).sum::<f64>().sqrt()
+                * normals.by_state.row(surface).norm();
+            let largest = size + normals.by_time[surface].abs();
+            if largest > 0.0 { normals.rate(surface, &rate).abs() / largest } else { 0.0 }
+        });
+        cosines.sort_by(f64::total_cmp);
+        let is_exit = self.field.modes[surface] == Mode::Sliding && own.abs() > 1.0 - 1e-6;
+        if is_exit { cosines[1] } else { cosines[0] }
+    }
+}

@@ -1,0 +1,71 @@
+//! Jumps that pile up: intervals `d, d q, d q^2, ...` with `q < 1` end after `d q / (1 - q)`.
+
+/// What is left may be at most this part of the whole time before the limit is believed.
+const NEAR: f64 = 1e-6;
+
+/// How much two successive ratios may differ.
+const STEADY: f64 = 0.02;
+
+/// A ratio of successive intervals this near to 1 is that of jumps which go on for ever.
+const REGULAR: f64 = 1e-6;
+
+/// The times of the last jumps of one kind.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pile {
+    last: Vec<f64>,
+}
+
+impl Pile {
+    /// The time since the last jump.
+    pub fn since_last(&self, time: f64) -> f64 {
+        self.last.last().map_or(f64::INFINITY, |last| time - last)
+    }
+
+    /// Notes a jump; the limit time once the jumps pile up. Jumps so small that rounding will soon
+    /// hide them are believed at once.
+    pub fn limit(&mut self, time: f64, span: f64, is_small: bool) -> Option<f64> {
+        self.last.push(time);
+        if self.last.len() > 4 {
+            self.last.remove(0);
+        }
+        let Ok([a, b, c, d]) = <[f64; 4]>::try_from(self.last.as_slice()) else {
+            return is_small.then_some(time);
+        };
+        let [first, second, third] = [b - a, c - b, d - c];
+        if third <= 0.0 {
+            return (third == 0.0 && second == 0.0).then_some(time);
+        }
+        let (before, ratio) = (second / first, third / second);
+        let rest = third * ratio / (1.0 - ratio);
+        let change = (ratio - before).abs();
+        let is_steady =
+            1.0 - ratio > REGULAR && change <= (STEADY * ratio).min(0.5 * (1.0 - ratio));
+        (is_steady && (is_small || rest <= NEAR * span)).then_some(time + rest)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Pile;
+
+    #[test]
+    fn halving_intervals_end_at_twice_the_first() {
+        let mut pile = Pile::default();
+        let limit = (0..40).find_map(|k| pile.limit(2.0 - 0.5_f64.powi(k), 1.0, false));
+        assert!((limit.expect("they pile up") - 2.0).abs() < 1e-14);
+    }
+
+    /// However long the whole time is, and however the times are rounded.
+    #[test]
+    fn nearly_regular_jumps_do_not_pile_up() {
+        let mut pile = Pile::default();
+        let rounded = |k: u32| f64::from(k) + 1e-9 * f64::from(k * k * 7919 % 13);
+        assert!((0..100).all(|k| pile.limit(rounded(k), 2e302, false).is_none()));
+    }
+
+    #[test]
+    fn regular_jumps_do_not_pile_up() {
+        let mut pile = Pile::default();
+        assert!((0..100).all(|k| pile.limit(1e-7 * f64::from(k), 1.0, false).is_none()));
+    }
+}

@@ -1,0 +1,18 @@
+//! A solution of the transcribed problem in the words of the model: signals over real time, the
+//! modes of surfaces, costates and multipliers, and what contradicts that it is an optimum.
+
+mod lagrangian;
+mod minimum;
+pub mod modes;
+mod outcome;
+mod pause;
+pub mod phases;
+mod quadrature;
+mod trajectory;
+
+pub use lagrangian::{Hamiltonian, by_parameters};
+pub use outcome::{Attempt, Limiting, Outcome};
+pub(crate) use pause::gain as gain_of_pauses;
+pub use quadrature::integrals;
+pub(crate) use trajectory::switching_function_sizes;
+pub use trajectory::{ControlNodes, Trajectory, times};

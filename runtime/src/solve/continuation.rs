@@ -1,0 +1,114 @@
+//! To the grid and the width that the model names, from coarse grids and wide layers.
+//!
+//! The width shrinks on the coarsest grid, roughly, then the last width is solved on one finer grid
+//! after the other, each time more accurately, and each solve is begun where the one before ended
+//! ([`prolong`]): far from the solution an iteration costs little, and on the finest grid few are
+//! left. Where this fails, widths shrink on the finest grid, from half the size of the switching
+//! function on, or from far above the width; where that fails, too, it is tried at once and with
+//! all patience. So a failure on a coarse grid or in a wide layer is never the last word: what the
+//! model names has been tried.
+
+use super::Watch;
+use super::grid_sequencing::grids;
+use super::run::{Goal, Run, is_good, is_lost, is_retried};
+use crate::nlp::{Solution, Start, Status};
+use crate::solution::switching_function_sizes;
+use crate::transcribe::TranscribedNlp;
+
+/// Widths on the way, relative to the one that is named.
+const WIDER: [f64; 3] = [8.0, 4.0, 2.0];
+/// The tolerance of a solve with another width on a coarse grid.
+const ROUGH: f64 = 1e-2;
+/// The same where there is no coarse grid, and no finer one will put right what was found.
+const CAREFUL: f64 = 1e-3;
+/// A solve on the way that takes longer leads nowhere.
+const MOST_ITERATIONS: usize = 300;
+const WIDE: f64 = 0.5;
+/// A guess or a failure on which the switching function is nearly 0 says nothing of its size: there
+/// are at least so many.
+const FEWEST_HALVINGS: f64 = 8.0;
+const MOST_HALVINGS: f64 = 12.0;
+
+impl Run<'_> {
+    /// Solves with the widths that the model names, if there are surfaces.
+    pub(super) fn with_named_widths(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        start: Start,
+        widths: &[f64],
+        watch: &mut Watch,
+    ) -> Solution {
+        let goal = self.goal();
+        let patience = Goal { limit: MOST_ITERATIONS.min(goal.limit), ..goal };
+        let grids = grids(self.problem);
+        let shrinking = match widths {
+            [sigma] if !self.sigma.is_empty() => {
+                WIDER.iter().map(|wider| wider * sigma).chain([*sigma]).collect()
+            }
+            _ => widths.to_vec(),
+        };
+        // What was solved before, or is easy, is not approached.
+        if start.warm.is_some() || grids.len() == 1 && shrinking.len() <= 1 {
+            return self.shrink(nlp, start, widths, goal, watch);
+        }
+        let first = self.over_grids(nlp, start.clone(), (&grids, &shrinking), patience, watch);
+        let is_out_of_iterations =
+            first.status == Status::IterationLimit && goal.limit <= patience.limit;
+        if !is_retried(&first.status) || is_out_of_iterations {
+            return first;
+        }
+        if let [sigma] = widths {
+            let halved = halved(nlp, [&start.v, &first.v], *sigma);
+            let second = self.shrink(nlp, start.clone(), &halved, patience, watch);
+            if !is_retried(&second.status) {
+                return second;
+            }
+        }
+        let last = self.shrink(nlp, start.clone(), widths, goal, watch);
+        match widths {
+            [.., sigma] if is_lost(&last.status) && self.is_wider_than(*sigma) => {
+                self.shrink(nlp, start, &[*sigma], goal, watch)
+            }
+            _ => last,
+        }
+    }
+
+    /// Whether the last solve was one with a wider layer.
+    fn is_wider_than(&self, sigma: f64) -> bool {
+        self.sigma.iter().any(|width| *width > sigma)
+    }
+
+    /// From width to width on one grid; with the widths as they are if none are given.
+    pub(super) fn shrink(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        mut start: Start,
+        widths: &[f64],
+        goal: Goal,
+        watch: &mut Watch,
+    ) -> Solution {
+        let Some((last, before)) = widths.split_last() else {
+            return self.solve(nlp, &start, goal, watch);
+        };
+        let is_coarse = nlp.chain().intervals < self.problem.method.intervals;
+        let rough = Goal { tol: goal.tol.max(if is_coarse { ROUGH } else { CAREFUL }), ..goal };
+        for width in before {
+            self.sigma.fill(*width);
+            let solution = self.solve(nlp, &start, rough, watch);
+            if !is_good(&solution.status) {
+                return solution;
+            }
+            start = Start::after(&solution);
+        }
+        self.sigma.fill(*last);
+        self.solve(nlp, &start, goal, watch)
+    }
+}
+
+/// Half the size of a switching function, halved until it is the width.
+fn halved(nlp: &TranscribedNlp, known: [&Vec<f64>; 2], sigma: f64) -> Vec<f64> {
+    let sizes = known.into_iter().flat_map(|v| switching_function_sizes(nlp, v));
+    let size = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
+    let halvings = (WIDE * size / sigma).log2().ceil().clamp(FEWEST_HALVINGS, MOST_HALVINGS) as i32;
+    (0..=halvings).rev().map(|k| sigma * 2.0_f64.powi(k)).collect()
+}

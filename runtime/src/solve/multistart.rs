@@ -1,0 +1,91 @@
+//! Random starting points, and which of two solutions is the better one.
+
+use super::warm_start::values_of;
+use crate::nlp::{Nlp, Solution, Start, Status};
+use crate::problem::Problem;
+use crate::transcribe::TranscribedNlp;
+use crate::transcribe::interval::Signal;
+
+/// Relative size of a variation.
+const VARIATION: f64 = 0.3;
+
+/// The guess (or `base`) with smooth random variations of every signal; the same for the same seed
+/// and index.
+pub fn perturbed(problem: &Problem, base: Option<Vec<f64>>, index: u32) -> Start {
+    let mut nlp = TranscribedNlp::new(problem);
+    let stages = nlp.chain();
+    let mut v = base.unwrap_or_else(|| nlp.guess());
+    let mut random = Random::new(problem.method.seed, index);
+    let signals =
+        (0..problem.layout.x).map(Signal::State).chain((0..problem.layout.u).map(Signal::Control));
+    for signal in signals {
+        let places = places_of(&nlp, signal);
+        let values = places.iter().map(|(place, _)| v[*place]);
+        let (low, high) =
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        let size = VARIATION * room(&nlp, places[places.len() - 1].0, low, high);
+        let (constant, wave, cycles) =
+            (random.next(), random.next(), 1.0 + 2.0 * random.next().abs());
+        for (place, tau) in places {
+            // Fixed ends stay where they are.
+            let is_state = matches!(signal, Signal::State(_));
+            let envelope = if is_state { (std::f64::consts::PI * tau).sin() } else { 1.0 };
+            v[place] +=
+                size * envelope * (constant + wave * (std::f64::consts::TAU * cycles * tau).sin());
+        }
+    }
+    for place in stages.globals() {
+        let size = room(&nlp, place, v[place], v[place]);
+        v[place] += VARIATION * size.min(v[place].abs().max(1.0)) * random.next();
+    }
+    Start { v, warm: None }
+}
+
+/// The variables that are values of a signal, with their normalised times; at grid points last.
+fn places_of(nlp: &TranscribedNlp, signal: Signal) -> Vec<(usize, f64)> {
+    let stages = nlp.chain();
+    let slots = nlp.interval().slots.iter().enumerate().filter(|(_, slot)| slot.signal == signal);
+    let places = slots.rev().flat_map(|(place, slot)| {
+        let time = |k: usize| nlp.mesh().at(k, slot.time);
+        (0..values_of(place, stages)).map(move |k| (place + k * stages.variable_step(), time(k)))
+    });
+    places.collect()
+}
+
+/// How far a signal may reasonably move: the width of its bounds, else its own range or size.
+fn room(nlp: &TranscribedNlp, place: usize, low: f64, high: f64) -> f64 {
+    let bounds = nlp.variable_bounds()[place];
+    let width = bounds.upper - bounds.lower;
+    if width.is_finite() { width } else { (high - low).max(low.abs().max(high.abs())).max(1.0) }
+}
+
+/// Whether `a` is the better answer: solved before not solved, then the lower objective, then the
+/// smaller violation.
+pub fn is_better(a: &Solution, b: &Solution) -> bool {
+    let solved =
+        |solution: &Solution| matches!(solution.status, Status::Solved | Status::Acceptable);
+    match (solved(a), solved(b)) {
+        (true, true) => a.objective < b.objective,
+        (false, false) => a.constraint_violation < b.constraint_violation,
+        (solved, _) => solved,
+    }
+}
+
+/// A linear congruential generator (Knuth, MMIX).
+struct Random(u64);
+
+impl Random {
+    fn new(seed: u64, index: u32) -> Self {
+        let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ u64::from(index));
+        (0..4).for_each(|_| {
+            random.next();
+        });
+        random
+    }
+
+    /// Uniform in [-1, 1].
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}

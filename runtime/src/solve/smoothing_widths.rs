@@ -1,0 +1,194 @@
+//! Widths of our own choice, where the model names none: each surface gets a fraction of the size
+//! that its switching function has along the trajectory found so far, one solve after another; a
+//! warm start takes those of the earlier solution. Where a step is too long it is halved; where
+//! even short steps fail, the last width that could be solved is the answer. Where the first and
+//! widest layer cannot be solved, that is no verdict: thinner ones are begun with at once.
+//!
+//! A guess that rests on a surface says nothing of the size of its function. Then the first
+//! solution says it, and the first solve is repeated with it.
+
+use super::Watch;
+use super::grid_sequencing::grids;
+use super::run::{Goal, Run, is_good, is_lost, is_retried};
+use crate::nlp::{Solution, Start, Status};
+use crate::solution::switching_function_sizes;
+use crate::transcribe::TranscribedNlp;
+
+/// Smoothing widths relative to the size of the switching function.
+const FIRST_FACTOR: f64 = 0.1;
+const LAST_FACTOR: f64 = 0.01;
+/// Where the first cannot be solved.
+const THINNER: [f64; 3] = [0.1, 0.03, 0.01];
+/// From one width to the next; after a failure the square root of it, and so on.
+const DECREASE: f64 = 0.3;
+const MOST_FAILURES: usize = 3;
+/// Without a guess of its size the first width is a fraction of this; how large the function is, is
+/// found out at most so often.
+const UNKNOWN: f64 = 1.0;
+const MOST_SIZINGS: usize = 3;
+/// A first width may be so many times the one that fits the size, or that part of it.
+const TOO_WIDE: f64 = 2.0;
+const TOO_THIN: f64 = 0.1;
+/// A function that shrinks below this with its layer is held: its size is that of the layer.
+const SHRUNK: f64 = 0.5;
+/// A step that takes longer than this is too long.
+const MOST_ITERATIONS: usize = 300;
+
+impl Run<'_> {
+    /// Solves with widths of our own choice, as small as can be solved.
+    pub(super) fn with_chosen_widths(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        mut start: Start,
+        watch: &mut Watch,
+    ) -> Solution {
+        if let Some(warm) = start.warm.take_if(|warm| warm.widths.len() == self.sigma.len()) {
+            self.sigma.clone_from(&warm.widths);
+            let warm = Start { v: start.v.clone(), warm: Some(warm) };
+            let solution = self.once(nlp, &warm, self.patience(), watch);
+            if !is_retried(&solution.status) {
+                return solution;
+            }
+        }
+        self.set_relative(nlp, &start.v, FIRST_FACTOR);
+        let first = self.sized(nlp, &start, watch);
+        let (mut best, mut factor) = self.or_thinner(nlp, &start, first, watch);
+        let (mut decrease, mut failures) = (DECREASE, 0);
+        while is_good(&best.status) && factor > LAST_FACTOR && failures < MOST_FAILURES {
+            let before = self.sigma.clone();
+            let next = (factor * decrease).max(LAST_FACTOR);
+            self.decrease(nlp, &best.v, next, next / factor);
+            let goal = self.patience();
+            let solution = self.once(nlp, &Start::near(&best), goal, watch);
+            if is_good(&solution.status) {
+                (factor, best) = (next, solution);
+                continue;
+            }
+            self.sigma = before;
+            (failures, decrease) = (failures + 1, decrease.sqrt());
+            if matches!(solution.status, Status::TimeLimit | Status::Interrupted) {
+                best.status = solution.status;
+            }
+        }
+        self.apply_sigma(nlp);
+        best.counts = self.counts;
+        best
+    }
+
+    /// The widest layer; where the guess said nothing of the size of a switching function, with the
+    /// size that it turns out to have.
+    fn sized(&mut self, nlp: &mut TranscribedNlp, start: &Start, watch: &mut Watch) -> Solution {
+        let mut best = self.first(nlp, start.clone(), watch);
+        let mut is_open: Vec<bool> =
+            switching_function_sizes(nlp, &start.v).iter().map(|size| *size == 0.0).collect();
+        for _ in 0..MOST_SIZINGS {
+            let (before, sizes) = (self.sigma.clone(), switching_function_sizes(nlp, &best.v));
+            self.resize(&is_open, &sizes);
+            if self.sigma == before {
+                break;
+            }
+            let solution = self.first(nlp, start.clone(), watch);
+            if !is_good(&solution.status) {
+                self.sigma = before;
+                if matches!(solution.status, Status::TimeLimit | Status::Interrupted) {
+                    best.status = solution.status;
+                }
+                break;
+            }
+            best = solution;
+            let after = switching_function_sizes(nlp, &best.v);
+            self.undo_where_held(&mut is_open, &before, &|at| after[at] < SHRUNK * sizes[at]);
+        }
+        best
+    }
+
+    /// Widths that fit the sizes of the functions, where they are still open.
+    fn resize(&mut self, is_open: &[bool], sizes: &[f64]) {
+        for ((sigma, size), _) in self.sigma.iter_mut().zip(sizes).zip(is_open).filter(|it| *it.1) {
+            let fitting = FIRST_FACTOR * size;
+            let fits = *sigma <= TOO_WIDE * fitting && *sigma >= TOO_THIN * fitting;
+            if fitting > 0.0 && fitting.is_finite() && !fits {
+                *sigma = fitting;
+            }
+        }
+    }
+
+    /// A function that is held says nothing of its size: its width follows that of the others, and
+    /// is open no longer.
+    fn undo_where_held(
+        &mut self,
+        is_open: &mut [bool],
+        before: &[f64],
+        shrinks: &dyn Fn(usize) -> bool,
+    ) {
+        let narrower = |at: usize| self.sigma[at] < before[at];
+        let is_held: Vec<bool> = (0..before.len()).map(|at| narrower(at) && shrinks(at)).collect();
+        let moving = (0..before.len()).filter(|at| is_open[*at] && !is_held[*at]);
+        let factor = moving.map(|at| self.sigma[at] / before[at]).fold(f64::INFINITY, f64::min);
+        let factor = if factor.is_finite() { factor.min(1.0) } else { 1.0 };
+        for at in (0..before.len()).filter(|at| is_held[*at]) {
+            self.sigma[at] = factor * before[at];
+            is_open[at] = false;
+        }
+    }
+
+    /// The widest layer: over coarse grids, or at once.
+    fn first(&mut self, nlp: &mut TranscribedNlp, start: Start, watch: &mut Watch) -> Solution {
+        let grids = grids(self.problem);
+        if start.warm.is_none() && grids.len() > 1 {
+            let solution =
+                self.over_grids(nlp, start.clone(), (&grids, &[]), self.patience(), watch);
+            if !is_retried(&solution.status) {
+                return solution;
+            }
+        }
+        self.solve(nlp, &start, self.goal(), watch)
+    }
+
+    /// What was found with the widest layer; where it is lost, with thinner ones, relative to the
+    /// size of each switching function where it was lost.
+    fn or_thinner(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        start: &Start,
+        first: Solution,
+        watch: &mut Watch,
+    ) -> (Solution, f64) {
+        let (sizes, widest) = (first.v.clone(), self.sigma.clone());
+        let (mut last, mut factor) = (first, FIRST_FACTOR);
+        for thinner in THINNER {
+            if !is_lost(&last.status) {
+                break;
+            }
+            self.set_relative(nlp, &sizes, thinner);
+            self.sigma
+                .iter_mut()
+                .zip(&widest)
+                .for_each(|(sigma, widest)| *sigma = sigma.min(*widest));
+            if self.sigma != widest {
+                (last, factor) = (self.solve(nlp, start, self.goal(), watch), thinner);
+            }
+        }
+        (last, factor)
+    }
+
+    fn patience(&self) -> Goal {
+        let goal = self.goal();
+        Goal { limit: MOST_ITERATIONS.min(goal.limit), ..goal }
+    }
+
+    /// Widths relative to the size of each switching function along `v`.
+    fn set_relative(&mut self, nlp: &TranscribedNlp, v: &[f64], factor: f64) {
+        for (sigma, size) in self.sigma.iter_mut().zip(switching_function_sizes(nlp, v)) {
+            *sigma = factor * if size > 0.0 { size } else { UNKNOWN };
+        }
+    }
+
+    /// Smaller widths, by the factor `decrease`; but not below `factor` times the size of the
+    /// switching function. On a held surface that size is the layer itself, and says nothing.
+    fn decrease(&mut self, nlp: &TranscribedNlp, v: &[f64], factor: f64, decrease: f64) {
+        for (sigma, size) in self.sigma.iter_mut().zip(switching_function_sizes(nlp, v)) {
+            *sigma = (factor * size).clamp(decrease * *sigma, *sigma);
+        }
+    }
+}

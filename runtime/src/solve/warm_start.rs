@@ -1,0 +1,124 @@
+//! Warm starts: where an earlier solution ended, with multipliers and as much room as the change of
+//! the problem asks for.
+
+use crate::linalg::Stages;
+use crate::nlp::{Solution, Start, Warm, constraint_violation, multiplier_estimate};
+use crate::problem::Problem;
+use crate::transcribe::TranscribedNlp;
+use crate::transcribe::interval::Signal;
+
+/// Signals of an earlier solution over normalised time; `None` where it has none of that name.
+#[derive(Clone, Debug, Default)]
+pub struct Earlier {
+    /// Grid points, from 0 to 1.
+    pub times: Vec<f64>,
+    /// One column per state, one value per grid point.
+    pub states: Vec<Option<Vec<f64>>>,
+    /// One column per control, one value per interval.
+    pub controls: Vec<Option<Vec<f64>>>,
+    /// One per unknown.
+    pub unknowns: Vec<Option<f64>>,
+    /// The smoothing width of each surface.
+    pub widths: Vec<Option<f64>>,
+}
+
+/// The earlier solution on the grid of the problem; what it lacks comes from the guess.
+fn resample(problem: &Problem, earlier: &Earlier) -> Vec<f64> {
+    let mut nlp = TranscribedNlp::new(problem);
+    let stages = nlp.chain();
+    let mut v = nlp.guess();
+    let slots = nlp.interval().slots.clone();
+    for (place, slot) in slots.iter().enumerate() {
+        for k in 0..values_of(place, stages) {
+            let value = match slot.signal {
+                Signal::State(i) => earlier.state(i, nlp.mesh().at(k, slot.time)),
+                // A control is held: what it is in the middle of the interval.
+                Signal::Control(i) if k < stages.intervals => {
+                    earlier.control(i, nlp.mesh().at(k, 0.5))
+                }
+                Signal::Control(i) => earlier.control(i, 1.0),
+            };
+            let variable = &mut v[place + k * stages.variable_step()];
+            *variable = value.unwrap_or(*variable);
+        }
+    }
+    for (variable, value) in stages.globals().zip(&earlier.unknowns) {
+        v[variable] = value.unwrap_or(v[variable]);
+    }
+    v
+}
+
+/// How often a variable of an interval is there: what is carried once more, at the last grid point.
+pub(super) fn values_of(place: usize, stages: Stages) -> usize {
+    stages.intervals + usize::from(place < stages.states)
+}
+
+impl Earlier {
+    /// The interval that a time lies in.
+    fn interval(&self, tau: f64) -> Option<usize> {
+        let last = self.times.len().checked_sub(2)?;
+        Some(self.times.partition_point(|time| *time <= tau).saturating_sub(1).min(last))
+    }
+
+    /// Linear between grid points.
+    fn state(&self, i: usize, tau: f64) -> Option<f64> {
+        let (column, k) = (self.states.get(i)?.as_deref()?, self.interval(tau)?);
+        let (before, after) = (*column.get(k)?, *column.get(k + 1)?);
+        let fraction = (tau - self.times[k]) / (self.times[k + 1] - self.times[k]);
+        Some(before + fraction * (after - before))
+    }
+
+    fn control(&self, i: usize, tau: f64) -> Option<f64> {
+        self.controls.get(i)?.as_deref()?.get(self.interval(tau)?).copied()
+    }
+}
+
+/// The earlier solution as a warm start on the grid of the problem. Its multipliers are estimated,
+/// with the widths of its layers where the problem names none.
+pub fn from_earlier(problem: &Problem, earlier: &Earlier) -> Start {
+    let v = resample(problem, earlier);
+    let widths: Vec<f64> =
+        earlier.widths.iter().copied().collect::<Option<_>>().unwrap_or_default();
+    let warm = first_width(problem, &widths).and_then(|(mut nlp, widths)| {
+        let multipliers = multiplier_estimate::multipliers(&mut nlp, &v)?;
+        Some(Warm { multipliers, mu: room(&mut nlp, &v), widths })
+    });
+    Start { v, warm }
+}
+
+/// A solution on the same grid, found with these widths, of a problem with other parameters or
+/// another width.
+pub fn again(problem: &Problem, solution: &Solution, widths: &[f64]) -> Start {
+    let mut start = Start::near(solution);
+    if let (Some(warm), Some((mut nlp, widths))) = (&mut start.warm, first_width(problem, widths)) {
+        (warm.mu, warm.widths) = (room(&mut nlp, &start.v), widths);
+    }
+    start
+}
+
+/// The programme with the width that is solved first, and with it the earlier widths where these
+/// are taken, because the problem names none; `None` if there are none either.
+fn first_width<'p>(
+    problem: &'p Problem,
+    earlier: &[f64],
+) -> Option<(TranscribedNlp<'p>, Vec<f64>)> {
+    let named = problem.method.continuation.first().copied().or(problem.method.sigma);
+    let taken = if named.is_none() { earlier } else { &[] };
+    if named.is_none() && taken.len() != problem.surfaces.len() {
+        return None;
+    }
+    let mut nlp = TranscribedNlp::new(problem);
+    for (i, surface) in problem.surfaces.iter().enumerate() {
+        nlp.set_parameter(surface.sigma, named.unwrap_or_else(|| taken[i]));
+    }
+    Some((nlp, taken.to_vec()))
+}
+
+/// The barrier parameter for a start that violates rows by `r`. Distances from bounds and their
+/// multipliers will change in proportion to `r`, and their products by its square.
+fn room(nlp: &mut TranscribedNlp, v: &[f64]) -> f64 {
+    const LEAST: f64 = 1e-6;
+    const FACTOR: f64 = 10.0;
+    let violation = constraint_violation(nlp, v);
+    (FACTOR * violation * violation).clamp(LEAST, Warm::ROOM)
+}

@@ -130,6 +130,9 @@ impl Model {
                 self.smooth |= matches!(key, "sigma" | "kernel" | "continue");
                 Ok(())
             }
+            Err(Refused::Removed(instead)) => {
+                Err(format!("`{key}` cannot be `{value}`: {instead}"))
+            }
             Err(Refused::NotYet) => Err(format!("`{key} = {value}` cannot be solved yet")),
             Err(Refused::Key) => Err(match nearest_key(key) {
                 Some(near) => format!("the method has no setting `{key}`; did you mean `{near}`?"),

@@ -1,5 +1,5 @@
 //! Solving once more after a small change of a parameter: from the guess, and from the solution
-//! before the change by the interior point method and by sequential quadratic programming.
+//! before the change.
 //!
 //! `cargo bench -p fdcc-tests --bench warm` prints the table of `docs/performance.md`.
 
@@ -38,18 +38,13 @@ fn main() {
     );
     for (model, settings, parameter, before, after) in CASES {
         let solved = solve(&load(model, &[(parameter, before)], settings), None).0;
-        let [mut interior, mut sequential] =
-            [(); 2].map(|()| load(model, &[(parameter, after)], settings));
-        (interior.method.solver, sequential.method.solver) =
-            (Solver::InteriorPoint, Solver::Sequential);
+        let mut problem = load(model, &[(parameter, after)], settings);
+        problem.method.solver = Solver::InteriorPoint;
         let change = format!("{parameter} = {before} to {after}");
-        let intervals = interior.method.intervals;
-        for (name, problem, start) in [
-            ("from the guess", &interior, None),
-            ("interior point, warm", &interior, Some(again(&interior, &solved.solution, &[]))),
-            ("sqp, warm", &sequential, Some(again(&sequential, &solved.solution, &[]))),
-        ] {
-            let (outcome, seconds) = fastest(problem, &start);
+        let intervals = problem.method.intervals;
+        let warm = again(&problem, &solved.solution, &[]);
+        for (name, start) in [("from the guess", None), ("warm", Some(warm))] {
+            let (outcome, seconds) = fastest(&problem, &start);
             let (solution, status) = (&outcome.solution, &outcome.solution.status);
             let (objective, counts) = (solution.objective, solution.counts);
             println!(

@@ -213,7 +213,7 @@ fn only_what_is_proved_is_impossible() {
              x == 2 minimize integral(u^2)"
         )
     };
-    for solver in ["auto", "interior_point", "sqp", "convex"] {
+    for solver in ["auto", "interior_point", "convex"] {
         let found = solve(&problem(&text("u"), &[], &[("solver", solver), ("N", "20")]));
         assert_eq!(
             (found.solution.status, found.is_impossible),

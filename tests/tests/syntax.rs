@@ -221,7 +221,7 @@ fn operators_bind_as_on_paper() {
 fn method_blocks_fall_into_settings() {
     let text = "method { smooth sigma = 0.02 [m/s] kernel tanh  grid N = auto steps 2 scheme euler \
                 lagged (th, v)  \
-                continue sigma = .1, .05  solver = sqp  scheme = midpoint }";
+                continue sigma = .1, .05  solver = convex  scheme = midpoint }";
     let tree = parse(text).tree;
     let ItemKind::Method { settings } = &tree.items[0].kind else {
         panic!("a method block: {tree:#?}")
@@ -245,7 +245,7 @@ fn method_blocks_fall_into_settings() {
         "steps=2",
         "scheme=euler th v",
         "continue=0.1 0.05",
-        "solver=sqp",
+        "solver=convex",
         "scheme=midpoint",
     ];
     assert_eq!(shown.collect::<Vec<_>>(), expected);

@@ -9,7 +9,7 @@ use fdcc_compiler::{Model, compile};
 use fdcc_runtime::nlp::Nlp;
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::transcribe::TranscribedNlp;
-use fdcc_tests::models::{load, meaning, problem, refusal, solve, unrolled};
+use fdcc_tests::models::{meaning, problem, refusal, solve, unrolled};
 use fdcc_tests::{documents, repository};
 
 const HEADINGS: [&str; 12] = [
@@ -39,9 +39,6 @@ fn cases() -> Vec<(String, Problem)> {
         ("racecar 0.025 1000", [("sigma", "0.025"), ("N", "1000")]),
     ] {
         cases.push((name.into(), problem(&race, &[], &method)));
-    }
-    for name in ["crossing", "coulomb_energy", "puck"] {
-        cases.push((format!("{name} sqp"), load(name, &[], &[("solver", "sqp")])));
     }
     cases
 }

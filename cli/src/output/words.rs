@@ -57,7 +57,6 @@ pub fn shape_name(shape: ControlShape) -> &'static str {
 pub fn solver_name(solver: Solver) -> &'static str {
     match solver {
         Solver::Automatic | Solver::InteriorPoint => "interior_point",
-        Solver::Sequential => "sqp",
         Solver::Convex => "convex",
     }
 }

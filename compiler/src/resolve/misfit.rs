@@ -1,6 +1,6 @@
 //! Settings of the method that do not fit each other, or together ask for too much.
 
-use fdcc_runtime::problem::{ControlShape, Linear, Method, Scheme, Solver};
+use fdcc_runtime::problem::{ControlShape, Method, Scheme};
 
 /// Which setting does not fit the others, why, and what to do.
 pub(crate) fn misfit(method: &Method) -> Option<(&'static str, String, &'static str)> {
@@ -39,13 +39,6 @@ fn mismatch(method: &Method) -> Option<(&'static str, &'static str, &'static str
             "`radau` and `gauss` without a number find their order together with the grid, and \
              this grid is given",
             "write the number of stages, such as `radau3`, or `N = auto`",
-        ));
-    }
-    if method.solver == Solver::Sequential && method.linear != Linear::Automatic {
-        return Some((
-            "linear",
-            "`solver = sqp` leaves its linear systems to the solver of its quadratic programmes",
-            "leave `linear` out, or choose `interior_point`",
         ));
     }
     if method.scheme.allows(method.controls) {

@@ -23,7 +23,7 @@ pub(crate) const KEYS: &[(&str, &str)] = &[
          gauss1 to gauss5, fesd",
     ),
     ("controls", "one of constant, linear, polynomial"),
-    ("solver", "one of interior_point, sqp, convex"),
+    ("solver", "one of interior_point, convex"),
     ("linear", "one of auto, riccati, sparse_ldl"),
     ("continue", "numbers above 0, each smaller than the one before"),
     ("tol", "a number above 0"),
@@ -33,6 +33,10 @@ pub(crate) const KEYS: &[(&str, &str)] = &[
 
 /// Schemes and solvers that are understood but do not exist yet.
 const NOT_YET: &[&str] = &["fesd"];
+
+/// Words that a key took once, and what to write instead.
+const REMOVED: &[(&str, &str, &str)] =
+    &[("solver", "sqp", "it was removed; leave `solver` out, or write `interior_point`")];
 
 /// A value of a setting.
 #[derive(Clone, Debug)]
@@ -50,6 +54,8 @@ pub(crate) enum Refused {
     Value(&'static str),
     /// Understood, but it does not exist yet.
     NotYet,
+    /// It does not exist any more; what to write instead.
+    Removed(&'static str),
 }
 
 /// Changes one setting.
@@ -64,7 +70,10 @@ pub(crate) fn set(method: &mut Method, key: &str, given: &Given) -> Result<(), R
         {
             Err(Refused::NotYet)
         }
-        Given::Word(word) => Ok(word.as_str()),
+        Given::Word(word) => {
+            let removed = REMOVED.iter().find(|row| (row.0, row.1) == (key, word.as_str()));
+            removed.map_or(Ok(word.as_str()), |row| Err(Refused::Removed(row.2)))
+        }
         _ => Err(refused()),
     };
     match (key, given) {
@@ -129,7 +138,6 @@ fn solver(word: &str) -> Option<Solver> {
     Some(match word {
         "auto" => Solver::Automatic,
         "interior_point" => Solver::InteriorPoint,
-        "sqp" => Solver::Sequential,
         "convex" => Solver::Convex,
         _ => return None,
     })
@@ -253,6 +261,7 @@ impl<'a> Elaborator<'a> {
             match taken {
                 Ok(()) => {}
                 Err(Refused::NotYet) => self.setting_not_yet(key, &given, span),
+                Err(Refused::Removed(instead)) => self.removed_value(key, &given, instead, span),
                 Err(Refused::Key) => self.unknown_key(key),
                 Err(Refused::Value(expected)) => self.wrong_value(key, &given, expected, span),
             }
@@ -307,6 +316,12 @@ impl<'a> Elaborator<'a> {
             Some(near) => meant(found, key.span, near),
             None => found.help(format!("the settings are {}", keys())),
         });
+    }
+
+    fn removed_value(&mut self, key: &Ident, given: &Given, instead: &str, span: Span) {
+        let message = format!("`{}` cannot be `{}`", key.name, shown(given));
+        let found = Diagnostic::new(Code::UnknownSetting, message, span, "not a word it takes");
+        self.diagnostics.push(found.help(instead));
     }
 
     fn wrong_value(&mut self, key: &Ident, given: &Given, expected: &'static str, span: Span) {

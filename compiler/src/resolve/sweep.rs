@@ -50,6 +50,7 @@ impl<'a> Elaborator<'a> {
         {
             let help = match refused {
                 Refused::Value(expected) => format!("give it {expected}"),
+                Refused::Removed(instead) => instead.into(),
                 _ => "it cannot be solved yet".into(),
             };
             let message = format!("`{}` cannot be `{}`", list.name.name, text::expr(expr));

@@ -10,12 +10,9 @@
 mod assessment;
 mod conclusion;
 pub mod convex;
-mod error_scale;
-mod filter;
 pub mod interior_point;
 pub(crate) mod multiplier_estimate;
 mod scaling;
-pub mod sqp;
 #[cfg(test)]
 mod tests;
 

@@ -90,8 +90,6 @@ pub enum Solver {
     Automatic,
     /// The interior point method, always.
     InteriorPoint,
-    /// Sequential quadratic programming, always.
-    Sequential,
     /// The conic solver; refuses what is not convex.
     Convex,
 }

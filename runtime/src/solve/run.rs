@@ -2,8 +2,8 @@
 //! watches.
 
 use super::{Attempt, Level, Watch};
-use crate::nlp::{Counts, Options, Progress, Solution, Start, Status, interior_point, sqp};
-use crate::problem::{Problem, Solver};
+use crate::nlp::{Counts, Options, Progress, Solution, Start, Status, interior_point};
+use crate::problem::Problem;
 use crate::transcribe::TranscribedNlp;
 
 /// All solves of one problem.
@@ -97,11 +97,7 @@ impl<'p> Run<'p> {
         let level = Level { intervals: nlp.chain().intervals, stages, sigma: &self.sigma };
         self.attempts.push(Attempt { intervals: level.intervals, sigma: self.sigma.clone() });
         let before = self.counts.iterations;
-        let solve = match self.problem.method.solver {
-            Solver::Sequential => sqp::solve,
-            _ => interior_point::solve,
-        };
-        let mut solution = solve(nlp, start, &options, &mut |progress| {
+        let mut solution = interior_point::solve(nlp, start, &options, &mut |progress| {
             watch(&Progress { iteration: before + progress.iteration, ..*progress }, level)
         });
         self.counts.add(&solution.counts);

@@ -54,19 +54,4 @@ impl Columns {
         }
         result
     }
-
-    /// All entries (row, column, value).
-    pub(crate) fn entries(&self) -> Vec<(usize, usize, f64)> {
-        let columns = self.column_starts.windows(2).enumerate();
-        let entries = columns.flat_map(|(column, ends)| {
-            (ends[0]..ends[1]).map(move |i| (self.row_indices[i], column, self.values[i]))
-        });
-        entries.collect()
-    }
-
-    /// Adds empty rows and columns to a square matrix.
-    pub(crate) fn widen(&mut self, size: usize) {
-        self.rows = size;
-        self.column_starts.resize(size + 1, self.values.len());
-    }
 }

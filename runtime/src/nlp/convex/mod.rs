@@ -4,9 +4,9 @@
 //! derivatives at one point `v0`: `P = hessian`, `q = gradient - P v0`, `A = jacobian`, constants
 //! from the row values.
 
-pub(super) mod clarabel;
+mod clarabel;
 mod convexity;
-pub(super) mod one_sided;
+mod one_sided;
 
 use super::conclusion::{Ended, conclude};
 use super::scaling::Scaled;
@@ -87,7 +87,7 @@ fn right_side(nlp: &mut dyn Nlp, jacobian: &[f64], sides: &Sides, v: &[f64]) -> 
     nlp.values(v, &mut rows);
     nlp.jacobian_structure().multiply_add(jacobian, v, &mut linear);
     rows.iter_mut().zip(&linear).for_each(|(row, linear)| *row -= linear);
-    sides.right_side(&rows, &vec![0.0; v.len()])
+    sides.right_side(&rows)
 }
 
 fn ended(nlp: &mut dyn Nlp, sides: &Sides, found: ConicSolution) -> Ended {

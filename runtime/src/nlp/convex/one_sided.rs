@@ -13,7 +13,7 @@ use crate::problem::Bounds;
 
 /// What a side bounds.
 #[derive(Clone, Copy)]
-pub(in crate::nlp) enum Source {
+enum Source {
     Row(usize),
     Variable(usize),
 }
@@ -21,14 +21,14 @@ pub(in crate::nlp) enum Source {
 /// One side of one constraint: `sign * (c - bound) <= 0`, or `= 0` for an equality, whose sign is
 /// 0.
 #[derive(Clone, Copy)]
-pub(in crate::nlp) struct Side {
-    pub(in crate::nlp) source: Source,
+struct Side {
+    source: Source,
     sign: f64,
     bound: f64,
 }
 
 impl Side {
-    pub(in crate::nlp) fn is_equality(&self) -> bool {
+    fn is_equality(&self) -> bool {
         self.sign == 0.0
     }
 
@@ -38,15 +38,15 @@ impl Side {
 }
 
 /// All sides, equalities first.
-pub(in crate::nlp) struct Sides {
-    pub(in crate::nlp) list: Vec<Side>,
-    pub(in crate::nlp) equalities: usize,
+pub(super) struct Sides {
+    list: Vec<Side>,
+    pub(super) equalities: usize,
     variables: usize,
     rows: usize,
 }
 
 impl Sides {
-    pub(in crate::nlp) fn new(nlp: &dyn Nlp) -> Self {
+    pub(super) fn new(nlp: &dyn Nlp) -> Self {
         let rows = nlp.row_bounds().iter().enumerate().map(|(i, bounds)| (Source::Row(i), *bounds));
         let variables = nlp
             .variable_bounds()
@@ -74,11 +74,7 @@ impl Sides {
     }
 
     /// The entries of `A`.
-    pub(in crate::nlp) fn entries(
-        &self,
-        nlp: &dyn Nlp,
-        jacobian: &[f64],
-    ) -> Vec<(usize, usize, f64)> {
+    fn entries(&self, nlp: &dyn Nlp, jacobian: &[f64]) -> Vec<(usize, usize, f64)> {
         let of_row = by_rows(nlp, jacobian);
         let mut entries = Vec::new();
         for (i, side) in self.list.iter().enumerate() {
@@ -92,21 +88,21 @@ impl Sides {
     }
 
     /// `A`
-    pub(in crate::nlp) fn columns(&self, nlp: &dyn Nlp, jacobian: &[f64]) -> Columns {
+    pub(super) fn columns(&self, nlp: &dyn Nlp, jacobian: &[f64]) -> Columns {
         Columns::of_entries(&self.entries(nlp, jacobian), self.list.len(), self.variables)
     }
 
-    /// `b`, where rows and variables are so far from zero already.
-    pub(in crate::nlp) fn right_side(&self, rows: &[f64], variables: &[f64]) -> Vec<f64> {
+    /// `b`, where rows are so far from zero already.
+    pub(super) fn right_side(&self, rows: &[f64]) -> Vec<f64> {
         let already = |source| match source {
             Source::Row(row) => rows[row],
-            Source::Variable(i) => variables[i],
+            Source::Variable(_) => 0.0,
         };
         self.list.iter().map(|side| side.factor() * (side.bound - already(side.source))).collect()
     }
 
     /// The multipliers of the programme from those of `A v + s = b`.
-    pub(in crate::nlp) fn multipliers(&self, z: &[f64]) -> Multipliers {
+    pub(super) fn multipliers(&self, z: &[f64]) -> Multipliers {
         let zeros = |length| vec![0.0; length];
         let (rows, lower, upper) = (zeros(self.rows), zeros(self.variables), zeros(self.variables));
         let mut multipliers = Multipliers { rows, lower, upper };
@@ -123,7 +119,7 @@ impl Sides {
 }
 
 /// The Jacobian row by row: variables and values.
-pub(in crate::nlp) fn by_rows(nlp: &dyn Nlp, jacobian: &[f64]) -> Vec<Vec<(usize, f64)>> {
+fn by_rows(nlp: &dyn Nlp, jacobian: &[f64]) -> Vec<Vec<(usize, f64)>> {
     let mut rows = vec![Vec::new(); nlp.row_bounds().len()];
     for ((row, variable), value) in nlp.jacobian_structure().entries().zip(jacobian) {
         rows[row].push((variable, *value));

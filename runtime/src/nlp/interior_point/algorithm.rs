@@ -1,6 +1,8 @@
 //! The loop: look, decide, step.
 
 use super::barrier::{Barrier, Terms};
+use super::error_scaling::objective_scale;
+use super::filter::Filter;
 use super::formulation::Space;
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::kkt::{Kkt, System};
@@ -10,8 +12,6 @@ use super::restoration::{REQUIRED_DECREASE, Restored};
 use super::termination::{ACCEPTABLE_ERROR, Target};
 use super::vectors::largest;
 use super::watchdog::Watchdog;
-use crate::nlp::error_scale::objective_scale;
-use crate::nlp::filter::Filter;
 use crate::nlp::{Counts, Nlp, Options, Progress, Status, Stop, Watch};
 use std::ops::ControlFlow;
 

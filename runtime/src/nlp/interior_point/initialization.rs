@@ -2,9 +2,9 @@
 //! squares.
 
 use super::algorithm::Algorithm;
+use super::filter::Filter;
 use super::formulation::Space;
 use super::iterate::Iterate;
-use crate::nlp::filter::Filter;
 use crate::nlp::{Multipliers, Nlp, Options, Start};
 
 const FIRST_MU: f64 = 0.1;

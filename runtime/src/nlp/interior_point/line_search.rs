@@ -2,10 +2,10 @@
 //! Biegler 2006, algorithm A and section 2.4).
 
 use super::barrier::Barrier;
+use super::filter::{Filter, Reference};
 use super::formulation::Space;
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::kkt::{Kkt, System};
-use crate::nlp::filter::{Filter, Reference};
 use crate::nlp::{Counts, Nlp};
 
 const MOST_CORRECTIONS: usize = 4;

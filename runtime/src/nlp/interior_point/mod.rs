@@ -6,6 +6,8 @@
 
 mod algorithm;
 mod barrier;
+mod error_scaling;
+mod filter;
 mod formulation;
 mod initialization;
 mod iterate;

@@ -12,10 +12,10 @@
 //!     owed = ( |lambda' residuals| + sum (multiplier * how far its bound was moved) ) / max(1, |f|)
 //! ```
 
+use super::error_scaling::{error_scale, objective_scale};
 use super::formulation::Space;
 use super::iterate::{Iterate, Slopes, Values};
 use super::vectors::{largest_sum, sum_of_sizes};
-use crate::nlp::error_scale::{error_scale, objective_scale};
 
 /// The three parts of the error, scaled.
 #[derive(Clone, Copy, Debug, Default)]

@@ -11,10 +11,10 @@
 //! reduces the violation.
 
 use super::algorithm::{Algorithm, Outcome};
+use super::filter::Filter;
 use super::formulation::Space;
 use super::iterate::{Iterate, Values};
 use super::residuals::Residuals;
-use crate::nlp::filter::Filter;
 
 use crate::linalg::{Family, Stages, Triplets};
 use crate::nlp::{Derivatives, Nlp, Options, Place, Progress, Quantities, Status, Watch};

@@ -5,8 +5,8 @@
 //! none of them is acceptable to the point where the trust began, the iteration returns to it
 //! (Waechter & Biegler 2006, section 3.2).
 
+use super::filter::Reference;
 use super::iterate::{Iterate, Values};
-use crate::nlp::filter::Reference;
 
 /// So many shortened steps in a row start the watchdog.
 const PATIENCE: usize = 10;

@@ -35,8 +35,8 @@ const KEYS: &[(&str, &str)] = &[
     ),
     (
         "solver",
-        "Interior point method, sequential quadratic programming, or the conic solver for convex \
-         problems. Without it the problem decides.",
+        "Interior point method, or the conic solver for convex problems. Without it the problem \
+         decides.",
     ),
     (
         "linear",
@@ -96,11 +96,6 @@ const WORDS: &[(&str, &str)] = &[
          interval to interval.",
     ),
     ("interior_point", "Interior point method with a filter line search; for every problem."),
-    (
-        "sqp",
-        "Sequential quadratic programming: few but slow iterations from an earlier solution \
-         (`--warm`).",
-    ),
     (
         "convex",
         "The conic solver: what it finds is the global optimum. For problems that are convex.",

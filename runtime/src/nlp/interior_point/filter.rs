@@ -13,22 +13,22 @@ const SMALL_VIOLATION: f64 = 1e-4;
 
 /// Violation, objective and its slope at the point that a line search begins at.
 #[derive(Clone, Copy)]
-pub(crate) struct Reference {
-    pub(crate) theta: f64,
-    pub(crate) phi: f64,
-    pub(crate) slope: f64,
+pub(super) struct Reference {
+    pub(super) theta: f64,
+    pub(super) phi: f64,
+    pub(super) slope: f64,
 }
 
 /// Forbidden regions, and the scale of the violation at the start.
 #[derive(Clone, Debug)]
-pub(crate) struct Filter {
+pub(super) struct Filter {
     entries: Vec<(f64, f64)>,
     largest: f64,
     small: f64,
 }
 
 impl Filter {
-    pub(crate) fn new(first_violation: f64) -> Self {
+    pub(super) fn new(first_violation: f64) -> Self {
         let scale = first_violation.max(1.0);
         Filter {
             entries: Vec::new(),
@@ -38,11 +38,11 @@ impl Filter {
     }
 
     /// Forgets all entries: the barrier problem has changed.
-    pub(crate) fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.entries.clear();
     }
 
-    pub(crate) fn accepts(&self, violation: f64, objective: f64) -> bool {
+    pub(super) fn accepts(&self, violation: f64, objective: f64) -> bool {
         violation <= self.largest
             && self
                 .entries
@@ -51,7 +51,7 @@ impl Filter {
     }
 
     /// Forbids what is not clearly better than this.
-    pub(crate) fn add(&mut self, violation: f64, objective: f64) {
+    pub(super) fn add(&mut self, violation: f64, objective: f64) {
         let entry =
             ((1.0 - VIOLATION_MARGIN) * violation, objective - OBJECTIVE_MARGIN * violation);
         self.entries.retain(|old| old.0 < entry.0 || old.1 < entry.1);
@@ -59,7 +59,7 @@ impl Filter {
     }
 
     /// A step shorter than this is not tried.
-    pub(crate) fn smallest_step(&self, from: Reference) -> f64 {
+    pub(super) fn smallest_step(&self, from: Reference) -> f64 {
         let mut bound = VIOLATION_MARGIN;
         if from.slope < 0.0 {
             bound = bound.min(OBJECTIVE_MARGIN * from.theta / -from.slope);
@@ -74,7 +74,7 @@ impl Filter {
 
     /// Whether a trial point is good enough; adds the point that the step began at unless the
     /// objective decides.
-    pub(crate) fn judge(&mut self, from: Reference, alpha: f64, theta: f64, phi: f64) -> bool {
+    pub(super) fn judge(&mut self, from: Reference, alpha: f64, theta: f64, phi: f64) -> bool {
         if !phi.is_finite() || !self.accepts(theta, phi) {
             return false;
         }

@@ -24,7 +24,7 @@ fn assert_optimal(what: &str, problem: &Problem, outcome: &Outcome) {
 fn a_small_change_of_a_parameter_takes_fewer_iterations_than_the_guess() {
     let cases: [(&str, Changes, (&str, &str)); 3] = [
         ("racecar", &[("N", "250")], ("muN", "1.01")),
-        ("turbo", &[("sigma", "0.1")], ("v_turbo", "10.1")),
+        ("block", &[], ("mu", "0.303")),
         ("coulomb_rest", &[("sigma", "0.01")], ("mu", "0.505")),
     ];
     for (name, settings, parameter) in cases {

@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::io::{self, Read};
 
-use fdcc_compiler::{Model, Reviewed, review};
+use fdcc_compiler::{Analysis, Model, analyze};
 use fdcc_grammar::{Code, Diagnostic, SourceFile, Span};
 use fdcc_runtime::nlp::Stop;
 
@@ -35,7 +35,7 @@ impl Loaded {
         if let Some(diagnostic) = not_text {
             return Ok(Loaded { source, model: None, diagnostics: vec![diagnostic] });
         }
-        let Reviewed { model, diagnostics, .. } = review(&source.text);
+        let Analysis { model, diagnostics, .. } = analyze(&source.text);
         Ok(Loaded { source, model, diagnostics })
     }
 }

@@ -113,9 +113,9 @@ fn subject(session: &Session, uri: &Uri) -> Result<(Arc<str>, String), Failure> 
             "this model is being computed already; cancel that, or wait for it",
         ));
     }
-    let analysis = document.analysis();
-    match &analysis.reviewed.model {
-        Some(model) => Ok((analysis.text.text.clone(), model.name.clone())),
+    let snapshot = document.snapshot();
+    match &snapshot.analysis.model {
+        Some(model) => Ok((snapshot.text.text.clone(), model.name.clone())),
         None => Err(Failure::request("this model has mistakes; mend them first")),
     }
 }

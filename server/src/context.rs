@@ -1,9 +1,9 @@
 //! What a request is answered from: the text it is about, in the words of the protocol and in those
 //! of the compiler.
 
-use crate::analysis::Analysis;
 use crate::documents::Document;
 use crate::session::Session;
+use crate::snapshot::Snapshot;
 use fdcc_compiler::{Model, NamedUnit};
 use fdcc_grammar::{Edit, Span};
 use lsp_types::{Location, Position, Range, TextEdit, WorkspaceEdit};
@@ -18,36 +18,36 @@ pub struct Context<'s> {
 
 impl Context<'_> {
     /// What is known about the text.
-    pub fn analysis(&self) -> &Analysis {
-        self.document.analysis()
+    pub fn snapshot(&self) -> &Snapshot {
+        self.document.snapshot()
     }
 
     /// What the text means, or meant when it had no mistakes.
     pub fn model(&self) -> Option<&Model> {
-        self.document.modelled()?.reviewed.model.as_ref()
+        self.document.modelled()?.analysis.model.as_ref()
     }
 
     /// What a phase means, or meant; without a name, what stands outside of all phases.
     pub fn model_of(&self, phase: Option<&str>) -> Option<&Model> {
         let Some(name) = phase else { return self.model() };
-        self.document.modelled()?.reviewed.phases.iter().find(|it| it.name == name)
+        self.document.modelled()?.analysis.phases.iter().find(|it| it.name == name)
     }
 
     /// The unit of each name; what was known before where the text has none that can be told now.
     pub fn units(&self) -> &[NamedUnit] {
-        let now = &self.analysis().reviewed.units;
-        let before = || self.document.modelled().map_or(&[][..], |it| &it.reviewed.units);
+        let now = &self.snapshot().analysis.units;
+        let before = || self.document.modelled().map_or(&[][..], |it| &it.analysis.units);
         if now.is_empty() { before() } else { now }
     }
 
     /// The byte of a place.
     pub fn offset(&self, position: Position) -> u32 {
-        self.analysis().text.offset(position)
+        self.snapshot().text.offset(position)
     }
 
     /// The place of some bytes.
     pub fn range(&self, span: Span) -> Range {
-        self.analysis().text.range(span)
+        self.snapshot().text.range(span)
     }
 
     /// The place of some bytes, with the address of the text.

@@ -1,6 +1,6 @@
 //! The open texts, as the client has them on its screen.
 
-use crate::analysis::Analysis;
+use crate::snapshot::Snapshot;
 use crate::text::{Encoding, Text};
 use fdcc_grammar::Memory;
 use lsp_types::{TextDocumentContentChangeEvent, Uri};
@@ -15,47 +15,47 @@ pub struct Document {
     /// The client's number for this state of it.
     pub version: i32,
     /// The last state that could be read, for what a broken one does not tell.
-    last_readable: Option<Rc<Analysis>>,
+    last_readable: Option<Rc<Snapshot>>,
     /// The last state without mistakes.
-    last_model: Option<Rc<Analysis>>,
+    last_model: Option<Rc<Snapshot>>,
     text: Text,
-    analysis: OnceCell<Rc<Analysis>>,
+    snapshot: OnceCell<Rc<Snapshot>>,
     memory: RefCell<Memory>,
     is_published: bool,
 }
 
 impl Document {
     /// What is known about it, found out when it is first asked for.
-    pub fn analysis(&self) -> &Rc<Analysis> {
-        let found = || Rc::new(Analysis::new(self.text.clone(), &mut self.memory.borrow_mut()));
-        self.analysis.get_or_init(found)
+    pub fn snapshot(&self) -> &Rc<Snapshot> {
+        let found = || Rc::new(Snapshot::new(self.text.clone(), &mut self.memory.borrow_mut()));
+        self.snapshot.get_or_init(found)
     }
 
     /// The last state that could be read: this one if possible.
-    pub fn readable(&self) -> Option<&Rc<Analysis>> {
-        if self.analysis().is_readable {
-            Some(self.analysis())
+    pub fn readable(&self) -> Option<&Rc<Snapshot>> {
+        if self.snapshot().is_readable {
+            Some(self.snapshot())
         } else {
             self.last_readable.as_ref()
         }
     }
 
     /// The last state without mistakes: this one if possible.
-    pub fn modelled(&self) -> Option<&Rc<Analysis>> {
-        if self.analysis().reviewed.model.is_some() {
-            Some(self.analysis())
+    pub fn modelled(&self) -> Option<&Rc<Snapshot>> {
+        if self.snapshot().analysis.model.is_some() {
+            Some(self.snapshot())
         } else {
             self.last_model.as_ref()
         }
     }
 
     fn become_text(&mut self, text: Text) {
-        if let Some(analysis) = self.analysis.take() {
-            if analysis.is_readable {
-                self.last_readable = Some(analysis.clone());
+        if let Some(snapshot) = self.snapshot.take() {
+            if snapshot.is_readable {
+                self.last_readable = Some(snapshot.clone());
             }
-            if analysis.reviewed.model.is_some() {
-                self.last_model = Some(analysis);
+            if snapshot.analysis.model.is_some() {
+                self.last_model = Some(snapshot);
             }
         }
         self.text = text;
@@ -89,7 +89,7 @@ impl Documents {
             last_readable: None,
             last_model: None,
             text,
-            analysis: OnceCell::new(),
+            snapshot: OnceCell::new(),
             memory: RefCell::default(),
             is_published: false,
         };

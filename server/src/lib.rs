@@ -10,7 +10,6 @@
 //! nothing else is asked. Both sleep while nothing happens. Nothing is decided here about the
 //! language: that is what the grammar and the compiler are for.
 
-mod analysis;
 mod capabilities;
 mod client;
 mod commands;
@@ -23,6 +22,7 @@ mod reader;
 mod runner;
 mod session;
 mod signals;
+mod snapshot;
 mod text;
 mod wire;
 

@@ -6,11 +6,12 @@
 use std::sync::Arc;
 
 use divan::{Bencher, black_box, counter::ItemsCount};
+use fdcc_compiler::differentiate::Differentiated;
 use fdcc_compiler::differentiate::differentiate;
 use fdcc_compiler::generate::generate;
 use fdcc_compiler::graph::{ExprId, Graph};
-use fdcc_compiler::program::{Differentiated, Order, VectorFunction};
-use fdcc_compiler::smooth;
+use fdcc_compiler::kernels;
+use fdcc_compiler::lower::{Order, VectorFunction};
 use fdcc_runtime::problem::{Columns, Function, Layout, Origin};
 
 const POINTS: usize = 1000;
@@ -33,8 +34,8 @@ fn dynamics(g: &mut Graph, kernel: &str) -> VectorFunction {
     let [_, _, _, vx, vy, th, a, s, mu, _, duration, sigma] = inputs(g);
     let (sine, cosine) = (g.sin(th), g.cos(th));
     let (slip, along) = velocities(g, vx, vy, sine, cosine);
-    let kernel = smooth::find(kernel).expect("a kernel of the table");
-    let step = smooth::step(g, kernel, slip, sigma);
+    let kernel = kernels::find(kernel).expect("a kernel of the table");
+    let step = kernels::step(g, kernel, slip, sigma);
     let friction = g.mul(mu, step);
     let (throttle_x, throttle_y) = (g.mul(a, cosine), g.mul(a, sine));
     let (friction_x, friction_y) = (g.mul(friction, sine), g.mul(friction, cosine));

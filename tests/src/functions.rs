@@ -1,7 +1,7 @@
 //! Checks that any compiled function must pass, whatever it was compiled from.
 
+use fdcc_compiler::differentiate::Differentiated;
 use fdcc_compiler::graph::{ExprId, Graph, evaluate};
-use fdcc_compiler::program::Differentiated;
 use fdcc_runtime::problem::{Columns, Function, Layout};
 
 /// All results of one function on one grid.

@@ -1,14 +1,14 @@
 //! What must hold of any text: it is read, checked, laid out and repaired without a panic, and
 //! every place that is named lies in it.
 
-use fdcc_compiler::{repair, review};
+use fdcc_compiler::{analyze, repair};
 use fdcc_grammar::{Diagnostic, parse};
 
 use crate::layout::assert_only_the_layout_changes;
 
 /// Reads, checks, lays out and repairs a text, and panics if something does not hold.
 pub fn understand(text: &str) {
-    review(text).diagnostics.iter().for_each(|one| assert_sound(one, text));
+    analyze(text).diagnostics.iter().for_each(|one| assert_sound(one, text));
     assert_only_the_layout_changes(text);
     assert_repairs_end(text);
 }
@@ -23,7 +23,7 @@ pub fn assert_repairs_end(text: &str) {
             "repaired again:\n{text}\n---\n{repaired}"
         );
         assert!(mistakes(&repaired) <= mistakes(text), "harder to read:\n{text}\n---\n{repaired}");
-        review(&repaired).diagnostics.iter().for_each(|one| assert_sound(one, &repaired));
+        analyze(&repaired).diagnostics.iter().for_each(|one| assert_sound(one, &repaired));
     }
 }
 

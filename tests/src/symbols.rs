@@ -3,10 +3,11 @@
 
 use std::sync::Arc;
 
+use fdcc_compiler::differentiate::Differentiated;
 use fdcc_compiler::differentiate::differentiate;
 use fdcc_compiler::generate::generate;
 use fdcc_compiler::graph::{ExprId, Graph};
-use fdcc_compiler::program::{Differentiated, Order, VectorFunction};
+use fdcc_compiler::lower::{Order, VectorFunction};
 use fdcc_runtime::problem::{Columns, Function, Layout, Origin};
 
 use crate::random::Random;

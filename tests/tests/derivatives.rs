@@ -1,10 +1,11 @@
 //! Interpreter = machine code, derivatives = differences: for every builtin and random expressions.
 
 use fdcc_compiler::builtins::{self, Builtin, Domain, Notation, Smoothness};
+use fdcc_compiler::differentiate::Differentiated;
 use fdcc_compiler::differentiate::differentiate;
 use fdcc_compiler::generate::clif;
 use fdcc_compiler::graph::{ExprId, Graph, evaluate, print, verify};
-use fdcc_compiler::program::{Differentiated, Order, VectorFunction};
+use fdcc_compiler::lower::{Order, VectorFunction};
 use fdcc_runtime::problem::{Columns, Degree, Function, Layout, Origin};
 use fdcc_tests::expressions::random_expressions;
 use fdcc_tests::functions::{check_differences, check_machine_code, derivatives};

@@ -4,7 +4,7 @@
 //! `UPDATE=1 cargo test -p fdcc-tests --test editors` writes the list and the places where others
 //! repeat it anew.
 
-use fdcc_compiler::{function_names, review};
+use fdcc_compiler::{analyze, function_names};
 use fdcc_grammar::parse;
 use fdcc_grammar::words::{WORDS, inner_words};
 use fdcc_tests::pages::check_file;
@@ -108,7 +108,7 @@ fn snippets_are_right() {
         let lines: Vec<&str> = lines.map(|line| line.as_str().expect("a line is text")).collect();
         let text = filled_in(&lines.join("\n"));
         let found = match name.as_str() {
-            "A model" => review(&text).diagnostics,
+            "A model" => analyze(&text).diagnostics,
             "A right side that switches" | "A function in pieces" => {
                 parse(&format!("let y = {text}")).diagnostics
             }

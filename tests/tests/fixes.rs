@@ -1,7 +1,7 @@
 //! Repairs: what becomes of wrong models (`tests/tests/fixes/`), and that no repair makes any text
 //! of the repository worse.
 
-use fdcc_compiler::{repair, review};
+use fdcc_compiler::{analyze, repair};
 use fdcc_grammar::{Diagnostic, fix};
 use fdcc_tests::fuzzed::assert_repairs_end;
 use fdcc_tests::{Block, blocks, documents};
@@ -43,13 +43,13 @@ fn repairing_twice_changes_nothing_and_no_text_becomes_harder_to_read() {
 #[test]
 fn each_repair_is_one() {
     for text in texts() {
-        for found in review(&text).diagnostics {
+        for found in analyze(&text).diagnostics {
             for repair in &found.fixes {
                 let single = Diagnostic { fixes: vec![repair.clone()], ..found.clone() };
                 let repaired =
                     fix::apply(&text, &[single], true).expect("a repair changes something");
                 assert!(!repair.title.is_empty());
-                let is_still_there = review(&repaired).diagnostics.contains(&found);
+                let is_still_there = analyze(&repaired).diagnostics.contains(&found);
                 assert!(!is_still_there, "{found:#?}\n{text}\n---\n{repaired}");
             }
         }

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
+use fdcc_compiler::differentiate::Differentiated;
 use fdcc_compiler::differentiate::differentiate;
 use fdcc_compiler::generate::{clif, generate};
 use fdcc_compiler::graph::Graph;
 use fdcc_compiler::lower::lower;
-use fdcc_compiler::program::Differentiated;
 use fdcc_compiler::{Model, compile};
 use fdcc_runtime::problem::{Columns, Function, Problem};
 use fdcc_tests::documents;

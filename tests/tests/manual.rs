@@ -6,7 +6,7 @@
 //! answers FDC0603.
 
 use fdcc_compiler::builtins::{self, Domain, Notation, Row, Smoothness};
-use fdcc_compiler::{check, compile, review};
+use fdcc_compiler::{analyze, check, compile};
 use fdcc_grammar::{Code, Diagnostic, Severity, parse};
 use fdcc_tests::{blocks, documents, repository, unclaimed};
 use std::fs;
@@ -50,7 +50,7 @@ fn examples_of(name: &str, page: &str) -> Vec<Example> {
 
 fn diagnostics(text: &str) -> Vec<Diagnostic> {
     let parsed = parse(text);
-    if parsed.diagnostics.is_empty() { review(text).diagnostics } else { parsed.diagnostics }
+    if parsed.diagnostics.is_empty() { analyze(text).diagnostics } else { parsed.diagnostics }
 }
 
 #[test]
@@ -169,7 +169,7 @@ fn the_page_of_functions_is_that_of_the_table() {
 const FUNCTIONS_HEAD: &str = "\
 # Operators and functions
 
-<!-- Written from the table in compiler/src/builtins.rs; change it there, then
+<!-- Written from the table in compiler/src/expressions/graph/builtins.rs; change it there, then
      `UPDATE=1 cargo test -p fdcc-tests --test manual`. -->
 
 All of them take numbers. `+`, `-` and `abs` take vectors as well, component by component, and `*` \

@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use fdcc_compiler::{compile, review};
+use fdcc_compiler::{analyze, compile};
 use fdcc_grammar::{Code, Severity};
 use fdcc_tests::models::meaning;
 
@@ -54,7 +54,7 @@ fn blends_of_definitions_grow_by_as_much_too() {
 fn a_second_blend_of_the_same_changes_nothing() {
     let once = motion("blend(abs(x), 0.1)", "", "");
     let twice = motion("blend(blend(abs(x), 0.1), 0.2)", "", "");
-    let found = review(&twice).diagnostics;
+    let found = analyze(&twice).diagnostics;
     let is_told =
         |code, severity| found.iter().any(|it| it.code == code && it.severity == severity);
     assert!(is_told(Code::NotAllowedHere, Severity::Warning), "{found:?}");
@@ -101,7 +101,7 @@ fn machine_code_of_a_long_sum_takes_time_in_proportion() {
 fn many_names_that_nothing_mentions_are_told_at_once() {
     let text: String = (0..100_000).map(|i| format!("param p{i} = {i}\n")).collect();
     let begin = Instant::now();
-    let found = review(&text).diagnostics;
+    let found = analyze(&text).diagnostics;
     assert_eq!(found.iter().filter(|it| it.code == Code::Unused).count(), 100_000);
     assert!(begin.elapsed() < Duration::from_secs(10), "{:?}", begin.elapsed());
 }

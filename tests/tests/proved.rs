@@ -6,7 +6,7 @@
 #[path = "proved/directions.rs"]
 mod directions;
 
-use fdcc_compiler::differentiate::derivative;
+use fdcc_compiler::graph::derivative;
 use fdcc_compiler::graph::{ExprId, Graph, evaluate};
 use fdcc_compiler::model::{Model, Symbol};
 use fdcc_compiler::{SurfaceClass, check, surfaces};

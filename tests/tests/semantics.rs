@@ -2,9 +2,9 @@
 //! whose functions are evaluated against formulas written out here.
 
 use fdcc_compiler::graph::evaluate;
+use fdcc_compiler::lower::VectorFunction;
 use fdcc_compiler::lower::lower;
-use fdcc_compiler::program::VectorFunction;
-use fdcc_compiler::{Model, Program, check, compile, compile_simulation, expectations, review};
+use fdcc_compiler::{Model, Program, analyze, check, compile, compile_simulation, expectations};
 use fdcc_grammar::{Code, Diagnostic, Severity, SourceFile, parse};
 use fdcc_runtime::problem::{Bounds, Columns, Degree};
 use fdcc_tests::{blocks, documents, repository, unclaimed};
@@ -29,7 +29,7 @@ fn documents_claim_every_diagnostic() {
 fn models_give_neither_errors_nor_warnings() {
     let folders = ["models", "tests/right", "tests/classics"];
     for (name, text) in folders.iter().flat_map(|folder| documents(folder, "fdc")) {
-        let mut found = review(&text).diagnostics;
+        let mut found = analyze(&text).diagnostics;
         found.retain(|it| it.severity > Severity::Advice);
         assert!(found.is_empty(), "{name}: {found:#?}");
     }

@@ -1,9 +1,9 @@
 //! Smoothing kernels: their limits, symmetry and order, and their derivatives as machine code.
 
 use fdcc_compiler::builtins::Builtin;
-use fdcc_compiler::differentiate::derivative;
+use fdcc_compiler::graph::derivative;
 use fdcc_compiler::graph::{ExprId, Graph, evaluate};
-use fdcc_compiler::smooth::{self, KERNELS};
+use fdcc_compiler::kernels::{self, KERNELS};
 use fdcc_runtime::problem::Columns;
 use fdcc_tests::functions::{check_differences, check_machine_code};
 use fdcc_tests::random::Random;
@@ -19,8 +19,8 @@ fn every_kernel_is_compiled_to_what_it_means_with_exact_derivatives() {
     for kernel in &KERNELS {
         let mut graph = Graph::new();
         let (z, sigma) = (graph.input(0), graph.input(1));
-        let step = smooth::step(&mut graph, kernel, z, sigma);
-        let absolute = smooth::absolute(&mut graph, kernel, z, sigma);
+        let step = kernels::step(&mut graph, kernel, z, sigma);
+        let absolute = kernels::absolute(&mut graph, kernel, z, sigma);
         let symbols = function(&mut graph, vec![step, absolute], states_and_parameters(1, 1));
         let compiled = compile(&graph, &symbols);
         let mut points = Columns::new(1, 7);
@@ -40,8 +40,8 @@ fn every_step_is_odd_rises_to_one_and_is_the_slope_of_its_absolute_value() {
     for kernel in &KERNELS {
         let mut graph = Graph::new();
         let (z, sigma) = (graph.input(0), graph.input(1));
-        let step = smooth::step(&mut graph, kernel, z, sigma);
-        let absolute = smooth::absolute(&mut graph, kernel, z, sigma);
+        let step = kernels::step(&mut graph, kernel, z, sigma);
+        let absolute = kernels::absolute(&mut graph, kernel, z, sigma);
         let slope = derivative(&mut graph, absolute, 0);
         let name = kernel.name;
         for sigma in [1.0, 0.1, 0.001] {
@@ -74,8 +74,8 @@ fn every_direction_is_the_step_along_its_vector() {
     for kernel in &KERNELS {
         let mut graph = Graph::new();
         let (x, y, sigma) = (graph.input(0), graph.input(1), graph.input(2));
-        let direction = smooth::direction(&mut graph, kernel, &[x, y], sigma);
-        let step = smooth::step(&mut graph, kernel, x, sigma);
+        let direction = kernels::direction(&mut graph, kernel, &[x, y], sigma);
+        let step = kernels::step(&mut graph, kernel, x, sigma);
         for length in [0.01, 0.13, 0.15, 0.7, 0.99, 1.01, 3.0] {
             let along = evaluate(&graph, &[step], &[0.2 * length, 0.0, 0.2], &[])[0];
             let values = evaluate(&graph, &direction, &[0.12 * length, -0.16 * length, 0.2], &[]);
@@ -102,8 +102,8 @@ fn every_step_approaches_the_sign_at_its_own_order() {
     for kernel in &KERNELS {
         let mut graph = Graph::new();
         let (z, sigma) = (graph.input(0), graph.input(1));
-        let step = smooth::step(&mut graph, kernel, z, sigma);
-        let absolute = smooth::absolute(&mut graph, kernel, z, sigma);
+        let step = kernels::step(&mut graph, kernel, z, sigma);
+        let absolute = kernels::absolute(&mut graph, kernel, z, sigma);
         for width in [0.1_f64, 0.05, 0.025] {
             // 1 - tanh u = 2/(exp(2u) + 1); 1 - u/sqrt(u^2+1) <= 1/(2u^2); compact kernels are
             // exact.
@@ -130,7 +130,7 @@ fn smoothing_leaves_no_kink_and_tends_to_what_it_replaces() {
         let magnitude = graph.abs(x);
         let smaller = graph.min(magnitude, y);
         let root = graph.max(smaller, x);
-        let smoothed = smooth::smooth_nonsmooth(&mut graph, &[root], kernel, sigma)[0];
+        let smoothed = kernels::smooth_nonsmooth(&mut graph, &[root], kernel, sigma)[0];
         let kinks = graph.reachable(&[smoothed]).into_iter().filter(|&id| {
             [Builtin::Abs, Builtin::Min, Builtin::Max]
                 .iter()

@@ -1,7 +1,7 @@
 //! How smooth expressions are: a table of claims, and random expressions whose derivatives are
 //! followed to where they jump.
 
-use fdcc_compiler::differentiate::derivative;
+use fdcc_compiler::graph::derivative;
 use fdcc_compiler::graph::evaluate;
 use fdcc_compiler::model::{Model, Symbol};
 use fdcc_compiler::{Order, Smoothness, check, smoothness};

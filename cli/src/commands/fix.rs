@@ -1,7 +1,7 @@
 //! `fdcc fix`: applies the repairs that diagnostics propose.
 
 use clap::Args;
-use fdcc_compiler::{repair, review};
+use fdcc_compiler::{analyze, repair};
 use fdcc_grammar::{Diagnostic, Severity, SourceFile};
 
 use super::Exit;
@@ -31,7 +31,7 @@ impl Fix {
         if file != "-" && written == Exit::Fine {
             rewrite::show(source, &text);
         }
-        written.max(verdict(source, &review(&text).diagnostics))
+        written.max(verdict(source, &analyze(&text).diagnostics))
     }
 }
 

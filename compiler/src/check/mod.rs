@@ -1,22 +1,10 @@
 //! The checks that need more than names and shapes: one file for each, listed here.
 
-mod bounds;
-mod contradictions;
-mod duration;
-mod ends;
-mod equations;
-mod finite;
-mod hidden_jump;
-mod idle_jump;
-mod joints;
-mod links;
-mod lookalike;
-mod needs_time;
-mod sets;
-mod smoothness;
+mod conditions;
+mod discontinuity;
+mod dynamics;
+mod names;
 mod surfaces;
-mod unused;
-mod values;
 
 use crate::resolve::elaborator::{Elaborator, Role};
 use fdcc_grammar::ast::{self, Item};
@@ -37,30 +25,30 @@ type Check = fn(&mut Facts<'_, '_>, &mut Vec<Diagnostic>);
 
 /// Checks of a model with time and states of its own.
 const OF_A_PHASE: &[Check] = &[
-    needs_time::check,
-    equations::check,
-    ends::check,
-    duration::check,
-    sets::check,
-    hidden_jump::check,
-    idle_jump::check,
-    smoothness::check,
+    dynamics::needs_time::check,
+    dynamics::equations::check,
+    conditions::ends::check,
+    dynamics::duration::check,
+    discontinuity::sets::check,
+    discontinuity::hidden_jump::check,
+    dynamics::idle_jump::check,
+    discontinuity::smoothness::check,
     surfaces::check,
-    bounds::check,
-    contradictions::check,
-    finite::check,
-    values::check,
+    conditions::bounds::check,
+    conditions::contradictions::check,
+    dynamics::finite::check,
+    conditions::values::check,
 ];
 
 /// Checks of what stands outside all phases.
 const AROUND_PHASES: &[Check] = &[
-    links::check,
-    sets::check,
-    hidden_jump::check,
-    smoothness::check,
-    bounds::check,
-    finite::check,
-    values::check,
+    conditions::links::check,
+    discontinuity::sets::check,
+    discontinuity::hidden_jump::check,
+    discontinuity::smoothness::check,
+    conditions::bounds::check,
+    dynamics::finite::check,
+    conditions::values::check,
 ];
 
 /// All findings about a phase, or about what stands around phases.
@@ -71,9 +59,8 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, is_phase: bool) -> Vec<Diagnostic
     found
 }
 
-pub(crate) use lookalike::check as lookalike;
-pub(crate) use unused::check as unused;
-pub(crate) use values::missing as missing_value;
+pub(crate) use names::lookalike::check as lookalike;
+pub(crate) use names::unused::check as unused;
 
 impl Facts<'_, '_> {
     /// The mistakes that have been told already.

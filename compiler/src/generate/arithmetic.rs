@@ -2,7 +2,7 @@
 //! bits: as machine code (`cranelift/pairs.rs`), and at once (`steps.rs`).
 
 use super::elementary;
-use crate::builtins::{Builtin, Inline, Lowering};
+use crate::expressions::graph::builtins::{Builtin, Inline, Lowering};
 
 /// Arithmetic on numbers, masks of them and their bits.
 pub(super) trait Arithmetic {

@@ -25,7 +25,7 @@ use ::cranelift::prelude::{
 };
 
 use super::schedule::Schedule;
-use crate::graph::Graph;
+use crate::expressions::graph::Graph;
 use kernel::build_kernel;
 use library::{Library, library};
 use pairs::Pairs;

@@ -9,7 +9,7 @@ use super::cranelift::{Kernel, Tables};
 use super::schedule::Place;
 use super::steps::Steps;
 use super::{Source, highest_order, work};
-use crate::program::Differentiated;
+use crate::differentiate::Differentiated;
 
 /// A vector function and its derivatives, ready to be computed.
 pub(super) struct CompiledFunction {

@@ -13,8 +13,8 @@ use std::sync::Arc;
 
 use fdcc_runtime::problem::Function;
 
-use crate::graph::{ExprId, Graph};
-use crate::program::Differentiated;
+use crate::differentiate::Differentiated;
+use crate::expressions::graph::{ExprId, Graph};
 use cranelift::Machine;
 use function::CompiledFunction;
 use schedule::{Place, Schedule, Table, schedule};

@@ -6,8 +6,8 @@
 
 use fdcc_runtime::problem::Layout;
 
-use crate::builtins::Builtin;
-use crate::graph::{ById, Expr, ExprId, Graph, Operands};
+use crate::expressions::graph::builtins::Builtin;
+use crate::expressions::graph::{ById, Expr, ExprId, Graph, Operands};
 
 /// The tables that a kernel writes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -9,7 +9,7 @@ use super::arithmetic::{self, Arithmetic};
 use super::function::Call;
 use super::numbers::{Block, Numbers};
 use super::schedule::{Operation, Place, Schedule};
-use crate::graph::{ExprId, Graph};
+use crate::expressions::graph::{ExprId, Graph};
 
 /// Points side by side, where there are many: so many that finding out what to do is little beside
 /// doing it.

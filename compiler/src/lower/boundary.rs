@@ -1,11 +1,11 @@
 //! Mayer objective and conditions at the ends, as one function of `[x(start), x(end) | p]`.
 
+use super::function::{Order, VectorFunction};
 use super::inputs::{Sizes, at_ends, solved_for};
 use super::objective::Objective;
 use super::{origin, smoothed};
-use crate::graph::{ExprId, Graph};
+use crate::expressions::graph::{ExprId, Graph};
 use crate::model::{Model, Place, Range, State, Symbol};
-use crate::program::{Order, VectorFunction};
 
 /// A row of the function but the first.
 pub(crate) struct Condition {

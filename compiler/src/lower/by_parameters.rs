@@ -1,11 +1,11 @@
 //! The functions of a problem once more, differentiated by the parameters, and the numbers that
 //! parameters give.
 
+use super::function::{Order, VectorFunction};
 use super::inputs::{self, Sizes};
 use super::{Program, boundary};
-use crate::graph::{Expr, ExprId, Graph};
+use crate::expressions::graph::{Expr, ExprId, Graph};
 use crate::model::{Model, Range, Symbol};
-use crate::program::{Order, VectorFunction};
 use fdcc_runtime::problem::{Layout, Origin};
 
 /// Right side, path constraints, both ends, and what is given; in the order of

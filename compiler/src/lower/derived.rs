@@ -2,10 +2,10 @@
 //!
 //! A solve needs no derivatives by parameters, so only the functions for sensitivities are treated.
 
+use super::function::VectorFunction;
 use super::inputs;
-use crate::graph::{ExprId, Graph};
+use crate::expressions::graph::{ExprId, Graph};
 use crate::model::{Model, Symbol};
-use crate::program::VectorFunction;
 use std::collections::HashMap;
 
 /// Replaces computed parameters in a function by what they are computed from.

@@ -5,10 +5,10 @@
 //! Each is a tape over the inputs of the function that it belongs to, with the derivatives that
 //! tell how fast the value can change.
 
-use crate::differentiate::gradient;
-use crate::graph::{ExprId, Graph};
-use crate::interval::{Interval, Tape};
-use crate::program::VectorFunction;
+use super::function::VectorFunction;
+use crate::expressions::graph::derivative::gradient;
+use crate::expressions::graph::{ExprId, Graph};
+use crate::expressions::interval::{Interval, Tape};
 use fdcc_runtime::problem::Layout;
 use fdcc_runtime::simulate::{Enclosure, Enclosures};
 use std::ops::Range;

@@ -5,9 +5,9 @@
 //! with.
 
 use super::kernel;
-use crate::graph::{ExprId, Graph};
+use crate::expressions::graph::{ExprId, Graph};
+use crate::expressions::kernels;
 use crate::model::{Model, Symbol};
-use crate::smooth;
 use fdcc_runtime::problem::Layout;
 
 /// The sizes of a problem.
@@ -84,8 +84,8 @@ impl Inputs {
             let sigma = graph.input((first_sigma + at) as u32);
             let psi = &psis[switch.surfaces.clone()];
             let smoothed = match switch.is_ball {
-                true => smooth::direction(graph, kernel(model), psi, sigma),
-                false => vec![smooth::step(graph, kernel(model), psi[0], sigma)],
+                true => kernels::direction(graph, kernel(model), psi, sigma),
+                false => vec![kernels::step(graph, kernel(model), psi[0], sigma)],
             };
             steps[switch.surfaces].copy_from_slice(&smoothed);
         }

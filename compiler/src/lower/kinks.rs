@@ -10,9 +10,9 @@
 //! smoothly beyond, and what crosses a kink can be found and differentiated like what crosses a
 //! surface. Where `e` is the function of a surface, the selector of that surface says it already.
 
-use crate::blend::sides;
-use crate::graph::{ExprId, Graph};
-use crate::program::VectorFunction;
+use super::function::VectorFunction;
+use crate::expressions::blend::sides;
+use crate::expressions::graph::{ExprId, Graph};
 use fdcc_runtime::problem::Origin;
 
 /// The kinks of a function, each after those inside it.

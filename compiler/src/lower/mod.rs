@@ -13,28 +13,27 @@ mod by_parameters;
 mod composed;
 mod derived;
 mod enclosures;
-mod expect;
+mod expectations;
+mod function;
 mod guess;
 mod inputs;
 mod kinks;
-mod numbers;
 mod objective;
 mod problem;
 mod simulation;
 
 pub(crate) use by_parameters::by_parameters;
-pub use expect::{Expectations, Expected, expectations};
-pub(crate) use guess::{over_time as guessed, straight_guesses};
+pub use expectations::Expected;
+pub(crate) use expectations::{LoweredExpectations, expectations};
+pub use function::{Order, VectorFunction};
 pub use problem::problem;
 pub(crate) use simulation::{Purpose, simulation, system};
 
-use crate::graph::{ExprId, Graph};
+use crate::expressions::graph::{ExprId, Graph};
+use crate::expressions::kernels;
 use crate::model::{Model, Place, Switch};
-use crate::program::{Order, VectorFunction};
-use crate::smooth;
 use fdcc_runtime::problem::{Layout, Origin};
 use inputs::Sizes;
-pub use numbers::{Numbers, numbers};
 use objective::Objective;
 
 /// All functions of a problem, still expressions.
@@ -223,15 +222,15 @@ fn smoothed(
     match sizes.sigma_of_abs {
         Some(at) => {
             let sigma = graph.input((layout.parameters().start + at) as u32);
-            smooth::smooth_nonsmooth(graph, outputs, kernel(model), sigma)
+            kernels::smooth_nonsmooth(graph, outputs, kernel(model), sigma)
         }
         None => outputs.to_vec(),
     }
 }
 
 /// The kernel that the model asks for.
-fn kernel(model: &Model) -> &'static smooth::Kernel {
-    smooth::find(&model.method.kernel).expect("settings take only kernels of the table")
+fn kernel(model: &Model) -> &'static kernels::Kernel {
+    kernels::find(&model.method.kernel).expect("settings take only kernels of the table")
 }
 
 /// A place in the text as the runtime wants it.

@@ -5,8 +5,8 @@
 //! q(start) = 0`.
 
 use super::origin;
-use crate::differentiate::derivative;
-use crate::graph::{ExprId, Graph};
+use crate::expressions::graph::derivative::derivative;
+use crate::expressions::graph::{ExprId, Graph};
 use crate::model::{Model, Symbol};
 use fdcc_runtime::problem::Origin;
 

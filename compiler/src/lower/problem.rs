@@ -2,7 +2,8 @@
 
 use super::boundary::is_fixed;
 use super::by_parameters::{is_autonomous, last_time};
-use super::{Numbers, Program, origin};
+use super::{Program, origin};
+use crate::model::numbers::Numbers;
 use crate::model::{Model, Place, Switch, Symbol};
 use fdcc_runtime::problem::{
     Bounds, Function, Layout, Method, Origin, Parameter, Problem, Surface, Unknown, Variable,

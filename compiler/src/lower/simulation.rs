@@ -13,15 +13,17 @@
 
 use super::derived::write_out;
 use super::enclosures::{Watched, enclosures};
-use super::guess::{self, fixed_by_a_row};
+use super::function::{Order, VectorFunction};
+use super::guess;
 use super::inputs::{self, Inputs, Sizes};
 use super::kinks::{Kinks, take_out};
 use super::problem::{controls, parameters, states, surfaces};
-use super::{Numbers, interval, origin, smoothed};
-use crate::differentiate::derivative;
-use crate::graph::{ExprId, Graph};
+use super::{interval, origin, smoothed};
+use crate::expressions::graph::derivative::derivative;
+use crate::expressions::graph::{ExprId, Graph};
+use crate::model::guess::fixed_by_a_row;
+use crate::model::numbers::Numbers;
 use crate::model::{Ball, Jump, Model, Symbol};
-use crate::program::{Order, VectorFunction};
 use fdcc_grammar::ast::Direction;
 use fdcc_runtime::problem::{Function, Layout, Origin};
 use fdcc_runtime::simulate::{self, Enclosures};

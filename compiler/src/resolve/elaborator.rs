@@ -5,19 +5,16 @@
 //! from there on.
 
 use super::context::Context;
-use super::scope::Scope;
-use super::value::{Parts, Reads, Traits, Value};
-use crate::blend::Guards;
-use crate::graph::evaluate;
-use crate::graph::{ExprId, Graph};
-use crate::model::{Ball, Integral, Model, Place, Symbol};
+use super::expressions::value::{Parts, Reads, Traits, Value};
+use crate::expressions::blend::Guards;
+use crate::expressions::graph::evaluate;
+use crate::expressions::graph::{ExprId, Graph};
+use crate::model::{self, Ball, Integral, Model, Place, Symbol};
+use crate::syntax::scope::Scope;
 use crate::units::Readings;
 use fdcc_grammar::ast;
 use fdcc_grammar::{Code, Diagnostic, Span};
 use std::collections::{HashMap, HashSet};
-
-/// How deep definitions and expressions may be nested in each other.
-pub(crate) const DEEPEST: usize = 256;
 
 /// A surface, perhaps with a mistake in it.
 pub(crate) struct SurfaceEntry {
@@ -99,7 +96,7 @@ pub(crate) struct Elaborator<'a> {
     /// Results of functions, by function, examination and arguments.
     pub applied: HashMap<(usize, bool, Vec<Value>), Value>,
     /// Piecewise definitions by their place.
-    pub sites: HashMap<Span, super::knots::Site<'a>>,
+    pub sites: HashMap<Span, crate::resolve::expressions::knots::Site<'a>>,
     /// What selections compare.
     pub guards: Guards,
     /// Stand-ins for the arguments of functions that are examined by themselves.
@@ -122,12 +119,6 @@ pub(crate) struct Elaborator<'a> {
     pub diagnostics: Vec<Diagnostic>,
     /// What cannot be solved yet.
     pub not_yet: Vec<Diagnostic>,
-}
-
-/// "This is understood but cannot be solved yet."
-pub(crate) fn not_yet(span: Span, what: &str) -> Diagnostic {
-    let message = format!("{what} cannot be solved yet");
-    Diagnostic::new(Code::NotYet, message, span, "understood by `check`, not yet by `solve`")
 }
 
 impl<'a> Elaborator<'a> {
@@ -195,7 +186,7 @@ impl<'a> Elaborator<'a> {
 
     /// Notes something that is understood but cannot be solved yet.
     pub fn not_yet(&mut self, span: Span, what: &str) {
-        self.not_yet.push(not_yet(span, what));
+        self.not_yet.push(model::not_yet(span, what));
     }
 
     /// Evaluates in another context.

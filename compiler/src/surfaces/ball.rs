@@ -15,10 +15,10 @@
 use super::class::{Claims, Class, decide};
 use super::local::Local;
 use super::view::View;
-use crate::builtins::Builtin;
-use crate::differentiate::derivative;
-use crate::graph::ExprId;
-use crate::interval::Claim;
+use crate::expressions::graph::ExprId;
+use crate::expressions::graph::builtins::Builtin;
+use crate::expressions::graph::derivative::derivative;
+use crate::expressions::interval::Claim;
 use crate::model::{Ball, Symbol};
 
 /// A vector and its rate where it is 0.

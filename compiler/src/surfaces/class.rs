@@ -9,8 +9,8 @@ use super::degenerate::degenerate;
 use super::local::Local;
 use super::sample;
 use super::view::View;
-use crate::graph::{ExprId, evaluate};
-use crate::interval::{Claim, Interval};
+use crate::expressions::graph::{ExprId, evaluate};
+use crate::expressions::interval::{Claim, Interval};
 use crate::model::Symbol;
 
 /// What is proved about a surface, over all states on it within their bounds.

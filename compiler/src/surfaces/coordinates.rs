@@ -11,9 +11,9 @@
 
 use super::local::Local;
 use super::view::View;
-use crate::graph::ExprId;
+use crate::expressions::graph::ExprId;
+use crate::expressions::polynomial::{Monomial, Polynomial};
 use crate::model::Symbol;
-use crate::polynomial::{Monomial, Polynomial};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// In what the surface is one-sided Lipschitz.

@@ -2,9 +2,9 @@
 
 use super::local::Local;
 use super::sample;
-use crate::builtins::Builtin;
-use crate::graph::{Expr, ExprId};
-use crate::interval::{Claim, Prover};
+use crate::expressions::graph::builtins::Builtin;
+use crate::expressions::graph::{Expr, ExprId};
+use crate::expressions::interval::{Claim, Prover};
 use std::collections::BTreeMap;
 
 /// A function that is 0 together with its gradient.

@@ -9,9 +9,9 @@
 
 use super::local::Local;
 use super::view::View;
-use crate::differentiate::gradient;
-use crate::graph::ExprId;
-use crate::interval::{Claim, Interval, Prover};
+use crate::expressions::graph::ExprId;
+use crate::expressions::graph::derivative::gradient;
+use crate::expressions::interval::{Claim, Interval, Prover};
 use crate::model::{Jump, Symbol};
 use fdcc_grammar::ast::Direction;
 

@@ -12,10 +12,10 @@ use super::ball::LocalBall;
 use super::local::Local;
 use super::view::View;
 use super::words::Words;
-use crate::graph::{Expr, ExprId};
-use crate::interval::Claim;
+use crate::expressions::graph::{Expr, ExprId};
+use crate::expressions::interval::Claim;
+use crate::expressions::polynomial::{Monomial, NormalForms, Polynomial};
 use crate::model::Symbol;
-use crate::polynomial::{Monomial, NormalForms, Polynomial};
 use std::collections::BTreeMap;
 
 /// The condition, with names that are made up for it; nothing if it would be too long to read.

@@ -11,11 +11,11 @@
 
 use super::view::View;
 use super::words::Words;
-use crate::differentiate::gradient;
-use crate::graph::{ById, Expr, ExprId, Graph};
-use crate::interval::{Interval, Prover};
+use crate::expressions::graph::derivative::gradient;
+use crate::expressions::graph::{ById, Expr, ExprId, Graph};
+use crate::expressions::interval::{Interval, Prover};
+use crate::expressions::polynomial::{NormalForms, Polynomial};
 use crate::model::Symbol;
-use crate::polynomial::{NormalForms, Polynomial};
 
 /// Path constraints beyond these are not looked at.
 const MOST_ROWS: usize = 40;

@@ -11,16 +11,30 @@ pub(crate) mod degenerate;
 pub(crate) mod endless;
 pub(crate) mod holding;
 pub(crate) mod local;
-mod report;
+pub(crate) mod report;
 mod sample;
-mod smoothness;
+pub(crate) mod smoothness;
 pub(crate) mod view;
 pub(crate) mod words;
+
+use crate::model::Model;
+use crate::model::numbers::numbers;
+use fdcc_grammar::Diagnostic;
 
 pub use class::Class as SurfaceClass;
 pub(crate) use local::Local;
 pub use report::SurfaceReport;
-pub(crate) use report::surfaces;
+
 pub use smoothness::{Order, Smoothness};
-pub(crate) use smoothness::{at_guards, of_expression, smoothness};
+pub(crate) use smoothness::{at_guards, of_expression};
 pub(crate) use view::View;
+
+/// What is known about every surface of a model, or which parameters it waits for.
+pub fn surfaces(model: &Model) -> Result<Vec<SurfaceReport>, Vec<Diagnostic>> {
+    Ok(report::surfaces(model, &numbers(model)?))
+}
+
+/// How smooth everything is that has a name in a model, or which parameters it waits for.
+pub fn smoothness(model: &Model) -> Result<Vec<Smoothness>, Vec<Diagnostic>> {
+    Ok(smoothness::smoothness(model, &numbers(model)?))
+}

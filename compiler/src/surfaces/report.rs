@@ -6,7 +6,7 @@ use super::degenerate::degenerate;
 use super::holding::{holding, within_reach};
 use super::local::Local;
 use super::view::View;
-use crate::lower::Numbers;
+use crate::model::numbers::Numbers;
 use crate::model::{Model, Place, Symbol};
 use fdcc_grammar::ast::Direction;
 
@@ -101,9 +101,8 @@ fn report(view: &View<'_>, at: usize, model: &Model) -> SurfaceReport {
 
 /// The class in words.
 fn in_words(class: &Class, view: &View<'_>) -> String {
-    let value = |it: &(Symbol, f64)| {
-        format!("{} = {}", view.name(it.0), crate::resolve::text::number(it.1))
-    };
+    let value =
+        |it: &(Symbol, f64)| format!("{} = {}", view.name(it.0), crate::syntax::text::number(it.1));
     let text = match class {
         Class::Apart => "out of reach: the bounds keep every state away from it",
         Class::Crossed { strictly: true } => "crossed",

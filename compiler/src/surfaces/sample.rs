@@ -1,9 +1,9 @@
 //! Points on a surface, found by trial: what is accused of something must exist.
 
 use super::local::Local;
-use crate::differentiate::gradient;
-use crate::graph::{ExprId, evaluate};
-use crate::interval::Interval;
+use crate::expressions::graph::derivative::gradient;
+use crate::expressions::graph::{ExprId, evaluate};
+use crate::expressions::interval::Interval;
 use crate::model::Symbol;
 
 const TRIALS: u64 = 24;

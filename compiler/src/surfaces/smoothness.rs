@@ -13,13 +13,13 @@
 use super::local::Local;
 use super::sample;
 use super::view::View;
-use crate::builtins::Builtin;
-use crate::differentiate::derivative;
-use crate::graph::{Expr, ExprId, Operands, evaluate};
-use crate::interval::{Claim, Prover};
-use crate::lower::Numbers;
+use crate::expressions::graph::builtins::Builtin;
+use crate::expressions::graph::derivative::derivative;
+use crate::expressions::graph::{Expr, ExprId, Operands, evaluate};
+use crate::expressions::interval::{Claim, Prover};
+use crate::expressions::polynomial::Polynomial;
+use crate::model::numbers::Numbers;
 use crate::model::{Model, Symbol};
-use crate::polynomial::Polynomial;
 use std::collections::BTreeMap;
 
 /// How often an expression can be differentiated continuously.

@@ -1,8 +1,8 @@
 //! What the analysis of surfaces needs of a model, finished or still being checked.
 
-use crate::graph::{Expr, ExprId, Graph, evaluate};
-use crate::interval::Interval;
-use crate::lower::Numbers;
+use crate::expressions::graph::{Expr, ExprId, Graph, evaluate};
+use crate::expressions::interval::Interval;
+use crate::model::numbers::Numbers;
 use crate::model::{Ball, Control, Free, Model, Param, Place, Range, Row, State, Symbol};
 use std::collections::HashMap;
 

@@ -3,10 +3,10 @@
 //! What is printed is the normal form. Parts of it that have a name in the model, or were written
 //! out there, are replaced by that name where this makes the text shorter.
 
-use crate::builtins::{Builtin, Notation};
-use crate::graph::{Expr, ExprId, Graph};
-use crate::polynomial::{Monomial, NormalForms, Polynomial};
-use crate::resolve::text::number;
+use crate::expressions::graph::builtins::{Builtin, Notation};
+use crate::expressions::graph::{Expr, ExprId, Graph};
+use crate::expressions::polynomial::{Monomial, NormalForms, Polynomial};
+use crate::syntax::text::number;
 
 /// Names for inputs and for some expressions of a graph.
 pub(crate) struct Words<'w> {

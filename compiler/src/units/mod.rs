@@ -6,52 +6,36 @@
 //! except where it stands alone against something that has one: in a bound, a start, a guess or a
 //! comparison it takes the unit of the other side.
 
-mod calls;
-mod common;
-mod declare;
-mod declared;
 mod dimension;
-mod expression;
 mod inference;
-mod items;
-mod messages;
-mod mistake;
+mod mistakes;
 mod names;
-mod notation;
-mod quantity;
-mod ratio;
-mod readings;
-mod repairs;
-mod requirement;
-mod solve;
-mod table;
-mod value;
 
-use crate::resolve::text::number;
+use crate::syntax::text::number;
 use dimension::Atom;
 pub use dimension::Dimension;
+use dimension::notation::Notation;
+pub use dimension::quantity::{Quantity, parse_quantity};
+pub(crate) use dimension::table::{names, scale};
 use fdcc_grammar::ast::{self, Unit};
 use fdcc_grammar::{Diagnostic, Span};
 use inference::Inference;
-use messages::Speaker;
-pub(crate) use messages::unit_of;
-use mistake::Mistake;
+pub(crate) use inference::readings::Readings;
+use inference::requirement::Requirement;
+use inference::solve::{Rank, Solution};
+use mistakes::messages::Speaker;
+pub(crate) use mistakes::messages::unit_of;
+use mistakes::{Mistake, suspects};
 use names::Findings;
 pub use names::{NamedUnit, WidthUnit};
-use notation::Notation;
-pub use quantity::{Quantity, parse_quantity};
-pub(crate) use readings::Readings;
-use requirement::Requirement;
-use solve::{Rank, Solution};
 use std::collections::HashSet;
-pub(crate) use table::{names, scale};
 
 /// Whoever has so many mistakes does not read on.
 const MOST_MISTAKES: usize = 20;
 
 /// A unit in SI and what it measures: `1 km = 1000 m, a length`.
 pub(crate) fn described(name: &str) -> Option<String> {
-    let (value, dimension) = table::named(name)?;
+    let (value, dimension) = dimension::table::named(name)?;
     let notation = Notation::new(&[]);
     let si = format!("1 {name} = {} {}", number(value), notation.unit(&dimension));
     Some(format!("{}, {}", si.trim_end(), notation.noun(&dimension)))
@@ -75,7 +59,7 @@ pub(crate) struct Units {
 /// Reports every unit of an item that is not known.
 pub(crate) fn unknown(item: &ast::Item, diagnostics: &mut Vec<Diagnostic>) {
     let mut written = Vec::new();
-    declare::units_in(item, &mut written);
+    inference::declare::units_in(item, &mut written);
     for unit in written {
         scale(unit, diagnostics);
     }
@@ -84,7 +68,7 @@ pub(crate) fn unknown(item: &ast::Item, diagnostics: &mut Vec<Diagnostic>) {
 /// Finds the unit of every name, and every place where units do not fit together.
 pub(crate) fn infer(tree: &ast::Model) -> Units {
     let mut written: Vec<&Unit> = Vec::new();
-    tree.items.iter().for_each(|item| declare::units_in(item, &mut written));
+    tree.items.iter().for_each(|item| inference::declare::units_in(item, &mut written));
     if written.is_empty() {
         return Units::default();
     }
@@ -92,12 +76,12 @@ pub(crate) fn infer(tree: &ast::Model) -> Units {
     let mut known = Known::default();
     let mut mistakes: Vec<Mistake<'_>> = Vec::new();
     loop {
-        let found = common::found(tree, &known, Walk::new(tree, known.clone(), false));
+        let found = suspects::found(tree, &known, Walk::new(tree, known.clone(), false));
         let Walk { inference, solution, .. } = &found.walk;
         if found.mistakes.is_empty() || mistakes.len() >= MOST_MISTAKES {
             let findings = Findings { inference, solution, notation: &speaker.notation };
             let mut diagnostics = told(&speaker, known, &mistakes);
-            diagnostics.extend(readings::found(inference, solution, &speaker.notation));
+            diagnostics.extend(inference::readings::found(inference, solution, &speaker.notation));
             let names = findings.names(&tree.items);
             let conditions = findings.conditions(&tree.items, &names);
             let readings = inference.readings.clone();

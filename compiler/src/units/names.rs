@@ -1,13 +1,13 @@
 //! The unit of every declared name, written or found: for tables, hover and hints.
 
 use super::dimension::Dimension;
+use super::dimension::notation::{Notation, written};
+use super::dimension::table;
 use super::inference::Inference;
-use super::messages::unit_of;
-use super::notation::{Notation, written};
-use super::solve::Solution;
-use super::table;
-use super::value::Part;
-use crate::resolve::{scope, text, walk};
+use super::inference::solve::Solution;
+use super::inference::value::Part;
+use super::mistakes::messages::unit_of;
+use crate::syntax::{scope, text, walk};
 use fdcc_grammar::Span;
 use fdcc_grammar::ast::{Check, Expr, Item, ItemKind};
 

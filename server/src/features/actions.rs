@@ -12,8 +12,8 @@ pub fn actions(
     context: &Context<'_>,
     params: CodeActionParams,
 ) -> Result<Option<Vec<CodeActionResponse>>, Failure> {
-    let analysis = context.analysis();
-    let wanted = analysis.text.span(params.range);
+    let snapshot = context.snapshot();
+    let wanted = snapshot.text.span(params.range);
     let asked = |kind: &CodeActionKind| {
         let is_asked = |only: &Vec<CodeActionKind>| only.iter().any(|it| is_kind(kind, it));
         params.context.only.as_ref().is_none_or(is_asked)
@@ -21,7 +21,7 @@ pub fn actions(
     let mut all: Vec<CodeActionResponse> = Vec::new();
     if asked(&CodeActionKind::QuickFix) {
         let touched = |it: &&Diagnostic| it.labels.iter().any(|label| touches(label.span, wanted));
-        for found in analysis.reviewed.diagnostics.iter().filter(touched) {
+        for found in snapshot.analysis.diagnostics.iter().filter(touched) {
             all.extend(found.fixes.iter().map(|fix| quick_fix(context, found, fix).into()));
         }
     }
@@ -43,7 +43,7 @@ fn touches(one: Span, other: Span) -> bool {
 
 fn quick_fix(context: &Context<'_>, found: &Diagnostic, fix: &Fix) -> CodeAction {
     let diagnostic =
-        shown(found, context.analysis(), &context.document.uri, &context.session.agreed);
+        shown(found, context.snapshot(), &context.document.uri, &context.session.agreed);
     CodeAction {
         title: sentence(&fix.title),
         kind: Some(CodeActionKind::QuickFix),
@@ -56,9 +56,9 @@ fn quick_fix(context: &Context<'_>, found: &Diagnostic, fix: &Fix) -> CodeAction
 
 /// What `fdcc fix` would do.
 fn fix_all(context: &Context<'_>) -> Option<CodeAction> {
-    let text = &context.analysis().text.text;
+    let text = &context.snapshot().text.text;
     let is_certain = |it: &Diagnostic| it.fixes.iter().any(|fix| fix.certain);
-    if !context.analysis().reviewed.diagnostics.iter().any(is_certain) {
+    if !context.snapshot().analysis.diagnostics.iter().any(is_certain) {
         return None;
     }
     let edit = difference(text, &repair(text, false))?;

@@ -1,11 +1,11 @@
 //! What is wrong with a text, pushed or pulled.
 
-use crate::analysis::Analysis;
 use crate::capabilities::Agreed;
 use crate::client::Failure;
 use crate::context::Context;
 use crate::documents::Document;
 use crate::pages;
+use crate::snapshot::Snapshot;
 use fdcc_grammar::{Code, Diagnostic, Label, Severity};
 use lsp_types::{
     CodeDescription, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag,
@@ -34,29 +34,29 @@ pub fn report(
 }
 
 fn all(document: &Document, agreed: &Agreed) -> Vec<lsp_types::Diagnostic> {
-    let analysis = document.analysis();
-    analysis
-        .reviewed
+    let snapshot = document.snapshot();
+    snapshot
+        .analysis
         .diagnostics
         .iter()
-        .map(|it| shown(it, analysis, &document.uri, agreed))
+        .map(|it| shown(it, snapshot, &document.uri, agreed))
         .collect()
 }
 
 /// A finding in the words of the protocol.
 pub fn shown(
     found: &Diagnostic,
-    analysis: &Analysis,
+    snapshot: &Snapshot,
     uri: &Uri,
     agreed: &Agreed,
 ) -> lsp_types::Diagnostic {
     let related = |label: &Label| DiagnosticRelatedInformation {
-        location: Location { uri: uri.clone(), range: analysis.text.range(label.span) },
+        location: Location { uri: uri.clone(), range: snapshot.text.range(label.span) },
         message: label.text.clone(),
     };
     let others = &found.labels[1..];
     lsp_types::Diagnostic {
-        range: analysis.text.range(found.span()),
+        range: snapshot.text.range(found.span()),
         severity: Some(severity(found.severity)),
         code: Some(found.code.as_str().to_owned().into()),
         code_description: pages::link(found.code).map(|href| CodeDescription { href }),

@@ -2,7 +2,7 @@
 
 use crate::client::Failure;
 use crate::context::Context;
-use fdcc_compiler::names::enclosing;
+use fdcc_compiler::symbols::enclosing;
 use fdcc_grammar::{Span, comments};
 use lsp_types::{
     FoldingRange, FoldingRangeKind, FoldingRangeParams, SelectionRange, SelectionRangeParams,
@@ -13,7 +13,7 @@ pub fn folding(
     context: &Context<'_>,
     _: FoldingRangeParams,
 ) -> Result<Option<Vec<FoldingRange>>, Failure> {
-    let text = &context.analysis().text;
+    let text = &context.snapshot().text;
     let comments = comments(&text.text);
     let mut all = Vec::new();
     for block in blocks(&text.text, &comments) {
@@ -64,11 +64,11 @@ pub fn selection(
     context: &Context<'_>,
     params: SelectionRangeParams,
 ) -> Result<Option<Vec<SelectionRange>>, Failure> {
-    let analysis = context.analysis();
+    let snapshot = context.snapshot();
     let around = |offset: u32| {
-        let mut spans = vec![Span::new(0, analysis.text.text.len())];
-        spans.extend(enclosing(&analysis.reviewed.tree, offset));
-        spans.extend(analysis.names().at(offset).map(|it| it.span));
+        let mut spans = vec![Span::new(0, snapshot.text.text.len())];
+        spans.extend(enclosing(&snapshot.analysis.tree, offset));
+        spans.extend(snapshot.names().at(offset).map(|it| it.span));
         let mut chain: Option<Box<SelectionRange>> = None;
         for span in spans {
             let range = context.range(span);

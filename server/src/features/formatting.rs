@@ -13,7 +13,7 @@ pub fn whole(
     context: &Context<'_>,
     _: DocumentFormattingParams,
 ) -> Result<Option<Vec<TextEdit>>, Failure> {
-    let all = Span::new(0, context.analysis().text.text.len());
+    let all = Span::new(0, context.snapshot().text.text.len());
     Ok(within(context, all))
 }
 
@@ -22,7 +22,7 @@ pub fn range(
     context: &Context<'_>,
     params: DocumentRangeFormattingParams,
 ) -> Result<Option<Vec<TextEdit>>, Failure> {
-    Ok(within(context, context.analysis().text.span(params.range)))
+    Ok(within(context, context.snapshot().text.span(params.range)))
 }
 
 /// `textDocument/onTypeFormatting`: after a closing brace or a new line, what stands on the line
@@ -31,7 +31,7 @@ pub fn on_type(
     context: &Context<'_>,
     params: DocumentOnTypeFormattingParams,
 ) -> Result<Option<Vec<TextEdit>>, Failure> {
-    let text = &context.analysis().text;
+    let text = &context.snapshot().text;
     let line = match params.ch.as_str() {
         "\n" => params.position.line.saturating_sub(1),
         _ => params.position.line,
@@ -41,7 +41,7 @@ pub fn on_type(
 
 /// The changes inside a range; none where the text cannot be read.
 fn within(context: &Context<'_>, wanted: Span) -> Option<Vec<TextEdit>> {
-    let text = &context.analysis().text.text;
+    let text = &context.snapshot().text.text;
     let formatted = format(text).ok()?;
     let inside = |it: &Edit| wanted.start <= it.span.start && it.span.end <= wanted.end;
     let edits = changes(text, &formatted).into_iter().filter(inside);

@@ -3,8 +3,8 @@
 
 use crate::client::Failure;
 use crate::context::Context;
-use fdcc_compiler::names::{Definition, Kind};
-use fdcc_compiler::{Model, NamedUnit, Order, SurfaceReport, portrait};
+use fdcc_compiler::symbols::{Definition, Kind};
+use fdcc_compiler::{Model, NamedUnit, Order, SurfaceReport, symbol_information};
 use lsp_types::{InlayHint, InlayHintKind, InlayHintParams};
 
 /// `textDocument/inlayHint`
@@ -12,26 +12,26 @@ pub fn hints(
     context: &Context<'_>,
     params: InlayHintParams,
 ) -> Result<Option<Vec<InlayHint>>, Failure> {
-    let analysis = context.analysis();
-    let wanted = analysis.text.span(params.range);
+    let snapshot = context.snapshot();
+    let wanted = snapshot.text.span(params.range);
     let mut found: Vec<(u32, String)> = Vec::new();
-    found.extend(analysis.reviewed.units.iter().filter_map(unit));
+    found.extend(snapshot.analysis.units.iter().filter_map(unit));
     // Of a text with mistakes nothing more is known; old places are elsewhere by now.
-    if let Some(model) = &analysis.reviewed.model {
+    if let Some(model) = &snapshot.analysis.model {
         let definitions = || {
-            analysis
+            snapshot
                 .names()
                 .definitions
                 .iter()
                 .filter(|it| it.item.end >= wanted.start && it.item.start <= wanted.end)
         };
-        let surfaces = || analysis.surfaces();
+        let surfaces = || snapshot.surfaces();
         found.extend(
             definitions()
                 .filter(|it| it.kind == Kind::Surface)
                 .filter_map(|it| held(it, surfaces())),
         );
-        found.extend(definitions().filter_map(|it| smoothness(it, model, &analysis.text.text)));
+        found.extend(definitions().filter_map(|it| smoothness(it, model, &snapshot.text.text)));
     }
     found.retain(|it| wanted.start <= it.0 && it.0 <= wanted.end);
     found.sort();
@@ -39,7 +39,7 @@ pub fn hints(
 }
 
 fn hint(context: &Context<'_>, at: u32, text: String) -> InlayHint {
-    let position = context.analysis().text.position(at);
+    let position = context.snapshot().text.position(at);
     InlayHint {
         padding_left: Some(true),
         kind: Some(InlayHintKind::Type),
@@ -70,7 +70,7 @@ fn held(it: &Definition, surfaces: &[SurfaceReport]) -> Option<(u32, String)> {
 fn smoothness(it: &Definition, model: &Model, text: &str) -> Option<(u32, String)> {
     let has_pieces = matches!(it.kind, Kind::Function | Kind::Let)
         && text[it.item.range()].contains("piecewise");
-    let found = portrait(model, &it.name).filter(|_| has_pieces)?.smoothness?;
+    let found = symbol_information(model, &it.name).filter(|_| has_pieces)?.smoothness?;
     let text = match found.order {
         Order::Always => "smooth".into(),
         order => order.to_string(),

@@ -8,12 +8,12 @@ use lsp_types::{CodeLens, CodeLensParams, Command};
 
 /// `textDocument/codeLens`: nothing for a model that has mistakes.
 pub fn lenses(context: &Context<'_>, _: CodeLensParams) -> Result<Option<Vec<CodeLens>>, Failure> {
-    let reviewed = &context.analysis().reviewed;
-    if reviewed.model.is_none() {
+    let analysis = &context.snapshot().analysis;
+    if analysis.model.is_none() {
         return Ok(Some(Vec::new()));
     }
-    let first = reviewed.tree.items.first().map_or(0, |item| item.span.start);
-    let start = reviewed.tree.name.as_ref().map_or(first, |name| name.span.start.min(first));
+    let first = analysis.tree.items.first().map_or(0, |item| item.span.start);
+    let start = analysis.tree.name.as_ref().map_or(first, |name| name.span.start.min(first));
     let range = context.range(Span { start, end: start });
     let lens = |(name, title): &(&str, &str)| CodeLens {
         range,

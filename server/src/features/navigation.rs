@@ -2,7 +2,7 @@
 
 use crate::client::Failure;
 use crate::context::Context;
-use fdcc_compiler::names::{Occurrence, Role};
+use fdcc_compiler::symbols::{Occurrence, Role};
 use lsp_types::{
     Definition, DefinitionParams, DefinitionResponse, DocumentHighlight, DocumentHighlightKind,
     DocumentHighlightParams, Location, ReferenceParams,
@@ -13,7 +13,7 @@ pub fn definition(
     context: &Context<'_>,
     params: DefinitionParams,
 ) -> Result<Option<DefinitionResponse>, Failure> {
-    let names = context.analysis().names();
+    let names = context.snapshot().names();
     let found = names.definition_at(context.offset(params.text_document_position_params.position));
     let location = found.map(|at| context.location(names.definitions[at].span));
     Ok(location.map(|it| Definition::Location(it).into()))
@@ -24,7 +24,7 @@ pub fn references(
     context: &Context<'_>,
     params: ReferenceParams,
 ) -> Result<Option<Vec<Location>>, Failure> {
-    let names = context.analysis().names();
+    let names = context.snapshot().names();
     let offset = context.offset(params.text_document_position_params.position);
     let Some(definition) = names.definition_at(offset) else { return Ok(None) };
     let wanted =
@@ -37,7 +37,7 @@ pub fn highlights(
     context: &Context<'_>,
     params: DocumentHighlightParams,
 ) -> Result<Option<Vec<DocumentHighlight>>, Failure> {
-    let names = context.analysis().names();
+    let names = context.snapshot().names();
     let offset = context.offset(params.text_document_position_params.position);
     let Some(definition) = names.definition_at(offset) else { return Ok(None) };
     let highlight = |it: &Occurrence| {

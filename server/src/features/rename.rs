@@ -1,10 +1,10 @@
 //! Another name for something, wherever it stands. Done only if every name means afterwards what it
 //! meant before.
 
-use crate::analysis::Analysis;
 use crate::client::Failure;
 use crate::context::Context;
-use fdcc_compiler::names::{Meaning, Names, Role};
+use crate::snapshot::Snapshot;
+use fdcc_compiler::symbols::{Meaning, Names, Role};
 use fdcc_grammar::ast::ItemKind;
 use fdcc_grammar::{Edit, parse};
 use lsp_types::{
@@ -16,10 +16,10 @@ pub fn prepare(
     context: &Context<'_>,
     params: PrepareRenameParams,
 ) -> Result<Option<PrepareRenameResult>, Failure> {
-    let names = context.analysis().names();
+    let names = context.snapshot().names();
     let offset = context.offset(params.text_document_position_params.position);
     let Some(occurrence) = names.at(offset) else { return Ok(None) };
-    let definition = renamable(context.analysis(), offset)?;
+    let definition = renamable(context.snapshot(), offset)?;
     let placeholder = names.definitions[definition].name.clone();
     Ok(Some(PrepareRenamePlaceholder { range: context.range(occurrence.span), placeholder }.into()))
 }
@@ -29,21 +29,21 @@ pub fn rename(
     context: &Context<'_>,
     params: RenameParams,
 ) -> Result<Option<WorkspaceEdit>, Failure> {
-    let analysis = context.analysis();
+    let snapshot = context.snapshot();
     let offset = context.offset(params.text_document_position_params.position);
-    let definition = renamable(analysis, offset)?;
+    let definition = renamable(snapshot, offset)?;
     let new_name = params.new_name.trim();
     check_name(new_name)?;
-    let edits = edits(analysis.names(), definition, new_name);
-    check_meaning(analysis, &edits, new_name)?;
+    let edits = edits(snapshot.names(), definition, new_name);
+    check_meaning(snapshot, &edits, new_name)?;
     Ok(Some(context.workspace_edit(&edits)))
 }
 
 /// What can be renamed at a byte.
-fn renamable(analysis: &Analysis, offset: u32) -> Result<usize, Failure> {
-    let names = analysis.names();
+fn renamable(snapshot: &Snapshot, offset: u32) -> Result<usize, Failure> {
+    let names = snapshot.names();
     match names.at(offset).map(|it| it.meaning) {
-        Some(Meaning::Declared(_)) if !analysis.is_readable => Err(Failure::request(
+        Some(Meaning::Declared(_)) if !snapshot.is_readable => Err(Failure::request(
             "this text has mistakes of syntax, and a name in what cannot be read would be missed; \
              mend them first",
         )),
@@ -74,8 +74,8 @@ fn edits(names: &Names, definition: usize, new_name: &str) -> Vec<Edit> {
 }
 
 /// Whether all names stand for the same things in the new text.
-fn check_meaning(analysis: &Analysis, edits: &[Edit], new_name: &str) -> Result<(), Failure> {
-    let mut text = analysis.text.text.to_string();
+fn check_meaning(snapshot: &Snapshot, edits: &[Edit], new_name: &str) -> Result<(), Failure> {
+    let mut text = snapshot.text.text.to_string();
     for edit in edits.iter().rev() {
         text.replace_range(edit.span.range(), &edit.replacement);
     }
@@ -83,9 +83,9 @@ fn check_meaning(analysis: &Analysis, edits: &[Edit], new_name: &str) -> Result<
     let meanings = |names: &Names| -> Vec<(Meaning, Role)> {
         names.occurrences.iter().map(|it| (it.meaning, it.role)).collect()
     };
-    let is_free = analysis.names().definitions.iter().all(|it| it.name != new_name)
+    let is_free = snapshot.names().definitions.iter().all(|it| it.name != new_name)
         || !declares_twice(&after);
-    match is_free && meanings(analysis.names()) == meanings(&after) {
+    match is_free && meanings(snapshot.names()) == meanings(&after) {
         true => Ok(()),
         false => Err(Failure::request(format!(
             "`{new_name}` already means something here; choose another name"

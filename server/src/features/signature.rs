@@ -1,10 +1,10 @@
 //! The arguments of the call in which the cursor stands.
 
-use crate::analysis::Analysis;
 use crate::client::Failure;
 use crate::context::Context;
 use crate::features::place::Place;
-use fdcc_compiler::names::Kind;
+use crate::snapshot::Snapshot;
+use fdcc_compiler::symbols::Kind;
 use fdcc_compiler::vocabulary;
 use lsp_types::{
     MarkupContent, MarkupKind, ParameterInformation, SignatureHelp, SignatureHelpParams,
@@ -17,7 +17,7 @@ pub fn help(
     params: SignatureHelpParams,
 ) -> Result<Option<SignatureHelp>, Failure> {
     let offset = context.offset(params.text_document_position_params.position) as usize;
-    let place = Place::at_end_of(&context.analysis().text.text[..offset]);
+    let place = Place::at_end_of(&context.snapshot().text.text[..offset]);
     let calls = place.open.iter().rev().filter(|it| it.bracket == '(');
     let found = calls.into_iter().find_map(|it| Some((signature(context, it.before)?, it.commas)));
     Ok(found.map(|(signature, commas)| SignatureHelp {
@@ -36,17 +36,17 @@ fn signature(context: &Context<'_>, name: &str) -> Option<SignatureInformation> 
 }
 
 fn own(context: &Context<'_>, name: &str) -> Option<SignatureInformation> {
-    let analyses = std::iter::once(context.document.analysis()).chain(context.document.readable());
-    analyses.into_iter().find_map(|analysis| declared(analysis, name))
+    let snapshots = std::iter::once(context.document.snapshot()).chain(context.document.readable());
+    snapshots.into_iter().find_map(|snapshot| declared(snapshot, name))
 }
 
-fn declared(analysis: &Analysis, name: &str) -> Option<SignatureInformation> {
-    let names = analysis.names();
+fn declared(snapshot: &Snapshot, name: &str) -> Option<SignatureInformation> {
+    let names = snapshot.names();
     let at =
         names.definitions.iter().position(|it| it.kind == Kind::Function && it.name == name)?;
     let arguments: Vec<&str> =
         names.parts_of(at).map(|at| names.definitions[at].name.as_str()).collect();
-    let declaration = &analysis.text.text[names.definitions[at].item.range()];
+    let declaration = &snapshot.text.text[names.definitions[at].item.range()];
     Some(information(name, &arguments, format!("```fdc\n{declaration}\n```")))
 }
 

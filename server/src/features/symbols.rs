@@ -2,7 +2,7 @@
 
 use crate::client::Failure;
 use crate::context::Context;
-use fdcc_compiler::names::{Kind, Names};
+use fdcc_compiler::symbols::{Kind, Names};
 use fdcc_grammar::Span;
 use fdcc_grammar::ast::{Binding, Item, ItemKind, Sense};
 use lsp_types::{DocumentSymbol, DocumentSymbolParams, DocumentSymbolResponse, SymbolKind};
@@ -12,8 +12,8 @@ pub fn symbols(
     context: &Context<'_>,
     _: DocumentSymbolParams,
 ) -> Result<Option<DocumentSymbolResponse>, Failure> {
-    let outline = Outline { context, names: context.analysis().names() };
-    let items = &context.analysis().reviewed.tree.items;
+    let outline = Outline { context, names: context.snapshot().names() };
+    let items = &context.snapshot().analysis.tree.items;
     Ok(Some(outline.items(items).into()))
 }
 

@@ -5,7 +5,7 @@
 
 use crate::client::Failure;
 use crate::context::Context;
-use fdcc_compiler::names::{Kind, Meaning, Names, Occurrence, Role};
+use fdcc_compiler::symbols::{Kind, Meaning, Names, Occurrence, Role};
 use fdcc_grammar::Span;
 use lsp_types::{
     SemanticToken, SemanticTokens, SemanticTokensLegend, SemanticTokensParams,
@@ -47,7 +47,7 @@ pub fn full(
     context: &Context<'_>,
     _: SemanticTokensParams,
 ) -> Result<Option<SemanticTokens>, Failure> {
-    Ok(Some(within(context, Span::new(0, context.analysis().text.text.len()))))
+    Ok(Some(within(context, Span::new(0, context.snapshot().text.text.len()))))
 }
 
 /// `textDocument/semanticTokens/range`
@@ -55,11 +55,11 @@ pub fn range(
     context: &Context<'_>,
     params: SemanticTokensRangeParams,
 ) -> Result<Option<SemanticTokens>, Failure> {
-    Ok(Some(within(context, context.analysis().text.span(params.range))))
+    Ok(Some(within(context, context.snapshot().text.span(params.range))))
 }
 
 fn within(context: &Context<'_>, wanted: Span) -> SemanticTokens {
-    let names = context.analysis().names();
+    let names = context.snapshot().names();
     let (mut data, mut before) = (Vec::new(), lsp_types::Position::default());
     for it in names
         .occurrences

@@ -3,7 +3,7 @@
 use crate::context::Context;
 use crate::features::symbols::kind;
 use crate::session::Session;
-use fdcc_compiler::names::{Definition, Kind};
+use fdcc_compiler::symbols::{Definition, Kind};
 use lsp_types::{BaseSymbolInformation, SymbolInformation, WorkspaceSymbolParams};
 
 /// `workspace/symbol`: declared names that hold what was typed, whatever its case.
@@ -12,7 +12,7 @@ pub fn symbols(session: &Session, params: &WorkspaceSymbolParams) -> Vec<SymbolI
     let mut found = Vec::new();
     for document in session.documents.all() {
         let context = Context { session, document };
-        let all = &context.analysis().names().definitions;
+        let all = &context.snapshot().names().definitions;
         let is_inner = |it: &Definition| matches!(it.kind, Kind::Argument | Kind::Row);
         let fits = |it: &&Definition| !is_inner(it) && it.name.to_lowercase().contains(&wanted);
         found.extend(all.iter().filter(fits).map(|it| symbol(&context, all, it)));

@@ -1,8 +1,8 @@
 //! The table of `docs/reference/units.md`: in which unit a plain number is read at each place.
 
+use fdcc_compiler::analyze;
 use fdcc_compiler::graph::{ExprId, evaluate};
 use fdcc_compiler::model::Model;
-use fdcc_compiler::review;
 use fdcc_grammar::Severity;
 
 /// Both cells of a row of the table; the left one holds code.
@@ -43,14 +43,14 @@ fn text(base: &str, lines: &[&str]) -> String {
 
 /// The errors of the model with these lines.
 fn codes(base: &str, lines: &[&str]) -> Vec<String> {
-    let found = review(&text(base, lines)).diagnostics;
+    let found = analyze(&text(base, lines)).diagnostics;
     let errors = found.iter().filter(|it| it.severity == Severity::Error);
     errors.map(|it| it.code.as_str().to_owned()).collect()
 }
 
 /// Every number of the model with these lines, at one point.
 fn numbers(base: &str, lines: &[&str]) -> Option<Vec<f64>> {
-    let mut model = review(&text(base, lines)).model?;
+    let mut model = analyze(&text(base, lines)).model?;
     for line in lines {
         let given =
             line.split_once(' ').and_then(|(option, rest)| Some((option, rest.split_once('=')?)));

@@ -3,7 +3,7 @@
 
 use fdcc_compiler::graph::{ExprId, Graph, evaluate};
 use fdcc_compiler::model::{Model, Symbol};
-use fdcc_compiler::{SurfaceClass, check, differentiate::derivative, surfaces};
+use fdcc_compiler::{SurfaceClass, check, graph::derivative, surfaces};
 use fdcc_grammar::{Code, Severity, parse};
 use fdcc_tests::random::Random;
 use std::collections::BTreeMap;

@@ -2,7 +2,7 @@
 
 use super::Subject;
 use crate::model::Symbol;
-use crate::resolve::text;
+use crate::syntax::text;
 use fdcc_grammar::{Code, Diagnostic};
 
 impl Subject<'_, '_, '_> {

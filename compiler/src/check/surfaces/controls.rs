@@ -1,8 +1,8 @@
 //! FDC0306: a control that acts differently on the two sides of a surface.
 
 use super::Subject;
-use crate::differentiate::derivative;
-use crate::graph::ExprId;
+use crate::expressions::graph::ExprId;
+use crate::expressions::graph::derivative::derivative;
 use crate::model::Symbol;
 use fdcc_grammar::ast::ExprKind;
 use fdcc_grammar::{Code, Diagnostic};

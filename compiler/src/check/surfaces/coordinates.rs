@@ -2,10 +2,10 @@
 //! another metric.
 
 use super::Subject;
-use crate::resolve::text::{self, number};
 use crate::surfaces::coordinates::{Coordinates, Parts, coordinates, vector};
 use crate::surfaces::holding::holding;
 use crate::surfaces::words::tidy;
+use crate::syntax::text::{self, number};
 use fdcc_grammar::{Code, Diagnostic};
 
 impl Subject<'_, '_, '_> {
@@ -91,7 +91,7 @@ impl Subject<'_, '_, '_> {
     }
 
     /// `v1: m1, v2: m2`.
-    fn metric(&mut self, weights: &[(usize, crate::graph::ExprId)]) -> String {
+    fn metric(&mut self, weights: &[(usize, crate::expressions::graph::ExprId)]) -> String {
         let weights: Vec<String> = weights
             .iter()
             .map(|&(state, weight)| {
@@ -102,7 +102,7 @@ impl Subject<'_, '_, '_> {
     }
 
     /// The velocities of the frame, as they were written or written out.
-    fn frame(&mut self, across: crate::graph::ExprId) -> String {
+    fn frame(&mut self, across: crate::expressions::graph::ExprId) -> String {
         let normal = self.written().map_or_else(|| self.name().to_string(), text::expr);
         let form = self.local.form(across);
         let negative = form.scaled(-1.0, &Vec::new());

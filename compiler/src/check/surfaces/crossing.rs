@@ -1,8 +1,8 @@
 //! FDC0304: a surface that is always crossed, at which nearby solutions drift apart.
 
 use super::Subject;
-use crate::graph::ExprId;
-use crate::interval::Claim;
+use crate::expressions::graph::ExprId;
+use crate::expressions::interval::Claim;
 use crate::model::Symbol;
 use crate::surfaces::class::for_some;
 use fdcc_grammar::{Code, Diagnostic, Severity, Span};
@@ -87,7 +87,7 @@ impl Subject<'_, '_, '_> {
         let ratio = above.divided(&below)?;
         ratio.as_number()?;
         let lead = below.terms.values().next().copied()?;
-        let factor = crate::polynomial::Polynomial::default().plus(1.0 / lead, &below);
+        let factor = crate::expressions::polynomial::Polynomial::default().plus(1.0 / lead, &below);
         let factor = factor.to_expr(&mut self.local.graph);
         Some(self.text(factor))
     }

@@ -1,8 +1,8 @@
 //! FDC0301: the gradient of a surface vanishes on the surface itself.
 
 use super::Subject;
-use crate::resolve::text;
 use crate::surfaces::degenerate::Degenerate;
+use crate::syntax::text;
 use fdcc_grammar::ast::{BinaryOperator, Expr, ExprKind};
 use fdcc_grammar::{Code, Diagnostic, Fix};
 

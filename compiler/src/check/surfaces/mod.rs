@@ -129,7 +129,7 @@ impl<'a> Subject<'_, 'a, '_> {
     }
 
     /// An expression of the surface's own graph, in the words of the model.
-    fn text(&mut self, expr: crate::graph::ExprId) -> String {
+    fn text(&mut self, expr: crate::expressions::graph::ExprId) -> String {
         self.local.text(self.view, expr).unwrap_or_else(|| "...".into())
     }
 }

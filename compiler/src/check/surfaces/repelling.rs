@@ -2,8 +2,8 @@
 
 use super::Subject;
 use crate::model::Symbol;
-use crate::resolve::text::number;
 use crate::surfaces::words::tidy;
+use crate::syntax::text::number;
 use fdcc_grammar::{Code, Diagnostic, Severity};
 
 impl Subject<'_, '_, '_> {
@@ -80,7 +80,8 @@ impl Subject<'_, '_, '_> {
         let mut domain = self.local.prover();
         for (symbol, value) in choice {
             if let Some(input) = self.local.input_of(*symbol) {
-                domain.domain[input as usize] = crate::interval::Interval::point(*value);
+                domain.domain[input as usize] =
+                    crate::expressions::interval::Interval::point(*value);
             }
         }
         [self.local.below, self.local.above].map(|rate| {

@@ -1,7 +1,7 @@
 //! FDC0305: the start lies on a surface.
 
 use super::Subject;
-use crate::graph::{ExprId, evaluate};
+use crate::expressions::graph::{ExprId, evaluate};
 use crate::model::Symbol;
 use fdcc_grammar::{Code, Diagnostic};
 
@@ -29,7 +29,7 @@ impl Subject<'_, '_, '_> {
         let name = self.name();
         let message = format!("the start lies on surface `{name}`");
         let t = view.number(view.interval[0]);
-        let label = format!("here {name} == 0 at t = {}", crate::resolve::text::number(t));
+        let label = format!("here {name} == 0 at t = {}", crate::syntax::text::number(t));
         Some(
             Diagnostic::new(Code::StartOnSurface, message, span, label)
                 .label(self.function(), "the surface")

@@ -2,8 +2,9 @@
 //! or `match surface`.
 
 use crate::check::Facts;
-use crate::resolve::text::{self, Style};
-use crate::resolve::walk;
+use crate::check::discontinuity::sets;
+use crate::syntax::text::{self, Style};
+use crate::syntax::walk;
 use fdcc_grammar::ast::{Argument, BinaryOperator, Equation, Expr, ExprKind, ItemKind};
 use fdcc_grammar::{Fix, Span};
 
@@ -74,7 +75,7 @@ impl Use<'_> {
     /// The equation with the other sign before its term.
     pub fn flipped(&self) -> Option<String> {
         let (equation, right) = self.turned()?;
-        let left = crate::check::sets::left_side(equation);
+        let left = sets::left_side(equation);
         Some(format!("{left} in {right}"))
     }
 

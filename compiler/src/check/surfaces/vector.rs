@@ -3,10 +3,10 @@
 
 use super::uses::Use;
 use crate::model::{Ball, Symbol};
-use crate::resolve::text::number;
 use crate::surfaces::View;
 use crate::surfaces::ball::LocalBall;
 use crate::surfaces::class::Class;
+use crate::syntax::text::number;
 use fdcc_grammar::{Code, Diagnostic, Severity};
 
 /// Reports every `Dir` that acts along its vector and not against it.

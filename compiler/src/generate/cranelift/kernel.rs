@@ -5,11 +5,11 @@ use std::mem::offset_of;
 
 use super::pairs::{Pair, Pairs};
 use super::{BlockArg, FunctionBuilder, InstBuilder, MemFlagsData, Tables, Value, memory, types};
-use crate::builtins::{Builtin, Inline, Lowering};
+use crate::expressions::graph::builtins::{Builtin, Inline, Lowering};
+use crate::expressions::graph::{ById, ExprId, Graph};
 use crate::generate::arithmetic::{self, Arithmetic};
 use crate::generate::elementary;
 use crate::generate::schedule::{Operation, Place, Schedule, Table};
-use crate::graph::{ById, ExprId, Graph};
 
 /// Bytes of a number and of a pair.
 const NUMBER: usize = size_of::<f64>();

@@ -13,7 +13,7 @@ use super::{
     AbiParam, CallConv, Code, FuncRef, Function, FunctionBuilder, InstBuilder, Machine, Signature,
     Value, memory, types,
 };
-use crate::builtins::{self, Lowering};
+use crate::expressions::graph::builtins::{self, Lowering};
 use crate::generate::elementary;
 
 /// A function that is called for each point.

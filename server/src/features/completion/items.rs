@@ -1,6 +1,6 @@
 //! One proposal: what is shown, what is written, where it stands in the list.
 
-use fdcc_compiler::names::{Definition, Kind};
+use fdcc_compiler::symbols::{Definition, Kind};
 use fdcc_compiler::vocabulary;
 use fdcc_grammar::words::Word;
 use lsp_types::{CompletionItem, CompletionItemKind, InsertTextFormat, MarkupContent, MarkupKind};

@@ -6,7 +6,7 @@ mod names;
 use crate::client::Failure;
 use crate::context::Context;
 use crate::features::place::{Open, Place};
-use fdcc_compiler::names::Kind;
+use fdcc_compiler::symbols::Kind;
 use fdcc_compiler::vocabulary;
 use fdcc_grammar::words::{self, inner_words};
 use items::{Proposal, entry, item, keyword, own, plain, word};
@@ -19,7 +19,7 @@ pub fn completion(
     params: CompletionParams,
 ) -> Result<Option<CompletionResponse>, Failure> {
     let offset = context.offset(params.text_document_position_params.position) as usize;
-    let place = Place::at_end_of(&context.analysis().text.text[..offset]);
+    let place = Place::at_end_of(&context.snapshot().text.text[..offset]);
     let scope = Scope::new(context, place.phase);
     let is_blank = params.context.and_then(|it| it.trigger_character).is_some_and(|it| it == " ");
     let proposals = match (place.is_silent, is_blank) {

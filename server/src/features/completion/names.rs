@@ -4,7 +4,7 @@
 use super::items::{Proposal, name};
 use crate::context::Context;
 use crate::features::place::Place;
-use fdcc_compiler::names::{Kind, Names};
+use fdcc_compiler::symbols::{Kind, Names};
 use std::collections::BTreeSet;
 
 /// The names that are known at a place.
@@ -19,7 +19,7 @@ impl<'c> Scope<'c> {
     /// Around a place in a phase, or outside of all.
     pub fn new(context: &'c Context<'c>, phase: Option<&str>) -> Self {
         let before = context.document.readable().map(|it| it.names());
-        let all = std::iter::once(context.analysis().names()).chain(before).collect();
+        let all = std::iter::once(context.snapshot().names()).chain(before).collect();
         Scope { context, all, phase: phase.map(str::to_owned) }
     }
 

@@ -8,15 +8,15 @@ mod settings;
 
 use crate::client::Failure;
 use crate::context::Context;
-use fdcc_compiler::names::{Meaning, Occurrence};
+use fdcc_compiler::symbols::{Meaning, Occurrence};
 use fdcc_compiler::vocabulary;
 use lsp_types::{Contents, Hover, HoverParams, MarkupContent, MarkupKind};
 
 /// `textDocument/hover`
 pub fn hover(context: &Context<'_>, params: HoverParams) -> Result<Option<Hover>, Failure> {
     let offset = context.offset(params.text_document_position_params.position);
-    let Some(found) = context.analysis().names().at(offset) else { return Ok(None) };
-    let word = &context.analysis().text.text[found.span.range()];
+    let Some(found) = context.snapshot().names().at(offset) else { return Ok(None) };
+    let word = &context.snapshot().text.text[found.span.range()];
     let text = match found.meaning {
         Meaning::Declared(definition) => Some(names::told(context, definition)),
         Meaning::BuiltIn => function(word),

@@ -1,9 +1,10 @@
 //! Declared names: the declaration, the unit, and what the compiler makes of it.
 
 use crate::context::Context;
-use fdcc_compiler::names::{Definition, Kind};
+use fdcc_compiler::symbols::{Definition, Kind};
 use fdcc_compiler::{
-    Model, NamedUnit, Order, Portrait, Smoothness, SurfaceReport, portrait, surfaces,
+    Model, NamedUnit, Order, Smoothness, SurfaceReport, SymbolInformation, surfaces,
+    symbol_information,
 };
 use fdcc_grammar::comments;
 
@@ -12,7 +13,7 @@ const MOST_LINES: usize = 12;
 
 /// All that is known about a definition, in Markdown.
 pub fn told(context: &Context<'_>, definition: usize) -> String {
-    let names = context.analysis().names();
+    let names = context.snapshot().names();
     let it = &names.definitions[definition];
     let full = names.full_name(definition);
     let mut text =
@@ -26,9 +27,10 @@ pub fn told(context: &Context<'_>, definition: usize) -> String {
         Kind::Argument | Kind::Column | Kind::Row | Kind::Phase | Kind::Model | Kind::Data => {
             Vec::new()
         }
-        _ => {
-            model.and_then(|model| portrait(model, &full)).map(|it| facts(&it)).unwrap_or_default()
-        }
+        _ => model
+            .and_then(|model| symbol_information(model, &full))
+            .map(|it| facts(&it))
+            .unwrap_or_default(),
     };
     for fact in facts {
         text += &format!("\n\n{fact}");
@@ -39,7 +41,7 @@ pub fn told(context: &Context<'_>, definition: usize) -> String {
 /// The item as it is written, without what would fill the screen.
 fn declaration(context: &Context<'_>, it: &Definition) -> String {
     let span = if it.kind == Kind::Row { it.span } else { it.item };
-    let text = &context.analysis().text.text[span.range()];
+    let text = &context.snapshot().text.text[span.range()];
     match it.kind {
         Kind::Phase => format!("phase {}", it.name),
         Kind::Model => format!("model {}", it.name),
@@ -77,14 +79,14 @@ fn unit_text(unit: &NamedUnit) -> &str {
 
 /// What its author says about it, on the same line.
 fn comment(context: &Context<'_>, it: &Definition) -> Option<String> {
-    let text = &context.analysis().text;
+    let text = &context.snapshot().text;
     let line = text.line(it.span.end);
     let own = comments(&text.text).into_iter().find(|comment| text.line(comment.start) == line)?;
     let words = text.text[own.range()].trim_start_matches(['#', '!']).trim();
     (!words.is_empty() && !words.starts_with("fdc:")).then(|| words.to_owned())
 }
 
-fn facts(it: &Portrait) -> Vec<String> {
+fn facts(it: &SymbolInformation) -> Vec<String> {
     let mut facts: Vec<String> = it.values.iter().map(|line| format!("`{line}`")).collect();
     facts.extend(it.rates.iter().map(|line| format!("`{line}`")));
     facts.extend(it.smoothness.as_ref().map(smoothness));

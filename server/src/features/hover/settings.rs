@@ -1,7 +1,7 @@
 //! Keys of the method and the words they take: what each does and what it costs.
 
 use crate::context::Context;
-use fdcc_compiler::{Grid, grid, smooth, vocabulary};
+use fdcc_compiler::{Grid, grid, kernels, vocabulary};
 
 /// What each key does.
 const KEYS: &[(&str, &str)] = &[
@@ -149,7 +149,7 @@ fn short(value: f64) -> String {
 
 /// What a word of the method stands for.
 pub fn value(word: &str) -> Option<String> {
-    if let Some(kernel) = smooth::find(word) {
+    if let Some(kernel) = kernels::find(word) {
         let smoothness = kernel.continuity.map_or("smooth".into(), |times| format!("C^{times}"));
         let support =
             if kernel.compact { "exact outside of the layer" } else { "never quite exact" };

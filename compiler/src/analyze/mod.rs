@@ -1,0 +1,61 @@
+//! A text, read and checked in one go: all that commands and editors show of it.
+
+mod allow;
+mod bidirectional;
+mod checked;
+mod consequences;
+pub(crate) mod repair;
+pub(crate) mod sensitivity_query;
+mod unparsed;
+
+use crate::model::Model;
+use crate::units::NamedUnit;
+pub use checked::{Checked, check};
+use fdcc_grammar::ast;
+use fdcc_grammar::{Diagnostic, Memory, Parse, SourceFile, parse_with};
+use unparsed::UnparsedRegions;
+
+/// What a text means, and what is to be said about it.
+pub struct Analysis {
+    /// What could be read of it.
+    pub tree: ast::Model,
+    /// What it means, if it has no error.
+    pub model: Option<Model>,
+    /// What each phase means, if it has any.
+    pub phases: Vec<Model>,
+    /// What is wrong with it, in the order of the text, but for what the text allows.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The unit of each name, if the text uses units.
+    pub units: Vec<NamedUnit>,
+}
+
+/// Reads and checks a text.
+pub fn analyze(text: &str) -> Analysis {
+    analyze_with(&mut Memory::default(), text)
+}
+
+/// The same with a memory of the text as it was before, which spares reading what has not changed.
+pub fn analyze_with(memory: &mut Memory, text: &str) -> Analysis {
+    analyze_parsed(text, parse_with(memory, text))
+}
+
+/// Checks a text that has been read.
+pub(crate) fn analyze_parsed(text: &str, parsed: Parse) -> Analysis {
+    let mut diagnostics = parsed.diagnostics;
+    let (mut model, mut phases, mut units) = (None, Vec::new(), Vec::new());
+    if !parsed.tree.items.is_empty() {
+        let is_broken = !diagnostics.is_empty();
+        let checked = check(&parsed.tree);
+        model = checked.model.filter(|_| !is_broken);
+        phases = checked.phases;
+        units = checked.units;
+        let source = SourceFile::new("", text);
+        let regions = UnparsedRegions::new(&source, &diagnostics, &parsed.lost);
+        let trusted = |it: &Diagnostic| !is_broken || !regions.may_be_behind(it);
+        diagnostics.extend(checked.diagnostics.into_iter().filter(trusted));
+    }
+    diagnostics.extend(bidirectional::found(text));
+    let mut diagnostics = allow::apply(text, diagnostics);
+    diagnostics.sort_by_key(Diagnostic::span);
+    Analysis { tree: parsed.tree, model, phases, diagnostics, units }
+}

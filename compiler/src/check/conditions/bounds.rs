@@ -1,0 +1,206 @@
+//! FDC0401: bounds that contradict each other, a start outside its bounds, or time that runs
+//! backwards.
+
+use crate::check::Facts;
+use crate::model::{Range, State};
+use crate::resolve::elaborator::Elaborator;
+use crate::syntax::text;
+use crate::units;
+use fdcc_grammar::ast::{Ident, Interval, Item, ItemKind, Start};
+use fdcc_grammar::{Code, Diagnostic, Edit, Fix, Label, Span};
+
+/// Reports all of them together: they have one cause, a slip of the pen, and one repair.
+pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
+    let mut slips =
+        Slips { labels: Vec::new(), repairs: Vec::new(), swap: Fix::certain("swap the bounds") };
+    for item in &facts.items {
+        look(facts.meaning, item, &mut slips);
+    }
+    rows(facts.meaning, &mut slips);
+    let mut labels = slips.labels.into_iter();
+    if let Some(first) = labels.next() {
+        let mut diagnostic = Diagnostic::new(
+            Code::EmptyBounds,
+            "these bounds leave no room",
+            first.span,
+            first.text,
+        );
+        diagnostic.labels.extend(labels);
+        diagnostic.fixes.extend(Some(slips.swap).filter(|swap| !swap.edits.is_empty()));
+        found.push(diagnostic.help(slips.repairs.join("\n")));
+    }
+}
+
+/// What has been found so far, as one diagnostic will say it.
+struct Slips {
+    labels: Vec<Label>,
+    repairs: Vec<String>,
+    swap: Fix,
+}
+
+fn look(meaning: &Elaborator<'_>, item: &Item, slips: &mut Slips) {
+    let first =
+        crate::syntax::scope::declared(item).and_then(|name| meaning.scope.find(&name.name));
+    let Some(index) = first.filter(|&at| std::ptr::eq(meaning.scope.declarations[at].item, item))
+    else {
+        return;
+    };
+    if let ItemKind::Time { interval, .. } = &item.kind {
+        return backwards(meaning, interval, scale(item), slips);
+    }
+    let Some(index) = meaning.index_of(index) else { return };
+    let scale = scale(item);
+    match &item.kind {
+        ItemKind::Control { name, bounds: Some(bounds), parts, .. } => {
+            let ranges =
+                meaning.model.controls[index..].iter().take(parts.len().max(1)).map(|it| it.range);
+            reversed(meaning, ("control", name, scale), bounds, ranges, slips)
+        }
+        ItemKind::Free { name, bounds: Some(bounds), .. } => reversed(
+            meaning,
+            ("free", name, scale),
+            bounds,
+            [meaning.model.frees[index].range],
+            slips,
+        ),
+        ItemKind::Param { name, value, bounds: Some(bounds), .. } => {
+            let range = meaning.model.params[index].range;
+            reversed(meaning, ("param", name, scale), bounds, [range], slips);
+            if let Some(value) = value {
+                let subject = Subject { name: &name.name, verb: "is", span: value.span, scale };
+                outside(meaning, subject, meaning.param_values[index], range, slips);
+            }
+        }
+        ItemKind::State { name, bounds, start, parts, .. } => {
+            let states =
+                meaning.model.states.get(index..index + parts.len().max(1)).unwrap_or_default();
+            if let Some(bounds) = bounds {
+                reversed(
+                    meaning,
+                    ("state", name, scale),
+                    bounds,
+                    states.iter().map(|it| it.range),
+                    slips,
+                );
+            }
+            if let Some(Start::Value(value)) = start {
+                starts(meaning, states, (value.span, scale), slips);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn starts(
+    meaning: &Elaborator<'_>,
+    states: &[State],
+    (span, scale): (Span, f64),
+    slips: &mut Slips,
+) {
+    for state in states {
+        let given = state.start.map_or(f64::NAN, |start| meaning.numeric(start));
+        let subject = Subject { name: &state.place.name, verb: "starts", span, scale };
+        outside(meaning, subject, given, state.range, slips);
+    }
+}
+
+/// How many SI units one of the declared unit of an item is.
+fn scale(item: &Item) -> f64 {
+    units::unit_of(item).map_or(1.0, |unit| units::scale(unit, &mut Vec::new()))
+}
+
+/// Without the digits that going to SI and back leaves behind.
+fn shown(value: f64) -> String {
+    text::number(format!("{value:.13e}").parse().unwrap_or(value))
+}
+
+fn numbers(meaning: &Elaborator<'_>, range: Range) -> [f64; 2] {
+    [meaning.numeric(range.lower), meaning.numeric(range.upper)]
+}
+
+fn reversed(
+    meaning: &Elaborator<'_>,
+    (word, name, scale): (&str, &Ident, f64),
+    bounds: &Interval,
+    ranges: impl IntoIterator<Item = Range>,
+    slips: &mut Slips,
+) {
+    let bad = ranges
+        .into_iter()
+        .map(|range| numbers(meaning, range))
+        .find(|[lower, upper]| lower > upper);
+    if let Some([lower, upper]) = bad {
+        let text = format!(
+            "lower bound {} is above upper bound {}",
+            shown(lower / scale),
+            shown(upper / scale)
+        );
+        slips.labels.push(Label { span: bounds.span, text });
+        let (lower, upper) = (text::expr(&bounds.lower), text::expr(&bounds.upper));
+        slips.repairs.push(format!("swap them: `{word} {} in [{upper}, {lower}]`", name.name));
+        let ends = [(bounds.lower.span, upper), (bounds.upper.span, lower)];
+        slips.swap.edits.extend(ends.map(|(span, replacement)| Edit { span, replacement }));
+    }
+}
+
+/// A value with bounds of its own.
+struct Subject<'a> {
+    name: &'a str,
+    verb: &'static str,
+    span: Span,
+    /// How many SI units one of its unit is.
+    scale: f64,
+}
+
+fn outside(
+    meaning: &Elaborator<'_>,
+    subject: Subject<'_>,
+    given: f64,
+    range: Range,
+    slips: &mut Slips,
+) {
+    let [lower, upper] = numbers(meaning, range);
+    let (side, change, limit) = match () {
+        _ if lower > upper => return,
+        _ if given < lower => ("below its own lower bound", "lower", lower),
+        _ if given > upper => ("above its own upper bound", "raise", upper),
+        _ => return,
+    };
+    let [limit, given] = [limit, given].map(|it| shown(it / subject.scale));
+    slips
+        .labels
+        .push(Label { span: subject.span, text: format!("{} {side} {limit}", subject.verb) });
+    let other = if subject.verb == "starts" { "start at" } else { "give it" };
+    slips
+        .repairs
+        .push(format!("for `{}`, {change} the bound to {given} or {other} {limit}", subject.name));
+}
+
+fn backwards(meaning: &Elaborator<'_>, interval: &Interval, scale: f64, slips: &mut Slips) {
+    let [first, last] = meaning.interval.map(|end| meaning.numeric(end));
+    if first >= last {
+        let text =
+            format!("ends at {}, but starts at {}", shown(last / scale), shown(first / scale));
+        slips.labels.push(Label { span: interval.span, text });
+        slips.repairs.push("give time a first value below its last".into());
+    }
+}
+
+/// Conditions between constants that exclude each other.
+fn rows(meaning: &Elaborator<'_>, slips: &mut Slips) {
+    for row in meaning.model.path.iter().chain(&meaning.model.boundary) {
+        let [lower, upper] = numbers(meaning, row.range);
+        if lower > upper {
+            let text = format!(
+                "no number is both above {} and below {}",
+                text::number(lower),
+                text::number(upper)
+            );
+            slips.labels.push(Label { span: row.place.span, text });
+            slips.repairs.push(format!(
+                "for `{}`, the left limit must be below the right one",
+                row.place.name
+            ));
+        }
+    }
+}

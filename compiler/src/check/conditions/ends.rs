@@ -1,0 +1,64 @@
+//! FDC0403: a state needs a condition at the start or at the end, or nothing ties it down.
+
+use crate::check::Facts;
+use crate::syntax::walk;
+use fdcc_grammar::ast::{Ident, ItemKind};
+use fdcc_grammar::{Code, Diagnostic};
+use std::collections::HashSet;
+
+/// Reports states without `start`, without a `start` or `end` condition, and without a link into
+/// them.
+pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
+    let mut tied: HashSet<&str> = HashSet::new();
+    for item in &facts.items {
+        if matches!(item.kind, ItemKind::Start { .. } | ItemKind::End { .. }) {
+            walk::expressions(item)
+                .into_iter()
+                .for_each(|expr| walk::names(expr, &mut |name, _| tied.extend([name])));
+        }
+    }
+    for item in &facts.tree.items {
+        if let ItemKind::Link { assignments, .. } = &item.kind {
+            tied.extend(assignments.iter().map(|it| it.name.name.as_str()));
+        }
+    }
+    // What a `let` in a condition mentions is tied as well.
+    for at in (0..facts.meaning.scope.declarations.len()).rev() {
+        let item = facts.meaning.scope.declarations[at].item;
+        if let ItemKind::Let { name, value, .. } = &item.kind
+            && tied.contains(name.name.as_str())
+        {
+            walk::names(value, &mut |name, _| tied.extend([name]));
+        }
+    }
+    for item in &facts.items {
+        if let ItemKind::State { name, parts, start: None, .. } = &item.kind
+            && !tied.contains(name.name.as_str())
+        {
+            found.push(untied(name, parts.len()));
+        }
+    }
+}
+
+fn untied(name: &Ident, parts: usize) -> Diagnostic {
+    let name_ = &name.name;
+    let message = format!("state `{name_}` has neither a start nor an end condition");
+    let rest = match parts {
+        0 => format!("state {name_} start 0"),
+        _ => format!("state {name_}(...) start ({})", vec!["0"; parts].join(", ")),
+    };
+    let free = if parts == 0 { format!("state {name_}") } else { format!("state {name_}(...)") };
+    Diagnostic::new(
+        Code::NoBoundary,
+        message,
+        name.span,
+        format!(
+            "what is \
+        {name_}(0)?"
+        ),
+    )
+    .help(format!(
+        "for rest write `{rest}`\nif the optimiser may choose it, say so: `{free} start free in \
+         [-1, 1]`"
+    ))
+}

@@ -1,0 +1,144 @@
+//! FDC0402: a duration that the optimiser may choose must stay above 0.
+//!
+//! With `D = tf - t0` affine in the unknowns, its least value over their bounds is
+//! `D(0) + sum_i min(c_i lower_i, c_i upper_i)`.
+
+use crate::check::Facts;
+use crate::expressions::graph::derivative::derivative;
+use crate::expressions::graph::evaluate;
+use crate::model::Symbol;
+use crate::syntax::{text, walk};
+use crate::units;
+use fdcc_grammar::ast::{Expr, Ident, Interval, ItemKind, Sense, Unit};
+use fdcc_grammar::{Code, Diagnostic, Fix};
+
+/// Reports unknowns that may make the duration 0 or negative.
+pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
+    let meaning = &mut *facts.meaning;
+    let duration = meaning.graph.sub(meaning.interval[1], meaning.interval[0]);
+    let mut unknowns = Vec::new();
+    let mut inputs: Vec<f64> = vec![0.0; meaning.symbols.len()];
+    for at in 0..meaning.symbols.len() {
+        match meaning.symbols[at] {
+            Symbol::Param(index) => inputs[at] = meaning.param_values[index],
+            Symbol::Free(index) => unknowns.push((at as u32, index)),
+            _ => {}
+        }
+    }
+    let mut least = evaluate(&meaning.graph, &[duration], &inputs, &[])[0];
+    let mut involved = Vec::new();
+    for (input, index) in unknowns {
+        let slope = derivative(&mut meaning.graph, duration, input);
+        let slope = meaning.numeric(slope);
+        let range = meaning.model.frees[index].range;
+        let ends = [range.lower, range.upper].map(|end| meaning.numeric(end));
+        if slope != 0.0 {
+            least += (slope * ends[0]).min(slope * ends[1]);
+            involved.push((index, slope, ends));
+        }
+    }
+    if least > 0.0 || least.is_nan() {
+        return;
+    }
+    for (index, slope, ends) in involved {
+        // The end of its range that shortens the time is to blame.
+        let worst = if slope > 0.0 { ends[0] } else { -ends[1] };
+        if worst <= 0.0 {
+            found.push(unbounded(facts, index, worst));
+        }
+    }
+}
+
+fn unbounded(facts: &Facts<'_, '_>, index: usize, worst: f64) -> Diagnostic {
+    let free = &facts.meaning.model.frees[index];
+    let name = &free.place.name;
+    let (message, label) = match worst == 0.0 {
+        true => (format!("free time `{name}` may become 0"), "may become 0"),
+        false => (format!("free time `{name}` has no lower bound"), "may become 0 or negative"),
+    };
+    let mut found = Diagnostic::new(Code::NoDuration, message, free.place.span, label);
+    if let Some(span) = objective(facts).and_then(|value| walk::mention(value, name)) {
+        found = found.label(span, "and the objective pulls it down");
+    }
+    let Some(declared) = Declared::find(facts, index) else { return found };
+    let repaired = declared.repaired(facts);
+    found.fixes.push(declared.fix(facts, &repaired));
+    found.help(format!("give it a range that excludes 0, for example `{repaired}`"))
+}
+
+/// What is minimised.
+fn objective<'a>(facts: &Facts<'a, '_>) -> Option<&'a Expr> {
+    facts.tree.items.iter().find_map(|item| match &item.kind {
+        ItemKind::Objective { sense: Sense::Minimize, value, .. } => Some(value),
+        _ => None,
+    })
+}
+
+/// The declaration of an unknown.
+struct Declared<'a> {
+    free: usize,
+    name: &'a Ident,
+    bounds: Option<&'a Interval>,
+    unit: Option<&'a Unit>,
+}
+
+impl<'a> Declared<'a> {
+    fn find(facts: &Facts<'a, '_>, free: usize) -> Option<Self> {
+        let wanted = &facts.meaning.model.frees[free].place.name;
+        let declared = facts.tree.items.iter().filter_map(|item| match &item.kind {
+            ItemKind::Free { name, bounds, unit, .. } => {
+                Some(Declared { free, name, bounds: bounds.as_ref(), unit: unit.as_ref() })
+            }
+            _ => None,
+        });
+        declared.into_iter().find(|it| it.name.name == *wanted)
+    }
+
+    /// `free T in [0.1, 60] [s] guess 6`, as its author would write it.
+    fn repaired(&self, facts: &Facts<'_, '_>) -> String {
+        let unit = self.unit.map_or(String::new(), |unit| format!(" {}", text::unit(unit)));
+        let text = format!(
+            "free {} in [{}, {}]{unit}",
+            self.name.name,
+            self.least(facts),
+            text::number(self.longest(facts))
+        );
+        self.guess(facts)
+            .map_or(text.clone(), |guess| format!("{text} guess {}", text::number(guess)))
+    }
+
+    /// The range where there is none, or the lower bound that is not above 0.
+    fn fix(&self, facts: &Facts<'_, '_>, repaired: &str) -> Fix {
+        let fix = Fix::likely(format!("write `{repaired}`"));
+        let (least, longest) = (self.least(facts), text::number(self.longest(facts)));
+        match self.bounds {
+            None => fix.insert(self.name.span.end, format!(" in [{least}, {longest}]")),
+            Some(bounds) => fix.replace(bounds.lower.span, least),
+        }
+    }
+
+    /// A tenth, unless that is too long.
+    fn least(&self, facts: &Facts<'_, '_>) -> String {
+        text::number(0.1_f64.min(self.longest(facts) / 100.0))
+    }
+
+    /// The upper bound; or ten times the guess, which should be long enough.
+    fn longest(&self, facts: &Facts<'_, '_>) -> f64 {
+        let upper = self
+            .in_its_unit(facts.meaning.numeric(facts.meaning.model.frees[self.free].range.upper));
+        if upper.is_finite() {
+            upper
+        } else {
+            self.guess(facts).map_or(100.0, |guess| 10.0 * guess)
+        }
+    }
+
+    fn guess(&self, facts: &Facts<'_, '_>) -> Option<f64> {
+        let guess = facts.meaning.model.frees[self.free].guess?;
+        Some(self.in_its_unit(facts.meaning.numeric(guess))).filter(|guess| *guess > 0.0)
+    }
+
+    fn in_its_unit(&self, value: f64) -> f64 {
+        self.unit.map_or(value, |unit| value / units::scale(unit, &mut Vec::new()))
+    }
+}

@@ -1,0 +1,4 @@
+//! Checks of names alone.
+
+pub(super) mod lookalike;
+pub(super) mod unused;

@@ -1,0 +1,240 @@
+//! Any stage of a model as text, for `fdcc show`.
+
+use super::not_yet;
+use crate::differentiate::Differentiated;
+use crate::differentiate::differentiate;
+use crate::expressions::graph::{ExprId, Graph, print};
+use crate::generate;
+use crate::lower::VectorFunction;
+use crate::lower::{Program, lower};
+use crate::model::numbers::{Numbers, numbers};
+use crate::model::{Model, Place, Range, Symbol};
+use crate::surfaces::report::surfaces;
+use crate::surfaces::smoothness::smoothness;
+use crate::surfaces::{Order, Smoothness, SurfaceReport};
+use crate::symbols::text::{self, bounded};
+use fdcc_grammar::Diagnostic;
+use fdcc_runtime::problem::Layout;
+use std::fmt::Write;
+
+/// What can be shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// The problem as understood: names, sizes, bounds, sparsity, surfaces.
+    Summary,
+    /// Every expression of the model over its symbols.
+    Model,
+    /// The functions that are compiled.
+    Graph,
+    /// With their Jacobians and Hessians.
+    Derivatives,
+    /// Their machine code before Cranelift's own passes.
+    Clif,
+}
+
+/// One stage of a model as text.
+pub fn dump(model: &Model, stage: Stage) -> Result<String, Vec<Diagnostic>> {
+    if stage == Stage::Model {
+        return Ok(symbols(model));
+    }
+    not_yet(model)?;
+    let numbers = numbers(model)?;
+    let program = lower(model);
+    Ok(match stage {
+        Stage::Graph => functions(model, &program),
+        Stage::Derivatives => with_derivatives(model, &program),
+        Stage::Clif => {
+            let (graph, differentiated) = differentiated(&program);
+            generate::clif(&graph, &differentiated)
+        }
+        _ => summary(model, &program, &numbers),
+    })
+}
+
+/// The name of a symbol in the model's words.
+fn symbol_name(model: &Model, symbol: Symbol) -> String {
+    match symbol {
+        Symbol::Time => "t".into(),
+        Symbol::State(index) => model.states[index].place.name.clone(),
+        Symbol::Control(index) => model.controls[index].place.name.clone(),
+        Symbol::Param(index) => model.params[index].place.name.clone(),
+        Symbol::Free(index) => model.frees[index].place.name.clone(),
+        Symbol::Selector(index) => selector_name(model, index),
+        Symbol::AtStart(index) => format!("{}(start)", model.states[index].place.name),
+        Symbol::AtEnd(index) => format!("{}(end)", model.states[index].place.name),
+        Symbol::Integral(index) => model.integrals[index].place.name.clone(),
+        Symbol::Simulated(_) | Symbol::Argument(_) => "_".into(),
+    }
+}
+
+/// `Sgn(slip)`, `Dir(vel)[1]`.
+fn selector_name(model: &Model, index: usize) -> String {
+    match model.balls.iter().find(|ball| ball.surfaces.contains(&index)) {
+        Some(ball) => format!("Dir({})[{}]", ball.place.name, index - ball.surfaces.start + 1),
+        None => format!("Sgn({})", model.surfaces[index].place.name),
+    }
+}
+
+/// Expressions over the symbols of the model.
+fn over_symbols(model: &Model, roots: &[(String, ExprId)]) -> String {
+    print(&model.graph, roots, &|input| symbol_name(model, model.symbols[input as usize]))
+}
+
+/// Every expression of the model.
+fn symbols(model: &Model) -> String {
+    let mut roots: Vec<(String, ExprId)> =
+        vec![("t0".into(), model.interval[0]), ("tf".into(), model.interval[1])];
+    roots.extend(model.params.iter().filter_map(|it| Some((it.place.name.clone(), it.value?))));
+    roots.extend(model.surfaces.iter().map(|it| (it.place.name.clone(), it.psi)));
+    for state in &model.states {
+        roots.extend(state.start.map(|start| (format!("{}(start)", state.place.name), start)));
+        roots.push((state.equation.name.clone(), state.rate));
+    }
+    roots.extend(model.path.iter().map(|it| (format!("path {}", it.place.name), it.value)));
+    roots.extend(model.boundary.iter().map(|it| (it.place.name.clone(), it.value)));
+    roots
+        .extend(model.integrals.iter().map(|it| (format!("d/dt {}", it.place.name), it.integrand)));
+    roots.extend(model.objective.iter().map(|it| (it.0.name.clone(), it.1)));
+    roots.extend(model.report.iter().map(|it| (format!("report {}", it.place.name), it.value)));
+    over_symbols(model, &roots)
+}
+
+/// The names of a function's inputs.
+fn input_names(model: &Model, program: &Program, layout: &Layout) -> Vec<String> {
+    let hidden = program.hidden.iter().map(|&at| model.integrals[at].place.name.clone());
+    let states: Vec<String> =
+        model.states.iter().map(|it| it.place.name.clone()).chain(hidden).collect();
+    let mut names: Vec<String> = (0..layout.t).map(|_| "tau".into()).collect();
+    match layout.x == 2 * states.len() {
+        true => ["start", "end"]
+            .iter()
+            .for_each(|end| names.extend(states.iter().map(|name| format!("{name}({end})")))),
+        false => names.extend(states.iter().take(layout.x).cloned()),
+    }
+    names.extend(model.controls.iter().take(layout.u).map(|it| it.place.name.clone()));
+    names.extend(model.params.iter().map(|it| it.place.name.clone()));
+    names.extend(model.frees.iter().map(|it| it.place.name.clone()));
+    names.extend(model.switches().iter().map(|it| format!("sigma({})", it.place.name)));
+    names.resize(layout.parameters().end, "sigma(abs)".into());
+    names.extend((0..layout.s).map(|index| selector_name(model, index)));
+    names
+}
+
+fn functions(model: &Model, program: &Program) -> String {
+    let mut text = String::new();
+    for function in std::iter::once(&program.flow).chain(program.functions()) {
+        let names = input_names(model, program, &function.layout);
+        text += &format!("# {}\n", function.name);
+        text += &print(&program.graph, &labelled(function), &|input| names[input as usize].clone());
+        text += "\n";
+    }
+    text
+}
+
+fn labelled(function: &VectorFunction) -> Vec<(String, ExprId)> {
+    let label = |(at, id): (usize, &ExprId)| match &*function.origins[at].label {
+        "" => (format!("{}[{}]", function.name, at + 1), *id),
+        label => (label.to_string(), *id),
+    };
+    function.outputs.iter().enumerate().map(label).collect()
+}
+
+fn differentiated(program: &Program) -> (Graph, Vec<Differentiated>) {
+    let mut graph = program.graph.clone();
+    let functions = program.functions().map(VectorFunction::clone);
+    let functions =
+        functions.into_iter().map(|function| differentiate(&mut graph, function)).collect();
+    (graph, functions)
+}
+
+fn with_derivatives(model: &Model, program: &Program) -> String {
+    let (graph, functions) = differentiated(program);
+    let mut text = String::new();
+    for Differentiated { function, jacobian, hessian, .. } in &functions {
+        let names = input_names(model, program, &function.layout);
+        let rows: Vec<String> = labelled(function).into_iter().map(|row| row.0).collect();
+        let mut roots = labelled(function);
+        for (&(row, column), &id) in jacobian.0.entries.iter().zip(&jacobian.1) {
+            roots.push((format!("d({})/d({})", rows[row as usize], names[column as usize]), id));
+        }
+        for (&(row, column), &id) in hessian.0.entries.iter().zip(&hessian.1) {
+            roots
+                .push((format!("d2L/d({})d({})", names[row as usize], names[column as usize]), id));
+        }
+        text += &format!(
+            "# {}\n{}\n",
+            function.name,
+            print(&graph, &roots, &|input| names[input as usize].clone())
+        );
+    }
+    text
+}
+
+/// The problem as understood.
+fn summary(model: &Model, program: &Program, numbers: &Numbers) -> String {
+    let mut text = format!("model {}\n", model.name);
+    let ends =
+        over_symbols(model, &[("t0".into(), model.interval[0]), ("tf".into(), model.interval[1])]);
+    section(&mut text, "time", ends.lines().map(str::to_string));
+    let named = |place: &Place, range: Range| text::ranged(model, numbers, place, range);
+    section(&mut text, "states", model.states.iter().map(|it| named(&it.place, it.range)));
+    let controls = model.controls.iter().map(|it| named(&it.place, it.range));
+    section(&mut text, "controls", controls);
+    section(&mut text, "free", (0..model.frees.len()).map(|at| text::free(model, numbers, at)));
+    section(&mut text, "params", (0..model.params.len()).map(|at| text::param(model, numbers, at)));
+    section(&mut text, "surfaces", surfaces(model, numbers).iter().flat_map(surface_lines));
+    let rough = smoothness(model, numbers).into_iter().filter(|it| it.order != Order::Always);
+    section(&mut text, "smoothness", rough.map(smoothness_line));
+    let path = model.path.iter().map(|it| bounded(&it.place.name, numbers.bounds(model, it.range)));
+    section(&mut text, "path", path);
+    section(&mut text, "boundary", model.boundary.iter().map(|it| it.place.name.clone()));
+    let objective: Vec<(String, ExprId)> =
+        model.objective.iter().map(|it| (it.0.name.clone(), it.1)).collect();
+    section(&mut text, "objective", over_symbols(model, &objective).lines().map(str::to_string));
+    section(&mut text, "functions", differentiated(program).1.iter().map(sizes));
+    text
+}
+
+/// What is known about a surface, a line for each.
+fn surface_lines(surface: &SurfaceReport) -> Vec<String> {
+    let mut lines = vec![format!("{} = {}", surface.place.name, surface.function)];
+    let mut line = |title: &str, text: &str| lines.push(format!("  {title:<9}{text}"));
+    if !surface.gradient.is_empty() {
+        line("gradient", &surface.gradient.join(", "));
+        line("jump", &surface.jump);
+    }
+    line("class", &surface.meaning);
+    surface.holding.iter().for_each(|condition| line("held if", condition));
+    lines
+}
+
+/// `y_cl is C^2 at x == pi`.
+fn smoothness_line(it: Smoothness) -> String {
+    format!("{} {} at {}", it.name, it.order, it.knots.join(", "))
+}
+
+fn section(text: &mut String, title: &str, lines: impl Iterator<Item = String>) {
+    let mut title = title;
+    for line in lines {
+        writeln!(text, "{title:<10} {line}").expect("writing to a string cannot fail");
+        title = "";
+    }
+}
+
+fn sizes(function: &Differentiated) -> String {
+    let VectorFunction { name, outputs, by, .. } = &function.function;
+    let (jacobian, hessian) = (function.jacobian.0.entries.len(), function.hessian.0.entries.len());
+    match by.is_empty() {
+        true => format!("{name}: {}", counted(outputs.len())),
+        false => format!(
+            "{name}: {}, Jacobian {jacobian} of {} entries, Hessian {hessian} of {}",
+            counted(outputs.len()),
+            outputs.len() * by.len(),
+            by.len() * (by.len() + 1) / 2
+        ),
+    }
+}
+
+fn counted(outputs: usize) -> String {
+    if outputs == 1 { "1 output".into() } else { format!("{outputs} outputs") }
+}

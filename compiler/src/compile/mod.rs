@@ -1,0 +1,104 @@
+//! The pipeline: lowering, derivatives, machine code.
+
+pub(crate) mod dump;
+
+use crate::differentiate::differentiate;
+use crate::expressions::graph::{self, Graph};
+use crate::generate;
+use crate::lower::{
+    self, Expected, LoweredExpectations, Purpose, VectorFunction, by_parameters, lower, problem,
+};
+use crate::model::numbers::numbers;
+use crate::model::{self, Model, Simulated};
+use crate::phases::between_jumps;
+use fdcc_grammar::Diagnostic;
+use fdcc_runtime::problem::{ByParameters, Function, Problem};
+use fdcc_runtime::simulate::System;
+use std::sync::Arc;
+
+/// Turns a model into an optimal control problem with compiled functions; or says what cannot be
+/// solved yet. Of a model with jumps it is what holds between them: [`unrolled`](crate::unrolled) makes of it one in
+/// which they happen.
+pub fn compile(model: &Model) -> Result<Problem, Vec<Diagnostic>> {
+    not_yet(model)?;
+    let model = &between_jumps(model);
+    let numbers = numbers(model)?;
+    let program = lower(model);
+    let functions = program.functions().map(VectorFunction::clone).to_vec();
+    let functions = machine_code(program.graph.clone(), functions);
+    Ok(problem(model, &program, &numbers, functions))
+}
+
+/// The functions of a problem differentiated by the parameters of the model, for what its optimum
+/// is worth to them.
+pub fn compile_by_parameters(model: &Model) -> Result<ByParameters, Vec<Diagnostic>> {
+    not_yet(model)?;
+    let mut program = lower(model);
+    let functions = by_parameters(model, &mut program).to_vec();
+    let functions = machine_code(program.graph, functions);
+    let [dynamics, path, boundary, given] =
+        functions.try_into().unwrap_or_else(|_| unreachable!("there are four"));
+    Ok(ByParameters { parameters: model.params.len(), dynamics, path, boundary, given })
+}
+
+/// Turns a model into the true system, for simulation; or says what cannot be simulated yet.
+pub fn compile_simulation(model: &Model) -> Result<System, Vec<Diagnostic>> {
+    compile_system(model, Purpose::Simulation)
+}
+
+/// The true system with all its derivatives, to the second order, for sensitivities.
+pub fn compile_sensitivities(model: &Model) -> Result<System, Vec<Diagnostic>> {
+    compile_system(model, Purpose::Sensitivities)
+}
+
+/// The system as a solve smooths it, without surfaces, with all its derivatives; or says that jumps
+/// cannot be smoothed.
+pub fn compile_smoothed(model: &Model) -> Result<System, Vec<Diagnostic>> {
+    if let Some(jump) = model.jumps.first() {
+        return Err(vec![model::not_yet(jump.place.span, "a smoothed model with jumps")]);
+    }
+    compile_system(model, Purpose::Smoothed)
+}
+
+fn compile_system(model: &Model, purpose: Purpose) -> Result<System, Vec<Diagnostic>> {
+    not_yet(model)?;
+    let numbers = numbers(model)?;
+    let (graph, program) = lower::simulation(model, purpose);
+    let functions = machine_code(graph, program.functions.clone());
+    Ok(lower::system(model, &program, &numbers, functions))
+}
+
+/// All expectations of a model, compiled.
+pub struct Expectations {
+    /// In the order of the text.
+    pub list: Vec<Expected>,
+    /// What only a simulation can tell.
+    pub simulated: Vec<Simulated>,
+    /// Over `[x(start), x(end) | p, integrals, simulated]`, the states of
+    /// [`Problem`](fdcc_runtime::problem::Problem) with the hidden ones; values only.
+    pub function: Arc<dyn Function>,
+    /// The integrands over normalised time `[tau | x | u | p]`, times the duration; values only.
+    pub integrands: Arc<dyn Function>,
+}
+
+/// Compiles the expectations.
+pub fn expectations(model: &Model) -> Expectations {
+    let LoweredExpectations { list, graph, functions } = lower::expectations(model);
+    let compiled = machine_code(graph, functions.to_vec());
+    let [function, integrands] =
+        <[_; 2]>::try_from(compiled).unwrap_or_else(|_| unreachable!("two functions were given"));
+    Expectations { list, simulated: model.simulated.clone(), function, integrands }
+}
+
+/// The first construct that is understood but cannot be solved.
+fn not_yet(model: &Model) -> Result<(), Vec<Diagnostic>> {
+    model.not_yet.first().map_or(Ok(()), |first| Err(vec![first.clone()]))
+}
+
+/// Derivatives, then machine code.
+fn machine_code(mut graph: Graph, functions: Vec<VectorFunction>) -> Vec<Arc<dyn Function>> {
+    let functions =
+        functions.into_iter().map(|function| differentiate(&mut graph, function)).collect();
+    debug_assert_eq!(graph::verify(&graph), Ok(()));
+    generate::generate(graph, functions)
+}

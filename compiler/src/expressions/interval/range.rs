@@ -1,0 +1,86 @@
+//! The values of expressions over a box: one pass over the nodes they need, in ascending order.
+//!
+//! A node that is used twice is computed once, and `a * a` is seen as a square: equal expressions
+//! have equal ids.
+
+use super::{Interval, apply};
+use crate::expressions::graph::builtins::Builtin;
+use crate::expressions::graph::{Expr, ExprId, Graph};
+use smallvec::SmallVec;
+
+/// What is computed at one place.
+enum Step {
+    Number(f64),
+    Input(u32),
+    Square(usize),
+    Call(Builtin, SmallVec<[usize; 4]>),
+}
+
+/// Expressions made ready to be evaluated over many boxes.
+pub(crate) struct Tape {
+    steps: Vec<Step>,
+    roots: Vec<usize>,
+    values: Vec<Interval>,
+}
+
+impl Tape {
+    /// For the values of some expressions.
+    pub fn new(graph: &Graph, roots: &[ExprId]) -> Self {
+        let needed = graph.reachable(roots);
+        let at = |id: &ExprId| needed.binary_search(id).expect("operands are reachable");
+        let step = |id: &ExprId| match graph.expr(*id) {
+            Expr::Number(bits) => Step::Number(bits.value()),
+            Expr::Input(position) => Step::Input(*position),
+            Expr::Multiplier(_) => unreachable!("an expression of a model has no multipliers"),
+            Expr::Call(Builtin::Mul, operands) if operands[0] == operands[1] => {
+                Step::Square(at(&operands[0]))
+            }
+            Expr::Call(builtin, operands) => {
+                Step::Call(*builtin, operands.iter().map(at).collect())
+            }
+        };
+        Tape {
+            steps: needed.iter().map(step).collect(),
+            roots: roots.iter().map(at).collect(),
+            values: vec![Interval::ALL; needed.len()],
+        }
+    }
+
+    /// How many operations an evaluation takes.
+    pub fn cost(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// The inputs that are read.
+    pub fn inputs(&self) -> impl Iterator<Item = u32> {
+        self.steps.iter().filter_map(|step| match step {
+            Step::Input(position) => Some(*position),
+            _ => None,
+        })
+    }
+
+    /// Enclosures of all values over a box, which has an interval for each input.
+    pub fn evaluate(&mut self, domain: &[Interval]) -> Vec<Interval> {
+        self.evaluate_over(|at| domain[at]).collect()
+    }
+
+    /// The same over the box with these intervals, by input.
+    pub fn evaluate_over(
+        &mut self,
+        domain: impl Fn(usize) -> Interval,
+    ) -> impl Iterator<Item = Interval> {
+        for (at, step) in self.steps.iter().enumerate() {
+            self.values[at] = match step {
+                Step::Number(value) => Interval::point(*value),
+                Step::Input(position) => domain(*position as usize),
+                Step::Square(operand) => self.values[*operand].square(),
+                Step::Call(builtin, operands) => {
+                    let operands: SmallVec<[Interval; 4]> =
+                        operands.iter().map(|&at| self.values[at]).collect();
+                    apply(*builtin, &operands)
+                }
+            };
+        }
+        self.roots.iter().map(|&root| self.values[root])
+    }
+}

@@ -1,0 +1,91 @@
+//! What a model expects of its solution, as a function that can be evaluated once there is one.
+//!
+//! Inputs `[x(start), x(end) | p, integrals, simulated]`; three outputs for each expectation: left
+//! side, right side, tolerance.
+
+use super::function::{Order, VectorFunction};
+use super::inputs::{self, Sizes};
+use super::objective::{self, Objective};
+use super::origin;
+use crate::expressions::graph::{ExprId, Graph};
+use crate::model::{Comparison, Model, Symbol};
+use fdcc_runtime::problem::{Layout, Origin};
+
+/// One expectation.
+#[derive(Clone, Debug)]
+pub struct Expected {
+    /// The text and its place.
+    pub origin: Origin,
+    /// How the sides compare.
+    pub comparison: Comparison,
+    /// Which of [`Model::simulated`] it reads.
+    pub simulated: Vec<usize>,
+}
+
+/// All expectations of a model, and the functions that tell whether they hold.
+pub(crate) struct LoweredExpectations {
+    /// In the order of the text.
+    pub list: Vec<Expected>,
+    /// The expressions.
+    pub graph: Graph,
+    /// The two sides with the tolerance of each expectation; and the integrands.
+    pub functions: [VectorFunction; 2],
+}
+
+/// Lowers the expectations.
+pub(crate) fn expectations(model: &Model) -> LoweredExpectations {
+    let mut graph = model.graph.clone();
+    let Objective { hidden, .. } = objective::split(model, &mut graph);
+    let sizes = Sizes::new(model, hidden.len());
+    let mut list = Vec::new();
+    let mut values: Vec<ExprId> = Vec::new();
+    for expectation in &model.expectations {
+        values.extend(expectation.values);
+        list.push(Expected {
+            origin: origin(&expectation.place),
+            comparison: expectation.comparison,
+            simulated: simulated_in(model, &graph, &expectation.values),
+        });
+    }
+    let needed = objective::integrals_in(model, &graph, &values);
+    let over_grid = inputs::over_grid(model, &mut graph, &sizes);
+    let integrands: Vec<ExprId> = needed.iter().map(|&at| model.integrals[at].integrand).collect();
+    let integrands = over_grid.apply(&mut graph, &integrands);
+    let integrands = integrands.iter().map(|&it| graph.mul(over_grid.duration, it)).collect();
+    let more = needed.len() + model.simulated.len();
+    let layout = Layout { p: sizes.parameters + more, ..sizes.ends() };
+    let mut at_ends = inputs::at_ends(model, &mut graph, &layout, &[]);
+    let integrals = needed.iter().map(|&at| Symbol::Integral(at));
+    let simulated = (0..model.simulated.len()).map(Symbol::Simulated);
+    for (position, symbol) in integrals.chain(simulated).enumerate() {
+        let place = graph.input((layout.parameters().end - more + position) as u32);
+        at_ends.replace(model, symbol, place);
+    }
+    let values = at_ends.apply(&mut graph, &values);
+    let functions = [
+        values_only("expectations", layout, values),
+        values_only("integrands", sizes.grid(), integrands),
+    ];
+    LoweredExpectations { list, graph, functions }
+}
+
+fn simulated_in(model: &Model, graph: &Graph, roots: &[ExprId]) -> Vec<usize> {
+    let inputs = graph.inputs_of(roots);
+    let simulated = |input: u32| match model.symbols[input as usize] {
+        Symbol::Simulated(index) => Some(index),
+        _ => None,
+    };
+    inputs.into_iter().filter_map(simulated).collect()
+}
+
+fn values_only(name: &str, layout: Layout, outputs: Vec<ExprId>) -> VectorFunction {
+    let origins = vec![Origin::default(); outputs.len()];
+    VectorFunction {
+        name: name.into(),
+        layout,
+        outputs,
+        origins,
+        by: Vec::new(),
+        order: Order::Second,
+    }
+}

@@ -1,0 +1,238 @@
+//! What the command line may change: parameters by `--set`, settings of the method by `--method`.
+
+use crate::expressions::graph::evaluate;
+use crate::model::Model;
+use crate::settings::conflicts::misfit;
+use crate::settings::{Given, Refused, keys, nearest_key, nearest_word, set};
+use crate::syntax::closest;
+use crate::syntax::text::number;
+use crate::units::{NamedUnit, Quantity, WidthUnit, parse_quantity};
+
+impl Model {
+    /// Gives a parameter another value, such as `0.2` or `200[g]`; a plain number is in its
+    /// declared unit.
+    pub fn set_param(&mut self, name: &str, value: &str) -> Result<(), String> {
+        let given = parse_quantity(value)?;
+        let Some(index) = self.params.iter().position(|param| param.place.name == name) else {
+            return Err(self.no_param(name));
+        };
+        let own = self.unit_of_param(index).cloned().unwrap_or_else(|| plain_number(name));
+        let value = in_unit(&own, value, given)?;
+        let range = self.params[index].range;
+        let limits = [range.lower, range.upper].map(|limit| self.of_params(limit));
+        if value < limits[0] || value > limits[1] {
+            let shown = limits.map(|limit| number(limit / own.scale));
+            let unit = if own.unit.is_empty() { String::new() } else { format!(" {}", own.unit) };
+            return Err(format!("`{name}` must be in [{}, {}]{unit}", shown[0], shown[1]));
+        }
+        self.give(index, value);
+        Ok(())
+    }
+
+    /// A value for a parameter or a width with the unit in which it is read, if that is not the one
+    /// of SI: `3[mm]` for `3`.
+    pub fn with_unit(&self, name: &str, value: &str) -> String {
+        let index = self.params.iter().position(|param| param.place.name == name);
+        let width = self
+            .width_unit
+            .as_ref()
+            .filter(|it| index.is_none() && name == "sigma" && it.takes_numbers);
+        let own = index.and_then(|at| self.unit_of_param(at)).or(width.map(|it| &it.unit));
+        let own = own.filter(|own| own.scale != 1.0);
+        let is_plain = parse_quantity(value).is_ok_and(|it| it.dimension.is_none());
+        match own.filter(|_| is_plain) {
+            Some(own) => format!("{}[{}]", value.trim(), own.unit),
+            None => value.into(),
+        }
+    }
+
+    /// A value in SI as the command line takes it: in the declared unit, with that unit unless it
+    /// is the one of SI.
+    pub fn as_given(&self, name: &str, value: &str) -> String {
+        let Ok(number) = value.parse::<f64>() else { return value.into() };
+        let index = self.params.iter().position(|param| param.place.name == name);
+        let width = self.width_unit.as_ref().filter(|_| index.is_none() && name == "sigma");
+        let own = index.and_then(|at| self.unit_of_param(at)).or(width.map(|it| &it.unit));
+        match own {
+            Some(own) if own.scale != 1.0 => {
+                format!("{}[{}]", rounded(number / own.scale), own.unit)
+            }
+            Some(own) if width.is_some_and(|it| !it.takes_numbers) => {
+                format!("{value}[{}]", if own.unit.is_empty() { "1" } else { &own.unit })
+            }
+            _ => value.into(),
+        }
+    }
+
+    fn unit_of_param(&self, index: usize) -> Option<&NamedUnit> {
+        let span = self.params[index].place.span;
+        self.units.iter().find(|own| own.span == span)
+    }
+
+    fn give(&mut self, index: usize, value: f64) {
+        self.params[index].value = Some(self.graph.number(value));
+        if !self.param_order.contains(&index) {
+            self.param_order.insert(0, index);
+        }
+    }
+
+    /// Gives parameters the values that a solution was made with. One that is computed from others
+    /// and has that value anyhow stays so.
+    pub fn restore_params(&mut self, values: &[(String, f64)]) {
+        let given =
+            |name: &str| values.iter().find(|(own, _)| own == name).map(|(_, value)| *value);
+        let waiting = (0..self.params.len()).filter(|&at| self.params[at].value.is_none());
+        for index in waiting.chain(self.param_order.clone()).collect::<Vec<_>>() {
+            let Some(value) = given(&self.params[index].place.name) else { continue };
+            let now = self.params[index].value.map_or(f64::NAN, |value| self.of_params(value));
+            if now != value {
+                self.give(index, value);
+            }
+        }
+    }
+
+    /// Gives an unknown the value that a solution found.
+    pub fn set_free(&mut self, name: &str, value: f64) {
+        let value = self.graph.number(value);
+        for free in self.frees.iter_mut().filter(|free| free.place.name == name) {
+            free.guess = Some(value);
+        }
+    }
+
+    /// Gives a state whose start is open the one that a solution found.
+    pub fn set_open_start(&mut self, name: &str, value: f64) {
+        let value = self.graph.number(value);
+        for state in self.states.iter_mut().filter(|state| state.place.name == name) {
+            state.start = state.start.or(Some(value));
+        }
+    }
+
+    /// Changes a setting, such as `sigma` to `0.01`; several values for `continue` are separated by
+    /// commas. A plain number for a width is in the unit of what is smoothed.
+    pub fn set_method(&mut self, key: &str, value: &str) -> Result<(), String> {
+        let is_width = matches!(key, "sigma" | "continue");
+        let width = self.width_unit.clone().filter(|_| is_width);
+        let given = given(value, |text, it| {
+            width.as_ref().map_or(Ok(it.value), |own| as_width(own, text, it))
+        })?;
+        self.set(key, value, &given)
+    }
+
+    /// The same as a solution says it: in SI.
+    pub fn restore_method(&mut self, key: &str, value: &str) -> Result<(), String> {
+        let given = given(value, |_, it| Ok(it.value))?;
+        self.set(key, value, &given)
+    }
+
+    fn set(&mut self, key: &str, value: &str, given: &Given) -> Result<(), String> {
+        match set(&mut self.method, key, given) {
+            Ok(()) => {
+                self.smooth |= matches!(key, "sigma" | "kernel" | "continue");
+                Ok(())
+            }
+            Err(Refused::Removed(instead)) => {
+                Err(format!("`{key}` cannot be `{value}`: {instead}"))
+            }
+            Err(Refused::NotYet) => Err(format!("`{key} = {value}` cannot be solved yet")),
+            Err(Refused::Key) => Err(match nearest_key(key) {
+                Some(near) => format!("the method has no setting `{key}`; did you mean `{near}`?"),
+                None => format!("the method has no setting `{key}`; the settings are {}", keys()),
+            }),
+            Err(Refused::Value(expected)) => Err(match nearest_word(expected, value) {
+                Some(near) => format!("`{key}` cannot be `{value}`; did you mean `{near}`?"),
+                None => format!("`{key}` cannot be `{value}`; it needs {expected}"),
+            }),
+        }
+    }
+
+    /// Whether the settings of the method fit each other.
+    pub fn fits_together(&self) -> Result<(), String> {
+        misfit(&self.method).map_or(Ok(()), |(_, what, help)| Err(format!("{what}: {help}")))
+    }
+
+    fn no_param(&self, name: &str) -> String {
+        let names = || self.params.iter().map(|param| param.place.name.as_str());
+        match closest(name, names()) {
+            Some(near) => format!("there is no parameter `{name}`; did you mean `{near}`?"),
+            None if self.params.is_empty() => {
+                format!("there is no parameter `{name}`; the model has none")
+            }
+            None => {
+                format!(
+                    "there is no parameter `{name}`; there is {}",
+                    names().collect::<Vec<_>>().join(", ")
+                )
+            }
+        }
+    }
+
+    /// A number, which may use other parameters; NaN, which limits nothing, if one of them has no
+    /// value yet.
+    fn of_params(&self, value: crate::expressions::graph::ExprId) -> f64 {
+        match crate::model::numbers::numbers(self) {
+            Ok(numbers) => numbers.value(self, value),
+            Err(_) => evaluate(&self.graph, &[value], &vec![f64::NAN; self.symbols.len()], &[])[0],
+        }
+    }
+}
+
+/// A word, a number or a list of numbers, each as `read` makes it one in SI.
+fn given(
+    value: &str,
+    read: impl Fn(&str, Quantity) -> Result<f64, String>,
+) -> Result<Given, String> {
+    let quantities: Option<Vec<(&str, Quantity)>> =
+        value.split(',').map(|part| Some((part, parse_quantity(part).ok()?))).collect();
+    let Some(quantities) = quantities else { return Ok(Given::Word(value.trim().into())) };
+    let numbers: Vec<f64> =
+        quantities.into_iter().map(|(text, it)| read(text, it)).collect::<Result<_, _>>()?;
+    Ok(match numbers[..] {
+        [number] => Given::Number(number),
+        _ => Given::List(numbers),
+    })
+}
+
+/// Without the digits that the change of units leaves behind.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.14e}").parse().unwrap_or(value)
+}
+
+/// The unit of a name of which nothing is known: any goes with it.
+fn plain_number(name: &str) -> NamedUnit {
+    NamedUnit { name: name.into(), scale: 1.0, ..NamedUnit::default() }
+}
+
+/// A value in SI, if its unit measures what that of a name does; a number without a unit is in the
+/// declared one.
+fn in_unit(own: &NamedUnit, text: &str, given: Quantity) -> Result<f64, String> {
+    match given.dimension {
+        None => Ok(given.value * own.scale),
+        Some(dimension) if own.span != Default::default() && own.dimension != dimension => {
+            let unit = if own.unit.is_empty() {
+                "has no unit".into()
+            } else {
+                format!("is in {}", own.unit)
+            };
+            Err(format!("`{}` {unit}, so it cannot be `{}`", own.name, text.trim()))
+        }
+        Some(_) => Ok(given.value),
+    }
+}
+
+/// A width in SI.
+fn as_width(own: &WidthUnit, text: &str, given: Quantity) -> Result<f64, String> {
+    let unit = &own.unit;
+    match given.dimension {
+        None if own.takes_numbers => Ok(given.value * unit.scale),
+        None => Err(format!(
+            "`sigma` needs a unit, such as `{}[{}]`: what is smoothed is made of names in other \
+             units than those of SI",
+            text.trim(),
+            unit.unit
+        )),
+        Some(dimension) if !unit.name.is_empty() && dimension != unit.dimension => {
+            Err(format!("`sigma` is in {}, so it cannot be `{}`", unit.unit, text.trim()))
+        }
+        Some(_) => Ok(given.value),
+    }
+}

@@ -1,0 +1,132 @@
+//! Surfaces that the state crosses against the direction of their jump: nothing is reset, but a
+//! piece ends there.
+//!
+//! A ball that is thrown from below the rim rises through it before it can fall on it. On the way
+//! up `psi <= 0`, then `psi >= 0` until the jump. A sequence has the number `n + i` where the
+//! surface of jump `i`, of `n`, is crossed so. Only before the first jump on a surface this is
+//! looked for, and only where the state may begin beyond it.
+
+use crate::expressions::graph::{ExprId, Graph};
+use crate::expressions::interval::{Interval, Tape};
+use crate::model::guess::straight_guesses;
+use crate::model::numbers::Numbers;
+use crate::model::{Jump, Model, Place, Symbol};
+use fdcc_grammar::ast::Direction;
+
+/// Rounding, relative to what is rounded.
+const ROUNDING: f64 = 1e-9;
+
+/// The crossing against each jump, as a jump that resets nothing.
+pub fn crossings(model: &Model) -> Vec<Jump> {
+    let crossing = |jump: &Jump| Jump {
+        place: Place {
+            name: format!("crossing of {}", model.surfaces[jump.surface].place.name),
+            ..jump.place
+        },
+        surface: jump.surface,
+        direction: match jump.direction {
+            Direction::Falling => Direction::Rising,
+            Direction::Rising => Direction::Falling,
+        },
+        at_most: None,
+        then_hold: None,
+        resets: Vec::new(),
+    };
+    model.jumps.iter().map(crossing).collect()
+}
+
+/// On which sides of the surface of a jump the state may begin.
+#[derive(Clone, Copy)]
+pub(super) struct Beginning {
+    /// On the side from which the jump happens.
+    pub may_be_before: bool,
+    /// On the other side.
+    pub may_be_beyond: bool,
+    /// Whether it begins there as it is guessed.
+    pub is_guessed_beyond: bool,
+}
+
+impl Beginning {
+    /// Where nothing is crossed before.
+    pub fn is_beyond(self) -> bool {
+        self.may_be_beyond && (self.is_guessed_beyond || !self.may_be_before)
+    }
+}
+
+/// For each jump, over the bounds of all unknowns and starts. Where a surface has jumps in both
+/// directions each crossing is one of them.
+pub(super) fn beginnings(model: &Model, numbers: &Numbers) -> Vec<Beginning> {
+    let mut graph = model.graph.clone();
+    let (widest, guessed) = (boxed(model, numbers), at_guess(model, numbers));
+    let guesses = straight_guesses(model, &mut graph);
+    let mut of = |jump: &Jump| {
+        let psi = model.surfaces[jump.surface].psi;
+        let [known, guess] = [false, true].map(|is_guess| {
+            let state =
+                |at: usize| if is_guess { Some(guesses[at]) } else { model.states[at].start };
+            at_start(model, &mut graph, psi, &state)
+        });
+        let [reach, guess] = [(known, &widest), (guess, &guessed)].map(|(psi, domain)| {
+            height(jump.direction, Tape::new(&graph, &[psi]).evaluate(domain)[0])
+        });
+        let has_both = super::sides::has_both(&model.jumps, jump);
+        Beginning {
+            may_be_before: has_both || !is_below(reach.upper),
+            may_be_beyond: !has_both && is_below(reach.lower),
+            is_guessed_beyond: is_below(guess.upper),
+        }
+    };
+    model.jumps.iter().map(&mut of).collect()
+}
+
+/// The function of a surface at the first time.
+fn at_start(
+    model: &Model,
+    graph: &mut Graph,
+    psi: ExprId,
+    state: &dyn Fn(usize) -> Option<ExprId>,
+) -> ExprId {
+    let begun = |at: u32| match model.symbols[at as usize] {
+        Symbol::State(at) => state(at),
+        _ => None,
+    };
+    let first = |at: u32| (model.symbols[at as usize] == Symbol::Time).then_some(model.interval[0]);
+    let psi = graph.substitute(&[psi], &begun);
+    graph.substitute(&psi, &first)[0]
+}
+
+/// Above 0 on the side from which the jump happens.
+fn height(direction: Direction, psi: Interval) -> Interval {
+    match direction {
+        Direction::Falling => psi,
+        Direction::Rising => Interval::new(-psi.upper, -psi.lower),
+    }
+}
+
+fn is_below(value: f64) -> bool {
+    value < -ROUNDING
+}
+
+/// What each input of the graph may be at the start.
+fn boxed(model: &Model, numbers: &Numbers) -> Vec<Interval> {
+    let bounds = |range| {
+        let bounds = numbers.bounds(model, range);
+        Interval::new(bounds.lower, bounds.upper)
+    };
+    let one = |symbol: &Symbol| match *symbol {
+        Symbol::Param(_) => Interval::point(numbers.of(*symbol)),
+        Symbol::Free(at) => bounds(model.frees[at].range),
+        Symbol::State(at) => bounds(model.states[at].start_range.unwrap_or(model.states[at].range)),
+        _ => Interval::ALL,
+    };
+    model.symbols.iter().map(one).collect()
+}
+
+/// What each parameter and unknown is guessed to be.
+fn at_guess(model: &Model, numbers: &Numbers) -> Vec<Interval> {
+    let one = |symbol: &Symbol| match symbol {
+        Symbol::Param(_) | Symbol::Free(_) => Interval::point(numbers.of(*symbol)),
+        _ => Interval::ALL,
+    };
+    model.symbols.iter().map(one).collect()
+}

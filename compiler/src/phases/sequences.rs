@@ -1,0 +1,102 @@
+//! Which jumps may happen, and in which order.
+
+use super::crossings::{Beginning, beginnings};
+use super::hold::rest;
+use crate::expressions::graph::ExprId;
+use crate::model::not_yet;
+use crate::model::numbers::{Numbers, numbers};
+use crate::model::{Jump, Model, Symbol};
+use fdcc_grammar::Diagnostic;
+
+/// A jump is tried so often where the model does not say how often it may happen, or says a number
+/// that is out of reach.
+const TRIED: usize = 3;
+/// Longer sequences are not tried.
+const LONGEST: usize = 8;
+/// More are not tried.
+const MOST: usize = 32;
+
+/// What may happen in a model with jumps.
+pub struct Sequences {
+    /// Jumps that happen one after the other, as indices into [`Model::jumps`] and behind these
+    /// into [`crossings`](super::crossings()); the short ones first.
+    pub all: Vec<Vec<usize>>,
+    /// Whether the surface of each jump may be crossed against its direction, because the state may
+    /// begin beyond it.
+    pub may_cross: Vec<bool>,
+    /// Whether the model allows others that are left out.
+    pub is_cut: bool,
+}
+
+/// All sequences in which no jump happens more often than it may; or says what cannot be solved
+/// yet.
+pub fn sequences(model: &Model) -> Result<Sequences, Vec<Diagnostic>> {
+    if let Some(jump) = model.jumps.iter().find(|jump| reads_controls(model, jump)) {
+        return Err(vec![not_yet(jump.place.span, "a jump that reads a control")]);
+    }
+    let numbers = numbers(model)?;
+    let (most, is_cut) = most(model, &numbers);
+    let begins = beginnings(model, &numbers);
+    let may_cross =
+        begins.iter().zip(&most).map(|(it, most)| it.may_be_beyond && *most > 0).collect();
+    let mut found = Sequences { all: vec![Vec::new()], may_cross, is_cut };
+    let mut next = 0;
+    while next < found.all.len() {
+        let shorter = found.all[next].clone();
+        for event in 0..2 * most.len() {
+            let is_allowed = may_follow(&shorter, event, &most, &begins);
+            match is_allowed && shorter.len() < LONGEST && found.all.len() < MOST {
+                true => found.all.push([&shorter[..], &[event]].concat()),
+                false => found.is_cut |= is_allowed,
+            }
+        }
+        next += 1;
+    }
+    Ok(found)
+}
+
+/// Whether a jump may happen once more after others, or its surface be crossed the other way before
+/// the first one.
+fn may_follow(earlier: &[usize], event: usize, most: &[usize], begins: &[Beginning]) -> bool {
+    match event.checked_sub(most.len()) {
+        Some(jump) => {
+            let is_first = !earlier.contains(&jump) && !earlier.contains(&event);
+            is_first && begins[jump].may_be_beyond && most[jump] > 0
+        }
+        None => {
+            let is_before = begins[event].may_be_before || earlier.contains(&(event + most.len()));
+            is_before && earlier.iter().filter(|it| **it == event).count() < most[event]
+        }
+    }
+}
+
+fn reads_controls(model: &Model, jump: &Jump) -> bool {
+    let values: Vec<ExprId> = jump.resets.iter().map(|reset| reset.1).collect();
+    let read = model.graph.inputs_of(&values);
+    let is_beyond =
+        |at: &u32| matches!(model.symbols[*at as usize], Symbol::Control(_) | Symbol::Selector(_));
+    read.iter().any(is_beyond)
+}
+
+/// How often each jump may happen, if that is limited.
+pub(super) fn limits(model: &Model, numbers: &Numbers) -> Vec<Option<usize>> {
+    let limit = |jump: &Jump| Some(numbers.value(model, jump.at_most?).max(0.0) as usize);
+    model.jumps.iter().map(limit).collect()
+}
+
+/// How often each jump is tried, and whether that leaves anything out.
+fn most(model: &Model, numbers: &Numbers) -> (Vec<usize>, bool) {
+    let mut graph = model.graph.clone();
+    let mut tried = |(limit, jump): (Option<usize>, &Jump)| match limit {
+        Some(limit) if jump.then_hold.is_some() && rest(model, &mut graph, jump).is_none() => {
+            limit.saturating_sub(1).min(TRIED)
+        }
+        Some(limit) if limit > LONGEST => TRIED,
+        Some(limit) => limit,
+        None => TRIED,
+    };
+    let limits = limits(model, numbers);
+    let most: Vec<usize> = limits.iter().copied().zip(&model.jumps).map(&mut tried).collect();
+    let is_cut = limits.iter().zip(&most).any(|(limit, most)| *limit != Some(*most));
+    (most, is_cut)
+}

@@ -1,0 +1,238 @@
+//! Path constraints of the pieces: what is written, and that no other jump happens on the way.
+//!
+//! Until a `falling` jump happens `psi >= 0`, until a `rising` one `psi <= 0`; the other way round
+//! where the state begins beyond the surface, until it crosses that. On the surface itself, at the
+//! end of a piece, such a condition holds by what ends the piece, and would be told twice: there it
+//! gives way.
+
+use super::Unrolling;
+use super::hold::approach;
+use crate::expressions::graph::derivative::derivative;
+use crate::expressions::graph::{ExprId, Graph};
+use crate::model::{Jump, Place, Range, Row, Symbol};
+use fdcc_grammar::ast::Direction;
+
+/// The last time of a piece, with room for rounding.
+const LAST: f64 = 1.0 - 1e-9;
+
+impl Unrolling<'_> {
+    /// The bounds of a state at all times; none where they are a path constraint.
+    pub(super) fn range_of(&mut self, state: usize) -> Range {
+        let range = self.model.states[state].range;
+        if !self.bounds_a_guard(state) {
+            return range;
+        }
+        let [lower, upper] = [f64::NEG_INFINITY, f64::INFINITY].map(|it| self.graph.number(it));
+        Range { lower, upper }
+    }
+
+    /// What is written, piece by piece; then what the jumps add, piece by piece.
+    pub(super) fn path(&mut self) -> Vec<Row> {
+        let mut rows = Vec::new();
+        for j in 0..self.pieces.len() {
+            rows.extend(self.model.path.iter().map(|row| self.until(j, row.clone())));
+        }
+        for j in 0..self.pieces.len() {
+            let more: Vec<Row> = self.bounds().into_iter().chain(self.sides(j)).collect();
+            rows.extend(more.into_iter().map(|row| self.until(j, row)));
+        }
+        rows
+    }
+
+    /// Bounds of states that are functions of a surface.
+    fn bounds(&mut self) -> Vec<Row> {
+        let mut rows = Vec::new();
+        for (index, state) in self.model.states.iter().enumerate() {
+            if self.bounds_a_guard(index) {
+                let value = self.graph.input(self.input_of_state(index));
+                rows.push(Row { place: state.place.clone(), value, range: state.range });
+            }
+        }
+        rows
+    }
+
+    /// Whether a state is the function of a surface where a jump happens.
+    fn bounds_a_guard(&self, state: usize) -> bool {
+        let input = self.input_of_state(state);
+        let is_it = |jump: &usize| {
+            let psi = self.whole.surfaces[self.whole.jumps[*jump].surface].psi;
+            self.whole.graph.inputs_of(&[psi]) == [input]
+        };
+        self.sequence.iter().any(is_it)
+    }
+
+    pub(super) fn input_of_state(&self, state: usize) -> u32 {
+        self.model.input_of(Symbol::State(state)).expect("each state is a symbol")
+    }
+
+    /// On which sides of the surfaces a piece stays.
+    fn sides(&mut self, j: usize) -> Vec<Row> {
+        let whole = self.whole;
+        let mut rows = Vec::new();
+        let own = &whole.jumps[..self.begins.len()];
+        for (index, jump) in own.iter().enumerate() {
+            if !self.may_happen(j, index) || has_both(own, jump) {
+                continue;
+            }
+            let range = match (self.is_not_yet_before(j, index), jump.direction) {
+                (false, _) if self.is_beyond(j, index) => continue,
+                (true, _) if self.is_moved(j, index) => continue,
+                (false, Direction::Falling) | (true, Direction::Rising) => self.not_below(),
+                (false, Direction::Rising) | (true, Direction::Falling) => self.not_above(),
+            };
+            rows.push(Row {
+                place: jump.place.clone(),
+                value: whole.surfaces[jump.surface].psi,
+                range,
+            });
+        }
+        rows.retain(|row| !self.is_written(row));
+        rows
+    }
+
+    /// Whether a path constraint of the model says the same.
+    fn is_written(&self, row: &Row) -> bool {
+        let same = |it: &&Row| it.value == row.value;
+        let number = |id| self.graph.as_number(id).unwrap_or(f64::NAN);
+        let within = |it: &Row| {
+            number(it.range.lower) >= number(row.range.lower)
+                && number(it.range.upper) <= number(row.range.upper)
+        };
+        self.model.path.iter().filter(same).any(within)
+    }
+
+    /// Whether a jump has not yet happened as often as it may.
+    fn may_happen(&self, j: usize, index: usize) -> bool {
+        let before = self.sequence[..j].iter().filter(|it| **it == index).count();
+        self.limits[index].is_none_or(|limit| before < limit)
+    }
+
+    fn not_below(&mut self) -> Range {
+        Range { lower: self.graph.number(0.0), upper: self.graph.number(f64::INFINITY) }
+    }
+
+    fn not_above(&mut self) -> Range {
+        Range { lower: self.graph.number(f64::NEG_INFINITY), upper: self.graph.number(0.0) }
+    }
+
+    /// Whether the state began beyond the surface, and has not come back through it.
+    fn is_not_yet_before(&self, j: usize, index: usize) -> bool {
+        let crossing = index + self.begins.len();
+        match self.sequence.iter().position(|it| *it == index || *it == crossing) {
+            Some(first) => self.sequence[first] == crossing && j <= first,
+            None => self.begins[index].is_beyond(),
+        }
+    }
+
+    /// Whether an earlier jump may have moved the state through the surface.
+    fn is_moved(&self, j: usize, index: usize) -> bool {
+        let read =
+            self.whole.graph.inputs_of(&[self.whole.surfaces[self.whole.jumps[index].surface].psi]);
+        let resets = self.sequence[..j].iter().flat_map(|it| &self.whole.jumps[*it].resets);
+        resets.map(|reset| self.input_of_state(reset.0)).any(|state| read.contains(&state))
+    }
+
+    /// Whether the state went through the surface at an earlier jump.
+    fn is_beyond(&mut self, j: usize, index: usize) -> bool {
+        self.sequence[..j].contains(&index) && !self.turns(&self.whole.jumps[index])
+    }
+
+    /// Whether a jump changes the speed at which its surface is approached.
+    fn turns(&mut self, jump: &Jump) -> bool {
+        let rate = self.approach_of(jump);
+        let resets: Vec<(u32, ExprId)> =
+            jump.resets.iter().map(|&(state, value)| (self.input_of_state(state), value)).collect();
+        let reset = |input: u32| resets.iter().find(|it| it.0 == input).map(|it| it.1);
+        self.graph.substitute(&[rate], &reset)[0] != rate
+    }
+
+    fn approach_of(&mut self, jump: &Jump) -> ExprId {
+        approach(self.model, &mut self.graph, self.whole.surfaces[jump.surface].psi)
+    }
+
+    /// That a piece comes to its end in the direction of the jump, or two jumps could be one upon
+    /// the other. Nothing is said where the speed depends on a control: at the end there is none.
+    pub(super) fn direction(&mut self, j: usize) -> Option<Row> {
+        let jump = self.jump(j);
+        let rate = self.approach_of(jump);
+        let is_of_state = |at: &u32| {
+            !matches!(self.model.symbols[*at as usize], Symbol::Control(_) | Symbol::Selector(_))
+        };
+        if !self.graph.inputs_of(&[rate]).iter().all(is_of_state) {
+            return None;
+        }
+        let range = match jump.direction {
+            Direction::Falling => self.not_above(),
+            Direction::Rising => self.not_below(),
+        };
+        let place =
+            Place { name: format!("direction of {}", jump.place.name), span: jump.place.span };
+        Some(Row { place, value: self.at_end(j, rate), range })
+    }
+
+    /// A constraint in a piece; where the piece ends on this very surface, it gives way there, and
+    /// where the surface is held, everywhere.
+    fn until(&mut self, j: usize, row: Row) -> Row {
+        if self.is_held(j, &row) {
+            return Row { value: within(&mut self.graph, row.range), ..row };
+        }
+        let value = self.in_piece(j, row.value);
+        let ends_here = j < self.sequence.len()
+            && self.is_guard(self.whole.surfaces[self.jump(j).surface].psi, row.value);
+        if !ends_here {
+            return Row { value, ..row };
+        }
+        let inside = within(&mut self.graph, row.range);
+        let tau = self.model.input_of(Symbol::Time).expect("time is a symbol");
+        let (tau, last) = (self.graph.input(tau), self.graph.number(LAST));
+        Row { value: self.graph.select_le(tau, last, value, inside), ..row }
+    }
+
+    /// Whether a value is known where the function of a surface is 0: both depend on one state
+    /// only, or their slopes are in proportion.
+    pub(super) fn is_guard(&mut self, psi: ExprId, value: ExprId) -> bool {
+        let varies = |symbol: &Symbol| !matches!(symbol, Symbol::Param(_) | Symbol::Free(_));
+        let moving = |graph: &Graph, of: ExprId| -> Vec<u32> {
+            let inputs = graph.inputs_of(&[of]).into_iter();
+            inputs.filter(|at| varies(&self.model.symbols[*at as usize])).collect()
+        };
+        let inputs = moving(&self.graph, psi);
+        if moving(&self.graph, value) != inputs {
+            return false;
+        }
+        let mut slopes = |of: ExprId| -> Vec<ExprId> {
+            inputs.iter().map(|at| derivative(&mut self.graph, of, *at)).collect()
+        };
+        let (own, its) = (slopes(value), slopes(psi));
+        let opposite: Vec<ExprId> = its.iter().map(|slope| self.graph.neg(*slope)).collect();
+        inputs.len() == 1 || own == its || own == opposite || in_proportion(&self.graph, &own, &its)
+    }
+}
+
+/// Whether slopes are numbers, and one list a multiple of the other.
+fn in_proportion(graph: &Graph, own: &[ExprId], its: &[ExprId]) -> bool {
+    let numbers =
+        |of: &[ExprId]| of.iter().map(|id| graph.as_number(*id)).collect::<Option<Vec<f64>>>();
+    let (Some(own), Some(its)) = (numbers(own), numbers(its)) else { return false };
+    own.iter().zip(&its).all(|(a, b)| (a * its[0] - b * own[0]).abs() <= 1e-12 * (a * its[0]).abs())
+}
+
+/// Whether a surface is the place of jumps in both directions.
+pub(super) fn has_both(jumps: &[Jump], jump: &Jump) -> bool {
+    jumps.iter().any(|it| it.surface == jump.surface && it.direction != jump.direction)
+}
+
+/// A number between bounds.
+fn within(graph: &mut Graph, range: Range) -> ExprId {
+    let is_infinite = |graph: &Graph, bound| graph.as_number(bound).is_some_and(f64::is_infinite);
+    let one = graph.number(1.0);
+    match (is_infinite(graph, range.lower), is_infinite(graph, range.upper)) {
+        (true, true) => one,
+        (false, true) => graph.add(range.lower, one),
+        (true, false) => graph.sub(range.upper, one),
+        (false, false) => {
+            let sum = graph.add(range.lower, range.upper);
+            graph.scale(0.5, sum)
+        }
+    }
+}

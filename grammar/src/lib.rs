@@ -16,7 +16,7 @@ mod source;
 pub use diagnostic::{Code, Diagnostic, Label, Severity};
 pub use fix::{Edit, Fix};
 pub use format::format;
-pub use parse::{Memory, comments, parse, parse_with, words};
+pub use parse::{ParseCache, comments, parse, parse_with, words};
 pub use source::{LineColumn, SourceFile, Span};
 
 /// What a text holds: the items that could be read, and what is wrong with the rest.

@@ -2,7 +2,7 @@
 
 use crate::snapshot::Snapshot;
 use crate::text::{Encoding, Text};
-use fdcc_grammar::Memory;
+use fdcc_grammar::ParseCache;
 use lsp_types::{TextDocumentContentChangeEvent, Uri};
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
@@ -20,14 +20,14 @@ pub struct Document {
     last_model: Option<Rc<Snapshot>>,
     text: Text,
     snapshot: OnceCell<Rc<Snapshot>>,
-    memory: RefCell<Memory>,
+    cache: RefCell<ParseCache>,
     is_published: bool,
 }
 
 impl Document {
     /// What is known about it, found out when it is first asked for.
     pub fn snapshot(&self) -> &Rc<Snapshot> {
-        let found = || Rc::new(Snapshot::new(self.text.clone(), &mut self.memory.borrow_mut()));
+        let found = || Rc::new(Snapshot::new(self.text.clone(), &mut self.cache.borrow_mut()));
         self.snapshot.get_or_init(found)
     }
 
@@ -90,7 +90,7 @@ impl Documents {
             last_model: None,
             text,
             snapshot: OnceCell::new(),
-            memory: RefCell::default(),
+            cache: RefCell::default(),
             is_published: false,
         };
         self.open.insert(uri.0, document);

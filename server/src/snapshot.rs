@@ -3,7 +3,7 @@
 use crate::text::Text;
 use fdcc_compiler::symbols::Names;
 use fdcc_compiler::{Analysis, SurfaceReport, analyze_with, surfaces};
-use fdcc_grammar::{Code, Memory, Severity};
+use fdcc_grammar::{Code, ParseCache, Severity};
 use std::cell::OnceCell;
 
 /// One state of a text, what it means and what is wrong with it.
@@ -19,9 +19,9 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// Reads and checks a text, with a memory of its former states.
-    pub fn new(text: Text, memory: &mut Memory) -> Self {
-        let analysis = analyze_with(memory, &text.text);
+    /// Reads and checks a text, with a cache of its former states.
+    pub fn new(text: Text, cache: &mut ParseCache) -> Self {
+        let analysis = analyze_with(cache, &text.text);
         let is_syntax = |code: Code| code.as_str().starts_with("FDC00");
         let is_readable = !analysis
             .diagnostics

@@ -5,7 +5,7 @@
 
 use std::time::{Duration, Instant};
 
-use fdcc_grammar::{Memory, parse, parse_with};
+use fdcc_grammar::{ParseCache, parse, parse_with};
 use fdcc_tests::fuzzed::understand;
 use fdcc_tests::random::Random;
 use fdcc_tests::repository;
@@ -59,7 +59,7 @@ fn a_memory_of_former_texts_changes_nothing() {
     let mut random = Random::new(2);
     for (name, model) in fdcc_tests::documents("models", "fdc") {
         let mut text = format!("{MISTAKEN}{model}");
-        let mut memory = Memory::default();
+        let mut memory = ParseCache::default();
         for _ in 0..EDITS {
             text = mutated(&text, &corpus, &mut random);
             assert!(parse_with(&mut memory, &text) == parse(&text), "{name}, edited:\n{text}");

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use fdcc_grammar::ast::{Expr, ExprKind, ItemKind};
-use fdcc_grammar::{Code, Memory, Parse, parse, parse_with};
+use fdcc_grammar::{Code, Parse, ParseCache, parse, parse_with};
 use proptest::prelude::*;
 
 /// Generous: the tests share the machine.
@@ -81,7 +81,7 @@ fn models_typed_character_by_character_are_read_as_if_they_were_new() {
     for (name, model) in fdcc_tests::documents("models", "fdc") {
         // The first item can be read and has a mistake all the same.
         let text = format!("path 1 <= x >= 0\n{model}");
-        let mut memory = Memory::default();
+        let mut memory = ParseCache::default();
         for end in (0..=text.len()).filter(|end| text.is_char_boundary(*end)) {
             let typed = &text[..end];
             assert!(parse_with(&mut memory, typed) == parse(typed), "{name}, up to byte {end}");

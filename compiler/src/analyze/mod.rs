@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::units::NamedUnit;
 pub use checked::{Checked, check};
 use fdcc_grammar::ast;
-use fdcc_grammar::{Diagnostic, Memory, Parse, SourceFile, parse_with};
+use fdcc_grammar::{Diagnostic, Parse, ParseCache, SourceFile, parse_with};
 use unparsed::UnparsedRegions;
 
 /// What a text means, and what is to be said about it.
@@ -31,12 +31,12 @@ pub struct Analysis {
 
 /// Reads and checks a text.
 pub fn analyze(text: &str) -> Analysis {
-    analyze_with(&mut Memory::default(), text)
+    analyze_with(&mut ParseCache::default(), text)
 }
 
-/// The same with a memory of the text as it was before, which spares reading what has not changed.
-pub fn analyze_with(memory: &mut Memory, text: &str) -> Analysis {
-    analyze_parsed(text, parse_with(memory, text))
+/// The same with a cache of the text as it was before, which spares reading what has not changed.
+pub fn analyze_with(cache: &mut ParseCache, text: &str) -> Analysis {
+    analyze_parsed(text, parse_with(cache, text))
 }
 
 /// Checks a text that has been read.

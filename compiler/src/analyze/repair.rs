@@ -5,14 +5,14 @@
 //! repairing ends, and repairing the result changes nothing.
 
 use super::analyze_parsed;
-use fdcc_grammar::{Diagnostic, Memory, Parse, Severity, fix, parse_with};
+use fdcc_grammar::{Diagnostic, Parse, ParseCache, Severity, fix, parse_with};
 
 /// The text with all certain repairs, and with those that are likely if asked for.
 pub fn repair(text: &str, unsafely: bool) -> String {
-    let mut memory = Memory::default();
-    let parsed = parse_with(&mut memory, text);
+    let mut cache = ParseCache::default();
+    let parsed = parse_with(&mut cache, text);
     let mut draft = Draft::new(text.to_owned(), Unreadable::of(text, &parsed), parsed);
-    while let Some(better) = draft.improved(unsafely, &mut memory) {
+    while let Some(better) = draft.improved(unsafely, &mut cache) {
         draft = better;
     }
     draft.text
@@ -46,16 +46,16 @@ impl Draft {
     }
 
     /// All repairs at once, or the first one that helps.
-    fn improved(&self, unsafely: bool, memory: &mut Memory) -> Option<Draft> {
+    fn improved(&self, unsafely: bool, cache: &mut ParseCache) -> Option<Draft> {
         let apply = |found: &[Diagnostic]| fix::apply(&self.text, found, unsafely);
         let single = self.found.iter().filter_map(|it| apply(std::slice::from_ref(it)));
-        apply(&self.found).into_iter().chain(single).find_map(|text| self.better(text, memory))
+        apply(&self.found).into_iter().chain(single).find_map(|text| self.better(text, cache))
     }
 
     /// The text, if it is better than this one. What is harder to read is not looked at any
     /// further.
-    fn better(&self, text: String, memory: &mut Memory) -> Option<Draft> {
-        let parsed = parse_with(memory, &text);
+    fn better(&self, text: String, cache: &mut ParseCache) -> Option<Draft> {
+        let parsed = parse_with(cache, &text);
         let unreadable = Unreadable::of(&text, &parsed);
         if unreadable > self.unreadable {
             return None;

@@ -1,203 +1,265 @@
-//! Items: the pairs of the grammar become the items of the tree.
+//! Splits a text into regions, its items and their entries, that can be parsed one by one.
+//!
+//! A file and a phase are split where an item word begins; a block such as `dynamics { ... }` where
+//! an entry begins. Item words are reserved, so they begin an item wherever the text before them is
+//! complete, and at the beginning of a line even inside brackets that somebody forgot to close.
+//! `start`, `end`, `guess` and `free` also stand inside items and need a closer look.
 
-use pest::iterators::{Pair, Pairs};
+use std::ops::Range;
 
-use super::Rule;
-use super::blocks::{child, children, ident};
-use crate::ast::*;
-use crate::{Diagnostic, Parse, Span};
+use super::tokens::{Kind, Token};
+use super::words;
 
-/// The items and the model line of a text that has been read. An equation by itself is a block of
-/// one; other entries say nothing without their block.
-pub(super) fn parse_of(pairs: Pairs<'_, Rule>) -> Parse {
-    let mut parse = Parse::default();
-    let top = pairs.into_iter().next().expect("the grammar has one top");
-    let is_entry = |rule| {
-        !matches!(rule, Rule::file | Rule::only_model | Rule::only_item | Rule::only_phase_item)
-    };
-    if is_entry(top.as_rule()) && top.as_rule() != Rule::only_equation {
-        return parse;
-    }
-    for pair in top.into_inner() {
-        let mut reader = Reader { diagnostics: &mut parse.diagnostics, broken: false };
-        match pair.as_rule() {
-            Rule::EOI => {}
-            Rule::model_line => parse.tree.name = Some(ident(&reader, &pair)),
-            _ => parse.tree.items.extend(reader.item(pair)),
-        }
-    }
-    parse
+/// Words and signs; nobody writes half as many.
+const LONGEST_UNIT: usize = 100;
+
+/// Pieces are ranges of token numbers.
+pub(super) type Region = Range<usize>;
+
+/// The items of a file, or of the inside of a phase.
+pub(super) fn items(tokens: &[Token<'_>], range: Region) -> Vec<Region> {
+    cut(tokens, range, begins_item)
 }
 
-/// Builds one item, and notes what the grammar could not see.
-pub(super) struct Reader<'d> {
-    diagnostics: &'d mut Vec<Diagnostic>,
-    /// Whether the item being read has been reported.
-    broken: bool,
+/// The entries of a block.
+pub(super) fn entries(tokens: &[Token<'_>], range: Region, block: &str) -> Vec<Region> {
+    cut(tokens, range, |so_far, at| begins_entry(so_far, at, block))
 }
 
-impl Reader<'_> {
-    /// Where a pair stands in the text. A pair may have swallowed the blanks behind it, its last
-    /// leaf has not.
-    pub(super) fn span(&self, pair: &Pair<'_, Rule>) -> Span {
-        let mut last = pair.clone();
-        while let Some(inner) = last.clone().into_inner().next_back() {
-            last = inner;
+/// The region being read: where it began and which brackets are open in it.
+struct SoFar<'s, 't> {
+    tokens: &'s [Token<'t>],
+    head: usize,
+    end: usize,
+    open: Vec<&'static str>,
+    /// Whether a `{` has come, and a `piecewise` or `match`.
+    has_brace: bool,
+    has_switch: bool,
+}
+
+impl<'t> SoFar<'_, 't> {
+    fn word(&self) -> &'t str {
+        self.tokens[self.head].text
+    }
+
+    fn text(&self, at: usize) -> &'t str {
+        if at < self.end { self.tokens[at].text } else { "" }
+    }
+
+    fn in_phase(&self) -> bool {
+        self.open.first() == Some(&"}") && self.word() == "phase"
+    }
+
+    fn is_item_of_phase(&self, at: usize) -> bool {
+        let is_item = words::form(self.tokens[at].text).is_some() && !is_argument(self, at);
+        is_item || is_misspelt_item(self, at)
+    }
+
+    /// Whether the region is a block, or holds a `piecewise`, whose `{` has not come yet.
+    fn lacks_brace(&self) -> bool {
+        !self.has_brace && (self.has_switch || words::entry_form(self.word()).is_some())
+    }
+
+    /// Whether a word stands between the brackets of a unit, where any word may stand, and two of
+    /// them side by side.
+    fn is_in_unit(&self, at: usize) -> bool {
+        let mut ahead = self.tokens[at..self.end].iter().take(LONGEST_UNIT);
+        let is_bracket = |token: &&Token<'_>| matches!(token.kind, Kind::Open | Kind::Close);
+        self.open.last() == Some(&"]")
+            && ahead.find(is_bracket).is_some_and(|bracket| bracket.text == "]")
+    }
+
+    /// Keeps account of the open brackets. A closer also closes what was left open inside its pair.
+    fn track(&mut self, at: usize) {
+        let token = &self.tokens[at];
+        self.has_brace |= token.text == "{";
+        self.has_switch |= matches!(token.text, "piecewise" | "match");
+        if token.kind == Kind::Open {
+            self.open.push(token.closer());
+        } else if token.kind == Kind::Close
+            && let Some(partner) = self.open.iter().rposition(|closer| *closer == token.text)
+        {
+            self.open.truncate(partner);
+        } else if self.in_phase() && token.begins_line && self.is_item_of_phase(at) {
+            self.open.truncate(1);
         }
-        Span::new(pair.as_span().start(), last.as_span().end())
     }
+}
 
-    /// The name that a pair is.
-    pub(super) fn name(&self, pair: &Pair<'_, Rule>) -> Ident {
-        Ident { name: pair.as_str().to_owned(), span: self.span(pair) }
-    }
-
-    /// Notes that the item cannot be used. One report per item is enough.
-    pub(super) fn report(&mut self, diagnostic: Diagnostic) {
-        if !self.broken {
-            self.diagnostics.push(diagnostic);
+fn cut(
+    tokens: &[Token<'_>],
+    range: Region,
+    begins: impl Fn(&SoFar<'_, '_>, usize) -> bool,
+) -> Vec<Region> {
+    let mut regions = Vec::new();
+    let (head, end) = (range.start, range.end);
+    let mut so_far =
+        SoFar { tokens, head, end, open: Vec::new(), has_brace: false, has_switch: false };
+    for at in range.clone() {
+        if at > so_far.head && begins(&so_far, at) {
+            regions.push(so_far.head..at);
+            so_far.head = at;
+            so_far.open.clear();
+            (so_far.has_brace, so_far.has_switch) = (false, false);
         }
-        self.broken = true;
+        so_far.track(at);
     }
-
-    fn item(&mut self, pair: Pair<'_, Rule>) -> Option<Item> {
-        self.broken = false;
-        let kind = self.kind(&pair);
-        // A phase has reported its own items, and lives without them.
-        let usable = !self.broken || pair.as_rule() == Rule::phase;
-        usable.then(|| Item { kind, span: self.span(&pair) })
+    if so_far.head < range.end {
+        regions.push(so_far.head..range.end);
     }
+    regions
+}
 
-    fn kind(&mut self, pair: &Pair<'_, Rule>) -> ItemKind {
-        match pair.as_rule() {
-            Rule::phase => {
-                ItemKind::Phase { name: ident(self, pair), items: self.phase_items(pair) }
+fn begins_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let token = &so_far.tokens[at];
+    let outside = so_far.open.is_empty();
+    match (token.kind, words::reserved(token.text)) {
+        (Kind::Close, _) => outside,
+        (Kind::Open, _) if token.text == "{" && outside => is_nameless_block(so_far, at),
+        (Kind::Word, _) if so_far.is_in_unit(at) => false,
+        (Kind::Word, Some(word)) if word.item.is_some() => {
+            if so_far.in_phase() {
+                return token.begins_line && matches!(token.text, "phase" | "link");
             }
-            Rule::dynamics => ItemKind::Dynamics { equations: self.equations(pair) },
-            Rule::equation => ItemKind::Dynamics { equations: vec![self.equation(pair)] },
-            Rule::guess => ItemKind::Guess { bindings: self.bindings(pair) },
-            Rule::report => ItemKind::Report { bindings: self.bindings(pair) },
-            Rule::method => ItemKind::Method { settings: self.settings(pair) },
-            Rule::sweep => ItemKind::Sweep { lists: self.swept(pair) },
-            Rule::expect => ItemKind::Expect { checks: self.checks(pair) },
-            Rule::metric => ItemKind::Metric { weights: self.weights(pair) },
-            Rule::start => ItemKind::Start { condition: self.condition(pair) },
-            Rule::end => ItemKind::End { condition: self.condition(pair) },
-            Rule::path => self.path(pair),
-            Rule::objective => self.objective(pair),
-            Rule::jump => self.jump(pair),
-            Rule::link => self.link(pair),
-            _ => self.declaration(pair),
+            let may_begin = if outside { can_begin(so_far, at) } else { token.begins_line };
+            may_begin && !continues_item(so_far, at)
+        }
+        (Kind::Word, None) if !so_far.in_phase() => {
+            is_misspelt_item(so_far, at) || (outside && is_unknown_item(so_far, at))
+        }
+        _ => false,
+    }
+}
+
+/// Whether what stands before could be the end of a region.
+fn can_begin(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let is_start_free = matches!(&so_far.tokens[..at], [.., start, free] if start.text == "start" && free.text == "free");
+    so_far.tokens[at].begins_line || can_end(&so_far.tokens[at - 1]) || is_start_free
+}
+
+/// Whether a region may end with a token.
+fn can_end(token: &Token<'_>) -> bool {
+    match token.kind {
+        Kind::Word => words::reserved(token.text).is_none(),
+        Kind::Sign => token.text == "'",
+        Kind::Open => false,
+        Kind::Number | Kind::Text | Kind::Close | Kind::Foreign => true,
+    }
+}
+
+/// Whether an item word belongs to the item that is being read.
+fn continues_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let next = so_far.text(at + 1);
+    // A misspelt item may be any.
+    let item =
+        |words: &[&str]| words.contains(&so_far.word()) || words::reserved(so_far.word()).is_none();
+    match so_far.tokens[at].text {
+        "free" => {
+            so_far.tokens[at - 1].text == "start"
+                || (item(&["state"]) && ["", "in"].contains(&next))
+        }
+        "guess" => item(&["free", "control"]) && next != "{",
+        "start" => is_argument(so_far, at) || (item(&["state"]) && !has_relation(so_far, at)),
+        "end" => is_argument(so_far, at),
+        _ => false,
+    }
+}
+
+/// Whether `start` or `end` stands for a time, as in `x(end)`.
+fn is_argument(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    matches!(so_far.tokens[at].text, "start" | "end") && matches!(so_far.text(at + 1), ")" | ",")
+}
+
+/// Whether a comparison follows before the next item: then `start` is a condition, not a state's
+/// value. The comparisons of a `piecewise` are between braces.
+fn has_relation(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let mut braces = 0;
+    for (at, token) in so_far.tokens[..so_far.end].iter().enumerate().skip(at + 1) {
+        match token.text {
+            "{" => braces += 1,
+            "}" => braces -= 1,
+            "<=" | ">=" | "==" if braces == 0 => return true,
+            word if words::form(word).is_some() && !is_argument(so_far, at) => return false,
+            _ => {}
         }
     }
+    false
+}
 
-    fn declaration(&mut self, pair: &Pair<'_, Rule>) -> ItemKind {
-        let name = ident(self, pair);
-        let (unit, bounds) = (self.unit(pair), self.interval(pair));
-        match pair.as_rule() {
-            Rule::parameter => {
-                ItemKind::Param { name, value: self.expression_in(pair), unit, bounds }
-            }
-            Rule::constant => ItemKind::Const { name, value: self.one(pair), unit },
-            Rule::definition => ItemKind::Let { name, unit, value: self.one(pair) },
-            Rule::function => {
-                ItemKind::Fn { name, arguments: self.names(pair), body: self.one(pair) }
-            }
-            Rule::data => self.data(pair, name),
-            Rule::free => ItemKind::Free { name, bounds, unit, guess: self.guess_value(pair) },
-            Rule::time => {
-                ItemKind::Time { name, interval: bounds.expect("a time has an interval"), unit }
-            }
-            Rule::state => ItemKind::State {
-                name,
-                parts: self.names(pair),
-                unit,
-                bounds,
-                start: self.start(pair),
-            },
-            Rule::control => ItemKind::Control {
-                name,
-                parts: self.names(pair),
-                bounds,
-                unit,
-                guess: self.guess_value(pair),
-            },
-            _ => ItemKind::Surface { name, value: self.one(pair) },
+/// Whether a line begins with nearly an item word and a name, as in `stat v`. Two names side by
+/// side are never right.
+fn is_misspelt_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let token = &so_far.tokens[at];
+    let next = so_far.tokens[..so_far.end].get(at + 1);
+    token.begins_line
+        && next.is_some_and(|next| {
+            next.kind == Kind::Word && !next.begins_line && !words::goes_on(next.text)
+        })
+        && !words::inner_words(so_far.word()).contains(&token.text)
+        && words::closest_item(token.text).is_some()
+}
+
+/// Whether a line begins with a name behind a text that is complete: no item goes on like that.
+/// `unit v`, `dynamcs {`, `m = 2`, `x >= 0`.
+fn is_unknown_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let inner_words = words::inner_words(so_far.word());
+    so_far.tokens[at].begins_line
+        && can_end(&so_far.tokens[at - 1])
+        && !inner_words.contains(&so_far.tokens[at - 1].text)
+        && !inner_words.contains(&so_far.tokens[at].text)
+        && !so_far.lacks_brace()
+}
+
+/// Whether a line begins with the brace of a block that has lost its word.
+fn is_nameless_block(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let before = &so_far.tokens[at - 1];
+    let is_block = words::entry_form(so_far.word()).is_some() || matches!(so_far.word(), "phase");
+    let is_switch = at.checked_sub(2).is_some_and(|at| so_far.tokens[at].text == "match");
+    so_far.tokens[at].begins_line
+        && can_end(before)
+        && !is_switch
+        && (!is_block || before.text == "}")
+}
+
+fn begins_entry(so_far: &SoFar<'_, '_>, at: usize, block: &str) -> bool {
+    let token = &so_far.tokens[at];
+    let complete = can_end(&so_far.tokens[at - 1]);
+    if looks_like_entry(so_far, at, block)
+        && (token.begins_line || (complete && so_far.open.is_empty()))
+    {
+        return true;
+    }
+    let is_next = token.kind != Kind::Sign || loses_its_name(so_far, at);
+    token.begins_line && so_far.open.is_empty() && complete && is_next
+}
+
+/// Whether a sign at the beginning of a line belongs to an entry without a name: `' = v` or, behind
+/// an entry that has one, `= 2`.
+fn loses_its_name(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let defines = |text: &str| matches!(text, "=" | ":=" | "in");
+    let has_sign = || so_far.tokens[so_far.head..at].iter().any(|token| defines(token.text));
+    match so_far.tokens[at].text {
+        "'" => true,
+        sign => defines(sign) && has_sign(),
+    }
+}
+
+/// Whether an entry of the block certainly begins here.
+fn looks_like_entry(so_far: &SoFar<'_, '_>, at: usize, block: &str) -> bool {
+    let [first, second, third, fourth] = [at, at + 1, at + 2, at + 3].map(|at| so_far.text(at));
+    let is_name = so_far.tokens[at].kind == Kind::Word && words::reserved(first).is_none();
+    match block {
+        "dynamics" => {
+            is_name
+                && so_far.text(at - 1) != "*"
+                && (second == "'" || (second == "*" && fourth == "'"))
         }
-    }
-
-    fn data(&self, pair: &Pair<'_, Rule>, name: Ident) -> ItemKind {
-        let string = child(pair, Rule::string).expect("a data set has a file");
-        let columns =
-            children(pair, Rule::column).map(|column| (ident(self, &column), self.unit(&column)));
-        let file = string.as_str().trim_matches('"').to_owned();
-        ItemKind::Data { name, file, file_span: self.span(&string), columns: columns.collect() }
-    }
-
-    fn guess_value(&mut self, pair: &Pair<'_, Rule>) -> Option<Expr> {
-        child(pair, Rule::guess_value).map(|guess| self.one(&guess))
-    }
-
-    fn start(&mut self, pair: &Pair<'_, Rule>) -> Option<Start> {
-        if let Some(value) = child(pair, Rule::start_value) {
-            return Some(Start::Value(self.one(&value)));
+        "guess" | "report" | "sweep" => is_name && second == "=",
+        "jump" | "link" => is_name && second == ":=",
+        "method" => {
+            let is_key = is_name && second == "=" && so_far.tokens[at].begins_line;
+            is_key || (["smooth", "grid", "continue"].contains(&first) && third == "=")
         }
-        let free = child(pair, Rule::start_free)?;
-        let keyword = child(&free, Rule::kw_free).expect("`start free` has the word `free`");
-        Some(Start::Free { span: self.span(&keyword), bounds: self.interval(&free) })
-    }
-
-    fn phase_items(&mut self, pair: &Pair<'_, Rule>) -> Vec<Item> {
-        let keyword_or_punctuation =
-            [Rule::kw_phase, Rule::name, Rule::left_brace, Rule::right_brace];
-        let items = pair
-            .clone()
-            .into_inner()
-            .filter(|inner| !keyword_or_punctuation.contains(&inner.as_rule()));
-        items.filter_map(|inner| self.item(inner)).collect()
-    }
-
-    fn weights(&mut self, pair: &Pair<'_, Rule>) -> Vec<(Ident, Expr)> {
-        children(pair, Rule::weight)
-            .map(|weight| (ident(self, &weight), self.one(&weight)))
-            .collect()
-    }
-
-    fn path(&mut self, pair: &Pair<'_, Rule>) -> ItemKind {
-        let name = child(pair, Rule::label).map(|label| ident(self, &label));
-        ItemKind::Path { name, condition: self.condition(pair) }
-    }
-
-    fn objective(&mut self, pair: &Pair<'_, Rule>) -> ItemKind {
-        let keyword = child(pair, Rule::sense).expect("an objective has a sense");
-        let sense = if keyword.as_str() == "minimize" { Sense::Minimize } else { Sense::Maximize };
-        ItemKind::Objective { sense, keyword: self.span(&keyword), value: self.one(pair) }
-    }
-
-    fn jump(&mut self, pair: &Pair<'_, Rule>) -> ItemKind {
-        let direction = child(pair, Rule::direction).expect("a jump has a direction");
-        let [name, surface] = self.two_names(pair);
-        ItemKind::Jump {
-            name,
-            surface,
-            direction: if direction.as_str() == "falling" {
-                Direction::Falling
-            } else {
-                Direction::Rising
-            },
-            direction_span: self.span(&direction),
-            at_most: child(pair, Rule::at_most).map(|limit| self.one(&limit)),
-            then_hold: child(pair, Rule::then_hold).map(|hold| ident(self, &hold)),
-            assignments: self.assignments(pair),
-        }
-    }
-
-    fn link(&mut self, pair: &Pair<'_, Rule>) -> ItemKind {
-        let [from, to] = self.two_names(pair);
-        ItemKind::Link { from, to, assignments: self.assignments(pair) }
-    }
-
-    fn two_names(&self, pair: &Pair<'_, Rule>) -> [Ident; 2] {
-        self.all_names(pair).try_into().expect("the grammar has two names here")
+        _ => false,
     }
 }

@@ -2,7 +2,7 @@
 //! time.
 
 use super::Rule;
-use super::cut::Piece;
+use super::items::Region;
 use super::tokens::{Kind, Token};
 use super::words;
 
@@ -15,7 +15,7 @@ pub(super) const MOST_TOKENS: usize = 50_000;
 /// Bytes of one word or number, so that every message stays readable.
 pub(super) const MOST_LETTERS: usize = 255;
 
-/// Why a piece cannot be read.
+/// Why a region cannot be read.
 pub(super) enum Failure {
     /// The bracket with this token number is one too many inside each other.
     TooDeep(usize),
@@ -27,11 +27,11 @@ pub(super) enum Failure {
     Stopped(usize, Vec<Rule>),
 }
 
-/// Why a piece may not be given to the grammar.
-pub(super) fn exceeded(tokens: &[Token<'_>], piece: &Piece) -> Option<Failure> {
-    let inside = &tokens[piece.clone()];
-    let bracket = || too_deep(inside).map(|at| Failure::TooDeep(piece.start + at));
-    let word = || long_word(inside).map(|at| Failure::LongWord(piece.start + at));
+/// Why a region may not be given to the grammar.
+pub(super) fn exceeded(tokens: &[Token<'_>], region: &Region) -> Option<Failure> {
+    let inside = &tokens[region.clone()];
+    let bracket = || too_deep(inside).map(|at| Failure::TooDeep(region.start + at));
+    let word = || long_word(inside).map(|at| Failure::LongWord(region.start + at));
     bracket().or_else(word).or_else(|| is_too_long(inside).then_some(Failure::TooLong))
 }
 

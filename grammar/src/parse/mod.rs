@@ -1,27 +1,18 @@
-//! From text to tree: the text is cut into items, and the grammar reads one after the other.
+//! From text to tree: the text is split into items, and the grammar reads one after the other.
 //!
 //! Nothing outside this folder knows that the grammar is written for pest, and nothing of pest's
 //! own wording is shown.
 
-mod adjacent;
-mod blocks;
-mod brackets;
-mod cut;
-mod doubled;
-mod expressions;
-mod forgotten;
+mod cache;
 mod items;
 mod limits;
-mod memory;
-mod messages;
-mod moved;
 mod outline;
-mod pieces;
+mod recovery;
+mod reparse;
 #[cfg(test)]
 mod rules;
-mod slips;
 mod tokens;
-mod unknown;
+mod tree;
 #[cfg(test)]
 mod whole;
 pub mod words;
@@ -34,7 +25,7 @@ use pest::iterators::Pairs;
 use crate::source::line_starts;
 use crate::{Code, Diagnostic, Parse, Span};
 
-pub use memory::Memory;
+pub use crate::parse::cache::ParseCache;
 pub use tokens::comments;
 
 /// The generated parser.
@@ -47,16 +38,16 @@ const MOST_BYTES: usize = 4_000_000;
 
 /// Reads a text: everything that can be understood, and what is wrong with the rest.
 pub fn parse(text: &str) -> Parse {
-    parse_with(&mut Memory::default(), text)
+    parse_with(&mut ParseCache::default(), text)
 }
 
-/// The same with a memory of the text as it was before: only what has changed since then is read.
-pub fn parse_with(memory: &mut Memory, text: &str) -> Parse {
+/// The same with a cache of the text as it was before: only what has changed since then is read.
+pub fn parse_with(cache: &mut ParseCache, text: &str) -> Parse {
     if let Some(diagnostic) = refuse(text) {
         return Parse { diagnostics: vec![diagnostic], ..Parse::default() };
     }
-    let mut parse = pieces::read(text, &tokens::tokens(text), memory);
-    memory.forget();
+    let mut parse = recovery::read(text, &tokens::tokens(text), cache);
+    cache.forget();
     parse.tree.docs = doc_lines(text);
     parse.tree.line_starts = line_starts(text).collect();
     if parse.tree.items.is_empty() && parse.diagnostics.is_empty() {

@@ -2,7 +2,7 @@
 //! mistake where there is one.
 
 use super::tokens::tokens;
-use super::{Rule, items, pairs, parse, rules};
+use super::{Rule, pairs, parse, rules, tree};
 
 /// How many texts are made of the right ones.
 const SHUFFLED: usize = 3_000;
@@ -34,7 +34,7 @@ fn is_accepted(text: &str) -> bool {
         assert!(!read.diagnostics.is_empty(), "the grammar does not accept\n{text}");
         return false;
     };
-    let whole = items::parse_of(pairs);
+    let whole = tree::parse_of(pairs);
     if !whole.tree.items.is_empty() {
         assert_eq!(read.diagnostics, whole.diagnostics, "the grammar accepts\n{text}");
     }

@@ -9,10 +9,10 @@
 
 use pest::iterators::Pair;
 
-use super::Rule;
+use super::Reader;
 use super::blocks::{child, children, ident};
-use super::items::Reader;
 use crate::ast::{Argument, Arm, BinaryOperator, Expr, ExprKind, Relation};
+use crate::parse::Rule;
 use crate::{Code, Diagnostic, Span};
 
 /// The deepest tree that is built.

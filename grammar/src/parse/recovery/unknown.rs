@@ -1,15 +1,15 @@
 //! FDC0005 and its like: a line that begins with a word which introduces nothing, and an entry
 //! without its name.
 
-use super::messages::Place;
-use super::tokens::Kind;
-use super::words;
+use super::messages::ErrorContext;
+use crate::parse::tokens::Kind;
+use crate::parse::words;
 use crate::{Code, Diagnostic, Fix};
 
 /// FDC0005: a line that begins with a word which introduces nothing.
-pub(super) fn unknown_item(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let first = &place.tokens[place.piece.start];
-    if place.form.is_some() || place.at != place.piece.start {
+pub(super) fn unknown_item(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let first = &context.tokens[context.region.start];
+    if context.form.is_some() || context.at != context.region.start {
         return None;
     }
     if first.text == "{" {
@@ -29,9 +29,10 @@ pub(super) fn unknown_item(place: &Place<'_, '_>) -> Option<Diagnostic> {
         return None;
     }
     let message = format!("`{}` does not begin an item", first.text);
-    let (label, help) = meant(place, first.text);
+    let (label, help) = meant(context, first.text);
     let found = Diagnostic::new(Code::UnknownItem, message, first.span(), label).help(help);
-    let next = place.tokens[..place.piece.end].get(place.at + 1).map_or("", |token| token.text);
+    let next =
+        context.tokens[..context.region.end].get(context.at + 1).map_or("", |token| token.text);
     Some(match words::closest_item(first.text).filter(|_| !DEFINES.contains(&next)) {
         Some(word) => {
             found.fix(Fix::certain(format!("write `{word}`")).replace(first.span(), word))
@@ -44,12 +45,12 @@ pub(super) fn unknown_item(place: &Place<'_, '_>) -> Option<Diagnostic> {
 const DEFINES: &[&str] = &["'", "=", ":="];
 
 /// Label and help, by what follows the word.
-fn meant(place: &Place<'_, '_>, word: &str) -> (String, String) {
-    let next = if place.piece.len() > 1 { place.text(place.piece.start + 1) } else { "" };
+fn meant(context: &ErrorContext<'_, '_>, word: &str) -> (String, String) {
+    let next = if context.region.len() > 1 { context.text(context.region.start + 1) } else { "" };
     let which = || "which kind of item is it?".to_owned();
     let relations = ["<=", ">=", "==", "<", ">"];
     let has = |signs: &[&str]| {
-        place.tokens[place.piece.clone()].iter().any(|it| signs.contains(&it.text))
+        context.tokens[context.region.clone()].iter().any(|it| signs.contains(&it.text))
     };
     match (words::closest_item(word), next) {
         (_, "'") => ("an equation outside `dynamics`".into(), format!("write `dynamics {{ {word}' \
@@ -90,13 +91,14 @@ fn meant(place: &Place<'_, '_>, word: &str) -> (String, String) {
 }
 
 /// FDC0002: an entry of a block that begins with the sign behind its name: `' = v`, `= 2`, `:= 3`.
-pub(super) fn nameless_entry(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let first = place.next().filter(|_| place.at == place.piece.start && place.form.is_some())?;
+pub(super) fn nameless_entry(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let first =
+        context.next().filter(|_| context.at == context.region.start && context.form.is_some())?;
     if !["'", "=", ":="].contains(&first.text) {
         return None;
     }
     let message = format!("a name is missing before `{}`", first.text);
     let found =
         Diagnostic::new(Code::Unfinished, message, first.span(), "a name should stand before this");
-    Some(place.example(found))
+    Some(context.example(found))
 }

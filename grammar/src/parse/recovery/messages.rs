@@ -1,53 +1,54 @@
-//! Why a piece cannot be read, in our own words.
+//! Why a region cannot be read, in our own words.
 //!
 //! The grammar says where it gave up and what it would have gone on with; the tokens say what
 //! stands around that place. Together they choose one message: what is missing or superfluous,
 //! where, and how the right form looks.
 
-use super::cut::Piece;
-use super::limits::{Failure, MOST_BRACKETS, MOST_LETTERS, MOST_TOKENS};
-use super::tokens::{Kind, Token};
-use super::words::{self, Form};
-use super::{Rule, adjacent, brackets, doubled, forgotten, slips, unknown};
+use super::{adjacent, brackets, duplicate, missing, typos, unknown};
+use crate::parse::Rule;
+use crate::parse::items::Region;
+use crate::parse::limits::{Failure, MOST_BRACKETS, MOST_LETTERS, MOST_TOKENS};
+use crate::parse::tokens::{Kind, Token};
+use crate::parse::words::{self, Form};
 use crate::{Code, Diagnostic, Span};
 
 /// The place where the grammar gave up.
-pub(super) struct Place<'p, 't> {
+pub(super) struct ErrorContext<'p, 't> {
     /// All tokens of the file.
     pub tokens: &'p [Token<'t>],
-    /// The piece that cannot be read.
-    pub piece: &'p Piece,
+    /// The region that cannot be read.
+    pub region: &'p Region,
     /// The word of its item, or of the block that it is an entry of.
     pub word: &'t str,
-    /// How messages speak of the piece.
+    /// How messages speak of the region.
     pub form: Option<&'static Form>,
-    /// The first token that was not understood; one past the piece if it ended too early.
+    /// The first token that was not understood; one past the region if it ended too early.
     pub at: usize,
     /// What the grammar would have gone on with.
     pub expected: &'p [Rule],
-    /// A closing bracket behind the piece that closes nothing.
+    /// A closing bracket behind the region that closes nothing.
     pub closer: Option<&'p Token<'t>>,
 }
 
-impl<'t> Place<'_, 't> {
+impl<'t> ErrorContext<'_, 't> {
     /// The first token that was not understood.
     pub fn next(&self) -> Option<&Token<'t>> {
-        self.tokens[..self.piece.end].get(self.at)
+        self.tokens[..self.region.end].get(self.at)
     }
 
     /// The last token that was.
     pub fn previous(&self) -> Option<&Token<'t>> {
-        (self.at > self.piece.start).then(|| &self.tokens[self.at - 1])
+        (self.at > self.region.start).then(|| &self.tokens[self.at - 1])
     }
 
-    /// The text of a token, inside the piece or beside it.
+    /// The text of a token, inside the region or beside it.
     pub fn text(&self, at: usize) -> &'t str {
         self.tokens.get(at).map_or("", |token| token.text)
     }
 
-    /// The tokens of the piece that stand before the place.
+    /// The tokens of the region that stand before the place.
     pub fn before(&self) -> &[Token<'t>] {
-        &self.tokens[self.piece.start..self.at]
+        &self.tokens[self.region.start..self.at]
     }
 
     /// Whether the grammar would have gone on with one of these.
@@ -68,7 +69,7 @@ impl<'t> Place<'_, 't> {
     /// The bracket that is open at the place.
     pub fn innermost_bracket(&self) -> Option<&'t str> {
         let mut open = Vec::new();
-        for token in &self.tokens[self.piece.start..self.at] {
+        for token in &self.tokens[self.region.start..self.at] {
             match token.kind {
                 Kind::Open => open.push(token.text),
                 Kind::Close => drop(open.pop()),
@@ -136,63 +137,63 @@ const MISSING: &[(&[Rule], &str, Option<&str>)] = &[
     (&[Rule::right_brace], "`}`", None),
 ];
 
-/// One diagnostic for a piece, and whether another one says it already.
+/// One diagnostic for a region, and whether another one says it already.
 pub(super) fn explain(
     tokens: &[Token<'_>],
-    piece: &Piece,
+    region: &Region,
     block: Option<&str>,
     failure: &Failure,
     closer: Option<&Token<'_>>,
 ) -> (Diagnostic, bool) {
     let (stopped, expected) = match failure {
         Failure::TooDeep(bracket) => return (too_many_brackets(&tokens[*bracket]), false),
-        Failure::TooLong => return (too_long(&tokens[piece.start]), false),
+        Failure::TooLong => return (too_long(&tokens[region.start]), false),
         Failure::LongWord(word) => return (long_word(&tokens[*word]), false),
         Failure::Stopped(at, expected) => (*at, expected),
     };
-    let word = block.unwrap_or(tokens[piece.start].text);
+    let word = block.unwrap_or(tokens[region.start].text);
     let form = block.map_or_else(|| words::form(word), words::entry_form);
-    let at = piece.start + tokens[piece.clone()].partition_point(|token| token.end() <= stopped);
-    let place = Place { tokens, piece, word, form, at, expected, closer };
-    let is_renamed = place.next().is_some_and(|token| slips::is_renamed_elsewhere(tokens, token));
-    let name = slips::reserved_name(&place).filter(|_| is_renamed);
+    let at = region.start + tokens[region.clone()].partition_point(|token| token.end() <= stopped);
+    let context = ErrorContext { tokens, region, word, form, at, expected, closer };
+    let is_renamed = context.next().is_some_and(|token| typos::is_renamed_elsewhere(tokens, token));
+    let name = typos::reserved_name(&context).filter(|_| is_renamed);
     let is_told = is_renamed && name.is_none();
-    (name.unwrap_or_else(|| reason(&place)), is_told)
+    (name.unwrap_or_else(|| reason(&context)), is_told)
 }
 
 /// What is wrong at a place: the first reason that fits, or else what is missing or superfluous.
-fn reason(place: &Place<'_, '_>) -> Diagnostic {
-    let reasons: &[fn(&Place<'_, '_>) -> Option<Diagnostic>] = &[
+fn reason(context: &ErrorContext<'_, '_>) -> Diagnostic {
+    let reasons: &[fn(&ErrorContext<'_, '_>) -> Option<Diagnostic>] = &[
         unknown::unknown_item,
         unknown::nameless_entry,
-        slips::foreign_character,
-        slips::foreign_comment,
+        typos::foreign_character,
+        typos::foreign_comment,
         brackets::unopened_after,
-        slips::second_derivative,
-        doubled::doubled,
-        slips::wrong_sign,
-        slips::reserved_name,
-        forgotten::before_ends,
+        typos::second_derivative,
+        duplicate::duplicate,
+        typos::wrong_sign,
+        typos::reserved_name,
+        missing::before_ends,
         brackets::unbalanced,
-        slips::misspelt_word,
-        forgotten::in_header,
-        forgotten::of_range,
-        forgotten::of_value,
-        forgotten::of_switch,
-        forgotten::comparison,
-        forgotten::comma,
+        typos::misspelt_word,
+        missing::in_header,
+        missing::of_range,
+        missing::of_value,
+        missing::of_switch,
+        missing::comparison,
+        missing::comma,
         adjacent::missing_operator,
-        slips::wrong_range,
-        slips::wrong_vector,
-        slips::second_equation,
-        slips::second_value,
-        slips::misplaced_item,
+        typos::wrong_range,
+        typos::wrong_vector,
+        typos::second_equation,
+        typos::second_value,
+        typos::misplaced_item,
     ];
-    let reason = reasons.iter().find_map(|reason| reason(place));
-    reason.or_else(|| missing(place)).unwrap_or_else(|| superfluous(place))
+    let reason = reasons.iter().find_map(|reason| reason(context));
+    reason.or_else(|| missing(context)).unwrap_or_else(|| superfluous(context))
 }
 
-/// FDC0004, before the grammar has seen the piece.
+/// FDC0004, before the grammar has seen the region.
 fn too_many_brackets(bracket: &Token<'_>) -> Diagnostic {
     let message = format!("more than {MOST_BRACKETS} brackets inside each other");
     Diagnostic::new(Code::TooDeep, message, bracket.span(), "one bracket more than can be read")
@@ -223,14 +224,16 @@ fn long_word(word: &Token<'_>) -> Diagnostic {
         .help(help)
 }
 
-/// FDC0002: the piece stopped too early. A parameter may end after its name, but not go on without
+/// FDC0002: the region stopped too early. A parameter may end after its name, but not go on without
 /// `=`.
-fn missing(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    if place.expects(&[Rule::EOI]) && !(place.expects(&[Rule::equals]) && place.next().is_some()) {
+fn missing(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    if context.expects(&[Rule::EOI])
+        && !(context.expects(&[Rule::equals]) && context.next().is_some())
+    {
         return None;
     }
-    let (_, thing, help) = MISSING.iter().find(|(rules, ..)| place.expects(rules))?;
-    let previous = place.previous()?;
+    let (_, thing, help) = MISSING.iter().find(|(rules, ..)| context.expects(rules))?;
+    let previous = context.previous()?;
     let message = format!("{thing} is missing after `{}`", previous.text);
     let diagnostic = Diagnostic::new(
         Code::Unfinished,
@@ -238,23 +241,23 @@ fn missing(place: &Place<'_, '_>) -> Option<Diagnostic> {
         previous.span(),
         format!("{thing} should follow"),
     );
-    let before_previous = place.at.checked_sub(2).map_or("", |at| place.text(at));
+    let before_previous = context.at.checked_sub(2).map_or("", |at| context.text(at));
     Some(match help {
         _ if matches!(previous.text, "below" | "above" | "match") => diagnostic.help(MATCH),
         _ if before_previous == "match" => diagnostic.help(MATCH),
         _ if previous.text == "piecewise" => diagnostic.help(PIECEWISE),
         Some(help) => diagnostic.help(*help),
-        None => place.example(diagnostic),
+        None => context.example(diagnostic),
     })
 }
 
-/// FDC0002: the piece goes on after its end.
-fn superfluous(place: &Place<'_, '_>) -> Diagnostic {
-    let token = place.next().unwrap_or(&place.tokens[place.piece.end - 1]);
-    let label = match place.form {
+/// FDC0002: the region goes on after its end.
+fn superfluous(context: &ErrorContext<'_, '_>) -> Diagnostic {
+    let token = context.next().unwrap_or(&context.tokens[context.region.end - 1]);
+    let label = match context.form {
         Some(form) => format!("{} ends before this", form.noun),
         None => "this does not belong here".to_owned(),
     };
     let message = format!("`{}` cannot stand here", token.text);
-    place.example(Diagnostic::new(Code::Unfinished, message, token.span(), label))
+    context.example(Diagnostic::new(Code::Unfinished, message, token.span(), label))
 }

@@ -1,42 +1,43 @@
-//! What was read of a text before, so that a change costs no more than the item that it is in.
+//! The trees of the items of a text as it was parsed last, so that a change costs no more than the
+//! item that it is in.
 //!
-//! What the grammar makes of a piece depends on nothing but its characters, so a piece that is
-//! written the same as before is the same as before, wherever it stands now.
+//! What the grammar makes of a region depends on its characters alone. So a region with the same
+//! characters has the same tree, wherever it stands now.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use super::{Rule, items, pairs};
+use super::{Rule, pairs, tree};
 use crate::Parse;
 
 /// The pieces of a text as it was read last.
 #[derive(Default)]
-pub struct Memory {
+pub struct ParseCache {
     before: HashMap<(Rule, String), Parse>,
     now: HashMap<(Rule, String), Parse>,
 }
 
-impl Memory {
-    /// What a piece says, its places counted from its first byte; or where the grammar gave up and
+impl ParseCache {
+    /// What a region says, its places counted from its first byte; or where the grammar gave up and
     /// what it would have gone on with.
     pub(super) fn read(&mut self, rule: Rule, text: &str) -> Result<&Parse, (usize, Vec<Rule>)> {
         Ok(match self.place(rule, text) {
             Entry::Occupied(read) => read.into_mut(),
-            Entry::Vacant(place) => place.insert(items::parse_of(pairs(rule, text)?)),
+            Entry::Vacant(place) => place.insert(tree::parse_of(pairs(rule, text)?)),
         })
     }
 
-    /// Whether a piece has been read.
+    /// Whether a region has been read.
     pub(super) fn knows(&mut self, rule: Rule, text: &str) -> bool {
         matches!(self.place(rule, text), Entry::Occupied(_))
     }
 
-    /// Keeps what a piece says.
+    /// Keeps what a region says.
     pub(super) fn learn(&mut self, rule: Rule, text: &str, says: Parse) {
         self.place(rule, text).insert_entry(says);
     }
 
-    /// Where a piece is kept, with what was known of it.
+    /// Where a region is kept, with what was known of it.
     fn place(&mut self, rule: Rule, text: &str) -> Entry<'_, (Rule, String), Parse> {
         let key = (rule, text.to_owned());
         if let Some(read) = self.before.remove(&key) {
@@ -53,9 +54,9 @@ impl Memory {
 
 #[test]
 fn what_is_no_longer_in_the_text_is_forgotten() {
-    let mut memory = Memory::default();
-    super::parse_with(&mut memory, &"param a = 1\nparam b = 2\n".repeat(10));
-    assert_eq!(memory.before.len(), 2, "equal pieces are kept once");
-    super::parse_with(&mut memory, "param b = 2");
-    assert_eq!(memory.before.len(), 1);
+    let mut cache = ParseCache::default();
+    super::parse_with(&mut cache, &"param a = 1\nparam b = 2\n".repeat(10));
+    assert_eq!(cache.before.len(), 2, "equal regions are kept once");
+    super::parse_with(&mut cache, "param b = 2");
+    assert_eq!(cache.before.len(), 1);
 }

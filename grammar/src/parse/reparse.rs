@@ -1,12 +1,12 @@
-//! Puts what was read of a piece to where the piece stands in the text.
+//! Incremental parsing: the tree of a region is shifted to where the region stands in the text.
 
 use crate::ast::*;
 use crate::{Code, Diagnostic, Edit, Fix, Label, Parse, Severity, Span};
 
 impl Parse {
-    /// Adds what was read of a piece that begins at byte `start`.
-    pub(super) fn append(&mut self, piece: &Parse, start: usize) {
-        let Parse { tree, diagnostics, .. } = piece;
+    /// Adds what was read of a region that begins at byte `start`.
+    pub(super) fn append(&mut self, region: &Parse, start: usize) {
+        let Parse { tree, diagnostics, .. } = region;
         let (from, found) = (self.tree.items.len(), self.diagnostics.len());
         self.tree.items.extend_from_slice(&tree.items);
         self.diagnostics.extend_from_slice(diagnostics);

@@ -2,10 +2,10 @@
 
 use pest::iterators::Pair;
 
-use super::Rule;
+use super::Reader;
 use super::expressions::relation;
-use super::items::Reader;
 use crate::ast::*;
+use crate::parse::Rule;
 use crate::{Code, Diagnostic, Span};
 
 /// The first pair of a rule directly below a pair.

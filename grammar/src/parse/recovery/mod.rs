@@ -1,27 +1,35 @@
-//! Reads a text piece by piece.
+//! Error recovery: reads a text region by region.
 //!
-//! The text is cut into pieces, each of which the grammar reads by itself, unless the memory has
-//! it. A piece that cannot be read gives one diagnostic and is painted over with blanks, which
+//! A region is an item or an entry of a block, which the grammar reads by itself, unless it is in
+//! the cache. A region that cannot be read gives one diagnostic and is replaced by blanks, which
 //! keeps every other place where it was; blocks and phases are first tried entry by entry, so that
 //! one wrong equation does not cost the others.
 
+mod adjacent;
+mod brackets;
+mod duplicate;
+mod messages;
+mod missing;
+mod typos;
+mod unknown;
+
 use std::collections::HashSet;
 
-use super::cut::{self, Piece};
+use super::Rule;
+use super::cache::ParseCache;
+use super::items::{self, Region};
 use super::limits::{self, Failure};
-use super::memory::Memory;
 use super::tokens::{Kind, Token};
-use super::{Rule, messages};
 use crate::{Diagnostic, Parse, Span};
 
 /// Nobody reads more errors than this, so nothing behind them is tried.
 const MOST_DIAGNOSTICS: usize = 100;
 
 /// Everything readable in a text with these tokens.
-pub(super) fn read(text: &str, tokens: &[Token<'_>], memory: &mut Memory) -> Parse {
+pub(super) fn read(text: &str, tokens: &[Token<'_>], cache: &mut ParseCache) -> Parse {
     let mut reading = Reading {
         tokens,
-        memory,
+        cache,
         rest: text.to_owned(),
         diagnostics: Vec::new(),
         untold: None,
@@ -33,12 +41,12 @@ pub(super) fn read(text: &str, tokens: &[Token<'_>], memory: &mut Memory) -> Par
         phases: 0,
     };
     let mut parse = Parse::default();
-    for piece in cut::items(tokens, 0..tokens.len()) {
-        let is_model_line = piece.start == 0 && tokens[0].text == "model";
+    for region in items::items(tokens, 0..tokens.len()) {
+        let is_model_line = region.start == 0 && tokens[0].text == "model";
         let rule = if is_model_line { Rule::only_model } else { Rule::only_item };
-        if reading.mend(&piece, rule, None) {
-            let read = reading.memory.read(rule, &reading.rest[reading.bytes(&piece)]);
-            parse.append(read.expect("a mended piece can be read"), tokens[piece.start].start);
+        if reading.mend(&region, rule, None) {
+            let read = reading.cache.read(rule, &reading.rest[reading.bytes(&region)]);
+            parse.append(read.expect("a mended region can be read"), tokens[region.start].start);
         }
     }
     let untold = reading.untold.filter(|_| reading.diagnostics.is_empty());
@@ -56,7 +64,7 @@ const FEW_TOKENS: usize = 20;
 
 struct Reading<'t, 'm> {
     tokens: &'t [Token<'t>],
-    memory: &'m mut Memory,
+    cache: &'m mut ParseCache,
     /// The text, with blanks in place of what was wrong.
     rest: String,
     diagnostics: Vec<Diagnostic>,
@@ -72,45 +80,45 @@ struct Reading<'t, 'm> {
     explained: usize,
     /// Words and numbers that are too long; each is told once.
     long: HashSet<&'t str>,
-    /// The phases around the piece that is being mended.
+    /// The phases around the region that is being mended.
     phases: usize,
 }
 
 impl<'t> Reading<'t, '_> {
-    /// Makes a piece readable if that can be done by leaving out broken entries, and reports what
+    /// Makes a region readable if that can be done by leaving out broken entries, and reports what
     /// was wrong.
-    fn mend(&mut self, piece: &Piece, rule: Rule, block: Option<&'t str>) -> bool {
+    fn mend(&mut self, region: &Region, rule: Rule, block: Option<&'t str>) -> bool {
         let before = self.diagnostics.len();
         if before < MOST_DIAGNOSTICS {
-            let Err(failure) = self.read(piece, rule) else { return true };
-            self.mend_entries(piece);
+            let Err(failure) = self.read(region, rule) else { return true };
+            self.mend_entries(region);
             let reported = self.diagnostics.len() > before;
-            if reported && self.read(piece, rule).is_ok() {
+            if reported && self.read(region, rule).is_ok() {
                 return true;
             }
-            if !reported && !self.is_consequence(piece) {
-                self.explain(piece, block, &failure);
+            if !reported && !self.is_consequence(region) {
+                self.explain(region, block, &failure);
             }
         }
         if block.is_none() {
-            self.lost.push(Span::new(self.bytes(piece).start, self.bytes(piece).end));
+            self.lost.push(Span::new(self.bytes(region).start, self.bytes(region).end));
         }
-        self.paint_over(piece);
+        self.paint_over(region);
         false
     }
 
-    fn explain(&mut self, piece: &Piece, block: Option<&'t str>, failure: &Failure) {
+    fn explain(&mut self, region: &Region, block: Option<&'t str>, failure: &Failure) {
         if let Failure::LongWord(word) = failure
             && !self.long.insert(self.tokens[*word].text)
         {
             return;
         }
-        let closer = self.closer_behind(piece);
-        match messages::explain(self.tokens, piece, block, failure, closer) {
+        let closer = self.closer_behind(region);
+        match messages::explain(self.tokens, region, block, failure, closer) {
             (diagnostic, false) => self.diagnostics.push(diagnostic),
             (diagnostic, true) => drop(self.untold.get_or_insert(diagnostic)),
         }
-        let tokens = &self.tokens[piece.clone()];
+        let tokens = &self.tokens[region.clone()];
         let braces = |text| tokens.iter().filter(|token| token.text == text).count();
         let head =
             tokens.split(|token| matches!(token.text, "=" | "'" | ":=")).next().unwrap_or(tokens);
@@ -118,40 +126,40 @@ impl<'t> Reading<'t, '_> {
         let lacks_brace = matches!(failure, Failure::Stopped(_, expected) if expected.contains(&Rule::left_brace));
         self.unopened +=
             usize::from(lacks_brace && !has_brace) + braces("{").saturating_sub(braces("}"));
-        self.explained = piece.end + usize::from(closer.is_some());
+        self.explained = region.end + usize::from(closer.is_some());
     }
 
-    /// A bracket that closes nothing, on the line where the piece ends.
-    fn closer_behind(&self, piece: &Piece) -> Option<&'t Token<'t>> {
-        self.tokens[..self.until].get(piece.end).filter(|token| {
-            token.kind == Kind::Close && !token.begins_line && self.is_unopened(piece)
+    /// A bracket that closes nothing, on the line where the region ends.
+    fn closer_behind(&self, region: &Region) -> Option<&'t Token<'t>> {
+        self.tokens[..self.until].get(region.end).filter(|token| {
+            token.kind == Kind::Close && !token.begins_line && self.is_unopened(region)
         })
     }
 
-    /// Whether the brackets of a piece are in order, so that one behind it closes nothing.
-    fn is_unopened(&self, piece: &Piece) -> bool {
+    /// Whether the brackets of a region are in order, so that one behind it closes nothing.
+    fn is_unopened(&self, region: &Region) -> bool {
         let count =
-            |kind| self.tokens[piece.clone()].iter().filter(|token| token.kind == kind).count();
+            |kind| self.tokens[region.clone()].iter().filter(|token| token.kind == kind).count();
         count(Kind::Open) == count(Kind::Close)
     }
 
-    /// Whether a piece is what follows from a mistake that has been told: a bracket whose partner
+    /// Whether a region is what follows from a mistake that has been told: a bracket whose partner
     /// was missed.
-    fn is_consequence(&mut self, piece: &Piece) -> bool {
-        let first = &self.tokens[piece.start];
+    fn is_consequence(&mut self, region: &Region) -> bool {
+        let first = &self.tokens[region.start];
         if first.kind != Kind::Close {
             return false;
         }
         let is_brace = first.text == "}" && self.unopened > 0;
         self.unopened -= usize::from(is_brace);
-        is_brace || piece.start < self.explained
+        is_brace || region.start < self.explained
     }
 
-    /// Mends the items of a phase or the entries of a block, if the piece is one.
-    fn mend_entries(&mut self, piece: &Piece) {
-        let word = self.tokens[piece.start].text;
+    /// Mends the items of a phase or the entries of a block, if the region is one.
+    fn mend_entries(&mut self, region: &Region) {
+        let word = self.tokens[region.start].text;
         let is_phase = word == "phase";
-        let Some(inside) = self.inside(piece) else { return };
+        let Some(inside) = self.inside(region) else { return };
         let Some(rule) = entry_rule(word) else { return };
         if self.phases >= MOST_PHASES {
             return;
@@ -166,67 +174,67 @@ impl<'t> Reading<'t, '_> {
     }
 
     /// What stands between the `{` behind the head of a block and its last `}`.
-    fn inside(&self, piece: &Piece) -> Option<Piece> {
-        let tokens = &self.tokens[piece.clone()];
+    fn inside(&self, region: &Region) -> Option<Region> {
+        let tokens = &self.tokens[region.clone()];
         let first = tokens.iter().position(|token| token.text == "{")? + 1;
         if tokens[..first].iter().any(|token| matches!(token.text, "=" | "'" | "in" | ":=")) {
             return None;
         }
         let last = tokens.iter().rposition(|token| token.text == "}").unwrap_or(tokens.len());
-        (first < last).then_some(piece.start + first..piece.start + last)
+        (first < last).then_some(region.start + first..region.start + last)
     }
 
-    /// Reads a piece, if it may be given to the grammar.
-    fn read(&mut self, piece: &Piece, rule: Rule) -> Result<(), Failure> {
-        if let Some(failure) = limits::exceeded(self.tokens, piece) {
+    /// Reads a region, if it may be given to the grammar.
+    fn read(&mut self, region: &Region, rule: Rule) -> Result<(), Failure> {
+        if let Some(failure) = limits::exceeded(self.tokens, region) {
             return Err(failure);
         }
-        if let Some(block) = self.composed(piece, rule) {
-            self.memory.learn(rule, &self.rest[self.bytes(piece)], block);
+        if let Some(block) = self.composed(region, rule) {
+            self.cache.learn(rule, &self.rest[self.bytes(region)], block);
             return Ok(());
         }
-        let bytes = self.bytes(piece);
-        let read = self.memory.read(rule, &self.rest[bytes.clone()]);
+        let bytes = self.bytes(region);
+        let read = self.cache.read(rule, &self.rest[bytes.clone()]);
         read.map(|_| ()).map_err(|(at, expected)| Failure::Stopped(bytes.start + at, expected))
     }
 
     /// A long block that is new, put together from its head and its entries, most of which are not;
     /// nothing where that cannot be done, and the grammar has to see the whole.
-    fn composed(&mut self, piece: &Piece, rule: Rule) -> Option<Parse> {
-        let word = self.tokens[piece.start].text;
-        let is_long = piece.len() > FEW_TOKENS && matches!(word, "dynamics" | "phase");
-        let is_closed = self.tokens[piece.end - 1].text == "}";
-        if !(is_long && is_closed) || self.memory.knows(rule, &self.rest[self.bytes(piece)]) {
+    fn composed(&mut self, region: &Region, rule: Rule) -> Option<Parse> {
+        let word = self.tokens[region.start].text;
+        let is_long = region.len() > FEW_TOKENS && matches!(word, "dynamics" | "phase");
+        let is_closed = self.tokens[region.end - 1].text == "}";
+        if !(is_long && is_closed) || self.cache.knows(rule, &self.rest[self.bytes(region)]) {
             return None;
         }
-        let (inside, entry_rule) = (self.inside(piece)?, entry_rule(word)?);
-        let bytes = self.bytes(piece);
+        let (inside, entry_rule) = (self.inside(region)?, entry_rule(word)?);
+        let bytes = self.bytes(region);
         let head = &self.rest[bytes.start..self.tokens[inside.start - 1].end()];
-        let mut block = self.memory.read(rule, &format!("{head}}}")).ok()?.clone();
+        let mut block = self.cache.read(rule, &format!("{head}}}")).ok()?.clone();
         for entry in self.entries(word, inside) {
             self.read(&entry, entry_rule).ok()?;
             let place = self.bytes(&entry);
-            let entry = self.memory.read(entry_rule, &self.rest[place.clone()]).ok()?;
+            let entry = self.cache.read(entry_rule, &self.rest[place.clone()]).ok()?;
             block.adopt(entry, place.start - bytes.start)?;
         }
         block.tree.items[0].span = Span::new(0, bytes.len());
         Some(block)
     }
 
-    fn entries(&self, word: &str, inside: Piece) -> Vec<Piece> {
+    fn entries(&self, word: &str, inside: Region) -> Vec<Region> {
         if word == "phase" {
-            cut::items(self.tokens, inside)
+            items::items(self.tokens, inside)
         } else {
-            cut::entries(self.tokens, inside, word)
+            items::entries(self.tokens, inside, word)
         }
     }
 
-    fn bytes(&self, piece: &Piece) -> std::ops::Range<usize> {
-        self.tokens[piece.start].start..self.tokens[piece.end - 1].end()
+    fn bytes(&self, region: &Region) -> std::ops::Range<usize> {
+        self.tokens[region.start].start..self.tokens[region.end - 1].end()
     }
 
-    fn paint_over(&mut self, piece: &Piece) {
-        let bytes = self.bytes(piece);
+    fn paint_over(&mut self, region: &Region) {
+        let bytes = self.bytes(region);
         // Line breaks stay: whether a parenthesis is a call depends on its line.
         let keep = |byte| if matches!(byte, b'\n' | b'\r') { char::from(byte) } else { ' ' };
         let blanks: String =

@@ -1,9 +1,9 @@
-//! Slips that are made often, each with the message that helps best.
+//! Frequent typos, each with the message that helps best.
 
-use super::Rule;
-use super::messages::Place;
-use super::tokens::{Kind, Token};
-use super::words;
+use super::messages::ErrorContext;
+use crate::parse::Rule;
+use crate::parse::tokens::{Kind, Token};
+use crate::parse::words;
 use crate::{Code, Diagnostic, Fix, Span};
 
 /// Characters that other languages have, what stands for them here, and how to say so.
@@ -27,8 +27,8 @@ const FOREIGN: &[(&str, Option<&str>, &str)] = &[
 ];
 
 /// A character that the language does not use.
-pub(super) fn foreign_character(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let token = place.next().filter(|token| token.kind == Kind::Foreign)?;
+pub(super) fn foreign_character(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let token = context.next().filter(|token| token.kind == Kind::Foreign)?;
     let visible =
         token.text.chars().all(|c| !c.is_whitespace() && c.escape_debug().count() == 1 || c == '"');
     let shown =
@@ -40,17 +40,19 @@ pub(super) fn foreign_character(place: &Place<'_, '_>) -> Option<Diagnostic> {
         Diagnostic::new(Code::Unfinished, message, token.span(), "no item contains this character")
             .help(help);
     Some(match instead {
-        Some(sign) => diagnostic.fix(Fix::certain(help).replace(token.span(), apart(place, sign))),
+        Some(sign) => {
+            diagnostic.fix(Fix::certain(help).replace(token.span(), apart(context, sign)))
+        }
         None => diagnostic,
     })
 }
 
 /// `// text`: a comment of other languages.
-pub(super) fn foreign_comment(place: &Place<'_, '_>) -> Option<Diagnostic> {
+pub(super) fn foreign_comment(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
     let is_pair =
         |a: &Token<'_>, b: &Token<'_>| a.text == "/" && b.text == "/" && a.end() == b.start;
-    let (next, after) = (place.next()?, place.tokens.get(place.at + 1));
-    let before = place.previous().filter(|before| is_pair(before, next));
+    let (next, after) = (context.next()?, context.tokens.get(context.at + 1));
+    let before = context.previous().filter(|before| is_pair(before, next));
     let span = match (before, after) {
         (Some(before), _) => before.span().to(next.span()),
         (None, Some(after)) if is_pair(next, after) => next.span().to(after.span()),
@@ -62,12 +64,12 @@ pub(super) fn foreign_comment(place: &Place<'_, '_>) -> Option<Diagnostic> {
 }
 
 /// A sign, or a word with blanks where its neighbours touch it.
-fn apart(place: &Place<'_, '_>, sign: &str) -> String {
+fn apart(context: &ErrorContext<'_, '_>, sign: &str) -> String {
     let is_word = sign.starts_with(char::is_alphabetic);
-    let end = place.tokens[place.at].end();
+    let end = context.tokens[context.at].end();
     let before =
-        place.previous().is_some_and(|before| before.end() == place.tokens[place.at].start);
-    let after = place.tokens.get(place.at + 1).is_some_and(|after| after.start == end);
+        context.previous().is_some_and(|before| before.end() == context.tokens[context.at].start);
+    let after = context.tokens.get(context.at + 1).is_some_and(|after| after.start == end);
     let blank = |touches: bool| if is_word && touches { " " } else { "" };
     format!("{}{sign}{}", blank(before), blank(after))
 }
@@ -79,28 +81,29 @@ const DECLARATIONS: &[&str] = &[
 ];
 
 /// FDC0003: a reserved word where a name or a value should stand.
-pub(super) fn reserved_name(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let token = place.next().filter(|token| !token.begins_line)?;
+pub(super) fn reserved_name(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let token = context.next().filter(|token| !token.begins_line)?;
     let word = words::reserved(token.text)?;
-    let previous = place.previous()?;
-    let declares = is_declared(place.tokens, place.at);
-    let parameter = place.expects(&[Rule::name]) && matches!(previous.text, "(" | "," | ".");
-    if plays_its_part(place.tokens, place.at) {
+    let previous = context.previous()?;
+    let declares = is_declared(context.tokens, context.at);
+    let parameter = context.expects(&[Rule::name]) && matches!(previous.text, "(" | "," | ".");
+    if plays_its_part(context.tokens, context.at) {
         return None;
     }
     if !declares
-        && (is_renamed_elsewhere(place.tokens, token) || !(parameter || place.expects_operand()))
+        && (is_renamed_elsewhere(context.tokens, token)
+            || !(parameter || context.expects_operand()))
     {
         return None;
     }
-    let noun = match place.form.map(|form| form.noun) {
+    let noun = match context.form.map(|form| form.noun) {
         Some(noun) if declares => noun,
-        _ if parameter && !place.expects_operand() => "a part or an argument",
+        _ if parameter && !context.expects_operand() => "a part or an argument",
         _ => "a value",
     };
     let message = format!("`{}` is a reserved word and cannot name {noun}", token.text);
     let label = format!("reserved: it {}", word.role);
-    let uses = uses(place.tokens, place.at);
+    let uses = uses(context.tokens, context.at);
     let others = if uses.len() > 1 {
         format!("\n`fdcc fix` renames all {} uses", uses.len())
     } else {
@@ -108,7 +111,7 @@ pub(super) fn reserved_name(place: &Place<'_, '_>) -> Option<Diagnostic> {
     };
     let help = format!("rename it, for example `{}`{others}", word.instead);
     let found = Diagnostic::new(Code::ReservedWord, message, token.span(), label).help(help);
-    Some(found.fix(rename(place.tokens, &uses, word.instead)))
+    Some(found.fix(rename(context.tokens, &uses, word.instead)))
 }
 
 /// The new name at all uses; with `_` behind it where it is taken.
@@ -151,8 +154,8 @@ pub(super) fn is_renamed_elsewhere(tokens: &[Token<'_>], token: &Token<'_>) -> b
 }
 
 /// The place of a reserved word, its declaration, and its uses as a value.
-fn uses(tokens: &[Token<'_>], place: usize) -> Vec<usize> {
-    let word = tokens[place].text;
+fn uses(tokens: &[Token<'_>], at_name: usize) -> Vec<usize> {
+    let word = tokens[at_name].text;
     let is_use = |at: usize| {
         let after = tokens.get(at + 1).map_or("", |token| token.text);
         let before = &tokens[at - 1];
@@ -169,14 +172,14 @@ fn uses(tokens: &[Token<'_>], place: usize) -> Vec<usize> {
         as_value || is_declared(tokens, at)
     };
     (1..tokens.len())
-        .filter(|at| tokens[*at].text == word && (*at == place || is_use(*at)))
+        .filter(|at| tokens[*at].text == word && (*at == at_name || is_use(*at)))
         .collect()
 }
 
 /// `=` for `==`, `==` for `=`, and comparisons that conditions do not have.
-pub(super) fn wrong_sign(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let token = place.next()?;
-    let compares = place.expects(&[Rule::relation, Rule::guard_relation]);
+pub(super) fn wrong_sign(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let token = context.next()?;
+    let compares = context.expects(&[Rule::relation, Rule::guard_relation]);
     let (message, label, help) = match token.text {
         "=" if compares => {
             ("`=` does not compare", "a condition needs `==` here", "write `==`, `<=` or `>=`")
@@ -192,16 +195,16 @@ pub(super) fn wrong_sign(place: &Place<'_, '_>) -> Option<Diagnostic> {
             "a solver cannot keep away from a single point",
             "write `<=` or `>=`",
         ),
-        "==" if place.expects(&[Rule::equals, Rule::becomes]) => {
+        "==" if context.expects(&[Rule::equals, Rule::becomes]) => {
             ("`==` compares, it does not define", "a definition has a single `=`", "write `=`")
         }
-        ":=" if place.expects(&[Rule::equals, Rule::becomes]) => {
+        ":=" if context.expects(&[Rule::equals, Rule::becomes]) => {
             ("`:=` belongs into `jump` and `link`", "a definition has a plain `=`", "write `=`")
         }
-        "=" if place.expects(&[Rule::assigns]) => {
+        "=" if context.expects(&[Rule::assigns]) => {
             ("a new value is assigned with `:=`", "`=` would be an equation", "write `:=`")
         }
-        "*" | "**" if place.previous()?.text == "*" || token.text == "**" => {
+        "*" | "**" if context.previous()?.text == "*" || token.text == "**" => {
             ("`**` is not an operator", "meant as a power?", "write `^`, as in `v^2`")
         }
         "&&" | "||" => (
@@ -212,7 +215,7 @@ pub(super) fn wrong_sign(place: &Place<'_, '_>) -> Option<Diagnostic> {
         _ => return None,
     };
     let diagnostic = Diagnostic::new(Code::Unfinished, message, token.span(), label).help(help);
-    Some(match right_sign(place, token) {
+    Some(match right_sign(context, token) {
         Some((span, sign)) => {
             diagnostic.fix(Fix::certain(format!("write `{sign}`")).replace(span, sign))
         }
@@ -221,9 +224,9 @@ pub(super) fn wrong_sign(place: &Place<'_, '_>) -> Option<Diagnostic> {
 }
 
 /// The sign that a wrong one stands for, and where it goes.
-fn right_sign(place: &Place<'_, '_>, token: &Token<'_>) -> Option<(Span, &'static str)> {
-    let compares = place.expects(&[Rule::relation, Rule::guard_relation]);
-    let before = place.previous().map_or(token.span(), Token::span);
+fn right_sign(context: &ErrorContext<'_, '_>, token: &Token<'_>) -> Option<(Span, &'static str)> {
+    let compares = context.expects(&[Rule::relation, Rule::guard_relation]);
+    let before = context.previous().map_or(token.span(), Token::span);
     Some(match token.text {
         "=" if compares => (token.span(), "=="),
         "=" => (token.span(), ":="),
@@ -237,13 +240,13 @@ fn right_sign(place: &Place<'_, '_>, token: &Token<'_>) -> Option<(Span, &'stati
 }
 
 /// A word that is nearly one of those that the item goes on with: `smooth sigma = 0.1 kernl tanh`.
-pub(super) fn misspelt_word(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let token = place.next().filter(|token| token.kind == Kind::Word)?;
-    let meant = words::closest(token.text, words::inner_words(place.word).iter().copied())?;
+pub(super) fn misspelt_word(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let token = context.next().filter(|token| token.kind == Kind::Word)?;
+    let meant = words::closest(token.text, words::inner_words(context.word).iter().copied())?;
     if meant == token.text {
         return None;
     }
-    let message = format!("`{}` is not a word of {}", token.text, place.form?.noun);
+    let message = format!("`{}` is not a word of {}", token.text, context.form?.noun);
     let diagnostic = Diagnostic::new(
         Code::Unfinished,
         message,
@@ -255,8 +258,8 @@ pub(super) fn misspelt_word(place: &Place<'_, '_>) -> Option<Diagnostic> {
 }
 
 /// `x'' = ...`
-pub(super) fn second_derivative(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let (previous, next) = (place.previous()?, place.next()?);
+pub(super) fn second_derivative(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let (previous, next) = (context.previous()?, context.next()?);
     if previous.text != "'" || next.text != "'" {
         return None;
     }
@@ -271,8 +274,8 @@ pub(super) fn second_derivative(place: &Place<'_, '_>) -> Option<Diagnostic> {
 }
 
 /// `in (0, 1)`, `in 0 .. 1`, `in [0]`
-pub(super) fn wrong_range(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let next = place.next().filter(|_| place.expects(&[Rule::interval]))?;
+pub(super) fn wrong_range(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let next = context.next().filter(|_| context.expects(&[Rule::interval]))?;
     let message = "a range is written in brackets";
     let diagnostic =
         Diagnostic::new(Code::Unfinished, message, next.span(), "`[` should stand here");
@@ -280,9 +283,10 @@ pub(super) fn wrong_range(place: &Place<'_, '_>) -> Option<Diagnostic> {
 }
 
 /// `x' = [v, w]`
-pub(super) fn wrong_vector(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let next = place.next().filter(|next| next.text == "[" && place.expects_operand())?;
-    let inside = place.tokens[place.at..place.piece.end].split(|token| token.text == "]").next()?;
+pub(super) fn wrong_vector(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let next = context.next().filter(|next| next.text == "[" && context.expects_operand())?;
+    let inside =
+        context.tokens[context.at..context.region.end].split(|token| token.text == "]").next()?;
     if !inside.iter().any(|token| token.text == ",") {
         return None;
     }
@@ -293,10 +297,10 @@ pub(super) fn wrong_vector(place: &Place<'_, '_>) -> Option<Diagnostic> {
 }
 
 /// `x' = v * v' in F`: the second of two equations has lost its beginning.
-pub(super) fn second_equation(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let next = place.next().filter(|next| matches!(next.text, "=" | "in"))?;
-    if place.word != "dynamics"
-        || !place.before().iter().any(|token| matches!(token.text, "=" | "in"))
+pub(super) fn second_equation(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let next = context.next().filter(|next| matches!(next.text, "=" | "in"))?;
+    if context.word != "dynamics"
+        || !context.before().iter().any(|token| matches!(token.text, "=" | "in"))
     {
         return None;
     }
@@ -310,12 +314,12 @@ pub(super) fn second_equation(place: &Place<'_, '_>) -> Option<Diagnostic> {
 }
 
 /// `sigma = 0.1, 0.05`
-pub(super) fn second_value(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let next = place.next().filter(|next| next.text == "," && place.after_operand())?;
-    if place.word != "method" {
+pub(super) fn second_value(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let next = context.next().filter(|next| next.text == "," && context.after_operand())?;
+    if context.word != "method" {
         return None;
     }
-    if begins_setting(place, place.at + 1) {
+    if begins_setting(context, context.at + 1) {
         let message = "settings stand side by side, without commas";
         let found =
             Diagnostic::new(Code::Unfinished, message, next.span(), "another setting follows");
@@ -337,17 +341,17 @@ pub(super) fn second_value(place: &Place<'_, '_>) -> Option<Diagnostic> {
 }
 
 /// `N = 100` or `scheme rk4`
-fn begins_setting(place: &Place<'_, '_>, at: usize) -> bool {
-    let is_word = place.tokens.get(at).is_some_and(|token| token.kind == Kind::Word);
+fn begins_setting(context: &ErrorContext<'_, '_>, at: usize) -> bool {
+    let is_word = context.tokens.get(at).is_some_and(|token| token.kind == Kind::Word);
     let has_value = |token: &Token<'_>| {
         token.text == "=" || matches!(token.kind, Kind::Word | Kind::Number) && !token.begins_line
     };
-    is_word && place.tokens.get(at + 1).is_some_and(has_value)
+    is_word && context.tokens.get(at + 1).is_some_and(has_value)
 }
 
 /// Items that have one place only: `model` at the head, phases and links outside phases.
-pub(super) fn misplaced_item(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let first = place.next().filter(|_| place.at == place.piece.start)?;
+pub(super) fn misplaced_item(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let first = context.next().filter(|_| context.at == context.region.start)?;
     let help = match first.text {
         "model" => "write it once, before the first item",
         "phase" | "link" => "close the phase before it with `}`",

@@ -1,32 +1,32 @@
 //! Two values side by side: FDC0001, the most common slip of people who write formulas.
 
-use super::Rule;
-use super::messages::Place;
-use super::tokens::{Kind, Token};
-use super::words;
+use super::messages::ErrorContext;
+use crate::parse::Rule;
+use crate::parse::tokens::{Kind, Token};
+use crate::parse::words;
 use crate::{Code, Diagnostic, Fix, Span};
 
 /// FDC0001, if two values stand side by side on one line.
-pub(super) fn missing_operator(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let (previous, next) = (place.previous()?, place.next()?);
-    let in_range = place.expects(&[Rule::comma]) && place.innermost_bracket() == Some("[");
-    let before_derivative = place.expects(&[Rule::prime]) && place.text(place.at + 1) == "'";
-    if !(place.after_operand() || before_derivative)
+pub(super) fn missing_operator(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let (previous, next) = (context.previous()?, context.next()?);
+    let in_range = context.expects(&[Rule::comma]) && context.innermost_bracket() == Some("[");
+    let before_derivative = context.expects(&[Rule::prime]) && context.text(context.at + 1) == "'";
+    if !(context.after_operand() || before_derivative)
         || next.begins_line
         || !begins_value(next)
         || in_range
     {
         return None;
     }
-    if let Some(found) = bare_unit(place).or_else(|| foreign_choice(previous)) {
+    if let Some(found) = bare_unit(context).or_else(|| foreign_choice(previous)) {
         return Some(found);
     }
-    let (left, right) = (value_before(place), value_after(place));
-    let (first, last) = (&place.tokens[left], &place.tokens[right]);
+    let (left, right) = (value_before(context), value_after(context));
+    let (first, last) = (&context.tokens[left], &context.tokens[right]);
     let [left, right] =
-        [short(place, left, place.at - 1, previous), short(place, place.at, right, next)];
+        [short(context, left, context.at - 1, previous), short(context, context.at, right, next)];
     let message = format!("missing operator between `{left}` and `{right}`");
-    let comma = if place.innermost_bracket() == Some("(") || place.word == "sweep" {
+    let comma = if context.innermost_bracket() == Some("(") || context.word == "sweep" {
         "; a comma parts two values"
     } else {
         ""
@@ -46,14 +46,14 @@ pub(super) fn missing_operator(place: &Place<'_, '_>) -> Option<Diagnostic> {
 
 /// `param l = 50 cm`: what follows the number of a declaration to the end of its line is most
 /// likely a unit.
-fn bare_unit(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let (number, first) = (place.previous()?, place.next()?);
-    let is_declared = matches!(place.word, "param" | "const")
-        && place.at.checked_sub(2).is_some_and(|at| place.text(at) == "=");
+fn bare_unit(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let (number, first) = (context.previous()?, context.next()?);
+    let is_declared = matches!(context.word, "param" | "const")
+        && context.at.checked_sub(2).is_some_and(|at| context.text(at) == "=");
     if !is_declared || number.kind != Kind::Number || first.kind != Kind::Word {
         return None;
     }
-    let rest = place.tokens[place.at + 1..].iter().take_while(|token| !token.begins_line);
+    let rest = context.tokens[context.at + 1..].iter().take_while(|token| !token.begins_line);
     let rest: Vec<&Token<'_>> = rest.collect();
     let is_unit = |token: &&Token<'_>| {
         matches!(token.kind, Kind::Word | Kind::Number)
@@ -103,36 +103,40 @@ fn begins_value(token: &Token<'_>) -> bool {
 }
 
 /// The first token of the value that ends before the place: `sin(x)`, `pos.x`, `(a + b)`, `3`.
-fn value_before(place: &Place<'_, '_>) -> usize {
-    let mut first = place.at - 1;
-    if place.tokens[first].kind == Kind::Close {
-        first = partner(place, first, -1).unwrap_or(first);
+fn value_before(context: &ErrorContext<'_, '_>) -> usize {
+    let mut first = context.at - 1;
+    if context.tokens[first].kind == Kind::Close {
+        first = partner(context, first, -1).unwrap_or(first);
     }
     let before = |back: usize| {
-        first.checked_sub(back).filter(|at| *at >= place.piece.start).map(|at| &place.tokens[at])
+        first
+            .checked_sub(back)
+            .filter(|at| *at >= context.region.start)
+            .map(|at| &context.tokens[at])
     };
-    let is_call = place.tokens[first].kind == Kind::Open && before(1).is_some_and(begins_value);
+    let is_call = context.tokens[first].kind == Kind::Open && before(1).is_some_and(begins_value);
     let is_part =
         before(1).is_some_and(|token| token.text == ".") && before(2).is_some_and(begins_value);
     first - usize::from(is_call) - 2 * usize::from(is_part)
 }
 
 /// The last token of the value that begins at the place.
-fn value_after(place: &Place<'_, '_>) -> usize {
-    let opens = |at: usize| at < place.piece.end && place.tokens[at].text == "(";
-    let mut last = place.at;
-    while place.tokens[..place.piece.end].get(last + 1).is_some_and(|token| token.text == ".") {
-        last = (last + 2).min(place.piece.end - 1);
+fn value_after(context: &ErrorContext<'_, '_>) -> usize {
+    let opens = |at: usize| at < context.region.end && context.tokens[at].text == "(";
+    let mut last = context.at;
+    while context.tokens[..context.region.end].get(last + 1).is_some_and(|token| token.text == ".")
+    {
+        last = (last + 2).min(context.region.end - 1);
     }
     let open = if opens(last) { Some(last) } else { Some(last + 1).filter(|at| opens(*at)) };
-    open.and_then(|open| partner(place, open, 1)).unwrap_or(last)
+    open.and_then(|open| partner(context, open, 1)).unwrap_or(last)
 }
 
-/// The other bracket of a pair inside the piece.
-fn partner(place: &Place<'_, '_>, from: usize, step: isize) -> Option<usize> {
+/// The other bracket of a pair inside the region.
+fn partner(context: &ErrorContext<'_, '_>, from: usize, step: isize) -> Option<usize> {
     let (mut depth, mut at) = (0_isize, from);
     loop {
-        match place.tokens[at].kind {
+        match context.tokens[at].kind {
             Kind::Open => depth += 1,
             Kind::Close => depth -= 1,
             _ => {}
@@ -140,14 +144,19 @@ fn partner(place: &Place<'_, '_>, from: usize, step: isize) -> Option<usize> {
         if depth == 0 {
             return Some(at);
         }
-        at = at.checked_add_signed(step).filter(|at| place.piece.contains(at))?;
+        at = at.checked_add_signed(step).filter(|at| context.region.contains(at))?;
     }
 }
 
 /// The text of a range of tokens if it fits into a sentence, or else of one of them.
-fn short(place: &Place<'_, '_>, first: usize, last: usize, otherwise: &Token<'_>) -> String {
+fn short(
+    context: &ErrorContext<'_, '_>,
+    first: usize,
+    last: usize,
+    otherwise: &Token<'_>,
+) -> String {
     const LONGEST: usize = 12;
-    let tokens = &place.tokens[first..=last];
+    let tokens = &context.tokens[first..=last];
     if tokens.len() > LONGEST {
         return otherwise.text.to_owned();
     }

@@ -1,10 +1,10 @@
-//! Words that were forgotten, recognised by what stands there without them: `state v 0`, `in`
+//! Missing words, recognised by what stands there without them: `state v 0`, `in`
 //! before a range, `then` before `hold`, a comparison between two values.
 
-use super::Rule;
-use super::messages::{PIECEWISE, Place};
-use super::tokens::{Kind, Token};
-use super::words;
+use super::messages::{ErrorContext, PIECEWISE};
+use crate::parse::Rule;
+use crate::parse::tokens::{Kind, Token};
+use crate::parse::words;
 use crate::{Code, Diagnostic, Fix};
 
 /// `word` is missing before a token.
@@ -21,9 +21,9 @@ fn missing_before(word: &str, token: &Token<'_>, help: impl Into<String>) -> Dia
 }
 
 /// Something is missing after a token.
-fn missing_after(place: &Place<'_, '_>, thing: &str, token: &Token<'_>) -> Diagnostic {
+fn missing_after(context: &ErrorContext<'_, '_>, thing: &str, token: &Token<'_>) -> Diagnostic {
     let message = format!("{thing} is missing after `{}`", token.text);
-    place.example(Diagnostic::new(
+    context.example(Diagnostic::new(
         Code::Unfinished,
         message,
         token.span(),
@@ -32,13 +32,13 @@ fn missing_after(place: &Place<'_, '_>, thing: &str, token: &Token<'_>) -> Diagn
 }
 
 /// `(end)` without a name before it.
-pub(super) fn before_ends(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let next = place.next().filter(|next| matches!(next.text, "end" | "start"))?;
-    let opens = place
+pub(super) fn before_ends(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let next = context.next().filter(|next| matches!(next.text, "end" | "start"))?;
+    let opens = context
         .at
         .checked_sub(2)
-        .filter(|_| place.text(place.at - 1) == "(" && place.text(place.at + 1) == ")")?;
-    if place.text(opens) == "(" {
+        .filter(|_| context.text(context.at - 1) == "(" && context.text(context.at + 1) == ")")?;
+    if context.text(opens) == "(" {
         return None;
     }
     let message = format!("a name is missing before `({})`", next.text);
@@ -65,17 +65,17 @@ const PAIRS: &[(&str, &str, &str)] = &[
 
 /// What is missing between the words of a jump or a setting; those are no reserved words, so they
 /// pass for names.
-pub(super) fn in_header(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    if !matches!(place.word, "jump" | "method") {
+pub(super) fn in_header(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    if !matches!(context.word, "jump" | "method") {
         return None;
     }
-    let until = (place.at + 1).min(place.piece.end);
-    let pairs = place.tokens[place.piece.start..until].windows(2);
+    let until = (context.at + 1).min(context.region.end);
+    let pairs = context.tokens[context.region.start..until].windows(2);
     for (first, second) in pairs.map(|pair| (&pair[0], &pair[1])) {
         let between =
             |row: &&(&str, &[&str], &str)| row.0 == first.text && row.1.contains(&second.text);
         if let Some((_, _, thing)) = BETWEEN.iter().find(between) {
-            return Some(missing_after(place, thing, first));
+            return Some(missing_after(context, thing, first));
         }
         if let Some((_, before, help)) =
             PAIRS.iter().find(|row| row.0 == second.text && row.1 != first.text)
@@ -83,17 +83,18 @@ pub(super) fn in_header(place: &Place<'_, '_>) -> Option<Diagnostic> {
             return Some(missing_before(before, second, *help));
         }
     }
-    word_of_setting(place)
+    word_of_setting(context)
 }
 
 /// `smooth sigma = 0.1 tanh`, `grid N = 100 2 euler (th)`
-fn word_of_setting(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let next = place
+fn word_of_setting(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let next = context
         .next()
-        .filter(|next| !next.begins_line && place.before().iter().any(|it| it.text == "="))?;
-    let has = |word: &str| place.tokens[place.piece.clone()].iter().any(|token| token.text == word);
+        .filter(|next| !next.begins_line && context.before().iter().any(|it| it.text == "="))?;
+    let has =
+        |word: &str| context.tokens[context.region.clone()].iter().any(|token| token.text == word);
     let is_name = next.kind == Kind::Word && !words::inner_words("method").contains(&next.text);
-    let (word, help) = match place.text(place.piece.start) {
+    let (word, help) = match context.text(context.region.start) {
         "smooth" if is_name && !has("kernel") => ("kernel", "write `kernel tanh`"),
         "grid" if next.text == "(" && has("scheme") => {
             ("lagged", "write `lagged (th)`, with the states taken at the old time")
@@ -106,27 +107,27 @@ fn word_of_setting(place: &Place<'_, '_>) -> Option<Diagnostic> {
 }
 
 /// `state v [-1, 1]`: brackets with a comma are a range, and it needs `in`.
-pub(super) fn of_range(place: &Place<'_, '_>) -> Option<Diagnostic> {
+pub(super) fn of_range(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
     let is_open = |token: &Token<'_>| token.text == "[";
-    let open = match place.next() {
-        Some(next) if is_open(next) => place.at,
-        _ => place.piece.start + place.before().iter().rposition(is_open)?,
+    let open = match context.next() {
+        Some(next) if is_open(next) => context.at,
+        _ => context.region.start + context.before().iter().rposition(is_open)?,
     };
-    let close =
-        open + place.tokens[open..place.piece.end].iter().position(|token| token.text == "]")?;
-    let has_comma = place.tokens[open..close].iter().any(|token| token.text == ",");
-    let before = place.text(open.checked_sub(1)?);
-    let declares = matches!(place.word, "param" | "free" | "time" | "state" | "control");
+    let close = open
+        + context.tokens[open..context.region.end].iter().position(|token| token.text == "]")?;
+    let has_comma = context.tokens[open..close].iter().any(|token| token.text == ",");
+    let before = context.text(open.checked_sub(1)?);
+    let declares = matches!(context.word, "param" | "free" | "time" | "state" | "control");
     if !has_comma
-        || close < place.at
+        || close < context.at
         || !declares
         || matches!(before, "in" | "=" | "start" | "guess")
     {
         return None;
     }
-    let range: Vec<&str> = place.tokens[open..=close].iter().map(|token| token.text).collect();
+    let range: Vec<&str> = context.tokens[open..=close].iter().map(|token| token.text).collect();
     let range = range.concat().replace(',', ", ");
-    let (first, last) = (&place.tokens[open], &place.tokens[close]);
+    let (first, last) = (&context.tokens[open], &context.tokens[close]);
     let message = "`in` is missing before a range";
     let found = Diagnostic::new(
         Code::Unfinished,
@@ -139,20 +140,20 @@ pub(super) fn of_range(place: &Place<'_, '_>) -> Option<Diagnostic> {
 }
 
 /// `state v 0`, `state v free`, `control u 0`: the word before a first value.
-pub(super) fn of_value(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let next = place.next().filter(|next| !next.begins_line && place.expects(&[Rule::EOI]))?;
+pub(super) fn of_value(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let next = context.next().filter(|next| !next.begins_line && context.expects(&[Rule::EOI]))?;
     let begins_value = match next.kind {
         Kind::Number => true,
         Kind::Word => next.text == "free",
         _ => matches!(next.text, "(" | "-"),
     };
-    let word = match place.word {
+    let word = match context.word {
         "state" => "start",
         "free" | "control" => "guess",
-        "expect" if place.expects(&[Rule::within]) && next.kind == Kind::Number => "within",
+        "expect" if context.expects(&[Rule::within]) && next.kind == Kind::Number => "within",
         _ => return None,
     };
-    let is_there = place.before().iter().any(|token| token.text == word);
+    let is_there = context.before().iter().any(|token| token.text == word);
     let help = match next.kind {
         Kind::Number | Kind::Word => format!("write `{word} {}`", next.text),
         _ => format!("write `{word}` before the value"),
@@ -162,9 +163,9 @@ pub(super) fn of_value(place: &Place<'_, '_>) -> Option<Diagnostic> {
 
 /// `w' in boost { below => ... }`, `y = { x <= 1 => ... }`: the word of a block inside an
 /// expression.
-pub(super) fn of_switch(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let next = place.next().filter(|next| next.text == "{")?;
-    let behind = &place.tokens[place.at..place.piece.end];
+pub(super) fn of_switch(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let next = context.next().filter(|next| next.text == "{")?;
+    let behind = &context.tokens[context.at..context.region.end];
     if !behind.iter().any(|token| token.text == "=>") {
         return None;
     }
@@ -172,8 +173,8 @@ pub(super) fn of_switch(place: &Place<'_, '_>) -> Option<Diagnostic> {
                 ranges of a number: `piecewise { x <= 1 => 0  otherwise => x - 1 }`";
     let is_name =
         |token: &&Token<'_>| token.kind == Kind::Word && words::reserved(token.text).is_none();
-    Some(match place.text(place.at + 1) {
-        "below" | "above" => missing_before("match", place.previous().filter(is_name)?, help),
+    Some(match context.text(context.at + 1) {
+        "below" | "above" => missing_before("match", context.previous().filter(is_name)?, help),
         _ => missing_before("piecewise", next, help),
     })
 }
@@ -181,10 +182,10 @@ pub(super) fn of_switch(place: &Place<'_, '_>) -> Option<Diagnostic> {
 const RELATIONS: &[&str] = &["<=", ">=", "==", "<", ">", "=", "!="];
 
 /// `end x 1`, `x 1 => 0`: two values and no comparison.
-pub(super) fn comparison(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let (previous, next) = (place.previous()?, place.next().filter(|next| !next.begins_line)?);
+pub(super) fn comparison(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let (previous, next) = (context.previous()?, context.next().filter(|next| !next.begins_line)?);
     let is_relation = |token: &Token<'_>| RELATIONS.contains(&token.text);
-    let behind = &place.tokens[place.at..place.piece.end];
+    let behind = &context.tokens[context.at..context.region.end];
     let guard = behind.split(|token| token.text == "=>").next().unwrap_or(behind);
     let opens = matches!(next.kind, Kind::Word | Kind::Number) || next.text == "(";
     if !opens || words::reserved(next.text).is_some() {
@@ -193,29 +194,29 @@ pub(super) fn comparison(place: &Place<'_, '_>) -> Option<Diagnostic> {
     let compares = guard.iter().any(is_relation);
     let begins_arm = compares || guard.iter().any(|token| token.text == "otherwise");
     match () {
-        _ if place.expects(&[Rule::implies]) && begins_arm => {
-            Some(missing_after(place, "`=>`", previous).help(PIECEWISE))
+        _ if context.expects(&[Rule::implies]) && begins_arm => {
+            Some(missing_after(context, "`=>`", previous).help(PIECEWISE))
         }
-        _ if place.expects(&[Rule::guard_relation]) && !compares => {
-            Some(missing_after(place, "a comparison", previous).help(PIECEWISE))
+        _ if context.expects(&[Rule::guard_relation]) && !compares => {
+            Some(missing_after(context, "a comparison", previous).help(PIECEWISE))
         }
-        _ if place.expects(&[Rule::relation])
-            && !behind.iter().chain(place.before()).any(is_relation) =>
+        _ if context.expects(&[Rule::relation])
+            && !behind.iter().chain(context.before()).any(is_relation) =>
         {
-            Some(missing_after(place, "a comparison (`<=`, `>=` or `==`)", previous))
+            Some(missing_after(context, "a comparison (`<=`, `>=` or `==`)", previous))
         }
         _ => None,
     }
 }
 
 /// `metric v1: m1 v2: m2`, `columns t [s] x [m]`
-pub(super) fn comma(place: &Place<'_, '_>) -> Option<Diagnostic> {
+pub(super) fn comma(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
     let (previous, next) =
-        (place.previous()?, place.next().filter(|next| next.kind == Kind::Word)?);
-    let is_next = match place.word {
-        "metric" => place.text(place.at + 1) == ":",
-        "data" => place.expects(&[Rule::comma, Rule::column]) && !next.begins_line,
+        (context.previous()?, context.next().filter(|next| next.kind == Kind::Word)?);
+    let is_next = match context.word {
+        "metric" => context.text(context.at + 1) == ":",
+        "data" => context.expects(&[Rule::comma, Rule::column]) && !next.begins_line,
         _ => false,
     };
-    is_next.then(|| missing_after(place, "`,`", previous))
+    is_next.then(|| missing_after(context, "`,`", previous))
 }

@@ -1,15 +1,15 @@
 //! Brackets without a partner: FDC0006.
 
-use super::Rule;
-use super::messages::Place;
-use super::tokens::{Kind, Token};
-use super::words;
+use super::messages::ErrorContext;
+use crate::parse::Rule;
+use crate::parse::tokens::{Kind, Token};
+use crate::parse::words;
 use crate::{Code, Diagnostic, Fix, Span};
 
-/// FDC0006, if a bracket of the piece has no partner.
-pub(super) fn unbalanced(place: &Place<'_, '_>) -> Option<Diagnostic> {
+/// FDC0006, if a bracket of the region has no partner.
+pub(super) fn unbalanced(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
     let mut open: Vec<&Token<'_>> = Vec::new();
-    for token in &place.tokens[place.piece.clone()] {
+    for token in &context.tokens[context.region.clone()] {
         match token.kind {
             Kind::Open => open.push(token),
             Kind::Close => match open.pop() {
@@ -20,18 +20,18 @@ pub(super) fn unbalanced(place: &Place<'_, '_>) -> Option<Diagnostic> {
             _ => {}
         }
     }
-    open.last().map(|opener| unclosed(opener, place.tokens[place.piece.end - 1].span()))
+    open.last().map(|opener| unclosed(opener, context.tokens[context.region.end - 1].span()))
 }
 
-/// FDC0006, if a bracket closes behind the piece what was not opened in it: `state v m] start 0`.
-pub(super) fn unopened_after(place: &Place<'_, '_>) -> Option<Diagnostic> {
-    let closer = place.closer?;
+/// FDC0006, if a bracket closes behind the region what was not opened in it: `state v m] start 0`.
+pub(super) fn unopened_after(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let closer = context.closer?;
     let opens = match closer.text {
         "}" => &[Rule::left_brace][..],
         ")" => &[Rule::left_parenthesis, Rule::names],
         _ => &[],
     };
-    if place.expects(opens) && !place.expects(&[Rule::EOI]) {
+    if context.expects(opens) && !context.expects(&[Rule::EOI]) {
         return None;
     }
     let begins = |token: &&Token<'_>| match token.kind {
@@ -39,7 +39,7 @@ pub(super) fn unopened_after(place: &Place<'_, '_>) -> Option<Diagnostic> {
         Kind::Number => true,
         _ => token.text == "-",
     };
-    let Some(first) = place.next().filter(begins) else { return Some(unopened(closer)) };
+    let Some(first) = context.next().filter(begins) else { return Some(unopened(closer)) };
     let opener = closer.opener();
     let message = format!("`{opener}` is missing before `{}`", first.text);
     let found = Diagnostic::new(

@@ -9,7 +9,7 @@ use crate::solver::Failure;
 use crate::warm;
 use fdcc::parallel;
 use fdcc_compiler::{
-    Model, Sequences, compile, compile_simulation, crossings, sequences, unrolled,
+    Model, Sequences, compile, compile_simulation, crossings, sequences, with_phases,
 };
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::problem::{ControlShape, Problem};
@@ -146,7 +146,7 @@ fn refuse(between: &Problem) -> Result<(), Failure> {
 
 impl Alternative {
     fn new(model: &Model, sequence: Vec<usize>) -> Result<Self, Failure> {
-        let model = unrolled(model, &sequence).map_err(Failure::Model)?;
+        let model = with_phases(model, &sequence).map_err(Failure::Model)?;
         let problem = compile(&model).map_err(Failure::Model)?;
         Ok(Alternative { sequence, model, problem })
     }

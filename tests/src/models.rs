@@ -66,7 +66,7 @@ pub fn unrolled(model: &Model) -> Vec<(usize, Model)> {
     }
     let all = fdcc_compiler::sequences(model).expect("the model can be solved").all;
     let one = |jumps: &Vec<usize>| {
-        fdcc_compiler::unrolled(model, jumps).expect("the model can be solved")
+        fdcc_compiler::with_phases(model, jumps).expect("the model can be solved")
     };
     all.iter().map(|jumps| (jumps.len(), one(jumps))).collect()
 }

@@ -1,7 +1,7 @@
-//! Models with jumps, solved with their pieces side by side: against closed forms, and against
+//! Models with jumps, solved with a phase between each two jumps: against closed forms, and against
 //! other programs (`tests/peers/bounce.py`).
 
-use fdcc_compiler::{compile, compile_by_parameters, sequences, unrolled};
+use fdcc_compiler::{compile, compile_by_parameters, sequences, with_phases};
 use fdcc_grammar::Code;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::solution::by_parameters;
@@ -12,7 +12,7 @@ use fdcc_tests::models::{Changes, changed, meaning, text_of};
 
 /// A solution in which given jumps happen.
 struct Pieces {
-    /// The pieces side by side.
+    /// The phases between the jumps.
     solved: Solved,
     /// One after the other.
     whole: Outcome,
@@ -23,11 +23,11 @@ struct Pieces {
 
 fn solve(text: &str, sequence: &[usize], methods: Changes) -> Pieces {
     let model = changed(text, &[], methods);
-    let pieces = unrolled(&model, sequence).expect("it can be unrolled");
-    let solved = Solved::of(compile(&pieces).expect("it can be solved"));
+    let phases = with_phases(&model, sequence).expect("its jumps can be phases");
+    let solved = Solved::of(compile(&phases).expect("it can be solved"));
     let between = compile(&model).expect("there is something between the jumps");
     let (whole, jumps) = joined(&between, &solved.problem, &solved.outcome);
-    let by = compile_by_parameters(&pieces).expect("it can be solved");
+    let by = compile_by_parameters(&phases).expect("it can be solved");
     let trajectory = &solved.outcome.trajectory;
     let slopes =
         by_parameters(&solved.problem, &solved.outcome.solution, &trajectory.parameters, &by);
@@ -89,8 +89,10 @@ fn a_bounce_with_a_control_is_that_of_another_program() {
     expect_near(found.jumps[0].time, 0.548708373339, 1e-6);
     let slope = |e: &str| {
         let model = changed(&text_of("bounce"), &[("e", e)], &[("scheme", "midpoint")]);
-        Solved::of(compile(&unrolled(&model, &[0]).expect("it bounces")).expect("it can be solved"))
-            .objective()
+        Solved::of(
+            compile(&with_phases(&model, &[0]).expect("it bounces")).expect("it can be solved"),
+        )
+        .objective()
     };
     expect_near(found.slopes[0], (slope("0.801") - slope("0.799")) / 0.002, 1e-4);
 }
@@ -119,8 +121,8 @@ fn jumps_that_take_turns_happen_when_they_have_to() {
 /// A state that has just come through a surface is still on it; that is no second jump.
 #[test]
 fn no_jump_follows_itself_after_no_time() {
-    let pieces = unrolled(&meaning(HEATER), &[0, 0, 1]).expect("it can be unrolled");
-    let outcome = fdcc_tests::models::solve(&compile(&pieces).expect("it can be tried"));
+    let phases = with_phases(&meaning(HEATER), &[0, 0, 1]).expect("its jumps can be phases");
+    let outcome = fdcc_tests::models::solve(&compile(&phases).expect("it can be tried"));
     assert_eq!(outcome.solution.status, Status::Infeasible);
 }
 
@@ -275,7 +277,7 @@ fn a_surface_is_crossed_first_where_the_state_may_begin_beyond_it() {
 /// One trajectory: times ascend, each piece has its intervals, and the state after a jump stands at
 /// its time.
 #[test]
-fn pieces_are_put_one_after_the_other() {
+fn phases_are_put_one_after_the_other() {
     let found = solve(&text_of("bounce"), &[0], &[("scheme", "midpoint"), ("N", "10")]);
     let trajectory = &found.whole.trajectory;
     assert_eq!((trajectory.time.len(), trajectory.controls[0].len()), (21, 20));

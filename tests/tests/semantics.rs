@@ -4,7 +4,9 @@
 use fdcc_compiler::graph::evaluate;
 use fdcc_compiler::lower::VectorFunction;
 use fdcc_compiler::lower::lower;
-use fdcc_compiler::{Model, Program, analyze, check, compile, compile_simulation, expectations};
+use fdcc_compiler::{
+    LoweredProblem, Model, analyze, check, compile, compile_simulation, expectations,
+};
 use fdcc_grammar::{Code, Diagnostic, Severity, SourceFile, parse};
 use fdcc_runtime::problem::{Bounds, Columns, Degree};
 use fdcc_tests::{blocks, documents, repository, unclaimed};
@@ -135,7 +137,7 @@ fn repository_model(name: &str) -> Model {
     model(&text)
 }
 
-fn values(program: &Program, function: &VectorFunction, inputs: &[f64]) -> Vec<f64> {
+fn values(program: &LoweredProblem, function: &VectorFunction, inputs: &[f64]) -> Vec<f64> {
     assert_eq!(inputs.len(), function.layout.inputs(), "inputs of {}", function.name);
     evaluate(&program.graph, &function.outputs, inputs, &[])
 }

@@ -6,7 +6,7 @@ use crate::differentiate::differentiate;
 use crate::expressions::graph::{ExprId, Graph, print};
 use crate::generate;
 use crate::lower::VectorFunction;
-use crate::lower::{Program, lower};
+use crate::lower::{LoweredProblem, lower};
 use crate::model::numbers::{Numbers, numbers};
 use crate::model::{Model, Place, Range, Symbol};
 use crate::surfaces::report::surfaces;
@@ -39,15 +39,15 @@ pub fn dump(model: &Model, stage: Stage) -> Result<String, Vec<Diagnostic>> {
     }
     not_yet(model)?;
     let numbers = numbers(model)?;
-    let program = lower(model);
+    let lowered = lower(model);
     Ok(match stage {
-        Stage::Graph => functions(model, &program),
-        Stage::Derivatives => with_derivatives(model, &program),
+        Stage::Graph => functions(model, &lowered),
+        Stage::Derivatives => with_derivatives(model, &lowered),
         Stage::Clif => {
-            let (graph, differentiated) = differentiated(&program);
+            let (graph, differentiated) = differentiated(&lowered);
             generate::clif(&graph, &differentiated)
         }
-        _ => summary(model, &program, &numbers),
+        _ => summary(model, &lowered, &numbers),
     })
 }
 
@@ -100,8 +100,8 @@ fn symbols(model: &Model) -> String {
 }
 
 /// The names of a function's inputs.
-fn input_names(model: &Model, program: &Program, layout: &Layout) -> Vec<String> {
-    let hidden = program.hidden.iter().map(|&at| model.integrals[at].place.name.clone());
+fn input_names(model: &Model, lowered: &LoweredProblem, layout: &Layout) -> Vec<String> {
+    let hidden = lowered.hidden.iter().map(|&at| model.integrals[at].place.name.clone());
     let states: Vec<String> =
         model.states.iter().map(|it| it.place.name.clone()).chain(hidden).collect();
     let mut names: Vec<String> = (0..layout.t).map(|_| "tau".into()).collect();
@@ -120,12 +120,12 @@ fn input_names(model: &Model, program: &Program, layout: &Layout) -> Vec<String>
     names
 }
 
-fn functions(model: &Model, program: &Program) -> String {
+fn functions(model: &Model, lowered: &LoweredProblem) -> String {
     let mut text = String::new();
-    for function in std::iter::once(&program.flow).chain(program.functions()) {
-        let names = input_names(model, program, &function.layout);
+    for function in std::iter::once(&lowered.flow).chain(lowered.functions()) {
+        let names = input_names(model, lowered, &function.layout);
         text += &format!("# {}\n", function.name);
-        text += &print(&program.graph, &labelled(function), &|input| names[input as usize].clone());
+        text += &print(&lowered.graph, &labelled(function), &|input| names[input as usize].clone());
         text += "\n";
     }
     text
@@ -139,19 +139,19 @@ fn labelled(function: &VectorFunction) -> Vec<(String, ExprId)> {
     function.outputs.iter().enumerate().map(label).collect()
 }
 
-fn differentiated(program: &Program) -> (Graph, Vec<Differentiated>) {
-    let mut graph = program.graph.clone();
-    let functions = program.functions().map(VectorFunction::clone);
+fn differentiated(lowered: &LoweredProblem) -> (Graph, Vec<Differentiated>) {
+    let mut graph = lowered.graph.clone();
+    let functions = lowered.functions().map(VectorFunction::clone);
     let functions =
         functions.into_iter().map(|function| differentiate(&mut graph, function)).collect();
     (graph, functions)
 }
 
-fn with_derivatives(model: &Model, program: &Program) -> String {
-    let (graph, functions) = differentiated(program);
+fn with_derivatives(model: &Model, lowered: &LoweredProblem) -> String {
+    let (graph, functions) = differentiated(lowered);
     let mut text = String::new();
     for Differentiated { function, jacobian, hessian, .. } in &functions {
-        let names = input_names(model, program, &function.layout);
+        let names = input_names(model, lowered, &function.layout);
         let rows: Vec<String> = labelled(function).into_iter().map(|row| row.0).collect();
         let mut roots = labelled(function);
         for (&(row, column), &id) in jacobian.0.entries.iter().zip(&jacobian.1) {
@@ -171,7 +171,7 @@ fn with_derivatives(model: &Model, program: &Program) -> String {
 }
 
 /// The problem as understood.
-fn summary(model: &Model, program: &Program, numbers: &Numbers) -> String {
+fn summary(model: &Model, lowered: &LoweredProblem, numbers: &Numbers) -> String {
     let mut text = format!("model {}\n", model.name);
     let ends =
         over_symbols(model, &[("t0".into(), model.interval[0]), ("tf".into(), model.interval[1])]);
@@ -191,7 +191,7 @@ fn summary(model: &Model, program: &Program, numbers: &Numbers) -> String {
     let objective: Vec<(String, ExprId)> =
         model.objective.iter().map(|it| (it.0.name.clone(), it.1)).collect();
     section(&mut text, "objective", over_symbols(model, &objective).lines().map(str::to_string));
-    section(&mut text, "functions", differentiated(program).1.iter().map(sizes));
+    section(&mut text, "functions", differentiated(lowered).1.iter().map(sizes));
     text
 }
 

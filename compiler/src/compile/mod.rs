@@ -17,25 +17,25 @@ use fdcc_runtime::simulate::System;
 use std::sync::Arc;
 
 /// Turns a model into an optimal control problem with compiled functions; or says what cannot be
-/// solved yet. Of a model with jumps it is what holds between them: [`unrolled`](crate::unrolled) makes of it one in
+/// solved yet. Of a model with jumps it is what holds between them: [`with_phases`](crate::with_phases) makes of it one in
 /// which they happen.
 pub fn compile(model: &Model) -> Result<Problem, Vec<Diagnostic>> {
     not_yet(model)?;
     let model = &between_jumps(model);
     let numbers = numbers(model)?;
-    let program = lower(model);
-    let functions = program.functions().map(VectorFunction::clone).to_vec();
-    let functions = machine_code(program.graph.clone(), functions);
-    Ok(problem(model, &program, &numbers, functions))
+    let lowered = lower(model);
+    let functions = lowered.functions().map(VectorFunction::clone).to_vec();
+    let functions = machine_code(lowered.graph.clone(), functions);
+    Ok(problem(model, &lowered, &numbers, functions))
 }
 
 /// The functions of a problem differentiated by the parameters of the model, for what its optimum
 /// is worth to them.
 pub fn compile_by_parameters(model: &Model) -> Result<ByParameters, Vec<Diagnostic>> {
     not_yet(model)?;
-    let mut program = lower(model);
-    let functions = by_parameters(model, &mut program).to_vec();
-    let functions = machine_code(program.graph, functions);
+    let mut lowered = lower(model);
+    let functions = by_parameters(model, &mut lowered).to_vec();
+    let functions = machine_code(lowered.graph, functions);
     let [dynamics, path, boundary, given] =
         functions.try_into().unwrap_or_else(|_| unreachable!("there are four"));
     Ok(ByParameters { parameters: model.params.len(), dynamics, path, boundary, given })
@@ -63,9 +63,9 @@ pub fn compile_smoothed(model: &Model) -> Result<System, Vec<Diagnostic>> {
 fn compile_system(model: &Model, purpose: Purpose) -> Result<System, Vec<Diagnostic>> {
     not_yet(model)?;
     let numbers = numbers(model)?;
-    let (graph, program) = lower::simulation(model, purpose);
-    let functions = machine_code(graph, program.functions.clone());
-    Ok(lower::system(model, &program, &numbers, functions))
+    let (graph, lowered) = lower::simulation(model, purpose);
+    let functions = machine_code(graph, lowered.functions.clone());
+    Ok(lower::system(model, &lowered, &numbers, functions))
 }
 
 /// All expectations of a model, compiled.

@@ -5,9 +5,9 @@ use std::sync::{Arc, OnceLock};
 
 use fdcc_runtime::problem::{Columns, Degree, Function, Layout, Origin, Pattern};
 
+use super::bytecode::Bytecode;
 use super::cranelift::{Kernel, Tables};
-use super::schedule::Place;
-use super::steps::Steps;
+use super::schedule::Slot;
 use super::{Source, highest_order, work};
 use crate::differentiate::Differentiated;
 
@@ -23,7 +23,7 @@ pub(super) struct CompiledFunction {
 /// How derivatives up to one order are computed.
 #[derive(Default)]
 struct Way {
-    steps: OnceLock<Steps>,
+    steps: OnceLock<Bytecode>,
     kernel: OnceLock<Kernel>,
     /// How much has been computed step by step, in points.
     done: AtomicUsize,
@@ -54,7 +54,7 @@ impl<'c> Call<'c> {
     }
 
     /// Writes results of neighbouring points.
-    pub(super) fn store(&mut self, place: Place, first: usize, numbers: &[f64]) {
+    pub(super) fn store(&mut self, place: Slot, first: usize, numbers: &[f64]) {
         let begin = place.column * self.stride + first;
         self.results[place.table as usize][begin..][..numbers.len()].copy_from_slice(numbers);
     }
@@ -91,9 +91,9 @@ impl CompiledFunction {
             .get_or_init(|| Kernel::new(machine, graph, &work(graph, &self.symbols, order)))
     }
 
-    fn steps(&self, order: usize) -> &Steps {
+    fn steps(&self, order: usize) -> &Bytecode {
         let Source { graph, machine } = &*self.source;
-        let make = || Steps::new(graph, &work(graph, &self.symbols, order), machine.is_fused());
+        let make = || Bytecode::new(graph, &work(graph, &self.symbols, order), machine.is_fused());
         self.ways[order].steps.get_or_init(make)
     }
 

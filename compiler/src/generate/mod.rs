@@ -2,12 +2,12 @@
 //! step until machine code pays.
 
 mod arithmetic;
+mod bytecode;
 mod cranelift;
 mod elementary;
 mod function;
 mod numbers;
 mod schedule;
-mod steps;
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use crate::differentiate::Differentiated;
 use crate::expressions::graph::{ExprId, Graph};
 use cranelift::Machine;
 use function::CompiledFunction;
-use schedule::{Place, Schedule, Table, schedule};
+use schedule::{Schedule, Slot, Table, schedule};
 
 /// What all kernels of a program are made of, and for.
 struct Source {
@@ -65,6 +65,6 @@ fn work(graph: &Graph, function: &Differentiated, order: usize) -> Schedule {
     schedule(graph, &function.layout, &results.collect::<Vec<_>>())
 }
 
-fn places(table: Table, outputs: &[ExprId]) -> impl Iterator<Item = (ExprId, Place)> {
-    outputs.iter().enumerate().map(move |(column, &id)| (id, Place { table, column }))
+fn places(table: Table, outputs: &[ExprId]) -> impl Iterator<Item = (ExprId, Slot)> {
+    outputs.iter().enumerate().map(move |(column, &id)| (id, Slot { table, column }))
 }

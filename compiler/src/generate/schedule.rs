@@ -19,7 +19,7 @@ pub(super) enum Table {
 
 /// A column of a table.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct Place {
+pub(super) struct Slot {
     pub table: Table,
     pub column: usize,
 }
@@ -61,13 +61,13 @@ pub(super) struct Schedule {
     /// For every pair of points.
     pub inside: Vec<(ExprId, Operation)>,
     /// Where results of these computations are stored.
-    pub varying: ById<Vec<Place>>,
+    pub varying: ById<Vec<Slot>>,
     /// Results that are the same at all points, to be stored for each of them.
-    pub constant: Vec<(ExprId, Place)>,
+    pub constant: Vec<(ExprId, Slot)>,
 }
 
 /// The order of work for results and their places.
-pub(super) fn schedule(graph: &Graph, layout: &Layout, results: &[(ExprId, Place)]) -> Schedule {
+pub(super) fn schedule(graph: &Graph, layout: &Layout, results: &[(ExprId, Slot)]) -> Schedule {
     let nodes = Nodes::new(graph, layout, results);
     let mut schedule = Schedule::default();
     let mut done = vec![false; nodes.varying.len()];
@@ -91,7 +91,7 @@ struct Nodes<'a> {
 }
 
 impl<'a> Nodes<'a> {
-    fn new(graph: &'a Graph, layout: &'a Layout, results: &[(ExprId, Place)]) -> Self {
+    fn new(graph: &'a Graph, layout: &'a Layout, results: &[(ExprId, Slot)]) -> Self {
         let roots: Vec<ExprId> = results.iter().map(|(root, _)| *root).collect();
         let needed = graph.reachable(&roots);
         let size = needed.last().map_or(0, |last| last.index() + 1);
@@ -190,7 +190,7 @@ mod tests {
     use super::*;
 
     const LAYOUT: Layout = Layout { t: 0, x: 2, u: 0, p: 1, s: 0 };
-    const PLACE: Place = Place { table: Table::Values, column: 0 };
+    const PLACE: Slot = Slot { table: Table::Values, column: 0 };
 
     #[test]
     fn what_depends_on_parameters_alone_stands_before_the_loop() {

@@ -3,17 +3,17 @@
 
 use super::function::{Order, VectorFunction};
 use super::inputs::{self, Sizes};
-use super::{Program, boundary};
+use super::{LoweredProblem, boundary};
 use crate::expressions::graph::{Expr, ExprId, Graph};
 use crate::model::{Model, Range, Symbol};
 use fdcc_runtime::problem::{Layout, Origin};
 
 /// Right side, path constraints, both ends, and what is given; in the order of
 /// [`ByParameters`](fdcc_runtime::problem::ByParameters).
-pub(crate) fn by_parameters(model: &Model, program: &mut Program) -> [VectorFunction; 4] {
-    let given = given(model, program);
+pub(crate) fn by_parameters(model: &Model, lowered: &mut LoweredProblem) -> [VectorFunction; 4] {
+    let given = given(model, lowered);
     let [dynamics, path, boundary] =
-        [&program.dynamics, &program.path, &program.boundary].map(|it| by_first(model, it.clone()));
+        [&lowered.dynamics, &lowered.path, &lowered.boundary].map(|it| by_first(model, it.clone()));
     [dynamics, path, boundary, by_first(model, given)]
 }
 
@@ -24,12 +24,12 @@ fn by_first(model: &Model, function: VectorFunction) -> VectorFunction {
     VectorFunction { by, order: Order::First, ..function }
 }
 
-fn given(model: &Model, program: &mut Program) -> VectorFunction {
-    let sizes = Sizes::new(model, program.hidden.len());
+fn given(model: &Model, lowered: &mut LoweredProblem) -> VectorFunction {
+    let sizes = Sizes::new(model, lowered.hidden.len());
     let layout = Layout { p: sizes.parameters, ..Layout::default() };
-    let outputs = outputs(model, &program.boundary_rows, program.hidden.len(), &mut program.graph);
-    let inputs = inputs::of_parameters(model, &mut program.graph, &layout);
-    let outputs = inputs.apply(&mut program.graph, &outputs);
+    let outputs = outputs(model, &lowered.boundary_rows, lowered.hidden.len(), &mut lowered.graph);
+    let inputs = inputs::of_parameters(model, &mut lowered.graph, &layout);
+    let outputs = inputs.apply(&mut lowered.graph, &outputs);
     let origins = vec![Origin::default(); outputs.len()];
     VectorFunction {
         name: "given".into(),
@@ -69,19 +69,19 @@ fn outputs(
 
 /// Whether neither the right side nor a path constraint depends on the time but through states and
 /// controls.
-pub(crate) fn is_autonomous(program: &Program) -> bool {
-    let outputs = [&program.dynamics, &program.path].map(|it| it.outputs.clone()).concat();
-    !program.graph.inputs_of(&outputs).contains(&0)
+pub(crate) fn is_autonomous(lowered: &LoweredProblem) -> bool {
+    let outputs = [&lowered.dynamics, &lowered.path].map(|it| it.outputs.clone()).concat();
+    !lowered.graph.inputs_of(&outputs).contains(&0)
 }
 
 /// The unknown that is the last time, and nothing else: no right side, path constraint or first
 /// time depends on it.
-pub(crate) fn last_time(model: &Model, program: &Program) -> Option<usize> {
+pub(crate) fn last_time(model: &Model, lowered: &LoweredProblem) -> Option<usize> {
     let Expr::Input(last) = *model.graph.expr(model.interval[1]) else { return None };
     let Symbol::Free(unknown) = model.symbols[last as usize] else { return None };
-    let place = program.flow.layout.parameters().start + model.params.len() + unknown;
-    let flow_and_path = [&program.flow, &program.path].map(|it| it.outputs.clone()).concat();
-    let is_elsewhere = program.graph.inputs_of(&flow_and_path).contains(&(place as u32));
+    let place = lowered.flow.layout.parameters().start + model.params.len() + unknown;
+    let flow_and_path = [&lowered.flow, &lowered.path].map(|it| it.outputs.clone()).concat();
+    let is_elsewhere = lowered.graph.inputs_of(&flow_and_path).contains(&(place as u32));
     let starts_with_it = model.graph.inputs_of(&model.interval[..1]).contains(&last);
     (!is_elsewhere && !starts_with_it).then_some(unknown)
 }

@@ -37,7 +37,7 @@ use inputs::Sizes;
 use objective::Objective;
 
 /// All functions of a problem, still expressions.
-pub struct Program {
+pub struct LoweredProblem {
     /// The expressions.
     pub graph: Graph,
     /// The right side in real time with selectors as inputs; not compiled for solving.
@@ -65,7 +65,7 @@ pub struct Program {
 }
 
 /// Lowers a model.
-pub fn lower(model: &Model) -> Program {
+pub fn lower(model: &Model) -> LoweredProblem {
     let mut graph = model.graph.clone();
     let objective = objective::split(model, &mut graph);
     let sizes = Sizes::new(model, objective.hidden.len());
@@ -89,7 +89,7 @@ pub fn lower(model: &Model) -> Program {
     let interval = interval(model, &mut graph, &sizes);
     let running_cost = objective.running.is_some();
     let hidden = objective.hidden;
-    Program {
+    LoweredProblem {
         graph,
         flow,
         dynamics,
@@ -105,7 +105,7 @@ pub fn lower(model: &Model) -> Program {
     }
 }
 
-impl Program {
+impl LoweredProblem {
     /// The functions that a problem compiles, in the order in which [`problem()`] takes them back.
     pub fn functions(&self) -> [&VectorFunction; 7] {
         [

@@ -2,7 +2,7 @@
 
 use super::boundary::is_fixed;
 use super::by_parameters::{is_autonomous, last_time};
-use super::{Program, origin};
+use super::{LoweredProblem, origin};
 use crate::model::numbers::Numbers;
 use crate::model::{Model, Place, Switch, Symbol};
 use fdcc_runtime::problem::{
@@ -10,60 +10,60 @@ use fdcc_runtime::problem::{
 };
 use std::sync::Arc;
 
-/// Puts together what the runtime needs. `functions` are those of [`Program::functions`], compiled.
+/// Puts together what the runtime needs. `functions` are those of [`LoweredProblem::functions`], compiled.
 pub fn problem(
     model: &Model,
-    program: &Program,
+    lowered: &LoweredProblem,
     numbers: &Numbers,
     functions: Vec<Arc<dyn Function>>,
 ) -> Problem {
     let functions: [Arc<dyn Function>; 7] =
-        functions.try_into().unwrap_or_else(|_| unreachable!("a program has seven functions"));
+        functions.try_into().unwrap_or_else(|_| unreachable!("a problem has seven functions"));
     let [dynamics, path, boundary, guess, interval, guards, report] = functions;
-    let parameters = parameters(model, program.flow.layout.p, numbers);
+    let parameters = parameters(model, lowered.flow.layout.p, numbers);
     let first_sigma = model.params.len() + model.frees.len();
-    let layout: Layout = program.flow.layout;
+    let layout: Layout = lowered.flow.layout;
     Problem {
         name: model.name.clone(),
         layout,
-        states: states(model, &program.hidden, numbers),
+        states: states(model, &lowered.hidden, numbers),
         controls: controls(model, numbers),
         unknowns: unknowns(model, numbers),
         surfaces: switches(model, first_sigma),
         parameters,
         dynamics,
-        running_cost: program.running_cost,
+        running_cost: lowered.running_cost,
         path,
         path_bounds: model.path.iter().map(|row| numbers.bounds(model, row.range)).collect(),
         boundary,
-        boundary_bounds: program
+        boundary_bounds: lowered
             .boundary_rows
             .iter()
-            .map(|row| row_bounds(program, numbers, model, row))
+            .map(|row| row_bounds(lowered, numbers, model, row))
             .collect(),
         sense: model.sense,
         has_objective: model.objective.is_some(),
-        start: starts(model, program, numbers),
+        start: starts(model, lowered, numbers),
         guess,
         interval,
         guards,
-        is_autonomous: is_autonomous(program),
-        last_time: last_time(model, program),
+        is_autonomous: is_autonomous(lowered),
+        last_time: last_time(model, lowered),
         report_names: model.report.iter().map(|report| report.place.name.clone()).collect(),
         report,
         method: model.method.clone(),
     }
 }
 
-/// Start rows were made after the model, so their bounds may be numbers of the program's graph
+/// Start rows were made after the model, so their bounds may be numbers of the graph of the lowered problem
 /// alone.
 fn row_bounds(
-    program: &Program,
+    lowered: &LoweredProblem,
     numbers: &Numbers,
     model: &Model,
     row: &super::boundary::Condition,
 ) -> Bounds {
-    let value = |id| program.graph.as_number(id).unwrap_or_else(|| numbers.value(model, id));
+    let value = |id| lowered.graph.as_number(id).unwrap_or_else(|| numbers.value(model, id));
     Bounds { lower: value(row.range.lower), upper: value(row.range.upper) }
 }
 
@@ -156,11 +156,11 @@ pub(super) fn surfaces(model: &Model, first_sigma: usize) -> Vec<Surface> {
     each.map(surface).collect()
 }
 
-fn starts(model: &Model, program: &Program, numbers: &Numbers) -> Vec<Option<f64>> {
+fn starts(model: &Model, lowered: &LoweredProblem, numbers: &Numbers) -> Vec<Option<f64>> {
     let fixed = |state: &crate::model::State| {
-        let start = state.start.filter(|&start| is_fixed(model, &program.graph, start))?;
+        let start = state.start.filter(|&start| is_fixed(model, &lowered.graph, start))?;
         Some(numbers.value(model, start))
     };
     let declared = model.states.iter().map(fixed);
-    declared.chain(program.hidden.iter().map(|_| Some(0.0))).collect()
+    declared.chain(lowered.hidden.iter().map(|_| Some(0.0))).collect()
 }

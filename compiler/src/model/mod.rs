@@ -161,7 +161,7 @@ pub struct Jump {
 
 /// A scalar row of a condition: `lower <= value <= upper`.
 #[derive(Clone, Debug)]
-pub struct Row {
+pub struct Constraint {
     /// The condition.
     pub place: Place,
     /// What is bounded.
@@ -274,9 +274,9 @@ pub struct Model {
     /// First and last time, over parameters and unknowns.
     pub interval: [ExprId; 2],
     /// Conditions at all times.
-    pub path: Vec<Row>,
+    pub path: Vec<Constraint>,
     /// Conditions at the ends.
-    pub boundary: Vec<Row>,
+    pub boundary: Vec<Constraint>,
     /// What is minimised, as written; none for a pure feasibility problem.
     pub objective: Option<(Place, ExprId)>,
     /// `-1` for `maximize`.

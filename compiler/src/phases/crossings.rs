@@ -1,5 +1,5 @@
 //! Surfaces that the state crosses against the direction of their jump: nothing is reset, but a
-//! piece ends there.
+//! phase ends there.
 //!
 //! A ball that is thrown from below the rim rises through it before it can fall on it. On the way
 //! up `psi <= 0`, then `psi >= 0` until the jump. A sequence has the number `n + i` where the
@@ -69,7 +69,7 @@ pub(super) fn beginnings(model: &Model, numbers: &Numbers) -> Vec<Beginning> {
         let [reach, guess] = [(known, &widest), (guess, &guessed)].map(|(psi, domain)| {
             height(jump.direction, Tape::new(&graph, &[psi]).evaluate(domain)[0])
         });
-        let has_both = super::sides::has_both(&model.jumps, jump);
+        let has_both = super::path::has_both(&model.jumps, jump);
         Beginning {
             may_be_before: has_both || !is_below(reach.upper),
             may_be_beyond: !has_both && is_below(reach.lower),

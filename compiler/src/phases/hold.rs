@@ -4,15 +4,15 @@
 //! still from then on. That keeps the surface held where `psi'` depends on no other state, no
 //! control and no time; another way to hold one is not solved yet.
 
-use super::Unrolling;
+use super::MultiPhase;
 use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::{ExprId, Graph};
-use crate::model::{Jump, Model, Row, Symbol};
+use crate::model::{Constraint, Jump, Model, Symbol};
 
 /// A surface that is held.
 #[derive(Clone, Copy)]
 pub(super) struct Held {
-    /// The first piece in which it is.
+    /// The first phase in which it is.
     pub from: usize,
     /// The state that stands still.
     pub state: usize,
@@ -67,22 +67,22 @@ pub(super) fn approach(model: &Model, graph: &mut Graph, psi: ExprId) -> ExprId 
     graph.sum(&terms)
 }
 
-impl Unrolling<'_> {
-    /// Whether a state stands still in a piece.
+impl MultiPhase<'_> {
+    /// Whether a state stands still in a phase.
     pub(super) fn is_still(&self, j: usize, state: usize) -> bool {
         self.held.is_some_and(|held| j >= held.from && state == held.state)
     }
 
-    /// `psi'` at the start of the piece from which on the surface is held, where the state begins
+    /// `psi'` at the start of the phase from which on the surface is held, where the state begins
     /// that stands still.
     pub(super) fn at_rest(&mut self, j: usize, state: usize) -> Option<ExprId> {
         let held = self.held.filter(|held| held.from == j && held.state == state)?;
-        let (input, start) = (self.input_of_state(state), self.pieces[j].starts[state]);
+        let (input, start) = (self.input_of_state(state), self.phases[j].starts[state]);
         Some(self.graph.substitute(&[held.approach], &|at| (at == input).then_some(start))[0])
     }
 
     /// Whether a constraint says of a held surface what is so anyway.
-    pub(super) fn is_held(&mut self, j: usize, row: &Row) -> bool {
+    pub(super) fn is_held(&mut self, j: usize, row: &Constraint) -> bool {
         let Some(held) = self.held.filter(|held| j >= held.from) else { return false };
         self.is_guard(held.psi, row.value)
     }

@@ -1,13 +1,13 @@
-//! Conditions at the ends of the pieces: what ties each to the next, and what is written of the
+//! Conditions at the ends of the phases: what ties each to the next, and what is written of the
 //! whole.
 
-use super::Unrolling;
-use crate::model::{Place, Range, Row};
+use super::MultiPhase;
+use crate::model::{Constraint, Place, Range};
 
-impl Unrolling<'_> {
-    /// `psi = 0` and the resets at each jump, that the last piece has a length, and what is written
+impl MultiPhase<'_> {
+    /// `psi = 0` and the resets at each jump, that the last phase has a duration, and what is written
     /// of the ends.
-    pub(super) fn boundary(&mut self) -> Vec<Row> {
+    pub(super) fn boundary(&mut self) -> Vec<Constraint> {
         let mut rows = Vec::new();
         for j in 0..self.sequence.len() {
             rows.extend(self.link(j));
@@ -15,22 +15,22 @@ impl Unrolling<'_> {
         if let Some(last) = self.sequence.last().map(|at| &self.whole.jumps[*at]) {
             let [zero, infinity] = [0.0, f64::INFINITY].map(|it| self.graph.number(it));
             let name = format!("time after {}", last.place.name);
-            rows.push(Row {
+            rows.push(Constraint {
                 place: Place { name, span: last.place.span },
-                value: self.lengths[self.sequence.len()],
+                value: self.durations[self.sequence.len()],
                 range: Range { lower: zero, upper: infinity },
             });
         }
         for row in &self.model.boundary {
-            rows.push(Row { value: self.of_whole(row.value), ..row.clone() });
+            rows.push(Constraint { value: self.of_whole(row.value), ..row.clone() });
         }
         rows
     }
 
-    /// From the end of a piece to the start of the next.
-    fn link(&mut self, j: usize) -> Vec<Row> {
+    /// From the end of a phase to the start of the next.
+    fn link(&mut self, j: usize) -> Vec<Constraint> {
         let (jump, zero) = (self.jump(j), self.graph.number(0.0));
-        let row = |name: String, value| Row {
+        let row = |name: String, value| Constraint {
             place: Place { name, span: jump.place.span },
             value,
             range: Range { lower: zero, upper: zero },
@@ -42,11 +42,11 @@ impl Unrolling<'_> {
             let reset = jump.resets.iter().find(|it| it.0 == index).map(|it| it.1);
             let before = match reset {
                 Some(value) => self.at_end(j, value),
-                None => self.pieces[j].ends[index],
+                None => self.phases[j].ends[index],
             };
             let gap = match self.at_rest(j + 1, index) {
                 Some(approach) => approach,
-                None => self.graph.sub(self.pieces[j + 1].starts[index], before),
+                None => self.graph.sub(self.phases[j + 1].starts[index], before),
             };
             rows.push(row(format!("{} after {}", state.place.name, jump.place.name), gap));
         }

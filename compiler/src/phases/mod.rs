@@ -1,8 +1,8 @@
-//! A model with jumps as one without: the pieces of time between the jumps run side by side.
+//! A model with jumps as one without: a phase between each two jumps, all on the same grid.
 //!
-//! Jumps `1..n` at unknown times divide time into `n + 1` pieces of unknown lengths `D_j` that
-//! begin at `T_j`. Each has states and controls of its own over the same `tau` in [0, 1], tied
-//! together at their ends:
+//! Jumps `1..n` at unknown times divide time into `n + 1` phases of unknown durations `D_j` that
+//! begin at `T_j`. Each has states and controls of its own over the same `tau` in [0, 1], and
+//! linkage conditions at its ends:
 //!
 //! ```text
 //! x_j' = D_j f(T_j + tau D_j, x_j, u_j, p)      psi(T_j+1, x_j(1), p) = 0      x_j+1(0) = r(T_j+1, x_j(1), p)
@@ -10,14 +10,14 @@
 //!
 //! Which jumps happen, and in which order, is given ([`sequences()`]). The result is a model like
 //! any other: smooth between the jumps, and differentiated through them by the dependence of all
-//! pieces on the lengths.
+//! phases on the durations.
 
 mod crossings;
 mod hold;
 mod links;
-mod piece;
+mod path;
+mod phase;
 mod sequences;
-mod sides;
 
 pub use crossings::crossings;
 pub use sequences::{Sequences, sequences};
@@ -32,7 +32,7 @@ use crate::model::{
 use crossings::Beginning;
 use fdcc_grammar::Diagnostic;
 use hold::Held;
-use piece::Piece;
+use phase::Phase;
 
 /// What holds between the jumps of a model: the model without them, and without surfaces at which
 /// nothing else happens.
@@ -73,20 +73,20 @@ fn used_surfaces(model: &Model) -> Vec<usize> {
 }
 
 /// The model in which exactly these jumps and [`mod@crossings`] happen, one after the other.
-pub fn unrolled(model: &Model, sequence: &[usize]) -> Result<Model, Vec<Diagnostic>> {
+pub fn with_phases(model: &Model, sequence: &[usize]) -> Result<Model, Vec<Diagnostic>> {
     let numbers = numbers(model)?;
     let begins = crossings::beginnings(model, &numbers);
     let mut limits = sequences::limits(model, &numbers);
     limits.resize(2 * model.jumps.len(), None);
     let whole = Model { jumps: [model.jumps.clone(), crossings(model)].concat(), ..model.clone() };
     let mut between = between_jumps(model);
-    piece::input(&mut between.graph, &mut between.symbols, Symbol::Time);
+    phase::input(&mut between.graph, &mut between.symbols, Symbol::Time);
     let mut graph = between.graph.clone();
     let mut symbols = between.symbols.clone();
     let held = Held::new(&whole, &mut graph, sequence, &limits);
-    let lengths = lengths(&between, sequence, &mut graph, &mut symbols);
-    let pieces = Piece::all(&between, &mut graph, &mut symbols, &lengths);
-    let mut unrolling = Unrolling {
+    let durations = durations(&between, sequence, &mut graph, &mut symbols);
+    let phases = Phase::all(&between, &mut graph, &mut symbols, &durations);
+    let mut multi_phase = MultiPhase {
         whole: &whole,
         model: &between,
         sequence,
@@ -94,31 +94,31 @@ pub fn unrolled(model: &Model, sequence: &[usize]) -> Result<Model, Vec<Diagnost
         begins,
         limits,
         graph,
-        lengths,
-        pieces,
+        durations,
+        phases,
     };
-    let parts = unrolling.parts();
-    Ok(Model { graph: unrolling.graph, symbols, ..parts })
+    let parts = multi_phase.parts();
+    Ok(Model { graph: multi_phase.graph, symbols, ..parts })
 }
 
-/// `D_j`: an unknown for each piece but the last, which is what they leave of the time.
-fn lengths(
+/// `D_j`: an unknown for each phase but the last, which is what they leave of the time.
+fn durations(
     model: &Model,
     sequence: &[usize],
     graph: &mut Graph,
     symbols: &mut Vec<Symbol>,
 ) -> Vec<ExprId> {
     let first = model.frees.len();
-    let mut lengths: Vec<ExprId> = (0..sequence.len())
-        .map(|j| piece::input(graph, symbols, Symbol::Free(first + j)))
+    let mut durations: Vec<ExprId> = (0..sequence.len())
+        .map(|j| phase::input(graph, symbols, Symbol::Free(first + j)))
         .collect();
-    let known = graph.sum(&lengths);
+    let known = graph.sum(&durations);
     let whole = graph.sub(model.interval[1], model.interval[0]);
-    lengths.push(graph.sub(whole, known));
-    lengths
+    durations.push(graph.sub(whole, known));
+    durations
 }
 
-struct Unrolling<'m> {
+struct MultiPhase<'m> {
     /// As it is written, with the crossings behind its jumps.
     whole: &'m Model,
     /// What holds between the jumps.
@@ -132,21 +132,21 @@ struct Unrolling<'m> {
     /// How often each jump may happen.
     limits: Vec<Option<usize>>,
     graph: Graph,
-    lengths: Vec<ExprId>,
-    pieces: Vec<Piece>,
+    durations: Vec<ExprId>,
+    phases: Vec<Phase>,
 }
 
-impl<'m> Unrolling<'m> {
-    /// The jump at the end of a piece.
+impl<'m> MultiPhase<'m> {
+    /// The jump at the end of a phase.
     fn jump(&self, j: usize) -> &'m Jump {
         &self.whole.jumps[self.sequence[j]]
     }
 
-    /// The lists of the model, each with what every piece has of it.
+    /// The lists of the model, each with what every phase has of it.
     fn parts(&mut self) -> Model {
         let model = self.model;
         let [zero, one] = [0.0, 1.0].map(|it| self.graph.number(it));
-        let count = self.pieces.len();
+        let count = self.phases.len();
         let each = |it: &std::ops::Range<usize>, j: usize| {
             it.start + j * model.surfaces.len()..it.end + j * model.surfaces.len()
         };
@@ -177,12 +177,12 @@ impl<'m> Unrolling<'m> {
         }
     }
 
-    /// The unknowns, then the lengths of all pieces but the last.
+    /// The unknowns, then the durations of all phases but the last.
     fn frees(&mut self) -> Vec<Free> {
         let mut frees = self.model.frees.clone();
         let [zero, infinity] = [0.0, f64::INFINITY].map(|it| self.graph.number(it));
         let whole = self.graph.sub(self.model.interval[1], self.model.interval[0]);
-        let guess = self.graph.scale(1.0 / self.pieces.len() as f64, whole);
+        let guess = self.graph.scale(1.0 / self.phases.len() as f64, whole);
         frees.extend((0..self.sequence.len()).map(|j| self.jump(j)).map(|jump| Free {
             place: Place {
                 name: format!("time before {}", jump.place.name),
@@ -197,11 +197,11 @@ impl<'m> Unrolling<'m> {
     fn states(&mut self) -> Vec<State> {
         let guesses = straight_guesses(self.model, &mut self.graph);
         let mut states = Vec::new();
-        for j in 0..self.pieces.len() {
+        for j in 0..self.phases.len() {
             for (index, state) in self.model.states.iter().enumerate() {
                 let rate = match self.is_still(j, index) {
                     true => self.graph.number(0.0),
-                    false => self.in_piece(j, state.rate),
+                    false => self.in_phase(j, state.rate),
                 };
                 let is_first = j == 0;
                 states.push(State {
@@ -209,9 +209,9 @@ impl<'m> Unrolling<'m> {
                     range: self.range_of(index),
                     start: state.start.filter(|_| is_first),
                     start_range: state.start_range.filter(|_| is_first),
-                    rate: self.graph.mul(self.lengths[j], rate),
+                    rate: self.graph.mul(self.durations[j], rate),
                     equation: state.equation.clone(),
-                    guess: Some(self.in_piece(j, guesses[index])),
+                    guess: Some(self.in_phase(j, guesses[index])),
                 });
             }
         }
@@ -220,9 +220,9 @@ impl<'m> Unrolling<'m> {
 
     fn controls(&mut self) -> Vec<Control> {
         let mut controls = Vec::new();
-        for j in 0..self.pieces.len() {
+        for j in 0..self.phases.len() {
             for control in &self.model.controls {
-                let guess = control.guess.map(|guess| self.in_piece(j, guess));
+                let guess = control.guess.map(|guess| self.in_phase(j, guess));
                 controls.push(Control {
                     place: self.named(j, &control.place),
                     guess,
@@ -235,23 +235,23 @@ impl<'m> Unrolling<'m> {
 
     fn surfaces(&mut self) -> Vec<Surface> {
         let mut surfaces = Vec::new();
-        for j in 0..self.pieces.len() {
+        for j in 0..self.phases.len() {
             for surface in &self.model.surfaces {
-                let psi = self.in_piece(j, surface.psi);
+                let psi = self.in_phase(j, surface.psi);
                 surfaces.push(Surface { place: self.named(j, &surface.place), psi });
             }
         }
         surfaces
     }
 
-    /// Integrals add up over the pieces.
+    /// Integrals add up over the phases.
     fn integrals(&mut self) -> Vec<Integral> {
         let mut integrals = self.model.integrals.clone();
         for integral in &mut integrals {
-            let terms: Vec<ExprId> = (0..self.pieces.len())
+            let terms: Vec<ExprId> = (0..self.phases.len())
                 .map(|j| {
-                    let here = self.in_piece(j, integral.integrand);
-                    self.graph.mul(self.lengths[j], here)
+                    let here = self.in_phase(j, integral.integrand);
+                    self.graph.mul(self.durations[j], here)
                 })
                 .collect();
             integral.integrand = self.graph.sum(&terms);
@@ -261,9 +261,9 @@ impl<'m> Unrolling<'m> {
 
     fn report(&mut self) -> Vec<Report> {
         let mut report = Vec::new();
-        for j in 0..self.pieces.len() {
+        for j in 0..self.phases.len() {
             for row in &self.model.report {
-                report.push(Report { value: self.in_piece(j, row.value), ..row.clone() });
+                report.push(Report { value: self.in_phase(j, row.value), ..row.clone() });
             }
         }
         report
@@ -277,7 +277,7 @@ impl<'m> Unrolling<'m> {
         all
     }
 
-    /// A name of its own for each piece but the first.
+    /// A name of its own for each phase but the first.
     fn named(&self, j: usize, place: &Place) -> Place {
         let Some(before) = j.checked_sub(1) else { return place.clone() };
         let earlier = &self.jump(before).place.name;

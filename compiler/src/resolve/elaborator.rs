@@ -27,7 +27,7 @@ pub(crate) struct SurfaceEntry {
 }
 
 /// What a value is used for, and what it is made of: the subject of the checks.
-pub(crate) struct Piece<'a> {
+pub(crate) struct Usage<'a> {
     /// What it is used for.
     pub role: Role<'a>,
     /// The value.
@@ -112,7 +112,7 @@ pub(crate) struct Elaborator<'a> {
     /// until all are known.
     pub at_end: Vec<bool>,
     /// Values and their uses.
-    pub pieces: Vec<Piece<'a>>,
+    pub usages: Vec<Usage<'a>>,
     /// First and last time.
     pub interval: [ExprId; 2],
     /// Findings.
@@ -157,7 +157,7 @@ impl<'a> Elaborator<'a> {
             known_rates: HashSet::new(),
             model: Model::empty(),
             at_end: Vec::new(),
-            pieces: Vec::new(),
+            usages: Vec::new(),
             interval,
             diagnostics: Vec::new(),
             not_yet: Vec::new(),
@@ -206,7 +206,7 @@ impl<'a> Elaborator<'a> {
 
     /// Notes a value and its purpose.
     pub fn note(&mut self, role: Role<'a>, value: &Value) {
-        self.pieces.push(Piece { role, parts: value.parts.clone(), traits: value.traits.clone() });
+        self.usages.push(Usage { role, parts: value.parts.clone(), traits: value.traits.clone() });
     }
 
     /// A number that depends on parameters alone.

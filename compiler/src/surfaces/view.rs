@@ -3,7 +3,7 @@
 use crate::expressions::graph::{Expr, ExprId, Graph, evaluate};
 use crate::expressions::interval::Interval;
 use crate::model::numbers::Numbers;
-use crate::model::{Ball, Control, Free, Model, Param, Place, Range, Row, State, Symbol};
+use crate::model::{Ball, Constraint, Control, Free, Model, Param, Place, Range, State, Symbol};
 use std::collections::HashMap;
 
 /// A surface with its function; none if that is not known.
@@ -19,7 +19,7 @@ pub(crate) struct View<'m> {
     pub frees: &'m [Free],
     pub surfaces: Vec<KnownSurface<'m>>,
     pub balls: &'m [Ball],
-    pub path: &'m [Row],
+    pub path: &'m [Constraint],
     pub interval: [ExprId; 2],
     pub params: &'m [Param],
     /// Values of the parameters, NaN where unknown.

@@ -2,6 +2,7 @@
 
 pub mod actions;
 pub mod completion;
+pub mod cursor;
 pub mod diagnostics;
 pub mod folding;
 pub mod formatting;
@@ -9,7 +10,6 @@ pub mod hints;
 pub mod hover;
 pub mod lens;
 pub mod navigation;
-pub mod place;
 pub mod rename;
 pub mod signature;
 pub mod symbols;

@@ -2,7 +2,7 @@
 
 use crate::client::Failure;
 use crate::context::Context;
-use crate::features::place::Place;
+use crate::features::cursor::CursorContext;
 use crate::snapshot::Snapshot;
 use fdcc_compiler::symbols::Kind;
 use fdcc_compiler::vocabulary;
@@ -17,7 +17,7 @@ pub fn help(
     params: SignatureHelpParams,
 ) -> Result<Option<SignatureHelp>, Failure> {
     let offset = context.offset(params.text_document_position_params.position) as usize;
-    let place = Place::at_end_of(&context.snapshot().text.text[..offset]);
+    let place = CursorContext::at_end_of(&context.snapshot().text.text[..offset]);
     let calls = place.open.iter().rev().filter(|it| it.bracket == '(');
     let found = calls.into_iter().find_map(|it| Some((signature(context, it.before)?, it.commas)));
     Ok(found.map(|(signature, commas)| SignatureHelp {

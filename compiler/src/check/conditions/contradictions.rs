@@ -10,7 +10,7 @@ use crate::check::Facts;
 use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::{ExprId, evaluate};
 use crate::expressions::interval::{Interval, Tape};
-use crate::model::{Range, Row, Symbol};
+use crate::model::{Constraint, Range, Symbol};
 use crate::resolve::elaborator::Elaborator;
 use fdcc_grammar::{Code, Diagnostic, Span};
 use std::collections::HashMap;
@@ -35,17 +35,19 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
 }
 
 /// Conditions at the ends, then path conditions at the start and at the end.
-fn rows(meaning: &mut Elaborator<'_>) -> Vec<(Row, &'static str)> {
+fn rows(meaning: &mut Elaborator<'_>) -> Vec<(Constraint, &'static str)> {
     let at_end = meaning.at_end.clone();
     let point = |is_end: bool| if is_end { "the end" } else { "the start" };
     let boundary = meaning.model.boundary.clone().into_iter();
-    let mut all: Vec<(Row, &'static str)> =
+    let mut all: Vec<(Constraint, &'static str)> =
         boundary.zip(at_end).map(|(row, end)| (row, point(end))).collect();
     for end in [false, true] {
         let path = meaning.model.path.clone();
         let moved = meaning.move_to_end(path.iter().map(|row| row.value).collect(), end);
         all.extend(
-            path.into_iter().zip(moved).map(|(row, value)| (Row { value, ..row }, point(end))),
+            path.into_iter()
+                .zip(moved)
+                .map(|(row, value)| (Constraint { value, ..row }, point(end))),
         );
     }
     all
@@ -69,7 +71,7 @@ impl Known {
     }
 
     /// What excludes a condition.
-    fn contradiction(&self, meaning: &Elaborator<'_>, row: &Row) -> Option<Vec<Span>> {
+    fn contradiction(&self, meaning: &Elaborator<'_>, row: &Constraint) -> Option<Vec<Span>> {
         let allowed = interval(meaning, row.range);
         if let Some((before, span)) = self.values.get(&row.value)
             && are_apart(*before, allowed)
@@ -83,7 +85,7 @@ impl Known {
         are_apart(possible, allowed).then(spans)
     }
 
-    fn learn(&mut self, meaning: &mut Elaborator<'_>, row: &Row) {
+    fn learn(&mut self, meaning: &mut Elaborator<'_>, row: &Constraint) {
         let allowed = interval(meaning, row.range);
         let known = self.values.entry(row.value).or_insert((Interval::ALL, row.place.span));
         *known = (known.0.intersect(allowed), row.place.span);
@@ -178,7 +180,7 @@ fn of_param(meaning: &Elaborator<'_>, symbol: Symbol) -> f64 {
     }
 }
 
-fn told(row: &Row, point: &str, others: &[Span]) -> Diagnostic {
+fn told(row: &Constraint, point: &str, others: &[Span]) -> Diagnostic {
     let name = &row.place.name;
     let message = format!("`{name}` cannot hold at {point}");
     let mut found = Diagnostic::new(Code::Contradiction, message, row.place.span, "excluded");

@@ -17,14 +17,14 @@ use std::cell::LazyCell;
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let meaning = &facts.meaning;
     let view = LazyCell::new(|| view_of(meaning));
-    for piece in &meaning.pieces {
-        if matches!(piece.role, Role::Report(_) | Role::Number(_)) {
+    for usage in &meaning.usages {
+        if matches!(usage.role, Role::Report(_) | Role::Number(_)) {
             continue;
         }
-        for knot_use in &piece.traits.knots {
+        for knot_use in &usage.traits.knots {
             let Some(site) = meaning.sites.get(&knot_use.site) else { continue };
             let jumps = |knot: &&Knot<'_>| {
-                knot.order == 0 && joints::order(meaning, &view, piece, site, knot) == Order::Jumps
+                knot.order == 0 && joints::order(meaning, &view, usage, site, knot) == Order::Jumps
             };
             if let Some(knot) = site.knots.iter().find(jumps) {
                 let item = facts
@@ -32,7 +32,7 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
                     .iter()
                     .map(|item| item.span)
                     .find(|span| holds(*span, knot_use.used));
-                found.push(jump(meaning, site, knot, knot_use, &piece.role, item));
+                found.push(jump(meaning, site, knot, knot_use, &usage.role, item));
             }
         }
     }

@@ -4,7 +4,7 @@
 use crate::expressions::graph::builtins::Builtin;
 use crate::expressions::graph::{Expr, ExprId};
 use crate::model::Symbol;
-use crate::resolve::elaborator::{Elaborator, Piece};
+use crate::resolve::elaborator::{Elaborator, Usage};
 use crate::resolve::expressions::knots::{Knot, Site};
 use crate::surfaces::{Order, View, at_guards};
 
@@ -13,11 +13,11 @@ use crate::surfaces::{Order, View, at_guards};
 pub(super) fn order(
     meaning: &Elaborator<'_>,
     view: &View<'_>,
-    piece: &Piece<'_>,
+    usage: &Usage<'_>,
     site: &Site<'_>,
     knot: &Knot<'_>,
 ) -> Order {
-    let values = with_integrands(meaning, piece.parts.as_slice());
+    let values = with_integrands(meaning, usage.parts.as_slice());
     if values.is_empty() {
         return knot.order.checked_sub(1).map_or(Order::Jumps, |times| Order::Times(times as u32));
     }

@@ -11,8 +11,8 @@ use fdcc_grammar::{Code, Diagnostic, Fix};
 /// Reports sets where a value is needed, and `in` where there is no set.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let told = facts.told();
-    for piece in &facts.meaning.pieces {
-        match (piece.role, piece.traits.sets.first()) {
+    for usage in &facts.meaning.usages {
+        match (usage.role, usage.traits.sets.first()) {
             (Role::Equation(equation), Some(set))
                 if equation.relation == EquationRelation::Equal =>
             {

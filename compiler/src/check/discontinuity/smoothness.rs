@@ -17,18 +17,18 @@ use std::cell::LazyCell;
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let meaning = &facts.meaning;
     let view = LazyCell::new(|| view_of(meaning));
-    for piece in &meaning.pieces {
-        if !matches!(piece.role, Role::Path(..) | Role::Objective | Role::Boundary(_)) {
+    for usage in &meaning.usages {
+        if !matches!(usage.role, Role::Path(..) | Role::Objective | Role::Boundary(_)) {
             continue;
         }
-        for place in &piece.traits.knots {
+        for place in &usage.traits.knots {
             let Some(site) = meaning.sites.get(&place.site) else { continue };
             let orders = site
                 .knots
                 .iter()
-                .map(|knot| (joints::order(meaning, &view, piece, site, knot), knot));
+                .map(|knot| (joints::order(meaning, &view, usage, site, knot), knot));
             if let Some((Order::Times(times @ 0..2), knot)) = orders.min_by_key(|it| it.0) {
-                found.push(Kink { site, knot, times, place, role: &piece.role }.told(meaning));
+                found.push(Kink { site, knot, times, place, role: &usage.role }.told(meaning));
             }
         }
     }

@@ -3,7 +3,7 @@
 use crate::check::Facts;
 use crate::expressions::graph::{Expr, ExprId};
 use crate::model::{Range, Symbol};
-use crate::resolve::elaborator::{Elaborator, Piece, Role};
+use crate::resolve::elaborator::{Elaborator, Role, Usage};
 use fdcc_grammar::ast::{self, ExprKind, Interval, Item, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Span};
 
@@ -17,7 +17,7 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
         }
     });
     if found.len() == before {
-        facts.meaning.pieces.iter().for_each(|piece| of_piece(facts.meaning, piece, found));
+        facts.meaning.usages.iter().for_each(|usage| of_usage(facts.meaning, usage, found));
     }
 }
 
@@ -99,14 +99,14 @@ fn is_infinity(expr: &ast::Expr) -> bool {
 }
 
 /// A number in a formula, such as that of `1/0`.
-fn of_piece(meaning: &Elaborator<'_>, piece: &Piece<'_>, found: &mut Vec<Diagnostic>) {
-    let span = match piece.role {
+fn of_usage(meaning: &Elaborator<'_>, usage: &Usage<'_>, found: &mut Vec<Diagnostic>) {
+    let span = match usage.role {
         Role::Equation(equation) => equation.right.span,
         Role::Path(_, condition) => condition.span,
         Role::Surface(name) | Role::Report(name) => name.span,
         _ => return,
     };
-    let reachable = meaning.graph.reachable(piece.parts.as_slice());
+    let reachable = meaning.graph.reachable(usage.parts.as_slice());
     let number = |id: &ExprId| match meaning.graph.expr(*id) {
         Expr::Number(bits) => Some(bits.value()),
         _ => None,

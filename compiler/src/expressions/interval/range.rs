@@ -9,7 +9,7 @@ use crate::expressions::graph::{Expr, ExprId, Graph};
 use smallvec::SmallVec;
 
 /// What is computed at one place.
-enum Step {
+enum Instruction {
     Number(f64),
     Input(u32),
     Square(usize),
@@ -18,7 +18,7 @@ enum Step {
 
 /// Expressions made ready to be evaluated over many boxes.
 pub(crate) struct Tape {
-    steps: Vec<Step>,
+    instructions: Vec<Instruction>,
     roots: Vec<usize>,
     values: Vec<Interval>,
 }
@@ -29,18 +29,18 @@ impl Tape {
         let needed = graph.reachable(roots);
         let at = |id: &ExprId| needed.binary_search(id).expect("operands are reachable");
         let step = |id: &ExprId| match graph.expr(*id) {
-            Expr::Number(bits) => Step::Number(bits.value()),
-            Expr::Input(position) => Step::Input(*position),
+            Expr::Number(bits) => Instruction::Number(bits.value()),
+            Expr::Input(position) => Instruction::Input(*position),
             Expr::Multiplier(_) => unreachable!("an expression of a model has no multipliers"),
             Expr::Call(Builtin::Mul, operands) if operands[0] == operands[1] => {
-                Step::Square(at(&operands[0]))
+                Instruction::Square(at(&operands[0]))
             }
             Expr::Call(builtin, operands) => {
-                Step::Call(*builtin, operands.iter().map(at).collect())
+                Instruction::Call(*builtin, operands.iter().map(at).collect())
             }
         };
         Tape {
-            steps: needed.iter().map(step).collect(),
+            instructions: needed.iter().map(step).collect(),
             roots: roots.iter().map(at).collect(),
             values: vec![Interval::ALL; needed.len()],
         }
@@ -48,13 +48,13 @@ impl Tape {
 
     /// How many operations an evaluation takes.
     pub fn cost(&self) -> usize {
-        self.steps.len()
+        self.instructions.len()
     }
 
     /// The inputs that are read.
     pub fn inputs(&self) -> impl Iterator<Item = u32> {
-        self.steps.iter().filter_map(|step| match step {
-            Step::Input(position) => Some(*position),
+        self.instructions.iter().filter_map(|step| match step {
+            Instruction::Input(position) => Some(*position),
             _ => None,
         })
     }
@@ -69,12 +69,12 @@ impl Tape {
         &mut self,
         domain: impl Fn(usize) -> Interval,
     ) -> impl Iterator<Item = Interval> {
-        for (at, step) in self.steps.iter().enumerate() {
+        for (at, step) in self.instructions.iter().enumerate() {
             self.values[at] = match step {
-                Step::Number(value) => Interval::point(*value),
-                Step::Input(position) => domain(*position as usize),
-                Step::Square(operand) => self.values[*operand].square(),
-                Step::Call(builtin, operands) => {
+                Instruction::Number(value) => Interval::point(*value),
+                Instruction::Input(position) => domain(*position as usize),
+                Instruction::Square(operand) => self.values[*operand].square(),
+                Instruction::Call(builtin, operands) => {
                     let operands: SmallVec<[Interval; 4]> =
                         operands.iter().map(|&at| self.values[at]).collect();
                     apply(*builtin, &operands)

@@ -9,7 +9,7 @@ use crate::expressions::graph::builtins::{Builtin, Inline, Lowering};
 use crate::expressions::graph::{ById, ExprId, Graph};
 use crate::generate::arithmetic::{self, Arithmetic};
 use crate::generate::elementary;
-use crate::generate::schedule::{Operation, Place, Schedule, Table};
+use crate::generate::schedule::{Operation, Schedule, Slot, Table};
 
 /// Bytes of a number and of a pair.
 const NUMBER: usize = size_of::<f64>();
@@ -177,7 +177,7 @@ impl Emitter<'_, '_> {
         }
     }
 
-    fn store(&mut self, id: ExprId, place: Place) {
+    fn store(&mut self, id: ExprId, place: Slot) {
         let value = self.value(id);
         let cursor = cursor_of(place.table);
         let address = self.frame.address(&mut self.pairs.builder, cursor, place.column);

@@ -5,7 +5,7 @@
 //! no kink.
 
 use crate::expressions::graph::ExprId;
-use crate::model::{Place, Range, Row};
+use crate::model::{Constraint, Place, Range};
 use crate::resolve::context::Context;
 use crate::resolve::elaborator::{Elaborator, Role};
 use crate::resolve::expressions::value::{Traits, Value};
@@ -54,7 +54,7 @@ impl<'a> Elaborator<'a> {
         role: Role<'a>,
         context: Context,
         place: Place,
-    ) -> Vec<Row> {
+    ) -> Vec<Constraint> {
         let mut rows = Vec::new();
         match &condition.rest[..] {
             [(relation, right)] => {
@@ -94,7 +94,7 @@ impl<'a> Elaborator<'a> {
         sides: [Side<'a>; 2],
         relation: Relation,
         place: &Place,
-        rows: &mut Vec<Row>,
+        rows: &mut Vec<Constraint>,
     ) {
         let [left, right] = if relation == Relation::GreaterEqual {
             [1, 0].map(|at| sides[at].clone())
@@ -116,7 +116,7 @@ impl<'a> Elaborator<'a> {
                 _ => (self.graph.sub(a, b), self.graph.number(0.0), true),
             };
             let range = self.one_sided(bound, relation == Relation::Equal, is_upper);
-            rows.push(Row { place, value, range });
+            rows.push(Constraint { place, value, range });
         }
     }
 
@@ -136,7 +136,7 @@ impl<'a> Elaborator<'a> {
         middle: Side<'a>,
         relation: Relation,
         place: &Place,
-        rows: &mut Vec<Row>,
+        rows: &mut Vec<Constraint>,
     ) {
         let [lower, upper] = ends;
         let Some((low, values)) = self.same_size(&lower, &middle) else { return };
@@ -148,7 +148,7 @@ impl<'a> Elaborator<'a> {
         for (at, &value) in values.iter().enumerate() {
             let range = Range { lower: low[at], upper: high[at] };
             let place = self.row_place(place, &middle.0, &lower.0, at);
-            rows.push(Row { place, value, range });
+            rows.push(Constraint { place, value, range });
         }
     }
 
@@ -159,7 +159,7 @@ impl<'a> Elaborator<'a> {
         left: Side<'a>,
         right: Side<'a>,
         place: &Place,
-        rows: &mut Vec<Row>,
+        rows: &mut Vec<Constraint>,
     ) {
         let context = Context {
             allowed: left.0.traits.reads.or(self.context.allowed),
@@ -172,13 +172,17 @@ impl<'a> Elaborator<'a> {
             let place = self.row_place(place, &e.0, &right.0, at);
             let negative = self.graph.neg(bound);
             if is_constant {
-                rows.push(Row { place, value, range: Range { lower: negative, upper: bound } });
+                rows.push(Constraint {
+                    place,
+                    value,
+                    range: Range { lower: negative, upper: bound },
+                });
                 continue;
             }
             let gaps = [self.graph.sub(value, bound), self.graph.add(value, bound)];
             let zero = self.graph.number(0.0);
             let ranges = [self.one_sided(zero, false, true), self.one_sided(zero, false, false)];
-            rows.extend(gaps.into_iter().zip(ranges).map(|(value, range)| Row {
+            rows.extend(gaps.into_iter().zip(ranges).map(|(value, range)| Constraint {
                 place: place.clone(),
                 value,
                 range,

@@ -5,7 +5,7 @@ mod names;
 
 use crate::client::Failure;
 use crate::context::Context;
-use crate::features::place::{Open, Place};
+use crate::features::cursor::{CursorContext, Open};
 use fdcc_compiler::symbols::Kind;
 use fdcc_compiler::vocabulary;
 use fdcc_grammar::words::{self, inner_words};
@@ -19,7 +19,7 @@ pub fn completion(
     params: CompletionParams,
 ) -> Result<Option<CompletionResponse>, Failure> {
     let offset = context.offset(params.text_document_position_params.position) as usize;
-    let place = Place::at_end_of(&context.snapshot().text.text[..offset]);
+    let place = CursorContext::at_end_of(&context.snapshot().text.text[..offset]);
     let scope = Scope::new(context, place.phase);
     let is_blank = params.context.and_then(|it| it.trigger_character).is_some_and(|it| it == " ");
     let proposals = match (place.is_silent, is_blank) {
@@ -33,7 +33,7 @@ pub fn completion(
     Ok(Some(CompletionList { is_incomplete: false, items, ..CompletionList::default() }.into()))
 }
 
-fn proposals(place: &Place<'_>, scope: &Scope) -> Vec<Proposal> {
+fn proposals(place: &CursorContext<'_>, scope: &Scope) -> Vec<Proposal> {
     if place.back(0) == "." {
         return scope.parts(place);
     }
@@ -55,7 +55,7 @@ fn proposals(place: &Place<'_>, scope: &Scope) -> Vec<Proposal> {
 }
 
 /// Brackets in which only certain things stand.
-fn in_brackets(place: &Place<'_>, open: &Open<'_>, scope: &Scope) -> Option<Vec<Proposal>> {
+fn in_brackets(place: &CursorContext<'_>, open: &Open<'_>, scope: &Scope) -> Option<Vec<Proposal>> {
     let is_first = place.back(0) == "(";
     match (open.bracket, open.before) {
         ('[', "in" | "=" | ",") => None,
@@ -71,7 +71,7 @@ fn in_brackets(place: &Place<'_>, open: &Open<'_>, scope: &Scope) -> Option<Vec<
 }
 
 /// Words after which only certain things stand.
-fn after_word(place: &Place<'_>, scope: &Scope) -> Option<Vec<Proposal>> {
+fn after_word(place: &CursorContext<'_>, scope: &Scope) -> Option<Vec<Proposal>> {
     let surfaces = || Some(scope.proposals(|kind| kind == Kind::Surface));
     let taken = |key| Some(vocabulary::setting_words(key).iter().map(|it| plain(it)).collect());
     match (place.back(1), place.back(0)) {
@@ -120,13 +120,13 @@ fn entries(block: &str, scope: &Scope) -> Vec<Proposal> {
         }
         "match" => ["below", "above"].into_iter().map(|it| entry(keyword(it), " => ")).collect(),
         "piecewise" => vec![entry(keyword("otherwise"), " => ")],
-        "expect" => expression(&Place::default(), scope),
+        "expect" => expression(&CursorContext::default(), scope),
         _ => Vec::new(),
     }
 }
 
 /// Anything that has a value, and the words that go on with the item.
-fn expression(place: &Place<'_>, scope: &Scope) -> Vec<Proposal> {
+fn expression(place: &CursorContext<'_>, scope: &Scope) -> Vec<Proposal> {
     let is_value = |kind| {
         !matches!(
             kind,

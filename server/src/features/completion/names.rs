@@ -3,7 +3,7 @@
 
 use super::items::{Proposal, name};
 use crate::context::Context;
-use crate::features::place::Place;
+use crate::features::cursor::CursorContext;
 use fdcc_compiler::symbols::{Kind, Names};
 use std::collections::BTreeSet;
 
@@ -39,7 +39,7 @@ impl<'c> Scope<'c> {
     }
 
     /// What the last of a chain of names holds; a row holds what its data set does.
-    pub fn parts(&self, place: &Place<'_>) -> Vec<Proposal> {
+    pub fn parts(&self, place: &CursorContext<'_>) -> Vec<Proposal> {
         let Some(&last) = place.path.last() else { return Vec::new() };
         let row = place.before.windows(3).rev().find(|words| words[0] == last && words[1] == "in");
         let owner = row.map_or(last, |words| words[2]);
@@ -51,7 +51,7 @@ impl<'c> Scope<'c> {
     }
 
     /// The arguments of the function around a place, and the rows of the sums.
-    pub fn locals(&self, place: &Place<'_>) -> Vec<Proposal> {
+    pub fn locals(&self, place: &CursorContext<'_>) -> Vec<Proposal> {
         let function =
             place.before.iter().rposition(|it| *it == "fn").and_then(|at| place.before.get(at + 1));
         let function = function.filter(|_| place.item == "fn");

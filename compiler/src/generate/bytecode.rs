@@ -1,4 +1,4 @@
-//! A schedule carried out at once, step after step, on a few points side by side.
+//! A schedule interpreted instruction by instruction, on a few points at once.
 //!
 //! Machine code is several times as fast, but it takes as long to make as this takes for thousands
 //! of points.
@@ -8,32 +8,32 @@ use smallvec::SmallVec;
 use super::arithmetic::{self, Arithmetic};
 use super::function::Call;
 use super::numbers::{Block, Numbers};
-use super::schedule::{Operation, Place, Schedule};
+use super::schedule::{Operation, Schedule, Slot};
 use crate::expressions::graph::{ExprId, Graph};
 
 /// Points side by side, where there are many: so many that finding out what to do is little beside
 /// doing it.
 const MANY: usize = 16;
 
-/// A schedule whose operands and results are places in one list: constants, then what each step
-/// computes.
-pub(super) struct Steps {
+/// A schedule whose operands and results are places in one list: constants, then what each
+/// instruction computes.
+pub(super) struct Bytecode {
     constants: Vec<f64>,
-    steps: Vec<Step>,
+    instructions: Vec<Instruction>,
     /// So many of them, the first, do not depend on the point.
     before: usize,
     /// What is stored where.
-    results: Vec<(usize, Place)>,
+    results: Vec<(usize, Slot)>,
     /// Whether the machine has a fused multiply-add.
     fused: bool,
 }
 
-struct Step {
+struct Instruction {
     operation: Operation,
     operands: SmallVec<[usize; 4]>,
 }
 
-impl Steps {
+impl Bytecode {
     pub(super) fn new(graph: &Graph, schedule: &Schedule, fused: bool) -> Self {
         let all: Vec<&(ExprId, Operation)> =
             schedule.before.iter().chain(&schedule.inside).collect();
@@ -49,12 +49,18 @@ impl Steps {
             schedule.varying.iter().flat_map(|(id, to)| to.iter().map(move |to| (place(id), *to)));
         let constant = schedule.constant.iter().map(|(id, to)| (place(id), *to));
         let results = varying.chain(constant).collect();
-        let step = |(_, operation): &(ExprId, Operation)| Step {
+        let step = |(_, operation): &(ExprId, Operation)| Instruction {
             operation: operation.clone(),
             operands: operation.operands().iter().map(place).collect(),
         };
-        let steps = all.into_iter().map(step).collect();
-        Steps { steps, before: schedule.before.len(), results, constants: list.constants, fused }
+        let instructions = all.into_iter().map(step).collect();
+        Bytecode {
+            instructions,
+            before: schedule.before.len(),
+            results,
+            constants: list.constants,
+            fused,
+        }
     }
 
     /// Fills the tables of a call.
@@ -66,9 +72,9 @@ impl Steps {
     }
 
     fn run_on<const POINTS: usize>(&self, call: &mut Call) {
-        let (before, inside) = self.steps.split_at(self.before);
+        let (before, inside) = self.instructions.split_at(self.before);
         let mut list: Vec<Block<POINTS>> =
-            Vec::with_capacity(self.constants.len() + self.steps.len());
+            Vec::with_capacity(self.constants.len() + self.instructions.len());
         list.extend(self.constants.iter().map(|&number| [number; POINTS]));
         let mut numbers = Numbers { fused: self.fused, points: POINTS };
         before.iter().for_each(|step| list.push(step.value(call, 0, &mut numbers, &list)));
@@ -84,7 +90,7 @@ impl Steps {
     }
 }
 
-impl Step {
+impl Instruction {
     /// What the points from `first` on have, given all that comes before.
     fn value<const POINTS: usize>(
         &self,

@@ -1,12 +1,12 @@
-//! One piece of time, and what the symbols of the model are in it.
+//! One phase of time, and what the symbols of the model are in it.
 
-use super::Unrolling;
+use super::MultiPhase;
 use crate::expressions::graph::{ExprId, Graph};
 use crate::model::{Model, Symbol};
 
-/// What the symbols of a model are in a piece; nothing where they stay what they are.
-pub(super) struct Piece {
-    /// At a time of the piece.
+/// What the symbols of a model are in a phase; nothing where they stay what they are.
+pub(super) struct Phase {
+    /// At a time of the phase.
     inside: Vec<Option<ExprId>>,
     /// At its last time.
     at_end: Vec<Option<ExprId>>,
@@ -25,22 +25,22 @@ pub(super) fn input(graph: &mut Graph, symbols: &mut Vec<Symbol>, symbol: Symbol
     graph.input(at as u32)
 }
 
-impl Piece {
-    /// All pieces of these lengths.
+impl Phase {
+    /// All phases of these durations.
     pub fn all(
         model: &Model,
         graph: &mut Graph,
         symbols: &mut Vec<Symbol>,
-        lengths: &[ExprId],
-    ) -> Vec<Piece> {
+        durations: &[ExprId],
+    ) -> Vec<Phase> {
         let mut begin = model.interval[0];
-        let mut pieces = Vec::new();
-        for (j, &length) in lengths.iter().enumerate() {
-            let end = graph.add(begin, length);
-            pieces.push(Piece::new(model, graph, symbols, j, [begin, length, end]));
+        let mut phases = Vec::new();
+        for (j, &duration) in durations.iter().enumerate() {
+            let end = graph.add(begin, duration);
+            phases.push(Phase::new(model, graph, symbols, j, [begin, duration, end]));
             begin = end;
         }
-        pieces
+        phases
     }
 
     fn new(
@@ -48,8 +48,8 @@ impl Piece {
         graph: &mut Graph,
         symbols: &mut Vec<Symbol>,
         j: usize,
-        [begin, length, end]: [ExprId; 3],
-    ) -> Piece {
+        [begin, duration, end]: [ExprId; 3],
+    ) -> Phase {
         let sizes = [model.states.len(), model.controls.len(), model.surfaces.len()];
         let mut of = |symbol| input(graph, symbols, symbol);
         let tau = of(Symbol::Time);
@@ -66,7 +66,7 @@ impl Piece {
         let ends = all(&mut |at| Symbol::AtEnd(at + j * sizes[0]));
         let [starts, ends] =
             [starts, ends].map(|it| it.into_iter().map(&mut of).collect::<Vec<ExprId>>());
-        let passed = graph.mul(tau, length);
+        let passed = graph.mul(tau, duration);
         let now = graph.add(begin, passed);
         let mut at_end = vec![None; inside.len()];
         for (at, symbol) in model.symbols.iter().enumerate() {
@@ -76,26 +76,26 @@ impl Piece {
                 _ => {}
             }
         }
-        Piece { inside, at_end, starts, ends }
+        Phase { inside, at_end, starts, ends }
     }
 }
 
-impl Unrolling<'_> {
-    /// A signal in a piece.
-    pub(super) fn in_piece(&mut self, j: usize, value: ExprId) -> ExprId {
-        let inside = &self.pieces[j].inside;
+impl MultiPhase<'_> {
+    /// A signal in a phase.
+    pub(super) fn in_phase(&mut self, j: usize, value: ExprId) -> ExprId {
+        let inside = &self.phases[j].inside;
         self.graph.substitute(&[value], &|at| inside.get(at as usize).copied().flatten())[0]
     }
 
-    /// A function of time and state at the end of a piece.
+    /// A function of time and state at the end of a phase.
     pub(super) fn at_end(&mut self, j: usize, value: ExprId) -> ExprId {
-        let at_end = &self.pieces[j].at_end;
+        let at_end = &self.phases[j].at_end;
         self.graph.substitute(&[value], &|at| at_end.get(at as usize).copied().flatten())[0]
     }
 
-    /// What is said of the whole time: it ends where the last piece does.
+    /// What is said of the whole time: it ends where the last phase does.
     pub(super) fn of_whole(&mut self, value: ExprId) -> ExprId {
-        let (symbols, last) = (&self.model.symbols, &self.pieces[self.pieces.len() - 1].ends);
+        let (symbols, last) = (&self.model.symbols, &self.phases[self.phases.len() - 1].ends);
         self.graph.substitute(&[value], &|at| match symbols.get(at as usize) {
             Some(Symbol::AtEnd(index)) => Some(last[*index]),
             _ => None,

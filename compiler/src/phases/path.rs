@@ -1,21 +1,21 @@
-//! Path constraints of the pieces: what is written, and that no other jump happens on the way.
+//! Path constraints of the phases: what is written, and that no other jump happens on the way.
 //!
 //! Until a `falling` jump happens `psi >= 0`, until a `rising` one `psi <= 0`; the other way round
 //! where the state begins beyond the surface, until it crosses that. On the surface itself, at the
-//! end of a piece, such a condition holds by what ends the piece, and would be told twice: there it
+//! end of a phase, such a condition holds by what ends the phase, and would be told twice: there it
 //! gives way.
 
-use super::Unrolling;
+use super::MultiPhase;
 use super::hold::approach;
 use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::{ExprId, Graph};
-use crate::model::{Jump, Place, Range, Row, Symbol};
+use crate::model::{Constraint, Jump, Place, Range, Symbol};
 use fdcc_grammar::ast::Direction;
 
-/// The last time of a piece, with room for rounding.
+/// The last time of a phase, with room for rounding.
 const LAST: f64 = 1.0 - 1e-9;
 
-impl Unrolling<'_> {
+impl MultiPhase<'_> {
     /// The bounds of a state at all times; none where they are a path constraint.
     pub(super) fn range_of(&mut self, state: usize) -> Range {
         let range = self.model.states[state].range;
@@ -26,26 +26,26 @@ impl Unrolling<'_> {
         Range { lower, upper }
     }
 
-    /// What is written, piece by piece; then what the jumps add, piece by piece.
-    pub(super) fn path(&mut self) -> Vec<Row> {
+    /// What is written, phase by phase; then what the jumps add, phase by phase.
+    pub(super) fn path(&mut self) -> Vec<Constraint> {
         let mut rows = Vec::new();
-        for j in 0..self.pieces.len() {
+        for j in 0..self.phases.len() {
             rows.extend(self.model.path.iter().map(|row| self.until(j, row.clone())));
         }
-        for j in 0..self.pieces.len() {
-            let more: Vec<Row> = self.bounds().into_iter().chain(self.sides(j)).collect();
+        for j in 0..self.phases.len() {
+            let more: Vec<Constraint> = self.bounds().into_iter().chain(self.sides(j)).collect();
             rows.extend(more.into_iter().map(|row| self.until(j, row)));
         }
         rows
     }
 
     /// Bounds of states that are functions of a surface.
-    fn bounds(&mut self) -> Vec<Row> {
+    fn bounds(&mut self) -> Vec<Constraint> {
         let mut rows = Vec::new();
         for (index, state) in self.model.states.iter().enumerate() {
             if self.bounds_a_guard(index) {
                 let value = self.graph.input(self.input_of_state(index));
-                rows.push(Row { place: state.place.clone(), value, range: state.range });
+                rows.push(Constraint { place: state.place.clone(), value, range: state.range });
             }
         }
         rows
@@ -65,8 +65,8 @@ impl Unrolling<'_> {
         self.model.input_of(Symbol::State(state)).expect("each state is a symbol")
     }
 
-    /// On which sides of the surfaces a piece stays.
-    fn sides(&mut self, j: usize) -> Vec<Row> {
+    /// On which sides of the surfaces a phase stays.
+    fn sides(&mut self, j: usize) -> Vec<Constraint> {
         let whole = self.whole;
         let mut rows = Vec::new();
         let own = &whole.jumps[..self.begins.len()];
@@ -80,7 +80,7 @@ impl Unrolling<'_> {
                 (false, Direction::Falling) | (true, Direction::Rising) => self.not_below(),
                 (false, Direction::Rising) | (true, Direction::Falling) => self.not_above(),
             };
-            rows.push(Row {
+            rows.push(Constraint {
                 place: jump.place.clone(),
                 value: whole.surfaces[jump.surface].psi,
                 range,
@@ -91,10 +91,10 @@ impl Unrolling<'_> {
     }
 
     /// Whether a path constraint of the model says the same.
-    fn is_written(&self, row: &Row) -> bool {
-        let same = |it: &&Row| it.value == row.value;
+    fn is_written(&self, row: &Constraint) -> bool {
+        let same = |it: &&Constraint| it.value == row.value;
         let number = |id| self.graph.as_number(id).unwrap_or(f64::NAN);
-        let within = |it: &Row| {
+        let within = |it: &Constraint| {
             number(it.range.lower) >= number(row.range.lower)
                 && number(it.range.upper) <= number(row.range.upper)
         };
@@ -150,9 +150,9 @@ impl Unrolling<'_> {
         approach(self.model, &mut self.graph, self.whole.surfaces[jump.surface].psi)
     }
 
-    /// That a piece comes to its end in the direction of the jump, or two jumps could be one upon
+    /// That a phase comes to its end in the direction of the jump, or two jumps could be one upon
     /// the other. Nothing is said where the speed depends on a control: at the end there is none.
-    pub(super) fn direction(&mut self, j: usize) -> Option<Row> {
+    pub(super) fn direction(&mut self, j: usize) -> Option<Constraint> {
         let jump = self.jump(j);
         let rate = self.approach_of(jump);
         let is_of_state = |at: &u32| {
@@ -167,25 +167,25 @@ impl Unrolling<'_> {
         };
         let place =
             Place { name: format!("direction of {}", jump.place.name), span: jump.place.span };
-        Some(Row { place, value: self.at_end(j, rate), range })
+        Some(Constraint { place, value: self.at_end(j, rate), range })
     }
 
-    /// A constraint in a piece; where the piece ends on this very surface, it gives way there, and
+    /// A constraint in a phase; where the phase ends on this very surface, it gives way there, and
     /// where the surface is held, everywhere.
-    fn until(&mut self, j: usize, row: Row) -> Row {
+    fn until(&mut self, j: usize, row: Constraint) -> Constraint {
         if self.is_held(j, &row) {
-            return Row { value: within(&mut self.graph, row.range), ..row };
+            return Constraint { value: within(&mut self.graph, row.range), ..row };
         }
-        let value = self.in_piece(j, row.value);
+        let value = self.in_phase(j, row.value);
         let ends_here = j < self.sequence.len()
             && self.is_guard(self.whole.surfaces[self.jump(j).surface].psi, row.value);
         if !ends_here {
-            return Row { value, ..row };
+            return Constraint { value, ..row };
         }
         let inside = within(&mut self.graph, row.range);
         let tau = self.model.input_of(Symbol::Time).expect("time is a symbol");
         let (tau, last) = (self.graph.input(tau), self.graph.number(LAST));
-        Row { value: self.graph.select_le(tau, last, value, inside), ..row }
+        Constraint { value: self.graph.select_le(tau, last, value, inside), ..row }
     }
 
     /// Whether a value is known where the function of a surface is 0: both depend on one state

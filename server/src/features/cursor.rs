@@ -20,7 +20,7 @@ pub struct Open<'t> {
 
 /// What stands before a cursor.
 #[derive(Clone, Debug, Default)]
-pub struct Place<'t> {
+pub struct CursorContext<'t> {
     /// What the word that is being written is a part of: `coast`, `pos` before `coast.pos.x`.
     pub path: Vec<&'t str>,
     /// The words and signs before that word, the last ones last.
@@ -37,9 +37,9 @@ pub struct Place<'t> {
     pub is_silent: bool,
 }
 
-impl<'t> Place<'t> {
+impl<'t> CursorContext<'t> {
     /// Of the end of a text.
-    pub fn at_end_of(text: &'t str) -> Place<'t> {
+    pub fn at_end_of(text: &'t str) -> CursorContext<'t> {
         let start = text
             .rfind(|c| !is_of_word(c))
             .map_or(0, |at| at + text[at..].chars().next().map_or(1, char::len_utf8));
@@ -49,7 +49,7 @@ impl<'t> Place<'t> {
         } else {
             start
         };
-        let mut place = Place::default();
+        let mut place = CursorContext::default();
         place.read(&text[..start]);
         place.path = path(&place.before);
         place
@@ -178,16 +178,16 @@ mod tests {
 
     #[test]
     fn a_place_is_told_by_what_stands_before_it() {
-        let place = Place::at_end_of("state x start 0 # [\ndynamics {\n  x' = si");
+        let place = CursorContext::at_end_of("state x start 0 # [\ndynamics {\n  x' = si");
         assert_eq!((place.block(), place.back(0)), (Some("dynamics"), "="));
-        let place = Place::at_end_of("phase boost {\n  state h start 0\n  end coast.pos.");
+        let place = CursorContext::at_end_of("phase boost {\n  state h start 0\n  end coast.pos.");
         assert_eq!(
             (place.path.clone(), place.phase, place.item),
             (vec!["coast", "pos"], Some("boost"), "end")
         );
-        let place = Place::at_end_of("let a = f(1, g(2), ");
+        let place = CursorContext::at_end_of("let a = f(1, g(2), ");
         assert_eq!(place.inside().map(|it| (it.before, it.commas)), Some(("f", 2)));
-        assert!(Place::at_end_of("param a = 1 # abo").is_silent);
-        assert!(Place::at_end_of("param a = 1\npa").begins_line);
+        assert!(CursorContext::at_end_of("param a = 1 # abo").is_silent);
+        assert!(CursorContext::at_end_of("param a = 1\npa").begins_line);
     }
 }

@@ -36,7 +36,7 @@ impl Exact {
         quantities: &[Quantity],
     ) -> Result<Exact, Box<Simulation>> {
         let found = gradient(system, controls, options, quantities)?;
-        let is_doubtful = !found.troubles.is_empty();
+        let is_doubtful = !found.nondifferentiabilities.is_empty();
         let sides = if is_doubtful && quantities.len() <= MOST_SIDES {
             one_sided(system, controls, options, quantities)
         } else {

@@ -4,6 +4,7 @@ pub mod expected;
 pub mod expressions;
 pub mod functions;
 pub mod fuzzed;
+pub mod imports;
 pub mod large;
 pub mod layout;
 pub mod models;

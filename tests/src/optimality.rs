@@ -47,7 +47,7 @@ impl Residuals {
 pub fn residuals(problem: &Problem, outcome: &Outcome) -> Residuals {
     let solution = &outcome.solution;
     let at = Transcribed::new(problem, &outcome.sigma, &solution.v);
-    let Multipliers { rows, lower, upper } = &solution.multipliers;
+    let Multipliers { constraints: rows, lower, upper } = &solution.multipliers;
     let bounds =
         at.row_bounds.iter().zip(&at.rows).chain(at.variable_bounds.iter().zip(&solution.v));
     let of_rows = at.row_bounds.iter().zip(&at.rows).zip(rows);
@@ -83,7 +83,7 @@ fn outside(bounds: &Bounds, value: f64) -> f64 {
 fn stationarity(at: &Transcribed, multipliers: &Multipliers) -> Vec<f64> {
     let mut gradient = at.gradient.clone();
     for &(row, variable, slope) in &at.jacobian {
-        gradient[variable] += multipliers.rows[row] * slope;
+        gradient[variable] += multipliers.constraints[row] * slope;
     }
     for (i, value) in gradient.iter_mut().enumerate() {
         *value += multipliers.upper[i] - multipliers.lower[i];
@@ -97,7 +97,7 @@ fn owed(at: &Transcribed, v: &[f64], multipliers: &Multipliers) -> f64 {
     let excess = |bounds: &Bounds, value: f64| {
         (value - bounds.upper).max(0.0) - (bounds.lower - value).max(0.0)
     };
-    let of_rows = at.row_bounds.iter().zip(&at.rows).zip(&multipliers.rows);
+    let of_rows = at.row_bounds.iter().zip(&at.rows).zip(&multipliers.constraints);
     let rows: f64 = of_rows.map(|((bounds, row), lambda)| excess(bounds, *row) * lambda).sum();
     let both = multipliers.upper.iter().zip(&multipliers.lower).map(|(upper, lower)| upper - lower);
     let of_variables = at.variable_bounds.iter().zip(v).zip(both);

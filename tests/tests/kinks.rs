@@ -2,13 +2,13 @@
 //! are; all in closed form.
 
 use fdcc_compiler::compile_sensitivities;
-use fdcc_runtime::sensitivity::{Quantity, TroubleKind, gradient, hessian, one_sided};
+use fdcc_runtime::sensitivity::{NondifferentiabilityKind, Quantity, gradient, hessian, one_sided};
 use fdcc_runtime::simulate::{Controls, Options, System};
 use fdcc_tests::models::meaning;
 
 struct Kink {
     text: &'static str,
-    trouble: Option<(TroubleKind, f64)>,
+    trouble: Option<(NondifferentiabilityKind, f64)>,
     by: &'static str,
     sides: [f64; 2],
 }
@@ -19,7 +19,7 @@ const KINKS: [Kink; 8] = [
         // x(T) = (x0 - T)+
         text: "param x0 = 1  time t in [0, 1]  state x start x0  surface zero = x
             dynamics { x' in -Sgn(zero) }  minimize x(end)",
-        trouble: Some((TroubleKind::End, 1.0)),
+        trouble: Some((NondifferentiabilityKind::End, 1.0)),
         by: "x0",
         sides: [0.0, 1.0],
     },
@@ -38,7 +38,7 @@ const KINKS: [Kink; 8] = [
                = y
             dynamics { x' = 1  y' in match edge { below => -2*x, above => -2*x - 1 } }  minimize \
             y(end)",
-        trouble: Some((TroubleKind::Grazing, 1.0)),
+        trouble: Some((NondifferentiabilityKind::Grazing, 1.0)),
         by: "p",
         sides: [1.0, 0.0],
     },
@@ -47,7 +47,7 @@ const KINKS: [Kink; 8] = [
         text: "param x0 = -1  time t in [0, 2]  state x start x0  state y start -1  state z start 0
             surface first = x  surface second = y
             dynamics { x' = 1  y' = 1  z' in Sgn(first)*Sgn(second) }  minimize z(end)",
-        trouble: Some((TroubleKind::Corner, 1.0)),
+        trouble: Some((NondifferentiabilityKind::Corner, 1.0)),
         by: "x0",
         sides: [2.0, -2.0],
     },
@@ -56,7 +56,7 @@ const KINKS: [Kink; 8] = [
         // below
         text: "param x0 = 0  time t in [0, 1]  state x start x0  surface zero = x
             dynamics { x' in match zero { below => 1, above => 2 } }  minimize x(end)",
-        trouble: Some((TroubleKind::Coincident, 0.0)),
+        trouble: Some((NondifferentiabilityKind::Coincident, 0.0)),
         by: "x0",
         sides: [2.0, 1.0],
     },
@@ -64,7 +64,7 @@ const KINKS: [Kink; 8] = [
         // a parameter that moves nothing at that start: x(1) = 2 a
         text: "param a = 1  time t in [0, 1]  state x start 0  surface zero = x
             dynamics { x' in match zero { below => 1, above => 2*a } }  minimize x(end)",
-        trouble: Some((TroubleKind::Coincident, 0.0)),
+        trouble: Some((NondifferentiabilityKind::Coincident, 0.0)),
         by: "a",
         sides: [2.0, 2.0],
     },
@@ -102,13 +102,13 @@ fn a_kink_is_found_with_its_reason_and_both_derivatives() {
         let options = Options::default();
         let found =
             gradient(&system, &Controls::Guess, &options, &quantities).expect("it reaches the end");
-        let named = found.troubles.first().map(|it| (it.kind, it.time));
+        let named = found.nondifferentiabilities.first().map(|it| (it.kind, it.time));
         match (named, trouble) {
             (None, None) => {}
             (Some((kind, time)), Some((expected, at))) => {
                 assert!(kind == expected && (time - at).abs() < 1e-6, "{text}: {kind:?} at {time}");
             }
-            _ => panic!("{text}: {:?}", found.troubles),
+            _ => panic!("{text}: {:?}", found.nondifferentiabilities),
         }
         let got = one_sided(&system, &Controls::Guess, &options, &quantities)[0];
         for (got, expected) in got.iter().zip(sides) {

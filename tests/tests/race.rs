@@ -204,7 +204,7 @@ fn selectors(replay: &Simulation) -> Vec<[f64; 2]> {
     let pieces = &replay.tape.as_ref().expect("it was asked for").pieces;
     let ends = pieces.iter().flat_map(|piece| match piece {
         Piece::Step { start, .. } => vec![[start.time, start.selectors[0]]],
-        Piece::Stop { before, after, .. } => {
+        Piece::Event { before, after, .. } => {
             vec![[before.time, before.selectors[0]], [after.time, after.selectors[0]]]
         }
     });

@@ -92,7 +92,7 @@ fn a_wrong_multiplier_or_a_wrong_variable_is_noticed() {
         change(&mut outcome.solution);
         residuals(&problem, &outcome)
     };
-    assert!(spoilt(&|solution| solution.multipliers.rows[17] += 1e-3).stationarity > 1e-4);
+    assert!(spoilt(&|solution| solution.multipliers.constraints[17] += 1e-3).stationarity > 1e-4);
     assert!(spoilt(&|solution| solution.v[31] += 1e-3).feasibility > 1e-4);
     assert!(spoilt(&|solution| solution.multipliers.upper[5] = -1e-3).signs > 1e-4);
     let last = outcome.solution.v.len() - 1;

@@ -23,7 +23,7 @@ fn ends(piece: &Piece) -> [(f64, &[f64], usize); 2] {
             let (time, regime) = of(start);
             [(time, &start.state, regime), (time + h, end, regime)]
         }
-        Piece::Stop { before, after, .. } => {
+        Piece::Event { before, after, .. } => {
             let [(first, old), (last, new)] = [of(before), of(after)];
             [(first, &before.state, old), (last, &after.state, new)]
         }
@@ -54,7 +54,7 @@ fn the_changes_of_a_tape_are_the_events() {
     for (name, text) in documents("tests/simulations", "fdc") {
         let (simulation, tape) = taped(&text, &Controls::Guess);
         let changes = tape.pieces.iter().flat_map(|piece| match piece {
-            Piece::Stop { changes, .. } => changes.as_slice(),
+            Piece::Event { changes, .. } => changes.as_slice(),
             Piece::Step { .. } => &[],
         });
         let changes: Vec<_> = changes.map(|it| (it.after.time, it.surface, it.kind)).collect();

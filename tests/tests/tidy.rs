@@ -2,6 +2,7 @@
 //!
 //! Rules are tables: a new one is a row. Comments are taken off before code is looked at.
 
+use fdcc_tests::imports::{circles, imports};
 use fdcc_tests::repository;
 use fdcc_tests::sources::{Source, all_well, names, sources};
 use std::fs;
@@ -104,6 +105,16 @@ fn foreign_crates_are_named_in_one_place_each() {
         }
     }
     all_well(breaches);
+}
+
+/// Crates whose folders import each other in one direction only.
+const WITHOUT_CIRCLES: &[&str] = &["runtime"];
+
+#[test]
+fn folders_import_each_other_in_no_circle() {
+    let sources = sources();
+    let of = |folder: &&str| circles(&imports(&sources, &format!("{folder}/src/")));
+    all_well(WITHOUT_CIRCLES.iter().flat_map(of).collect());
 }
 
 /// What is absent where: folders, words, and why.

@@ -65,7 +65,7 @@ fn row(name: &str, problem: &Problem) -> Vec<String> {
         counts.derivatives,
         counts.restorations,
         nlp.variable_bounds().len(),
-        nlp.row_bounds().len(),
+        nlp.constraint_bounds().len(),
         nlp.jacobian_structure().len(),
         nlp.hessian_structure().len(),
     ];

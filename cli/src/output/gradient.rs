@@ -10,7 +10,7 @@ use fdcc::exact::Exact;
 use fdcc::quantities::By;
 use fdcc_grammar::SourceFile;
 use fdcc_runtime::problem::Method;
-use fdcc_runtime::sensitivity::{Kink, Trouble, TroubleKind};
+use fdcc_runtime::sensitivity::{Kink, Nondifferentiability, NondifferentiabilityKind};
 use fdcc_runtime::simulate::{Simulation, System};
 use serde::Serialize;
 
@@ -127,7 +127,7 @@ impl Document {
         };
         let sides = sides(by, exact);
         let is_plain = exact.is_differentiable;
-        let first = exact.found.troubles.first().filter(|_| !is_plain);
+        let first = exact.found.nondifferentiabilities.first().filter(|_| !is_plain);
         Document {
             value: Some(exact.found.value),
             gradient: named(by, gradient),
@@ -181,7 +181,7 @@ impl Document {
 }
 
 impl Reason {
-    fn new(system: &System, trouble: &Trouble) -> Self {
+    fn new(system: &System, trouble: &Nondifferentiability) -> Self {
         let surface = system.name_of(trouble.surface).to_owned();
         Reason { kind: kind_name(trouble.kind), surface, time: trouble.time }
     }
@@ -203,12 +203,12 @@ impl Reason {
     }
 }
 
-fn kind_name(kind: TroubleKind) -> &'static str {
+fn kind_name(kind: NondifferentiabilityKind) -> &'static str {
     match kind {
-        TroubleKind::Grazing => "grazing",
-        TroubleKind::Corner => "corner",
-        TroubleKind::Coincident => "coincident",
-        TroubleKind::End => "end",
+        NondifferentiabilityKind::Grazing => "grazing",
+        NondifferentiabilityKind::Corner => "corner",
+        NondifferentiabilityKind::Coincident => "coincident",
+        NondifferentiabilityKind::End => "end",
     }
 }
 
@@ -220,7 +220,7 @@ fn doubts(system: &System, exact: &Exact) -> Vec<String> {
         doubts
             .push(format!("forward and adjoint differ by {agreement}: do not trust this gradient"));
     }
-    let mut agreed = exact.found.troubles.iter().filter(|_| exact.is_differentiable);
+    let mut agreed = exact.found.nondifferentiabilities.iter().filter(|_| exact.is_differentiable);
     if let Some(first) = agreed.next() {
         let others = agreed.count();
         let others = if others > 0 { format!(" (and {others} more)") } else { String::new() };

@@ -42,8 +42,9 @@ const PART: f64 = 1e-2;
 pub(crate) struct Assessment {
     /// Largest violation of a row or bound, relative to the size of its terms.
     pub(crate) violation: f64,
-    /// What complementarity and violations say the objective can still gain, relative to its size.
-    pub(crate) owed: f64,
+    /// Complementarity, and what violations are worth by their multipliers: what these say the
+    /// objective can still gain, relative to its size.
+    pub(crate) complementarity: f64,
     /// The same of the gradient of the Lagrangian.
     pub(crate) slope: f64,
     /// The size of the objective: of its value, and of the terms of its expansion.
@@ -55,32 +56,33 @@ impl Assessment {
     /// the measures so.
     pub(crate) fn new(nlp: &mut dyn Nlp, v: &[f64], multipliers: &Multipliers) -> Self {
         let quantities = nlp.quantities();
-        let sizes = sizes(&quantities, v);
-        let (mut rows, mut at) = (vec![0.0; nlp.row_bounds().len()], Derivatives::new(nlp));
+        let magnitudes = magnitudes(&quantities, v);
+        let (mut rows, mut at) = (vec![0.0; nlp.constraint_bounds().len()], Derivatives::new(nlp));
         let objective = nlp.values(v, &mut rows);
         nlp.derivatives(v, 1.0, &vec![0.0; rows.len()], &mut at);
-        let terms = expansion(nlp, &quantities, &at, v, &sizes);
+        let terms = expansion(nlp, &quantities, &at, v, &magnitudes);
         let size = objective.abs().max(terms).max(NO_OBJECTIVE * quantities.objective);
-        let of_rows = row_sizes(nlp, &quantities, v, &at.jacobian, &sizes);
+        let of_rows = constraint_magnitudes(nlp, &quantities, v, &at.jacobian, &magnitudes);
         let variables = nlp.variable_bounds().iter().zip(v);
         let sides = variables
             .zip(&quantities.variables)
-            .map(|((bounds, value), i)| (bounds, *value, sizes[*i]));
+            .map(|((bounds, value), i)| (bounds, *value, magnitudes[*i]));
         let both = multipliers.lower.iter().zip(&multipliers.upper);
         let mut sums = Sums::default();
         sides.zip(both).for_each(|((bounds, value, size), (lower, upper))| {
             sums.add(bounds, value, size, [*lower, *upper]);
         });
-        let rows = nlp.row_bounds().iter().zip(&rows).zip(&of_rows).zip(&multipliers.rows);
+        let rows =
+            nlp.constraint_bounds().iter().zip(&rows).zip(&of_rows).zip(&multipliers.constraints);
         rows.for_each(|(((bounds, value), size), lambda)| {
             sums.add(bounds, *value, *size, [(-lambda).max(0.0), lambda.max(0.0)]);
         });
-        let slope = slope(nlp, &quantities, &at, multipliers, &sizes);
+        let slope = slope(nlp, &quantities, &at, multipliers, &magnitudes);
         // Without an objective there is nothing to gain.
         let relative =
             |value: f64| if objective == 0.0 && terms == 0.0 { 0.0 } else { value / size };
-        let (owed, slope) = (relative(sums.owed), relative(slope));
-        Assessment { violation: sums.violation, owed, slope, size }
+        let (complementarity, slope) = (relative(sums.complementarity), relative(slope));
+        Assessment { violation: sums.violation, complementarity, slope, size }
     }
 
     /// The same, where the Newton decrement says what the gradient of the Lagrangian can gain: the
@@ -91,7 +93,9 @@ impl Assessment {
 
     /// Whether all but the gradient of the Lagrangian is as it should be.
     pub(crate) fn is_only_steep(&self, tol: f64) -> bool {
-        self.is_feasible(tol) && self.owed <= most_improvement(tol) && !self.is_enough(tol)
+        self.is_feasible(tol)
+            && self.complementarity <= most_improvement(tol)
+            && !self.is_enough(tol)
     }
 
     /// Whether the conditions are met to this tolerance.
@@ -101,17 +105,18 @@ impl Assessment {
 
     /// Whether it may be called a solution to this tolerance.
     pub(crate) fn is_convincing(&self, tol: f64) -> bool {
-        self.is_feasible(tol) && self.owed + self.slope <= most_improvement(tol)
+        self.is_feasible(tol) && self.complementarity + self.slope <= most_improvement(tol)
     }
 
     /// Whether it is as good as is aimed at.
     pub(crate) fn is_enough(&self, tol: f64) -> bool {
-        self.is_feasible(tol) && self.owed + self.slope <= AIM * most_improvement(tol)
+        self.is_feasible(tol) && self.complementarity + self.slope <= AIM * most_improvement(tol)
     }
 
     /// What is aimed at, relative to what is there: the smaller the further away.
     pub(crate) fn missed(&self, tol: f64) -> f64 {
-        (tol / self.violation).min(AIM * most_improvement(tol) / (self.owed + self.slope))
+        (tol / self.violation)
+            .min(AIM * most_improvement(tol) / (self.complementarity + self.slope))
     }
 
     /// What an objective has to gain to count.
@@ -122,7 +127,7 @@ impl Assessment {
     /// Whether it is good enough for most uses.
     pub(crate) fn is_acceptable(&self, tol: f64) -> bool {
         self.is_feasible(tol.max(ACCEPTABLE_VIOLATION))
-            && self.owed + self.slope <= ACCEPTABLE_IMPROVEMENT.max(tol)
+            && self.complementarity + self.slope <= ACCEPTABLE_IMPROVEMENT.max(tol)
     }
 }
 
@@ -135,7 +140,7 @@ fn most_improvement(tol: f64) -> f64 {
 #[derive(Default)]
 struct Sums {
     violation: f64,
-    owed: f64,
+    complementarity: f64,
 }
 
 impl Sums {
@@ -145,50 +150,50 @@ impl Sums {
         self.violation =
             if relative > self.violation || relative.is_nan() { relative } else { self.violation };
         if bounds.is_equality() {
-            self.owed += (lower + upper) * outside;
+            self.complementarity += (lower + upper) * outside;
             return;
         }
         for (multiplier, distance) in [(lower, value - bounds.lower), (upper, bounds.upper - value)]
         {
             // What is far from its bound moves by no more than its own size.
-            self.owed += multiplier * distance.abs().min(size);
+            self.complementarity += multiplier * distance.abs().min(size);
         }
     }
 }
 
 /// The largest value of each quantity over time.
-fn sizes(quantities: &Quantities, v: &[f64]) -> Vec<f64> {
-    let mut sizes: Vec<f64> = quantities.units.iter().map(|unit| NOTHING * unit).collect();
+fn magnitudes(quantities: &Quantities, v: &[f64]) -> Vec<f64> {
+    let mut magnitudes: Vec<f64> = quantities.units.iter().map(|unit| NOTHING * unit).collect();
     for (i, value) in quantities.variables.iter().zip(v) {
-        sizes[*i] = sizes[*i].max(value.abs());
+        magnitudes[*i] = magnitudes[*i].max(value.abs());
     }
-    sizes
+    magnitudes
 }
 
 /// Of the step of a state the size of the state; of a condition the sum of its terms to second
 /// order, and its bounds; the largest of all times.
-fn row_sizes(
+fn constraint_magnitudes(
     nlp: &mut dyn Nlp,
     quantities: &Quantities,
     v: &[f64],
     jacobian: &[f64],
-    sizes: &[f64],
+    magnitudes: &[f64],
 ) -> Vec<f64> {
     let mut terms = vec![0.0; quantities.rows.len()];
     for ((row, column), slope) in nlp.jacobian_structure().entries().zip(jacobian) {
-        terms[row] += slope.abs() * sizes[quantities.variables[column]];
+        terms[row] += slope.abs() * magnitudes[quantities.variables[column]];
     }
     let kinds = quantities.rows.iter().max().map_or(0, |last| last + 1);
     let mut largest = vec![0.0f64; kinds];
-    for ((i, terms), bounds) in quantities.rows.iter().zip(terms).zip(nlp.row_bounds()) {
+    for ((i, terms), bounds) in quantities.rows.iter().zip(terms).zip(nlp.constraint_bounds()) {
         let ends =
             [bounds.lower, bounds.upper].map(f64::abs).into_iter().filter(|end| end.is_finite());
         largest[*i] = largest[*i].max(ends.fold(terms, f64::max));
     }
     for (i, size) in largest.iter_mut().enumerate().skip(quantities.stepped) {
-        *size += curvature(nlp, quantities, v, sizes, i);
+        *size += curvature(nlp, quantities, v, magnitudes, i);
     }
-    let size = |i: usize| if i < quantities.stepped { sizes[i] } else { largest[i] };
+    let size = |i: usize| if i < quantities.stepped { magnitudes[i] } else { largest[i] };
     quantities.rows.iter().map(|i| size(*i)).collect()
 }
 
@@ -198,7 +203,7 @@ fn curvature(
     nlp: &mut dyn Nlp,
     quantities: &Quantities,
     v: &[f64],
-    sizes: &[f64],
+    magnitudes: &[f64],
     kind: usize,
 ) -> f64 {
     let is_its = |i: &usize| if *i == kind { 1.0 } else { 0.0 };
@@ -208,7 +213,7 @@ fn curvature(
         return 0.0;
     }
     nlp.derivatives(v, 0.0, &weights, &mut at);
-    let size = |j: usize| sizes[quantities.variables[j]];
+    let size = |j: usize| magnitudes[quantities.variables[j]];
     let terms = nlp.hessian_structure().entries().zip(&at.hessian);
     let terms =
         terms.map(|((i, j), h)| if i == j { 0.5 } else { 1.0 } * (h * size(i) * size(j)).abs());
@@ -222,9 +227,9 @@ fn expansion(
     quantities: &Quantities,
     at: &Derivatives,
     v: &[f64],
-    sizes: &[f64],
+    magnitudes: &[f64],
 ) -> f64 {
-    let size = |j: usize| v[j].abs() + PART * sizes[quantities.variables[j]];
+    let size = |j: usize| v[j].abs() + PART * magnitudes[quantities.variables[j]];
     let first: f64 = at.gradient.iter().enumerate().map(|(j, slope)| slope.abs() * size(j)).sum();
     let second = nlp.hessian_structure().entries().zip(&at.hessian).map(|((i, j), curvature)| {
         let factor = if i == j { 0.5 } else { 1.0 };
@@ -240,19 +245,19 @@ fn slope(
     quantities: &Quantities,
     at: &Derivatives,
     multipliers: &Multipliers,
-    sizes: &[f64],
+    magnitudes: &[f64],
 ) -> f64 {
     let mut gradient = at.gradient.clone();
     nlp.jacobian_structure().transposed_multiply_add(
         &at.jacobian,
-        &multipliers.rows,
+        &multipliers.constraints,
         &mut gradient,
     );
     let sides = multipliers.lower.iter().zip(&multipliers.upper);
     let of_variables = nlp.variable_bounds().iter().zip(&quantities.variables);
     let parts = gradient.iter().zip(sides).zip(of_variables).map(
         |((slope, (lower, upper)), (bounds, i))| {
-            if bounds.is_equality() { 0.0 } else { (slope - lower + upper).abs() * sizes[*i] }
+            if bounds.is_equality() { 0.0 } else { (slope - lower + upper).abs() * magnitudes[*i] }
         },
     );
     parts.sum()

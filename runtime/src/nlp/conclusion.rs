@@ -30,7 +30,7 @@ pub(super) fn conclude(nlp: &mut dyn Nlp, ended: Ended, options: &Options) -> So
     } else {
         status
     };
-    let objective = nlp.values(&v, &mut vec![0.0; multipliers.rows.len()]);
+    let objective = nlp.values(&v, &mut vec![0.0; multipliers.constraints.len()]);
     let constraint_violation = constraint_violation(nlp, &v);
     let global = false;
     Solution {

@@ -1,11 +1,11 @@
-//! Nonlinear programmes, and what a solver says about one.
+//! Nonlinear programs (NLP), and what a solver says about one.
 //!
 //! ```text
 //!     minimise  f(v)    subject to   lower <= c(v) <= upper,   lower <= v <= upper
 //! ```
 //!
 //! Multipliers `lambda` are those of the Lagrangian `f + lambda' c - z_lower' v + z_upper' v`: they
-//! are minus the rate at which the optimal objective grows with the right-hand side of a row.
+//! are minus the rate at which the optimal objective grows with the right-hand side of a constraint.
 
 mod assessment;
 mod conclusion;
@@ -20,7 +20,7 @@ use crate::linalg::{Stages, Triplets};
 use crate::problem::{Bounds, Linear, Origin};
 use std::ops::ControlFlow;
 
-/// First and second derivatives at a point, in the order of the structures of the programme.
+/// First and second derivatives at a point, in the order of the structures of the NLP.
 #[derive(Clone, Debug, Default)]
 pub struct Derivatives {
     /// Gradient of the objective, dense.
@@ -42,7 +42,7 @@ impl Derivatives {
     }
 }
 
-/// Where in the problem a row or variable belongs, for messages.
+/// Where in the problem a constraint or variable belongs, for messages.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Place {
     /// Where in the model.
@@ -51,12 +51,13 @@ pub struct Place {
     pub grid_point: Option<usize>,
 }
 
-/// Which variables, and which rows, are one quantity at different times: they have one size.
+/// Which variables, and which constraints, are one quantity at different times: they have one
+/// nominal magnitude.
 #[derive(Clone, Debug)]
 pub struct Quantities {
     /// The quantity of each variable.
     pub variables: Vec<usize>,
-    /// That of each row: below `stepped` it is the step of the variables with the same number.
+    /// That of each constraint: below `stepped` it is the step of the variables with the same number.
     pub rows: Vec<usize>,
     /// How many quantities of variables may have steps.
     pub stepped: usize,
@@ -66,27 +67,27 @@ pub struct Quantities {
     pub objective: f64,
 }
 
-/// A nonlinear programme. Evaluations take `&mut self` for working memory only: equal inputs give
+/// A nonlinear program. Evaluations take `&mut self` for working memory only: equal inputs give
 /// equal outputs.
 pub trait Nlp {
     /// One per variable.
     fn variable_bounds(&self) -> &[Bounds];
-    /// One per row.
-    fn row_bounds(&self) -> &[Bounds];
-    /// Structure of the Jacobian of the rows.
+    /// One per constraint.
+    fn constraint_bounds(&self) -> &[Bounds];
+    /// Structure of the Jacobian of the constraints.
     fn jacobian_structure(&self) -> &Triplets;
     /// Structure of the lower triangle of the Lagrangian Hessian.
     fn hessian_structure(&self) -> &Triplets;
-    /// The chain of stages, if the programme is one.
+    /// The chain of stages, if the NLP is one.
     fn stages(&self) -> Option<Stages>;
-    /// Which variables and rows are one quantity of the model.
+    /// Which variables and constraints are one quantity of the model.
     fn quantities(&self) -> Quantities;
-    /// Objective and rows.
-    fn values(&mut self, v: &[f64], rows: &mut [f64]) -> f64;
+    /// Objective and constraints.
+    fn values(&mut self, v: &[f64], constraints: &mut [f64]) -> f64;
     /// Gradient, Jacobian and the Hessian of `weight * f + multipliers . c`.
     fn derivatives(&mut self, v: &[f64], weight: f64, multipliers: &[f64], out: &mut Derivatives);
-    /// Where a row comes from.
-    fn row_place(&self, row: usize) -> Place;
+    /// Where a constraint comes from.
+    fn constraint_place(&self, constraint: usize) -> Place;
     /// Which part of the model is not finite at `v`, if any.
     fn not_finite(&mut self, v: &[f64]) -> Option<Place>;
 }
@@ -132,7 +133,7 @@ pub struct Progress {
     pub restoration: bool,
     /// Objective, unscaled.
     pub objective: f64,
-    /// Largest violation of a row.
+    /// Largest violation of a constraint.
     pub primal_infeasibility: f64,
     /// Largest component of the gradient of the Lagrangian, scaled.
     pub dual_infeasibility: f64,
@@ -182,7 +183,7 @@ pub struct Start {
 pub struct Warm {
     /// Its multipliers.
     pub multipliers: Multipliers,
-    /// The barrier parameter of the scaled programme to begin with.
+    /// The barrier parameter of the scaled NLP to begin with.
     pub mu: f64,
     /// The width of each smoothed surface, where the model names none; else nothing.
     pub widths: Vec<f64>,
@@ -201,7 +202,7 @@ impl Start {
         Start { v: solution.v.clone(), warm: Some(warm) }
     }
 
-    /// The same for a programme that is not quite the same: other conditions may be active at its
+    /// The same for an NLP that is not quite the same: other conditions may be active at its
     /// solution, and the barrier leaves them room to become so.
     pub fn near(solution: &Solution) -> Self {
         Start::after(solution).with_room()
@@ -217,8 +218,8 @@ impl Start {
 /// Multipliers of all constraints.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Multipliers {
-    /// One per row.
-    pub rows: Vec<f64>,
+    /// One per constraint.
+    pub constraints: Vec<f64>,
     /// One per variable: lower bounds, not negative.
     pub lower: Vec<f64>,
     /// One per variable: upper bounds, not negative.
@@ -230,7 +231,7 @@ impl Multipliers {
     pub fn zeros(nlp: &dyn Nlp) -> Self {
         let bounds = vec![0.0; nlp.variable_bounds().len()];
         Multipliers {
-            rows: vec![0.0; nlp.row_bounds().len()],
+            constraints: vec![0.0; nlp.constraint_bounds().len()],
             lower: bounds.clone(),
             upper: bounds,
         }
@@ -246,7 +247,7 @@ pub struct Counts {
     pub factorizations: usize,
     /// Factorisations with a primal regularisation.
     pub regularizations: usize,
-    /// Evaluations of objective and rows.
+    /// Evaluations of objective and constraints.
     pub values: usize,
     /// Evaluations of all derivatives.
     pub derivatives: usize,
@@ -275,13 +276,13 @@ pub struct Solution {
     pub v: Vec<f64>,
     /// Multipliers.
     pub multipliers: Multipliers,
-    /// The barrier parameter of the scaled programme at the end; 0 where there was none.
+    /// The barrier parameter of the scaled NLP at the end; 0 where there was none.
     pub mu: f64,
     /// Objective.
     pub objective: f64,
     /// Scaled optimality error.
     pub kkt_error: f64,
-    /// Largest violation of a row or bound.
+    /// Largest violation of a constraint or bound.
     pub constraint_violation: f64,
     /// Whether the optimum is known to be global.
     pub global: bool,
@@ -292,21 +293,21 @@ pub struct Solution {
     pub counts: Counts,
 }
 
-/// The row that is violated most, and by how much.
-pub fn worst_row(nlp: &mut dyn Nlp, v: &[f64]) -> Option<(usize, f64)> {
-    let mut rows = vec![0.0; nlp.row_bounds().len()];
+/// The constraint that is violated most, and by how much.
+pub fn worst_constraint(nlp: &mut dyn Nlp, v: &[f64]) -> Option<(usize, f64)> {
+    let mut rows = vec![0.0; nlp.constraint_bounds().len()];
     nlp.values(v, &mut rows);
     let violations =
-        nlp.row_bounds().iter().zip(&rows).map(|(bounds, value)| bounds.violation(*value));
+        nlp.constraint_bounds().iter().zip(&rows).map(|(bounds, value)| bounds.violation(*value));
     violations.enumerate().fold(None, |worst, (row, violation)| match worst {
         Some((_, largest)) if largest >= violation => worst,
         _ => Some((row, violation)),
     })
 }
 
-/// Largest violation of rows and bounds at `v`.
+/// Largest violation of constraints and bounds at `v`.
 pub fn constraint_violation(nlp: &mut dyn Nlp, v: &[f64]) -> f64 {
-    let rows = worst_row(nlp, v).map_or(0.0, |(_, violation)| violation);
+    let rows = worst_constraint(nlp, v).map_or(0.0, |(_, violation)| violation);
     let bounds =
         nlp.variable_bounds().iter().zip(v).map(|(bounds, value)| bounds.violation(*value));
     bounds.fold(rows, f64::max)

@@ -25,14 +25,15 @@ const SHIFT: f64 = 1e-8;
 /// The multipliers at `v`; `None` where there is no number.
 pub(crate) fn multipliers(nlp: &mut dyn Nlp, v: &[f64]) -> Option<Multipliers> {
     let mut known = Multipliers::zeros(nlp);
-    let (mut derivatives, mut rows) = (Derivatives::new(nlp), known.rows.clone());
-    nlp.derivatives(v, 1.0, &known.rows, &mut derivatives);
+    let (mut derivatives, mut rows) = (Derivatives::new(nlp), known.constraints.clone());
+    nlp.derivatives(v, 1.0, &known.constraints, &mut derivatives);
     nlp.values(v, &mut rows);
     let fixed: Vec<bool> = nlp.variable_bounds().iter().map(Bounds::is_equality).collect();
     let mut factor =
         SparseLdl::new(nlp.hessian_structure(), nlp.jacobian_structure(), &fixed, rows.len());
     let sigma: Vec<f64> = pairs(nlp.variable_bounds(), v, |side| side.map_or(1.0, |_| WEIGHTLESS));
-    let d: Vec<f64> = pairs(nlp.row_bounds(), &rows, |side| side.map_or(WEIGHTLESS, |_| SHIFT));
+    let d: Vec<f64> =
+        pairs(nlp.constraint_bounds(), &rows, |side| side.map_or(WEIGHTLESS, |_| SHIFT));
     let flat = vec![0.0; derivatives.hessian.len()];
     if factor.factor(&flat, &derivatives.jacobian, &sigma, &d) != Inertia::Correct {
         return None;
@@ -40,9 +41,13 @@ pub(crate) fn multipliers(nlp: &mut dyn Nlp, v: &[f64]) -> Option<Multipliers> {
     let mut right: Vec<f64> = derivatives.gradient.iter().map(|g| -g).collect();
     right.resize(v.len() + rows.len(), 0.0);
     factor.solve(&mut right);
-    known.rows.copy_from_slice(&right[v.len()..]);
+    known.constraints.copy_from_slice(&right[v.len()..]);
     let mut left = derivatives.gradient;
-    nlp.jacobian_structure().transposed_multiply_add(&derivatives.jacobian, &known.rows, &mut left);
+    nlp.jacobian_structure().transposed_multiply_add(
+        &derivatives.jacobian,
+        &known.constraints,
+        &mut left,
+    );
     let sides = pairs(nlp.variable_bounds(), v, |side| side);
     for (i, side) in sides.into_iter().enumerate() {
         match side {
@@ -51,7 +56,7 @@ pub(crate) fn multipliers(nlp: &mut dyn Nlp, v: &[f64]) -> Option<Multipliers> {
             None => {}
         }
     }
-    known.rows.iter().chain(&left).all(|value| value.is_finite()).then_some(known)
+    known.constraints.iter().chain(&left).all(|value| value.is_finite()).then_some(known)
 }
 
 /// The bound that something is at.

@@ -1,4 +1,4 @@
-//! Small programmes with known answers, which one attempt of the interior point method finds.
+//! Small programs with known answers, which one attempt of the interior point method finds.
 
 use super::interior_point::attempt;
 use super::{
@@ -12,7 +12,7 @@ type Values = fn(&[f64], &mut [f64]) -> f64;
 type Slopes = fn(&[f64], &mut [f64], &mut [f64]);
 type Curvature = fn(&[f64], f64, &[f64], &mut [f64]);
 
-/// A dense programme; the Jacobian is row by row, the Hessian is the lower triangle row by row.
+/// A dense program; the Jacobian is row by row, the Hessian is the lower triangle row by row.
 struct Dense {
     variables: Vec<Bounds>,
     rows: Vec<Bounds>,
@@ -48,7 +48,7 @@ impl Nlp for Dense {
     fn variable_bounds(&self) -> &[Bounds] {
         &self.variables
     }
-    fn row_bounds(&self) -> &[Bounds] {
+    fn constraint_bounds(&self) -> &[Bounds] {
         &self.rows
     }
     fn jacobian_structure(&self) -> &Triplets {
@@ -78,7 +78,7 @@ impl Nlp for Dense {
         (self.functions.1)(v, &mut out.gradient, &mut out.jacobian);
         (self.functions.2)(v, weight, multipliers, &mut out.hessian);
     }
-    fn row_place(&self, _row: usize) -> Place {
+    fn constraint_place(&self, _row: usize) -> Place {
         Place::default()
     }
     fn not_finite(&mut self, _v: &[f64]) -> Option<Place> {
@@ -141,7 +141,7 @@ fn hock_schittkowski_71_has_its_published_minimum() {
 
 /// x^2 + 1 <= 0 has no solution; the smallest violation is at 0.
 #[test]
-fn an_infeasible_programme_is_recognised_at_its_smallest_violation() {
+fn an_infeasible_program_is_recognised_at_its_smallest_violation() {
     let values: Values = |x, rows| {
         rows[0] = x[0] * x[0] + 1.0;
         x[0]
@@ -212,7 +212,7 @@ fn a_start_without_a_barrier_parameter_is_one_all_the_same() {
 
 /// Minimise x subject to nothing.
 #[test]
-fn an_unbounded_programme_is_recognised() {
+fn an_unbounded_program_is_recognised() {
     let values: Values = |x, _| x[0] + 0.5 * x[1] * x[1];
     let slopes: Slopes = |x, g, _| g.copy_from_slice(&[1.0, x[1]]);
     let curvature: Curvature = |_, w, _, h| h.copy_from_slice(&[0.0, 0.0, w]);

@@ -18,5 +18,5 @@ pub use first_order::one_sided::one_sided;
 pub use first_order::perturbed::perturbed;
 pub use first_order::quantity::Quantity;
 pub use nondifferentiability::kink::Kink;
-pub use nondifferentiability::{Trouble, TroubleKind};
+pub use nondifferentiability::{Nondifferentiability, NondifferentiabilityKind};
 pub use second_order::hessian;

@@ -167,7 +167,7 @@ pub enum Status {
         jump: Option<usize>,
         /// The surface.
         surface: usize,
-        /// When they pile up.
+        /// When they accumulate.
         limit_time: f64,
     },
     /// Something has no value, or grows beyond all bounds.

@@ -58,12 +58,12 @@ pub enum Piece {
         stages: Vec<Vec<f64>>,
     },
     /// What happens at one time.
-    Stop {
+    Event {
         /// Why.
         cause: Cause,
         /// Before it.
         before: Instant,
-        /// After it; later than `before` where jumps pile up and the model says what follows.
+        /// After it; later than `before` where jumps accumulate and the model says what follows.
         after: Instant,
         /// What happens, in this order.
         changes: Vec<Change>,
@@ -75,7 +75,7 @@ impl Piece {
     pub fn end_time(&self) -> f64 {
         match self {
             Piece::Step { start, h, .. } => start.time + h,
-            Piece::Stop { after, .. } => after.time,
+            Piece::Event { after, .. } => after.time,
         }
     }
 
@@ -85,7 +85,7 @@ impl Piece {
             Piece::Step { start, h, end, .. } => {
                 Instant { time: start.time + h, state: end.clone(), ..start.clone() }
             }
-            Piece::Stop { after, .. } => after.clone(),
+            Piece::Event { after, .. } => after.clone(),
         }
     }
 }
@@ -118,7 +118,7 @@ pub enum Cause {
     /// The surfaces that the state slides on cease to attract.
     Repels,
     /// The state crosses a kink of the right side.
-    Bends(usize),
+    CrossesKink(usize),
 }
 
 /// One change at a stop.

@@ -53,7 +53,7 @@ pub(crate) fn path_multipliers(
     solution: &Solution,
     time: &[f64],
 ) -> Vec<Vec<f64>> {
-    let (chain, rows) = (nlp.chain(), &solution.multipliers.rows);
+    let (chain, rows) = (nlp.chain(), &solution.multipliers.constraints);
     let count = problem.path_bounds.len();
     let density = |row: usize, k: usize| {
         let sum: f64 = chain.local(k).skip(row).step_by(count).map(|at| rows[at]).sum();
@@ -68,7 +68,7 @@ pub(crate) fn end_multipliers(
     nlp: &TranscribedNlp,
     solution: &Solution,
 ) -> Vec<f64> {
-    let rows = &solution.multipliers.rows[nlp.chain().coupling()];
+    let rows = &solution.multipliers.constraints[nlp.chain().coupling()];
     rows.iter().map(|lambda| -problem.sense * lambda).collect()
 }
 
@@ -177,7 +177,7 @@ impl<'a> Lagrangian<'a> {
         let multipliers = &self.solution.multipliers;
         let boundary = &*problem.boundary;
         let place = boundary.layout().parameters().start + problem.unknowns[unknown].parameter;
-        let (points, rows) = (self.ends(boundary), &multipliers.rows[stages.coupling()]);
+        let (points, rows) = (self.ends(boundary), &multipliers.constraints[stages.coupling()]);
         let mut slopes = vec![0.0; boundary.layout().p];
         add_slopes(boundary, &points, &self.parameters, &mut slopes, |output| {
             vec![output.checked_sub(1).map_or(1.0, |row| rows[row])]
@@ -213,7 +213,7 @@ impl<'a> Lagrangian<'a> {
         let stages = self.nlp.chain();
         let is_state = output < self.problem.layout.x;
         let (row, factor, weight) = (node.row + output, node.factor, node.weight);
-        let rows = &self.solution.multipliers.rows;
+        let rows = &self.solution.multipliers.constraints;
         let own = move |k: usize| {
             if is_state { -factor * rows[k * stages.row_step() + row] } else { weight }
         };
@@ -243,7 +243,7 @@ impl<'a> Lagrangian<'a> {
 
     fn add_path(&self, by: &ByParameters, sums: &mut [f64]) {
         let (stages, path) = (self.nlp.chain(), &*by.path);
-        let rows = &self.solution.multipliers.rows;
+        let rows = &self.solution.multipliers.constraints;
         for (at, point) in self.nlp.interval().path.iter().enumerate() {
             let mut points = Columns::new(path.layout().point_inputs(), stages.intervals);
             point.set_times(self.nlp.mesh(), &mut points);
@@ -259,7 +259,7 @@ impl<'a> Lagrangian<'a> {
 
     fn add_boundary(&self, by: &ByParameters, sums: &mut [f64]) {
         let (stages, boundary) = (self.nlp.chain(), &*by.boundary);
-        let rows = &self.solution.multipliers.rows[stages.coupling()];
+        let rows = &self.solution.multipliers.constraints[stages.coupling()];
         add_slopes(boundary, &self.ends(boundary), &self.parameters, sums, |output| {
             vec![output.checked_sub(1).map_or(1.0, |row| rows[row])]
         });
@@ -316,11 +316,13 @@ impl<'a> Lagrangian<'a> {
         let every = |range: Range<usize>, row: usize| range.skip(row).step_by(paths.max(1));
         for row in 0..paths {
             let all = (0..stages.intervals).flat_map(|k| every(stages.local(k), row));
-            weights
-                .extend(at_bounds(all.map(|at| multipliers.rows[at]), &problem.path_bounds[row]));
+            weights.extend(at_bounds(
+                all.map(|at| multipliers.constraints[at]),
+                &problem.path_bounds[row],
+            ));
         }
         for (row, bounds) in stages.coupling().zip(&problem.boundary_bounds) {
-            weights.extend(at_bounds([multipliers.rows[row]], bounds));
+            weights.extend(at_bounds([multipliers.constraints[row]], bounds));
         }
         weights
     }

@@ -49,7 +49,7 @@ pub(crate) fn violations(
 
 /// The gradient of the Lagrangian without the multipliers of bounds.
 pub(crate) fn slopes(nlp: &mut TranscribedNlp, solution: &Solution) -> Vec<f64> {
-    let rows = &solution.multipliers.rows;
+    let rows = &solution.multipliers.constraints;
     let mut derivatives = Derivatives::new(nlp);
     nlp.derivatives(&solution.v, 1.0, rows, &mut derivatives);
     let Derivatives { mut gradient, jacobian, .. } = derivatives;

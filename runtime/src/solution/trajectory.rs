@@ -168,7 +168,7 @@ fn resized(points: &Columns, columns: usize) -> Columns {
 /// is the part of interval `k` for `k < N`, and the part of the boundary for `k = N`.
 fn costates(problem: &Problem, nlp: &mut TranscribedNlp, solution: &Solution) -> Vec<Vec<f64>> {
     let stages = nlp.chain();
-    let rows = &solution.multipliers.rows;
+    let rows = &solution.multipliers.constraints;
     let mut derivatives = Derivatives::new(nlp);
     nlp.derivatives(&solution.v, 1.0, rows, &mut derivatives);
     let own = nlp.gradient_from_here_on();

@@ -10,7 +10,7 @@
 
 use super::Watch;
 use super::grid_sequencing::grids;
-use super::run::{Goal, Run, is_good, is_lost, is_retried};
+use super::run::{Run, Target, is_good, is_lost, is_retried};
 use crate::nlp::{Solution, Start, Status};
 use crate::solution::switching_function_sizes;
 use crate::transcribe::TranscribedNlp;
@@ -38,8 +38,8 @@ impl Run<'_> {
         widths: &[f64],
         watch: &mut Watch,
     ) -> Solution {
-        let goal = self.goal();
-        let patience = Goal { limit: MOST_ITERATIONS.min(goal.limit), ..goal };
+        let target = self.target();
+        let patience = Target { limit: MOST_ITERATIONS.min(target.limit), ..target };
         let grids = grids(self.problem);
         let shrinking = match widths {
             [sigma] if !self.sigma.is_empty() => {
@@ -49,11 +49,11 @@ impl Run<'_> {
         };
         // What was solved before, or is easy, is not approached.
         if start.warm.is_some() || grids.len() == 1 && shrinking.len() <= 1 {
-            return self.shrink(nlp, start, widths, goal, watch);
+            return self.shrink(nlp, start, widths, target, watch);
         }
         let first = self.over_grids(nlp, start.clone(), (&grids, &shrinking), patience, watch);
         let is_out_of_iterations =
-            first.status == Status::IterationLimit && goal.limit <= patience.limit;
+            first.status == Status::IterationLimit && target.limit <= patience.limit;
         if !is_retried(&first.status) || is_out_of_iterations {
             return first;
         }
@@ -64,10 +64,10 @@ impl Run<'_> {
                 return second;
             }
         }
-        let last = self.shrink(nlp, start.clone(), widths, goal, watch);
+        let last = self.shrink(nlp, start.clone(), widths, target, watch);
         match widths {
             [.., sigma] if is_lost(&last.status) && self.is_wider_than(*sigma) => {
-                self.shrink(nlp, start, &[*sigma], goal, watch)
+                self.shrink(nlp, start, &[*sigma], target, watch)
             }
             _ => last,
         }
@@ -84,14 +84,15 @@ impl Run<'_> {
         nlp: &mut TranscribedNlp,
         mut start: Start,
         widths: &[f64],
-        goal: Goal,
+        target: Target,
         watch: &mut Watch,
     ) -> Solution {
         let Some((last, before)) = widths.split_last() else {
-            return self.solve(nlp, &start, goal, watch);
+            return self.solve(nlp, &start, target, watch);
         };
         let is_coarse = nlp.chain().intervals < self.problem.method.intervals;
-        let rough = Goal { tol: goal.tol.max(if is_coarse { ROUGH } else { CAREFUL }), ..goal };
+        let rough =
+            Target { tol: target.tol.max(if is_coarse { ROUGH } else { CAREFUL }), ..target };
         for width in before {
             self.sigma.fill(*width);
             let solution = self.solve(nlp, &start, rough, watch);
@@ -101,7 +102,7 @@ impl Run<'_> {
             start = Start::after(&solution);
         }
         self.sigma.fill(*last);
-        self.solve(nlp, &start, goal, watch)
+        self.solve(nlp, &start, target, watch)
     }
 }
 

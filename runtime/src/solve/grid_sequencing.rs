@@ -7,7 +7,7 @@
 
 use super::Watch;
 use super::prolong::{Times, prolong};
-use super::run::{Goal, Run, is_good};
+use super::run::{Run, Target, is_good};
 use crate::linalg::Stages;
 use crate::nlp::{Nlp, Solution, Start, constraint_violation};
 use crate::problem::Problem;
@@ -28,7 +28,7 @@ impl Run<'_> {
         nlp: &mut TranscribedNlp,
         mut start: Start,
         (grids, mut widths): (&[usize], &[f64]),
-        goal: Goal,
+        target: Target,
         watch: &mut Watch,
     ) -> Solution {
         let mut chain = nlp.chain();
@@ -39,17 +39,17 @@ impl Run<'_> {
             let mut coarse = TranscribedNlp::new(&problem);
             start = prolong(&times, chain, &start, coarse.chain());
             chain = coarse.chain();
-            let close = Goal { tol: goal.tol.max(accuracy), ..goal };
+            let close = Target { tol: target.tol.max(accuracy), ..target };
             let solution = self.shrink(&mut coarse, start, widths, close, watch);
             start = Start::after(&solution);
             if !is_good(&solution.status) {
-                return carried_over(nlp, &times, (chain, &start), solution);
+                return on_final_grid(nlp, &times, (chain, &start), solution);
             }
             widths = &widths[widths.len().saturating_sub(1)..];
             accuracy = (FINER * accuracy).max(CLOSE);
         }
         start = prolong(&times, chain, &start, nlp.chain());
-        self.shrink(nlp, start, widths, goal, watch)
+        self.shrink(nlp, start, widths, target, watch)
     }
 }
 
@@ -70,14 +70,14 @@ fn on_grid(problem: &Problem, intervals: usize) -> Problem {
 }
 
 /// What ended on a coarse grid, seen on the grid of the problem.
-fn carried_over(
+fn on_final_grid(
     nlp: &mut TranscribedNlp,
     times: &Times,
     (from, end): (Stages, &Start),
     solution: Solution,
 ) -> Solution {
     let Start { v, warm } = prolong(times, from, end, nlp.chain());
-    let objective = nlp.values(&v, &mut vec![0.0; nlp.row_bounds().len()]);
+    let objective = nlp.values(&v, &mut vec![0.0; nlp.constraint_bounds().len()]);
     let constraint_violation = constraint_violation(nlp, &v);
     let multipliers = warm.map_or(solution.multipliers, |warm| warm.multipliers);
     Solution { v, multipliers, objective, constraint_violation, ..solution }

@@ -56,11 +56,11 @@ pub fn solve(
     run.apply_sigma(&mut nlp);
     let start = start.unwrap_or_else(|| Start { v: nlp.guess(), warm: None });
     let is_open = matches!(problem.method.solver, Solver::Automatic | Solver::Convex);
-    let is_convex = convex::is_quadratic_programme(problem) && convex::is_proved(&mut nlp);
+    let is_convex = convex::is_quadratic_program(problem) && convex::is_proved(&mut nlp);
     if !is_convex && problem.method.solver == Solver::Convex {
         return Err(Refusal::NotConvex);
     }
-    let options = run.options(run.goal());
+    let options = run.options(run.target());
     let conic = if is_open && is_convex { convex::solve(&mut nlp, &start, &options) } else { None };
     // Where it finds no optimum the interior point method has a word, a best iterate, and a row to
     // blame.
@@ -71,7 +71,7 @@ pub fn solve(
         Some(widths) => run.with_named_widths(&mut nlp, start.clone(), &widths, watch),
         None => run.with_chosen_widths(&mut nlp, start.clone(), watch),
     };
-    // Of a convex programme every local optimum is a global one.
+    // Of a convex program every local optimum is a global one.
     solution.global = is_open && is_convex && solution.status == Status::Solved;
     let is_lost = matches!(solution.status, Status::Infeasible | Status::NumericalFailure);
     let proof = if is_lost && is_convex {
@@ -102,8 +102,8 @@ pub(crate) fn solve_near(
     let mut nlp = TranscribedNlp::new(problem);
     let (counts, sigma) = (before.solution.counts, before.sigma.clone());
     let mut run = Run { problem, counts, sigma, attempts: Vec::new() };
-    let goal = run.goal();
-    let solution = run.solve(&mut nlp, &start, goal, watch);
+    let target = run.target();
+    let solution = run.solve(&mut nlp, &start, target, watch);
     Ok(finish(run, &mut nlp, solution, false))
 }
 
@@ -132,11 +132,11 @@ fn limiting(
     trajectory: &Trajectory,
     tol: f64,
 ) -> Option<Limiting> {
-    let (row, violation) = crate::nlp::worst_row(nlp, &solution.v)?;
+    let (row, violation) = crate::nlp::worst_constraint(nlp, &solution.v)?;
     if is_good(&solution.status) || violation <= tol {
         return None;
     }
-    let place = nlp.row_place(row);
+    let place = nlp.constraint_place(row);
     let time = place.grid_point.map(|k| trajectory.time[k]);
     let condition = if nlp.is_defect(row) { strongest_condition(nlp, solution) } else { None };
     Some(Limiting { origin: place.origin, condition, time, violation })
@@ -144,8 +144,8 @@ fn limiting(
 
 /// The path or boundary condition with the largest multiplier.
 fn strongest_condition(nlp: &TranscribedNlp, solution: &Solution) -> Option<Origin> {
-    let rows = solution.multipliers.rows.iter().enumerate();
+    let rows = solution.multipliers.constraints.iter().enumerate();
     let conditions = rows.filter(|(row, lambda)| !nlp.is_defect(*row) && **lambda != 0.0);
     let strongest = conditions.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-    Some(nlp.row_place(strongest.0).origin)
+    Some(nlp.constraint_place(strongest.0).origin)
 }

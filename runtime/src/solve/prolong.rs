@@ -48,9 +48,9 @@ impl Times {
 pub(crate) fn prolong(times: &Times, from: Stages, start: &Start, to: Stages) -> Start {
     let shrink = from.intervals as f64 / to.intervals as f64;
     let warm = start.warm.as_ref().map(
-        |Warm { multipliers: Multipliers { rows, lower, upper }, mu, widths }| {
+        |Warm { multipliers: Multipliers { constraints: rows, lower, upper }, mu, widths }| {
             let multipliers = Multipliers {
-                rows: conditions(times, from, rows, to, shrink),
+                constraints: conditions(times, from, rows, to, shrink),
                 lower: variables(times, from, lower, to, shrink),
                 upper: variables(times, from, upper, to, shrink),
             };
@@ -153,7 +153,7 @@ mod tests {
         let mut rows = [2.0, 2.0, 4.0].repeat(chain.intervals);
         rows.push(8.0);
         let bounds = vec![6.0; chain.variables()];
-        let multipliers = Multipliers { rows, lower: bounds.clone(), upper: bounds };
+        let multipliers = Multipliers { constraints: rows, lower: bounds.clone(), upper: bounds };
         Start { v, warm: Some(Warm { multipliers, mu: 1e-3, widths: Vec::new() }) }
     }
 
@@ -187,7 +187,7 @@ mod tests {
         assert_eq!(warm.mu, 1e-3 / 4.0);
         let mut rows = [2.0, 2.0, 1.0].repeat(40);
         rows.push(8.0);
-        assert_eq!(warm.multipliers.rows, rows);
+        assert_eq!(warm.multipliers.constraints, rows);
         let stages = &warm.multipliers.lower[..to.variables() - 1];
         assert!(stages.iter().all(|z| *z == 1.5));
         assert_eq!(

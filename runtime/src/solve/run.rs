@@ -19,7 +19,7 @@ pub(super) struct Run<'p> {
 
 /// How one solve is to end.
 #[derive(Clone, Copy)]
-pub(super) struct Goal {
+pub(super) struct Target {
     /// Tolerance on the optimality error.
     pub(super) tol: f64,
     /// Most iterations.
@@ -49,18 +49,18 @@ impl<'p> Run<'p> {
     }
 
     /// What the model asks of a solve.
-    pub(super) fn goal(&self) -> Goal {
-        Goal { tol: self.problem.method.tol, limit: self.problem.method.max_iter }
+    pub(super) fn target(&self) -> Target {
+        Target { tol: self.problem.method.tol, limit: self.problem.method.max_iter }
     }
 
     /// The options of a solve with such an end.
-    pub(super) fn options(&self, goal: Goal) -> Options {
+    pub(super) fn options(&self, target: Target) -> Options {
         let method = &self.problem.method;
-        let is_final = goal.tol <= method.tol;
-        Options { tol: goal.tol, max_iter: goal.limit, linear: method.linear, is_final }
+        let is_final = target.tol <= method.tol;
+        Options { tol: target.tol, max_iter: target.limit, linear: method.linear, is_final }
     }
 
-    /// Gives the programme the widths as they are now.
+    /// Gives the NLP the widths as they are now.
     pub(super) fn apply_sigma(&self, nlp: &mut TranscribedNlp) {
         for (surface, sigma) in self.problem.surfaces.iter().zip(&self.sigma) {
             nlp.set_parameter(surface.sigma, *sigma);
@@ -72,14 +72,14 @@ impl<'p> Run<'p> {
         &mut self,
         nlp: &mut TranscribedNlp,
         start: &Start,
-        goal: Goal,
+        target: Target,
         watch: &mut Watch,
     ) -> Solution {
-        let solution = self.once(nlp, start, goal, watch);
+        let solution = self.once(nlp, start, target, watch);
         if start.warm.is_none() || !is_retried(&solution.status) {
             return solution;
         }
-        self.once(nlp, &Start { v: start.v.clone(), warm: None }, goal, watch)
+        self.once(nlp, &Start { v: start.v.clone(), warm: None }, target, watch)
     }
 
     /// One solve; its counts are those of all solves so far.
@@ -87,12 +87,12 @@ impl<'p> Run<'p> {
         &mut self,
         nlp: &mut TranscribedNlp,
         start: &Start,
-        goal: Goal,
+        target: Target,
         watch: &mut Watch,
     ) -> Solution {
         self.apply_sigma(nlp);
         let method = &self.problem.method;
-        let options = self.options(goal);
+        let options = self.options(target);
         let stages = method.is_raised.then(|| method.scheme.stages());
         let level = Level { intervals: nlp.chain().intervals, stages, sigma: &self.sigma };
         self.attempts.push(Attempt { intervals: level.intervals, sigma: self.sigma.clone() });

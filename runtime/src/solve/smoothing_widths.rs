@@ -9,7 +9,7 @@
 
 use super::Watch;
 use super::grid_sequencing::grids;
-use super::run::{Goal, Run, is_good, is_lost, is_retried};
+use super::run::{Run, Target, is_good, is_lost, is_retried};
 use crate::nlp::{Solution, Start, Status};
 use crate::solution::switching_function_sizes;
 use crate::transcribe::TranscribedNlp;
@@ -58,8 +58,8 @@ impl Run<'_> {
             let before = self.sigma.clone();
             let next = (factor * decrease).max(LAST_FACTOR);
             self.decrease(nlp, &best.v, next, next / factor);
-            let goal = self.patience();
-            let solution = self.once(nlp, &Start::near(&best), goal, watch);
+            let target = self.patience();
+            let solution = self.once(nlp, &Start::near(&best), target, watch);
             if is_good(&solution.status) {
                 (factor, best) = (next, solution);
                 continue;
@@ -142,7 +142,7 @@ impl Run<'_> {
                 return solution;
             }
         }
-        self.solve(nlp, &start, self.goal(), watch)
+        self.solve(nlp, &start, self.target(), watch)
     }
 
     /// What was found with the widest layer; where it is lost, with thinner ones, relative to the
@@ -166,15 +166,15 @@ impl Run<'_> {
                 .zip(&widest)
                 .for_each(|(sigma, widest)| *sigma = sigma.min(*widest));
             if self.sigma != widest {
-                (last, factor) = (self.solve(nlp, start, self.goal(), watch), thinner);
+                (last, factor) = (self.solve(nlp, start, self.target(), watch), thinner);
             }
         }
         (last, factor)
     }
 
-    fn patience(&self) -> Goal {
-        let goal = self.goal();
-        Goal { limit: MOST_ITERATIONS.min(goal.limit), ..goal }
+    fn patience(&self) -> Target {
+        let target = self.target();
+        Target { limit: MOST_ITERATIONS.min(target.limit), ..target }
     }
 
     /// Widths relative to the size of each switching function along `v`.

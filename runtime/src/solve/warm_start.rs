@@ -96,7 +96,7 @@ pub fn again(problem: &Problem, solution: &Solution, widths: &[f64]) -> Start {
     start
 }
 
-/// The programme with the width that is solved first, and with it the earlier widths where these
+/// The NLP with the width that is solved first, and with it the earlier widths where these
 /// are taken, because the problem names none; `None` if there are none either.
 fn first_width<'p>(
     problem: &'p Problem,

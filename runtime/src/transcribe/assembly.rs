@@ -1,4 +1,4 @@
-//! Which value of which function goes where in the sparse matrices of the programme.
+//! Which value of which function goes where in the sparse matrices of the NLP.
 
 use crate::linalg::{Family, Triplets};
 use std::collections::BTreeMap;

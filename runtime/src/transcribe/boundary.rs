@@ -141,7 +141,7 @@ pub(super) fn given_at_the_end(problem: &Problem, stages: Stages) -> Vec<(usize,
     problem.boundary_bounds.iter().enumerate().filter_map(given).collect()
 }
 
-/// The variable of the programme behind an input.
+/// The variable of the NLP behind an input.
 fn variable(problem: &Problem, stages: Stages, input: usize) -> usize {
     let layout = problem.boundary.layout();
     if let Some(parameter) = input.checked_sub(layout.parameters().start) {

@@ -13,7 +13,7 @@ impl TranscribedNlp<'_> {
         let hidden: Vec<usize> =
             (0..self.problem.layout.x).filter(|&i| self.problem.states[i].hidden).collect();
         if !hidden.is_empty() {
-            let mut rows = vec![0.0; self.row_bounds.len()];
+            let mut rows = vec![0.0; self.constraint_bounds.len()];
             self.values(&v, &mut rows);
             hidden.into_iter().for_each(|state| self.integrate(state, &rows, &mut v));
         }

@@ -142,7 +142,7 @@ impl Point {
         }
     }
 
-    /// Takes the states and controls of all intervals from the variables of the programme.
+    /// Takes the states and controls of all intervals from the variables of the NLP.
     pub(crate) fn load(&self, stages: Stages, layout: &Layout, v: &[f64], points: &mut Columns) {
         let signals = self.states.iter().chain(&self.controls).enumerate();
         signals.for_each(|(i, combination)| {

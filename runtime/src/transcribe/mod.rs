@@ -1,4 +1,4 @@
-//! From an optimal control problem to a nonlinear programme that is a chain of stages.
+//! From an optimal control problem to a nonlinear program that is a chain of stages.
 //!
 //! ```text
 //! variables   x_0 u_0 y_0  x_1 u_1 y_1  ...  x_N   unknowns
@@ -30,14 +30,14 @@ use interval::{Interval, Node, Point};
 use mesh::Mesh;
 use sampled::{Matrices, Sampled, Target};
 
-/// The programme of a problem on a grid.
+/// The NLP of a problem on a grid.
 pub struct TranscribedNlp<'p> {
     problem: &'p Problem,
     stages: Stages,
     interval: Interval,
     mesh: Mesh,
     variable_bounds: Vec<Bounds>,
-    row_bounds: Vec<Bounds>,
+    constraint_bounds: Vec<Bounds>,
     jacobian: Triplets,
     hessian: Triplets,
     /// Values of the Jacobian that never change, such as those of `x_{k+1} - x_k`: the first of
@@ -69,7 +69,7 @@ impl<'p> TranscribedNlp<'p> {
             problem,
             stages,
             variable_bounds: bounds::of_variables(problem, stages, &interval),
-            row_bounds: bounds::of_rows(problem, stages),
+            constraint_bounds: bounds::of_rows(problem, stages),
             interval,
             mesh,
             jacobian: jacobian.finish(),
@@ -220,8 +220,8 @@ impl Nlp for TranscribedNlp<'_> {
     fn variable_bounds(&self) -> &[Bounds] {
         &self.variable_bounds
     }
-    fn row_bounds(&self) -> &[Bounds] {
-        &self.row_bounds
+    fn constraint_bounds(&self) -> &[Bounds] {
+        &self.constraint_bounds
     }
     fn jacobian_structure(&self) -> &Triplets {
         &self.jacobian
@@ -269,7 +269,7 @@ impl Nlp for TranscribedNlp<'_> {
         self.ends.scatter(gradient, jacobian, hessian);
     }
 
-    fn row_place(&self, row: usize) -> Place {
+    fn constraint_place(&self, row: usize) -> Place {
         let stages = self.stages;
         if let Some(i) = row.checked_sub(stages.coupling().start) {
             return Place { origin: self.problem.boundary.origin(i + 1), grid_point: None };
@@ -284,7 +284,7 @@ impl Nlp for TranscribedNlp<'_> {
 
     fn not_finite(&mut self, v: &[f64]) -> Option<Place> {
         self.load(v);
-        let (stages, rows) = (self.stages, self.row_bounds.len());
+        let (stages, rows) = (self.stages, self.constraint_bounds.len());
         for node in &mut self.nodes {
             if let Some((output, k)) = node.not_finite(stages, &self.parameters, rows) {
                 return Some(Place {

@@ -128,7 +128,7 @@ impl Sampled {
         }
     }
 
-    /// The variables of the programme behind an input, with their factors.
+    /// The variables of the NLP behind an input, with their factors.
     fn places(&self, problem: &Problem, stages: Stages, input: usize) -> Vec<(Repeated, f64)> {
         let layout = self.tables.function.layout();
         let step = stages.variable_step();
@@ -145,7 +145,7 @@ impl Sampled {
         combination.iter().map(|&(first, factor)| (Repeated { first, step }, factor)).collect()
     }
 
-    /// Takes the states and controls from the variables of the programme.
+    /// Takes the states and controls from the variables of the NLP.
     pub(super) fn load(&mut self, stages: Stages, v: &[f64]) {
         let layout = *self.tables.function.layout();
         self.point.load(stages, &layout, v, &mut self.tables.points);
@@ -201,7 +201,7 @@ impl Sampled {
         Self::scale(&self.lengths, &mut self.tables.jacobian);
     }
 
-    /// Adds the derivatives to the matrices of the programme.
+    /// Adds the derivatives to the matrices of the NLP.
     pub(super) fn scatter(&self, gradient: &mut [f64], jacobian: &mut [f64], hessian: &mut [f64]) {
         scatter(&self.tables.jacobian, &self.row_moves, jacobian);
         scatter(&self.tables.hessian, &self.hessian_moves, hessian);

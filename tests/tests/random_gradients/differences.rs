@@ -84,7 +84,7 @@ pub fn check(case: &Case, random: &mut Random, seen: &mut Seen) {
         says()
     );
     seen.note(&found.simulation);
-    if !found.troubles.is_empty() {
+    if !found.nondifferentiabilities.is_empty() {
         seen.troubled += 1;
         return;
     }

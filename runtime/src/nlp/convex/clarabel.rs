@@ -37,7 +37,7 @@ pub(crate) struct ConicSolution {
     pub(crate) iterations: usize,
 }
 
-/// Solves a convex quadratic programme.
+/// Solves a convex quadratic program.
 pub(crate) fn solve_conic(
     program: ConicProgram,
     tolerance: f64,

@@ -1,6 +1,6 @@
-//! Convex programmes go to the conic solver, and their answer is a global optimum.
+//! Convex programs go to the conic solver, and their answer is a global optimum.
 //!
-//! A programme whose rows are affine and whose objective is a convex quadratic is read off its own
+//! An NLP whose rows are affine and whose objective is a convex quadratic is read off its own
 //! derivatives at one point `v0`: `P = hessian`, `q = gradient - P v0`, `A = jacobian`, constants
 //! from the row values.
 
@@ -17,10 +17,10 @@ use super::{
 use crate::linalg::{Columns, Triplets};
 use crate::problem::{Bounds, Degree, Problem};
 use clarabel::{ConicProgram, ConicSolution, ConicStatus, solve_conic};
-use one_sided::Sides;
+use one_sided::OneSidedConstraints;
 
 /// Whether the transcription of a problem is affine in its rows and quadratic in its objective.
-pub fn is_quadratic_programme(problem: &Problem) -> bool {
+pub fn is_quadratic_program(problem: &Problem) -> bool {
     let states = problem.layout.x;
     let affine = |degree: Degree| degree == Degree::Affine;
     let dynamics = (0..states).all(|row| affine(problem.dynamics.degree(row)));
@@ -30,12 +30,12 @@ pub fn is_quadratic_programme(problem: &Problem) -> bool {
     dynamics && path && boundary && cost && problem.boundary.degree(0) <= Degree::Quadratic
 }
 
-/// Whether the objective of a quadratic programme is proved to be convex in the variables that are
+/// Whether the objective of a quadratic program is proved to be convex in the variables that are
 /// free ([`convexity`]).
 pub fn is_proved(nlp: &mut dyn Nlp) -> bool {
     let size = nlp.variable_bounds().len();
     let mut derivatives = Derivatives::new(nlp);
-    let multipliers = vec![0.0; nlp.row_bounds().len()];
+    let multipliers = vec![0.0; nlp.constraint_bounds().len()];
     nlp.derivatives(&vec![0.0; size], 1.0, &multipliers, &mut derivatives);
     let is_free = |i: usize| !nlp.variable_bounds()[i].is_equality();
     let entries = nlp.hessian_structure().entries().zip(&derivatives.hessian);
@@ -43,7 +43,7 @@ pub fn is_proved(nlp: &mut dyn Nlp) -> bool {
     convexity::is_proved(free.map(|((i, j), value)| (i, j, *value)), size)
 }
 
-/// Solves a convex quadratic programme; `None` where there is nothing to choose. The caller has
+/// Solves a convex quadratic program; `None` where there is nothing to choose. The caller has
 /// made sure that it is one.
 pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options) -> Option<Solution> {
     let mut scaled = Scaled::new(nlp, &start.v);
@@ -60,9 +60,9 @@ fn solve_scaled(nlp: &mut dyn Nlp, v: &[f64], options: &Options) -> Option<Ended
         return None;
     }
     let mut derivatives = Derivatives::new(nlp);
-    let multipliers = vec![0.0; nlp.row_bounds().len()];
+    let multipliers = vec![0.0; nlp.constraint_bounds().len()];
     nlp.derivatives(v, 1.0, &multipliers, &mut derivatives);
-    let sides = Sides::new(nlp);
+    let sides = OneSidedConstraints::new(nlp);
     let program = ConicProgram {
         q: linear_part(nlp, &derivatives, v),
         a: sides.columns(nlp, &derivatives.jacobian),
@@ -81,8 +81,13 @@ fn linear_part(nlp: &dyn Nlp, derivatives: &Derivatives, v: &[f64]) -> Vec<f64> 
 }
 
 /// `b`, from which the constant parts of the rows have been taken.
-fn right_side(nlp: &mut dyn Nlp, jacobian: &[f64], sides: &Sides, v: &[f64]) -> Vec<f64> {
-    let count = nlp.row_bounds().len();
+fn right_side(
+    nlp: &mut dyn Nlp,
+    jacobian: &[f64],
+    sides: &OneSidedConstraints,
+    v: &[f64],
+) -> Vec<f64> {
+    let count = nlp.constraint_bounds().len();
     let (mut rows, mut linear) = (vec![0.0; count], vec![0.0; count]);
     nlp.values(v, &mut rows);
     nlp.jacobian_structure().multiply_add(jacobian, v, &mut linear);
@@ -90,7 +95,7 @@ fn right_side(nlp: &mut dyn Nlp, jacobian: &[f64], sides: &Sides, v: &[f64]) -> 
     sides.right_side(&rows)
 }
 
-fn ended(nlp: &mut dyn Nlp, sides: &Sides, found: ConicSolution) -> Ended {
+fn ended(nlp: &mut dyn Nlp, sides: &OneSidedConstraints, found: ConicSolution) -> Ended {
     let status = match found.status {
         ConicStatus::Solved => Status::Solved,
         ConicStatus::Infeasible => Status::Infeasible,
@@ -102,7 +107,7 @@ fn ended(nlp: &mut dyn Nlp, sides: &Sides, found: ConicSolution) -> Ended {
     clamp(nlp, &mut v);
     let multipliers = sides.multipliers(&found.z);
     let status = match status {
-        Status::Infeasible if !proves_infeasible(nlp, &multipliers.rows) => {
+        Status::Infeasible if !proves_infeasible(nlp, &multipliers.constraints) => {
             Status::NumericalFailure
         }
         status => status,
@@ -141,7 +146,7 @@ fn proves_infeasible(nlp: &mut dyn Nlp, lambda: &[f64]) -> bool {
         above if above > 0.0 => above * (row - bounds.upper),
         below => below * (row - bounds.lower),
     };
-    let excesses: f64 = lambda.iter().zip(&rows).zip(nlp.row_bounds()).map(excess).sum();
+    let excesses: f64 = lambda.iter().zip(&rows).zip(nlp.constraint_bounds()).map(excess).sum();
     excesses + least > 0.0
 }
 
@@ -155,11 +160,11 @@ fn clamp(nlp: &dyn Nlp, v: &mut [f64]) {
 /// Largest component of the gradient of the Lagrangian.
 fn stationarity(nlp: &mut dyn Nlp, v: &[f64], multipliers: &Multipliers) -> f64 {
     let mut derivatives = Derivatives::new(nlp);
-    nlp.derivatives(v, 1.0, &multipliers.rows, &mut derivatives);
+    nlp.derivatives(v, 1.0, &multipliers.constraints, &mut derivatives);
     let mut gradient = derivatives.gradient;
     nlp.jacobian_structure().transposed_multiply_add(
         &derivatives.jacobian,
-        &multipliers.rows,
+        &multipliers.constraints,
         &mut gradient,
     );
     let bounds = multipliers.upper.iter().zip(&multipliers.lower);

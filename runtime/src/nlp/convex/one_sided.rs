@@ -1,10 +1,10 @@
-//! The constraints of a programme one side at a time, as the conic solver wants them.
+//! The constraints of an NLP one side at a time, as the conic solver wants them.
 //!
 //! ```text
 //!     A v + s = b,      s = 0 for equalities, which come first,      s >= 0 for the others
 //! ```
 //!
-//! A row of `A` is a row of the programme or a single variable, with a minus where the bound is a
+//! A row of `A` is a row of the NLP or a single variable, with a minus where the bound is a
 //! lower one.
 
 use crate::linalg::Columns;
@@ -21,13 +21,13 @@ enum Source {
 /// One side of one constraint: `sign * (c - bound) <= 0`, or `= 0` for an equality, whose sign is
 /// 0.
 #[derive(Clone, Copy)]
-struct Side {
+struct OneSided {
     source: Source,
     sign: f64,
     bound: f64,
 }
 
-impl Side {
+impl OneSided {
     fn is_equality(&self) -> bool {
         self.sign == 0.0
     }
@@ -38,16 +38,17 @@ impl Side {
 }
 
 /// All sides, equalities first.
-pub(super) struct Sides {
-    list: Vec<Side>,
+pub(super) struct OneSidedConstraints {
+    list: Vec<OneSided>,
     pub(super) equalities: usize,
     variables: usize,
     rows: usize,
 }
 
-impl Sides {
+impl OneSidedConstraints {
     pub(super) fn new(nlp: &dyn Nlp) -> Self {
-        let rows = nlp.row_bounds().iter().enumerate().map(|(i, bounds)| (Source::Row(i), *bounds));
+        let rows =
+            nlp.constraint_bounds().iter().enumerate().map(|(i, bounds)| (Source::Row(i), *bounds));
         let variables = nlp
             .variable_bounds()
             .iter()
@@ -56,20 +57,20 @@ impl Sides {
         let (mut list, mut inequalities) = (Vec::new(), Vec::new());
         for (source, Bounds { lower, upper }) in rows.chain(variables) {
             if lower == upper {
-                list.push(Side { source, sign: 0.0, bound: lower });
+                list.push(OneSided { source, sign: 0.0, bound: lower });
                 continue;
             }
             let finite =
                 [(1.0, upper), (-1.0, lower)].into_iter().filter(|(_, bound)| bound.is_finite());
-            inequalities.extend(finite.map(|(sign, bound)| Side { source, sign, bound }));
+            inequalities.extend(finite.map(|(sign, bound)| OneSided { source, sign, bound }));
         }
         let equalities = list.len();
         list.extend(inequalities);
-        Sides {
+        OneSidedConstraints {
             list,
             equalities,
             variables: nlp.variable_bounds().len(),
-            rows: nlp.row_bounds().len(),
+            rows: nlp.constraint_bounds().len(),
         }
     }
 
@@ -101,15 +102,15 @@ impl Sides {
         self.list.iter().map(|side| side.factor() * (side.bound - already(side.source))).collect()
     }
 
-    /// The multipliers of the programme from those of `A v + s = b`.
+    /// The multipliers of the NLP from those of `A v + s = b`.
     pub(super) fn multipliers(&self, z: &[f64]) -> Multipliers {
         let zeros = |length| vec![0.0; length];
         let (rows, lower, upper) = (zeros(self.rows), zeros(self.variables), zeros(self.variables));
-        let mut multipliers = Multipliers { rows, lower, upper };
+        let mut multipliers = Multipliers { constraints: rows, lower, upper };
         for (side, z) in self.list.iter().zip(z) {
             let value = side.factor() * z;
             match side.source {
-                Source::Row(row) => multipliers.rows[row] += value,
+                Source::Row(row) => multipliers.constraints[row] += value,
                 Source::Variable(i) if value < 0.0 => multipliers.lower[i] -= value,
                 Source::Variable(i) => multipliers.upper[i] += value,
             }
@@ -120,7 +121,7 @@ impl Sides {
 
 /// The Jacobian row by row: variables and values.
 fn by_rows(nlp: &dyn Nlp, jacobian: &[f64]) -> Vec<Vec<(usize, f64)>> {
-    let mut rows = vec![Vec::new(); nlp.row_bounds().len()];
+    let mut rows = vec![Vec::new(); nlp.constraint_bounds().len()];
     for ((row, variable), value) in nlp.jacobian_structure().entries().zip(jacobian) {
         rows[row].push((variable, *value));
     }

@@ -1,16 +1,17 @@
-//! The loop: look, decide, step.
+//! The loop: algorithm A of Waechter & Biegler 2006. Its steps are named where they are
+//! taken; A-1, the start, is in [`initialization`](super::initialization).
 
 use super::barrier::{Barrier, Terms};
 use super::error_scaling::objective_scale;
 use super::filter::Filter;
-use super::formulation::Space;
+use super::formulation::Formulation;
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::kkt::{Kkt, System};
 use super::line_search::{Accepted, Search};
 use super::residuals::Residuals;
 use super::restoration::{REQUIRED_DECREASE, Restored};
 use super::termination::{ACCEPTABLE_ERROR, Target};
-use super::vectors::largest;
+use super::vectors::{add_scaled, largest};
 use super::watchdog::Watchdog;
 use crate::nlp::{Counts, Nlp, Options, Progress, Status, Stop, Watch};
 use std::ops::ControlFlow;
@@ -35,10 +36,10 @@ pub(super) enum Outcome {
     Done(Status),
 }
 
-/// The state of a solve. It does not own the programme, so that a restoration phase can be run by
+/// The state of a solve. It does not own the NLP, so that a restoration phase can be run by
 /// another one.
 pub(super) struct Algorithm {
-    pub(super) space: Space,
+    pub(super) formulation: Formulation,
     pub(super) at: Iterate,
     pub(super) values: Values,
     pub(super) slopes: Slopes,
@@ -53,7 +54,7 @@ pub(super) struct Algorithm {
     pub(super) acceptable: usize,
     pub(super) tiny_steps: usize,
     /// Accepted steps in a row that were cut down to rounding.
-    pub(super) standing: usize,
+    pub(super) stalled_steps: usize,
     pub(super) watchdog: Watchdog,
     /// How often the filter was emptied at a feasible point.
     pub(super) emptied: usize,
@@ -72,11 +73,17 @@ pub(super) struct Algorithm {
 }
 
 impl Algorithm {
-    pub(super) fn new(nlp: &dyn Nlp, space: Space, at: Iterate, mu: f64, options: Options) -> Self {
+    pub(super) fn new(
+        nlp: &dyn Nlp,
+        formulation: Formulation,
+        at: Iterate,
+        mu: f64,
+        options: Options,
+    ) -> Self {
         Algorithm {
-            kkt: Kkt::new(nlp, &space, options.linear),
-            step: Step::new(&space),
-            slopes: Slopes::new(nlp, &space),
+            kkt: Kkt::new(nlp, &formulation, options.linear),
+            step: Step::new(&formulation),
+            slopes: Slopes::new(nlp, &formulation),
             values: Values::default(),
             barrier: Barrier::new(mu, options.tol),
             filter: Filter::new(0.0),
@@ -85,7 +92,7 @@ impl Algorithm {
             residuals: Residuals::default(),
             acceptable: 0,
             tiny_steps: 0,
-            standing: 0,
+            stalled_steps: 0,
             watchdog: Watchdog::default(),
             emptied: 0,
             is_relaxed: false,
@@ -94,7 +101,7 @@ impl Algorithm {
             is_saddle: false,
             decrement: f64::INFINITY,
             fresh: false,
-            space,
+            formulation,
             at,
             options,
         }
@@ -102,7 +109,7 @@ impl Algorithm {
 
     /// Iterates to the end, with restoration phases where the line search is stuck.
     pub(super) fn run(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Status {
-        if self.space.has_crossed_bounds() {
+        if self.formulation.has_crossed_bounds() {
             return self.end_unseen(Status::Infeasible, nlp);
         }
         loop {
@@ -121,7 +128,7 @@ impl Algorithm {
         }
     }
 
-    /// A restoration phase, begun anew from where it is if it gets stuck itself. It ends the solve
+    /// a restoration phase, begun anew from where it is if it gets stuck itself. It ends the solve
     /// if the smallest violation near by is one; if it is none, the filter has become too strict
     /// and is emptied.
     fn restore_or_stop(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Option<Status> {
@@ -147,9 +154,9 @@ impl Algorithm {
         if self.emptied > MOST_RESTARTS {
             return Some(Status::NumericalFailure);
         }
-        if self.space.widened == 0.0 {
-            self.space.widen(self.options.tol);
-            self.values.terms = Terms::new(&self.space, &self.at.y);
+        if self.formulation.widened == 0.0 {
+            self.formulation.widen(self.options.tol);
+            self.values.terms = Terms::new(&self.formulation, &self.at.y);
         }
         self.begin_anew(nlp);
         None
@@ -170,24 +177,27 @@ impl Algorithm {
             return true;
         }
         self.is_relaxed = true;
-        self.values.relax(&mut self.space);
+        self.values.relax(&mut self.formulation);
         self.begin_anew(nlp);
         false
     }
 
-    /// One iteration: look, decide, step.
+    /// One iteration, steps.
     pub(super) fn iterate(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Outcome {
         let is_finite = self.values.is_finite()
-            && (self.fresh || self.slopes.evaluate(nlp, &self.space, &self.at, &mut self.counts));
+            && (self.fresh
+                || self.slopes.evaluate(nlp, &self.formulation, &self.at, &mut self.counts));
         if !is_finite {
             if self.go_back() {
                 return Outcome::Continue;
             }
-            let place = nlp.not_finite(&self.at.y[..self.space.variables]).unwrap_or_default();
+            let place =
+                nlp.not_finite(&self.at.y[..self.formulation.variables]).unwrap_or_default();
             return Outcome::Done(Status::NotFinite(place));
         }
+        // convergence for the NLP.
         self.fresh = true;
-        self.residuals = Residuals::new(&self.space, &self.at, &self.values, &self.slopes);
+        self.residuals = Residuals::new(&self.formulation, &self.at, &self.values, &self.slopes);
         if let ControlFlow::Break(stop) = watch(&self.report()) {
             return Outcome::Done(if stop == Stop::TimeLimit {
                 Status::TimeLimit
@@ -198,20 +208,23 @@ impl Algorithm {
         if let Some(status) = self.finished(nlp) {
             return Outcome::Done(status);
         }
+        // convergence for the barrier problem; then the next one, with an empty filter.
         if self.barrier.update(&self.residuals) {
             self.filter.clear();
             self.watchdog.end();
             self.tiny_steps = 0;
         }
+        // search direction.
         if self.watchdog.is_due() {
             self.kkt.caution = 0.0;
         }
-        self.kkt.assemble(&self.space, &self.at, &self.slopes, &self.barrier);
+        self.kkt.assemble(&self.formulation, &self.at, &self.slopes, &self.barrier);
         let has_step = self.find_step();
         if !has_step && self.go_back() {
             return Outcome::Continue;
         }
-        let has_step = has_step || (self.kkt.fall_back(nlp, &self.space) && self.find_step());
+        let has_step = has_step || (self.kkt.fall_back(nlp, &self.formulation) && self.find_step());
+        // A-5 to A-8: line search, and the next iterate.
         if has_step { self.take_step(nlp) } else { Outcome::Blocked }
     }
 
@@ -240,10 +253,10 @@ impl Algorithm {
     }
 
     fn newton_step(&mut self, are_dependent: bool) -> bool {
-        let Algorithm { space, at, slopes, kkt, counts, step, values, .. } = self;
+        let Algorithm { formulation, at, slopes, kkt, counts, step, values, .. } = self;
         let mu = self.barrier.mu;
-        let system = System { space, at, slopes, mu };
-        kkt.factor_with_inertia(space, slopes, mu, are_dependent, counts)
+        let system = System { formulation, at, slopes, mu };
+        kkt.factor_with_inertia(formulation, slopes, mu, are_dependent, counts)
             && kkt.step(&system, &values.residuals, step)
     }
 
@@ -259,15 +272,16 @@ impl Algorithm {
         self.progress
     }
 
+    /// backtracking line search, or watchdog steps without one.
     fn take_step(&mut self, nlp: &mut dyn Nlp) -> Outcome {
-        let space = &self.space;
-        let (longest, dual) = self.barrier.longest_steps(space, &self.at, &self.step);
+        let formulation = &self.formulation;
+        let (longest, dual) = self.barrier.longest_steps(formulation, &self.at, &self.step);
         if self.is_tiny() {
             return self.accept_tiny(nlp, longest, dual);
         }
         let mut search = Search {
             nlp,
-            space,
+            formulation,
             barrier: &self.barrier,
             kkt: &mut self.kkt,
             at: &self.at,
@@ -290,19 +304,20 @@ impl Algorithm {
         self.settle(accepted, longest, dual)
     }
 
-    /// Takes an accepted step, or one on trust; or goes back to where the trust began.
+    /// takes an accepted step or a watchdog step, or goes back to where the watchdog began.
     fn settle(&mut self, accepted: Option<(Accepted, bool)>, longest: f64, dual: f64) -> Outcome {
         match accepted {
-            Some((accepted, acceptable)) if acceptable || self.watchdog.trust() => {
+            Some((accepted, acceptable)) if acceptable || self.watchdog.take_step() => {
                 if acceptable && self.watchdog.end().is_none() {
                     self.watchdog.note(accepted.alpha / longest, self.kkt.caution > 0.0);
                     self.kkt.judge(accepted.alpha / longest);
                 }
                 self.progress.trials = accepted.trials;
-                self.standing = if self.stands(accepted.alpha) { self.standing + 1 } else { 0 };
+                self.stalled_steps =
+                    if self.is_negligible(accepted.alpha) { self.stalled_steps + 1 } else { 0 };
                 self.move_to(accepted.y, accepted.values, accepted.alpha, dual);
-                if self.standing > MOST_TINY_STEPS {
-                    self.standing = 0;
+                if self.stalled_steps > MOST_TINY_STEPS {
+                    self.stalled_steps = 0;
                     self.watchdog.end();
                     return Outcome::Blocked;
                 }
@@ -314,7 +329,7 @@ impl Algorithm {
         Outcome::Continue
     }
 
-    /// Back to where steps on trust began; `false` if there were none.
+    /// Back to where watchdog steps began; `false` if there were none.
     fn go_back(&mut self) -> bool {
         let Some(saved) = self.watchdog.end() else { return false };
         (self.at, self.values, self.fresh) = (saved.at, saved.values, false);
@@ -323,11 +338,11 @@ impl Algorithm {
     }
 
     fn is_tiny(&self) -> bool {
-        self.stands(1.0) && self.residuals.primal < ACCEPTABLE_ERROR
+        self.is_negligible(1.0) && self.residuals.primal < ACCEPTABLE_ERROR
     }
 
     /// Whether this fraction of the step is rounding.
-    fn stands(&self, alpha: f64) -> bool {
+    fn is_negligible(&self, alpha: f64) -> bool {
         let small = |(d, y): (&f64, &f64)| alpha * d.abs() <= TINY_STEP * (1.0 + y.abs());
         self.step.y.iter().zip(&self.at.y).all(small)
     }
@@ -348,7 +363,7 @@ impl Algorithm {
         }
         let y: Vec<f64> = self.at.y.iter().zip(&self.step.y).map(|(y, d)| y + alpha * d).collect();
         let mut values = Values::default();
-        if !values.evaluate(nlp, &self.space, &y, &mut self.counts) {
+        if !values.evaluate(nlp, &self.formulation, &y, &mut self.counts) {
             return Outcome::Blocked;
         }
         self.move_to(y, values, alpha, dual);
@@ -363,7 +378,7 @@ impl Algorithm {
         add_scaled(&mut self.at.upper, &self.step.upper, dual);
         let is_newton = self.kkt.regularization == 0.0 && self.watchdog.saved.is_none();
         self.barrier.note(alpha, is_newton);
-        self.barrier.correct_multipliers(&self.space, &mut self.at);
+        self.barrier.correct_multipliers(&self.formulation, &mut self.at);
         self.counts.iterations += 1;
         self.fresh = false;
         self.progress.step = largest(&self.step.y);
@@ -375,13 +390,9 @@ impl Algorithm {
     /// Row multipliers by least squares at the iterate.
     pub(super) fn estimate_multipliers(&mut self, nlp: &mut dyn Nlp) {
         self.at.lambda.fill(0.0);
-        if self.slopes.evaluate(nlp, &self.space, &self.at, &mut self.counts) {
-            self.kkt.estimate_multipliers(&self.space, &mut self.at, &self.slopes);
+        if self.slopes.evaluate(nlp, &self.formulation, &self.at, &mut self.counts) {
+            self.kkt.estimate_multipliers(&self.formulation, &mut self.at, &self.slopes);
         }
         self.fresh = false;
     }
-}
-
-fn add_scaled(target: &mut [f64], step: &[f64], factor: f64) {
-    target.iter_mut().zip(step).for_each(|(value, d)| *value += factor * d);
 }

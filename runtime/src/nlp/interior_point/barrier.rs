@@ -3,25 +3,26 @@
 //!
 //! The parameter never rises, and falls where its problem is solved: `E_mu <= accuracy * mu`. Near
 //! a solution of it Newton's method takes whole steps, and would do so from a rough solution, too;
-//! far from one a parameter that falls too early costs more than it saves. So there are two paces.
+//! far from one a parameter that falls too early costs more than it saves. So there are two rules:
+//! the monotone one of Fiacco and McCormick, and a superlinear one.
 
-use super::formulation::Space;
+use super::formulation::Formulation;
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::residuals::Residuals;
 use super::vectors::dot;
 
 /// How exactly a barrier problem is solved before `mu` falls, which it does to the smaller of
 /// `factor * mu` and `mu^power`.
-struct Pace {
+struct UpdateRule {
     accuracy: f64,
     factor: f64,
     power: f64,
 }
 
-const CAREFUL: Pace = Pace { accuracy: 4.0, factor: 0.2, power: 1.2 };
-/// The pace after so many whole steps in a row.
-const SWIFT: Pace = Pace { accuracy: 100.0, factor: 0.05, power: 1.5 };
-const SWIFT_AFTER: usize = 2;
+const MONOTONE: UpdateRule = UpdateRule { accuracy: 4.0, factor: 0.2, power: 1.2 };
+/// The rule after so many whole steps in a row.
+const SUPERLINEAR: UpdateRule = UpdateRule { accuracy: 100.0, factor: 0.05, power: 1.5 };
+const SUPERLINEAR_AFTER: usize = 2;
 /// A step is whole if this fraction of it is taken, at least.
 const WHOLE: f64 = 0.9;
 /// A parameter within this factor of the last is the last.
@@ -68,18 +69,18 @@ impl Barrier {
     /// Lowers `mu` while its problem is solved; `true` if it changed.
     pub(super) fn update(&mut self, residuals: &Residuals) -> bool {
         let before = self.mu;
-        let pace = if self.whole_steps >= SWIFT_AFTER { SWIFT } else { CAREFUL };
-        while residuals.error(self.mu) <= pace.accuracy * self.mu && self.lower_by(&pace) {}
+        let rule = if self.whole_steps >= SUPERLINEAR_AFTER { SUPERLINEAR } else { MONOTONE };
+        while residuals.error(self.mu) <= rule.accuracy * self.mu && self.lower_by(&rule) {}
         self.mu < before
     }
 
-    /// Lowers `mu` by one careful step; `false` if it is as low as it gets.
+    /// Lowers `mu` by one step of the monotone rule; `false` if it is as low as it gets.
     pub(super) fn lower(&mut self) -> bool {
-        self.lower_by(&CAREFUL)
+        self.lower_by(&MONOTONE)
     }
 
-    fn lower_by(&mut self, pace: &Pace) -> bool {
-        let next = (pace.factor * self.mu).min(self.mu.powf(pace.power));
+    fn lower_by(&mut self, rule: &UpdateRule) -> bool {
+        let next = (rule.factor * self.mu).min(self.mu.powf(rule.power));
         // The tolerance would be met between the last two: the objective would be as far off as
         // chance has it.
         let next = if next < CLOSE * self.smallest { self.smallest } else { next };
@@ -95,26 +96,40 @@ impl Barrier {
     }
 
     /// Adds the gradient of the damping to `gradient`.
-    pub(super) fn add_damping(&self, space: &Space, gradient: &mut [f64]) {
-        for &(i, direction) in &space.one_sided {
+    pub(super) fn add_damping(&self, formulation: &Formulation, gradient: &mut [f64]) {
+        for &(i, direction) in &formulation.one_sided {
             gradient[i] += direction * DAMPING * self.mu;
         }
     }
 
-    /// Slope of `phi` along a step; `slopes` must be those of the iterate, and `push` its gradient
-    /// but for that of the objective.
-    pub(super) fn slope(space: &Space, slopes: &Slopes, push: &[f64], step: &Step) -> f64 {
-        let gradient = dot(&slopes.derivatives.gradient, &step.y[..space.variables]);
-        let costs = space.attached.iter().zip(&step.y[space.variables..]).skip(space.slacks);
-        let cost: f64 = costs.map(|(attached, d)| attached.cost * d).sum();
-        gradient + cost + dot(push, &step.y)
+    /// Slope of `phi` along a step; `slopes` must be those of the iterate, and `barrier_gradient`
+    /// that of `phi - f`.
+    pub(super) fn slope(
+        formulation: &Formulation,
+        slopes: &Slopes,
+        barrier_gradient: &[f64],
+        step: &Step,
+    ) -> f64 {
+        let gradient = dot(&slopes.derivatives.gradient, &step.y[..formulation.variables]);
+        let costs = formulation
+            .slacks
+            .iter()
+            .zip(&step.y[formulation.variables..])
+            .skip(formulation.inequalities);
+        let cost: f64 = costs.map(|(slack, d)| slack.cost * d).sum();
+        gradient + cost + dot(barrier_gradient, &step.y)
     }
 
     /// Largest step lengths of primal and dual variables that stay inside.
-    pub(super) fn longest_steps(&self, space: &Space, at: &Iterate, step: &Step) -> (f64, f64) {
+    pub(super) fn longest_steps(
+        &self,
+        formulation: &Formulation,
+        at: &Iterate,
+        step: &Step,
+    ) -> (f64, f64) {
         let tau = self.tau();
         let (mut primal, mut dual) = (1.0f64, 1.0f64);
-        space.for_each_bound(&at.y, |i, distance, direction| {
+        formulation.for_each_bound(&at.y, |i, distance, direction| {
             let towards = -direction * step.y[i];
             if towards * primal > tau * distance {
                 primal = tau * distance / towards;
@@ -132,9 +147,9 @@ impl Barrier {
     }
 
     /// Keeps bound multipliers near `mu / distance`.
-    pub(super) fn correct_multipliers(&self, space: &Space, at: &mut Iterate) {
+    pub(super) fn correct_multipliers(&self, formulation: &Formulation, at: &mut Iterate) {
         let Iterate { y, lower, upper, .. } = at;
-        space.for_each_bound(y, |i, distance, direction| {
+        formulation.for_each_bound(y, |i, distance, direction| {
             let z = if direction > 0.0 { &mut lower[i] } else { &mut upper[i] };
             let centre = self.mu / distance;
             // Unlike `clamp` these take what is not a number.
@@ -151,11 +166,15 @@ pub(super) struct Terms {
 }
 
 impl Terms {
-    pub(super) fn new(space: &Space, y: &[f64]) -> Self {
+    pub(super) fn new(formulation: &Formulation, y: &[f64]) -> Self {
         let (mut logarithms, mut damping) = (LogarithmSum::default(), 0.0);
-        space.for_each_bound(y, |_, distance, _| logarithms.add(distance));
-        for &(i, direction) in &space.one_sided {
-            damping += if direction > 0.0 { y[i] - space.lower[i] } else { space.upper[i] - y[i] };
+        formulation.for_each_bound(y, |_, distance, _| logarithms.add(distance));
+        for &(i, direction) in &formulation.one_sided {
+            damping += if direction > 0.0 {
+                y[i] - formulation.lower[i]
+            } else {
+                formulation.upper[i] - y[i]
+            };
         }
         Terms { logarithms: logarithms.sum(), damping }
     }

@@ -1,12 +1,12 @@
-//! What errors of the optimality conditions are divided by.
+//! The scaling of the KKT error: `s_d` and `s_c` of Waechter & Biegler 2006, equation 5.
 //!
 //! ```text
 //!     s = mean size of the multipliers / 100,   at least 1,   at most max(1, |f|)
 //! ```
 //!
-//! Large multipliers excuse errors (Waechter & Biegler 2006, equation 5), but only as far as the
-//! objective is large, too. That limit is ours: where the feasible set has no interior, multipliers
-//! grow without end, and without it any point would pass for an optimum.
+//! Where multipliers are large on average the error is divided by their size, but only as far as
+//! the objective is large, too. That limit is ours: where the feasible set has no interior,
+//! multipliers grow without end, and without it any point would pass for an optimum.
 
 /// Multipliers of this average size are considered normal.
 const NORMAL_MULTIPLIER: f64 = 100.0;

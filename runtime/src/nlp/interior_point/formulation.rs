@@ -1,23 +1,22 @@
-//! The variables an interior point method works with: those of the programme, and those attached to
-//! its rows.
+//! The NLP as the interior point method sees it: every constraint is an equality, with slacks.
 //!
 //! `y = [v | slacks | p | n]`. Every row becomes an equality
 //!
 //! ```text
-//!     c_i(v) - target_i + sum over attached j of sign_j y_j = 0
+//!     c_i(v) - target_i + sum over slacks j of sign_j y_j = 0
 //! ```
 //!
 //! An inequality has a slack (`sign -1`, the bounds of the row, target 0). In a restoration phase
-//! every row has two elastic variables more, `-p + n` with `p, n >= 0` and a cost. An attached
-//! variable appears in its row only, so it is eliminated by a division, and the linear algebra
-//! never sees it.
+//! every row has two elastic variables more, `-p + n` with `p, n >= 0` and a cost: slacks, too. A
+//! slack appears in its row only, so it is eliminated by a division, and the linear algebra never
+//! sees it.
 
 use crate::nlp::Nlp;
 use crate::problem::Bounds;
 
 /// A variable that appears, with coefficient `sign`, in one row only.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Attached {
+pub(super) struct Slack {
     pub(super) row: usize,
     pub(super) sign: f64,
     /// Its coefficient in the objective.
@@ -26,12 +25,12 @@ pub(super) struct Attached {
 
 /// Sizes, bounds and attachments.
 #[derive(Clone, Debug)]
-pub(super) struct Space {
-    /// Variables of the programme.
+pub(super) struct Formulation {
+    /// Variables of the NLP.
     pub(super) variables: usize,
-    pub(super) attached: Vec<Attached>,
-    /// How many of the attached variables are slacks; the others are elastic.
-    pub(super) slacks: usize,
+    pub(super) slacks: Vec<Slack>,
+    /// How many of the slacks are those of inequalities; the others are elastic.
+    pub(super) inequalities: usize,
     /// Bounds of `y`; infinite for fixed variables.
     pub(super) lower: Vec<f64>,
     pub(super) upper: Vec<f64>,
@@ -48,16 +47,16 @@ pub(super) struct Space {
     pub(super) widened: f64,
 }
 
-impl Space {
+impl Formulation {
     pub(super) fn new(nlp: &dyn Nlp) -> Self {
-        let rows = nlp.row_bounds();
+        let rows = nlp.constraint_bounds();
         let variables = nlp.variable_bounds();
         let equality: Vec<bool> = rows.iter().map(Bounds::is_equality).collect();
         let fixed: Vec<bool> = variables.iter().map(Bounds::is_equality).collect();
-        let mut space = Space {
+        let mut formulation = Formulation {
             variables: variables.len(),
-            attached: Vec::new(),
-            slacks: 0,
+            slacks: Vec::new(),
+            inequalities: 0,
             lower: Vec::new(),
             upper: Vec::new(),
             bounded_below: Vec::new(),
@@ -69,27 +68,28 @@ impl Space {
             widened: 0.0,
         };
         for bounds in variables {
-            space.push_bounds(if bounds.is_equality() { Bounds::FREE } else { *bounds });
+            formulation.push_bounds(if bounds.is_equality() { Bounds::FREE } else { *bounds });
         }
         for (row, bounds) in rows.iter().enumerate().filter(|(_, bounds)| !bounds.is_equality()) {
-            space.attached.push(Attached { row, sign: -1.0, cost: 0.0 });
-            space.push_bounds(*bounds);
+            formulation.slacks.push(Slack { row, sign: -1.0, cost: 0.0 });
+            formulation.push_bounds(*bounds);
         }
-        space.slacks = space.attached.len();
-        space
+        formulation.inequalities = formulation.slacks.len();
+        formulation
     }
 
     /// The same with two elastic variables per row, each with cost `rho`.
     pub(super) fn elastic(&self, rho: f64) -> Self {
-        // What bounds owe is no matter of a restoration: the smallest violation has no price.
-        let mut space = Space { widened: 0.0, ..self.clone() };
+        // How far bounds were moved is no matter of a restoration: the smallest violation has no
+        // price.
+        let mut formulation = Formulation { widened: 0.0, ..self.clone() };
         for row in 0..self.target.len() {
             for sign in [-1.0, 1.0] {
-                space.attached.push(Attached { row, sign, cost: rho });
-                space.push_bounds(Bounds { lower: 0.0, upper: f64::INFINITY });
+                formulation.slacks.push(Slack { row, sign, cost: rho });
+                formulation.push_bounds(Bounds { lower: 0.0, upper: f64::INFINITY });
             }
         }
-        space
+        formulation
     }
 
     fn push_bounds(&mut self, bounds: Bounds) {
@@ -146,15 +146,15 @@ impl Space {
     /// Turns row values into residuals, in place.
     pub(super) fn residuals(&self, y: &[f64], rows: &mut [f64]) {
         rows.iter_mut().zip(&self.target).for_each(|(row, target)| *row -= target);
-        for (attached, value) in self.attached.iter().zip(&y[self.variables..]) {
-            rows[attached.row] += attached.sign * value;
+        for (slack, value) in self.slacks.iter().zip(&y[self.variables..]) {
+            rows[slack.row] += slack.sign * value;
         }
     }
 
-    /// The part of the objective that attached variables cost.
-    pub(super) fn attached_cost(&self, y: &[f64]) -> f64 {
-        let costs = self.attached.iter().zip(&y[self.variables..]);
-        costs.skip(self.slacks).map(|(attached, value)| attached.cost * value).sum()
+    /// The part of the objective that elastic variables cost.
+    pub(super) fn elastic_cost(&self, y: &[f64]) -> f64 {
+        let costs = self.slacks.iter().zip(&y[self.variables..]);
+        costs.skip(self.inequalities).map(|(slack, value)| slack.cost * value).sum()
     }
 
     /// Moves `y` into the interior (Waechter & Biegler 2006, section 3.6).

@@ -3,33 +3,40 @@
 
 use super::algorithm::Algorithm;
 use super::filter::Filter;
-use super::formulation::Space;
+use super::formulation::Formulation;
 use super::iterate::Iterate;
 use crate::nlp::{Multipliers, Nlp, Options, Start};
 
 const FIRST_MU: f64 = 0.1;
-const COLD_PUSH: f64 = 1e-2;
-const WARM_PUSH: f64 = 1e-5;
+/// How far inside of its bounds a start is moved: Ipopt's `bound_push` and `bound_frac`, cold and
+/// warm.
+const BOUND_PUSH: f64 = 1e-2;
+const WARM_START_BOUND_PUSH: f64 = 1e-5;
 
 /// The algorithm at its first iterate.
 pub(super) fn prepare(nlp: &mut dyn Nlp, start: &Start, options: Options) -> Algorithm {
-    let space = Space::new(nlp);
+    let formulation = Formulation::new(nlp);
     let (mu, push) = match &start.warm {
-        Some(warm) if warm.mu > 0.0 => (warm.mu, WARM_PUSH),
+        Some(warm) if warm.mu > 0.0 => (warm.mu, WARM_START_BOUND_PUSH),
         // A method without a barrier has no parameter of it.
-        Some(_) => (options.tol, WARM_PUSH),
-        None => (FIRST_MU, COLD_PUSH),
+        Some(_) => (options.tol, WARM_START_BOUND_PUSH),
+        None => (FIRST_MU, BOUND_PUSH),
     };
-    let y = first_point(nlp, &space, &start.v, push);
-    let (length, rows) = (space.len(), space.target.len());
+    let y = first_point(nlp, &formulation, &start.v, push);
+    let (length, rows) = (formulation.len(), formulation.target.len());
     let mut at =
         Iterate { y, lambda: vec![0.0; rows], lower: vec![0.0; length], upper: vec![0.0; length] };
     match &start.warm {
-        Some(warm) => warm_multipliers(&space, &warm.multipliers, mu, &mut at),
-        None => at.set_bound_multipliers(&space, |_| 1.0),
+        Some(warm) => warm_multipliers(&formulation, &warm.multipliers, mu, &mut at),
+        None => at.set_bound_multipliers(&formulation, |_| 1.0),
     }
-    let mut algorithm = Algorithm::new(nlp, space, at, mu, options);
-    if algorithm.values.evaluate(nlp, &algorithm.space, &algorithm.at.y, &mut algorithm.counts) {
+    let mut algorithm = Algorithm::new(nlp, formulation, at, mu, options);
+    if algorithm.values.evaluate(
+        nlp,
+        &algorithm.formulation,
+        &algorithm.at.y,
+        &mut algorithm.counts,
+    ) {
         algorithm.filter = Filter::new(algorithm.values.violation);
         if start.warm.is_none() {
             algorithm.estimate_multipliers(nlp);
@@ -38,7 +45,7 @@ pub(super) fn prepare(nlp: &mut dyn Nlp, start: &Start, options: Options) -> Alg
     algorithm
 }
 
-fn first_point(nlp: &mut dyn Nlp, space: &Space, start: &[f64], push: f64) -> Vec<f64> {
+fn first_point(nlp: &mut dyn Nlp, formulation: &Formulation, start: &[f64], push: f64) -> Vec<f64> {
     let mut y = start.to_vec();
     for (value, bounds) in y.iter_mut().zip(nlp.variable_bounds()) {
         if bounds.is_equality() {
@@ -46,29 +53,29 @@ fn first_point(nlp: &mut dyn Nlp, space: &Space, start: &[f64], push: f64) -> Ve
         }
     }
     let mut pushed = y.clone();
-    space.push_inside(&mut pushed, push);
-    let mut rows = vec![0.0; space.target.len()];
+    formulation.push_inside(&mut pushed, push);
+    let mut rows = vec![0.0; formulation.target.len()];
     nlp.values(&pushed, &mut rows);
     y.extend(
-        space.attached.iter().map(|a| if rows[a.row].is_finite() { rows[a.row] } else { 0.0 }),
+        formulation.slacks.iter().map(|a| if rows[a.row].is_finite() { rows[a.row] } else { 0.0 }),
     );
-    space.push_inside(&mut y, push);
+    formulation.push_inside(&mut y, push);
     y
 }
 
-fn warm_multipliers(space: &Space, known: &Multipliers, mu: f64, at: &mut Iterate) {
-    at.lambda.copy_from_slice(&known.rows);
+fn warm_multipliers(formulation: &Formulation, known: &Multipliers, mu: f64, at: &mut Iterate) {
+    at.lambda.copy_from_slice(&known.constraints);
     let Iterate { y, lambda, lower, upper } = at;
-    space.for_each_bound(y, |i, distance, direction| {
+    formulation.for_each_bound(y, |i, distance, direction| {
         let (z, known) = if direction > 0.0 {
             (&mut lower[i], &known.lower)
         } else {
             (&mut upper[i], &known.upper)
         };
-        let value = match i.checked_sub(space.variables) {
+        let value = match i.checked_sub(formulation.variables) {
             None => known[i],
             // A slack's multipliers follow from those of its row: -lambda - z_lower + z_upper = 0.
-            Some(j) => -direction * lambda[space.attached[j].row],
+            Some(j) => -direction * lambda[formulation.slacks[j].row],
         };
         *z = value.max(mu / distance.max(1.0));
     });

@@ -1,7 +1,7 @@
 //! A point of the primal-dual iteration and what is known there.
 
 use super::barrier::Terms;
-use super::formulation::Space;
+use super::formulation::Formulation;
 use super::vectors::{are_finite, largest, sum_of_sizes};
 use crate::linalg::{Products, Triplets};
 use crate::nlp::{Counts, Derivatives, Nlp};
@@ -9,7 +9,7 @@ use crate::nlp::{Counts, Derivatives, Nlp};
 /// Primal and dual variables.
 #[derive(Clone, Debug)]
 pub(super) struct Iterate {
-    /// `[v | attached]`
+    /// `[v | slacks]`
     pub(super) y: Vec<f64>,
     /// Multipliers of the rows.
     pub(super) lambda: Vec<f64>,
@@ -20,9 +20,13 @@ pub(super) struct Iterate {
 
 impl Iterate {
     /// Sets the multiplier of every finite bound from the distance to it.
-    pub(super) fn set_bound_multipliers(&mut self, space: &Space, value: impl Fn(f64) -> f64) {
+    pub(super) fn set_bound_multipliers(
+        &mut self,
+        formulation: &Formulation,
+        value: impl Fn(f64) -> f64,
+    ) {
         let Iterate { y, lower, upper, .. } = self;
-        space.for_each_bound(y, |i, distance, direction| {
+        formulation.for_each_bound(y, |i, distance, direction| {
             *(if direction > 0.0 { &mut lower[i] } else { &mut upper[i] }) = value(distance);
         });
     }
@@ -38,8 +42,8 @@ pub(super) struct Step {
 }
 
 impl Step {
-    pub(super) fn new(space: &Space) -> Self {
-        let (length, rows) = (space.len(), space.target.len());
+    pub(super) fn new(formulation: &Formulation) -> Self {
+        let (length, rows) = (formulation.len(), formulation.target.len());
         Step {
             y: vec![0.0; length],
             lambda: vec![0.0; rows],
@@ -65,17 +69,17 @@ impl Values {
     pub(super) fn evaluate(
         &mut self,
         nlp: &mut dyn Nlp,
-        space: &Space,
+        formulation: &Formulation,
         y: &[f64],
         counts: &mut Counts,
     ) -> bool {
         counts.values += 1;
-        self.residuals.resize(space.target.len(), 0.0);
-        let objective = nlp.values(&y[..space.variables], &mut self.residuals);
-        self.objective = objective + space.attached_cost(y);
-        space.residuals(y, &mut self.residuals);
+        self.residuals.resize(formulation.target.len(), 0.0);
+        let objective = nlp.values(&y[..formulation.variables], &mut self.residuals);
+        self.objective = objective + formulation.elastic_cost(y);
+        formulation.residuals(y, &mut self.residuals);
         self.violation = sum_of_sizes(&self.residuals);
-        self.terms = Terms::new(space, y);
+        self.terms = Terms::new(formulation, y);
         self.is_finite()
     }
 
@@ -90,8 +94,8 @@ impl Values {
     }
 
     /// Takes the residuals as none, by moving the right-hand sides.
-    pub(super) fn relax(&mut self, space: &mut Space) {
-        space.relax(&mut self.residuals);
+    pub(super) fn relax(&mut self, formulation: &mut Formulation) {
+        formulation.relax(&mut self.residuals);
         self.violation = 0.0;
     }
 }
@@ -105,39 +109,43 @@ pub(super) struct Slopes {
 }
 
 impl Slopes {
-    pub(super) fn new(nlp: &dyn Nlp, space: &Space) -> Self {
+    pub(super) fn new(nlp: &dyn Nlp, formulation: &Formulation) -> Self {
         let products = Products::new(nlp.stages(), &Triplets::default(), nlp.jacobian_structure());
-        Slopes { derivatives: Derivatives::new(nlp), lagrangian: vec![0.0; space.len()], products }
+        Slopes {
+            derivatives: Derivatives::new(nlp),
+            lagrangian: vec![0.0; formulation.len()],
+            products,
+        }
     }
 
     /// Evaluates at the iterate; `false` if anything is not finite.
     pub(super) fn evaluate(
         &mut self,
         nlp: &mut dyn Nlp,
-        space: &Space,
+        formulation: &Formulation,
         at: &Iterate,
         counts: &mut Counts,
     ) -> bool {
         counts.derivatives += 1;
-        nlp.derivatives(&at.y[..space.variables], 1.0, &at.lambda, &mut self.derivatives);
-        self.update_lagrangian(space, &at.lambda) && are_finite(&self.derivatives.hessian)
+        nlp.derivatives(&at.y[..formulation.variables], 1.0, &at.lambda, &mut self.derivatives);
+        self.update_lagrangian(formulation, &at.lambda) && are_finite(&self.derivatives.hessian)
     }
 
     /// The gradient of the Lagrangian with these multipliers; fixed variables have none. `false` if
     /// it is not finite, which it is only where all of the Jacobian is.
-    fn update_lagrangian(&mut self, space: &Space, lambda: &[f64]) -> bool {
+    fn update_lagrangian(&mut self, formulation: &Formulation, lambda: &[f64]) -> bool {
         let Slopes { derivatives, products, lagrangian } = self;
-        let (variables, attached) = lagrangian.split_at_mut(space.variables);
+        let (variables, slacks) = lagrangian.split_at_mut(formulation.variables);
         variables.copy_from_slice(&derivatives.gradient);
         products.transposed_multiply_add(&derivatives.jacobian, lambda, variables);
         let is_finite = are_finite(variables);
-        for (value, fixed) in variables.iter_mut().zip(&space.fixed) {
+        for (value, fixed) in variables.iter_mut().zip(&formulation.fixed) {
             if *fixed {
                 *value = 0.0;
             }
         }
-        for (value, attached) in attached.iter_mut().zip(&space.attached) {
-            *value = attached.cost + attached.sign * lambda[attached.row];
+        for (value, slack) in slacks.iter_mut().zip(&formulation.slacks) {
+            *value = slack.cost + slack.sign * lambda[slack.row];
         }
         is_finite
     }

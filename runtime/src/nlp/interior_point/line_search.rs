@@ -3,7 +3,7 @@
 
 use super::barrier::Barrier;
 use super::filter::{Filter, Reference};
-use super::formulation::Space;
+use super::formulation::Formulation;
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::kkt::{Kkt, System};
 use crate::nlp::{Counts, Nlp};
@@ -14,7 +14,7 @@ const CORRECTION_DECREASE: f64 = 0.99;
 /// What a line search works with.
 pub(super) struct Search<'a> {
     pub(super) nlp: &'a mut dyn Nlp,
-    pub(super) space: &'a Space,
+    pub(super) formulation: &'a Formulation,
     pub(super) barrier: &'a Barrier,
     pub(super) kkt: &'a mut Kkt,
     pub(super) at: &'a Iterate,
@@ -32,7 +32,7 @@ pub(super) struct Accepted {
 }
 
 impl Search<'_> {
-    /// Backtracks from the longest step; `None` where the step has become too short.
+    /// backtracks from the longest step; `None` where the step has become too short.
     pub(super) fn run(
         &mut self,
         filter: &mut Filter,
@@ -44,12 +44,15 @@ impl Search<'_> {
         let (mut alpha, mut trials) = (longest, 0);
         while alpha >= smallest || trials == 0 {
             trials += 1;
+            //
             let trial = self.trial(step, alpha);
+            // the filter.
             if let Some((_, values)) = &trial
                 && self.accept(filter, from, alpha, values)
             {
                 return trial.map(|(y, values)| Accepted { y, values, alpha, trials });
             }
+            //
             if let Some((_, values)) = trial
                 && trials == 1
                 && values.violation >= from.theta
@@ -57,6 +60,7 @@ impl Search<'_> {
             {
                 return Some(accepted);
             }
+            //
             alpha *= 0.5;
         }
         None
@@ -67,7 +71,7 @@ impl Search<'_> {
         Reference {
             theta: self.values.violation,
             phi: self.barrier.value(self.values),
-            slope: Barrier::slope(self.space, self.slopes, self.kkt.push(), step),
+            slope: Barrier::slope(self.formulation, self.slopes, self.kkt.barrier_gradient(), step),
         }
     }
 
@@ -89,7 +93,7 @@ impl Search<'_> {
     fn trial(&mut self, step: &Step, alpha: f64) -> Option<(Vec<f64>, Values)> {
         let y: Vec<f64> = self.at.y.iter().zip(&step.y).map(|(y, d)| y + alpha * d).collect();
         let mut values = Values::default();
-        values.evaluate(self.nlp, self.space, &y, self.counts).then_some((y, values))
+        values.evaluate(self.nlp, self.formulation, &y, self.counts).then_some((y, values))
     }
 
     /// Whether a trial point is good enough.
@@ -117,12 +121,13 @@ impl Search<'_> {
             for (target, residual) in residuals.iter_mut().zip(&last.residuals) {
                 *target = factor * *target + residual;
             }
-            let (space, at, slopes, mu) = (self.space, self.at, self.slopes, self.barrier.mu);
-            let system = System { space, at, slopes, mu };
+            let (formulation, at, slopes, mu) =
+                (self.formulation, self.at, self.slopes, self.barrier.mu);
+            let system = System { formulation, at, slopes, mu };
             if !self.kkt.step(&system, &residuals, &mut corrected) {
                 return None;
             }
-            alpha = self.barrier.longest_steps(space, at, &corrected).0;
+            alpha = self.barrier.longest_steps(formulation, at, &corrected).0;
             let (y, values) = self.trial(&corrected, alpha)?;
             if self.accept(filter, from, alpha, &values) {
                 *step = corrected;

@@ -9,6 +9,7 @@ mod barrier;
 mod error_scaling;
 mod filter;
 mod formulation;
+mod inertia;
 mod initialization;
 mod iterate;
 mod kkt;
@@ -22,13 +23,13 @@ mod watchdog;
 
 use super::conclusion::{Ended, conclude};
 use super::scaling::Scaled;
-use super::scaling::factors::Factors;
+use super::scaling::factors::ScalingFactors;
 use super::{Multipliers, Nlp, Options, Progress, Solution, Start, Status, Watch};
 use crate::linalg::is_sparse_cheaper;
 use crate::problem::Linear;
 use algorithm::Algorithm;
 
-/// Solves the programme from `start`. Progress is reported unscaled, once per iteration. Nobody is
+/// Solves the NLP from `start`. Progress is reported unscaled, once per iteration. Nobody is
 /// told "infeasible" for want of luck: where an attempt ends without a solution others are made,
 /// each along another path, with the iterations that are left.
 pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watch) -> Solution {
@@ -36,16 +37,16 @@ pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Wa
     let mut options = Options { linear: factorization(nlp, options.linear), ..*options };
     let mut best = attempt(nlp, start, &options, watch);
     if options.is_final {
-        best = in_its_own_units(best, nlp, start, &options, watch);
+        best = rescaled_by_the_answer(best, nlp, start, &options, watch);
     }
-    // Other rounding and regularisation.
+    // Solver fallback: other rounding and regularisation.
     if is_automatic && options.linear == Linear::Riccati && is_lost(&best) {
         options.linear = Linear::SparseLdl;
-        best = another(best, nlp, &options, from(start, Algorithm::run), watch);
+        best = fallback(best, nlp, &options, from(start, Algorithm::run), watch);
     }
-    // Where the objective led away from all that is feasible.
+    // Phase-I restart: where the objective led away from all that is feasible.
     if start.warm.is_none() && is_lost(&best) {
-        best = another(best, nlp, &options, from(start, Algorithm::run_from_feasible), watch);
+        best = fallback(best, nlp, &options, from(start, Algorithm::run_with_phase_one), watch);
     }
     best
 }
@@ -71,17 +72,17 @@ const MOST_RESCALINGS: usize = 3;
 
 /// Guess and bounds may say little of how large an answer is. Where a solve ends without one that
 /// can be called so, others begin at its end, scaled by what was found.
-fn in_its_own_units(
+fn rescaled_by_the_answer(
     mut best: Solution,
     nlp: &mut dyn Nlp,
     start: &Start,
     options: &Options,
     watch: &mut Watch,
 ) -> Solution {
-    let mut used = Factors::new(nlp, &start.v);
+    let mut used = ScalingFactors::new(nlp, &start.v);
     for _ in 0..MOST_RESCALINGS {
         let is_open = matches!(best.status, Status::Acceptable | Status::NumericalFailure);
-        let factors = Factors::of_answer(nlp, &best.v);
+        let factors = ScalingFactors::of_answer(nlp, &best.v);
         if !is_open || factors.distance(&used) <= FAR {
             break;
         }
@@ -90,7 +91,7 @@ fn in_its_own_units(
         let run = |nlp: &mut dyn Nlp, options: &Options, watch: &mut Watch| {
             attempt_scaled(nlp, factors, &start, options, Algorithm::run, watch)
         };
-        best = another(best, nlp, options, run, watch);
+        best = fallback(best, nlp, options, run, watch);
     }
     best
 }
@@ -101,7 +102,7 @@ fn is_lost(solution: &Solution) -> bool {
 }
 
 /// Makes another attempt, and answers with the one that says more.
-fn another(
+fn fallback(
     first: Solution,
     nlp: &mut dyn Nlp,
     options: &Options,
@@ -134,7 +135,7 @@ fn another(
     Solution { status, counts, ..best }
 }
 
-/// One attempt, without another opinion.
+/// One attempt, without fallbacks.
 pub(super) fn attempt(
     nlp: &mut dyn Nlp,
     start: &Start,
@@ -150,14 +151,14 @@ fn from(
     run: impl FnOnce(&mut Algorithm, &mut dyn Nlp, &mut Watch) -> Status,
 ) -> impl FnOnce(&mut dyn Nlp, &Options, &mut Watch) -> Solution {
     move |nlp, options, watch| {
-        let factors = Factors::new(nlp, &start.v);
+        let factors = ScalingFactors::new(nlp, &start.v);
         attempt_scaled(nlp, factors, start, options, run, watch)
     }
 }
 
 fn attempt_scaled(
     nlp: &mut dyn Nlp,
-    factors: Factors,
+    factors: ScalingFactors,
     start: &Start,
     options: &Options,
     run: impl FnOnce(&mut Algorithm, &mut dyn Nlp, &mut Watch) -> Status,
@@ -172,14 +173,14 @@ fn attempt_scaled(
     let mut algorithm = initialization::prepare(&mut scaled, &start, *options);
     let status = run(&mut algorithm, &mut scaled, &mut watch);
     let mu = algorithm.barrier.mu;
-    let Algorithm { at, counts, residuals, space, is_saddle, decrement, .. } = algorithm;
+    let Algorithm { at, counts, residuals, formulation, is_saddle, decrement, .. } = algorithm;
     let decrement = decrement / objective_scale;
     let mut multipliers = Multipliers {
-        rows: at.lambda,
-        lower: at.lower[..space.variables].to_vec(),
-        upper: at.upper[..space.variables].to_vec(),
+        constraints: at.lambda,
+        lower: at.lower[..formulation.variables].to_vec(),
+        upper: at.upper[..formulation.variables].to_vec(),
     };
-    let mut v = at.y[..space.variables].to_vec();
+    let mut v = at.y[..formulation.variables].to_vec();
     scaled.unscale(&mut v, &mut multipliers);
     let kkt_error = residuals.error(0.0);
     conclude(

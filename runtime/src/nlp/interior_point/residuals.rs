@@ -2,18 +2,19 @@
 //! equation 5).
 //!
 //! ```text
-//!     E_mu = max( ||grad L||_inf / s_d ,  ||residuals||_inf ,  ||distance * multiplier - mu||_inf / s_c )
+//!     E_mu = max( ||grad L||_inf / s_d,  ||residuals||_inf,
+//!                 ||distance * multiplier - mu||_inf / s_c )
 //! ```
 //!
 //! An error this small says little of the objective where multipliers are large, so there is a
-//! second one: what violations are worth,
+//! second one: the violations, weighted with the multipliers,
 //!
 //! ```text
-//!     owed = ( |lambda' residuals| + sum (multiplier * how far its bound was moved) ) / max(1, |f|)
+//!     ( |lambda' residuals| + sum (multiplier * how far its bound was moved) ) / max(1, |f|)
 //! ```
 
 use super::error_scaling::{error_scale, objective_scale};
-use super::formulation::Space;
+use super::formulation::Formulation;
 use super::iterate::{Iterate, Slopes, Values};
 use super::vectors::{largest_sum, sum_of_sizes};
 
@@ -29,14 +30,19 @@ pub(super) struct Residuals {
 }
 
 impl Residuals {
-    pub(super) fn new(space: &Space, at: &Iterate, values: &Values, slopes: &Slopes) -> Self {
+    pub(super) fn new(
+        formulation: &Formulation,
+        at: &Iterate,
+        values: &Values,
+        slopes: &Slopes,
+    ) -> Self {
         let bound_sum = sum_of_sizes(&at.lower) + sum_of_sizes(&at.upper);
         let row_sum = sum_of_sizes(&at.lambda);
-        let (bounds, rows) = ((2 * space.len()).max(1) as f64, at.lambda.len() as f64);
+        let (bounds, rows) = ((2 * formulation.len()).max(1) as f64, at.lambda.len() as f64);
         let scale = |average: f64| error_scale(average, values.objective);
         let dual = largest_sum([&slopes.lagrangian, &at.upper], &at.lower);
         let (mut most, mut least, mut nothing) = (0.0, f64::INFINITY, 0.0);
-        space.for_each_bound(&at.y, |i, distance, direction| {
+        formulation.for_each_bound(&at.y, |i, distance, direction| {
             let product = distance * if direction > 0.0 { at.lower[i] } else { at.upper[i] };
             most = if product > most { product } else { most };
             least = if product < least { product } else { least };
@@ -73,13 +79,16 @@ impl Residuals {
 }
 
 /// What violations are worth to the objective, to first order.
-pub(super) fn owed(space: &Space, at: &Iterate, values: &Values) -> f64 {
+pub(super) fn weighted_violation(formulation: &Formulation, at: &Iterate, values: &Values) -> f64 {
     let violations = at.lambda.iter().zip(&values.residuals);
     let mut moved = 0.0;
-    space.for_each_bound(&at.y, |i, _, direction| {
-        let (bound, z) =
-            if direction > 0.0 { (&space.lower, &at.lower) } else { (&space.upper, &at.upper) };
-        moved += space.moved(bound[i]) * z[i];
+    formulation.for_each_bound(&at.y, |i, _, direction| {
+        let (bound, z) = if direction > 0.0 {
+            (&formulation.lower, &at.lower)
+        } else {
+            (&formulation.upper, &at.upper)
+        };
+        moved += formulation.moved(bound[i]) * z[i];
     });
     let rows: f64 = violations.map(|(lambda, residual)| lambda * residual).sum();
     (rows.abs() + moved) / objective_scale(values.objective)

@@ -12,7 +12,7 @@
 
 use super::algorithm::{Algorithm, Outcome};
 use super::filter::Filter;
-use super::formulation::Space;
+use super::formulation::Formulation;
 use super::iterate::{Iterate, Values};
 use super::residuals::Residuals;
 
@@ -39,7 +39,7 @@ pub(super) enum Restored {
     Stopped(Status),
 }
 
-/// The rows of a programme with a new objective: stay near `reference`.
+/// The rows of an NLP with a new objective: stay near `reference`.
 pub(super) struct Proximity<'a> {
     inner: &'a mut dyn Nlp,
     reference: Vec<f64>,
@@ -92,8 +92,8 @@ impl Nlp for Proximity<'_> {
     fn variable_bounds(&self) -> &[Bounds] {
         self.inner.variable_bounds()
     }
-    fn row_bounds(&self) -> &[Bounds] {
-        self.inner.row_bounds()
+    fn constraint_bounds(&self) -> &[Bounds] {
+        self.inner.constraint_bounds()
     }
     fn jacobian_structure(&self) -> &Triplets {
         self.inner.jacobian_structure()
@@ -124,8 +124,8 @@ impl Nlp for Proximity<'_> {
             *target = weight * self.zeta * self.weights[*i];
         }
     }
-    fn row_place(&self, row: usize) -> Place {
-        self.inner.row_place(row)
+    fn constraint_place(&self, row: usize) -> Place {
+        self.inner.constraint_place(row)
     }
     fn not_finite(&mut self, v: &[f64]) -> Option<Place> {
         self.inner.not_finite(v)
@@ -135,9 +135,9 @@ impl Nlp for Proximity<'_> {
 impl Algorithm {
     /// Looks for a feasible point near the start before the objective has a word, then iterates to
     /// the end.
-    pub(super) fn run_from_feasible(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Status {
+    pub(super) fn run_with_phase_one(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Status {
         let is_violated = self.values.is_finite() && self.values.largest() > self.options.tol;
-        if is_violated && !self.space.has_crossed_bounds() {
+        if is_violated && !self.formulation.has_crossed_bounds() {
             match self.restore(nlp, FIRST_DECREASE, watch) {
                 Restored::Stopped(status) => return self.end_unseen(status, nlp),
                 Restored::Stationary if self.values.largest() > self.options.tol => {
@@ -165,7 +165,7 @@ impl Algorithm {
         self.filter.add(violation, self.barrier.value(&self.values));
         self.counts.restorations += 1;
         let mu = self.barrier.mu.max(self.values.largest().min(1.0));
-        let variables = self.at.y[..self.space.variables].to_vec();
+        let variables = self.at.y[..self.formulation.variables].to_vec();
         let mut proximity = Proximity::new(nlp, &variables, mu.sqrt());
         let mut inner = self.elastic(&mut proximity, mu);
         let restored = loop {
@@ -192,11 +192,11 @@ impl Algorithm {
 
     /// The restoration problem's own algorithm, at its start.
     fn elastic(&self, proximity: &mut Proximity, mu: f64) -> Algorithm {
-        let space = self.space.elastic(RHO);
-        let start = elastic_start(&space, &self.at, &self.values.residuals, mu);
+        let formulation = self.formulation.elastic(RHO);
+        let start = elastic_start(&formulation, &self.at, &self.values.residuals, mu);
         let options = Options { is_final: false, ..self.options };
-        let mut inner = Algorithm::new(proximity, space, start, mu, options);
-        inner.values.evaluate(proximity, &inner.space, &inner.at.y, &mut inner.counts);
+        let mut inner = Algorithm::new(proximity, formulation, start, mu, options);
+        inner.values.evaluate(proximity, &inner.formulation, &inner.at.y, &mut inner.counts);
         inner.filter = Filter::new(inner.values.violation);
         inner.counts = self.counts;
         inner
@@ -208,7 +208,7 @@ impl Algorithm {
         let zeta = self.barrier.mu.sqrt();
         if zeta < proximity.zeta {
             proximity.zeta = zeta;
-            self.values.evaluate(proximity, &self.space, &self.at.y, &mut self.counts);
+            self.values.evaluate(proximity, &self.formulation, &self.at.y, &mut self.counts);
             self.filter.clear();
             self.watchdog.end();
             self.fresh = false;
@@ -218,26 +218,26 @@ impl Algorithm {
     /// Whether the elastic iterate, without its elastic variables, satisfies the filter of this
     /// algorithm and violates rows by at most this.
     fn accepts(&mut self, nlp: &mut dyn Nlp, at: &Iterate, most: f64) -> bool {
-        let y = &at.y[..self.space.len()];
+        let y = &at.y[..self.formulation.len()];
         let mut values = Values::default();
-        values.evaluate(nlp, &self.space, y, &mut self.counts)
+        values.evaluate(nlp, &self.formulation, y, &mut self.counts)
             && values.violation <= most
             && self.filter.accepts(values.violation, self.barrier.value(&values))
     }
 
     fn take_over(&mut self, nlp: &mut dyn Nlp, inner: Algorithm) {
         self.counts = inner.counts;
-        self.at.y.copy_from_slice(&inner.at.y[..self.space.len()]);
+        self.at.y.copy_from_slice(&inner.at.y[..self.formulation.len()]);
         // At the smallest violation these say which rows stand against each other.
         self.at.lambda = inner.at.lambda;
-        self.values.evaluate(nlp, &self.space, &self.at.y, &mut self.counts);
+        self.values.evaluate(nlp, &self.formulation, &self.at.y, &mut self.counts);
         self.fresh = false;
     }
 
     /// Ends at a point that no iteration has looked at.
     pub(super) fn end_unseen(&mut self, status: Status, nlp: &mut dyn Nlp) -> Status {
-        self.slopes.evaluate(nlp, &self.space, &self.at, &mut self.counts);
-        self.residuals = Residuals::new(&self.space, &self.at, &self.values, &self.slopes);
+        self.slopes.evaluate(nlp, &self.formulation, &self.at, &mut self.counts);
+        self.residuals = Residuals::new(&self.formulation, &self.at, &self.values, &self.slopes);
         status
     }
 
@@ -245,7 +245,7 @@ impl Algorithm {
     pub(super) fn resume(&mut self, nlp: &mut dyn Nlp) {
         self.barrier.note(0.0, false);
         let mu = self.barrier.mu;
-        self.at.set_bound_multipliers(&self.space, |distance| {
+        self.at.set_bound_multipliers(&self.formulation, |distance| {
             (mu / distance).min(LARGEST_BOUND_MULTIPLIER)
         });
         self.estimate_multipliers(nlp);
@@ -254,13 +254,13 @@ impl Algorithm {
 
 /// Elastic variables that minimise the barrier function at a fixed point (equation 33), and their
 /// multipliers.
-fn elastic_start(space: &Space, at: &Iterate, residuals: &[f64], mu: f64) -> Iterate {
+fn elastic_start(formulation: &Formulation, at: &Iterate, residuals: &[f64], mu: f64) -> Iterate {
     let mut start = at.clone();
     for (i, residual) in residuals.iter().enumerate() {
         let half = (mu - RHO * residual) / (2.0 * RHO);
         let n = half + (half * half + mu * residual / (2.0 * RHO)).sqrt();
         let p = residual + n;
-        debug_assert_eq!(space.attached[space.slacks + 2 * i].row, i);
+        debug_assert_eq!(formulation.slacks[formulation.inequalities + 2 * i].row, i);
         start.y.extend([p, n]);
         start.lower.extend([mu / p, mu / n]);
         start.upper.extend([0.0, 0.0]);

@@ -61,19 +61,19 @@ impl Algorithm {
     /// A unit vector over `y` in the null space of the rows and the curvature along it, if that is
     /// below `-least`.
     fn lowest_curvature(&mut self, nlp: &dyn Nlp, least: f64) -> Option<(Step, f64)> {
-        let Algorithm { space, at, slopes, kkt, barrier, counts, .. } = self;
-        kkt.assemble(space, at, slopes, barrier);
-        if kkt.factor_barely(space, slopes, barrier.mu, least, counts) {
+        let Algorithm { formulation, at, slopes, kkt, barrier, counts, .. } = self;
+        kkt.assemble(formulation, at, slopes, barrier);
+        if kkt.factor_barely(formulation, slopes, barrier.mu, least, counts) {
             return None;
         }
-        let mut step = Step::new(space);
+        let mut step = Step::new(formulation);
         // Nearly the same at all times: of several directions that are as good, one that goes to
         // one side.
         let start = |i: usize| 1.0 + 0.1 * (i as f64 * 0.618_033_988_749_895).fract();
-        (0..space.variables).for_each(|i| step.y[i] = start(i));
+        (0..formulation.variables).for_each(|i| step.y[i] = start(i));
         let mut curvature = f64::NAN;
         for _ in 0..ITERATIONS {
-            curvature = kkt.inverse_iteration(space, slopes, &mut step)?;
+            curvature = kkt.inverse_iteration(formulation, slopes, &mut step)?;
         }
         let terms = nlp.hessian_structure().entries().zip(&slopes.derivatives.hessian);
         let terms: f64 = terms.map(|((i, j), h)| (h * step.y[i] * step.y[j]).abs()).sum();
@@ -109,9 +109,9 @@ impl Algorithm {
 
     /// How far the step may go to the side that has more room.
     fn longest_of_both(&self, step: &mut Step) -> f64 {
-        let ahead = self.barrier.longest_steps(&self.space, &self.at, step).0;
+        let ahead = self.barrier.longest_steps(&self.formulation, &self.at, step).0;
         turn(step);
-        let back = self.barrier.longest_steps(&self.space, &self.at, step).0;
+        let back = self.barrier.longest_steps(&self.formulation, &self.at, step).0;
         if back < ahead {
             turn(step);
         }
@@ -124,11 +124,12 @@ impl Algorithm {
         for halvings in 0..MOST_HALVINGS {
             let part = 0.5f64.powi(halvings as i32);
             for _ in 0..2 {
-                let alpha = part.min(self.barrier.longest_steps(&self.space, &self.at, step).0);
+                let alpha =
+                    part.min(self.barrier.longest_steps(&self.formulation, &self.at, step).0);
                 let y: Vec<f64> =
                     self.at.y.iter().zip(&step.y).map(|(y, d)| y + alpha * d).collect();
                 let mut values = Values::default();
-                let is_good = values.evaluate(nlp, &self.space, &y, &mut self.counts)
+                let is_good = values.evaluate(nlp, &self.formulation, &y, &mut self.counts)
                     && values.violation <= LARGEST_VIOLATION
                     && self.barrier_lagrangian(&values)
                         < lagrangian - LEAST_GAIN * gain * alpha * alpha;

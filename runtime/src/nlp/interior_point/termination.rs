@@ -8,7 +8,7 @@
 use super::algorithm::Algorithm;
 use super::iterate::Step;
 use super::kkt::System;
-use super::residuals::owed;
+use super::residuals::weighted_violation;
 use super::saddle::Departure;
 use super::vectors::largest;
 use crate::nlp::assessment::Assessment;
@@ -17,8 +17,8 @@ use crate::nlp::{Multipliers, Nlp, Status};
 /// An error this small for this many iterations is acceptable.
 pub(super) const ACCEPTABLE_ERROR: f64 = 1e-6;
 const ACCEPTABLE_ITERATIONS: usize = 100;
-/// An optimum may owe so many times the tolerance to violations.
-const MOST_OWED: f64 = 1e3;
+/// The violation weighted with the multipliers may be so many times the tolerance.
+const MOST_WEIGHTED_VIOLATION: f64 = 1e3;
 /// Variables beyond this, at a point that is feasible relative to them, have left the problem.
 const DIVERGED: f64 = 1e10;
 /// The target is not lowered below this part of the tolerance, nor faster than that; lower ones are
@@ -46,11 +46,11 @@ impl Algorithm {
     /// The status, if this is the end.
     pub(super) fn finished(&mut self, nlp: &mut dyn Nlp) -> Option<Status> {
         let error = self.residuals.error(0.0);
-        // Steps on trust say nothing of the point that they began at.
+        // Watchdog steps say nothing of the point that they began at.
         if self.watchdog.saved.is_none() {
             self.acceptable = if error <= ACCEPTABLE_ERROR { self.acceptable + 1 } else { 0 };
         }
-        if error <= self.target.error && self.is_paid() {
+        if error <= self.target.error && self.is_weighted_violation_small() {
             self.concluded(nlp)
         } else if self.is_out_of_patience() {
             Some(self.stalled(nlp))
@@ -113,19 +113,19 @@ impl Algorithm {
     /// What Newton's step gains in the quadratic model; nothing where the model has no minimum.
     fn newton_decrement(&mut self, nlp: &dyn Nlp, found: &Assessment) -> Option<f64> {
         let least = self.least_curvature(nlp, found);
-        let Algorithm { space, at, slopes, kkt, barrier, counts, values, .. } = self;
-        let (mu, mut step) = (barrier.mu, Step::new(space));
-        kkt.assemble(space, at, slopes, barrier);
-        let system = System { space, at, slopes, mu };
-        let is_found = kkt.factor_barely(space, slopes, mu, least, counts)
+        let Algorithm { formulation, at, slopes, kkt, barrier, counts, values, .. } = self;
+        let (mu, mut step) = (barrier.mu, Step::new(formulation));
+        kkt.assemble(formulation, at, slopes, barrier);
+        let system = System { formulation, at, slopes, mu };
+        let is_found = kkt.factor_barely(formulation, slopes, mu, least, counts)
             && kkt.step(&system, &values.residuals, &mut step);
         is_found.then(|| kkt.slope(&step).abs())
     }
 
     fn assessment(&self, nlp: &mut dyn Nlp) -> Assessment {
-        let variables = self.space.variables;
+        let variables = self.formulation.variables;
         let multipliers = Multipliers {
-            rows: self.at.lambda.clone(),
+            constraints: self.at.lambda.clone(),
             lower: self.at.lower[..variables].to_vec(),
             upper: self.at.upper[..variables].to_vec(),
         };
@@ -149,13 +149,14 @@ impl Algorithm {
         self.target.lowered.is_some_and(|at| self.counts.iterations > at + PATIENCE)
     }
 
-    /// Whether the objective owes little to violations, so that it can be believed.
-    fn is_paid(&self) -> bool {
-        owed(&self.space, &self.at, &self.values) <= MOST_OWED * self.options.tol
+    /// Whether violations change the objective so little that it can be believed.
+    fn is_weighted_violation_small(&self) -> bool {
+        weighted_violation(&self.formulation, &self.at, &self.values)
+            <= MOST_WEIGHTED_VIOLATION * self.options.tol
     }
 
     fn has_diverged(&self) -> bool {
-        let largest = largest(&self.at.y[..self.space.variables]);
+        let largest = largest(&self.at.y[..self.formulation.variables]);
         largest > DIVERGED && self.residuals.primal <= self.options.tol * largest
     }
 }

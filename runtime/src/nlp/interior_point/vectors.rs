@@ -47,6 +47,11 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum()
 }
 
+/// `target += factor * step`
+pub(super) fn add_scaled(target: &mut [f64], step: &[f64], factor: f64) {
+    target.iter_mut().zip(step).for_each(|(value, d)| *value += factor * d);
+}
+
 /// Whether all are numbers.
 pub(super) fn are_finite(values: &[f64]) -> bool {
     let mut nothing = [0.0; WIDTH];

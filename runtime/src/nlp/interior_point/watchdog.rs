@@ -1,8 +1,8 @@
 //! The watchdog: after many shortened steps, full steps are tried without asking the filter.
 //!
 //! Where the rows are very nonlinear, as at the edge of a smoothed layer, the filter may force tiny
-//! steps although a full one would lead to a better region. A few full steps are taken on trust; if
-//! none of them is acceptable to the point where the trust began, the iteration returns to it
+//! steps although a full one would lead to a better region. A few full steps are taken; if
+//! none of them is acceptable to the point where they began, the iteration returns to it
 //! (Waechter & Biegler 2006, section 3.2).
 
 use super::filter::Reference;
@@ -10,10 +10,10 @@ use super::iterate::{Iterate, Values};
 
 /// So many shortened steps in a row start the watchdog.
 const PATIENCE: usize = 10;
-/// So many full steps are taken on trust.
-const TRUST: usize = 3;
+/// So many watchdog steps, which are full, are taken without asking the filter.
+const WATCHDOG_STEPS: usize = 3;
 
-/// Where the trust began.
+/// Where the watchdog steps began.
 pub(super) struct Saved {
     pub(super) at: Iterate,
     pub(super) values: Values,
@@ -41,11 +41,11 @@ impl Watchdog {
     }
 
     pub(super) fn begin(&mut self, at: Iterate, values: Values, reference: Reference, alpha: f64) {
-        self.saved = Some(Saved { at, values, reference, alpha, left: TRUST });
+        self.saved = Some(Saved { at, values, reference, alpha, left: WATCHDOG_STEPS });
     }
 
-    /// Uses up one step of trust; `false` if there is none left.
-    pub(super) fn trust(&mut self) -> bool {
+    /// Uses up one watchdog step; `false` if there is none left.
+    pub(super) fn take_step(&mut self) -> bool {
         match &mut self.saved {
             Some(saved) if saved.left > 0 => {
                 saved.left -= 1;

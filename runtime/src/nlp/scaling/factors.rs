@@ -1,6 +1,6 @@
-//! Factors that make the numbers of a programme moderate, whatever the units of the model.
+//! ScalingFactors that make the numbers of an NLP moderate, whatever the units of the model.
 //!
-//! A quantity whose size ([`sizes`](super::nominal)) is between 1/16 and 16 is left alone, others are
+//! A quantity whose size ([`nominal`](super::nominal)) is between 1/16 and 16 is left alone, others are
 //! brought to the nearer of these. The steps of a state are divided by what it is divided by. The
 //! objective is scaled so that its gradient, summed over the times of a quantity, is between 1 and
 //! 100. As in Ipopt (Waechter & Biegler 2006, section 3.8) rows with gradients above 100 at the
@@ -8,7 +8,7 @@
 //!      all below 1/100, at the start and near it, are scaled up to 1. All but the factors of steep
 //!      rows are powers of two, which round nothing.
 
-use super::nominal::{largest, near, sizes, sizes_of_answer, slopes};
+use super::nominal::{largest, magnitudes, magnitudes_of_answer, near, slopes};
 use crate::nlp::{Derivatives, Nlp, Quantities};
 
 /// Quantities up to this size, and down to its inverse, are moderate.
@@ -22,53 +22,53 @@ const LARGEST_OBJECTIVE: f64 = 100.0;
 const SMALLEST: f64 = 1e-30;
 /// Rows are not scaled down below this.
 const LEAST_FACTOR: f64 = 1e-8;
-/// Factors of the objective beyond this, or below its inverse, come from slopes that are rounding.
+/// ScalingFactors of the objective beyond this, or below its inverse, come from slopes that are rounding.
 const LARGEST_FACTOR: f64 = 1e12;
 
-/// What the numbers of a programme are multiplied by.
+/// What the numbers of an NLP are multiplied by.
 #[derive(Clone)]
-pub(in crate::nlp) struct Factors {
+pub(in crate::nlp) struct ScalingFactors {
     pub(in crate::nlp) objective: f64,
-    /// `v` of the programme is so many times the variables of the scaled one.
+    /// `v` of the NLP is so many times the variables of the scaled one.
     pub(in crate::nlp) variables: Vec<f64>,
     pub(in crate::nlp) rows: Vec<f64>,
 }
 
-impl Factors {
+impl ScalingFactors {
     /// Those for a solve that begins at `v`, of which little is known.
     pub(in crate::nlp) fn new(nlp: &mut dyn Nlp, v: &[f64]) -> Self {
         let (quantities, v) = (nlp.quantities(), inside(nlp, v));
-        let sizes = sizes(nlp, &quantities, &v);
-        Factors::of_sizes(nlp, &quantities, &v, &sizes)
+        let magnitudes = magnitudes(nlp, &quantities, &v);
+        ScalingFactors::of_sizes(nlp, &quantities, &v, &magnitudes)
     }
 
     /// Those for a solve that begins at the answer of another.
     pub(in crate::nlp) fn of_answer(nlp: &mut dyn Nlp, v: &[f64]) -> Self {
         let (quantities, v) = (nlp.quantities(), inside(nlp, v));
-        let sizes = sizes_of_answer(&quantities, &v);
-        Factors::of_sizes(nlp, &quantities, &v, &sizes)
+        let magnitudes = magnitudes_of_answer(&quantities, &v);
+        ScalingFactors::of_sizes(nlp, &quantities, &v, &magnitudes)
     }
 
     /// The largest ratio of the factors of a variable or of the objective.
-    pub(in crate::nlp) fn distance(&self, other: &Factors) -> f64 {
+    pub(in crate::nlp) fn distance(&self, other: &ScalingFactors) -> f64 {
         let own = self.variables.iter().chain([&self.objective]);
         let ratios = own.zip(other.variables.iter().chain([&other.objective])).map(|(a, b)| a / b);
         ratios.fold(1.0, |most, ratio| most.max(ratio).max(1.0 / ratio))
     }
 
-    fn of_sizes(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64], sizes: &[f64]) -> Self {
+    fn of_sizes(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64], magnitudes: &[f64]) -> Self {
         let at_start = slopes(nlp, v);
-        let units: Vec<f64> = sizes.iter().map(|size| unit(*size)).collect();
+        let units: Vec<f64> = magnitudes.iter().map(|size| unit(*size)).collect();
         let variables: Vec<f64> = quantities.variables.iter().map(|i| units[*i]).collect();
         let mut steepness = Steepness::new(nlp, quantities, &variables, &at_start);
         // What is flat at the start may be so by chance.
         if steepness.is_flat(quantities) {
-            let near = near(nlp, quantities, v, sizes);
+            let near = near(nlp, quantities, v, magnitudes);
             let at_near = slopes(nlp, &near);
             steepness = steepness.or(Steepness::new(nlp, quantities, &variables, &at_near));
         }
         let objective = objective(steepness.objective);
-        Factors { objective, rows: rows(quantities, &units, steepness), variables }
+        ScalingFactors { objective, rows: rows(quantities, &units, steepness), variables }
     }
 }
 

@@ -1,4 +1,4 @@
-//! A programme in other units, with numbers of moderate size ([`factors`](self::factors)).
+//! An NLP in other units, with numbers of moderate size ([`factors`](self::factors)).
 //!
 //! ```text
 //!     minimise  s f(V w)   subject to   R lower <= R c(V w) <= R upper,   lower <= V w <= upper
@@ -13,18 +13,18 @@ mod nominal;
 use super::{Derivatives, Multipliers, Nlp, Place, Quantities, Start};
 use crate::linalg::{Stages, Triplets};
 use crate::problem::Bounds;
-use factors::Factors;
+use factors::ScalingFactors;
 
-/// The scaled programme.
+/// The scaled NLP.
 pub(crate) struct Scaled<'a> {
     inner: &'a mut dyn Nlp,
-    factors: Factors,
+    factors: ScalingFactors,
     variable_bounds: Vec<Bounds>,
-    row_bounds: Vec<Bounds>,
-    /// A point and multipliers of the programme inside.
+    constraint_bounds: Vec<Bounds>,
+    /// A point and multipliers of the NLP inside.
     point: Vec<f64>,
     multipliers: Vec<f64>,
-    /// Factors of Jacobian and Hessian values; none where all are 1, as is usual.
+    /// ScalingFactors of Jacobian and Hessian values; none where all are 1, as is usual.
     entries: Vec<f64>,
     curvatures: Vec<f64>,
 }
@@ -32,23 +32,23 @@ pub(crate) struct Scaled<'a> {
 impl<'a> Scaled<'a> {
     /// With the factors for a solve that begins at `v`.
     pub(crate) fn new(inner: &'a mut dyn Nlp, v: &[f64]) -> Self {
-        let factors = Factors::new(inner, v);
+        let factors = ScalingFactors::new(inner, v);
         Scaled::with(inner, factors)
     }
 
     /// With these factors.
-    pub(in crate::nlp) fn with(inner: &'a mut dyn Nlp, factors: Factors) -> Self {
-        let Factors { variables, rows, .. } = &factors;
+    pub(in crate::nlp) fn with(inner: &'a mut dyn Nlp, factors: ScalingFactors) -> Self {
+        let ScalingFactors { variables, rows, .. } = &factors;
         let scaled =
             |bounds: &Bounds, s: f64| Bounds { lower: bounds.lower * s, upper: bounds.upper * s };
         let of_variables = inner.variable_bounds().iter().zip(variables);
-        let of_rows = inner.row_bounds().iter().zip(rows);
+        let of_rows = inner.constraint_bounds().iter().zip(rows);
         let entries = inner.jacobian_structure().entries().map(|(row, i)| rows[row] * variables[i]);
         let curvatures =
             inner.hessian_structure().entries().map(|(i, j)| variables[i] * variables[j]);
         Scaled {
             variable_bounds: of_variables.map(|(bounds, s)| scaled(bounds, 1.0 / s)).collect(),
-            row_bounds: of_rows.map(|(bounds, s)| scaled(bounds, *s)).collect(),
+            constraint_bounds: of_rows.map(|(bounds, s)| scaled(bounds, *s)).collect(),
             point: variables.clone(),
             multipliers: rows.clone(),
             entries: unless_one(entries.collect()),
@@ -63,12 +63,12 @@ impl<'a> Scaled<'a> {
         self.factors.objective
     }
 
-    /// A start of the programme inside as one of this programme.
+    /// A start of the NLP inside as one of this NLP.
     pub(crate) fn start(&self, start: &Start) -> Start {
-        let Factors { objective, variables, rows } = &self.factors;
+        let ScalingFactors { objective, variables, rows } = &self.factors;
         let mut start = start.clone();
         start.v.iter_mut().zip(variables).for_each(|(value, s)| *value /= s);
-        if let Some(Multipliers { rows: of_rows, lower, upper }) =
+        if let Some(Multipliers { constraints: of_rows, lower, upper }) =
             start.warm.as_mut().map(|warm| &mut warm.multipliers)
         {
             of_rows.iter_mut().zip(rows).for_each(|(value, s)| *value *= objective / s);
@@ -79,11 +79,11 @@ impl<'a> Scaled<'a> {
         start
     }
 
-    /// A point and multipliers of this programme as those of the programme inside.
+    /// A point and multipliers of this NLP as those of the NLP inside.
     pub(crate) fn unscale(&self, v: &mut [f64], multipliers: &mut Multipliers) {
-        let Factors { objective, variables, rows } = &self.factors;
+        let ScalingFactors { objective, variables, rows } = &self.factors;
         v.iter_mut().zip(variables).for_each(|(value, s)| *value *= s);
-        multipliers.rows.iter_mut().zip(rows).for_each(|(value, s)| *value *= s / objective);
+        multipliers.constraints.iter_mut().zip(rows).for_each(|(value, s)| *value *= s / objective);
         for bounds in [&mut multipliers.lower, &mut multipliers.upper] {
             bounds.iter_mut().zip(variables).for_each(|(value, s)| *value /= objective * s);
         }
@@ -104,8 +104,8 @@ impl Nlp for Scaled<'_> {
     fn variable_bounds(&self) -> &[Bounds] {
         &self.variable_bounds
     }
-    fn row_bounds(&self) -> &[Bounds] {
-        &self.row_bounds
+    fn constraint_bounds(&self) -> &[Bounds] {
+        &self.constraint_bounds
     }
     fn jacobian_structure(&self) -> &Triplets {
         self.inner.jacobian_structure()
@@ -135,7 +135,7 @@ impl Nlp for Scaled<'_> {
     }
     fn derivatives(&mut self, w: &[f64], weight: f64, multipliers: &[f64], out: &mut Derivatives) {
         self.load(w);
-        let Factors { objective, variables, rows } = &self.factors;
+        let ScalingFactors { objective, variables, rows } = &self.factors;
         for ((target, multiplier), s) in self.multipliers.iter_mut().zip(multipliers).zip(rows) {
             *target = multiplier * s;
         }
@@ -144,8 +144,8 @@ impl Nlp for Scaled<'_> {
         out.jacobian.iter_mut().zip(&self.entries).for_each(|(value, s)| *value *= s);
         out.hessian.iter_mut().zip(&self.curvatures).for_each(|(value, s)| *value *= s);
     }
-    fn row_place(&self, row: usize) -> Place {
-        self.inner.row_place(row)
+    fn constraint_place(&self, row: usize) -> Place {
+        self.inner.constraint_place(row)
     }
     fn not_finite(&mut self, w: &[f64]) -> Option<Place> {
         self.load(w);

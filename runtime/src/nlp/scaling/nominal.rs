@@ -1,4 +1,4 @@
-//! How large the quantities of a programme are, as far as can be told before it is solved.
+//! Nominal magnitudes: how large the quantities of an NLP are, as far as can be told before it is solved.
 //!
 //! The size of a quantity is the largest value of its guess; where that is 0, the length of its
 //! range; where that is infinite, how far a condition on it alone takes it; where there is none,
@@ -31,36 +31,42 @@ const LEAST_ANSWER: f64 = 1e-4;
 const LARGEST_ESTIMATE: f64 = 1e8;
 
 /// The size of each quantity; 0 where nothing is known.
-pub(in crate::nlp) fn sizes(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64]) -> Vec<f64> {
+pub(in crate::nlp) fn magnitudes(
+    nlp: &mut dyn Nlp,
+    quantities: &Quantities,
+    v: &[f64],
+) -> Vec<f64> {
     let guesses = largest(&quantities.variables, v.iter().map(|value| value.abs()));
     let mut ranges = largest(&quantities.variables, nlp.variable_bounds().iter().map(range));
     let wide = |(range, unit): &(&mut f64, &f64)| **range > LONGEST_RANGE * **unit;
     ranges.iter_mut().zip(&quantities.units).filter(wide).for_each(|(range, _)| *range = 0.0);
-    let mut sizes: Vec<f64> =
+    let mut magnitudes: Vec<f64> =
         guesses.iter().zip(ranges).map(|(guess, range)| stated(*guess, range)).collect();
-    if sizes.contains(&0.0) {
+    if magnitudes.contains(&0.0) {
         let demands = demands(nlp, quantities, v);
-        fill(&mut sizes, |i| if demands[i] > 0.0 { demands[i].max(guesses[i]) } else { 0.0 });
+        fill(&mut magnitudes, |i| if demands[i] > 0.0 { demands[i].max(guesses[i]) } else { 0.0 });
     }
-    while sizes.contains(&0.0) {
-        let known = sizes.clone();
+    while magnitudes.contains(&0.0) {
+        let known = magnitudes.clone();
         let found = estimates(nlp, quantities, v, &known);
         if found == known {
             // A signal begins somewhere; an unknown that nothing is known of is left as it is.
-            fill(&mut sizes, |i| if i < quantities.stepped { guesses[i] } else { 0.0 });
+            fill(&mut magnitudes, |i| if i < quantities.stepped { guesses[i] } else { 0.0 });
         } else {
-            fill(&mut sizes, |i| if found[i] > 0.0 { believed(found[i], guesses[i]) } else { 0.0 });
+            fill(&mut magnitudes, |i| {
+                if found[i] > 0.0 { believed(found[i], guesses[i]) } else { 0.0 }
+            });
         }
-        if sizes == known {
+        if magnitudes == known {
             break;
         }
     }
-    sizes
+    magnitudes
 }
 
 /// The size of each quantity at an answer; 0 where it is nothing. What guess and bounds said has no
 /// part in it.
-pub(in crate::nlp) fn sizes_of_answer(quantities: &Quantities, v: &[f64]) -> Vec<f64> {
+pub(in crate::nlp) fn magnitudes_of_answer(quantities: &Quantities, v: &[f64]) -> Vec<f64> {
     let largest = largest(&quantities.variables, v.iter().map(|value| value.abs()));
     let is_there =
         |(size, unit): (&f64, &f64)| if *size >= LEAST_ANSWER * unit { *size } else { 0.0 };
@@ -68,23 +74,23 @@ pub(in crate::nlp) fn sizes_of_answer(quantities: &Quantities, v: &[f64]) -> Vec
 }
 
 /// Gives those whose size is unknown what has been found.
-fn fill(sizes: &mut [f64], found: impl Fn(usize) -> f64) {
-    sizes
+fn fill(magnitudes: &mut [f64], found: impl Fn(usize) -> f64) {
+    magnitudes
         .iter_mut()
         .enumerate()
         .filter(|(_, size)| **size == 0.0)
         .for_each(|(i, size)| *size = found(i));
 }
 
-/// The sizes with those of states that the equations tell, else of controls.
+/// The magnitudes with those of states that the equations tell, else of controls.
 fn estimates(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64], known: &[f64]) -> Vec<f64> {
-    let mut sizes = known.to_vec();
+    let mut magnitudes = known.to_vec();
     let near = near(nlp, quantities, v, known);
-    find_states(nlp, quantities, &near, &mut sizes);
-    if sizes == known {
-        find_controls(nlp, quantities, &near, &mut sizes);
+    find_states(nlp, quantities, &near, &mut magnitudes);
+    if magnitudes == known {
+        find_controls(nlp, quantities, &near, &mut magnitudes);
     }
-    sizes
+    magnitudes
 }
 
 /// What guess and range say; 0 where that is nothing.
@@ -121,7 +127,7 @@ fn demands(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64]) -> Vec<f64> {
         }
     }
     let mut demands = vec![0.0f64; quantities.variables.iter().max().map_or(0, |last| last + 1)];
-    let conditions = nlp.row_bounds().iter().zip(&rows).zip(&quantities.rows).zip(steepest);
+    let conditions = nlp.constraint_bounds().iter().zip(&rows).zip(&quantities.rows).zip(steepest);
     for (((bounds, value), row), (quantity, slope, entries)) in conditions {
         let distance = bounds.violation(*value) / slope;
         if *row >= quantities.stepped && entries == 1 && distance.is_finite() {
@@ -136,11 +142,11 @@ pub(in crate::nlp) fn near(
     nlp: &dyn Nlp,
     quantities: &Quantities,
     v: &[f64],
-    sizes: &[f64],
+    magnitudes: &[f64],
 ) -> Vec<f64> {
     let moved = v.iter().zip(nlp.variable_bounds()).zip(&quantities.variables).enumerate();
     let moved = moved.map(|(i, ((v, bounds), quantity))| {
-        let (v, size) = (v.max(bounds.lower).min(bounds.upper), sizes[*quantity]);
+        let (v, size) = (v.max(bounds.lower).min(bounds.upper), magnitudes[*quantity]);
         let (least, most) = ((v - size).max(bounds.lower), (v + size).min(bounds.upper));
         least + (i as f64 * GOLDEN).fract() * (most - least)
     });
@@ -150,7 +156,7 @@ pub(in crate::nlp) fn near(
 /// Derivatives of objective and rows.
 pub(in crate::nlp) fn slopes(nlp: &mut dyn Nlp, v: &[f64]) -> Derivatives {
     let mut slopes = Derivatives::new(nlp);
-    nlp.derivatives(v, 0.0, &vec![0.0; nlp.row_bounds().len()], &mut slopes);
+    nlp.derivatives(v, 0.0, &vec![0.0; nlp.constraint_bounds().len()], &mut slopes);
     slopes
 }
 
@@ -167,34 +173,41 @@ fn range(bounds: &Bounds) -> f64 {
 
 /// How far the equations take states of unknown size, which are 0: all that is left of a step is
 /// its right side.
-fn find_states(nlp: &mut dyn Nlp, quantities: &Quantities, near: &[f64], sizes: &mut [f64]) {
+fn find_states(nlp: &mut dyn Nlp, quantities: &Quantities, near: &[f64], magnitudes: &mut [f64]) {
     let mut rows = vec![0.0; quantities.rows.len()];
     nlp.values(near, &mut rows);
     let mut steps: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     for (i, row) in quantities.rows.iter().zip(rows) {
-        if *i < quantities.stepped && sizes[*i] == 0.0 && row.is_finite() {
+        if *i < quantities.stepped && magnitudes[*i] == 0.0 && row.is_finite() {
             steps.entry(*i).or_default().push(row.abs());
         }
     }
     let intervals = intervals(nlp);
-    steps.into_iter().for_each(|(i, steps)| sizes[i] = intervals * mean(&steps));
+    steps.into_iter().for_each(|(i, steps)| magnitudes[i] = intervals * mean(&steps));
 }
 
 /// How much of a control of unknown size changes a state by its own size.
-fn find_controls(nlp: &mut dyn Nlp, quantities: &Quantities, near: &[f64], sizes: &mut [f64]) {
+fn find_controls(nlp: &mut dyn Nlp, quantities: &Quantities, near: &[f64], magnitudes: &mut [f64]) {
     let slopes = slopes(nlp, near);
     let mut influences: BTreeMap<(usize, usize), Vec<f64>> = BTreeMap::new();
     for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&slopes.jacobian) {
         let (i, j) = (quantities.rows[row], quantities.variables[column]);
-        if i < quantities.stepped && sizes[i] > 0.0 && sizes[j] == 0.0 && slope.is_finite() {
+        if i < quantities.stepped
+            && magnitudes[i] > 0.0
+            && magnitudes[j] == 0.0
+            && slope.is_finite()
+        {
             influences.entry((i, j)).or_default().push(slope.abs());
         }
     }
     let intervals = intervals(nlp);
     for ((i, j), slopes) in influences {
-        let most = sizes[i] / (intervals * mean(&slopes));
-        sizes[j] =
-            if most.is_finite() && (sizes[j] == 0.0 || most < sizes[j]) { most } else { sizes[j] };
+        let most = magnitudes[i] / (intervals * mean(&slopes));
+        magnitudes[j] = if most.is_finite() && (magnitudes[j] == 0.0 || most < magnitudes[j]) {
+            most
+        } else {
+            magnitudes[j]
+        };
     }
 }
 

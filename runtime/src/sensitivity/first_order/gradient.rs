@@ -5,7 +5,7 @@ use super::quantity::{Directions, Gradient, Quantity};
 use crate::sensitivity::linearized::linearization::Linearizer;
 use crate::sensitivity::linearized::variational_equation::LinearTape;
 use crate::sensitivity::nondifferentiability::kink::{Kink, first_kink};
-use crate::sensitivity::nondifferentiability::{Trouble, troubles};
+use crate::sensitivity::nondifferentiability::{Nondifferentiability, nondifferentiabilities};
 use crate::simulate::{Controls, Options, Simulation, Status, System, simulate};
 use nalgebra::DMatrix;
 
@@ -35,7 +35,7 @@ pub struct Sensitivity {
     /// The adjoint of the objective.
     pub costates: Costates,
     /// Where the trajectory may have no derivative.
-    pub troubles: Vec<Trouble>,
+    pub nondifferentiabilities: Vec<Nondifferentiability>,
     /// A kink that the trajectory stays on: then the derivatives are those of one side of it.
     pub kink: Option<Kink>,
 }
@@ -106,7 +106,7 @@ pub fn gradient(
         forward: if is_each { forward } else { Vec::new() },
         adjoint,
         costates,
-        troubles: troubles(&pieces),
+        nondifferentiabilities: nondifferentiabilities(&pieces),
         kink: first_kink(&linearizer, tape),
         simulation,
     })

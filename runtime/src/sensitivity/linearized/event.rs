@@ -20,8 +20,8 @@ use crate::problem::Function;
 use crate::simulate::{Cause, Change, Instant, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-/// A stop, linearised.
-pub(crate) struct LinearStop {
+/// An event, linearised.
+pub(crate) struct LinearEvent {
     /// `r_x`.
     pub by_state: DMatrix<f64>,
     /// `r_(u, p)`.
@@ -32,43 +32,43 @@ pub(crate) struct LinearStop {
     pub timing: Timing,
 }
 
-/// How the time of a stop depends on what was before.
+/// How the time of an event depends on what was before.
 pub(crate) struct Timing {
     pub by_state: RowDVector<f64>,
     pub by_inputs: RowDVector<f64>,
 }
 
-/// What happens at a stop.
-pub(crate) struct StopOnTape<'t> {
+/// What happens at an event.
+pub(crate) struct EventOnTape<'t> {
     pub cause: Cause,
     pub before: &'t Instant,
     pub after: &'t Instant,
     pub changes: &'t [Change],
 }
 
-impl LinearStop {
-    pub fn new(linearizer: &Linearizer, tape: &Tape, stop: &StopOnTape) -> Self {
-        let StopOnTape { before, after, .. } = *stop;
-        let Reset { by_state, by_time, by_inputs } = Reset::new(linearizer, tape, stop);
-        let arriving = match stop.cause {
+impl LinearEvent {
+    pub fn new(linearizer: &Linearizer, tape: &Tape, event: &EventOnTape) -> Self {
+        let EventOnTape { before, after, .. } = *event;
+        let Reset { by_state, by_time, by_inputs } = Reset::new(linearizer, tape, event);
+        let arriving = match event.cause {
             Cause::Start => DVector::zeros(before.state.len()),
             _ => &by_state * linearizer.rate_at_instant(tape, before),
         };
-        let shift = match stop.cause {
-            Cause::Bends(_) => DVector::zeros(arriving.len()),
+        let shift = match event.cause {
+            Cause::CrossesKink(_) => DVector::zeros(arriving.len()),
             _ => arriving + by_time - linearizer.rate_at_instant(tape, after),
         };
-        let timing = Timing::new(linearizer, tape, stop);
-        LinearStop { by_state, by_inputs, shift, timing }
+        let timing = Timing::new(linearizer, tape, event);
+        LinearEvent { by_state, by_inputs, shift, timing }
     }
 
-    /// `w` are the directions of `(u, p)` before the stop.
+    /// `w` are the directions of `(u, p)` before the event.
     pub fn forward(&self, s: &DMatrix<f64>, w: &DMatrix<f64>) -> DMatrix<f64> {
         let moved = self.timing.of(s, w);
         &self.by_state * s + &self.by_inputs * w + &self.shift * moved
     }
 
-    /// The adjoint before the stop and the derivative by the `(u, p)` before it.
+    /// The adjoint before the event and the derivative by the `(u, p)` before it.
     pub fn adjoint(&self, after: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
         let by_time = self.shift.dot(after);
         let before = self.by_state.tr_mul(after) + self.timing.by_state.transpose() * by_time;
@@ -83,29 +83,29 @@ impl Timing {
         &self.by_state * s + &self.by_inputs * w
     }
 
-    pub fn new(linearizer: &Linearizer, tape: &Tape, stop: &StopOnTape) -> Self {
-        match stop.cause {
+    pub fn new(linearizer: &Linearizer, tape: &Tape, event: &EventOnTape) -> Self {
+        match event.cause {
             Cause::Controls if !linearizer.is_stretched() => return Timing::fixed(linearizer),
             Cause::Start | Cause::Controls => {
-                return Timing::of_clock(linearizer, stop.before.time);
+                return Timing::of_clock(linearizer, event.before.time);
             }
             _ => {}
         }
-        let regime = &tape.regimes[stop.before.regime];
-        let reached = linearizer.at_instant(tape, stop.before);
+        let regime = &tape.regimes[event.before.regime];
+        let reached = linearizer.at_instant(tape, event.before);
         let slopes_of = |function: &dyn Function| {
-            let x = DVector::from_column_slice(&stop.before.state);
-            let table = linearizer.table(regime, &reached.selectors, stop.before.time, &x);
+            let x = DVector::from_column_slice(&event.before.state);
+            let table = linearizer.table(regime, &reached.selectors, event.before.time, &x);
             let by = Jacobian::of(function, &table, &linearizer.parameters).by;
             by.columns(0, reached.by().ncols()).into_owned()
         };
-        match stop.cause {
+        match event.cause {
             Cause::Reaches(surface) => {
                 let by = slopes_of(&*linearizer.system.guards);
                 let slopes = normal(linearizer, &by, &reached.selectors, surface);
                 Timing::implicit(&slopes, &reached.rate)
             }
-            Cause::Bends(kink) => {
+            Cause::CrossesKink(kink) => {
                 let by = slopes_of(&*linearizer.system.kinks);
                 Timing::implicit(&by.row(kink).into_owned(), &reached.rate)
             }

@@ -155,7 +155,7 @@ impl<'a> Linearizer<'a> {
     }
 
     /// Gives the selectors of moving balls their values, `psi/|psi|`; their slopes, `(I - s
-    /// s')/|psi| psi_w`. At 0, where a ball sets out or lands, they are those that the table has,
+    /// s')/|psi| psi_w`. At 0, where a ball departs or lands, they are those that the table has,
     /// and constant.
     fn follow_directions(
         &self,

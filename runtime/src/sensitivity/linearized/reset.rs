@@ -1,12 +1,12 @@
-//! What a stop does to the state itself, linearised: its resets one after the other, then coming to
+//! What an event does to the state itself, linearised: its resets one after the other, then coming to
 //! rest on a surface.
 
-use super::event::StopOnTape;
+use super::event::EventOnTape;
 use super::linearization::{Jacobian, Linearizer};
 use crate::simulate::{Instant, Kind, Mode, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-/// The derivatives of the state after a stop by the state, the time and the inputs `(u, p)` before
+/// The derivatives of the state after an event by the state, the time and the inputs `(u, p)` before
 /// it.
 pub(crate) struct Reset {
     pub by_state: DMatrix<f64>,
@@ -15,27 +15,27 @@ pub(crate) struct Reset {
 }
 
 impl Reset {
-    pub fn new(linearizer: &Linearizer, tape: &Tape, stop: &StopOnTape) -> Self {
-        let states = stop.before.state.len();
+    pub fn new(linearizer: &Linearizer, tape: &Tape, event: &EventOnTape) -> Self {
+        let states = event.before.state.len();
         let mut reset = Reset {
             by_state: DMatrix::identity(states, states),
             by_time: DVector::zeros(states),
             by_inputs: DMatrix::zeros(states, linearizer.inputs()),
         };
-        let mut from = stop.before;
-        for change in stop.changes {
+        let mut from = event.before;
+        for change in event.changes {
             if let Kind::Jump(jump) = change.kind {
                 reset.then(&jump_slopes(linearizer, tape, from, jump));
             }
-            if change.after.time == stop.before.time {
+            if change.after.time == event.before.time {
                 from = &change.after;
             }
         }
-        let gap = stop.after.time - stop.before.time;
+        let gap = event.after.time - event.before.time;
         if gap > 0.0 {
             reset.then(&straight_on(linearizer, tape, from, gap));
         }
-        for slopes in rest_slopes(linearizer, tape, stop) {
+        for slopes in rest_slopes(linearizer, tape, event) {
             reset.then(&slopes);
         }
         reset
@@ -59,7 +59,7 @@ fn jump_slopes(linearizer: &Linearizer, tape: &Tape, from: &Instant, jump: usize
     all.view((jump * states, 0), (states, 1 + states + linearizer.inputs())).into_owned()
 }
 
-/// Where jumps pile up the state goes straight on until their limit: `x + gap f`.
+/// Where jumps accumulate the state goes straight on until their limit: `x + gap f`.
 fn straight_on(linearizer: &Linearizer, tape: &Tape, from: &Instant, gap: f64) -> DMatrix<f64> {
     let mut slopes = linearizer.at_instant(tape, from).by() * gap;
     (0..from.state.len()).for_each(|state| slopes[(state, 1 + state)] += 1.0);
@@ -68,13 +68,13 @@ fn straight_on(linearizer: &Linearizer, tape: &Tape, from: &Instant, gap: f64) -
 
 /// Where the state comes to rest on a surface: the Newton steps on `psi` and on `psi'` that bring
 /// it there.
-fn rest_slopes(linearizer: &Linearizer, tape: &Tape, stop: &StopOnTape) -> Vec<DMatrix<f64>> {
-    let [old, new] = [stop.before, stop.after].map(|at| &tape.regimes[at.regime]);
+fn rest_slopes(linearizer: &Linearizer, tape: &Tape, event: &EventOnTape) -> Vec<DMatrix<f64>> {
+    let [old, new] = [event.before, event.after].map(|at| &tape.regimes[at.regime]);
     let comes = |i: &usize| new.modes[*i] == Mode::Held && old.modes[*i] != Mode::Held;
     let Some(surface) = (0..new.modes.len()).find(comes) else { return Vec::new() };
-    let states = stop.after.state.len();
-    let psi = jacobian(linearizer, tape, stop.before, &*linearizer.system.guards).by;
-    let rates = jacobian(linearizer, tape, stop.before, &*linearizer.system.rates).by;
+    let states = event.after.state.len();
+    let psi = jacobian(linearizer, tape, event.before, &*linearizer.system.guards).by;
+    let rates = jacobian(linearizer, tape, event.before, &*linearizer.system.rates).by;
     let columns = 1 + states + linearizer.inputs();
     let [psi, rates] = [psi, rates].map(|by| by.row(surface).columns(0, columns).into_owned());
     let along = psi.columns(1, states).into_owned();

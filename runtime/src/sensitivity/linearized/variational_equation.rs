@@ -3,7 +3,7 @@
 //! Each piece is a linear map `S+ = M S + N W`, with `W` the directions of `(u, p)` that act in it;
 //! forward sensitivities apply the maps in order, the adjoint applies their transposes in reverse.
 
-use super::event::{LinearStop, StopOnTape};
+use super::event::{EventOnTape, LinearEvent};
 use super::linearization::Linearizer;
 use super::sparse_step::SparseStep;
 use super::step::LinearStep;
@@ -53,7 +53,7 @@ pub(crate) struct LinearPiece<'t> {
 pub(crate) enum Map<'t> {
     Sparse(SparseStep<'t>),
     Step(LinearStep),
-    Stop(LinearStop),
+    Event(LinearEvent),
 }
 
 impl<'t> LinearPiece<'t> {
@@ -83,10 +83,10 @@ impl<'t> LinearPiece<'t> {
                 regime_after: regime(start),
                 projection: Projection::new(linearizer, regime(start), &tape.pieces[at].end()),
             },
-            Piece::Stop { cause, before, after, changes } => {
-                let stop = StopOnTape { cause: *cause, before, after, changes };
+            Piece::Event { cause, before, after, changes } => {
+                let event = EventOnTape { cause: *cause, before, after, changes };
                 LinearPiece {
-                    map: Map::Stop(LinearStop::new(linearizer, tape, &stop)),
+                    map: Map::Event(LinearEvent::new(linearizer, tape, &event)),
                     regime: regime(before),
                     regime_after: regime(after),
                     projection: Projection::new(linearizer, regime(after), after),
@@ -101,7 +101,7 @@ impl<'t> LinearPiece<'t> {
         let after = match &self.map {
             Map::Sparse(step) => step.forward(s, &inputs),
             Map::Step(step) => step.forward(s, &step.forcing(&inputs)).1,
-            Map::Stop(stop) => stop.forward(s, &inputs),
+            Map::Event(event) => event.forward(s, &inputs),
         };
         match &self.projection {
             Some(projection) => projection.forward(&after, &w(self.regime_after)),
@@ -131,7 +131,7 @@ impl<'t> LinearPiece<'t> {
         let (before, inputs) = match &self.map {
             Map::Sparse(step) => step.adjoint(after),
             Map::Step(step) => step.adjoint(after),
-            Map::Stop(stop) => stop.adjoint(after),
+            Map::Event(event) => event.adjoint(after),
         };
         add(self.regime, &inputs);
         before

@@ -39,10 +39,10 @@ pub(crate) fn first_kink(linearizer: &Linearizer, tape: &Tape) -> Option<Kink> {
 }
 
 /// Whether a kink is met almost along itself, so that the second derivative of the time is nothing
-/// to rely on; or together with another stop, so that their order is not fixed; or moved by
+/// to rely on; or together with another event, so that their order is not fixed; or moved by
 /// controls that follow the guess.
 pub(crate) fn is_doubtful(linearizer: &Linearizer, tape: &Tape, at: usize) -> bool {
-    let Piece::Stop { cause: Cause::Bends(kink), before, .. } = &tape.pieces[at] else {
+    let Piece::Event { cause: Cause::CrossesKink(kink), before, .. } = &tape.pieces[at] else {
         return false;
     };
     let controls = linearizer.system.layout.controls();
@@ -51,7 +51,7 @@ pub(crate) fn is_doubtful(linearizer: &Linearizer, tape: &Tape, at: usize) -> bo
         linearizer.is_guessed() && here.by.row(*kink).columns_range(controls).amax() > 0.0;
     let is_near = |piece: &Piece| {
         let [first, last] = linearizer.system.interval;
-        matches!(piece, Piece::Stop { before: other, .. } if (other.time - before.time).abs() <= TOUCHING * (last - first))
+        matches!(piece, Piece::Event { before: other, .. } if (other.time - before.time).abs() <= TOUCHING * (last - first))
     };
     let others = tape.pieces[..at].iter().rev().take(2).chain(tape.pieces[at + 1..].iter().take(2));
     follows || here.is_along(*kink) || others.into_iter().any(is_near)

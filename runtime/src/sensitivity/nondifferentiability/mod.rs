@@ -23,7 +23,7 @@ const TOGETHER: f64 = 1e-10;
 
 /// What is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TroubleKind {
+pub enum NondifferentiabilityKind {
     /// A surface is touched, or met at almost no angle.
     Grazing,
     /// Two surfaces are met at one time.
@@ -36,9 +36,9 @@ pub enum TroubleKind {
 
 /// A place without derivative.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Trouble {
+pub struct Nondifferentiability {
     /// What is wrong.
-    pub kind: TroubleKind,
+    pub kind: NondifferentiabilityKind,
     /// At which surface.
     pub surface: usize,
     /// When.
@@ -46,20 +46,24 @@ pub struct Trouble {
 }
 
 /// All suspicions, in the order of time.
-pub(crate) fn troubles(pieces: &LinearTape) -> Vec<Trouble> {
+pub(crate) fn nondifferentiabilities(pieces: &LinearTape) -> Vec<Nondifferentiability> {
     let LinearTape { linearizer, tape, .. } = *pieces;
     let watch = Watch { linearizer, tape };
     let mut found = Vec::new();
     for (at, piece) in tape.pieces.iter().enumerate() {
         match piece {
             Piece::Step { start, h, end, .. } => watch.touches(start, *h, end, &mut found),
-            Piece::Stop { .. } => watch.stop(at, &mut found),
+            Piece::Event { .. } => watch.event(at, &mut found),
         }
     }
     if let Some(last) = tape.pieces.last() {
         let end = last.end();
         let near = watch.met_at_the_end(&end);
-        found.extend(near.map(|(surface, time)| Trouble { kind: TroubleKind::End, surface, time }));
+        found.extend(near.map(|(surface, time)| Nondifferentiability {
+            kind: NondifferentiabilityKind::End,
+            surface,
+            time,
+        }));
     }
     found.dedup();
     found
@@ -133,7 +137,7 @@ impl Watch<'_> {
 
     /// Surfaces that come nearest inside a step, almost at distance 0; by the cubic through both
     /// ends.
-    fn touches(&self, start: &Instant, h: f64, end: &[f64], found: &mut Vec<Trouble>) {
+    fn touches(&self, start: &Instant, h: f64, end: &[f64], found: &mut Vec<Nondifferentiability>) {
         let turns = |at: &usize, [first, last]: &[DVector<f64>; 2]| first[*at] * last[*at] < 0.0;
         let rates = self.rates(start, h, end);
         for surface in self.beside(start).filter(|at| turns(at, &rates)) {
@@ -148,53 +152,59 @@ impl Watch<'_> {
             let size = 1.0 + first.size[surface].max(last.size[surface]);
             if nearest.abs() <= TOUCHING * size {
                 let time = start.time + part * h;
-                found.push(Trouble { kind: TroubleKind::Grazing, surface, time });
+                found.push(Nondifferentiability {
+                    kind: NondifferentiabilityKind::Grazing,
+                    surface,
+                    time,
+                });
             }
         }
     }
 
-    fn stop(&self, at: usize, found: &mut Vec<Trouble>) {
-        let Piece::Stop { cause, before, changes, .. } = &self.tape.pieces[at] else { return };
+    fn event(&self, at: usize, found: &mut Vec<Nondifferentiability>) {
+        let Piece::Event { cause, before, changes, .. } = &self.tape.pieces[at] else { return };
         let time = before.time;
-        let mut note = |kind, surface| found.push(Trouble { kind, surface, time });
+        let mut note = |kind, surface| found.push(Nondifferentiability { kind, surface, time });
         let distances = self.distances(before);
         let met: Vec<usize> = self.beside(before).filter(|&i| distances.touches(i)).collect();
         match *cause {
             Cause::Reaches(surface) => {
                 if distances.is_tangent(surface) {
-                    note(TroubleKind::Grazing, surface);
+                    note(NondifferentiabilityKind::Grazing, surface);
                 }
                 if met.iter().any(|&other| other != surface)
                     || self.meets_stop(at, |it| *it != Cause::Controls)
                 {
-                    note(TroubleKind::Corner, surface);
+                    note(NondifferentiabilityKind::Corner, surface);
                 }
                 if self.meets_stop(at, |it| *it == Cause::Controls) {
-                    note(TroubleKind::Coincident, surface);
+                    note(NondifferentiabilityKind::Coincident, surface);
                 }
             }
             Cause::Start => met
                 .into_iter()
                 .filter(|i| !changes.iter().any(|it| it.surface == *i))
-                .for_each(|surface| note(TroubleKind::Coincident, surface)),
-            Cause::Controls => {
-                met.into_iter().for_each(|surface| note(TroubleKind::Coincident, surface))
+                .for_each(|surface| note(NondifferentiabilityKind::Coincident, surface)),
+            Cause::Controls => met
+                .into_iter()
+                .for_each(|surface| note(NondifferentiabilityKind::Coincident, surface)),
+            Cause::Repels => {
+                note(NondifferentiabilityKind::Grazing, changes.first().map_or(0, |it| it.surface))
             }
-            Cause::Repels => note(TroubleKind::Grazing, changes.first().map_or(0, |it| it.surface)),
-            Cause::Leaves(_) | Cause::Bends(_) => {}
+            Cause::Leaves(_) | Cause::CrossesKink(_) => {}
         }
     }
 
-    /// Whether the stop before or after is at the same time.
+    /// Whether the event before or after is at the same time.
     fn meets_stop(&self, at: usize, is_it: impl Fn(&Cause) -> bool) -> bool {
         let [first, last] = self.linearizer.system.interval;
         let time_of = |piece: &Piece| match piece {
-            Piece::Stop { before, .. } => before.time,
+            Piece::Event { before, .. } => before.time,
             Piece::Step { start, .. } => start.time,
         };
         let own = time_of(&self.tape.pieces[at]);
         let is_near = |piece: &&Piece| (time_of(piece) - own).abs() <= TOGETHER * (last - first);
-        let is_other = |piece: &&Piece| matches!(piece, Piece::Stop { cause, .. } if is_it(cause) && !matches!(cause, Cause::Start | Cause::Leaves(_) | Cause::Bends(_)));
+        let is_other = |piece: &&Piece| matches!(piece, Piece::Event { cause, .. } if is_it(cause) && !matches!(cause, Cause::Start | Cause::Leaves(_) | Cause::CrossesKink(_)));
         let before =
             self.tape.pieces[..at].iter().rev().take_while(is_near).any(|it| is_other(&it));
         before || self.tape.pieces[at + 1..].iter().take_while(is_near).any(|it| is_other(&it))
@@ -203,13 +213,13 @@ impl Watch<'_> {
     fn met_at_the_end(&self, end: &Instant) -> impl Iterator<Item = (usize, f64)> {
         let distances = self.distances(end);
         let [first, last] = self.linearizer.system.interval;
-        let stops = self.tape.pieces.iter().rev().find_map(|piece| match piece {
-            Piece::Stop { cause: Cause::Reaches(surface), before, .. } => {
+        let events = self.tape.pieces.iter().rev().find_map(|piece| match piece {
+            Piece::Event { cause: Cause::Reaches(surface), before, .. } => {
                 Some((*surface, before.time))
             }
             _ => None,
         });
-        let just_before = stops.filter(|(_, time)| last - time <= TOGETHER * (last - first));
+        let just_before = events.filter(|(_, time)| last - time <= TOGETHER * (last - first));
         let here: Vec<usize> = self.beside(end).filter(|&i| distances.touches(i)).collect();
         let here = here.into_iter().filter(move |i| just_before.is_none_or(|it| it.0 != *i));
         just_before.into_iter().chain(here.map(move |surface| (surface, last)))

@@ -1,8 +1,8 @@
-//! The second-order part of a stop: to the moved time, through the resets, back to the fixed time.
+//! The second-order part of an event: to the moved time, through the resets, back to the fixed time.
 
 use super::curvature::Hessians;
 use crate::problem::Columns;
-use crate::sensitivity::linearized::event::StopOnTape;
+use crate::sensitivity::linearized::event::EventOnTape;
 use crate::sensitivity::linearized::linearization::{Jacobian, Linearization, Linearizer};
 use crate::simulate::{Cause, Instant, Kind, Tape};
 use nalgebra::{DMatrix, DVector, DVectorView, RowDVector};
@@ -40,29 +40,29 @@ impl Pairs {
     }
 }
 
-/// A stop whose time moves by `tau` in each direction.
-pub(crate) struct Bend<'b> {
+/// An event whose time moves by `tau` in each direction.
+pub(crate) struct SecondOrderEvent<'b> {
     pub linearizer: &'b Linearizer<'b>,
     pub tape: &'b Tape,
-    pub stop: &'b StopOnTape<'b>,
+    pub event: &'b EventOnTape<'b>,
     pub tau: &'b RowDVector<f64>,
 }
 
-/// Derivatives of the state at the moved time of a stop, and second ones of that time.
+/// Derivatives of the state at the moved time of an event, and second ones of that time.
 pub(crate) struct Moved {
     pub s: DMatrix<f64>,
     pub x: Pairs,
     tau: Pairs,
 }
 
-impl Bend<'_> {
-    /// The state that meets the stop, from what it is at a fixed time; `directions` are `(t, x, u,
+impl SecondOrderEvent<'_> {
+    /// The state that meets the event, from what it is at a fixed time; `directions` are `(t, x, u,
     /// p)`.
     pub fn meet(&self, s: &DMatrix<f64>, x: &Pairs, directions: &[DVector<f64>]) -> Moved {
-        if self.stop.cause == Cause::Start {
+        if self.event.cause == Cause::Start {
             return Moved { s: s.clone(), x: x.clone(), tau: self.clock(directions) };
         }
-        let arriving = self.linearizer.at_instant(self.tape, self.stop.before);
+        let arriving = self.linearizer.at_instant(self.tape, self.event.before);
         let swept = self.swept(&arriving, directions);
         let x = x.map(|i, j, x| x + swept(i, j));
         let s = s + &arriving.rate * self.tau;
@@ -75,8 +75,8 @@ impl Bend<'_> {
     pub fn reset(&self, mut moved: Moved, directions: &[DVector<f64>]) -> Moved {
         let system = self.linearizer.system;
         let states = system.layout.x;
-        let mut from = self.stop.before;
-        for change in self.stop.changes {
+        let mut from = self.event.before;
+        for change in self.event.changes {
             if let Kind::Jump(jump) = change.kind {
                 let table = self.table(from);
                 let by = Jacobian::of(&*system.resets, &table, &self.linearizer.parameters).by;
@@ -100,7 +100,7 @@ impl Bend<'_> {
         moved
     }
 
-    /// Back to the fixed time, along the right side after the stop; `directions` are those there.
+    /// Back to the fixed time, along the right side after the event; `directions` are those there.
     pub fn leave(
         &self,
         onward: &Linearization,
@@ -139,15 +139,15 @@ impl Bend<'_> {
         directions: &[DVector<f64>],
     ) -> Pairs {
         let system = self.linearizer.system;
-        let (function, row) = match self.stop.cause {
+        let (function, row) = match self.event.cause {
             Cause::Reaches(surface) => (&system.guards, surface),
-            Cause::Bends(kink) => (&system.kinks, kink),
+            Cause::CrossesKink(kink) => (&system.kinks, kink),
             Cause::Controls if !self.linearizer.is_stretched() => {
                 return Pairs::new(directions.len(), |_, _| DVector::zeros(1));
             }
             _ => return self.clock(directions),
         };
-        let table = self.table(self.stop.before);
+        let table = self.table(self.event.before);
         let by = Jacobian::of(&**function, &table, &self.linearizer.parameters).by;
         let (normal, by_time) =
             (by.row(row).columns(1, system.layout.x).into_owned(), by[(row, 0)]);
@@ -163,7 +163,7 @@ impl Bend<'_> {
     /// `tau_ij` of a time that is a fixed part of the interval.
     fn clock(&self, directions: &[DVector<f64>]) -> Pairs {
         let layout = self.linearizer.system.layout;
-        let tau = self.linearizer.tau(self.stop.before.time);
+        let tau = self.linearizer.tau(self.event.before.time);
         let parameters =
             |i: usize| directions[i].rows(layout.parameters().start, layout.p).into_owned();
         Pairs::new(directions.len(), |i, j| {

@@ -1,7 +1,7 @@
 //! Second derivatives through events: second-order saltation, one pair of directions at a time.
 //!
 //! Between events `X_ij' = f*_x X_ij + f*_ww[W_i, W_j]`, differentiated step by step as the first
-//! order is. At a stop, with `a = f-`, `b = f+`, `y` the state at the moved time and `z = r(t, y,
+//! order is. At an event, with `a = f-`, `b = f+`, `y` the state at the moved time and `z = r(t, y,
 //! p)`
 //!
 //! ```text
@@ -20,7 +20,7 @@ mod event;
 use super::first_order;
 use super::first_order::quantity::{Directions, Quantity};
 use super::first_order::{Objective, last_instant};
-use super::linearized::event::{StopOnTape, Timing};
+use super::linearized::event::{EventOnTape, Timing};
 use super::linearized::linearization::Linearizer;
 use super::linearized::step::LinearStep;
 use super::linearized::surface::Projection;
@@ -28,7 +28,7 @@ use super::nondifferentiability::kink::is_doubtful;
 use crate::problem::Columns;
 use crate::simulate::{Cause, Controls, Instant, Mode, Piece, Regime, Simulation, System, Tape};
 use curvature::{Curvature, Hessians};
-use event::{Bend, Pairs};
+use event::{Pairs, SecondOrderEvent};
 use nalgebra::{DMatrix, DVector};
 
 /// The Hessian of the objective by some quantities; nothing where the state comes to rest after
@@ -108,9 +108,9 @@ impl<'t> Second<'t> {
                     &LinearStep::new(self.linearizer, regime, start, *h, stages, *rule),
                 );
             }
-            Piece::Stop { cause, before, after, changes } => {
-                let stop = StopOnTape { cause: *cause, before, after, changes };
-                self.stop(&stop, &Timing::new(self.linearizer, self.tape, &stop));
+            Piece::Event { cause, before, after, changes } => {
+                let event = EventOnTape { cause: *cause, before, after, changes };
+                self.event(&event, &Timing::new(self.linearizer, self.tape, &event));
             }
         }
         let end = piece.end();
@@ -134,15 +134,16 @@ impl<'t> Second<'t> {
         self.s = end;
     }
 
-    fn stop(&mut self, stop: &StopOnTape, timing: &Timing) {
-        let regime = self.regime(stop.before);
+    fn event(&mut self, event: &EventOnTape, timing: &Timing) {
+        let regime = self.regime(event.before);
         let tau = timing.of(&self.s, &self.directions.inputs(regime));
         let directions = self.directions_at(regime, &self.s);
-        let bend = Bend { linearizer: self.linearizer, tape: self.tape, stop, tau: &tau };
+        let bend =
+            SecondOrderEvent { linearizer: self.linearizer, tape: self.tape, event, tau: &tau };
         let moved = bend.reset(bend.meet(&self.s, &self.x, &directions), &directions);
-        let onward = self.linearizer.at_instant(self.tape, stop.after);
+        let onward = self.linearizer.at_instant(self.tape, event.after);
         self.s = &moved.s - &onward.rate * &tau;
-        let directions = self.directions_at(self.regime(stop.after), &self.s);
+        let directions = self.directions_at(self.regime(event.after), &self.s);
         self.x = bend.leave(&onward, &moved, &directions);
     }
 
@@ -199,11 +200,16 @@ impl<'t> Second<'t> {
             return (start.clone(), start, self.x.clone());
         };
         // The cause is of no matter: nothing but the clock moves the end.
-        let stop = StopOnTape { cause: Cause::Repels, before: &last, after: &last, changes: &[] };
+        let event = EventOnTape { cause: Cause::Repels, before: &last, after: &last, changes: &[] };
         let timing = Timing::of_clock(self.linearizer, self.linearizer.system.interval[1]);
         let regime = self.regime(&last);
         let tau = timing.of(&self.s, &self.directions.inputs(regime));
-        let bend = Bend { linearizer: self.linearizer, tape: self.tape, stop: &stop, tau: &tau };
+        let bend = SecondOrderEvent {
+            linearizer: self.linearizer,
+            tape: self.tape,
+            event: &event,
+            tau: &tau,
+        };
         let moved = bend.meet(&self.s, &self.x, &self.directions_at(regime, &self.s));
         (start, moved.s, moved.x)
     }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! moving     s = psi/|psi|,   ds/dx = (I - s s')/|psi| dpsi/dx
-//! sets out   psi = 0: s is the direction in which it leaves, the limit of psi/|psi|
+//! departs   psi = 0: s is the direction in which it leaves, the limit of psi/|psi|
 //! at rest    psi = 0 is kept: every component slides, and s solves the linear system of all sliding surfaces
 //! ```
 //!
@@ -33,12 +33,12 @@ impl<'a> Field<'a> {
     }
 
     /// Whether some ball leaves 0 at a time.
-    pub fn sets_out(&self, t: f64) -> bool {
+    pub fn departs(&self, t: f64) -> bool {
         self.moving().iter().any(|ball| self.departure[ball.surfaces.start] == t)
     }
 
     /// From now on a ball moves; it leaves 0 in a direction.
-    pub fn set_out(&mut self, ball: &Ball, t: f64, direction: &[f64]) {
+    pub fn depart(&mut self, ball: &Ball, t: f64, direction: &[f64]) {
         let size = length(direction);
         for (surface, s) in ball.surfaces.clone().zip(direction) {
             self.modes[surface] = Mode::Moving;
@@ -65,10 +65,10 @@ impl<'a> Field<'a> {
         let psi = self.psi(t, x);
         for ball in moving {
             let size = length(&psi[ball.surfaces.clone()]);
-            let sets_out = self.departure[ball.surfaces.start] == t || size == 0.0;
+            let departs = self.departure[ball.surfaces.start] == t || size == 0.0;
             for surface in ball.surfaces.clone() {
                 self.selectors[surface] =
-                    if sets_out { self.direction[surface] } else { psi[surface] / size };
+                    if departs { self.direction[surface] } else { psi[surface] / size };
             }
         }
     }

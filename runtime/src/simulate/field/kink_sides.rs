@@ -12,7 +12,7 @@ impl Field<'_> {
     }
 
     /// The state crosses a kink.
-    pub fn bend(&mut self, kink: usize) {
+    pub fn cross_kink(&mut self, kink: usize) {
         let place = self.modes.len() + kink;
         self.selectors[place] = -self.selectors[place];
     }
@@ -22,11 +22,11 @@ impl Field<'_> {
         let first = self.modes.len();
         // Each pass is right for one more kink inside others.
         for _ in 0..self.system.kinks.outputs() {
-            let bends = self.bends(t, x);
+            let kinks = self.kinks(t, x);
             let rate = self.rate(t, x);
-            for kink in 0..bends.psi.len() {
-                let is_off = bends.psi[kink].abs() > 10.0 * bends.noise(kink, x);
-                let ahead = if is_off { bends.psi[kink] } else { bends.rate(kink, &rate) };
+            for kink in 0..kinks.psi.len() {
+                let is_off = kinks.psi[kink].abs() > 10.0 * kinks.noise(kink, x);
+                let ahead = if is_off { kinks.psi[kink] } else { kinks.rate(kink, &rate) };
                 self.selectors[first + kink] = if ahead > 0.0 { 1.0 } else { -1.0 };
             }
         }

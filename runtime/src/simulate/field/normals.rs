@@ -45,7 +45,7 @@ impl Field<'_> {
     }
 
     /// What is 0 at the kinks, with its derivatives.
-    pub fn bends(&mut self, t: f64, x: &[f64]) -> Normals {
+    pub fn kinks(&mut self, t: f64, x: &[f64]) -> Normals {
         self.normals_of(&*self.system.kinks, self.modes.len(), t, x)
     }
 

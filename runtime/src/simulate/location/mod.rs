@@ -31,7 +31,7 @@ pub(crate) enum Condition {
     /// The selector of a sliding surface reaches the end of its interval.
     Leaves(usize),
     /// The state reaches a kink of the right side.
-    Bends(usize),
+    CrossesKink(usize),
 }
 
 impl From<Condition> for Cause {
@@ -39,7 +39,7 @@ impl From<Condition> for Cause {
         match condition {
             Condition::Reaches(surface) => Cause::Reaches(surface),
             Condition::Leaves(surface) => Cause::Leaves(surface),
-            Condition::Bends(kink) => Cause::Bends(kink),
+            Condition::CrossesKink(kink) => Cause::CrossesKink(kink),
         }
     }
 }
@@ -97,7 +97,13 @@ fn conditions(field: &Field) -> Vec<Condition> {
         Mode::Sliding | Mode::Moving | Mode::Held => None,
     };
     let kinks = if field.is_blind { 0 } else { field.system.kinks.outputs() };
-    field.modes.iter().enumerate().filter_map(of).chain((0..kinks).map(Condition::Bends)).collect()
+    field
+        .modes
+        .iter()
+        .enumerate()
+        .filter_map(of)
+        .chain((0..kinks).map(Condition::CrossesKink))
+        .collect()
 }
 
 /// What rounding may make of 0.
@@ -106,7 +112,7 @@ fn noise(field: &mut Field, step: &Step, condition: Condition) -> f64 {
     match condition {
         Condition::Reaches(i) => field.normals(step.t, &step.start).noise(i, &step.start),
         Condition::Leaves(_) => 1e-12,
-        Condition::Bends(k) => field.bends(step.t, &step.start).noise(k, &step.start),
+        Condition::CrossesKink(k) => field.kinks(step.t, &step.start).noise(k, &step.start),
     }
 }
 
@@ -126,7 +132,7 @@ pub(crate) fn value(field: &mut Field, condition: Condition, t: f64, x: &[f64]) 
             field.rate(t, x);
             reserve(field, i)
         }
-        Condition::Bends(k) => field.side_of(k) * field.bends(t, x).psi[k],
+        Condition::CrossesKink(k) => field.side_of(k) * field.kinks(t, x).psi[k],
     }
 }
 

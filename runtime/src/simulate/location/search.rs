@@ -70,7 +70,9 @@ impl Signal<'_, '_> {
             Condition::Reaches(i) => {
                 (&self.field.system.enclosures.guards[i], self.field.modes[i].side())
             }
-            Condition::Bends(k) => (&self.field.system.enclosures.kinks[k], self.field.side_of(k)),
+            Condition::CrossesKink(k) => {
+                (&self.field.system.enclosures.kinks[k], self.field.side_of(k))
+            }
             Condition::Leaves(i) => return sliding::bounds(self, part, i),
         };
         let [value, rate] = self.tube.bounds(self.field, self.step, part, enclosure);

@@ -243,7 +243,7 @@ impl Choice {
         }
     }
 
-    /// Notes in which direction balls set out.
+    /// Notes in which direction balls depart.
     fn note_directions(&self, field: &mut Field, surfaces: &[usize]) {
         let moves = |at: &usize| self.modes[*at] == Mode::Moving;
         (0..surfaces.len()).filter(moves).for_each(|at| field.direction[surfaces[at]] = self.s[at]);

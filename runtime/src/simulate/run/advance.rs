@@ -23,7 +23,7 @@ pub(crate) struct Pace {
     at_border: usize,
     off_border: usize,
     /// How many kinks in a row were met at one time.
-    bends: usize,
+    kinks: usize,
     /// The last step.
     step: Step,
 }
@@ -55,7 +55,7 @@ const NOT_STIFF: f64 = 0.5;
 impl Pace {
     pub fn new(states: usize, method: Method) -> Self {
         let step = Step::new(states);
-        Pace { h: 0.0, is_continued: false, method, at_border: 0, off_border: 0, bends: 0, step }
+        Pace { h: 0.0, is_continued: false, method, at_border: 0, off_border: 0, kinks: 0, step }
     }
 
     /// Chooses the method of the next step by what the last one says of stiffness.
@@ -131,11 +131,11 @@ impl Run<'_> {
             return Err(Status::StepLimit);
         }
         let rest = stop - self.t;
-        let fall = self.field.fall(self.t, &self.x);
-        if let Some(fall) = fall.as_ref().filter(|fall| fall.is_near && fall.time <= rest) {
-            return self.land(fall);
+        let arrival = self.field.next_arrival(self.t, &self.x);
+        if let Some(arrival) = arrival.as_ref().filter(|it| it.is_near && it.time <= rest) {
+            return self.arrive(arrival);
         }
-        self.accepted(step, rest, fall.map_or(f64::INFINITY, |fall| fall.longest))?;
+        self.accepted(step, rest, arrival.map_or(f64::INFINITY, |it| it.longest))?;
         self.counts.steps += 1;
         self.counts.stiff += usize::from(step.method == Method::Stiff);
         if self.options.integrator == Integrator::Automatic && self.field.moving().is_empty() {
@@ -164,7 +164,7 @@ impl Run<'_> {
     /// The first event in a step, which becomes shorter where it is not known beyond.
     /// Kinks that follow each other without any way between them are not looked for after a while.
     fn first_event(&mut self, step: &mut Step) -> Option<location::Found> {
-        self.field.is_blind = self.pace.bends > MOST_BENDS;
+        self.field.is_blind = self.pace.kinks > MOST_BENDS;
         let found = loop {
             match location::first(&mut self.field, step) {
                 First::None => break None,
@@ -172,10 +172,10 @@ impl Run<'_> {
                 First::NotBefore(theta) => step.attempt(&mut self.field, theta * step.h),
             }
         };
-        let is_bend = |it: &location::Found| matches!(it.condition, Condition::Bends(_));
+        let is_bend = |it: &location::Found| matches!(it.condition, Condition::CrossesKink(_));
         let is_there = |it: &location::Found| it.h <= 4.0 * f64::EPSILON * step.t.abs();
         let is_idle = found.as_ref().is_some_and(|it| is_bend(it) && is_there(it));
-        self.pace.bends = if is_idle { self.pace.bends + 1 } else { 0 };
+        self.pace.kinks = if is_idle { self.pace.kinks + 1 } else { 0 };
         found
     }
 

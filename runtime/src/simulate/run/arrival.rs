@@ -24,7 +24,7 @@ const NEAR: f64 = 100.0;
 const STABLE: f64 = 3.0;
 
 /// A ball on its way to 0.
-pub(crate) struct Fall<'a> {
+pub(crate) struct Arrival<'a> {
     pub ball: &'a Ball,
     /// How long at the present rate.
     pub time: f64,
@@ -37,15 +37,15 @@ pub(crate) struct Fall<'a> {
 impl<'a> Field<'a> {
     /// The moving ball that is the first to reach 0, as things go at present; notes which steps are
     /// stable.
-    pub fn fall(&mut self, t: f64, x: &[f64]) -> Option<Fall<'a>> {
+    pub fn next_arrival(&mut self, t: f64, x: &[f64]) -> Option<Arrival<'a>> {
         self.stable = f64::INFINITY;
-        if self.moving().is_empty() || self.sets_out(t) {
+        if self.moving().is_empty() || self.departs(t) {
             return None;
         }
         let selectors = self.selectors_at(t, x);
         let (rate, by_selector) = self.with_selectors(t, x, &selectors);
         let normals = self.normals(t, x);
-        let mut first: Option<Fall> = None;
+        let mut first: Option<Arrival> = None;
         for ball in self.moving() {
             let own: Vec<usize> = ball.surfaces.clone().collect();
             let size = length(&normals.psi[ball.surfaces.clone()]);
@@ -57,7 +57,7 @@ impl<'a> Field<'a> {
             if time > 0.0 && first.as_ref().is_none_or(|first| time < first.time) {
                 let noise = own.iter().map(|&i| normals.noise(i, x)).fold(0.0, f64::max);
                 let is_near = size <= NEAR * noise || time <= 16.0 * f64::EPSILON * t.abs();
-                first = Some(Fall { ball, time, longest: stable.min(0.9 * time), is_near });
+                first = Some(Arrival { ball, time, longest: stable.min(0.9 * time), is_near });
             }
         }
         first
@@ -66,25 +66,25 @@ impl<'a> Field<'a> {
 
 impl Run<'_> {
     /// Goes the rest of the way to 0 and decides what follows.
-    pub fn land(&mut self, fall: &Fall<'_>) -> Result<(), Status> {
+    pub fn arrive(&mut self, arrival: &Arrival<'_>) -> Result<(), Status> {
         // At 0 there is no other direction than the one in which it came.
         let arriving = self.field.selectors_at(self.t, &self.x);
-        fall.ball.surfaces.clone().for_each(|i| self.field.direction[i] = arriving[i]);
+        arrival.ball.surfaces.clone().for_each(|i| self.field.direction[i] = arriving[i]);
         let mut step = Step::new(self.x.len());
         step.begin(&mut self.field, self.t, &self.x, Method::Explicit, false);
-        (step.h, step.rule) = (fall.time, Rule::Straight);
+        (step.h, step.rule) = (arrival.time, Rule::Straight);
         let (rate, h) = (step.stages[0].clone(), step.h);
         let point = |theta: f64| {
             self.x.iter().zip(&rate).map(|(x, rate)| x + theta * h * rate).collect::<Vec<f64>>()
         };
         let (middle, mut end) = (point(0.5), point(1.0));
-        self.project_to_zero(fall.ball, &mut end);
+        self.project_to_zero(arrival.ball, &mut end);
         step.end_smoothly(&middle, &end, &rate);
         self.go(&step, [self.t + h, h], &end);
         self.pace.h = self.first_length();
-        self.stop(Cause::Reaches(fall.ball.surfaces.start), |run| {
+        self.stop(Cause::Reaches(arrival.ball.surfaces.start), |run| {
             let mut surfaces = run.surfaces_here();
-            surfaces.extend(fall.ball.surfaces.clone());
+            surfaces.extend(arrival.ball.surfaces.clone());
             surfaces.sort_unstable();
             surfaces.dedup();
             run.settle(surfaces)
@@ -98,14 +98,14 @@ impl Run<'_> {
         ball.surfaces.clone().for_each(|surface| self.field.set_mode(surface, Mode::Moving));
     }
 
-    /// A ball comes to rest or sets out; one event for all of its components.
+    /// A ball comes to rest or departs; one event for all of its components.
     pub fn change_ball(&mut self, ball: &Ball, next: Mode) {
         let first = ball.surfaces.start;
         let before = self.field.modes[first];
-        let sets_out_already = before == Mode::Moving && self.field.departure[first] == self.t;
+        let departs_already = before == Mode::Moving && self.field.departure[first] == self.t;
         let kind = match (before, next) {
             (_, Mode::Sliding) if !self.has_begun => Some(Kind::StartsSliding),
-            _ if !self.has_begun || sets_out_already => None,
+            _ if !self.has_begun || departs_already => None,
             (Mode::Moving, Mode::Sliding) => Some(Kind::EntersSliding),
             (Mode::Sliding, Mode::Moving) => Some(Kind::LeavesUp),
             (Mode::Moving, Mode::Moving) => Some(Kind::Passes),
@@ -115,7 +115,7 @@ impl Run<'_> {
         match next {
             Mode::Moving => {
                 let direction = self.field.direction[ball.surfaces.clone()].to_vec();
-                self.field.set_out(ball, self.t, &direction);
+                self.field.depart(ball, self.t, &direction);
             }
             _ => ball.surfaces.clone().for_each(|surface| self.field.set_mode(surface, next)),
         }

@@ -1,4 +1,4 @@
-//! What an event does: modes change, jumps reset the state, jumps that pile up end the run or hold
+//! What an event does: modes change, jumps reset the state, jumps that accumulate end the run or hold
 //! a surface.
 
 use super::Run;
@@ -18,7 +18,7 @@ impl Run<'_> {
         self.record.point(self.t, &self.x);
         match condition {
             Condition::Leaves(surface) => self.leave(surface),
-            Condition::Bends(kink) => self.field.bend(kink),
+            Condition::CrossesKink(kink) => self.field.cross_kink(kink),
             Condition::Reaches(surface) => self.reach(surface)?,
         }
         Ok(())
@@ -49,7 +49,7 @@ impl Run<'_> {
         let jump = self.field.system.jumps.iter().position(|jump| jump.surface == surface);
         // It jumps, but less than rounding shows.
         match jump.filter(|_| self.idle > MOST_AT_ONCE) {
-            Some(jump) => self.piled_up(jump, self.t),
+            Some(jump) => self.reach_zeno_point(jump, self.t),
             None => Ok(()),
         }
     }
@@ -92,10 +92,10 @@ impl Run<'_> {
             .iter()
             .position(|jump| surfaces.contains(&jump.surface))
             .unwrap_or(0);
-        self.piled_up(jump, self.t)
+        self.reach_zeno_point(jump, self.t)
     }
 
-    /// A surface that is crossed ever faster ends the simulation like jumps that pile up.
+    /// A surface that is crossed ever faster ends the simulation like jumps that accumulate.
     fn end_of_crossings(&mut self, surfaces: &[usize]) -> Result<(), Status> {
         let [first, last] = self.field.system.interval;
         let here = self.record.events.iter().rev().take_while(|event| event.time == self.t);
@@ -103,7 +103,9 @@ impl Run<'_> {
             |event: &&Event| matches!(event.kind, Kind::CrossesUp | Kind::CrossesDown);
         let crossed: Vec<usize> = here.filter(is_crossing).map(|event| event.surface).collect();
         for &surface in surfaces.iter().filter(|surface| crossed.contains(surface)) {
-            if let Some(limit_time) = self.crossings[surface].limit(self.t, last - first, false) {
+            if let Some(limit_time) =
+                self.crossing_times[surface].limit(self.t, last - first, false)
+            {
                 return Err(Status::Zeno { jump: None, surface, limit_time });
             }
         }
@@ -153,8 +155,8 @@ impl Run<'_> {
         }
         let [first, last] = self.field.system.interval;
         let is_small = self.is_small(jump, surface);
-        match self.piles[jump].limit(self.t, last - first, is_small) {
-            Some(limit) => self.piled_up(jump, limit),
+        match self.jump_times[jump].limit(self.t, last - first, is_small) {
+            Some(limit) => self.reach_zeno_point(jump, limit),
             None => Ok(()),
         }
     }
@@ -164,7 +166,7 @@ impl Run<'_> {
     fn is_small(&mut self, jump: usize, surface: usize) -> bool {
         let normals = self.field.normals(self.t, &self.x);
         let rate = self.field.rate(self.t, &self.x);
-        let way = normals.rate(surface, &rate).abs() * self.piles[jump].since_last(self.t);
+        let way = normals.rate(surface, &rate).abs() * self.jump_times[jump].since_last(self.t);
         way <= 1e3 * normals.noise(surface, &self.x)
     }
 
@@ -197,7 +199,7 @@ impl Run<'_> {
         }
     }
 
-    fn piled_up(&mut self, jump: usize, limit_time: f64) -> Result<(), Status> {
+    fn reach_zeno_point(&mut self, jump: usize, limit_time: f64) -> Result<(), Status> {
         let held = self.field.system.jumps[jump]
             .then_hold
             .filter(|_| limit_time < self.field.system.interval[1]);

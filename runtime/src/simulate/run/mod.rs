@@ -17,7 +17,7 @@ use super::tape::Cause;
 use advance::Pace;
 use record::Record;
 use recorder::Writer;
-use zeno::Pile;
+use zeno::ZenoDetector;
 
 /// A simulation on its way.
 pub(crate) struct Run<'a> {
@@ -31,9 +31,9 @@ pub(crate) struct Run<'a> {
     /// How often each jump has happened.
     pub jumps: Vec<usize>,
     /// The times of the last jumps of each kind.
-    pub piles: Vec<Pile>,
+    pub jump_times: Vec<ZenoDetector>,
     /// The times of the last crossings of each surface.
-    pub crossings: Vec<Pile>,
+    pub crossing_times: Vec<ZenoDetector>,
     /// Whether the modes at the beginning are known.
     pub has_begun: bool,
     /// How often in a row a surface was reached and nothing happened.
@@ -67,8 +67,8 @@ impl<'a> Run<'a> {
             t: system.interval[0],
             x: system.start.clone(),
             jumps: vec![0; system.jumps.len()],
-            piles: vec![Pile::default(); system.jumps.len()],
-            crossings: vec![Pile::default(); system.surfaces.len()],
+            jump_times: vec![ZenoDetector::default(); system.jumps.len()],
+            crossing_times: vec![ZenoDetector::default(); system.surfaces.len()],
             has_begun: false,
             idle: 0,
             pace: Pace::new(system.layout.x, options.method()),
@@ -127,7 +127,7 @@ impl<'a> Run<'a> {
         self.pace.is_continued = false;
         happens(self)?;
         self.field.tolerance.see(&self.x);
-        if !matches!(cause, Cause::Bends(_)) {
+        if !matches!(cause, Cause::CrossesKink(_)) {
             self.field.find_sides_of_kinks(self.t, &self.x);
         }
         self.tape.close(&mut self.field, self.t, &self.x);

@@ -86,7 +86,7 @@ impl Writer {
         if let Some((cause, before)) = self.stop.take() {
             let after = self.instant(field, time, state);
             let changes = std::mem::take(&mut self.changes);
-            self.push(Piece::Stop { cause, before, after, changes });
+            self.push(Piece::Event { cause, before, after, changes });
         }
     }
 }

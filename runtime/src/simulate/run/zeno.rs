@@ -1,4 +1,4 @@
-//! Jumps that pile up: intervals `d, d q, d q^2, ...` with `q < 1` end after `d q / (1 - q)`.
+//! Jumps that accumulate: intervals `d, d q, d q^2, ...` with `q < 1` end after `d q / (1 - q)`.
 
 /// What is left may be at most this part of the whole time before the limit is believed.
 const NEAR: f64 = 1e-6;
@@ -11,17 +11,17 @@ const REGULAR: f64 = 1e-6;
 
 /// The times of the last jumps of one kind.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Pile {
+pub(crate) struct ZenoDetector {
     last: Vec<f64>,
 }
 
-impl Pile {
+impl ZenoDetector {
     /// The time since the last jump.
     pub fn since_last(&self, time: f64) -> f64 {
         self.last.last().map_or(f64::INFINITY, |last| time - last)
     }
 
-    /// Notes a jump; the limit time once the jumps pile up. Jumps so small that rounding will soon
+    /// Notes a jump; the limit time once the jumps accumulate. Jumps so small that rounding will soon
     /// hide them are believed at once.
     pub fn limit(&mut self, time: f64, span: f64, is_small: bool) -> Option<f64> {
         self.last.push(time);
@@ -46,26 +46,26 @@ impl Pile {
 
 #[cfg(test)]
 mod tests {
-    use super::Pile;
+    use super::ZenoDetector;
 
     #[test]
     fn halving_intervals_end_at_twice_the_first() {
-        let mut pile = Pile::default();
-        let limit = (0..40).find_map(|k| pile.limit(2.0 - 0.5_f64.powi(k), 1.0, false));
-        assert!((limit.expect("they pile up") - 2.0).abs() < 1e-14);
+        let mut detector = ZenoDetector::default();
+        let limit = (0..40).find_map(|k| detector.limit(2.0 - 0.5_f64.powi(k), 1.0, false));
+        assert!((limit.expect("they accumulate") - 2.0).abs() < 1e-14);
     }
 
     /// However long the whole time is, and however the times are rounded.
     #[test]
     fn nearly_regular_jumps_do_not_pile_up() {
-        let mut pile = Pile::default();
+        let mut detector = ZenoDetector::default();
         let rounded = |k: u32| f64::from(k) + 1e-9 * f64::from(k * k * 7919 % 13);
-        assert!((0..100).all(|k| pile.limit(rounded(k), 2e302, false).is_none()));
+        assert!((0..100).all(|k| detector.limit(rounded(k), 2e302, false).is_none()));
     }
 
     #[test]
     fn regular_jumps_do_not_pile_up() {
-        let mut pile = Pile::default();
-        assert!((0..100).all(|k| pile.limit(1e-7 * f64::from(k), 1.0, false).is_none()));
+        let mut detector = ZenoDetector::default();
+        assert!((0..100).all(|k| detector.limit(1e-7 * f64::from(k), 1.0, false).is_none()));
     }
 }

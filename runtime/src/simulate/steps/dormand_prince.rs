@@ -50,6 +50,7 @@ pub(crate) const DENSE: [f64; STAGES] = [
 /// Takes a step of length `h` from a start whose right side is known.
 pub(crate) fn attempt(step: &mut Step, field: &mut Field) {
     let Step { t, h, start, end, stages, near_end, .. } = step;
+    // Stages: k_i = f(t + c_i h, x + h sum_j a_ij k_j).
     for stage in 1..STAGES {
         let (before, after) = stages.split_at_mut(stage);
         combine(end, start, *h, before, &A[stage]);
@@ -58,6 +59,7 @@ pub(crate) fn attempt(step: &mut Step, field: &mut Field) {
         }
         field.rate_into(*t + C[stage] * *h, end, &mut after[0]);
     }
+    // Local error of the embedded pair, and dense output.
     step.error = error(step, &field.tolerance);
     extend(step);
 }

@@ -118,7 +118,7 @@ impl Step {
     pub fn attempt(&mut self, field: &mut Field, h: f64) {
         self.h = h;
         match self.method {
-            Method::Explicit if field.sets_out(self.t) || h > field.stable => {
+            Method::Explicit if field.departs(self.t) || h > field.stable => {
                 self.rule = Rule::Collocation;
                 departure::attempt(self, field);
             }

@@ -11,7 +11,7 @@ use crate::transcribe::TranscribedNlp;
 use crate::transcribe::interval::{Interval, Signal, Slot};
 
 /// The start on `to`, each interval of which is one of the `parts` of an interval of `from`.
-pub(super) fn carried(
+pub(super) fn transferred(
     from: &TranscribedNlp,
     start: &Start,
     to: &TranscribedNlp,
@@ -20,7 +20,7 @@ pub(super) fn carried(
     let carry = Carry { from, to, places: places(parts) };
     let warm = start.warm.as_ref().map(|Warm { multipliers, mu, widths }| {
         let multipliers = Multipliers {
-            rows: carry.rows(&multipliers.rows),
+            constraints: carry.rows(&multipliers.constraints),
             lower: carry.bounds(&multipliers.lower),
             upper: carry.bounds(&multipliers.upper),
         };

@@ -17,7 +17,7 @@ use crate::nlp::{Start, Status};
 use crate::problem::{FIRST_GRID, MOST_STAGES, Problem};
 use crate::transcribe::TranscribedNlp;
 use error_estimate::step_errors;
-use mesh_transfer::carried;
+use mesh_transfer::transferred;
 use plan::Errors;
 
 /// More intervals than this are not tried.
@@ -97,7 +97,7 @@ fn finer(
     let parts = vec![intervals / problem.method.intervals; problem.method.intervals];
     let finer = divided(problem, &parts);
     let (from, to) = (TranscribedNlp::new(problem), TranscribedNlp::new(&finer));
-    let start = start.as_ref().map(|start| carried(&from, start, &to, &parts));
+    let start = start.as_ref().map(|start| transferred(&from, start, &to, &parts));
     let mut outcome = solve_on_grid(&finer, start, watch)?;
     outcome.solution.counts.add(&before.solution.counts);
     outcome.attempts = [before.attempts, outcome.attempts].concat();
@@ -237,7 +237,7 @@ impl Grid {
         watch: &mut Watch,
     ) -> Result<Outcome, Refusal> {
         let (from, to) = (TranscribedNlp::new(&self.problem), TranscribedNlp::new(problem));
-        let start = carried(&from, &Start::near(&self.outcome.solution), &to, parts);
+        let start = transferred(&from, &Start::near(&self.outcome.solution), &to, parts);
         solve_near(problem, start, &self.outcome, watch)
     }
 }

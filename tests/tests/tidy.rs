@@ -117,6 +117,60 @@ fn folders_import_each_other_in_no_circle() {
     all_well(WITHOUT_CIRCLES.iter().flat_map(of).collect());
 }
 
+/// Folders whose tuned numbers stand in files called `tuning.rs`, with their sources.
+const TUNED: &[&str] = &["runtime/src/nlp/", "runtime/src/solve/", "runtime/src/simulate/"];
+
+/// Files with other numbers, which are not tuned but follow from a method.
+const NUMBERS_OF_METHODS: &[(&str, &str)] = &[
+    ("runtime/src/simulate/steps/dormand_prince.rs", "a tableau"),
+    ("runtime/src/simulate/steps/radau.rs", "a tableau"),
+    ("runtime/src/simulate/steps/departure.rs", "nodes of collocation"),
+    ("runtime/src/simulate/steps/mod.rs", "a polynomial of degree 4 in the Bernstein basis"),
+    ("runtime/src/simulate/location/tube.rs", "the derivative of a polynomial of degree 4"),
+    ("runtime/src/simulate/location/sliding.rs", "the derivatives of a parabola"),
+    (
+        "runtime/src/solve/refinement/error_estimate.rs",
+        "weights of the classical Runge-Kutta scheme",
+    ),
+    ("runtime/src/nlp/convex/convexity.rs", "a bound of the rounding errors of a factorisation"),
+];
+
+/// The numbers with a point or an exponent in a line of code.
+fn floats(line: &str) -> impl Iterator<Item = String> {
+    let line = line.replace("e-", "e").replace("..", " ").replace("_f64", "").replace("f64", "");
+    let words: Vec<String> = line
+        .split(|c: char| !(c.is_alphanumeric() || c == '.' || c == '_'))
+        .filter(|word| word.starts_with(|c: char| c.is_ascii_digit()))
+        .filter(|word| word.contains(['.', 'e']) && !word.contains('x'))
+        .map(str::to_owned)
+        .collect();
+    words.into_iter()
+}
+
+#[test]
+fn tuned_numbers_stand_in_their_files() {
+    let is_plain = |number: &str| ["0.0", "1.0", "2.0", "0.5"].contains(&number);
+    let mut breaches = Vec::new();
+    for source in rust_sources() {
+        let is_tuned = TUNED.iter().any(|folder| source.path.starts_with(folder));
+        let is_other = NUMBERS_OF_METHODS.iter().any(|row| row.0 == source.path);
+        let is_free = ["/tuning.rs", "/tests.rs"].iter().any(|it| source.path.ends_with(it));
+        if !is_tuned || is_other || is_free {
+            continue;
+        }
+        let own = source.text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
+        for (line, text) in code(own) {
+            for number in floats(text).filter(|number| !is_plain(number)) {
+                breaches.push(format!(
+                    "{}:{line}: give {number} a name in `tuning.rs`, with its source",
+                    source.path
+                ));
+            }
+        }
+    }
+    all_well(breaches);
+}
+
 /// What is absent where: folders, words, and why.
 const ABSENT: &[(&[&str], &[&str], &str)] = &[
     (

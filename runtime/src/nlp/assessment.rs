@@ -17,25 +17,11 @@
 //! The size of a quantity is its largest value over time. A quantity that is 0 has a millionth of
 //! its declared unit, so that rounding is not mistaken for a value.
 
+use super::tuning::assessment::{
+    ACCEPTABLE_IMPROVEMENT, ACCEPTABLE_VIOLATION, AIM, IMPROVEMENT, NO_OBJECTIVE, NOTHING, PART,
+};
 use super::{Derivatives, Multipliers, Nlp, Quantities};
 use crate::problem::Bounds;
-
-/// The improvement that may be left, in units of the tolerance: 1e-6 at the default tolerance of
-/// 1e-8.
-const IMPROVEMENT: f64 = 100.0;
-/// What is aimed at is so much less, where that can be had.
-const AIM: f64 = 0.1;
-/// The same of what is acceptable.
-const ACCEPTABLE_VIOLATION: f64 = 1e-6;
-const ACCEPTABLE_IMPROVEMENT: f64 = 1e-4;
-/// What is smaller than this part of its declared unit is nothing.
-const NOTHING: f64 = 1e-6;
-/// The same of the objective: where it falls to 0 like a fourth power nothing else says when that
-/// is near enough.
-const NO_OBJECTIVE: f64 = 1e-8;
-/// Where a quantity is 0 at some time, terms of the objective have this part of the size that it
-/// has at others.
-const PART: f64 = 1e-2;
 
 /// See the head of this file.
 #[derive(Clone, Copy, Debug, Default)]

@@ -15,6 +15,7 @@ pub(crate) mod multiplier_estimate;
 mod scaling;
 #[cfg(test)]
 mod tests;
+mod tuning;
 
 use crate::linalg::{Stages, Triplets};
 use crate::problem::{Bounds, Linear, Origin};

@@ -11,16 +11,11 @@
 //! where rows that are at no bound have a `D` so large that they have none. What is left in a
 //! variable at a bound is the multiplier of that bound.
 
+use super::tuning::multiplier_estimate::{NEAR, SHIFT, WEIGHTLESS};
 use super::{Derivatives, Multipliers, Nlp};
 use crate::linalg::sparse_ldl::SparseLdl;
 use crate::linalg::{Factor, Inertia};
 use crate::problem::Bounds;
-
-/// What is nearer to its bound than this is at it: an interior point method keeps away a little.
-const NEAR: f64 = 1e-5;
-const WEIGHTLESS: f64 = 1e8;
-/// What rows that depend on each other are shifted by, so that they share their multiplier.
-const SHIFT: f64 = 1e-8;
 
 /// The multipliers at `v`; `None` where there is no number.
 pub(crate) fn multipliers(nlp: &mut dyn Nlp, v: &[f64]) -> Option<Multipliers> {

@@ -19,6 +19,7 @@ mod run;
 mod steps;
 mod system;
 mod tape;
+mod tuning;
 
 pub use controls::Controls;
 pub use mode::Mode;

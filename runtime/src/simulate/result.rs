@@ -1,6 +1,7 @@
 //! What a simulation is asked for and what it says: plain data.
 
 use super::tape::Tape;
+use super::tuning::options::RTOL;
 use crate::nlp::Stop;
 use crate::problem::Origin;
 use std::fmt;
@@ -90,7 +91,7 @@ impl Options {
 impl Default for Options {
     fn default() -> Self {
         Options {
-            rtol: 1e-10,
+            rtol: RTOL,
             atol: None,
             integrator: Integrator::Automatic,
             max_step: f64::INFINITY,

@@ -11,23 +11,12 @@
 use super::Watch;
 use super::grid_sequencing::grids;
 use super::run::{Run, Target, is_good, is_lost, is_retried};
+use super::tuning::continuation::{
+    CAREFUL, FEWEST_HALVINGS, MOST_HALVINGS, MOST_ITERATIONS, ROUGH, WIDE, WIDER,
+};
 use crate::nlp::{Solution, Start, Status};
 use crate::solution::switching_function_sizes;
 use crate::transcribe::TranscribedNlp;
-
-/// Widths on the way, relative to the one that is named.
-const WIDER: [f64; 3] = [8.0, 4.0, 2.0];
-/// The tolerance of a solve with another width on a coarse grid.
-const ROUGH: f64 = 1e-2;
-/// The same where there is no coarse grid, and no finer one will put right what was found.
-const CAREFUL: f64 = 1e-3;
-/// A solve on the way that takes longer leads nowhere.
-const MOST_ITERATIONS: usize = 300;
-const WIDE: f64 = 0.5;
-/// A guess or a failure on which the switching function is nearly 0 says nothing of its size: there
-/// are at least so many.
-const FEWEST_HALVINGS: f64 = 8.0;
-const MOST_HALVINGS: f64 = 12.0;
 
 impl Run<'_> {
     /// Solves with the widths that the model names, if there are surfaces.

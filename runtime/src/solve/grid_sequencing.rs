@@ -8,18 +8,11 @@
 use super::Watch;
 use super::prolong::{Times, prolong};
 use super::run::{Run, Target, is_good};
+use super::tuning::grid_sequencing::{CLOSE, COARSE, COARSEST, FINER};
 use crate::linalg::Stages;
 use crate::nlp::{Nlp, Solution, Start, constraint_violation};
 use crate::problem::Problem;
 use crate::transcribe::TranscribedNlp;
-
-/// A grid of fewer intervals is not made coarser by half: it would say too little of the problem.
-const COARSE: usize = 250;
-/// The tolerance on the coarsest grid; from grid to grid it is `FINER` times as much, but never less
-/// than `CLOSE`: which of several close minima is found is decided on finer grids.
-const COARSEST: f64 = 1e-3;
-const FINER: f64 = 0.1;
-const CLOSE: f64 = 1e-5;
 
 impl Run<'_> {
     /// From grid to grid, the last of which is that of `nlp`; widths shrink on the first one.

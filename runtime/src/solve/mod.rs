@@ -13,6 +13,7 @@ mod prolong;
 pub mod refinement;
 mod run;
 mod smoothing_widths;
+mod tuning;
 pub mod warm_start;
 
 use crate::nlp::{Nlp, Progress, Solution, Start, Status, Stop, convex};

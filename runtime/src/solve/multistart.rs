@@ -1,13 +1,11 @@
 //! Random starting points, and which of two solutions is the better one.
 
+use super::tuning::multistart::VARIATION;
 use super::warm_start::values_of;
 use crate::nlp::{Nlp, Solution, Start, Status};
 use crate::problem::Problem;
 use crate::transcribe::TranscribedNlp;
 use crate::transcribe::interval::Signal;
-
-/// Relative size of a variation.
-const VARIATION: f64 = 0.3;
 
 /// The guess (or `base`) with smooth random variations of every signal; the same for the same seed
 /// and index.

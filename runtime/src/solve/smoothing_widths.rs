@@ -10,29 +10,13 @@
 use super::Watch;
 use super::grid_sequencing::grids;
 use super::run::{Run, Target, is_good, is_lost, is_retried};
+use super::tuning::smoothing_widths::{
+    DECREASE, FIRST_FACTOR, LAST_FACTOR, MOST_FAILURES, MOST_ITERATIONS, MOST_SIZINGS, SHRUNK,
+    THINNER, TOO_THIN, TOO_WIDE, UNKNOWN,
+};
 use crate::nlp::{Solution, Start, Status};
 use crate::solution::switching_function_sizes;
 use crate::transcribe::TranscribedNlp;
-
-/// Smoothing widths relative to the size of the switching function.
-const FIRST_FACTOR: f64 = 0.1;
-const LAST_FACTOR: f64 = 0.01;
-/// Where the first cannot be solved.
-const THINNER: [f64; 3] = [0.1, 0.03, 0.01];
-/// From one width to the next; after a failure the square root of it, and so on.
-const DECREASE: f64 = 0.3;
-const MOST_FAILURES: usize = 3;
-/// Without a guess of its size the first width is a fraction of this; how large the function is, is
-/// found out at most so often.
-const UNKNOWN: f64 = 1.0;
-const MOST_SIZINGS: usize = 3;
-/// A first width may be so many times the one that fits the size, or that part of it.
-const TOO_WIDE: f64 = 2.0;
-const TOO_THIN: f64 = 0.1;
-/// A function that shrinks below this with its layer is held: its size is that of the layer.
-const SHRUNK: f64 = 0.5;
-/// A step that takes longer than this is too long.
-const MOST_ITERATIONS: usize = 300;
 
 impl Run<'_> {
     /// Solves with widths of our own choice, as small as can be solved.

@@ -1,6 +1,7 @@
 //! Warm starts: where an earlier solution ended, with multipliers and as much room as the change of
 //! the problem asks for.
 
+use super::tuning::warm_start::{FACTOR, LEAST};
 use crate::linalg::Stages;
 use crate::nlp::{Solution, Start, Warm, constraint_violation, multiplier_estimate};
 use crate::problem::Problem;
@@ -117,8 +118,6 @@ fn first_width<'p>(
 /// The barrier parameter for a start that violates rows by `r`. Distances from bounds and their
 /// multipliers will change in proportion to `r`, and their products by its square.
 fn room(nlp: &mut TranscribedNlp, v: &[f64]) -> f64 {
-    const LEAST: f64 = 1e-6;
-    const FACTOR: f64 = 10.0;
     let violation = constraint_violation(nlp, v);
     (FACTOR * violation * violation).clamp(LEAST, Warm::ROOM)
 }

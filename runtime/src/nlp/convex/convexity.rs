@@ -7,13 +7,9 @@
 //! positive
 //! semidefinite: its entries are fractions. What is not proved is not convex.
 
+use crate::nlp::tuning::convexity::{LARGEST, LARGEST_EXACT};
 use num_bigint::BigInt;
 use std::collections::{BTreeMap, HashSet};
-
-/// Exact elimination of a larger block would take too long.
-const LARGEST_EXACT: usize = 60;
-/// A larger block is not looked at.
-const LARGEST: usize = 600;
 
 /// Whether the symmetric matrix with the entries `(row, column, value)` of its upper or lower
 /// triangle is proved to be positive semidefinite. Entries of one place add up.

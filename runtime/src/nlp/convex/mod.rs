@@ -15,6 +15,7 @@ use super::{
     constraint_violation,
 };
 use crate::linalg::{Columns, Triplets};
+use crate::nlp::tuning::convex::{CONIC_TOLERANCE, FARTHEST, LEAST_CONIC_TOLERANCE};
 use crate::problem::{Bounds, Degree, Problem};
 use clarabel::{ConicProgram, ConicSolution, ConicStatus, solve_conic};
 use one_sided::OneSidedConstraints;
@@ -70,7 +71,11 @@ fn solve_scaled(nlp: &mut dyn Nlp, v: &[f64], options: &Options) -> Option<Ended
         p: upper_columns(nlp.hessian_structure(), &derivatives.hessian, v.len()),
         equalities: sides.equalities,
     };
-    let found = solve_conic(program, (0.1 * options.tol).max(1e-10), options.max_iter);
+    let found = solve_conic(
+        program,
+        (CONIC_TOLERANCE * options.tol).max(LEAST_CONIC_TOLERANCE),
+        options.max_iter,
+    );
     Some(ended(nlp, &sides, found))
 }
 
@@ -121,9 +126,6 @@ fn ended(nlp: &mut dyn Nlp, sides: &OneSidedConstraints, found: ConicSolution) -
     let (mu, is_saddle, decrement) = (0.0, false, f64::INFINITY);
     Ended { status, v, multipliers, mu, kkt_error, is_saddle, decrement, counts }
 }
-
-/// A variable without a bound is thought to be within so many of its units.
-const FARTHEST: f64 = 1e6;
 
 /// Whether multipliers of affine rows prove that no point within the bounds meets them (Farkas'
 /// lemma; Boyd & Vandenberghe, Convex Optimization, section 5.8): at all these points the sum of

@@ -9,24 +9,17 @@ use super::iterate::{Iterate, Slopes, Step, Values};
 use super::kkt::{Kkt, System};
 use super::line_search::{Accepted, Search};
 use super::residuals::Residuals;
-use super::restoration::{REQUIRED_DECREASE, Restored};
-use super::termination::{ACCEPTABLE_ERROR, Target};
+use super::restoration::Restored;
+use super::termination::Target;
+use super::tuning::algorithm::{
+    LARGEST_MULTIPLIER, MOST_RESTARTS, MOST_TINY_STEPS, NEARLY_FEASIBLE, TINY_STEP,
+};
+use super::tuning::restoration::REQUIRED_DECREASE;
+use super::tuning::termination::ACCEPTABLE_ERROR;
 use super::vectors::{add_scaled, largest};
 use super::watchdog::Watchdog;
 use crate::nlp::{Counts, Nlp, Options, Progress, Status, Stop, Watch};
 use std::ops::ControlFlow;
-
-/// Multipliers above this, relative to the objective, come from rows that depend on each other,
-/// unless these are nearly satisfied.
-const LARGEST_MULTIPLIER: f64 = 1e8;
-const NEARLY_FEASIBLE: f64 = 1e-4;
-/// A step this small, relative to the iterate, is rounding.
-const TINY_STEP: f64 = 10.0 * f64::EPSILON;
-/// More steps of rounding than that in a row, at the last barrier parameter or because they were
-/// cut down to it, lead nowhere.
-const MOST_TINY_STEPS: usize = 5;
-/// A restoration phase that is stuck is begun anew so many times.
-const MOST_RESTARTS: usize = 4;
 
 /// What one iteration led to.
 pub(super) enum Outcome {

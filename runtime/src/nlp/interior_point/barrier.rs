@@ -9,29 +9,19 @@
 use super::formulation::Formulation;
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::residuals::Residuals;
+use super::tuning::barrier::{
+    BELOW_TOLERANCE, CLOSE, DAMPING, MONOTONE, MULTIPLIER_CORRIDOR, SMALLEST_FRACTION, SUPERLINEAR,
+    SUPERLINEAR_AFTER, WHOLE,
+};
 use super::vectors::dot;
 
 /// How exactly a barrier problem is solved before `mu` falls, which it does to the smaller of
 /// `factor * mu` and `mu^power`.
-struct UpdateRule {
-    accuracy: f64,
-    factor: f64,
-    power: f64,
+pub(super) struct UpdateRule {
+    pub(super) accuracy: f64,
+    pub(super) factor: f64,
+    pub(super) power: f64,
 }
-
-const MONOTONE: UpdateRule = UpdateRule { accuracy: 4.0, factor: 0.2, power: 1.2 };
-/// The rule after so many whole steps in a row.
-const SUPERLINEAR: UpdateRule = UpdateRule { accuracy: 100.0, factor: 0.05, power: 1.5 };
-const SUPERLINEAR_AFTER: usize = 2;
-/// A step is whole if this fraction of it is taken, at least.
-const WHOLE: f64 = 0.9;
-/// A parameter within this factor of the last is the last.
-const CLOSE: f64 = 10.0;
-const SMALLEST_FRACTION: f64 = 0.99;
-/// Bound multipliers stay within this factor of `mu / distance`.
-const MULTIPLIER_CORRIDOR: f64 = 1e10;
-/// Weight of the linear term that keeps variables with one bound only from running away.
-const DAMPING: f64 = 1e-5;
 
 /// The barrier parameter `mu` and the fraction `tau` of the way to the boundary that a step may go.
 #[derive(Clone, Copy, Debug)]
@@ -44,12 +34,12 @@ pub(super) struct Barrier {
 
 impl Barrier {
     pub(super) fn new(mu: f64, tol: f64) -> Self {
-        Barrier { mu, smallest: tol / 10.0, whole_steps: 0 }
+        Barrier { mu, smallest: tol / BELOW_TOLERANCE, whole_steps: 0 }
     }
 
     /// Lets the parameter fall as far as this error asks for.
     pub(super) fn aim_at(&mut self, error: f64) {
-        self.smallest = error / 10.0;
+        self.smallest = error / BELOW_TOLERANCE;
     }
 
     /// Makes room around a point that was left.

@@ -8,8 +8,7 @@
 //! the objective is large, too. That limit is ours: where the feasible set has no interior,
 //! multipliers grow without end, and without it any point would pass for an optimum.
 
-/// Multipliers of this average size are considered normal.
-const NORMAL_MULTIPLIER: f64 = 100.0;
+use super::tuning::error_scaling::NORMAL_MULTIPLIER;
 
 pub(super) fn error_scale(average: f64, objective: f64) -> f64 {
     (average / NORMAL_MULTIPLIER).clamp(1.0, objective_scale(objective))

@@ -1,15 +1,10 @@
 //! The filter: pairs (violation `theta`, objective `phi`) that a new iterate must improve on
 //! (Waechter & Biegler 2006, algorithm A and section 2.3).
 
-const VIOLATION_MARGIN: f64 = 1e-5;
-const OBJECTIVE_MARGIN: f64 = 1e-8;
-const ARMIJO: f64 = 1e-4;
-const SWITCH_FACTOR: f64 = 1.0;
-const VIOLATION_POWER: f64 = 1.1;
-const SLOPE_POWER: f64 = 2.3;
-const SMALLEST_STEP: f64 = 0.05;
-const LARGEST_VIOLATION: f64 = 1e4;
-const SMALL_VIOLATION: f64 = 1e-4;
+use super::tuning::filter::{
+    ARMIJO, LARGEST_VIOLATION, OBJECTIVE_MARGIN, ROUNDING, SLOPE_POWER, SMALL_VIOLATION,
+    SMALLEST_ALPHA, SMALLEST_STEP, SWITCH_FACTOR, VIOLATION_MARGIN, VIOLATION_POWER,
+};
 
 /// Violation, objective and its slope at the point that a line search begins at.
 #[derive(Clone, Copy)]
@@ -69,7 +64,7 @@ impl Filter {
                 bound = bound.min(switch);
             }
         }
-        (SMALLEST_STEP * bound).max(1e-14)
+        (SMALLEST_STEP * bound).max(SMALLEST_ALPHA)
     }
 
     /// Whether a trial point is good enough; adds the point that the step began at unless the
@@ -96,5 +91,5 @@ impl Filter {
 
 /// `a <= b` but for rounding.
 fn lies_below(a: f64, b: f64) -> bool {
-    a <= b + 10.0 * f64::EPSILON * b.abs().max(1.0)
+    a <= b + ROUNDING * b.abs().max(1.0)
 }

@@ -4,24 +4,13 @@
 use super::formulation::Formulation;
 use super::iterate::Slopes;
 use super::kkt::Kkt;
+use super::tuning::inertia::{
+    CAUTION_GROWTH, CUT_SHORT, DECAY, DEPENDENT_ROWS, FIRST_GROWTH, FIRST_REGULARIZATION, GROWTH,
+    LARGEST_REGULARIZATION, MOST_CAUTION, MU_POWER, NOT_CUT, ROW_REGULARIZATION,
+    SMALLEST_REGULARIZATION,
+};
 use crate::linalg::Inertia;
 use crate::nlp::Counts;
-
-const FIRST_REGULARIZATION: f64 = 1e-4;
-const SMALLEST_REGULARIZATION: f64 = 1e-20;
-const LARGEST_REGULARIZATION: f64 = 1e40;
-const FIRST_GROWTH: f64 = 100.0;
-const GROWTH: f64 = 8.0;
-const DECAY: f64 = 1.0 / 3.0;
-/// A line search that keeps less than the first fraction of a step raises the caution, one that
-/// keeps more than the second lowers it.
-const CUT_SHORT: f64 = 0.1;
-const NOT_CUT: f64 = 0.5;
-const CAUTION_GROWTH: f64 = 4.0;
-const MOST_CAUTION: f64 = 1.0;
-const ROW_REGULARIZATION: f64 = 1e-8;
-/// The same where rows depend on each other by their multipliers, although the inertia is right.
-const DEPENDENT_ROWS: f64 = 1e-6;
 
 impl Kkt {
     /// Factors with the smallest regularisation that gives the right inertia; `false` if none does.
@@ -44,7 +33,7 @@ impl Kkt {
             match self.factor_once(formulation, slopes, rows, counts) {
                 Inertia::Correct => break,
                 // IC-2: a regularisation of the constraints where the matrix is singular.
-                Inertia::Singular if rows == 0.0 => rows = ROW_REGULARIZATION * mu.powf(0.25),
+                Inertia::Singular if rows == 0.0 => rows = ROW_REGULARIZATION * mu.powf(MU_POWER),
                 // IC-5: a larger one of the Hessian.
                 Inertia::Wrong | Inertia::Singular => {
                     self.regularization = self.next_regularization()
@@ -77,7 +66,7 @@ impl Kkt {
         loop {
             match self.factor_once(formulation, slopes, rows, counts) {
                 Inertia::Correct => return self.regularization == least,
-                Inertia::Singular if rows == 0.0 => rows = ROW_REGULARIZATION * mu.powf(0.25),
+                Inertia::Singular if rows == 0.0 => rows = ROW_REGULARIZATION * mu.powf(MU_POWER),
                 Inertia::Wrong | Inertia::Singular => self.regularization *= GROWTH,
             }
             if self.regularization.is_nan() || self.regularization > LARGEST_REGULARIZATION {

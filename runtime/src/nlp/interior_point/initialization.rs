@@ -5,13 +5,8 @@ use super::algorithm::Algorithm;
 use super::filter::Filter;
 use super::formulation::Formulation;
 use super::iterate::Iterate;
+use super::tuning::initialization::{BOUND_PUSH, FIRST_MU, WARM_START_BOUND_PUSH};
 use crate::nlp::{Multipliers, Nlp, Options, Start};
-
-const FIRST_MU: f64 = 0.1;
-/// How far inside of its bounds a start is moved: Ipopt's `bound_push` and `bound_frac`, cold and
-/// warm.
-const BOUND_PUSH: f64 = 1e-2;
-const WARM_START_BOUND_PUSH: f64 = 1e-5;
 
 /// The algorithm at its first iterate.
 pub(super) fn prepare(nlp: &mut dyn Nlp, start: &Start, options: Options) -> Algorithm {

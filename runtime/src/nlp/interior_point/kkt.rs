@@ -13,16 +13,13 @@
 use super::barrier::Barrier;
 use super::formulation::Formulation;
 use super::iterate::{Iterate, Slopes, Step};
+use super::tuning::kkt::{HUGE, INACCURATE, MOST_REFINEMENTS, REFINED};
 use super::vectors::{are_finite, dot, largest};
 use crate::linalg::riccati::Riccati;
 use crate::linalg::sparse_ldl::SparseLdl;
 use crate::linalg::{Factor, Inertia, Products};
 use crate::nlp::{Derivatives, Nlp};
 use crate::problem::Linear;
-
-/// Refinement stops at this residual, relative to the right side.
-const REFINED: f64 = 1e-11;
-const MOST_REFINEMENTS: usize = 8;
 
 /// What the optimality conditions are linearised around.
 #[derive(Clone, Copy)]
@@ -255,7 +252,7 @@ impl Kkt {
             before = now;
         }
         let size = right.max(largest(&self.solution));
-        size.is_finite() && now <= 1e-5 * size
+        size.is_finite() && now <= INACCURATE * size
     }
 
     fn compute_residual(&mut self, formulation: &Formulation, slopes: &Slopes) {
@@ -286,7 +283,6 @@ impl Kkt {
         at: &mut Iterate,
         slopes: &Slopes,
     ) {
-        const HUGE: f64 = 1e3;
         let zeros = vec![0.0; slopes.derivatives.hessian.len()];
         self.sigma.fill(1.0);
         self.diagonal.fill(1.0);

@@ -6,10 +6,8 @@ use super::filter::{Filter, Reference};
 use super::formulation::Formulation;
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::kkt::{Kkt, System};
+use super::tuning::line_search::{CORRECTION_DECREASE, MOST_CORRECTIONS};
 use crate::nlp::{Counts, Nlp};
-
-const MOST_CORRECTIONS: usize = 4;
-const CORRECTION_DECREASE: f64 = 0.99;
 
 /// What a line search works with.
 pub(super) struct Search<'a> {

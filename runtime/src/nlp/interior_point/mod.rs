@@ -18,6 +18,7 @@ mod residuals;
 mod restoration;
 mod saddle;
 mod termination;
+mod tuning;
 mod vectors;
 mod watchdog;
 
@@ -28,6 +29,7 @@ use super::{Multipliers, Nlp, Options, Progress, Solution, Start, Status, Watch}
 use crate::linalg::is_sparse_cheaper;
 use crate::problem::Linear;
 use algorithm::Algorithm;
+use tuning::fallback::{FAR, MOST_RESCALINGS};
 
 /// Solves the NLP from `start`. Progress is reported unscaled, once per iteration. Nobody is
 /// told "infeasible" for want of luck: where an attempt ends without a solution others are made,
@@ -64,11 +66,6 @@ fn factorization(nlp: &dyn Nlp, linear: Linear) -> Linear {
         (named, _) => named,
     }
 }
-
-/// An answer whose sizes are further than this from those that the solve was scaled by is begun
-/// anew, so often.
-const FAR: f64 = 8.0;
-const MOST_RESCALINGS: usize = 3;
 
 /// Guess and bounds may say little of how large an answer is. Where a solve ends without one that
 /// can be called so, others begin at its end, scaled by what was found.

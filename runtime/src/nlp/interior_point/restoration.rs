@@ -15,17 +15,11 @@ use super::filter::Filter;
 use super::formulation::Formulation;
 use super::iterate::{Iterate, Values};
 use super::residuals::Residuals;
+use super::tuning::restoration::{FIRST_DECREASE, LARGEST_BOUND_MULTIPLIER, RHO};
 
 use crate::linalg::{Family, Stages, Triplets};
 use crate::nlp::{Derivatives, Nlp, Options, Place, Progress, Quantities, Status, Watch};
 use crate::problem::Bounds;
-
-const RHO: f64 = 1e3;
-/// A restoration phase leaves at most so much of the violation,
-pub(super) const REQUIRED_DECREASE: f64 = 0.9;
-/// and where it comes before everything else at most this.
-const FIRST_DECREASE: f64 = 1e-3;
-const LARGEST_BOUND_MULTIPLIER: f64 = 1e3;
 
 /// How a restoration phase ended.
 pub(super) enum Restored {

@@ -9,23 +9,13 @@
 
 use super::algorithm::Algorithm;
 use super::iterate::{Step, Values};
+use super::tuning::saddle::{
+    GOLDEN, ITERATIONS, LARGEST_VIOLATION, LEAST_GAIN, MOST_DEPARTURES, MOST_HALVINGS, ROOM,
+    ROUNDING, SPREAD,
+};
 use super::vectors::dot;
 use crate::nlp::Nlp;
 use crate::nlp::assessment::Assessment;
-
-/// A point is left so often.
-const MOST_DEPARTURES: usize = 5;
-/// Steps of the inverse iteration.
-const ITERATIONS: usize = 8;
-/// Curvature is negative if it is more than this part of its terms.
-const ROUNDING: f64 = 1e-9;
-/// A step along the direction has to gain this part of what curvature says.
-const LEAST_GAIN: f64 = 0.1;
-const MOST_HALVINGS: usize = 40;
-/// It may violate the rows so much.
-const LARGEST_VIOLATION: f64 = 1e-2;
-/// The barrier parameter afterwards, at least.
-const ROOM: f64 = 1e-4;
 
 /// What became of a stationary point.
 pub(super) enum Departure {
@@ -69,7 +59,7 @@ impl Algorithm {
         let mut step = Step::new(formulation);
         // Nearly the same at all times: of several directions that are as good, one that goes to
         // one side.
-        let start = |i: usize| 1.0 + 0.1 * (i as f64 * 0.618_033_988_749_895).fract();
+        let start = |i: usize| 1.0 + SPREAD * (i as f64 * GOLDEN).fract();
         (0..formulation.variables).for_each(|i| step.y[i] = start(i));
         let mut curvature = f64::NAN;
         for _ in 0..ITERATIONS {

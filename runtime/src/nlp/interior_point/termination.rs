@@ -10,23 +10,13 @@ use super::iterate::Step;
 use super::kkt::System;
 use super::residuals::weighted_violation;
 use super::saddle::Departure;
+use super::tuning::termination::{
+    ACCEPTABLE_ERROR, ACCEPTABLE_ITERATIONS, DIVERGED, FASTEST, LEAST_TARGET,
+    MOST_WEIGHTED_VIOLATION, PATIENCE, SLOWEST,
+};
 use super::vectors::largest;
 use crate::nlp::assessment::Assessment;
 use crate::nlp::{Multipliers, Nlp, Status};
-
-/// An error this small for this many iterations is acceptable.
-pub(super) const ACCEPTABLE_ERROR: f64 = 1e-6;
-const ACCEPTABLE_ITERATIONS: usize = 100;
-/// The violation weighted with the multipliers may be so many times the tolerance.
-const MOST_WEIGHTED_VIOLATION: f64 = 1e3;
-/// Variables beyond this, at a point that is feasible relative to them, have left the problem.
-const DIVERGED: f64 = 1e10;
-/// The target is not lowered below this part of the tolerance, nor faster than that; lower ones are
-/// given up after so many iterations.
-const LEAST_TARGET: f64 = 1e-5;
-const FASTEST: f64 = 1e-2;
-const SLOWEST: f64 = 0.3;
-const PATIENCE: usize = 20;
 
 /// The error at which the measures are looked at.
 #[derive(Clone, Copy)]

@@ -7,11 +7,7 @@
 
 use super::filter::Reference;
 use super::iterate::{Iterate, Values};
-
-/// So many shortened steps in a row start the watchdog.
-const PATIENCE: usize = 10;
-/// So many watchdog steps, which are full, are taken without asking the filter.
-const WATCHDOG_STEPS: usize = 3;
+use super::tuning::watchdog::{PATIENCE, SHORTENED, WATCHDOG_STEPS};
 
 /// Where the watchdog steps began.
 pub(super) struct Saved {
@@ -32,7 +28,7 @@ pub(super) struct Watchdog {
 impl Watchdog {
     /// Notes how much of a step was kept, and whether it had been made shorter before.
     pub(super) fn note(&mut self, fraction: f64, is_cautious: bool) {
-        self.shortened = if fraction < 0.9 || is_cautious { self.shortened + 1 } else { 0 };
+        self.shortened = if fraction < SHORTENED || is_cautious { self.shortened + 1 } else { 0 };
     }
 
     /// Whether it is time to begin.

@@ -9,21 +9,11 @@
 //!      rows are powers of two, which round nothing.
 
 use super::nominal::{largest, magnitudes, magnitudes_of_answer, near, slopes};
+use crate::nlp::tuning::factors::{
+    LARGEST_FACTOR, LARGEST_OBJECTIVE, LEAST_FACTOR, LEAST_OBJECTIVE, MODERATE, MODERATE_GRADIENT,
+    SMALLEST,
+};
 use crate::nlp::{Derivatives, Nlp, Quantities};
-
-/// Quantities up to this size, and down to its inverse, are moderate.
-const MODERATE: f64 = 16.0;
-/// The same of gradients of rows.
-const MODERATE_GRADIENT: f64 = 100.0;
-/// The least and the largest gradient of the objective.
-const LEAST_OBJECTIVE: f64 = 1.0;
-const LARGEST_OBJECTIVE: f64 = 100.0;
-/// Sizes and slopes below this are none.
-const SMALLEST: f64 = 1e-30;
-/// Rows are not scaled down below this.
-const LEAST_FACTOR: f64 = 1e-8;
-/// ScalingFactors of the objective beyond this, or below its inverse, come from slopes that are rounding.
-const LARGEST_FACTOR: f64 = 1e12;
 
 /// What the numbers of an NLP are multiplied by.
 #[derive(Clone)]

@@ -13,22 +13,12 @@
 //! quantities at rest: it is the size only as far as range, conditions and equations do not say
 //! more. Beyond 1 they do not raise it.
 
+use crate::nlp::tuning::nominal::{
+    GOLDEN, LARGEST_ESTIMATE, LEAST_ANSWER, LEAST_PART, LONGEST_RANGE, SMALL,
+};
 use crate::nlp::{Derivatives, Nlp, Quantities};
 use crate::problem::Bounds;
 use std::collections::BTreeMap;
-
-/// Multiples of it spread evenly between 0 and 1.
-const GOLDEN: f64 = 0.618_033_988_749_895;
-/// A guess below this is small.
-const SMALL: f64 = 1.0 / 16.0;
-/// A quantity with a small guess has at least this part of its range.
-const LEAST_PART: f64 = 1e-2;
-/// A range of more units is no statement about a size.
-const LONGEST_RANGE: f64 = 1e4;
-/// What is smaller than this part of its unit at an answer may be rounding.
-const LEAST_ANSWER: f64 = 1e-4;
-/// Estimates beyond this, or below its inverse, are rounding or poles.
-const LARGEST_ESTIMATE: f64 = 1e8;
 
 /// The size of each quantity; 0 where nothing is known.
 pub(in crate::nlp) fn magnitudes(

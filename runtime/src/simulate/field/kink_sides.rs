@@ -4,6 +4,7 @@
 //! kink itself the side is the one to which the state goes.
 
 use super::Field;
+use crate::simulate::tuning::field::ON_SURFACE;
 
 impl Field<'_> {
     /// -1 below a kink, 1 above.
@@ -25,7 +26,7 @@ impl Field<'_> {
             let kinks = self.kinks(t, x);
             let rate = self.rate(t, x);
             for kink in 0..kinks.psi.len() {
-                let is_off = kinks.psi[kink].abs() > 10.0 * kinks.noise(kink, x);
+                let is_off = kinks.psi[kink].abs() > ON_SURFACE * kinks.noise(kink, x);
                 let ahead = if is_off { kinks.psi[kink] } else { kinks.rate(kink, &rate) };
                 self.selectors[first + kink] = if ahead > 0.0 { 1.0 } else { -1.0 };
             }

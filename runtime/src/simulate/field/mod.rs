@@ -5,6 +5,7 @@
 //! multiply each other.
 
 use super::controls::Controls;
+use crate::simulate::tuning::field::{PROJECTED, SOLVED};
 pub(crate) mod direction;
 mod kink_sides;
 mod memory;
@@ -300,7 +301,7 @@ impl<'a> Field<'a> {
             for (&surface, change) in memory.sliding.iter().zip(&memory.change) {
                 let selector = &mut point.column_mut(first + surface)[0];
                 *selector += change;
-                is_solved &= change.abs() <= 1e-13 * (1.0 + selector.abs());
+                is_solved &= change.abs() <= SOLVED * (1.0 + selector.abs());
             }
             if is_solved {
                 memory.sliding.iter().for_each(|&i| self.selectors[i] = point.column(first + i)[0]);
@@ -315,7 +316,7 @@ impl<'a> Field<'a> {
         let sliding = self.sliding();
         for _ in 0..if sliding.is_empty() { 0 } else { 3 } {
             let normals = self.normals(t, x);
-            if sliding.iter().all(|&i| normals.psi[i].abs() <= 0.1 * normals.noise(i, x)) {
+            if sliding.iter().all(|&i| normals.psi[i].abs() <= PROJECTED * normals.noise(i, x)) {
                 return;
             }
             let selectors = self.selectors.clone();

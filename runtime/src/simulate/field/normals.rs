@@ -4,10 +4,8 @@
 use super::Field;
 use super::tube::Tube;
 use crate::problem::Function;
+use crate::simulate::tuning::normals::ROUNDING;
 use nalgebra::DMatrix;
-
-/// What rounding makes of a sum, as a part of its terms.
-const ROUNDING: f64 = 1e-14;
 
 /// The functions of the surfaces with their derivatives.
 pub(crate) struct Normals {

@@ -12,19 +12,7 @@ use super::Field;
 use super::tube::Tube;
 use crate::simulate::mode::Mode;
 use crate::simulate::result::Options;
-
-/// The absolute tolerance as a part of the size of a state.
-const PART: f64 = 1e-12;
-
-/// A state that has been no larger than this counts as if it had: what begins with 0 may grow so
-/// slowly that no step is short enough.
-const LEAST: f64 = 1e-60;
-
-/// Selectors that solve a linear system are known so well.
-const SOLVED: f64 = 1e-13;
-
-/// So many states may pass on to each other that they are uncertain.
-const PASSES: usize = 3;
+use crate::simulate::tuning::tolerance::{LEAST, PART, PASSES, SOLVED};
 
 /// The tolerances of all states.
 pub(crate) struct Tolerance {

@@ -8,12 +8,7 @@ use crate::simulate::field::tube::Tube;
 use crate::simulate::result::Extreme;
 use crate::simulate::steps::Step;
 use crate::simulate::system::Enclosure;
-
-/// How exact an extreme is, as a part of the values near it.
-const EXACT: f64 = 1e-9;
-
-/// More parts than this of one step are not looked at.
-const MOST_PARTS: usize = 200;
+use crate::simulate::tuning::extremes::{EXACT, MOST_PARTS};
 
 /// The least, then the greatest value of each path condition so far; none if nobody asks.
 pub(crate) struct Extremes(pub Vec<[Extreme; 2]>);

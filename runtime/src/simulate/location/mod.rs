@@ -20,6 +20,7 @@ use super::steps::Step;
 use crate::simulate::field::tube::Tube;
 use crate::simulate::mode::Mode;
 use crate::simulate::tape::Cause;
+use crate::simulate::tuning::location::{NEAR, SECANT_OFFSET, SELECTOR_NOISE, SHORTEST};
 pub(crate) use bisection::bisect;
 use search::{Search, Signal};
 
@@ -111,7 +112,7 @@ fn noise(field: &mut Field, step: &Step, condition: Condition) -> f64 {
     field.find_rounding(step.t, &step.start);
     match condition {
         Condition::Reaches(i) => field.normals(step.t, &step.start).noise(i, &step.start),
-        Condition::Leaves(_) => 1e-12,
+        Condition::Leaves(_) => SELECTOR_NOISE,
         Condition::CrossesKink(k) => field.kinks(step.t, &step.start).noise(k, &step.start),
     }
 }
@@ -146,7 +147,7 @@ fn root(g: &mut dyn FnMut(f64) -> f64, [mut low, mut high]: [f64; 2], noise: f64
     let mut span = high - begin;
     while at_low <= noise {
         span *= 0.5;
-        if span < 1e-12 {
+        if span < SHORTEST {
             return begin;
         }
         let value = g(begin + span);
@@ -174,11 +175,11 @@ fn refine(field: &mut Field, step: &Step, condition: Condition, theta: f64) -> F
     };
     let (mut state, mut value) = end(theta);
     let mut best = theta;
-    let mut other = theta * (1.0 - 1e-6);
+    let mut other = theta * (1.0 - SECANT_OFFSET);
     let mut at_other = if theta > 0.0 { end(other).1 } else { 0.0 };
     for _ in 0..6 {
         let next = best - value * (best - other) / (value - at_other);
-        let is_near = (next - theta).abs() <= 1e-3 * theta && next <= 1.0;
+        let is_near = (next - theta).abs() <= NEAR * theta && next <= 1.0;
         if value == 0.0 || !is_near || next == best {
             break;
         }

@@ -20,12 +20,7 @@ use crate::simulate::field::Field;
 use crate::simulate::field::tube::Tube;
 use crate::simulate::steps::Step;
 use crate::simulate::system::Interval;
-
-/// More parts than this of one step are looked at in shorter steps.
-const MOST_PARTS: usize = 1000;
-
-/// What stays within this many times its rounding errors stays at 0, and does not fail.
-const FLAT: f64 = 1000.0;
+use crate::simulate::tuning::search::{FLAT, MOST_PARTS, ROUNDING};
 
 /// A condition along a step.
 pub(crate) struct Signal<'f, 'a> {
@@ -139,6 +134,6 @@ impl Signal<'_, '_> {
     /// A part of the step that rounding hides.
     fn shortest(&self) -> f64 {
         let last = (self.step.t + self.step.h).abs().max(self.step.t.abs());
-        8.0 * f64::EPSILON * (1.0 + last / self.step.h)
+        ROUNDING * (1.0 + last / self.step.h)
     }
 }

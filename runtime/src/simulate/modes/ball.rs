@@ -13,14 +13,9 @@ use super::complementarity::{is_p_matrix, selectors};
 use crate::simulate::field::direction::length;
 use crate::simulate::location::bisect;
 use crate::simulate::system::Ball;
+use crate::simulate::tuning::ball::{MOST_SWEEPS, SETTLED, SINGULAR};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
-
-/// Eigenvalues below this part of the diagonal are 0 by rounding.
-const SINGULAR: f64 = 1e-13;
-
-/// Sweeps over several balls at one point.
-const MOST_SWEEPS: usize = 200;
 
 /// Where the balls stand among some surfaces.
 pub(crate) fn blocks(balls: &[Ball], surfaces: &[usize]) -> Vec<Range<usize>> {
@@ -133,7 +128,7 @@ pub(crate) fn solution(
             lambda[ball] = multiplier(a, b, balls, &lambda, ball, largest)?;
         }
         let change = lambda.iter().zip(&before).map(|(now, before)| (now - before).abs());
-        if balls.len() == 1 || change.fold(0.0, f64::max) <= 1e-15 * largest {
+        if balls.len() == 1 || change.fold(0.0, f64::max) <= SETTLED * largest {
             return given(a, b, balls, &lambda).map(|s| clamped(s, balls));
         }
     }

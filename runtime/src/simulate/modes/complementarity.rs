@@ -7,13 +7,8 @@
 //! the solution is unique. With an artificial variable in the rows of `z` alone the method ends on
 //! no ray, whatever `B` is: along one neither `z` nor, by complementarity, `y` can grow.
 
+use crate::simulate::tuning::complementarity::{MOST_MINORS, PIVOT, SINGULAR};
 use nalgebra::{DMatrix, DVector};
-
-/// Beyond this many surfaces at a point principal minors are too many to look at.
-const MOST_MINORS: usize = 12;
-
-/// Minors below this part of what their size allows are 0 by rounding.
-const SINGULAR: f64 = 1e-13;
 
 /// Whether all principal minors are positive, as far as that can be told at bearable cost.
 pub(crate) fn is_p_matrix(b: &DMatrix<f64>) -> bool {
@@ -123,10 +118,10 @@ impl Tableau {
     /// The row that limits a growing column; the artificial variable leaves as soon as it may.
     fn ratio_test(&self, column: usize) -> Option<usize> {
         let last = self.rows.ncols() - 1;
-        let limits = (0..self.rows.nrows()).filter(|&i| self.rows[(i, column)] > 1e-12);
+        let limits = (0..self.rows.nrows()).filter(|&i| self.rows[(i, column)] > PIVOT);
         let ratio = |i: usize| self.rows[(i, last)] / self.rows[(i, column)];
         let least = limits.clone().map(ratio).fold(f64::INFINITY, f64::min);
-        let ties = limits.filter(|&i| ratio(i) <= least + 1e-12 * (1.0 + least.abs()));
+        let ties = limits.filter(|&i| ratio(i) <= least + PIVOT * (1.0 + least.abs()));
         ties.max_by_key(|&i| self.basis[i] == last - 1)
     }
 

@@ -15,15 +15,10 @@ use super::field::{Field, surface_rates};
 use super::result::{Candidate, Status};
 use super::steps::Step;
 use crate::simulate::mode::Mode;
+use crate::simulate::tuning::modes::{AHEAD, AT_END, CONVERGED, MOST_COMBINED, TIE};
 use ball::{blocks, is_unique, solution};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
-
-/// Rates below this part of what they are made of are 0.
-pub(crate) const TIE: f64 = 1e-11;
-
-/// Beyond this many surfaces at a point, combinations are too many to list.
-const MOST_COMBINED: usize = 6;
 
 /// A point on some surfaces.
 struct Corner<'f, 'a> {
@@ -104,7 +99,7 @@ impl Corner<'_, '_> {
                 return None;
             }
             let next = solution(&(&r + &b * &s), &b, &self.balls)?;
-            if (&next - &s).amax() <= 1e-13 {
+            if (&next - &s).amax() <= CONVERGED {
                 let sides: Vec<i8> = (0..s.len()).map(|i| side(next[i], r[i], tie[i])).collect();
                 return Some(self.choice(&sides, next, &r, &tie));
             }
@@ -120,7 +115,7 @@ impl Corner<'_, '_> {
         for ball in self.balls.clone() {
             let [own, rate, tie] =
                 [s.as_slice(), r.as_slice(), tie].map(|all| length(&all[ball.clone()]));
-            let moves = own >= 1.0 - 1e-12 && rate > tie;
+            let moves = own >= 1.0 - AT_END && rate > tie;
             modes[ball].fill(if moves { Mode::Moving } else { Mode::Sliding });
         }
         Choice { modes, s }
@@ -221,7 +216,7 @@ impl Corner<'_, '_> {
         let of_balls = (self.field.departure.clone(), self.field.direction.clone());
         choice.begin(self.field, self.surfaces, self.t);
         let [first, last] = self.field.system.interval;
-        let h = 1e-5 * (last - first);
+        let h = AHEAD * (last - first);
         let end = Step::take(self.field, self.t, self.x, h).end;
         let psi = self.field.psi(self.t + h, &end);
         (self.field.modes, self.field.selectors) = before;
@@ -253,9 +248,9 @@ impl Choice {
 /// The side of a selector; at the end of its interval with no rate it slides, as long as it stays
 /// there.
 fn side(s: f64, rate: f64, tie: f64) -> i8 {
-    if s >= 1.0 - 1e-12 && rate > tie {
+    if s >= 1.0 - AT_END && rate > tie {
         1
-    } else if s <= -1.0 + 1e-12 && rate < -tie {
+    } else if s <= -1.0 + AT_END && rate < -tie {
         -1
     } else {
         0

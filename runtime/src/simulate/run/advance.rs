@@ -9,6 +9,11 @@ use crate::simulate::modes::ball::{blocks, is_unique};
 use crate::simulate::result::{Integrator, Method, Status};
 use crate::simulate::steps::Step;
 use crate::simulate::tape::Cause;
+use crate::simulate::tuning::advance::{
+    BORDER, BORDER_POWER, BORDER_RTOL, CHANGE, EXPLICIT_ORDER, LEAST_ERROR, LEAST_PART, MOST_BENDS,
+    MOST_GROWTH, MOST_LONGER, MOST_NUMBERS, MOST_SHRINKING, NO_RATE, NO_REST, NO_SIZE, NOT_STIFF,
+    NOT_STIFF_AFTER, SAFETY, SAME_TIME, SHARE, SMALL_BORDER, STIFF_AFTER, STIFF_ORDER, STUCK,
+};
 
 /// What a step leaves for the next.
 pub(crate) struct Pace {
@@ -28,30 +33,6 @@ pub(crate) struct Pace {
     step: Step,
 }
 
-/// The explicit pair is stable for `h |lambda|` up to about 3.3. With small tolerances the slow
-/// part of a stiff solution keeps it well below that, but a solution that is not stiff farther
-/// still: this much at a tolerance of 1e-10.
-const BORDER: f64 = 3.25;
-const SMALL_BORDER: f64 = 1.0;
-
-/// So many steps at the border, not interrupted by so many off it, make a system stiff.
-const STIFF_AFTER: usize = 15;
-const NOT_STIFF_AFTER: usize = 6;
-
-/// A trajectory of more numbers than this, a quarter of a gigabyte, is of no use to anybody.
-const MOST_NUMBERS: usize = 1 << 25;
-
-/// After so many kinks at one time the next step passes over them: what stays on a kink but for
-/// rounding crosses it for ever.
-const MOST_BENDS: usize = 8;
-
-/// A step of the explicit pair may be off by this part of what the tolerances of the other states
-/// make of its own.
-const SHARE: f64 = 0.01;
-
-/// Below this the explicit pair takes steps of the same length without any doubt.
-const NOT_STIFF: f64 = 0.5;
-
 impl Pace {
     pub fn new(states: usize, method: Method) -> Self {
         let step = Step::new(states);
@@ -61,8 +42,8 @@ impl Pace {
     /// Chooses the method of the next step by what the last one says of stiffness.
     fn choose(&mut self, step: &Step, rtol: f64) {
         let stiffness = step.stiffness();
-        let is_at_border =
-            stiffness > (SMALL_BORDER * (rtol / 1e-10).powf(0.2)).clamp(SMALL_BORDER, BORDER);
+        let is_at_border = stiffness
+            > (SMALL_BORDER * (rtol / BORDER_RTOL).powf(BORDER_POWER)).clamp(SMALL_BORDER, BORDER);
         self.at_border += usize::from(is_at_border);
         self.off_border = if is_at_border { 0 } else { self.off_border + 1 };
         match self.method {
@@ -79,13 +60,13 @@ impl Pace {
 /// How much shorter or longer a step with some error should be.
 fn factor(step: &Step) -> f64 {
     let order = match step.method {
-        Method::Explicit => 5.0,
-        Method::Stiff => 4.0,
+        Method::Explicit => EXPLICIT_ORDER,
+        Method::Stiff => STIFF_ORDER,
     };
     if step.error.is_finite() {
-        (0.9 * step.error.max(1e-10).powf(-1.0 / order)).clamp(0.1, 5.0)
+        (SAFETY * step.error.max(LEAST_ERROR).powf(-1.0 / order)).clamp(MOST_SHRINKING, MOST_GROWTH)
     } else {
-        0.1
+        MOST_SHRINKING
     }
 }
 
@@ -105,16 +86,19 @@ impl Run<'_> {
             scaled.fold(0.0, f64::max)
         };
         let (at, slope) = (size(&x), size(&rate));
-        let short =
-            if at < 1e-5 || slope < 1e-5 { 1e-6 * span } else { (0.01 * at / slope).min(span) };
+        let short = if at < NO_SIZE || slope < NO_SIZE {
+            LEAST_PART * span
+        } else {
+            (CHANGE * at / slope).min(span)
+        };
         let next: Vec<f64> = x.iter().zip(&rate).map(|(x, rate)| x + short * rate).collect();
         let after = self.field.rate(self.t + short, &next);
         let change: Vec<f64> =
             after.iter().zip(&rate).map(|(after, rate)| (after - rate) / short).collect();
         let bend = slope.max(size(&change));
-        let long = if bend > 1e-15 { (0.01 / bend).powf(0.2) } else { span };
-        let length = long.min(100.0 * short).min(span);
-        if length > 0.0 { length } else { 1e-6 * span }
+        let long = if bend > NO_RATE { (CHANGE / bend).powf(BORDER_POWER) } else { span };
+        let length = long.min(MOST_LONGER * short).min(span);
+        if length > 0.0 { length } else { LEAST_PART * span }
     }
 
     /// One accepted step towards `stop`, or up to the first event in it.
@@ -173,7 +157,7 @@ impl Run<'_> {
             }
         };
         let is_bend = |it: &location::Found| matches!(it.condition, Condition::CrossesKink(_));
-        let is_there = |it: &location::Found| it.h <= 4.0 * f64::EPSILON * step.t.abs();
+        let is_there = |it: &location::Found| it.h <= SAME_TIME * step.t.abs();
         let is_idle = found.as_ref().is_some_and(|it| is_bend(it) && is_there(it));
         self.pace.kinks = if is_idle { self.pace.kinks + 1 } else { 0 };
         found
@@ -200,7 +184,7 @@ impl Run<'_> {
     fn accepted(&mut self, step: &mut Step, rest: f64, longest: f64) -> Result<(), Status> {
         let wanted = self.pace.h;
         // Two steps of equal length are better than a long and a very short one.
-        let mut h = if wanted >= rest * (1.0 - 1e-12) { rest } else { wanted.min(0.5 * rest) };
+        let mut h = if wanted >= rest * (1.0 - NO_REST) { rest } else { wanted.min(0.5 * rest) };
         h = h.min(longest);
         h = h.min(self.options.max_step);
         let mut is_short = h < wanted;
@@ -230,7 +214,7 @@ impl Run<'_> {
             self.field.selectors.copy_from_slice(&selectors);
             self.counts.rejected += 1;
             (h, is_short) = (next, false);
-            if h <= 4.0 * f64::EPSILON * self.t.abs().max(h * 1e3).max(f64::MIN_POSITIVE) {
+            if h <= SAME_TIME * self.t.abs().max(h * STUCK).max(f64::MIN_POSITIVE) {
                 return Err(self.stuck());
             }
         }

@@ -16,12 +16,7 @@ use crate::simulate::result::{Kind, Method, Status};
 use crate::simulate::steps::Step;
 use crate::simulate::system::Ball;
 use crate::simulate::tape::{Cause, Rule};
-
-/// `|psi|` below this many times its rounding errors is as good as 0.
-const NEAR: f64 = 100.0;
-
-/// A step is stable if it is no longer than this in units of `|psi|/|B|`.
-const STABLE: f64 = 3.0;
+use crate::simulate::tuning::arrival::{MOST_OF_WAY, NEAR, SAME_TIME, STABLE};
 
 /// A ball on its way to 0.
 pub(crate) struct Arrival<'a> {
@@ -56,8 +51,9 @@ impl<'a> Field<'a> {
             let time = -size / along;
             if time > 0.0 && first.as_ref().is_none_or(|first| time < first.time) {
                 let noise = own.iter().map(|&i| normals.noise(i, x)).fold(0.0, f64::max);
-                let is_near = size <= NEAR * noise || time <= 16.0 * f64::EPSILON * t.abs();
-                first = Some(Arrival { ball, time, longest: stable.min(0.9 * time), is_near });
+                let is_near = size <= NEAR * noise || time <= SAME_TIME * t.abs();
+                first =
+                    Some(Arrival { ball, time, longest: stable.min(MOST_OF_WAY * time), is_near });
             }
         }
         first

@@ -7,10 +7,8 @@ use crate::simulate::location::Condition;
 use crate::simulate::mode::Mode;
 use crate::simulate::modes::decide;
 use crate::simulate::result::{Event, Kind, Status};
-
-/// More jumps than this at one time never end, nor does what reaches a surface so often without
-/// leaving it.
-const MOST_AT_ONCE: usize = 100;
+use crate::simulate::tuning::events::{AT_EXIT, CLEAR, MOST_AT_ONCE, SMALL_WAY};
+use crate::simulate::tuning::field::ON_SURFACE;
 
 impl Run<'_> {
     /// What follows where a condition ceases to hold.
@@ -57,7 +55,7 @@ impl Run<'_> {
     /// The surfaces that the state is on.
     pub fn surfaces_here(&mut self) -> Vec<usize> {
         let normals = self.field.normals(self.t, &self.x);
-        let is_zero = |i: usize| normals.psi[i].abs() <= 10.0 * normals.noise(i, &self.x);
+        let is_zero = |i: usize| normals.psi[i].abs() <= ON_SURFACE * normals.noise(i, &self.x);
         let is_here = |i: &usize| match self.field.modes[*i] {
             Mode::Sliding => true,
             Mode::Held => false,
@@ -167,7 +165,7 @@ impl Run<'_> {
         let normals = self.field.normals(self.t, &self.x);
         let rate = self.field.rate(self.t, &self.x);
         let way = normals.rate(surface, &rate).abs() * self.jump_times[jump].since_last(self.t);
-        way <= 1e3 * normals.noise(surface, &self.x)
+        way <= SMALL_WAY * normals.noise(surface, &self.x)
     }
 
     /// Whether a state that is still on a surface after a reset moves on to the other side,
@@ -181,7 +179,7 @@ impl Run<'_> {
         [-1.0, 1.0].into_iter().all(|side| {
             selectors[surface] = side;
             let (rate, _) = self.field.with_selectors(self.t, &self.x, &selectors);
-            onward.side() * normals.rate(surface, &rate) > 1e4 * normals.rounding(surface, &rate)
+            onward.side() * normals.rate(surface, &rate) > CLEAR * normals.rounding(surface, &rate)
         })
     }
 
@@ -189,7 +187,7 @@ impl Run<'_> {
     pub fn find_sides(&mut self) {
         let normals = self.field.normals(self.t, &self.x);
         for i in 0..self.field.modes.len() {
-            let is_off = normals.psi[i].abs() > 10.0 * normals.noise(i, &self.x);
+            let is_off = normals.psi[i].abs() > ON_SURFACE * normals.noise(i, &self.x);
             if let Some(ball) = self.field.ball_of(i).filter(|_| is_off) {
                 self.field.set_moving(ball);
             } else if is_off && self.field.modes[i] != Mode::Held {
@@ -293,7 +291,7 @@ impl Run<'_> {
             if largest > 0.0 { normals.rate(surface, &rate).abs() / largest } else { 0.0 }
         });
         cosines.sort_by(f64::total_cmp);
-        let is_exit = self.field.modes[surface] == Mode::Sliding && own.abs() > 1.0 - 1e-6;
+        let is_exit = self.field.modes[surface] == Mode::Sliding && own.abs() > 1.0 - AT_EXIT;
         if is_exit { cosines[1] } else { cosines[0] }
     }
 }

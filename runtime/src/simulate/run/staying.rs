@@ -6,11 +6,10 @@
 
 use super::Run;
 use crate::simulate::mode::Mode;
-use crate::simulate::modes::TIE;
 use crate::simulate::steps::Step;
-
-/// A look ahead, as a part of the whole time.
-const AHEAD: f64 = 1e-5;
+use crate::simulate::tuning::field::ON_SURFACE;
+use crate::simulate::tuning::modes::TIE;
+use crate::simulate::tuning::staying::AHEAD;
 
 impl Run<'_> {
     /// Whether the state stays on a surface whose side nothing depends on.
@@ -36,6 +35,6 @@ impl Run<'_> {
         let h = (AHEAD * (last - first)).min(last - self.t);
         let end = Step::take(&mut self.field, self.t, &self.x, h).end;
         let normals = self.field.normals(self.t + h, &end);
-        normals.psi[surface].abs() <= 10.0 * normals.noise(surface, &end)
+        normals.psi[surface].abs() <= ON_SURFACE * normals.noise(surface, &end)
     }
 }

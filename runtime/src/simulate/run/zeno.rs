@@ -1,13 +1,6 @@
 //! Jumps that accumulate: intervals `d, d q, d q^2, ...` with `q < 1` end after `d q / (1 - q)`.
 
-/// What is left may be at most this part of the whole time before the limit is believed.
-const NEAR: f64 = 1e-6;
-
-/// How much two successive ratios may differ.
-const STEADY: f64 = 0.02;
-
-/// A ratio of successive intervals this near to 1 is that of jumps which go on for ever.
-const REGULAR: f64 = 1e-6;
+use crate::simulate::tuning::zeno::{NEAR, REGULAR, STEADY};
 
 /// The times of the last jumps of one kind.
 #[derive(Clone, Debug, Default)]

@@ -14,6 +14,7 @@
 use super::Step;
 use crate::simulate::field::Field;
 use crate::simulate::system::Ball;
+use crate::simulate::tuning::departure::{CONVERGED, INSIDE, INSIDE_WEIGHT, MOST_ITERATIONS};
 use nalgebra::{DMatrix, DVector};
 
 /// The points of the solution.
@@ -27,9 +28,6 @@ pub(crate) const FINE: [f64; 5] = [
 
 const COARSE: [f64; 4] =
     [0.088_587_959_512_703_95, 0.409_466_864_440_734_7, 0.787_659_461_760_847, 1.0];
-
-/// Newton's method is given up after so many iterations.
-const MOST_ITERATIONS: usize = 20;
 
 /// One point: its state without the start, all selectors, the lengths of the moving balls.
 #[derive(Clone)]
@@ -76,8 +74,8 @@ pub(crate) fn attempt(step: &mut Step, field: &mut Field) {
     let curve = |theta: f64| sum(&x, &interpolated(&fine, theta));
     step.end_smoothly(&curve(0.5), &at_end, &last);
     let error = field.tolerance.error(&x, &coarse[COARSE.len() - 1].added, &end.added, h);
-    let inside = field.tolerance.error(&x, &step.at(0.25), &curve(0.25), h);
-    step.error = error.max(0.01 * inside);
+    let inside = field.tolerance.error(&x, &step.at(INSIDE), &curve(INSIDE), h);
+    step.error = error.max(INSIDE_WEIGHT * inside);
 }
 
 impl<'f, 'a> Collocation<'f, 'a> {
@@ -105,7 +103,7 @@ impl<'f, 'a> Collocation<'f, 'a> {
             let (residual, matrix) = self.linearised(&nodes);
             let change = matrix.lu().solve(&residual)?;
             let size = self.subtract(&change, &mut nodes);
-            if size <= 0.01 {
+            if size <= CONVERGED {
                 let are_positive =
                     nodes.iter().flat_map(|node| &node.lengths).all(|length| *length > 0.0);
                 return are_positive.then_some(nodes);

@@ -12,6 +12,7 @@ use super::field::Field;
 use super::field::tolerance::Tolerance;
 use super::result::Method;
 use super::tape::Rule;
+use crate::simulate::tuning::radau::NOT_SOLVED;
 use dormand_prince::STAGES;
 use radau::Newton;
 
@@ -137,9 +138,7 @@ impl Step {
     pub fn measure(&mut self, tolerance: &Tolerance) {
         match self.rule {
             Rule::Explicit => self.error = dormand_prince::error(self, tolerance),
-            Rule::Radau if self.error != radau::NOT_SOLVED => {
-                self.error = radau::size(self, tolerance)
-            }
+            Rule::Radau if self.error != NOT_SOLVED => self.error = radau::size(self, tolerance),
             Rule::Radau | Rule::Collocation | Rule::Straight => {}
         }
     }

@@ -13,6 +13,9 @@ use super::{Extension, Step};
 use crate::linalg::dense::lu::Lu;
 use crate::simulate::field::Field;
 use crate::simulate::field::tolerance::Tolerance;
+use crate::simulate::tuning::radau::{
+    FIRST_RATE, INHERITED, MOST_ITERATIONS, MOST_REST, NOT_SOLVED, ROUNDING,
+};
 use nalgebra::DMatrix;
 
 /// Number of stages; the last is at the end of the step.
@@ -44,14 +47,6 @@ const EIGENVALUE: f64 = 3.637_834_252_744_496;
 /// Weights of the error.
 const ERROR: [f64; STAGES] =
     [-(13.0 + 7.0 * ROOT_6) / 3.0, (-13.0 + 7.0 * ROOT_6) / 3.0, -1.0 / 3.0];
-
-/// What the last steps leave of error, all within the tolerance, is estimated at this much at most.
-const INHERITED: f64 = 2.0;
-
-const MOST_ITERATIONS: usize = 10;
-
-/// The error of a step whose equations were not solved: the next is less than half as long.
-pub(crate) const NOT_SOLVED: f64 = 16.0;
 
 /// What a step of this method needs beside the step.
 #[derive(Clone, Debug, Default)]
@@ -144,15 +139,18 @@ impl Newton {
 
     /// Solves the equations of a step.
     fn solve(&mut self, field: &mut Field, t: f64, h: f64, start: &[f64], rtol: f64) -> bool {
-        let enough = (10.0 * f64::EPSILON / rtol).max(rtol.sqrt().min(0.03));
+        let enough = (ROUNDING / rtol).max(rtol.sqrt().min(MOST_REST));
         let mut last = f64::INFINITY;
         for _ in 0..MOST_ITERATIONS {
             let change = self.iterate(field, t, h, start);
             if !change.is_finite() || change >= last {
                 return last <= enough;
             }
-            let rest =
-                if last.is_finite() { change * change / (last - change) } else { 10.0 * change };
+            let rest = if last.is_finite() {
+                change * change / (last - change)
+            } else {
+                FIRST_RATE * change
+            };
             if rest <= enough {
                 return true;
             }

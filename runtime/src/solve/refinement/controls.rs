@@ -9,13 +9,9 @@
 
 use crate::problem::{ControlShape, FIRST_GRID, Problem};
 use crate::solve::Outcome;
+use crate::solve::tuning::controls::{FLAT, ROUGH};
 use crate::transcribe::TranscribedNlp;
 use crate::transcribe::interval::Signal;
-
-/// Relative to the range of the control.
-const ROUGH: f64 = 0.01;
-/// A control with a smaller range, relative to its size, rests.
-const FLAT: f64 = 1e-6;
 
 /// Into how many parts each interval is divided.
 pub(super) fn parts(problem: &Problem, outcome: &Outcome) -> Vec<usize> {

@@ -6,14 +6,9 @@
 
 use crate::problem::{Columns, Problem};
 use crate::solve::Outcome;
+use crate::solve::tuning::error_estimate::{ACCURATE, FEWEST_STEPS, MOST_STEPS};
 use crate::transcribe::TranscribedNlp;
 use crate::transcribe::interval::add_up;
-
-const FEWEST_STEPS: usize = 4;
-const MOST_STEPS: usize = 256;
-/// The integration is accurate enough when twice the steps change the errors by this part of the
-/// tolerance.
-const ACCURATE: f64 = 0.05;
 
 /// The largest relative error of a state, or of the running cost, over each interval.
 pub(super) fn step_errors(problem: &Problem, outcome: &Outcome) -> Vec<f64> {

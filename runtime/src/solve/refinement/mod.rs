@@ -15,21 +15,14 @@ use super::run::is_lost;
 use super::{Outcome, Refusal, Watch, solve as solve_on_grid, solve_near};
 use crate::nlp::{Start, Status};
 use crate::problem::{FIRST_GRID, MOST_STAGES, Problem};
+use crate::solve::tuning::refinement::{MOST, MOST_ITERATIONS, MOST_ROUNDS, PATIENCE};
 use crate::transcribe::TranscribedNlp;
 use error_estimate::step_errors;
 use mesh_transfer::transferred;
 use plan::Errors;
 
-/// More intervals than this are not tried.
-const MOST: usize = 20_000;
-const MOST_ROUNDS: usize = 30;
 /// The finest grid on which a first solution is looked for.
 const FINEST_FIRST: usize = 8 * FIRST_GRID;
-/// Of a solve that may be given up.
-const MOST_ITERATIONS: usize = 500;
-/// The first stages that are added may gain little where the next gain much. So many times the
-/// least nodes may be foreseen and one more is still tried.
-const PATIENCE: f64 = 1.5;
 
 /// A solution and the grid that it was found on.
 pub struct Refined {

@@ -13,17 +13,7 @@
 //! that for which the fewest nodes, intervals times stages, are foreseen.
 
 use crate::problem::{MOST_STAGES, Scheme};
-
-/// Of what the tolerance allows, so much is planned for.
-const PLANNED: f64 = 0.7;
-/// An interval is divided into no more parts at a time: far from the limit errors fall in other
-/// ways.
-const MOST_PARTS: f64 = 4.0;
-/// More parts of an interval than that are not counted: an error may be larger than any number of
-/// them could lower.
-const BEYOND: f64 = 1e6;
-/// What gains no more than that by another stage is not smooth.
-const ROUGH: f64 = 0.3;
+use crate::solve::tuning::plan::{BEYOND, MOST_PARTS, PLANNED, ROUGH};
 
 /// A grid with the errors of its steps.
 #[derive(Clone, Debug)]

@@ -1,0 +1,76 @@
+//! Every tuned number of what all solvers of a nonlinear program share, by the file that uses it:
+//! measures of an answer, scaling, multiplier estimates and convex programs (decisions 27 and 30 in
+//! `docs/decisions`).
+
+pub(crate) mod assessment {
+    /// The improvement that may be left, in units of the tolerance: 1e-6 at the default tolerance of
+    /// 1e-8.
+    pub(crate) const IMPROVEMENT: f64 = 100.0;
+    /// What is aimed at is so much less, where that can be had.
+    pub(crate) const AIM: f64 = 0.1;
+    /// The same of what is acceptable.
+    pub(crate) const ACCEPTABLE_VIOLATION: f64 = 1e-6;
+    pub(crate) const ACCEPTABLE_IMPROVEMENT: f64 = 1e-4;
+    /// What is smaller than this part of its declared unit is nothing.
+    pub(crate) const NOTHING: f64 = 1e-6;
+    /// The same of the objective: where it falls to 0 like a fourth power nothing else says when that
+    /// is near enough.
+    pub(crate) const NO_OBJECTIVE: f64 = 1e-8;
+    /// Where a quantity is 0 at some time, terms of the objective have this part of the size that it
+    /// has at others.
+    pub(crate) const PART: f64 = 1e-2;
+}
+
+pub(crate) mod multiplier_estimate {
+    /// What is nearer to its bound than this is at it: an interior point method keeps away a little.
+    pub(crate) const NEAR: f64 = 1e-5;
+    pub(crate) const WEIGHTLESS: f64 = 1e8;
+    /// What rows that depend on each other are shifted by, so that they share their multiplier.
+    pub(crate) const SHIFT: f64 = 1e-8;
+}
+
+pub(crate) mod factors {
+    /// Quantities up to this size, and down to its inverse, are moderate.
+    pub(crate) const MODERATE: f64 = 16.0;
+    /// The same of gradients of rows.
+    pub(crate) const MODERATE_GRADIENT: f64 = 100.0;
+    /// The least and the largest gradient of the objective.
+    pub(crate) const LEAST_OBJECTIVE: f64 = 1.0;
+    pub(crate) const LARGEST_OBJECTIVE: f64 = 100.0;
+    /// Sizes and slopes below this are none.
+    pub(crate) const SMALLEST: f64 = 1e-30;
+    /// Rows are not scaled down below this.
+    pub(crate) const LEAST_FACTOR: f64 = 1e-8;
+    /// ScalingFactors of the objective beyond this, or below its inverse, come from slopes that are rounding.
+    pub(crate) const LARGEST_FACTOR: f64 = 1e12;
+}
+
+pub(crate) mod nominal {
+    /// Multiples of it spread evenly between 0 and 1.
+    pub(crate) const GOLDEN: f64 = 0.618_033_988_749_895;
+    /// A guess below this is small.
+    pub(crate) const SMALL: f64 = 1.0 / 16.0;
+    /// A quantity with a small guess has at least this part of its range.
+    pub(crate) const LEAST_PART: f64 = 1e-2;
+    /// A range of more units is no statement about a size.
+    pub(crate) const LONGEST_RANGE: f64 = 1e4;
+    /// What is smaller than this part of its unit at an answer may be rounding.
+    pub(crate) const LEAST_ANSWER: f64 = 1e-4;
+    /// Estimates beyond this, or below its inverse, are rounding or poles.
+    pub(crate) const LARGEST_ESTIMATE: f64 = 1e8;
+}
+
+pub(crate) mod convex {
+    /// A variable without a bound is thought to be within so many of its units.
+    pub(crate) const FARTHEST: f64 = 1e6;
+    /// The tolerance of the conic solver, relative to that asked for, and the least.
+    pub(crate) const CONIC_TOLERANCE: f64 = 0.1;
+    pub(crate) const LEAST_CONIC_TOLERANCE: f64 = 1e-10;
+}
+
+pub(crate) mod convexity {
+    /// Exact elimination of a larger block would take too long.
+    pub(crate) const LARGEST_EXACT: usize = 60;
+    /// A larger block is not looked at.
+    pub(crate) const LARGEST: usize = 600;
+}

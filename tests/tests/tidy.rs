@@ -136,15 +136,15 @@ const NUMBERS_OF_METHODS: &[(&str, &str)] = &[
 ];
 
 /// The numbers with a point or an exponent in a line of code.
-fn floats(line: &str) -> impl Iterator<Item = String> {
-    let line = line.replace("e-", "e").replace("..", " ").replace("_f64", "").replace("f64", "");
-    let words: Vec<String> = line
-        .split(|c: char| !(c.is_alphanumeric() || c == '.' || c == '_'))
-        .filter(|word| word.starts_with(|c: char| c.is_ascii_digit()))
-        .filter(|word| word.contains(['.', 'e']) && !word.contains('x'))
-        .map(str::to_owned)
-        .collect();
-    words.into_iter()
+fn floats(line: &str) -> Vec<String> {
+    let line = line.replace("e-", "e").replace("..", " ");
+    let words = line.split(|c: char| !(c.is_alphanumeric() || c == '.' || c == '_'));
+    let numbers = words.filter(|word| word.starts_with(|c: char| c.is_ascii_digit())).map(|word| {
+        let is_part = |c: &char| c.is_ascii_digit() || ['.', 'e', '_'].contains(c);
+        let number: String = word.chars().take_while(is_part).collect();
+        number.trim_end_matches(['.', '_']).to_owned()
+    });
+    numbers.filter(|number| number.contains(['.', 'e'])).collect()
 }
 
 #[test]
@@ -160,7 +160,7 @@ fn tuned_numbers_stand_in_their_files() {
         }
         let own = source.text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
         for (line, text) in code(own) {
-            for number in floats(text).filter(|number| !is_plain(number)) {
+            for number in floats(text).into_iter().filter(|number| !is_plain(number)) {
                 breaches.push(format!(
                     "{}:{line}: give {number} a name in `tuning.rs`, with its source",
                     source.path

@@ -10,8 +10,8 @@ use super::formulation::Formulation;
 use super::iterate::{Iterate, Slopes, Step, Values};
 use super::residuals::Residuals;
 use super::tuning::barrier::{
-    BELOW_TOLERANCE, CLOSE, DAMPING, MONOTONE, MULTIPLIER_CORRIDOR, SMALLEST_FRACTION, SUPERLINEAR,
-    SUPERLINEAR_AFTER, WHOLE,
+    BELOW_TOLERANCE, CLOSE, DAMPING, MONOTONE, MULTIPLIER_CORRIDOR, PRODUCTS, SMALLEST_FRACTION,
+    SUPERLINEAR, SUPERLINEAR_AFTER, WHOLE,
 };
 use super::vectors::dot;
 
@@ -187,7 +187,7 @@ impl LogarithmSum {
     fn add(&mut self, factor: f64) {
         let [first, second, third, fourth] = self.products;
         let mut product = first * factor;
-        if !(1e-70..1e70).contains(&product) {
+        if !PRODUCTS.contains(&product) {
             self.sum += product.ln();
             product = 1.0;
         }

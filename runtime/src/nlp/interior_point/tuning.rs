@@ -40,6 +40,8 @@ pub(crate) mod barrier {
     pub(crate) const DAMPING: f64 = 1e-5;
     /// The last parameter is so many times smaller than the tolerance (equation 7).
     pub(crate) const BELOW_TOLERANCE: f64 = 10.0;
+    /// Products of distances whose logarithm is not taken yet: of two no product overflows.
+    pub(crate) const PRODUCTS: std::ops::Range<f64> = 1e-70..1e70;
 }
 
 pub(crate) mod error_scaling {

@@ -1,7 +1,6 @@
 //! Beside the exact gradient: those that a user may be computing otherwise, of the smoothed and of
 //! the discretised problem.
 
-use crate::output::words::scheme_name;
 use fdcc::quantities::By;
 use fdcc_compiler::Model;
 use fdcc_runtime::fixed_step::{self, Failure, Grid, step_through};
@@ -70,10 +69,7 @@ impl Question<'_> {
     fn stepped(&self, system: &System) -> Result<Vec<f64>, String> {
         let scheme = self.model.method.scheme;
         if matches!(scheme, Scheme::RungeKutta4 | Scheme::Radau(_) | Scheme::Gauss(_)) {
-            return Err(format!(
-                "fixed steps of `{}` do not go through a set",
-                scheme_name(scheme)
-            ));
+            return Err(format!("fixed steps of `{}` do not go through a set", scheme.name()));
         }
         let grid = Grid::new(system, &self.model.method);
         let found = step_through(system, &self.controls, &grid)

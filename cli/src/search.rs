@@ -35,7 +35,7 @@ pub struct Found {
 impl Found {
     /// Whether it can be used.
     pub fn is_good(&self) -> bool {
-        matches!(self.outcome.solution.status, Status::Solved | Status::Acceptable)
+        self.outcome.solution.status.is_solved()
     }
 }
 

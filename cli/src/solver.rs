@@ -16,7 +16,7 @@ use fdcc::bounds;
 use fdcc::parallel;
 use fdcc_compiler::Model;
 use fdcc_grammar::{Diagnostic, SourceFile};
-use fdcc_runtime::nlp::{Start, Status, Stop};
+use fdcc_runtime::nlp::{Start, Stop};
 use fdcc_runtime::problem::{Linear, Problem, often_called};
 use fdcc_runtime::solve::Outcome;
 use fdcc_runtime::transcribe::unknowns;
@@ -209,7 +209,7 @@ impl Solved {
 
     /// Whether the answer can be used.
     pub fn is_good(&self) -> bool {
-        matches!(self.outcome.solution.status, Status::Solved | Status::Acceptable)
+        self.outcome.solution.status.is_solved()
     }
 
     /// Replays the controls on the true system; `asked` is the largest difference that is called

@@ -6,7 +6,7 @@ use crate::output::number::{scientific, short};
 use crate::output::plural;
 use crate::output::tried::Ended;
 use crate::output::verified::Verification;
-use crate::output::words::{scheme_name, status_name};
+use crate::output::words::status_name;
 use crate::solver::Solved;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Method, Problem};
@@ -33,7 +33,7 @@ pub fn headline(problem: &Problem) -> String {
 
 /// The scheme as the model names it: without a number where that is to be found.
 fn asked(method: &Method) -> String {
-    let name = scheme_name(method.scheme);
+    let name = method.scheme.name();
     if method.is_raised { name.trim_end_matches(|c: char| c.is_ascii_digit()).into() } else { name }
 }
 

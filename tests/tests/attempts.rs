@@ -73,10 +73,7 @@ fn a_thin_layer_is_approached_from_far_away() {
 fn steps_on_trust_do_not_hide_that_nothing_more_is_gained() {
     for (scheme, intervals) in [("midpoint", "200"), ("radau3", "50")] {
         let solution = solved(&text("tests/right/neuron.fdc"), scheme, intervals).solution;
-        assert!(
-            matches!(solution.status, Status::Solved | Status::Acceptable),
-            "{scheme} {intervals}"
-        );
+        assert!(solution.status.is_solved(), "{scheme} {intervals}");
         assert!(solution.counts.iterations < 1000, "{scheme}: {}", solution.counts.iterations);
     }
 }

@@ -6,7 +6,7 @@ use super::optimality::Optimality;
 use super::tried::{Ended, Happened, Tried};
 use super::units::Units;
 use super::verified::Verification;
-use super::words::{linear_name, mode_name, scheme_name, shape_name, solver_name, status_name};
+use super::words::{linear_name, mode_name, shape_name, solver_name, status_name};
 use fdcc_runtime::nlp::{self, Status};
 use fdcc_runtime::problem::{Function, Method, Problem, Variable};
 use fdcc_runtime::solution;
@@ -323,7 +323,7 @@ fn is_chosen(method: &Method) -> bool {
 }
 
 fn is_good(status: &Status) -> bool {
-    matches!(status, Status::Solved | Status::Acceptable)
+    status.is_solved()
 }
 
 impl MethodUsed {
@@ -332,7 +332,7 @@ impl MethodUsed {
         let surfaces = problem.surfaces.iter().zip(&outcome.sigma);
         let solver = if outcome.convex { "convex" } else { solver_name(method.solver) };
         MethodUsed {
-            scheme: scheme_name(method.scheme),
+            scheme: method.scheme.name(),
             controls: shape_name(method.controls).to_string(),
             n: method.intervals,
             steps: method.steps,

@@ -4,7 +4,6 @@ use super::ending::{Ending, EventEntry, events};
 use super::named::Named;
 use super::number::{scientific, short, significant};
 use super::units::Units;
-use super::words::scheme_name;
 use crate::gradients::Stepped;
 use fdcc::exact::Exact;
 use fdcc::quantities::By;
@@ -244,7 +243,7 @@ fn bent(kink: &Kink, source: &SourceFile) -> String {
 
 impl Other {
     fn new(stepped: Stepped, by: &[By], method: &Method) -> Self {
-        let scheme = scheme_name(method.scheme);
+        let scheme = method.scheme.name();
         let gradient = named(by, &stepped.gradient);
         Other { sigma: stepped.sigma, scheme, n: method.intervals, gradient }
     }

@@ -1,7 +1,7 @@
 //! The words that models, files and verdicts have for statuses, modes and settings.
 
 use fdcc_runtime::nlp::Status;
-use fdcc_runtime::problem::{ControlShape, Linear, Scheme, Solver};
+use fdcc_runtime::problem::{ControlShape, Linear, Solver};
 use fdcc_runtime::solution::modes::Mode;
 use fdcc_runtime::solve::Outcome;
 
@@ -28,20 +28,6 @@ pub fn mode_name(mode: Mode) -> &'static str {
         Mode::Held => "held",
         Mode::Above => "above",
     }
-}
-
-/// The name of a scheme in models and files.
-pub fn scheme_name(scheme: Scheme) -> String {
-    match scheme {
-        Scheme::Radau(stages) => return format!("radau{stages}"),
-        Scheme::Gauss(stages) => return format!("gauss{stages}"),
-        Scheme::Euler => "euler",
-        Scheme::ImplicitEuler => "implicit_euler",
-        Scheme::Midpoint => "midpoint",
-        Scheme::Trapezoid => "trapezoid",
-        Scheme::RungeKutta4 => "rk4",
-    }
-    .to_string()
 }
 
 /// The name of the shape of controls in models and files.

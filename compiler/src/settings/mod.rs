@@ -5,7 +5,7 @@ pub(crate) mod conflicts;
 
 use crate::expressions::kernels;
 use crate::syntax::closest;
-use fdcc_runtime::problem::{ControlShape, Linear, MOST_STAGES, Method, Scheme, Solver};
+use fdcc_runtime::problem::{ControlShape, Linear, Method, Scheme, Solver};
 
 /// The keys, each with what it takes.
 pub(crate) const KEYS: &[(&str, &str)] = &[
@@ -90,36 +90,14 @@ pub(crate) fn set(method: &mut Method, key: &str, given: &Given) -> Result<(), R
         ("kernel", _) => method.kernel = kernels::find(word()?).ok_or_else(refused)?.name.into(),
         ("controls", _) => method.controls = shape(word()?).ok_or_else(refused)?,
         ("scheme", _) => {
-            method.scheme = scheme(word()?).ok_or_else(refused)?;
-            method.is_raised = matches!(word()?, "radau" | "gauss");
+            method.scheme = Scheme::named(word()?).ok_or_else(refused)?;
+            method.is_raised = Scheme::is_family(word()?);
         }
         ("solver", _) => method.solver = solver(word()?).ok_or_else(refused)?,
         _ => method.linear = linear(word()?).ok_or_else(refused)?,
     }
     method.begin();
     Ok(())
-}
-
-fn scheme(word: &str) -> Option<Scheme> {
-    Some(match word {
-        "euler" => Scheme::Euler,
-        "implicit_euler" => Scheme::ImplicitEuler,
-        "midpoint" => Scheme::Midpoint,
-        "trapezoid" => Scheme::Trapezoid,
-        "rk4" => Scheme::RungeKutta4,
-        // The least; see `Method::begin`.
-        "radau" => Scheme::Radau(1),
-        "gauss" => Scheme::Gauss(1),
-        _ => return collocation(word),
-    })
-}
-
-/// `radau1` to `radau5`, `gauss1` to `gauss5`.
-fn collocation(word: &str) -> Option<Scheme> {
-    let stages = |name: &str| {
-        word.strip_prefix(name)?.parse().ok().filter(|s| (1..=MOST_STAGES).contains(s))
-    };
-    stages("radau").map(Scheme::Radau).or_else(|| stages("gauss").map(Scheme::Gauss))
 }
 
 fn shape(word: &str) -> Option<ControlShape> {

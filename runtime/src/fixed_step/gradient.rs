@@ -5,7 +5,8 @@
 //! `rho = dJ/ds_A`
 //!
 //! ```text
-//! R_y^T (mu, nu) = (lambda, rho),      dJ/dq += -(mu, nu) . R_q    for everything q that the step was given
+//! R_y^T (mu, nu) = (lambda, rho),
+//! dJ/dq += -(mu, nu) . R_q            for everything q that the step was given
 //! ```
 //!
 //! The cost does not depend on how many parameters and controls there are. Times and the step
@@ -30,8 +31,8 @@ pub struct Gradient {
     pub controls: Vec<Vec<f64>>,
 }
 
-/// The gradient of the objective that [`super::run::step_through`] found; the system must be one for
-/// sensitivities.
+/// The gradient of the objective that [`super::run::step_through`] found; the system must be one
+/// for sensitivities.
 pub fn gradient(
     system: &System,
     controls: &Controls,

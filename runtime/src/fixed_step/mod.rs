@@ -2,7 +2,8 @@
 //! what they compute.
 //!
 //! ```text
-//! Grid -- rule --> one step (a mixed complementarity problem) -- run --> Stepped -- gradient (adjoint) --> Gradient
+//! Grid -- rule --> one step (a mixed complementarity problem) -- run --> Stepped
+//!      -- gradient (adjoint) --> Gradient
 //! ```
 //!
 //! Values converge with the step; gradients do not, however small it is

@@ -1,7 +1,8 @@
 //! One-step rules for inclusions, and the grid that they run over.
 //!
 //! ```text
-//! x+ = x + h [b0 f(t, x, s0) + b f(t + c h, z, s)],    z = (1 - w) x + w x+,    s0 in Sgn(psi(t, x)),  s in Sgn(psi(t + c h, z))
+//! x+ = x + h [b0 f(t, x, s0) + b f(t + c h, z, s)],    z = (1 - w) x + w x+
+//! s0 in Sgn(psi(t, x)),   s in Sgn(psi(t + c h, z))
 //! ```
 //!
 //! The schemes of transcription are of this form, and so is the theta scheme: `b0 = 0`, `b = 1`, `c

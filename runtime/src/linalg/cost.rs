@@ -25,7 +25,7 @@ const FEW_INNER: usize = 100;
 
 /// Whether the sparse factorisation takes less time than the recursion. It is analysed for that
 /// only if the border is larger than a stage, or if there is much inside an interval.
-pub(crate) fn is_sparse_cheaper(stages: Stages, hessian: &Triplets, jacobian: &Triplets) -> bool {
+pub(super) fn is_sparse_cheaper(stages: Stages, hessian: &Triplets, jacobian: &Triplets) -> bool {
     if border(stages) <= stages.states + stages.controls && stages.inner <= FEW_INNER {
         return false;
     }

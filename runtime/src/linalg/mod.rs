@@ -16,10 +16,10 @@ mod cost;
 pub(crate) mod dense;
 mod products;
 pub mod riccati;
+pub(crate) mod solvers;
 pub mod sparse_ldl;
 pub(crate) mod structure;
 
-pub(crate) use cost::is_sparse_cheaper;
 pub(crate) use products::Products;
 pub(crate) use structure::columns::Columns;
 pub use structure::factor::{Factor, Inertia};

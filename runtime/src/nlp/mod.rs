@@ -5,7 +5,8 @@
 //! ```
 //!
 //! Multipliers `lambda` are those of the Lagrangian `f + lambda' c - z_lower' v + z_upper' v`: they
-//! are minus the rate at which the optimal objective grows with the right-hand side of a constraint.
+//! are minus the rate at which the optimal objective grows with the right-hand side of a
+//! constraint.
 
 mod assessment;
 mod conclusion;
@@ -58,7 +59,8 @@ pub struct Place {
 pub struct Quantities {
     /// The quantity of each variable.
     pub variables: Vec<usize>,
-    /// That of each constraint: below `stepped` it is the step of the variables with the same number.
+    /// That of each constraint: below `stepped` it is the step of the variables with the same
+    /// number.
     pub rows: Vec<usize>,
     /// How many quantities of variables may have steps.
     pub stepped: usize,
@@ -114,6 +116,13 @@ pub enum Status {
     NotFinite(Place),
     /// The linear systems cannot be solved any more.
     NumericalFailure,
+}
+
+impl Status {
+    /// Whether there is an answer: a solution, or what is good enough for most uses.
+    pub fn is_solved(&self) -> bool {
+        matches!(self, Status::Solved | Status::Acceptable)
+    }
 }
 
 /// Why the caller wants to stop.

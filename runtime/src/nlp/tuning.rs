@@ -3,8 +3,8 @@
 //! `docs/decisions`).
 
 pub(crate) mod assessment {
-    /// The improvement that may be left, in units of the tolerance: 1e-6 at the default tolerance of
-    /// 1e-8.
+    /// The improvement that may be left, in units of the tolerance: 1e-6 at the default tolerance
+    /// of 1e-8.
     pub(crate) const IMPROVEMENT: f64 = 100.0;
     /// What is aimed at is so much less, where that can be had.
     pub(crate) const AIM: f64 = 0.1;
@@ -13,16 +13,17 @@ pub(crate) mod assessment {
     pub(crate) const ACCEPTABLE_IMPROVEMENT: f64 = 1e-4;
     /// What is smaller than this part of its declared unit is nothing.
     pub(crate) const NOTHING: f64 = 1e-6;
-    /// The same of the objective: where it falls to 0 like a fourth power nothing else says when that
-    /// is near enough.
+    /// The same of the objective: where it falls to 0 like a fourth power nothing else says when
+    /// that is near enough.
     pub(crate) const NO_OBJECTIVE: f64 = 1e-8;
-    /// Where a quantity is 0 at some time, terms of the objective have this part of the size that it
-    /// has at others.
+    /// Where a quantity is 0 at some time, terms of the objective have this part of the size that
+    /// it has at others.
     pub(crate) const PART: f64 = 1e-2;
 }
 
 pub(crate) mod multiplier_estimate {
-    /// What is nearer to its bound than this is at it: an interior point method keeps away a little.
+    /// What is nearer to its bound than this is at it: an interior point method keeps away a
+    /// little.
     pub(crate) const NEAR: f64 = 1e-5;
     pub(crate) const WEIGHTLESS: f64 = 1e8;
     /// What rows that depend on each other are shifted by, so that they share their multiplier.
@@ -41,7 +42,8 @@ pub(crate) mod factors {
     pub(crate) const SMALLEST: f64 = 1e-30;
     /// Rows are not scaled down below this.
     pub(crate) const LEAST_FACTOR: f64 = 1e-8;
-    /// ScalingFactors of the objective beyond this, or below its inverse, come from slopes that are rounding.
+    /// Factors of the objective beyond this, or below its inverse, come from slopes that are
+    /// rounding.
     pub(crate) const LARGEST_FACTOR: f64 = 1e12;
 }
 

@@ -1,5 +1,7 @@
 //! How a model asks to be solved: the `method` block, with defaults where the model is silent.
 
+use super::Scheme;
+
 /// Intervals of the first grid where the choice is ours.
 pub const FIRST_GRID: usize = 50;
 /// More intervals need more memory than a computer has to spare: about 5 kB each.
@@ -7,71 +9,6 @@ const MOST_INTERVALS: usize = 1_000_000;
 /// The same for all steps together where an interval has several: the variables inside it cost
 /// more.
 const MOST_STEPS: usize = 200_000;
-/// The most stages of a collocation scheme.
-pub const MOST_STAGES: usize = 5;
-
-/// How the differential equation becomes algebraic equations.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scheme {
-    /// Explicit Euler.
-    Euler,
-    /// Implicit Euler; states named in [`Method::lagged`] are taken at the old time.
-    ImplicitEuler,
-    /// Implicit midpoint rule.
-    Midpoint,
-    /// Trapezoidal rule with a constant control on each interval.
-    Trapezoid,
-    /// The classical Runge-Kutta scheme; [`Problem::dynamics`](super::Problem::dynamics) has its
-    /// increment, of which it is an explicit Euler step.
-    RungeKutta4,
-    /// Radau IIA collocation with so many stages, 1 to 5.
-    Radau(usize),
-    /// Gauss collocation with so many stages, 1 to 5.
-    Gauss(usize),
-}
-
-impl Scheme {
-    /// The power of the step length with which the error falls, where everything is smooth.
-    pub fn order(self) -> usize {
-        match self {
-            Scheme::Euler | Scheme::ImplicitEuler => 1,
-            Scheme::Midpoint | Scheme::Trapezoid => 2,
-            Scheme::RungeKutta4 => 4,
-            Scheme::Radau(stages) => 2 * stages - 1,
-            Scheme::Gauss(stages) => 2 * stages,
-        }
-    }
-
-    /// Stages of a collocation scheme; 1 of the others, which have none of their own.
-    pub fn stages(self) -> usize {
-        match self {
-            Scheme::Radau(stages) | Scheme::Gauss(stages) => stages,
-            _ => 1,
-        }
-    }
-
-    /// The collocation scheme of the same kind with so many stages.
-    pub fn with_stages(self, stages: usize) -> Self {
-        match self {
-            Scheme::Radau(_) => Scheme::Radau(stages),
-            Scheme::Gauss(_) => Scheme::Gauss(stages),
-            other => other,
-        }
-    }
-
-    /// Whether controls of this shape mean anything to the scheme: it must see enough points of an
-    /// interval.
-    pub fn allows(self, shape: ControlShape) -> bool {
-        match shape {
-            ControlShape::Constant => true,
-            ControlShape::Linear => {
-                matches!(self, Scheme::Trapezoid | Scheme::Radau(2..) | Scheme::Gauss(2..))
-            }
-            ControlShape::Polynomial => matches!(self, Scheme::Radau(_) | Scheme::Gauss(_)),
-        }
-    }
-}
-
 /// What a control is on an interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ControlShape {

@@ -12,9 +12,11 @@
 
 mod method;
 mod often_called;
+mod scheme;
 
-pub use method::{ControlShape, FIRST_GRID, Linear, MOST_STAGES, Method, Scheme, Solver};
+pub use method::{ControlShape, FIRST_GRID, Linear, Method, Solver};
 pub use often_called::often_called;
+pub use scheme::{MOST_STAGES, Scheme};
 
 use std::ops::Range;
 use std::sync::Arc;

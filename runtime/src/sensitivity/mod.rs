@@ -2,7 +2,8 @@
 //! sliding and resets.
 //!
 //! ```text
-//! simulate (with a tape) -> linear maps, piece by piece (sweep) -> forward, adjoint (first_order), Hessian (second_order)
+//! simulate (with a tape) -> linear maps, piece by piece (linearized)
+//!     -> forward, adjoint (first_order), Hessian (second_order)
 //! ```
 //!
 //! A step is differentiated as it was computed ([`step`](self)), an event by its saltation matrix,

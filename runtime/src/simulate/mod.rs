@@ -6,8 +6,8 @@
 //! ```
 //!
 //! In every mode each selector is -1, +1 or an unknown that keeps its surface at 0 (sliding); those
-//! of a `Dir` are a direction or such unknowns. [`run`] is the loop, [`system`] the contract with the compiler. Where the continuation is
-//! not unique it stops and says so; it never chooses.
+//! of a `Dir` are a direction or such unknowns. [`run`] is the loop, [`system`] the contract with
+//! the compiler. Where the continuation is not unique it stops and says so; it never chooses.
 
 mod controls;
 mod field;

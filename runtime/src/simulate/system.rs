@@ -1,7 +1,8 @@
 //! The contract between symbols and the simulator: the true, unsmoothed system in real time.
 //!
 //! ```text
-//! x' = f(t, x, u, p, s),   s in Sgn(psi(t, x, p)) or Dir(psi),   x+ = r_j(t, x-, p) where psi is crossed
+//! x' = f(t, x, u, p, s),   s in Sgn(psi(t, x, p)) or Dir(psi)
+//! x+ = r_j(t, x-, p)       where psi is crossed
 //! ```
 //!
 //! A system for sensitivities has the first and second derivatives of all functions by all their

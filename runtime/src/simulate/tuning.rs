@@ -24,8 +24,8 @@ pub(crate) mod normals {
 pub(crate) mod tolerance {
     /// The absolute tolerance as a part of the size of a state.
     pub(crate) const PART: f64 = 1e-12;
-    /// A state that has been no larger than this counts as if it had: what begins with 0 may grow so
-    /// slowly that no step is short enough.
+    /// A state that has been no larger than this counts as if it had: what begins with 0 may grow
+    /// so slowly that no step is short enough.
     pub(crate) const LEAST: f64 = 1e-60;
     /// Selectors that solve a linear system are known so well.
     pub(crate) const SOLVED: f64 = 1e-13;
@@ -45,13 +45,14 @@ pub(crate) mod departure {
 }
 
 pub(crate) mod radau {
-    /// What the last steps leave of error, all within the tolerance, is estimated at this much at most.
+    /// What the last steps leave of error, all within the tolerance, is estimated at this much at
+    /// most.
     pub(crate) const INHERITED: f64 = 2.0;
     pub(crate) const MOST_ITERATIONS: usize = 10;
     /// The error of a step whose equations were not solved: the next is less than half as long.
     pub(crate) const NOT_SOLVED: f64 = 16.0;
-    /// Newton's method ends where the error that is left is less than this over the tolerance, or the root
-    /// of the tolerance, at most this (Hairer, Wanner II, IV.8).
+    /// Newton's method ends where the error that is left is less than this over the tolerance, or
+    /// the root of the tolerance, at most this (Hairer, Wanner II, IV.8).
     pub(crate) const ROUNDING: f64 = 10.0 * f64::EPSILON;
     pub(crate) const MOST_REST: f64 = 0.03;
     /// What is left after the first iteration, relative to its change.
@@ -130,27 +131,27 @@ pub(crate) mod advance {
     /// After so many kinks at one time the next step passes over them: what stays on a kink but for
     /// rounding crosses it for ever.
     pub(crate) const MOST_BENDS: usize = 8;
-    /// A step of the explicit pair may be off by this part of what the tolerances of the other states
-    /// make of its own.
+    /// A step of the explicit pair may be off by this part of what the tolerances of the other
+    /// states make of its own.
     pub(crate) const SHARE: f64 = 0.01;
     /// Below this the explicit pair takes steps of the same length without any doubt.
     pub(crate) const NOT_STIFF: f64 = 0.5;
-    /// The tolerance of [`SMALL_BORDER`], and the power of the tolerance that the border grows with: 1 over
-    /// the order of the pair.
+    /// The tolerance of [`SMALL_BORDER`], and the power of the tolerance that the border grows
+    /// with: 1 over the order of the pair.
     pub(crate) const BORDER_RTOL: f64 = 1e-10;
     pub(crate) const BORDER_POWER: f64 = 0.2;
     /// With which power of its length the error of a step falls.
     pub(crate) const EXPLICIT_ORDER: f64 = 5.0;
     pub(crate) const STIFF_ORDER: f64 = 4.0;
-    /// Of the length that an error allows so much is taken; at most so much shorter or longer than the last,
-    /// and errors below this count as this (Hairer, Norsett, Wanner I, II.4).
+    /// Of the length that an error allows so much is taken; at most so much shorter or longer than
+    /// the last, and errors below this count as this (Hairer, Norsett, Wanner I, II.4).
     pub(crate) const SAFETY: f64 = 0.9;
     pub(crate) const MOST_SHRINKING: f64 = 0.1;
     pub(crate) const MOST_GROWTH: f64 = 5.0;
     pub(crate) const LEAST_ERROR: f64 = 1e-10;
-    /// Of the first length (Hairer, Norsett, Wanner I, II.4, (4.14)): sizes below this say nothing, then it is
-    /// this part of the time; else the state changes by this part; rates below this are none; and the
-    /// second guess is at most so many times the first.
+    /// Of the first length (Hairer, Norsett, Wanner I, II.4, (4.14)): sizes below this say nothing,
+    /// then it is this part of the time; else the state changes by this part; rates below this are
+    /// none; and the second guess is at most so many times the first.
     pub(crate) const NO_SIZE: f64 = 1e-5;
     pub(crate) const LEAST_PART: f64 = 1e-6;
     pub(crate) const CHANGE: f64 = 0.01;

@@ -21,7 +21,8 @@ pub struct Outcome {
     /// The worst row, by name and time, if the point is not feasible.
     pub limiting: Option<Limiting>,
     /// Whether it is proved that no point meets the conditions of the transcribed problem; only
-    /// with [`Status::Infeasible`](crate::nlp::Status::Infeasible), which by itself says what was found from one start.
+    /// with [`Status::Infeasible`](crate::nlp::Status::Infeasible), which by itself says what was
+    /// found from one start.
     pub is_impossible: bool,
     /// All solves that led to this end, in their order.
     pub attempts: Vec<Attempt>,

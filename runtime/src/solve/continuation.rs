@@ -10,7 +10,7 @@
 
 use super::Watch;
 use super::grid_sequencing::grids;
-use super::run::{Run, Target, is_good, is_lost, is_retried};
+use super::run::{Run, Target, is_lost, is_retried};
 use super::tuning::continuation::{
     CAREFUL, FEWEST_HALVINGS, MOST_HALVINGS, MOST_ITERATIONS, ROUGH, WIDE, WIDER,
 };
@@ -85,7 +85,7 @@ impl Run<'_> {
         for width in before {
             self.sigma.fill(*width);
             let solution = self.solve(nlp, &start, rough, watch);
-            if !is_good(&solution.status) {
+            if !solution.status.is_solved() {
                 return solution;
             }
             start = Start::after(&solution);

@@ -1,13 +1,13 @@
 //! Grid sequencing: from coarse uniform grids to the one that the model names.
 //!
-//! Smoothing widths shrink on the coarsest grid, roughly; then the last width is solved on one finer
-//! grid after the other, each time more accurately, and each solve is begun where the one before
-//! ended ([`prolong`]): far from the solution an iteration costs little, and on the finest grid few
-//! are left.
+//! Smoothing widths shrink on the coarsest grid, roughly; then the last width is solved on one
+//! finer grid after the other, each time more accurately, and each solve is begun where the one
+//! before ended ([`prolong`]): far from the solution an iteration costs little, and on the finest
+//! grid few are left.
 
 use super::Watch;
 use super::prolong::{Times, prolong};
-use super::run::{Run, Target, is_good};
+use super::run::{Run, Target};
 use super::tuning::grid_sequencing::{CLOSE, COARSE, COARSEST, FINER};
 use crate::linalg::Stages;
 use crate::nlp::{Nlp, Solution, Start, constraint_violation};
@@ -35,7 +35,7 @@ impl Run<'_> {
             let close = Target { tol: target.tol.max(accuracy), ..target };
             let solution = self.shrink(&mut coarse, start, widths, close, watch);
             start = Start::after(&solution);
-            if !is_good(&solution.status) {
+            if !solution.status.is_solved() {
                 return on_final_grid(nlp, &times, (chain, &start), solution);
             }
             widths = &widths[widths.len().saturating_sub(1)..];

@@ -1,10 +1,10 @@
 //! Solving a problem: choose the solver, and lead it to the grid and to the smoothing widths of the
 //! model by easier ones.
 //!
-//! [`continuation`] goes over coarse grids ([`grid_sequencing`]) and large smoothing widths to those
-//! that the model names; [`smoothing_widths`] finds widths where it names none; [`run`] is what both
-//! do again and again: one solve. [`refinement`] finds the grid, [`multistart`] and [`warm_start`]
-//! begin elsewhere than at the guess of the model.
+//! [`continuation`] goes over coarse grids ([`grid_sequencing`]) and large smoothing widths to
+//! those that the model names; [`smoothing_widths`] finds widths where it names none; [`run`] is
+//! what both do again and again: one solve. [`refinement`] finds the grid, [`multistart`] and
+//! [`warm_start`] begin elsewhere than at the guess of the model.
 
 mod continuation;
 mod grid_sequencing;
@@ -22,7 +22,7 @@ use crate::solution::modes::modes;
 pub use crate::solution::{Attempt, Limiting, Outcome};
 use crate::solution::{Trajectory, gain_of_pauses};
 use crate::transcribe::TranscribedNlp;
-use run::{Run, is_good};
+use run::Run;
 use std::ops::ControlFlow;
 
 /// Why a problem is not handed to the solver that was asked for.
@@ -134,7 +134,7 @@ fn limiting(
     tol: f64,
 ) -> Option<Limiting> {
     let (row, violation) = crate::nlp::worst_constraint(nlp, &solution.v)?;
-    if is_good(&solution.status) || violation <= tol {
+    if solution.status.is_solved() || violation <= tol {
         return None;
     }
     let place = nlp.constraint_place(row);

@@ -2,7 +2,7 @@
 
 use super::tuning::multistart::VARIATION;
 use super::warm_start::values_of;
-use crate::nlp::{Nlp, Solution, Start, Status};
+use crate::nlp::{Nlp, Solution, Start};
 use crate::problem::Problem;
 use crate::transcribe::TranscribedNlp;
 use crate::transcribe::interval::Signal;
@@ -60,9 +60,7 @@ fn room(nlp: &TranscribedNlp, place: usize, low: f64, high: f64) -> f64 {
 /// Whether `a` is the better answer: solved before not solved, then the lower objective, then the
 /// smaller violation.
 pub fn is_better(a: &Solution, b: &Solution) -> bool {
-    let solved =
-        |solution: &Solution| matches!(solution.status, Status::Solved | Status::Acceptable);
-    match (solved(a), solved(b)) {
+    match (a.status.is_solved(), b.status.is_solved()) {
         (true, true) => a.objective < b.objective,
         (false, false) => a.constraint_violation < b.constraint_violation,
         (solved, _) => solved,

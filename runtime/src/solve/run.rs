@@ -26,13 +26,9 @@ pub(super) struct Target {
     pub(super) limit: usize,
 }
 
-pub(super) fn is_good(status: &Status) -> bool {
-    matches!(status, Status::Solved | Status::Acceptable)
-}
-
 /// Whether another start may help: it was neither solved nor stopped.
 pub(super) fn is_retried(status: &Status) -> bool {
-    !is_good(status) && !matches!(status, Status::TimeLimit | Status::Interrupted)
+    !status.is_solved() && !matches!(status, Status::TimeLimit | Status::Interrupted)
 }
 
 /// Whether it found nothing feasible, or no way on: that says something of this grid, this width

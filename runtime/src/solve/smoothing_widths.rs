@@ -9,7 +9,7 @@
 
 use super::Watch;
 use super::grid_sequencing::grids;
-use super::run::{Run, Target, is_good, is_lost, is_retried};
+use super::run::{Run, Target, is_lost, is_retried};
 use super::tuning::smoothing_widths::{
     DECREASE, FIRST_FACTOR, LAST_FACTOR, MOST_FAILURES, MOST_ITERATIONS, MOST_SIZINGS, SHRUNK,
     THINNER, TOO_THIN, TOO_WIDE, UNKNOWN,
@@ -38,13 +38,13 @@ impl Run<'_> {
         let first = self.sized(nlp, &start, watch);
         let (mut best, mut factor) = self.or_thinner(nlp, &start, first, watch);
         let (mut decrease, mut failures) = (DECREASE, 0);
-        while is_good(&best.status) && factor > LAST_FACTOR && failures < MOST_FAILURES {
+        while best.status.is_solved() && factor > LAST_FACTOR && failures < MOST_FAILURES {
             let before = self.sigma.clone();
             let next = (factor * decrease).max(LAST_FACTOR);
             self.decrease(nlp, &best.v, next, next / factor);
             let target = self.patience();
             let solution = self.once(nlp, &Start::near(&best), target, watch);
-            if is_good(&solution.status) {
+            if solution.status.is_solved() {
                 (factor, best) = (next, solution);
                 continue;
             }
@@ -72,7 +72,7 @@ impl Run<'_> {
                 break;
             }
             let solution = self.first(nlp, start.clone(), watch);
-            if !is_good(&solution.status) {
+            if !solution.status.is_solved() {
                 self.sigma = before;
                 if matches!(solution.status, Status::TimeLimit | Status::Interrupted) {
                     best.status = solution.status;

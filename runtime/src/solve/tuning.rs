@@ -11,17 +11,18 @@ pub(crate) mod continuation {
     /// A solve on the way that takes longer leads nowhere.
     pub(crate) const MOST_ITERATIONS: usize = 300;
     pub(crate) const WIDE: f64 = 0.5;
-    /// A guess or a failure on which the switching function is nearly 0 says nothing of its size: there
-    /// are at least so many.
+    /// A guess or a failure on which the switching function is nearly 0 says nothing of its size:
+    /// there are at least so many.
     pub(crate) const FEWEST_HALVINGS: f64 = 8.0;
     pub(crate) const MOST_HALVINGS: f64 = 12.0;
 }
 
 pub(crate) mod grid_sequencing {
-    /// A grid of fewer intervals is not made coarser by half: it would say too little of the problem.
+    /// A grid of fewer intervals is not made coarser by half: it would say too little of the
+    /// problem.
     pub(crate) const COARSE: usize = 250;
-    /// The tolerance on the coarsest grid; from grid to grid it is `FINER` times as much, but never less
-    /// than `CLOSE`: which of several close minima is found is decided on finer grids.
+    /// The tolerance on the coarsest grid; from grid to grid it is `FINER` times as much, but never
+    /// less than `CLOSE`: which of several close minima is found is decided on finer grids.
     pub(crate) const COARSEST: f64 = 1e-3;
     pub(crate) const FINER: f64 = 0.1;
     pub(crate) const CLOSE: f64 = 1e-5;
@@ -41,8 +42,8 @@ pub(crate) mod smoothing_widths {
     /// From one width to the next; after a failure the square root of it, and so on.
     pub(crate) const DECREASE: f64 = 0.3;
     pub(crate) const MOST_FAILURES: usize = 3;
-    /// Without a guess of its size the first width is a fraction of this; how large the function is, is
-    /// found out at most so often.
+    /// Without a guess of its size the first width is a fraction of this; how large the function
+    /// is, is found out at most so often.
     pub(crate) const UNKNOWN: f64 = 1.0;
     pub(crate) const MOST_SIZINGS: usize = 3;
     /// A first width may be so many times the one that fits the size, or that part of it.
@@ -80,8 +81,8 @@ pub(crate) mod controls {
 pub(crate) mod error_estimate {
     pub(crate) const FEWEST_STEPS: usize = 4;
     pub(crate) const MOST_STEPS: usize = 256;
-    /// The integration is accurate enough when twice the steps change the errors by this part of the
-    /// tolerance.
+    /// The integration is accurate enough when twice the steps change the errors by this part of
+    /// the tolerance.
     pub(crate) const ACCURATE: f64 = 0.05;
 }
 
@@ -91,8 +92,8 @@ pub(crate) mod plan {
     /// An interval is divided into no more parts at a time: far from the limit errors fall in other
     /// ways.
     pub(crate) const MOST_PARTS: f64 = 4.0;
-    /// More parts of an interval than that are not counted: an error may be larger than any number of
-    /// them could lower.
+    /// More parts of an interval than that are not counted: an error may be larger than any number
+    /// of them could lower.
     pub(crate) const BEYOND: f64 = 1e6;
     /// What gains no more than that by another stage is not smooth.
     pub(crate) const ROUGH: f64 = 0.3;

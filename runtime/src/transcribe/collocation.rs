@@ -6,7 +6,7 @@
 //!
 //! ```text
 //!     sum_j l_j'(c_i) X_j - h F(tau_k + c_i h, X_i, u_k) = 0        i = 1 ... s
-//!     x_{k+1} - sum_j l_j(1) X_j = 0                                where the last node is not the end
+//!     x_{k+1} - sum_j l_j(1) X_j = 0                    where the last node is not the end
 //! ```
 //!
 //! That is the implicit Runge-Kutta scheme of these nodes, written with derivatives of the

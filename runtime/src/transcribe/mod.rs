@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! variables   x_0 u_0 y_0  x_1 u_1 y_1  ...  x_N   unknowns
-//! rows        defects_0 path_1   defects_1 path_2   ...   defects_{N-1} path_N   boundary conditions
+//! constraints defects_0 path_1   defects_1 path_2  ...  defects_{N-1} path_N   boundary conditions
 //! ```
 //!
 //! What stands in one interval is the scheme's business: [`interval`]. Path constraints hold at

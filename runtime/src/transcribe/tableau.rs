@@ -1,4 +1,4 @@
-//! **The table** of one-step schemes without stages of their own; those with are in
+//! The nodes of one-step schemes without stages of their own; those with are in
 //! [`super::collocation`].
 //!
 //! With `F = (tf - t0) f` over normalised time and `h = 1/N`, every scheme here is
@@ -25,16 +25,12 @@ pub(crate) struct Node {
 
 /// The nodes of a scheme; none of a collocation scheme, whose states at the nodes are variables.
 pub(crate) fn nodes(method: &Method, states: usize) -> Vec<Node> {
-    let node = |weight, time, blend| Node { weight, time, blend: vec![blend; states] };
-    match method.scheme {
-        Scheme::Euler | Scheme::RungeKutta4 => vec![node(1.0, 0.0, 0.0)],
-        Scheme::ImplicitEuler => {
-            let mut implicit = node(1.0, 1.0, 1.0);
-            method.lagged.iter().for_each(|state| implicit.blend[*state] = 0.0);
-            vec![implicit]
+    let node = |[weight, time, blend]: &[f64; 3]| {
+        let mut node = Node { weight: *weight, time: *time, blend: vec![*blend; states] };
+        if method.scheme == Scheme::ImplicitEuler {
+            method.lagged.iter().for_each(|state| node.blend[*state] = 0.0);
         }
-        Scheme::Midpoint => vec![node(1.0, 0.5, 0.5)],
-        Scheme::Radau(_) | Scheme::Gauss(_) => Vec::new(),
-        Scheme::Trapezoid => vec![node(0.5, 0.0, 0.0), node(0.5, 1.0, 1.0)],
-    }
+        node
+    };
+    method.scheme.evaluations().iter().map(node).collect()
 }

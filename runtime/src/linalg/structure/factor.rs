@@ -11,7 +11,8 @@ pub enum Inertia {
     Singular,
 }
 
-/// A factorisation of the matrix of the optimality conditions ([`crate::linalg`]). Variables marked as fixed at construction have `dv = 0`.
+/// A factorisation of the matrix of the optimality conditions ([`crate::linalg`]). Variables marked
+/// as fixed at construction have `dv = 0`.
 pub trait Factor {
     /// Factors with new values; `sigma` has one entry per variable, `d` one per row.
     fn factor(&mut self, hessian: &[f64], jacobian: &[f64], sigma: &[f64], d: &[f64]) -> Inertia;

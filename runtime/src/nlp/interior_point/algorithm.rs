@@ -121,9 +121,9 @@ impl Algorithm {
         }
     }
 
-    /// a restoration phase, begun anew from where it is if it gets stuck itself. It ends the solve
-    /// if the smallest violation near by is one; if it is none, the filter has become too strict
-    /// and is emptied.
+    /// a restoration phase, begun anew from where it is if it gets stuck itself. It ends the
+    /// solve if the smallest violation near by is one; if it is none, the filter has become too
+    /// strict and is emptied.
     fn restore_or_stop(&mut self, nlp: &mut dyn Nlp, watch: &mut Watch) -> Option<Status> {
         for _ in 0..MOST_RESTARTS {
             match self.restore(nlp, REQUIRED_DECREASE, watch) {

@@ -23,8 +23,8 @@ impl Kkt {
         are_dependent: bool,
         counts: &mut Counts,
     ) -> bool {
-        // IC-1, IC-3: the unmodified matrix first. Curvature that was wrong a moment ago is likely to be
-        // wrong again: zero is tried only every other time.
+        // IC-1, IC-3: the unmodified matrix first. Curvature that was wrong a moment ago is likely
+        // to be wrong again: zero is tried only every other time.
         let start = if self.was_needed { self.smaller_regularization() } else { 0.0 };
         self.regularization = start.max(self.caution);
         let (first, mut rows) =

@@ -15,8 +15,7 @@ use super::formulation::Formulation;
 use super::iterate::{Iterate, Slopes, Step};
 use super::tuning::kkt::{HUGE, INACCURATE, MOST_REFINEMENTS, REFINED};
 use super::vectors::{are_finite, dot, largest};
-use crate::linalg::riccati::Riccati;
-use crate::linalg::sparse_ldl::SparseLdl;
+use crate::linalg::solvers::{Structure, more_robust, prepare};
 use crate::linalg::{Factor, Inertia, Products};
 use crate::nlp::{Derivatives, Nlp};
 use crate::problem::Linear;
@@ -34,8 +33,8 @@ pub(super) struct System<'a> {
 pub(super) struct Kkt {
     pub(super) factor: Box<dyn Factor>,
     products: Products,
-    /// Whether the factorisation is the recursion, which has no pivoting.
-    is_recursion: bool,
+    /// Which factorisation it is.
+    linear: Linear,
     /// `z / distance` over `y`.
     pub(super) sigma: Vec<f64>,
     /// Diagonals of the factored matrix.
@@ -60,34 +59,21 @@ pub(super) struct Kkt {
 }
 
 impl Kkt {
-    /// Prepares the factorisation the caller asks for; the recursion wherever the structure allows
-    /// it.
+    /// Prepares the factorisation that the caller asks for, or the next one that the structure
+    /// allows.
     pub(super) fn new(nlp: &dyn Nlp, formulation: &Formulation, linear: Linear) -> Self {
-        // Elastic rows are no longer exact equalities, and need no special care in the recursion.
-        let elastic = formulation.slacks.len() > formulation.inequalities;
-        let equality: Vec<bool> =
-            formulation.equality.iter().map(|equality| *equality && !elastic).collect();
-        let (hessian, jacobian) = (nlp.hessian_structure(), nlp.jacobian_structure());
-        let recursion = match (linear, nlp.stages()) {
-            (Linear::SparseLdl, _) | (_, None) => None,
-            // What belongs to the only interval cannot be told from what belongs to the ends.
-            (_, Some(stages)) if stages.intervals == 1 => None,
-            (_, Some(stages)) => {
-                Riccati::new(stages, hessian, jacobian, &formulation.fixed, &equality).ok()
-            }
-        };
         let rows = formulation.target.len();
-        let is_recursion = recursion.is_some();
-        let factor: Box<dyn Factor> = match recursion {
-            Some(recursion) => Box::new(recursion),
-            None => Box::new(SparseLdl::new(hessian, jacobian, &formulation.fixed, rows)),
-        };
+        let (linear, factor) = prepare(linear, &structure(nlp, &exact(formulation), formulation));
         let zeros = |length: usize| vec![0.0; length];
         let size = formulation.variables + rows;
         Kkt {
-            products: Products::new(nlp.stages(), hessian, jacobian),
+            products: Products::new(
+                nlp.stages(),
+                nlp.hessian_structure(),
+                nlp.jacobian_structure(),
+            ),
             factor,
-            is_recursion,
+            linear,
             sigma: zeros(formulation.len()),
             diagonal: zeros(formulation.variables),
             d: zeros(rows),
@@ -104,20 +90,13 @@ impl Kkt {
         }
     }
 
-    /// Goes over from the recursion to the sparse factorisation, which loses fewer digits where a
-    /// state has almost no room; `false` if it is there already.
+    /// Goes over to a more robust factorisation, such as one with pivoting, which loses fewer
+    /// digits where a state has almost no room; `false` if there is none.
     pub(super) fn fall_back(&mut self, nlp: &dyn Nlp, formulation: &Formulation) -> bool {
-        let was_recursion = std::mem::take(&mut self.is_recursion);
-        if was_recursion {
-            let (hessian, jacobian) = (nlp.hessian_structure(), nlp.jacobian_structure());
-            self.factor = Box::new(SparseLdl::new(
-                hessian,
-                jacobian,
-                &formulation.fixed,
-                formulation.target.len(),
-            ));
-        }
-        was_recursion
+        let Some(next) = more_robust(self.linear) else { return false };
+        let exact = exact(formulation);
+        (self.linear, self.factor) = prepare(next, &structure(nlp, &exact, formulation));
+        true
     }
 
     /// Computes the diagonals that belong to the iterate.
@@ -313,5 +292,25 @@ impl Kkt {
         if largest(estimate) <= HUGE {
             at.lambda.copy_from_slice(estimate);
         }
+    }
+}
+
+/// Which rows are exact equalities: elastic ones are none, and need no special care.
+fn exact(formulation: &Formulation) -> Vec<bool> {
+    let is_elastic = formulation.slacks.len() > formulation.inequalities;
+    formulation.equality.iter().map(|equality| *equality && !is_elastic).collect()
+}
+
+fn structure<'a>(
+    nlp: &'a dyn Nlp,
+    equality: &'a [bool],
+    formulation: &'a Formulation,
+) -> Structure<'a> {
+    Structure {
+        stages: nlp.stages(),
+        hessian: nlp.hessian_structure(),
+        jacobian: nlp.jacobian_structure(),
+        fixed: &formulation.fixed,
+        equality,
     }
 }

@@ -30,7 +30,8 @@ pub(super) struct Accepted {
 }
 
 impl Search<'_> {
-    /// backtracks from the longest step; `None` where the step has become too short.
+    /// backtracks from the longest step; `None` where the step has become too
+    /// short.
     pub(super) fn run(
         &mut self,
         filter: &mut Filter,

@@ -26,7 +26,7 @@ use super::conclusion::{Ended, conclude};
 use super::scaling::Scaled;
 use super::scaling::factors::ScalingFactors;
 use super::{Multipliers, Nlp, Options, Progress, Solution, Start, Status, Watch};
-use crate::linalg::is_sparse_cheaper;
+use crate::linalg::solvers::{cheapest, more_robust};
 use crate::problem::Linear;
 use algorithm::Algorithm;
 use tuning::fallback::{FAR, MOST_RESCALINGS};
@@ -36,14 +36,21 @@ use tuning::fallback::{FAR, MOST_RESCALINGS};
 /// each along another path, with the iterations that are left.
 pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Watch) -> Solution {
     let is_automatic = options.linear == Linear::Automatic;
-    let mut options = Options { linear: factorization(nlp, options.linear), ..*options };
+    let mut options = *options;
+    if is_automatic {
+        let (hessian, jacobian) = (nlp.hessian_structure(), nlp.jacobian_structure());
+        options.linear = cheapest(nlp.stages(), hessian, jacobian);
+    }
     let mut best = attempt(nlp, start, &options, watch);
     if options.is_final {
         best = rescaled_by_the_answer(best, nlp, start, &options, watch);
     }
     // Solver fallback: other rounding and regularisation.
-    if is_automatic && options.linear == Linear::Riccati && is_lost(&best) {
-        options.linear = Linear::SparseLdl;
+    if is_automatic
+        && let Some(next) = more_robust(options.linear)
+        && is_lost(&best)
+    {
+        options.linear = next;
         best = fallback(best, nlp, &options, from(start, Algorithm::run), watch);
     }
     // Phase-I restart: where the objective led away from all that is feasible.
@@ -51,20 +58,6 @@ pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Wa
         best = fallback(best, nlp, &options, from(start, Algorithm::run_with_phase_one), watch);
     }
     best
-}
-
-/// The factorisation to begin with: the recursion wherever there are stages, unless its border
-/// makes it too dear.
-fn factorization(nlp: &dyn Nlp, linear: Linear) -> Linear {
-    match (linear, nlp.stages()) {
-        (Linear::Automatic, None) => Linear::SparseLdl,
-        (Linear::Automatic, Some(stages)) => {
-            let is_dear =
-                is_sparse_cheaper(stages, nlp.hessian_structure(), nlp.jacobian_structure());
-            if is_dear { Linear::SparseLdl } else { Linear::Riccati }
-        }
-        (named, _) => named,
-    }
 }
 
 /// Guess and bounds may say little of how large an answer is. Where a solve ends without one that

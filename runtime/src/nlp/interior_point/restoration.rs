@@ -3,7 +3,8 @@
 //! From the point `v_R` where it starts, it solves, with the very same algorithm,
 //!
 //! ```text
-//!     minimise  rho sum (p + n) + zeta/2 || D (v - v_R) ||^2    subject to   rows - p + n = 0,  p, n >= 0
+//!     minimise    rho sum (p + n) + zeta/2 || D (v - v_R) ||^2
+//!     subject to  c(v) - p + n = 0,  p, n >= 0
 //! ```
 //!
 //! (Waechter & Biegler 2006, section 3.3), until a point is acceptable to the filter it was called
@@ -169,7 +170,7 @@ impl Algorithm {
             match outcome {
                 Outcome::Continue => {}
                 Outcome::Blocked => break Restored::Blocked,
-                Outcome::Done(Status::Solved | Status::Acceptable) => break Restored::Stationary,
+                Outcome::Done(status) if status.is_solved() => break Restored::Stationary,
                 Outcome::Done(status) => break Restored::Stopped(status),
             }
             if self.accepts(proximity.inner, &inner.at, decrease * violation) {

@@ -1,7 +1,7 @@
 //! Every tuned number of the interior point method, by the file that uses it.
 //!
-//! Where nothing else is said, the value is Ipopt's default (Waechter & Biegler 2006, section 4, and
-//! its options), or is justified by the decisions 8, 12, 22, 23, 26 and 30 in `docs/decisions`.
+//! Where nothing else is said, the value is Ipopt's default (Waechter & Biegler 2006, section 4,
+//! and its options), or is justified by the decisions 8, 12, 22, 23, 26 and 30 in `docs/decisions`.
 
 pub(crate) mod algorithm {
     /// Multipliers above this, relative to the objective, come from rows that depend on each other,
@@ -11,8 +11,8 @@ pub(crate) mod algorithm {
     pub(crate) const NEARLY_FEASIBLE: f64 = 1e-4;
     /// A step this small, relative to the iterate, is rounding.
     pub(crate) const TINY_STEP: f64 = 10.0 * f64::EPSILON;
-    /// More steps of rounding than that in a row, at the last barrier parameter or because they were
-    /// cut down to it, lead nowhere.
+    /// More steps of rounding than that in a row, at the last barrier parameter or because they
+    /// were cut down to it, lead nowhere.
     pub(crate) const MOST_TINY_STEPS: usize = 5;
     /// A restoration phase that is stuck is begun anew so many times.
     pub(crate) const MOST_RESTARTS: usize = 4;
@@ -61,8 +61,8 @@ pub(crate) mod filter {
     pub(crate) const SLOPE_POWER: f64 = 2.3;
     /// Safety factor of the smallest step (equation 23), `gamma_alpha`.
     pub(crate) const SMALLEST_STEP: f64 = 0.05;
-    /// Violations that no point may have, and those below which the objective may decide, relative to
-    /// that of the start: `theta_max`, `theta_min`.
+    /// Violations that no point may have, and those below which the objective may decide, relative
+    /// to that of the start: `theta_max`, `theta_min`.
     pub(crate) const LARGEST_VIOLATION: f64 = 1e4;
     pub(crate) const SMALL_VIOLATION: f64 = 1e-4;
     /// No step length is below this.
@@ -72,8 +72,8 @@ pub(crate) mod filter {
 }
 
 pub(crate) mod inertia {
-    /// Of the Hessian (algorithm IC): the first, least and largest, `delta_w`; the growth of the first and
-    /// of others, and the decay from one factorisation to the next, `kappa_w`.
+    /// Of the Hessian (algorithm IC): the first, least and largest, `delta_w`; the growth of the
+    /// first and of others, and the decay from one factorisation to the next, `kappa_w`.
     pub(crate) const FIRST_REGULARIZATION: f64 = 1e-4;
     pub(crate) const SMALLEST_REGULARIZATION: f64 = 1e-20;
     pub(crate) const LARGEST_REGULARIZATION: f64 = 1e40;
@@ -88,7 +88,8 @@ pub(crate) mod inertia {
     pub(crate) const MOST_CAUTION: f64 = 1.0;
     /// Of constraints, where the matrix is singular: `delta_c`.
     pub(crate) const ROW_REGULARIZATION: f64 = 1e-8;
-    /// The same where rows depend on each other by their multipliers, although the inertia is right.
+    /// The same where rows depend on each other by their multipliers, although the inertia is
+    /// right.
     pub(crate) const DEPENDENT_ROWS: f64 = 1e-6;
     /// The power of `mu` in the regularisation of constraints (`kappa_c`).
     pub(crate) const MU_POWER: f64 = 0.25;
@@ -97,8 +98,8 @@ pub(crate) mod inertia {
 pub(crate) mod initialization {
     /// The first barrier parameter of a cold start, `mu_0`.
     pub(crate) const FIRST_MU: f64 = 0.1;
-    /// How far inside of its bounds a start is moved: Ipopt's `bound_push` and `bound_frac`, cold and
-    /// warm.
+    /// How far inside of its bounds a start is moved: Ipopt's `bound_push` and `bound_frac`, cold
+    /// and warm.
     pub(crate) const BOUND_PUSH: f64 = 1e-2;
     pub(crate) const WARM_START_BOUND_PUSH: f64 = 1e-5;
 }
@@ -113,8 +114,8 @@ pub(crate) mod kkt {
 }
 
 pub(crate) mod line_search {
-    /// Second-order corrections at most, `p_max`, and what each has to leave of the violation at most,
-    /// `kappa_soc`.
+    /// Second-order corrections at most, `p_max`, and what each has to leave of the violation at
+    /// most, `kappa_soc`.
     pub(crate) const MOST_CORRECTIONS: usize = 4;
     pub(crate) const CORRECTION_DECREASE: f64 = 0.99;
 }
@@ -164,8 +165,8 @@ pub(crate) mod termination {
     pub(crate) const MOST_WEIGHTED_VIOLATION: f64 = 1e3;
     /// Variables beyond this, at a point that is feasible relative to them, have left the problem.
     pub(crate) const DIVERGED: f64 = 1e10;
-    /// The target is not lowered below this part of the tolerance, nor faster than that; lower ones are
-    /// given up after so many iterations.
+    /// The target is not lowered below this part of the tolerance, nor faster than that; lower ones
+    /// are given up after so many iterations.
     pub(crate) const LEAST_TARGET: f64 = 1e-5;
     pub(crate) const FASTEST: f64 = 1e-2;
     pub(crate) const SLOWEST: f64 = 0.3;

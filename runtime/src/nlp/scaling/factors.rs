@@ -1,8 +1,9 @@
 //! ScalingFactors that make the numbers of an NLP moderate, whatever the units of the model.
 //!
-//! A quantity whose size ([`nominal`](super::nominal)) is between 1/16 and 16 is left alone, others are
-//! brought to the nearer of these. The steps of a state are divided by what it is divided by. The
-//! objective is scaled so that its gradient, summed over the times of a quantity, is between 1 and
+//! A quantity whose size ([`nominal`](super::nominal)) is between 1/16 and 16 is left alone, others
+//! are brought to the nearer of these. The steps of a state are divided by what it is divided by.
+//! The objective is scaled so that its gradient, summed over the times of a quantity, is between 1
+//! and
 //! 100. As in Ipopt (Waechter & Biegler 2006, section 3.8) rows with gradients above 100 at the
 //!      start are scaled down to that; path constraints and boundary conditions whose gradients are
 //!      all below 1/100, at the start and near it, are scaled up to 1. All but the factors of steep

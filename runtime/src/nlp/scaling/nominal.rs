@@ -1,11 +1,12 @@
-//! Nominal magnitudes: how large the quantities of an NLP are, as far as can be told before it is solved.
+//! Nominal magnitudes: how large the quantities of an NLP are, as far as can be told before it is
+//! solved.
 //!
 //! The size of a quantity is the largest value of its guess; where that is 0, the length of its
 //! range; where that is infinite, how far a condition on it alone takes it; where there is none,
 //! what the others make of it,
 //!
 //! ```text
-//!     of a state     S_i = sum of |steps of x_i|               with all whose size is known moved by a part of it;
+//!     of a state     S_i = sum of |steps of x_i|, with all of known size moved by a part of it;
 //!     of a control   S_j = min over i of S_i / sum of |slopes of x_i's steps|, there too
 //! ```
 //!

@@ -1,5 +1,5 @@
-//! A tape, linearised: each step and each event as a linear map, and the product of all, which solves
-//! the variational equation.
+//! A tape, linearised: each step and each event as a linear map, and the product of all, which
+//! solves the variational equation.
 
 pub(crate) mod event;
 pub(crate) mod linearization;

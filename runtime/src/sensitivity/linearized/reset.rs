@@ -1,13 +1,13 @@
-//! What an event does to the state itself, linearised: its resets one after the other, then coming to
-//! rest on a surface.
+//! What an event does to the state itself, linearised: its resets one after the other, then coming
+//! to rest on a surface.
 
 use super::event::EventOnTape;
 use super::linearization::{Jacobian, Linearizer};
 use crate::simulate::{Instant, Kind, Mode, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-/// The derivatives of the state after an event by the state, the time and the inputs `(u, p)` before
-/// it.
+/// The derivatives of the state after an event by the state, the time and the inputs `(u, p)`
+/// before it.
 pub(crate) struct Reset {
     pub by_state: DMatrix<f64>,
     pub by_time: DVector<f64>,

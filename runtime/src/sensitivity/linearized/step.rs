@@ -6,7 +6,8 @@
 //!
 //! ```text
 //! Y_i = S + h sum_j a_ij K_j,    K_j = A_j Y_j + g_j,    g_j = G_j W,    S+ = S + h sum_j b_j K_j
-//! mu_j = A_j^T kappa_j,    kappa_j = h (b_j lambda+ + sum_i a_ij mu_i) = dJ/dg_j,    lambda = lambda+ + sum_j mu_j
+//! mu_j = A_j^T kappa_j,    kappa_j = h (b_j lambda+ + sum_i a_ij mu_i) = dJ/dg_j,
+//! lambda = lambda+ + sum_j mu_j
 //! ```
 //!
 //! Where the method is implicit, the `Y_i` are the solution of one linear system with the blocks `I

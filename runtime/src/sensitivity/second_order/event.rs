@@ -1,4 +1,5 @@
-//! The second-order part of an event: to the moved time, through the resets, back to the fixed time.
+//! The second-order part of an event: to the moved time, through the resets, back to the fixed
+//! time.
 
 use super::curvature::Hessians;
 use crate::problem::Columns;

@@ -3,7 +3,8 @@
 //! ```text
 //! moving     s = psi/|psi|,   ds/dx = (I - s s')/|psi| dpsi/dx
 //! departs   psi = 0: s is the direction in which it leaves, the limit of psi/|psi|
-//! at rest    psi = 0 is kept: every component slides, and s solves the linear system of all sliding surfaces
+//! at rest    psi = 0 is kept: every component slides, and s solves the linear system of all
+//!            sliding surfaces
 //! ```
 //!
 //! [`Field::selectors_at`] gives the selectors of every mode.

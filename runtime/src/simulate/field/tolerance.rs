@@ -1,7 +1,8 @@
 //! How exact a step must be, state by state:
 //!
 //! ```text
-//! rtol |x| + atol + h d,   atol: what is asked for, or 1e-12 of the largest that the state has been
+//! rtol |x| + atol + h d,
+//! atol: what is asked for, or 1e-12 of the largest that the state has been
 //! ```
 //!
 //! So it does not matter in which unit a state is written. `d` is by how much its rate is

@@ -1,5 +1,5 @@
-//! What an event does: modes change, jumps reset the state, jumps that accumulate end the run or hold
-//! a surface.
+//! What an event does: modes change, jumps reset the state, jumps that accumulate end the run or
+//! hold a surface.
 
 use super::Run;
 use crate::simulate::field::correct;

@@ -14,8 +14,8 @@ impl ZenoDetector {
         self.last.last().map_or(f64::INFINITY, |last| time - last)
     }
 
-    /// Notes a jump; the limit time once the jumps accumulate. Jumps so small that rounding will soon
-    /// hide them are believed at once.
+    /// Notes a jump; the limit time once the jumps accumulate. Jumps so small that rounding will
+    /// soon hide them are believed at once.
     pub fn limit(&mut self, time: f64, span: f64, is_small: bool) -> Option<f64> {
         self.last.push(time);
         if self.last.len() > 4 {

@@ -2,7 +2,7 @@
 //! Newton's method.
 //!
 //! ```text
-//! z_i = h sum_j a_ij f(t + c_j h, x0 + z_j),     (I - h A x J) dz = h A F - z,     x(t + h) = x0 + z_3
+//! z_i = h sum_j a_ij f(t + c_j h, x0 + z_j),   (I - h A x J) dz = h A F - z,   x(t + h) = x0 + z_3
 //! (g/h I - J) err = f(t, x0) + (e_1 z_1 + e_2 z_2 + e_3 z_3)/h
 //! ```
 //!

@@ -105,7 +105,7 @@ fn on_trial(problem: &Problem) -> Problem {
 }
 
 fn is_good(outcome: &Outcome) -> bool {
-    matches!(outcome.solution.status, Status::Solved | Status::Acceptable)
+    outcome.solution.status.is_solved()
 }
 
 fn is_stopped(outcome: &Outcome) -> bool {

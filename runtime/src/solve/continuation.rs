@@ -1,12 +1,13 @@
-//! To the grid and the width that the model names, from coarse grids and wide layers.
+//! Continuation: to the grid and the smoothing width that the model names, from coarse grids and
+//! larger widths.
 //!
 //! The width shrinks on the coarsest grid, roughly, then the last width is solved on one finer grid
 //! after the other, each time more accurately, and each solve is begun where the one before ended
-//! ([`prolong`]): far from the solution an iteration costs little, and on the finest grid few are
-//! left. Where this fails, widths shrink on the finest grid, from half the size of the switching
-//! function on, or from far above the width; where that fails, too, it is tried at once and with
-//! all patience. So a failure on a coarse grid or in a wide layer is never the last word: what the
-//! model names has been tried.
+//! ([`prolong`](super::prolong)): far from the solution an iteration costs little, and on the
+//! finest grid few are left. Where this fails, widths shrink on the finest grid, from half the size
+//! of the switching function on, or from far above the width; where that fails, too, it is tried at
+//! once and with all patience. So a failure on a coarse grid or with a large width is never the
+//! last word: what the model names has been tried.
 
 use super::Watch;
 use super::grid_sequencing::grids;

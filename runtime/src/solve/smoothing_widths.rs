@@ -1,8 +1,9 @@
 //! Widths of our own choice, where the model names none: each surface gets a fraction of the size
 //! that its switching function has along the trajectory found so far, one solve after another; a
 //! warm start takes those of the earlier solution. Where a step is too long it is halved; where
-//! even short steps fail, the last width that could be solved is the answer. Where the first and
-//! widest layer cannot be solved, that is no verdict: thinner ones are begun with at once.
+//! even short steps fail, the last width that could be solved is the answer. Where the
+//! first and largest width cannot be solved, that is no verdict: smaller ones are begun with at
+//! once.
 //!
 //! A guess that rests on a surface says nothing of the size of its function. Then the first
 //! solution says it, and the first solve is repeated with it.

@@ -2,9 +2,9 @@
 //! again from there.
 //!
 //! The error of a step is the difference between its end and that of an accurate integration of the
-//! same smoothed system from the same state with the same control ([`estimate`]). What is refined
-//! is [`plan`]'s to say: intervals are divided, or, where the model leaves the order open, all get
-//! more stages, which is taken back where it does not pay.
+//! same smoothed system from the same state with the same control ([`error_estimate`]). What is
+//! refined is [`plan`]'s to say: intervals are divided, or, where the model leaves the order open,
+//! all get more stages, which is taken back where it does not pay.
 
 mod controls;
 mod error_estimate;

@@ -1,29 +1,11 @@
 //! The command `fdcc`: reads the command line and hands over to one file for each command.
 
-mod alignment;
-mod attempts;
 mod commands;
-mod conditions;
-mod difference;
-mod expectations;
-mod failure;
-mod fit;
-mod gaps;
-mod gradients;
-mod jumps;
-mod log;
+mod drawing;
 mod model;
 mod output;
-mod pieces;
-mod render;
-mod replay;
-mod replayed;
-mod rewrite;
-mod search;
+mod report;
 mod solver;
-mod verdict;
-mod verification;
-mod warm;
 mod watch;
 
 use std::process::ExitCode;

@@ -24,7 +24,7 @@ pub use analyze::sensitivity_query::check_with_objective;
 pub use analyze::{Analysis, Checked, analyze, analyze_with, check};
 pub use compile::dump::{Stage, dump};
 pub use compile::{Expectations, expectations};
-pub use compile::{compile, compile_by_parameters};
+pub use compile::{ProblemCode, compile, compile_by_parameters};
 pub use compile::{compile_sensitivities, compile_simulation, compile_smoothed};
 pub use expressions::graph::builtins;
 pub use expressions::{graph, interval, kernels};

@@ -1,10 +1,52 @@
-//! Optimal control of systems with friction, switches and impacts: read a model, solve it, check
-//! the answer on the true system, differentiate it.
+//! Optimal control of systems with friction, switches and impacts: read a [`Model`], solve it,
+//! check the [`Solution`] on the true system, differentiate it.
+//!
+//! ```
+//! use fdcc::{Model, Options};
+//!
+//! let model = Model::from_file("../models/block.fdc")?;
+//! let solution = model.with("mu", 0.2)?.solve(&Options::default())?;
+//! let replay = solution.verify()?;
+//! println!("{} {}", solution.objective(), replay.confirms(1e-3));
+//! # assert!(solution.is_solved());
+//! # Ok::<(), fdcc::Error>(())
+//! ```
+//!
+//! All numbers are in SI. An `Err` is a wrong model or a wrong call; that nothing was found is a
+//! status. Nothing here prints, and files are read by [`Model::from_file`] alone.
 
-pub mod bounds;
-pub mod exact;
-pub mod motion;
-pub mod parallel;
-pub mod quantities;
-pub mod stays;
-pub mod terms;
+mod error;
+mod executor;
+mod expectations;
+mod gradient;
+mod model;
+pub mod names;
+pub mod optimality;
+pub mod record;
+mod replay;
+mod simulation;
+mod solve;
+mod sweep;
+mod verification;
+mod warm_start;
+
+pub use error::Error;
+pub use executor::Executor;
+pub use expectations::{Checked as Expectation, Outcome as Expected, Sides};
+pub use fdcc_runtime::nlp::{Status, Stop};
+pub use fdcc_runtime::simulate::{Controls, Options as Accuracy};
+pub use gradient::{By, Exact, Gradient, Stepped, by_names};
+pub use model::{Checked, Model, Value, check, text};
+pub use record::Record;
+pub use replay::Replay;
+pub use simulation::Simulation;
+pub use solve::{
+    Compiled, Ended, Jump, Options, Part, Report, Sequence, Solution, Start, Unrolled,
+};
+pub use sweep::{Grid, Sweep};
+pub use verification::{Condition, Gap, Stay, TIME_OF, Verification, modes};
+
+/// The code of the page about the library.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/library.md")]
+struct Page;

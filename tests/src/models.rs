@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use fdcc_compiler::Model;
-use fdcc_grammar::{Diagnostic, Severity, parse};
+use fdcc_grammar::{Diagnostic, Severity};
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::solve::{self, Outcome, Refusal};
 
@@ -14,15 +14,13 @@ pub type Changes<'a> = &'a [(&'a str, &'a str)];
 
 /// The meaning of a model without errors.
 pub fn meaning(text: &str) -> Model {
-    let parsed = parse(text);
-    let checked = fdcc_compiler::check(&parsed.tree);
-    let mut found = parsed.diagnostics.into_iter().chain(checked.diagnostics);
-    if let Some(error) =
-        found.find(|diagnostic| diagnostic.severity == Severity::Error && checked.model.is_none())
-    {
+    let checked = fdcc::check("a test", text.into());
+    let is_error = |it: &&Diagnostic| it.severity == Severity::Error;
+    let Some(model) = &checked.model else {
+        let error = checked.diagnostics.iter().find(is_error);
         panic!("the model has an error: {error:#?}\n{text}");
-    }
-    checked.model.expect("a model without errors has a meaning")
+    };
+    model.meaning().clone()
 }
 
 /// The model of a text, with other parameters and settings.

@@ -5,11 +5,12 @@ use fdcc_grammar::{Diagnostic, Severity, SourceFile};
 
 use super::Exit;
 use super::options::seconds;
-use crate::model::Loaded;
+use crate::drawing::render;
+use crate::model;
 use crate::output::{self, diagnostics, plural, sarif};
-use crate::render;
 use crate::solver::stopped;
 use crate::watch::{self, Deadline};
+use fdcc::Checked;
 use std::time::{Duration, Instant};
 
 /// Report everything that is wrong with models
@@ -90,7 +91,7 @@ impl Check {
         let mut exit = Exit::Fine;
         let mut loaded = Vec::new();
         for file in &self.files {
-            match Loaded::within(Deadline::after(Instant::now(), self.time_limit), file) {
+            match model::check(file, Deadline::after(Instant::now(), self.time_limit)) {
                 Ok(Ok(model)) => {
                     exit = exit.max(self.verdict(&model.diagnostics));
                     loaded.push(model);
@@ -113,11 +114,11 @@ impl Check {
         if is_wrong { Exit::ModelError } else { Exit::Fine }
     }
 
-    fn report(&self, loaded: &[Loaded]) -> String {
+    fn report(&self, loaded: &[Checked]) -> String {
         let found = || {
             loaded
                 .iter()
-                .flat_map(|it| it.diagnostics.iter().map(|diagnostic| (&it.source, diagnostic)))
+                .flat_map(|it| it.diagnostics.iter().map(|diagnostic| (&*it.source, diagnostic)))
         };
         match self.format {
             Format::Human => {
@@ -144,9 +145,9 @@ fn short(source: &SourceFile, diagnostic: &Diagnostic) -> String {
 }
 
 /// `2 errors, 1 warning in 3 files; `fdcc fix` repairs 1`
-fn summary(loaded: &[Loaded]) -> String {
+fn summary(loaded: &[Checked]) -> String {
     let count = |severity| {
-        let all = loaded.iter().flat_map(|it| &it.diagnostics);
+        let all = loaded.iter().flat_map(|it| it.diagnostics.iter());
         all.filter(|diagnostic| diagnostic.severity == severity).count()
     };
     let kinds = [(Severity::Error, "error"), (Severity::Warning, "warning")];
@@ -161,7 +162,7 @@ fn summary(loaded: &[Loaded]) -> String {
         String::new()
     };
     let is_certain = |it: &&Diagnostic| it.fixes.iter().any(|fix| fix.certain);
-    let certain = loaded.iter().flat_map(|it| &it.diagnostics).filter(is_certain).count();
+    let certain = loaded.iter().flat_map(|it| it.diagnostics.iter()).filter(is_certain).count();
     let repairs =
         if certain > 0 { format!("; `fdcc fix` repairs {certain}") } else { String::new() };
     if loaded.is_empty() {

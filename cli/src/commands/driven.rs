@@ -2,16 +2,14 @@
 
 use super::Exit;
 use super::accuracy::Accuracy;
-use super::options::{Changes, Prepared, read_at_any_rate, seconds};
-use crate::log::Level;
+use super::options::{Changes, read_at_any_rate, seconds};
 use crate::output;
-use crate::output::control;
-use crate::replay::Replay;
-use crate::solver::Failure;
+use crate::output::control::{self, Driver};
+use crate::report::log::Level;
+use crate::solver::{Failure, sha256};
 use crate::watch::{Deadline, catch_interrupts};
 use clap::Args;
-use fdcc_compiler::Model;
-use fdcc_grammar::Diagnostic;
+use fdcc::{Error, Model};
 use fdcc_runtime::simulate::{Controls, Options, System, Watch};
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -50,7 +48,7 @@ pub struct Driven {
 
 impl Driven {
     /// Reads and checks the model, without any changes.
-    pub fn read(&self) -> Result<Prepared, Exit> {
+    pub fn read(&self) -> Result<Model, Exit> {
         let is_search = self.seed.is_some() || self.starts.is_some_and(|starts| starts > 1);
         if is_search && self.log != Some(Level::None) {
             output::complain(
@@ -71,43 +69,49 @@ impl Driven {
     pub fn compiled(
         &self,
         model: &Model,
-        compile: fn(&Model) -> Result<System, Vec<Diagnostic>>,
+        compile: fn(&Model) -> Result<System, Error>,
     ) -> Result<System, Failure> {
         let model = model.clone();
         let compiled = self.deadline().within(move || compile(&model));
-        compiled.map_err(Failure::Stopped)?.map_err(Failure::Model)
+        Ok(compiled.map_err(Failure::Stopped)??)
     }
 
     /// How exactly to simulate the model, and until when.
     pub fn options(&self, model: &Model) -> Options {
         let deadline = self.deadline();
         let watch = Watch::new(move || deadline.check());
-        Options { watch, ..self.accuracy.options(model.time_size()) }
+        Options { watch, ..self.accuracy.options(model.meaning().time_size()) }
     }
 
     /// Changes the model: what its solution says comes first, so that the command line has the last
     /// word.
-    pub fn adapt(&self, prepared: &mut Prepared) -> Result<Replay, Failure> {
-        let replay = match &self.control {
-            Some(path) => control::read(path, &prepared.model)?,
-            None => Replay::default(),
+    pub fn adapt(&self, model: &Model) -> Result<(Model, Driver), Failure> {
+        let driver = match &self.control {
+            Some(path) => control::read(path, model)?,
+            None => Driver::default(),
         };
-        if replay.is_of_another(&prepared.source.text) && self.log != Some(Level::None) {
-            let name = &prepared.source.name;
+        let source = model.source();
+        let is_other = driver.source_sha256.as_ref().is_some_and(|it| *it != sha256(&source.text));
+        if is_other && self.log != Some(Level::None) {
             output::complain(&format!(
-                "{name} is not the text that was solved; the controls are taken all the same"
+                "{} is not the text that was solved; the controls are taken all the same",
+                source.name
             ));
         }
-        if let Some(path) = &self.warm {
-            control::read(path, &prepared.model)?.adapt(&mut prepared.model);
-        }
-        replay.adapt(&mut prepared.model);
-        self.changes.apply(&mut prepared.model).map_err(Failure::Usage)?;
-        Ok(replay)
+        let warm = match &self.warm {
+            Some(path) => control::read(path, model)?,
+            None => Driver::default(),
+        };
+        let adapted = model.changed(|meaning| {
+            warm.replay.adapt(meaning);
+            driver.replay.adapt(meaning);
+            Ok::<(), Failure>(())
+        })?;
+        Ok((self.changes.apply(&adapted).map_err(Failure::Usage)?, driver))
     }
 
     /// The controls for a system. What is odd about them is said on the standard error.
-    pub fn controls(&self, replay: Replay, system: &System) -> Result<Controls, Failure> {
+    pub fn controls(&self, driver: Driver, system: &System) -> Result<Controls, Failure> {
         let [first, last] = system.interval;
         let wrong = match (first.is_finite() && last.is_finite(), first <= last) {
             (false, _) => Some("both must be numbers"),
@@ -117,10 +121,11 @@ impl Driven {
         if let Some(wrong) = wrong {
             return Err(Failure::Usage(format!("time runs from {first} to {last}; {wrong}")));
         }
+        let Driver { replay, source_sha256 } = driver;
         let doubt = replay.doubts(system.interval).filter(|_| self.log != Some(Level::None));
         if let (Some(doubt), Some(path)) = (doubt, &self.control) {
             output::complain(&format!("{}: {doubt}", path.display()));
         }
-        Ok(replay.held().unwrap_or(Controls::Guess))
+        Ok(replay.held(source_sha256.is_some()).unwrap_or(Controls::Guess))
     }
 }

@@ -5,8 +5,8 @@ use fdcc_compiler::{analyze, repair};
 use fdcc_grammar::{Diagnostic, Severity, SourceFile};
 
 use super::Exit;
+use super::rewrite;
 use crate::output::{self, plural};
-use crate::rewrite;
 
 /// Repair what is certain in models, and print what was changed
 #[derive(Args)]

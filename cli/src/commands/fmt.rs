@@ -4,7 +4,7 @@ use clap::Args;
 use fdcc_grammar::{SourceFile, format};
 
 use super::Exit;
-use crate::rewrite;
+use super::rewrite;
 
 /// Lay out models in the canonical way
 #[derive(Args)]

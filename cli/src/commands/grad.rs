@@ -2,17 +2,14 @@
 
 use super::Exit;
 use super::driven::Driven;
-use super::options::{Prepared, show, usage};
-use crate::gradients::Question;
-use crate::output::gradient::{Document, Found};
+use super::options::{show, usage};
+use crate::output::gradient::Document;
 use crate::output::{self, files};
 use crate::solver::Failure;
 use clap::Args;
-use fdcc::exact::Exact;
-use fdcc::quantities::{By, everything, named};
-use fdcc_compiler::Model;
-use fdcc_grammar::{Severity, SourceFile, parse};
-use fdcc_runtime::simulate::{Controls, System};
+use fdcc::{By, Controls, Gradient, Model, by_names};
+use fdcc_grammar::{Severity, SourceFile};
+use fdcc_runtime::simulate::System;
 use std::path::PathBuf;
 
 /// The exact gradient through all events, and whether it can be trusted
@@ -45,59 +42,45 @@ const MOST_SECOND: usize = 64;
 impl Grad {
     /// Differentiates and reports.
     pub fn run(self) -> Exit {
-        let mut prepared = match self.driven.read().and_then(|prepared| self.asked(prepared)) {
-            Ok(prepared) => prepared,
+        let model = match self.driven.read().and_then(|model| self.asked(model)) {
+            Ok(model) => model,
             Err(exit) => return exit,
         };
-        match self.gradient(&mut prepared) {
-            Ok(document) => self.report(&document.in_units((&prepared.model).into()), &prepared),
-            Err(failure) => failure.report(&prepared.source),
+        match self.gradient(&model) {
+            Ok(document) => self.report(&document, &model),
+            Err(failure) => failure.report(model.source()),
         }
     }
 
     /// The model with the objective that `--of` asks for. What is wrong with that is shown under
     /// its own name.
-    fn asked(&self, prepared: Prepared) -> Result<Prepared, Exit> {
-        let Some(of) = &self.of else { return Ok(prepared) };
+    fn asked(&self, model: Model) -> Result<Model, Exit> {
+        let Some(of) = &self.of else { return Ok(model) };
         if of.trim().is_empty() {
             return Err(usage("`--of` needs an expression, such as `x(end)`"));
         }
-        let tree = parse(&prepared.source.text).tree;
-        let checked = fdcc_compiler::check_with_objective(&tree, of);
+        let checked = model.with_objective(of);
         let source = SourceFile::new("--of", of.as_str());
         show(checked.diagnostics.iter().filter(|it| it.severity >= Severity::Warning), &source);
-        let model = checked.model.ok_or(Exit::Usage)?;
-        Ok(Prepared { model, ..prepared })
+        checked.model.ok_or(Exit::Usage)
     }
 
-    fn gradient(&self, prepared: &mut Prepared) -> Result<Document, Failure> {
-        let replay = self.driven.adapt(prepared)?;
-        let system = self.driven.compiled(&prepared.model, fdcc_compiler::compile_sensitivities)?;
-        if prepared.model.objective.is_none() {
+    fn gradient(&self, model: &Model) -> Result<Document, Failure> {
+        let (model, driver) = self.driven.adapt(model)?;
+        let system = self.driven.compiled(&model, Model::sensitivity_system)?;
+        if model.meaning().objective.is_none() {
             return Err(Failure::Usage(
                 "the model has no objective; `--of EXPR` says what to differentiate".into(),
             ));
         }
-        let controls = self.driven.controls(replay, &system)?;
-        let by = self.by(&system, &controls, &prepared.model)?;
-        self.answer(&Question { model: &prepared.model, system, controls, by }, &prepared.source)
-    }
-
-    fn answer(&self, question: &Question, source: &SourceFile) -> Result<Document, Failure> {
-        let Question { model, system, controls, by } = question;
-        let has_second = self.second(by)?;
+        let controls = self.driven.controls(driver, &system)?;
+        let by = self.by(&system, &controls, &model)?;
+        let has_second = self.second(&by)?;
+        let accuracy = self.driven.options(&model);
+        let gradient = Gradient::new(&model, system, controls, by, &accuracy);
         let of = self.of.as_deref().unwrap_or("objective");
-        let options = self.driven.options(model);
-        let exact = match Exact::new(system, controls, &options, &question.quantities()) {
-            Ok(exact) => exact,
-            Err(simulation) => return Ok(Document::without(of, system, &simulation, source)),
-        };
-        let simulation = &exact.found.simulation;
-        let second = has_second.then(|| question.second(simulation));
-        let (smoothed, discretised) = (question.smoothed(simulation), question.discretised());
-        let (exact, method) = (&exact, &model.method);
-        let found = Found { of, system, by, exact, second, smoothed, discretised, method };
-        Ok(Document::new(found, source))
+        let document = Document::new(of, &gradient, has_second, &model);
+        Ok(document.in_units(model.meaning().into()))
     }
 
     /// Whether second derivatives are wanted; not by thousands of rows of controls.
@@ -112,24 +95,15 @@ impl Grad {
     }
 
     fn by(&self, system: &System, controls: &Controls, model: &Model) -> Result<Vec<By>, Failure> {
-        if self.wrt.is_empty() {
-            let all = everything(system, model);
-            let nothing =
-                "there is nothing to differentiate by; `--wrt x(start)` names the start of `x`";
-            return if all.is_empty() { Err(Failure::Usage(nothing.into())) } else { Ok(all) };
-        }
-        let mut all: Vec<By> = Vec::new();
-        for name in self.wrt.iter().map(|name| name.trim()) {
-            let found = named(name, system, controls, model);
-            let found = found.map_err(|what| Failure::Usage(format!("--wrt: {what}")))?;
-            let is_new = |by: &By| all.iter().all(|known| known.name != by.name);
-            let new: Vec<By> = found.into_iter().filter(is_new).collect();
-            all.extend(new);
-        }
-        Ok(all)
+        let names: Vec<&str> = self.wrt.iter().map(|name| name.trim()).collect();
+        let wrong = |what: String| match names.is_empty() {
+            true => Failure::Usage(what),
+            false => Failure::Usage(format!("--wrt: {what}")),
+        };
+        by_names(&names, system, controls, model).map_err(wrong)
     }
 
-    fn report(&self, document: &Document, prepared: &Prepared) -> Exit {
+    fn report(&self, document: &Document, model: &Model) -> Exit {
         let exit = if document.trusted { Exit::Fine } else { Exit::NotSolved };
         let written = match &self.out {
             Some(folder) => {
@@ -144,7 +118,7 @@ impl Grad {
                 output::print(&format!(" wrote {}\n", names.join("  ")));
                 exit
             }
-            Err(failure) => failure.report(&prepared.source),
+            Err(failure) => failure.report(model.source()),
         }
     }
 }

@@ -10,6 +10,7 @@ mod grad;
 mod lsp;
 mod new;
 mod options;
+mod rewrite;
 mod show;
 mod simulate;
 mod solve;
@@ -17,7 +18,7 @@ mod sweep;
 mod test;
 mod verify;
 
-pub use options::{Options, Prepared, show};
+pub use options::{Options, show};
 
 use std::process::ExitCode;
 

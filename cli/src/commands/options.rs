@@ -1,14 +1,15 @@
 //! Options that all commands share which compute something.
 
 use super::Exit;
-use crate::log::Level;
-use crate::model::Loaded;
+use crate::drawing::render;
+use crate::model;
+use crate::output;
+use crate::report::log::Level;
 use crate::solver::stopped;
 use crate::watch::Deadline;
-use crate::{output, render};
 use clap::Args;
-use fdcc_compiler::Model;
-use fdcc_grammar::{Code, Diagnostic, Severity, SourceFile};
+use fdcc::{Checked, Model};
+use fdcc_grammar::{Diagnostic, Severity, SourceFile};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -25,16 +26,18 @@ pub struct Changes {
 
 impl Changes {
     /// Applies them, or says what is wrong with one.
-    pub fn apply(&self, model: &mut Model) -> Result<(), String> {
-        for text in &self.set {
-            let (name, value) = split(text, "--set NAME=VALUE")?;
-            model.set_param(name, value)?;
-        }
-        for text in &self.method {
-            let (key, value) = split(text, "--method KEY=VALUE")?;
-            model.set_method(key, value)?;
-        }
-        model.fits_together()
+    pub fn apply(&self, model: &Model) -> Result<Model, String> {
+        model.changed(|meaning| {
+            for text in &self.set {
+                let (name, value) = split(text, "--set NAME=VALUE")?;
+                meaning.set_param(name, value)?;
+            }
+            for text in &self.method {
+                let (key, value) = split(text, "--method KEY=VALUE")?;
+                meaning.set_method(key, value)?;
+            }
+            meaning.fits_together()
+        })
     }
 }
 
@@ -96,34 +99,26 @@ pub fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A model that is ready to be computed with, and its text.
-#[derive(Clone)]
-pub struct Prepared {
-    pub source: SourceFile,
-    pub model: Model,
-}
-
 /// [`read`] with all the options that change the model.
-pub fn prepare(file: &str, options: &Options) -> Result<Prepared, Exit> {
+pub fn prepare(file: &str, options: &Options) -> Result<Model, Exit> {
     let deadline = Deadline::after(Instant::now(), options.time_limit);
-    let mut prepared = load(file, &options.changes, false, deadline)?;
-    prepared.model.method.seed = options.seed.unwrap_or(prepared.model.method.seed);
-    Ok(prepared)
+    let model = load(file, &options.changes, false, deadline)?;
+    let Some(seed) = options.seed else { return Ok(model) };
+    model.changed(|meaning| {
+        meaning.method.seed = seed;
+        Ok(())
+    })
 }
 
 /// Reads and checks a model and applies the changes. What is wrong with it is shown on the standard
 /// error.
-pub fn read(file: &str, changes: &Changes) -> Result<Prepared, Exit> {
+pub fn read(file: &str, changes: &Changes) -> Result<Model, Exit> {
     load(file, changes, false, Deadline::NEVER)
 }
 
 /// The same, also if it has no unique trajectory: a simulation finds out where, and `show` says
 /// why.
-pub fn read_at_any_rate(
-    file: &str,
-    changes: &Changes,
-    deadline: Deadline,
-) -> Result<Prepared, Exit> {
+pub fn read_at_any_rate(file: &str, changes: &Changes, deadline: Deadline) -> Result<Model, Exit> {
     load(file, changes, true, deadline)
 }
 
@@ -132,18 +127,18 @@ fn load(
     changes: &Changes,
     at_any_rate: bool,
     deadline: Deadline,
-) -> Result<Prepared, Exit> {
-    let loaded = Loaded::within(deadline, file).map_err(|stop| stopped(file, stop))?;
-    let loaded = loaded.map_err(|error| {
+) -> Result<Model, Exit> {
+    let checked = model::check(file, deadline).map_err(|stop| stopped(file, stop))?;
+    let checked = checked.map_err(|error| {
         output::complain(&format!("{file} cannot be read: {error}"));
         Exit::File
     })?;
-    let Loaded { source, model, diagnostics } = loaded;
     // A parameter that waits for a value may get it from the changes; compiling finds out.
-    let has_model = model.is_some();
-    let waits = |it: &Diagnostic| has_model && it.code == Code::NoValue;
-    show(diagnostics.iter().filter(|it| it.severity >= Severity::Warning && !waits(it)), &source);
-    let Some(mut model) = model else {
+    let told = |it: &&Diagnostic| it.severity >= Severity::Warning && !checked.waits(it);
+    show(checked.diagnostics.iter().filter(told), &checked.source);
+    let is_wrong = checked.is_wrong();
+    let Checked { model, diagnostics, .. } = checked;
+    let Some(model) = model else {
         if diagnostics.iter().all(|it| it.severity < Severity::Error) {
             output::complain(&format!(
                 "{file}: there is nothing to compute; `fdcc check` says nothing else"
@@ -151,11 +146,10 @@ fn load(
         }
         return Err(Exit::ModelError);
     };
-    if !at_any_rate && diagnostics.iter().any(|it| it.severity == Severity::Error && !waits(it)) {
+    if !at_any_rate && is_wrong {
         return Err(Exit::ModelError);
     }
-    changes.apply(&mut model).map_err(|message| usage(&message))?;
-    Ok(Prepared { source, model })
+    changes.apply(&model).map_err(|message| usage(&message))
 }
 
 /// Complains about wrong usage.

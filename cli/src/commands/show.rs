@@ -34,17 +34,17 @@ enum Stage {
 impl Show {
     /// Prints it.
     pub fn run(self) -> Exit {
-        let prepared = match read_at_any_rate(&self.file, &self.changes, Deadline::NEVER) {
-            Ok(prepared) => prepared,
+        let model = match read_at_any_rate(&self.file, &self.changes, Deadline::NEVER) {
+            Ok(model) => model,
             Err(exit) => return exit,
         };
-        match fdcc_compiler::dump(&prepared.model, self.stage()) {
+        match fdcc_compiler::dump(model.meaning(), self.stage()) {
             Ok(text) => {
                 output::print(&text);
                 Exit::Fine
             }
             Err(diagnostics) => {
-                show(diagnostics.iter(), &prepared.source);
+                show(diagnostics.iter(), model.source());
                 Exit::ModelError
             }
         }

@@ -2,12 +2,12 @@
 
 use super::Exit;
 use super::driven::Driven;
-use super::options::{Prepared, usage};
+use super::options::usage;
 use crate::output::simulation::Document;
 use crate::output::{self, files};
 use crate::solver::Failure;
 use clap::Args;
-use fdcc_runtime::simulate::{Options, Status, simulate};
+use fdcc::{Accuracy, Model, Simulation};
 use std::path::PathBuf;
 
 /// Simulate the true system, with every event located
@@ -32,24 +32,24 @@ impl Simulate {
         if self.times.iter().any(|time| !time.is_finite()) || !self.times.is_sorted() {
             return usage("`--times` needs numbers in ascending order");
         }
-        let mut prepared = match self.driven.read() {
-            Ok(prepared) => prepared,
+        let model = match self.driven.read() {
+            Ok(model) => model,
             Err(exit) => return exit,
         };
-        match self.simulate(&mut prepared) {
-            Ok((document, exit)) => self.report(&document, exit, &prepared),
-            Err(failure) => failure.report(&prepared.source),
+        match self.simulate(&model) {
+            Ok((document, exit)) => self.report(&document, exit, &model),
+            Err(failure) => failure.report(model.source()),
         }
     }
 
-    fn simulate(&self, prepared: &mut Prepared) -> Result<(Document, Exit), Failure> {
-        let replay = self.driven.adapt(prepared)?;
-        let system = self.driven.compiled(&prepared.model, fdcc_compiler::compile_simulation)?;
-        let controls = self.driven.controls(replay, &system)?;
+    fn simulate(&self, model: &Model) -> Result<(Document, Exit), Failure> {
+        let (model, driver) = self.driven.adapt(model)?;
+        let system = self.driven.compiled(&model, Model::system)?;
+        let controls = self.driven.controls(driver, &system)?;
         let [first, last] = system.interval;
-        let unit = prepared.model.time_size();
+        let unit = model.meaning().time_size();
         let times = self.times.iter().map(|time| time * unit).collect();
-        let options = Options { times, ..self.driven.options(&prepared.model) };
+        let options = Accuracy { times, ..self.driven.options(&model) };
         let mut times = self.times.iter().zip(&options.times);
         if let Some((outside, _)) = times.find(|(_, time)| **time < first || **time > last) {
             let [first, last] = [first, last].map(|time| time / unit);
@@ -57,14 +57,12 @@ impl Simulate {
                 "`--times`: {outside} is not between {first} and {last}"
             )));
         }
-        let simulation = simulate(&system, &controls, &options);
-        let is_complete = matches!(simulation.status, Status::Completed);
-        let document =
-            Document::new(&system, &simulation, &prepared.source, (&prepared.model).into());
-        Ok((document, if is_complete { Exit::Fine } else { Exit::NotSolved }))
+        let simulation = Simulation::new(system, &controls, &options);
+        let exit = if simulation.is_complete() { Exit::Fine } else { Exit::NotSolved };
+        Ok((Document::new(&simulation, &model), exit))
     }
 
-    fn report(&self, document: &Document, exit: Exit, prepared: &Prepared) -> Exit {
+    fn report(&self, document: &Document, exit: Exit, model: &Model) -> Exit {
         let written = match &self.out {
             Some(folder) => files::write_all(
                 folder,
@@ -84,7 +82,7 @@ impl Simulate {
                 output::print(&format!(" wrote {}\n", names.join("  ")));
                 exit
             }
-            Err(failure) => failure.report(&prepared.source),
+            Err(failure) => failure.report(model.source()),
         }
     }
 }

@@ -1,16 +1,16 @@
 //! `fdcc solve`: an optimal trajectory, a verdict, and the files asked for.
 
 use super::Exit;
-use super::options::{Gap, Options, Prepared, prepare, show};
-use crate::log::{Level, Log};
+use super::options::{Gap, Options, prepare, show};
 use crate::output::named::Named;
+use crate::output::saved::Saved;
 use crate::output::{self, files};
-use crate::solver::{Compiled, Failure, Solved};
+use crate::report::log::{Level, Log};
+use crate::report::{failure, verdict};
+use crate::solver::{Compiled, Failure, Solved, warm};
 use crate::watch::catch_interrupts;
-use crate::{failure, verdict};
 use clap::Args;
-use fdcc_compiler::{Model, compile_by_parameters};
-use fdcc_runtime::solution::by_parameters;
+use fdcc::{Model, Start};
 use std::time::Instant;
 
 /// Find an optimal trajectory
@@ -32,53 +32,45 @@ pub struct Solve {
     gap: Gap,
 }
 
-/// What the optimum is worth to each parameter.
-fn sensitivities(model: &Model, solved: &Solved) -> Named<f64> {
-    let (model, problem, outcome) = solved.as_solved(model);
-    if model.params.is_empty() || !problem.has_objective {
-        return Named::default();
-    }
-    let Ok(by) = compile_by_parameters(model) else { return Named::default() };
-    let found = by_parameters(problem, &outcome.solution, &outcome.trajectory.parameters, &by);
-    model.params.iter().map(|param| param.place.name.clone()).zip(found).collect()
-}
-
 impl Solve {
     /// Solves and reports.
     pub fn run(self) -> Exit {
         let begin = Instant::now();
         catch_interrupts();
-        let prepared = match prepare(&self.file, &self.options) {
-            Ok(prepared) => prepared,
+        let model = match prepare(&self.file, &self.options) {
+            Ok(model) => model,
             Err(exit) => return exit,
         };
-        match self.solve(&prepared, begin) {
-            Ok(solved) => self.report(&prepared, &solved),
-            Err(failure) => failure.report(&prepared.source),
+        match self.solve(&model, begin) {
+            Ok(solved) => self.report(&model, &solved),
+            Err(failure) => failure.report(model.source()),
         }
     }
 
-    fn solve(&self, prepared: &Prepared, begin: Instant) -> Result<Solved, Failure> {
-        let compiled = Compiled::new(prepared, begin, self.options.time_limit)?;
-        let start = compiled.first_start(&self.options)?;
+    fn solve(&self, model: &Model, begin: Instant) -> Result<Solved, Failure> {
+        let compiled = Compiled::new(model, begin, self.options.time_limit)?;
+        let saved = warm(&self.options)?;
+        let record = saved.as_ref().map(Saved::record);
+        let start = record.as_ref().map_or(Start::Guess, Start::Record);
+        compiled.check(start, &self.options)?;
         if !self.options.json {
-            output::print(&verdict::headline(&compiled.problem));
+            output::print(&verdict::headline(compiled.problem()));
         }
         let mut log = Log::new(self.options.log.unwrap_or(Level::Short));
         let solved = compiled.solve(start, &self.options, &mut log);
         log.finish();
         let mut solved = solved?;
         if solved.is_good() {
-            solved.document.sensitivities = sensitivities(&prepared.model, &solved);
+            solved.document.sensitivities = Named::of(solved.solution.sensitivities());
         }
         if solved.is_good() && !self.no_verify {
-            solved.replay(&prepared.model, self.gap.gap);
+            solved.replay(self.gap.gap);
         }
         Ok(solved)
     }
 
-    fn report(&self, prepared: &Prepared, solved: &Solved) -> Exit {
-        show(failure::diagnostic(solved).iter(), &prepared.source);
+    fn report(&self, model: &Model, solved: &Solved) -> Exit {
+        show(failure::diagnostic(solved).iter(), model.source());
         let written = match &self.options.out {
             Some(folder) => files::write(&solved.document, folder, &solved.document.model),
             None => Ok(Vec::new()),
@@ -95,7 +87,7 @@ impl Solve {
                 output::print(&format!(" wrote {}\n", names.join("  ")));
                 solved.exit(self.confirmed)
             }
-            Err(failure) => failure.report(&prepared.source),
+            Err(failure) => failure.report(model.source()),
         }
     }
 }

@@ -1,20 +1,17 @@
 //! `fdcc sweep`: one solve per value, side by side, and a table of what came out.
 
 use super::Exit;
-use super::options::{Gap, Options, Prepared, prepare, usage};
-use crate::log::{self, Level, Log};
+use super::options::{Gap, Options, prepare};
 use crate::output::named::Named;
+use crate::output::saved::Saved;
 use crate::output::{self, files, plural, table};
-use crate::solver::{Compiled, Failure, Solved};
+use crate::report::log::{self, Level, Log};
+use crate::solver::{Compiled, Failure, Solved, warm};
 use crate::watch::{catch_interrupts, is_interrupted};
 use clap::Args;
-use fdcc::parallel;
-use fdcc_runtime::nlp::Stop;
-use grid::Grid;
+use fdcc::{Executor, Grid, Model, Start, Stop};
 use indicatif::ProgressBar;
 use std::time::Instant;
-
-mod grid;
 
 /// Solve once for each of several values, and print a table
 ///
@@ -53,7 +50,7 @@ pub struct Sweep {
 /// One row of the sweep, ready to be solved.
 struct Row {
     number: usize,
-    prepared: Prepared,
+    model: Model,
 }
 
 /// What came out of a row; nothing where Ctrl-C came before it began.
@@ -63,34 +60,25 @@ impl Sweep {
     /// Solves all rows and prints the table.
     pub fn run(self) -> Exit {
         catch_interrupts();
-        let prepared = match prepare(&self.file, &self.options) {
-            Ok(prepared) => prepared,
+        let model = match prepare(&self.file, &self.options) {
+            Ok(model) => model,
             Err(exit) => return exit,
         };
-        let (grid, rows) = match self.rows(&prepared) {
-            Ok(found) => found,
-            Err(message) => return usage(&message),
-        };
-        let solved = self.solve(&rows);
-        match solved.and_then(|solved| self.report(&grid, &solved)) {
-            Ok(exit) => exit,
-            Err(failure) => failure.report(&prepared.source),
-        }
+        let exit = self.rows(&model).and_then(|(grid, rows)| {
+            let solved = self.solve(&rows)?;
+            self.report(&grid, &solved)
+        });
+        exit.unwrap_or_else(|failure| failure.report(model.source()))
     }
 
     /// The values, and the model with each of them.
-    fn rows(&self, prepared: &Prepared) -> Result<(Grid, Vec<Row>), String> {
-        let grid = if self.lists.is_empty() {
-            Grid::of(&prepared.model)?
-        } else {
-            Grid::read(&self.lists, &prepared.model)?
+    fn rows(&self, model: &Model) -> Result<(Grid, Vec<Row>), Failure> {
+        let grid = match self.lists.as_slice() {
+            [] => Grid::of(model)?,
+            lists => Grid::read(lists, model)?,
         };
-        let row = |index: usize| {
-            let mut prepared = prepared.clone();
-            grid.apply(index, &mut prepared.model)?;
-            Ok(Row { number: index + 1, prepared })
-        };
-        let rows: Result<Vec<Row>, String> = (0..grid.rows).map(row).collect();
+        let row = |index: usize| Ok(Row { number: index + 1, model: grid.apply(index, model)? });
+        let rows: Result<Vec<Row>, Failure> = (0..grid.rows).map(row).collect();
         Ok((grid, rows?))
     }
 
@@ -125,14 +113,11 @@ impl Sweep {
 
     /// Each row for itself; which thread solves it makes no difference to the answer.
     fn in_parallel(&self, rows: &[Row], bar: &ProgressBar) -> Result<Vec<Option<Solved>>, Failure> {
-        let threads = self.jobs.map_or_else(parallel::processors, |jobs| jobs as usize);
+        let executor =
+            self.jobs.map_or_else(Executor::default, |jobs| Executor::threads(jobs as usize));
         // After a failure there will be no table.
-        let solved = parallel::in_order(
-            rows.len(),
-            threads,
-            |i| self.one(&rows[i], None, bar),
-            Result::is_err,
-        );
+        let one = |i: usize| self.one(&rows[i], None, bar);
+        let solved = executor.in_order(rows.len(), one, Result::is_err);
         solved.into_iter().collect()
     }
 
@@ -140,18 +125,22 @@ impl Sweep {
         if is_interrupted() {
             return Ok(None);
         }
-        let compiled = match Compiled::new(&row.prepared, Instant::now(), self.options.time_limit) {
+        let compiled = match Compiled::new(&row.model, Instant::now(), self.options.time_limit) {
             Err(Failure::Stopped(Stop::Interrupted)) => return Ok(None),
             compiled => compiled?,
         };
-        let start = match before {
-            Some(before) => Some(compiled.start_from(before)),
-            None => compiled.first_start(&self.options)?,
+        let saved = if before.is_none() { warm(&self.options)? } else { None };
+        let record = saved.as_ref().map(Saved::record);
+        let start = match (before, &record) {
+            (Some(before), _) => Start::Solution(&before.solution),
+            (None, Some(record)) => Start::Record(record),
+            (None, None) => Start::Guess,
         };
+        compiled.check(start, &self.options)?;
         let mut log = Log::of_several(self.level(), bar, &format!("row {} ", row.number));
         let mut solved = compiled.solve(start, &self.options, &mut log)?;
         if self.confirmed && solved.is_good() {
-            solved.replay(&row.prepared.model, self.gap.gap);
+            solved.replay(self.gap.gap);
         }
         self.write(row, &solved)?;
         bar.inc(1);
@@ -172,7 +161,7 @@ impl Sweep {
     /// The table or the JSON.
     fn report(&self, grid: &Grid, solved: &[(usize, Solved)]) -> Result<Exit, Failure> {
         let swept: Vec<Named<String>> =
-            solved.iter().map(|(number, _)| grid.row(number - 1)).collect();
+            solved.iter().map(|(number, _)| swept(grid, number - 1)).collect();
         let documents = swept.iter().zip(solved.iter().map(|(_, solved)| &solved.document));
         let text = if self.options.json {
             let row = |(swept, document)| table::row(swept, document, self.confirmed);
@@ -189,4 +178,9 @@ impl Sweep {
             .unwrap_or(Exit::Fine);
         Ok(if is_whole { worst } else { worst.max(Exit::NotSolved) })
     }
+}
+
+/// What was swept in a row.
+fn swept(grid: &Grid, row: usize) -> Named<String> {
+    grid.row(row).into_iter().map(|(name, value)| (name.to_owned(), value.to_owned())).collect()
 }

@@ -1,16 +1,17 @@
 //! `fdcc test`: solves models and compares the solutions with their `expect` blocks.
 
 use super::Exit;
-use super::options::{Options, Prepared, prepare, show};
-use crate::expectations::{self, Checked, Outcome, Sides};
-use crate::failure;
-use crate::log::{Level, Log};
+use super::options::{Options, prepare, show};
+use crate::output::saved::Saved;
 use crate::output::tested::{Line, Tested, Word};
 use crate::output::units::Units;
 use crate::output::{self, files};
-use crate::solver::{Compiled, Failure, Solved};
+use crate::report::failure;
+use crate::report::log::{Level, Log};
+use crate::solver::{Compiled, Failure, Solved, warm};
 use crate::watch::catch_interrupts;
 use clap::Args;
+use fdcc::{Expectation, Expected, Model, Sides, Start};
 use std::time::Instant;
 
 /// Solve models and check what their `expect` blocks say
@@ -47,20 +48,20 @@ impl Test {
 
     fn test(&self, file: &str) -> Result<Tested, Exit> {
         let begin = Instant::now();
-        let prepared = prepare(file, &self.options)?;
-        let model = prepared.model.name.clone();
-        if !expectations::has_any(&prepared.model) {
+        let checked = prepare(file, &self.options)?;
+        let model = checked.name().to_owned();
+        if checked.meaning().expectations.is_empty() {
             let (expectations, units) = (Vec::new(), Units::default());
             return Ok(Tested { file: file.into(), model, status: None, expectations, units });
         }
         let solved =
-            self.solve(&prepared, begin).map_err(|failure| failure.report(&prepared.source))?;
-        show(failure::diagnostic(&solved).iter(), &prepared.source);
-        let checked = expectations::evaluate(&prepared.model, &solved);
+            self.solve(&checked, begin).map_err(|failure| failure.report(checked.source()))?;
+        show(failure::diagnostic(&solved).iter(), checked.source());
+        let found = solved.solution.expectations();
         // What a solve did not reach is no news about the model.
-        let checked = checked.into_iter().filter(|_| solved.is_good());
+        let found = found.into_iter().filter(|_| solved.is_good());
         let units = solved.document.units.clone();
-        let expectations = checked.map(|it| line(it, &prepared)).collect();
+        let expectations = found.map(|it| line(it, &checked)).collect();
         Ok(Tested {
             file: file.into(),
             model,
@@ -70,9 +71,12 @@ impl Test {
         })
     }
 
-    fn solve(&self, prepared: &Prepared, begin: Instant) -> Result<Solved, Failure> {
-        let compiled = Compiled::new(prepared, begin, self.options.time_limit)?;
-        let start = compiled.first_start(&self.options)?;
+    fn solve(&self, model: &Model, begin: Instant) -> Result<Solved, Failure> {
+        let compiled = Compiled::new(model, begin, self.options.time_limit)?;
+        let saved = warm(&self.options)?;
+        let record = saved.as_ref().map(Saved::record);
+        let start = record.as_ref().map_or(Start::Guess, Start::Record);
+        compiled.check(start, &self.options)?;
         let mut log = Log::new(self.options.log.unwrap_or(Level::None));
         let solved = compiled.solve(start, &self.options, &mut log);
         log.finish();
@@ -84,12 +88,12 @@ impl Test {
     }
 }
 
-fn line(checked: Checked, prepared: &Prepared) -> Line {
-    let Checked { origin, outcome } = checked;
-    let line = prepared.source.line_column(origin.span.0).line;
+fn line(found: Expectation, model: &Model) -> Line {
+    let Expectation { origin, outcome } = found;
+    let line = model.source().line_column(origin.span.0).line;
     let text = origin.label.to_string();
     match outcome {
-        Outcome::Untold(why) => Line {
+        Expected::Untold(why) => Line {
             line,
             text,
             outcome: Word::Failed,
@@ -98,7 +102,7 @@ fn line(checked: Checked, prepared: &Prepared) -> Line {
             tolerance: None,
             why: Some(why),
         },
-        Outcome::Compared(Sides { left, right, tolerance, holds }) => {
+        Expected::Compared(Sides { left, right, tolerance, holds }) => {
             let outcome = if holds { Word::Ok } else { Word::Failed };
             let [left, right, tolerance] = [left, right, tolerance].map(Some);
             Line { line, text, outcome, left, right, tolerance, why: None }

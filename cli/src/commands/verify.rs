@@ -1,13 +1,13 @@
 //! `fdcc verify`: what the controls of a solution do on the true system.
 
 use super::Exit;
-use super::options::{Changes, Gap, Prepared, read};
+use super::options::{Changes, Gap, read};
 use crate::output;
 use crate::output::saved::Saved;
 use crate::output::verified::Document;
 use crate::solver::{Failure, sha256};
-use crate::verification::verify;
 use clap::Args;
+use fdcc::{Error, Model};
 use fdcc_grammar::SourceFile;
 use std::path::{Path, PathBuf};
 
@@ -37,13 +37,13 @@ impl Verify {
                 return failure.report(&SourceFile::new(self.solution.display().to_string(), ""));
             }
         };
-        let prepared = match read(&file, &Changes::default()) {
-            Ok(prepared) => prepared,
+        let model = match read(&file, &Changes::default()) {
+            Ok(model) => model,
             Err(exit) => return exit,
         };
-        match self.verify(&saved, &prepared) {
+        match self.verify(&saved, &model) {
             Ok(document) => self.report(&document),
-            Err(failure) => failure.report(&prepared.source),
+            Err(failure) => failure.report(model.source()),
         }
     }
 
@@ -64,25 +64,26 @@ impl Verify {
         })
     }
 
-    fn verify(&self, saved: &Saved, prepared: &Prepared) -> Result<Document, Failure> {
-        let mut model = prepared.model.clone();
-        let numbers =
-            saved.params.0.iter().filter_map(|(name, value)| Some((name.clone(), (*value)?)));
-        model.restore_params(&numbers.collect::<Vec<_>>());
-        let problem = fdcc_compiler::compile(&model).map_err(Failure::Model)?;
-        let verified = verify(&model, &problem, saved).map_err(|failure| match failure {
-            Failure::File(what) => Failure::File(format!("{}: {what}", self.solution.display())),
-            other => other,
+    fn verify(&self, saved: &Saved, model: &Model) -> Result<Document, Failure> {
+        let solved = model.changed(|meaning| {
+            meaning.restore_params(&saved.params());
+            Ok::<(), Error>(())
         })?;
-        let same_source = saved.source_sha256 == sha256(&prepared.source.text);
+        let verified = solved.verify(&saved.record()).map_err(|error| match error {
+            Error::Record(what) => Failure::File(format!("{}: {what}", self.solution.display())),
+            other => other.into(),
+        })?;
+        let source = model.source();
+        let same_source = saved.source_sha256 == sha256(&source.text);
         if !same_source {
-            let name = &prepared.source.name;
             output::complain(&format!(
-                "{name} is not the text that was solved; it is taken all the same"
+                "{} is not the text that was solved; it is taken all the same",
+                source.name
             ));
         }
-        let document = Document::new(&verified, saved, &prepared.source, same_source, self.gap.gap);
-        Ok(document.in_units((&prepared.model).into()))
+        let document =
+            Document::new(&verified, saved.objective(), source, same_source, self.gap.gap);
+        Ok(document.in_units(model.meaning().into()))
     }
 
     fn report(&self, document: &Document) -> Exit {

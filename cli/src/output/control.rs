@@ -2,28 +2,40 @@
 //! solve.
 
 use super::saved::Saved;
-use crate::replay::Replay;
 use crate::solver::Failure;
-use fdcc_compiler::Model;
+use fdcc::{Model, Replay};
 use std::fs;
 use std::path::Path;
 
+/// What drives a simulation.
+#[derive(Default)]
+pub struct Driver {
+    pub replay: Replay,
+    /// Of the text that was solved, if these are the controls of a solution.
+    pub source_sha256: Option<String>,
+}
+
 /// Reads a control file for a model.
-pub fn read(path: &Path, model: &Model) -> Result<Replay, Failure> {
+pub fn read(path: &Path, model: &Model) -> Result<Driver, Failure> {
     let failure = |what: String| Failure::File(format!("{}{what}", path.display()));
     let is_json = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+    let mut source_sha256 = None;
     let replay = if is_json {
-        Replay::new(&Saved::read(path)?, model)
+        let saved = Saved::read(path)?;
+        let replay = Replay::new(&saved.record(), model.meaning());
+        source_sha256 = Some(saved.source_sha256).filter(|it| !it.is_empty());
+        replay
     } else {
         let text = fs::read_to_string(path)
             .map_err(|error| failure(format!(" cannot be read: {error}")))?;
-        from_csv(&text, model)
+        from_csv(&text, model.meaning())
     };
     let checked = replay.and_then(|replay| replay.check().map(|()| replay));
-    checked.map_err(|what| failure(format!(": {what}")))
+    let replay = checked.map_err(|what| failure(format!(": {what}")))?;
+    Ok(Driver { replay, source_sha256 })
 }
 
-fn from_csv(text: &str, model: &Model) -> Result<Replay, String> {
+fn from_csv(text: &str, model: &fdcc_compiler::Model) -> Result<Replay, String> {
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let header = lines.next().ok_or("the file is empty; it needs a header such as `t,u`")?.1;
     let names: Vec<&str> =
@@ -67,7 +79,7 @@ fn from_csv(text: &str, model: &Model) -> Result<Replay, String> {
 
 /// The column of each control. States and reports may stand beside them, as in the `.csv` of a
 /// solve.
-fn columns(names: &[&str], model: &Model) -> Result<Vec<usize>, String> {
+fn columns(names: &[&str], model: &fdcc_compiler::Model) -> Result<Vec<usize>, String> {
     let controls = || model.controls.iter().map(|control| control.place.name.as_str());
     if names[0] != "t" {
         let example = std::iter::once("t").chain(controls()).collect::<Vec<_>>().join(",");

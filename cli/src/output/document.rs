@@ -6,7 +6,8 @@ use super::optimality::Optimality;
 use super::tried::{Ended, Happened, Tried};
 use super::units::Units;
 use super::verified::Verification;
-use super::words::{linear_name, mode_name, shape_name, solver_name, status_name};
+use fdcc::Solution;
+use fdcc::names::{linear_name, mode_name, shape_name, solver_name};
 use fdcc_runtime::nlp::{self, Status};
 use fdcc_runtime::problem::{Function, Method, Problem, Variable};
 use fdcc_runtime::solution;
@@ -181,17 +182,13 @@ pub struct Span {
 }
 
 impl Document {
-    pub fn new(
-        problem: &Problem,
-        outcome: &Outcome,
-        source_sha256: &str,
-        seconds: Seconds,
-    ) -> Self {
+    pub fn new(found: &Solution, source_sha256: &str, units: Units, seconds: Seconds) -> Self {
+        let (problem, outcome) = (&found.problem, &found.outcome);
         let (solution, trajectory) = (&outcome.solution, &outcome.trajectory);
-        let [free, params] = parameters(problem, &trajectory.parameters);
         let shown = |columns: &[Vec<f64>]| {
             named_columns(problem.states.iter().zip(columns).filter(|(state, _)| !state.hidden))
         };
+        let claims = problem.has_objective && found.is_solved();
         // Where an expression has no value, no error was measured.
         let measured = |error: f64| {
             if matches!(solution.status, Status::NotFinite(_)) { f64::NAN } else { error }
@@ -200,12 +197,12 @@ impl Document {
             fdcc: env!("CARGO_PKG_VERSION").to_string(),
             model: problem.name.clone(),
             source_sha256: source_sha256.to_string(),
-            status: status_name(outcome).to_string(),
-            objective: problem.sense * solution.objective,
+            status: found.status_name().to_string(),
+            objective: found.objective(),
             global: solution.global,
-            free,
-            params,
-            method: MethodUsed::new(problem, outcome),
+            free: Named::of(found.unknowns()),
+            params: Named::of(found.parameters()),
+            method: MethodUsed::new(found),
             iterations: solution.counts.iterations,
             kkt_error: measured(solution.kkt_error),
             constraint_violation: measured(solution.constraint_violation),
@@ -223,7 +220,7 @@ impl Document {
             path_multipliers: labelled(&*problem.path, 0, &trajectory.path_multipliers),
             end_multipliers: labelled(&*problem.boundary, 1, &trajectory.end_multipliers),
             hamiltonian: trajectory.hamiltonian.values.clone(),
-            step_errors: None,
+            step_errors: found.step_errors,
             hamiltonian_check: HamiltonianCheck::new(&problem.controls, &trajectory.hamiltonian),
             sensitivities: Named::default(),
             report: problem
@@ -233,33 +230,14 @@ impl Document {
                 .zip(trajectory.report.iter().cloned())
                 .collect(),
             surfaces: surfaces(problem, outcome),
-            jumps: Vec::new(),
-            sequences: Vec::new(),
-            sequences_left_out: false,
-            starts: Vec::new(),
-            units: Units::default(),
-            optimality: None,
+            jumps: found.jumps.iter().map(Happened::from).collect(),
+            sequences: found.sequences.iter().map(Tried::from).collect(),
+            sequences_left_out: found.sequences_left_out,
+            starts: found.starts.iter().map(Ended::from).collect(),
+            units,
+            optimality: claims.then(|| Optimality::new(&found.optimality(None))),
             verification: None,
         }
-        .examined(problem)
-    }
-
-    /// The same with what contradicts that it is an optimum, as far as a replay is known.
-    fn examined(self, problem: &Problem) -> Self {
-        let claims =
-            problem.has_objective && matches!(self.status.as_str(), "solved" | "acceptable");
-        Document { optimality: claims.then(|| self.optimality()), ..self }
-    }
-
-    fn optimality(&self) -> Optimality {
-        let gap = self.verification.as_ref().and_then(|it| it.state_gap);
-        Optimality::new(&self.hamiltonian_check, gap, self.global)
-    }
-
-    /// Takes over what a replay says.
-    pub fn set_verification(&mut self, verification: Option<Verification>) {
-        self.verification = verification;
-        self.optimality = self.optimality.take().map(|_| self.optimality());
     }
 
     /// Whether the replay confirms it and nothing contradicts that it is an optimum.
@@ -281,16 +259,6 @@ impl Document {
             .filter(move |jump| nearest(jump.time) == Some(point))
             .map(|jump| &jump.before)
     }
-}
-
-/// The values of the parameters: those that were found, and those that were given. Widths of
-/// surfaces are neither.
-fn parameters(problem: &Problem, values: &[f64]) -> [Named<f64>; 2] {
-    let free: Vec<usize> = problem.unknowns.iter().map(|unknown| unknown.parameter).collect();
-    let is_width = |i: &usize| problem.surfaces.iter().any(|surface| surface.sigma == *i);
-    let given = (0..problem.parameters.len()).filter(|i| !free.contains(i) && !is_width(i));
-    let named = |i: usize| (problem.parameters[i].name.clone(), values[i]);
-    [free.iter().map(|i| named(*i)).collect(), given.map(named).collect()]
 }
 
 /// By the words that the outputs of a function have in the model, from the first on that counts.
@@ -317,17 +285,9 @@ fn surfaces(problem: &Problem, outcome: &Outcome) -> Named<Vec<Span>> {
     surfaces.map(|(surface, modes)| (surface.name.clone(), spans(modes))).collect()
 }
 
-/// Whether the model names no width.
-fn is_chosen(method: &Method) -> bool {
-    method.sigma.is_none() && method.continuation.is_empty()
-}
-
-fn is_good(status: &Status) -> bool {
-    status.is_solved()
-}
-
 impl MethodUsed {
-    fn new(problem: &Problem, outcome: &Outcome) -> Self {
+    fn new(found: &Solution) -> Self {
+        let Solution { problem, outcome, .. } = found;
         let method: &Method = &problem.method;
         let surfaces = problem.surfaces.iter().zip(&outcome.sigma);
         let solver = if outcome.convex { "convex" } else { solver_name(method.solver) };
@@ -338,9 +298,7 @@ impl MethodUsed {
             steps: method.steps,
             sigma: outcome.sigma.first().copied(),
             sigmas: surfaces.map(|(surface, sigma)| (surface.name.clone(), *sigma)).collect(),
-            sigma_chosen: is_chosen(method)
-                && is_good(&outcome.solution.status)
-                && !outcome.sigma.is_empty(),
+            sigma_chosen: found.has_chosen_widths(),
             kernel: method.kernel.clone(),
             solver: solver.to_string(),
             linear: linear_name(method.linear).to_string(),

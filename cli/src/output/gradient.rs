@@ -4,9 +4,7 @@ use super::ending::{Ending, EventEntry, events};
 use super::named::Named;
 use super::number::{scientific, short, significant};
 use super::units::Units;
-use crate::gradients::Stepped;
-use fdcc::exact::Exact;
-use fdcc::quantities::By;
+use fdcc::{By, Exact, Gradient, Model, Stepped};
 use fdcc_grammar::SourceFile;
 use fdcc_runtime::problem::Method;
 use fdcc_runtime::sensitivity::{Kink, Nondifferentiability, NondifferentiabilityKind};
@@ -90,25 +88,22 @@ pub struct Reason {
     time: f64,
 }
 
-/// Everything that is known of a gradient.
-pub struct Found<'a> {
-    pub of: &'a str,
-    pub system: &'a System,
-    pub by: &'a [By],
-    pub exact: &'a Exact,
-    pub second: Option<Result<Vec<Vec<f64>>, String>>,
-    pub smoothed: Option<Result<Stepped, String>>,
-    pub discretised: Option<Result<Stepped, String>>,
-    pub method: &'a Method,
-}
-
 impl Document {
-    /// A gradient, or what there is instead of one.
-    pub fn new(found: Found, source: &SourceFile) -> Self {
-        let Found { of, system, by, exact, second, smoothed, discretised, method } = found;
+    /// A gradient, or what there is instead of one; with second derivatives if they are wanted.
+    pub fn new(of: &str, found: &Gradient, has_second: bool, model: &Model) -> Self {
+        match &found.found {
+            Ok(exact) => Document::with(of, found, exact, has_second, model),
+            Err(simulation) => Document::without(of, &found.system, simulation, model.source()),
+        }
+    }
+
+    fn with(of: &str, found: &Gradient, exact: &Exact, has_second: bool, model: &Model) -> Self {
+        let Gradient { system, by, .. } = found;
+        let (source, method) = (model.source(), &model.meaning().method);
         let gradient = &exact.gradient;
         let mut warnings = doubts(system, exact);
         warnings.extend(exact.found.kink.as_ref().map(|kink| bent(kink, source)));
+        let second = has_second.then(|| found.second());
         let second = second.and_then(|found| found.map_err(|why| warnings.push(why)).ok());
         let mut other = |what: &str, found: Result<Stepped, String>| match found {
             Ok(stepped) => {
@@ -121,8 +116,8 @@ impl Document {
             }
         };
         let compare = Compare {
-            smoothed: smoothed.and_then(|found| other("smoothed", found)),
-            discretised: discretised.and_then(|found| other("discretised", found)),
+            smoothed: found.smoothed().and_then(|found| other("smoothed", found)),
+            discretised: found.discretised().and_then(|found| other("discretised", found)),
         };
         let sides = sides(by, exact);
         let is_plain = exact.is_differentiable;
@@ -150,12 +145,7 @@ impl Document {
     }
 
     /// No gradient: the simulation does not reach the end.
-    pub fn without(
-        of: &str,
-        system: &System,
-        simulation: &Simulation,
-        source: &SourceFile,
-    ) -> Self {
+    fn without(of: &str, system: &System, simulation: &Simulation, source: &SourceFile) -> Self {
         Document {
             fdcc: env!("CARGO_PKG_VERSION").to_string(),
             model: system.name.clone(),

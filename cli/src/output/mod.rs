@@ -21,7 +21,6 @@ pub mod tested;
 pub mod tried;
 pub mod units;
 pub mod verified;
-pub mod words;
 
 use crate::commands::Exit;
 use std::io::{ErrorKind, IsTerminal, Write};

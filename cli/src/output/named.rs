@@ -22,6 +22,13 @@ impl<T> Named<T> {
     }
 }
 
+impl Named<f64> {
+    /// Numbers under names that somebody lends.
+    pub fn of<'n>(pairs: impl IntoIterator<Item = (&'n str, f64)>) -> Self {
+        pairs.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    }
+}
+
 impl<T> FromIterator<(String, T)> for Named<T> {
     fn from_iter<I: IntoIterator<Item = (String, T)>>(pairs: I) -> Self {
         Named(pairs.into_iter().collect())

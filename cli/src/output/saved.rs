@@ -1,14 +1,16 @@
 //! What is read of a `.sol.json`: to start from it, to replay it, to verify it.
 
-use super::document::{ControlNodes, Document, MethodUsed};
 use super::named::Named;
-use super::tried::Happened;
 use crate::solver::Failure;
-use serde::Deserialize;
+use fdcc::Record;
+use fdcc::names::find_shape;
+use fdcc::record::{JumpRecord, NodesRecord, Settings};
+use fdcc_runtime::problem::Scheme;
+use serde::{Deserialize, Deserializer};
 use std::fs;
 use std::path::Path;
 
-/// A solution as its file has it. A number that was not finite is `null` there.
+/// A solution as its file has it. A number that was not finite is `null` there, and NaN here.
 #[derive(Deserialize)]
 pub struct Saved {
     #[serde(default)]
@@ -16,57 +18,83 @@ pub struct Saved {
     #[serde(default)]
     pub source_sha256: String,
     #[serde(default)]
-    pub objective: Option<f64>,
-    pub free: Named<Option<f64>>,
+    objective: Number,
+    free: Named<Number>,
     #[serde(default)]
-    pub params: Named<Option<f64>>,
+    params: Named<Number>,
     #[serde(default)]
-    pub method: SavedMethod,
+    method: SavedMethod,
     #[serde(default)]
-    pub time: Vec<Option<f64>>,
-    pub states: Named<Column>,
-    pub controls: Named<Column>,
+    time: Column,
+    states: Named<Column>,
+    controls: Named<Column>,
     #[serde(default)]
-    pub control_nodes: Option<SavedNodes>,
+    control_nodes: Option<SavedNodes>,
     #[serde(default)]
-    pub jumps: Vec<SavedJump>,
+    jumps: Vec<SavedJump>,
 }
 
 /// A jump of a solution.
 #[derive(Deserialize)]
-pub struct SavedJump {
-    pub jump: String,
-    pub time: Option<f64>,
+struct SavedJump {
+    jump: String,
+    #[serde(default)]
+    time: Number,
     /// All states before it.
     #[serde(default)]
-    pub before: Named<Option<f64>>,
+    before: Named<Number>,
 }
 
 /// What defines controls that are not constant on each interval.
 #[derive(Deserialize)]
-pub struct SavedNodes {
-    pub time: Column,
-    pub values: Named<Column>,
+struct SavedNodes {
+    time: Column,
+    values: Named<Column>,
 }
-
-/// A signal over time.
-pub type Column = Vec<Option<f64>>;
 
 /// How it was solved; nothing where the file does not say.
 #[derive(Default, Deserialize)]
-pub struct SavedMethod {
-    pub scheme: Option<String>,
-    pub controls: Option<String>,
+struct SavedMethod {
+    scheme: Option<String>,
+    controls: Option<String>,
     #[serde(rename = "N")]
-    pub n: Option<u64>,
-    pub sigma: Option<f64>,
+    n: Option<u64>,
+    sigma: Option<f64>,
     /// The smoothing width of each surface.
     #[serde(default)]
-    pub sigmas: Named<Option<f64>>,
+    sigmas: Named<Number>,
     /// Whether these were chosen by a solve that came to its end.
     #[serde(default)]
-    pub sigma_chosen: bool,
-    pub kernel: Option<String>,
+    sigma_chosen: bool,
+    kernel: Option<String>,
+}
+
+/// NaN where the file has `null`.
+#[derive(Clone, Copy)]
+struct Number(f64);
+
+impl Default for Number {
+    fn default() -> Self {
+        Number(f64::NAN)
+    }
+}
+
+impl<'de> Deserialize<'de> for Number {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let number = Option::<f64>::deserialize(deserializer)?;
+        Ok(number.map_or_else(Number::default, Number))
+    }
+}
+
+/// A signal over time.
+#[derive(Default)]
+struct Column(Vec<f64>);
+
+impl<'de> Deserialize<'de> for Column {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let numbers = Vec::<Number>::deserialize(deserializer)?;
+        Ok(Column(numbers.into_iter().map(|it| it.0).collect()))
+    }
 }
 
 impl Saved {
@@ -77,58 +105,60 @@ impl Saved {
             .map_err(|error| failure(format!(" cannot be read: {error}")))?;
         serde_json::from_str(&text).map_err(|error| failure(format!(" is not a solution: {error}")))
     }
-}
 
-impl From<&Document> for Saved {
-    fn from(document: &Document) -> Self {
-        let MethodUsed { scheme, controls, n, sigma, sigmas, sigma_chosen, kernel, .. } =
-            document.method.clone();
-        let (scheme, controls, kernel) = (Some(scheme), Some(controls), Some(kernel));
-        Saved {
-            model: document.model.clone(),
-            source_sha256: document.source_sha256.clone(),
-            objective: finite(document.objective),
-            free: numbers(&document.free),
-            params: numbers(&document.params),
-            method: SavedMethod {
-                scheme,
-                controls,
-                n: Some(n as u64),
-                sigma,
-                sigmas: numbers(&sigmas),
-                sigma_chosen,
-                kernel,
-            },
-            time: document.time.iter().copied().map(finite).collect(),
-            states: columns(&document.states),
-            controls: columns(&document.controls),
-            control_nodes: document.control_nodes.as_ref().map(saved_nodes),
-            jumps: document.jumps.iter().map(saved_jump).collect(),
+    /// Nothing if it is no number.
+    pub fn objective(&self) -> Option<f64> {
+        Some(self.objective.0).filter(|value| value.is_finite())
+    }
+
+    /// The parameters that have numbers.
+    pub fn params(&self) -> Vec<(String, f64)> {
+        let numbers = self.params.0.iter().map(|(name, value)| (name.clone(), value.0));
+        numbers.filter(|(_, value)| value.is_finite()).collect()
+    }
+
+    /// As the library takes it.
+    pub fn record(&self) -> Record<'_> {
+        Record {
+            model: &self.model,
+            free: numbers(&self.free),
+            params: numbers(&self.params),
+            settings: self.method.settings(),
+            time: &self.time.0,
+            states: columns(&self.states),
+            controls: columns(&self.controls),
+            nodes: self
+                .control_nodes
+                .as_ref()
+                .map(|nodes| NodesRecord { time: &nodes.time.0, values: columns(&nodes.values) }),
+            jumps: self.jumps.iter().map(jump).collect(),
         }
     }
 }
 
-fn finite(value: f64) -> Option<f64> {
-    Some(value).filter(|value| value.is_finite())
-}
-
-fn numbers(of: &Named<f64>) -> Named<Option<f64>> {
-    of.0.iter().map(|(name, value)| (name.clone(), finite(*value))).collect()
-}
-
-fn saved_jump(it: &Happened) -> SavedJump {
-    SavedJump { jump: it.jump.clone(), time: finite(it.time), before: numbers(&it.before) }
-}
-
-fn saved_nodes(nodes: &ControlNodes) -> SavedNodes {
-    SavedNodes {
-        time: nodes.time.iter().copied().map(finite).collect(),
-        values: columns(&nodes.values),
+impl SavedMethod {
+    /// A scheme that is not known here is no reason to refuse the file.
+    fn settings(&self) -> Settings<'_> {
+        Settings {
+            scheme: self.scheme.as_deref().and_then(Scheme::named),
+            controls: self.controls.as_deref().and_then(find_shape),
+            intervals: self.n.map(|n| n as usize),
+            sigma: self.sigma,
+            sigmas: numbers(&self.sigmas),
+            sigma_chosen: self.sigma_chosen,
+            kernel: self.kernel.as_deref(),
+        }
     }
 }
 
-fn columns(of: &Named<Vec<f64>>) -> Named<Column> {
-    of.0.iter()
-        .map(|(name, column)| (name.clone(), column.iter().copied().map(finite).collect()))
-        .collect()
+fn jump(it: &SavedJump) -> JumpRecord<'_> {
+    JumpRecord { jump: &it.jump, time: it.time.0, before: numbers(&it.before) }
+}
+
+fn numbers(of: &Named<Number>) -> Vec<(&str, f64)> {
+    of.0.iter().map(|(name, value)| (name.as_str(), value.0)).collect()
+}
+
+fn columns(of: &Named<Column>) -> Vec<(&str, &[f64])> {
+    of.0.iter().map(|(name, column)| (name.as_str(), column.0.as_slice())).collect()
 }

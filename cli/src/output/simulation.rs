@@ -3,8 +3,7 @@
 use super::ending::{Ending, EventEntry, events, state};
 use super::named::Named;
 use super::units::Units;
-use fdcc_grammar::SourceFile;
-use fdcc_runtime::simulate::{Simulation, System};
+use fdcc::{Model, Simulation};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -36,12 +35,8 @@ struct Counts {
 }
 
 impl Document {
-    pub fn new(
-        system: &System,
-        simulation: &Simulation,
-        source: &SourceFile,
-        units: Units,
-    ) -> Self {
+    pub fn new(simulated: &Simulation, model: &Model) -> Self {
+        let Simulation { system, result: simulation } = simulated;
         let ends = simulation.end.iter().zip(&system.states);
         let integrals = ends.filter(|(_, state)| state.hidden);
         let columns =
@@ -52,7 +47,7 @@ impl Document {
         Document {
             fdcc: env!("CARGO_PKG_VERSION").to_string(),
             model: system.name.clone(),
-            ending: Ending::new(system, simulation, source),
+            ending: Ending::new(system, simulation, model.source()),
             time: simulation.time.clone(),
             states: columns.map(|(column, state)| (state.name.clone(), column.clone())).collect(),
             events: events(system, simulation),
@@ -65,7 +60,7 @@ impl Document {
                 stiff: counts.stiff,
                 evaluations: counts.evaluations,
             },
-            units,
+            units: model.meaning().into(),
         }
     }
 

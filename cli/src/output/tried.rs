@@ -1,32 +1,19 @@
 //! What was tried besides the answer, and the jumps of the answer.
 
 use super::named::Named;
-use super::words::status_name;
-use fdcc_runtime::problem::Problem;
-use fdcc_runtime::solve::Outcome;
 use serde::Serialize;
 
 /// How the solve from one of several starting points ended.
 #[derive(Clone, Debug, Serialize)]
 pub struct Ended {
-    pub status: String,
+    pub status: &'static str,
     pub objective: f64,
     pub iterations: usize,
 }
 
-impl Ended {
-    /// Whether there is an objective worth telling.
-    pub fn is_good(&self) -> bool {
-        matches!(self.status.as_str(), "solved" | "acceptable")
-    }
-
-    pub fn of(problem: &Problem, outcome: &Outcome) -> Self {
-        let solution = &outcome.solution;
-        Ended {
-            status: status_name(outcome).to_string(),
-            objective: problem.sense * solution.objective,
-            iterations: solution.counts.iterations,
-        }
+impl From<&fdcc::Ended> for Ended {
+    fn from(it: &fdcc::Ended) -> Self {
+        Ended { status: it.status, objective: it.objective, iterations: it.iterations }
     }
 }
 
@@ -41,20 +28,27 @@ pub struct Happened {
     pub after: Named<f64>,
 }
 
+impl From<&fdcc::Jump> for Happened {
+    fn from(it: &fdcc::Jump) -> Self {
+        let (before, after) = (Named(it.before.clone()), Named(it.after.clone()));
+        Happened { jump: it.name.clone(), time: it.time, before, after }
+    }
+}
+
 /// How the solve ended in which exactly these jumps happen, one after the other.
 #[derive(Clone, Debug, Serialize)]
 pub struct Tried {
-    pub jumps: Vec<String>,
+    jumps: Vec<String>,
     /// The surfaces that are crossed against the direction of their jumps.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub crosses: Vec<String>,
-    /// All of them, in their order.
-    #[serde(skip)]
-    pub words: String,
-    /// Whether it is the answer.
-    #[serde(skip)]
-    pub is_answer: bool,
-    pub status: String,
-    pub objective: f64,
-    pub iterations: usize,
+    crosses: Vec<String>,
+    #[serde(flatten)]
+    ended: Ended,
+}
+
+impl From<&fdcc::Sequence> for Tried {
+    fn from(it: &fdcc::Sequence) -> Self {
+        let (jumps, crosses) = (it.jumps.clone(), it.crosses.clone());
+        Tried { jumps, crosses, ended: Ended::from(&it.ended) }
+    }
 }

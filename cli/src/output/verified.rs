@@ -5,13 +5,10 @@ use super::document::Span;
 use super::ending::{Ending, EventEntry, events, state};
 use super::named::Named;
 use super::number::{scientific, short};
-use super::saved::Saved;
 use super::units::Units;
-use crate::conditions::Condition;
-use crate::gaps::{Gap, TIME_OF};
-use crate::verification::Verified;
 use comfy_table::{CellAlignment, Table, presets};
-use fdcc::stays::{Stay, name};
+use fdcc::modes::name;
+use fdcc::{Condition, Gap, Stay, TIME_OF};
 use fdcc_grammar::SourceFile;
 use serde::Serialize;
 
@@ -63,7 +60,7 @@ pub struct Worst {
 
 impl Verification {
     /// `asked` is the largest difference that is called confirmation.
-    pub fn new(verified: &Verified, asked: f64) -> Self {
+    pub fn new(verified: &fdcc::Verification, asked: f64) -> Self {
         let worst = verified.worst().map(|condition| (condition.part, worst(verified, condition)));
         let (part, worst) = worst.unzip();
         let largest = verified.largest_gap().filter(|it| it.difference > 0.0);
@@ -72,7 +69,7 @@ impl Verification {
         let (gap, part) = (largest.map_or(0.0, |it| it.part), part.unwrap_or(0.0));
         let is_whole = verified.is_whole;
         Verification {
-            confirmed: is_whole && gap <= asked && part <= asked,
+            confirmed: verified.confirms(asked),
             asked,
             completed: is_whole,
             objective: verified.simulation.objective,
@@ -117,7 +114,7 @@ fn measured(name: &str) -> &str {
     if name.starts_with(TIME_OF) { "time" } else { name }
 }
 
-fn worst(verified: &Verified, condition: &Condition) -> Worst {
+fn worst(verified: &fdcc::Verification, condition: &Condition) -> Worst {
     let simulation = &verified.simulation;
     let at = |point: usize| simulation.states.iter().map(|column| column[point]).collect();
     let values: Vec<f64> = condition.point.map_or_else(|| simulation.end.clone(), at);
@@ -168,13 +165,13 @@ struct ConditionEntry {
 
 impl Document {
     pub fn new(
-        verified: &Verified,
-        saved: &Saved,
+        verified: &fdcc::Verification,
+        objective: Option<f64>,
         source: &SourceFile,
         same_source: bool,
         asked: f64,
     ) -> Self {
-        let Verified { system, simulation, gaps, conditions, stays, .. } = verified;
+        let fdcc::Verification { system, simulation, gaps, conditions, stays, .. } = verified;
         let entry = |it: &Gap| GapEntry { gap: it.part, difference: it.difference, time: it.time };
         let gaps = gaps.iter().map(|it| (it.name.clone(), entry(it)));
         let conditions = conditions.iter().map(|it| {
@@ -194,7 +191,7 @@ impl Document {
             model: system.name.clone(),
             same_source,
             ending: Ending::new(system, simulation, source),
-            objective: saved.objective,
+            objective,
             verification: Verification::new(verified, asked),
             state_gaps: gaps.collect(),
             conditions: conditions.collect(),

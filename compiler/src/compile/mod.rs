@@ -6,7 +6,8 @@ use crate::differentiate::differentiate;
 use crate::expressions::graph::{self, Graph};
 use crate::generate;
 use crate::lower::{
-    self, Expected, LoweredExpectations, Purpose, VectorFunction, by_parameters, lower, problem,
+    self, Expected, LoweredExpectations, LoweredProblem, Purpose, VectorFunction, by_parameters,
+    lower, problem,
 };
 use crate::model::numbers::numbers;
 use crate::model::{self, Model, Simulated};
@@ -17,16 +18,35 @@ use fdcc_runtime::simulate::System;
 use std::sync::Arc;
 
 /// Turns a model into an optimal control problem with compiled functions; or says what cannot be
-/// solved yet. Of a model with jumps it is what holds between them: [`with_phases`](crate::with_phases) makes of it one in
-/// which they happen.
+/// solved yet. Of a model with jumps it is what holds between them:
+/// [`with_phases`](crate::with_phases) makes of it one in which they happen.
 pub fn compile(model: &Model) -> Result<Problem, Vec<Diagnostic>> {
-    not_yet(model)?;
-    let model = &between_jumps(model);
-    let numbers = numbers(model)?;
-    let lowered = lower(model);
-    let functions = lowered.functions().map(VectorFunction::clone).to_vec();
-    let functions = machine_code(lowered.graph.clone(), functions);
-    Ok(problem(model, &lowered, &numbers, functions))
+    ProblemCode::new(model)?.problem(model)
+}
+
+/// The compiled functions of a problem, which take parameters as inputs: one for all values.
+pub struct ProblemCode {
+    lowered: LoweredProblem,
+    functions: Vec<Arc<dyn Function>>,
+}
+
+impl ProblemCode {
+    /// Compiles a model.
+    pub fn new(model: &Model) -> Result<Self, Vec<Diagnostic>> {
+        not_yet(model)?;
+        let model = &between_jumps(model);
+        numbers(model)?;
+        let lowered = lower(model);
+        let functions = lowered.functions().map(VectorFunction::clone).to_vec();
+        let functions = machine_code(lowered.graph.clone(), functions);
+        Ok(ProblemCode { lowered, functions })
+    }
+
+    /// The problem of the model, or of one that differs from it in the values of parameters only.
+    pub fn problem(&self, model: &Model) -> Result<Problem, Vec<Diagnostic>> {
+        let model = &between_jumps(model);
+        Ok(problem(model, &self.lowered, &numbers(model)?, self.functions.clone()))
+    }
 }
 
 /// The functions of a problem differentiated by the parameters of the model, for what its optimum

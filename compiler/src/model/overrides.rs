@@ -13,11 +13,28 @@ impl Model {
     /// declared unit.
     pub fn set_param(&mut self, name: &str, value: &str) -> Result<(), String> {
         let given = parse_quantity(value)?;
+        self.set_param_quantity(name, value, given)
+    }
+
+    /// The same with a number in the declared unit.
+    pub fn set_param_number(&mut self, name: &str, value: f64) -> Result<(), String> {
+        if !value.is_finite() {
+            return Err(format!("`{name}` cannot be {value}"));
+        }
+        self.set_param_quantity(name, "", Quantity { value, dimension: None })
+    }
+
+    fn set_param_quantity(
+        &mut self,
+        name: &str,
+        text: &str,
+        given: Quantity,
+    ) -> Result<(), String> {
         let Some(index) = self.params.iter().position(|param| param.place.name == name) else {
             return Err(self.no_param(name));
         };
         let own = self.unit_of_param(index).cloned().unwrap_or_else(|| plain_number(name));
-        let value = in_unit(&own, value, given)?;
+        let value = in_unit(&own, text, given)?;
         let range = self.params[index].range;
         let limits = [range.lower, range.upper].map(|limit| self.of_params(limit));
         if value < limits[0] || value > limits[1] {

@@ -1,0 +1,184 @@
+//! What a person sees while a solve runs, on stderr: Ipopt's iteration table with the width of the
+//! layer and the grid, and on a terminal a progress line.
+
+use crate::output::number::{scientific, significant};
+use crate::output::units::Units;
+use crate::output::{complain, tell};
+use fdcc::{Ended, Part, Report};
+use fdcc_runtime::nlp::Progress;
+use fdcc_runtime::solve;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::collections::HashMap;
+use std::io::IsTerminal;
+use std::sync::Mutex;
+use std::time::Duration;
+
+/// How much to print.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Level {
+    /// Nothing but what is wrong
+    None,
+    /// Every tenth iteration; of a sweep, each row when it is done
+    Short,
+    /// Every iteration
+    Full,
+}
+
+const HEADER: &str = " iter    objective    inf_pr   inf_du lg(mu)  ||d||  lg(rg) alpha_du \
+                      alpha_pr  ls  sigma       N";
+/// The header is repeated after this many lines.
+const PAGE: usize = 20;
+const SHORT: usize = 10;
+
+/// A sequence of jumps and a starting point.
+type Table = (Option<String>, Option<usize>);
+
+/// The tables of a solve, and of the several solves that look for its answer.
+pub struct Log {
+    level: Level,
+    /// Stands before each line: which row of a sweep it is about.
+    label: String,
+    /// How many lines each table has.
+    lines: Mutex<HashMap<Table, usize>>,
+    bar: ProgressBar,
+    /// How many SI units one of the unit of a width is.
+    scale: f64,
+}
+
+impl Log {
+    /// The table of the only solve.
+    pub fn new(level: Level) -> Self {
+        let bar = progress(ProgressBar::no_length(), level, "{spinner} {elapsed} {msg}");
+        Log { level, label: String::new(), lines: Mutex::default(), bar, scale: 1.0 }
+    }
+
+    /// The table of one of several solves, which share a [`bar`]; only a full log has tables.
+    pub fn of_several(level: Level, bar: &ProgressBar, label: &str) -> Self {
+        let level = if level == Level::Full { level } else { Level::None };
+        let (label, bar) = (label.to_owned(), bar.clone());
+        Log { level, label, lines: Mutex::default(), bar, scale: 1.0 }
+    }
+
+    /// From now on widths are in the unit of the surfaces, as in the verdict.
+    pub fn show_widths_in(&mut self, units: &Units) {
+        self.scale = units.width_scale();
+    }
+
+    /// What the library says.
+    pub fn report(&self, report: &Report) {
+        match report {
+            Report::Iteration(part, progress, level) => self.iteration(part, progress, *level),
+            Report::Ended(part, ended) => self.ended(part, ended),
+            Report::Stopped { ended, stopped, starts } => complain(&format!(
+                "{ended} of {starts} starts came to their end, {stopped} stopped on the way, {} \
+                 never ran",
+                starts - ended - stopped
+            )),
+        }
+    }
+
+    /// One iteration. Of several solves that look for one answer only a full log has tables.
+    fn iteration(&self, part: &Part, progress: &Progress, level: solve::Level) {
+        let label = name(part).map_or(self.label.clone(), |name| format!("{name} "));
+        let is_part = name(part).is_some();
+        let (iteration, violation) = (progress.iteration, progress.primal_infeasibility);
+        self.bar.set_message(format!("{label}iteration {iteration}  violation {violation:.1e}"));
+        let wanted = match self.level {
+            Level::None => false,
+            Level::Short => !is_part && progress.iteration.is_multiple_of(SHORT),
+            Level::Full => true,
+        };
+        if !wanted {
+            return;
+        }
+        let line = line(progress, level, self.scale);
+        let with_header = self.next_line(part).is_multiple_of(PAGE);
+        self.bar.suspend(|| {
+            if with_header {
+                tell(&format!("{label}{HEADER}\n"));
+            }
+            tell(&format!("{label}{line}\n"));
+        });
+    }
+
+    /// How many lines the table of a part has had so far.
+    fn next_line(&self, part: &Part) -> usize {
+        let table = (part.sequence.map(str::to_owned), part.start);
+        let mut lines = self.lines.lock().expect("no thread panics with the lock");
+        let count = lines.entry(table).or_default();
+        *count += 1;
+        *count - 1
+    }
+
+    /// How one of several solves ended; those within a sequence of jumps are for a full log.
+    fn ended(&self, part: &Part, ended: &Ended) {
+        let is_within = part.sequence.is_some() && part.start.is_some();
+        if self.level == Level::Full || self.level == Level::Short && !is_within {
+            let status = ended.status.replace('_', " ");
+            let told = match ended.is_solved {
+                true => format!("{status:<18} objective {}", significant(ended.objective, 9)),
+                false => status,
+            };
+            let label = name(part).unwrap_or_default();
+            self.bar.suspend(|| tell(&format!(" {label:<9}  {told}\n")));
+        }
+    }
+
+    /// Removes the progress line.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// What stands before the lines of one of several solves.
+fn name(part: &Part) -> Option<String> {
+    let start = part.start.map(|index| format!("start {index:3}"));
+    start.or(part.sequence.map(str::to_owned))
+}
+
+/// The progress of several solves, on a terminal only.
+pub fn bar(level: Level, solves: usize) -> ProgressBar {
+    progress(
+        ProgressBar::new(solves as u64),
+        level,
+        "{spinner} {elapsed} {pos}/{len} {bar:20} {msg}",
+    )
+}
+
+fn progress(bar: ProgressBar, level: Level, template: &str) -> ProgressBar {
+    if level == Level::None || !std::io::stderr().is_terminal() {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+        return bar;
+    }
+    bar.set_style(
+        ProgressStyle::with_template(template).expect("the templates are fixed and right"),
+    );
+    bar.enable_steady_tick(Duration::from_millis(120));
+    bar
+}
+
+fn line(p: &Progress, level: solve::Level, scale: f64) -> String {
+    let logarithm =
+        |value: f64| if value > 0.0 { format!("{:.1}", value.log10()) } else { "-".to_string() };
+    let (mu, regularization) = (logarithm(p.mu), logarithm(p.regularization));
+    let sigma = level.sigma.iter().fold(0.0f64, |a, sigma| a.max(*sigma));
+    let sigma = if sigma > 0.0 { scientific(sigma / scale, 1) } else { "-".into() };
+    let stages = level.stages.map(|stages| format!("x{stages}")).unwrap_or_default();
+    let grid = format!("{}{stages}", level.intervals);
+    format!(
+        "{:5}{} {:>13} {:>8} {:>8} {:>5} {:>8} {:>5} {:>8} {:>8} {:>3}  {:>7} {:>6}",
+        p.iteration,
+        if p.restoration { 'r' } else { ' ' },
+        scientific(p.objective, 6),
+        scientific(p.primal_infeasibility, 2),
+        scientific(p.dual_infeasibility, 2),
+        mu,
+        scientific(p.step, 2),
+        regularization,
+        scientific(p.alpha_dual, 2),
+        scientific(p.alpha_primal, 2),
+        p.trials,
+        sigma,
+        grid
+    )
+}

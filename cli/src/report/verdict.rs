@@ -1,0 +1,256 @@
+//! What is said at the end of a solve: how it ended, what was found, what each surface did.
+
+use crate::output::document::{Document, switching};
+use crate::output::number::{scientific, short};
+use crate::output::plural;
+use crate::output::verified::Verification;
+use crate::report::attempts;
+use crate::solver::Solved;
+use fdcc::{Ended, Solution};
+use fdcc_runtime::nlp::Status;
+use fdcc_runtime::problem::{Method, Problem};
+use fdcc_runtime::transcribe::unknowns;
+
+mod jumps;
+mod rest;
+
+/// One line: the size of the problem.
+pub fn headline(problem: &Problem) -> String {
+    let shown = problem.states.iter().filter(|state| !state.hidden).count();
+    let method = &problem.method;
+    format!(
+        " {}   {}  {}  {}  {}  N {}  {}\n",
+        problem.name,
+        plural(shown, "state"),
+        plural(problem.controls.len(), "control"),
+        plural(problem.surfaces.len(), "surface"),
+        asked(method),
+        method.intervals,
+        plural(unknowns(problem), "unknown"),
+    )
+}
+
+/// The scheme as the model names it: without a number where that is to be found.
+fn asked(method: &Method) -> String {
+    let name = method.scheme.name();
+    if method.is_raised { name.trim_end_matches(|c: char| c.is_ascii_digit()).into() } else { name }
+}
+
+/// The verdict for people.
+pub fn verdict(solved: &Solved) -> String {
+    let document = &solved.document;
+    let named = |name: &str, value: f64| format!("{name} {}", document.units.value(name, value, 9));
+    let mut result = vec![named("objective", document.objective)];
+    result.extend(document.free.0.iter().map(|(name, value)| named(name, *value)));
+    let work = format!(
+        "{}   optimality error {}   constraint violation {}   {:.3} s",
+        plural(document.iterations, "iteration"),
+        scientific(document.kkt_error, 1),
+        scientific(document.constraint_violation, 1),
+        document.seconds.total
+    );
+    let word = if solved.is_good() { "done" } else { "stop" };
+    let mut lines =
+        vec![format!(" {word}  {}", how(solved)), format!("       {}", result.join("   "))];
+    lines.push(format!("       {work}"));
+    lines.extend(jumps::lines(&solved.solution, document));
+    lines.extend(spread(&solved.solution, document));
+    lines.extend(surfaces(document));
+    lines.extend(rest::lines(solved));
+    lines.extend(replayed(document));
+    lines.extend(refined(solved));
+    if solved.is_good() && solved.solution.problem.has_objective {
+        lines.extend(hamiltonian(document));
+    }
+    lines.extend(sensitivities(document));
+    lines.join("\n") + "\n"
+}
+
+/// Objectives within this, relative to their size, are told as one.
+const SAME: f64 = 1e-6;
+
+/// The minima that were found from several starts, the best one first, and how often.
+fn spread(solution: &Solution, document: &Document) -> Vec<String> {
+    let is_solved = |ended: &&Ended| ended.is_solved;
+    let mut found: Vec<f64> =
+        solution.starts.iter().filter(is_solved).map(|ended| ended.objective).collect();
+    // The best one is the answer, whichever way is better.
+    found.sort_by(|a, b| (a - document.objective).abs().total_cmp(&(b - document.objective).abs()));
+    let same = |a: &f64, b: &f64| (a - b).abs() <= SAME * b.abs().max(1.0);
+    let row = |found: &[f64]| {
+        let value = document.units.value("objective", found[0], 9);
+        format!("       {} of {} starts: objective {value}", found.len(), solution.starts.len())
+    };
+    let solved = found.len();
+    let mut rows: Vec<String> = found.chunk_by(same).map(row).collect();
+    match solution.starts.len() - solved {
+        0 => {}
+        others => {
+            rows.push(format!("       {others} of {} starts: not solved", solution.starts.len()))
+        }
+    }
+    rows
+}
+
+/// What each surface did, if the trajectory says anything about it.
+fn surfaces(document: &Document) -> impl Iterator<Item = String> {
+    let has_trajectory = document.status != "not_finite";
+    let units = &document.units;
+    let sigmas = document.method.sigmas.0.iter().filter(move |_| has_trajectory);
+    sigmas.map(move |(name, sigma)| {
+        let modes =
+            document.surfaces.get(name).map(|spans| switching(spans, units)).unwrap_or_default();
+        format!(
+            " {name:<5} {modes}   (sigma {}, kernel {})",
+            units.width(name, *sigma),
+            document.method.kernel
+        )
+    })
+}
+
+/// The first line. It never says "optimal": an optimum of the discretised problem is not one of the
+/// true system.
+fn how(solved: &Solved) -> String {
+    let Solved { solution, document } = solved;
+    let Solution { problem, outcome, .. } = solution;
+    let status = &outcome.solution.status;
+    let found = match problem.has_objective {
+        false => "feasible trajectory",
+        true if document.global => "global optimum",
+        true => "local optimum",
+    };
+    let of =
+        if document.surfaces.0.is_empty() { "discretised problem" } else { "smoothed problem" };
+    let tolerance = format!("tolerance {:e}", document.method.tol);
+    let proof = if document.global || !problem.has_objective { "" } else { "; not proved global" };
+    match status {
+        Status::Solved => {
+            format!(
+                "{found} of the {of}, {} ({tolerance} met{proof})",
+                on_the_true_system(document)
+            )
+        }
+        Status::Acceptable => {
+            format!(
+                "{found} of the {of}, less accurate than asked for, {} ({tolerance} NOT \
+                 met{proof})",
+                on_the_true_system(document)
+            )
+        }
+        Status::Infeasible if !outcome.is_impossible => format!("NOT SOLVED, {}", why(solved)),
+        _ => format!("NOT SOLVED, {}: {}", solution.status_name().replace('_', " "), why(solved)),
+    }
+}
+
+/// What was reached where the grid was to be chosen.
+fn refined(solved: &Solved) -> Option<String> {
+    let (document, method) = (&solved.document, &solved.solution.problem.method);
+    let (error, tolerance) = (document.step_errors?, method.tolerance);
+    let verdict = if error <= tolerance { "" } else { ", NOT met" };
+    let order =
+        if method.is_raised { format!(" of {}", document.method.scheme) } else { String::new() };
+    Some(format!(
+        " grid  {}{order}, errors of all steps {} (tolerance {}{verdict})",
+        plural(document.method.n, "interval"),
+        short(error),
+        short(tolerance)
+    ))
+}
+
+/// By how much of the size of its terms the Hamiltonian may miss what it has to be, before that is
+/// told.
+const MISSED: f64 = 0.05;
+
+/// What is said where the Hamiltonian is not what it has to be: then the grid is too coarse for
+/// what happens on it.
+fn hamiltonian(document: &Document) -> Option<String> {
+    let check = &document.hamiltonian_check;
+    let deviation = check.deviation.filter(|it| *it > MISSED * check.size)?;
+    let target = check.expected.map_or("constant".into(), |it| format!("{} throughout", short(it)));
+    Some(format!(
+        " grid  the Hamiltonian has to be {target} and is off by {} on average: the answer depends \
+         on the grid, more intervals will change it",
+        short(deviation)
+    ))
+}
+
+/// What the optimum is worth to each parameter.
+fn sensitivities(document: &Document) -> impl Iterator<Item = String> {
+    let all = document.sensitivities.0.iter().filter(|(_, slope)| slope.is_finite());
+    all.map(|(name, slope)| {
+        let value = document.params.get(name).copied().unwrap_or(f64::NAN);
+        let percent = 0.01 * value * slope;
+        let percent = if percent == 0.0 || !percent.is_finite() {
+            String::new()
+        } else {
+            format!("   1 % more: {}", document.units.value("objective", percent, 3))
+        };
+        format!(
+            " if    {name} = {} changes, the objective changes by {}{percent}",
+            document.units.value(name, value, 6),
+            document.units.per("objective", name, *slope, 5)
+        )
+    })
+}
+
+/// What a replay says of the answer, and what contradicts that it is an optimum, in few words.
+pub fn on_the_true_system(document: &Document) -> String {
+    let replay = document.verification.as_ref();
+    let replay = replay.map_or("not replayed on the true system".into(), Verification::words);
+    match document.optimality.as_ref().filter(|it| it.contradicted) {
+        Some(optimality) => format!("{replay}, CONTRADICTED as an optimum: {}", optimality.says),
+        None => replay,
+    }
+}
+
+/// The replay in numbers.
+fn replayed(document: &Document) -> Option<String> {
+    let replay = document.verification.as_ref()?;
+    replay.state_gap?;
+    let units = &document.units;
+    let mut words = vec![" true  replayed:".to_owned()];
+    words.extend(
+        replay.objective.map(|it| format!("objective {}", units.value("objective", it, 9))),
+    );
+    words.push(replay.difference(units).unwrap_or_else(|| "no state differs".into()));
+    words.push(match replay.worst.as_ref().zip(replay.violation(units)) {
+        Some((worst, amount)) => {
+            let when = worst.time.map(|t| format!(" at t = {}", units.value("time", t, 6)));
+            format!("`{}` off by {amount}{}", worst.condition, when.unwrap_or_default())
+        }
+        None => "all conditions met".into(),
+    });
+    words.push(plural(replay.events, "event"));
+    Some(words.join("   ").replacen(":   ", ": ", 1))
+}
+
+fn intervals(solved: &Solved) -> String {
+    plural(solved.solution.problem.method.intervals, "interval")
+}
+
+/// What the status of a failed solve means.
+fn why(solved: &Solved) -> String {
+    let method = &solved.solution.problem.method;
+    match &solved.solution.outcome.solution.status {
+        Status::Infeasible if solved.solution.outcome.is_impossible => {
+            format!(
+                "proved: there is no trajectory of {} that meets all conditions",
+                intervals(solved)
+            )
+        }
+        Status::Infeasible => {
+            format!("{}; {}", attempts::words(&solved.solution), attempts::advice(&solved.solution))
+        }
+        Status::Unbounded => "the objective improves without end; something needs a bound".into(),
+        Status::IterationLimit => {
+            format!("{}; `--method max_iter=...` allows more", plural(method.max_iter, "iteration"))
+        }
+        Status::TimeLimit => "the time of `--time-limit` is up; this is the last iterate".into(),
+        Status::Interrupted => "stopped by Ctrl-C; this is the last iterate".into(),
+        Status::NotFinite(_) => "an expression of the model has no value".into(),
+        // Those that are solved have been answered already.
+        Status::NumericalFailure | Status::Solved | Status::Acceptable => {
+            "no step makes progress; another `guess`, `sigma` or N may help".into()
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! The lines about jumps: which happen, and what the best answers with others are worth.
+
+use crate::output::document::Document;
+use crate::output::plural;
+use crate::output::tried::Happened;
+use fdcc::{Sequence, Solution};
+
+/// The jumps, and what the best answer with others is worth.
+pub fn lines(solution: &Solution, document: &Document) -> Vec<String> {
+    if solution.sequences.is_empty() {
+        return Vec::new();
+    }
+    let when =
+        |it: &Happened| format!("{} at t = {}", it.jump, document.units.value("time", it.time, 6));
+    let happened = match document.jumps.len() {
+        0 => "none is best".into(),
+        _ => document.jumps.iter().map(when).collect::<Vec<_>>().join(", "),
+    };
+    let mut lines = vec![format!(" jumps {happened}")];
+    lines.extend(with_others(solution, document));
+    if document.sequences_left_out {
+        lines.push(
+            "       longer sequences: not tried; `at most n` in the model says how often a jump \
+             may happen"
+                .into(),
+        );
+    }
+    lines
+}
+
+/// So many of the other sequences are told.
+const OTHERS: usize = 4;
+
+/// What is the best with other jumps, the best of them first.
+fn with_others(solution: &Solution, document: &Document) -> Vec<String> {
+    let others = solution.sequences.iter().filter(|it| !it.is_answer);
+    let is_solved = |it: &&Sequence| it.ended.is_solved;
+    let (mut solved, failed): (Vec<&Sequence>, Vec<&Sequence>) = others.partition(is_solved);
+    let distance = |it: &Sequence| (it.ended.objective - document.objective).abs();
+    solved.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let value = |it: &Sequence| document.units.value("objective", it.ended.objective, 9);
+    let told = solved.iter().take(OTHERS);
+    let mut lines: Vec<String> =
+        told.map(|it| format!("       {}: objective {}", it.words, value(it))).collect();
+    let more = solved.len().saturating_sub(OTHERS);
+    lines.extend((more > 0).then(|| format!("       {}: worse", plural(more, "other sequence"))));
+    match failed.as_slice() {
+        [] => {}
+        [one] => {
+            lines.push(format!("       {}: {}", one.words, one.ended.status.replace('_', " ")))
+        }
+        many => lines
+            .push(format!("       {}: no trajectory found", plural(many.len(), "other sequence"))),
+    }
+    lines
+}

@@ -1,0 +1,60 @@
+//! What is said where a solve failed because the function of a smoothed surface has to be 0 at the
+//! end: friction alone brings it near, and never there.
+
+use crate::output::units::Units;
+use crate::solver::Solved;
+use fdcc_runtime::nlp::Status;
+use fdcc_runtime::problem::{Columns, Problem};
+use fdcc_runtime::solution::Trajectory;
+
+/// Only a condition makes the function of a surface this small, relative to its layer.
+const NOTHING: f64 = 1e-4;
+/// What is proposed instead of 0.
+const ENOUGH: f64 = 0.01;
+
+/// One line for each surface that has to be 0 at the end.
+pub(super) fn lines(solved: &Solved) -> Vec<String> {
+    let (problem, outcome) = (&solved.solution.problem, &solved.solution.outcome);
+    let is_open = !matches!(outcome.solution.status, Status::Solved | Status::NotFinite(_));
+    let Some(ends) = is_open.then(|| misses(problem, &outcome.trajectory)) else {
+        return Vec::new();
+    };
+    let surfaces = problem.surfaces.iter().zip(&outcome.trajectory.guards).zip(&outcome.sigma);
+    let asked = surfaces.filter(|((_, guard), sigma)| {
+        let last = guard.last().map_or(0.0, |value| value.abs());
+        last > 0.0
+            && last <= NOTHING * **sigma
+            && ends.iter().any(|miss| (miss - last).abs() <= 1e-6 * last)
+    });
+    asked.map(|((surface, _), sigma)| line(&surface.name, *sigma, &solved.document.units)).collect()
+}
+
+fn line(name: &str, sigma: f64, units: &Units) -> String {
+    // As it is written, with the unit in brackets.
+    let enough = units.width(name, ENOUGH * sigma);
+    let enough = match enough.split_once(' ') {
+        Some((number, unit)) => format!("{number} [{unit}]"),
+        None => enough,
+    };
+    format!(
+        " rest  `{name}` has to be 0 at the end, but while it is smoothed friction brings it near \
+         and never there: write `end abs({name}) <= {}` instead",
+        enough
+    )
+}
+
+/// By how much each end condition that is an equation is missed.
+fn misses(problem: &Problem, trajectory: &Trajectory) -> Vec<f64> {
+    let states = &trajectory.states;
+    let mut points = Columns::new(2 * states.len(), 1);
+    let ends = states
+        .iter()
+        .map(|state| state[0])
+        .chain(states.iter().map(|state| state[state.len() - 1]));
+    ends.enumerate().for_each(|(i, value)| points.column_mut(i)[0] = value);
+    let mut values = Columns::new(problem.boundary.outputs(), 1);
+    problem.boundary.value(&points, &trajectory.parameters, &mut values);
+    let rows =
+        problem.boundary_bounds.iter().enumerate().filter(|(_, bounds)| bounds.is_equality());
+    rows.map(|(row, bounds)| (values.column(row + 1)[0] - bounds.lower).abs()).collect()
+}

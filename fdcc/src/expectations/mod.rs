@@ -1,0 +1,123 @@
+//! What a model expects of its solution, compared with the solution.
+//!
+//! Values of states are those at the ends of the trajectory; integrals are taken by the scheme's
+//! own quadrature. What only a simulation can tell is that of the replay on the true system.
+
+mod replayed;
+
+use crate::solve::Solution;
+use fdcc_compiler::model::Comparison;
+use fdcc_compiler::{Expected, expectations};
+use fdcc_runtime::problem::{Columns, Origin};
+use fdcc_runtime::solution::integrals;
+use replayed::Replayed;
+
+/// One line of the `expect` block and what became of it.
+///
+/// ```
+/// use fdcc::{Expected, Model, Options};
+///
+/// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
+/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)";
+/// let text = format!("{text}\nexpect {{ x(end) == 0.5 within 1e-6 }}");
+/// let model = Model::from_text("hop", &text)?;
+/// let found = model.solve(&Options::default())?.expectations();
+/// assert!(matches!(&found[0].outcome, Expected::Compared(sides) if sides.holds));
+/// # Ok::<(), fdcc::Error>(())
+/// ```
+pub struct Checked {
+    /// The text and its place.
+    pub origin: Origin,
+    /// The comparison.
+    pub outcome: Outcome,
+}
+
+/// What became of an expectation.
+pub enum Outcome {
+    /// Both sides have values.
+    Compared(Sides),
+    /// The true system does not tell, and why.
+    Untold(String),
+}
+
+/// The numbers of a comparison.
+pub struct Sides {
+    /// Left side.
+    pub left: f64,
+    /// Right side.
+    pub right: f64,
+    /// By how much it may fail.
+    pub tolerance: f64,
+    /// Whether it holds; never if a side is not a number.
+    pub holds: bool,
+}
+
+/// Evaluates all expectations of its model at a solution.
+pub(crate) fn evaluate(solution: &Solution) -> Vec<Checked> {
+    let (seen, problem, outcome) = solution.as_solved();
+    let expectations = expectations(seen);
+    let trajectory = &outcome.trajectory;
+    let ends = |column: fn(&[f64]) -> f64| trajectory.states.iter().map(move |state| column(state));
+    let inputs: Vec<f64> =
+        ends(|state| state[0]).chain(ends(|state| state[state.len() - 1])).collect();
+    let mut parameters = trajectory.parameters.clone();
+    parameters.extend(integrals(
+        problem,
+        &outcome.solution,
+        &trajectory.parameters,
+        &*expectations.integrands,
+    ));
+    let replayed = Replayed::new(solution, &expectations.simulated);
+    parameters.extend(replayed.values());
+    let mut points = Columns::new(inputs.len(), 1);
+    inputs.iter().enumerate().for_each(|(i, value)| points.column_mut(i)[0] = *value);
+    let mut values = Columns::new(expectations.function.outputs(), 1);
+    expectations.function.value(&points, &parameters, &mut values);
+    let list = expectations.list.iter().enumerate();
+    list.map(|(at, expected)| checked(expected, at, &values, &replayed)).collect()
+}
+
+fn checked(expected: &Expected, at: usize, values: &Columns, replayed: &Replayed) -> Checked {
+    let [left, right, tolerance] = [0, 1, 2].map(|side| values.column(3 * at + side)[0]);
+    let holds = holds(expected.comparison, left, right, tolerance);
+    let outcome = match expected.simulated.iter().find_map(|&asked| replayed.why_not(asked)) {
+        Some(why) => Outcome::Untold(why),
+        None => Outcome::Compared(Sides { left, right, tolerance, holds }),
+    };
+    Checked { origin: expected.origin.clone(), outcome }
+}
+
+fn holds(comparison: Comparison, left: f64, right: f64, tolerance: f64) -> bool {
+    match comparison {
+        Comparison::Equal => (left - right).abs() <= tolerance,
+        Comparison::LessEqual => left <= right + tolerance,
+        Comparison::GreaterEqual => left >= right - tolerance,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_comparison_may_fail_by_its_tolerance_and_never_holds_for_nan() {
+        let cases = [
+            (Comparison::Equal, 1.0, 1.25, 0.25, true),
+            (Comparison::Equal, 1.0, 1.25, 0.125, false),
+            (Comparison::LessEqual, 1.25, 1.0, 0.25, true),
+            (Comparison::LessEqual, 1.25, 1.0, 0.125, false),
+            (Comparison::LessEqual, 0.0, 1.0, 0.0, true),
+            (Comparison::GreaterEqual, 0.75, 1.0, 0.25, true),
+            (Comparison::GreaterEqual, 0.75, 1.0, 0.125, false),
+            (Comparison::GreaterEqual, f64::NAN, 1.0, 0.25, false),
+            (Comparison::Equal, 1.0, f64::NAN, 0.25, false),
+        ];
+        for (comparison, left, right, tolerance, expected) in cases {
+            assert_eq!(
+                holds(comparison, left, right, tolerance),
+                expected,
+                "{left} {comparison:?} {right}"
+            );
+        }
+    }
+}

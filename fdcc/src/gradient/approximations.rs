@@ -1,0 +1,91 @@
+//! Beside the exact gradient: those that a user may be computing otherwise, of the smoothed and of
+//! the discretised problem.
+
+use super::{Gradient, quantities};
+use fdcc_runtime::fixed_step::{self, Failure, Grid, step_through};
+use fdcc_runtime::problem::{Columns, Scheme};
+use fdcc_runtime::sensitivity::Quantity;
+use fdcc_runtime::simulate::{Simulation, System};
+
+/// The gradient of what fixed steps compute.
+pub struct Stepped {
+    /// The smoothing width of the first surface; nothing for the true system.
+    pub sigma: Option<f64>,
+    /// By each quantity.
+    pub gradient: Vec<f64>,
+}
+
+/// Where the method names no width: this part of the largest value of a switching function.
+const RELATIVE_WIDTH: f64 = 0.01;
+
+impl Gradient {
+    /// The gradient of the true system, discretised, or why there is none; fixed steps know no
+    /// jumps.
+    pub fn discretised(&self) -> Option<Result<Stepped, String>> {
+        let stepped = || Ok(Stepped { sigma: None, gradient: self.stepped(&self.system)? });
+        self.system.jumps.is_empty().then(stepped)
+    }
+
+    /// The same with the surfaces smoothed, as a solve has it.
+    pub fn smoothed(&self) -> Option<Result<Stepped, String>> {
+        let model = self.model.meaning();
+        let mut smooth = fdcc_compiler::compile_smoothed(model).ok()?;
+        let first = self.system.surfaces.first()?;
+        if model.method.sigma.is_none() && model.method.continuation.is_empty() {
+            let sizes = sizes(&self.system, self.simulation());
+            for (surface, size) in self.system.surfaces.iter().zip(sizes) {
+                smooth.parameters[surface.sigma].value =
+                    RELATIVE_WIDTH * if size > 0.0 { size } else { 1.0 };
+            }
+        }
+        let sigma = Some(smooth.parameters[first.sigma].value);
+        Some(self.stepped(&smooth).map(|gradient| Stepped { sigma, gradient }))
+    }
+
+    fn stepped(&self, system: &System) -> Result<Vec<f64>, String> {
+        let method = &self.model.meaning().method;
+        let scheme = method.scheme;
+        if matches!(scheme, Scheme::RungeKutta4 | Scheme::Radau(_) | Scheme::Gauss(_)) {
+            return Err(format!("fixed steps of `{}` do not go through a set", scheme.name()));
+        }
+        let grid = Grid::new(system, method);
+        let found = step_through(system, &self.controls, &grid)
+            .and_then(|stepped| fixed_step::gradient(system, &self.controls, &grid, &stepped));
+        let whole = found.map_err(|failure| why(&failure))?;
+        let by = |quantity: Quantity| match quantity {
+            Quantity::Parameter(at) => whole.parameters[at],
+            Quantity::Start(at) => whole.starts[at],
+            Quantity::Control { row, control } => whole.controls[row][control],
+        };
+        Ok(quantities(&self.by).into_iter().map(by).collect())
+    }
+}
+
+fn why(failure: &Failure) -> String {
+    match failure {
+        Failure::Jumps => "fixed steps know no jumps".into(),
+        Failure::Directions => "fixed steps know no `Dir`".into(),
+        Failure::NoObjective => "there is nothing to differentiate".into(),
+        Failure::NotFinite { time, origin } => {
+            format!("`{}` has no value at t = {time}", origin.label)
+        }
+        Failure::NotConverged { time, .. } => {
+            format!("the step to t = {time} has no solution near its beginning")
+        }
+        Failure::Singular { time, .. } => format!("the step to t = {time} has no unique solution"),
+    }
+}
+
+/// The largest size of each switching function along a simulation.
+fn sizes(system: &System, simulation: &Simulation) -> Vec<f64> {
+    let mut points = Columns::new(system.guards.layout().point_inputs(), simulation.time.len());
+    points.column_mut(0).copy_from_slice(&simulation.time);
+    for (at, column) in simulation.states.iter().enumerate() {
+        points.column_mut(1 + at).copy_from_slice(column);
+    }
+    let mut values = Columns::new(system.guards.outputs(), points.count());
+    system.guards.value(&points, &system.parameter_values(), &mut values);
+    let largest =
+        |at| values.column(at).iter().fold(0.0, |most: f64, psi: &f64| most.max(psi.abs()));
+    (0..system.surfaces.len()).map(largest).collect()
+}

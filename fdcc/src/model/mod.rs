@@ -1,0 +1,160 @@
+//! A model: read, checked, and compiled once for all values of its parameters.
+
+mod code;
+mod reading;
+mod values;
+
+pub use reading::{Checked, check, text};
+pub use values::Value;
+
+use crate::error::Error;
+use crate::record::Record;
+use crate::solve::{Compiled, Options, Solution};
+use crate::verification::{Verification, verify};
+use code::Code;
+use fdcc_grammar::{Diagnostic, SourceFile};
+use fdcc_runtime::problem::Problem;
+use fdcc_runtime::simulate::System;
+use std::sync::Arc;
+
+/// A model without mistakes. Clones and variants with other values share what is compiled.
+///
+/// ```
+/// use fdcc::{Model, Options};
+///
+/// let model = Model::from_text("hop", "time t in [0, 1]
+/// param reach = 0.5
+/// state x start 0
+/// control u in [-1, 1]
+/// dynamics { x' = u }
+/// end x == reach
+/// minimize integral(u^2)")?;
+/// let near = model.solve(&Options::default())?;
+/// let far = model.with("reach", 0.8)?.solve(&Options::default())?;
+/// assert!(near.objective() < far.objective());
+/// # Ok::<(), fdcc::Error>(())
+/// ```
+#[derive(Clone)]
+pub struct Model {
+    source: Arc<SourceFile>,
+    diagnostics: Arc<Vec<Diagnostic>>,
+    meaning: Arc<fdcc_compiler::Model>,
+    code: Arc<Code>,
+}
+
+impl Model {
+    /// Reads and checks a file.
+    ///
+    /// # Errors
+    ///
+    /// A file that cannot be read; a model with mistakes.
+    pub fn from_file(path: &str) -> Result<Self, Error> {
+        Model::load(path, |path| std::fs::read(path))
+    }
+
+    /// The same with another way to come by the bytes of a name.
+    ///
+    /// # Errors
+    ///
+    /// Those of `load`; a model with mistakes.
+    pub fn load(
+        name: &str,
+        load: impl FnOnce(&str) -> std::io::Result<Vec<u8>>,
+    ) -> Result<Self, Error> {
+        let cannot = |error| Error::File(format!("{name} cannot be read: {error}"));
+        check(name, load(name).map_err(cannot)?).into_model()
+    }
+
+    /// Reads and checks a text; `name` stands in messages.
+    ///
+    /// # Errors
+    ///
+    /// A model with mistakes.
+    pub fn from_text(name: &str, text: &str) -> Result<Self, Error> {
+        check(name, text.into()).into_model()
+    }
+
+    /// The model with what it means, as the compiler has it.
+    pub(crate) fn new(
+        source: Arc<SourceFile>,
+        diagnostics: Arc<Vec<Diagnostic>>,
+        meaning: fdcc_compiler::Model,
+    ) -> Self {
+        Model { source, diagnostics, meaning: Arc::new(meaning), code: Arc::default() }
+    }
+
+    /// The name that the model gives itself.
+    pub fn name(&self) -> &str {
+        &self.meaning.name
+    }
+
+    /// The text.
+    pub fn source(&self) -> &SourceFile {
+        &self.source
+    }
+
+    /// Warnings and advice about the text.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        &self.diagnostics
+    }
+
+    /// What it means, as the compiler has it.
+    pub fn meaning(&self) -> &fdcc_compiler::Model {
+        &self.meaning
+    }
+
+    /// What a replay of a recorded solution does on the true system, against what it says.
+    ///
+    /// # Errors
+    ///
+    /// A record that does not belong to this model; a model that cannot be simulated.
+    pub fn verify(&self, record: &Record) -> Result<Verification, Error> {
+        verify(&self.meaning, &self.problem()?, record)
+    }
+
+    /// The problem that is solved for it: bounds, guesses and parameters with their values.
+    ///
+    /// # Errors
+    ///
+    /// What cannot be solved yet; parameters without a value.
+    pub fn problem(&self) -> Result<Problem, Error> {
+        self.code.problem(&self.meaning).map_err(Error::Model)
+    }
+
+    /// The true system, for simulation.
+    ///
+    /// # Errors
+    ///
+    /// What cannot be simulated yet; parameters without a value.
+    pub fn system(&self) -> Result<System, Error> {
+        fdcc_compiler::compile_simulation(&self.meaning).map_err(Error::Model)
+    }
+
+    /// The true system with all derivatives.
+    ///
+    /// # Errors
+    ///
+    /// As for [`system`](Model::system).
+    pub fn sensitivity_system(&self) -> Result<System, Error> {
+        fdcc_compiler::compile_sensitivities(&self.meaning).map_err(Error::Model)
+    }
+
+    /// Makes everything ready that a solve needs.
+    ///
+    /// # Errors
+    ///
+    /// A model that cannot be solved.
+    pub fn compile(&self) -> Result<Compiled, Error> {
+        Compiled::new(self)
+    }
+
+    /// Solves. That nothing was found is no error: the [status](Solution::status) says so.
+    ///
+    /// # Errors
+    ///
+    /// A model that cannot be solved, or not in the way that its method asks for; a start that does
+    /// not belong to it.
+    pub fn solve(&self, options: &Options) -> Result<Solution, Error> {
+        self.compile()?.solve(options)
+    }
+}

@@ -1,0 +1,92 @@
+//! Other values for parameters and for settings of the method.
+
+use super::Model;
+use crate::error::Error;
+use std::sync::Arc;
+
+/// A value: a number in the declared unit of the name, or a text such as `200[g]`, `radau3`, `0.1,
+/// 0.01`.
+///
+/// ```
+/// let text = "param m = 2 [kg]\ntime t in [0, 1]\nstate x start 0\ndynamics { x' = m / 1[kg] }";
+/// let model = fdcc::Model::from_text("mass", text)?;
+/// let values = |model: fdcc::Model| model.problem().map(|it| it.parameters[0].value);
+/// assert_eq!(values(model.with("m", 0.2)?)?, values(model.with("m", "200[g]")?)?);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// In the declared unit.
+    Number(f64),
+    /// As the language writes it.
+    Text(String),
+}
+
+impl From<f64> for Value {
+    fn from(value: f64) -> Self {
+        Value::Number(value)
+    }
+}
+
+impl From<i32> for Value {
+    fn from(value: i32) -> Self {
+        Value::Number(value.into())
+    }
+}
+
+impl From<&str> for Value {
+    fn from(text: &str) -> Self {
+        Value::Text(text.into())
+    }
+}
+
+impl Model {
+    /// The same with another value of a parameter. Nothing is compiled anew: the compiled functions
+    /// take parameters as inputs, and bounds, starts and guesses are computed from them again. A
+    /// model with jumps compiles its sequences of jumps in each solve, since how many are possible
+    /// may depend on values.
+    ///
+    /// # Errors
+    ///
+    /// A name that is no parameter; a value out of its range or in another unit.
+    pub fn with(&self, name: &str, value: impl Into<Value>) -> Result<Model, Error> {
+        let mut model = self.clone();
+        let meaning = Arc::make_mut(&mut model.meaning);
+        let set = match value.into() {
+            Value::Number(value) => meaning.set_param_number(name, value),
+            Value::Text(text) => meaning.set_param(name, &text),
+        };
+        set.map(|()| model).map_err(Error::Call)
+    }
+
+    /// The same with another value of a key of the `method` block; it is compiled anew, since
+    /// schemes and kernels are part of the functions.
+    ///
+    /// # Errors
+    ///
+    /// A key or a value that the method does not have; settings that do not fit each other.
+    pub fn with_method(&self, key: &str, value: impl Into<Value>) -> Result<Model, Error> {
+        self.changed(|meaning| {
+            match value.into() {
+                Value::Number(value) => meaning.set_method(key, &value.to_string()),
+                Value::Text(text) => meaning.set_method(key, &text),
+            }?;
+            meaning.fits_together()
+        })
+        .map_err(Error::Call)
+    }
+
+    /// The same with any change of what it means; it is compiled anew.
+    ///
+    /// # Errors
+    ///
+    /// Those of the change.
+    pub fn changed<E>(
+        &self,
+        change: impl FnOnce(&mut fdcc_compiler::Model) -> Result<(), E>,
+    ) -> Result<Model, E> {
+        let mut model = Model { code: Arc::default(), ..self.clone() };
+        change(Arc::make_mut(&mut model.meaning))?;
+        Ok(model)
+    }
+}

@@ -1,0 +1,91 @@
+//! What contradicts that an answer is an optimum, whatever its replay says: conditions that every
+//! optimum meets.
+//!
+//! A replay shows that a trajectory is possible. That nothing better is near it, only the
+//! multipliers say; and where the gradient through a thin layer is lost, they are wrong though all
+//! conditions of the discrete problem are met. The measures and their limits are in
+//! `docs/method/costate.md`.
+
+use crate::solve::Solution;
+use crate::verification::Verification;
+
+/// The Hamiltonian may be off by so much of the size of its terms.
+const OFF: f64 = 0.4;
+/// On how much of the time a control may violate the rule of signs.
+const VIOLATED: f64 = 0.01;
+
+/// One condition of an optimum.
+#[derive(Clone, Debug)]
+pub struct Check {
+    /// Which one.
+    pub condition: Condition,
+    /// The control that it is about, if it is about one.
+    pub control: Option<String>,
+    /// By how much it is missed, in the unit of `size`.
+    pub figure: f64,
+    /// What that is compared with.
+    pub size: f64,
+    /// A larger part of the size contradicts.
+    pub limit: f64,
+}
+
+/// What every optimum meets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Condition {
+    /// The Hamiltonian is constant over time.
+    HamiltonianConstant,
+    /// It has the value that a free last time gives it.
+    HamiltonianValue,
+    /// A pause on a surface does not gain anything.
+    Pause,
+    /// The control is at the bound that the slope of the Hamiltonian points to, or the slope is 0.
+    Minimum,
+}
+
+impl Check {
+    /// Whether it is missed by more than the method may miss it.
+    pub fn contradicts(&self) -> bool {
+        self.figure.is_nan() || self.figure > self.limit * self.size
+    }
+}
+
+impl Solution {
+    /// The conditions of an optimum that can be checked. The states of a coarse grid excuse as much
+    /// as the replay differs. Where the optimum of the discrete problem is proved to be global,
+    /// what its Hamiltonian misses is the grid alone.
+    ///
+    /// ```
+    /// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
+    /// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)";
+    /// let solution = fdcc::Model::from_text("hop", text)?.solve(&fdcc::Options::default())?;
+    /// let replay = solution.verify()?;
+    /// assert!(solution.optimality(Some(&replay)).iter().all(|check| !check.contradicts()));
+    /// # Ok::<(), fdcc::Error>(())
+    /// ```
+    pub fn optimality(&self, replay: Option<&Verification>) -> Vec<Check> {
+        let hamiltonian = &self.outcome.trajectory.hamiltonian;
+        let is_global = self.outcome.solution.global;
+        let gap = replay.and_then(Verification::state_gap).unwrap_or(0.0);
+        let check = |condition, figure| {
+            let (size, limit) = (hamiltonian.size, OFF.max(gap));
+            Check { condition, control: None, figure, size, limit }
+        };
+        let condition = match hamiltonian.expected {
+            Some(_) => Condition::HamiltonianValue,
+            None => Condition::HamiltonianConstant,
+        };
+        let constant = hamiltonian.deviation().filter(|_| !is_global);
+        let pause = hamiltonian.pause.filter(|_| !is_global);
+        let constant = constant.map(|figure| check(condition, figure));
+        let pause = pause.map(|gain| check(Condition::Pause, gain.max(0.0)));
+        let names = self.problem.controls.iter().map(|control| control.name.clone());
+        let signs = names.zip(hamiltonian.violations.iter().copied()).map(|(name, figure)| Check {
+            condition: Condition::Minimum,
+            control: Some(name),
+            figure,
+            size: 1.0,
+            limit: VIOLATED,
+        });
+        constant.into_iter().chain(pause).chain(signs).collect()
+    }
+}

@@ -1,0 +1,94 @@
+//! The best answer of all that were looked for, before it is a [`Solution`](super::Solution).
+
+use super::report::Ended;
+use crate::names::status_name;
+use fdcc_compiler::Model;
+use fdcc_runtime::problem::Problem;
+use fdcc_runtime::solve::Outcome;
+
+/// The best answer, and what else was tried.
+pub(super) struct Found {
+    pub problem: Problem,
+    pub outcome: Outcome,
+    pub step_errors: Option<f64>,
+    pub starts: Vec<Ended>,
+    pub jumps: Vec<Jump>,
+    pub sequences: Vec<Sequence>,
+    pub is_cut: bool,
+    pub unrolled: Option<Unrolled>,
+}
+
+/// A jump of a solution.
+#[derive(Clone, Debug)]
+pub struct Jump {
+    /// Its name.
+    pub name: String,
+    /// When it happens.
+    pub time: f64,
+    /// All states before it.
+    pub before: Vec<(String, f64)>,
+    /// All states after it.
+    pub after: Vec<(String, f64)>,
+}
+
+/// A sequence of jumps that was tried: how the solve ended in which exactly these happen.
+#[derive(Clone, Debug)]
+pub struct Sequence {
+    /// The names of the jumps, in their order.
+    pub jumps: Vec<String>,
+    /// The surfaces that are crossed against the direction of their jumps.
+    pub crosses: Vec<String>,
+    /// Both in their order: `no jump`, or `bounce, crossing of rim`.
+    pub words: String,
+    /// Whether the answer has it.
+    pub is_answer: bool,
+    /// How its solve ended.
+    pub ended: Ended,
+}
+
+/// What was solved in place of a model with jumps: its phases side by side.
+pub struct Unrolled {
+    /// A model without jumps.
+    pub model: Model,
+    /// Its problem.
+    pub problem: Problem,
+    /// The solution of that.
+    pub outcome: Outcome,
+}
+
+impl Found {
+    pub fn new(problem: Problem, outcome: Outcome) -> Self {
+        Found {
+            problem,
+            outcome,
+            step_errors: None,
+            starts: Vec::new(),
+            jumps: Vec::new(),
+            sequences: Vec::new(),
+            is_cut: false,
+            unrolled: None,
+        }
+    }
+
+    /// Whether it can be used.
+    pub fn is_solved(&self) -> bool {
+        is_solved(&self.outcome)
+    }
+}
+
+/// Whether an outcome can be used.
+pub(super) fn is_solved(outcome: &Outcome) -> bool {
+    outcome.solution.status.is_solved()
+}
+
+impl Ended {
+    /// How a solve ended.
+    pub(super) fn of(problem: &Problem, outcome: &Outcome) -> Self {
+        Ended {
+            status: status_name(outcome),
+            is_solved: is_solved(outcome),
+            objective: problem.sense * outcome.solution.objective,
+            iterations: outcome.solution.counts.iterations,
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! From a compiled model to a [`Solution`]: [`multistart`] tries several starting points,
+//! [`sequences`] all sequences of jumps.
+
+mod bounds;
+mod found;
+mod multistart;
+mod report;
+mod sequences;
+mod solution;
+
+pub use found::{Jump, Sequence, Unrolled};
+pub use report::{Ended, Options, Part, Report, Start};
+pub use solution::Solution;
+
+use crate::error::Error;
+use crate::executor::Executor;
+use crate::model::Model;
+use crate::warm_start;
+use fdcc_runtime::problem::{Linear, Problem, often_called};
+use fdcc_runtime::transcribe::unknowns;
+
+/// A model with the problem that is solved for it.
+///
+/// ```
+/// let model = fdcc::Model::from_text("hop", "time t in [0, 1]
+/// state x start 0
+/// control u in [-1, 1]
+/// dynamics { x' = u }
+/// end x == 0.5
+/// minimize integral(u^2)")?;
+/// let compiled = model.compile()?;
+/// assert_eq!(compiled.problem().states.len(), 1);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
+pub struct Compiled {
+    model: Model,
+    problem: Problem,
+}
+
+impl Compiled {
+    /// Compiles a model, unless a variant of it with other values has been compiled already.
+    pub(crate) fn new(model: &Model) -> Result<Self, Error> {
+        let problem = model.problem()?;
+        refuse_senseless(&problem)?;
+        if model.meaning().jumps.is_empty() {
+            make_machine_code(&problem);
+        }
+        Ok(Compiled { model: model.clone(), problem })
+    }
+
+    /// The problem: states, controls, bounds, functions. Of a model with jumps, what holds between
+    /// them.
+    pub fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Whether a solve can begin there.
+    ///
+    /// # Errors
+    ///
+    /// A record that has nothing of this model, or a hole in what it has.
+    pub fn check_start(&self, start: Start) -> Result<(), Error> {
+        match start {
+            Start::Record(record) => warm_start::check(record, &self.problem),
+            Start::Guess | Start::Solution(_) => Ok(()),
+        }
+    }
+
+    /// Solves.
+    ///
+    /// # Errors
+    ///
+    /// See [`Model::solve`].
+    pub fn solve(&self, options: &Options) -> Result<Solution, Error> {
+        self.check_start(options.start)?;
+        let meaning = self.model.meaning();
+        let found = if meaning.jumps.is_empty() {
+            let start = match options.start {
+                Start::Guess => None,
+                Start::Record(record) => Some(warm_start::from_record(record, &self.problem)),
+                Start::Solution(it) => Some(warm_start::from_solution(it, &self.problem)),
+            };
+            multistart::solve(&self.problem, start, options, Part::default())?
+        } else {
+            match options.start {
+                Start::Guess => sequences::solve(meaning, &self.problem, None, options)?,
+                Start::Record(it) => sequences::solve(meaning, &self.problem, Some(it), options)?,
+                Start::Solution(it) => {
+                    sequences::solve(meaning, &self.problem, Some(&it.record()), options)?
+                }
+            }
+        };
+        Ok(Solution::new(self.model.clone(), found))
+    }
+}
+
+/// Makes the machine code that every solve needs, so that it counts as compiling.
+fn make_machine_code(problem: &Problem) {
+    let functions = often_called(problem);
+    let prepare = |i: usize| functions[i].0.prepare(functions[i].1);
+    Executor::default().in_order(functions.len(), prepare, |()| false);
+}
+
+/// More need more memory than a computer has to spare: about 1 kB each.
+const MOST_UNKNOWNS: usize = 8_000_000;
+
+/// What a solver cannot begin with.
+fn refuse_senseless(problem: &Problem) -> Result<(), Error> {
+    if let Some(diagnostic) = bounds::empty(problem) {
+        return Err(Error::Model(vec![diagnostic]));
+    }
+    match unknowns(problem) {
+        0 => Err(Error::Nothing),
+        many if is_too_dense(problem, many) => Err(Error::Call(format!(
+            "`linear = riccati` treats all {} unknowns of an interval as dense; leave it out, or \
+             choose fewer `steps`",
+            many / problem.method.intervals
+        ))),
+        many if many > MOST_UNKNOWNS => Err(Error::Call(format!(
+            "{many} unknowns are too many; N = {}",
+            problem.method.intervals
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// More numbers in the blocks of the recursion than a computer has room for. Where nobody asks for
+/// it, it is not chosen then.
+const MOST_DENSE: usize = 200_000_000;
+
+fn is_too_dense(problem: &Problem, unknowns: usize) -> bool {
+    let each = unknowns / problem.method.intervals;
+    problem.method.linear == Linear::Riccati && unknowns.saturating_mul(each) > MOST_DENSE
+}

@@ -1,0 +1,205 @@
+//! A model with jumps: each sequence of jumps that may happen is a problem of its own, and the best
+//! answer is taken.
+
+use super::found::{Found, Jump, Sequence, Unrolled};
+use super::multistart::{self, all_attempts, first_stopped, is_stopped, unless_stopped};
+use super::report::{Ended, Options, Part, Report};
+use crate::error::Error;
+use crate::executor::Executor;
+use crate::record::Record;
+use crate::warm_start;
+use fdcc_compiler::{
+    Model, Sequences, compile, compile_simulation, crossings, sequences, with_phases,
+};
+use fdcc_runtime::nlp;
+use fdcc_runtime::problem::{ControlShape, Problem};
+use fdcc_runtime::simulate::{
+    Controls, Event, Kind, Options as Accuracy, Status, System, simulate,
+};
+use fdcc_runtime::solution::phases::{self, joined};
+use fdcc_runtime::solve::multistart::is_better;
+
+/// A sequence of jumps and crossings, and the problem in which it happens.
+struct Alternative {
+    /// The names of the jumps, with nothing for a surface that is crossed without one.
+    jumps: Vec<Option<String>>,
+    /// The names of these surfaces.
+    crosses: Vec<String>,
+    /// `no jump`, or `bounce, bounce`, or `crossing of rim, bounce`.
+    words: String,
+    model: Model,
+    problem: Problem,
+}
+
+/// Solves for every sequence; `between` is what holds between the jumps. An earlier solution is the
+/// start of the sequence that it has.
+pub(super) fn solve(
+    model: &Model,
+    between: &Problem,
+    earlier: Option<&Record>,
+    options: &Options,
+) -> Result<Found, Error> {
+    refuse(between)?;
+    let mut possible = sequences(model).map_err(Error::Model)?;
+    if let Some(likely) = simulated(model, &possible) {
+        possible.all.retain(|sequence| *sequence != likely);
+        possible.all.insert(0, likely);
+    }
+    let count = possible.all.len();
+    let in_time = |at: usize| at == 0 || (options.stop)().is_continue();
+    let all = possible.all.into_iter().enumerate().take_while(|(at, _)| in_time(*at));
+    let all: Result<Vec<Alternative>, Error> =
+        all.map(|(_, sequence)| Alternative::new(model, sequence)).collect();
+    let all = all?;
+    let is_cut = possible.is_cut || all.len() < count;
+    let found = each(&all, between, earlier, options)?;
+    let words = all.iter().map(|it| it.words.as_str());
+    for (sequence, found) in words.zip(&found) {
+        let part = Part { sequence: Some(sequence), start: None };
+        (options.report)(&Report::Ended(part, &Ended::of(&found.problem, &found.outcome)));
+    }
+    let solutions = found.iter().map(|it| &it.outcome.solution).enumerate();
+    let best = solutions.reduce(|a, b| if is_better(b.1, a.1) { b } else { a });
+    let best = best.expect("that no jump happens is one of them").0;
+    let tried =
+        all.iter().zip(&found).enumerate().map(|(at, (it, found))| it.tried(found, at == best));
+    let tried = tried.collect();
+    let outcomes = found.iter().map(|it| &it.outcome);
+    let (attempts, stopped) = (all_attempts(outcomes.clone()), first_stopped(outcomes));
+    let (alternatives, found) = (all.into_iter().nth(best), found.into_iter().nth(best));
+    let (alternative, mut found) = alternatives.zip(found).expect("it is one of them");
+    found.outcome.attempts = attempts;
+    unless_stopped(&mut found.outcome, stopped);
+    Ok(alternative.joined(between, Found { sequences: tried, is_cut, ..found }))
+}
+
+/// The answer of each, up to the first that is enough.
+fn each(
+    all: &[Alternative],
+    between: &Problem,
+    earlier: Option<&Record>,
+    options: &Options,
+) -> Result<Vec<Found>, Error> {
+    let one = |index: usize| {
+        let alternative = &all[index];
+        let start = alternative.start(between, earlier);
+        let part = Part { sequence: Some(&alternative.words), start: None };
+        let mut found = multistart::solve(&alternative.problem, start, options, part)?;
+        // A proof says something of the phases of this sequence only.
+        found.outcome.is_impossible = false;
+        found.outcome.solution.global = false;
+        Ok(found)
+    };
+    // Without an objective one trajectory is as good as another.
+    let is_enough =
+        |found: &Found| is_stopped(&found.outcome) || !between.has_objective && found.is_solved();
+    let ends = |found: &Result<Found, Error>| found.as_ref().map_or(true, is_enough);
+    // Several starts run in parallel already.
+    let executor = if options.starts == 1 { options.executor } else { Executor::serial() };
+    executor.in_order(all.len(), one, ends).into_iter().collect()
+}
+
+/// A guess is not worth more steps of a simulation.
+const STEPS: usize = 20_000;
+/// More are not looked for where the guess leads to that many.
+const LONGEST: usize = 12;
+
+/// The jumps and crossings on the true system with everything as it is guessed.
+fn simulated(model: &Model, possible: &Sequences) -> Option<Vec<usize>> {
+    let system = compile_simulation(model).ok()?;
+    let simulation =
+        simulate(&system, &Controls::Guess, &Accuracy { max_steps: STEPS, ..Accuracy::default() });
+    let mut sequence = Vec::new();
+    for event in &simulation.events {
+        sequence.extend(happening(&system, possible, &sequence, event));
+    }
+    let is_whole = matches!(simulation.status, Status::Completed);
+    (is_whole && sequence.len() <= LONGEST).then_some(sequence)
+}
+
+/// The jump or the crossing that an event is, if it is one.
+fn happening(
+    system: &System,
+    possible: &Sequences,
+    earlier: &[usize],
+    event: &Event,
+) -> Option<usize> {
+    let is_falling = match event.kind {
+        Kind::Jump(at) => return Some(at),
+        // Against the direction of a jump.
+        Kind::CrossesUp => true,
+        Kind::CrossesDown => false,
+        _ => return None,
+    };
+    let crossed = |at: &usize| {
+        let jump = &system.jumps[*at];
+        let is_first = !earlier.contains(at) && !earlier.contains(&(at + system.jumps.len()));
+        possible.may_cross[*at]
+            && is_first
+            && (jump.surface, jump.is_falling) == (event.surface, is_falling)
+    };
+    (0..system.jumps.len()).find(crossed).map(|at| at + system.jumps.len())
+}
+
+/// What only a model without jumps can do.
+fn refuse(between: &Problem) -> Result<(), Error> {
+    match between.method.controls {
+        ControlShape::Constant => Ok(()),
+        ControlShape::Linear | ControlShape::Polynomial => Err(Error::Call(
+            "`controls = linear` and `polynomial` are for models without jumps".into(),
+        )),
+    }
+}
+
+impl Alternative {
+    fn new(between: &Model, sequence: Vec<usize>) -> Result<Self, Error> {
+        let model = with_phases(between, &sequence).map_err(Error::Model)?;
+        let problem = compile(&model).map_err(Error::Model)?;
+        let all = [between.jumps.clone(), crossings(between)].concat();
+        let names: Vec<&str> = sequence.iter().map(|at| all[*at].place.name.as_str()).collect();
+        let words = if names.is_empty() { "no jump".into() } else { names.join(", ") };
+        let against = sequence.iter().filter_map(|at| at.checked_sub(between.jumps.len()));
+        let surface = |at: usize| between.surfaces[between.jumps[at].surface].place.name.clone();
+        let crosses = against.map(surface).collect();
+        let jump = |at: &usize| Some(between.jumps.get(*at)?.place.name.clone());
+        let jumps = sequence.iter().map(jump).collect();
+        Ok(Alternative { jumps, crosses, words, model, problem })
+    }
+
+    fn start(&self, between: &Problem, earlier: Option<&Record>) -> Option<nlp::Start> {
+        let is_its = |it: &&Record| {
+            let jumps = it.jumps.iter().map(|jump| jump.jump);
+            self.jumps.iter().flatten().eq(jumps) && self.crosses.is_empty()
+        };
+        earlier.filter(is_its).and_then(|it| warm_start::phases::start(it, between, &self.problem))
+    }
+
+    fn tried(&self, found: &Found, is_answer: bool) -> Sequence {
+        Sequence {
+            jumps: self.jumps.iter().flatten().cloned().collect(),
+            crosses: self.crosses.clone(),
+            words: self.words.clone(),
+            is_answer,
+            ended: Ended::of(&found.problem, &found.outcome),
+        }
+    }
+
+    /// The answer as one trajectory.
+    fn joined(self, between: &Problem, found: Found) -> Found {
+        let (outcome, jumps) = joined(between, &found.problem, &found.outcome);
+        let jumps = self.jumps.into_iter().zip(jumps);
+        let jumps = jumps.filter_map(|(name, jump)| Some(happened(between, name?, jump))).collect();
+        let problem = between.clone();
+        let unrolled =
+            Unrolled { model: self.model, problem: found.problem, outcome: found.outcome };
+        Found { problem, outcome, jumps, unrolled: Some(unrolled), ..found }
+    }
+}
+
+fn happened(between: &Problem, name: String, found: phases::Jump) -> Jump {
+    let phases::Jump { time, before, after } = found;
+    let named = |values: Vec<f64>| -> Vec<(String, f64)> {
+        between.states.iter().map(|state| state.name.clone()).zip(values).collect()
+    };
+    Jump { name, time, before: named(before), after: named(after) }
+}

@@ -1,0 +1,252 @@
+//! What came out of a solve, asked in the words of the model.
+
+use super::found::{Found, Jump, Sequence, Unrolled, is_solved};
+use super::report::Ended;
+use crate::error::Error;
+use crate::expectations::{Checked as Expectation, evaluate};
+use crate::model::Model;
+use crate::names::status_name;
+use crate::record::{JumpRecord, NodesRecord, Record, Settings};
+use crate::verification::{Verification, verify};
+use fdcc_compiler::compile_by_parameters;
+use fdcc_runtime::nlp::Status;
+use fdcc_runtime::problem::{Problem, Variable};
+use fdcc_runtime::solution::by_parameters;
+use fdcc_runtime::solve::Outcome;
+
+/// A solution, or the best iterate where there is none; numbers are in SI.
+///
+/// ```
+/// use fdcc::{Model, Options, Start};
+///
+/// let model = Model::from_text("hop", "time t in [0, 1]
+/// state x start 0
+/// control u in [-1, 1]
+/// param w = 1
+/// dynamics { x' = u }
+/// end x == 0.5
+/// minimize integral(w * u^2)")?;
+/// let solution = model.solve(&Options::default())?;
+/// assert!(solution.is_solved());
+/// assert!((solution.objective() - 0.25).abs() < 1e-8);
+/// let x = solution.state("x").expect("it is declared");
+/// assert!(x.len() == solution.time().len() && (x[x.len() - 1] - 0.5).abs() < 1e-8);
+///
+/// // From here with another parameter, with all multipliers.
+/// let options = Options { start: Start::Solution(&solution), ..Options::default() };
+/// let next = model.with("w", 2)?.solve(&options)?;
+/// assert!((next.objective() - 0.5).abs() < 1e-8);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
+pub struct Solution {
+    model: Model,
+    /// The problem on the grid of the answer. Of a model with jumps, what holds between them.
+    pub problem: Problem,
+    /// The answer as the solver has it.
+    pub outcome: Outcome,
+    /// The sum of the errors of all steps, where the grid was refined.
+    pub step_errors: Option<f64>,
+    /// How the solves from several starting points ended.
+    pub starts: Vec<Ended>,
+    /// The jumps of the answer.
+    pub jumps: Vec<Jump>,
+    /// All sequences of jumps that were tried.
+    pub sequences: Vec<Sequence>,
+    /// Whether the model allows more jumps than were tried.
+    pub sequences_left_out: bool,
+    /// What the solver saw of a model with jumps.
+    pub unrolled: Option<Unrolled>,
+}
+
+impl Solution {
+    pub(super) fn new(model: Model, found: Found) -> Self {
+        Solution {
+            model,
+            problem: found.problem,
+            outcome: found.outcome,
+            step_errors: found.step_errors,
+            starts: found.starts,
+            jumps: found.jumps,
+            sequences: found.sequences,
+            sequences_left_out: found.is_cut,
+            unrolled: found.unrolled,
+        }
+    }
+
+    /// The model that was solved.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// How the solve ended.
+    pub fn status(&self) -> &Status {
+        &self.outcome.solution.status
+    }
+
+    /// The same in one word, as in files.
+    pub fn status_name(&self) -> &'static str {
+        status_name(&self.outcome)
+    }
+
+    /// Whether it can be used: solved, or nearly as accurate as asked for.
+    pub fn is_solved(&self) -> bool {
+        is_solved(&self.outcome)
+    }
+
+    /// The objective as the model writes it: what is maximised is not negated.
+    pub fn objective(&self) -> f64 {
+        self.problem.sense * self.outcome.solution.objective
+    }
+
+    /// The grid: one more point than intervals.
+    pub fn time(&self) -> &[f64] {
+        &self.outcome.trajectory.time
+    }
+
+    /// A state at all grid points; part of a vector as `pos.x`. After a jump where one happens.
+    pub fn state(&self, name: &str) -> Option<&[f64]> {
+        column(&self.problem.states, &self.outcome.trajectory.states, name)
+    }
+
+    /// A control on all intervals.
+    pub fn control(&self, name: &str) -> Option<&[f64]> {
+        column(&self.problem.controls, &self.outcome.trajectory.controls, name)
+    }
+
+    /// The derivative of the objective by a state, at all grid points.
+    pub fn costate(&self, name: &str) -> Option<&[f64]> {
+        column(&self.problem.states, &self.outcome.trajectory.costates, name)
+    }
+
+    /// The multipliers of a path constraint, one for each interval and per time: what the objective
+    /// changes by with its bound. The name is the text of the constraint.
+    pub fn path_multiplier(&self, name: &str) -> Option<&[f64]> {
+        let all = &self.outcome.trajectory.path_multipliers;
+        let label = |row: &usize| *self.problem.path.origin(*row).label == *name;
+        (0..all.len()).find(label).map(|row| all[row].as_slice())
+    }
+
+    /// The multiplier of a condition at the ends: what the objective changes by with its bound. The
+    /// name is the text of the condition.
+    pub fn end_multiplier(&self, name: &str) -> Option<f64> {
+        let all = &self.outcome.trajectory.end_multipliers;
+        let label = |row: &usize| *self.problem.boundary.origin(row + 1).label == *name;
+        (0..all.len()).find(label).map(|row| all[row])
+    }
+
+    /// The value of a parameter or of an unknown.
+    pub fn value(&self, name: &str) -> Option<f64> {
+        let at = self.problem.parameters.iter().position(|it| it.name == name)?;
+        Some(self.outcome.trajectory.parameters[at])
+    }
+
+    /// The unknowns that were found, by name.
+    pub fn unknowns(&self) -> impl Iterator<Item = (&str, f64)> {
+        self.problem.unknowns.iter().map(|unknown| self.parameter(unknown.parameter))
+    }
+
+    /// The parameters that were given, by name; widths of surfaces are none.
+    pub fn parameters(&self) -> impl Iterator<Item = (&str, f64)> {
+        let is_given = |at: &usize| {
+            self.problem.unknowns.iter().all(|unknown| unknown.parameter != *at)
+                && self.problem.surfaces.iter().all(|surface| surface.sigma != *at)
+        };
+        (0..self.problem.parameters.len()).filter(is_given).map(|at| self.parameter(at))
+    }
+
+    fn parameter(&self, at: usize) -> (&str, f64) {
+        (&self.problem.parameters[at].name, self.outcome.trajectory.parameters[at])
+    }
+
+    /// Whether the smoothing widths were chosen by the solver, as small as it could.
+    pub fn has_chosen_widths(&self) -> bool {
+        let method = &self.problem.method;
+        let is_open = method.sigma.is_none() && method.continuation.is_empty();
+        is_open && self.is_solved() && !self.outcome.sigma.is_empty()
+    }
+
+    /// What a replay and another solve need of it, lent.
+    pub fn record(&self) -> Record<'_> {
+        let (problem, trajectory) = (&self.problem, &self.outcome.trajectory);
+        let states = pairs(&problem.states, &trajectory.states);
+        let shown = states.into_iter().zip(&problem.states).filter(|(_, state)| !state.hidden);
+        let nodes = trajectory.nodes.as_ref().map(|nodes| NodesRecord {
+            time: &nodes.time,
+            values: pairs(&problem.controls, &nodes.values),
+        });
+        Record {
+            model: &problem.name,
+            free: self.unknowns().collect(),
+            params: self.parameters().collect(),
+            settings: self.settings(),
+            time: &trajectory.time,
+            states: shown.map(|(pair, _)| pair).collect(),
+            controls: pairs(&problem.controls, &trajectory.controls),
+            nodes,
+            jumps: self.jumps.iter().map(jump).collect(),
+        }
+    }
+
+    fn settings(&self) -> Settings<'_> {
+        let (method, sigma) = (&self.problem.method, &self.outcome.sigma);
+        let surfaces = self.problem.surfaces.iter().map(|it| it.name.as_str());
+        Settings {
+            scheme: Some(method.scheme),
+            controls: Some(method.controls),
+            intervals: Some(method.intervals),
+            sigma: sigma.first().copied(),
+            sigmas: surfaces.zip(sigma.iter().copied()).collect(),
+            sigma_chosen: self.has_chosen_widths(),
+            kernel: Some(&method.kernel),
+        }
+    }
+
+    /// Replays the controls on the true system, from event to event.
+    ///
+    /// # Errors
+    ///
+    /// A model that cannot be simulated, or an iterate with numbers that are not finite.
+    pub fn verify(&self) -> Result<Verification, Error> {
+        verify(self.model.meaning(), &self.problem, &self.record())
+    }
+
+    /// What the model expects of its solution, compared with this one.
+    pub fn expectations(&self) -> Vec<Expectation> {
+        evaluate(self)
+    }
+
+    /// What the solver saw: model, problem and outcome. Of a model with jumps, its phases side by
+    /// side.
+    pub fn as_solved(&self) -> (&fdcc_compiler::Model, &Problem, &Outcome) {
+        match &self.unrolled {
+            Some(it) => (&it.model, &it.problem, &it.outcome),
+            None => (self.model.meaning(), &self.problem, &self.outcome),
+        }
+    }
+
+    /// The derivative of the optimal objective by each parameter, by its multipliers; nothing
+    /// without an objective.
+    pub fn sensitivities(&self) -> Vec<(&str, f64)> {
+        let (model, problem, outcome) = self.as_solved();
+        if model.params.is_empty() || !problem.has_objective {
+            return Vec::new();
+        }
+        let Ok(by) = compile_by_parameters(model) else { return Vec::new() };
+        let found = by_parameters(problem, &outcome.solution, &outcome.trajectory.parameters, &by);
+        model.params.iter().map(|param| param.place.name.as_str()).zip(found).collect()
+    }
+}
+
+fn jump(it: &Jump) -> JumpRecord<'_> {
+    let before = it.before.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+    JumpRecord { jump: &it.name, time: it.time, before }
+}
+
+fn pairs<'s>(variables: &'s [Variable], columns: &'s [Vec<f64>]) -> Vec<(&'s str, &'s [f64])> {
+    variables.iter().map(|it| it.name.as_str()).zip(columns.iter().map(Vec::as_slice)).collect()
+}
+
+fn column<'s>(variables: &[Variable], columns: &'s [Vec<f64>], name: &str) -> Option<&'s [f64]> {
+    let at = variables.iter().position(|it| it.name == name)?;
+    columns.get(at).map(Vec::as_slice)
+}

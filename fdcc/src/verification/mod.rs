@@ -1,0 +1,195 @@
+//! What the controls of a solution do on the true system, simulated from event to event, against
+//! what the solution says.
+
+mod alignment;
+mod conditions;
+mod gaps;
+pub mod modes;
+mod motion;
+mod terms;
+
+pub use conditions::Condition;
+pub use gaps::{Gap, TIME_OF};
+pub use modes::Stay;
+
+use crate::error::Error;
+use crate::record::{Record, find};
+use crate::replay::{Replay, pieces_of_one};
+use alignment::Alignment;
+use conditions::Conditions;
+use fdcc_compiler::Model;
+use fdcc_runtime::problem::Problem;
+use fdcc_runtime::simulate::{Controls, Options, Simulation, Status, System, simulate};
+use gaps::{gaps, gaps_of_jumps};
+use modes::stays;
+
+/// A replay that needs more steps, of a very stiff system, is given up: nobody waits for it.
+const FEWEST_STEPS: usize = 200_000;
+const STEPS_PER_INTERVAL: usize = 50;
+
+/// A replay of a solution on the true system, and how it compares with the solution.
+///
+/// ```
+/// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
+/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)";
+/// let solution = fdcc::Model::from_text("hop", text)?.solve(&fdcc::Options::default())?;
+/// let replay = solution.verify()?;
+/// assert!(replay.confirms(1e-6));
+/// assert!(replay.worst().is_none(), "no condition is violated");
+/// # Ok::<(), fdcc::Error>(())
+/// ```
+pub struct Verification {
+    /// The true system.
+    pub system: System,
+    /// What it does.
+    pub simulation: Simulation,
+    /// Whether the replay reached the last time.
+    pub is_whole: bool,
+    /// For each state, as far as the replay came.
+    pub gaps: Vec<Gap>,
+    /// Bounds of states that are violated; all path and end conditions.
+    pub conditions: Vec<Condition>,
+    /// For each surface.
+    pub stays: Vec<Vec<Stay>>,
+}
+
+impl Verification {
+    /// Whether it reached the last time, and no state differs for how far it moves, and no
+    /// condition is violated for the size of its terms, by more than `asked`.
+    pub fn confirms(&self, asked: f64) -> bool {
+        let gap = self.largest_gap().map_or(0.0, |it| it.part);
+        let violation = self.worst().map_or(0.0, |it| it.part);
+        self.is_whole && gap <= asked && violation <= asked
+    }
+
+    /// The largest difference of a state, for how far it moves; nothing if the replay did not reach
+    /// the last time.
+    pub fn state_gap(&self) -> Option<f64> {
+        let gap = self.largest_gap().filter(|it| it.difference > 0.0).map_or(0.0, |it| it.part);
+        self.is_whole.then_some(gap)
+    }
+
+    /// The state that differs most for how far it moves.
+    pub fn largest_gap(&self) -> Option<&Gap> {
+        self.gaps.iter().max_by(|a, b| a.part.total_cmp(&b.part))
+    }
+
+    /// The condition that is violated most for the size of its terms, if any is.
+    pub fn worst(&self) -> Option<&Condition> {
+        let violated = self.conditions.iter().filter(|it| it.part > 0.0);
+        violated.max_by(|a, b| a.part.total_cmp(&b.part).then(a.violation.total_cmp(&b.violation)))
+    }
+}
+
+/// Replays a solution of a problem that was compiled from the model, whatever its parameters are
+/// now.
+pub(crate) fn verify(
+    model: &Model,
+    problem: &Problem,
+    record: &Record,
+) -> Result<Verification, Error> {
+    let replay = Replay::new(record, model).and_then(|replay| replay.check().map(|()| replay));
+    let replay = replay.map_err(Error::Record)?;
+    let mut model = model.clone();
+    replay.adapt(&mut model);
+    let system = fdcc_compiler::compile_simulation(&model).map_err(Error::Model)?;
+    fits(record, &system).map_err(Error::Record)?;
+    let intervals = record.time.len().saturating_sub(1);
+    let points = Points::new(record, replay, system.interval);
+    let controls =
+        Controls::Held { times: points.starts(), rows: points.rows.clone(), is_stretched: true };
+    let max_steps = FEWEST_STEPS.max(STEPS_PER_INTERVAL * intervals);
+    let options = Options {
+        times: points.times.clone(),
+        max_steps,
+        tape: true,
+        extremes: true,
+        ..Options::default()
+    };
+    let simulation = simulate(&system, &controls, &options);
+    let is_whole = matches!(simulation.status, Status::Completed)
+        && simulation.states.iter().all(|column| column.len() == points.times.len());
+    let tape = simulation.tape.as_ref().expect("it was asked for");
+    let stays = (0..system.surfaces.len()).map(|surface| stays(tape, surface)).collect();
+    let conditions =
+        Conditions::new(problem, record, &system, &simulation, &points).map(|it| it.all(is_whole));
+    let gaps = match Alignment::new(&record.jumps, &system, &simulation) {
+        Some(alignment) if is_whole && !record.jumps.is_empty() => {
+            let times = alignment.moved(&points.times);
+            let compared = simulate(
+                &system,
+                &controls,
+                &Options { times, tape: false, extremes: false, ..options },
+            );
+            let of_jumps = gaps_of_jumps(&alignment, record, system.interval);
+            of_jumps.into_iter().chain(gaps(record, &system, &compared)).collect()
+        }
+        _ => gaps(record, &system, &simulation),
+    };
+    Ok(Verification {
+        gaps,
+        conditions: conditions.unwrap_or_default(),
+        stays,
+        is_whole,
+        system,
+        simulation,
+    })
+}
+
+/// Whether a solution has the time and the states of a system.
+fn fits(record: &Record, system: &System) -> Result<(), String> {
+    let [first, last] = system.interval;
+    let own = [record.time.first(), record.time.last()]
+        .map(|end| end.copied().filter(|time| time.is_finite()).unwrap_or(f64::NAN));
+    let differs = |own: f64, end: f64| {
+        own.is_nan() || (own - end).abs() > 1e-6 * (1.0 + (last - first).abs())
+    };
+    if differs(own[0], first) || differs(own[1], last) {
+        return Err(format!(
+            "its time runs from {} to {}, that of the model from {first} to {last}",
+            own[0], own[1]
+        ));
+    }
+    let shown = system.states.iter().filter(|state| !state.hidden);
+    let missing = shown.map(|it| &it.name).find(|name| {
+        find(&record.states, name).is_none_or(|column| column.len() != record.time.len())
+    });
+    missing.map_or(Ok(()), |name| {
+        Err(format!("it does not have the state `{name}` at each of its times"))
+    })
+}
+
+/// The times at which the replay is looked at: the grid, and between its points.
+pub(crate) struct Points {
+    pub times: Vec<f64>,
+    rows: Vec<Vec<f64>>,
+    /// How many points are in the time of a row.
+    in_row: usize,
+}
+
+impl Points {
+    fn new(record: &Record, replay: Replay, [first, last]: [f64; 2]) -> Self {
+        let mut grid: Vec<f64> = record.time.to_vec();
+        let end = grid.len() - 1;
+        // The grid has been rounded at its ends.
+        (grid[0], grid[end]) = (first, last);
+        let count = pieces_of_one(end);
+        let inside = |pair: &[f64]| {
+            let (from, length) = (pair[0], pair[1] - pair[0]);
+            (0..count).map(move |j| from + length * j as f64 / count as f64)
+        };
+        let times = grid.windows(2).flat_map(inside).chain([last]).collect();
+        let in_row = count * end / replay.rows.len();
+        Points { times, rows: replay.rows, in_row }
+    }
+
+    fn starts(&self) -> Vec<f64> {
+        self.times.iter().copied().step_by(self.in_row).take(self.rows.len()).collect()
+    }
+
+    /// The controls at a point; at a grid point those of the row that ends there, as a
+    /// transcription has it.
+    pub fn row(&self, point: usize) -> &[f64] {
+        &self.rows[point.saturating_sub(1) / self.in_row]
+    }
+}

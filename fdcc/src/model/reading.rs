@@ -10,7 +10,8 @@ use std::sync::Arc;
 /// A text with everything that is known about it.
 ///
 /// ```
-/// let checked = fdcc::check("broken", "state x start 0\ndynamics { x' = y }".into());
+/// let text = "time t in [0, 1]\nstate x start 0\ndynamics { x' = y }";
+/// let checked = fdcc::check("broken", text.into());
 /// assert!(checked.model.is_none());
 /// assert_eq!(checked.diagnostics[0].code.to_string(), "FDC0101");
 /// ```

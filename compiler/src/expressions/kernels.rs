@@ -94,6 +94,14 @@ pub static KERNELS: [Kernel; 5] = [
 ];
 
 impl Kernel {
+    /// What editors say of it: `S(u) = tanh(u)`, how smooth it is, whether it is exact outside of
+    /// the layer.
+    pub fn doc(&self) -> String {
+        let smoothness = self.continuity.map_or("smooth".into(), |times| format!("C^{times}"));
+        let support = if self.compact { "exact outside of the layer" } else { "never quite exact" };
+        format!("`S(u) = {}`, u = z/sigma: {smoothness}, {support}", self.formula)
+    }
+
     /// `S'(0)`: how steep the step is.
     pub fn slope(&self) -> f64 {
         let mut graph = Graph::new();

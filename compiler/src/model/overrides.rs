@@ -155,7 +155,7 @@ impl Model {
                 Some(near) => format!("the method has no setting `{key}`; did you mean `{near}`?"),
                 None => format!("the method has no setting `{key}`; the settings are {}", keys()),
             }),
-            Err(Refused::Value(expected)) => Err(match nearest_word(expected, value) {
+            Err(Refused::Value(expected)) => Err(match nearest_word(&expected, value) {
                 Some(near) => format!("`{key}` cannot be `{value}`; did you mean `{near}`?"),
                 None => format!("`{key}` cannot be `{value}`; it needs {expected}"),
             }),

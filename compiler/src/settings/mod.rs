@@ -1,39 +1,199 @@
-//! The settings of the `method` block: one table of keys, used by the language and by the command
-//! line.
+//! The settings of the `method` block: one table of keys, used by the language, by the command line
+//! and by editors.
 
 pub(crate) mod conflicts;
+pub(crate) mod words;
 
 use crate::expressions::kernels;
 use crate::syntax::closest;
 use fdcc_runtime::problem::{ControlShape, Linear, Method, Scheme, Solver};
 
-/// The keys, each with what it takes.
-pub(crate) const KEYS: &[(&str, &str)] = &[
-    ("sigma", "a number above 0"),
-    ("kernel", "one of tanh, sqrt, linear, cubic, quintic"),
-    ("N", "a whole number from 1, or auto"),
-    ("tolerance", "a number above 0"),
-    ("steps", "a whole number from 1"),
-    (
-        "scheme",
-        "one of euler, implicit_euler, midpoint, trapezoid, rk4, radau, radau1 to radau5, gauss, \
-         gauss1 to gauss5, fesd",
-    ),
-    ("controls", "one of constant, linear, polynomial"),
-    ("solver", "one of interior_point, convex"),
-    ("linear", "one of auto, riccati, sparse_ldl"),
-    ("continue", "numbers above 0, each smaller than the one before"),
-    ("tol", "a number above 0"),
-    ("max_iter", "a whole number from 1"),
-    ("seed", "a whole number"),
+/// A key of the `method` block: one row says everything about it.
+pub(crate) struct Key {
+    /// How it is written.
+    pub name: &'static str,
+    takes: Takes,
+    /// What it does; for editors.
+    pub doc: &'static str,
+    /// Changes a method; nothing if it does not take the value.
+    set: fn(&mut Method, &Given) -> Option<()>,
+}
+
+/// What a key takes.
+enum Takes {
+    /// Numbers, in the words of a message.
+    Number(&'static str),
+    /// One of these words.
+    Words(fn() -> words::Groups),
+}
+
+/// **The table** of the keys.
+pub(crate) const KEYS: &[Key] = &[
+    Key {
+        name: "sigma",
+        takes: Takes::Number("a number above 0"),
+        doc: "The width of the layer in which `Sgn` and `match` are smoothed. Half the width, half the \
+         error, and a steeper layer that asks for a finer grid.",
+        set: |m, given| {
+            m.sigma = Some(positive(given)?);
+            Some(())
+        },
+    },
+    Key {
+        name: "kernel",
+        takes: Takes::Words(words::kernels),
+        doc: "The shape of the smoothed step. `cubic` is the default: half the bias of `tanh`, and a \
+         clean expansion in the width.",
+        set: |m, given| {
+            let Given::Word(word) = given else { return None };
+            m.kernel = kernels::find(word)?.name.into();
+            Some(())
+        },
+    },
+    Key {
+        name: "N",
+        takes: Takes::Number("a whole number from 1, or auto"),
+        doc: "Control intervals. Time and memory of an iteration grow with it, in proportion. `auto` \
+         refines the grid where steps have errors, and with `scheme = radau` or `gauss` finds the \
+         order as well.",
+        set: |m, given| {
+            m.is_refined = matches!(given, Given::Word(word) if word == "auto");
+            if !m.is_refined {
+                m.intervals = count(given)?;
+            }
+            Some(())
+        },
+    },
+    Key {
+        name: "tolerance",
+        takes: Takes::Number("a number above 0"),
+        doc: "With `N = auto`: the sum of the errors of all steps that the grid may have.",
+        set: |m, given| {
+            m.tolerance = positive(given)?;
+            Some(())
+        },
+    },
+    Key {
+        name: "steps",
+        takes: Takes::Number("a whole number from 1"),
+        doc: "Integration steps in each control interval.",
+        set: |m, given| {
+            m.steps = count(given)?;
+            Some(())
+        },
+    },
+    Key {
+        name: "scheme",
+        takes: Takes::Words(words::schemes),
+        doc: "How the equations are discretised. Implicit schemes may take steps that are long for the \
+         smoothed layer.",
+        set: |m, given| {
+            let Given::Word(word) = given else { return None };
+            m.scheme = Scheme::named(word)?;
+            m.is_raised = Scheme::is_family(word);
+            Some(())
+        },
+    },
+    Key {
+        name: "controls",
+        takes: Takes::Words(words::shapes),
+        doc: "What a control is on an interval: `constant`, `linear` and continuous, or a `polynomial` \
+         through its values at the nodes.",
+        set: |m, given| {
+            m.controls = words::value(words::SHAPES, given)?;
+            Some(())
+        },
+    },
+    Key {
+        name: "solver",
+        takes: Takes::Words(words::solvers),
+        doc: "Interior point method, or the conic solver for convex problems. Without it the problem \
+         decides.",
+        set: |m, given| {
+            let is_open = matches!(given, Given::Word(word) if word == "auto");
+            m.solver =
+                if is_open { Solver::Automatic } else { words::value(words::SOLVERS, given)? };
+            Some(())
+        },
+    },
+    Key {
+        name: "linear",
+        takes: Takes::Words(words::linear_solvers),
+        doc: "The factorisation of the interior point method: `riccati` along the grid, `sparse_ldl` \
+         for any structure.",
+        set: |m, given| {
+            m.linear = words::value(words::LINEAR_SOLVERS, given)?;
+            Some(())
+        },
+    },
+    Key {
+        name: "continue",
+        takes: Takes::Number("numbers above 0, each smaller than the one before"),
+        doc: "Widths that are passed through before `sigma`, each solve begun from the one before. Each \
+         costs a solve, a short one.",
+        set: |m, given| {
+            m.continuation = decreasing(given)?;
+            Some(())
+        },
+    },
+    Key {
+        name: "tol",
+        takes: Takes::Number("a number above 0"),
+        doc: "Tolerance on the scaled optimality error. The last digits cost few iterations.",
+        set: |m, given| {
+            m.tol = positive(given)?;
+            Some(())
+        },
+    },
+    Key {
+        name: "max_iter",
+        takes: Takes::Number("a whole number from 1"),
+        doc: "Iterations of one solve before it is given up.",
+        set: |m, given| {
+            m.max_iter = count(given)?;
+            Some(())
+        },
+    },
+    Key {
+        name: "seed",
+        takes: Takes::Number("a whole number"),
+        doc: "Seed of everything random: the same seed, the same result.",
+        set: |m, given| {
+            m.seed = whole(given)?;
+            Some(())
+        },
+    },
 ];
 
-/// Schemes and solvers that are understood but do not exist yet.
-const NOT_YET: &[&str] = &["fesd"];
+impl Key {
+    /// What it takes, in the words of a message: `one of constant, linear, polynomial`.
+    pub fn takes(&self) -> String {
+        let groups = match self.takes {
+            Takes::Number(text) => return text.into(),
+            Takes::Words(groups) => groups(),
+        };
+        let group = |words: Vec<String>| match words.as_slice() {
+            [first, .., last] => format!("{first} to {last}"),
+            _ => words.concat(),
+        };
+        let not_yet = words::REFUSED.iter().filter(|row| row.0 == self.name && row.2.is_none());
+        let all = groups.into_iter().map(group).chain(not_yet.map(|row| row.1.to_owned()));
+        format!("one of {}", all.collect::<Vec<_>>().join(", "))
+    }
 
-/// Words that a key took once, and what to write instead.
-const REMOVED: &[(&str, &str, &str)] =
-    &[("solver", "sqp", "it was removed; leave `solver` out, or write `interior_point`")];
+    /// The words that it takes; none where it takes numbers.
+    pub fn words(&self) -> Vec<String> {
+        match self.takes {
+            Takes::Number(_) => Vec::new(),
+            Takes::Words(groups) => groups().concat(),
+        }
+    }
+}
+
+/// The key of that name.
+pub(crate) fn find(name: &str) -> Option<&'static Key> {
+    KEYS.iter().find(|row| row.name == name)
+}
 
 /// A value of a setting.
 #[derive(Clone, Debug)]
@@ -48,7 +208,7 @@ pub(crate) enum Refused {
     /// There is no such key.
     Key,
     /// The key takes something else.
-    Value(&'static str),
+    Value(String),
     /// Understood, but it does not exist yet.
     NotYet,
     /// It does not exist any more; what to write instead.
@@ -57,74 +217,16 @@ pub(crate) enum Refused {
 
 /// Changes one setting.
 pub(crate) fn set(method: &mut Method, key: &str, given: &Given) -> Result<(), Refused> {
-    let expected = KEYS.iter().find(|row| row.0 == key).ok_or(Refused::Key)?.1;
-    let refused = || Refused::Value(expected);
-    let positive = || number(given).filter(|value| *value > 0.0).ok_or_else(refused);
-    let count = || count(given).ok_or_else(refused);
-    let word = || match given {
-        Given::Word(word)
-            if NOT_YET.contains(&word.as_str()) && expected.contains(word.as_str()) =>
-        {
-            Err(Refused::NotYet)
-        }
-        Given::Word(word) => {
-            let removed = REMOVED.iter().find(|row| (row.0, row.1) == (key, word.as_str()));
-            removed.map_or(Ok(word.as_str()), |row| Err(Refused::Removed(row.2)))
-        }
-        _ => Err(refused()),
-    };
-    match (key, given) {
-        ("sigma", _) => method.sigma = Some(positive()?),
-        ("tol", _) => method.tol = positive()?,
-        ("N", _) => {
-            method.is_refined = matches!(given, Given::Word(word) if word == "auto");
-            if !method.is_refined {
-                method.intervals = count()?;
-            }
-        }
-        ("tolerance", _) => method.tolerance = positive()?,
-        ("steps", _) => method.steps = count()?,
-        ("max_iter", _) => method.max_iter = count()?,
-        ("seed", _) => method.seed = whole(given).ok_or_else(refused)?,
-        ("continue", _) => method.continuation = decreasing(given).ok_or_else(refused)?,
-        ("kernel", _) => method.kernel = kernels::find(word()?).ok_or_else(refused)?.name.into(),
-        ("controls", _) => method.controls = shape(word()?).ok_or_else(refused)?,
-        ("scheme", _) => {
-            method.scheme = Scheme::named(word()?).ok_or_else(refused)?;
-            method.is_raised = Scheme::is_family(word()?);
-        }
-        ("solver", _) => method.solver = solver(word()?).ok_or_else(refused)?,
-        _ => method.linear = linear(word()?).ok_or_else(refused)?,
+    let row = find(key).ok_or(Refused::Key)?;
+    let refused = words::REFUSED
+        .iter()
+        .find(|row| matches!(given, Given::Word(word) if row.0 == key && row.1 == word));
+    if let Some((.., instead)) = refused {
+        return Err(instead.map_or(Refused::NotYet, Refused::Removed));
     }
+    (row.set)(method, given).ok_or_else(|| Refused::Value(row.takes()))?;
     method.begin();
     Ok(())
-}
-
-fn shape(word: &str) -> Option<ControlShape> {
-    Some(match word {
-        "constant" => ControlShape::Constant,
-        "linear" => ControlShape::Linear,
-        "polynomial" => ControlShape::Polynomial,
-        _ => return None,
-    })
-}
-
-fn solver(word: &str) -> Option<Solver> {
-    Some(match word {
-        "auto" => Solver::Automatic,
-        "interior_point" => Solver::InteriorPoint,
-        "convex" => Solver::Convex,
-        _ => return None,
-    })
-}
-
-fn linear(word: &str) -> Option<Linear> {
-    Some(match word {
-        "auto" => Linear::Automatic,
-        "riccati" => Linear::Riccati,
-        "sparse_ldl" => Linear::SparseLdl,
-        _ => return None,
-    })
 }
 
 fn number(given: &Given) -> Option<f64> {
@@ -132,6 +234,10 @@ fn number(given: &Given) -> Option<f64> {
         Given::Number(value) => Some(*value).filter(|value| value.is_finite()),
         _ => None,
     }
+}
+
+fn positive(given: &Given) -> Option<f64> {
+    number(given).filter(|value| *value > 0.0)
 }
 
 fn whole(given: &Given) -> Option<u64> {
@@ -157,38 +263,21 @@ fn decreasing(given: &Given) -> Option<Vec<f64>> {
 
 /// Whether there is such a key.
 pub fn is_key(key: &str) -> bool {
-    KEYS.iter().any(|row| row.0 == key)
-}
-
-/// The words that a key takes today; none where it takes numbers.
-pub(crate) fn words(key: &str) -> Vec<String> {
-    let expected = KEYS.iter().find(|row| row.0 == key).map_or("", |row| row.1);
-    let Some(list) = expected.strip_prefix("one of ") else { return Vec::new() };
-    let is_taken =
-        |word: &String| set(&mut default_method(), key, &Given::Word(word.clone())).is_ok();
-    list.split(", ").flat_map(spelt_out).filter(is_taken).collect()
-}
-
-/// `radau1 to radau5` is five words.
-fn spelt_out(listed: &str) -> Vec<String> {
-    let Some((first, last)) = listed.split_once(" to ") else { return vec![listed.to_owned()] };
-    let stem = first.trim_end_matches(|c: char| c.is_ascii_digit());
-    let ends = [first, last].map(|word| word[stem.len()..].parse().unwrap_or(0));
-    (ends[0]..=ends[1]).map(|number: usize| format!("{stem}{number}")).collect()
+    find(key).is_some()
 }
 
 /// The nearest key, for "did you mean".
 pub(crate) fn nearest_key(key: &str) -> Option<&'static str> {
-    closest(key, KEYS.iter().map(|row| row.0))
+    closest(key, KEYS.iter().map(|row| row.name))
 }
 
 /// All keys, for a message.
 pub(crate) fn keys() -> String {
-    KEYS.iter().map(|row| row.0).collect::<Vec<_>>().join(", ")
+    KEYS.iter().map(|row| row.name).collect::<Vec<_>>().join(", ")
 }
 
 /// The nearest word that a key takes.
-pub(crate) fn nearest_word(expected: &'static str, given: &str) -> Option<&'static str> {
+pub(crate) fn nearest_word<'e>(expected: &'e str, given: &str) -> Option<&'e str> {
     closest(
         given,
         expected.trim_start_matches("one of ").split([',', ' ']).filter(|word| word.len() > 2),

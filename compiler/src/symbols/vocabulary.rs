@@ -2,7 +2,8 @@
 //! hover and signatures.
 
 use crate::expressions::graph::builtins::{self, Notation as Written};
-use crate::settings;
+use crate::settings::words;
+use crate::settings::{self, KEYS, Key};
 use crate::syntax::functions::{self, function_names};
 use crate::units;
 
@@ -38,14 +39,30 @@ pub fn function(name: &str) -> Option<Function> {
     })
 }
 
-/// The keys of the method, each with what it takes.
-pub fn settings() -> &'static [(&'static str, &'static str)] {
-    settings::KEYS
+/// A key of the method.
+pub struct Setting {
+    /// Its name.
+    pub name: &'static str,
+    /// What it takes, in words.
+    pub takes: String,
+    /// What it does.
+    pub doc: &'static str,
+}
+
+/// The keys of the method.
+pub fn settings() -> Vec<Setting> {
+    let setting = |row: &Key| Setting { name: row.name, takes: row.takes(), doc: row.doc };
+    KEYS.iter().map(setting).collect()
 }
 
 /// The words that a key of the method takes, none where it takes numbers.
 pub fn setting_words(key: &str) -> Vec<String> {
-    settings::words(key)
+    settings::find(key).map(Key::words).unwrap_or_default()
+}
+
+/// What a word of the method stands for.
+pub fn setting_word(word: &str) -> Option<String> {
+    words::doc(word)
 }
 
 /// The names of all units, those with prefixes not.
@@ -68,6 +85,13 @@ mod tests {
             let function =
                 function(name).unwrap_or_else(|| panic!("`{name}` has a row in a table"));
             assert!(!function.doc.is_empty() && !function.arguments.is_empty(), "{name}");
+        }
+    }
+
+    #[test]
+    fn every_word_of_a_setting_says_what_it_stands_for() {
+        for word in settings().iter().flat_map(|it| setting_words(it.name)) {
+            assert!(setting_word(&word).is_some(), "`{word}` has a row in a table");
         }
     }
 

@@ -51,7 +51,7 @@ impl<'a> Elaborator<'a> {
                 Err(Refused::NotYet) => self.setting_not_yet(key, &given, span),
                 Err(Refused::Removed(instead)) => self.removed_value(key, &given, instead, span),
                 Err(Refused::Key) => self.unknown_key(key),
-                Err(Refused::Value(expected)) => self.wrong_value(key, &given, expected, span),
+                Err(Refused::Value(expected)) => self.wrong_value(key, &given, &expected, span),
             }
             if let SettingValue::Scheme { name, lagged } = &setting.value {
                 self.lagged(name, lagged);
@@ -112,7 +112,7 @@ impl<'a> Elaborator<'a> {
         self.diagnostics.push(found.help(instead));
     }
 
-    fn wrong_value(&mut self, key: &Ident, given: &Given, expected: &'static str, span: Span) {
+    fn wrong_value(&mut self, key: &Ident, given: &Given, expected: &str, span: Span) {
         let shown = shown(given);
         let message = format!("`{}` cannot be `{shown}`", key.name);
         let label = if expected.starts_with("one of") {

@@ -110,13 +110,13 @@ fn entries(block: &str, scope: &Scope) -> Vec<Proposal> {
             .collect(),
         "jump" | "link" => kinds(&[Kind::State]).into_iter().map(|it| entry(it, " := ")).collect(),
         "sweep" => {
-            let settings = vocabulary::settings().iter().map(|row| own(row.0, row.1));
+            let settings = vocabulary::settings().into_iter().map(|it| own(it.name, &it.takes));
             kinds(&[Kind::Param]).into_iter().chain(settings).map(|it| entry(it, " = ")).collect()
         }
         "method" => {
             let blocks = ["smooth", "grid", "continue"].into_iter().map(keyword);
-            let keys = vocabulary::settings().iter().filter(|row| row.0 != "continue");
-            blocks.chain(keys.map(|row| entry(own(row.0, row.1), " = "))).collect()
+            let keys = vocabulary::settings().into_iter().filter(|it| it.name != "continue");
+            blocks.chain(keys.map(|it| entry(own(it.name, &it.takes), " = "))).collect()
         }
         "match" => ["below", "above"].into_iter().map(|it| entry(keyword(it), " => ")).collect(),
         "piecewise" => vec![entry(keyword("otherwise"), " => ")],

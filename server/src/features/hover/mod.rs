@@ -22,7 +22,7 @@ pub fn hover(context: &Context<'_>, params: HoverParams) -> Result<Option<Hover>
         Meaning::BuiltIn => function(word),
         Meaning::Unit => vocabulary::unit(word),
         Meaning::Setting => settings::told(context, word),
-        Meaning::Value => settings::value(word),
+        Meaning::Value => vocabulary::setting_word(word),
         Meaning::Unknown => None,
     };
     Ok(text.map(|text| shown(context, found, text)))

@@ -110,6 +110,16 @@ macro_rules! codes {
             pub fn title(self) -> &'static str {
                 match self { $(Code::$variant => $title),* }
             }
+
+            /// Its page, for `fdcc explain` and for editors, read when `fdcc` is built: why it is
+            /// given, a wrong model and a right one, in Markdown.
+            pub fn page(self) -> &'static str {
+                match self {
+                    $(Code::$variant => {
+                        include_str!(concat!("../../docs/diagnostics/", $code, ".md"))
+                    })*
+                }
+            }
         }
     };
 }

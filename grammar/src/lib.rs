@@ -9,7 +9,6 @@ pub mod ast;
 mod diagnostic;
 pub mod fix;
 mod format;
-mod pages;
 mod parse;
 mod source;
 

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! The integrand of the objective takes the same stages. Derivatives of the step come from the
-//! graph like all others, so no stage is an unknown of the programme.
+//! graph like all others, so no stage is an unknown of the nonlinear program.
 
 use crate::expressions::graph::{ExprId, Graph};
 use fdcc_runtime::problem::{Layout, Method, Scheme};

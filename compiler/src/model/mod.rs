@@ -119,7 +119,7 @@ pub struct Control {
 pub struct Surface {
     /// Its declaration, or the first use of an unnamed one.
     pub place: Place,
-    /// The function whose sign decides.
+    /// The switching function, whose sign decides.
     pub psi: ExprId,
 }
 

@@ -84,6 +84,6 @@ impl MultiPhase<'_> {
     /// Whether a constraint says of a held surface what is so anyway.
     pub(super) fn is_held(&mut self, j: usize, row: &Constraint) -> bool {
         let Some(held) = self.held.filter(|held| j >= held.from) else { return false };
-        self.is_guard(held.psi, row.value)
+        self.is_switching_function(held.psi, row.value)
     }
 }

@@ -35,8 +35,8 @@ impl MultiPhase<'_> {
             value,
             range: Range { lower: zero, upper: zero },
         };
-        let guard = self.at_end(j, self.whole.surfaces[jump.surface].psi);
-        let mut rows = vec![row(jump.place.name.clone(), guard)];
+        let psi = self.at_end(j, self.whole.surfaces[jump.surface].psi);
+        let mut rows = vec![row(jump.place.name.clone(), psi)];
         rows.extend(self.direction(j));
         for (index, state) in self.model.states.iter().enumerate() {
             let reset = jump.resets.iter().find(|it| it.0 == index).map(|it| it.1);

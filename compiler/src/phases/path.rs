@@ -19,7 +19,7 @@ impl MultiPhase<'_> {
     /// The bounds of a state at all times; none where they are a path constraint.
     pub(super) fn range_of(&mut self, state: usize) -> Range {
         let range = self.model.states[state].range;
-        if !self.bounds_a_guard(state) {
+        if !self.bounds_switching_function(state) {
             return range;
         }
         let [lower, upper] = [f64::NEG_INFINITY, f64::INFINITY].map(|it| self.graph.number(it));
@@ -43,7 +43,7 @@ impl MultiPhase<'_> {
     fn bounds(&mut self) -> Vec<Constraint> {
         let mut rows = Vec::new();
         for (index, state) in self.model.states.iter().enumerate() {
-            if self.bounds_a_guard(index) {
+            if self.bounds_switching_function(index) {
                 let value = self.graph.input(self.input_of_state(index));
                 rows.push(Constraint { place: state.place.clone(), value, range: state.range });
             }
@@ -52,7 +52,7 @@ impl MultiPhase<'_> {
     }
 
     /// Whether a state is the function of a surface where a jump happens.
-    fn bounds_a_guard(&self, state: usize) -> bool {
+    fn bounds_switching_function(&self, state: usize) -> bool {
         let input = self.input_of_state(state);
         let is_it = |jump: &usize| {
             let psi = self.whole.surfaces[self.whole.jumps[*jump].surface].psi;
@@ -178,7 +178,7 @@ impl MultiPhase<'_> {
         }
         let value = self.in_phase(j, row.value);
         let ends_here = j < self.sequence.len()
-            && self.is_guard(self.whole.surfaces[self.jump(j).surface].psi, row.value);
+            && self.is_switching_function(self.whole.surfaces[self.jump(j).surface].psi, row.value);
         if !ends_here {
             return Constraint { value, ..row };
         }
@@ -190,7 +190,7 @@ impl MultiPhase<'_> {
 
     /// Whether a value is known where the function of a surface is 0: both depend on one state
     /// only, or their slopes are in proportion.
-    pub(super) fn is_guard(&mut self, psi: ExprId, value: ExprId) -> bool {
+    pub(super) fn is_switching_function(&mut self, psi: ExprId, value: ExprId) -> bool {
         let varies = |symbol: &Symbol| !matches!(symbol, Symbol::Param(_) | Symbol::Free(_));
         let moving = |graph: &Graph, of: ExprId| -> Vec<u32> {
             let inputs = graph.inputs_of(&[of]).into_iter();

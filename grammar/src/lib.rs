@@ -15,7 +15,8 @@ mod source;
 pub use diagnostic::{Code, Diagnostic, Label, Severity};
 pub use fix::{Edit, Fix};
 pub use format::format;
-pub use parse::{ParseCache, comments, parse, parse_with, words};
+pub use parse::words;
+pub use parse::{ParseCache, comments, parse, parse_with};
 pub use source::{LineColumn, SourceFile, Span};
 
 /// What a text holds: the items that could be read, and what is wrong with the rest.

@@ -1,7 +1,8 @@
 //! What a syntax tree means, and everything that is wrong with it.
 
 use super::consequences::{sort, without_consequences, without_echoes};
-use crate::check::{self, Facts};
+use crate::check as checks;
+use crate::check::Facts;
 use crate::model::Model;
 use crate::preflight;
 use crate::resolve::elaborator::Elaborator;
@@ -42,8 +43,8 @@ pub fn check(tree: &ast::Model) -> Checked {
         (part.values, part.scope) = Default::default();
         parts.push(part);
     }
-    diagnostics.extend(check::unused(tree));
-    diagnostics.extend(check::lookalike(tree));
+    diagnostics.extend(checks::unused(tree));
+    diagnostics.extend(checks::lookalike(tree));
     diagnostics.extend(units.diagnostics.iter().cloned());
     sort(&mut diagnostics);
     let mut diagnostics = without_echoes(without_consequences(diagnostics));
@@ -123,7 +124,7 @@ fn checked<'a>(
     tree: &'a ast::Model,
     is_phase: bool,
 ) -> Vec<Diagnostic> {
-    let found = check::check(&mut Facts { items, meaning, tree }, is_phase);
+    let found = checks::check(&mut Facts { items, meaning, tree }, is_phase);
     let mut all = std::mem::take(&mut meaning.diagnostics);
     all.extend(found);
     all

@@ -5,9 +5,9 @@
 
 use smallvec::SmallVec;
 
-use super::arithmetic::{self, Arithmetic};
 use super::function::Call;
 use super::numbers::{Block, Numbers};
+use super::schedule::arithmetic::{self, Arithmetic};
 use super::schedule::{Operation, Schedule, Slot};
 use crate::expressions::graph::{ExprId, Graph};
 

@@ -1,10 +1,8 @@
 //! From expressions to functions of the runtime: values, Jacobian and Hessian are computed step by
 //! step until machine code pays.
 
-mod arithmetic;
 mod bytecode;
 mod cranelift;
-mod elementary;
 mod function;
 mod numbers;
 mod schedule;

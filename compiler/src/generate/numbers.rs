@@ -1,7 +1,7 @@
 //! Arithmetic at once, on a few points side by side. To the last bit it is that of the machine
 //! code: pair by pair, with the same roundings.
 
-use super::arithmetic::Arithmetic;
+use super::schedule::arithmetic::Arithmetic;
 
 /// A number at each of some points; also a mask or bits in the place of one.
 pub(super) type Block<const POINTS: usize> = [f64; POINTS];

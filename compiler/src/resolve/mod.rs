@@ -4,7 +4,6 @@
 //! gives the unknown value, from which nothing follows: so several mistakes are told at once, and
 //! none because of another.
 
-mod context;
 pub(crate) mod elaborator;
 pub(crate) mod expressions;
 mod items;

@@ -17,18 +17,16 @@ pub use dimension::Dimension;
 use dimension::notation::Notation;
 pub use dimension::quantity::{Quantity, parse_quantity};
 pub(crate) use dimension::table::{names, scale};
+use fdcc_grammar::Diagnostic;
 use fdcc_grammar::ast::{self, Unit};
-use fdcc_grammar::{Diagnostic, Span};
-use inference::Inference;
 pub(crate) use inference::readings::Readings;
 use inference::requirement::Requirement;
-use inference::solve::{Rank, Solution};
+use inference::walk::{Known, Walk};
 use mistakes::messages::Speaker;
 pub(crate) use mistakes::messages::unit_of;
 use mistakes::{Mistake, suspects};
 use names::Findings;
 pub use names::{NamedUnit, WidthUnit};
-use std::collections::HashSet;
 
 /// Whoever has so many mistakes does not read on.
 const MOST_MISTAKES: usize = 20;
@@ -98,15 +96,6 @@ pub(crate) fn infer(tree: &ast::Model) -> Units {
     }
 }
 
-/// What earlier walks found out.
-#[derive(Clone, Default)]
-struct Known {
-    /// The texts that count as unknown from now on.
-    wrong: HashSet<Span>,
-    /// The names whose unit is that of their uses.
-    suspects: HashSet<Span>,
-}
-
 /// All findings. A last walk asks what the surroundings of each wrong text need.
 fn told<'a>(speaker: &Speaker<'a>, known: Known, mistakes: &[Mistake<'a>]) -> Vec<Diagnostic> {
     if mistakes.is_empty() {
@@ -119,48 +108,4 @@ fn told<'a>(speaker: &Speaker<'a>, known: Known, mistakes: &[Mistake<'a>]) -> Ve
         needed.is_some_and(|needed| needed == it.left.dimension)
     };
     mistakes.iter().map(|it| speaker.diagnostic(it, wanted(&it.requirement))).collect()
-}
-
-/// One walk over the whole text: what it demands, and what follows.
-struct Walk<'a> {
-    inference: Inference<'a>,
-    solution: Solution,
-    /// The demands that cannot be met.
-    contradictions: Vec<usize>,
-    /// The one to be told.
-    first: Option<usize>,
-}
-
-impl<'a> Walk<'a> {
-    fn new(tree: &'a ast::Model, known: Known, listening: bool) -> Self {
-        let mut inference = Inference::new(known.wrong, known.suspects, listening);
-        inference.model(tree);
-        let places = inference.numbers.iter().map(|it| it.place.clone()).collect();
-        let mut solution = Solution::new(inference.unknowns, places);
-        let differences: Vec<(Rank, Dimension)> =
-            inference.requirements.iter().map(Requirement::equation).collect();
-        let contradictions = solution.contradictions(&differences);
-        let first = innermost(&inference.requirements, &contradictions);
-        Walk { inference, solution, contradictions, first }
-    }
-}
-
-/// The first contradiction, or one inside it, or in a function that is called inside it, from which
-/// it may follow.
-fn innermost(requirements: &[Requirement<'_>], contradictions: &[usize]) -> Option<usize> {
-    let mut first = *contradictions.first()?;
-    for _ in contradictions {
-        let outer = requirements[first].site;
-        let is_inside =
-            |place: Span| outer.start <= place.start && place.end <= outer.end && place != outer;
-        let is_inner = |&&at: &&usize| {
-            let it = &requirements[at];
-            is_inside(it.site) || it.calls.iter().any(|call| is_inside(call.span))
-        };
-        match contradictions.iter().find(is_inner) {
-            Some(&inner) => first = inner,
-            None => break,
-        }
-    }
-    Some(first)
 }

@@ -4,34 +4,24 @@
 //! own wording is shown.
 
 mod cache;
-mod items;
-mod limits;
+mod grammar;
+mod lexical;
 mod outline;
 mod recovery;
-mod reparse;
 #[cfg(test)]
 mod rules;
-mod tokens;
 mod tree;
 #[cfg(test)]
 mod whole;
-pub mod words;
 
 pub(crate) use outline::{Column, Leaf, Part, Row, outline};
-use pest::Parser as _;
-use pest::error::{ErrorVariant, InputLocation};
-use pest::iterators::Pairs;
 
 use crate::source::line_starts;
 use crate::{Code, Diagnostic, Parse, Span};
 
 pub use crate::parse::cache::ParseCache;
-pub use tokens::comments;
-
-/// The generated parser.
-#[derive(pest_derive::Parser)]
-#[grammar = "fdc.pest"]
-struct Grammar;
+pub use lexical::tokens::comments;
+pub use lexical::words;
 
 /// A model that somebody writes has a few kilobytes.
 const MOST_BYTES: usize = 4_000_000;
@@ -46,7 +36,7 @@ pub fn parse_with(cache: &mut ParseCache, text: &str) -> Parse {
     if let Some(diagnostic) = refuse(text) {
         return Parse { diagnostics: vec![diagnostic], ..Parse::default() };
     }
-    let mut parse = recovery::read(text, &tokens::tokens(text), cache);
+    let mut parse = recovery::read(text, &lexical::tokens::tokens(text), cache);
     cache.forget();
     parse.tree.docs = doc_lines(text);
     parse.tree.line_starts = line_starts(text).collect();
@@ -55,18 +45,6 @@ pub fn parse_with(cache: &mut ParseCache, text: &str) -> Parse {
     }
     parse.diagnostics.sort_by_key(Diagnostic::span);
     parse
-}
-
-/// What the grammar makes of a text, or the byte where it gave up and what it would have gone on
-/// with.
-fn pairs(rule: Rule, text: &str) -> Result<Pairs<'_, Rule>, (usize, Vec<Rule>)> {
-    Grammar::parse(rule, text).map_err(|error| {
-        let (InputLocation::Pos(at) | InputLocation::Span((at, _))) = error.location;
-        let ErrorVariant::ParsingError { positives, .. } = error.variant else {
-            return (at, Vec::new());
-        };
-        (at, positives)
-    })
 }
 
 /// What is no model at all: too large, or not text.

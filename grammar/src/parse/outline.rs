@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 
 use pest::iterators::Pair;
 
-use super::tokens::tokens;
-use super::{Rule, pairs};
+use super::grammar::{Rule, pairs};
+use super::lexical::tokens::tokens;
 
 /// What a word is for, as far as its blanks depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

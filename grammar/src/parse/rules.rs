@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Rule, pairs};
+use super::grammar::{Rule, pairs};
 
 /// Pages of the reference, read when the tests are built.
 macro_rules! pages {

@@ -1,8 +1,9 @@
 //! Reading item by item finds what the grammar makes of the whole file: the same tree, and a
 //! mistake where there is one.
 
-use super::tokens::tokens;
-use super::{Rule, pairs, parse, rules, tree};
+use super::grammar::{Rule, pairs};
+use super::lexical::tokens::tokens;
+use super::{parse, rules, tree};
 
 /// How many texts are made of the right ones.
 const SHUFFLED: usize = 3_000;

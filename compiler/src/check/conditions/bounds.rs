@@ -1,7 +1,7 @@
 //! FDC0401: bounds that contradict each other, a start outside its bounds, or time that runs
 //! backwards.
 
-use crate::check::Facts;
+use crate::check::facts::Facts;
 use crate::model::{Range, State};
 use crate::resolve::elaborator::Elaborator;
 use crate::syntax::text;

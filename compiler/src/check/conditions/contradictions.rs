@@ -6,7 +6,7 @@
 //! known by then, contradicts what has made it known; any other one that is affine in a single
 //! unknown makes more known.
 
-use crate::check::Facts;
+use crate::check::facts::Facts;
 use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::{ExprId, evaluate};
 use crate::expressions::interval::{Interval, Tape};

@@ -1,6 +1,6 @@
 //! FDC0403: a state needs a condition at the start or at the end, or nothing ties it down.
 
-use crate::check::Facts;
+use crate::check::facts::Facts;
 use crate::syntax::walk;
 use fdcc_grammar::ast::{Ident, ItemKind};
 use fdcc_grammar::{Code, Diagnostic};

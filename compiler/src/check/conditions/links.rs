@@ -1,6 +1,6 @@
 //! Links between phases: both phases exist, and so do the states that are handed over.
 
-use crate::check::Facts;
+use crate::check::facts::Facts;
 use crate::syntax::scope::{declared, kind_word};
 use crate::syntax::walk;
 use fdcc_grammar::ast::{Assignment, Ident, Item, ItemKind};

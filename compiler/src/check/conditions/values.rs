@@ -1,6 +1,6 @@
 //! FDC0408: a parameter needs a value, in the text or from the command line.
 
-use crate::check::Facts;
+use crate::check::facts::Facts;
 use crate::model::numbers::missing_value;
 use fdcc_grammar::Diagnostic;
 use fdcc_grammar::ast::ItemKind;

@@ -1,11 +1,11 @@
 //! FDC0203: a `piecewise` that jumps, used as if it were an ordinary function.
 
-use super::{joints, sets};
-use crate::check::Facts;
-use crate::check::surfaces::view_of;
+use super::joints;
+use crate::check::facts::view_of;
+use crate::check::facts::{Facts, left_side};
+use crate::resolve::elaborator::knots::{Knot, Site};
+use crate::resolve::elaborator::value::KnotUse;
 use crate::resolve::elaborator::{Elaborator, Role};
-use crate::resolve::expressions::knots::{Knot, Site};
-use crate::resolve::expressions::value::KnotUse;
 use crate::surfaces::Order;
 use crate::syntax::text::{self, Style};
 use crate::syntax::walk;
@@ -100,7 +100,7 @@ fn repair(surface: &str, knot: &Knot<'_>, written: Option<&(&Equation, Switch)>)
     let head = "declare the switch so that fdcc can treat it:";
     match written {
         Some((equation, (psi, [below, above]))) => {
-            let left = sets::left_side(equation);
+            let left = left_side(equation);
             format!(
                 "{head}\n  surface {surface} = {psi}\n  {left} in match {surface} {{ below => \
                  {below}, above => {above} }}"

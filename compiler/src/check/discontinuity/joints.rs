@@ -4,8 +4,8 @@
 use crate::expressions::graph::builtins::Builtin;
 use crate::expressions::graph::{Expr, ExprId};
 use crate::model::Symbol;
+use crate::resolve::elaborator::knots::{Knot, Site};
 use crate::resolve::elaborator::{Elaborator, Usage};
-use crate::resolve::expressions::knots::{Knot, Site};
 use crate::surfaces::{Order, View, at_guards};
 
 /// How smooth a value is where a guard of a definition in it changes. Of a value that is not known,

@@ -1,9 +1,9 @@
 //! FDC0201, FDC0202, FDC0204: where a set may stand. `in` takes a set, `=` a value; constraints and
 //! objectives take values only.
 
-use crate::check::Facts;
+use crate::check::facts::{Facts, left_side};
 use crate::resolve::elaborator::Role;
-use crate::resolve::expressions::value::{SetForm, SetUse};
+use crate::resolve::elaborator::value::{SetForm, SetUse};
 use crate::syntax::text;
 use fdcc_grammar::ast::{Equation, EquationRelation};
 use fdcc_grammar::{Code, Diagnostic, Fix};
@@ -50,14 +50,6 @@ fn equality(equation: &Equation, set: &SetUse) -> Diagnostic {
     .label(set.span, label)
     .help(format!("write `{} in {}`{why}", left_side(equation), text::expr(&equation.right)))
     .fix(Fix::certain("write `in`").replace(equation.relation_span, "in"))
-}
-
-/// `m * v'`.
-pub(in crate::check) fn left_side(equation: &Equation) -> String {
-    match &equation.factor {
-        Some(factor) => format!("{} * {}'", text::expr(factor), equation.state.name),
-        None => format!("{}'", equation.state.name),
-    }
 }
 
 fn no_set(equation: &Equation) -> Diagnostic {

@@ -1,11 +1,11 @@
 //! FDC0406: constraints and objectives should be twice continuously differentiable.
 
 use super::{hidden_jump, joints};
-use crate::check::Facts;
-use crate::check::surfaces::view_of;
+use crate::check::facts::Facts;
+use crate::check::facts::view_of;
+use crate::resolve::elaborator::knots::{Knot, Site};
+use crate::resolve::elaborator::value::KnotUse;
 use crate::resolve::elaborator::{Elaborator, Role};
-use crate::resolve::expressions::knots::{Knot, Site};
-use crate::resolve::expressions::value::KnotUse;
 use crate::surfaces::Order;
 use crate::syntax::{text, walk};
 use fdcc_grammar::ast::{Condition, ExprKind};

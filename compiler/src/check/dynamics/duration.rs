@@ -3,7 +3,7 @@
 //! With `D = tf - t0` affine in the unknowns, its least value over their bounds is
 //! `D(0) + sum_i min(c_i lower_i, c_i upper_i)`.
 
-use crate::check::Facts;
+use crate::check::facts::Facts;
 use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::evaluate;
 use crate::model::Symbol;

@@ -1,6 +1,6 @@
 //! FDC0405: every state needs an equation.
 
-use crate::check::Facts;
+use crate::check::facts::Facts;
 use fdcc_grammar::ast::ItemKind;
 use fdcc_grammar::{Code, Diagnostic};
 use std::collections::HashSet;

@@ -1,6 +1,6 @@
 //! FDC0411: constants and bounds that are no finite numbers: `1/0`, `0/0`.
 
-use crate::check::Facts;
+use crate::check::facts::Facts;
 use crate::expressions::graph::{Expr, ExprId};
 use crate::model::{Range, Symbol};
 use crate::resolve::elaborator::{Elaborator, Role, Usage};

@@ -1,6 +1,6 @@
 //! FDC0311: a jump that never acts, because one above it always does at the same crossing.
 
-use crate::check::Facts;
+use crate::check::facts::Facts;
 use fdcc_grammar::ast::{Direction, Ident, ItemKind};
 use fdcc_grammar::{Code, Diagnostic};
 

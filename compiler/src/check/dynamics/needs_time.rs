@@ -1,6 +1,6 @@
 //! FDC0407: states, controls or dynamics need a `time`; FDC0102: one is enough.
 
-use crate::check::Facts;
+use crate::check::facts::Facts;
 use crate::syntax::scope::declared;
 use fdcc_grammar::ast::{Ident, ItemKind};
 use fdcc_grammar::{Code, Diagnostic};

@@ -11,11 +11,10 @@ mod start;
 mod uses;
 mod vector;
 
-use super::Facts;
-use crate::resolve::elaborator::Elaborator;
+use crate::check::facts::{Facts, view_of};
 use crate::surfaces::class::{Class, classify};
 use crate::surfaces::degenerate::degenerate;
-use crate::surfaces::{Local, View, view};
+use crate::surfaces::{Local, View};
 use fdcc_grammar::ast::{Expr, Interval, ItemKind, Start};
 use fdcc_grammar::{Diagnostic, Severity, Span};
 use uses::{Use, uses};
@@ -131,28 +130,5 @@ impl<'a> Subject<'_, 'a, '_> {
     /// An expression of the surface's own graph, in the words of the model.
     fn text(&mut self, expr: crate::expressions::graph::ExprId) -> String {
         self.local.text(self.view, expr).unwrap_or_else(|| "...".into())
-    }
-}
-
-/// The model so far.
-pub(super) fn view_of<'m>(meaning: &'m Elaborator<'_>) -> View<'m> {
-    let states = &meaning.model.states;
-    View {
-        graph: &meaning.graph,
-        symbols: &meaning.symbols,
-        states,
-        controls: &meaning.model.controls,
-        frees: &meaning.model.frees,
-        surfaces: meaning.surfaces.iter().map(|it| (&it.place, it.psi)).collect(),
-        balls: &meaning.balls,
-        path: &meaning.model.path,
-        interval: meaning.interval,
-        params: &meaning.model.params,
-        values: meaning.param_values.clone(),
-        has_rate: (0..states.len()).map(|at| meaning.known_rates.contains(&at)).collect(),
-        moved: view::moved(&meaning.graph, &meaning.symbols, states, meaning.surfaces.len()),
-        metric: &meaning.model.metric,
-        names: &meaning.model.names,
-        arguments: &[],
     }
 }

@@ -1,8 +1,7 @@
 //! Where the surfaces are used: the term of a right side that holds `Sgn(surface)`, `Dir(vector)`
 //! or `match surface`.
 
-use crate::check::Facts;
-use crate::check::discontinuity::sets;
+use crate::check::facts::{Facts, left_side};
 use crate::syntax::text::{self, Style};
 use crate::syntax::walk;
 use fdcc_grammar::ast::{Argument, BinaryOperator, Equation, Expr, ExprKind, ItemKind};
@@ -75,7 +74,7 @@ impl Use<'_> {
     /// The equation with the other sign before its term.
     pub fn flipped(&self) -> Option<String> {
         let (equation, right) = self.turned()?;
-        let left = sets::left_side(equation);
+        let left = left_side(equation);
         Some(format!("{left} in {right}"))
     }
 

@@ -7,8 +7,8 @@ use super::pairs::{Pair, Pairs};
 use super::{BlockArg, FunctionBuilder, InstBuilder, MemFlagsData, Tables, Value, memory, types};
 use crate::expressions::graph::builtins::{Builtin, Inline, Lowering};
 use crate::expressions::graph::{ById, ExprId, Graph};
-use crate::generate::arithmetic::{self, Arithmetic};
-use crate::generate::elementary;
+use crate::generate::schedule::arithmetic::{self, Arithmetic};
+use crate::generate::schedule::elementary;
 use crate::generate::schedule::{Operation, Schedule, Slot, Table};
 
 /// Bytes of a number and of a pair.

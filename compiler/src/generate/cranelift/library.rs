@@ -14,7 +14,7 @@ use super::{
     Value, memory, types,
 };
 use crate::expressions::graph::builtins::{self, Lowering};
-use crate::generate::elementary;
+use crate::generate::schedule::elementary;
 
 /// A function that is called for each point.
 pub(super) struct Library {

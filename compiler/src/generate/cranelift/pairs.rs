@@ -7,7 +7,7 @@ use super::{
     Machine, MemFlagsData, StackSlot, StackSlotData, StackSlotKind, Type, Value,
     library::trampoline_signature, memory, types,
 };
-use crate::generate::arithmetic::Arithmetic;
+use crate::generate::schedule::arithmetic::Arithmetic;
 
 /// A number at two neighbouring points; also a mask or bits in the place of one.
 pub(super) type Pair = Value;

@@ -1,11 +1,11 @@
 //! `blend(e, width)`: an expression with its knots and kinks rounded; `blend(f, width)` is a
 //! function so rounded.
 
-use super::value::{Parts, Value};
 use crate::expressions::blend::rounded;
 use crate::model::numbers::no_width;
-use crate::resolve::context::Context;
 use crate::resolve::elaborator::Elaborator;
+use crate::resolve::elaborator::context::Context;
+use crate::resolve::elaborator::value::{Parts, Value};
 use crate::syntax::text;
 use fdcc_grammar::ast::{Expr, ExprKind, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Fix, Severity, Span};

@@ -1,11 +1,11 @@
 //! Calls: the builtin functions of numbers and vectors, the model's own functions, and the special
 //! forms.
 
-use super::value::{Parts, Traits, Value};
 use crate::expressions::graph::ExprId;
 use crate::expressions::graph::builtins::{self, Builtin};
-use crate::resolve::context::Context;
 use crate::resolve::elaborator::Elaborator;
+use crate::resolve::elaborator::context::Context;
+use crate::resolve::elaborator::value::{Parts, Traits, Value};
 use crate::syntax::DEEPEST;
 use crate::syntax::functions::{self, function_names, is_function};
 use crate::syntax::scope;

@@ -1,11 +1,11 @@
 //! `Dir(e)`: the direction `e/|e|` of a vector, and the unit ball where it is 0. Each component of
 //! `e` is a surface with a selector; together they are a [`Ball`]. Of a number it is `Sgn`.
 
-use super::value::{Parts, Reads, SetForm, SetUse, Traits, Value};
 use crate::expressions::graph::ExprId;
 use crate::model::{Ball, Place};
-use crate::resolve::context::Context;
 use crate::resolve::elaborator::Elaborator;
+use crate::resolve::elaborator::context::Context;
+use crate::resolve::elaborator::value::{Parts, Reads, SetForm, SetUse, Traits, Value};
 use crate::syntax::text;
 use fdcc_grammar::Span;
 use fdcc_grammar::ast::{Expr, ExprKind};

@@ -1,10 +1,10 @@
 //! Calls with a meaning of their own: sets, whole-run numbers, data.
 
 use super::calls::argument_span;
-use super::value::{Parts, Reads, SetForm, SetUse, Traits, Value};
 use crate::expressions::graph::{Expr as Node, ExprId};
 use crate::model::{Integral, Place, Simulated, Symbol};
-use crate::resolve::context::Context;
+use crate::resolve::elaborator::context::Context;
+use crate::resolve::elaborator::value::{Parts, Reads, SetForm, SetUse, Traits, Value};
 use crate::resolve::elaborator::{Elaborator, SurfaceEntry};
 use crate::syntax::{scope, text};
 use fdcc_grammar::ast::{Argument, Expr, ExprKind, Ident, ItemKind};

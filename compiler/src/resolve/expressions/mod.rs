@@ -7,10 +7,9 @@ mod forms;
 pub(crate) mod knots;
 mod operators;
 mod piecewise;
-pub(crate) mod value;
 
 use super::elaborator::Elaborator;
-use super::expressions::value::{Parts, Traits, Value};
+use super::elaborator::value::{Parts, Traits, Value};
 use crate::syntax::DEEPEST;
 use crate::syntax::{scope, walk};
 use crate::units;

@@ -3,9 +3,9 @@
 //! A right side stays affine in every selector: sets may be added and multiplied by single values,
 //! and by sets of other surfaces. Anything else is told here.
 
-use super::value::{Parts, SetUse, Traits, Value};
 use crate::expressions::graph::{ExprId, Graph};
 use crate::resolve::elaborator::Elaborator;
+use crate::resolve::elaborator::value::{Parts, SetUse, Traits, Value};
 use crate::syntax::text;
 use fdcc_grammar::ast::{BinaryOperator, Expr};
 use fdcc_grammar::{Code, Diagnostic, Span};

@@ -2,9 +2,9 @@
 //! counts.
 
 use super::knots::Guard;
-use super::value::{KnotUse, Parts, Traits, Value};
 use crate::expressions::graph::ExprId;
 use crate::resolve::elaborator::Elaborator;
+use crate::resolve::elaborator::value::{KnotUse, Parts, Traits, Value};
 use crate::syntax::text;
 use fdcc_grammar::ast::{Arm, Expr, Relation};
 use fdcc_grammar::{Code, Diagnostic, Fix};

@@ -6,9 +6,9 @@
 
 use crate::expressions::graph::ExprId;
 use crate::model::{Constraint, Place, Range};
-use crate::resolve::context::Context;
+use crate::resolve::elaborator::context::Context;
+use crate::resolve::elaborator::value::{Traits, Value};
 use crate::resolve::elaborator::{Elaborator, Role};
-use crate::resolve::expressions::value::{Traits, Value};
 use crate::syntax::text;
 use fdcc_grammar::ast::{Argument, Condition, Expr, ExprKind, Ident, Relation};
 use fdcc_grammar::{Code, Diagnostic};

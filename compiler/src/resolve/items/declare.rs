@@ -2,9 +2,9 @@
 
 use crate::expressions::graph::ExprId;
 use crate::model::{Control, Definition, Free, Param, Place, Range, State, Symbol};
-use crate::resolve::context::Context;
+use crate::resolve::elaborator::context::Context;
+use crate::resolve::elaborator::value::{Parts, Reads, Traits, Value};
 use crate::resolve::elaborator::{Elaborator, Role};
-use crate::resolve::expressions::value::{Parts, Reads, Traits, Value};
 use crate::syntax::{order, scope};
 use fdcc_grammar::ast::{Expr, Ident, Interval, ItemKind, Start};
 

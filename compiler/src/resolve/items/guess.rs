@@ -1,9 +1,9 @@
 //! The `guess` block: curves for states and controls, numbers for unknowns, each seeing those above
 //! it.
 
-use crate::resolve::context::Context;
+use crate::resolve::elaborator::context::Context;
+use crate::resolve::elaborator::value::Value;
 use crate::resolve::elaborator::{Elaborator, Role};
-use crate::resolve::expressions::value::Value;
 use crate::syntax::scope;
 use fdcc_grammar::ast::{Binding, ItemKind};
 use fdcc_grammar::{Code, Diagnostic};
@@ -36,7 +36,7 @@ impl<'a> Elaborator<'a> {
             }
         }
         if !is_free {
-            let parts = crate::resolve::expressions::value::Parts::from_list(&parts);
+            let parts = crate::resolve::elaborator::value::Parts::from_list(&parts);
             self.locals
                 .push((&binding.name.name, Value { parts, traits: value.traits, named: Some(at) }));
         }

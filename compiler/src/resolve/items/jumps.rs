@@ -2,8 +2,8 @@
 
 use crate::expressions::graph::ExprId;
 use crate::model::{Jump, Place};
-use crate::resolve::context::Context;
 use crate::resolve::elaborator::Elaborator;
+use crate::resolve::elaborator::context::Context;
 use fdcc_grammar::ast::{Assignment, Ident, Item, ItemKind};
 
 impl<'a> Elaborator<'a> {

@@ -8,9 +8,9 @@ mod jumps;
 mod settings;
 mod sweep;
 
-use super::context::Context;
+use super::elaborator::context::Context;
+use super::elaborator::value::Value;
 use super::elaborator::{Elaborator, Role};
-use super::expressions::value::Value;
 use crate::expressions::graph::ExprId;
 use crate::model::{Comparison, Expectation, Place, Report};
 use crate::syntax::{scope, text};

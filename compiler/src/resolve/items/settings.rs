@@ -1,6 +1,6 @@
 //! The `method` block.
 
-use crate::resolve::context::Context;
+use crate::resolve::elaborator::context::Context;
 use crate::resolve::elaborator::{Elaborator, Role};
 use crate::settings::conflicts::misfit;
 use crate::settings::{Given, Refused, keys, nearest_key, nearest_word, set};

@@ -1,7 +1,7 @@
 //! The `sweep` block: lists of values for parameters and settings, which go together row by row.
 
 use crate::model::{Place, Swept};
-use crate::resolve::context::Context;
+use crate::resolve::elaborator::context::Context;
 use crate::resolve::elaborator::{Elaborator, Role};
 use crate::settings::{Given, Refused, is_key, keys, nearest_key, set};
 use crate::syntax::{closest, text};

@@ -13,6 +13,7 @@ pub(super) mod readings;
 pub(super) mod requirement;
 pub(super) mod solve;
 pub(super) mod value;
+pub(super) mod walk;
 
 use super::dimension::{Atom, Dimension};
 use super::inference::declared::Declared;

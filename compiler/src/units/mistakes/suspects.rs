@@ -7,7 +7,7 @@
 
 use crate::syntax::{scope, walk};
 use crate::units::inference::requirement::{Reason, Requirement};
-use crate::units::{Known, Walk};
+use crate::units::inference::walk::{Known, Walk};
 use fdcc_grammar::Span;
 use fdcc_grammar::ast::{self, Expr, Ident, Item, ItemKind};
 use std::collections::{HashMap, HashSet};

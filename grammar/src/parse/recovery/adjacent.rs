@@ -1,9 +1,9 @@
 //! Two values side by side: FDC0001, the most common slip of people who write formulas.
 
 use super::messages::ErrorContext;
-use crate::parse::Rule;
-use crate::parse::tokens::{Kind, Token};
-use crate::parse::words;
+use crate::parse::grammar::Rule;
+use crate::parse::lexical::tokens::{Kind, Token};
+use crate::parse::lexical::words;
 use crate::{Code, Diagnostic, Fix, Span};
 
 /// FDC0001, if two values stand side by side on one line.

@@ -1,9 +1,9 @@
 //! Brackets without a partner: FDC0006.
 
 use super::messages::ErrorContext;
-use crate::parse::Rule;
-use crate::parse::tokens::{Kind, Token};
-use crate::parse::words;
+use crate::parse::grammar::Rule;
+use crate::parse::lexical::tokens::{Kind, Token};
+use crate::parse::lexical::words;
 use crate::{Code, Diagnostic, Fix, Span};
 
 /// FDC0006, if a bracket of the region has no partner.

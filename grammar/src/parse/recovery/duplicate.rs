@@ -1,9 +1,9 @@
 //! A word or a sign that stands twice: `param param m`, `in in [0, 1]`, `x = = 2`.
 
 use super::messages::ErrorContext;
-use crate::parse::Rule;
-use crate::parse::tokens::{Kind, Token};
-use crate::parse::words;
+use crate::parse::grammar::Rule;
+use crate::parse::lexical::tokens::{Kind, Token};
+use crate::parse::lexical::words;
 use crate::{Code, Diagnostic, Fix};
 
 /// FDC0002, if the region broke off at the second of two equal words or signs, or just behind them.

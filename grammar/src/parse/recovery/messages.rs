@@ -5,11 +5,11 @@
 //! where, and how the right form looks.
 
 use super::{adjacent, brackets, duplicate, missing, typos, unknown};
-use crate::parse::Rule;
-use crate::parse::items::Region;
-use crate::parse::limits::{Failure, MOST_BRACKETS, MOST_LETTERS, MOST_TOKENS};
-use crate::parse::tokens::{Kind, Token};
-use crate::parse::words::{self, Form};
+use crate::parse::grammar::Rule;
+use crate::parse::lexical::items::Region;
+use crate::parse::lexical::limits::{Failure, MOST_BRACKETS, MOST_LETTERS, MOST_TOKENS};
+use crate::parse::lexical::tokens::{Kind, Token};
+use crate::parse::lexical::words::{self, Form};
 use crate::{Code, Diagnostic, Span};
 
 /// The place where the grammar gave up.

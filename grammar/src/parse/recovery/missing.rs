@@ -2,9 +2,9 @@
 //! before a range, `then` before `hold`, a comparison between two values.
 
 use super::messages::{ErrorContext, PIECEWISE};
-use crate::parse::Rule;
-use crate::parse::tokens::{Kind, Token};
-use crate::parse::words;
+use crate::parse::grammar::Rule;
+use crate::parse::lexical::tokens::{Kind, Token};
+use crate::parse::lexical::words;
 use crate::{Code, Diagnostic, Fix};
 
 /// `word` is missing before a token.

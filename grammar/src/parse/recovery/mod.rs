@@ -15,11 +15,11 @@ mod unknown;
 
 use std::collections::HashSet;
 
-use super::Rule;
 use super::cache::ParseCache;
-use super::items::{self, Region};
-use super::limits::{self, Failure};
-use super::tokens::{Kind, Token};
+use super::grammar::Rule;
+use super::lexical::items::{self, Region};
+use super::lexical::limits::{self, Failure};
+use super::lexical::tokens::{Kind, Token};
 use crate::{Diagnostic, Parse, Span};
 
 /// Nobody reads more errors than this, so nothing behind them is tried.

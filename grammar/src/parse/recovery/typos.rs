@@ -1,9 +1,9 @@
 //! Frequent typos, each with the message that helps best.
 
 use super::messages::ErrorContext;
-use crate::parse::Rule;
-use crate::parse::tokens::{Kind, Token};
-use crate::parse::words;
+use crate::parse::grammar::Rule;
+use crate::parse::lexical::tokens::{Kind, Token};
+use crate::parse::lexical::words;
 use crate::{Code, Diagnostic, Fix, Span};
 
 /// Characters that other languages have, what stands for them here, and how to say so.

@@ -2,8 +2,8 @@
 //! without its name.
 
 use super::messages::ErrorContext;
-use crate::parse::tokens::Kind;
-use crate::parse::words;
+use crate::parse::lexical::tokens::Kind;
+use crate::parse::lexical::words;
 use crate::{Code, Diagnostic, Fix};
 
 /// FDC0005: a line that begins with a word which introduces nothing.

@@ -5,7 +5,7 @@ use pest::iterators::Pair;
 use super::Reader;
 use super::expressions::relation;
 use crate::ast::*;
-use crate::parse::Rule;
+use crate::parse::grammar::Rule;
 use crate::{Code, Diagnostic, Span};
 
 /// The first pair of a rule directly below a pair.

@@ -12,7 +12,7 @@ use pest::iterators::Pair;
 use super::Reader;
 use super::blocks::{child, children, ident};
 use crate::ast::{Argument, Arm, BinaryOperator, Expr, ExprKind, Relation};
-use crate::parse::Rule;
+use crate::parse::grammar::Rule;
 use crate::{Code, Diagnostic, Span};
 
 /// The deepest tree that is built.

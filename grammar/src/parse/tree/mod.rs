@@ -5,7 +5,7 @@ mod expressions;
 
 use pest::iterators::{Pair, Pairs};
 
-use super::Rule;
+use super::grammar::Rule;
 use super::tree::blocks::{child, children, ident};
 use crate::ast::*;
 use crate::{Diagnostic, Parse, Span};

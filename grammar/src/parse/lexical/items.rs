@@ -14,15 +14,15 @@ use super::words;
 const LONGEST_UNIT: usize = 100;
 
 /// Pieces are ranges of token numbers.
-pub(super) type Region = Range<usize>;
+pub(crate) type Region = Range<usize>;
 
 /// The items of a file, or of the inside of a phase.
-pub(super) fn items(tokens: &[Token<'_>], range: Region) -> Vec<Region> {
+pub(crate) fn items(tokens: &[Token<'_>], range: Region) -> Vec<Region> {
     cut(tokens, range, begins_item)
 }
 
 /// The entries of a block.
-pub(super) fn entries(tokens: &[Token<'_>], range: Region, block: &str) -> Vec<Region> {
+pub(crate) fn entries(tokens: &[Token<'_>], range: Region, block: &str) -> Vec<Region> {
     cut(tokens, range, |so_far, at| begins_entry(so_far, at, block))
 }
 

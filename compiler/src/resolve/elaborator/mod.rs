@@ -4,8 +4,12 @@
 //! Evaluating an expression never fails: what went wrong is told once, and its value is unknown
 //! from there on.
 
-use super::context::Context;
-use super::expressions::value::{Parts, Reads, Traits, Value};
+pub(crate) mod context;
+pub(crate) mod knots;
+pub(crate) mod value;
+
+use super::elaborator::context::Context;
+use super::elaborator::value::{Parts, Reads, Traits, Value};
 use crate::expressions::blend::Guards;
 use crate::expressions::graph::evaluate;
 use crate::expressions::graph::{ExprId, Graph};
@@ -96,7 +100,7 @@ pub(crate) struct Elaborator<'a> {
     /// Results of functions, by function, examination and arguments.
     pub applied: HashMap<(usize, bool, Vec<Value>), Value>,
     /// Piecewise definitions by their place.
-    pub sites: HashMap<Span, crate::resolve::expressions::knots::Site<'a>>,
+    pub sites: HashMap<Span, crate::resolve::elaborator::knots::Site<'a>>,
     /// What selections compare.
     pub guards: Guards,
     /// Stand-ins for the arguments of functions that are examined by themselves.

@@ -5,7 +5,7 @@ use super::elementary;
 use crate::expressions::graph::builtins::{Builtin, Inline, Lowering};
 
 /// Arithmetic on numbers, masks of them and their bits.
-pub(super) trait Arithmetic {
+pub(crate) trait Arithmetic {
     /// A number at each of a few neighbouring points; also a mask or bits in the place of one.
     type Number: Copy;
 
@@ -82,7 +82,7 @@ pub(super) trait Arithmetic {
 }
 
 /// A builtin of these operands.
-pub(super) fn call<A: Arithmetic>(
+pub(crate) fn call<A: Arithmetic>(
     on: &mut A,
     builtin: Builtin,
     operands: &[A::Number],

@@ -69,7 +69,7 @@ const EXPONENTIAL: [f64; 12] = [
 type Called = (&'static str, extern "C" fn(f64) -> f64);
 
 /// What is called for large arguments.
-pub(super) const LIBRARY: [Called; 3] = [SIN, COS, EXP];
+pub(crate) const LIBRARY: [Called; 3] = [SIN, COS, EXP];
 const SIN: Called = ("sin", library_sin);
 const COS: Called = ("cos", library_cos);
 const EXP: Called = ("exp", library_exp);
@@ -88,7 +88,7 @@ extern "C" fn library_exp(x: f64) -> f64 {
 ///
 /// With q = round(2 x / pi) and r = x - q pi/2, the values are those of r, exchanged if q is odd,
 /// and negated if bit 1 of q (sine) or of q + 1 (cosine) is set.
-pub(super) fn sine_and_cosine<A: Arithmetic>(on: &mut A, x: A::Number) -> [A::Number; 2] {
+pub(crate) fn sine_and_cosine<A: Arithmetic>(on: &mut A, x: A::Number) -> [A::Number; 2] {
     let (quotient, r) = reduce(on, x, std::f64::consts::FRAC_2_PI, &HALF_PI);
     let square = on.multiply(r, r);
     let sine = small_sine(on, r, square);
@@ -118,7 +118,7 @@ fn small_cosine<A: Arithmetic>(on: &mut A, square: A::Number) -> A::Number {
 }
 
 /// exp(x) = 2^k exp(r) with k = round(x / log 2), r = x - k log 2.
-pub(super) fn exponential<A: Arithmetic>(on: &mut A, x: A::Number) -> A::Number {
+pub(crate) fn exponential<A: Arithmetic>(on: &mut A, x: A::Number) -> A::Number {
     let (k, r) = reduce(on, x, std::f64::consts::LOG2_E, &LN_2);
     let power = on.power_of_two(k);
     let small = small_exponential_minus_one(on, r);
@@ -132,7 +132,7 @@ pub(super) fn exponential<A: Arithmetic>(on: &mut A, x: A::Number) -> A::Number 
 
 /// tanh(|x|) = e / (e + 2) with e = exp(2 |x|) - 1 = 2^k (exp(r) - 1) + (2^k - 1), without
 /// cancellation.
-pub(super) fn hyperbolic_tangent<A: Arithmetic>(on: &mut A, x: A::Number) -> A::Number {
+pub(crate) fn hyperbolic_tangent<A: Arithmetic>(on: &mut A, x: A::Number) -> A::Number {
     let magnitude = on.absolute(x);
     let limit = on.number(LARGEST_TANGENT);
     // A NaN is not beyond the limit, and so goes through.

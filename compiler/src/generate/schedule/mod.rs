@@ -4,6 +4,9 @@
 //! every result is computed depth first and stored at once, so that few values are alive at a time.
 //! A product that is used once, by a sum, becomes part of a fused multiply-add.
 
+pub(crate) mod arithmetic;
+pub(crate) mod elementary;
+
 use fdcc_runtime::problem::Layout;
 
 use crate::expressions::graph::builtins::Builtin;
@@ -11,7 +14,7 @@ use crate::expressions::graph::{ById, Expr, ExprId, Graph, Operands};
 
 /// The tables that a kernel writes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Table {
+pub(crate) enum Table {
     Values,
     Jacobian,
     Hessian,
@@ -19,14 +22,14 @@ pub(super) enum Table {
 
 /// A column of a table.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct Slot {
+pub(crate) struct Slot {
     pub table: Table,
     pub column: usize,
 }
 
 /// How a node is computed.
 #[derive(Clone, PartialEq, Debug)]
-pub(super) enum Operation {
+pub(crate) enum Operation {
     /// A column of the points.
     Point(usize),
     Parameter(usize),
@@ -42,7 +45,7 @@ pub(super) enum Operation {
 }
 
 impl Operation {
-    pub(super) fn operands(&self) -> &[ExprId] {
+    pub(crate) fn operands(&self) -> &[ExprId] {
         match self {
             Operation::Call(_, operands) => operands,
             Operation::MultiplyAdd(operands)
@@ -55,7 +58,7 @@ impl Operation {
 
 /// The work of one kernel.
 #[derive(Debug, Default)]
-pub(super) struct Schedule {
+pub(crate) struct Schedule {
     /// Once: independent of the point.
     pub before: Vec<(ExprId, Operation)>,
     /// For every pair of points.
@@ -67,7 +70,7 @@ pub(super) struct Schedule {
 }
 
 /// The order of work for results and their places.
-pub(super) fn schedule(graph: &Graph, layout: &Layout, results: &[(ExprId, Slot)]) -> Schedule {
+pub(crate) fn schedule(graph: &Graph, layout: &Layout, results: &[(ExprId, Slot)]) -> Schedule {
     let nodes = Nodes::new(graph, layout, results);
     let mut schedule = Schedule::default();
     let mut done = vec![false; nodes.varying.len()];

@@ -5,7 +5,7 @@ use crate::{Code, Diagnostic, Edit, Fix, Label, Parse, Severity, Span};
 
 impl Parse {
     /// Adds what was read of a region that begins at byte `start`.
-    pub(super) fn append(&mut self, region: &Parse, start: usize) {
+    pub(crate) fn append(&mut self, region: &Parse, start: usize) {
         let Parse { tree, diagnostics, .. } = region;
         let (from, found) = (self.tree.items.len(), self.diagnostics.len());
         self.tree.items.extend_from_slice(&tree.items);
@@ -22,7 +22,7 @@ impl Parse {
 impl Parse {
     /// Adds an entry that begins at byte `start` of this block to it; nothing if the entry cannot
     /// be used.
-    pub(super) fn adopt(&mut self, entry: &Parse, start: usize) -> Option<()> {
+    pub(crate) fn adopt(&mut self, entry: &Parse, start: usize) -> Option<()> {
         let mut moved = Parse::default();
         moved.append(entry, start);
         let (Some(block), true) = (self.tree.items.first_mut(), moved.diagnostics.is_empty())

@@ -1,22 +1,22 @@
 //! What is checked before the grammar sees a text, so that no text can exhaust its stack or its
 //! time.
 
-use super::Rule;
 use super::items::Region;
 use super::tokens::{Kind, Token};
 use super::words;
+use crate::parse::grammar::Rule;
 
 /// Brackets inside each other. The grammar recurses on each, so this bounds its stack.
-pub(super) const MOST_BRACKETS: usize = 100;
+pub(crate) const MOST_BRACKETS: usize = 100;
 
 /// Words, numbers and signs of one item. An item written by a person has dozens.
-pub(super) const MOST_TOKENS: usize = 50_000;
+pub(crate) const MOST_TOKENS: usize = 50_000;
 
 /// Bytes of one word or number, so that every message stays readable.
-pub(super) const MOST_LETTERS: usize = 255;
+pub(crate) const MOST_LETTERS: usize = 255;
 
 /// Why a region cannot be read.
-pub(super) enum Failure {
+pub(crate) enum Failure {
     /// The bracket with this token number is one too many inside each other.
     TooDeep(usize),
     /// The item has too many tokens.
@@ -28,7 +28,7 @@ pub(super) enum Failure {
 }
 
 /// Why a region may not be given to the grammar.
-pub(super) fn exceeded(tokens: &[Token<'_>], region: &Region) -> Option<Failure> {
+pub(crate) fn exceeded(tokens: &[Token<'_>], region: &Region) -> Option<Failure> {
     let inside = &tokens[region.clone()];
     let bracket = || too_deep(inside).map(|at| Failure::TooDeep(region.start + at));
     let word = || long_word(inside).map(|at| Failure::LongWord(region.start + at));

@@ -8,7 +8,7 @@ use pest::unicode::{XID_CONTINUE, XID_START};
 
 /// What a token looks like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     Word,
     Number,
     Text,
@@ -21,7 +21,7 @@ pub(super) enum Kind {
 
 /// One token.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Token<'t> {
+pub(crate) struct Token<'t> {
     pub kind: Kind,
     pub text: &'t str,
     pub start: usize,
@@ -62,7 +62,7 @@ impl Token<'_> {
 const TWO_CHARACTER_SIGNS: &[&str] = &["<=", ">=", "==", "=>", ":=", "->", "!=", "**", "&&", "||"];
 
 /// All tokens of a text.
-pub(super) fn tokens(text: &str) -> Vec<Token<'_>> {
+pub(crate) fn tokens(text: &str) -> Vec<Token<'_>> {
     let mut tokens = Vec::new();
     let (mut at, mut begins_line) = (0, true);
     while let Some(first) = text[at..].chars().next() {

@@ -1,7 +1,7 @@
 //! What an expression may read, depending on where it stands.
 
-use super::elaborator::Elaborator;
-use super::expressions::value::{Reads, Value};
+use super::Elaborator;
+use super::value::{Reads, Value};
 use fdcc_grammar::{Code, Diagnostic, Span};
 
 /// A place of the language and the kinds of symbols that have a meaning there.

@@ -90,17 +90,17 @@ pub fn items() -> impl Iterator<Item = &'static Word> {
 }
 
 /// The entry of a reserved word.
-pub(super) fn reserved(text: &str) -> Option<&'static Word> {
+pub(crate) fn reserved(text: &str) -> Option<&'static Word> {
     WORDS.iter().find(|word| word.text == text)
 }
 
 /// The form of the item that a word introduces.
-pub(super) fn form(text: &str) -> Option<&'static Form> {
+pub(crate) fn form(text: &str) -> Option<&'static Form> {
     reserved(text).and_then(|word| word.item.as_ref())
 }
 
 /// An entry of a block, as messages speak of it; an item that is no block has none.
-pub(super) fn entry_form(block: &str) -> Option<&'static Form> {
+pub(crate) fn entry_form(block: &str) -> Option<&'static Form> {
     match block {
         "dynamics" => Some(&Form { noun: "an equation", example: "x' = v" }),
         "guess" => Some(&Form { noun: "a guess", example: "x = t/T" }),
@@ -130,7 +130,7 @@ pub fn inner_words(item: &str) -> &'static [&'static str] {
 }
 
 /// Whether a word may stand behind a name: it is reserved, or means something inside some item.
-pub(super) fn goes_on(text: &str) -> bool {
+pub(crate) fn goes_on(text: &str) -> bool {
     reserved(text).is_some() || items().any(|item| inner_words(item.text).contains(&text))
 }
 
@@ -156,14 +156,14 @@ const ELSEWHERE: &[(&str, &str)] = &[
 ];
 
 /// The item word that a word is nearly, or that it stands for elsewhere.
-pub(super) fn closest_item(word: &str) -> Option<&'static str> {
+pub(crate) fn closest_item(word: &str) -> Option<&'static str> {
     let items = WORDS.iter().filter(|known| known.item.is_some()).map(|known| known.text);
     let elsewhere = || ELSEWHERE.iter().find(|(other, _)| *other == word).map(|(_, meant)| *meant);
     elsewhere().or_else(|| closest(word, items))
 }
 
 /// The word of a list that is most like another, if it is like enough to have been meant.
-pub(super) fn closest<'w>(word: &str, among: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
+pub(crate) fn closest<'w>(word: &str, among: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
     let length = word.chars().count();
     let allowed = (length / 3).clamp(1, 2);
     let similar = among.into_iter().filter(|known| known.len().abs_diff(length) <= allowed);

@@ -12,6 +12,7 @@ pub(crate) mod endless;
 pub(crate) mod holding;
 pub(crate) mod local;
 pub(crate) mod report;
+mod roots;
 mod sample;
 pub(crate) mod smoothness;
 pub(crate) mod view;

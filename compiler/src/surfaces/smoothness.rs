@@ -11,6 +11,7 @@
 //! what is said.
 
 use super::local::Local;
+use super::roots::{at_power, at_root};
 use super::sample;
 use super::view::View;
 use crate::expressions::graph::builtins::Builtin;
@@ -34,7 +35,7 @@ pub enum Order {
 }
 
 /// Derivatives beyond this are not looked at: what is that smooth is called so.
-const HIGHEST: u32 = 4;
+pub(super) const HIGHEST: u32 = 4;
 /// Points of a knot that are looked at, and how far its sides are from it.
 const MOST_POINTS: usize = 6;
 const NUDGE: f64 = 1e-6;
@@ -172,7 +173,7 @@ fn note(local: &mut Local, zeros: &mut BTreeMap<ExprId, bool>, gap: ExprId, may_
 }
 
 /// Whether a function has a zero within the bounds, as far as can be proved.
-fn may_vanish(local: &Local, function: ExprId) -> bool {
+pub(super) fn may_vanish(local: &Local, function: ExprId) -> bool {
     let mut prover = Prover::new(local.domain.clone(), Vec::new());
     !prover.proves(&local.graph, &[(function, Claim::Positive)])
         && !prover.proves(&local.graph, &[(function, Claim::Negative)])
@@ -231,7 +232,7 @@ fn apart(local: &mut Local, zero: ExprId, other: ExprId) -> bool {
 
 /// Whether a function is affine in some input, with a constant factor: then a few places stand for
 /// all of its zeros.
-fn is_affine(local: &mut Local, zero: ExprId) -> bool {
+pub(super) fn is_affine(local: &mut Local, zero: ExprId) -> bool {
     let mut inputs = local.graph.inputs_of(&[zero]);
     inputs.retain(|&at| !matches!(local.symbols[at as usize], Symbol::Param(_)));
     inputs.into_iter().any(|input| {
@@ -302,7 +303,7 @@ fn first_difference(local: &mut Local, mut sides: [ExprId; 2], point: &[f64], in
 }
 
 /// The derivative of some order by one input.
-fn along(local: &mut Local, expr: ExprId, input: u32, times: u32) -> ExprId {
+pub(super) fn along(local: &mut Local, expr: ExprId, input: u32, times: u32) -> ExprId {
     (0..times).fold(expr, |expr, _| derivative(&mut local.graph, expr, input))
 }
 
@@ -334,7 +335,7 @@ fn on_side(local: &mut Local, root: ExprId, near: &[f64]) -> ExprId {
 }
 
 /// For each point the input by which a function changes most.
-fn steepest(local: &mut Local, zero: ExprId, points: &[Vec<f64>]) -> Vec<u32> {
+pub(super) fn steepest(local: &mut Local, zero: ExprId, points: &[Vec<f64>]) -> Vec<u32> {
     let inputs = local.graph.inputs_of(&[zero]);
     let movable =
         inputs.into_iter().filter(|&at| !matches!(local.symbols[at as usize], Symbol::Param(_)));
@@ -347,72 +348,4 @@ fn steepest(local: &mut Local, zero: ExprId, points: &[Vec<f64>]) -> Vec<u32> {
         movable[best.expect("a function with a zero depends on something")]
     };
     points.iter().map(steepest).collect()
-}
-
-/// A square root at 0: the order to which its factor vanishes there.
-fn at_root(
-    local: &mut Local,
-    root: ExprId,
-    node: ExprId,
-    operand: ExprId,
-) -> Option<(Order, Polynomial)> {
-    if !may_vanish(local, operand) {
-        return None;
-    }
-    let points = sample::zeros(local, operand);
-    let form = local.form(operand);
-    let order = match factor(local, root, node, operand) {
-        Some(factor) if !points.is_empty() && is_affine(local, operand) => {
-            vanishing(local, factor, operand, &points)
-        }
-        _ => Order::Times(0),
-    };
-    Some((order, form))
-}
-
-/// `Q` of `P + Q sqrt(a)`, if the expression is of that form.
-fn factor(local: &mut Local, root: ExprId, node: ExprId, operand: ExprId) -> Option<ExprId> {
-    let symbol = local.add_input();
-    let negative = local.graph.neg(symbol);
-    let [plus, minus] = [symbol, negative].map(|with| {
-        local
-            .graph
-            .rewrite(&[root], |_, original, rebuilt| if original == node { with } else { rebuilt })
-            [0]
-    });
-    let difference = local.graph.sub(plus, minus);
-    let odd = local.form(difference).divided(&Polynomial::atom(symbol))?;
-    // What is left has even powers of the root, which are powers of what it is taken of.
-    let root = local.graph.sqrt(operand);
-    let Expr::Input(position) = *local.graph.expr(symbol) else { return None };
-    let even = odd.to_expr(&mut local.graph);
-    let even = local.graph.substitute(&[even], &|input| (input == position).then_some(root))[0];
-    let even = local.normal(even);
-    (!local.graph.reachable(&[even]).contains(&root)).then_some(even)
-}
-
-/// To which order a factor vanishes where another function does, with a gradient that does not.
-fn vanishing(local: &mut Local, factor: ExprId, zero: ExprId, points: &[Vec<f64>]) -> Order {
-    let varying = steepest(local, zero, points);
-    for times in 0..=HIGHEST {
-        let vanishes = points.iter().zip(&varying).all(|(point, input)| {
-            let roots =
-                [along(local, factor, *input, times), derivative(&mut local.graph, zero, *input)];
-            let values = evaluate(&local.graph, &roots, point, &[]);
-            values[0].abs() <= 1e-9 && values[1].abs() > 1e-6
-        });
-        if !vanishes {
-            return Order::Times(times);
-        }
-    }
-    Order::Times(HIGHEST)
-}
-
-/// `a^p` at 0, for a power that is no whole number.
-fn at_power(local: &mut Local, base: ExprId, exponent: ExprId) -> Option<(Order, Polynomial)> {
-    let power =
-        local.graph.as_number(exponent).filter(|power| power.fract() != 0.0 && *power > 0.0)?;
-    let reached = may_vanish(local, base);
-    let order = (power.floor() as u32).min(HIGHEST);
-    reached.then(|| (Order::Times(order), local.form(base)))
 }

@@ -7,6 +7,7 @@
 pub mod builtins;
 pub mod derivative;
 pub mod evaluate;
+mod power;
 pub mod print;
 mod quick;
 mod simplify;

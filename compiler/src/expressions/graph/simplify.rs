@@ -5,10 +5,8 @@
 //! the same denominator; operands of `+` and `*` are sorted. Each identity holds wherever the left
 //! side has a finite value, up to rounding.
 use super::builtins::{Builtin, Parity};
+use super::power::pow;
 use super::{Expr, ExprId, Graph, Operands};
-
-/// Whole exponents up to this size become multiplications.
-const LARGEST_EXPANDED_EXPONENT: f64 = 64.0;
 
 /// The simplest known equal of `builtin(operands)`.
 pub(super) fn simplify(graph: &mut Graph, builtin: Builtin, operands: &[ExprId]) -> ExprId {
@@ -270,34 +268,6 @@ fn reciprocal(graph: &mut Graph, b: ExprId) -> Option<ExprId> {
 fn reciprocal_of(graph: &Graph, a: ExprId) -> Option<ExprId> {
     let operands = graph.as_call(a, Builtin::Div)?;
     (graph.as_number(operands[0]) == Some(1.0)).then_some(operands[1])
-}
-
-fn pow(graph: &mut Graph, base: ExprId, exponent: ExprId) -> Option<ExprId> {
-    let exponent =
-        graph.as_number(exponent).filter(|number| number.abs() <= LARGEST_EXPANDED_EXPONENT)?;
-    let halves = 2.0 * exponent;
-    if halves.fract() != 0.0 {
-        return None;
-    }
-    // x^n = x * x * ... * x
-    let mut power = whole_power(graph, base, halves.abs() as u32 / 2);
-    // x^(n + 1/2) = x^n sqrt(x)
-    if exponent.fract() != 0.0 {
-        let root = graph.sqrt(base);
-        power = graph.mul(power, root);
-    }
-    // x^(-n) = 1 / x^n
-    Some(if exponent < 0.0 { graph.reciprocal(power) } else { power })
-}
-
-/// Repeated squaring.
-fn whole_power(graph: &mut Graph, base: ExprId, exponent: u32) -> ExprId {
-    if exponent == 0 {
-        return graph.number(1.0);
-    }
-    let root = whole_power(graph, base, exponent / 2);
-    let square = graph.square(root);
-    if exponent % 2 == 1 { graph.mul(square, base) } else { square }
 }
 
 fn select(graph: &mut Graph, a: ExprId, b: ExprId, x: ExprId, y: ExprId) -> Option<ExprId> {

@@ -23,7 +23,7 @@ pub(super) fn without_consequences(mut diagnostics: Vec<Diagnostic>) -> Vec<Diag
     diagnostics
 }
 
-/// One finding for each unknown name, wherever it is used; and what it is likely a slip for is not
+/// One finding for each unknown name, wherever it is used; and what it is likely a typo of is not
 /// called unused.
 pub(super) fn without_echoes(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let mut kept: Vec<Diagnostic> = Vec::new();

@@ -77,7 +77,7 @@ impl<'a> Scope<'a> {
         );
         let known = self.declarations.iter().map(|it| it.name.name.as_str());
         self.compared.set(self.compared.get() + 1);
-        // `T` is no slip for `t`.
+        // `T` is no typo of `t`.
         let is_compared = self.compared.get() <= MOST_PROPOSALS && name.chars().nth(1).is_some();
         let known = known.chain(extra.iter().copied()).filter(|_| is_compared);
         let Some(near) = closest(name, known) else {

@@ -9,15 +9,15 @@ use crate::units;
 use fdcc_grammar::ast::{Ident, Interval, Item, ItemKind, Start};
 use fdcc_grammar::{Code, Diagnostic, Edit, Fix, Label, Span};
 
-/// Reports all of them together: they have one cause, a slip of the pen, and one repair.
+/// Reports all of them together: they have one cause, a typo, and one repair.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
-    let mut slips =
-        Slips { labels: Vec::new(), repairs: Vec::new(), swap: Fix::certain("swap the bounds") };
+    let mut mistakes =
+        Mistakes { labels: Vec::new(), repairs: Vec::new(), swap: Fix::certain("swap the bounds") };
     for item in &facts.items {
-        look(facts.meaning, item, &mut slips);
+        look(facts.meaning, item, &mut mistakes);
     }
-    rows(facts.meaning, &mut slips);
-    let mut labels = slips.labels.into_iter();
+    rows(facts.meaning, &mut mistakes);
+    let mut labels = mistakes.labels.into_iter();
     if let Some(first) = labels.next() {
         let mut diagnostic = Diagnostic::new(
             Code::EmptyBounds,
@@ -26,19 +26,19 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
             first.text,
         );
         diagnostic.labels.extend(labels);
-        diagnostic.fixes.extend(Some(slips.swap).filter(|swap| !swap.edits.is_empty()));
-        found.push(diagnostic.help(slips.repairs.join("\n")));
+        diagnostic.fixes.extend(Some(mistakes.swap).filter(|swap| !swap.edits.is_empty()));
+        found.push(diagnostic.help(mistakes.repairs.join("\n")));
     }
 }
 
 /// What has been found so far, as one diagnostic will say it.
-struct Slips {
+struct Mistakes {
     labels: Vec<Label>,
     repairs: Vec<String>,
     swap: Fix,
 }
 
-fn look(meaning: &Elaborator<'_>, item: &Item, slips: &mut Slips) {
+fn look(meaning: &Elaborator<'_>, item: &Item, mistakes: &mut Mistakes) {
     let first =
         crate::syntax::scope::declared(item).and_then(|name| meaning.scope.find(&name.name));
     let Some(index) = first.filter(|&at| std::ptr::eq(meaning.scope.declarations[at].item, item))
@@ -46,7 +46,7 @@ fn look(meaning: &Elaborator<'_>, item: &Item, slips: &mut Slips) {
         return;
     };
     if let ItemKind::Time { interval, .. } = &item.kind {
-        return backwards(meaning, interval, scale(item), slips);
+        return backwards(meaning, interval, scale(item), mistakes);
     }
     let Some(index) = meaning.index_of(index) else { return };
     let scale = scale(item);
@@ -54,21 +54,21 @@ fn look(meaning: &Elaborator<'_>, item: &Item, slips: &mut Slips) {
         ItemKind::Control { name, bounds: Some(bounds), parts, .. } => {
             let ranges =
                 meaning.model.controls[index..].iter().take(parts.len().max(1)).map(|it| it.range);
-            reversed(meaning, ("control", name, scale), bounds, ranges, slips)
+            reversed(meaning, ("control", name, scale), bounds, ranges, mistakes)
         }
         ItemKind::Free { name, bounds: Some(bounds), .. } => reversed(
             meaning,
             ("free", name, scale),
             bounds,
             [meaning.model.frees[index].range],
-            slips,
+            mistakes,
         ),
         ItemKind::Param { name, value, bounds: Some(bounds), .. } => {
             let range = meaning.model.params[index].range;
-            reversed(meaning, ("param", name, scale), bounds, [range], slips);
+            reversed(meaning, ("param", name, scale), bounds, [range], mistakes);
             if let Some(value) = value {
                 let subject = Subject { name: &name.name, verb: "is", span: value.span, scale };
-                outside(meaning, subject, meaning.param_values[index], range, slips);
+                outside(meaning, subject, meaning.param_values[index], range, mistakes);
             }
         }
         ItemKind::State { name, bounds, start, parts, .. } => {
@@ -80,11 +80,11 @@ fn look(meaning: &Elaborator<'_>, item: &Item, slips: &mut Slips) {
                     ("state", name, scale),
                     bounds,
                     states.iter().map(|it| it.range),
-                    slips,
+                    mistakes,
                 );
             }
             if let Some(Start::Value(value)) = start {
-                starts(meaning, states, (value.span, scale), slips);
+                starts(meaning, states, (value.span, scale), mistakes);
             }
         }
         _ => {}
@@ -95,12 +95,12 @@ fn starts(
     meaning: &Elaborator<'_>,
     states: &[State],
     (span, scale): (Span, f64),
-    slips: &mut Slips,
+    mistakes: &mut Mistakes,
 ) {
     for state in states {
         let given = state.start.map_or(f64::NAN, |start| meaning.numeric(start));
         let subject = Subject { name: &state.place.name, verb: "starts", span, scale };
-        outside(meaning, subject, given, state.range, slips);
+        outside(meaning, subject, given, state.range, mistakes);
     }
 }
 
@@ -123,7 +123,7 @@ fn reversed(
     (word, name, scale): (&str, &Ident, f64),
     bounds: &Interval,
     ranges: impl IntoIterator<Item = Range>,
-    slips: &mut Slips,
+    mistakes: &mut Mistakes,
 ) {
     let bad = ranges
         .into_iter()
@@ -135,11 +135,11 @@ fn reversed(
             shown(lower / scale),
             shown(upper / scale)
         );
-        slips.labels.push(Label { span: bounds.span, text });
+        mistakes.labels.push(Label { span: bounds.span, text });
         let (lower, upper) = (text::expr(&bounds.lower), text::expr(&bounds.upper));
-        slips.repairs.push(format!("swap them: `{word} {} in [{upper}, {lower}]`", name.name));
+        mistakes.repairs.push(format!("swap them: `{word} {} in [{upper}, {lower}]`", name.name));
         let ends = [(bounds.lower.span, upper), (bounds.upper.span, lower)];
-        slips.swap.edits.extend(ends.map(|(span, replacement)| Edit { span, replacement }));
+        mistakes.swap.edits.extend(ends.map(|(span, replacement)| Edit { span, replacement }));
     }
 }
 
@@ -157,7 +157,7 @@ fn outside(
     subject: Subject<'_>,
     given: f64,
     range: Range,
-    slips: &mut Slips,
+    mistakes: &mut Mistakes,
 ) {
     let [lower, upper] = numbers(meaning, range);
     let (side, change, limit) = match () {
@@ -167,27 +167,27 @@ fn outside(
         _ => return,
     };
     let [limit, given] = [limit, given].map(|it| shown(it / subject.scale));
-    slips
+    mistakes
         .labels
         .push(Label { span: subject.span, text: format!("{} {side} {limit}", subject.verb) });
     let other = if subject.verb == "starts" { "start at" } else { "give it" };
-    slips
+    mistakes
         .repairs
         .push(format!("for `{}`, {change} the bound to {given} or {other} {limit}", subject.name));
 }
 
-fn backwards(meaning: &Elaborator<'_>, interval: &Interval, scale: f64, slips: &mut Slips) {
+fn backwards(meaning: &Elaborator<'_>, interval: &Interval, scale: f64, mistakes: &mut Mistakes) {
     let [first, last] = meaning.interval.map(|end| meaning.numeric(end));
     if first >= last {
         let text =
             format!("ends at {}, but starts at {}", shown(last / scale), shown(first / scale));
-        slips.labels.push(Label { span: interval.span, text });
-        slips.repairs.push("give time a first value below its last".into());
+        mistakes.labels.push(Label { span: interval.span, text });
+        mistakes.repairs.push("give time a first value below its last".into());
     }
 }
 
 /// Conditions between constants that exclude each other.
-fn rows(meaning: &Elaborator<'_>, slips: &mut Slips) {
+fn rows(meaning: &Elaborator<'_>, mistakes: &mut Mistakes) {
     for row in meaning.model.path.iter().chain(&meaning.model.boundary) {
         let [lower, upper] = numbers(meaning, row.range);
         if lower > upper {
@@ -196,8 +196,8 @@ fn rows(meaning: &Elaborator<'_>, slips: &mut Slips) {
                 text::number(lower),
                 text::number(upper)
             );
-            slips.labels.push(Label { span: row.place.span, text });
-            slips.repairs.push(format!(
+            mistakes.labels.push(Label { span: row.place.span, text });
+            mistakes.repairs.push(format!(
                 "for `{}`, the left limit must be below the right one",
                 row.place.name
             ));

@@ -43,10 +43,10 @@ impl Claim {
     }
 }
 
-/// Operations that all proofs about one surface may take together, and pieces that one of them may
+/// Operations that all proofs about one surface may take together, and boxes that one of them may
 /// look at.
 const BUDGET: usize = 40_000;
-const MOST_PIECES: usize = 400;
+const MOST_BOXES: usize = 400;
 
 /// Proves claims over a part of a box.
 pub(crate) struct Prover {
@@ -85,10 +85,10 @@ impl Prover {
         let mut inputs: Vec<u32> = tape.inputs().collect();
         inputs.sort_unstable();
         let mut pending = vec![self.domain.clone()];
-        let mut pieces = 0;
+        let mut boxes = 0;
         while let Some(piece) = pending.pop() {
-            pieces += 1;
-            if pieces > MOST_PIECES || self.budget < tape.cost() {
+            boxes += 1;
+            if boxes > MOST_BOXES || self.budget < tape.cost() {
                 return false;
             }
             self.budget -= tape.cost();

@@ -339,7 +339,7 @@ fn exit_codes_and_words_are_those_of_the_contract() {
             "has no state or control of the model `ramp`",
         ),
         (&[&racecar, "--method", "N=40", "--method", "max_iter=3"], 2, "iteration limit"),
-        (&[&racecar, "--method", "N=40", "--time-limit", "1e-9"], 2, "time limit"),
+        (&[&racecar, "--method", "N=8000", "--time-limit", "0.5"], 2, "time limit"),
     ];
     for (arguments, code, words) in cases {
         let output = fdcc(&folder, &[&["solve", "--log", "none"], *arguments].concat(), "");
@@ -358,7 +358,7 @@ fn nothing_but_json_is_on_the_standard_output() {
         (&["ramp.fdc", "--log", "full", "--out", "."], 0, "solved"),
         (&["ramp.fdc", "--set", "goal=5"], 2, "infeasible"),
         (&[&racecar, "--method", "N=40", "--method", "max_iter=3"], 2, "iteration_limit"),
-        (&[&racecar, "--method", "N=40", "--time-limit", "1e-9"], 2, "time_limit"),
+        (&[&racecar, "--method", "N=8000", "--time-limit", "0.5"], 2, "time_limit"),
     ];
     for (arguments, code, status) in cases {
         let output = fdcc(&folder, &[&["solve", "--json"], *arguments].concat(), "");

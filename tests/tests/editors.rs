@@ -25,7 +25,7 @@ fn words() -> BTreeMap<&'static str, Vec<&'static str>> {
         ("keywords", reserved(false).collect()),
         ("clauses", clauses),
         ("functions", function_names()),
-        ("constants", vec!["pi"]),
+        ("constants", vec!["pi", "inf"]),
     ])
 }
 

@@ -290,6 +290,7 @@ fn unsafe_code_is_in_its_places_and_says_why_it_is_sound() {
         "compiler/src/generate/",
         "runtime/src/linalg/riccati/chain.rs",
         "runtime/src/linalg/products/mod.rs",
+        "runtime/src/nlp/convex/clarabel.rs",
         "editors/tree-sitter-fdc/bindings/",
     ];
     let mut breaches = Vec::new();

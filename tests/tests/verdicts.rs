@@ -158,3 +158,51 @@ fn a_flat_minimum_is_reached() {
     let solution = solved(text);
     assert!(solution.status == Status::Solved && solution.objective < 1e-12, "{solution:?}");
 }
+
+/// Slope and curvature are 0 at the guess, which is no minimum: each least value by calculus, the
+/// same in each interval.
+#[test]
+fn a_flat_point_that_is_no_minimum_is_left() {
+    for (cost, least) in [
+        ("u^3", -1.0),
+        ("-u^4", -1.0),
+        ("u^4 - u^3", -27.0 / 256.0),
+        ("3*u^4 - 4*u^3", -1.0),
+        ("u^6 - u^4", -4.0 / 27.0),
+    ] {
+        for intervals in [5, 20] {
+            let solution = solved(&format!(
+                "time t in [0, 1] state x start 0 control u in [-1, 1] dynamics {{ x' = u }}\n\
+                 minimize integral({cost}) method {{ N = {intervals} scheme midpoint }}"
+            ));
+            assert_solved(cost, &solution, least);
+        }
+    }
+}
+
+/// The last interval can make up for what all others do, up to its bound: without end only as far
+/// as nobody looks at bounds far away. `J = 0.001 h sum u_k`, less the price of `x(3) = 1`, by
+/// CasADi and IPOPT.
+#[test]
+fn far_bounds_are_bounds() {
+    for (bound, least) in [("1e6", -6485.74954136), ("1e9", -6485759.98918)] {
+        let text = format!(
+            "time t in [0, 3] state x start 0 control u in [-inf, {bound}] dynamics {{ x' = u - x }}\n\
+             minimize (x(end) - 1)^2 + 0.001*integral(u) method {{ N = 5 }}"
+        );
+        assert_solved(bound, &solved(&text), least);
+    }
+}
+
+/// Twins that have to differ at the end: by so little that each step may hide its share.
+#[test]
+fn a_contradiction_that_is_spread_over_the_grid_is_one() {
+    for (gap, intervals) in [("1e-3", 100), ("1e-4", 100), ("1e-4", 1000)] {
+        let solution = solved(&format!(
+            "time t in [0, 2] state x start 0 state v start 0 control u\n\
+             dynamics {{ x' = u  v' = u }} end x == 1 end v >= 1 + {gap} minimize integral(u^2)\n\
+             method {{ N = {intervals} scheme midpoint }}"
+        ));
+        assert_eq!(solution.status, Status::Infeasible, "{gap} over {intervals}");
+    }
+}

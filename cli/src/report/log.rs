@@ -84,6 +84,7 @@ impl Log {
         let (iteration, violation) = (progress.iteration, progress.primal_infeasibility);
         self.bar.set_message(format!("{label}iteration {iteration}  violation {violation:.1e}"));
         let wanted = match self.level {
+            _ if progress.is_conic => false,
             Level::None => false,
             Level::Short => !is_part && progress.iteration.is_multiple_of(SHORT),
             Level::Full => true,

@@ -16,7 +16,7 @@ use super::enclosures::{Watched, enclosures};
 use super::function::{Order, VectorFunction};
 use super::guess;
 use super::inputs::{self, Inputs, Sizes};
-use super::kinks::{Kinks, take_out};
+use super::kinks::take_out;
 use super::problem::{controls, parameters, states, surfaces};
 use super::{interval, origin, smoothed};
 use crate::expressions::graph::derivative::derivative;
@@ -174,20 +174,13 @@ impl OverTime<'_> {
         self.function("path", model.path.iter().map(|row| (row.value, origin(&row.place))), 0..0)
     }
 
-    /// Gives the kinks of the flow selectors; where a solve smooths, there are none.
+    /// Gives the kinks of the flow selectors; where a solve smooths, the knots of the kernel.
     fn kinks(&mut self, flow: &mut VectorFunction) -> VectorFunction {
-        let mut kinks = Kinks::default();
-        if self.purpose != Purpose::Smoothed {
-            let guards = self.guards().outputs;
-            let is_alone =
-                |at: usize| self.model.balls.iter().all(|ball| !ball.surfaces.contains(&at));
-            let guards: Vec<Option<ExprId>> = guards
-                .into_iter()
-                .enumerate()
-                .map(|(at, psi)| is_alone(at).then_some(psi))
-                .collect();
-            kinks = take_out(self.graph, flow, &guards);
-        }
+        let guards = self.guards().outputs;
+        let is_alone = |at: usize| self.model.balls.iter().all(|ball| !ball.surfaces.contains(&at));
+        let guards: Vec<Option<ExprId>> =
+            guards.into_iter().enumerate().map(|(at, psi)| is_alone(at).then_some(psi)).collect();
+        let kinks = take_out(self.graph, flow, &guards);
         self.layout.s += kinks.zeros.len();
         flow.layout = self.layout;
         self.over_inputs("kinks", kinks.zeros, kinks.origins, 0..self.layout.states().end)

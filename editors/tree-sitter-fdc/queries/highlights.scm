@@ -61,7 +61,7 @@
 ((name) @constant.builtin
   (#any-of? @constant.builtin
     ; words: constants
-"pi"
+"pi" "inf"
   ))
 
 [ "<=" ">=" "==" "<" ">" "=" ":=" "=>" "->" "+" "-" "*" "/" "^" "'" ] @operator

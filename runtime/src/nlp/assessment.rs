@@ -4,6 +4,7 @@
 //!
 //! ```text
 //!     violation   = max over rows    |how far c_i is outside| / size of the terms of the row
+//!     spread      = max over states  sum over time  |defect| / size of the state
 //!     improvement = ( sum z_j * min(distance_j, size_j)  +  sum |lambda_i| * violation_i  +  sum
 //! |grad L|_j * size_j ) / size of f
 //! ```
@@ -19,6 +20,7 @@
 
 use super::tuning::assessment::{
     ACCEPTABLE_IMPROVEMENT, ACCEPTABLE_VIOLATION, AIM, IMPROVEMENT, NO_OBJECTIVE, NOTHING, PART,
+    SPREAD,
 };
 use super::{Derivatives, Multipliers, Nlp, Quantities};
 use crate::problem::Bounds;
@@ -28,6 +30,8 @@ use crate::problem::Bounds;
 pub(crate) struct Assessment {
     /// Largest violation of a row or bound, relative to the size of its terms.
     pub(crate) violation: f64,
+    /// The largest sum of the violations of a state's steps, relative to the size of the state.
+    pub(crate) spread: f64,
     /// Complementarity, and what violations are worth by their multipliers: what these say the
     /// objective can still gain, relative to its size.
     pub(crate) complementarity: f64,
@@ -60,15 +64,20 @@ impl Assessment {
         });
         let rows =
             nlp.constraint_bounds().iter().zip(&rows).zip(&of_rows).zip(&multipliers.constraints);
-        rows.for_each(|(((bounds, value), size), lambda)| {
+        let mut spreads = vec![0.0; quantities.stepped];
+        rows.zip(&quantities.rows).for_each(|((((bounds, value), size), lambda), kind)| {
             sums.add(bounds, *value, *size, [(-lambda).max(0.0), lambda.max(0.0)]);
+            if let Some(spread) = spreads.get_mut(*kind) {
+                *spread += bounds.violation(*value) / size;
+            }
         });
+        let spread = spreads.into_iter().fold(0.0, f64::max);
         let slope = slope(nlp, &quantities, &at, multipliers, &magnitudes);
         // Without an objective there is nothing to gain.
         let relative =
             |value: f64| if objective == 0.0 && terms == 0.0 { 0.0 } else { value / size };
         let (complementarity, slope) = (relative(sums.complementarity), relative(slope));
-        Assessment { violation: sums.violation, complementarity, slope, size }
+        Assessment { violation: sums.violation, spread, complementarity, slope, size }
     }
 
     /// The same, where the Newton decrement says what the gradient of the Lagrangian can gain: the
@@ -86,7 +95,7 @@ impl Assessment {
 
     /// Whether the conditions are met to this tolerance.
     pub(crate) fn is_feasible(&self, tol: f64) -> bool {
-        self.violation <= tol
+        self.violation <= tol && self.spread <= SPREAD * tol
     }
 
     /// Whether it may be called a solution to this tolerance.
@@ -101,8 +110,8 @@ impl Assessment {
 
     /// What is aimed at, relative to what is there: the smaller the further away.
     pub(crate) fn missed(&self, tol: f64) -> f64 {
-        (tol / self.violation)
-            .min(AIM * most_improvement(tol) / (self.complementarity + self.slope))
+        let feasible = (tol / self.violation).min(SPREAD * tol / self.spread);
+        feasible.min(AIM * most_improvement(tol) / (self.complementarity + self.slope))
     }
 
     /// What an objective has to gain to count.

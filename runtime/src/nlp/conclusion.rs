@@ -15,6 +15,8 @@ pub(super) struct Ended {
     pub(super) kkt_error: f64,
     /// See [`Solution::is_saddle`].
     pub(super) is_saddle: bool,
+    /// See [`Solution::descent`].
+    pub(super) descent: Option<Vec<f64>>,
     /// The Newton decrement, in units of the objective; infinite where it is not known.
     pub(super) decrement: f64,
     pub(super) counts: Counts,
@@ -23,7 +25,8 @@ pub(super) struct Ended {
 /// The solution with the status that it deserves. A solve on the way to another has the status that
 /// the solver gives.
 pub(super) fn conclude(nlp: &mut dyn Nlp, ended: Ended, options: &Options) -> Solution {
-    let Ended { status, v, multipliers, mu, kkt_error, is_saddle, decrement, counts } = ended;
+    let Ended { status, v, multipliers, mu, kkt_error, is_saddle, descent, decrement, counts } =
+        ended;
     let status = if options.is_final {
         let assessment = Assessment::new(nlp, &v, &multipliers).with_decrement(decrement);
         judged(status, &assessment, is_saddle, options.tol)
@@ -43,6 +46,7 @@ pub(super) fn conclude(nlp: &mut dyn Nlp, ended: Ended, options: &Options) -> So
         constraint_violation,
         global,
         is_saddle,
+        descent,
         counts,
     }
 }

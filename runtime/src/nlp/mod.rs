@@ -159,6 +159,8 @@ pub struct Progress {
     pub alpha_primal: f64,
     /// Trial points of the line search.
     pub trials: usize,
+    /// Whether it is an iteration of the conic solver, of which only the number is known.
+    pub is_conic: bool,
 }
 
 /// Called once per iteration; it may stop the solve.
@@ -299,6 +301,9 @@ pub struct Solution {
     /// Whether a direction along which the objective falls to second order was found at the end,
     /// and could not be followed.
     pub is_saddle: bool,
+    /// A point near by where the Lagrangian is lower, though neither slope nor curvature says so:
+    /// another solve may begin there.
+    pub descent: Option<Vec<f64>>,
     /// Work done.
     pub counts: Counts,
 }

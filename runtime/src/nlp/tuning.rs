@@ -6,6 +6,9 @@ pub(crate) mod assessment {
     /// The improvement that may be left, in units of the tolerance: 1e-6 at the default tolerance
     /// of 1e-8.
     pub(crate) const IMPROVEMENT: f64 = 100.0;
+    /// The defects of a state may add up to so many times the tolerance: a contradiction between
+    /// start and end is small in each interval, and as large as ever in all of them together.
+    pub(crate) const SPREAD: f64 = 10.0;
     /// What is aimed at is so much less, where that can be had.
     pub(crate) const AIM: f64 = 0.1;
     /// The same of what is acceptable.
@@ -65,6 +68,10 @@ pub(crate) mod nominal {
 pub(crate) mod convex {
     /// A variable without a bound is thought to be within so many of its units.
     pub(crate) const FARTHEST: f64 = 1e6;
+    /// What of a ray is smaller than this part of it is rounding.
+    pub(crate) const RAY_ROUNDING: f64 = 1e-9;
+    /// The same of its curvature.
+    pub(crate) const FLAT_RAY: f64 = 1e-12;
     /// The tolerance of the conic solver, relative to that asked for, and the least.
     pub(crate) const CONIC_TOLERANCE: f64 = 0.1;
     pub(crate) const LEAST_CONIC_TOLERANCE: f64 = 1e-10;

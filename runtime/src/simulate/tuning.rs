@@ -24,8 +24,13 @@ pub(crate) mod normals {
 pub(crate) mod tolerance {
     /// The absolute tolerance as a part of the size of a state.
     pub(crate) const PART: f64 = 1e-12;
-    /// A state that has been no larger than this counts as if it had: what begins with 0 may grow
-    /// so slowly that no step is short enough.
+    /// What is left of the size of a state after a step in which it was smaller: an oscillator
+    /// keeps most of its amplitude where it passes 0, and what decays is as small as it has become.
+    pub(crate) const KEPT: f64 = 0.9;
+    /// A state counts at least as this part of how far its rate, whatever the selectors, could take
+    /// it in the whole time: what leaves 0 may grow so slowly that no step is short enough.
+    pub(crate) const REACHED: f64 = 1e-9;
+    /// The same of what nothing moves.
     pub(crate) const LEAST: f64 = 1e-60;
     /// Selectors that solve a linear system are known so well.
     pub(crate) const SOLVED: f64 = 1e-13;
@@ -75,6 +80,9 @@ pub(crate) mod search {
     pub(crate) const MOST_PARTS: usize = 1000;
     /// What stays within this many times its rounding errors stays at 0, and does not fail.
     pub(crate) const FLAT: f64 = 1000.0;
+    /// The lowest value of a shallow part is found with so many sections by the golden ratio.
+    pub(crate) const SECTIONS: usize = 40;
+    pub(crate) const GOLDEN: f64 = 0.618_033_988_749_895;
     /// Rounding of times, relative to them.
     pub(crate) const ROUNDING: f64 = 8.0 * f64::EPSILON;
 }

@@ -62,7 +62,12 @@ pub fn solve(
         return Err(Refusal::NotConvex);
     }
     let options = run.options(run.target());
-    let conic = if is_open && is_convex { convex::solve(&mut nlp, &start, &options) } else { None };
+    let mut conic =
+        if is_open && is_convex { run.conic(&mut nlp, &start, &options, watch) } else { None };
+    let is_stopped = |it: &Solution| matches!(it.status, Status::TimeLimit | Status::Interrupted);
+    if let Some(stopped) = conic.take_if(|it| is_stopped(it)) {
+        return Ok(finish(run, &mut nlp, stopped, true));
+    }
     // Where it finds no optimum the interior point method has a word, a best iterate, and a row to
     // blame.
     if let Some(solution) = conic.as_ref().filter(|it| it.status == Status::Solved) {
@@ -76,7 +81,7 @@ pub fn solve(
     solution.global = is_open && is_convex && solution.status == Status::Solved;
     let is_lost = matches!(solution.status, Status::Infeasible | Status::NumericalFailure);
     let proof = if is_lost && is_convex {
-        conic.or_else(|| convex::solve(&mut nlp, &start, &options))
+        conic.or_else(|| run.conic(&mut nlp, &start, &options, watch))
     } else {
         None
     };

@@ -2,7 +2,7 @@
 //! watches.
 
 use super::{Attempt, Level, Watch};
-use crate::nlp::{Counts, Options, Progress, Solution, Start, Status, interior_point};
+use crate::nlp::{Counts, Options, Progress, Solution, Start, Status, convex, interior_point};
 use crate::problem::Problem;
 use crate::transcribe::TranscribedNlp;
 
@@ -76,6 +76,19 @@ impl<'p> Run<'p> {
             return solution;
         }
         self.once(nlp, &Start { v: start.v.clone(), warm: None }, target, watch)
+    }
+
+    /// The answer of the conic solver to a convex problem.
+    pub(super) fn conic(
+        &self,
+        nlp: &mut TranscribedNlp,
+        start: &Start,
+        options: &Options,
+        watch: &mut Watch,
+    ) -> Option<Solution> {
+        let intervals = nlp.chain().intervals;
+        let level = Level { intervals, stages: None, sigma: &self.sigma };
+        convex::solve(nlp, start, options, &mut |progress| watch(progress, level))
     }
 
     /// One solve; its counts are those of all solves so far.

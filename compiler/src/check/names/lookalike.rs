@@ -2,7 +2,7 @@
 //!
 //! Names are compared in the normal form NFKC, and then letter by letter by the skeletons of
 //! Unicode's table of confusables. Greek letters stand for themselves: `ν` beside `v` and `ρ`
-//! beside `p` are what formulas are made of. So do names of ASCII letters alone: `l` and `I` are
+//! beside `p` are what formulas are made of; but for those that nobody can tell from Latin ones. So do names of ASCII letters alone: `l` and `I` are
 //! lengths and currents.
 
 use crate::syntax::scope;
@@ -34,10 +34,13 @@ fn declared<'a>(item: &'a Item, names: &mut Vec<&'a Ident>) {
     }
 }
 
+/// Greek letters that are drawn as Latin ones.
+const SAME_AS_LATIN: &str = "ΑΒΕΖΗΙΚΜΝΟΡΤΥΧο";
+
 /// What a reader sees; of names in ASCII, which are compared with others alone, as of others.
 fn shape(name: &str) -> String {
     let letter = |letter: char| match letter {
-        '\u{370}'..='\u{3ff}' => letter.to_string(),
+        '\u{370}'..='\u{3ff}' if !SAME_AS_LATIN.contains(letter) => letter.to_string(),
         _ => skeleton(letter.encode_utf8(&mut [0; 4])).collect(),
     };
     name.nfkc().map(letter).collect()

@@ -87,9 +87,28 @@ fn split(graph: &Graph, a: ExprId) -> (f64, ExprId) {
     }
 }
 
+/// How deep constants without a value are recognised.
+const DEEPEST_CONSTANT: usize = 8;
+
+/// Whether an expression may have a finite value: constants that have one are folded, so one that
+/// is still there, such as `1 / 0`, has none.
+fn has_value(graph: &Graph, a: ExprId) -> bool {
+    graph.as_number(a).is_some() || !is_constant(graph, a, DEEPEST_CONSTANT)
+}
+
+fn is_constant(graph: &Graph, a: ExprId, depth: usize) -> bool {
+    match graph.expr(a) {
+        Expr::Number(_) => true,
+        Expr::Call(_, operands) if depth > 0 => {
+            operands.iter().all(|&operand| is_constant(graph, operand, depth - 1))
+        }
+        _ => false,
+    }
+}
+
 /// `factor * rest` for a rest without a factor of its own.
 fn join(graph: &mut Graph, factor: f64, rest: ExprId) -> ExprId {
-    if factor == 0.0 {
+    if factor == 0.0 && has_value(graph, rest) {
         // 0 * x = 0
         graph.number(0.0)
     } else if factor == 1.0 {

@@ -127,7 +127,8 @@ impl Machine {
             .isa_flags()
             .iter()
             .any(|flag| flag.name == "has_fma" && flag.as_bool() == Some(true));
-        Machine { fused: !cfg!(target_arch = "x86_64") || has_fma, isa, hasty, library: library() }
+        let fused = !cfg!(feature = "portable") && (!cfg!(target_arch = "x86_64") || has_fma);
+        Machine { fused, isa, hasty, library: library() }
     }
 
     /// Whether it has a fused multiply-add.

@@ -96,6 +96,12 @@ impl<'a> Inference<'a> {
         }
     }
 
+    /// Something changes sides where this is as large as something else; a plain number takes the
+    /// unit of that.
+    pub fn gaps_of(&mut self, side: &[Part]) {
+        side.iter().filter(|part| !part.plain).for_each(|part| self.gap(part));
+    }
+
     /// What `blend` rounds: its width is one of every gap in it.
     fn blended(
         &mut self,
@@ -108,9 +114,10 @@ impl<'a> Inference<'a> {
         let gaps = std::mem::replace(&mut self.gaps, around).unwrap_or_default();
         if let Some(Argument::Expr(width)) = width {
             let width = self.operand(width);
-            for gap in gaps {
-                self.compare(Reason::Blend, &(vec![gap], side(inner)), &width);
+            for gap in &gaps {
+                self.equate(Reason::Blend, &(vec![gap.clone()], side(inner)), &width);
             }
+            self.read(&width, &(gaps, side(inner)));
         }
         value
     }
@@ -123,8 +130,8 @@ impl<'a> Inference<'a> {
             return self.blended(inner, Some(width), |it| it.evaluate(inner));
         }
         let given = self.given(arguments);
-        if let ("abs" | "min" | "max", Some(first)) = (name, given.first()) {
-            first.0.iter().for_each(|part| self.gap(part));
+        if let "abs" | "min" | "max" = name {
+            given.iter().for_each(|side| self.gaps_of(&side.0));
         }
         match (name, &given[..]) {
             ("abs" | "selected", [only]) => only.0.clone(),

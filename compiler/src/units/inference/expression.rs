@@ -190,7 +190,7 @@ impl<'a> Inference<'a> {
         for arm in arms {
             let (left, right) = (self.operand(&arm.left), self.operand(&arm.right));
             self.compare(Reason::Comparison, &left, &right);
-            left.0.iter().for_each(|part| self.gap(part));
+            [&left, &right].into_iter().for_each(|side| self.gaps_of(&side.0));
             let value = self.operand(&arm.value);
             all = self.equal(Reason::Alternatives, &value, &(all, rest.1.clone()));
         }

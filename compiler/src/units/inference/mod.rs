@@ -162,6 +162,13 @@ impl<'a> Inference<'a> {
     /// The same, but a plain number takes the unit of the other side, and a name that is one keeps
     /// it.
     pub fn compare(&mut self, reason: Reason<'a>, left: &Operand<'a>, right: &Operand<'a>) {
+        self.equate(reason, left, right);
+        self.read(left, right);
+        self.read(right, left);
+    }
+
+    /// Both sides measure the same.
+    pub fn equate(&mut self, reason: Reason<'a>, left: &Operand<'a>, right: &Operand<'a>) {
         let site = left.1.span.to(right.1.span);
         pairwise(&left.0, &right.0, |a, b| {
             if a.plain || b.plain {
@@ -172,8 +179,6 @@ impl<'a> Inference<'a> {
             }
             Part::ANY
         });
-        self.read(left, right);
-        self.read(right, left);
     }
 
     /// Where the other side is not in SI, the number is only multiplied: it is not that quantity

@@ -114,10 +114,11 @@ pub(crate) fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
     if FUSED { a.mul_add(b, c) } else { a * b + c }
 }
 
-/// Whether this machine has registers of four numbers and multiplies and adds in one instruction.
+/// Whether this machine has registers of four numbers and multiplies and adds in one instruction;
+/// with the feature `portable` it counts as if it had not.
 pub(crate) fn is_fused() -> bool {
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]
     return std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma");
-    #[cfg(not(target_arch = "x86_64"))]
+    #[cfg(any(not(target_arch = "x86_64"), feature = "portable"))]
     false
 }

@@ -5,6 +5,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolution, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
 };
+use std::ffi::{c_int, c_void};
 
 /// `minimize 1/2 x'Px + q'x` subject to `Ax + s = b`, the first `equalities` entries of `s` zero,
 /// the others `>= 0`.
@@ -26,6 +27,8 @@ pub(crate) enum ConicStatus {
     Infeasible,
     Unbounded,
     IterationLimit,
+    /// It was asked to.
+    Stopped,
     Failed,
 }
 
@@ -37,11 +40,15 @@ pub(crate) struct ConicSolution {
     pub(crate) iterations: usize,
 }
 
+/// Asked after each iteration whether to stop.
+pub(crate) type Ask<'a> = dyn FnMut() -> bool + 'a;
+
 /// Solves a convex quadratic program.
 pub(crate) fn solve_conic(
     program: ConicProgram,
     tolerance: f64,
     max_iterations: usize,
+    ask: &mut Ask,
 ) -> ConicSolution {
     let ConicProgram { p, q, a, b, equalities } = program;
     let cones = [
@@ -62,6 +69,8 @@ pub(crate) fn solve_conic(
         let (x, z) = (vec![0.0; q.len()], vec![0.0; b.len()]);
         return ConicSolution { status: ConicStatus::Failed, x, z, iterations: 0 };
     };
+    let mut ask = ask;
+    solver.set_termination_callback_c(stops, (&raw mut ask).cast());
     solver.solve();
     let DefaultSolution { status, x, z, iterations, .. } = solver.solution;
     ConicSolution { status: in_our_words(status), x, z, iterations: iterations as usize }
@@ -73,6 +82,15 @@ fn to_csc(matrix: Columns) -> CscMatrix<f64> {
     CscMatrix::new(rows, columns, column_starts, row_indices, values)
 }
 
+/// The conic solver calls closures that live for ever only, and this.
+#[expect(unsafe_code, reason = "the data of a callback of C has no type")]
+extern "C" fn stops<I>(_: *const I, ask: *mut c_void) -> c_int {
+    // SAFETY: `solve_conic` hands over a pointer to its own `&mut Ask`, which outlives the solve
+    // and is used by nobody else meanwhile.
+    let ask = unsafe { &mut *ask.cast::<&mut Ask>() };
+    c_int::from(ask())
+}
+
 fn in_our_words(status: SolverStatus) -> ConicStatus {
     match status {
         SolverStatus::Solved => ConicStatus::Solved,
@@ -80,6 +98,7 @@ fn in_our_words(status: SolverStatus) -> ConicStatus {
         SolverStatus::PrimalInfeasible => ConicStatus::Infeasible,
         SolverStatus::DualInfeasible => ConicStatus::Unbounded,
         SolverStatus::MaxIterations => ConicStatus::IterationLimit,
+        SolverStatus::CallbackTerminated => ConicStatus::Stopped,
         _ => ConicStatus::Failed,
     }
 }

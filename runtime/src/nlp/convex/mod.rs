@@ -11,11 +11,13 @@ mod one_sided;
 use super::conclusion::{Ended, conclude};
 use super::scaling::Scaled;
 use super::{
-    Counts, Derivatives, Multipliers, Nlp, Options, Quantities, Solution, Start, Status,
-    constraint_violation,
+    Counts, Derivatives, Multipliers, Nlp, Options, Progress, Quantities, Solution, Start, Status,
+    Stop, Watch, constraint_violation,
 };
 use crate::linalg::{Columns, Triplets};
-use crate::nlp::tuning::convex::{CONIC_TOLERANCE, FARTHEST, LEAST_CONIC_TOLERANCE};
+use crate::nlp::tuning::convex::{
+    CONIC_TOLERANCE, FARTHEST, FLAT_RAY, LEAST_CONIC_TOLERANCE, RAY_ROUNDING,
+};
 use crate::problem::{Bounds, Degree, Problem};
 use clarabel::{ConicProgram, ConicSolution, ConicStatus, solve_conic};
 use one_sided::OneSidedConstraints;
@@ -46,17 +48,27 @@ pub fn is_proved(nlp: &mut dyn Nlp) -> bool {
 
 /// Solves a convex quadratic program; `None` where there is nothing to choose. The caller has
 /// made sure that it is one.
-pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options) -> Option<Solution> {
+pub fn solve(
+    nlp: &mut dyn Nlp,
+    start: &Start,
+    options: &Options,
+    watch: &mut Watch,
+) -> Option<Solution> {
     let mut scaled = Scaled::new(nlp, &start.v);
     let v = scaled.start(start).v;
-    let mut ended = solve_scaled(&mut scaled, &v, options)?;
+    let mut ended = solve_scaled(&mut scaled, &v, options, watch)?;
     scaled.unscale(&mut ended.v, &mut ended.multipliers);
     let mut solution = conclude(nlp, ended, options);
     solution.global = solution.status == Status::Solved;
     Some(solution)
 }
 
-fn solve_scaled(nlp: &mut dyn Nlp, v: &[f64], options: &Options) -> Option<Ended> {
+fn solve_scaled(
+    nlp: &mut dyn Nlp,
+    v: &[f64],
+    options: &Options,
+    watch: &mut Watch,
+) -> Option<Ended> {
     if v.is_empty() {
         return None;
     }
@@ -71,12 +83,15 @@ fn solve_scaled(nlp: &mut dyn Nlp, v: &[f64], options: &Options) -> Option<Ended
         p: upper_columns(nlp.hessian_structure(), &derivatives.hessian, v.len()),
         equalities: sides.equalities,
     };
-    let found = solve_conic(
-        program,
-        (CONIC_TOLERANCE * options.tol).max(LEAST_CONIC_TOLERANCE),
-        options.max_iter,
-    );
-    Some(ended(nlp, &sides, found))
+    let (mut iteration, mut stop) = (0, None);
+    let mut ask = || {
+        iteration += 1;
+        stop = watch(&Progress { iteration, is_conic: true, ..Progress::default() }).break_value();
+        stop.is_some()
+    };
+    let tolerance = (CONIC_TOLERANCE * options.tol).max(LEAST_CONIC_TOLERANCE);
+    let found = solve_conic(program, tolerance, options.max_iter, &mut ask);
+    Some(ended(nlp, &sides, found, stop))
 }
 
 fn linear_part(nlp: &dyn Nlp, derivatives: &Derivatives, v: &[f64]) -> Vec<f64> {
@@ -100,13 +115,22 @@ fn right_side(
     sides.right_side(&rows)
 }
 
-fn ended(nlp: &mut dyn Nlp, sides: &OneSidedConstraints, found: ConicSolution) -> Ended {
+fn ended(
+    nlp: &mut dyn Nlp,
+    sides: &OneSidedConstraints,
+    found: ConicSolution,
+    stop: Option<Stop>,
+) -> Ended {
     let status = match found.status {
+        ConicStatus::Stopped if stop == Some(Stop::TimeLimit) => Status::TimeLimit,
+        ConicStatus::Stopped => Status::Interrupted,
         ConicStatus::Solved => Status::Solved,
         ConicStatus::Infeasible => Status::Infeasible,
-        ConicStatus::Unbounded => Status::Unbounded,
+        ConicStatus::Unbounded if proves_unbounded(nlp, &found.x) => Status::Unbounded,
         ConicStatus::IterationLimit => Status::IterationLimit,
-        ConicStatus::Roughly | ConicStatus::Failed => Status::NumericalFailure,
+        ConicStatus::Unbounded | ConicStatus::Roughly | ConicStatus::Failed => {
+            Status::NumericalFailure
+        }
     };
     let mut v = found.x;
     clamp(nlp, &mut v);
@@ -123,8 +147,8 @@ fn ended(nlp: &mut dyn Nlp, sides: &OneSidedConstraints, found: ConicSolution) -
         ..Counts::default()
     };
     let kkt_error = stationarity(nlp, &v, &multipliers).max(constraint_violation(nlp, &v));
-    let (mu, is_saddle, decrement) = (0.0, false, f64::INFINITY);
-    Ended { status, v, multipliers, mu, kkt_error, is_saddle, decrement, counts }
+    let (mu, is_saddle, descent, decrement) = (0.0, false, None, f64::INFINITY);
+    Ended { status, v, multipliers, mu, kkt_error, is_saddle, descent, decrement, counts }
 }
 
 /// Whether multipliers of affine rows prove that no point within the bounds meets them (Farkas'
@@ -150,6 +174,39 @@ fn proves_infeasible(nlp: &mut dyn Nlp, lambda: &[f64]) -> bool {
     };
     let excesses: f64 = lambda.iter().zip(&rows).zip(nlp.constraint_bounds()).map(excess).sum();
     excesses + least > 0.0
+}
+
+/// Whether along a ray the objective falls without end and no condition ends it: each entry of the
+/// ray that a finite bound stops is rounding, the rows do not change, and nor does the curved part
+/// of the objective (Boyd & Vandenberghe, Convex Optimization, section 4.4). Bounds far away look
+/// to the conic solver as if there were none.
+fn proves_unbounded(nlp: &mut dyn Nlp, ray: &[f64]) -> bool {
+    let origin = vec![0.0; ray.len()];
+    let mut at = Derivatives::new(nlp);
+    nlp.derivatives(&origin, 1.0, &vec![0.0; nlp.constraint_bounds().len()], &mut at);
+    let stops = |bounds: &Bounds, along: f64, size: f64| {
+        let rounding = RAY_ROUNDING * size;
+        along < -rounding && bounds.lower.is_finite()
+            || along > rounding && bounds.upper.is_finite()
+    };
+    let size = ray.iter().fold(0.0f64, |most, d| most.max(d.abs()));
+    let (mut along, mut sizes) =
+        (vec![0.0; nlp.constraint_bounds().len()], vec![0.0; nlp.constraint_bounds().len()]);
+    for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&at.jacobian) {
+        along[row] += slope * ray[column];
+        sizes[row] += (slope * ray[column]).abs();
+    }
+    let mut curved = vec![0.0; ray.len()];
+    nlp.hessian_structure().symmetric_multiply_add(&at.hessian, ray, &mut curved);
+    let falls: f64 = at.gradient.iter().zip(ray).map(|(slope, d)| slope * d).sum();
+    let curvature: f64 = curved.iter().zip(ray).map(|(slope, d)| slope * d).sum();
+    let variables = nlp.variable_bounds().iter().zip(ray);
+    let rows = nlp.constraint_bounds().iter().zip(&along).zip(&sizes);
+    let is_open = variables.map(|(bounds, d)| stops(bounds, *d, size)).all(|it| !it)
+        && rows.map(|((bounds, d), size)| stops(bounds, *d, *size)).all(|it| !it);
+    let entries = nlp.hessian_structure().entries().zip(&at.hessian);
+    let terms: f64 = entries.map(|(_, value)| (value * size * size).abs()).sum();
+    is_open && falls < 0.0 && curvature.abs() <= FLAT_RAY * terms
 }
 
 /// The conic solver keeps bounds only to its tolerance.

@@ -59,6 +59,9 @@ pub(super) struct Algorithm {
     pub(super) departures: usize,
     /// Whether the iterate is one that could not be left.
     pub(super) is_saddle: bool,
+    /// A point near by where the Lagrangian is lower, if the iterate is no minimum though neither
+    /// slope nor curvature says so.
+    pub(super) descent: Option<Vec<f64>>,
     /// The last Newton decrement that was looked at, in units of the scaled objective.
     pub(super) decrement: f64,
     /// Whether the derivatives belong to the iterate.
@@ -92,6 +95,7 @@ impl Algorithm {
             target: Target::new(options.tol),
             departures: 0,
             is_saddle: false,
+            descent: None,
             decrement: f64::INFINITY,
             fresh: false,
             formulation,

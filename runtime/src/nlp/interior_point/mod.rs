@@ -29,7 +29,7 @@ use super::{Multipliers, Nlp, Options, Progress, Solution, Start, Status, Watch}
 use crate::linalg::solvers::{cheapest, more_robust};
 use crate::problem::Linear;
 use algorithm::Algorithm;
-use tuning::fallback::{FAR, MOST_RESCALINGS};
+use tuning::fallback::{FAR, MOST_FLAT_POINTS, MOST_RESCALINGS};
 
 /// Solves the NLP from `start`. Progress is reported unscaled, once per iteration. Nobody is
 /// told "infeasible" for want of luck: where an attempt ends without a solution others are made,
@@ -44,6 +44,7 @@ pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Wa
     let mut best = attempt(nlp, start, &options, watch);
     if options.is_final {
         best = rescaled_by_the_answer(best, nlp, start, &options, watch);
+        best = away_from_flat_points(best, nlp, &options, watch);
     }
     // Solver fallback: other rounding and regularisation.
     if is_automatic
@@ -82,6 +83,34 @@ fn rescaled_by_the_answer(
             attempt_scaled(nlp, factors, &start, options, Algorithm::run, watch)
         };
         best = fallback(best, nlp, options, run, watch);
+    }
+    best
+}
+
+/// Where derivatives of higher order say that an answer is no minimum, others begin beside it; the
+/// lowest objective is the answer.
+fn away_from_flat_points(
+    mut best: Solution,
+    nlp: &mut dyn Nlp,
+    options: &Options,
+    watch: &mut Watch,
+) -> Solution {
+    for _ in 0..MOST_FLAT_POINTS {
+        let Some(v) = best.descent.take().filter(|_| best.status == Status::Solved) else {
+            break;
+        };
+        let next = fallback(
+            best.clone(),
+            nlp,
+            options,
+            from(&Start { v, warm: None }, Algorithm::run),
+            watch,
+        );
+        let is_lower = next.status == Status::Solved && next.objective < best.objective;
+        best.counts = next.counts;
+        if is_lower {
+            best = next;
+        }
     }
     best
 }
@@ -163,7 +192,9 @@ fn attempt_scaled(
     let mut algorithm = initialization::prepare(&mut scaled, &start, *options);
     let status = run(&mut algorithm, &mut scaled, &mut watch);
     let mu = algorithm.barrier.mu;
-    let Algorithm { at, counts, residuals, formulation, is_saddle, decrement, .. } = algorithm;
+    let Algorithm { at, counts, residuals, formulation, is_saddle, mut descent, decrement, .. } =
+        algorithm;
+    descent.iter_mut().for_each(|v| scaled.unscale_point(v));
     let decrement = decrement / objective_scale;
     let mut multipliers = Multipliers {
         constraints: at.lambda,
@@ -175,7 +206,7 @@ fn attempt_scaled(
     let kkt_error = residuals.error(0.0);
     conclude(
         nlp,
-        Ended { status, v, multipliers, mu, kkt_error, is_saddle, decrement, counts },
+        Ended { status, v, multipliers, mu, kkt_error, is_saddle, descent, decrement, counts },
         options,
     )
 }

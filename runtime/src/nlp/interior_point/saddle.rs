@@ -6,12 +6,15 @@
 //! regularisation that just gives the right inertia finds the eigenvector of the lowest
 //! eigenvalue, and the Lagrangian falls along it to either side. Curvature that can gain nothing
 //! that counts is none.
+//!
+//! Where the lowest curvature is 0, as of `u^3` and `-u^4` at 0, derivatives of higher order decide:
+//! short steps to both sides along its direction show what they say.
 
 use super::algorithm::Algorithm;
 use super::iterate::{Step, Values};
 use super::tuning::saddle::{
-    GOLDEN, ITERATIONS, LARGEST_VIOLATION, LEAST_GAIN, MOST_DEPARTURES, MOST_HALVINGS, ROOM,
-    ROUNDING, SPREAD,
+    FEW_ITERATIONS, GOLDEN, ITERATIONS, LARGEST_VIOLATION, LEAST_GAIN, MOST_DEPARTURES,
+    MOST_HALVINGS, NOTHING, ROOM, ROUNDING, SHORT_STEPS, SPREAD,
 };
 use super::vectors::dot;
 use crate::nlp::Nlp;
@@ -48,26 +51,78 @@ impl Algorithm {
         if self.is_saddle { Departure::Impossible } else { Departure::Taken }
     }
 
+    /// A point (one value per variable) near the iterate, to which the Lagrangian falls although
+    /// neither slope nor curvature says so; the shortest step that changes it by what counts
+    /// decides.
+    pub(super) fn descent_of_higher_order(
+        &mut self,
+        nlp: &mut dyn Nlp,
+        found: &Assessment,
+    ) -> Option<Vec<f64>> {
+        let least = self.least_curvature(nlp, found);
+        self.factor_at_iterate(least);
+        let (mut step, _) = self.softest_direction(FEW_ITERATIONS)?;
+        self.stretch(&self.own_sizes(nlp), &mut step);
+        let (counts, lagrangian) =
+            (found.least_gain(self.options.tol), self.barrier_lagrangian(&self.values));
+        for _ in 0..2 {
+            for part in SHORT_STEPS {
+                let alpha =
+                    part.min(self.barrier.longest_steps(&self.formulation, &self.at, &step).0);
+                let (y, values) = self.moved(nlp, &step, alpha)?;
+                let change = self.barrier_lagrangian(&values) - lagrangian;
+                if change < -counts && values.violation <= LARGEST_VIOLATION {
+                    return Some(y[..self.formulation.variables].to_vec());
+                }
+                if change > counts {
+                    break;
+                }
+            }
+            turn(&mut step);
+        }
+        None
+    }
+
+    /// The point after a part of a step; `None` where it has no value.
+    fn moved(&mut self, nlp: &mut dyn Nlp, step: &Step, alpha: f64) -> Option<(Vec<f64>, Values)> {
+        let y: Vec<f64> = self.at.y.iter().zip(&step.y).map(|(y, d)| y + alpha * d).collect();
+        let mut values = Values::default();
+        values.evaluate(nlp, &self.formulation, &y, &mut self.counts).then_some((y, values))
+    }
+
     /// A unit vector over `y` in the null space of the rows and the curvature along it, if that is
     /// below `-least`.
     fn lowest_curvature(&mut self, nlp: &dyn Nlp, least: f64) -> Option<(Step, f64)> {
-        let Algorithm { formulation, at, slopes, kkt, barrier, counts, .. } = self;
-        kkt.assemble(formulation, at, slopes, barrier);
-        if kkt.factor_barely(formulation, slopes, barrier.mu, least, counts) {
+        if self.factor_at_iterate(least) {
             return None;
         }
+        let (step, curvature) = self.softest_direction(ITERATIONS)?;
+        let terms = nlp.hessian_structure().entries().zip(&self.slopes.derivatives.hessian);
+        let terms: f64 = terms.map(|((i, j), h)| (h * step.y[i] * step.y[j]).abs()).sum();
+        (curvature < -ROUNDING * terms).then_some((step, curvature))
+    }
+
+    /// See [`Kkt::factor_barely`](super::kkt::Kkt::factor_barely), at the iterate.
+    fn factor_at_iterate(&mut self, least: f64) -> bool {
+        let Algorithm { formulation, at, slopes, kkt, barrier, counts, .. } = self;
+        kkt.assemble(formulation, at, slopes, barrier);
+        kkt.factor_barely(formulation, slopes, barrier.mu, least, counts)
+    }
+
+    /// A unit vector over `y` in the null space of the rows along which the matrix that was
+    /// factored last has the lowest curvature, and the curvature without its regularisation.
+    fn softest_direction(&mut self, iterations: usize) -> Option<(Step, f64)> {
+        let Algorithm { formulation, slopes, kkt, .. } = self;
         let mut step = Step::new(formulation);
         // Nearly the same at all times: of several directions that are as good, one that goes to
         // one side.
         let start = |i: usize| 1.0 + SPREAD * (i as f64 * GOLDEN).fract();
         (0..formulation.variables).for_each(|i| step.y[i] = start(i));
         let mut curvature = f64::NAN;
-        for _ in 0..ITERATIONS {
+        for _ in 0..iterations {
             curvature = kkt.inverse_iteration(formulation, slopes, &mut step)?;
         }
-        let terms = nlp.hessian_structure().entries().zip(&slopes.derivatives.hessian);
-        let terms: f64 = terms.map(|((i, j), h)| (h * step.y[i] * step.y[j]).abs()).sum();
-        (curvature < -ROUNDING * terms).then_some((step, curvature))
+        Some((step, curvature))
     }
 
     /// Less curvature cannot gain what counts, however far the variables go.
@@ -84,6 +139,18 @@ impl Algorithm {
             sizes[*i] = sizes[*i].max(value.abs());
         }
         quantities.variables.iter().map(|i| sizes[*i]).collect()
+    }
+
+    /// The largest value over time of the quantity that each variable belongs to; its nominal
+    /// magnitude, which is 1, where it is 0.
+    fn own_sizes(&self, nlp: &dyn Nlp) -> Vec<f64> {
+        let quantities = nlp.quantities();
+        let mut sizes = vec![0.0; quantities.units.len()];
+        for (i, value) in quantities.variables.iter().zip(&self.at.y) {
+            sizes[*i] = value.abs().max(sizes[*i]);
+        }
+        let size = |i: &usize| if sizes[*i] > NOTHING { sizes[*i] } else { 1.0 };
+        quantities.variables.iter().map(size).collect()
     }
 
     /// Makes the step as long as bounds and the reach of the variable that moves most allow; its
@@ -116,11 +183,8 @@ impl Algorithm {
             for _ in 0..2 {
                 let alpha =
                     part.min(self.barrier.longest_steps(&self.formulation, &self.at, step).0);
-                let y: Vec<f64> =
-                    self.at.y.iter().zip(&step.y).map(|(y, d)| y + alpha * d).collect();
-                let mut values = Values::default();
-                let is_good = values.evaluate(nlp, &self.formulation, &y, &mut self.counts)
-                    && values.violation <= LARGEST_VIOLATION
+                let Some((y, values)) = self.moved(nlp, step, alpha) else { continue };
+                let is_good = values.violation <= LARGEST_VIOLATION
                     && self.barrier_lagrangian(&values)
                         < lagrangian - LEAST_GAIN * gain * alpha * alpha;
                 if is_good {

@@ -46,7 +46,7 @@ impl Algorithm {
             Some(self.stalled(nlp))
         } else if self.acceptable >= ACCEPTABLE_ITERATIONS {
             Some(Status::Acceptable)
-        } else if self.watchdog.saved.is_none() && self.has_diverged() {
+        } else if self.watchdog.saved.is_none() && self.has_diverged(nlp) {
             Some(Status::Unbounded)
         } else if self.counts.iterations >= self.options.max_iter {
             Some(Status::IterationLimit)
@@ -72,7 +72,7 @@ impl Algorithm {
         }
         let found = self.with_decrement(nlp, found);
         if found.is_enough(self.options.tol) || !self.can_lower_target(&found) {
-            return Some(self.word(&found));
+            return Some(self.word(nlp, &found));
         }
         None
     }
@@ -84,11 +84,15 @@ impl Algorithm {
         }
         let found = self.assessment(nlp);
         let found = self.with_decrement(nlp, found);
-        self.word(&found)
+        self.word(nlp, &found)
     }
 
-    fn word(&self, found: &Assessment) -> Status {
-        if found.is_convincing(self.options.tol) { Status::Solved } else { Status::Acceptable }
+    fn word(&mut self, nlp: &mut dyn Nlp, found: &Assessment) -> Status {
+        if !found.is_convincing(self.options.tol) {
+            return Status::Acceptable;
+        }
+        self.descent = self.descent_of_higher_order(nlp, found);
+        Status::Solved
     }
 
     /// With the Newton decrement where that is what matters.
@@ -145,8 +149,16 @@ impl Algorithm {
             <= MOST_WEIGHTED_VIOLATION * self.options.tol
     }
 
-    fn has_diverged(&self) -> bool {
+    fn has_diverged(&self, nlp: &dyn Nlp) -> bool {
         let largest = largest(&self.at.y[..self.formulation.variables]);
-        largest > DIVERGED && self.residuals.primal <= self.options.tol * largest
+        largest > DIVERGED
+            && self.residuals.primal <= self.options.tol * largest
+            && largest > DIVERGED * farthest_bound(nlp)
     }
+}
+
+/// The largest finite bound of a variable, at least 1.
+fn farthest_bound(nlp: &dyn Nlp) -> f64 {
+    let ends = nlp.variable_bounds().iter().flat_map(|it| [it.lower.abs(), it.upper.abs()]);
+    ends.filter(|end| end.is_finite()).fold(1.0, f64::max)
 }

@@ -125,6 +125,8 @@ pub(crate) mod fallback {
     /// anew, so often.
     pub(crate) const FAR: f64 = 8.0;
     pub(crate) const MOST_RESCALINGS: usize = 3;
+    /// A point that is no minimum, though slope and curvature are those of one, is left so often.
+    pub(crate) const MOST_FLAT_POINTS: usize = 20;
 }
 
 pub(crate) mod restoration {
@@ -143,6 +145,12 @@ pub(crate) mod saddle {
     pub(crate) const MOST_DEPARTURES: usize = 5;
     /// Steps of the inverse iteration.
     pub(crate) const ITERATIONS: usize = 8;
+    /// The same where all directions without curvature are as good: they stay together.
+    pub(crate) const FEW_ITERATIONS: usize = 2;
+    /// Steps where curvature says nothing, as parts of the sizes, from short to long.
+    pub(crate) const SHORT_STEPS: [f64; 3] = [1e-3, 1e-2, 1e-1];
+    /// A quantity that is smaller than this part of its nominal magnitude is 0.
+    pub(crate) const NOTHING: f64 = 1e-6;
     /// Curvature is negative if it is more than this part of its terms.
     pub(crate) const ROUNDING: f64 = 1e-9;
     /// A step along the direction has to gain this part of what curvature says.
@@ -163,7 +171,8 @@ pub(crate) mod termination {
     pub(crate) const ACCEPTABLE_ITERATIONS: usize = 100;
     /// The violation weighted with the multipliers may be so many times the tolerance.
     pub(crate) const MOST_WEIGHTED_VIOLATION: f64 = 1e3;
-    /// Variables beyond this, at a point that is feasible relative to them, have left the problem.
+    /// Variables beyond this many times the farthest bound, at a point that is feasible relative to
+    /// them, have left the problem.
     pub(crate) const DIVERGED: f64 = 1e10;
     /// The target is not lowered below this part of the tolerance, nor faster than that; lower ones
     /// are given up after so many iterations.

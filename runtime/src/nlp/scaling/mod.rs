@@ -82,11 +82,16 @@ impl<'a> Scaled<'a> {
     /// A point and multipliers of this NLP as those of the NLP inside.
     pub(crate) fn unscale(&self, v: &mut [f64], multipliers: &mut Multipliers) {
         let ScalingFactors { objective, variables, rows } = &self.factors;
-        v.iter_mut().zip(variables).for_each(|(value, s)| *value *= s);
+        self.unscale_point(v);
         multipliers.constraints.iter_mut().zip(rows).for_each(|(value, s)| *value *= s / objective);
         for bounds in [&mut multipliers.lower, &mut multipliers.upper] {
             bounds.iter_mut().zip(variables).for_each(|(value, s)| *value /= objective * s);
         }
+    }
+
+    /// A point of this NLP as one of the NLP inside.
+    pub(crate) fn unscale_point(&self, v: &mut [f64]) {
+        v.iter_mut().zip(&self.factors.variables).for_each(|(value, s)| *value *= s);
     }
 
     fn load(&mut self, w: &[f64]) {

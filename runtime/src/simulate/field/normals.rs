@@ -57,7 +57,13 @@ impl Field<'_> {
         for i in 0..normals.psi.len() {
             let of_terms = normals.rounding(i, &self.tolerance.sizes)
                 + ROUNDING * (normals.by_time[i] * t).abs();
-            normals.floors[i] += of_terms;
+            let slopes = normals.by_state.row(i);
+            let of_states: f64 = slopes
+                .iter()
+                .enumerate()
+                .map(|(state, slope)| slope.abs() * self.tolerance.least(state))
+                .sum();
+            normals.floors[i] += of_terms + of_states;
         }
         normals
     }
@@ -72,7 +78,7 @@ impl Field<'_> {
         {
             tube.evaluate(of);
             let width = tube.ranges[0][1] - tube.ranges[0][0];
-            *known = if width.is_finite() { known.max(2.0 * width) } else { *known };
+            *known = if width.is_finite() { 2.0 * width } else { *known };
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! rtol |x| + atol + h d,
-//! atol: what is asked for, or 1e-12 of the largest that the state has been
+//! atol: what is asked for, or 1e-12 of the size that the state has had lately
 //! ```
 //!
 //! So it does not matter in which unit a state is written. `d` is by how much its rate is
@@ -13,14 +13,16 @@ use super::Field;
 use super::tube::Tube;
 use crate::simulate::mode::Mode;
 use crate::simulate::result::Options;
-use crate::simulate::tuning::tolerance::{LEAST, PART, PASSES, SOLVED};
+use crate::simulate::tuning::tolerance::{KEPT, LEAST, PART, PASSES, REACHED, SOLVED};
 
 /// The tolerances of all states.
 pub(crate) struct Tolerance {
     pub rtol: f64,
     atol: Option<f64>,
-    /// The largest that each has been.
+    /// How large each has been lately.
     pub sizes: Vec<f64>,
+    /// How large each counts at least.
+    least: Vec<f64>,
     /// By how much their rates are uncertain.
     doubts: Vec<f64>,
 }
@@ -28,19 +30,25 @@ pub(crate) struct Tolerance {
 impl Tolerance {
     pub fn new(options: &Options, start: &[f64]) -> Self {
         let sizes = start.iter().map(|x| x.abs()).collect();
-        Tolerance { rtol: options.rtol, atol: options.atol, sizes, doubts: vec![0.0; start.len()] }
+        let (least, doubts) = (vec![LEAST; start.len()], vec![0.0; start.len()]);
+        Tolerance { rtol: options.rtol, atol: options.atol, sizes, least, doubts }
     }
 
-    /// Notes how large the states are.
+    /// Notes how large the states are after a step.
     pub fn see(&mut self, x: &[f64]) {
-        self.sizes.iter_mut().zip(x).for_each(|(size, x)| *size = size.max(x.abs()));
+        self.sizes.iter_mut().zip(x).for_each(|(size, x)| *size = (KEPT * *size).max(x.abs()));
     }
 
     /// Of a state that is `before` and `after` a step of length `h`.
     pub fn of(&self, i: usize, [before, after]: [f64; 2], h: f64) -> f64 {
         let size = before.abs().max(after.abs());
-        let atol = self.atol.unwrap_or(PART * size.max(self.sizes[i]).max(LEAST));
+        let atol = self.atol.unwrap_or(PART * size.max(self.sizes[i]).max(self.least[i]));
         atol + self.rtol * size + h * self.doubts[i]
+    }
+
+    /// The least absolute tolerance of a state.
+    pub fn least(&self, i: usize) -> f64 {
+        PART * self.least[i]
     }
 
     /// From now on rates are certain.
@@ -65,6 +73,18 @@ impl Tolerance {
 }
 
 impl Field<'_> {
+    /// Finds how large states count at least.
+    pub fn find_least_sizes(&mut self, t: f64, x: &[f64]) {
+        let [first, last] = self.system.interval;
+        let selectors = self.selectors.clone();
+        let (rate, by_selector) = self.with_selectors(t, x, &selectors);
+        for (i, rate) in rate.iter().enumerate() {
+            let pushes: f64 = by_selector.row(i).iter().map(|push| push.abs()).sum();
+            let reached = REACHED * (last - first) * (rate.abs() + pushes);
+            self.tolerance.least[i] = if reached.is_finite() { reached.max(LEAST) } else { LEAST };
+        }
+    }
+
     /// Finds by how much rates are uncertain if states may be off by a part of their tolerance, and
     /// by what their own rates make of them in a time `h`.
     pub fn find_doubts(&mut self, t: f64, x: &[f64], h: f64, part: f64) {

@@ -14,7 +14,6 @@ mod sliding;
 mod tube;
 
 use super::field::Field;
-use super::field::correct;
 use super::field::direction::length;
 use super::steps::Step;
 use crate::simulate::field::tube::Tube;
@@ -72,10 +71,10 @@ pub(crate) fn first(field: &mut Field, step: &Step) -> First {
         if signal.clearly_holds(until) {
             continue;
         }
-        let noise = noise(signal.field, step, condition);
+        let noise = signal.noise(0.0);
         match signal.first_failure(until, noise) {
             Search::Holds => {}
-            Search::Fails(ends) => {
+            Search::Fails(ends, noise) => {
                 until = root(&mut |theta| signal.value(theta), ends, noise);
                 (found, is_known) = (Some(condition), true);
             }
@@ -107,13 +106,13 @@ fn conditions(field: &Field) -> Vec<Condition> {
         .collect()
 }
 
-/// What rounding may make of 0.
-fn noise(field: &mut Field, step: &Step, condition: Condition) -> f64 {
-    field.find_rounding(step.t, &step.start);
+/// What rounding may make of 0 at a point.
+pub(super) fn noise(field: &mut Field, condition: Condition, t: f64, x: &[f64]) -> f64 {
+    field.find_rounding(t, x);
     match condition {
-        Condition::Reaches(i) => field.normals(step.t, &step.start).noise(i, &step.start),
+        Condition::Reaches(i) => field.normals(t, x).noise(i, x),
         Condition::Leaves(_) => SELECTOR_NOISE,
-        Condition::CrossesKink(k) => field.kinks(step.t, &step.start).noise(k, &step.start),
+        Condition::CrossesKink(k) => field.kinks(t, x).noise(k, x),
     }
 }
 
@@ -197,12 +196,22 @@ fn refine(field: &mut Field, step: &Step, condition: Condition, theta: f64) -> F
     Found { condition, h, state }
 }
 
-/// Newton's steps onto a surface that is reached but for rounding, which is as large as the state
-/// was on the way.
+/// Newton's steps onto a surface that is reached but for rounding and tolerances: the least change
+/// of the states, each in units of how exact it is.
 fn bring_to(field: &mut Field, surface: usize, t: f64, state: &mut [f64]) {
+    let exact: Vec<f64> =
+        state.iter().enumerate().map(|(i, x)| field.tolerance.of(i, [*x; 2], 0.0)).collect();
     for _ in 0..2 {
         let normals = field.normals(t, state);
-        let slope: Vec<f64> = normals.by_state.row(surface).iter().copied().collect();
-        correct(state, &slope, normals.psi[surface]);
+        let slope = normals.by_state.row(surface);
+        let largest = slope.iter().zip(&exact).map(|(d, e)| (d * e).abs()).fold(0.0, f64::max);
+        let shares: Vec<f64> = slope.iter().zip(&exact).map(|(d, e)| d * e / largest).collect();
+        let square: f64 = shares.iter().map(|share| share * share).sum();
+        if square.is_nan() || square == 0.0 {
+            return;
+        }
+        let factor = normals.psi[surface] / largest / square;
+        let changes = shares.iter().zip(&exact).map(|(share, e)| factor * share * e);
+        state.iter_mut().zip(changes).for_each(|(x, change)| *x -= change);
     }
 }

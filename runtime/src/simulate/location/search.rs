@@ -15,12 +15,12 @@
 
 use super::interval::{ALL, scaled};
 use super::sliding;
-use super::{Condition, value};
+use super::{Condition, noise, value};
 use crate::simulate::field::Field;
 use crate::simulate::field::tube::Tube;
 use crate::simulate::steps::Step;
 use crate::simulate::system::Interval;
-use crate::simulate::tuning::search::{FLAT, MOST_PARTS, ROUNDING};
+use crate::simulate::tuning::search::{FLAT, GOLDEN, MOST_PARTS, ROUNDING, SECTIONS};
 
 /// A condition along a step.
 pub(crate) struct Signal<'f, 'a> {
@@ -34,8 +34,9 @@ pub(crate) struct Signal<'f, 'a> {
 pub(crate) enum Search {
     /// The condition holds.
     Holds,
-    /// It fails first in this part, at the end of which it is known to fail.
-    Fails([f64; 2]),
+    /// It fails first in this part, at the end of which it is known to fail; what rounding may make
+    /// of 0 there.
+    Fails([f64; 2], f64),
     /// It holds so far; what comes then takes too long to find out.
     HoldsUntil(f64),
 }
@@ -47,9 +48,23 @@ struct Part {
     values: [f64; 2],
 }
 
+impl Part {
+    /// The later, then the earlier piece on the two sides of a point with this value.
+    fn cut(self, theta: f64, value: f64) -> [Part; 2] {
+        let [from, to] = self.ends;
+        [
+            Part { ends: [theta, to], values: [value, self.values[1]] },
+            Part { ends: [from, theta], values: [self.values[0], value] },
+        ]
+    }
+}
+
 enum Verdict {
     Holds,
-    Fails,
+    /// It fails at this part of the step, where it has this value.
+    FailsAt(f64, f64),
+    /// By more than this, which rounding may make of 0.
+    Fails(f64),
     Open,
 }
 
@@ -94,19 +109,13 @@ impl Signal<'_, '_> {
             let Some(part) = parts.pop() else { return Search::Holds };
             match self.judge(part, noise) {
                 Verdict::Holds => {}
-                Verdict::Fails => return Search::Fails(part.ends),
+                Verdict::Fails(noise) => return Search::Fails(part.ends, noise),
+                Verdict::FailsAt(theta, value) => parts.extend(part.cut(theta, value)),
                 Verdict::Open => {
                     let middle = 0.5 * (part.ends[0] + part.ends[1]);
                     let value = self.value(middle);
                     largest = largest.max(value.abs());
-                    parts.push(Part {
-                        ends: [middle, part.ends[1]],
-                        values: [value, part.values[1]],
-                    });
-                    parts.push(Part {
-                        ends: [part.ends[0], middle],
-                        values: [part.values[0], value],
-                    });
+                    parts.extend(part.cut(middle, value));
                 }
             }
         }
@@ -117,18 +126,54 @@ impl Signal<'_, '_> {
             .map_or(Search::Holds, |part| Search::HoldsUntil(part.ends[0]))
     }
 
+    /// What rounding may make of 0 at a part of the step.
+    pub fn noise(&mut self, theta: f64) -> f64 {
+        noise(self.field, self.condition, self.step.t + theta * self.step.h, &self.step.at(theta))
+    }
+
+    /// `noise` is what rounding may make of 0 at the beginning of the step.
     fn judge(&mut self, part: Part, noise: f64) -> Verdict {
         let [[least, _], [falls, grows]] = self.bounds(part.ends);
-        if least >= -noise {
+        if least >= 0.0 {
             return Verdict::Holds;
         }
         let [from, to] = part.ends;
+        // What is rounding at the beginning may be much here, where terms are smaller.
+        let is_shallow = least >= -noise;
+        let noise = if part.values[1] < 0.0 { self.noise(to).min(noise) } else { noise };
+        if is_shallow && part.values[1] >= -noise {
+            let [theta, value] = self.lowest(part);
+            let fails = theta > from && theta < to && value < -self.noise(theta);
+            return if fails { Verdict::FailsAt(theta, value) } else { Verdict::Holds };
+        }
         if falls >= 0.0 || grows <= 0.0 || to - from <= self.shortest() {
-            return if part.values[1] < -noise { Verdict::Fails } else { Verdict::Holds };
+            return if part.values[1] < -noise { Verdict::Fails(noise) } else { Verdict::Holds };
         }
         let [at_from, at_to] = part.values;
         let until_lowest = (at_from - at_to + grows * (to - from)) / (grows - falls);
         if at_from + falls * until_lowest >= -noise { Verdict::Holds } else { Verdict::Open }
+    }
+
+    /// A part of the step where the value is lowest, and the value, by golden sections (J. Kiefer:
+    /// Sequential minimax search for a maximum, Proc. AMS 4 (1953) 502-506).
+    fn lowest(&mut self, part: Part) -> [f64; 2] {
+        let [mut low, mut high] = part.ends;
+        let inner =
+            |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+        let mut at = inner(low, high);
+        let mut values = at.map(|theta| self.value(theta));
+        for _ in 0..SECTIONS {
+            if values[0] <= values[1] {
+                high = at[1];
+                at = inner(low, high);
+                values = [self.value(at[0]), values[0]];
+            } else {
+                low = at[0];
+                at = inner(low, high);
+                values = [values[1], self.value(at[1])];
+            }
+        }
+        if values[0] <= values[1] { [at[0], values[0]] } else { [at[1], values[1]] }
     }
 
     /// A part of the step that rounding hides.

@@ -195,15 +195,14 @@ impl Run<'_> {
         let selectors = self.field.selectors.clone();
         // What was uncertain in a short step says nothing about a long one.
         self.field.tolerance.forget_doubts();
-        let mut has_doubts = false;
         loop {
             if self.counts.steps + self.counts.rejected >= self.options.max_steps {
                 return Err(Status::StepLimit);
             }
             step.attempt(&mut self.field, h);
-            if step.error > 1.0 && !has_doubts {
+            if step.error > 1.0 {
+                // With the present length: what a longer step made of uncertain rates is too much.
                 self.doubt(step);
-                has_doubts = true;
             }
             let next = h * factor(step);
             if step.error <= 1.0 {

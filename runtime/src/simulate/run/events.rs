@@ -54,6 +54,7 @@ impl Run<'_> {
 
     /// The surfaces that the state is on.
     pub fn surfaces_here(&mut self) -> Vec<usize> {
+        self.field.find_rounding(self.t, &self.x);
         let normals = self.field.normals(self.t, &self.x);
         let is_zero = |i: usize| normals.psi[i].abs() <= ON_SURFACE * normals.noise(i, &self.x);
         let is_here = |i: &usize| match self.field.modes[*i] {
@@ -164,8 +165,10 @@ impl Run<'_> {
     fn is_small(&mut self, jump: usize, surface: usize) -> bool {
         let normals = self.field.normals(self.t, &self.x);
         let rate = self.field.rate(self.t, &self.x);
-        let way = normals.rate(surface, &rate).abs() * self.jump_times[jump].since_last(self.t);
-        way <= SMALL_WAY * normals.noise(surface, &self.x)
+        let speed = normals.rate(surface, &rate).abs();
+        let way = speed * self.jump_times[jump].since_last(self.t);
+        // What comes to rest at once goes nowhere, and does not come back.
+        speed > 0.0 && way <= SMALL_WAY * normals.noise(surface, &self.x)
     }
 
     /// Whether a state that is still on a surface after a reset moves on to the other side,
@@ -185,6 +188,7 @@ impl Run<'_> {
 
     /// Gives every surface that the state is not on the side of the state.
     pub fn find_sides(&mut self) {
+        self.field.find_rounding(self.t, &self.x);
         let normals = self.field.normals(self.t, &self.x);
         for i in 0..self.field.modes.len() {
             let is_off = normals.psi[i].abs() > ON_SURFACE * normals.noise(i, &self.x);

@@ -127,6 +127,9 @@ impl<'a> Run<'a> {
         self.pace.is_continued = false;
         happens(self)?;
         self.field.tolerance.see(&self.x);
+        if !matches!(cause, Cause::Controls) {
+            self.field.find_least_sizes(self.t, &self.x);
+        }
         if !matches!(cause, Cause::CrossesKink(_)) {
             self.field.find_sides_of_kinks(self.t, &self.x);
         }

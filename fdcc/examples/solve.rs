@@ -11,6 +11,6 @@ fn main() -> Result<(), Error> {
         println!("v({time:.1}) = {v:.4} m/s");
     }
     let replay = solution.verify()?;
-    println!("confirmed on the true system to 1 %: {}", replay.confirms(0.01));
+    println!("confirmed on the true system to 2 %: {}", replay.confirms(0.02));
     Ok(())
 }

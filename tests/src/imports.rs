@@ -155,7 +155,7 @@ fn statements(code: &str) -> Vec<(bool, String)> {
         let Some(at) = statement.rfind("use ").filter(|at| is_statement(statement, *at)) else {
             continue;
         };
-        let door = statement[..at].trim_end().ends_with(|c: char| c == ')' || c == 'b');
+        let door = statement[..at].trim_end().ends_with([')', 'b']);
         let tree: String = statement[at + 4..].split_whitespace().collect::<Vec<_>>().join(" ");
         found.extend(expanded(&tree).into_iter().map(|path| (door, path)));
     }

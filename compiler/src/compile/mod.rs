@@ -95,7 +95,7 @@ pub struct Expectations {
     /// What only a simulation can tell.
     pub simulated: Vec<Simulated>,
     /// Over `[x(start), x(end) | p, integrals, simulated]`, the states of
-    /// [`Problem`](fdcc_runtime::problem::Problem) with the hidden ones; values only.
+    /// [`Problem`] with the hidden ones; values only.
     pub function: Arc<dyn Function>,
     /// The integrands over normalised time `[tau | x | u | p]`, times the duration; values only.
     pub integrands: Arc<dyn Function>,

@@ -246,7 +246,7 @@ fn whole(given: &Given) -> Option<u64> {
         .map(|value| value as u64)
 }
 
-/// However large: whether it is too much depends on the other settings ([`misfit`]).
+/// However large: whether it is too much depends on the other settings ([`conflicts::misfit`]).
 fn count(given: &Given) -> Option<usize> {
     number(given).filter(|value| value.fract() == 0.0 && *value >= 1.0).map(|value| value as usize)
 }

@@ -1,4 +1,4 @@
-//! An NLP in other units, with numbers of moderate size ([`factors`](self::factors)).
+//! An NLP in other units, with numbers of moderate size ([`factors`]).
 //!
 //! ```text
 //!     minimise  s f(V w)   subject to   R lower <= R c(V w) <= R upper,   lower <= V w <= upper

@@ -2,7 +2,7 @@
 //!
 //! Four ways: it touches a surface without crossing it, it meets two surfaces at one time, it meets
 //! a surface when the controls change or when it starts, it meets one at the end. All are
-//! suspicions; [`one_sided()`](super::first_order::one_sided()) decides.
+//! suspicions; [`one_sided()`](super::first_order::one_sided::one_sided()) decides.
 
 pub(crate) mod kink;
 

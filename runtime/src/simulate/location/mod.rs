@@ -2,7 +2,7 @@
 //!
 //! Every condition is a function `g >= 0` of time: `side * psi` beside a surface or a kink, `1 -
 //! |s|` on a surface. Along the dense output
-//! none of them is negative before the event that is found (see [`search`](self::search)). The
+//! none of them is negative before the event that is found (see [`search`]). The
 //! root is refined on steps of the pair
 //! itself, so it is as accurate as the integration.
 

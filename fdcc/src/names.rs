@@ -1,7 +1,6 @@
-//! The words that models, files and verdicts have for statuses, modes and settings.
+//! The words that files and verdicts have for statuses and modes.
 
 use fdcc_runtime::nlp::Status;
-use fdcc_runtime::problem::{ControlShape, Linear, Solver};
 use fdcc_runtime::solution::modes::Mode;
 use fdcc_runtime::solve::Outcome;
 
@@ -28,36 +27,4 @@ pub fn mode_name(mode: Mode) -> &'static str {
         Mode::Held => "held",
         Mode::Above => "above",
     }
-}
-
-/// The name of the shape of controls in models and files.
-pub fn shape_name(shape: ControlShape) -> &'static str {
-    match shape {
-        ControlShape::Constant => "constant",
-        ControlShape::Linear => "linear",
-        ControlShape::Polynomial => "polynomial",
-    }
-}
-
-/// The name of a solver in models and files.
-pub fn solver_name(solver: Solver) -> &'static str {
-    match solver {
-        Solver::Automatic | Solver::InteriorPoint => "interior_point",
-        Solver::Convex => "convex",
-    }
-}
-
-/// The name of a factorisation in models and files.
-pub fn linear_name(linear: Linear) -> &'static str {
-    match linear {
-        Linear::Automatic => "auto",
-        Linear::Riccati => "riccati",
-        Linear::SparseLdl => "sparse_ldl",
-    }
-}
-
-/// The shape of a name, as [`shape_name`] gives it.
-pub fn find_shape(name: &str) -> Option<ControlShape> {
-    let all = [ControlShape::Constant, ControlShape::Linear, ControlShape::Polynomial];
-    all.into_iter().find(|it| shape_name(*it) == name)
 }

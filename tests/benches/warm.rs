@@ -41,7 +41,7 @@ fn main() {
         let mut problem = load(model, &[(parameter, after)], settings);
         problem.method.solver = Solver::InteriorPoint;
         let change = format!("{parameter} = {before} to {after}");
-        let intervals = problem.method.intervals;
+        let intervals = problem.method.intervals();
         let warm = again(&problem, &solved.solution, &[]);
         for (name, start) in [("from the guess", None), ("warm", Some(warm))] {
             let (outcome, seconds) = fastest(&problem, &start);

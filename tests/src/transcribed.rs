@@ -251,7 +251,7 @@ impl Transcribed {
             jacobian: Vec::new(),
             variable_bounds: at.variable_bounds(),
         };
-        for k in 0..problem.method.intervals {
+        for k in 0..problem.method.intervals() {
             result.defects(&at, k);
             for point in &at.grid.path {
                 result.constraints(&at.sample(&*problem.path, k, point), 0, &problem.path_bounds);
@@ -326,7 +326,7 @@ impl At<'_> {
     /// The normalised time of a grid point.
     fn tau(&self, k: usize) -> f64 {
         let method = &self.problem.method;
-        method.mesh.get(k).copied().unwrap_or(k as f64 / method.intervals as f64)
+        method.grid.times().get(k).copied().unwrap_or(k as f64 / method.intervals() as f64)
     }
 
     /// The place of `x_k`.
@@ -362,7 +362,7 @@ impl At<'_> {
     }
 
     fn ends(&self) -> Sample {
-        let (states, last) = (self.problem.layout.x, self.place(self.problem.method.intervals));
+        let (states, last) = (self.problem.layout.x, self.place(self.problem.method.intervals()));
         let point: Vec<f64> =
             [0, last].iter().flat_map(|first| &self.v[*first..first + states]).copied().collect();
         self.evaluate(&*self.problem.boundary, &point, |input| match input {
@@ -401,7 +401,8 @@ impl At<'_> {
     }
 
     fn variable_bounds(&self) -> Vec<Bounds> {
-        let (problem, grid, intervals) = (self.problem, &self.grid, self.problem.method.intervals);
+        let (problem, grid, intervals) =
+            (self.problem, &self.grid, self.problem.method.intervals());
         let states = || problem.states.iter().map(|state| state.bounds);
         let controls = || problem.controls.iter().map(|control| control.bounds);
         let mut bounds = Vec::new();

@@ -170,7 +170,7 @@ fn a_grid_of_our_own_choice_that_is_too_coarse_is_no_verdict() {
         );
         let chosen = found("auto");
         assert_eq!(chosen.outcome.solution.status, Status::Solved, "{mu}");
-        assert!(chosen.problem.method.intervals >= 100, "{mu}");
+        assert!(chosen.problem.method.intervals() >= 100, "{mu}");
     }
 }
 

@@ -36,9 +36,9 @@ fn the_error_is_below_the_tolerance_and_the_grid_is_fine_where_it_has_to_be() {
         let (time, x) = (&outcome.trajectory.time, &outcome.trajectory.states[0]);
         assert!(error.is_some_and(|error| error <= tolerance), "{scheme}: {error:?}");
         assert!(
-            problem.method.intervals < most,
+            problem.method.intervals() < most,
             "{scheme}: {} intervals",
-            problem.method.intervals
+            problem.method.intervals()
         );
         assert!(
             time[0] == 0.0 && time[time.len() - 1] == 2.0 && time.is_sorted_by(|a, b| a < b),
@@ -50,7 +50,7 @@ fn the_error_is_below_the_tolerance_and_the_grid_is_fine_where_it_has_to_be() {
         let shortest = time.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
         assert!(
             time[1] - time[0] < 2.0 * shortest
-                && shortest < 0.3 * 2.0 / problem.method.intervals as f64,
+                && shortest < 0.3 * 2.0 / problem.method.intervals() as f64,
             "{scheme}"
         );
     }
@@ -62,7 +62,7 @@ fn the_error_is_below_the_tolerance_and_the_grid_is_fine_where_it_has_to_be() {
 fn the_error_of_a_step_is_what_it_is() {
     let text = "time t in [0, 1] state x start 1 dynamics { x' = x } minimize x(end)";
     let Refined { outcome, error, problem } = refined(text, &[("N", "auto"), ("tolerance", "1")]);
-    let h = 1.0 / problem.method.intervals as f64;
+    let h = 1.0 / problem.method.intervals() as f64;
     let x = &outcome.trajectory.states[0];
     let largest = x[x.len() - 2];
     let exact: f64 =
@@ -88,9 +88,9 @@ fn an_optimal_control_problem_on_a_grid_that_is_not_uniform() {
     ];
     let Refined { outcome, problem, .. } = refined(text, &methods);
     assert!(
-        !problem.method.mesh.is_empty() && problem.method.intervals < 400,
+        !problem.method.grid.times().is_empty() && problem.method.intervals() < 400,
         "{}",
-        problem.method.intervals
+        problem.method.intervals()
     );
     assert!(
         (outcome.solution.objective - 2f64.tanh()).abs() < 1e-8,
@@ -129,7 +129,7 @@ fn a_finer_grid_takes_few_iterations() {
     assert!(found.error(outcome.solution.objective) < 1e-7, "{found:?}");
     assert!(found.objective < 1e-12, "{found:?}");
     assert!(error.is_some_and(|error| error <= 0.005), "{error:?}");
-    assert!(problem.method.intervals > 100, "{}", problem.method.intervals);
+    assert!(problem.method.intervals() > 100, "{}", problem.method.intervals());
     let iterations = outcome.solution.counts.iterations;
     assert!(iterations < coarse + 120, "{iterations} after {coarse}");
 }

@@ -498,7 +498,7 @@ fn the_command_line_changes_parameters_and_method() {
     let problem = compile(&car).expect("it can be solved");
     assert_eq!((problem.parameters[3].value, problem.parameters[6].value), (4.0, 0.02));
     assert_eq!(
-        (problem.method.intervals, problem.method.continuation.clone()),
+        (problem.method.intervals(), problem.method.continuation.clone()),
         (500, vec![0.1, 0.05])
     );
     let refused = |result: Result<(), String>| result.expect_err("it must be refused");

@@ -24,7 +24,7 @@ fn stages(found: &Refined) -> usize {
 /// Intervals times stages of an answer within the tolerance; nothing of another.
 fn nodes(found: &Refined) -> Option<usize> {
     let is_met = found.error.is_some_and(|error| error <= found.problem.method.tolerance);
-    is_met.then_some(found.problem.method.intervals * stages(found))
+    is_met.then_some(found.problem.method.intervals() * stages(found))
 }
 
 /// A regulator: `x = cosh(T - t)/cosh T` and the objective is `tanh T`.
@@ -50,9 +50,9 @@ fn a_smooth_solution_gets_stages_and_the_true_error_falls_to_the_tolerance() {
             let tolerance: f64 = tolerance.parse().expect("a number");
             assert!(worst.max(objective) <= tolerance, "{scheme} {tolerance}: {worst} {objective}");
             assert!(
-                found.problem.method.intervals <= 20,
+                found.problem.method.intervals() <= 20,
                 "{scheme} {tolerance}: {}",
-                found.problem.method.intervals
+                found.problem.method.intervals()
             );
             assert!(stages(&found) >= before, "{scheme} {tolerance}");
             before = stages(&found);
@@ -78,10 +78,10 @@ fn the_errors_of_long_steps_are_what_they_are() {
         let (exact_x, exact_v) = (x[k] * cos + v[k] * sin / 5.0, v[k] * cos - 5.0 * x[k] * sin);
         (x[k + 1] - exact_x).abs().max((v[k + 1] - exact_v).abs() / size)
     };
-    let exact: f64 = (0..found.problem.method.intervals).map(error).sum();
+    let exact: f64 = (0..found.problem.method.intervals()).map(error).sum();
     let estimate = found.error.expect("it was asked for");
     assert!((estimate - exact).abs() < 0.05 * tolerance, "{estimate} for {exact}");
-    assert!(exact <= tolerance && found.problem.method.intervals <= 80, "{exact}");
+    assert!(exact <= tolerance && found.problem.method.intervals() <= 80, "{exact}");
 }
 
 /// `x' = sqrt(s^2 + w^2)` with `s = t - 0.3`: rounded over `w` only, so that more stages gain

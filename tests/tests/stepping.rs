@@ -2,7 +2,7 @@
 
 use fdcc_compiler::{compile_sensitivities, compile_simulation, compile_smoothed};
 use fdcc_runtime::fixed_step::{Failure, Gradient, Grid, Stepped, gradient, step_through};
-use fdcc_runtime::problem::Method;
+use fdcc_runtime::problem::{Grid as Intervals, Method};
 use fdcc_runtime::simulate::{Controls, Options, Status, System, simulate};
 use fdcc_tests::models::{meaning, problem, text_of};
 use fdcc_tests::{documents, rate};
@@ -247,7 +247,10 @@ fn smooth_systems_get_the_order_of_the_scheme() {
         let (system, method) = (inclusion(&text), problem(&text, &[], &[]).method);
         let steps = [20, 40, 80];
         let errors = steps.map(|intervals| {
-            let grid = Grid::new(&system, &Method { intervals, ..method.clone() });
+            let grid = Grid::new(
+                &system,
+                &Method { grid: Intervals::Uniform(intervals), ..method.clone() },
+            );
             let stepped = step_through(&system, &Controls::Guess, &grid).expect("an end");
             (stepped.states[0][intervals] - 1.0_f64.cos())
                 .hypot(stepped.states[1][intervals] + 1.0_f64.sin())

@@ -7,9 +7,9 @@ use super::tried::{Ended, Happened, Tried};
 use super::units::Units;
 use super::verified::Verification;
 use fdcc::Solution;
-use fdcc::names::{linear_name, mode_name, shape_name, solver_name};
+use fdcc::names::mode_name;
 use fdcc_runtime::nlp::{self, Status};
-use fdcc_runtime::problem::{Function, Method, Problem, Variable};
+use fdcc_runtime::problem::{Function, Method, Problem, Solver, Variable};
 use fdcc_runtime::solution;
 use fdcc_runtime::solution::Hamiltonian;
 use fdcc_runtime::solve::Outcome;
@@ -290,18 +290,19 @@ impl MethodUsed {
         let Solution { problem, outcome, .. } = found;
         let method: &Method = &problem.method;
         let surfaces = problem.surfaces.iter().zip(&outcome.sigma);
-        let solver = if outcome.convex { "convex" } else { solver_name(method.solver) };
+        let is_convex = outcome.convex || method.solver == Solver::Convex;
+        let solver = if is_convex { Solver::Convex } else { Solver::InteriorPoint };
         MethodUsed {
             scheme: method.scheme.name(),
-            controls: shape_name(method.controls).to_string(),
-            n: method.intervals,
+            controls: method.controls.name().to_string(),
+            n: method.intervals(),
             steps: method.steps,
             sigma: outcome.sigma.first().copied(),
             sigmas: surfaces.map(|(surface, sigma)| (surface.name.clone(), *sigma)).collect(),
             sigma_chosen: found.has_chosen_widths(),
             kernel: method.kernel.clone(),
-            solver: solver.to_string(),
-            linear: linear_name(method.linear).to_string(),
+            solver: solver.name().to_string(),
+            linear: method.linear.name().to_string(),
             tol: method.tol,
             seed: method.seed,
         }

@@ -235,7 +235,7 @@ impl Other {
     fn new(stepped: Stepped, by: &[By], method: &Method) -> Self {
         let scheme = method.scheme.name();
         let gradient = named(by, &stepped.gradient);
-        Other { sigma: stepped.sigma, scheme, n: method.intervals, gradient }
+        Other { sigma: stepped.sigma, scheme, n: method.intervals(), gradient }
     }
 }
 

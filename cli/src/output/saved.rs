@@ -1,11 +1,10 @@
 //! What is read of a `.sol.json`: to start from it, to replay it, to verify it.
 
 use super::named::Named;
-use crate::solver::Failure;
+use crate::failure::Failure;
 use fdcc::Record;
-use fdcc::names::find_shape;
 use fdcc::record::{JumpRecord, NodesRecord, Settings};
-use fdcc_runtime::problem::Scheme;
+use fdcc_runtime::problem::{ControlShape, Scheme};
 use serde::{Deserialize, Deserializer};
 use std::fs;
 use std::path::Path;
@@ -141,7 +140,7 @@ impl SavedMethod {
     fn settings(&self) -> Settings<'_> {
         Settings {
             scheme: self.scheme.as_deref().and_then(Scheme::named),
-            controls: self.controls.as_deref().and_then(find_shape),
+            controls: self.controls.as_deref().and_then(ControlShape::named),
             intervals: self.n.map(|n| n as usize),
             sigma: self.sigma,
             sigmas: numbers(&self.sigmas),

@@ -42,7 +42,7 @@ pub(super) fn compose(
     rates: Vec<ExprId>,
 ) -> Vec<ExprId> {
     let Some(tableau) = tableau(method.scheme) else { return rates };
-    let h = 1.0 / (method.intervals * method.steps) as f64;
+    let h = 1.0 / (method.intervals() * method.steps) as f64;
     let mut stages: Vec<Vec<ExprId>> = Vec::new();
     for (row, time) in tableau.stages.iter().zip(tableau.times) {
         let point = moved(graph, layout, h, *time, row, &stages);

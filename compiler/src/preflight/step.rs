@@ -9,16 +9,16 @@ use crate::expressions::graph::Expr;
 use crate::model::Symbol;
 use crate::syntax::text::number;
 use fdcc_grammar::{Code, Diagnostic};
-use fdcc_runtime::problem::Scheme;
+use fdcc_runtime::problem::{Grid, Scheme};
 
 /// Reports the steepest layer that the step does not resolve.
 pub(super) fn check(preflight: &mut Preflight<'_>, found: &mut Vec<Diagnostic>) {
     let method = &preflight.model.method;
     let (Some(sigma), Scheme::Euler) = (preflight.sigma(), method.scheme) else { return };
-    if method.is_refined {
+    if method.grid == Grid::Auto {
         return;
     }
-    let step = preflight.duration / (method.intervals * method.steps) as f64;
+    let step = preflight.duration / (method.intervals() * method.steps) as f64;
     let factor = preflight.kernel_slope();
     let Some(layer) = preflight.layers().into_iter().next() else { return };
     let slope = factor * layer.jump / sigma.width;
@@ -50,7 +50,7 @@ fn too_long(
          (the implicit scheme removes the oscillation, not the gradient error: still keep h small)",
         number((preflight.duration * slope).ceil()),
         sigma.text(slope * sigma.width * step),
-        preflight.model.method.intervals
+        preflight.model.method.intervals()
     ))
 }
 

@@ -11,6 +11,7 @@ use crate::surfaces::View;
 use crate::surfaces::class::{Class, class};
 use crate::syntax::text::number;
 use fdcc_grammar::{Code, Diagnostic};
+use fdcc_runtime::problem::Grid;
 
 /// The lists that matter, and what the ratio is made of.
 struct Lists<'m> {
@@ -60,7 +61,7 @@ fn lists<'m>(preflight: &Preflight<'m>) -> Option<Lists<'m>> {
     // With `N = auto` the grid follows the layer by itself.
     let intervals = match find("N") {
         Some(swept) => Some(numbers(swept)?),
-        None if preflight.model.method.is_refined => return None,
+        None if preflight.model.method.grid == Grid::Auto => return None,
         None => None,
     };
     Some(Lists { sigma: numbers(find("sigma")?)?, intervals, place })
@@ -70,7 +71,7 @@ impl Lists<'_> {
     /// N in a row; a list of one value holds for all rows.
     fn intervals(&self, preflight: &Preflight<'_>, row: usize) -> f64 {
         let swept = self.intervals.as_ref().and_then(|values| values.get(row).or(values.first()));
-        swept.copied().unwrap_or(preflight.model.method.intervals as f64)
+        swept.copied().unwrap_or(preflight.model.method.intervals() as f64)
     }
 }
 

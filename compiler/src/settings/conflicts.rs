@@ -1,11 +1,11 @@
 //! Settings of the method that do not fit each other, or together ask for too much.
 
-use fdcc_runtime::problem::{ControlShape, Method, Scheme};
+use fdcc_runtime::problem::{ControlShape, Grid, Method, Order, Scheme};
 
 /// Which setting does not fit the others, why, and what to do.
 pub(crate) fn misfit(method: &Method) -> Option<(&'static str, String, &'static str)> {
     if let Some([steps, most]) = method.excess() {
-        let key = if method.steps > method.intervals { "steps" } else { "N" };
+        let key = if method.steps > method.intervals() { "steps" } else { "N" };
         let help =
             "a grid that fine resolves nothing more; write smaller numbers for `N` and `steps`";
         return Some((key, too_many(method, steps, most), help));
@@ -20,20 +20,20 @@ fn too_many(method: &Method, steps: usize, most: usize) -> String {
         1 => format!("`N = {steps}` is too large; {most} intervals are the most"),
         each => format!(
             "`N = {}` with `steps = {each}` is {steps} steps in all; {most} are the most",
-            method.intervals
+            method.intervals()
         ),
     }
 }
 
 fn mismatch(method: &Method) -> Option<(&'static str, &'static str, &'static str)> {
-    if method.is_refined && method.scheme == Scheme::RungeKutta4 {
+    if method.grid == Grid::Auto && method.scheme == Scheme::RungeKutta4 {
         return Some((
             "N",
             "`rk4` has steps of one length, which `N = auto` has not",
             "choose another scheme, or a number for N",
         ));
     }
-    if method.is_raised && !method.is_refined {
+    if method.order == Order::Auto && method.grid != Grid::Auto {
         return Some((
             "scheme",
             "`radau` and `gauss` without a number find their order together with the grid, and \

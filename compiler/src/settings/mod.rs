@@ -6,7 +6,7 @@ pub(crate) mod words;
 
 use crate::expressions::kernels;
 use crate::syntax::closest;
-use fdcc_runtime::problem::{ControlShape, Linear, Method, Scheme, Solver};
+use fdcc_runtime::problem::{ControlShape, Grid, Linear, Method, Order, Scheme, Solver};
 
 /// A key of the `method` block: one row says everything about it.
 pub(crate) struct Key {
@@ -57,10 +57,8 @@ pub(crate) const KEYS: &[Key] = &[
          refines the grid where steps have errors, and with `scheme = radau` or `gauss` finds the \
          order as well.",
         set: |m, given| {
-            m.is_refined = matches!(given, Given::Word(word) if word == "auto");
-            if !m.is_refined {
-                m.intervals = count(given)?;
-            }
+            let is_open = matches!(given, Given::Word(word) if word == "auto");
+            m.grid = if is_open { Grid::Auto } else { Grid::Uniform(count(given)?) };
             Some(())
         },
     },
@@ -90,7 +88,7 @@ pub(crate) const KEYS: &[Key] = &[
         set: |m, given| {
             let Given::Word(word) = given else { return None };
             m.scheme = Scheme::named(word)?;
-            m.is_raised = Scheme::is_family(word);
+            m.order = if Scheme::is_family(word) { Order::Auto } else { Order::Fixed };
             Some(())
         },
     },
@@ -100,7 +98,8 @@ pub(crate) const KEYS: &[Key] = &[
         doc: "What a control is on an interval: `constant`, `linear` and continuous, or a `polynomial` \
          through its values at the nodes.",
         set: |m, given| {
-            m.controls = words::value(words::SHAPES, given)?;
+            let Given::Word(word) = given else { return None };
+            m.controls = ControlShape::named(word)?;
             Some(())
         },
     },
@@ -110,9 +109,8 @@ pub(crate) const KEYS: &[Key] = &[
         doc: "Interior point method, or the conic solver for convex problems. Without it the problem \
          decides.",
         set: |m, given| {
-            let is_open = matches!(given, Given::Word(word) if word == "auto");
-            m.solver =
-                if is_open { Solver::Automatic } else { words::value(words::SOLVERS, given)? };
+            let Given::Word(word) = given else { return None };
+            m.solver = if word == "auto" { Solver::Automatic } else { Solver::named(word)? };
             Some(())
         },
     },
@@ -122,7 +120,8 @@ pub(crate) const KEYS: &[Key] = &[
         doc: "The factorisation of the interior point method: `riccati` along the grid, `sparse_ldl` \
          for any structure.",
         set: |m, given| {
-            m.linear = words::value(words::LINEAR_SOLVERS, given)?;
+            let Given::Word(word) = given else { return None };
+            m.linear = Linear::named(word)?;
             Some(())
         },
     },
@@ -289,12 +288,10 @@ pub fn default_method() -> Method {
     Method {
         scheme: Scheme::ImplicitEuler,
         controls: ControlShape::Constant,
-        mesh: Vec::new(),
-        is_refined: false,
-        is_raised: false,
+        grid: Grid::Uniform(200),
+        order: Order::Fixed,
         tolerance: 1e-3,
         lagged: Vec::new(),
-        intervals: 200,
         steps: 1,
         sigma: None,
         continuation: Vec::new(),

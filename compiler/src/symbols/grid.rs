@@ -21,7 +21,8 @@ pub struct Grid {
 pub fn grid(model: &Model) -> Option<Grid> {
     let numbers = numbers(model).ok()?;
     let [first, last] = model.interval.map(|end| numbers.value(model, end));
-    let Method { intervals, steps, sigma, .. } = model.method;
+    let Method { steps, sigma, .. } = model.method;
+    let intervals = model.method.intervals();
     let has_inner = matches!(model.method.scheme, Scheme::Radau(_) | Scheme::Gauss(_));
     let (states, controls) = (model.states.len(), model.controls.len());
     let whole =

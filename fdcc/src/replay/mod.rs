@@ -8,7 +8,7 @@ pub(crate) use piecewise::pieces_of_one;
 use crate::record::{Record, Settings, find};
 use fdcc_compiler::Model;
 use fdcc_compiler::kernels;
-use fdcc_runtime::problem::{ControlShape, Scheme};
+use fdcc_runtime::problem::{ControlShape, Grid, Order, Scheme};
 use fdcc_runtime::simulate::Controls;
 use piecewise::{Pieces, pieces};
 
@@ -129,11 +129,11 @@ impl Restored {
     fn adapt(&self, model: &mut Model) {
         let method = &mut model.method;
         if let Some(scheme) = self.scheme {
-            (method.scheme, method.is_raised) = (scheme, false);
+            (method.scheme, method.order) = (scheme, Order::Fixed);
         }
         method.controls = self.controls.unwrap_or(method.controls);
         if let Some(intervals) = self.intervals {
-            (method.intervals, method.is_refined) = (intervals, false);
+            method.grid = Grid::Uniform(intervals);
         }
         method.sigma = self.sigma.or(method.sigma);
         if let Some(kernel) = self.kernel {

@@ -5,11 +5,9 @@ pub(crate) mod phases;
 
 use crate::error::Error;
 use crate::record::{Record, find, number, whole};
-use crate::solve::Solution;
 use fdcc_runtime::nlp::Start;
-use fdcc_runtime::problem::{Method, Problem};
-use fdcc_runtime::solve::warm_start::Earlier;
-use fdcc_runtime::solve::warm_start::{again, from_earlier};
+use fdcc_runtime::problem::Problem;
+use fdcc_runtime::solve::warm_start::{Earlier, from_earlier};
 
 /// Whether a record has something of a problem, and that wholly.
 pub(crate) fn check(record: &Record, problem: &Problem) -> Result<(), Error> {
@@ -23,19 +21,6 @@ pub(crate) fn check(record: &Record, problem: &Problem) -> Result<(), Error> {
 /// The record on the grid of the problem. What it does not have is guessed.
 pub(crate) fn from_record(record: &Record, problem: &Problem) -> Start {
     from_earlier(problem, &earlier(record, problem))
-}
-
-/// The end of another solve as the start of this one: with its multipliers if the grid is the same.
-pub(crate) fn from_solution(before: &Solution, problem: &Problem) -> Start {
-    let shape = |problem: &Problem| {
-        let Method { intervals, scheme, controls, mesh, .. } = problem.method.clone();
-        (intervals, scheme, controls, mesh)
-    };
-    if shape(&before.problem) == shape(problem) {
-        let widths: &[f64] = if before.has_chosen_widths() { &before.outcome.sigma } else { &[] };
-        return again(problem, &before.outcome.solution, widths);
-    }
-    from_record(&before.record(), problem)
 }
 
 /// From 0 to 1; none if one is missing.

@@ -5,8 +5,7 @@ use super::{normalised, widths};
 use crate::record::{Record, find, number, whole};
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::problem::Problem;
-use fdcc_runtime::solve::warm_start::Earlier;
-use fdcc_runtime::solve::warm_start::from_earlier;
+use fdcc_runtime::solve::warm_start::{Earlier, from_earlier};
 
 /// The start from the solution, whose jumps are those of the problem; nothing if it is not whole.
 /// `between` is what holds between the jumps.

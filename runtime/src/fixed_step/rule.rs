@@ -26,7 +26,7 @@ pub struct Grid {
 impl Grid {
     /// The grid and the scheme of a method.
     pub fn new(system: &System, method: &Method) -> Self {
-        Grid::with_nodes(nodes(method, system.layout.x), method.intervals, method.steps)
+        Grid::with_nodes(nodes(method, system.layout.x), method.intervals(), method.steps)
     }
 
     /// `x+ = x + h f(t + theta h, (1 - theta) x + theta x+)`: 0 is explicit Euler, 1/2 the midpoint

@@ -1,45 +1,37 @@
 //! How a model asks to be solved: the `method` block, with defaults where the model is silent.
 
-use super::Scheme;
+use super::{ControlShape, Linear, Scheme, Solver};
 
 /// Intervals of the first grid where the choice is ours.
 pub const FIRST_GRID: usize = 50;
+/// The same where polynomials on them get as many stages as they need.
+const FEWEST_INTERVALS: usize = 10;
 /// More intervals need more memory than a computer has to spare: about 5 kB each.
 const MOST_INTERVALS: usize = 1_000_000;
 /// The same for all steps together where an interval has several: the variables inside it cost
 /// more.
 const MOST_STEPS: usize = 200_000;
-/// What a control is on an interval.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ControlShape {
-    /// One value.
-    Constant,
-    /// Linear, and continuous from interval to interval.
-    Linear,
-    /// A polynomial through its values at the nodes of a collocation scheme.
-    Polynomial,
+
+/// Control intervals over normalised time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Grid {
+    /// So many of one length.
+    Uniform(usize),
+    /// Between these times, which ascend from 0 to 1.
+    Mesh(Vec<f64>),
+    /// `N = auto`: refined until the sum of the errors of its steps is below
+    /// [`Method::tolerance`].
+    Auto,
 }
 
-/// Which solver treats the transcribed problem.
+/// The order of the scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Solver {
-    /// Convex problems to the conic solver, all others to the interior point method.
-    Automatic,
-    /// The interior point method, always.
-    InteriorPoint,
-    /// The conic solver; refuses what is not convex.
-    Convex,
-}
-
-/// Which factorisation the interior point method uses.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Linear {
-    /// Stage-wise Riccati recursion where the structure allows, else sparse LDL.
-    Automatic,
-    /// Stage-wise Riccati recursion.
-    Riccati,
-    /// Sparse LDL.
-    SparseLdl,
+pub enum Order {
+    /// That of the scheme.
+    Fixed,
+    /// `scheme = radau` or `gauss` without a number: stages are added where that is worth more than
+    /// dividing intervals.
+    Auto,
 }
 
 /// The `method` block, with defaults where the model is silent.
@@ -52,15 +44,9 @@ pub struct Method {
     /// What a control is on an interval; constant where the scheme does not allow this shape.
     pub controls: ControlShape,
     /// Control intervals.
-    pub intervals: usize,
-    /// Normalised times of the grid, from 0 to 1; none if all intervals have one length.
-    pub mesh: Vec<f64>,
-    /// `N = auto`: the grid is refined until the sum of the errors of its steps is below
-    /// `tolerance`.
-    pub is_refined: bool,
-    /// `scheme = radau` or `gauss` without a number: stages are added where that is worth more than
-    /// dividing intervals.
-    pub is_raised: bool,
+    pub grid: Grid,
+    /// Whether the stages of the scheme are given.
+    pub order: Order,
     /// The sum of the relative errors of all steps that a refined grid may have.
     pub tolerance: f64,
     /// Integration steps in each control interval.
@@ -84,24 +70,45 @@ pub struct Method {
     pub seed: u64,
 }
 
+impl Grid {
+    /// The normalised times of its points; none where all intervals have one length.
+    pub fn times(&self) -> &[f64] {
+        match self {
+            Grid::Mesh(times) => times,
+            Grid::Uniform(_) | Grid::Auto => &[],
+        }
+    }
+}
+
 impl Method {
+    /// How many control intervals there are; where the grid is to be refined, at first: a
+    /// polynomial on each interval says much with few of them.
+    pub fn intervals(&self) -> usize {
+        match &self.grid {
+            Grid::Uniform(intervals) => *intervals,
+            Grid::Mesh(times) => times.len() - 1,
+            Grid::Auto if self.order == Order::Auto && self.has_polynomials() => FEWEST_INTERVALS,
+            Grid::Auto => FIRST_GRID,
+        }
+    }
+
     /// How many steps there are in all, and how many there may be, if that is less. Nobody may make
     /// room for them before this is asked.
     pub fn excess(&self) -> Option<[usize; 2]> {
         let most = if self.steps == 1 { MOST_INTERVALS } else { MOST_STEPS };
-        let steps = self.intervals.saturating_mul(self.steps);
+        let steps = self.intervals().saturating_mul(self.steps);
         (steps > most).then_some([steps, most])
     }
 
-    /// Puts the method to the first of the grids that are tried, as far as the choice is ours: a
-    /// polynomial on each interval says much with few of them.
+    /// Gives a scheme whose order is open the stages that are tried first.
     pub fn begin(&mut self) {
-        let is_polynomial = self.controls == ControlShape::Polynomial;
-        if self.is_raised {
-            self.scheme = self.scheme.with_stages(if is_polynomial { 3 } else { 2 });
+        if self.order == Order::Auto {
+            let stages = if self.has_polynomials() { 3 } else { 2 };
+            self.scheme = self.scheme.with_stages(stages);
         }
-        if self.is_refined {
-            self.intervals = if self.is_raised && is_polynomial { 10 } else { FIRST_GRID };
-        }
+    }
+
+    fn has_polynomials(&self) -> bool {
+        self.controls == ControlShape::Polynomial
     }
 }

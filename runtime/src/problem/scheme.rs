@@ -1,4 +1,5 @@
-//! **The tables** of schemes: a row is the name, the order, the nodes and the constructor of one.
+//! **The tables** of schemes: a row is the name, the order, the nodes, the constructor and the text
+//! of one.
 
 use super::ControlShape;
 
@@ -26,38 +27,99 @@ pub enum Scheme {
     Gauss(usize),
 }
 
-/// A scheme without stages of its own: name, scheme, order, and for each evaluation of the right
-/// side its weight `b`, its time `c` and the blend `w` of old and new state
-/// ([`transcribe`](crate::transcribe)).
-type OneStep = (&'static str, Scheme, usize, &'static [[f64; 3]]);
+/// A scheme without stages of its own.
+struct OneStep {
+    name: &'static str,
+    scheme: Scheme,
+    order: usize,
+    /// For each evaluation of the right side its weight `b`, its time `c` and the blend `w` of old
+    /// and new state ([`transcribe`](crate::transcribe)).
+    evaluations: &'static [[f64; 3]],
+    /// What editors say of it.
+    doc: &'static str,
+}
 
 const ONE_STEP: [OneStep; 5] = [
-    ("euler", Scheme::Euler, 1, &[[1.0, 0.0, 0.0]]),
-    ("implicit_euler", Scheme::ImplicitEuler, 1, &[[1.0, 1.0, 1.0]]),
-    ("midpoint", Scheme::Midpoint, 2, &[[1.0, 0.5, 0.5]]),
-    ("trapezoid", Scheme::Trapezoid, 2, &[[0.5, 0.0, 0.0], [0.5, 1.0, 1.0]]),
-    ("rk4", Scheme::RungeKutta4, 4, &[[1.0, 0.0, 0.0]]),
+    OneStep {
+        name: "euler",
+        scheme: Scheme::Euler,
+        order: 1,
+        evaluations: &[[1.0, 0.0, 0.0]],
+        doc: "`x1 = x0 + h f(x0)`, order 1. Oscillates where a step is longer than the smoothed layer.",
+    },
+    OneStep {
+        name: "implicit_euler",
+        scheme: Scheme::ImplicitEuler,
+        order: 1,
+        evaluations: &[[1.0, 1.0, 1.0]],
+        doc: "`x1 = x0 + h f(x1)`, order 1. Never oscillates; `lagged (th)` takes the named states \
+              at the old time.",
+    },
+    OneStep {
+        name: "midpoint",
+        scheme: Scheme::Midpoint,
+        order: 2,
+        evaluations: &[[1.0, 0.5, 0.5]],
+        doc: "`x1 = x0 + h f((x0 + x1)/2)`, order 2.",
+    },
+    OneStep {
+        name: "trapezoid",
+        scheme: Scheme::Trapezoid,
+        order: 2,
+        evaluations: &[[0.5, 0.0, 0.0], [0.5, 1.0, 1.0]],
+        doc: "`x1 = x0 + h (f(x0) + f(x1))/2`, order 2.",
+    },
+    OneStep {
+        name: "rk4",
+        scheme: Scheme::RungeKutta4,
+        order: 4,
+        evaluations: &[[1.0, 0.0, 0.0]],
+        doc: "The classical Runge-Kutta scheme, order 4; its whole step is one compiled function, \
+              so it costs no further unknowns.",
+    },
 ];
 
-/// A family of collocation schemes: the name before the number of stages, the constructor, and the
-/// order with so many stages. Their nodes are in `transcribe/collocation.rs`.
-type Family = (&'static str, fn(usize) -> Scheme, fn(usize) -> usize);
+/// A family of collocation schemes; their nodes are in `transcribe/collocation.rs`.
+struct Family {
+    /// The name before the number of stages.
+    name: &'static str,
+    /// Whose nodes these are.
+    author: &'static str,
+    scheme: fn(usize) -> Scheme,
+    order: fn(usize) -> usize,
+    /// What editors say of it where the number of stages is open.
+    doc: &'static str,
+}
 
 const COLLOCATION: [Family; 2] = [
-    ("radau", Scheme::Radau, |stages| 2 * stages - 1),
-    ("gauss", Scheme::Gauss, |stages| 2 * stages),
+    Family {
+        name: "radau",
+        author: "Radau",
+        scheme: Scheme::Radau,
+        order: |stages| 2 * stages - 1,
+        doc: "Collocation of Radau, with `N = auto`: stages are added, up to 5, where that takes \
+              fewer nodes than dividing intervals.",
+    },
+    Family {
+        name: "gauss",
+        author: "Gauss",
+        scheme: Scheme::Gauss,
+        order: |stages| 2 * stages,
+        doc: "Collocation of Gauss, with `N = auto`: the number of stages is found like that of \
+              `radau`.",
+    },
 ];
 
 impl Scheme {
     /// The scheme of this name, such as `midpoint` or `radau3`; a family by itself has one stage.
     pub fn named(name: &str) -> Option<Self> {
-        let one_step = ONE_STEP.iter().find(|row| row.0 == name).map(|row| row.1);
+        let one_step = ONE_STEP.iter().find(|row| row.name == name).map(|row| row.scheme);
         one_step.or_else(|| {
-            COLLOCATION.iter().find_map(|(family, scheme, _)| match name.strip_prefix(family)? {
-                "" => Some(scheme(1)),
+            COLLOCATION.iter().find_map(|row| match name.strip_prefix(row.name)? {
+                "" => Some((row.scheme)(1)),
                 number => {
                     let stages = number.parse().ok()?;
-                    (1..=MOST_STAGES).contains(&stages).then(|| scheme(stages))
+                    (1..=MOST_STAGES).contains(&stages).then(|| (row.scheme)(stages))
                 }
             })
         })
@@ -65,36 +127,61 @@ impl Scheme {
 
     /// Whether this is the name of a family, whose number of stages is open.
     pub fn is_family(name: &str) -> bool {
-        COLLOCATION.iter().any(|row| row.0 == name)
+        COLLOCATION.iter().any(|row| row.name == name)
+    }
+
+    /// All names, a family before its members: one list for each.
+    pub fn names() -> impl Iterator<Item = Vec<String>> {
+        let members = |row: &Family| (1..=MOST_STAGES).map(|it| (row.scheme)(it).name()).collect();
+        let one_step = ONE_STEP.iter().map(|row| vec![row.name.to_owned()]);
+        let families = COLLOCATION.iter().map(move |row| [vec![row.name.to_owned()], members(row)]);
+        one_step.chain(families.flatten())
+    }
+
+    /// What editors say of a name.
+    pub fn doc(name: &str) -> Option<String> {
+        if let Some(family) = COLLOCATION.iter().find(|row| row.name == name) {
+            return Some(family.doc.into());
+        }
+        let scheme = Scheme::named(name)?;
+        scheme.one_step().map(|row| row.doc.into()).or_else(|| {
+            Some(format!(
+                "Collocation of {} with {} stages, order {}. Each stage has its own states as \
+                 unknowns; a few intervals give many digits where all is smooth.",
+                scheme.family()?.author,
+                scheme.stages(),
+                scheme.order()
+            ))
+        })
     }
 
     /// The name, such as `radau3`.
     pub fn name(self) -> String {
         match (self.family(), self.one_step()) {
-            (Some(family), _) => format!("{}{}", family.0, self.stages()),
-            (_, row) => row.map(|row| row.0).unwrap_or_default().to_owned(),
+            (Some(family), _) => format!("{}{}", family.name, self.stages()),
+            (_, row) => row.map(|row| row.name).unwrap_or_default().to_owned(),
         }
     }
 
     /// The power of the step length with which the error falls, where everything is smooth.
     pub fn order(self) -> usize {
         match (self.family(), self.one_step()) {
-            (Some(family), _) => family.2(self.stages()),
-            (_, row) => row.map_or(1, |row| row.2),
+            (Some(family), _) => (family.order)(self.stages()),
+            (_, row) => row.map_or(1, |row| row.order),
         }
     }
 
     /// Weight, time and blend of each evaluation of the right side; none of a collocation scheme.
     pub(crate) fn evaluations(self) -> &'static [[f64; 3]] {
-        self.one_step().map_or(&[], |row| row.3)
+        self.one_step().map_or(&[], |row| row.evaluations)
     }
 
     fn one_step(self) -> Option<&'static OneStep> {
-        ONE_STEP.iter().find(|row| row.1 == self)
+        ONE_STEP.iter().find(|row| row.scheme == self)
     }
 
     fn family(self) -> Option<&'static Family> {
-        COLLOCATION.iter().find(|row| row.1(self.stages()) == self)
+        COLLOCATION.iter().find(|row| (row.scheme)(self.stages()) == self)
     }
 
     /// Stages of a collocation scheme; 1 of the others, which have none of their own.
@@ -107,7 +194,7 @@ impl Scheme {
 
     /// The collocation scheme of the same kind with so many stages.
     pub fn with_stages(self, stages: usize) -> Self {
-        self.family().map_or(self, |row| row.1(stages))
+        self.family().map_or(self, |row| (row.scheme)(stages))
     }
 
     /// Whether controls of this shape mean anything to the scheme: it must see enough points of an

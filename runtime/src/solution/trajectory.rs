@@ -148,10 +148,10 @@ pub fn times(problem: &Problem, parameters: &[f64]) -> Vec<f64> {
     let points = Columns::new(problem.interval.layout().point_inputs(), 1);
     problem.interval.value(&points, parameters, &mut ends);
     let (start, end) = (ends.column(0)[0], ends.column(1)[0]);
-    let (intervals, mesh) = (problem.method.intervals, Mesh::new(&problem.method));
+    let (intervals, mesh) = (problem.method.intervals(), Mesh::new(&problem.method));
     let uniform = |k: usize| start + (end - start) * k as f64 / intervals as f64;
     let tau = |k: usize| if k == intervals { end } else { start + (end - start) * mesh.at(k, 0.0) };
-    let is_uniform = problem.method.mesh.is_empty();
+    let is_uniform = problem.method.grid.times().is_empty();
     (0..=intervals).map(|k| if is_uniform { uniform(k) } else { tau(k) }).collect()
 }
 

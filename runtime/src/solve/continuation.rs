@@ -80,7 +80,7 @@ impl Run<'_> {
         let Some((last, before)) = widths.split_last() else {
             return self.solve(nlp, &start, target, watch);
         };
-        let is_coarse = nlp.chain().intervals < self.problem.method.intervals;
+        let is_coarse = nlp.chain().intervals < self.problem.method.intervals();
         let rough =
             Target { tol: target.tol.max(if is_coarse { ROUGH } else { CAREFUL }), ..target };
         for width in before {

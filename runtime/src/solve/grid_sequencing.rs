@@ -11,7 +11,7 @@ use super::run::{Run, Target};
 use super::tuning::grid_sequencing::{CLOSE, COARSE, COARSEST, FINER};
 use crate::linalg::Stages;
 use crate::nlp::{Nlp, Solution, Start, constraint_violation};
-use crate::problem::Problem;
+use crate::problem::{Grid, Problem};
 use crate::transcribe::TranscribedNlp;
 
 impl Run<'_> {
@@ -50,15 +50,15 @@ impl Run<'_> {
 /// differ in length.
 pub(super) fn grids(problem: &Problem) -> Vec<usize> {
     let method = &problem.method;
-    let coarser = |n: &usize| (method.mesh.is_empty() && *n >= COARSE).then_some(n / 2);
-    let mut grids: Vec<usize> = std::iter::successors(Some(method.intervals), coarser).collect();
+    let coarser = |n: &usize| (method.grid.times().is_empty() && *n >= COARSE).then_some(n / 2);
+    let mut grids: Vec<usize> = std::iter::successors(Some(method.intervals()), coarser).collect();
     grids.reverse();
     grids
 }
 
 fn on_grid(problem: &Problem, intervals: usize) -> Problem {
     let mut problem = problem.clone();
-    problem.method.intervals = intervals;
+    problem.method.grid = Grid::Uniform(intervals);
     problem
 }
 

@@ -3,7 +3,7 @@
 
 use super::{Attempt, Level, Watch};
 use crate::nlp::{Counts, Options, Progress, Solution, Start, Status, convex, interior_point};
-use crate::problem::Problem;
+use crate::problem::{Order, Problem};
 use crate::transcribe::TranscribedNlp;
 
 /// All solves of one problem.
@@ -102,7 +102,7 @@ impl<'p> Run<'p> {
         self.apply_sigma(nlp);
         let method = &self.problem.method;
         let options = self.options(target);
-        let stages = method.is_raised.then(|| method.scheme.stages());
+        let stages = (method.order == Order::Auto).then(|| method.scheme.stages());
         let level = Level { intervals: nlp.chain().intervals, stages, sigma: &self.sigma };
         self.attempts.push(Attempt { intervals: level.intervals, sigma: self.sigma.clone() });
         let before = self.counts.iterations;

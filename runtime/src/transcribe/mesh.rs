@@ -12,8 +12,8 @@ pub(crate) struct Mesh {
 
 impl Mesh {
     pub(crate) fn new(method: &Method) -> Self {
-        let fits = method.mesh.len() == method.intervals + 1;
-        Mesh { intervals: method.intervals, points: fits.then(|| method.mesh.clone()) }
+        let points = Some(method.grid.times().to_vec()).filter(|times| !times.is_empty());
+        Mesh { intervals: method.intervals(), points }
     }
 
     /// The time at which this part of interval `k` has passed.

@@ -158,13 +158,13 @@ impl<'p> TranscribedNlp<'p> {
 /// How many numbers the optimiser chooses, counted without transcribing.
 pub fn unknowns(problem: &Problem) -> usize {
     let interval = Interval::new(&problem.method, &problem.layout);
-    let in_all = problem.method.intervals.saturating_mul(interval.slots.len());
+    let in_all = problem.method.intervals().saturating_mul(interval.slots.len());
     in_all.saturating_add(interval.carried + problem.unknowns.len())
 }
 
 fn stages(problem: &Problem, interval: &Interval) -> Stages {
     Stages {
-        intervals: problem.method.intervals,
+        intervals: problem.method.intervals(),
         states: interval.carried,
         controls: interval.chosen,
         inner: interval.inner(),

@@ -14,7 +14,7 @@ mod plan;
 use super::run::is_lost;
 use super::{Outcome, Refusal, Watch, solve as solve_on_grid, solve_near};
 use crate::nlp::{Start, Status};
-use crate::problem::{FIRST_GRID, MOST_STAGES, Problem};
+use crate::problem::{self, FIRST_GRID, MOST_STAGES, Order, Problem};
 use crate::solve::tuning::refinement::{MOST, MOST_ITERATIONS, MOST_ROUNDS, PATIENCE};
 use crate::transcribe::TranscribedNlp;
 use error_estimate::step_errors;
@@ -40,7 +40,7 @@ pub fn solve(
     start: Option<Start>,
     watch: &mut Watch,
 ) -> Result<Refined, Refusal> {
-    if !problem.method.is_refined {
+    if problem.method.grid != problem::Grid::Auto {
         let outcome = solve_on_grid(problem, start, watch)?;
         return Ok(Refined { problem: problem.clone(), outcome, error: None });
     }
@@ -65,14 +65,14 @@ fn first(
     start: Option<Start>,
     watch: &mut Watch,
 ) -> Result<(Problem, Outcome), Refusal> {
-    let is_few = problem.method.intervals < FIRST_GRID;
+    let is_few = problem.method.intervals() < FIRST_GRID;
     let trial = if is_few { on_trial(problem) } else { problem.clone() };
     let mut found = (problem.clone(), solve_on_grid(&trial, start.clone(), watch)?);
     if is_few && !is_good(&found.1) && !is_stopped(&found.1) {
         found = finer(problem, &start, found, FIRST_GRID, watch)?;
     }
-    while is_lost(&found.1.solution.status) && found.0.method.intervals < FINEST_FIRST {
-        let intervals = 2 * found.0.method.intervals;
+    while is_lost(&found.1.solution.status) && found.0.method.intervals() < FINEST_FIRST {
+        let intervals = 2 * found.0.method.intervals();
         found = finer(problem, &start, found, intervals, watch)?;
     }
     Ok(found)
@@ -87,7 +87,7 @@ fn finer(
     intervals: usize,
     watch: &mut Watch,
 ) -> Result<(Problem, Outcome), Refusal> {
-    let parts = vec![intervals / problem.method.intervals; problem.method.intervals];
+    let parts = vec![intervals / problem.method.intervals(); problem.method.intervals()];
     let finer = divided(problem, &parts);
     let (from, to) = (TranscribedNlp::new(problem), TranscribedNlp::new(&finer));
     let start = start.as_ref().map(|start| transferred(&from, start, &to, &parts));
@@ -130,7 +130,7 @@ impl Grid {
 
     /// The next grid; nothing if this one is good enough, or there is no better one.
     fn refined(&mut self, watch: &mut Watch) -> Result<Option<Grid>, Refusal> {
-        let is_raised = self.problem.method.is_raised;
+        let is_raised = self.problem.method.order == Order::Auto;
         let next = if is_raised { self.with_short_intervals(watch)? } else { None };
         if next.is_some() || self.is_enough() {
             return Ok(next);
@@ -188,7 +188,7 @@ impl Grid {
     /// solved.
     fn with_stages(&mut self, stages: usize, watch: &mut Watch) -> Result<Option<Grid>, Refusal> {
         let mut problem = self.problem.clone();
-        let intervals = problem.method.intervals;
+        let intervals = problem.method.intervals();
         problem.method.scheme = problem.method.scheme.with_stages(stages);
         let outcome = self.again(&on_trial(&problem), &vec![1; intervals], watch)?;
         self.outcome.solution.counts = outcome.solution.counts;
@@ -237,15 +237,15 @@ impl Grid {
 
 fn divided(problem: &Problem, parts: &[usize]) -> Problem {
     let mut finer = problem.clone();
-    let method = &mut finer.method;
+    let times = problem.method.grid.times();
     let uniform = |k: usize| k as f64 / parts.len() as f64;
-    let point = |k: usize| problem.method.mesh.get(k).copied().unwrap_or_else(|| uniform(k));
-    method.mesh = Vec::new();
+    let point = |k: usize| times.get(k).copied().unwrap_or_else(|| uniform(k));
+    let mut mesh = Vec::new();
     for (k, parts) in parts.iter().enumerate() {
         let length = (point(k + 1) - point(k)) / *parts as f64;
-        method.mesh.extend((0..*parts).map(|part| point(k) + part as f64 * length));
+        mesh.extend((0..*parts).map(|part| point(k) + part as f64 * length));
     }
-    method.intervals = method.mesh.len();
-    method.mesh.push(1.0);
+    mesh.push(1.0);
+    finer.method.grid = problem::Grid::Mesh(mesh);
     finer
 }

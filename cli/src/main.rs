@@ -2,15 +2,18 @@
 
 mod commands;
 mod drawing;
+mod exit;
+mod failure;
 mod model;
 mod output;
 mod report;
-mod solver;
+mod solved;
 mod watch;
 
 use std::process::ExitCode;
 
 use clap::Parser;
+use exit::Exit;
 
 /// Optimal control of systems with friction, switches and impacts.
 #[derive(Parser)]
@@ -30,11 +33,11 @@ fn main() -> ExitCode {
         Err(error) if error.use_stderr() => {
             // Nothing is left to do where even the complaint cannot be printed.
             let _ = error.print();
-            commands::Exit::Usage.into()
+            Exit::Usage.into()
         }
         Err(help) => {
             output::note(help.print());
-            output::ended(commands::Exit::Fine).into()
+            output::ended(Exit::Fine).into()
         }
     }
 }

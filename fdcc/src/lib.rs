@@ -21,12 +21,10 @@ mod expectations;
 mod gradient;
 mod model;
 pub mod names;
-pub mod optimality;
 pub mod record;
 mod replay;
 mod simulation;
 mod solve;
-mod sweep;
 mod verification;
 mod warm_start;
 
@@ -35,15 +33,15 @@ pub use executor::Executor;
 pub use expectations::{Checked as Expectation, Outcome as Expected, Sides};
 pub use fdcc_runtime::nlp::{Status, Stop};
 pub use fdcc_runtime::simulate::{Controls, Options as Accuracy};
-pub use gradient::{By, Exact, Gradient, Stepped, by_names};
+pub use gradient::{By, Exact, Gradient, NotBy, Stepped, by_names};
 pub use model::{Checked, Model, Value, check, text};
 pub use record::Record;
 pub use replay::Replay;
 pub use simulation::Simulation;
 pub use solve::{
-    Compiled, Ended, Jump, Options, Part, Report, Sequence, Solution, Start, Unrolled,
+    Compiled, Ended, Grid, Jump, Options, Part, Report, Sequence, Solution, Start, Sweep, Unrolled,
+    optimality,
 };
-pub use sweep::{Grid, Sweep};
 pub use verification::{Condition, Gap, Stay, TIME_OF, Verification, modes};
 
 /// The code of the page about the library.

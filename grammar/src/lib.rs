@@ -7,9 +7,10 @@ extern crate alloc;
 
 pub mod ast;
 mod diagnostic;
-pub mod fix;
+mod fix;
 mod format;
 mod parse;
+mod repaired;
 mod source;
 
 pub use diagnostic::{Code, Diagnostic, Label, Severity};
@@ -17,6 +18,7 @@ pub use fix::{Edit, Fix};
 pub use format::format;
 pub use parse::words;
 pub use parse::{ParseCache, comments, parse, parse_with};
+pub use repaired::repaired;
 pub use source::{LineColumn, SourceFile, Span};
 
 /// What a text holds: the items that could be read, and what is wrong with the rest.

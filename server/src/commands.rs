@@ -1,69 +1,36 @@
 //! `workspace/executeCommand`: solving and simulating, by `fdcc` itself in a process of its own.
 //!
 //! The text is what the editor shows, saved or not. A command can be called off by its request or
-//! by its progress; whatever still runs ends with the session.
+//! by its progress; whatever still runs ends with the state.
 
 use crate::client::{Client, Failure};
 use crate::pages;
-use crate::runner::{Job, Running};
-use crate::session::Session;
-use lsp_server::{Request, RequestId};
-use lsp_types::{ExecuteCommandParams, ProgressToken, Uri};
+use crate::runner::Job;
+use crate::state::State;
+use lsp_server::Request;
+use lsp_types::{ExecuteCommandParams, Uri};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, PoisonError};
 
 /// Commands with their titles.
 pub const COMMANDS: &[(&str, &str)] =
     &[("fdcc.solve", "Solve"), ("fdcc.simulate", "Simulate"), ("fdcc.report", "Show report")];
 
-/// What runs at the moment.
-#[derive(Default)]
-pub struct Commands {
-    running: Arc<Mutex<Vec<Arc<Running>>>>,
-}
-
-impl Commands {
-    /// Calls off the command of a request.
-    pub fn cancel(&self, id: &RequestId) {
-        self.stop(|it| it.id == *id);
-    }
-
-    /// Calls off the command of a progress.
-    pub fn cancel_progress(&self, token: &ProgressToken) {
-        self.stop(|it| it.token.as_ref() == Some(token));
-    }
-
-    fn stop(&self, is_meant: impl Fn(&Running) -> bool) {
-        let running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
-        running.iter().filter(|it| is_meant(it)).for_each(|it| it.stop());
-    }
-
-    fn is_busy(&self, uri: &Uri) -> bool {
-        self.running.lock().unwrap_or_else(PoisonError::into_inner).iter().any(|it| it.uri == *uri)
-    }
-}
-
-impl Drop for Commands {
-    fn drop(&mut self) {
-        self.stop(|_| true);
-    }
-}
-
 /// Begins a command; the answer comes when it has ended, or at once where it cannot begin.
-pub fn execute(session: &mut Session, request: Request) {
-    let (id, client) = (request.id.clone(), session.client.clone());
-    match job(session, request).and_then(|job| begin(session, &client, job)) {
+pub fn execute(state: &mut State, request: Request) {
+    let (id, client) = (request.id.clone(), state.client.clone());
+    match job(state, request).and_then(|job| begin(state, &client, job)) {
         Ok(()) => {}
         Err(failure) => client.answer(id, Err(failure)),
     }
 }
 
-fn begin(session: &Session, client: &Client, job: Job) -> Result<(), Failure> {
+fn begin(state: &State, client: &Client, job: Job) -> Result<(), Failure> {
     let running = job
         .start()
         .map_err(|error| Failure::request(format!("fdcc cannot be started: {error}")))?;
-    let list = session.commands.running.clone();
+    let list = state.commands.running.clone();
     list.lock().unwrap_or_else(PoisonError::into_inner).push(running.clone());
     let client = client.clone();
     std::thread::spawn(move || {
@@ -75,7 +42,7 @@ fn begin(session: &Session, client: &Client, job: Job) -> Result<(), Failure> {
 }
 
 /// What is to be run.
-fn job(session: &Session, request: Request) -> Result<Job, Failure> {
+fn job(state: &State, request: Request) -> Result<Job, Failure> {
     let params: ExecuteCommandParams = serde_json::from_value(request.params)
         .map_err(|error| Failure::params(error.to_string()))?;
     let command = COMMANDS.iter().find(|row| row.0 == params.command);
@@ -86,29 +53,27 @@ fn job(session: &Session, request: Request) -> Result<Job, Failure> {
         return Err(Failure::params(format!("`{name}` takes the address of a text")));
     };
     let uri = Uri(address);
-    let (text, model) = subject(session, &uri)?;
+    let (text, model) = subject(state, &uri)?;
     let (arguments, report) = arguments(name, &model)?;
     Ok(Job {
         id: request.id,
         title: format!("{title} {model}"),
-        program: session.program.clone(),
+        program: state.program.clone(),
         arguments,
         folder: folder_of(&uri),
         text,
         token: params.work_done_progress_params.work_done_token,
-        makes_token: session.agreed.progress,
+        makes_token: state.agreed.progress,
         uri,
         report,
     })
 }
 
 /// The text at an address and the name of its model, if that can be computed now.
-fn subject(session: &Session, uri: &Uri) -> Result<(Arc<str>, String), Failure> {
-    let document = session
-        .documents
-        .get(uri)
-        .ok_or_else(|| Failure::request(format!("`{uri}` is not open")))?;
-    if session.commands.is_busy(uri) {
+fn subject(state: &State, uri: &Uri) -> Result<(Arc<str>, String), Failure> {
+    let document =
+        state.documents.get(uri).ok_or_else(|| Failure::request(format!("`{uri}` is not open")))?;
+    if state.commands.is_busy(uri) {
         return Err(Failure::request(
             "this model is being computed already; cancel that, or wait for it",
         ));

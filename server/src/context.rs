@@ -2,16 +2,16 @@
 //! of the compiler.
 
 use crate::documents::Document;
-use crate::session::Session;
 use crate::snapshot::Snapshot;
+use crate::state::State;
 use fdcc_compiler::{Model, NamedUnit};
 use fdcc_grammar::{Edit, Span};
 use lsp_types::{Location, Position, Range, TextEdit, WorkspaceEdit};
 
 /// What a request is answered from.
 pub struct Context<'s> {
-    /// The session.
-    pub session: &'s Session,
+    /// What is known beside it.
+    pub state: &'s State,
     /// The text it is about.
     pub document: &'s Document,
 }

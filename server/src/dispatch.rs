@@ -6,16 +6,16 @@ use crate::features::{
     actions, completion, diagnostics, folding, formatting, hints, hover, lens, navigation, rename,
     signature, symbols, tokens, workspace,
 };
-use crate::session::Session;
+use crate::state::State;
 // The types of the requests that are answered, and of their parts.
 use lsp_types::*;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 /// Answers a request about a text.
-pub fn request(session: &mut Session, request: lsp_server::Request) -> Result<Value, Failure> {
+pub fn request(state: &mut State, request: lsp_server::Request) -> Result<Value, Failure> {
     let lsp_server::Request { method, params, .. } = request;
-    let call = Call { session, params };
+    let call = Call { state, params };
     match method.as_str() {
         "textDocument/diagnostic" => call.about::<DocumentDiagnosticRequest>(diagnostics::report),
         "textDocument/definition" => call.about::<DefinitionRequest>(navigation::definition),
@@ -46,7 +46,7 @@ pub fn request(session: &mut Session, request: lsp_server::Request) -> Result<Va
         "textDocument/codeLens" => call.about::<CodeLensRequest>(lens::lenses),
         "workspace/symbol" => {
             let result: WorkspaceSymbolResponse =
-                workspace::symbols(call.session, &parsed(call.params)?).into();
+                workspace::symbols(call.state, &parsed(call.params)?).into();
             Ok(serde_json::to_value(result).expect("types of the protocol are JSON"))
         }
         "textDocument/codeAction" => call.about::<CodeActionRequest>(actions::actions),
@@ -59,7 +59,7 @@ pub fn request(session: &mut Session, request: lsp_server::Request) -> Result<Va
 
 /// A request that is being answered.
 struct Call<'s> {
-    session: &'s mut Session,
+    state: &'s mut State,
     params: Value,
 }
 
@@ -74,9 +74,9 @@ impl Call<'_> {
             .ok_or_else(|| Failure::params("`textDocument.uri` is missing"))?
             .to_owned());
         let params = parsed(self.params)?;
-        let document = self.session.documents.get(&uri);
+        let document = self.state.documents.get(&uri);
         let document = document.ok_or_else(|| Failure::request(format!("`{uri}` is not open")))?;
-        let result = answer(&Context { session: self.session, document }, params)?;
+        let result = answer(&Context { state: self.state, document }, params)?;
         Ok(serde_json::to_value(result).expect("types of the protocol are JSON"))
     }
 }
@@ -87,26 +87,26 @@ fn parsed<P: DeserializeOwned>(params: Value) -> Result<P, Failure> {
 
 /// Takes note of something.
 pub fn notification(
-    session: &mut Session,
+    state: &mut State,
     notification: lsp_server::Notification,
 ) -> Result<(), Failure> {
     match notification.method.as_str() {
         "textDocument/didOpen" => {
             let it = parsed::<DidOpenTextDocumentParams>(notification.params)?.text_document;
-            session.documents.open(it.uri, it.version, &it.text, session.agreed.encoding);
+            state.documents.open(it.uri, it.version, &it.text, state.agreed.encoding);
         }
         "textDocument/didChange" => {
             let it: DidChangeTextDocumentParams = parsed(notification.params)?;
             let uri = &it.text_document.text_document_identifier.uri;
-            session.documents.change(uri, it.text_document.version, &it.content_changes);
+            state.documents.change(uri, it.text_document.version, &it.content_changes);
         }
         "textDocument/didClose" => {
             let it: DidCloseTextDocumentParams = parsed(notification.params)?;
-            close(session, it.text_document.uri);
+            close(state, it.text_document.uri);
         }
         "window/workDoneProgress/cancel" => {
             let it: WorkDoneProgressCancelParams = parsed(notification.params)?;
-            session.commands.cancel_progress(&it.token);
+            state.commands.cancel_progress(&it.token);
         }
         _ => {}
     }
@@ -114,9 +114,9 @@ pub fn notification(
 }
 
 /// What was said about a text is taken back with it.
-fn close(session: &mut Session, uri: Uri) {
-    if session.documents.close(&uri) && !session.agreed.pulls {
+fn close(state: &mut State, uri: Uri) {
+    if state.documents.close(&uri) && !state.agreed.pulls {
         let params = PublishDiagnosticsParams { uri, version: None, diagnostics: Vec::new() };
-        session.client.notify::<PublishDiagnosticsNotification>(params);
+        state.client.notify::<PublishDiagnosticsNotification>(params);
     }
 }

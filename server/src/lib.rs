@@ -10,6 +10,7 @@
 //! nothing else is asked. Both sleep while nothing happens. Nothing is decided here about the
 //! language: that is what the grammar and the compiler are for.
 
+mod agreed;
 mod capabilities;
 mod client;
 mod commands;
@@ -23,6 +24,7 @@ mod runner;
 mod session;
 mod signals;
 mod snapshot;
+mod state;
 mod text;
 mod wire;
 

@@ -1,12 +1,21 @@
 //! The thread that reads the protocol: passes everything on in order, and notes at once what makes
 //! earlier work void.
 
-use crate::session::Event;
 use crate::signals::Signals;
-use crate::wire::{self, Received};
+use crate::wire::{self, Received, Refusal};
 use lsp_server::{Message, Notification, RequestId};
 use std::io::BufRead;
 use std::sync::mpsc::Sender;
+
+/// What the session hears of.
+pub enum Event {
+    /// A message of the client.
+    Message(Message),
+    /// A message that could not be read.
+    Refused(Refusal),
+    /// The client has gone away.
+    Closed,
+}
 
 /// Reads until the client or the session goes away.
 pub fn run(mut input: impl BufRead, queue: &Sender<Event>, signals: &Signals) {

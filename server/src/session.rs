@@ -1,15 +1,15 @@
 //! The session: one event after the other, and a check of what has changed whenever nothing is
 //! waiting.
 
-use crate::capabilities::{self, Agreed};
+use crate::agreed::agree;
+use crate::capabilities;
 use crate::client::{Client, Failure};
-use crate::commands::{self, Commands};
+use crate::commands;
 use crate::dispatch;
-use crate::documents::Documents;
 use crate::features::diagnostics;
-use crate::reader::cancelled;
+use crate::reader::{Event, cancelled};
 use crate::signals::Signals;
-use crate::wire::Refusal;
+use crate::state::State;
 use lsp_server::{ErrorCode, Message, Notification, Request};
 use lsp_types::PublishDiagnosticsNotification;
 use serde_json::Value;
@@ -17,16 +17,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError};
-
-/// What the session hears of.
-pub enum Event {
-    /// A message of the client.
-    Message(Message),
-    /// A message that could not be read.
-    Refused(Refusal),
-    /// The client has gone away.
-    Closed,
-}
 
 /// How far the conversation has come.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -36,18 +26,9 @@ enum Stage {
     After,
 }
 
-/// All that is known while a client is served.
+/// A client that is being served.
 pub struct Session {
-    /// The other end.
-    pub client: Client,
-    /// What was agreed on.
-    pub agreed: Agreed,
-    /// The open texts.
-    pub documents: Documents,
-    /// What runs.
-    pub commands: Commands,
-    /// `fdcc`.
-    pub program: PathBuf,
+    state: State,
     signals: Arc<Signals>,
     stage: Stage,
     /// Changes of texts that have been done.
@@ -57,17 +38,8 @@ pub struct Session {
 impl Session {
     /// With nothing open.
     pub fn new(client: Client, signals: Arc<Signals>, program: PathBuf) -> Self {
-        let (agreed, documents, commands) = Default::default();
-        Session {
-            client,
-            agreed,
-            documents,
-            commands,
-            program,
-            signals,
-            stage: Stage::Before,
-            changes: 0,
-        }
+        let state = State::new(client, program);
+        Session { state, signals, stage: Stage::Before, changes: 0 }
     }
 
     /// Until the client ends it; says whether that was done as the protocol wants.
@@ -88,7 +60,7 @@ impl Session {
                 }
                 Event::Message(Message::Notification(it)) => self.hear(it),
                 Event::Message(Message::Response(_)) => {}
-                Event::Refused(refusal) => self.client.refuse(&refusal),
+                Event::Refused(refusal) => self.state.client.refuse(&refusal),
                 Event::Closed => return false,
             }
         }
@@ -97,10 +69,10 @@ impl Session {
     fn answer(&mut self, request: Request) {
         let id = request.id.clone();
         if self.signals.take_cancelled(&id) {
-            return self.client.answer(id, Err(Failure::cancelled()));
+            return self.state.client.answer(id, Err(Failure::cancelled()));
         }
         if request.method == "workspace/executeCommand" && self.stage == Stage::Running {
-            return commands::execute(self, request);
+            return commands::execute(&mut self.state, request);
         }
         // A mistake of ours costs this answer, not the session.
         let answered = catch_unwind(AssertUnwindSafe(|| self.result(request)));
@@ -110,7 +82,7 @@ impl Session {
                 message: "this went wrong; please report it".into(),
             })
         };
-        self.client.answer(id, answered.unwrap_or_else(failed));
+        self.state.client.answer(id, answered.unwrap_or_else(failed));
     }
 
     fn result(&mut self, request: Request) -> Result<Value, Failure> {
@@ -118,8 +90,8 @@ impl Session {
         match (self.stage, request.method.as_str()) {
             (Stage::Before, "initialize") => {
                 self.stage = Stage::Running;
-                self.agreed = capabilities::agree(&request.params);
-                Ok(capabilities::result(&self.agreed))
+                self.state.agreed = agree(&request.params);
+                Ok(capabilities::result(&self.state.agreed))
             }
             (Stage::Before, _) => {
                 refused(ErrorCode::ServerNotInitialized, "`initialize` comes first")
@@ -131,7 +103,7 @@ impl Session {
                 self.stage = Stage::After;
                 Ok(Value::Null)
             }
-            (Stage::Running, _) => dispatch::request(self, request),
+            (Stage::Running, _) => dispatch::request(&mut self.state, request),
             (Stage::After, _) => {
                 refused(ErrorCode::InvalidRequest, "only `exit` comes after `shutdown`")
             }
@@ -149,11 +121,13 @@ impl Session {
         {
             // Its request has been answered by now, or runs.
             self.signals.take_cancelled(&id);
-            self.commands.cancel(&id);
+            self.state.commands.cancel(&id);
         }
         if self.stage == Stage::Running {
             // There is nobody to tell that a notification cannot be understood.
-            let _ = catch_unwind(AssertUnwindSafe(|| dispatch::notification(self, notification)));
+            let _ = catch_unwind(AssertUnwindSafe(|| {
+                dispatch::notification(&mut self.state, notification)
+            }));
         }
     }
 
@@ -161,18 +135,19 @@ impl Session {
     /// change is waiting.
     fn publish_next(&mut self) -> bool {
         let is_stale = |session: &Self| session.signals.changes() != session.changes;
-        if self.stage != Stage::Running || self.agreed.pulls || is_stale(self) {
+        if self.stage != Stage::Running || self.state.agreed.pulls || is_stale(self) {
             return false;
         }
-        let Some(document) = self.documents.next_unpublished() else { return false };
-        let found =
-            catch_unwind(AssertUnwindSafe(|| diagnostics::publishable(document, &self.agreed)));
+        let Some(document) = self.state.documents.next_unpublished() else { return false };
+        let found = catch_unwind(AssertUnwindSafe(|| {
+            diagnostics::publishable(document, &self.state.agreed)
+        }));
         let uri = document.uri.clone();
         let is_stale = is_stale(self);
         // A text that has made us fail is not tried again; one that has changed meanwhile is.
-        self.documents.set_published(&uri, found.is_err() || !is_stale);
+        self.state.documents.set_published(&uri, found.is_err() || !is_stale);
         if let (Ok(params), false) = (found, is_stale) {
-            self.client.notify::<PublishDiagnosticsNotification>(params);
+            self.state.client.notify::<PublishDiagnosticsNotification>(params);
         }
         true
     }

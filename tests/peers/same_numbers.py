@@ -76,8 +76,8 @@ def compared(old, new, arguments_of):
         for left, right in zip(arguments_of(Path(one)), arguments_of(Path(other))):
             count += 1
             texts = [said(old, left).replace(one, "OUT"), said(new, right).replace(other, "OUT")]
-            # Several starts end in any order; so do their lines on the standard error.
-            if "--starts" in left:
+            # Several starts or sequences of jumps end in any order; so do their lines on the standard error.
+            if "--starts" in left or "full" in left:
                 texts = ["\n".join(sorted(text.splitlines())) for text in texts]
             if texts[0] != texts[1]:
                 found.append((" ".join(map(str, left)).replace(one, "OUT"), texts))

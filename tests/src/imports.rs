@@ -116,8 +116,10 @@ impl Modules<'_> {
     }
 }
 
+/// The folder of a file; a file at the root of a crate is a room of its own.
 fn folder(file: &str) -> &str {
-    file.rsplit_once('/').map_or("", |(folder, _)| folder)
+    let folder = file.rsplit_once('/').map_or("", |(folder, _)| folder);
+    if folder.ends_with("/src") { file } else { folder }
 }
 
 fn module(path: &str) -> Path {

@@ -2,7 +2,7 @@
 //! of the repository worse.
 
 use fdcc_compiler::{analyze, repair};
-use fdcc_grammar::{Diagnostic, fix};
+use fdcc_grammar::{Diagnostic, repaired};
 use fdcc_tests::fuzzed::assert_repairs_end;
 use fdcc_tests::{Block, blocks, documents};
 
@@ -47,7 +47,7 @@ fn each_repair_is_one() {
             for repair in &found.fixes {
                 let single = Diagnostic { fixes: vec![repair.clone()], ..found.clone() };
                 let repaired =
-                    fix::apply(&text, &[single], true).expect("a repair changes something");
+                    repaired(&text, &[single], true).expect("a repair changes something");
                 assert!(!repair.title.is_empty());
                 let is_still_there = analyze(&repaired).diagnostics.contains(&found);
                 assert!(!is_still_there, "{found:#?}\n{text}\n---\n{repaired}");

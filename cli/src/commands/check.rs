@@ -1,14 +1,14 @@
 //! `fdcc check`: all diagnostics of each file.
 
+use crate::exit::Exit;
 use clap::{Args, ValueEnum};
 use fdcc_grammar::{Diagnostic, Severity, SourceFile};
 
-use super::Exit;
 use super::options::seconds;
+use super::solver::stopped;
 use crate::drawing::render;
 use crate::model;
 use crate::output::{self, diagnostics, plural, sarif};
-use crate::solver::stopped;
 use crate::watch::{self, Deadline};
 use fdcc::Checked;
 use std::time::{Duration, Instant};

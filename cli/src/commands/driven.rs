@@ -1,12 +1,13 @@
 //! A model and the controls that drive it: what `simulate` and `grad` begin with.
 
-use super::Exit;
 use super::accuracy::Accuracy;
 use super::options::{Changes, read_at_any_rate, seconds};
+use super::solver::sha256;
+use crate::exit::Exit;
+use crate::failure::Failure;
 use crate::output;
 use crate::output::control::{self, Driver};
 use crate::report::log::Level;
-use crate::solver::{Failure, sha256};
 use crate::watch::{Deadline, catch_interrupts};
 use clap::Args;
 use fdcc::{Error, Model};

@@ -1,9 +1,9 @@
 //! `fdcc explain`: why a diagnostic is given, a wrong model and a right one.
 
+use crate::exit::Exit;
 use clap::Args;
 use fdcc_grammar::Code;
 
-use super::Exit;
 use crate::output;
 
 /// Explain a diagnostic, with a wrong and a right model

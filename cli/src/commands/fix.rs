@@ -1,10 +1,10 @@
 //! `fdcc fix`: applies the repairs that diagnostics propose.
 
+use crate::exit::Exit;
 use clap::Args;
 use fdcc_compiler::{analyze, repair};
 use fdcc_grammar::{Diagnostic, Severity, SourceFile};
 
-use super::Exit;
 use super::rewrite;
 use crate::output::{self, plural};
 

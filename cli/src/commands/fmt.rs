@@ -1,9 +1,9 @@
 //! `fdcc fmt`: models in the canonical layout.
 
+use crate::exit::Exit;
 use clap::Args;
 use fdcc_grammar::{SourceFile, format};
 
-use super::Exit;
 use super::rewrite;
 
 /// Lay out models in the canonical way

@@ -1,13 +1,13 @@
 //! `fdcc grad`: the exact gradient of the true system, and what others would have computed instead.
 
-use super::Exit;
 use super::driven::Driven;
 use super::options::{show, usage};
+use crate::exit::Exit;
+use crate::failure::Failure;
 use crate::output::gradient::Document;
 use crate::output::{self, files};
-use crate::solver::Failure;
 use clap::Args;
-use fdcc::{By, Controls, Gradient, Model, by_names};
+use fdcc::{By, Controls, Gradient, Model, NotBy, by_names};
 use fdcc_grammar::{Severity, SourceFile};
 use fdcc_runtime::simulate::System;
 use std::path::PathBuf;
@@ -96,9 +96,9 @@ impl Grad {
 
     fn by(&self, system: &System, controls: &Controls, model: &Model) -> Result<Vec<By>, Failure> {
         let names: Vec<&str> = self.wrt.iter().map(|name| name.trim()).collect();
-        let wrong = |what: String| match names.is_empty() {
-            true => Failure::Usage(what),
-            false => Failure::Usage(format!("--wrt: {what}")),
+        let wrong = |why: NotBy| match names.is_empty() {
+            true => Failure::Usage(with_option(&why)),
+            false => Failure::Usage(format!("--wrt: {}", with_option(&why))),
         };
         by_names(&names, system, controls, model).map_err(wrong)
     }
@@ -120,5 +120,19 @@ impl Grad {
             }
             Err(failure) => failure.report(model.source()),
         }
+    }
+}
+
+/// Why there is no derivative by a name, and the option that helps.
+fn with_option(why: &NotBy) -> String {
+    match why {
+        NotBy::Nothing => format!("{why}; `--wrt x(start)` names the start of `x`"),
+        NotBy::Computed(name, value) => {
+            format!("{why}; `--set {name}={value}` makes it one of its own")
+        }
+        NotBy::Guessed(_) => {
+            format!("{why}; `--control FILE` gives it values to differentiate by")
+        }
+        NotBy::Unknown(_) => why.to_string(),
     }
 }

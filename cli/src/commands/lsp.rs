@@ -1,6 +1,6 @@
 //! `fdcc lsp`: the language server, for editors.
 
-use super::Exit;
+use crate::exit::Exit;
 use clap::Args;
 use std::io::{BufReader, stdin, stdout};
 

@@ -1,4 +1,4 @@
-//! The commands, one file each, and the exit codes that they share.
+//! The commands, one file each, and what they share: options, and a solve.
 
 mod accuracy;
 mod check;
@@ -14,37 +14,13 @@ mod rewrite;
 mod show;
 mod simulate;
 mod solve;
+mod solver;
 mod sweep;
 mod test;
 mod verify;
 
-pub use options::{Options, show};
-
-use std::process::ExitCode;
-
+use crate::exit::Exit;
 use clap::Subcommand;
-
-/// How a command ended. The numbers are a contract with scripts; the worst of several is the
-/// largest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Exit {
-    /// Solved, or nothing wrong.
-    Fine = 0,
-    /// The model has errors.
-    ModelError = 1,
-    /// Not solved; the best iterate is written all the same.
-    NotSolved = 2,
-    /// Wrong usage.
-    Usage = 3,
-    /// A file could not be read or written.
-    File = 4,
-}
-
-impl From<Exit> for ExitCode {
-    fn from(exit: Exit) -> Self {
-        ExitCode::from(exit as u8)
-    }
-}
 
 /// What `fdcc` can do.
 #[derive(Subcommand)]

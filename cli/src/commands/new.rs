@@ -1,11 +1,11 @@
 //! `fdcc new`: a commented model to start from. Never overwrites.
 
+use crate::exit::Exit;
 use clap::{Args, ValueEnum};
 use fdcc_grammar::parse;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::Exit;
 use crate::output::{self, files};
 
 /// Write a commented model to start from

@@ -1,11 +1,11 @@
 //! Options that all commands share which compute something.
 
-use super::Exit;
+use super::solver::stopped;
 use crate::drawing::render;
+use crate::exit::Exit;
 use crate::model;
 use crate::output;
 use crate::report::log::Level;
-use crate::solver::stopped;
 use crate::watch::Deadline;
 use clap::Args;
 use fdcc::{Checked, Model};

@@ -1,8 +1,8 @@
 //! Commands that write model files anew: a file that cannot be read, or is no text, stays as it is.
 
+use crate::exit::Exit;
 use fdcc_grammar::{Diagnostic, SourceFile};
 
-use crate::commands::Exit;
 use crate::drawing::difference;
 use crate::drawing::render::Renderer;
 use crate::model;

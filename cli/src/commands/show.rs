@@ -1,7 +1,7 @@
 //! `fdcc show`: a model as the compiler understands it, at any stage.
 
-use super::Exit;
 use super::options::{Changes, read_at_any_rate, show};
+use crate::exit::Exit;
 use crate::output;
 use crate::watch::Deadline;
 use clap::{Args, ValueEnum};

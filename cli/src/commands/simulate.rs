@@ -1,11 +1,11 @@
 //! `fdcc simulate`: the true system, integrated from event to event.
 
-use super::Exit;
 use super::driven::Driven;
 use super::options::usage;
+use crate::exit::Exit;
+use crate::failure::Failure;
 use crate::output::simulation::Document;
 use crate::output::{self, files};
-use crate::solver::Failure;
 use clap::Args;
 use fdcc::{Accuracy, Model, Simulation};
 use std::path::PathBuf;

@@ -1,13 +1,15 @@
 //! `fdcc solve`: an optimal trajectory, a verdict, and the files asked for.
 
-use super::Exit;
 use super::options::{Gap, Options, prepare, show};
+use super::solver::{Compiled, warm};
+use crate::exit::Exit;
+use crate::failure::Failure;
 use crate::output::named::Named;
 use crate::output::saved::Saved;
 use crate::output::{self, files};
 use crate::report::log::{Level, Log};
 use crate::report::{failure, verdict};
-use crate::solver::{Compiled, Failure, Solved, warm};
+use crate::solved::Solved;
 use crate::watch::catch_interrupts;
 use clap::Args;
 use fdcc::{Model, Start};

@@ -1,12 +1,14 @@
 //! `fdcc sweep`: one solve per value, side by side, and a table of what came out.
 
-use super::Exit;
 use super::options::{Gap, Options, prepare};
+use super::solver::{Compiled, warm};
+use crate::exit::Exit;
+use crate::failure::Failure;
 use crate::output::named::Named;
 use crate::output::saved::Saved;
 use crate::output::{self, files, plural, table};
 use crate::report::log::{self, Level, Log};
-use crate::solver::{Compiled, Failure, Solved, warm};
+use crate::solved::Solved;
 use crate::watch::{catch_interrupts, is_interrupted};
 use clap::Args;
 use fdcc::{Executor, Grid, Model, Start, Stop};

@@ -1,14 +1,16 @@
 //! `fdcc test`: solves models and compares the solutions with their `expect` blocks.
 
-use super::Exit;
 use super::options::{Options, prepare, show};
+use super::solver::{Compiled, warm};
+use crate::exit::Exit;
+use crate::failure::Failure;
 use crate::output::saved::Saved;
 use crate::output::tested::{Line, Tested, Word};
 use crate::output::units::Units;
 use crate::output::{self, files};
 use crate::report::failure;
 use crate::report::log::{Level, Log};
-use crate::solver::{Compiled, Failure, Solved, warm};
+use crate::solved::Solved;
 use crate::watch::catch_interrupts;
 use clap::Args;
 use fdcc::{Expectation, Expected, Model, Sides, Start};

@@ -1,11 +1,12 @@
 //! `fdcc verify`: what the controls of a solution do on the true system.
 
-use super::Exit;
 use super::options::{Changes, Gap, read};
+use super::solver::sha256;
+use crate::exit::Exit;
+use crate::failure::Failure;
 use crate::output;
 use crate::output::saved::Saved;
 use crate::output::verified::Document;
-use crate::solver::{Failure, sha256};
 use clap::Args;
 use fdcc::{Error, Model};
 use fdcc_grammar::SourceFile;

@@ -2,7 +2,7 @@
 //! solve.
 
 use super::saved::Saved;
-use crate::solver::Failure;
+use crate::failure::Failure;
 use fdcc::{Model, Replay};
 use std::fs;
 use std::path::Path;

@@ -5,7 +5,7 @@
 
 use super::document::Document;
 use super::{csv, html, json};
-use crate::solver::Failure;
+use crate::failure::Failure;
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};

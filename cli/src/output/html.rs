@@ -3,6 +3,7 @@
 
 use super::document::{Document, switching};
 use super::number::scientific;
+use super::optimality::on_the_true_system;
 use super::plot::{escape, plot};
 use super::units::Units;
 
@@ -72,7 +73,7 @@ fn rows(document: &Document) -> Vec<(String, String)> {
     let Document { units, method, .. } = document;
     let value = |name: &str, value: f64, digits| units.value(name, value, digits);
     let status = document.status.replace('_', " ");
-    let verified = crate::report::verdict::on_the_true_system(document);
+    let verified = on_the_true_system(document);
     let mut rows = vec![row("status", format!("{status}, {verified}"))];
     rows.push(row("objective", value("objective", document.objective, 10)));
     rows.extend(document.free.0.iter().map(|(name, it)| row(name, value(name, *it, 10))));

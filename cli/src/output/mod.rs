@@ -22,7 +22,7 @@ pub mod tried;
 pub mod units;
 pub mod verified;
 
-use crate::commands::Exit;
+use crate::exit::Exit;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::OnceLock;
 

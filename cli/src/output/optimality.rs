@@ -1,6 +1,8 @@
 //! What contradicts that an answer is an optimum, in words and as data.
 
+use super::document::Document;
 use super::number::short;
+use super::verified::Verification;
 use fdcc::optimality::{self, Condition};
 use serde::Serialize;
 
@@ -72,6 +74,16 @@ fn words(it: &optimality::Check) -> String {
             let control = it.control.as_deref().unwrap_or_default();
             format!("`{control}` does not minimise the Hamiltonian on {percent} % of the time")
         }
+    }
+}
+
+/// What a replay says of the answer, and what contradicts that it is an optimum, in few words.
+pub fn on_the_true_system(document: &Document) -> String {
+    let replay = document.verification.as_ref();
+    let replay = replay.map_or("not replayed on the true system".into(), Verification::words);
+    match document.optimality.as_ref().filter(|it| it.contradicted) {
+        Some(optimality) => format!("{replay}, CONTRADICTED as an optimum: {}", optimality.says),
+        None => replay,
     }
 }
 

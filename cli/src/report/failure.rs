@@ -2,7 +2,7 @@
 
 use crate::output::units::Units;
 use crate::report::attempts;
-use crate::solver::Solved;
+use crate::solved::Solved;
 use fdcc::Solution;
 use fdcc_grammar::{Code, Diagnostic, Span};
 use fdcc_runtime::nlp::{Place, Status};

@@ -2,13 +2,13 @@
 
 use crate::output::document::{Document, switching};
 use crate::output::number::{scientific, short};
+use crate::output::optimality::on_the_true_system;
 use crate::output::plural;
-use crate::output::verified::Verification;
 use crate::report::attempts;
-use crate::solver::Solved;
+use crate::solved::Solved;
 use fdcc::{Ended, Solution};
 use fdcc_runtime::nlp::Status;
-use fdcc_runtime::problem::{Method, Problem};
+use fdcc_runtime::problem::{Method, Order, Problem};
 use fdcc_runtime::transcribe::unknowns;
 
 mod jumps;
@@ -25,7 +25,7 @@ pub fn headline(problem: &Problem) -> String {
         plural(problem.controls.len(), "control"),
         plural(problem.surfaces.len(), "surface"),
         asked(method),
-        method.intervals,
+        method.intervals(),
         plural(unknowns(problem), "unknown"),
     )
 }
@@ -33,7 +33,11 @@ pub fn headline(problem: &Problem) -> String {
 /// The scheme as the model names it: without a number where that is to be found.
 fn asked(method: &Method) -> String {
     let name = method.scheme.name();
-    if method.is_raised { name.trim_end_matches(|c: char| c.is_ascii_digit()).into() } else { name }
+    if method.order == Order::Auto {
+        name.trim_end_matches(|c: char| c.is_ascii_digit()).into()
+    } else {
+        name
+    }
 }
 
 /// The verdict for people.
@@ -147,8 +151,11 @@ fn refined(solved: &Solved) -> Option<String> {
     let (document, method) = (&solved.document, &solved.solution.problem.method);
     let (error, tolerance) = (document.step_errors?, method.tolerance);
     let verdict = if error <= tolerance { "" } else { ", NOT met" };
-    let order =
-        if method.is_raised { format!(" of {}", document.method.scheme) } else { String::new() };
+    let order = if method.order == Order::Auto {
+        format!(" of {}", document.method.scheme)
+    } else {
+        String::new()
+    };
     Some(format!(
         " grid  {}{order}, errors of all steps {} (tolerance {}{verdict})",
         plural(document.method.n, "interval"),
@@ -193,16 +200,6 @@ fn sensitivities(document: &Document) -> impl Iterator<Item = String> {
     })
 }
 
-/// What a replay says of the answer, and what contradicts that it is an optimum, in few words.
-pub fn on_the_true_system(document: &Document) -> String {
-    let replay = document.verification.as_ref();
-    let replay = replay.map_or("not replayed on the true system".into(), Verification::words);
-    match document.optimality.as_ref().filter(|it| it.contradicted) {
-        Some(optimality) => format!("{replay}, CONTRADICTED as an optimum: {}", optimality.says),
-        None => replay,
-    }
-}
-
 /// The replay in numbers.
 fn replayed(document: &Document) -> Option<String> {
     let replay = document.verification.as_ref()?;
@@ -225,7 +222,7 @@ fn replayed(document: &Document) -> Option<String> {
 }
 
 fn intervals(solved: &Solved) -> String {
-    plural(solved.solution.problem.method.intervals, "interval")
+    plural(solved.solution.problem.method.intervals(), "interval")
 }
 
 /// What the status of a failed solve means.

@@ -5,7 +5,7 @@
 //! repairing ends, and repairing the result changes nothing.
 
 use super::analyze_parsed;
-use fdcc_grammar::{Diagnostic, Parse, ParseCache, Severity, fix, parse_with};
+use fdcc_grammar::{Diagnostic, Parse, ParseCache, Severity, parse_with, repaired};
 
 /// The text with all certain repairs, and with those that are likely if asked for.
 pub fn repair(text: &str, unsafely: bool) -> String {
@@ -47,7 +47,7 @@ impl Draft {
 
     /// All repairs at once, or the first one that helps.
     fn improved(&self, unsafely: bool, cache: &mut ParseCache) -> Option<Draft> {
-        let apply = |found: &[Diagnostic]| fix::apply(&self.text, found, unsafely);
+        let apply = |found: &[Diagnostic]| repaired(&self.text, found, unsafely);
         let single = self.found.iter().filter_map(|it| apply(std::slice::from_ref(it)));
         apply(&self.found).into_iter().chain(single).find_map(|text| self.better(text, cache))
     }

@@ -52,8 +52,15 @@ pub struct Sides {
     pub holds: bool,
 }
 
+impl Solution {
+    /// What the model expects of its solution, compared with this one.
+    pub fn expectations(&self) -> Vec<Checked> {
+        evaluate(self)
+    }
+}
+
 /// Evaluates all expectations of its model at a solution.
-pub(crate) fn evaluate(solution: &Solution) -> Vec<Checked> {
+fn evaluate(solution: &Solution) -> Vec<Checked> {
     let (seen, problem, outcome) = solution.as_solved();
     let expectations = expectations(seen);
     let trajectory = &outcome.trajectory;

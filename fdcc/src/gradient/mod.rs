@@ -7,7 +7,7 @@ pub(crate) mod quantities;
 
 pub use approximations::Stepped;
 pub use exact::Exact;
-pub use quantities::By;
+pub use quantities::{By, NotBy};
 
 use crate::error::Error;
 use crate::model::Model;
@@ -101,12 +101,10 @@ pub fn by_names(
     system: &System,
     controls: &Controls,
     model: &Model,
-) -> Result<Vec<By>, String> {
+) -> Result<Vec<By>, NotBy> {
     if names.is_empty() {
         let all = quantities::everything(system, model.meaning());
-        let nothing =
-            "there is nothing to differentiate by; `--wrt x(start)` names the start of `x`";
-        return if all.is_empty() { Err(nothing.into()) } else { Ok(all) };
+        return if all.is_empty() { Err(NotBy::Nothing) } else { Ok(all) };
     }
     let mut all: Vec<By> = Vec::new();
     for name in names {
@@ -131,7 +129,8 @@ impl Model {
         if self.meaning().objective.is_none() {
             return Err(Error::Call("the model has no objective".into()));
         }
-        let by = by_names(by, &system, &controls, self).map_err(Error::Call)?;
+        let by =
+            by_names(by, &system, &controls, self).map_err(|why| Error::Call(why.to_string()))?;
         Ok(Gradient::new(self, system, controls, by, &Accuracy::default()))
     }
 }

@@ -4,6 +4,7 @@ use fdcc_compiler::{Model, closest};
 use fdcc_runtime::problem::Parameter;
 use fdcc_runtime::sensitivity::Quantity;
 use fdcc_runtime::simulate::{Controls, System};
+use std::fmt;
 
 /// What a derivative is taken by, under one name.
 #[derive(Clone, Debug)]
@@ -14,6 +15,47 @@ pub struct By {
     pub quantities: Vec<Quantity>,
     /// Whether it is a control.
     pub is_control: bool,
+}
+
+/// Why there is no derivative by a name.
+///
+/// ```
+/// use fdcc::{Controls, Model, NotBy, by_names};
+///
+/// let model = Model::from_text("coast", "time t in [0, 1]
+/// control u in [-1, 1]
+/// state v start 1
+/// dynamics { v' = u }
+/// minimize v(end)^2")?;
+/// let by = by_names(&["u"], &model.system()?, &Controls::Guess, &model);
+/// assert_eq!(by.err(), Some(NotBy::Guessed("u".into())));
+/// # Ok::<(), fdcc::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotBy {
+    /// The model has no parameter, no unknown and no free start; a given start has to be named.
+    Nothing,
+    /// A parameter that is computed from others, and its value: [`with`](crate::Model::with) that value it is
+    /// one of its own.
+    Computed(String, f64),
+    /// A control that follows its guess: only one that is [held](Controls::Held) has values to
+    /// differentiate by.
+    Guessed(String),
+    /// There is nothing of that name, but what there is.
+    Unknown(String),
+}
+
+impl fmt::Display for NotBy {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            NotBy::Nothing => f.write_str("there is nothing to differentiate by"),
+            NotBy::Computed(name, _) => {
+                write!(f, "`{name}` is computed from other parameters")
+            }
+            NotBy::Guessed(name) => write!(f, "`{name}` follows its guess"),
+            NotBy::Unknown(why) => f.write_str(why),
+        }
+    }
 }
 
 /// Everything that a model can be differentiated by on its own: parameters, unknowns, starts that
@@ -34,7 +76,7 @@ pub fn named(
     system: &System,
     controls: &Controls,
     model: &Model,
-) -> Result<Vec<By>, String> {
+) -> Result<Vec<By>, NotBy> {
     if let Some(state) = name.strip_suffix("(start)").map(str::trim) {
         return starts(name, state, system);
     }
@@ -42,10 +84,7 @@ pub fn named(
     if let Some(at) = parameters.clone().position(|it| it.name == name) {
         if is_computed(name, model) {
             let value = system.parameters[at].value;
-            return Err(format!(
-                "`{name}` is computed from other parameters; `--set {name}={value}` makes it one \
-                 of its own"
-            ));
+            return Err(NotBy::Computed(name.into(), value));
         }
         return Ok(vec![single(name.into(), Quantity::Parameter(at))]);
     }
@@ -57,31 +96,31 @@ pub fn named(
         state == name || state.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'))
     };
     if system.states.iter().any(|state| is_state(&state.name)) {
-        return Err(format!("`{name}` is a state; write `{name}(start)` for its start"));
+        let why = format!("`{name}` is a state; write `{name}(start)` for its start");
+        return Err(NotBy::Unknown(why));
     }
     let known = parameters
         .map(|it| it.name.as_str())
         .chain(system.controls.iter().map(|it| it.name.as_str()));
-    Err(unknown("parameter, unknown or control", name, known.collect()))
+    Err(NotBy::Unknown(unknown("parameter, unknown or control", name, known.collect())))
 }
 
-fn starts(name: &str, state: &str, system: &System) -> Result<Vec<By>, String> {
+fn starts(name: &str, state: &str, system: &System) -> Result<Vec<By>, NotBy> {
     let shown = system.states.iter().filter(|state| !state.hidden).map(|state| state.name.as_str());
     let found = parts(state, shown.clone());
     if found.is_empty() {
-        return Err(format!("`{name}`: {}", unknown("state", state, shown.collect())));
+        let why = format!("`{name}`: {}", unknown("state", state, shown.collect()));
+        return Err(NotBy::Unknown(why));
     }
     let start =
         |at: usize| single(format!("{}(start)", system.states[at].name), Quantity::Start(at));
     Ok(found.into_iter().map(start).collect())
 }
 
-fn control(at: usize, system: &System, controls: &Controls) -> Result<By, String> {
+fn control(at: usize, system: &System, controls: &Controls) -> Result<By, NotBy> {
     let name = system.controls[at].name.clone();
     let Controls::Held { rows, .. } = controls else {
-        return Err(format!(
-            "`{name}` follows its guess; `--control FILE` gives it values to differentiate by"
-        ));
+        return Err(NotBy::Guessed(name));
     };
     let quantities = (0..rows.len()).map(|row| Quantity::Control { row, control: at }).collect();
     Ok(By { name, quantities, is_control: true })

@@ -8,9 +8,6 @@ pub use reading::{Checked, check, text};
 pub use values::Value;
 
 use crate::error::Error;
-use crate::record::Record;
-use crate::solve::{Compiled, Options, Solution};
-use crate::verification::{Verification, verify};
 use code::Code;
 use fdcc_grammar::{Diagnostic, SourceFile};
 use fdcc_runtime::problem::Problem;
@@ -103,15 +100,6 @@ impl Model {
         &self.meaning
     }
 
-    /// What a replay of a recorded solution does on the true system, against what it says.
-    ///
-    /// # Errors
-    ///
-    /// A record that does not belong to this model; a model that cannot be simulated.
-    pub fn verify(&self, record: &Record) -> Result<Verification, Error> {
-        verify(&self.meaning, &self.problem()?, record)
-    }
-
     /// The problem that is solved for it: bounds, guesses and parameters with their values.
     ///
     /// # Errors
@@ -137,24 +125,5 @@ impl Model {
     /// As for [`system`](Model::system).
     pub fn sensitivity_system(&self) -> Result<System, Error> {
         fdcc_compiler::compile_sensitivities(&self.meaning).map_err(Error::Model)
-    }
-
-    /// Makes everything ready that a solve needs.
-    ///
-    /// # Errors
-    ///
-    /// A model that cannot be solved.
-    pub fn compile(&self) -> Result<Compiled, Error> {
-        Compiled::new(self)
-    }
-
-    /// Solves. That nothing was found is no error: the [status](Solution::status) says so.
-    ///
-    /// # Errors
-    ///
-    /// A model that cannot be solved, or not in the way that its method asks for; a start that does
-    /// not belong to it.
-    pub fn solve(&self, options: &Options) -> Result<Solution, Error> {
-        self.compile()?.solve(options)
     }
 }

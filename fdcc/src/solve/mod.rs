@@ -4,13 +4,16 @@
 mod bounds;
 mod found;
 mod multistart;
+pub mod optimality;
 mod report;
 mod sequences;
 mod solution;
+mod sweep;
 
 pub use found::{Jump, Sequence, Unrolled};
 pub use report::{Ended, Options, Part, Report, Start};
 pub use solution::Solution;
+pub use sweep::{Grid, Sweep};
 
 use crate::error::Error;
 use crate::executor::Executor;
@@ -37,17 +40,34 @@ pub struct Compiled {
     problem: Problem,
 }
 
-impl Compiled {
-    /// Compiles a model, unless a variant of it with other values has been compiled already.
-    pub(crate) fn new(model: &Model) -> Result<Self, Error> {
-        let problem = model.problem()?;
+impl Model {
+    /// Makes everything ready that a solve needs, unless a variant with other values has been
+    /// compiled already.
+    ///
+    /// # Errors
+    ///
+    /// A model that cannot be solved.
+    pub fn compile(&self) -> Result<Compiled, Error> {
+        let problem = self.problem()?;
         refuse_senseless(&problem)?;
-        if model.meaning().jumps.is_empty() {
+        if self.meaning().jumps.is_empty() {
             make_machine_code(&problem);
         }
-        Ok(Compiled { model: model.clone(), problem })
+        Ok(Compiled { model: self.clone(), problem })
     }
 
+    /// Solves. That nothing was found is no error: the [status](Solution::status) says so.
+    ///
+    /// # Errors
+    ///
+    /// A model that cannot be solved, or not in the way that its method asks for; a start that does
+    /// not belong to it.
+    pub fn solve(&self, options: &Options) -> Result<Solution, Error> {
+        self.compile()?.solve(options)
+    }
+}
+
+impl Compiled {
     /// The problem: states, controls, bounds, functions. Of a model with jumps, what holds between
     /// them.
     pub fn problem(&self) -> &Problem {
@@ -83,7 +103,7 @@ impl Compiled {
             let start = match options.start {
                 Start::Guess => None,
                 Start::Record(record) => Some(warm_start::from_record(record, &self.problem)),
-                Start::Solution(it) => Some(warm_start::from_solution(it, &self.problem)),
+                Start::Solution(it) => Some(it.as_start(&self.problem)),
             };
             multistart::solve(&self.problem, start, options, Part::default())?
         } else {
@@ -119,11 +139,11 @@ fn refuse_senseless(problem: &Problem) -> Result<(), Error> {
         many if is_too_dense(problem, many) => Err(Error::Call(format!(
             "`linear = riccati` treats all {} unknowns of an interval as dense; leave it out, or \
              choose fewer `steps`",
-            many / problem.method.intervals
+            many / problem.method.intervals()
         ))),
         many if many > MOST_UNKNOWNS => Err(Error::Call(format!(
             "{many} unknowns are too many; N = {}",
-            problem.method.intervals
+            problem.method.intervals()
         ))),
         _ => Ok(()),
     }
@@ -134,6 +154,6 @@ fn refuse_senseless(problem: &Problem) -> Result<(), Error> {
 const MOST_DENSE: usize = 200_000_000;
 
 fn is_too_dense(problem: &Problem, unknowns: usize) -> bool {
-    let each = unknowns / problem.method.intervals;
+    let each = unknowns / problem.method.intervals();
     problem.method.linear == Linear::Riccati && unknowns.saturating_mul(each) > MOST_DENSE
 }

@@ -3,16 +3,17 @@
 use super::found::{Found, Jump, Sequence, Unrolled, is_solved};
 use super::report::Ended;
 use crate::error::Error;
-use crate::expectations::{Checked as Expectation, evaluate};
 use crate::model::Model;
 use crate::names::status_name;
 use crate::record::{JumpRecord, NodesRecord, Record, Settings};
 use crate::verification::{Verification, verify};
+use crate::warm_start::from_record;
 use fdcc_compiler::compile_by_parameters;
-use fdcc_runtime::nlp::Status;
+use fdcc_runtime::nlp::{self, Status};
 use fdcc_runtime::problem::{Problem, Variable};
 use fdcc_runtime::solution::by_parameters;
 use fdcc_runtime::solve::Outcome;
+use fdcc_runtime::solve::warm_start::again;
 
 /// A solution, or the best iterate where there is none; numbers are in SI.
 ///
@@ -187,13 +188,27 @@ impl Solution {
         }
     }
 
+    /// Where another solve begins that starts at this one: with all multipliers if the grid is the
+    /// same.
+    pub(super) fn as_start(&self, problem: &Problem) -> nlp::Start {
+        let shape = |problem: &Problem| {
+            let method = &problem.method;
+            (method.intervals(), method.scheme, method.controls, method.grid.times().to_vec())
+        };
+        if shape(&self.problem) == shape(problem) {
+            let widths: &[f64] = if self.has_chosen_widths() { &self.outcome.sigma } else { &[] };
+            return again(problem, &self.outcome.solution, widths);
+        }
+        from_record(&self.record(), problem)
+    }
+
     fn settings(&self) -> Settings<'_> {
         let (method, sigma) = (&self.problem.method, &self.outcome.sigma);
         let surfaces = self.problem.surfaces.iter().map(|it| it.name.as_str());
         Settings {
             scheme: Some(method.scheme),
             controls: Some(method.controls),
-            intervals: Some(method.intervals),
+            intervals: Some(method.intervals()),
             sigma: sigma.first().copied(),
             sigmas: surfaces.zip(sigma.iter().copied()).collect(),
             sigma_chosen: self.has_chosen_widths(),
@@ -208,11 +223,6 @@ impl Solution {
     /// A model that cannot be simulated, or an iterate with numbers that are not finite.
     pub fn verify(&self) -> Result<Verification, Error> {
         verify(self.model.meaning(), &self.problem, &self.record())
-    }
-
-    /// What the model expects of its solution, compared with this one.
-    pub fn expectations(&self) -> Vec<Expectation> {
-        evaluate(self)
     }
 
     /// What the solver saw: model, problem and outcome. Of a model with jumps, its phases side by

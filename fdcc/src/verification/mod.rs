@@ -81,6 +81,17 @@ impl Verification {
     }
 }
 
+impl crate::model::Model {
+    /// What a replay of a recorded solution does on the true system, against what it says.
+    ///
+    /// # Errors
+    ///
+    /// A record that does not belong to this model; a model that cannot be simulated.
+    pub fn verify(&self, record: &Record) -> Result<Verification, Error> {
+        verify(self.meaning(), &self.problem()?, record)
+    }
+}
+
 /// Replays a solution of a problem that was compiled from the model, whatever its parameters are
 /// now.
 pub(crate) fn verify(

@@ -42,8 +42,7 @@ fn touches(one: Span, other: Span) -> bool {
 }
 
 fn quick_fix(context: &Context<'_>, found: &Diagnostic, fix: &Fix) -> CodeAction {
-    let diagnostic =
-        shown(found, context.snapshot(), &context.document.uri, &context.session.agreed);
+    let diagnostic = shown(found, context.snapshot(), &context.document.uri, &context.state.agreed);
     CodeAction {
         title: sentence(&fix.title),
         kind: Some(CodeActionKind::QuickFix),

@@ -1,6 +1,6 @@
 //! What is wrong with a text, pushed or pulled.
 
-use crate::capabilities::Agreed;
+use crate::agreed::Agreed;
 use crate::client::Failure;
 use crate::context::Context;
 use crate::documents::Document;
@@ -28,7 +28,7 @@ pub fn report(
     context: &Context<'_>,
     _: DocumentDiagnosticParams,
 ) -> Result<DocumentDiagnosticReport, Failure> {
-    let items = all(context.document, &context.session.agreed);
+    let items = all(context.document, &context.state.agreed);
     let full = FullDocumentDiagnosticReport { result_id: None, items };
     Ok(RelatedFullDocumentDiagnosticReport::new(None, full).into())
 }

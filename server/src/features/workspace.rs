@@ -2,16 +2,16 @@
 
 use crate::context::Context;
 use crate::features::symbols::kind;
-use crate::session::Session;
+use crate::state::State;
 use fdcc_compiler::symbols::{Definition, Kind};
 use lsp_types::{BaseSymbolInformation, SymbolInformation, WorkspaceSymbolParams};
 
 /// `workspace/symbol`: declared names that hold what was typed, whatever its case.
-pub fn symbols(session: &Session, params: &WorkspaceSymbolParams) -> Vec<SymbolInformation> {
+pub fn symbols(state: &State, params: &WorkspaceSymbolParams) -> Vec<SymbolInformation> {
     let wanted = params.query.to_lowercase();
     let mut found = Vec::new();
-    for document in session.documents.all() {
-        let context = Context { session, document };
+    for document in state.documents.all() {
+        let context = Context { state, document };
         let all = &context.snapshot().names().definitions;
         let is_inner = |it: &Definition| matches!(it.kind, Kind::Argument | Kind::Row);
         let fits = |it: &&Definition| !is_inner(it) && it.name.to_lowercase().contains(&wanted);

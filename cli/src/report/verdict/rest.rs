@@ -2,7 +2,7 @@
 //! end: friction alone brings it near, and never there.
 
 use crate::output::units::Units;
-use crate::solver::Solved;
+use crate::solved::Solved;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Columns, Problem};
 use fdcc_runtime::solution::Trajectory;

@@ -28,7 +28,7 @@ pub fn completion(
         (false, true) => after_word(&place, &scope).unwrap_or_default(),
         (false, false) => proposals(&place, &scope),
     };
-    let snippets = context.session.agreed.snippets;
+    let snippets = context.state.agreed.snippets;
     let items = proposals.into_iter().map(|it| it.shown(snippets)).collect();
     Ok(Some(CompletionList { is_incomplete: false, items, ..CompletionList::default() }.into()))
 }

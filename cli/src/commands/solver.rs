@@ -1,16 +1,17 @@
 //! One solve as the commands have it: with time limits, seconds, and a document of what came out.
 
-use crate::commands::{Exit, Options, show};
+use super::options::{Options, show};
+use crate::exit::Exit;
+use crate::failure::Failure;
 use crate::output;
 use crate::output::document::{Document, Seconds};
-use crate::output::optimality::Optimality;
 use crate::output::saved::Saved;
 use crate::output::units::Units;
-use crate::output::verified::Verification;
 use crate::report::log::Log;
+use crate::solved::Solved;
 use crate::watch::Deadline;
-use fdcc::{Error, Model, Solution, Start};
-use fdcc_grammar::{Diagnostic, SourceFile};
+use fdcc::{Error, Model, Start};
+use fdcc_grammar::SourceFile;
 use fdcc_runtime::nlp::Stop;
 use fdcc_runtime::problem::Problem;
 use sha2::{Digest, Sha256};
@@ -21,39 +22,6 @@ pub struct Compiled {
     compiled: fdcc::Compiled,
     begin: Instant,
     seconds: f64,
-}
-
-/// Everything that came out of a solve.
-pub struct Solved {
-    pub solution: Solution,
-    pub document: Document,
-}
-
-/// Why there was no solve at all.
-pub enum Failure {
-    /// The model has no meaning for the solver.
-    Model(Vec<Diagnostic>),
-    /// There is nothing in the model that could be chosen.
-    Nothing,
-    /// What was asked for cannot be done.
-    Usage(String),
-    /// A file cannot be used.
-    File(String),
-    /// There was no time to compile the model.
-    Stopped(Stop),
-}
-
-impl From<Error> for Failure {
-    fn from(error: Error) -> Self {
-        match error {
-            Error::Model(diagnostics) => Failure::Model(diagnostics),
-            Error::Nothing => Failure::Nothing,
-            Error::Call(what) => Failure::Usage(what),
-            Error::Record(_) | Error::Foreign(_) | Error::File(_) => {
-                Failure::File(error.to_string())
-            }
-        }
-    }
 }
 
 impl Failure {
@@ -145,31 +113,6 @@ impl Compiled {
         let seconds = Seconds { compile: seconds, solve: total - seconds, total };
         let document = Document::new(&solution, &sha256(&source.text), units, seconds);
         Ok(Solved { solution, document })
-    }
-}
-
-impl Solved {
-    /// Whether the answer can be used.
-    pub fn is_good(&self) -> bool {
-        self.solution.is_solved()
-    }
-
-    /// Replays the controls on the true system; `asked` is the largest difference that is called
-    /// confirmation.
-    pub fn replay(&mut self, asked: f64) {
-        // A model that cannot be simulated is solved all the same.
-        let verified = self.solution.verify().ok();
-        let document = &mut self.document;
-        document.verification = verified.as_ref().map(|it| Verification::new(it, asked));
-        let checks = || Optimality::new(&self.solution.optimality(verified.as_ref()));
-        document.optimality = document.optimality.take().map(|_| checks());
-    }
-
-    /// How a command with this solve ends; whether it has to be confirmed, too, is the caller's
-    /// choice.
-    pub fn exit(&self, confirmed: bool) -> Exit {
-        let is_fine = self.is_good() && (!confirmed || self.document.is_confirmed());
-        if is_fine { Exit::Fine } else { Exit::NotSolved }
     }
 }
 

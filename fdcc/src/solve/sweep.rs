@@ -1,9 +1,9 @@
 //! One solve for each of several values.
 
+use super::{Options, Solution};
 use crate::error::Error;
 use crate::executor::Executor;
 use crate::model::Model;
-use crate::solve::{Options, Solution};
 
 /// A name and its values.
 type List = (String, Vec<String>);

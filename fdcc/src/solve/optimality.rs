@@ -6,7 +6,7 @@
 //! conditions of the discrete problem are met. The measures and their limits are in
 //! `docs/method/costate.md`.
 
-use crate::solve::Solution;
+use super::Solution;
 use crate::verification::Verification;
 
 /// The Hamiltonian may be off by so much of the size of its terms.

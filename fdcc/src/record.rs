@@ -42,6 +42,15 @@ pub struct Record<'s> {
 }
 
 /// The settings of the method that a replay or a start depends on, as far as they are known.
+///
+/// ```
+/// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
+/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)";
+/// let solution = fdcc::Model::from_text("hop", text)?.solve(&fdcc::Options::default())?;
+/// let record = solution.record();
+/// assert_eq!(record.settings.intervals, Some(record.time.len() - 1));
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct Settings<'s> {
     /// The scheme, with its order.
@@ -62,6 +71,16 @@ pub struct Settings<'s> {
 
 /// The values between which a control is linear, or through which it is a polynomial on each
 /// interval.
+///
+/// ```
+/// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
+/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)";
+/// let model = fdcc::Model::from_text("hop", text)?.with_method("scheme", "trapezoid")?;
+/// let solution = model.with_method("controls", "linear")?.solve(&fdcc::Options::default())?;
+/// let nodes = solution.record().nodes.expect("the control is linear");
+/// assert_eq!(nodes.values[0].1.len(), nodes.time.len());
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct NodesRecord<'s> {
     /// When.
@@ -71,6 +90,14 @@ pub struct NodesRecord<'s> {
 }
 
 /// A jump of a solution.
+///
+/// ```
+/// let model = fdcc::Model::from_file("../models/bounce.fdc")?.with_method("N", 20)?;
+/// let solution = model.solve(&fdcc::Options::default())?;
+/// let record = solution.record();
+/// assert!(record.jumps.iter().all(|it| it.jump == "bounce" && it.before.len() == 3));
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct JumpRecord<'s> {
     /// Its name.

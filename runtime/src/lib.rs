@@ -8,6 +8,9 @@
 
 pub mod problem;
 
+pub mod lagrange;
+mod random;
+
 pub mod linalg;
 
 pub mod nlp;

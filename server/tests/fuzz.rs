@@ -7,30 +7,11 @@
 mod client;
 
 use client::{Client, URI};
+use fdcc_tests::random::Random;
 use lsp_server::Message;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
-
-/// Numbers that look random, the same for the same seed (SplitMix64).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ (mixed >> 31)
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        (self.next() % end.max(1) as u64) as usize
-    }
-
-    fn of<'v, T: ?Sized>(&mut self, all: &[&'v T]) -> &'v T {
-        all[self.below(all.len())]
-    }
-}
 
 /// What is inserted: pieces of models, and what never belongs into one.
 const PIECES: &[&str] = &[
@@ -141,7 +122,7 @@ impl Fuzzer {
             json!({ "textDocument": { "publishDiagnostics": { "relatedInformation": true } } }),
         );
         Fuzzer {
-            random: Random(seed),
+            random: Random::new(seed),
             client,
             version: 0,
             waiting: BTreeMap::new(),

@@ -16,9 +16,13 @@ impl Random {
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         z ^ (z >> 31)
     }
-    /// A number below `bound`.
-    pub fn below(&mut self, bound: usize) -> usize {
-        (self.bits() % bound as u64) as usize
+    /// A number below `end`; 0 where there is none.
+    pub fn below(&mut self, end: usize) -> usize {
+        (self.bits() % end.max(1) as u64) as usize
+    }
+    /// One of several.
+    pub fn of<'v, T: ?Sized>(&mut self, all: &[&'v T]) -> &'v T {
+        all[self.below(all.len())]
     }
     /// A number between two others.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {

@@ -103,6 +103,23 @@ fn every_page_about_the_method_names_its_files() {
     );
 }
 
+/// An example is the shortest way to learn what a type is for, and is a test as well.
+#[test]
+fn every_public_type_of_the_library_has_an_example() {
+    let mut breaches = Vec::new();
+    for Source { path, text } in sources().iter().filter(|it| it.path.starts_with("fdcc/src/")) {
+        let lines: Vec<&str> = text.lines().collect();
+        for at in 0..lines.len() {
+            let is_type = ["pub struct ", "pub enum "].iter().any(|it| lines[at].starts_with(it));
+            let above = lines[..at].iter().rev().take_while(|it| it.starts_with(['/', '#']));
+            if is_type && !above.into_iter().any(|line| *line == "/// ```") {
+                breaches.push(format!("{path}:{}: give `{}` an example", at + 1, lines[at]));
+            }
+        }
+    }
+    all_well(breaches);
+}
+
 /// The two commands of the README are the ones that CI runs.
 #[test]
 fn the_readme_and_ci_run_the_same_commands() {

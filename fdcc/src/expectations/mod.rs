@@ -33,6 +33,17 @@ pub struct Checked {
 }
 
 /// What became of an expectation.
+///
+/// ```
+/// use fdcc::{Expected, Model, Options};
+///
+/// let text = "time t in [0, 1]\nstate x start 0\ndynamics { x' = 1 }
+/// free T in [0, 1] guess 0.5\nend x == 2*T\nexpect { x(end) >= 2 within 1e-6 }";
+/// let found = Model::from_text("line", text)?.solve(&Options::default())?.expectations();
+/// let Expected::Compared(sides) = &found[0].outcome else { panic!("both sides have values") };
+/// assert!(!sides.holds);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 pub enum Outcome {
     /// Both sides have values.
     Compared(Sides),
@@ -41,6 +52,18 @@ pub enum Outcome {
 }
 
 /// The numbers of a comparison.
+///
+/// ```
+/// use fdcc::{Expected, Model, Options, Sides};
+///
+/// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
+/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)";
+/// let text = format!("{text}\nexpect {{ x(end) <= 1 within 1e-6 }}");
+/// let found = Model::from_text("hop", &text)?.solve(&Options::default())?.expectations();
+/// let Expected::Compared(Sides { left, right, .. }) = found[0].outcome else { panic!() };
+/// assert!((left - 0.5).abs() < 1e-8 && right == 1.0);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 pub struct Sides {
     /// Left side.
     pub left: f64,

@@ -14,7 +14,7 @@ use fdcc_runtime::sensitivity::Quantity;
 use fdcc_runtime::simulate::{Controls, Options};
 
 /// The answers, each a number or the reason why there is none.
-pub struct Replayed(Vec<Result<f64, String>>);
+pub(super) struct Replayed(Vec<Result<f64, String>>);
 
 impl Replayed {
     /// Asks the true system; nothing is simulated if nothing is asked.

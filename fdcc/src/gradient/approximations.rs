@@ -8,6 +8,19 @@ use fdcc_runtime::sensitivity::Quantity;
 use fdcc_runtime::simulate::{Simulation, System};
 
 /// The gradient of what fixed steps compute.
+///
+/// ```
+/// let model = fdcc::Model::from_text("slide", "time t in [0, 2]
+/// param mu = 2
+/// state v start 1
+/// surface slip = v
+/// dynamics { v' in -mu * Sgn(slip) }
+/// minimize integral(v)")?;
+/// let gradient = model.gradient(&["mu"])?;
+/// let smoothed = gradient.smoothed().expect("there is a surface").expect("it can be stepped");
+/// assert!(smoothed.sigma.is_some() && smoothed.gradient.len() == 1);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 pub struct Stepped {
     /// The smoothing width of the first surface; nothing for the true system.
     pub sigma: Option<f64>,

@@ -14,6 +14,20 @@ const SIDES: f64 = 1e-5;
 const MOST_SIDES: usize = 64;
 
 /// A gradient and what is to be thought of it.
+///
+/// ```
+/// let model = fdcc::Model::from_text("slide", "time t in [0, 2]
+/// param mu = 2
+/// state v start 1
+/// surface slip = v
+/// dynamics { v' in -mu * Sgn(slip) }
+/// minimize integral(v)")?;
+/// let gradient = model.gradient(&["mu"])?;
+/// let exact = gradient.found.as_ref().expect("the last time is reached");
+/// // It comes to rest at 1/mu, so the integral is 1/(2 mu).
+/// assert!(exact.agrees() && (exact.gradient[0] + 0.125).abs() < 1e-8);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 pub struct Exact {
     /// Derivatives as they were computed, with their simulation.
     pub found: Sensitivity,

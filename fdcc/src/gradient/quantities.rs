@@ -7,6 +7,20 @@ use fdcc_runtime::simulate::{Controls, System};
 use std::fmt;
 
 /// What a derivative is taken by, under one name.
+///
+/// ```
+/// let model = fdcc::Model::from_text("slide", "time t in [0, 2]
+/// param mu = 2
+/// state v start 1
+/// surface slip = v
+/// dynamics { v' in -mu * Sgn(slip) }
+/// minimize integral(v)")?;
+/// let system = model.system()?;
+/// let by = fdcc::by_names(&["mu", "v(start)"], &system, &fdcc::Controls::Guess, &model);
+/// let by = by.expect("the model has both");
+/// assert!(by.len() == 2 && by[1].name == "v(start)" && by[1].quantities.len() == 1);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct By {
     /// As it was asked for.

@@ -5,6 +5,7 @@
 //! length.
 
 use crate::record::{NodesRecord, Record, find};
+use fdcc_runtime::lagrange;
 
 const PIECES_OF_INTERVAL: usize = 8;
 /// Few intervals of a high order are long.
@@ -42,7 +43,7 @@ pub(super) fn pieces(
         let range = stencil(k);
         for piece in 0..count {
             let at = |part: f64| ends[0] + (ends[1] - ends[0]) * part / count as f64;
-            let weights = weights(&knots[range.clone()], at(piece as f64 + 0.5));
+            let weights = lagrange::values(&knots[range.clone()], at(piece as f64 + 0.5));
             let value = |column: &&[f64]| {
                 weights.iter().zip(&column[range.clone()]).map(|(w, u)| w * u).sum()
             };
@@ -79,15 +80,6 @@ fn stencil(knots: usize, intervals: usize) -> Option<impl Fn(usize) -> std::ops:
     fits.then_some(move |k: usize| k * own..(k + 1) * own + usize::from(is_linear))
 }
 
-/// The Lagrange polynomials over the knots at a time.
-fn weights(knots: &[f64], time: f64) -> Vec<f64> {
-    let weight = |(j, own): (usize, &f64)| {
-        let others = knots.iter().enumerate().filter(|(l, _)| *l != j);
-        others.map(|(_, other)| (time - other) / (own - other)).product()
-    };
-    knots.iter().enumerate().map(weight).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -99,12 +91,5 @@ mod tests {
         assert_eq!(range(12, 4, 1), Some(3..6));
         assert_eq!(range(7, 4, 0), None);
         assert_eq!(range(0, 0, 0), None);
-    }
-
-    #[test]
-    fn a_polynomial_is_reproduced() {
-        let knots = [0.5, 1.0, 2.0];
-        let value: f64 = weights(&knots, 1.5).iter().zip(knots).map(|(w, t)| w * (t * t - t)).sum();
-        assert!((value - 0.75).abs() < 1e-15);
     }
 }

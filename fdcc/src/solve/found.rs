@@ -19,6 +19,15 @@ pub(super) struct Found {
 }
 
 /// A jump of a solution.
+///
+/// ```
+/// let model = fdcc::Model::from_file("../models/bounce.fdc")?.with_method("N", 20)?;
+/// let solution = model.solve(&fdcc::Options::default())?;
+/// for jump in &solution.jumps {
+///     assert_eq!((jump.name.as_str(), jump.before.len(), jump.after.len()), ("bounce", 3, 3));
+/// }
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Jump {
     /// Its name.
@@ -32,6 +41,15 @@ pub struct Jump {
 }
 
 /// A sequence of jumps that was tried: how the solve ended in which exactly these happen.
+///
+/// ```
+/// let model = fdcc::Model::from_file("../models/bounce.fdc")?.with_method("N", 20)?;
+/// let solution = model.solve(&fdcc::Options::default())?;
+/// let words: Vec<&str> = solution.sequences.iter().map(|it| it.words.as_str()).collect();
+/// assert!(words.contains(&"no jump") && words.contains(&"bounce"));
+/// assert_eq!(solution.sequences.iter().filter(|it| it.is_answer).count(), 1);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Sequence {
     /// The names of the jumps, in their order.
@@ -47,6 +65,15 @@ pub struct Sequence {
 }
 
 /// What was solved in place of a model with jumps: its phases side by side.
+///
+/// ```
+/// let model = fdcc::Model::from_file("../models/bounce.fdc")?.with_method("N", 20)?;
+/// let solution = model.solve(&fdcc::Options::default())?;
+/// let unrolled = solution.unrolled.as_ref().expect("the model has a jump");
+/// let phases = solution.jumps.len() + 1;
+/// assert!(unrolled.problem.states.len() >= phases * solution.problem.states.len());
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 pub struct Unrolled {
     /// A model without jumps.
     pub model: Model,

@@ -15,6 +15,16 @@ const OFF: f64 = 0.4;
 const VIOLATED: f64 = 0.01;
 
 /// One condition of an optimum.
+///
+/// ```
+/// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
+/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)";
+/// let solution = fdcc::Model::from_text("hop", text)?.solve(&fdcc::Options::default())?;
+/// let checks = solution.optimality(None);
+/// let control = checks.iter().find_map(|check| check.control.as_deref());
+/// assert_eq!(control, Some("u"));
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Check {
     /// Which one.
@@ -30,6 +40,17 @@ pub struct Check {
 }
 
 /// What every optimum meets.
+///
+/// ```
+/// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
+/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)";
+/// use fdcc::optimality::Condition;
+///
+/// let solution = fdcc::Model::from_text("hop", text)?.solve(&fdcc::Options::default())?;
+/// let checks = solution.optimality(None);
+/// assert!(checks.iter().any(|check| check.condition == Condition::Minimum));
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {
     /// The Hamiltonian is constant over time.

@@ -46,6 +46,19 @@ impl Default for Options<'_> {
 }
 
 /// Where a solve begins.
+///
+/// ```
+/// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
+/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)";
+/// use fdcc::{Model, Options, Start};
+///
+/// let model = Model::from_text("hop", text)?;
+/// let coarse = model.with_method("N", 20)?.solve(&Options::default())?;
+/// let record = coarse.record();
+/// let fine = model.solve(&Options { start: Start::Record(&record), ..Options::default() })?;
+/// assert!(fine.is_solved());
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 #[derive(Clone, Copy)]
 pub enum Start<'a> {
     /// At the guess of the model.
@@ -57,6 +70,24 @@ pub enum Start<'a> {
 }
 
 /// Which of several solves a report is about; nothing of it where there is one.
+///
+/// ```
+/// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
+/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)";
+/// use fdcc::{Model, Options, Report};
+/// use std::sync::Mutex;
+///
+/// let starts = Mutex::new(Vec::new());
+/// let report = |report: &Report| {
+///     if let Report::Ended(part, _) = report {
+///         starts.lock().expect("nobody panics").push(part.start);
+///     }
+/// };
+/// let options = Options { starts: 2, report: &report, ..Options::default() };
+/// Model::from_text("hop", text)?.solve(&options)?;
+/// assert_eq!(*starts.lock().expect("nobody panics"), [Some(0), Some(1)]);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Part<'a> {
     /// The jumps that happen in it.
@@ -66,6 +97,24 @@ pub struct Part<'a> {
 }
 
 /// What happens.
+///
+/// ```
+/// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
+/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)";
+/// use fdcc::{Model, Options, Report};
+/// use std::sync::atomic::{AtomicUsize, Ordering};
+///
+/// let count = AtomicUsize::new(0);
+/// let report = |report: &Report| {
+///     if let Report::Iteration(..) = report {
+///         count.fetch_add(1, Ordering::Relaxed);
+///     }
+/// };
+/// let model = Model::from_text("hop", text)?.with_method("solver", "interior_point")?;
+/// model.solve(&Options { report: &report, ..Options::default() })?;
+/// assert!(count.into_inner() > 1);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 #[derive(Clone, Copy)]
 pub enum Report<'a> {
     /// One iteration of the solver.
@@ -84,6 +133,18 @@ pub enum Report<'a> {
 }
 
 /// How one of several solves ended.
+///
+/// ```
+/// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
+/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)";
+/// use fdcc::{Model, Options};
+///
+/// let options = Options { starts: 3, ..Options::default() };
+/// let solution = Model::from_text("hop", text)?.solve(&options)?;
+/// assert_eq!(solution.starts.len(), 3);
+/// assert!(solution.starts.iter().all(|ended| ended.status == "solved"));
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Ended {
     /// As in files; see [`status_name`](crate::names::status_name).

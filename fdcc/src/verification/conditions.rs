@@ -16,6 +16,15 @@ use fdcc_runtime::simulate::{Simulation, System};
 const NO_WIDTH: f64 = 1e-12;
 
 /// By how much a condition is violated at worst.
+///
+/// ```
+/// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
+/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)";
+/// let solution = fdcc::Model::from_text("hop", text)?.solve(&fdcc::Options::default())?;
+/// let replay = solution.verify()?;
+/// assert!(replay.conditions[0].label.contains("x == 0.5") && replay.conditions[0].part < 1e-6);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 #[derive(Clone)]
 pub struct Condition {
     /// Its text.

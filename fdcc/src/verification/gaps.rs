@@ -11,6 +11,16 @@ use fdcc_runtime::simulate::{Simulation, System};
 pub const TIME_OF: &str = "time of ";
 
 /// The largest difference of a state over the grid.
+///
+/// ```
+/// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
+/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)";
+/// let solution = fdcc::Model::from_text("hop", text)?.solve(&fdcc::Options::default())?;
+/// let replay = solution.verify()?;
+/// let gap = replay.largest_gap().expect("there is a state");
+/// assert!(gap.name == "x" && gap.part < 1e-6);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 pub struct Gap {
     /// Of the state, or `time of ` and a jump.
     pub name: String,

@@ -3,6 +3,14 @@
 use fdcc_runtime::simulate::{Mode, Piece, Tape};
 
 /// A time span in one mode of a surface.
+///
+/// ```
+/// let model = fdcc::Model::from_file("../models/block.fdc")?;
+/// let replay = model.solve(&fdcc::Options::default())?.verify()?;
+/// let times = replay.stays[0].iter().map(|stay| (fdcc::modes::name(stay.mode), stay.to - stay.from));
+/// assert!(times.clone().all(|(_, length)| length > 0.0) && times.count() >= 2);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 pub struct Stay {
     /// On which side, or held.
     pub mode: Mode,

@@ -7,20 +7,8 @@ use super::sparse_ldl::SparseLdl;
 use super::structure::factor::{Factor, Inertia};
 use super::structure::stages::Stages;
 use super::structure::triplets::{Family, Triplets};
+use crate::random::Random;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
-
-struct Random(u64);
-
-impl Random {
-    /// Uniform in [-1, 1].
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-    fn vector(&mut self, length: usize) -> Vec<f64> {
-        (0..length).map(|_| self.next()).collect()
-    }
-}
 
 /// A random problem: structure, values and diagonals.
 struct Case {

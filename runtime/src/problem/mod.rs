@@ -18,6 +18,7 @@ mod scheme;
 pub use choices::{ControlShape, Linear, Solver, Word};
 pub use method::{FIRST_GRID, Grid, Method, Order};
 pub use often_called::often_called;
+pub(crate) use scheme::RADAU;
 pub use scheme::{MOST_STAGES, Scheme};
 
 use std::ops::Range;

@@ -79,7 +79,43 @@ const ONE_STEP: [OneStep; 5] = [
     },
 ];
 
-/// A family of collocation schemes; their nodes are in `transcribe/collocation.rs`.
+/// Roots of the shifted Legendre polynomials `P_s(2c - 1)`, of order `2s`.
+const GAUSS: [&[f64]; MOST_STAGES] = [
+    &[0.5],
+    &[0.211_324_865_405_187_1, 0.788_675_134_594_812_9],
+    &[0.112_701_665_379_258_31, 0.5, 0.887_298_334_620_741_7],
+    &[
+        0.069_431_844_202_973_71,
+        0.330_009_478_207_571_87,
+        0.669_990_521_792_428_1,
+        0.930_568_155_797_026_3,
+    ],
+    &[
+        0.046_910_077_030_668_004,
+        0.230_765_344_947_158_45,
+        0.5,
+        0.769_234_655_052_841_5,
+        0.953_089_922_969_332,
+    ],
+];
+
+/// Roots of `P_s(2c - 1) - P_{s-1}(2c - 1)`, of order `2s - 1`; the last is the end of the
+/// interval.
+pub(crate) const RADAU: [&[f64]; MOST_STAGES] = [
+    &[1.0],
+    &[1.0 / 3.0, 1.0],
+    &[0.155_051_025_721_682_2, 0.644_948_974_278_317_8, 1.0],
+    &[0.088_587_959_512_703_94, 0.409_466_864_440_734_7, 0.787_659_461_760_847, 1.0],
+    &[
+        0.057_104_196_114_517_68,
+        0.276_843_013_638_123_8,
+        0.583_590_432_368_916_8,
+        0.860_240_135_656_219_5,
+        1.0,
+    ],
+];
+
+/// A family of collocation schemes.
 struct Family {
     /// The name before the number of stages.
     name: &'static str,
@@ -87,6 +123,8 @@ struct Family {
     author: &'static str,
     scheme: fn(usize) -> Scheme,
     order: fn(usize) -> usize,
+    /// For each number of stages.
+    nodes: [&'static [f64]; MOST_STAGES],
     /// What editors say of it where the number of stages is open.
     doc: &'static str,
 }
@@ -97,6 +135,7 @@ const COLLOCATION: [Family; 2] = [
         author: "Radau",
         scheme: Scheme::Radau,
         order: |stages| 2 * stages - 1,
+        nodes: RADAU,
         doc: "Collocation of Radau, with `N = auto`: stages are added, up to 5, where that takes \
               fewer nodes than dividing intervals.",
     },
@@ -105,6 +144,7 @@ const COLLOCATION: [Family; 2] = [
         author: "Gauss",
         scheme: Scheme::Gauss,
         order: |stages| 2 * stages,
+        nodes: GAUSS,
         doc: "Collocation of Gauss, with `N = auto`: the number of stages is found like that of \
               `radau`.",
     },
@@ -174,6 +214,11 @@ impl Scheme {
     /// Weight, time and blend of each evaluation of the right side; none of a collocation scheme.
     pub(crate) fn evaluations(self) -> &'static [[f64; 3]] {
         self.one_step().map_or(&[], |row| row.evaluations)
+    }
+
+    /// The nodes of a collocation scheme; none of the others.
+    pub(crate) fn nodes(self) -> &'static [f64] {
+        self.family().map_or(&[], |row| row.nodes[self.stages() - 1])
     }
 
     fn one_step(self) -> Option<&'static OneStep> {

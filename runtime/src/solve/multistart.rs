@@ -4,6 +4,7 @@ use super::tuning::multistart::VARIATION;
 use super::warm_start::values_of;
 use crate::nlp::{Nlp, Solution, Start};
 use crate::problem::Problem;
+use crate::random::Random;
 use crate::transcribe::TranscribedNlp;
 use crate::transcribe::interval::Signal;
 
@@ -13,7 +14,7 @@ pub fn perturbed(problem: &Problem, base: Option<Vec<f64>>, index: u32) -> Start
     let mut nlp = TranscribedNlp::new(problem);
     let stages = nlp.chain();
     let mut v = base.unwrap_or_else(|| nlp.guess());
-    let mut random = Random::new(problem.method.seed, index);
+    let mut random = random(problem.method.seed, index);
     let signals =
         (0..problem.layout.x).map(Signal::State).chain((0..problem.layout.u).map(Signal::Control));
     for signal in signals {
@@ -67,21 +68,11 @@ pub fn is_better(a: &Solution, b: &Solution) -> bool {
     }
 }
 
-/// A linear congruential generator (Knuth, MMIX).
-struct Random(u64);
-
-impl Random {
-    fn new(seed: u64, index: u32) -> Self {
-        let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ u64::from(index));
-        (0..4).for_each(|_| {
-            random.next();
-        });
-        random
-    }
-
-    /// Uniform in [-1, 1].
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
+/// A sequence for each seed and index.
+fn random(seed: u64, index: u32) -> Random {
+    let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ u64::from(index));
+    (0..4).for_each(|_| {
+        random.next();
+    });
+    random
 }

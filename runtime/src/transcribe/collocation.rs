@@ -14,101 +14,21 @@
 //! Integrals take the weights of the nodes, so that they have the order of the scheme: `2s - 1` for
 //! Radau IIA, `2s` for Gauss.
 
-use crate::problem::{MOST_STAGES, Scheme};
-
-/// Roots of the shifted Legendre polynomials `P_s(2c - 1)`, of order `2s`.
-const GAUSS: [&[f64]; MOST_STAGES] = [
-    &[0.5],
-    &[0.211_324_865_405_187_1, 0.788_675_134_594_812_9],
-    &[0.112_701_665_379_258_31, 0.5, 0.887_298_334_620_741_7],
-    &[
-        0.069_431_844_202_973_71,
-        0.330_009_478_207_571_87,
-        0.669_990_521_792_428_1,
-        0.930_568_155_797_026_3,
-    ],
-    &[
-        0.046_910_077_030_668_004,
-        0.230_765_344_947_158_45,
-        0.5,
-        0.769_234_655_052_841_5,
-        0.953_089_922_969_332,
-    ],
-];
-
-/// Roots of `P_s(2c - 1) - P_{s-1}(2c - 1)`, of order `2s - 1`; the last is the end of the
-/// interval.
-const RADAU: [&[f64]; MOST_STAGES] = [
-    &[1.0],
-    &[1.0 / 3.0, 1.0],
-    &[0.155_051_025_721_682_2, 0.644_948_974_278_317_8, 1.0],
-    &[0.088_587_959_512_703_94, 0.409_466_864_440_734_7, 0.787_659_461_760_847, 1.0],
-    &[
-        0.057_104_196_114_517_68,
-        0.276_843_013_638_123_8,
-        0.583_590_432_368_916_8,
-        0.860_240_135_656_219_5,
-        1.0,
-    ],
-];
-
-/// The nodes of a collocation scheme; nothing for the others.
-pub(crate) fn nodes(scheme: Scheme) -> Option<&'static [f64]> {
-    match scheme {
-        Scheme::Radau(stages) => Some(RADAU[stages - 1]),
-        Scheme::Gauss(stages) => Some(GAUSS[stages - 1]),
-        _ => None,
-    }
-}
+use crate::lagrange::coefficients;
 
 /// The weights of the nodes: the integrals of their Lagrange polynomials over the interval.
 pub(crate) fn weights(nodes: &[f64]) -> Vec<f64> {
     let integral = |polynomial: Vec<f64>| {
         polynomial.iter().enumerate().map(|(power, c)| c / (power + 1) as f64).sum()
     };
-    (0..nodes.len()).map(|j| integral(lagrange(nodes, j))).collect()
-}
-
-/// The Lagrange polynomials over `points` at a time: exactly 0 and 1 at the points themselves.
-pub(crate) fn values(points: &[f64], time: f64) -> Vec<f64> {
-    let value = |j: usize| {
-        let others = points.iter().enumerate().filter(|(l, _)| *l != j);
-        others.map(|(_, other)| (time - other) / (points[j] - other)).product()
-    };
-    (0..points.len()).map(value).collect()
-}
-
-/// The derivatives of the Lagrange polynomials over `points` at a time.
-pub(crate) fn slopes(points: &[f64], time: f64) -> Vec<f64> {
-    let slope = |polynomial: Vec<f64>| {
-        polynomial
-            .iter()
-            .enumerate()
-            .skip(1)
-            .rev()
-            .fold(0.0, |sum, (power, c)| sum * time + power as f64 * c)
-    };
-    (0..points.len()).map(|j| slope(lagrange(points, j))).collect()
-}
-
-/// The coefficients of the polynomial that is 1 at `points[j]` and 0 at the others, constant term
-/// first.
-fn lagrange(points: &[f64], j: usize) -> Vec<f64> {
-    let others = points.iter().enumerate().filter(|(l, _)| *l != j);
-    others.fold(vec![1.0], |polynomial, (_, root)| {
-        let scale = 1.0 / (points[j] - root);
-        let mut product = vec![0.0; polynomial.len() + 1];
-        for (power, c) in polynomial.iter().enumerate() {
-            product[power + 1] += scale * c;
-            product[power] -= scale * root * c;
-        }
-        product
-    })
+    (0..nodes.len()).map(|j| integral(coefficients(nodes, j))).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lagrange::{slopes, values};
+    use crate::problem::{MOST_STAGES, Scheme};
 
     fn schemes() -> impl Iterator<Item = (Scheme, usize)> {
         (1..=MOST_STAGES).flat_map(|s| [(Scheme::Radau(s), 2 * s - 1), (Scheme::Gauss(s), 2 * s)])
@@ -122,7 +42,7 @@ mod tests {
         };
         nodes
             .iter()
-            .map(|c| (0..nodes.len()).map(|j| integral(lagrange(nodes, j), *c)).collect())
+            .map(|c| (0..nodes.len()).map(|j| integral(coefficients(nodes, j), *c)).collect())
             .collect()
     }
 
@@ -134,7 +54,7 @@ mod tests {
     #[test]
     fn the_order_conditions_hold() {
         for (scheme, order) in schemes() {
-            let c = nodes(scheme).expect("a collocation scheme");
+            let c = scheme.nodes();
             let (s, b, a) = (c.len(), weights(c), matrix(c));
             let moment = |q: usize| (0..s).map(|i| b[i] * c[i].powi(q as i32 - 1)).sum::<f64>();
             (1..=order).for_each(|q| {
@@ -179,9 +99,9 @@ mod tests {
         ];
         let q = 3.0f64.sqrt() / 6.0;
         let gauss = [[0.25, 0.25 - q], [0.25 + q, 0.25]];
-        let found = matrix(RADAU[2]);
+        let found = matrix(Scheme::Radau(3).nodes());
         (0..9).for_each(|at| assert_near(found[at / 3][at % 3], radau[at / 3][at % 3], "Radau"));
-        let found = matrix(GAUSS[1]);
+        let found = matrix(Scheme::Gauss(2).nodes());
         (0..4).for_each(|at| assert_near(found[at / 2][at % 2], gauss[at / 2][at % 2], "Gauss"));
     }
 
@@ -190,7 +110,7 @@ mod tests {
     #[test]
     fn derivatives_of_the_polynomial_are_the_same_scheme() {
         for (scheme, _) in schemes() {
-            let c = nodes(scheme).expect("a collocation scheme");
+            let c = scheme.nodes();
             let (s, b, a) = (c.len(), weights(c), matrix(c));
             let points: Vec<f64> = [0.0].into_iter().chain(c.iter().copied()).collect();
             let slopes: Vec<Vec<f64>> = c.iter().map(|time| slopes(&points, *time)).collect();
@@ -218,7 +138,7 @@ mod tests {
     #[test]
     fn radau_is_l_stable_and_gauss_keeps_the_size() {
         for (scheme, _) in schemes() {
-            let c = nodes(scheme).expect("a collocation scheme");
+            let c = scheme.nodes();
             let is_radau = matches!(scheme, Scheme::Radau(_));
             let points: Vec<f64> = [0.0].into_iter().chain(c.iter().copied()).collect();
             let limit = values(&points, 1.0)[0].abs();

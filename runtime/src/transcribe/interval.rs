@@ -13,6 +13,7 @@
 
 use super::mesh::Mesh;
 use super::{collocation, tableau};
+use crate::lagrange;
 use crate::linalg::Stages;
 use crate::problem::{Columns, ControlShape, Layout, Method};
 
@@ -179,7 +180,7 @@ struct Places {
 
 impl Places {
     fn new(method: &Method, layout: &Layout) -> Self {
-        let nodes = collocation::nodes(method.scheme);
+        let nodes = Some(method.scheme.nodes()).filter(|nodes| !nodes.is_empty());
         let is_allowed = method.scheme.allows(method.controls) && layout.u > 0;
         let shape = if is_allowed { method.controls } else { ControlShape::Constant };
         let controls = layout.u;
@@ -285,7 +286,7 @@ impl Places {
         let passed = time * self.steps as f64;
         let step = (passed as usize).min(self.steps - 1);
         let (points, places) = self.support(step);
-        let values = collocation::values(&points, passed - step as f64);
+        let values = lagrange::values(&points, passed - step as f64);
         places.iter().map(|place| place + state).zip(values).collect()
     }
 
@@ -296,7 +297,7 @@ impl Places {
             }
             (ControlShape::Polynomial, Some(nodes)) => {
                 let place = |j: usize| self.carried + j * self.controls + control;
-                let values = collocation::values(nodes, time).into_iter().enumerate();
+                let values = lagrange::values(nodes, time).into_iter().enumerate();
                 values.map(|(j, value)| (place(j), value)).collect()
             }
             _ => vec![(self.carried + control, 1.0)],
@@ -347,13 +348,13 @@ impl Places {
             let (points, places) = self.support(step);
             for (j, (time, weight)) in times.iter().zip(&weights).enumerate() {
                 let (row, place) = (self.row(step) + j * self.states, places[j + 1]);
-                let slopes = places.iter().copied().zip(collocation::slopes(&points, *time));
+                let slopes = places.iter().copied().zip(lagrange::slopes(&points, *time));
                 self.link(row, &slopes.collect::<Vec<_>>(), &mut links);
                 let point = self.point(self.time(step, *time), |state| vec![(place + state, 1.0)]);
                 nodes.push(Node { point, weight: weight * length, row, factor: length });
             }
             if self.inner_nodes().len() == times.len() {
-                let values = collocation::values(&points, 1.0).into_iter().map(|value| -value);
+                let values = lagrange::values(&points, 1.0).into_iter().map(|value| -value);
                 let end = places.iter().copied().zip(values).chain([(self.joint(step + 1), 1.0)]);
                 self.link(self.row(step + 1) - self.states, &end.collect::<Vec<_>>(), &mut links);
             }

@@ -231,18 +231,15 @@ fn add_row(b: &mut [f64], columns: usize, target: usize, source: usize, factor: 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Random;
     use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
     /// Random symmetric matrices with zero diagonals, small pivots and every size up to 12.
     fn matrices() -> impl Iterator<Item = DMatrix<f64>> {
-        let mut state = 1u64;
-        let mut random = move || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-        };
+        let mut random = Random(1);
         (0..600).map(move |case| {
             let n = 1 + case % 12;
-            let mut a = DMatrix::from_fn(n, n, |_, _| random());
+            let mut a = DMatrix::from_fn(n, n, |_, _| 0.5 * random.next());
             if case % 3 == 0 {
                 a.fill_diagonal(0.0);
             }

@@ -2,20 +2,8 @@
 
 use super::multifrontal::Multifrontal;
 use crate::linalg::structure::columns::Columns;
+use crate::random::Random;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
-
-struct Random(u64);
-
-impl Random {
-    /// Uniform in [-1, 1].
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-    fn below(&mut self, end: usize) -> usize {
-        ((self.next() + 1.0) / 2.0 * end as f64) as usize
-    }
-}
 
 /// A random symmetric matrix with about `fill` entries in each row; every entry of the diagonal is
 /// in the pattern, if only as a zero.

@@ -32,11 +32,11 @@ struct Tableau {
 
 static EXPLICIT: LazyLock<Tableau> =
     LazyLock::new(|| Tableau::new(&dormand_prince::C, dormand_prince::A));
-static RADAU: LazyLock<Tableau> = LazyLock::new(|| Tableau::new(&radau::C, radau::A));
+static RADAU: LazyLock<Tableau> = LazyLock::new(|| Tableau::new(radau::C, radau::A));
 static COLLOCATION: LazyLock<Tableau> = LazyLock::new(|| {
-    let weights = departure::weights(&departure::FINE);
+    let weights = departure::weights(departure::FINE);
     Tableau::new(
-        &departure::FINE,
+        departure::FINE,
         weights.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()),
     )
 });

@@ -10,8 +10,8 @@ impl Rule {
     fn implicit_nodes(self) -> &'static [f64] {
         match self {
             Rule::Explicit | Rule::Straight => &[],
-            Rule::Radau => &radau::C,
-            Rule::Collocation => &departure::FINE,
+            Rule::Radau => radau::C,
+            Rule::Collocation => departure::FINE,
         }
     }
 }

@@ -12,22 +12,16 @@
 //! error.
 
 use super::Step;
+use crate::problem::RADAU;
 use crate::simulate::field::Field;
 use crate::simulate::system::Ball;
 use crate::simulate::tuning::departure::{CONVERGED, INSIDE, INSIDE_WEIGHT, MOST_ITERATIONS};
 use nalgebra::{DMatrix, DVector};
 
 /// The points of the solution.
-pub(crate) const FINE: [f64; 5] = [
-    0.057_104_196_114_517_68,
-    0.276_843_013_638_123_8,
-    0.583_590_432_368_916_8,
-    0.860_240_135_656_219_5,
-    1.0,
-];
+pub(crate) const FINE: &[f64] = RADAU[4];
 
-const COARSE: [f64; 4] =
-    [0.088_587_959_512_703_95, 0.409_466_864_440_734_7, 0.787_659_461_760_847, 1.0];
+const COARSE: &[f64] = RADAU[3];
 
 /// One point: its state without the start, all selectors, the lengths of the moving balls.
 #[derive(Clone)]
@@ -63,8 +57,8 @@ pub(crate) fn attempt(step: &mut Step, field: &mut Field) {
     let (t, h, x) = (step.t, step.h, step.start.clone());
     field.follow_directions(t, &x);
     field.find_doubts(t, &x, h, 0.0);
-    let coarse = Collocation::new(field, [t, h], &x, &COARSE).nodes();
-    let fine = Collocation::new(field, [t, h], &x, &FINE).nodes();
+    let coarse = Collocation::new(field, [t, h], &x, COARSE).nodes();
+    let fine = Collocation::new(field, [t, h], &x, FINE).nodes();
     step.error = f64::INFINITY;
     let (Some(coarse), Some(fine)) = (coarse, fine) else { return };
     let end = &fine[FINE.len() - 1];

@@ -11,6 +11,7 @@
 
 use super::{Extension, Step};
 use crate::linalg::dense::lu::Lu;
+use crate::problem::RADAU;
 use crate::simulate::field::Field;
 use crate::simulate::field::tolerance::Tolerance;
 use crate::simulate::tuning::radau::{
@@ -24,7 +25,7 @@ pub(crate) const STAGES: usize = 3;
 const ROOT_6: f64 = 2.449_489_742_783_178;
 
 /// When the stages are.
-pub(crate) const C: [f64; STAGES] = [(4.0 - ROOT_6) / 10.0, (4.0 + ROOT_6) / 10.0, 1.0];
+pub(crate) const C: &[f64] = RADAU[STAGES - 1];
 
 /// Weights of the stages.
 pub(crate) const A: [[f64; STAGES]; STAGES] = [

@@ -1,0 +1,53 @@
+//! The Lagrange polynomials over some points: polynomial `j` is 1 at point `j` and 0 at the others.
+
+/// The Lagrange polynomials over `points` at a time: exactly 0 and 1 at the points themselves.
+pub fn values(points: &[f64], time: f64) -> Vec<f64> {
+    let value = |j: usize| {
+        let others = points.iter().enumerate().filter(|(l, _)| *l != j);
+        others.map(|(_, other)| (time - other) / (points[j] - other)).product()
+    };
+    (0..points.len()).map(value).collect()
+}
+
+/// The derivatives of the Lagrange polynomials over `points` at a time.
+pub fn slopes(points: &[f64], time: f64) -> Vec<f64> {
+    let slope = |polynomial: Vec<f64>| {
+        polynomial
+            .iter()
+            .enumerate()
+            .skip(1)
+            .rev()
+            .fold(0.0, |sum, (power, c)| sum * time + power as f64 * c)
+    };
+    (0..points.len()).map(|j| slope(coefficients(points, j))).collect()
+}
+
+/// The coefficients of the polynomial that is 1 at `points[j]` and 0 at the others, constant term
+/// first.
+pub fn coefficients(points: &[f64], j: usize) -> Vec<f64> {
+    let others = points.iter().enumerate().filter(|(l, _)| *l != j);
+    others.fold(vec![1.0], |polynomial, (_, root)| {
+        let scale = 1.0 / (points[j] - root);
+        let mut product = vec![0.0; polynomial.len() + 1];
+        for (power, c) in polynomial.iter().enumerate() {
+            product[power + 1] += scale * c;
+            product[power] -= scale * root * c;
+        }
+        product
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polynomial_is_reproduced_with_its_slope() {
+        let points = [0.5, 1.0, 2.0];
+        let sum = |weights: Vec<f64>| -> f64 {
+            weights.iter().zip(points).map(|(w, t)| w * (t * t - t)).sum()
+        };
+        assert!((sum(values(&points, 1.5)) - 0.75).abs() < 1e-15);
+        assert!((sum(slopes(&points, 1.5)) - 2.0).abs() < 1e-14);
+    }
+}

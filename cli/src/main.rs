@@ -4,6 +4,7 @@ mod commands;
 mod drawing;
 mod exit;
 mod failure;
+mod input;
 mod model;
 mod output;
 mod report;

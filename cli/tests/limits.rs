@@ -133,8 +133,8 @@ fn a_start_that_is_not_whole_is_refused() {
     let whole = solved(&place);
     let reversed: Vec<Value> =
         whole["time"].as_array().expect("times").iter().rev().cloned().collect();
-    let spoilt: [(&str, &str, Value, &str); 6] = [
-        ("states", "x", json!([0.0, null, 0.5, 0.75, 1.0]), "value 2 of `x` is no number"),
+    let spoilt: [(&str, &str, Value, &str); 8] = [
+        ("states", "x", json!([0.0, null, 0.5, 0.75, 1.0]), "value 2 of `states.x` is no number"),
         ("states", "x", json!([0.0, 0.25, 0.5]), "`x` has 3 values where there should be 5"),
         (
             "controls",
@@ -142,8 +142,10 @@ fn a_start_that_is_not_whole_is_refused() {
             json!([1.0, 1.0, 1.0, 1.0, 1.0]),
             "`u` has 5 values where there should be 4",
         ),
-        ("controls", "u", json!([null, 1.0, 1.0, 1.0]), "value 1 of `u` is no number"),
-        ("time", "", json!(reversed), "its times must ascend"),
+        ("controls", "u", json!([null, 1.0, 1.0, 1.0]), "value 1 of `controls.u` is no number"),
+        ("time", "", json!(reversed), "times must ascend, but 0.75 follows 1"),
+        ("params", "goal", json!(null), "`params.goal` is no number"),
+        ("time", "", json!([0.0, 0.25, 0.25, 0.75, 1.0]), "times must ascend, but 0.25 follows 0.25"),
         ("time", "", json!([0.0, 0.25, null, 0.75, 1.0]), "value 3 of `time` is no number"),
     ];
     for (field, name, value, words) in spoilt {
@@ -159,6 +161,57 @@ fn a_start_that_is_not_whole_is_refused() {
             expect_exit(&output, 4, words);
             assert!(stderr(&output).contains(words), "{words}: {}", stderr(&output));
         }
+    }
+}
+
+/// What a replay takes over must be there: the parameters of another problem would be those of the
+/// text, in silence.
+#[test]
+fn a_solution_without_its_numbers_is_neither_verified_nor_replayed() {
+    let place = folder("limits_replayed", &[("ramp.fdc", RAMP.as_bytes())]);
+    let whole = solved(&place);
+    let spoilt = [
+        ("params", "goal", json!(null), "`params.goal` is no number"),
+        ("states", "x", json!([0.0, null, 0.5, 0.75, 1.0]), "value 2 of `states.x` is no number"),
+        ("controls", "u", json!([1.0, 1.0, 1.0, null]), "value 4 of `controls.u` is no number"),
+    ];
+    let commands: [&[&str]; 4] = [
+        &["verify", "spoilt.sol.json", "ramp.fdc"],
+        &["simulate", "ramp.fdc", "--control", "spoilt.sol.json"],
+        &["simulate", "ramp.fdc", "--warm", "spoilt.sol.json"],
+        &["grad", "ramp.fdc", "--control", "spoilt.sol.json"],
+    ];
+    for (field, name, value, words) in spoilt {
+        let mut solution = whole.clone();
+        solution[field][name] = value;
+        std::fs::write(place.join("spoilt.sol.json"), solution.to_string())
+            .expect("it can be written");
+        for command in commands {
+            let output = fdcc(&place, command, "");
+            expect_exit(&output, 4, words);
+            assert!(stderr(&output).contains(words), "{command:?}: {}", stderr(&output));
+        }
+    }
+}
+
+/// Files without end: as much of them is read as is allowed, and no more.
+#[cfg(unix)]
+#[test]
+fn a_file_without_end_is_refused() {
+    let place = folder("limits_endless", &[("ramp.fdc", RAMP.as_bytes())]);
+    let commands: [(&[&str], i32, &str); 6] = [
+        (&["solve", "ramp.fdc", "--warm", "/dev/zero"], 4, "more than 256 MiB"),
+        (&["simulate", "ramp.fdc", "--control", "/dev/zero"], 4, "more than 256 MiB"),
+        (&["simulate", "ramp.fdc", "--warm", "/dev/zero"], 4, "more than 256 MiB"),
+        (&["verify", "/dev/zero", "ramp.fdc"], 4, "more than 256 MiB"),
+        (&["check", "/dev/zero"], 1, "FDC0007"),
+        (&["solve", "/dev/zero"], 1, "FDC0007"),
+    ];
+    for (command, code, words) in commands {
+        let output = fdcc(&place, command, "");
+        expect_exit(&output, code, words);
+        let said = stdout(&output) + &stderr(&output);
+        assert!(said.contains(words), "{command:?}: {said}");
     }
 }
 

@@ -131,7 +131,7 @@ fn bad_control_files_say_what_is_wrong() {
         ("u.csv", "t,u\n0,1\n0,1\n0,2\n", "line 4: a third row at t = 0; a jump has two sides"),
         ("u.json", &backwards, "times must ascend, but 1 follows 2"),
         ("u.json", &short, "`u` has 1 values for 2 intervals"),
-        ("u.json", &hole, "value 1 of `u` is no number"),
+        ("u.json", &hole, "value 1 of `controls.u` is no number"),
         ("u.json", &other, "there is no control `u`"),
         ("u.json", &empty, "there is no row of values"),
         ("u.json", "{\"time\": 3}", "not a solution"),

@@ -89,6 +89,41 @@ fn expectations_are_compared_in_their_units() {
 }
 
 #[test]
+fn a_setting_without_a_unit_takes_none() {
+    let folder = block("units_settings");
+    for setting in ["N=20[s]", "tol=1e-6[m]", "steps=2[1]", "max_iter=30[percent]"] {
+        let output = fdcc(&folder, &["solve", "block.fdc", "--method", setting], "");
+        expect_exit(&output, 3, setting);
+        let (key, value) = setting.split_once('=').expect("a setting has a value");
+        let words = format!("`{key}` has no unit, so it cannot be `{value}`");
+        assert!(stderr(&output).contains(&words), "{}", stderr(&output));
+    }
+}
+
+/// `x(end)` is in mm and `x(start)` too, so their derivative has no unit but `mm per mm`; the second
+/// derivative of `x(end)` by the rate `k`, `t^2 x`, is in mm s^2.
+#[test]
+fn a_gradient_is_in_declared_units() {
+    let text = "param k = 60 [1/min]\ntime t in [0, 1000] [ms]\nstate x [mm] start free in [1, 4]\n\
+                dynamics { x' = -k*x }\nstart x == 2\nminimize k\n";
+    let folder = folder("units_gradient", &[("decay.fdc", text.as_bytes())]);
+    let wrt = ["--wrt", "k,x(start)", "--second"];
+    let grad = ["grad", "decay.fdc", "--of", "x(end)"];
+    let said = stdout(&fdcc(&folder, &[&grad[..], &wrt].concat(), ""));
+    let end = 2.0 * (-1.0_f64).exp();
+    assert!(said.starts_with(&format!(" x(end) = {end:.8}")), "{said}");
+    let line = |name: &str, number: usize| {
+        said.lines().filter(|line| line.starts_with(&format!(" {name}"))).nth(number).unwrap_or("")
+    };
+    assert!(line("x(start)", 0).ends_with("mm per mm"), "{said}");
+    assert!(line("k", 0).contains(&format!("{:.6}", -end / 60.0)), "{said}");
+    assert!(line("k", 0).ends_with("mm per 1/min"), "{said}");
+    assert!(line("k", 1).contains(&format!("{:.6}", end / 3600.0)), "{said}");
+    let document = json(&fdcc(&folder, &[&grad[..], &["--json"]].concat(), ""));
+    assert!((number(&document["value"]) - 1e-3 * end).abs() < 1e-9, "documents are in SI");
+}
+
+#[test]
 fn times_are_in_the_unit_of_time() {
     let folder = block("units_times");
     let times =

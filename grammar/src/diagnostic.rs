@@ -135,7 +135,7 @@ codes! {
     EmptyModel = "FDC0008", Warning, "a file without any item";
     TooLarge = "FDC0009", Error, "a file that is too large to be a model";
     UselessAllow = "FDC0010", Warning, "an `allow` that silences nothing";
-    Bidirectional = "FDC0011", Error, "a character that turns the text around";
+    Unseen = "FDC0011", Error, "a character that is not seen";
     UnknownName = "FDC0101", Error, "an unknown name";
     DuplicateName = "FDC0102", Error, "a name declared twice";
     WrongKind = "FDC0103", Error, "a name of the wrong kind";

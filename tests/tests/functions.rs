@@ -137,3 +137,21 @@ fn functions_of_another_model_are_told_apart() {
     against(&*own).expect("its own machine code");
     against(&*other.dynamics).expect_err("the machine code of another model");
 }
+
+/// What has no value has none by steps and by machine code, whatever it is compared with.
+#[test]
+fn an_extremum_of_what_has_no_value_has_none() {
+    for right in ["max(log(x), 0)", "max(0, log(x))", "min(sqrt(x), 0)", "min(0, asin(x - 2))"] {
+        let text =
+            format!("time t in [0, 1] state x start 1 dynamics {{ x' = {right} }} minimize x(end)");
+        let problem = compile(&changed(&text, &[], &[])).expect("the model can be solved");
+        let function = &*problem.dynamics;
+        let points = table(&mut Random::new(5), function.layout().point_inputs(), 5, -2.0, -1.0);
+        for is_prepared in [false, true] {
+            (0..3).filter(|_| is_prepared).for_each(|order| function.prepare(order));
+            let mut values = Columns::new(1, points.count());
+            function.value(&points, &[], &mut values);
+            assert!(values.column(0).iter().all(|value| value.is_nan()), "{right}: {values:?}");
+        }
+    }
+}

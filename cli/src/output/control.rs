@@ -3,8 +3,8 @@
 
 use super::saved::Saved;
 use crate::failure::Failure;
+use crate::input;
 use fdcc::{Model, Replay};
-use std::fs;
 use std::path::Path;
 
 /// What drives a simulation.
@@ -26,7 +26,7 @@ pub fn read(path: &Path, model: &Model) -> Result<Driver, Failure> {
         source_sha256 = Some(saved.source_sha256).filter(|it| !it.is_empty());
         replay
     } else {
-        let text = fs::read_to_string(path)
+        let text = input::text(path)
             .map_err(|error| failure(format!(" cannot be read: {error}")))?;
         from_csv(&text, model.meaning())
     };

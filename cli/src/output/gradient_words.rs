@@ -105,7 +105,7 @@ impl Document {
     /// How many of its unit one in SI of a derivative by a name is, and that unit. A start is in
     /// the unit of its state.
     fn in_its_unit(&self, name: &str) -> (f64, String) {
-        self.units.of_derivative("objective", name.strip_suffix("(start)").unwrap_or(name))
+        self.units.of_derivative("objective", own(name))
     }
 
     /// Of each derivative the row that is shown: the one where it is largest.
@@ -118,8 +118,10 @@ impl Document {
         let names = second.0.iter().map(|(name, _)| name.as_str());
         let head = std::iter::once("by both").chain(names).collect();
         let row = |(name, values): &(String, Named<f64>)| {
-            let values = values.0.iter().map(|(_, value)| significant(*value, DIGITS));
-            std::iter::once(name.clone()).chain(values).collect()
+            let value = |(by, value): &(String, f64)| {
+                significant(value * self.in_its_unit(name).0 / self.units.scaled(own(by), 1.0), DIGITS)
+            };
+            std::iter::once(name.clone()).chain(values.0.iter().map(value)).collect()
         };
         table(head, second.0.iter().map(row).collect())
     }
@@ -135,6 +137,13 @@ impl Document {
         };
         table(vec!["surface", "event", "at t", "margin"], self.events.iter().map(row).collect())
     }
+}
+
+/// The name whose unit counts: of `x(start)` that is `x`, of `u[3]` it is `u`.
+fn own(name: &str) -> &str {
+    let name = name.strip_suffix("(start)").unwrap_or(name);
+    let row = name.strip_suffix(']').and_then(|it| it.rsplit_once('['));
+    row.filter(|(_, row)| row.bytes().all(|it| it.is_ascii_digit())).map_or(name, |it| it.0)
 }
 
 impl Derivative {

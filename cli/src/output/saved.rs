@@ -2,11 +2,11 @@
 
 use super::named::Named;
 use crate::failure::Failure;
+use crate::input;
 use fdcc::Record;
 use fdcc::record::{JumpRecord, NodesRecord, Settings};
 use fdcc_runtime::problem::{ControlShape, Scheme};
 use serde::{Deserialize, Deserializer};
-use std::fs;
 use std::path::Path;
 
 /// A solution as its file has it. A number that was not finite is `null` there, and NaN here.
@@ -97,12 +97,46 @@ impl<'de> Deserialize<'de> for Column {
 }
 
 impl Saved {
-    /// Reads a `.sol.json`.
+    /// Reads a `.sol.json`. One in which a signal, a parameter or an unknown has no number is refused.
     pub fn read(path: &Path) -> Result<Saved, Failure> {
         let failure = |what: String| Failure::File(format!("{}{what}", path.display()));
-        let text = fs::read_to_string(path)
-            .map_err(|error| failure(format!(" cannot be read: {error}")))?;
-        serde_json::from_str(&text).map_err(|error| failure(format!(" is not a solution: {error}")))
+        let text =
+            input::text(path).map_err(|error| failure(format!(" cannot be read: {error}")))?;
+        let saved: Saved = serde_json::from_str(&text)
+            .map_err(|error| failure(format!(" is not a solution: {error}")))?;
+        saved.check().map_err(|what| failure(format!(": {what}")))?;
+        Ok(saved)
+    }
+
+    /// Whether everything has a number that a replay or a start takes over; says which has none.
+    fn check(&self) -> Result<(), String> {
+        is_whole("time", &self.time)?;
+        are_numbers("free", &self.free)?;
+        are_numbers("params", &self.params)?;
+        are_whole("states", &self.states)?;
+        are_whole("controls", &self.controls)?;
+        for (at, jump) in self.jumps.iter().enumerate() {
+            are_numbers(&format!("jumps[{at}].before"), &jump.before)?;
+        }
+        self.is_ascending()
+    }
+
+    /// Two times are the same only where a jump happens.
+    fn is_ascending(&self) -> Result<(), String> {
+        let jumps = |time: f64| self.jumps.iter().any(|jump| jump.time.0 == time);
+        let times = &self.time.0;
+        let is_wrong = |pair: &[f64]| {
+            let rises = pair[0] < pair[1] || pair[0] == pair[1] && jumps(pair[0]);
+            !rises
+        };
+        match times.windows(2).position(is_wrong) {
+            Some(at) => {
+                let [before, after] = [times[at], times[at + 1]];
+                let place = at + 2;
+                Err(format!("`time`: times must ascend, but {after} follows {before} at {place}"))
+            }
+            None => Ok(()),
+        }
     }
 
     /// Nothing if it is no number.
@@ -110,10 +144,9 @@ impl Saved {
         Some(self.objective.0).filter(|value| value.is_finite())
     }
 
-    /// The parameters that have numbers.
+    /// The parameters.
     pub fn params(&self) -> Vec<(String, f64)> {
-        let numbers = self.params.0.iter().map(|(name, value)| (name.clone(), value.0));
-        numbers.filter(|(_, value)| value.is_finite()).collect()
+        self.params.0.iter().map(|(name, value)| (name.clone(), value.0)).collect()
     }
 
     /// As the library takes it.
@@ -147,6 +180,24 @@ impl SavedMethod {
             sigma_chosen: self.sigma_chosen,
             kernel: self.kernel.as_deref(),
         }
+    }
+}
+
+fn are_numbers(field: &str, of: &Named<Number>) -> Result<(), String> {
+    match of.0.iter().find(|(_, value)| !value.0.is_finite()) {
+        Some((name, _)) => Err(format!("`{field}.{name}` is no number")),
+        None => Ok(()),
+    }
+}
+
+fn are_whole(field: &str, of: &Named<Column>) -> Result<(), String> {
+    of.0.iter().try_for_each(|(name, column)| is_whole(&format!("{field}.{name}"), column))
+}
+
+fn is_whole(field: &str, column: &Column) -> Result<(), String> {
+    match column.0.iter().position(|value| !value.is_finite()) {
+        Some(at) => Err(format!("value {} of `{field}` is no number", at + 1)),
+        None => Ok(()),
     }
 }
 

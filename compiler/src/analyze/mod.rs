@@ -1,12 +1,12 @@
 //! A text, read and checked in one go: all that commands and editors show of it.
 
 mod allow;
-mod bidirectional;
 mod checked;
 mod consequences;
 pub(crate) mod repair;
 pub(crate) mod sensitivity_query;
 mod unparsed;
+mod unseen;
 
 use crate::model::Model;
 use crate::units::NamedUnit;
@@ -54,7 +54,7 @@ pub(crate) fn analyze_parsed(text: &str, parsed: Parse) -> Analysis {
         let trusted = |it: &Diagnostic| !is_broken || !regions.may_be_behind(it);
         diagnostics.extend(checked.diagnostics.into_iter().filter(trusted));
     }
-    diagnostics.extend(bidirectional::found(text));
+    diagnostics.extend(unseen::found(text));
     let mut diagnostics = allow::apply(text, diagnostics);
     diagnostics.sort_by_key(Diagnostic::span);
     Analysis { tree: parsed.tree, model, phases, diagnostics, units }

@@ -12,7 +12,8 @@
 
 use super::function::VectorFunction;
 use crate::expressions::blend::sides;
-use crate::expressions::graph::{ExprId, Graph};
+use crate::expressions::graph::builtins::Domain;
+use crate::expressions::graph::{Expr, ExprId, Graph};
 use fdcc_runtime::problem::Origin;
 
 /// The kinks of a function, each after those inside it.
@@ -41,7 +42,8 @@ pub(super) fn take_out(
             match side_of(graph, zero, flow, guards, (&mut kinks, origin)) {
                 Some(selector) => {
                     let middle = graph.number(0.0);
-                    graph.select_le(selector, middle, below, above)
+                    let side = graph.select_le(selector, middle, below, above);
+                    defined_with(graph, zero, side)
                 }
                 None => rebuilt,
             }
@@ -50,6 +52,22 @@ pub(super) fn take_out(
     }
     flow.outputs = rewritten;
     kinks
+}
+
+/// `side` where the kink has a place; no number where it has none: `max(log(x), 0)` of a negative
+/// `x` is not 0.
+fn defined_with(graph: &mut Graph, zero: ExprId, side: ExprId) -> ExprId {
+    let needed = graph.reachable(&[zero]);
+    let is_partial = |id: &ExprId| match graph.expr(*id) {
+        Expr::Call(builtin, _) => builtin.row().domain != Domain::All,
+        _ => false,
+    };
+    if !needed.iter().any(is_partial) {
+        return side;
+    }
+    // No comparison holds of what is not a number.
+    let [all, none] = [f64::INFINITY, f64::NAN].map(|it| graph.number(it));
+    graph.select_le(zero, all, side, none)
 }
 
 /// The selector of a kink; none if nothing moves it.

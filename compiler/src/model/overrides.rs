@@ -129,8 +129,12 @@ impl Model {
     pub fn set_method(&mut self, key: &str, value: &str) -> Result<(), String> {
         let is_width = matches!(key, "sigma" | "continue");
         let width = self.width_unit.clone().filter(|_| is_width);
-        let given = given(value, |text, it| {
-            width.as_ref().map_or(Ok(it.value), |own| as_width(own, text, it))
+        let given = given(value, |text, it| match &width {
+            Some(own) => as_width(own, text, it),
+            None if it.dimension.is_some() && !is_width => {
+                Err(format!("`{key}` has no unit, so it cannot be `{}`", text.trim()))
+            }
+            None => Ok(it.value),
         })?;
         self.set(key, value, &given)
     }

@@ -92,6 +92,21 @@ impl Local {
         self.graph.input(self.symbols.len() as u32 - 1)
     }
 
+    /// Whether the function has one value along every motion: it reads no control, no jump resets
+    /// what it reads, and its rate is 0 wherever it is.
+    pub fn is_constant(&mut self, view: &View<'_>, reset: &[usize]) -> bool {
+        let is_fixed = |it: &u32| {
+            matches!(
+                self.symbols[*it as usize],
+                Symbol::Param(_) | Symbol::Free(_) | Symbol::State(_) | Symbol::Time
+            )
+        };
+        let stays = |(state, _): &(usize, ExprId)| !reset.contains(state);
+        self.graph.inputs_of(&[self.psi]).iter().all(is_fixed)
+            && self.gradient.iter().all(stays)
+            && self.rate(view).is_some_and(|rate| self.form(rate).is_zero())
+    }
+
     /// Adds what happens on the surface; says whether all rates that matter are known.
     pub fn add_rates(&mut self, view: &View<'_>, at: usize) -> bool {
         let Some(rate) = self.rate(view) else { return false };

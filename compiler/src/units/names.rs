@@ -52,7 +52,8 @@ pub(crate) struct Findings<'f, 'a> {
 }
 
 impl Findings<'_, '_> {
-    /// All names whose units are known, in the order of the text.
+    /// All names whose units are known, in the order of the text; then the objective, as the first name
+    /// in it is written that measures the same.
     pub fn names(&self, items: &[Item]) -> Vec<NamedUnit> {
         let mut all = Vec::new();
         for item in items {
@@ -61,10 +62,13 @@ impl Findings<'_, '_> {
                 ItemKind::Report { bindings } => all.extend(
                     bindings.iter().filter_map(|it| self.single(it.name.span, &it.name.name)),
                 ),
-                ItemKind::Objective { keyword, .. } => {
-                    all.extend(self.single(*keyword, "objective"))
-                }
                 _ => all.extend(self.of_item(item)),
+            }
+        }
+        for item in items {
+            if let ItemKind::Objective { keyword, value, .. } = &item.kind {
+                let found = self.single(*keyword, "objective");
+                all.extend(found.map(|it| as_written(it, &[value], &all)));
             }
         }
         all
@@ -182,7 +186,7 @@ fn in_declared(found: NamedUnit, part: &Part) -> NamedUnit {
     }
 }
 
-/// In the unit of the first name of a condition that measures the same.
+/// In the unit of the first name in some expressions that measures the same.
 fn as_written(found: NamedUnit, sides: &[&Expr], names: &[NamedUnit]) -> NamedUnit {
     let mut like = None;
     for side in sides {

@@ -7,7 +7,7 @@ use fdcc_runtime::problem::Problem;
 /// Says what is missing of the signals and unknowns of the problem that the solution has.
 pub(super) fn check(record: &Record, problem: &Problem) -> Result<(), String> {
     is_whole(record.time, "time")?;
-    ascending(record.time)?;
+    ascending(record)?;
     let points = record.time.len();
     for state in &problem.states {
         signal(find(&record.states, &state.name), &state.name, points)?;
@@ -40,9 +40,13 @@ fn is_whole(found: &[f64], name: &str) -> Result<(), String> {
     }
 }
 
-/// Two jumps may happen at one time, so times need not differ.
-fn ascending(times: &[f64]) -> Result<(), String> {
-    if let Some(at) = times.windows(2).position(|pair| pair[1] < pair[0]) {
+/// Two times are the same only where a jump happens.
+fn ascending(record: &Record) -> Result<(), String> {
+    let times = record.time;
+    let jumps = |time: f64| record.jumps.iter().any(|jump| jump.time == time);
+    let is_wrong =
+        |pair: &[f64]| pair[1] < pair[0] || pair[1] == pair[0] && !jumps(pair[0]);
+    if let Some(at) = times.windows(2).position(is_wrong) {
         return Err(format!("its times must ascend, but {} follows {}", times[at + 1], times[at]));
     }
     match times {

@@ -2,15 +2,14 @@
 //! end.
 //!
 //! Every symbol has an interval: its bounds, a start value, a parameter's value. Conditions are
-//! taken in turn. One whose value cannot lie where it must, by interval arithmetic over what is
-//! known by then, contradicts what has made it known; any other one that is affine in a single
-//! unknown makes more known.
+//! taken in turn. One whose value cannot lie where it must, by interval arithmetic or by its sign
+//! over what is known by then, contradicts what has made it known; any other one narrows what its
+//! unknowns can be, and so, in turn, do those above it that share an unknown.
 
 use crate::check::facts::Facts;
-use crate::expressions::graph::derivative::derivative;
-use crate::expressions::graph::{ExprId, evaluate};
-use crate::expressions::interval::{Interval, Tape};
-use crate::model::{Constraint, Range, Symbol};
+use crate::expressions::graph::ExprId;
+use crate::expressions::interval::{Interval, Signs, Tape, signs};
+use crate::model::{Constraint, Place, Range, Symbol};
 use crate::resolve::elaborator::Elaborator;
 use fdcc_grammar::{Code, Diagnostic, Span};
 use std::collections::HashMap;
@@ -21,34 +20,73 @@ const TOLERANCE: f64 = 1e-9;
 /// Nobody reads the contradictions of so many conditions.
 const MOST_ROWS: usize = 500;
 
+/// Narrowing that goes on for so long converges slowly: `x == y/2` and `y == x/2`.
+const MOST_STEPS: usize = 4_000;
+
+/// An interval that shrinks by less, relative to its size, tells nothing new.
+const PROGRESS: f64 = 1e-3;
+
 /// Reports each condition that cannot hold together with what stands above it.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let rows = rows(facts.meaning);
     let mut known = Known::new(facts.meaning);
-    for (row, point) in rows.into_iter().take(MOST_ROWS) {
+    for row in rows.into_iter().take(MOST_ROWS) {
         if let Some(others) = known.contradiction(facts.meaning, &row) {
-            found.push(told(&row, point, &others));
+            found.push(told(&row, &others));
         } else {
             known.learn(facts.meaning, &row);
         }
     }
 }
 
-/// Conditions at the ends, then path conditions at the start and at the end.
-fn rows(meaning: &mut Elaborator<'_>) -> Vec<(Constraint, &'static str)> {
-    let at_end = meaning.at_end.clone();
-    let point = |is_end: bool| if is_end { "the end" } else { "the start" };
-    let boundary = meaning.model.boundary.clone().into_iter();
-    let mut all: Vec<(Constraint, &'static str)> =
-        boundary.zip(at_end).map(|(row, end)| (row, point(end))).collect();
-    for end in [false, true] {
+/// A condition at one of the ends.
+struct Row {
+    /// Its value there, and where that must lie.
+    constraint: Constraint,
+    /// In the words of a message.
+    point: &'static str,
+    /// Whether it says the same at all times, also of controls.
+    is_timeless: bool,
+}
+
+impl Row {
+    fn new(constraint: Constraint, at_end: bool) -> Row {
+        let point = if at_end { "the end" } else { "the start" };
+        Row { constraint, point, is_timeless: false }
+    }
+}
+
+/// Starts that are formulas, conditions at the ends, then path conditions at the start and at the
+/// end.
+fn rows(meaning: &mut Elaborator<'_>) -> Vec<Row> {
+    let mut all = starts(meaning);
+    let boundary = meaning.model.boundary.iter().zip(&meaning.at_end);
+    all.extend(boundary.map(|(row, at_end)| Row::new(row.clone(), *at_end)));
+    for at_end in [false, true] {
         let path = meaning.model.path.clone();
-        let moved = meaning.move_to_end(path.iter().map(|row| row.value).collect(), end);
-        all.extend(
-            path.into_iter()
-                .zip(moved)
-                .map(|(row, value)| (Constraint { value, ..row }, point(end))),
-        );
+        let moved = meaning.move_to_end(path.iter().map(|row| row.value).collect(), at_end);
+        all.extend(path.into_iter().zip(moved).map(|(row, value)| {
+            let is_timeless = value == row.value;
+            Row { is_timeless, ..Row::new(Constraint { value, ..row }, at_end) }
+        }));
+    }
+    all
+}
+
+/// `start a` with an unknown `a`; a number is known beforehand.
+fn starts(meaning: &mut Elaborator<'_>) -> Vec<Row> {
+    let zero = meaning.graph.number(0.0);
+    let mut all = Vec::new();
+    for at in 0..meaning.model.states.len() {
+        let state = &meaning.model.states[at];
+        let Some(given) = state.start.filter(|&it| !unknowns(meaning, it).is_empty()) else {
+            continue;
+        };
+        let name = format!("start {}", state.place.name);
+        let place = Place { name, span: state.place.span };
+        let value = meaning.graph.sub(meaning.at_ends[0][at], given);
+        let range = Range { lower: zero, upper: zero };
+        all.push(Row::new(Constraint { place, value, range }, false));
     }
     all
 }
@@ -59,42 +97,133 @@ struct Known {
     domain: Vec<Interval>,
     /// What says so.
     because: Vec<Vec<Span>>,
+    /// Whether it is another number at another time.
+    varies: Vec<bool>,
     /// Where values that are no symbols must lie, and what says so.
     values: HashMap<ExprId, (Interval, Span)>,
+    /// The conditions so far: their values, where these lie, and their places.
+    rows: Vec<Learned>,
+    /// The conditions that read each symbol.
+    readers: HashMap<u32, Vec<usize>>,
+    /// How often a condition may still narrow something.
+    steps: usize,
+}
+
+/// A condition that is known to hold.
+struct Learned {
+    tape: Tape,
+    allowed: Interval,
+    span: Span,
+    is_timeless: bool,
 }
 
 impl Known {
     fn new(meaning: &Elaborator<'_>) -> Self {
         let all = meaning.symbols.iter().map(|symbol| of_symbol(meaning, *symbol));
         let (domain, because) = all.unzip();
-        Known { domain, because, values: HashMap::new() }
+        let varies = |it: &Symbol| {
+            matches!(
+                it,
+                Symbol::Time | Symbol::State(_) | Symbol::Control(_) | Symbol::Selector(_)
+            )
+        };
+        let varies = meaning.symbols.iter().map(varies).collect();
+        let (values, rows, readers) = Default::default();
+        Known { domain, because, varies, values, rows, readers, steps: MOST_STEPS }
     }
 
     /// What excludes a condition.
-    fn contradiction(&self, meaning: &Elaborator<'_>, row: &Constraint) -> Option<Vec<Span>> {
-        let allowed = interval(meaning, row.range);
-        if let Some((before, span)) = self.values.get(&row.value)
+    fn contradiction(&self, meaning: &mut Elaborator<'_>, row: &Row) -> Option<Vec<Span>> {
+        let Constraint { value, range, .. } = row.constraint;
+        let allowed = interval(meaning, range);
+        if let Some((before, span)) = self.values.get(&value)
             && are_apart(*before, allowed)
         {
             return Some(vec![*span]);
         }
-        let mut tape = Tape::new(&meaning.graph, &[row.value]);
+        let mut tape = Tape::new(&meaning.graph, &[value]);
         let inputs: Vec<u32> = tape.inputs().collect();
         let possible = tape.evaluate(&self.domain)[0];
         let spans = || inputs.iter().flat_map(|&at| self.because[at as usize].clone()).collect();
-        are_apart(possible, allowed).then(spans)
+        (are_apart(possible, allowed) || self.has_other_sign(meaning, value, allowed))
+            .then(spans)
     }
 
-    fn learn(&mut self, meaning: &mut Elaborator<'_>, row: &Constraint) {
-        let allowed = interval(meaning, row.range);
-        let known = self.values.entry(row.value).or_insert((Interval::ALL, row.place.span));
-        *known = (known.0.intersect(allowed), row.place.span);
-        let Some((input, inner)) = affine(meaning, row.value, allowed) else { return };
-        let narrower = self.domain[input as usize].intersect(inner);
-        if !narrower.is_empty() && narrower != self.domain[input as usize] {
-            self.domain[input as usize] = narrower;
-            self.because[input as usize].push(row.place.span);
+    /// Whether a value stays on one side of an end of where it must lie, which it never reaches.
+    fn has_other_sign(&self, meaning: &mut Elaborator<'_>, value: ExprId, allowed: Interval) -> bool {
+        let mut beyond = |end: f64, wanted: Signs| {
+            let end = meaning.graph.number(end);
+            let beyond = meaning.graph.sub(value, end);
+            signs(&meaning.graph, beyond, &self.domain).excludes(wanted)
+        };
+        match allowed {
+            _ if allowed.lower == allowed.upper => beyond(allowed.lower, Signs::ZERO),
+            _ => {
+                let at_least = Signs::ZERO.or(Signs::POSITIVE);
+                let at_most = Signs::ZERO.or(Signs::NEGATIVE);
+                allowed.lower.is_finite() && beyond(allowed.lower, at_least)
+                    || allowed.upper.is_finite() && beyond(allowed.upper, at_most)
+            }
         }
+    }
+
+    fn learn(&mut self, meaning: &Elaborator<'_>, row: &Row) {
+        let Constraint { value, range, place } = &row.constraint;
+        let (allowed, span) = (interval(meaning, *range), place.span);
+        let tape = Tape::new(&meaning.graph, &[*value]);
+        let is_timeless = row.is_timeless || !tape.inputs().any(|it| self.varies[it as usize]);
+        if is_timeless {
+            let known = self.values.entry(*value).or_insert((Interval::ALL, span));
+            *known = (known.0.intersect(allowed), span);
+        }
+        for input in tape.inputs() {
+            self.readers.entry(input).or_default().push(self.rows.len());
+        }
+        self.rows.push(Learned { tape, allowed, span, is_timeless });
+        let mut pending = vec![self.rows.len() - 1];
+        while let Some(next) = pending.pop().filter(|_| self.steps > 0) {
+            self.steps -= 1;
+            for input in self.narrow(next) {
+                let readers = self.readers[&input].iter().filter(|it| **it != next);
+                pending.extend(readers);
+            }
+        }
+    }
+
+    /// Narrows what a condition reads; which of it became narrower.
+    fn narrow(&mut self, row: usize) -> Vec<u32> {
+        let Learned { tape, allowed, span, is_timeless } = &mut self.rows[row];
+        let (span, is_timeless) = (*span, *is_timeless);
+        let mut inputs = tape.narrowed(&self.domain, *allowed);
+        inputs.retain(|(at, _)| is_timeless || !self.varies[*at as usize]);
+        let why = |at: &u32| self.because[*at as usize].clone();
+        let reasons: Vec<Vec<Span>> = inputs.iter().map(|(at, _)| why(at)).collect();
+        let mut narrower = Vec::new();
+        for (number, (input, inner)) in inputs.iter().enumerate() {
+            let at = *input as usize;
+            let inner = self.domain[at].intersect(*inner);
+            if inner.is_empty() || !is_progress(self.domain[at], inner) {
+                continue;
+            }
+            self.domain[at] = inner;
+            narrower.push(*input);
+            let others = reasons.iter().enumerate().filter(|it| it.0 != number);
+            for span in std::iter::once(&span).chain(others.flat_map(|it| it.1)) {
+                if !self.because[at].contains(span) {
+                    self.because[at].push(*span);
+                }
+            }
+        }
+        narrower
+    }
+}
+
+/// Whether an interval is narrower than another by more than rounding and slow convergence.
+fn is_progress(before: Interval, after: Interval) -> bool {
+    let size = |it: Interval| it.upper - it.lower;
+    match size(before).is_finite() {
+        true => size(before) - size(after) > PROGRESS * size(before),
+        false => before != after,
     }
 }
 
@@ -145,46 +274,17 @@ fn are_apart(a: Interval, b: Interval) -> bool {
     !a.is_empty() && gap > TOLERANCE * size.fold(1.0, |most: f64, it| most.max(it.abs()))
 }
 
-/// The only unknown of an expression that is affine in it, and where it lies if the expression lies
-/// in an interval.
-fn affine(
-    meaning: &mut Elaborator<'_>,
-    value: ExprId,
-    allowed: Interval,
-) -> Option<(u32, Interval)> {
-    let [input] = unknowns(meaning, value)[..] else { return None };
-    let slope = derivative(&mut meaning.graph, value, input);
-    if !unknowns(meaning, slope).is_empty() {
-        return None;
-    }
-    let slope = meaning.numeric(slope);
-    let mut inputs: Vec<f64> =
-        meaning.symbols.iter().map(|symbol| of_param(meaning, *symbol)).collect();
-    inputs[input as usize] = 0.0;
-    let offset = evaluate(&meaning.graph, &[value], &inputs, &[])[0];
-    let ends = [allowed.lower, allowed.upper].map(|end| (end - offset) / slope);
-    let is_known = slope != 0.0 && ends.iter().all(|end| !end.is_nan());
-    is_known.then(|| (input, Interval::new(ends[0].min(ends[1]), ends[0].max(ends[1]))))
-}
-
 /// What an expression reads that has no value yet.
 fn unknowns(meaning: &Elaborator<'_>, id: ExprId) -> Vec<u32> {
     let is_fixed = |input: &u32| matches!(meaning.symbols[*input as usize], Symbol::Param(_));
     meaning.graph.inputs_of(&[id]).into_iter().filter(|input| !is_fixed(input)).collect()
 }
 
-fn of_param(meaning: &Elaborator<'_>, symbol: Symbol) -> f64 {
-    match symbol {
-        Symbol::Param(at) => meaning.param_values[at],
-        _ => f64::NAN,
-    }
-}
-
-fn told(row: &Constraint, point: &str, others: &[Span]) -> Diagnostic {
-    let name = &row.place.name;
-    let message = format!("`{name}` cannot hold at {point}");
-    let mut found = Diagnostic::new(Code::Contradiction, message, row.place.span, "excluded");
-    let mut told = vec![row.place.span];
+fn told(row: &Row, others: &[Span]) -> Diagnostic {
+    let Place { name, span } = &row.constraint.place;
+    let message = format!("`{name}` cannot hold at {}", row.point);
+    let mut found = Diagnostic::new(Code::Contradiction, message, *span, "excluded");
+    let mut told = vec![*span];
     for span in others {
         if !told.contains(span) {
             told.push(*span);

@@ -1,15 +1,19 @@
 //! FDC0411: constants and bounds that are no finite numbers: `1/0`, `0/0`.
 
-use crate::check::facts::Facts;
-use crate::expressions::graph::{Expr, ExprId};
+use crate::check::facts::{Facts, Told};
+use crate::expressions::graph::{Expr, ExprId, evaluate};
 use crate::model::{Range, Symbol};
+use crate::resolve::elaborator::constants::ConstantPart;
 use crate::resolve::elaborator::{Elaborator, Role, Usage};
+use crate::syntax::text;
 use fdcc_grammar::ast::{self, ExprKind, Interval, Item, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Span};
+use std::collections::HashSet;
 
 /// Reports what has no finite value, though all that it is made of has one.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let (before, told) = (found.len(), facts.told());
+    of_constants(facts.meaning, &told, found);
     facts.items.iter().for_each(|item| {
         // What is unknown for another reason has been told.
         if !told.is_within(item.span) {
@@ -21,6 +25,48 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     }
 }
 
+/// The constant parts of all formulas, each place and each value once.
+fn of_constants(meaning: &Elaborator<'_>, told: &Told, found: &mut Vec<Diagnostic>) {
+    let roots: Vec<ExprId> = meaning.constants.iter().map(|it| it.value).collect();
+    let values = evaluate(&meaning.graph, &roots, &param_values(meaning), &[]);
+    let is_bad = |(part, value): &(&ConstantPart<'_>, f64)| match part.is_divisor {
+        true => *value == 0.0,
+        false => !value.is_finite(),
+    };
+    let defined = definitions(meaning);
+    let (mut places, mut without_value) = (HashSet::new(), HashSet::new());
+    for (part, value) in meaning.constants.iter().zip(values).filter(is_bad) {
+        let is_first = places.insert(part.expr.span) && !told.is_within(part.expr.span);
+        let needed = meaning.graph.reachable(&[part.value]);
+        let follows = !has_values(meaning, part.value)
+            || needed.iter().any(|it| *it != part.value && without_value.contains(it));
+        without_value.extend(Some(part.value).filter(|it| defined.contains(it)));
+        found.extend((is_first && !follows).then(|| of_constant(part, value)));
+    }
+}
+
+/// The values that have names: where such a one is infinite, nothing is said of what is made of it.
+fn definitions(meaning: &Elaborator<'_>) -> HashSet<ExprId> {
+    let is_definition = |at: &usize| {
+        let item = meaning.scope.declarations[*at].item;
+        matches!(item.kind, ItemKind::Const { .. } | ItemKind::Let { .. })
+    };
+    let all = (0..meaning.values.len()).filter(is_definition);
+    all.flat_map(|at| meaning.values[at].parts.as_slice()).copied().collect()
+}
+
+fn of_constant(part: &ConstantPart<'_>, value: f64) -> Diagnostic {
+    let text = text::expr(part.expr);
+    match part.is_divisor {
+        true => {
+            let message = format!("a division by `{text}`, which is 0");
+            let found = Diagnostic::new(Code::NotANumber, message, part.expr.span, "0");
+            found.help(FINITE)
+        }
+        false => told_as(&format!("`{text}`"), value, part.expr.span),
+    }
+}
+
 fn of_item(meaning: &Elaborator<'_>, item: &Item, found: &mut Vec<Diagnostic>) {
     let declared =
         crate::syntax::scope::declared(item).and_then(|name| meaning.scope.find(&name.name));
@@ -28,27 +74,10 @@ fn of_item(meaning: &Elaborator<'_>, item: &Item, found: &mut Vec<Diagnostic>) {
     else {
         return;
     };
-    let mut values = |parts: &[ExprId], what: &str, span: Span| {
-        let bad = parts.iter().find_map(|&part| value(meaning, part).filter(|it| !it.is_finite()));
-        found.extend(bad.map(|value| told(what, value, span)));
-    };
-    match &item.kind {
-        ItemKind::Const { value, .. } => {
-            values(meaning.values[at].parts.as_slice(), "a constant", value.span)
-        }
-        ItemKind::Time { interval, .. } => {
-            values(&meaning.interval[..1], "the first time", interval.lower.span);
-            values(&meaning.interval[1..], "the last time", interval.upper.span);
-        }
-        _ => {}
-    }
     let Some(index) = meaning.index_of(at) else { return };
     let model = &meaning.model;
     match &item.kind {
-        ItemKind::Param { value: given, bounds, .. } => {
-            if let (Some(id), Some(given)) = (model.params[index].value, given) {
-                values(&[id], "a parameter", given.span);
-            }
+        ItemKind::Param { bounds, .. } => {
             of_bounds(meaning, bounds.as_ref(), model.params[index].range, found);
         }
         ItemKind::Free { bounds, .. } => {
@@ -59,9 +88,14 @@ fn of_item(meaning: &Elaborator<'_>, item: &Item, found: &mut Vec<Diagnostic>) {
                 of_bounds(meaning, bounds.as_ref(), control.range, found);
             }
         }
-        ItemKind::State { bounds, parts, .. } => {
+        ItemKind::State { bounds, start, parts, .. } => {
             for state in model.states[index..].iter().take(parts.len().max(1)) {
                 of_bounds(meaning, bounds.as_ref(), state.range, found);
+                if let (Some(ast::Start::Free { bounds, .. }), Some(range)) =
+                    (start, state.start_range)
+                {
+                    of_bounds(meaning, bounds.as_ref(), range, found);
+                }
             }
         }
         _ => {}
@@ -83,7 +117,7 @@ fn of_bounds(
     for (id, text, open) in ends {
         let bad =
             value(meaning, id).filter(|it| !it.is_finite() && (*it != open || !is_infinity(text)));
-        found.extend(bad.map(|value| told("a bound", value, text.span)));
+        found.extend(bad.map(|value| told_as("a bound", value, text.span)));
     }
 }
 
@@ -112,25 +146,40 @@ fn of_usage(meaning: &Elaborator<'_>, usage: &Usage<'_>, found: &mut Vec<Diagnos
         _ => None,
     };
     let bad = reachable.iter().filter_map(number).find(|it| !it.is_finite());
-    found.extend(bad.map(|value| told("a part of this", value, span)));
+    found.extend(bad.map(|value| told_as("a part of this", value, span)));
 }
 
 /// The value of an expression over parameters that all have one.
 fn value(meaning: &Elaborator<'_>, id: ExprId) -> Option<f64> {
+    has_values(meaning, id).then(|| meaning.numeric(id))
+}
+
+/// Whether an expression reads nothing but parameters with finite values.
+fn has_values(meaning: &Elaborator<'_>, id: ExprId) -> bool {
     let is_known = |input: u32| match meaning.symbols[input as usize] {
         Symbol::Param(at) => meaning.param_values[at].is_finite(),
         _ => false,
     };
-    meaning.graph.inputs_of(&[id]).into_iter().all(is_known).then(|| meaning.numeric(id))
+    meaning.graph.inputs_of(&[id]).into_iter().all(is_known)
 }
 
-fn told(what: &str, value: f64, span: Span) -> Diagnostic {
+/// The values of all inputs that are parameters.
+fn param_values(meaning: &Elaborator<'_>) -> Vec<f64> {
+    let value = |symbol: &Symbol| match symbol {
+        Symbol::Param(at) => meaning.param_values[*at],
+        _ => f64::NAN,
+    };
+    meaning.symbols.iter().map(value).collect()
+}
+
+const FINITE: &str = "every number of a model is finite; a side without a bound is `inf`: `in [0, inf]`";
+
+fn told_as(what: &str, value: f64, span: Span) -> Diagnostic {
     let (message, label) = match value.is_nan() {
         true => {
             (format!("{what} is not a number"), "0/0, or a root or logarithm of a negative number")
         }
         false => (format!("{what} is infinite"), "a division by 0, or beyond 1.8e308"),
     };
-    let found = Diagnostic::new(Code::NotANumber, message, span, label);
-    found.help("every number of a model is finite; a side without a bound is `inf`: `in [0, inf]`")
+    Diagnostic::new(Code::NotANumber, message, span, label).help(FINITE)
 }

@@ -55,3 +55,29 @@ fn told(name: &Ident, first: &Ident) -> Diagnostic {
         .label(first.span, codes(&first.name))
         .help("rename one of them, or type both with the same letters")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(first: char, second: char) -> bool {
+        let text = format!("param {first} = 1\nparam {second} = 2\n");
+        !check(&fdcc_grammar::parse(&text).tree).is_empty()
+    }
+
+    #[test]
+    fn greek_letters_that_are_drawn_as_latin_ones_are_told_beside_them() {
+        let latin = "ABEZHIKMNOPTYXo";
+        assert_eq!(SAME_AS_LATIN.chars().count(), latin.chars().count());
+        for (greek, latin) in SAME_AS_LATIN.chars().zip(latin.chars()) {
+            assert!(told(greek, latin) && told(latin, greek), "{greek} {latin}");
+        }
+    }
+
+    #[test]
+    fn greek_letters_of_formulas_stand_beside_latin_ones() {
+        for (greek, latin) in "αγινρυχωΓ".chars().zip("ayivpuxwT".chars()) {
+            assert!(!told(greek, latin), "{greek} {latin}");
+        }
+    }
+}

@@ -32,7 +32,7 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
         let place = uses.iter().find(|it| it.surface == view.surfaces[at].0.name);
         Subject { facts, view: &view, at, place, local }.look(found);
     }
-    vector::check(&view, &uses, found);
+    vector::check(facts, &view, &uses, found);
 }
 
 /// One surface under examination.

@@ -1,7 +1,8 @@
-//! FDC0302 for the vector of a `Dir`: it pushes away from 0 in every direction, so what leaves it
+//! FDC0302 and FDC0312 for the vector of a `Dir`: it stays the same, or it pushes away from 0 in every direction, so what leaves it
 //! is not determined.
 
 use super::uses::Use;
+use crate::check::facts::Facts;
 use crate::model::{Ball, Symbol};
 use crate::surfaces::View;
 use crate::surfaces::ball::LocalBall;
@@ -10,8 +11,17 @@ use crate::syntax::text::number;
 use fdcc_grammar::{Code, Diagnostic, Severity};
 
 /// Reports every `Dir` that acts along its vector and not against it.
-pub(super) fn check(view: &View<'_>, uses: &[Use<'_>], found: &mut Vec<Diagnostic>) {
+pub(super) fn check(
+    facts: &Facts<'_, '_>,
+    view: &View<'_>,
+    uses: &[Use<'_>],
+    found: &mut Vec<Diagnostic>,
+) {
     for ball in view.balls {
+        if let Some(constant) = super::constant::vector(facts, view, ball) {
+            found.push(constant);
+            continue;
+        }
         let place = uses.iter().find(|it| it.surface == ball.place.name);
         match LocalBall::new(view, ball).map(|mut it| it.classify()) {
             Some(Class::Repelling) => found.push(repelling(ball, place)),

@@ -1,6 +1,6 @@
 //! The builtins on intervals. `pow` needs a positive base, `sqrt` and `log` see only their domain.
 
-use super::Interval;
+use super::{Interval, NOT_NEGATIVE};
 use crate::expressions::graph::builtins::Builtin;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -17,9 +17,9 @@ pub(crate) fn apply(builtin: Builtin, operands: &[Interval]) -> Interval {
         Builtin::Div => a / operands[1],
         Builtin::Neg => -a,
         Builtin::Pow => power(a, operands[1]),
-        Builtin::Sqrt => at_least(0.0, a.intersect(NOT_NEGATIVE).grow(f64::sqrt)),
+        Builtin::Sqrt => a.square_root(),
         Builtin::Exp => at_least(0.0, a.grow(f64::exp)),
-        Builtin::Log => a.intersect(NOT_NEGATIVE).grow(f64::ln),
+        Builtin::Log => a.logarithm(),
         Builtin::Sin => a.sine(),
         Builtin::Cos => a.cosine(),
         Builtin::Tan => tangent(a),
@@ -44,7 +44,6 @@ pub(crate) fn apply(builtin: Builtin, operands: &[Interval]) -> Interval {
     }
 }
 
-const NOT_NEGATIVE: Interval = Interval { lower: 0.0, upper: f64::INFINITY };
 /// More than a half turn.
 const ABOVE_PI: f64 = PI + 1e-9;
 const UNIT: Interval = Interval { lower: -1.0, upper: 1.0 };

@@ -6,12 +6,15 @@
 //! interval with nothing in it is [`Interval::EMPTY`].
 
 mod functions;
+mod narrow;
 mod prove;
 mod range;
+mod signs;
 
 pub(crate) use functions::apply;
 pub(crate) use prove::{Claim, Prover};
 pub(crate) use range::Tape;
+pub(crate) use signs::{Signs, signs};
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::{Add, Div, Mul, Neg};
@@ -24,6 +27,8 @@ pub struct Interval {
     /// Upper end.
     pub upper: f64,
 }
+
+const NOT_NEGATIVE: Interval = Interval { lower: 0.0, upper: f64::INFINITY };
 
 /// How far the functions of the standard library may be off, in units in the last place.
 const LIBRARY: u32 = 4;
@@ -84,6 +89,15 @@ impl Interval {
     pub fn square(self) -> Interval {
         let square = self.abs() * self.abs();
         Interval { lower: square.lower.max(0.0), ..square }
+    }
+    /// The square root of what is not negative in it.
+    pub fn square_root(self) -> Interval {
+        let root = self.intersect(NOT_NEGATIVE).grow(f64::sqrt);
+        Interval { lower: root.lower.max(0.0), ..root }
+    }
+    /// The logarithm of what is not negative in it.
+    pub fn logarithm(self) -> Interval {
+        self.intersect(NOT_NEGATIVE).grow(f64::ln)
     }
     /// The absolute value.
     pub fn abs(self) -> Interval {

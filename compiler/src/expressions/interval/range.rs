@@ -9,7 +9,7 @@ use crate::expressions::graph::{Expr, ExprId, Graph};
 use smallvec::SmallVec;
 
 /// What is computed at one place.
-enum Instruction {
+pub(super) enum Instruction {
     Number(f64),
     Input(u32),
     Square(usize),
@@ -18,9 +18,9 @@ enum Instruction {
 
 /// Expressions made ready to be evaluated over many boxes.
 pub(crate) struct Tape {
-    instructions: Vec<Instruction>,
-    roots: Vec<usize>,
-    values: Vec<Interval>,
+    pub(super) instructions: Vec<Instruction>,
+    pub(super) roots: Vec<usize>,
+    pub(super) values: Vec<Interval>,
 }
 
 impl Tape {

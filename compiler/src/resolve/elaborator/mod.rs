@@ -4,10 +4,12 @@
 //! Evaluating an expression never fails: what went wrong is told once, and its value is unknown
 //! from there on.
 
+pub(crate) mod constants;
 pub(crate) mod context;
 pub(crate) mod knots;
 pub(crate) mod value;
 
+use super::elaborator::constants::ConstantPart;
 use super::elaborator::context::Context;
 use super::elaborator::value::{Parts, Reads, Traits, Value};
 use crate::expressions::blend::Guards;
@@ -107,6 +109,8 @@ pub(crate) struct Elaborator<'a> {
     pub arguments: Vec<ExprId>,
     /// Calls outside functions, as they were written, with their values.
     pub written: Vec<(&'a ast::Expr, ExprId)>,
+    /// The largest parts of formulas that are constant.
+    pub constants: Vec<ConstantPart<'a>>,
     /// The states whose equations are understood.
     pub known_rates: HashSet<usize>,
     /// What has been resolved so far; graph, symbols, surfaces and integrals are moved in at the
@@ -158,6 +162,7 @@ impl<'a> Elaborator<'a> {
             guards: Guards::default(),
             arguments: Vec::new(),
             written: Vec::new(),
+            constants: Vec::new(),
             known_rates: HashSet::new(),
             model: Model::empty(),
             at_end: Vec::new(),

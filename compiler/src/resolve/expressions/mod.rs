@@ -23,9 +23,13 @@ impl<'a> Elaborator<'a> {
             return self.too_deep(expr.span);
         }
         self.depth += 1;
+        let before = self.constants.len();
         let value = self.evaluate_kind(expr);
         let value = self.in_its_unit(expr, value);
         self.depth -= 1;
+        if is_composed(expr) {
+            self.keep_constant(expr, &value, before);
+        }
         if let (ExprKind::Call(..), Parts::Scalar(part), true) =
             (&expr.kind, &value.parts, self.owner.is_none())
         {
@@ -80,8 +84,12 @@ impl<'a> Elaborator<'a> {
 
     fn chain(&mut self, expr: &'a Expr) -> Value {
         let (first, links) = walk::spine(expr);
+        let before = self.constants.len();
         let mut left = self.evaluate(first);
         for (left_expr, operator, right_expr) in links {
+            if is_composed(left_expr) {
+                self.keep_constant(left_expr, &left, before);
+            }
             let right = self.evaluate(right_expr);
             left = self.binary(operator, (left, left_expr), (right, right_expr));
         }
@@ -261,6 +269,14 @@ impl<'a> Elaborator<'a> {
         let parts = if complete { Parts::from_list(&list) } else { Parts::Unknown };
         Value { parts, traits, named: None }
     }
+}
+
+/// Whether a value is computed here, not only named or listed.
+fn is_composed(expr: &Expr) -> bool {
+    matches!(
+        expr.kind,
+        ExprKind::Binary(..) | ExprKind::Negate(_) | ExprKind::Call(..) | ExprKind::Piecewise { .. }
+    )
 }
 
 /// One component.

@@ -4,7 +4,7 @@
 use super::knots::Guard;
 use crate::expressions::graph::ExprId;
 use crate::resolve::elaborator::Elaborator;
-use crate::resolve::elaborator::value::{KnotUse, Parts, Traits, Value};
+use crate::resolve::elaborator::value::{KnotUse, Parts, Reads, Traits, Value};
 use crate::syntax::text;
 use fdcc_grammar::ast::{Arm, Expr, Relation};
 use fdcc_grammar::{Code, Diagnostic, Fix};
@@ -12,9 +12,14 @@ use fdcc_grammar::{Code, Diagnostic, Fix};
 impl<'a> Elaborator<'a> {
     /// The value of a piecewise definition.
     pub fn piecewise(&mut self, whole: &'a Expr, arms: &'a [Arm], otherwise: &'a Expr) -> Value {
+        let before = self.constants.len();
         let values: Vec<Value> = arms.iter().map(|arm| self.evaluate(&arm.value)).collect();
         let rest = self.evaluate(otherwise);
         let sides: Vec<Option<Guard<'a>>> = arms.iter().map(|arm| self.guard(arm)).collect();
+        let is_choice = |it: &Guard<'_>| it.traits.reads.beyond(Reads::PARAM).is_empty();
+        if sides.iter().flatten().any(is_choice) {
+            self.forget_constants(before);
+        }
         let mut traits = Self::joined(values.iter().chain([&rest]));
         for guard in sides.iter().flatten() {
             traits.reads = traits.reads.or(guard.traits.reads);

@@ -133,16 +133,17 @@ impl<'a> Elaborator<'a> {
     }
 
     fn divided(&mut self, right: Value, equation: &'a Equation, factor: &'a Expr) -> Value {
-        let by = self.evaluate_in(Context::DYNAMICS, factor);
-        if !self.single_valued(&by.traits.sets, factor.span, "the factor of a derivative") {
+        let factor_value = self.evaluate_in(Context::DYNAMICS, factor);
+        if !self.single_valued(&factor_value.traits.sets, factor.span, "the factor of a derivative") {
             return Value::default();
         }
-        let traits = right.traits.clone().join(&by.traits);
+        let traits = right.traits.clone().join(&factor_value.traits);
         let (Some(by), false) =
-            (self.expect_number(&by, factor.span), right.parts.as_slice().is_empty())
+            (self.expect_number(&factor_value, factor.span), right.parts.as_slice().is_empty())
         else {
             return Value::unknown(traits);
         };
+        self.keep_divisor(factor, &factor_value);
         if self.graph.as_number(by) == Some(0.0) {
             let message = format!("`{}'` is multiplied by 0", equation.state.name);
             let found = Diagnostic::new(Code::NotAllowedHere, message, factor.span, "always 0");

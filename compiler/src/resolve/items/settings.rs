@@ -5,7 +5,7 @@ use crate::resolve::elaborator::{Elaborator, Role};
 use crate::settings::conflicts::misfit;
 use crate::settings::{Given, Refused, keys, nearest_key, nearest_word, set};
 use crate::syntax::text;
-use fdcc_grammar::ast::{Expr, ExprKind, Ident, ItemKind, Setting, SettingValue};
+use fdcc_grammar::ast::{Expr, ExprKind, Ident, ItemKind, Setting, SettingValue, Unit};
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 
 fn shown(given: &Given) -> String {
@@ -43,6 +43,10 @@ impl<'a> Elaborator<'a> {
             let key = &setting.key;
             if matches!(key.name.as_str(), "sigma" | "kernel" | "continue") {
                 self.model.smooth = true;
+            }
+            if let Some(unit) = unit_of(setting) {
+                self.diagnostics.push(with_unit(key, unit));
+                continue;
             }
             let Some((given, span)) = self.given(setting) else { continue };
             let taken = set(&mut self.model.method, &key.name, &given);
@@ -152,6 +156,26 @@ impl<'a> Elaborator<'a> {
             }
         }
     }
+}
+
+/// The unit that is written behind a setting that has none. What measures something is told with
+/// all units.
+fn unit_of(setting: &Setting) -> Option<&Unit> {
+    if matches!(setting.key.name.as_str(), "sigma" | "continue") {
+        return None;
+    }
+    let in_value = match &setting.value {
+        SettingValue::Expr(Expr { kind: ExprKind::Quantity(_, unit), .. }) => Some(unit),
+        _ => None,
+    };
+    setting.unit.as_ref().or(in_value)
+}
+
+fn with_unit(key: &Ident, unit: &Unit) -> Diagnostic {
+    let message = format!("`{}` has no unit, but is given one", key.name);
+    Diagnostic::new(Code::UnitHere, message, unit.span, "a unit")
+        .help("give it a number without a unit")
+        .fix(Fix::certain("take the unit out").remove(unit.span))
 }
 
 /// Three stages are the most common choice.

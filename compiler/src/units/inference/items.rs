@@ -59,7 +59,10 @@ impl<'a> Inference<'a> {
             }),
             ItemKind::Expect { checks } => checks.iter().for_each(|it| self.check(it)),
             ItemKind::Metric { weights } => self.metric(weights),
-            ItemKind::Jump { assignments, .. } => assignments.iter().for_each(|it| self.reset(it)),
+            ItemKind::Jump { at_most, assignments, .. } => {
+                at_most.iter().for_each(|number| self.plain("at most", number));
+                assignments.iter().for_each(|it| self.reset(it))
+            }
             ItemKind::Link { from, to, assignments } => {
                 assignments.iter().for_each(|it| self.handed_over(from, to, it))
             }
@@ -189,7 +192,7 @@ impl<'a> Inference<'a> {
             SettingValue::Scheme { .. } => return,
         };
         if !matches!(setting.key.name.as_str(), "sigma" | "continue") {
-            return;
+            return widths.into_iter().for_each(|value| self.plain(&setting.key.name, value));
         }
         let unit = setting.unit.as_ref().or_else(|| widths.last().and_then(|last| quantity(last)));
         for width in widths {
@@ -202,13 +205,42 @@ impl<'a> Inference<'a> {
     /// names.
     fn swept(&mut self, list: &'a Swept) {
         let unit = list.values.last().and_then(quantity);
-        let is_width = list.name.name == "sigma" && self.declared(&list.name).is_none();
+        let name = &list.name;
+        let declared = self.declared(name);
         for value in &list.values {
             let given = self.listed(value, unit);
-            match is_width {
-                true => self.width(&list.name, given),
-                false => self.assigned_value("a value of the sweep", &list.name, given),
+            match declared {
+                None if name.name == "sigma" => self.width(name, given),
+                None => self.without_unit_in(Reason::Plain(&name.name), value, &given),
+                Some(it) => self.swept_value(it, name, given),
             }
+        }
+    }
+
+    /// A parameter that is given as a plain number has no unit, wherever it is read.
+    fn swept_value(&mut self, it: Declaration<'a>, name: &'a Ident, given: Operand<'a>) {
+        let what = "a value of the sweep";
+        let subject = self.subject(it);
+        match subject.0.iter().all(|part| part.plain) && !given.0.iter().all(|part| part.plain) {
+            true => {
+                let number = (vec![Part::number(1.0)], subject.1);
+                drop(self.equal(Reason::Given(what, name), &number, &given));
+            }
+            false => self.assigned_value(what, name, given),
+        }
+    }
+
+    /// A number of things, or a setting, which has no unit.
+    fn plain(&mut self, what: &'a str, value: &'a Expr) {
+        let given = self.operand(value);
+        self.without_unit_in(Reason::Plain(what), value, &given);
+    }
+
+    fn without_unit_in(&mut self, reason: Reason<'a>, value: &'a Expr, given: &Operand<'a>) {
+        // A word of the method, such as `auto`, is no name.
+        let is_word = matches!(&value.kind, ExprKind::Name(name) if self.scope.find(name).is_none());
+        if !is_word {
+            self.need_none(reason, value.span, given);
         }
     }
 

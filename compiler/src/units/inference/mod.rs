@@ -70,6 +70,8 @@ pub(crate) struct Inference<'a> {
     pub phases: HashMap<&'a str, Scope<'a>>,
     /// By what each plain number is multiplied.
     pub readings: Readings,
+    /// Plain numbers in sums with something else.
+    pub terms: HashSet<Span>,
     /// Plain numbers that may be refused.
     pub bare: Vec<Bare<'a>>,
     /// What must hold.
@@ -103,6 +105,7 @@ impl<'a> Inference<'a> {
             switches: Vec::new(),
             phases: HashMap::new(),
             readings: Readings::new(),
+            terms: HashSet::new(),
             bare: Vec::new(),
             requirements: Vec::new(),
             wrong,
@@ -165,6 +168,8 @@ impl<'a> Inference<'a> {
         self.equate(reason, left, right);
         self.read(left, right);
         self.read(right, left);
+        self.read_sum(left, right);
+        self.read_sum(right, left);
     }
 
     /// Both sides measure the same.

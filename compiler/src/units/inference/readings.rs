@@ -13,7 +13,7 @@ use super::{Inference, Operand, side};
 use crate::syntax::text;
 use crate::units::dimension::Dimension;
 use crate::units::dimension::notation::Notation;
-use fdcc_grammar::ast::{Expr, ExprKind};
+use fdcc_grammar::ast::{BinaryOperator, Expr, ExprKind};
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 use std::collections::HashMap;
 
@@ -84,8 +84,25 @@ impl<'a> Inference<'a> {
     /// angle in degrees.
     pub fn read_term(&mut self, left: (&Part, &Side<'a>), right: (&Part, &Side<'a>)) {
         for ((number, text), (part, beside)) in [(left, right), (right, left)] {
-            if number.is_bare() && !part.plain && !part.declared.is_si() {
-                self.refuse(text, beside, part.clone(), Why::Term);
+            if number.is_bare() && !part.plain {
+                self.terms.insert(text.span);
+                if !part.declared.is_si() {
+                    self.refuse(text, beside, part.clone(), Why::Term);
+                }
+            }
+        }
+    }
+
+    /// `n + 30` beside an angle in degrees: 30 stands in a sum that counts in radians, and is given
+    /// to what counts in degrees.
+    pub fn read_sum(&mut self, sum: &Operand<'a>, beside: &Operand<'a>) {
+        let (Some(expr), Some(part)) = (sum.1.expr, beside.0.first()) else { return };
+        let is_in_si = |it: &Part| !it.plain && it.declared.is_si();
+        if part.gives_unit() && part.declared.is_share() && sum.0.iter().all(is_in_si) {
+            for term in terms(expr) {
+                if self.terms.contains(&term.span) {
+                    self.refuse(&side(term), &beside.1, part.clone(), Why::Term);
+                }
             }
         }
     }
@@ -106,6 +123,21 @@ impl<'a> Inference<'a> {
         let (expr, number, beside) = (number.expr, number.span, beside.span);
         self.bare.push(Bare { number, expr, why, beside, part, call });
     }
+}
+
+/// The terms of a sum, and of the sums in it.
+fn terms(expr: &Expr) -> Vec<&Expr> {
+    let (mut found, mut pending) = (Vec::new(), vec![expr]);
+    while let Some(next) = pending.pop() {
+        match &next.kind {
+            ExprKind::Binary(BinaryOperator::Add | BinaryOperator::Subtract, left, right) => {
+                pending.extend([&**left, &**right])
+            }
+            ExprKind::Negate(inner) => pending.push(inner),
+            _ => found.push(next),
+        }
+    }
+    found
 }
 
 /// The findings, once it is known what each formula measures.

@@ -28,6 +28,8 @@ pub(crate) enum Reason<'a> {
     Blend,
     /// The argument of `sin`: the right side is no unit.
     NoUnit(&'a str),
+    /// A setting, or a number of jumps: the right side is no unit.
+    Plain(&'a str),
     /// `a ^ b` where `b` has a unit: the right side is no unit.
     Exponent,
     /// `a ^ b` with a number `b` that may change: the right side is no unit.

@@ -25,7 +25,7 @@ impl<'a> Speaker<'a> {
         let repairs = Repairs { speaker: self, mistake, wanted };
         let blame = repairs.blame();
         let found = match it.reason {
-            Reason::NoUnit(_) | Reason::Exponent | Reason::FixedPower => {
+            Reason::NoUnit(_) | Reason::Plain(_) | Reason::Exponent | Reason::FixedPower => {
                 self.alone(it, blame.as_ref())
             }
             _ if it.left.span == it.right.span => self.within_one(it),
@@ -45,7 +45,7 @@ impl<'a> Speaker<'a> {
 
     fn code(&self, reason: Reason<'_>) -> Code {
         match reason {
-            Reason::NoUnit(_) | Reason::Exponent => Code::UnitHere,
+            Reason::NoUnit(_) | Reason::Plain(_) | Reason::Exponent => Code::UnitHere,
             Reason::FixedPower => Code::UnitOfPower,
             _ => Code::UnitMismatch,
         }
@@ -113,6 +113,7 @@ impl<'a> Speaker<'a> {
             Reason::Blend => format!("`blend` rounds over {a}, but its width is {b}"),
             Reason::Uses(name) => format!("`{}` is used as {a}, but its value is {b}", name.name),
             Reason::NoUnit(name) => format!("`{name}` of {a}"),
+            Reason::Plain(name) => format!("`{name}` has no unit, but is given {a}"),
             Reason::Exponent => format!("an exponent that is {a}"),
             Reason::FixedPower => format!("a power of {a} whose exponent is not a fixed number"),
         }

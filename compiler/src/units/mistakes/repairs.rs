@@ -57,6 +57,7 @@ impl<'a> Repairs<'_, 'a> {
         }
         match self.mistake.requirement.reason {
             Reason::NoUnit(_) => Some(self.scaled_argument()),
+            Reason::Plain(_) => Some("give it a number without a unit".into()),
             Reason::Exponent => {
                 Some(format!("an exponent has no unit: divide it by {}", self.scale().0))
             }

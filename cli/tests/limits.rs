@@ -145,7 +145,12 @@ fn a_start_that_is_not_whole_is_refused() {
         ("controls", "u", json!([null, 1.0, 1.0, 1.0]), "value 1 of `controls.u` is no number"),
         ("time", "", json!(reversed), "times must ascend, but 0.75 follows 1"),
         ("params", "goal", json!(null), "`params.goal` is no number"),
-        ("time", "", json!([0.0, 0.25, 0.25, 0.75, 1.0]), "times must ascend, but 0.25 follows 0.25"),
+        (
+            "time",
+            "",
+            json!([0.0, 0.25, 0.25, 0.75, 1.0]),
+            "times must ascend, but 0.25 follows 0.25",
+        ),
         ("time", "", json!([0.0, 0.25, null, 0.75, 1.0]), "value 3 of `time` is no number"),
     ];
     for (field, name, value, words) in spoilt {
@@ -204,8 +209,8 @@ fn a_file_without_end_is_refused() {
         (&["simulate", "ramp.fdc", "--control", "/dev/zero"], 4, "more than 256 MiB"),
         (&["simulate", "ramp.fdc", "--warm", "/dev/zero"], 4, "more than 256 MiB"),
         (&["verify", "/dev/zero", "ramp.fdc"], 4, "more than 256 MiB"),
-        (&["check", "/dev/zero"], 1, "FDC0007"),
-        (&["solve", "/dev/zero"], 1, "FDC0007"),
+        (&["check", "/dev/zero"], 1, "FDC0009"),
+        (&["solve", "/dev/zero"], 1, "FDC0009"),
     ];
     for (command, code, words) in commands {
         let output = fdcc(&place, command, "");

@@ -146,6 +146,20 @@ fn bad_control_files_say_what_is_wrong() {
     }
 }
 
+/// The logarithm has no value beyond `x = 1`, and then its maximum with 0 has none either.
+#[test]
+fn a_maximum_of_what_has_no_value_ends_a_simulation() {
+    for right in ["max(log(x - 1), 0)", "max(0, log(x - 1))", "-min(-log(x - 1), 0)"] {
+        let text = format!(
+            "time t in [0, 2]\nstate x start 2\ndynamics {{ x' = -1 + {right} }}\nminimize x(end)\n"
+        );
+        let folder = folder("simulate_undefined", &[("undefined.fdc", text.as_bytes())]);
+        let output = fdcc(&folder, &["simulate", "undefined.fdc"], "");
+        expect_exit(&output, 2, right);
+        assert!(stdout(&output).contains("not finite: `x'` (line 3) at t = 1"), "{output:?}");
+    }
+}
+
 /// What can be followed is followed, with a word about what is likely a slip.
 #[test]
 fn times_that_do_not_fit_are_told() {

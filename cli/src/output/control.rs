@@ -26,8 +26,8 @@ pub fn read(path: &Path, model: &Model) -> Result<Driver, Failure> {
         source_sha256 = Some(saved.source_sha256).filter(|it| !it.is_empty());
         replay
     } else {
-        let text = input::text(path)
-            .map_err(|error| failure(format!(" cannot be read: {error}")))?;
+        let text =
+            input::text(path).map_err(|error| failure(format!(" cannot be read: {error}")))?;
         from_csv(&text, model.meaning())
     };
     let checked = replay.and_then(|replay| replay.check().map(|()| replay));

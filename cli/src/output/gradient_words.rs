@@ -119,7 +119,10 @@ impl Document {
         let head = std::iter::once("by both").chain(names).collect();
         let row = |(name, values): &(String, Named<f64>)| {
             let value = |(by, value): &(String, f64)| {
-                significant(value * self.in_its_unit(name).0 / self.units.scaled(own(by), 1.0), DIGITS)
+                significant(
+                    value * self.in_its_unit(name).0 / self.units.scaled(own(by), 1.0),
+                    DIGITS,
+                )
             };
             std::iter::once(name.clone()).chain(values.0.iter().map(value)).collect()
         };

@@ -56,6 +56,8 @@ mod tests {
 
     #[test]
     fn what_joins_letters_may_stand_in_comments() {
-        assert!(found("\u{feff}# \u{1f468}\u{200d}\u{1f469} \u{645}\u{6cc}\u{200c}\u{62e}").is_none());
+        assert!(
+            found("\u{feff}# \u{1f468}\u{200d}\u{1f469} \u{645}\u{6cc}\u{200c}\u{62e}").is_none()
+        );
     }
 }

@@ -48,6 +48,9 @@ pub(crate) struct Local {
     pub constraints: Vec<(ExprId, Interval)>,
     /// Replaced on the surface: a state's input and its value, over what is replaced after it.
     pub replaced: Vec<(u32, ExprId)>,
+    /// The states whose rates the selectors of many other surfaces enter, with the inputs that stand
+    /// for these.
+    others: Vec<(usize, u32)>,
     known: ById<ExprId>,
     forms: NormalForms,
 }
@@ -71,6 +74,7 @@ impl Local {
             sides: Vec::new(),
             constraints: Vec::new(),
             replaced: Vec::new(),
+            others: Vec::new(),
             known: ById::default(),
             forms: NormalForms::default(),
         }
@@ -104,12 +108,12 @@ impl Local {
         let stays = |(state, _): &(usize, ExprId)| !reset.contains(state);
         self.graph.inputs_of(&[self.psi]).iter().all(is_fixed)
             && self.gradient.iter().all(stays)
-            && self.rate(view).is_some_and(|rate| self.form(rate).is_zero())
+            && self.rate(view, None).is_some_and(|rate| self.form(rate).is_zero())
     }
 
     /// Adds what happens on the surface; says whether all rates that matter are known.
     pub fn add_rates(&mut self, view: &View<'_>, at: usize) -> bool {
-        let Some(rate) = self.rate(view) else { return false };
+        let Some(rate) = self.rate(view, Some(at)) else { return false };
         self.replace_a_state(view);
         self.rates(rate, at);
         self.rows(view);
@@ -122,7 +126,7 @@ impl Local {
         let psi = self.import(view, view.surfaces[at].1?);
         self.psi = psi;
         self.differentiate();
-        let rate = self.rate(view)?;
+        let rate = self.rate(view, None)?;
         self.psi = self.substituted(psi);
         self.differentiate();
         self.replace_a_state(view);
@@ -244,13 +248,42 @@ impl Local {
     }
 
     /// `psi_t + psi_x f`, if the rates are known.
-    fn rate(&mut self, view: &View<'_>) -> Option<ExprId> {
+    fn rate(&mut self, view: &View<'_>, of: Option<usize>) -> Option<ExprId> {
         let mut terms = vec![self.in_time];
         for (state, slope) in self.gradient.clone() {
-            let rate = view.has_rate[state].then(|| self.import(view, view.states[state].rate))?;
+            let rate = view.has_rate[state].then(|| self.rate_of(view, state, of))?;
             terms.push(self.graph.mul(slope, rate));
         }
         Some(self.graph.sum(&terms))
+    }
+
+    /// The rate of a state. Where the selectors of many surfaces are added up, those of all others
+    /// than `of` are one number.
+    fn rate_of(&mut self, view: &View<'_>, state: usize, of: Option<usize>) -> ExprId {
+        let Some(sum) = view.sums.get(&state) else {
+            return self.import(view, view.states[state].rate);
+        };
+        let own = of.and_then(|at| sum.own.get(&at));
+        let size = sum.size - own.map_or(0.0, |it| it.size);
+        let mut all = vec![self.other_selectors(state, size)];
+        for &(factor, term) in own.iter().map(|it| &it.term).chain(&sum.rest) {
+            let term = self.import(view, term);
+            all.push(self.graph.scale(factor, term));
+        }
+        self.graph.sum(&all)
+    }
+
+    /// What the others contribute to the rate of a state.
+    fn other_selectors(&mut self, state: usize, size: f64) -> ExprId {
+        let known = self.others.iter().find(|it| it.0 == state).map(|it| it.1);
+        let input = known.unwrap_or_else(|| {
+            let input = self.symbols.len() as u32;
+            self.add_input();
+            self.domain[input as usize] = Interval::new(-size, size);
+            self.others.push((state, input));
+            input
+        });
+        self.graph.input(input)
     }
 
     fn rates(&mut self, rate: ExprId, at: usize) {
@@ -268,7 +301,7 @@ impl Local {
     /// The rates of all states that the selector moves, for those who ask for more than `psi`.
     pub fn add_sides(&mut self, view: &View<'_>, at: usize) {
         for &state in view.moved[at].iter().filter(|&&state| view.has_rate[state]) {
-            let rate = self.import(view, view.states[state].rate);
+            let rate = self.rate_of(view, state, Some(at));
             let selector = self.input_of(Symbol::Selector(at));
             let sides = [-1.0, 1.0].map(|side| {
                 let end = self.on_side(rate, selector, side);
@@ -312,6 +345,10 @@ impl Local {
 
     /// An expression as text; nothing if nobody would read it.
     pub fn text(&mut self, view: &View<'_>, expr: ExprId) -> Option<String> {
+        let inputs = self.graph.inputs_of(&[expr]);
+        if self.others.iter().any(|(_, input)| inputs.contains(input)) {
+            return None;
+        }
         self.in_words(view, &[], |local, words| words.of(&mut local.graph, expr))
     }
 

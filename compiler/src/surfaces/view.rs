@@ -1,10 +1,12 @@
 //! What the analysis of surfaces needs of a model, finished or still being checked.
 
+use super::others::SumOfSelectors;
 use crate::expressions::graph::{Expr, ExprId, Graph, evaluate};
 use crate::expressions::interval::Interval;
 use crate::model::numbers::Numbers;
 use crate::model::{Ball, Constraint, Control, Free, Model, Param, Place, Range, State, Symbol};
 use std::collections::HashMap;
+use std::rc::Rc;
 
 /// A surface with its function; none if that is not known.
 pub(crate) type KnownSurface<'m> = (&'m Place, Option<ExprId>);
@@ -28,6 +30,8 @@ pub(crate) struct View<'m> {
     pub has_rate: Vec<bool>,
     /// The states whose rates the selector of each surface enters.
     pub moved: Vec<Vec<usize>>,
+    /// The rates that are sums over the selectors of many surfaces, by state.
+    pub sums: HashMap<usize, Rc<SumOfSelectors>>,
     /// Weights that the model declares for its states.
     pub metric: &'m [(usize, ExprId)],
     /// Texts for expressions that have a name or were written out.
@@ -40,7 +44,7 @@ impl<'m> View<'m> {
     /// Of a model that has no error, with its parameters at these values.
     pub fn of_model(model: &'m Model, numbers: &Numbers) -> Self {
         let values = (0..model.params.len()).map(|at| numbers.of(Symbol::Param(at))).collect();
-        View {
+        let view = View {
             graph: &model.graph,
             symbols: &model.symbols,
             states: &model.states,
@@ -54,10 +58,20 @@ impl<'m> View<'m> {
             values,
             has_rate: vec![true; model.states.len()],
             moved: moved(&model.graph, &model.symbols, &model.states, model.surfaces.len()),
+            sums: HashMap::new(),
             metric: &model.metric,
             names: &model.names,
             arguments: &[],
-        }
+        };
+        view.with_sums()
+    }
+
+    /// Once everything else is known.
+    pub fn with_sums(mut self) -> Self {
+        let known = (0..self.states.len()).filter(|&at| self.has_rate[at]);
+        let sums = known.filter_map(|at| Some((at, Rc::new(SumOfSelectors::new(&self, at)?))));
+        self.sums = sums.collect();
+        self
     }
 
     /// The value over parameters; NaN if it depends on anything else.

@@ -44,8 +44,7 @@ fn is_whole(found: &[f64], name: &str) -> Result<(), String> {
 fn ascending(record: &Record) -> Result<(), String> {
     let times = record.time;
     let jumps = |time: f64| record.jumps.iter().any(|jump| jump.time == time);
-    let is_wrong =
-        |pair: &[f64]| pair[1] < pair[0] || pair[1] == pair[0] && !jumps(pair[0]);
+    let is_wrong = |pair: &[f64]| pair[1] < pair[0] || pair[1] == pair[0] && !jumps(pair[0]);
     if let Some(at) = times.windows(2).position(is_wrong) {
         return Err(format!("its times must ascend, but {} follows {}", times[at + 1], times[at]));
     }

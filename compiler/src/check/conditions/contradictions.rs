@@ -122,10 +122,7 @@ impl Known {
         let all = meaning.symbols.iter().map(|symbol| of_symbol(meaning, *symbol));
         let (domain, because) = all.unzip();
         let varies = |it: &Symbol| {
-            matches!(
-                it,
-                Symbol::Time | Symbol::State(_) | Symbol::Control(_) | Symbol::Selector(_)
-            )
+            matches!(it, Symbol::Time | Symbol::State(_) | Symbol::Control(_) | Symbol::Selector(_))
         };
         let varies = meaning.symbols.iter().map(varies).collect();
         let (values, rows, readers) = Default::default();
@@ -145,12 +142,16 @@ impl Known {
         let inputs: Vec<u32> = tape.inputs().collect();
         let possible = tape.evaluate(&self.domain)[0];
         let spans = || inputs.iter().flat_map(|&at| self.because[at as usize].clone()).collect();
-        (are_apart(possible, allowed) || self.has_other_sign(meaning, value, allowed))
-            .then(spans)
+        (are_apart(possible, allowed) || self.has_other_sign(meaning, value, allowed)).then(spans)
     }
 
     /// Whether a value stays on one side of an end of where it must lie, which it never reaches.
-    fn has_other_sign(&self, meaning: &mut Elaborator<'_>, value: ExprId, allowed: Interval) -> bool {
+    fn has_other_sign(
+        &self,
+        meaning: &mut Elaborator<'_>,
+        value: ExprId,
+        allowed: Interval,
+    ) -> bool {
         let mut beyond = |end: f64, wanted: Signs| {
             let end = meaning.graph.number(end);
             let beyond = meaning.graph.sub(value, end);

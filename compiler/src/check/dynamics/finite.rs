@@ -172,7 +172,8 @@ fn param_values(meaning: &Elaborator<'_>) -> Vec<f64> {
     meaning.symbols.iter().map(value).collect()
 }
 
-const FINITE: &str = "every number of a model is finite; a side without a bound is `inf`: `in [0, inf]`";
+const FINITE: &str =
+    "every number of a model is finite; a side without a bound is `inf`: `in [0, inf]`";
 
 fn told_as(what: &str, value: f64, span: Span) -> Diagnostic {
     let (message, label) = match value.is_nan() {

@@ -5,6 +5,7 @@ use crate::surfaces::{View, view};
 use crate::syntax::text;
 use fdcc_grammar::ast::{self, Equation, Item};
 use fdcc_grammar::{Diagnostic, Severity, Span};
+use std::collections::HashMap;
 
 /// What a check may look at: the items of a phase and what they turned out to mean.
 pub(crate) struct Facts<'a, 'e> {
@@ -56,7 +57,7 @@ impl Role<'_> {
 /// The model so far.
 pub(crate) fn view_of<'m>(meaning: &'m Elaborator<'_>) -> View<'m> {
     let states = &meaning.model.states;
-    View {
+    let view = View {
         graph: &meaning.graph,
         symbols: &meaning.symbols,
         states,
@@ -71,9 +72,11 @@ pub(crate) fn view_of<'m>(meaning: &'m Elaborator<'_>) -> View<'m> {
         has_rate: (0..states.len()).map(|at| meaning.known_rates.contains(&at)).collect(),
         moved: view::moved(&meaning.graph, &meaning.symbols, states, meaning.surfaces.len()),
         metric: &meaning.model.metric,
+        sums: HashMap::new(),
         names: &meaning.model.names,
         arguments: &[],
-    }
+    };
+    view.with_sums()
 }
 
 /// `m * v'`.

@@ -98,15 +98,12 @@ mod tests {
         for builtin in ALL {
             for _ in 0..1000 {
                 let mut graph = Graph::new();
-                let point: Vec<f64> =
-                    (0..builtin.row().arity).map(|_| walk(&mut state)).collect();
+                let point: Vec<f64> = (0..builtin.row().arity).map(|_| walk(&mut state)).collect();
                 let inputs: Vec<_> =
                     (0..point.len()).map(|input| graph.input(input as u32)).collect();
                 let root = graph.call(*builtin, &inputs);
                 let value = evaluate(&graph, &[root], &point, &[])[0];
-                let around = |it: &f64| {
-                    Interval::new(it - walk(&mut 5).abs() - 1.0, it + 0.5)
-                };
+                let around = |it: &f64| Interval::new(it - walk(&mut 5).abs() - 1.0, it + 0.5);
                 let domain: Vec<Interval> = point.iter().map(around).collect();
                 let wanted = Interval::new(value - 0.1, value);
                 if !value.is_finite() || !builtin.row().domain.contains(&point) {

@@ -275,7 +275,10 @@ impl<'a> Elaborator<'a> {
 fn is_composed(expr: &Expr) -> bool {
     matches!(
         expr.kind,
-        ExprKind::Binary(..) | ExprKind::Negate(_) | ExprKind::Call(..) | ExprKind::Piecewise { .. }
+        ExprKind::Binary(..)
+            | ExprKind::Negate(_)
+            | ExprKind::Call(..)
+            | ExprKind::Piecewise { .. }
     )
 }
 

@@ -134,7 +134,8 @@ impl<'a> Elaborator<'a> {
 
     fn divided(&mut self, right: Value, equation: &'a Equation, factor: &'a Expr) -> Value {
         let factor_value = self.evaluate_in(Context::DYNAMICS, factor);
-        if !self.single_valued(&factor_value.traits.sets, factor.span, "the factor of a derivative") {
+        if !self.single_valued(&factor_value.traits.sets, factor.span, "the factor of a derivative")
+        {
             return Value::default();
         }
         let traits = right.traits.clone().join(&factor_value.traits);

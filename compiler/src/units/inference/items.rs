@@ -192,7 +192,10 @@ impl<'a> Inference<'a> {
             SettingValue::Scheme { .. } => return,
         };
         if !matches!(setting.key.name.as_str(), "sigma" | "continue") {
-            return widths.into_iter().for_each(|value| self.plain(&setting.key.name, value));
+            // A unit that is written there is told where settings are read.
+            let is_told = |value: &&Expr| matches!(value.kind, ExprKind::Quantity(..));
+            let others = widths.into_iter().filter(|it| !is_told(it));
+            return others.for_each(|value| self.plain(&setting.key.name, value));
         }
         let unit = setting.unit.as_ref().or_else(|| widths.last().and_then(|last| quantity(last)));
         for width in widths {
@@ -207,40 +210,30 @@ impl<'a> Inference<'a> {
         let unit = list.values.last().and_then(quantity);
         let name = &list.name;
         let declared = self.declared(name);
+        // A parameter that is given as a plain number has no unit, wherever it is read.
+        let is_plain = |it| self.subject(it).0.iter().all(|part| part.plain);
+        let has_none = declared.map_or(name.name != "sigma", is_plain);
         for value in &list.values {
+            if has_none {
+                self.plain(&name.name, value);
+                continue;
+            }
             let given = self.listed(value, unit);
             match declared {
-                None if name.name == "sigma" => self.width(name, given),
-                None => self.without_unit_in(Reason::Plain(&name.name), value, &given),
-                Some(it) => self.swept_value(it, name, given),
+                None => self.width(name, given),
+                Some(_) => self.assigned_value("a value of the sweep", name, given),
             }
         }
     }
 
-    /// A parameter that is given as a plain number has no unit, wherever it is read.
-    fn swept_value(&mut self, it: Declaration<'a>, name: &'a Ident, given: Operand<'a>) {
-        let what = "a value of the sweep";
-        let subject = self.subject(it);
-        match subject.0.iter().all(|part| part.plain) && !given.0.iter().all(|part| part.plain) {
-            true => {
-                let number = (vec![Part::number(1.0)], subject.1);
-                drop(self.equal(Reason::Given(what, name), &number, &given));
-            }
-            false => self.assigned_value(what, name, given),
-        }
-    }
-
-    /// A number of things, or a setting, which has no unit.
+    /// A number of things, a setting, or a parameter that has no unit.
     fn plain(&mut self, what: &'a str, value: &'a Expr) {
-        let given = self.operand(value);
-        self.without_unit_in(Reason::Plain(what), value, &given);
-    }
-
-    fn without_unit_in(&mut self, reason: Reason<'a>, value: &'a Expr, given: &Operand<'a>) {
         // A word of the method, such as `auto`, is no name.
-        let is_word = matches!(&value.kind, ExprKind::Name(name) if self.scope.find(name).is_none());
+        let is_word =
+            matches!(&value.kind, ExprKind::Name(name) if self.scope.find(name).is_none());
         if !is_word {
-            self.need_none(reason, value.span, given);
+            let given = self.operand(value);
+            self.need_none(Reason::Plain(what), value.span, &given);
         }
     }
 

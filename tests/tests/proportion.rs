@@ -3,6 +3,8 @@
 
 use std::time::{Duration, Instant};
 
+use fdcc_compiler::differentiate::differentiate;
+use fdcc_compiler::lower::lower;
 use fdcc_compiler::{analyze, compile};
 use fdcc_grammar::{Code, Severity};
 use fdcc_tests::models::meaning;
@@ -75,6 +77,45 @@ fn a_knot_at_the_end_of_a_zone_is_rounded() {
 
 fn sum(terms: usize) -> String {
     (1..=terms).map(|i| format!("sin({i}*x + {i})")).collect::<Vec<_>>().join(" + ")
+}
+
+fn product(factors: usize) -> String {
+    (1..=factors).map(|i| format!("(2 + sin({i}*x + {i}))")).collect::<Vec<_>>().join(" * ")
+}
+
+/// The expressions of a step and of its derivatives, up to the second.
+fn expressions(right: &str, more: &str) -> usize {
+    let program = lower(&meaning(&motion(right, more, "scheme = rk4")));
+    let functions = program.functions().map(Clone::clone);
+    let mut graph = program.graph;
+    functions.into_iter().for_each(|function| drop(differentiate(&mut graph, function)));
+    graph.len()
+}
+
+#[test]
+fn derivatives_of_long_sums_and_products_are_in_proportion() {
+    for text in [sum, product] {
+        let [short, long] = [50, 200].map(|terms| expressions(&text(terms), ""));
+        assert!(long as f64 <= 4.2 * short as f64, "{short}, {long}");
+    }
+}
+
+/// Each function calls the one before it twice: with the same argument, and with two that come
+/// together again, so that depth 40 has at most 40 arguments at each of 40 levels.
+#[test]
+fn functions_that_call_each_other_twice_share_what_they_compute() {
+    let nodes = |call: &str, depth: usize| {
+        let step =
+            |i: usize| format!("fn f{i}(z) = {}\n", call.replace('F', &format!("f{}", i - 1)));
+        let all: String = (1..=depth).map(step).collect();
+        expressions(&format!("f{depth}(x)"), &format!("fn f0(z) = sin(z)\n{all}"))
+    };
+    for (call, growth) in
+        [("F(z) + F(z)", 2.2), ("F(z)*sin(F(z))", 2.2), ("F(z + 1) + F(z + 2)", 4.4)]
+    {
+        let [few, many] = [20, 40].map(|depth| nodes(call, depth));
+        assert!(many as f64 <= growth * few as f64, "{call}: {few}, {many}");
+    }
 }
 
 /// The fastest of two.

@@ -110,3 +110,64 @@ fn terms(graph: &Graph, sum: ExprId) -> Vec<(f64, ExprId)> {
     }
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::numbers::numbers;
+    use crate::surfaces::Local;
+
+    /// A force of that many surfaces.
+    fn model(surfaces: usize) -> crate::Model {
+        let sum: String = (0..surfaces).map(|i| format!(" - 2*Sgn(x - {i})")).collect();
+        let text = format!(
+            "time t in [0, 1]\nstate x start 0.5\ncontrol u in [-1, 1]\n\
+             dynamics {{ x' in u{sum} }}\nminimize integral(u^2)\n"
+        );
+        crate::analyze(&text).model.expect("the model has no error")
+    }
+
+    /// The expressions that it takes to look at each surface.
+    fn work(surfaces: usize) -> Vec<usize> {
+        let model = model(surfaces);
+        let numbers = numbers(&model).expect("every parameter has a value");
+        let view = View::of_model(&model, &numbers);
+        let work = |at: usize| {
+            let mut local = Local::new(&view, at).expect("its function is known");
+            assert!(local.add_rates(&view, at));
+            local.graph.len()
+        };
+        (0..surfaces).map(work).collect()
+    }
+
+    #[test]
+    fn a_surface_among_many_takes_no_more_work() {
+        let [few, many] = [20, 200].map(|surfaces| work(surfaces).into_iter().max());
+        assert!(many <= few.map(|it| it + 5), "{few:?} and {many:?}");
+    }
+
+    #[test]
+    fn the_others_together_are_as_large_as_they_can_be() {
+        let model = model(20);
+        let view = View::of_model(&model, &numbers(&model).expect("every parameter has a value"));
+        let sum = &view.sums[&0];
+        assert_eq!((sum.own.len(), sum.size, sum.rest.len()), (20, 40.0, 1));
+        assert_eq!(sum.own[&3].size, 2.0);
+    }
+
+    /// 60 levels, each of which adds the one below it twice: 2^60 paths, 121 terms.
+    #[test]
+    fn a_sum_that_is_used_twice_is_gone_through_once() {
+        let mut graph = Graph::new();
+        let mut sum = graph.input(0);
+        for level in 0..60 {
+            let [a, b] = [2 * level + 1, 2 * level + 2].map(|input| graph.input(input));
+            let (first, second) = (graph.add(sum, a), graph.add(sum, b));
+            sum = graph.add(first, second);
+        }
+        let found = terms(&graph, sum);
+        assert_eq!(found.len(), 121);
+        let of_first = found.iter().find(|it| it.1.index() == 0).expect("it is in the sum").0;
+        assert_eq!(of_first, 2f64.powi(60));
+    }
+}

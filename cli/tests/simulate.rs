@@ -187,9 +187,10 @@ fn times_that_do_not_fit_are_told() {
 /// The line and the name of what has no value, with the trajectory so far.
 #[test]
 fn a_value_that_does_not_exist_has_its_place() {
-    let start = "time t in [0, 1]\nstate x\n  start log(-1)\ndynamics { x' = 1 }\n";
-    let rate =
-        "param c = -1\ntime t in [0, 1]\nstate x start 0\ndynamics {\n  x' = log(c) + x\n}\n";
+    let start = "free c in [-2, -1] guess -1  time t in [0, 1]\nstate x\n  start log(c)\n\
+                 dynamics { x' = 1 }\n";
+    let rate = "free c in [-2, -1] guess -1\ntime t in [0, 1]\nstate x start 0\ndynamics {\n  x' = log(c) \
+         + x\n}\n";
     let guess = "time t in [0, 1]\nstate x start 0\ncontrol u guess log(t - 0.5)\ndynamics {\n  x' \
                  = u\n}\n";
     let surface = "time t in [0, 1]\nstate x start 0.5\nsurface s = sqrt(x - 1)\ndynamics { x' in \

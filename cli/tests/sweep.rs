@@ -134,7 +134,8 @@ fn each_row_has_its_files() {
 /// The lists of the model, in the unit that stands behind the last number.
 #[test]
 fn the_lists_may_stand_in_the_model() {
-    let text = format!("{RAMP}sweep {{ goal = 100, 200 [cm]  N = 4 }}\n");
+    let ramp = RAMP.replace("goal = 1", "goal = 1 [m]");
+    let text = format!("{ramp}sweep {{ goal = 100, 200 [cm]  N = 4 }}\n");
     let folder = common::folder("sweep_in_model", &[("ramp.fdc", text.as_bytes())]);
     let rows = json(&fdcc(&folder, &["sweep", "ramp.fdc", "--json"], ""));
     let goals: Vec<&str> =

@@ -189,8 +189,8 @@ fn times_that_do_not_fit_are_told() {
 fn a_value_that_does_not_exist_has_its_place() {
     let start = "free c in [-2, -1] guess -1  time t in [0, 1]\nstate x\n  start log(c)\n\
                  dynamics { x' = 1 }\n";
-    let rate = "free c in [-2, -1] guess -1\ntime t in [0, 1]\nstate x start 0\ndynamics {\n  x' = log(c) \
-         + x\n}\n";
+    let rate = "free c in [-2, -1] guess -1\ntime t in [0, 1]\nstate x start 0\n\
+                dynamics {\n  x' = log(c) + x\n}\n";
     let guess = "time t in [0, 1]\nstate x start 0\ncontrol u guess log(t - 0.5)\ndynamics {\n  x' \
                  = u\n}\n";
     let surface = "time t in [0, 1]\nstate x start 0.5\nsurface s = sqrt(x - 1)\ndynamics { x' in \

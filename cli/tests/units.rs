@@ -100,7 +100,7 @@ fn a_setting_without_a_unit_takes_none() {
     }
 }
 
-/// `x(end)` is in mm and `x(start)` too, so their derivative has no unit but `mm per mm`; the second
+/// `x(end)` is in mm and `x(start)` too, so their derivative is in `mm per mm`; the second
 /// derivative of `x(end)` by the rate `k`, `t^2 x`, is in mm s^2.
 #[test]
 fn a_gradient_is_in_declared_units() {

@@ -97,7 +97,8 @@ impl<'de> Deserialize<'de> for Column {
 }
 
 impl Saved {
-    /// Reads a `.sol.json`. One in which a signal, a parameter or an unknown has no number is refused.
+    /// Reads a `.sol.json`. One in which a signal, a parameter or an unknown has no number is
+    /// refused.
     pub fn read(path: &Path) -> Result<Saved, Failure> {
         let failure = |what: String| Failure::File(format!("{}{what}", path.display()));
         let text =

@@ -83,8 +83,12 @@ fn look(meaning: &Elaborator<'_>, item: &Item, mistakes: &mut Mistakes) {
                     mistakes,
                 );
             }
-            if let Some(Start::Value(value)) = start {
-                starts(meaning, states, (value.span, scale), mistakes);
+            match start {
+                Some(Start::Value(value)) => starts(meaning, states, (value.span, scale), mistakes),
+                Some(Start::Free { bounds: Some(bounds), .. }) => {
+                    starts_free(meaning, states, (bounds.span, scale), mistakes)
+                }
+                _ => {}
             }
         }
         _ => {}
@@ -101,6 +105,27 @@ fn starts(
         let given = state.start.map_or(f64::NAN, |start| meaning.numeric(start));
         let subject = Subject { name: &state.place.name, verb: "starts", span, scale };
         outside(meaning, subject, given, state.range, mistakes);
+    }
+}
+
+/// `start free in [2, 3]` of a state that is never so large.
+fn starts_free(
+    meaning: &Elaborator<'_>,
+    states: &[State],
+    (span, scale): (Span, f64),
+    mistakes: &mut Mistakes,
+) {
+    for state in states {
+        let Some([first, last]) = state.start_range.map(|it| numbers(meaning, it)) else {
+            continue;
+        };
+        let [lower, upper] = numbers(meaning, state.range);
+        // The end of the start's range that is nearest to the bounds.
+        let nearest = if first > upper { first } else { last };
+        if first > upper || last < lower {
+            let subject = Subject { name: &state.place.name, verb: "starts", span, scale };
+            outside(meaning, subject, nearest, state.range, mistakes);
+        }
     }
 }
 

@@ -39,7 +39,7 @@ pub use record::Record;
 pub use replay::Replay;
 pub use simulation::Simulation;
 pub use solve::{
-    Compiled, Ended, Grid, Jump, Options, Part, Report, Sequence, Solution, Start, Sweep, Unrolled,
+    Compiled, Ended, Grid, Jump, Options, Part, Phases, Report, Sequence, Solution, Start, Sweep,
     optimality,
 };
 pub use verification::{Condition, Gap, Stay, TIME_OF, Verification, modes};

@@ -33,7 +33,7 @@ fn bits(problem: &Problem) -> Vec<u64> {
         &*problem.boundary,
         &*problem.guess,
         &*problem.interval,
-        &*problem.guards,
+        &*problem.switching,
         &*problem.report,
     ];
     functions.iter().for_each(|function| numbers.extend(sampled(*function, &parameters)));

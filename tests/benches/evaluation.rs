@@ -96,7 +96,7 @@ fn guards_and_report(g: &mut Graph) -> Vec<VectorFunction> {
     let (sine, cosine) = (g.sin(th), g.cos(th));
     let (slip, along) = velocities(g, vx, vy, sine, cosine);
     let angle = g.atan2(vy, vx);
-    vec![function("guards", vec![slip], &[]), function("report", vec![slip, along, angle], &[])]
+    vec![function("switching", vec![slip], &[]), function("report", vec![slip, along, angle], &[])]
 }
 
 fn function(name: &str, outputs: Vec<ExprId>, by: &[u32]) -> VectorFunction {

@@ -31,8 +31,8 @@ fn case(intervals: usize) -> Case {
         controls: 2,
         inner: 0,
         globals: 1,
-        local_rows: 1,
-        coupling_rows: 0,
+        local_constraints: 1,
+        coupling_constraints: 0,
     };
     let (step, rows, t) = (7, 6, stages.globals().start);
     let family = |row, column, row_step, column_step| Family {

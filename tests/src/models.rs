@@ -58,7 +58,7 @@ pub fn load(name: &str, parameters: Changes, methods: Changes) -> Problem {
 
 /// The model itself, or for each sequence of jumps that may happen the model in which they do, with
 /// their number.
-pub fn unrolled(model: &Model) -> Vec<(usize, Model)> {
+pub fn in_phases(model: &Model) -> Vec<(usize, Model)> {
     if model.jumps.is_empty() {
         return vec![(0, model.clone())];
     }

@@ -26,7 +26,7 @@ pub struct Residuals {
     /// Difference from the objective that the solution claims.
     pub objective: f64,
     /// What violations are worth to the objective, to first order.
-    pub owed: f64,
+    pub weighted_violation: f64,
 }
 
 impl Residuals {
@@ -64,7 +64,7 @@ pub fn residuals(problem: &Problem, outcome: &Outcome) -> Residuals {
         }))),
         signs: largest(lower.iter().chain(upper).map(|z| (-z).max(0.0))),
         objective: (at.objective - solution.objective).abs(),
-        owed: owed(&at, &solution.v, &solution.multipliers).abs(),
+        weighted_violation: weighted_violation(&at, &solution.v, &solution.multipliers).abs(),
     }
 }
 
@@ -93,7 +93,7 @@ fn stationarity(at: &Transcribed, multipliers: &Multipliers) -> Vec<f64> {
 }
 
 /// The sum of all multipliers times violations.
-fn owed(at: &Transcribed, v: &[f64], multipliers: &Multipliers) -> f64 {
+fn weighted_violation(at: &Transcribed, v: &[f64], multipliers: &Multipliers) -> f64 {
     let excess = |bounds: &Bounds, value: f64| {
         (value - bounds.upper).max(0.0) - (bounds.lower - value).max(0.0)
     };

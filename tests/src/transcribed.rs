@@ -1,4 +1,4 @@
-//! The nonlinear programme of a problem at one point, once more, from nothing but the functions of
+//! The nonlinear program of a problem at one point, once more, from nothing but the functions of
 //! the problem.
 //!
 //! ```text
@@ -224,7 +224,8 @@ impl Grid {
     }
 }
 
-/// A function at one point: its values, and `(output, variable of the programme, derivative)`.
+/// A function at one point: its values, and `(output, variable of the nonlinear program,
+/// derivative)`.
 struct Sample {
     values: Vec<f64>,
     slopes: Vec<(usize, usize, f64)>,
@@ -372,7 +373,7 @@ impl At<'_> {
         })
     }
 
-    /// `places` says where an input is among the variables of the programme, with factors.
+    /// `places` says where an input is among the variables of the nonlinear program, with factors.
     fn evaluate(
         &self,
         function: &dyn Function,
@@ -380,8 +381,7 @@ impl At<'_> {
         places: impl Fn(usize) -> Vec<(usize, f64)>,
     ) -> Sample {
         let pattern = &function.jacobian_pattern().entries;
-        let mut points = Columns::new(point.len(), 1);
-        point.iter().enumerate().for_each(|(column, value)| points.column_mut(column)[0] = *value);
+        let points = Columns::of_point(point);
         let (mut values, mut jacobian) =
             (Columns::new(function.outputs(), 1), Columns::new(pattern.len(), 1));
         function.jacobian(&points, &self.parameters, &mut values, &mut jacobian);

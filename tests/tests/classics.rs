@@ -1,10 +1,11 @@
 //! Classical optimal control problems with published values: each is solved as well as IPOPT solves
-//! the same programme, and meets its own `expect` block.
+//! the same program, and meets its own `expect` block.
 //!
 //! IPOPT's answers are those of `tests/peers/classics.py`, with the same scheme, grid and guess.
 
 use fdcc_compiler::model::Comparison;
 use fdcc_compiler::{Model, expectations};
+use fdcc_runtime::linalg::is_fused;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::Columns;
 use fdcc_runtime::solution::integrals;
@@ -89,6 +90,8 @@ fn classical_problems_are_solved_as_well_as_by_ipopt() {
         let (status, objective) = (&solved.outcome.solution.status, solved.objective());
         let known = WORSE.iter().find(|row| row.0 == peer.name);
         match (is_as_good(&solved, peer), known) {
+            // With other rounding another optimum may be found.
+            (true, Some(_)) if !is_fused() => {}
             (true, Some(_)) => {
                 failed.push(format!("{} is solved now: take it off the list", peer.name))
             }

@@ -1,5 +1,5 @@
 //! Derivatives of systems with isotropic friction: forward, adjoint and central differences of
-//! simulations agree, through landings, rest, setting out and passing through 0.
+//! simulations agree, through arrivals, rest, departures and passing through 0.
 
 use fdcc_compiler::compile_sensitivities;
 use fdcc_runtime::sensitivity::{Quantity, gradient, perturbed};

@@ -11,7 +11,7 @@ use fdcc_compiler::{Model, compile};
 use fdcc_runtime::problem::{Columns, Function, Problem};
 use fdcc_tests::documents;
 use fdcc_tests::functions::{check_differences, check_machine_code};
-use fdcc_tests::models::{changed, refusal, unrolled};
+use fdcc_tests::models::{changed, in_phases, refusal};
 use fdcc_tests::random::Random;
 use fdcc_tests::symbols::table;
 
@@ -21,8 +21,8 @@ const KERNELS: [&str; 2] = ["tanh", "sqrt"];
 const SIGMA: f64 = 0.5;
 
 fn functions(problem: &Problem) -> [Arc<dyn Function>; 7] {
-    let Problem { dynamics, path, boundary, guess, interval, guards, report, .. } = problem;
-    [dynamics, path, boundary, guess, interval, guards, report].map(Arc::clone)
+    let Problem { dynamics, path, boundary, guess, interval, switching, report, .. } = problem;
+    [dynamics, path, boundary, guess, interval, switching, report].map(Arc::clone)
 }
 
 /// The expressions behind [`functions`], in the same order.
@@ -57,7 +57,7 @@ fn points(function: &dyn Function, random: &mut Random) -> Columns {
 
 fn check(text: &str, kernel: &str) -> Result<(), String> {
     let model = changed(text, &[], &[("kernel", kernel)]);
-    unrolled(&model).iter().try_for_each(|(_, model)| check_model(model, kernel))
+    in_phases(&model).iter().try_for_each(|(_, model)| check_model(model, kernel))
 }
 
 fn check_model(model: &Model, kernel: &str) -> Result<(), String> {

@@ -2,7 +2,7 @@
 
 use fdcc_compiler::{Model, compile};
 use fdcc_tests::expected::Expected;
-use fdcc_tests::models::{borrowed, changed, meaning, refusal, unrolled};
+use fdcc_tests::models::{borrowed, changed, in_phases, meaning, refusal};
 use fdcc_tests::{Solved, documents, repository};
 
 fn expected(name: &str) -> Expected {
@@ -14,7 +14,7 @@ fn expected(name: &str) -> Expected {
 
 /// The best of all sequences of jumps.
 fn best(model: &Model) -> Solved {
-    let all = unrolled(model).into_iter();
+    let all = in_phases(model).into_iter();
     let solved =
         all.map(|(_, model)| Solved::of(compile(&model).expect("the model can be solved")));
     let better = |a: Solved, b: Solved| if b.objective() < a.objective() { b } else { a };

@@ -165,7 +165,7 @@ fn the_race_car_has_the_equations_of_section_7() {
     let rates = [vx, vy, a * th.cos() + step * th.sin(), a * th.sin() - step * th.cos(), turn];
     assert_close(&values(&program, &program.dynamics, &z), &rates.map(|rate| horizon * rate));
     assert_close(&values(&program, &program.path, &z), &[py - px.sin()]);
-    assert_close(&values(&program, &program.guards, &z), &[slip]);
+    assert_close(&values(&program, &program.switching, &z), &[slip]);
     assert_close(&values(&program, &program.report, &z), &[slip, th.cos() * vx + th.sin() * vy]);
     let far = [&[tau, 4.0, py, vx, vy, th, a, s], &p[..]].concat();
     assert_close(&values(&program, &program.path, &far), &[py - (PI - 4.0)]);
@@ -376,8 +376,8 @@ minimize x(end)";
     assert_eq!(problem.parameters[1].name, "sigma(y)");
 }
 
-/// One width for the vector, one guard, and the same vector known again; a component by itself is
-/// another surface.
+/// One width for the vector, one switching function, and the same vector known again; a component
+/// by itself is another surface.
 #[test]
 fn a_direction_is_one_surface_named_by_the_text_of_its_vector() {
     let text = "
@@ -392,7 +392,7 @@ minimize w(end)";
     let problem = compile(&model(text)).expect("it can be solved");
     let names: Vec<&str> = problem.surfaces.iter().map(|surface| surface.name.as_str()).collect();
     assert_eq!(names, ["v - (w, 0)", "v", "v.x", "w"]);
-    assert_eq!(problem.guards.outputs(), 4);
+    assert_eq!(problem.switching.outputs(), 4);
     let system = compile_simulation(&model(text)).expect("it can be simulated");
     let names: Vec<&str> = system.surfaces.iter().map(|surface| surface.name.as_str()).collect();
     assert_eq!(names, ["(v - (w, 0)).x", "(v - (w, 0)).y", "v.x", "v.y", "v.x", "w"]);
@@ -400,7 +400,7 @@ minimize w(end)";
     assert_eq!((system.name_of(3), system.name_of(4)), ("v", "v.x"));
 }
 
-/// sqrt kernel: psi/sqrt(|psi|^2 + sigma^2); the guard is |psi|.
+/// sqrt kernel: psi/sqrt(|psi|^2 + sigma^2); the switching function is |psi|.
 #[test]
 fn a_direction_is_smoothed_by_the_length_of_its_vector() {
     let text = "
@@ -415,7 +415,7 @@ method { smooth sigma = 0.5 kernel sqrt }";
         &values(&program, &program.dynamics, &[0.0, 0.3, -0.4, 0.5]),
         &[-0.3 / root, 0.4 / root],
     );
-    assert_close(&values(&program, &program.guards, &[0.0, 0.3, -0.4, 0.5]), &[0.5]);
+    assert_close(&values(&program, &program.switching, &[0.0, 0.3, -0.4, 0.5]), &[0.5]);
 }
 
 /// sqrt kernel: |z| becomes sqrt(z^2 + sigma^2), with the width of the surface.

@@ -15,7 +15,7 @@ fn assert_optimal(what: &str, found: &Residuals, objective: f64) {
     for (condition, residual, limit) in [
         ("all", found.error(objective), 1e-6),
         ("feasibility", found.feasibility, 1e-8),
-        ("owed", found.owed, 1e-5 * objective.abs().max(1.0)),
+        ("weighted violation", found.weighted_violation, 1e-5 * objective.abs().max(1.0)),
         ("signs", found.signs, 0.0),
         ("objective", found.objective, 1e-10),
     ] {

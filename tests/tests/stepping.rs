@@ -136,7 +136,7 @@ fn the_gradient_by_held_controls_is_that_of_their_rows() {
     }
 }
 
-/// Selectors strictly between their ends were computed from their guards, not given.
+/// Selectors strictly between their ends were computed from their switching functions, not given.
 #[test]
 fn the_block_of_these_gradients_sticks_for_a_third_of_the_time() {
     let is_implicit = |title: &str| title.contains("1 surfaces") && !title.starts_with("euler");

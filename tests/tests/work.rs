@@ -6,10 +6,11 @@
 use std::fmt::Write;
 
 use fdcc_compiler::{Model, compile};
+use fdcc_runtime::linalg::is_fused;
 use fdcc_runtime::nlp::Nlp;
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::transcribe::TranscribedNlp;
-use fdcc_tests::models::{meaning, problem, refusal, solve, unrolled};
+use fdcc_tests::models::{in_phases, meaning, problem, refusal, solve};
 use fdcc_tests::{documents, repository};
 
 const HEADINGS: [&str; 12] = [
@@ -26,6 +27,9 @@ const HEADINGS: [&str; 12] = [
     "jacobian",
     "hessian",
 ];
+
+/// The last of them: they depend on no rounding.
+const SIZES: usize = 4;
 
 /// Each model as it stands, with each sequence of jumps that may happen, and the rows of Table 7.1
 /// that are hardest for their size.
@@ -44,7 +48,7 @@ fn cases() -> Vec<(String, Problem)> {
 }
 
 fn with_jumps(name: &str, model: &Model) -> Vec<(String, Problem)> {
-    let all = unrolled(model).into_iter();
+    let all = in_phases(model).into_iter();
     let problem = |model: &Model| compile(model).expect("it is not refused");
     all.map(|(jumps, pieces)| match model.jumps.len() {
         0 => (name.to_owned(), problem(&pieces)),
@@ -88,6 +92,37 @@ fn table(rows: &[Vec<String>]) -> String {
     text
 }
 
+/// Whether two tables have the same rows, sizes and statuses, and counts within a factor of two; of
+/// small ones up to ten more.
+fn is_near(before: &str, found: &str) -> bool {
+    let is_size = |column: usize| HEADINGS[column..].len() <= SIZES;
+    let cells = |line: &str| -> Vec<String> {
+        line.split("  ").map(|it| it.trim().into()).filter(|it: &String| !it.is_empty()).collect()
+    };
+    let is_near = |(column, (a, b)): (usize, (&String, &String))| match (
+        a.parse::<usize>(),
+        b.parse::<usize>(),
+    ) {
+        (Ok(a), Ok(b)) if !is_size(column) => a <= 2 * b + 10 && b <= 2 * a + 10,
+        _ => a == b,
+    };
+    let rows = before.lines().zip(found.lines());
+    before.lines().count() == found.lines().count()
+        && rows
+            .map(|(a, b)| (cells(a), cells(b)))
+            .all(|(a, b)| a.len() == b.len() && a.iter().zip(&b).enumerate().all(is_near))
+}
+
+#[test]
+fn counts_are_near_within_a_factor_and_all_else_is_the_same() {
+    let row = "block  Solved  100  183  122  289  118  0  602  402  1202  400";
+    assert!(is_near(row, &row.replace(" 100 ", " 190 ")));
+    assert!(!is_near(row, &row.replace(" 100 ", " 290 ")));
+    assert!(!is_near(row, &row.replace(" 602 ", " 603 ")));
+    assert!(!is_near(row, &row.replace("Solved", "Acceptable")));
+    assert!(!is_near(row, ""));
+}
+
 #[test]
 fn the_work_is_what_it_was() {
     let mut rows = vec![HEADINGS.map(String::from).to_vec()];
@@ -97,8 +132,10 @@ fn the_work_is_what_it_was() {
         std::fs::write(&path, &found).expect("the snapshot can be written");
     }
     let before = std::fs::read_to_string(&path).expect("`UPDATE=1 cargo test` makes the snapshot");
+    // The table is that of a machine with AVX2 and FMA; others round otherwise.
+    let is_same = if is_fused() { before == found } else { is_near(&before, &found) };
     assert!(
-        before == found,
+        is_same,
         "the work has changed; if for good reasons, run with UPDATE=1\n{before}\n{found}"
     );
 }

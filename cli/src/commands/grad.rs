@@ -2,6 +2,7 @@
 
 use super::driven::Driven;
 use super::options::{show, usage};
+use super::solver::wrote;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::gradient::Document;
@@ -112,14 +113,7 @@ impl Grad {
             None => Ok(Vec::new()),
         };
         output::print(&if self.json { output::json(document) } else { document.words() });
-        match written {
-            Ok(names) if names.is_empty() || self.json => exit,
-            Ok(names) => {
-                output::print(&format!(" wrote {}\n", names.join("  ")));
-                exit
-            }
-            Err(failure) => failure.report(model.source()),
-        }
+        wrote(written, self.json, exit, model.source())
     }
 }
 

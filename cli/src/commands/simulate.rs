@@ -2,6 +2,7 @@
 
 use super::driven::Driven;
 use super::options::usage;
+use super::solver::wrote;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::simulation::Document;
@@ -76,13 +77,6 @@ impl Simulate {
         } else {
             output::print(&document.words());
         }
-        match written {
-            Ok(names) if names.is_empty() || self.json => exit,
-            Ok(names) => {
-                output::print(&format!(" wrote {}\n", names.join("  ")));
-                exit
-            }
-            Err(failure) => failure.report(model.source()),
-        }
+        wrote(written, self.json, exit, model.source())
     }
 }

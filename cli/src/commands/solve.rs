@@ -1,18 +1,18 @@
 //! `fdcc solve`: an optimal trajectory, a verdict, and the files asked for.
 
 use super::options::{Gap, Options, prepare, show};
-use super::solver::{Compiled, warm};
+use super::solver;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::named::Named;
-use crate::output::saved::Saved;
 use crate::output::{self, files};
-use crate::report::log::{Level, Log};
+use crate::report::log::Level;
 use crate::report::{failure, verdict};
 use crate::solved::Solved;
 use crate::watch::catch_interrupts;
 use clap::Args;
-use fdcc::{Model, Start};
+use fdcc::Model;
+use fdcc_runtime::problem::Problem;
 use std::time::Instant;
 
 /// Find an optimal trajectory
@@ -50,18 +50,12 @@ impl Solve {
     }
 
     fn solve(&self, model: &Model, begin: Instant) -> Result<Solved, Failure> {
-        let compiled = Compiled::new(model, begin, self.options.time_limit)?;
-        let saved = warm(&self.options)?;
-        let record = saved.as_ref().map(Saved::record);
-        let start = record.as_ref().map_or(Start::Guess, Start::Record);
-        compiled.check(start, &self.options)?;
-        if !self.options.json {
-            output::print(&verdict::headline(compiled.problem()));
-        }
-        let mut log = Log::new(self.options.log.unwrap_or(Level::Short));
-        let solved = compiled.solve(start, &self.options, &mut log);
-        log.finish();
-        let mut solved = solved?;
+        let headline = |problem: &Problem| {
+            if !self.options.json {
+                output::print(&verdict::headline(problem));
+            }
+        };
+        let mut solved = solver::solve(model, &self.options, begin, Level::Short, headline)?;
         if solved.is_good() {
             solved.document.sensitivities = Named::of(solved.solution.sensitivities());
         }
@@ -83,13 +77,6 @@ impl Solve {
         } else {
             output::print(&verdict::verdict(solved));
         }
-        match written {
-            Ok(names) if names.is_empty() || self.options.json => solved.exit(self.confirmed),
-            Ok(names) => {
-                output::print(&format!(" wrote {}\n", names.join("  ")));
-                solved.exit(self.confirmed)
-            }
-            Err(failure) => failure.report(model.source()),
-        }
+        solver::wrote(written, self.options.json, solved.exit(self.confirmed), model.source())
     }
 }

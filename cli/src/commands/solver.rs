@@ -7,7 +7,7 @@ use crate::output;
 use crate::output::document::{Document, Seconds};
 use crate::output::saved::Saved;
 use crate::output::units::Units;
-use crate::report::log::Log;
+use crate::report::log::{Level, Log};
 use crate::solved::Solved;
 use crate::watch::Deadline;
 use fdcc::{Error, Model, Start};
@@ -67,6 +67,45 @@ pub fn warm(options: &Options) -> Result<Option<Saved>, Failure> {
     options.warm.as_deref().map(Saved::read).transpose()
 }
 
+/// Compiles a model and solves it from where `--warm` says; `begin` is when the work on it began.
+/// `ready` sees the problem before it is solved; `level` is how much is told where no option says.
+pub fn solve(
+    model: &Model,
+    options: &Options,
+    begin: Instant,
+    level: Level,
+    ready: impl FnOnce(&Problem),
+) -> Result<Solved, Failure> {
+    let compiled = Compiled::new(model, begin, options.time_limit)?;
+    let saved = warm(options)?;
+    let record = saved.as_ref().map(Saved::record);
+    let start = record.as_ref().map_or(Start::Guess, Start::Record);
+    compiled.check(start, options)?;
+    ready(compiled.compiled.problem());
+    let mut log = Log::new(options.log.unwrap_or(level));
+    let solved = compiled.solve(start, options, &mut log);
+    log.finish();
+    solved
+}
+
+/// How a command ends that has printed its result: says which files were written, unless it has
+/// printed JSON, or why they were not.
+pub fn wrote(
+    files: Result<Vec<String>, Failure>,
+    is_json: bool,
+    exit: Exit,
+    source: &SourceFile,
+) -> Exit {
+    match files {
+        Ok(names) if names.is_empty() || is_json => exit,
+        Ok(names) => {
+            output::print(&format!(" wrote {}\n", names.join("  ")));
+            exit
+        }
+        Err(failure) => failure.report(source),
+    }
+}
+
 impl Compiled {
     /// Compiles a model; `begin` is when the work on it began. It is given up when a solve would
     /// be.
@@ -75,11 +114,6 @@ impl Compiled {
         let compiled = Deadline::after(begin, time_limit).within(move || model.compile());
         let compiled = compiled.map_err(Failure::Stopped)??;
         Ok(Compiled { compiled, begin, seconds: begin.elapsed().as_secs_f64() })
-    }
-
-    /// What is solved.
-    pub fn problem(&self) -> &Problem {
-        self.compiled.problem()
     }
 
     /// Whether a solve can begin at the solution that `--warm` names.

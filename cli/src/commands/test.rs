@@ -1,19 +1,18 @@
 //! `fdcc test`: solves models and compares the solutions with their `expect` blocks.
 
 use super::options::{Options, prepare, show};
-use super::solver::{Compiled, warm};
+use super::solver;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::output::saved::Saved;
 use crate::output::tested::{Line, Tested, Word};
 use crate::output::units::Units;
 use crate::output::{self, files};
 use crate::report::failure;
-use crate::report::log::{Level, Log};
+use crate::report::log::Level;
 use crate::solved::Solved;
 use crate::watch::catch_interrupts;
 use clap::Args;
-use fdcc::{Expectation, Expected, Model, Sides, Start};
+use fdcc::{Expectation, Expected, Model, Sides};
 use std::time::Instant;
 
 /// Solve models and check what their `expect` blocks say
@@ -74,15 +73,7 @@ impl Test {
     }
 
     fn solve(&self, model: &Model, begin: Instant) -> Result<Solved, Failure> {
-        let compiled = Compiled::new(model, begin, self.options.time_limit)?;
-        let saved = warm(&self.options)?;
-        let record = saved.as_ref().map(Saved::record);
-        let start = record.as_ref().map_or(Start::Guess, Start::Record);
-        compiled.check(start, &self.options)?;
-        let mut log = Log::new(self.options.log.unwrap_or(Level::None));
-        let solved = compiled.solve(start, &self.options, &mut log);
-        log.finish();
-        let solved = solved?;
+        let solved = solver::solve(model, &self.options, begin, Level::None, |_| {})?;
         if let Some(folder) = &self.options.out {
             files::write(&solved.document, folder, &solved.document.model)?;
         }

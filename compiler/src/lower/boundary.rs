@@ -70,7 +70,7 @@ fn start(model: &Model, graph: &mut Graph, index: usize, state: &State) -> Optio
     }
 }
 
-/// Whether a start is a number once the parameters are known.
+/// Whether a value is a number once the parameters are known.
 pub(crate) fn is_fixed(model: &Model, graph: &Graph, value: ExprId) -> bool {
     let inputs = graph.inputs_of(&[value]);
     inputs.into_iter().all(|input| matches!(model.symbols[input as usize], Symbol::Param(_)))

@@ -17,7 +17,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// The functions of a simulation whose values are enclosed.
 pub(super) struct Watched<'a> {
     pub flow: &'a VectorFunction,
-    pub guards: &'a VectorFunction,
+    pub switching: &'a VectorFunction,
     pub kinks: &'a VectorFunction,
     pub rates: &'a VectorFunction,
     pub path: &'a VectorFunction,
@@ -26,7 +26,7 @@ pub(super) struct Watched<'a> {
 
 /// The enclosures of all of them.
 pub(super) fn enclosures(graph: &mut Graph, layout: &Layout, watched: &Watched) -> Enclosures {
-    let Watched { flow, guards, kinks, rates, path, guess } = watched;
+    let Watched { flow, switching, kinks, rates, path, guess } = watched;
     let along = 0..layout.states().end;
     let mut of = |function: &VectorFunction, by: &Range<usize>| -> Vec<Enclosure> {
         function
@@ -37,7 +37,7 @@ pub(super) fn enclosures(graph: &mut Graph, layout: &Layout, watched: &Watched) 
     };
     Enclosures {
         flow: of(flow, &(0..0)),
-        guards: of(guards, &along),
+        switching: of(switching, &along),
         kinks: of(kinks, &along),
         rates: of(rates, &layout.selectors()),
         accelerations: of(rates, &along),

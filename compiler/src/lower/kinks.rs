@@ -25,12 +25,12 @@ pub(super) struct Kinks {
     pub origins: Vec<Origin>,
 }
 
-/// Takes the kinks out of a function whose layout has the selectors of the surfaces last. `guards`
-/// are the functions of the surfaces that stand alone; others have none.
+/// Takes the kinks out of a function whose layout has the selectors of the surfaces last.
+/// `switching` are the functions of the surfaces that stand alone; others have none.
 pub(super) fn take_out(
     graph: &mut Graph,
     flow: &mut VectorFunction,
-    guards: &[Option<ExprId>],
+    switching: &[Option<ExprId>],
 ) -> Kinks {
     let mut kinks = Kinks::default();
     let mut rewritten = Vec::new();
@@ -39,7 +39,7 @@ pub(super) fn take_out(
             let Some((zero, [below, above])) = sides(graph, original, rebuilt) else {
                 return rebuilt;
             };
-            match side_of(graph, zero, flow, guards, (&mut kinks, origin)) {
+            match side_of(graph, zero, flow, switching, (&mut kinks, origin)) {
                 Some(selector) => {
                     let middle = graph.number(0.0);
                     let side = graph.select_le(selector, middle, below, above);
@@ -75,7 +75,7 @@ fn side_of(
     graph: &mut Graph,
     zero: ExprId,
     flow: &VectorFunction,
-    guards: &[Option<ExprId>],
+    switching: &[Option<ExprId>],
     (kinks, origin): (&mut Kinks, &Origin),
 ) -> Option<ExprId> {
     let layout = flow.layout;
@@ -84,7 +84,7 @@ fn side_of(
     if !graph.inputs_of(&[zero]).iter().any(is_moved) {
         return None;
     }
-    if let Some(surface) = guards.iter().position(|guard| *guard == Some(zero)) {
+    if let Some(surface) = switching.iter().position(|psi| *psi == Some(zero)) {
         return Some(graph.input((first + surface) as u32));
     }
     let known = kinks.zeros.iter().position(|known| *known == zero);
@@ -93,5 +93,5 @@ fn side_of(
         kinks.origins.push(origin.clone());
         kinks.zeros.len() - 1
     });
-    Some(graph.input((first + guards.len() + place) as u32))
+    Some(graph.input((first + switching.len() + place) as u32))
 }

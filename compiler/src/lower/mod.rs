@@ -4,7 +4,7 @@
 //! ```text
 //! flow      f(t, x, u, p, s)                                 real time, selectors s as inputs
 //! dynamics  D f(t0 + tau D, x, u, p, s = Sgn_sigma(psi))     D = tf - t0, tau in [0, 1]; then D * running cost
-//! path, guards, report                                       over tau as well
+//! path, switching, report                                    over tau as well
 //! boundary  Mayer objective, conditions at [x(start), x(end)]
 //! ```
 
@@ -53,7 +53,7 @@ pub struct LoweredProblem {
     /// First and last time.
     pub interval: VectorFunction,
     /// The functions of the surfaces.
-    pub guards: VectorFunction,
+    pub switching: VectorFunction,
     /// What is reported.
     pub report: VectorFunction,
     /// Whether the last output of `dynamics` is the integrand of the objective.
@@ -79,9 +79,9 @@ pub fn lower(model: &Model) -> LoweredProblem {
         model.path.iter().map(|row| (row.value, origin(&row.place))),
         true,
     );
-    let guards: Vec<_> =
+    let switching: Vec<_> =
         model.switches().iter().map(|it| (size(&mut graph, model, it), origin(it.place))).collect();
-    let guards = over_grid.function(&mut graph, "guards", guards.into_iter(), false);
+    let switching = over_grid.function(&mut graph, "switching", switching.into_iter(), false);
     let report = model.report.iter().map(|report| (report.value, origin(&report.place)));
     let report = over_grid.function(&mut graph, "report", report, false);
     let (boundary, boundary_rows) = boundary::lower(model, &mut graph, &sizes, &objective);
@@ -97,7 +97,7 @@ pub fn lower(model: &Model) -> LoweredProblem {
         boundary,
         guess,
         interval,
-        guards,
+        switching,
         report,
         running_cost,
         hidden,
@@ -114,7 +114,7 @@ impl LoweredProblem {
             &self.boundary,
             &self.guess,
             &self.interval,
-            &self.guards,
+            &self.switching,
             &self.report,
         ]
     }

@@ -4,6 +4,7 @@
 //! integral enters otherwise, or stands in a condition, it becomes one more state `q' = e_k,
 //! q(start) = 0`.
 
+use super::boundary::is_fixed;
 use super::origin;
 use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::{ExprId, Graph};
@@ -36,7 +37,7 @@ pub(crate) fn split(model: &Model, graph: &mut Graph) -> Objective {
     for at in integrals_in(model, graph, &[value]) {
         let input = model.input_of(Symbol::Integral(at)).expect("it was found among the inputs");
         let factor = derivative(graph, value, input);
-        if reads_params_only(model, graph, factor) {
+        if is_fixed(model, graph, factor) {
             running.push((input, graph.mul(factor, model.integrals[at].integrand)));
         } else if !split.hidden.contains(&at) {
             split.hidden.push(at);
@@ -60,9 +61,4 @@ pub(crate) fn integrals_in(model: &Model, graph: &Graph, roots: &[ExprId]) -> Ve
         _ => None,
     };
     inputs.into_iter().filter_map(integral).collect()
-}
-
-fn reads_params_only(model: &Model, graph: &Graph, value: ExprId) -> bool {
-    let inputs = graph.inputs_of(&[value]);
-    inputs.into_iter().all(|input| matches!(model.symbols[input as usize], Symbol::Param(_)))
 }

@@ -19,7 +19,7 @@ pub fn problem(
 ) -> Problem {
     let functions: [Arc<dyn Function>; 7] =
         functions.try_into().unwrap_or_else(|_| unreachable!("a problem has seven functions"));
-    let [dynamics, path, boundary, guess, interval, guards, report] = functions;
+    let [dynamics, path, boundary, guess, interval, switching, report] = functions;
     let parameters = parameters(model, lowered.flow.layout.p, numbers);
     let first_sigma = model.params.len() + model.frees.len();
     let layout: Layout = lowered.flow.layout;
@@ -46,7 +46,7 @@ pub fn problem(
         start: starts(model, lowered, numbers),
         guess,
         interval,
-        guards,
+        switching,
         is_autonomous: is_autonomous(lowered),
         last_time: last_time(model, lowered),
         report_names: model.report.iter().map(|report| report.place.name.clone()).collect(),

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! flow      f(t, x, u, p, s), then the integrands      rates     psi' = psi_t + psi_x f(t, x, u, p, s)
-//! guards    psi(t, x, p)                               resets    r(t, x, p), one block for each jump
+//! switching psi(t, x, p)                               resets    r(t, x, p), a block for each jump
 //! objective M(x(start), x(end), p)                     guess     of states, then controls, at (tau, p)
 //! interval  t0(p), tf(p)                               start     x(start)(p)
 //! kinks     e(t, x, u, p) of abs(e), a - b of min(a, b) and max(a, b) in the flow
@@ -60,12 +60,12 @@ pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) 
     let mut over = OverTime { model, graph: &mut graph, sizes: &sizes, layout, purpose, surfaces };
     let mut flow = over.flow();
     let kinks = over.kinks(&mut flow);
-    let (guards, path) = (over.guards(), over.path());
-    let rates = over.rates(&flow, &guards);
+    let (switching, path) = (over.switching(), over.path());
+    let rates = over.rates(&flow, &switching);
     let mut functions = vec![
         flow,
         rates,
-        guards,
+        switching,
         over.resets(),
         over.objective(&hidden),
         guess::lower(model, over.graph, &sizes),
@@ -77,13 +77,13 @@ pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) 
     if purpose != Purpose::Simulation {
         functions.iter_mut().for_each(|function| differentiable(model, &mut graph, function));
     }
-    let [flow, rates, guards, _, _, guess, _, _, kinks] = functions.as_slice() else {
+    let [flow, rates, switching, _, _, guess, _, _, kinks] = functions.as_slice() else {
         unreachable!("a system has nine functions")
     };
     let enclosures = enclosures(
         &mut graph,
         &layout,
-        &Watched { flow, guards, kinks, rates, path: &path, guess },
+        &Watched { flow, switching, kinks, rates, path: &path, guess },
     );
     (graph, Simulated { functions, enclosures, layout, hidden, surfaces })
 }
@@ -161,11 +161,11 @@ impl OverTime<'_> {
         flow
     }
 
-    fn guards(&mut self) -> VectorFunction {
+    fn switching(&mut self) -> VectorFunction {
         let model = self.model;
         let surfaces = model.surfaces.iter().take(self.surfaces);
         let psis = surfaces.map(|surface| (surface.psi, origin(&surface.place)));
-        self.function("guards", psis, 0..self.layout.states().end)
+        self.function("switching", psis, 0..self.layout.states().end)
     }
 
     /// The path conditions, as they are written.
@@ -176,19 +176,22 @@ impl OverTime<'_> {
 
     /// Gives the kinks of the flow selectors; where a solve smooths, the knots of the kernel.
     fn kinks(&mut self, flow: &mut VectorFunction) -> VectorFunction {
-        let guards = self.guards().outputs;
+        let switching = self.switching().outputs;
         let is_alone = |at: usize| self.model.balls.iter().all(|ball| !ball.surfaces.contains(&at));
-        let guards: Vec<Option<ExprId>> =
-            guards.into_iter().enumerate().map(|(at, psi)| is_alone(at).then_some(psi)).collect();
-        let kinks = take_out(self.graph, flow, &guards);
+        let switching: Vec<Option<ExprId>> = switching
+            .into_iter()
+            .enumerate()
+            .map(|(at, psi)| is_alone(at).then_some(psi))
+            .collect();
+        let kinks = take_out(self.graph, flow, &switching);
         self.layout.s += kinks.zeros.len();
         flow.layout = self.layout;
         self.over_inputs("kinks", kinks.zeros, kinks.origins, 0..self.layout.states().end)
     }
 
     /// `psi'` along the flow.
-    fn rates(&mut self, flow: &VectorFunction, guards: &VectorFunction) -> VectorFunction {
-        let rates = guards.outputs.iter().map(|&psi| {
+    fn rates(&mut self, flow: &VectorFunction, switching: &VectorFunction) -> VectorFunction {
+        let rates = switching.outputs.iter().map(|&psi| {
             let mut terms = vec![derivative(self.graph, psi, 0)];
             for (at, &rate) in self.layout.states().zip(&flow.outputs) {
                 let slope = derivative(self.graph, psi, at as u32);
@@ -198,7 +201,7 @@ impl OverTime<'_> {
         });
         let rates = rates.collect();
         let by = self.layout.states().chain(self.layout.selectors());
-        self.over_inputs("rates", rates, guards.origins.clone(), by)
+        self.over_inputs("rates", rates, switching.origins.clone(), by)
     }
 
     /// What a jump does not name stays as it is.
@@ -256,8 +259,9 @@ pub(crate) fn system(
     numbers: &Numbers,
     functions: Vec<Arc<dyn Function>>,
 ) -> simulate::System {
-    let [flow, rates, guards, resets, objective, guess, interval, start, kinks]: [Arc<dyn Function>;
-        9] = functions.try_into().unwrap_or_else(|_| unreachable!("a system has nine functions"));
+    let [flow, rates, switching, resets, objective, guess, interval, start, kinks]: [Arc<
+        dyn Function,
+    >; 9] = functions.try_into().unwrap_or_else(|_| unreachable!("a system has nine functions"));
     let first_sigma = model.params.len() + model.frees.len();
     let parameters = parameters(model, simulated.layout.p, numbers);
     let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
@@ -274,7 +278,7 @@ pub(crate) fn system(
         parameters,
         flow,
         rates,
-        guards,
+        switching,
         resets,
         objective,
         guess,

@@ -139,12 +139,6 @@ impl Model {
         self.set(key, value, &given)
     }
 
-    /// The same as a solution says it: in SI.
-    pub fn restore_method(&mut self, key: &str, value: &str) -> Result<(), String> {
-        let given = given(value, |_, it| Ok(it.value))?;
-        self.set(key, value, &given)
-    }
-
     fn set(&mut self, key: &str, value: &str, given: &Given) -> Result<(), String> {
         match set(&mut self.method, key, given) {
             Ok(()) => {

@@ -99,10 +99,8 @@ fn evaluate(solution: &Solution) -> Vec<Checked> {
     ));
     let replayed = Replayed::new(solution, &expectations.simulated);
     parameters.extend(replayed.values());
-    let mut points = Columns::new(inputs.len(), 1);
-    inputs.iter().enumerate().for_each(|(i, value)| points.column_mut(i)[0] = *value);
     let mut values = Columns::new(expectations.function.outputs(), 1);
-    expectations.function.value(&points, &parameters, &mut values);
+    expectations.function.value(&Columns::of_point(&inputs), &parameters, &mut values);
     let list = expectations.list.iter().enumerate();
     list.map(|(at, expected)| checked(expected, at, &values, &replayed)).collect()
 }

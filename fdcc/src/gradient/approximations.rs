@@ -91,13 +91,13 @@ fn why(failure: &Failure) -> String {
 
 /// The largest size of each switching function along a simulation.
 fn sizes(system: &System, simulation: &Simulation) -> Vec<f64> {
-    let mut points = Columns::new(system.guards.layout().point_inputs(), simulation.time.len());
+    let mut points = Columns::new(system.switching.layout().point_inputs(), simulation.time.len());
     points.column_mut(0).copy_from_slice(&simulation.time);
     for (at, column) in simulation.states.iter().enumerate() {
         points.column_mut(1 + at).copy_from_slice(column);
     }
-    let mut values = Columns::new(system.guards.outputs(), points.count());
-    system.guards.value(&points, &system.parameter_values(), &mut values);
+    let mut values = Columns::new(system.switching.outputs(), points.count());
+    system.switching.value(&points, &system.parameter_values(), &mut values);
     let largest =
         |at| values.column(at).iter().fold(0.0, |most: f64, psi: &f64| most.max(psi.abs()));
     (0..system.surfaces.len()).map(largest).collect()

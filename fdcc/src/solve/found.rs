@@ -15,7 +15,7 @@ pub(super) struct Found {
     pub jumps: Vec<Jump>,
     pub sequences: Vec<Sequence>,
     pub is_cut: bool,
-    pub unrolled: Option<Unrolled>,
+    pub phases: Option<Phases>,
 }
 
 /// A jump of a solution.
@@ -64,17 +64,17 @@ pub struct Sequence {
     pub ended: Ended,
 }
 
-/// What was solved in place of a model with jumps: its phases side by side.
+/// What was solved in place of a model with jumps: its phases, all at once.
 ///
 /// ```
 /// let model = fdcc::Model::from_file("../models/bounce.fdc")?.with_method("N", 20)?;
 /// let solution = model.solve(&fdcc::Options::default())?;
-/// let unrolled = solution.unrolled.as_ref().expect("the model has a jump");
-/// let phases = solution.jumps.len() + 1;
-/// assert!(unrolled.problem.states.len() >= phases * solution.problem.states.len());
+/// let phases = solution.phases.as_ref().expect("the model has a jump");
+/// let count = solution.jumps.len() + 1;
+/// assert!(phases.problem.states.len() >= count * solution.problem.states.len());
 /// # Ok::<(), fdcc::Error>(())
 /// ```
-pub struct Unrolled {
+pub struct Phases {
     /// A model without jumps.
     pub model: Model,
     /// Its problem.
@@ -93,7 +93,7 @@ impl Found {
             jumps: Vec::new(),
             sequences: Vec::new(),
             is_cut: false,
-            unrolled: None,
+            phases: None,
         }
     }
 

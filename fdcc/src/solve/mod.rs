@@ -10,7 +10,7 @@ mod sequences;
 mod solution;
 mod sweep;
 
-pub use found::{Jump, Sequence, Unrolled};
+pub use found::{Jump, Phases, Sequence};
 pub use report::{Ended, Options, Part, Report, Start};
 pub use solution::Solution;
 pub use sweep::{Grid, Sweep};

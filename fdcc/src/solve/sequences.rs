@@ -1,7 +1,7 @@
 //! A model with jumps: each sequence of jumps that may happen is a problem of its own, and the best
 //! answer is taken.
 
-use super::found::{Found, Jump, Sequence, Unrolled};
+use super::found::{Found, Jump, Phases, Sequence};
 use super::multistart::{self, all_attempts, first_stopped, is_stopped, unless_stopped};
 use super::report::{Ended, Options, Part, Report};
 use crate::error::Error;
@@ -190,9 +190,8 @@ impl Alternative {
         let jumps = self.jumps.into_iter().zip(jumps);
         let jumps = jumps.filter_map(|(name, jump)| Some(happened(between, name?, jump))).collect();
         let problem = between.clone();
-        let unrolled =
-            Unrolled { model: self.model, problem: found.problem, outcome: found.outcome };
-        Found { problem, outcome, jumps, unrolled: Some(unrolled), ..found }
+        let phases = Phases { model: self.model, problem: found.problem, outcome: found.outcome };
+        Found { problem, outcome, jumps, phases: Some(phases), ..found }
     }
 }
 

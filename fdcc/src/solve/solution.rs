@@ -1,6 +1,6 @@
 //! What came out of a solve, asked in the words of the model.
 
-use super::found::{Found, Jump, Sequence, Unrolled, is_solved};
+use super::found::{Found, Jump, Phases, Sequence, is_solved};
 use super::report::Ended;
 use crate::error::Error;
 use crate::model::Model;
@@ -56,7 +56,7 @@ pub struct Solution {
     /// Whether the model allows more jumps than were tried.
     pub sequences_left_out: bool,
     /// What the solver saw of a model with jumps.
-    pub unrolled: Option<Unrolled>,
+    pub phases: Option<Phases>,
 }
 
 impl Solution {
@@ -70,7 +70,7 @@ impl Solution {
             jumps: found.jumps,
             sequences: found.sequences,
             sequences_left_out: found.is_cut,
-            unrolled: found.unrolled,
+            phases: found.phases,
         }
     }
 
@@ -228,7 +228,7 @@ impl Solution {
     /// What the solver saw: model, problem and outcome. Of a model with jumps, its phases side by
     /// side.
     pub fn as_solved(&self) -> (&fdcc_compiler::Model, &Problem, &Outcome) {
-        match &self.unrolled {
+        match &self.phases {
             Some(it) => (&it.model, &it.problem, &it.outcome),
             None => (self.model.meaning(), &self.problem, &self.outcome),
         }

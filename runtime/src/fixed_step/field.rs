@@ -1,34 +1,13 @@
-//! Right sides and guards of one system at single points, with all their derivatives.
+//! Right sides and switching functions of one system at single points, with all their derivatives.
 
 use crate::problem::{Columns, Function};
+use crate::sensitivity::Jacobian;
 use crate::simulate::{Controls, System, value};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
-/// Values of a function and their derivatives by all its inputs.
-pub(super) struct Jacobian {
-    pub values: DVector<f64>,
-    /// One column for each input.
-    pub by: DMatrix<f64>,
-}
-
-impl Jacobian {
-    /// At a point `[t | x | u | s]`.
-    pub fn of(function: &dyn Function, point: &[f64], parameters: &[f64]) -> Self {
-        let mut points = Columns::new(point.len(), 1);
-        point.iter().enumerate().for_each(|(column, value)| points.column_mut(column)[0] = *value);
-        let pattern = function.jacobian_pattern();
-        let mut values = Columns::new(function.outputs(), 1);
-        let mut entries = Columns::new(pattern.entries.len(), 1);
-        function.jacobian(&points, parameters, &mut values, &mut entries);
-        let mut by = DMatrix::zeros(function.outputs(), function.layout().inputs());
-        for (entry, &(row, column)) in pattern.entries.iter().enumerate() {
-            by[(row as usize, column as usize)] = entries.column(entry)[0];
-        }
-        Jacobian {
-            values: DVector::from_fn(function.outputs(), |row, _| values.column(row)[0]),
-            by,
-        }
-    }
+/// Values of a function and their derivatives by all its inputs, at a point `[t | x | u | s]`.
+pub(super) fn jacobian(function: &dyn Function, point: &[f64], parameters: &[f64]) -> Jacobian {
+    Jacobian::of(function, &Columns::of_point(point), parameters)
 }
 
 /// A system with numbers for its parameters and controls.
@@ -92,14 +71,14 @@ impl<'a> Field<'a> {
     }
 
     pub fn flow(&self, point: &Point) -> Jacobian {
-        Jacobian::of(&*self.system.flow, &self.inputs(point), &self.parameters)
+        jacobian(&*self.system.flow, &self.inputs(point), &self.parameters)
     }
 
     pub fn psi(&self, point: &Point) -> DVector<f64> {
-        DVector::from_vec(value(&*self.system.guards, &self.inputs(point), &self.parameters))
+        DVector::from_vec(value(&*self.system.switching, &self.inputs(point), &self.parameters))
     }
 
-    pub fn guards(&self, point: &Point) -> Jacobian {
-        Jacobian::of(&*self.system.guards, &self.inputs(point), &self.parameters)
+    pub fn switching(&self, point: &Point) -> Jacobian {
+        jacobian(&*self.system.switching, &self.inputs(point), &self.parameters)
     }
 }

@@ -1,8 +1,8 @@
 //! The gradient of what the steps compute: their exact derivative, step by step backwards.
 //!
-//! With `y = (x+, s_A)`, where `A` are the selectors that keep their guards at 0 (all others are
-//! constant), a step solves `R(y; x, s0, u, p, t, h) = (F, psi_A) = 0`. From `lambda = dJ/dx+` and
-//! `rho = dJ/ds_A`
+//! With `y = (x+, s_A)`, where `A` are the selectors that keep their switching functions at 0 (all
+//! others are constant), a step solves `R(y; x, s0, u, p, t, h) = (F, psi_A) = 0`. From `lambda =
+//! dJ/dx+` and `rho = dJ/ds_A`
 //!
 //! ```text
 //! R_y^T (mu, nu) = (lambda, rho),
@@ -12,7 +12,7 @@
 //! The cost does not depend on how many parameters and controls there are. Times and the step
 //! follow the interval: `t = t0(p) + tau (tf(p) - t0(p))`.
 
-use super::field::{Field, Jacobian};
+use super::field::{Field, jacobian};
 use super::linearized::Linearized;
 use super::rule::Grid;
 use super::run::{Failure, Stepped, ends};
@@ -44,8 +44,7 @@ pub fn gradient(
     }
     let field = Field::new(system, controls);
     let ends = ends(&stepped.start, stepped.end());
-    let objective =
-        Jacobian::of(&*system.objective, &ends, &field.parameters).by.row(0).transpose();
+    let objective = jacobian(&*system.objective, &ends, &field.parameters).by.row(0).transpose();
     let mut back = Adjoint::new(&field, grid, controls, &objective);
     for step in stepped.taken.iter().rev() {
         back.pass(step)?;
@@ -124,7 +123,7 @@ impl<'a> Adjoint<'a> {
         let (mu, nu) =
             (solution.rows(0, layout.x).into_owned(), solution.rows(layout.x, free.len()));
         let by_flow = local.flow.by.tr_mul(&mu) * local.weight;
-        let by_all = by_flow - local.guards.by.select_rows(free).tr_mul(&nu);
+        let by_all = by_flow - local.switching.by.select_rows(free).tr_mul(&nu);
         self.add_times(step, node.time, by_all[0], node.weight * mu.dot(&local.flow.values));
         Ok((mu, by_all))
     }
@@ -162,7 +161,7 @@ impl<'a> Adjoint<'a> {
                 .for_each(|(sum, by)| *sum += by),
             None => {
                 let guess =
-                    Jacobian::of(&*self.field.system.guess, &[middle], &self.field.parameters).by;
+                    jacobian(&*self.field.system.guess, &[middle], &self.field.parameters).by;
                 let guess = guess.view((layout.x, 1), (layout.u, layout.p));
                 self.parameters += guess.transpose() * by_controls;
             }
@@ -172,8 +171,8 @@ impl<'a> Adjoint<'a> {
     /// Start and interval are functions of the parameters.
     fn finish(mut self) -> Gradient {
         let Field { system, parameters, .. } = self.field;
-        let start = Jacobian::of(&*system.start_of, &[], parameters).by;
-        let interval = Jacobian::of(&*system.interval_of, &[], parameters).by.transpose();
+        let start = jacobian(&*system.start_of, &[], parameters).by;
+        let interval = jacobian(&*system.interval_of, &[], parameters).by.transpose();
         self.parameters += start.transpose() * &self.state;
         self.parameters += interval.column(0) * (self.first_time - self.duration)
             + interval.column(1) * self.duration;

@@ -4,14 +4,15 @@
 //! F_x = 1 - h b f_x w,    F_s = -h b f_s,    psi_x w
 //! ```
 
-use super::field::{Field, Jacobian, Point};
+use super::field::{Field, Point};
+use crate::sensitivity::Jacobian;
 use crate::transcribe::tableau::Node;
 use nalgebra::DMatrix;
 
 /// Derivatives at one point.
 pub(super) struct Linearized {
     pub flow: Jacobian,
-    pub guards: Jacobian,
+    pub switching: Jacobian,
     /// `h b`
     pub weight: f64,
     /// `F_x`
@@ -24,7 +25,7 @@ pub(super) struct Linearized {
 
 impl Linearized {
     pub fn new(field: &Field, node: &Node, h: f64, point: &Point) -> Self {
-        let (flow, guards) = (field.flow(point), field.guards(point));
+        let (flow, switching) = (field.flow(point), field.switching(point));
         let (layout, weight) = (field.system.layout, h * node.weight);
         let blended = |by: &DMatrix<f64>| {
             DMatrix::from_fn(by.nrows(), layout.x, |i, j| {
@@ -33,11 +34,12 @@ impl Linearized {
         };
         let by_end = DMatrix::identity(layout.x, layout.x) - weight * blended(&flow.by);
         let by_selectors = -weight * flow.by.columns_range(field.system.surface_selectors());
-        let normals = blended(&guards.by);
-        Linearized { flow, guards, weight, by_end, by_selectors, normals }
+        let normals = blended(&switching.by);
+        Linearized { flow, switching, weight, by_end, by_selectors, normals }
     }
 
-    /// The derivative of `F` and of the guards of some selectors by the end and these selectors.
+    /// The derivative of `F` and of the switching functions of some selectors by the end and these
+    /// selectors.
     pub fn bordered(&self, free: &[usize]) -> DMatrix<f64> {
         let states = self.by_end.nrows();
         let mut matrix = DMatrix::zeros(states + free.len(), states + free.len());

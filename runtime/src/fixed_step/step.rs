@@ -6,9 +6,9 @@
 //! ```
 //!
 //! Newton's method with the inclusion kept as it is: with `d = -F_x^-1 F` and `D = -F_x^-1 F_s` the
-//! end moves by `d + D (s' - s)`, the guards by `psi_x w` times that, and the new selectors `s'`
-//! solve a linear complementarity problem. Steps are shortened until `F` shrinks; where it cannot,
-//! because only the selectors were wrong, they are not.
+//! end moves by `d + D (s' - s)`, the switching functions by `psi_x w` times that, and the new
+//! selectors `s'` solve a linear complementarity problem. Steps are shortened until `F` shrinks;
+//! where it cannot, because only the selectors were wrong, they are not.
 
 use super::field::{Field, Point};
 use super::linearized::Linearized;
@@ -37,7 +37,7 @@ pub(super) struct Step {
     pub carried: Vec<bool>,
     /// What the implicit part was evaluated at.
     pub new: Point,
-    /// Selectors of the implicit part that keep their guards at 0.
+    /// Selectors of the implicit part that keep their switching functions at 0.
     pub free: Vec<usize>,
     pub end: DVector<f64>,
 }
@@ -147,7 +147,7 @@ impl Implicit<'_> {
         let inverse = local.by_end.lu();
         let plain = -inverse.solve(&residual).ok_or_else(singular)?;
         let along = -inverse.solve(&local.by_selectors).ok_or_else(singular)?;
-        let a = local.guards.values + &local.normals * (&plain - &along * s);
+        let a = local.switching.values + &local.normals * (&plain - &along * s);
         let turned = selectors(&a, &-(&local.normals * &along)).ok_or_else(singular)? - s;
         Ok(Change { x: plain + along * &turned, s: turned, residual: relative(&residual, x) })
     }

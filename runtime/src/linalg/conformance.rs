@@ -213,15 +213,22 @@ fn both_factorisations_solve_their_system_and_know_its_inertia() {
     let mut both = [0, 0];
     for case in 0..240 {
         // Sizes that are compiled as constants, and any.
-        let (states, controls, globals, coupling_rows) = match case % 10 {
+        let (states, controls, globals, coupling_constraints) = match case % 10 {
             7 => (5, 2, 1, 0),
             8 => (4, 1, 1, 2),
             _ => (1 + case % 3, case % 4, case % 3, if case % 4 == 0 { 0 } else { (case / 3) % 2 }),
         };
-        let (intervals, local_rows) = (1 + (case / 10) % 5, (case / 2) % 3);
+        let (intervals, local_constraints) = (1 + (case / 10) % 5, (case / 2) % 3);
         let inner = if case % 3 == 1 { (case / 6) % 4 } else { 0 };
-        let stages =
-            Stages { intervals, states, controls, inner, globals, local_rows, coupling_rows };
+        let stages = Stages {
+            intervals,
+            states,
+            controls,
+            inner,
+            globals,
+            local_constraints,
+            coupling_constraints,
+        };
         let case = Case::new(stages, case % 5 == 0, case % 7 == 0, case % 2 == 0, &mut random);
         let equality: Vec<bool> = case.d.iter().map(|d| *d == 0.0).collect();
         let riccati = || {
@@ -253,8 +260,8 @@ fn products_are_those_of_all_entries() {
             controls: case % 3,
             inner,
             globals: case / 8 % 2,
-            local_rows: 1,
-            coupling_rows: 1,
+            local_constraints: 1,
+            coupling_constraints: 1,
         };
         let is_linear = case % 7 == 0;
         let mut case = Case::new(stages, case % 5 == 0, false, true, &mut random);

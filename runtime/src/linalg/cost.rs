@@ -7,9 +7,9 @@
 //!     N ( next^2 (2 w + next) + 3/2 next w^2 + kept^2 w + n w^2 )
 //! ```
 //!
-//! multiplications ([`super::riccati`]). That is little while the border is small; but pieces of
-//! time between jumps stand side by side, and each end and each length of a piece is one more row
-//! or variable of the border, which hardly any state has to do with.
+//! multiplications ([`super::riccati`]). That is little while the border is small; but phases
+//! between jumps are solved at once, and each end and each duration of a phase is one more row or
+//! variable of the border, which hardly any state has to do with.
 
 use super::sparse_ldl::SparseLdl;
 use super::structure::stages::Stages;
@@ -34,7 +34,7 @@ pub(super) fn is_sparse_cheaper(stages: Stages, hessian: &Triplets, jacobian: &T
 }
 
 fn border(stages: Stages) -> usize {
-    stages.globals + stages.coupling_rows
+    stages.globals + stages.coupling_constraints
 }
 
 /// Of the recursion.
@@ -60,8 +60,8 @@ mod tests {
             controls: 0,
             inner: 0,
             globals: count,
-            local_rows: 0,
-            coupling_rows: count,
+            local_constraints: 0,
+            coupling_constraints: count,
         };
         let (step, globals) = (stages.variable_step(), stages.globals());
         let repeat = |row, column, row_step, column_step| Family {
@@ -92,8 +92,8 @@ mod tests {
             controls: 0,
             inner,
             globals: 0,
-            local_rows: 0,
-            coupling_rows: 1,
+            local_constraints: 0,
+            coupling_constraints: 1,
         };
         let (step, rows) = (stages.variable_step(), stages.row_step());
         let family =

@@ -20,6 +20,7 @@ pub(crate) mod solvers;
 pub mod sparse_ldl;
 pub(crate) mod structure;
 
+pub use dense::lanes::is_fused;
 pub(crate) use products::Products;
 pub(crate) use structure::columns::Columns;
 pub use structure::factor::{Factor, Inertia};

@@ -65,7 +65,7 @@ impl Assessment {
         let rows =
             nlp.constraint_bounds().iter().zip(&rows).zip(&of_rows).zip(&multipliers.constraints);
         let mut spreads = vec![0.0; quantities.stepped];
-        rows.zip(&quantities.rows).for_each(|((((bounds, value), size), lambda), kind)| {
+        rows.zip(&quantities.constraints).for_each(|((((bounds, value), size), lambda), kind)| {
             sums.add(bounds, *value, *size, [(-lambda).max(0.0), lambda.max(0.0)]);
             if let Some(spread) = spreads.get_mut(*kind) {
                 *spread += bounds.violation(*value) / size;
@@ -174,13 +174,15 @@ fn constraint_magnitudes(
     jacobian: &[f64],
     magnitudes: &[f64],
 ) -> Vec<f64> {
-    let mut terms = vec![0.0; quantities.rows.len()];
+    let mut terms = vec![0.0; quantities.constraints.len()];
     for ((row, column), slope) in nlp.jacobian_structure().entries().zip(jacobian) {
         terms[row] += slope.abs() * magnitudes[quantities.variables[column]];
     }
-    let kinds = quantities.rows.iter().max().map_or(0, |last| last + 1);
+    let kinds = quantities.constraints.iter().max().map_or(0, |last| last + 1);
     let mut largest = vec![0.0f64; kinds];
-    for ((i, terms), bounds) in quantities.rows.iter().zip(terms).zip(nlp.constraint_bounds()) {
+    for ((i, terms), bounds) in
+        quantities.constraints.iter().zip(terms).zip(nlp.constraint_bounds())
+    {
         let ends =
             [bounds.lower, bounds.upper].map(f64::abs).into_iter().filter(|end| end.is_finite());
         largest[*i] = largest[*i].max(ends.fold(terms, f64::max));
@@ -189,7 +191,7 @@ fn constraint_magnitudes(
         *size += curvature(nlp, quantities, v, magnitudes, i);
     }
     let size = |i: usize| if i < quantities.stepped { magnitudes[i] } else { largest[i] };
-    quantities.rows.iter().map(|i| size(*i)).collect()
+    quantities.constraints.iter().map(|i| size(*i)).collect()
 }
 
 /// The mean size of the terms of second order of the rows of one kind: a square that has to be 0
@@ -202,7 +204,7 @@ fn curvature(
     kind: usize,
 ) -> f64 {
     let is_its = |i: &usize| if *i == kind { 1.0 } else { 0.0 };
-    let weights: Vec<f64> = quantities.rows.iter().map(is_its).collect();
+    let weights: Vec<f64> = quantities.constraints.iter().map(is_its).collect();
     let (count, mut at) = (weights.iter().sum::<f64>(), Derivatives::new(nlp));
     if count == 0.0 {
         return 0.0;

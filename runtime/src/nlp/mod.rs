@@ -61,7 +61,7 @@ pub struct Quantities {
     pub variables: Vec<usize>,
     /// That of each constraint: below `stepped` it is the step of the variables with the same
     /// number.
-    pub rows: Vec<usize>,
+    pub constraints: Vec<usize>,
     /// How many quantities of variables may have steps.
     pub stepped: usize,
     /// One of the declared unit of each quantity of variables.

@@ -67,7 +67,7 @@ impl Nlp for Dense {
             units: vec![1.0; self.variables.len()],
             objective: 1.0,
             variables,
-            rows,
+            constraints: rows,
             stepped: 0,
         }
     }

@@ -87,6 +87,13 @@ impl Columns {
         Columns { data: vec![0.0; columns * stride], count, columns, stride }
     }
 
+    /// One point: a column for each of its numbers.
+    pub fn of_point(point: &[f64]) -> Self {
+        let mut columns = Columns::new(point.len(), 1);
+        point.iter().enumerate().for_each(|(at, value)| columns.column_mut(at)[0] = *value);
+        columns
+    }
+
     /// Even, and not a multiple of a page, or all columns would compete for the same cache lines.
     fn stride_for(count: usize) -> usize {
         let even = count.next_multiple_of(2);
@@ -266,8 +273,8 @@ pub struct Unknown {
     pub bounds: Bounds,
 }
 
-/// A switching surface, the zero set of output `i` of the guards; in a [`Problem`] also a whole
-/// `Dir`, with `|psi|`.
+/// A switching surface, the zero set of output `i` of the switching functions; in a [`Problem`]
+/// also a whole `Dir`, with `|psi|`.
 #[derive(Clone, Debug)]
 pub struct Surface {
     /// Its name.
@@ -322,7 +329,7 @@ pub struct Problem {
     /// Inputs `[p]`; outputs `t0, tf`.
     pub interval: Arc<dyn Function>,
     /// `psi`, or `|psi|` of a `Dir`, one output per surface, over normalised time.
-    pub guards: Arc<dyn Function>,
+    pub switching: Arc<dyn Function>,
     /// Whether neither `dynamics` nor `path` depends on the time but through states and controls.
     pub is_autonomous: bool,
     /// The unknown that is the last time and appears in no right side, path constraint or first

@@ -18,6 +18,7 @@ pub use first_order::gradient::{Costates, Sensitivity, gradient};
 pub use first_order::one_sided::one_sided;
 pub use first_order::perturbed::perturbed;
 pub use first_order::quantity::Quantity;
+pub(crate) use linearized::linearization::Jacobian;
 pub use nondifferentiability::kink::Kink;
 pub use nondifferentiability::{Nondifferentiability, NondifferentiabilityKind};
 pub use second_order::hessian;

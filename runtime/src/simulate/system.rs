@@ -66,8 +66,8 @@ pub struct Enclosure {
 pub struct Enclosures {
     /// Of [`System::flow`]; without derivatives.
     pub flow: Vec<Enclosure>,
-    /// Of [`System::guards`]; by `t` and `x`.
-    pub guards: Vec<Enclosure>,
+    /// Of [`System::switching`]; by `t` and `x`.
+    pub switching: Vec<Enclosure>,
     /// Of [`System::kinks`]; by `t` and `x`.
     pub kinks: Vec<Enclosure>,
     /// Of [`System::rates`]; by `s`.
@@ -108,7 +108,7 @@ pub struct System {
     /// `psi' = psi_t + psi_x f`, with the inputs of `flow`; differentiated by `x` and `s`.
     pub rates: Arc<dyn Function>,
     /// `psi`, with the inputs of `flow`; differentiated by `t` and `x`.
-    pub guards: Arc<dyn Function>,
+    pub switching: Arc<dyn Function>,
     /// `r`, with the inputs of `flow`, as many outputs as states for each jump; differentiated by
     /// `t` and `x`.
     pub resets: Arc<dyn Function>,
@@ -181,9 +181,7 @@ impl System {
 
 /// All outputs of a function at one point `[t | x | u | s]`.
 pub fn value(function: &dyn Function, point: &[f64], parameters: &[f64]) -> Vec<f64> {
-    let mut points = Columns::new(point.len(), 1);
-    point.iter().enumerate().for_each(|(at, value)| points.column_mut(at)[0] = *value);
     let mut values = Columns::new(function.outputs(), 1);
-    function.value(&points, parameters, &mut values);
+    function.value(&Columns::of_point(point), parameters, &mut values);
     (0..function.outputs()).map(|at| values.column(at)[0]).collect()
 }

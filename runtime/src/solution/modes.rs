@@ -29,13 +29,13 @@ pub struct Span {
 const SHORTEST_STAY: usize = 3;
 
 /// The modes of one surface along a grid.
-pub fn modes(time: &[f64], guard: &[f64], sigma: f64) -> Vec<Span> {
-    let mut mode: Vec<Mode> = guard.iter().map(|psi| side(*psi, sigma)).collect();
+pub fn modes(time: &[f64], psi: &[f64], sigma: f64) -> Vec<Span> {
+    let mut mode: Vec<Mode> = psi.iter().map(|psi| side(*psi, sigma)).collect();
     let mut start = 0;
     while start < mode.len() {
         let length = mode[start..].iter().take_while(|m| **m == mode[start]).count();
         if mode[start] == Mode::Held {
-            resolve_stay(&mut mode, guard, start, start + length);
+            resolve_stay(&mut mode, psi, start, start + length);
         }
         start += length;
     }
@@ -51,16 +51,16 @@ fn side(psi: f64, sigma: f64) -> Mode {
 }
 
 /// Turns a passage or a touch into the modes before and after it.
-fn resolve_stay(mode: &mut [Mode], guard: &[f64], start: usize, end: usize) {
-    let inside = &guard[start..end];
+fn resolve_stay(mode: &mut [Mode], psi: &[f64], start: usize, end: usize) {
+    let inside = &psi[start..end];
     let rises = inside.windows(2).all(|pair| pair[1] >= pair[0]);
     let falls = inside.windows(2).all(|pair| pair[1] <= pair[0]);
-    let before = start.checked_sub(1).map(|i| guard[i] > 0.0);
-    let after = guard.get(end).map(|psi| *psi > 0.0);
+    let before = start.checked_sub(1).map(|i| psi[i] > 0.0);
+    let after = psi.get(end).map(|psi| *psi > 0.0);
     let passes = before.is_some() && after.is_some() && before != after && (rises || falls);
     if passes || end - start < SHORTEST_STAY {
         for i in start..end {
-            mode[i] = if guard[i] > 0.0 { Mode::Above } else { Mode::Below };
+            mode[i] = if psi[i] > 0.0 { Mode::Above } else { Mode::Below };
         }
     }
 }
@@ -84,9 +84,9 @@ fn spans(time: &[f64], mode: &[Mode]) -> Vec<Span> {
 mod tests {
     use super::*;
 
-    fn named(guard: &[f64]) -> Vec<Mode> {
-        let time: Vec<f64> = (0..guard.len()).map(|k| k as f64).collect();
-        modes(&time, guard, 0.1).iter().map(|span| span.mode).collect()
+    fn named(psi: &[f64]) -> Vec<Mode> {
+        let time: Vec<f64> = (0..psi.len()).map(|k| k as f64).collect();
+        modes(&time, psi, 0.1).iter().map(|span| span.mode).collect()
     }
 
     #[test]

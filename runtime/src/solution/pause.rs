@@ -60,8 +60,8 @@ impl<'a> Passage<'a> {
         trajectory: &'a Trajectory,
         (surface, interval): (usize, usize),
     ) -> Option<Self> {
-        let guard = &trajectory.guards[surface];
-        let psi = [guard[interval], guard[interval + 1]];
+        let psi = &trajectory.switching[surface];
+        let psi = [psi[interval], psi[interval + 1]];
         let sigma = trajectory.parameters[problem.surfaces[surface].sigma];
         let is_outside = psi.iter().any(|psi| psi.abs() > sigma);
         let is_met = psi[0].min(psi[1]) < sigma && psi[0].max(psi[1]) > -sigma;
@@ -78,7 +78,7 @@ impl<'a> Passage<'a> {
     /// The Hamiltonian of resting with this part of the control, if that is possible.
     fn rest(&self, part: f64) -> Option<f64> {
         let points = self.points(part);
-        let (psi, rates) = (self.guard(&points), self.rates(&points));
+        let (psi, rates) = (self.psi(&points), self.rates(&points));
         // Of a `Dir` it is a length, which is never below 0.
         let is_layer = psi[0] < -0.5 * self.sigma && psi[SAMPLES - 1] > 0.5 * self.sigma;
         let place = (1..SAMPLES)
@@ -112,8 +112,9 @@ impl<'a> Passage<'a> {
         points
     }
 
-    fn guard(&self, points: &Columns) -> Vec<f64> {
-        sample(&*self.problem.guards, points, &self.trajectory.parameters).swap_remove(self.surface)
+    fn psi(&self, points: &Columns) -> Vec<f64> {
+        sample(&*self.problem.switching, points, &self.trajectory.parameters)
+            .swap_remove(self.surface)
     }
 
     fn flow(&self, points: &Columns) -> Vec<Vec<f64>> {
@@ -126,7 +127,7 @@ impl<'a> Passage<'a> {
         for (i, rates) in self.flow(points).iter().take(self.problem.layout.x).enumerate() {
             moved.column_mut(1 + i).iter_mut().zip(rates).for_each(|(x, rate)| *x += STEP * rate);
         }
-        let both = self.guard(&moved).into_iter().zip(self.guard(points));
+        let both = self.psi(&moved).into_iter().zip(self.psi(points));
         both.map(|(moved, still)| (moved - still) / STEP).collect()
     }
 

@@ -1,4 +1,4 @@
-//! One trajectory of phases of time that were solved side by side.
+//! One trajectory of phases that were solved at once.
 //!
 //! A problem with jumps is solved as one without: each phase between two jumps has its own states
 //! and controls over the same `tau` in [0, 1], and the durations of all phases but the last are its
@@ -33,8 +33,8 @@ pub fn joined(between: &Problem, solved: &Problem, outcome: &Outcome) -> (Outcom
     let phases = Phases::new(between, solved, &outcome.trajectory);
     let trajectory = phases.trajectory();
     let sigma: Vec<f64> = outcome.sigma[..between.surfaces.len()].to_vec();
-    let guards = trajectory.guards.iter().zip(&sigma);
-    let modes = guards.map(|(guard, sigma)| modes(&trajectory.time, guard, *sigma)).collect();
+    let switching = trajectory.switching.iter().zip(&sigma);
+    let modes = switching.map(|(psi, sigma)| modes(&trajectory.time, psi, *sigma)).collect();
     let limiting = outcome.limiting.clone().map(|it| Limiting { time: None, ..it });
     let mut solution = outcome.solution.clone();
     if let Status::NotFinite(place) = &solution.status {
@@ -91,11 +91,11 @@ impl<'a> Phases<'a> {
         let points = self.points(&time, &states, &controls);
         Trajectory {
             report: sample(&*self.between.report, &points, &self.parameters),
-            guards: sample(&*self.between.guards, &points, &self.parameters),
+            switching: sample(&*self.between.switching, &points, &self.parameters),
             costates: self.signals(&self.own.costates),
             path_multipliers: self.path_multipliers(),
             end_multipliers: self.end_multipliers(),
-            // That of the phases side by side is not that of any of them.
+            // That of all phases at once is not that of any of them.
             hamiltonian: Hamiltonian::default(),
             nodes: None,
             time,

@@ -31,7 +31,7 @@ pub struct Trajectory {
     /// One column per report, `N + 1` entries each; the last uses the last control.
     pub report: Vec<Vec<f64>>,
     /// One column per surface: its switching function, `N + 1` entries each.
-    pub guards: Vec<Vec<f64>>,
+    pub switching: Vec<Vec<f64>>,
     /// All of `p`, unknowns included.
     pub parameters: Vec<f64>,
 }
@@ -58,7 +58,7 @@ impl Trajectory {
             controls: controls(nlp, v),
             nodes: nodes(nlp, v, &time),
             report: sample(&*problem.report, &points, &parameters),
-            guards: sample(&*problem.guards, &points, &parameters),
+            switching: sample(&*problem.switching, &points, &parameters),
             costates: costates(problem, nlp, solution),
             path_multipliers: path_multipliers(problem, nlp, solution, &time),
             end_multipliers: end_multipliers(problem, nlp, solution),
@@ -72,7 +72,7 @@ impl Trajectory {
 /// The largest absolute value of each switching function along `v`.
 pub(crate) fn switching_function_sizes(nlp: &TranscribedNlp, v: &[f64]) -> Vec<f64> {
     let problem = nlp.problem();
-    let psi = sample(&*problem.guards, &points(nlp, problem, v), &nlp.parameters_at(v));
+    let psi = sample(&*problem.switching, &points(nlp, problem, v), &nlp.parameters_at(v));
     psi.iter().map(|psi| psi.iter().fold(0.0, |a: f64, value| a.max(value.abs()))).collect()
 }
 

@@ -125,8 +125,8 @@ fn finish(run: Run, nlp: &mut TranscribedNlp, solution: Solution, convex: bool) 
     let Run { problem, sigma, attempts, .. } = run;
     let mut trajectory = Trajectory::new(problem, nlp, &solution);
     trajectory.hamiltonian.pause = gain_of_pauses(problem, &trajectory);
-    let surfaces = trajectory.guards.iter().zip(&sigma);
-    let modes = surfaces.map(|(guard, sigma)| modes(&trajectory.time, guard, *sigma)).collect();
+    let surfaces = trajectory.switching.iter().zip(&sigma);
+    let modes = surfaces.map(|(psi, sigma)| modes(&trajectory.time, psi, *sigma)).collect();
     let limiting = limiting(nlp, &solution, &trajectory, problem.method.tol);
     let is_impossible = convex && solution.status == Status::Infeasible;
     Outcome { solution, trajectory, sigma, modes, convex, limiting, is_impossible, attempts }

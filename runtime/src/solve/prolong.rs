@@ -132,8 +132,8 @@ mod tests {
             controls: 1,
             inner: 1,
             globals: 1,
-            local_rows: 1,
-            coupling_rows: 1,
+            local_constraints: 1,
+            coupling_constraints: 1,
         }
     }
 

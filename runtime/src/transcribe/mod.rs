@@ -169,8 +169,8 @@ fn stages(problem: &Problem, interval: &Interval) -> Stages {
         controls: interval.chosen,
         inner: interval.inner(),
         globals: problem.unknowns.len(),
-        local_rows: problem.path_bounds.len() * interval.path.len(),
-        coupling_rows: problem.boundary_bounds.len(),
+        local_constraints: problem.path_bounds.len() * interval.path.len(),
+        coupling_constraints: problem.boundary_bounds.len(),
     }
 }
 

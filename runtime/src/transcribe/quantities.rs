@@ -1,12 +1,12 @@
-//! Which variables and rows are one quantity of the model at different times.
+//! Which variables and constraints are one quantity of the model at different times.
 
 use super::TranscribedNlp;
 use super::interval::Signal;
 use crate::nlp::Quantities;
 
 impl TranscribedNlp<'_> {
-    /// Variables: states, controls, unknowns. Rows: steps of states, of controls that go on from
-    /// interval to interval, path constraints, boundary conditions.
+    /// Variables: states, controls, unknowns. Constraints: steps of states, of controls that go on
+    /// from interval to interval, path constraints, boundary conditions.
     pub(super) fn all_quantities(&self) -> Quantities {
         let stages = self.stages;
         let signals = self.problem.layout.x + self.problem.controls.len();
@@ -17,10 +17,10 @@ impl TranscribedNlp<'_> {
         variables.extend((0..stages.globals).map(|unknown| signals + unknown));
         let paths = self.problem.path_bounds.len();
         let defects = (0..stages.defect_rows()).map(|row| self.quantity(self.stepped(row)));
-        let local = (0..stages.local_rows).map(|row| signals + row % paths);
-        let mut rows = defects.chain(local).collect::<Vec<_>>().repeat(stages.intervals);
-        rows.extend((0..stages.coupling_rows).map(|row| signals + paths + row));
-        Quantities { variables, rows, stepped: signals, units: self.units(), objective: 1.0 }
+        let local = (0..stages.local_constraints).map(|row| signals + row % paths);
+        let mut constraints = defects.chain(local).collect::<Vec<_>>().repeat(stages.intervals);
+        constraints.extend((0..stages.coupling_constraints).map(|row| signals + paths + row));
+        Quantities { variables, constraints, stepped: signals, units: self.units(), objective: 1.0 }
     }
 
     fn units(&self) -> Vec<f64> {

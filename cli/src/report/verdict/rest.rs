@@ -19,9 +19,9 @@ pub(super) fn lines(solved: &Solved) -> Vec<String> {
     let Some(ends) = is_open.then(|| misses(problem, &outcome.trajectory)) else {
         return Vec::new();
     };
-    let surfaces = problem.surfaces.iter().zip(&outcome.trajectory.guards).zip(&outcome.sigma);
-    let asked = surfaces.filter(|((_, guard), sigma)| {
-        let last = guard.last().map_or(0.0, |value| value.abs());
+    let surfaces = problem.surfaces.iter().zip(&outcome.trajectory.switching).zip(&outcome.sigma);
+    let asked = surfaces.filter(|((_, psi), sigma)| {
+        let last = psi.last().map_or(0.0, |value| value.abs());
         last > 0.0
             && last <= NOTHING * **sigma
             && ends.iter().any(|miss| (miss - last).abs() <= 1e-6 * last)

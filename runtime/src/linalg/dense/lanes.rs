@@ -116,7 +116,7 @@ pub(crate) fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
 
 /// Whether this machine has registers of four numbers and multiplies and adds in one instruction;
 /// with the feature `portable` it counts as if it had not.
-pub(crate) fn is_fused() -> bool {
+pub fn is_fused() -> bool {
     #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]
     return std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma");
     #[cfg(any(not(target_arch = "x86_64"), feature = "portable"))]

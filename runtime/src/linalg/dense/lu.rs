@@ -66,8 +66,9 @@ impl Lu {
     }
 }
 
+/// Swaps two rows of `b`.
 #[inline(always)]
-fn swap_rows(b: &mut [f64], columns: usize, first: usize, second: usize) {
+pub(super) fn swap_rows(b: &mut [f64], columns: usize, first: usize, second: usize) {
     if first != second {
         for j in 0..columns {
             b.swap(first * columns + j, second * columns + j);

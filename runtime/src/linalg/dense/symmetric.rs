@@ -3,6 +3,8 @@
 //! Bunch-Kaufman pivoting (Golub & Van Loan, 4th ed., algorithm 4.4.4): `D` has blocks of size 1
 //! and 2, so that no matrix is refused but a singular one, and the signs of `D` are the inertia.
 
+use super::lu::swap_rows;
+
 /// Factors of an `n x n` symmetric matrix.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SymmetricFactor {
@@ -208,14 +210,6 @@ impl SymmetricFactor {
             }
             swap_rows(b, columns, end - 1, self.exchanges[end - 1]);
             end = k;
-        }
-    }
-}
-
-fn swap_rows(b: &mut [f64], columns: usize, first: usize, second: usize) {
-    if first != second {
-        for j in 0..columns {
-            b.swap(first * columns + j, second * columns + j);
         }
     }
 }

@@ -24,8 +24,8 @@ const NO_STAGES: Stages = Stages {
     controls: 0,
     inner: 0,
     globals: 0,
-    local_rows: 0,
-    coupling_rows: 0,
+    local_constraints: 0,
+    coupling_constraints: 0,
 };
 
 impl Sight {

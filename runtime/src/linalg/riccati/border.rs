@@ -47,7 +47,7 @@ impl Border {
         jacobian: &Triplets,
         fixed: &[bool],
     ) -> Self {
-        let size = stages.states + stages.globals + stages.coupling_rows;
+        let size = stages.states + stages.globals + stages.coupling_constraints;
         let mut border = Border {
             stages,
             copy: false,
@@ -74,13 +74,13 @@ impl Border {
     /// Size of `theta`.
     pub(super) fn theta(&self) -> usize {
         self.stages.globals
-            + self.stages.coupling_rows
+            + self.stages.coupling_constraints
             + if self.copy { self.stages.states } else { 0 }
     }
 
     /// Number of rows that the border holds.
     pub(super) fn rows(&self) -> usize {
-        self.stages.coupling_rows
+        self.stages.coupling_constraints
     }
 
     fn end(&self, variable: usize) -> End {
@@ -158,11 +158,11 @@ impl Border {
 
     /// Size of the last system: `(x_0, g, nu)`.
     pub(super) fn size(&self) -> usize {
-        self.stages.states + self.stages.globals + self.stages.coupling_rows
+        self.stages.states + self.stages.globals + self.stages.coupling_constraints
     }
 
     fn terminal_position(&self, end: End) -> usize {
-        let Stages { states: n, globals: g, coupling_rows: rows, .. } = self.stages;
+        let Stages { states: n, globals: g, coupling_constraints: rows, .. } = self.stages;
         match end {
             End::Last(i) => i,
             End::Global(i) => n + i,
@@ -255,7 +255,7 @@ impl Border {
     pub(super) fn finish(&self, theta: &[f64], a: &mut [f64], b: &mut [f64]) {
         let (globals, multipliers) = theta.split_at(self.stages.globals);
         a[self.stages.globals()].copy_from_slice(globals);
-        b[self.stages.coupling()].copy_from_slice(&multipliers[..self.stages.coupling_rows]);
+        b[self.stages.coupling()].copy_from_slice(&multipliers[..self.stages.coupling_constraints]);
     }
 }
 

@@ -8,7 +8,8 @@ use super::solve::Travel;
 use crate::linalg::dense::lanes::Lanes;
 
 /// **The table** of sizes that are compiled as constants: states, controls, border; without inner
-/// variables. All others go by the sizes that they are given (0, 0, 0).
+/// variables. All others go by the sizes that they are given (0, 0, 0). Each row is 80 kB of
+/// machine code: all 140 up to (7, 3, 4) would make the program half as large again.
 macro_rules! with_constant_sizes {
     ($this:ident.$function:ident($($arguments:expr),*)) => {
         match $this.sizes {

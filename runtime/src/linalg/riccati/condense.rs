@@ -39,7 +39,7 @@ impl Condensed {
             gathered: zeros(sizes.gathered()),
             costate: zeros(sizes.next() * w),
             local: zeros(assembly.local_entries.len()),
-            weights: zeros(stages.local_rows),
+            weights: zeros(stages.local_constraints),
             quadratic: vec![0.0; Lanes::COUNT * w * w],
         }
     }

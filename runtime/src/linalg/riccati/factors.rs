@@ -19,14 +19,14 @@ pub(super) struct Factors {
     local: Vec<f64>,
     weights: Vec<f64>,
     local_values: usize,
-    local_rows: usize,
+    local_constraints: usize,
 }
 
 impl Factors {
     pub(super) fn new(
         sizes: Sizes,
         intervals: usize,
-        local_rows: usize,
+        local_constraints: usize,
         local_values: usize,
     ) -> Self {
         let zeros = |length: usize| vec![0.0; intervals * length];
@@ -38,9 +38,9 @@ impl Factors {
             inverse: zeros(m * m),
             gain: zeros(m * sizes.kept()),
             local: zeros(local_values),
-            weights: zeros(local_rows),
+            weights: zeros(local_constraints),
             local_values,
-            local_rows,
+            local_constraints,
         }
     }
 
@@ -75,7 +75,10 @@ impl Factors {
     /// Values and weights of the local rows.
     #[inline(always)]
     pub(super) fn local(&self, k: usize) -> (&[f64], &[f64]) {
-        (stretch(&self.local, k, self.local_values), stretch(&self.weights, k, self.local_rows))
+        (
+            stretch(&self.local, k, self.local_values),
+            stretch(&self.weights, k, self.local_constraints),
+        )
     }
 
     /// Values of the local rows of these intervals.
@@ -86,7 +89,7 @@ impl Factors {
 
     #[inline(always)]
     pub(super) fn weights_mut(&mut self, intervals: Range<usize>) -> &mut [f64] {
-        stretches_mut(&mut self.weights, intervals, self.local_rows)
+        stretches_mut(&mut self.weights, intervals, self.local_constraints)
     }
 
     pub(super) fn compliance(&self, n: usize, k: usize) -> &[f64] {

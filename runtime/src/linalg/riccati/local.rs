@@ -5,7 +5,7 @@ use super::Riccati;
 
 impl Riccati {
     /// `a += J' diag(1/d) b`
-    pub(super) fn remove_local_rows(&self, a: &mut [f64], b: &[f64]) {
+    pub(super) fn remove_local_constraints(&self, a: &mut [f64], b: &[f64]) {
         for k in 0..self.stages.intervals {
             let (values, weights) = self.factors.local(k);
             let b = &b[self.stages.local(k)];

@@ -100,7 +100,7 @@ impl Riccati {
             border,
             condensed: Condensed::new(sizes, stages, &assembly),
             block: Block::new(sizes),
-            factors: Factors::new(sizes, stages.intervals, stages.local_rows, local_values),
+            factors: Factors::new(sizes, stages.intervals, stages.local_constraints, local_values),
             assembly,
             value: Value::new(sizes),
             ends: vec![0.0; sizes.kept() * sizes.kept()],
@@ -137,7 +137,7 @@ impl Factor for Riccati {
     fn solve(&mut self, right_side: &mut [f64]) {
         let (a, b) = right_side.split_at_mut(self.stages.variables());
         let mut travel = std::mem::take(&mut self.travel);
-        self.remove_local_rows(a, b);
+        self.remove_local_constraints(a, b);
         self.border.terminal_gradient(a, b, &mut travel.gradient);
         self.solve_chain(&mut travel, a, b);
         let (x, theta) = travel.state.split_at(self.stages.states);

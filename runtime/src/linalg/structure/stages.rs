@@ -26,9 +26,9 @@ pub struct Stages {
     /// Variables that belong to no stage.
     pub globals: usize,
     /// Rows per interval beside the defects.
-    pub local_rows: usize,
+    pub local_constraints: usize,
     /// Rows that belong to no interval.
-    pub coupling_rows: usize,
+    pub coupling_constraints: usize,
 }
 
 impl Stages {
@@ -38,7 +38,7 @@ impl Stages {
     }
     /// Rows from one interval to the next.
     pub fn row_step(&self) -> usize {
-        self.defect_rows() + self.local_rows
+        self.defect_rows() + self.local_constraints
     }
     /// Defects of an interval.
     pub fn defect_rows(&self) -> usize {
@@ -50,7 +50,7 @@ impl Stages {
     }
     /// All rows.
     pub fn rows(&self) -> usize {
-        self.intervals * self.row_step() + self.coupling_rows
+        self.intervals * self.row_step() + self.coupling_constraints
     }
     /// `x_k`
     pub fn state(&self, k: usize) -> Range<usize> {
@@ -79,7 +79,7 @@ impl Stages {
     /// Local rows of interval `k`.
     pub fn local(&self, k: usize) -> Range<usize> {
         let start = k * self.row_step() + self.defect_rows();
-        start..start + self.local_rows
+        start..start + self.local_constraints
     }
     /// Coupling rows.
     pub fn coupling(&self) -> Range<usize> {

@@ -79,11 +79,11 @@ struct Steepness {
 
 impl Steepness {
     fn new(nlp: &dyn Nlp, quantities: &Quantities, variables: &[f64], at: &Derivatives) -> Self {
-        let mut rows = vec![0.0f64; quantities.rows.len()];
+        let mut rows = vec![0.0f64; quantities.constraints.len()];
         for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&at.jacobian) {
             rows[row] = rows[row].max((variables[column] * slope).abs());
         }
-        let conditions = largest(&quantities.rows, rows.iter().copied());
+        let conditions = largest(&quantities.constraints, rows.iter().copied());
         Steepness { objective: objective_slope(quantities, variables, at), rows, conditions }
     }
 
@@ -140,7 +140,7 @@ fn rows(quantities: &Quantities, units: &[f64], steepness: Steepness) -> Vec<f64
         let factor = if *i < quantities.stepped { 1.0 / units[*i] } else { upwards[*i] };
         factor * downwards(factor * slope)
     };
-    quantities.rows.iter().zip(steepness.rows).map(factor).collect()
+    quantities.constraints.iter().zip(steepness.rows).map(factor).collect()
 }
 
 fn upwards(slope: f64) -> f64 {

@@ -107,7 +107,7 @@ fn believed(estimate: f64, guess: f64) -> f64 {
 /// How far each quantity has to move for conditions on it alone.
 fn demands(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64]) -> Vec<f64> {
     let slopes = slopes(nlp, v);
-    let mut rows = vec![0.0; quantities.rows.len()];
+    let mut rows = vec![0.0; quantities.constraints.len()];
     nlp.values(v, &mut rows);
     let mut steepest = vec![(0, 0.0f64, 0); rows.len()];
     for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&slopes.jacobian) {
@@ -118,7 +118,8 @@ fn demands(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64]) -> Vec<f64> {
         }
     }
     let mut demands = vec![0.0f64; quantities.variables.iter().max().map_or(0, |last| last + 1)];
-    let conditions = nlp.constraint_bounds().iter().zip(&rows).zip(&quantities.rows).zip(steepest);
+    let conditions =
+        nlp.constraint_bounds().iter().zip(&rows).zip(&quantities.constraints).zip(steepest);
     for (((bounds, value), row), (quantity, slope, entries)) in conditions {
         let distance = bounds.violation(*value) / slope;
         if *row >= quantities.stepped && entries == 1 && distance.is_finite() {
@@ -165,10 +166,10 @@ fn range(bounds: &Bounds) -> f64 {
 /// How far the equations take states of unknown size, which are 0: all that is left of a step is
 /// its right side.
 fn find_states(nlp: &mut dyn Nlp, quantities: &Quantities, near: &[f64], magnitudes: &mut [f64]) {
-    let mut rows = vec![0.0; quantities.rows.len()];
+    let mut rows = vec![0.0; quantities.constraints.len()];
     nlp.values(near, &mut rows);
     let mut steps: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-    for (i, row) in quantities.rows.iter().zip(rows) {
+    for (i, row) in quantities.constraints.iter().zip(rows) {
         if *i < quantities.stepped && magnitudes[*i] == 0.0 && row.is_finite() {
             steps.entry(*i).or_default().push(row.abs());
         }
@@ -182,7 +183,7 @@ fn find_controls(nlp: &mut dyn Nlp, quantities: &Quantities, near: &[f64], magni
     let slopes = slopes(nlp, near);
     let mut influences: BTreeMap<(usize, usize), Vec<f64>> = BTreeMap::new();
     for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&slopes.jacobian) {
-        let (i, j) = (quantities.rows[row], quantities.variables[column]);
+        let (i, j) = (quantities.constraints[row], quantities.variables[column]);
         if i < quantities.stepped
             && magnitudes[i] > 0.0
             && magnitudes[j] == 0.0

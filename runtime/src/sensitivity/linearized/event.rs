@@ -101,7 +101,7 @@ impl Timing {
         };
         match event.cause {
             Cause::Reaches(surface) => {
-                let by = slopes_of(&*linearizer.system.guards);
+                let by = slopes_of(&*linearizer.system.switching);
                 let slopes = normal(linearizer, &by, &reached.selectors, surface);
                 Timing::implicit(&slopes, &reached.rate)
             }

@@ -67,7 +67,7 @@ impl Linearization {
     }
 }
 
-/// Evaluates right sides and guards of one system.
+/// Evaluates right sides and switching functions of one system.
 pub(crate) struct Linearizer<'a> {
     pub system: &'a System,
     pub parameters: Vec<f64>,
@@ -168,12 +168,12 @@ impl<'a> Linearizer<'a> {
         let layout = self.system.layout;
         let mut slopes =
             (!moving.is_empty()).then(|| DMatrix::zeros(layout.s, layout.selectors().start))?;
-        let guards = Jacobian::of(&*self.system.guards, table, &self.parameters);
+        let switching = Jacobian::of(&*self.system.switching, table, &self.parameters);
         let first = table.columns() - layout.s;
         for ball in moving {
             let (at, count) = (ball.surfaces.start, ball.surfaces.len());
-            let psi = guards.values.rows(at, count);
-            let by = guards.by.view((at, 0), (count, slopes.ncols()));
+            let psi = switching.values.rows(at, count);
+            let by = switching.by.view((at, 0), (count, slopes.ncols()));
             let noise = (by.columns(1, layout.x).abs() * x.abs()).amax();
             if psi.norm() <= AT_ZERO * (1.0 + noise) {
                 continue;
@@ -213,8 +213,8 @@ impl<'a> Linearizer<'a> {
             return rates;
         }
         let flow = Jacobian::of(&*self.system.flow, table, &self.parameters);
-        let guards = Jacobian::of(&*self.system.guards, table, &self.parameters);
-        rates.without_motion(&flow, &guards, &regime.held)
+        let switching = Jacobian::of(&*self.system.switching, table, &self.parameters);
+        rates.without_motion(&flow, &switching, &regime.held)
     }
 
     fn by_selectors<'m>(&self, by: &'m DMatrix<f64>) -> nalgebra::DMatrixView<'m, f64> {
@@ -331,10 +331,10 @@ impl Jacobian {
     /// Takes the motion of some states out of `psi'`. (Second derivatives of `psi` by a state that
     /// stands still are not taken out of the slopes; surfaces that are curved there would need
     /// them.)
-    fn without_motion(mut self, flow: &Jacobian, guards: &Jacobian, states: &[usize]) -> Self {
+    fn without_motion(mut self, flow: &Jacobian, switching: &Jacobian, states: &[usize]) -> Self {
         for surface in 0..self.values.len() {
             for &state in states {
-                let normal = guards.by[(surface, 1 + state)];
+                let normal = switching.by[(surface, 1 + state)];
                 self.values[surface] -= normal * flow.values[state];
                 let row = self.by.row(surface) - normal * flow.by.row(state);
                 self.by.row_mut(surface).copy_from(&row);

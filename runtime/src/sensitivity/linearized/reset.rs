@@ -73,7 +73,7 @@ fn rest_slopes(linearizer: &Linearizer, tape: &Tape, event: &EventOnTape) -> Vec
     let comes = |i: &usize| new.modes[*i] == Mode::Held && old.modes[*i] != Mode::Held;
     let Some(surface) = (0..new.modes.len()).find(comes) else { return Vec::new() };
     let states = event.after.state.len();
-    let psi = jacobian(linearizer, tape, event.before, &*linearizer.system.guards).by;
+    let psi = jacobian(linearizer, tape, event.before, &*linearizer.system.switching).by;
     let rates = jacobian(linearizer, tape, event.before, &*linearizer.system.rates).by;
     let columns = 1 + states + linearizer.inputs();
     let [psi, rates] = [psi, rates].map(|by| by.row(surface).columns(0, columns).into_owned());

@@ -36,8 +36,8 @@ impl Projection {
         let x = DVector::from_column_slice(&at.state);
         let point = linearizer.at(regime, &at.selectors, at.time, &x);
         let table = linearizer.table(regime, &point.selectors, at.time, &x);
-        let guards = Jacobian::of(&*linearizer.system.guards, &table, &linearizer.parameters);
-        let by = guards.by.select_rows(&sliding);
+        let switching = Jacobian::of(&*linearizer.system.switching, &table, &linearizer.parameters);
+        let by = switching.by.select_rows(&sliding);
         let normals = by.columns(1, layout.x).into_owned();
         let by_inputs = by.columns(1 + layout.x, layout.u + layout.p).into_owned();
         let directions = point.by_selectors().select_columns(&sliding);

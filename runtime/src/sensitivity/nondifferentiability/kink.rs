@@ -75,9 +75,9 @@ impl Here {
         let table = linearizer.table(regime, &at.selectors, at.time, &state);
         let system = linearizer.system;
         let Jacobian { values, by } = Jacobian::of(&*system.kinks, &table, &linearizer.parameters);
-        let guards = Jacobian::of(&*system.guards, &table, &linearizer.parameters).by;
+        let switching = Jacobian::of(&*system.switching, &table, &linearizer.parameters).by;
         let moving = 1..system.layout.selectors().start;
-        let normals = guards.select_rows(&sliding(regime)).columns_range(moving).into_owned();
+        let normals = switching.select_rows(&sliding(regime)).columns_range(moving).into_owned();
         Here { e: values, by, state, rate: linearizer.rate_at_instant(tape, at), normals }
     }
 

@@ -100,7 +100,7 @@ impl Watch<'_> {
         let table = self.linearizer.table(regime, &at.selectors, at.time, &state);
         let system = self.linearizer.system;
         let Jacobian { values, by } =
-            Jacobian::of(&*system.guards, &table, &self.linearizer.parameters);
+            Jacobian::of(&*system.switching, &table, &self.linearizer.parameters);
         let normals = by.columns(1, state.len());
         let visible = system.states.iter().zip(flow.iter()).filter(|(state, _)| !state.hidden);
         let size = visible.map(|(_, rate)| rate * rate).sum::<f64>().sqrt();

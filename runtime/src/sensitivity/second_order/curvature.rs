@@ -175,9 +175,9 @@ impl Linearizer<'_> {
         table.column_mut(0)[0] = tau;
         let over_curve = |tau: f64, whole: &DVector<f64>| parameters(whole).insert_row(0, tau);
         let hessians = Hessians::of(&*self.system.guess, &table, &self.parameters);
-        let bend = hessians.along(&over_curve(tau_a, a), &over_curve(tau_b, b));
+        let second = hessians.along(&over_curve(tau_a, a), &over_curve(tau_b, b));
         let by_tau =
             Jacobian::of(&*self.system.guess, &table, &self.parameters).by.column(0).into_owned();
-        (bend + by_tau * tau_ab).rows(layout.x, layout.u).into_owned()
+        (second + by_tau * tau_ab).rows(layout.x, layout.u).into_owned()
     }
 }

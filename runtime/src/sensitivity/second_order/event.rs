@@ -141,7 +141,7 @@ impl SecondOrderEvent<'_> {
     ) -> Pairs {
         let system = self.linearizer.system;
         let (function, row) = match self.event.cause {
-            Cause::Reaches(surface) => (&system.guards, surface),
+            Cause::Reaches(surface) => (&system.switching, surface),
             Cause::CrossesKink(kink) => (&system.kinks, kink),
             Cause::Controls if !self.linearizer.is_stretched() => {
                 return Pairs::new(directions.len(), |_, _| DVector::zeros(1));

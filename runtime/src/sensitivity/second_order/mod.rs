@@ -138,13 +138,13 @@ impl<'t> Second<'t> {
         let regime = self.regime(event.before);
         let tau = timing.of(&self.s, &self.directions.inputs(regime));
         let directions = self.directions_at(regime, &self.s);
-        let bend =
+        let second =
             SecondOrderEvent { linearizer: self.linearizer, tape: self.tape, event, tau: &tau };
-        let moved = bend.reset(bend.meet(&self.s, &self.x, &directions), &directions);
+        let moved = second.reset(second.meet(&self.s, &self.x, &directions), &directions);
         let onward = self.linearizer.at_instant(self.tape, event.after);
         self.s = &moved.s - &onward.rate * &tau;
         let directions = self.directions_at(self.regime(event.after), &self.s);
-        self.x = bend.leave(&onward, &moved, &directions);
+        self.x = second.leave(&onward, &moved, &directions);
     }
 
     /// Back to the surfaces: rounding and what a start on a surface brings with it.
@@ -157,7 +157,7 @@ impl<'t> Second<'t> {
         let state = DVector::from_column_slice(&at.state);
         let table = self.linearizer.table(regime, &at.selectors, at.time, &state);
         let hessians =
-            Hessians::of(&*self.linearizer.system.guards, &table, &self.linearizer.parameters);
+            Hessians::of(&*self.linearizer.system.switching, &table, &self.linearizer.parameters);
         let inputs = self.linearizer.system.layout.inputs();
         let whole = self.directions_at(regime, &self.s);
         let whole: Vec<_> = whole.into_iter().map(|it| it.resize_vertically(inputs, 0.0)).collect();
@@ -204,13 +204,13 @@ impl<'t> Second<'t> {
         let timing = Timing::of_clock(self.linearizer, self.linearizer.system.interval[1]);
         let regime = self.regime(&last);
         let tau = timing.of(&self.s, &self.directions.inputs(regime));
-        let bend = SecondOrderEvent {
+        let second = SecondOrderEvent {
             linearizer: self.linearizer,
             tape: self.tape,
             event: &event,
             tau: &tau,
         };
-        let moved = bend.meet(&self.s, &self.x, &self.directions_at(regime, &self.s));
+        let moved = second.meet(&self.s, &self.x, &self.directions_at(regime, &self.s));
         (start, moved.s, moved.x)
     }
 }

@@ -40,7 +40,8 @@ pub(crate) struct Memory {
 
 impl Memory {
     pub fn new(system: &System) -> Self {
-        let (flow, guards) = (system.flow.jacobian_pattern(), system.guards.jacobian_pattern());
+        let (flow, switching) =
+            (system.flow.jacobian_pattern(), system.switching.jacobian_pattern());
         let entry = |(at, &(row, input)): (usize, &(u32, u32))| Entry {
             row: row as usize,
             input: input as usize,
@@ -52,12 +53,12 @@ impl Memory {
             flow.entries.iter().enumerate().map(entry).filter(|it| selectors.contains(&it.input));
         let by_selectors = by_selectors.map(|it| Entry { input: it.input - selectors.start, ..it });
         let slopes =
-            guards.entries.iter().enumerate().map(entry).filter(|it| inputs.contains(&it.input));
+            switching.entries.iter().enumerate().map(entry).filter(|it| inputs.contains(&it.input));
         Memory {
             flow: Columns::new(system.flow.outputs(), 1),
             by_inputs: Columns::new(flow.entries.len(), 1),
-            psi: Columns::new(system.guards.outputs(), 1),
-            normals: Columns::new(guards.entries.len(), 1),
+            psi: Columns::new(system.switching.outputs(), 1),
+            normals: Columns::new(switching.entries.len(), 1),
             sliding: Vec::new(),
             change: Vec::new(),
             place: vec![None; system.surfaces.len()],

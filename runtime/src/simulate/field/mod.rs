@@ -163,7 +163,7 @@ impl<'a> Field<'a> {
     pub fn psi(&mut self, t: f64, x: &[f64]) -> Vec<f64> {
         self.set_point(t, x, None);
         let mut values = Columns::new(self.modes.len(), 1);
-        self.system.guards.value(&self.point, &self.parameters, &mut values);
+        self.system.switching.value(&self.point, &self.parameters, &mut values);
         column_values(&values)
     }
 
@@ -287,7 +287,7 @@ impl<'a> Field<'a> {
         self.set_point(t, x, None);
         let Field { system, point, parameters, memory, .. } = self;
         memory.slide_on(&self.modes);
-        system.guards.jacobian(point, parameters, &mut memory.psi, &mut memory.normals);
+        system.switching.jacobian(point, parameters, &mut memory.psi, &mut memory.normals);
         let first = system.layout.selectors().start - system.layout.p;
         for _ in 0..30 {
             self.evaluations += 1;

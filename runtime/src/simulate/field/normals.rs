@@ -39,7 +39,7 @@ impl Normals {
 impl Field<'_> {
     /// The functions of the surfaces with their derivatives.
     pub fn normals(&mut self, t: f64, x: &[f64]) -> Normals {
-        self.normals_of(&*self.system.guards, 0, t, x)
+        self.normals_of(&*self.system.switching, 0, t, x)
     }
 
     /// What is 0 at the kinks, with its derivatives.
@@ -74,7 +74,7 @@ impl Field<'_> {
         let mut tube = Tube::at(self, t, x);
         let enclosures = &self.system.enclosures;
         for (known, of) in
-            self.rounding.iter_mut().zip(enclosures.guards.iter().chain(&enclosures.kinks))
+            self.rounding.iter_mut().zip(enclosures.switching.iter().chain(&enclosures.kinks))
         {
             tube.evaluate(of);
             let width = tube.ranges[0][1] - tube.ranges[0][0];

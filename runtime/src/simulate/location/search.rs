@@ -78,7 +78,7 @@ impl Signal<'_, '_> {
     fn bounds(&mut self, part: [f64; 2]) -> [Interval; 2] {
         let (enclosure, side) = match self.condition {
             Condition::Reaches(i) => {
-                (&self.field.system.enclosures.guards[i], self.field.modes[i].side())
+                (&self.field.system.enclosures.switching[i], self.field.modes[i].side())
             }
             Condition::CrossesKink(k) => {
                 (&self.field.system.enclosures.kinks[k], self.field.side_of(k))

@@ -143,7 +143,7 @@ impl<'a> Run<'a> {
         let normals = self.field.normals(self.t, &self.x);
         let is_bad = |values: &[f64]| values.iter().position(|value| !value.is_finite());
         if let Some(surface) = is_bad(&normals.psi) {
-            return Err(Status::NotFinite(self.field.system.guards.origin(surface)));
+            return Err(Status::NotFinite(self.field.system.switching.origin(surface)));
         }
         let selectors = self.field.selectors.clone();
         let (rate, _) = self.field.with_selectors(self.t, &self.x, &selectors);

@@ -147,6 +147,7 @@ impl Newton {
             if !change.is_finite() || change >= last {
                 return last <= enough;
             }
+            // Stopping criterion: what the rate of convergence leaves to be added.
             let rest = if last.is_finite() {
                 change * change / (last - change)
             } else {
@@ -189,9 +190,11 @@ pub(crate) fn attempt(step: &mut Step, field: &mut Field) {
     let Step { t, h, start, end, newton, stages, .. } = step;
     let n = start.len();
     step.error = f64::INFINITY;
+    // Matrices of the stages and of the error.
     if !newton.factor(*h) {
         return;
     }
+    // Starting values, and simplified Newton iterations: z_i = h sum_j a_ij f(t + c_j h, x0 + z_j).
     newton.guess(*h, start);
     let rtol = field.tolerance.rtol;
     if !newton.solve(field, *t, *h, start, rtol) {
@@ -199,12 +202,14 @@ pub(crate) fn attempt(step: &mut Step, field: &mut Field) {
         return;
     }
     end.iter_mut().enumerate().for_each(|(i, end)| *end = start[i] + newton.z[2 * n + i]);
+    // Local error; where it is that of the start, once more from a corrected start.
     let rate = stages[0].clone();
     newton.error(&rate, *h);
     step.error = size(step, &field.tolerance);
     if step.error > 1.0 && step.error <= INHERITED && is_inherited(step, field) {
         step.error = 1.0;
     }
+    // Dense output.
     extend(step);
 }
 

@@ -44,10 +44,12 @@ pub fn solve(
         let outcome = solve_on_grid(problem, start, watch)?;
         return Ok(Refined { problem: problem.clone(), outcome, error: None });
     }
+    // First grid and its solution.
     let (problem, outcome) = first(problem, start, watch)?;
     if !is_good(&outcome) {
         return Ok(Refined { problem, outcome, error: None });
     }
+    // Errors of the steps; shorter intervals or more stages; the solution there from this one.
     let mut grid = Grid::new(problem, outcome);
     for _ in 0..MOST_ROUNDS {
         let Some(next) = grid.refined(watch)? else { break };

@@ -115,14 +115,11 @@ fn measured(name: &str) -> &str {
 }
 
 fn worst(verified: &fdcc::Verification, condition: &Condition) -> Worst {
-    let simulation = &verified.simulation;
-    let at = |point: usize| simulation.states.iter().map(|column| column[point]).collect();
-    let values: Vec<f64> = condition.point.map_or_else(|| simulation.end.clone(), at);
     Worst {
         condition: condition.label.clone(),
-        time: condition.point.map(|point| simulation.time[point]),
+        time: condition.time,
         violation: condition.violation,
-        state: state(&verified.system, &values),
+        state: state(&verified.system, &condition.state),
     }
 }
 
@@ -175,8 +172,8 @@ impl Document {
         let entry = |it: &Gap| GapEntry { gap: it.part, difference: it.difference, time: it.time };
         let gaps = gaps.iter().map(|it| (it.name.clone(), entry(it)));
         let conditions = conditions.iter().map(|it| {
-            let time = it.point.map(|point| simulation.time[point]);
-            (it.label.clone(), ConditionEntry { violation: it.violation, relative: it.part, time })
+            let (violation, relative, time) = (it.violation, it.part, it.time);
+            (it.label.clone(), ConditionEntry { violation, relative, time })
         });
         let span =
             |stay: &Stay| Span { mode: name(stay.mode).to_string(), from: stay.from, to: stay.to };

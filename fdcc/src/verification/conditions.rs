@@ -6,10 +6,10 @@
 
 use super::Points;
 use super::motion::Motion;
-use super::terms::{Terms, terms};
+use super::terms::{Inputs, Terms, terms};
 use crate::record::{Record, number};
 use fdcc_runtime::problem::{Bounds, Columns, Function, Parameter, Problem, Variable};
-use fdcc_runtime::simulate::{Simulation, System};
+use fdcc_runtime::simulate::{Extreme, Simulation, System};
 
 /// `abs`, `min` and `max` in a condition are those of the true system: as narrow as this part of
 /// the width with which it was solved.
@@ -33,8 +33,18 @@ pub struct Condition {
     pub violation: f64,
     /// The same as a part of the size of its terms.
     pub part: f64,
-    /// Which of the points it is; nothing for a condition on the ends.
-    pub point: Option<usize>,
+    /// When it is; nothing for a condition on the ends, or one that holds.
+    pub time: Option<f64>,
+    /// The state of the system there, integrals last; the last one if there is no time.
+    pub state: Vec<f64>,
+}
+
+/// The worst of a condition at the points.
+struct Worst {
+    violation: f64,
+    part: f64,
+    /// Nothing where none is violated.
+    point: Option<usize>,
 }
 
 /// The conditions of a problem along a replay.
@@ -42,6 +52,8 @@ pub(super) struct Conditions<'a> {
     problem: &'a Problem,
     points: &'a Points,
     simulation: &'a Simulation,
+    /// Where the states of the problem are among those of the system.
+    columns: Vec<usize>,
     /// The replayed states in the order of the problem.
     states: Vec<&'a [f64]>,
     motions: Vec<Motion>,
@@ -57,16 +69,16 @@ impl<'a> Conditions<'a> {
         simulation: &'a Simulation,
         points: &'a Points,
     ) -> Option<Self> {
-        let column = |name: &str| system.states.iter().position(|state| state.name == name);
-        let states =
-            problem.states.iter().map(|it| Some(simulation.states[column(&it.name)?].as_slice()));
-        let states: Vec<&[f64]> = states.collect::<Option<_>>()?;
+        let column = |it: &Variable| system.states.iter().position(|state| state.name == it.name);
+        let columns: Vec<usize> = problem.states.iter().map(column).collect::<Option<_>>()?;
+        let states = columns.iter().map(|at| simulation.states[*at].as_slice()).collect();
         let variables: Vec<&Variable> = problem.states.iter().collect();
-        let motions = Motion::of_states(&variables, |at| states[at].to_vec());
+        let motions = Motion::of_states(&variables, |at| simulation.states[columns[at]].clone());
         Some(Conditions {
             problem,
             points,
             simulation,
+            columns,
             states,
             motions,
             parameters: parameters(problem, record),
@@ -91,7 +103,7 @@ impl<'a> Conditions<'a> {
                 rounding: motion.rounding,
             };
             let values = column.iter().skip(1).map(|value| (*value, terms(value)));
-            over_time(&state.name, state.bounds, values)
+            self.condition(&state.name, worst_of(state.bounds, values))
         })
     }
 
@@ -100,51 +112,74 @@ impl<'a> Conditions<'a> {
         let (path, last) = (&*self.problem.path, self.points.times.len() - 1);
         let count = self.states.first().map_or(last, |column| column.len().saturating_sub(1));
         let mut inputs = Columns::new(path.layout().point_inputs(), count);
-        let (first, length) =
-            (self.points.times[0], self.points.times[last] - self.points.times[0]);
         for k in 0..count {
-            inputs.column_mut(0)[k] = (self.points.times[k + 1] - first) / length;
-            for (at, value) in self.points.row(k + 1).iter().enumerate() {
-                inputs.column_mut(1 + self.states.len() + at)[k] = *value;
-            }
+            self.set(&mut inputs, k, self.points.times[k + 1], k + 1);
         }
         for (at, column) in self.states.iter().enumerate() {
             inputs.column_mut(1 + at).copy_from_slice(&column[1..=count]);
         }
+        let rows = self.of_path(&inputs).into_iter().zip(&self.problem.path_bounds).enumerate();
+        rows.map(move |(row, (values, bounds))| {
+            let worst = worst_of(*bounds, values);
+            self.between(row, self.condition(&path.origin(row).label, worst))
+        })
+    }
+
+    /// Time and controls of an input of the path conditions; the controls are those of a point.
+    fn set(&self, inputs: &mut Columns, k: usize, time: f64, point: usize) {
+        let (first, last) = (self.points.times[0], self.points.times[self.points.times.len() - 1]);
+        inputs.column_mut(0)[k] = (time - first) / (last - first);
+        for (at, value) in self.points.row(point).iter().enumerate() {
+            inputs.column_mut(1 + self.states.len() + at)[k] = *value;
+        }
+    }
+
+    fn of_path(&self, inputs: &Columns) -> Vec<Vec<(f64, Terms)>> {
         let controls = self.problem.controls.iter().map(|it| Motion::still(it.unit));
         let time = std::iter::once(Motion::default());
         let motions = time.chain(self.motions.iter().copied()).chain(controls).collect();
-        let rows =
-            self.evaluated(path, &inputs, motions).into_iter().zip(&self.problem.path_bounds);
-        rows.enumerate().map(move |(row, (values, bounds))| {
-            let at_points = over_time(&path.origin(row).label, *bounds, values.iter().copied());
-            self.between(row, *bounds, &values, at_points)
-        })
+        self.evaluated(&*self.problem.path, inputs, motions, &self.problem.path_bounds)
     }
 
     /// The worst of a path condition between the points, too, where it is worse than at all of
     /// them.
-    fn between(
-        &self,
-        row: usize,
-        bounds: Bounds,
-        values: &[(f64, Terms)],
-        at_points: Condition,
-    ) -> Condition {
+    fn between(&self, row: usize, at_points: Condition) -> Condition {
         let extremes = self.simulation.extremes.get(row).into_iter().flatten();
         let after_start = extremes.filter(|it| it.time > self.points.times[0]);
-        let worst = after_start
-            .max_by(|a, b| bounds.violation(a.value).total_cmp(&bounds.violation(b.value)));
-        let Some(worst) = worst else { return at_points };
-        let point = self.points.times.partition_point(|time| *time < worst.time);
-        let point = point.min(self.points.times.len() - 1);
-        let terms = values.get(point.saturating_sub(1)).map(|it| it.1);
-        let (violation, part) =
-            (bounds.violation(worst.value), terms.map_or(0.0, |it| it.part(worst.value, &bounds)));
-        if (part, violation) > (at_points.part, at_points.violation) {
-            return Condition { violation, part, point: Some(point), ..at_points };
+        let conditions = after_start.map(|it| self.at(row, it, &at_points));
+        let worst = conditions.max_by(|a, b| a.violation.total_cmp(&b.violation));
+        match worst {
+            Some(it) if (it.part, it.violation) > (at_points.part, at_points.violation) => it,
+            _ => at_points,
         }
-        at_points
+    }
+
+    /// A path condition where the replay has an extreme of it.
+    fn at(&self, row: usize, extreme: &Extreme, at_points: &Condition) -> Condition {
+        let bounds = self.problem.path_bounds[row];
+        let point = self.points.times.partition_point(|time| *time < extreme.time);
+        let mut inputs = Columns::new(self.problem.path.layout().point_inputs(), 1);
+        self.set(&mut inputs, 0, extreme.time, point.min(self.points.times.len() - 1));
+        for (at, column) in self.columns.iter().enumerate() {
+            inputs.column_mut(1 + at)[0] = extreme.state[*column];
+        }
+        let terms = self.of_path(&inputs)[row][0].1;
+        Condition {
+            violation: bounds.violation(extreme.value),
+            part: terms.part(extreme.value, &bounds),
+            time: Some(extreme.time),
+            state: extreme.state.clone(),
+            ..at_points.clone()
+        }
+    }
+
+    /// A condition along the motion.
+    fn condition(&self, label: &str, worst: Worst) -> Condition {
+        let Worst { violation, part, point } = worst;
+        let at = |point| self.simulation.states.iter().map(|column| column[point]).collect();
+        let state = point.map_or_else(|| self.simulation.end.clone(), at);
+        let time = point.map(|point| self.simulation.time[point]);
+        Condition { label: label.into(), violation, part, time, state }
     }
 
     fn at_ends(&self) -> impl Iterator<Item = Condition> {
@@ -154,9 +189,12 @@ impl<'a> Conditions<'a> {
             inputs.column_mut(at)[0] = column[0];
             inputs.column_mut(self.states.len() + at)[0] = column[column.len() - 1];
         }
-        let rows = self.evaluated(boundary, &inputs, self.motions.repeat(2)).into_iter().skip(1);
-        rows.zip(&self.problem.boundary_bounds).enumerate().map(move |(row, (values, bounds))| {
-            Condition { point: None, ..over_time(&boundary.origin(row + 1).label, *bounds, values) }
+        // The first output is the objective.
+        let bounds = [&[Bounds::FREE], &*self.problem.boundary_bounds].concat();
+        let rows = self.evaluated(boundary, &inputs, self.motions.repeat(2), &bounds).into_iter();
+        rows.zip(bounds).enumerate().skip(1).map(move |(row, (values, bounds))| {
+            let worst = Worst { point: None, ..worst_of(bounds, values) };
+            self.condition(&boundary.origin(row).label, worst)
         })
     }
 
@@ -166,10 +204,12 @@ impl<'a> Conditions<'a> {
         function: &dyn Function,
         points: &Columns,
         motions: Vec<Motion>,
+        bounds: &[Bounds],
     ) -> Vec<Vec<(f64, Terms)>> {
         let parameters = self.problem.parameters.iter().map(|it| Motion::still(it.unit));
         let motions: Vec<Motion> = motions.into_iter().chain(parameters).collect();
-        terms(function, (points, &self.parameters), &motions)
+        let inputs = Inputs { points, parameters: &self.parameters, motions: &motions };
+        terms(function, &inputs, bounds)
     }
 }
 
@@ -194,17 +234,13 @@ fn parameters(problem: &Problem, record: &Record) -> Vec<f64> {
 }
 
 /// The worst of the points after the start.
-fn over_time(
-    label: &str,
-    bounds: Bounds,
-    values: impl IntoIterator<Item = (f64, Terms)>,
-) -> Condition {
-    let mut worst = Condition { label: label.into(), violation: 0.0, part: 0.0, point: None };
+fn worst_of(bounds: Bounds, values: impl IntoIterator<Item = (f64, Terms)>) -> Worst {
+    let mut worst = Worst { violation: 0.0, part: 0.0, point: None };
     for (k, (value, terms)) in values.into_iter().enumerate() {
         let violation = bounds.violation(value);
         let part = terms.part(value, &bounds);
         if (part, violation) > (worst.part, worst.violation) {
-            worst = Condition { violation, part, point: Some(k + 1), ..worst };
+            worst = Worst { violation, part, point: Some(k + 1) };
         }
     }
     worst

@@ -120,6 +120,16 @@ impl Columns {
     pub fn column_mut(&mut self, column: usize) -> &mut [f64] {
         &mut self.data[column * self.stride..][..self.count]
     }
+    /// The same quantities at some of the points.
+    pub fn selected(&self, points: &[usize]) -> Columns {
+        let mut selected = Columns::new(self.columns, points.len());
+        for column in 0..self.columns {
+            let own = self.column(column);
+            let values = points.iter().map(|point| own[*point]);
+            selected.column_mut(column).iter_mut().zip(values).for_each(|(to, from)| *to = from);
+        }
+        selected
+    }
     /// All numbers with padding: entry (column, point) is at `column * stride + point`.
     pub fn as_slice(&self) -> &[f64] {
         &self.data

@@ -192,13 +192,15 @@ pub struct Counts {
     pub evaluations: usize,
 }
 
-/// A value, and when it is taken.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A value, and where it is taken.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Extreme {
     /// The value.
     pub value: f64,
     /// The time.
     pub time: f64,
+    /// The state, integrals last.
+    pub state: Vec<f64>,
 }
 
 /// A simulation, as far as it came.

@@ -91,7 +91,7 @@ pub(crate) mod extremes {
     /// How exact an extreme is, as a part of the values near it.
     pub(crate) const EXACT: f64 = 1e-9;
     /// More parts than this of one step are not looked at.
-    pub(crate) const MOST_PARTS: usize = 200;
+    pub(crate) const MOST_PARTS: usize = 1000;
 }
 
 pub(crate) mod modes {

@@ -24,5 +24,5 @@ def generate(seed, index):
     """The same problem for the same numbers, whatever was generated before; and its random numbers for later."""
     rng = random.Random(f'{seed} {index}')
     problem = rng.choices(list(WEIGHTS), weights=list(WEIGHTS.values()))[0](rng)
-    problem.method = rng.choices(['', '  linear = sparse_ldl\n', '  solver = sqp\n'], weights=[85, 10, 5])[0]
+    problem.method = rng.choices(['', '  linear = sparse_ldl\n', '  solver = interior_point\n'], weights=[85, 10, 5])[0]
     return problem, rng

@@ -15,8 +15,11 @@ pub(crate) struct Extremes(pub Vec<[Extreme; 2]>);
 
 impl Extremes {
     pub fn new(conditions: usize) -> Self {
-        let none =
-            [f64::INFINITY, f64::NEG_INFINITY].map(|value| Extreme { value, time: f64::NAN });
+        let none = [f64::INFINITY, f64::NEG_INFINITY].map(|value| Extreme {
+            value,
+            time: f64::NAN,
+            state: Vec::new(),
+        });
         Extremes(vec![none; conditions])
     }
 
@@ -57,36 +60,67 @@ impl Search<'_, '_> {
         if low <= high { 0.5 * (low + high) } else { f64::NAN }
     }
 
-    /// Finds what is beyond the known value: greater with `side` 1, less with -1.
+    /// Finds what is beyond the known value: greater with `side` 1, less with -1. The part that
+    /// may reach farthest is looked at first (branch and bound).
     fn raise(&mut self, known: &mut Extreme, side: f64, until: f64) {
-        let mut parts = vec![[0.0, until]];
+        let mut parts = vec![self.part(side, 0.0, until)];
         for _ in 0..MOST_PARTS {
-            let Some([from, to]) = parts.pop() else { return };
-            let bounds = self.tube.bounds(self.field, self.step, [from, to], self.of);
-            let [[_, most], [falls, grows]] = bounds.map(|range| scaled(side, range));
-            let enough = side * known.value + EXACT * known.value.abs();
-            if most <= enough || bounds[0][0] > bounds[0][1] {
-                continue;
+            let farthest = parts.iter().enumerate().max_by(|a, b| a.1.most.total_cmp(&b.1.most));
+            let Some(at) = farthest.map(|it| it.0) else { return };
+            let part = parts.swap_remove(at);
+            if part.most <= enough(known, side) {
+                return;
             }
-            let middle = 0.5 * (from + to);
-            let values = [from, middle, to].map(|theta| self.seen(known, side, theta));
-            let enough = side * known.value + EXACT * known.value.abs();
-            // Two lines bound the values from above.
-            let until_highest = (values[2] - values[0] - falls * (to - from)) / (grows - falls);
-            let is_done =
-                falls >= 0.0 || grows <= 0.0 || values[0] + grows * until_highest <= enough;
-            if !is_done && to - from > f64::EPSILON {
-                parts.extend([[middle, to], [from, middle]]);
+            if !self.is_done(known, side, &part) {
+                let middle = 0.5 * (part.from + part.to);
+                parts.push(self.part(side, part.from, middle));
+                parts.push(self.part(side, middle, part.to));
             }
         }
+    }
+
+    /// What intervals say about a part; nothing is beyond anything where there are no values.
+    fn part(&mut self, side: f64, from: f64, to: f64) -> Part {
+        let bounds = self.tube.bounds(self.field, self.step, [from, to], self.of);
+        let is_empty = bounds[0][0] > bounds[0][1];
+        let [[_, most], [falls, grows]] = bounds.map(|range| scaled(side, range));
+        Part { from, to, most: if is_empty { f64::NEG_INFINITY } else { most }, falls, grows }
+    }
+
+    /// Notes values of a part. Whether nothing else in it is beyond them.
+    fn is_done(&mut self, known: &mut Extreme, side: f64, part: &Part) -> bool {
+        let &Part { from, to, falls, grows, .. } = part;
+        let middle = 0.5 * (from + to);
+        let values = [from, middle, to].map(|theta| self.seen(known, side, theta));
+        // Two lines bound the values from above.
+        let until_highest = (values[2] - values[0] - falls * (to - from)) / (grows - falls);
+        falls >= 0.0
+            || grows <= 0.0
+            || values[0] + grows * until_highest <= enough(known, side)
+            || to - from <= f64::EPSILON
     }
 
     /// A value, noted if it is beyond the known one.
     fn seen(&mut self, known: &mut Extreme, side: f64, theta: f64) -> f64 {
         let value = self.value(theta);
         if side * value > side * known.value {
-            *known = Extreme { value, time: self.step.t + theta * self.step.h };
+            let time = self.step.t + theta * self.step.h;
+            *known = Extreme { value, time, state: self.step.at(theta) };
         }
         side * value
     }
+}
+
+/// A part of a step: the greatest value in it is at most `most`, slopes are in `[falls, grows]`.
+struct Part {
+    from: f64,
+    to: f64,
+    most: f64,
+    falls: f64,
+    grows: f64,
+}
+
+/// What is not above this is not beyond the known value.
+fn enough(known: &Extreme, side: f64) -> f64 {
+    side * known.value + EXACT * known.value.abs()
 }

@@ -112,7 +112,8 @@ pub(super) fn parameters(model: &Model, count: usize, numbers: &Numbers) -> Vec<
     let width = width(&model.method);
     for switch in model.switches() {
         let name = format!("sigma({})", switch.place.name);
-        all.push(Parameter { name, value: width, unit: 1.0, origin: origin(switch.place) });
+        let unit = model.unit_size(&switch.place.name);
+        all.push(Parameter { name, value: width, unit, origin: origin(switch.place) });
     }
     if all.len() < count {
         let (name, origin) = ("sigma(abs)".into(), Origin::default());

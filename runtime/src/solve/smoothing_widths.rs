@@ -13,7 +13,7 @@ use super::grid_sequencing::grids;
 use super::run::{Run, Target, is_lost, is_retried};
 use super::tuning::smoothing_widths::{
     DECREASE, FIRST_FACTOR, LAST_FACTOR, MOST_FAILURES, MOST_ITERATIONS, MOST_SIZINGS, SHRUNK,
-    THINNER, TOO_THIN, TOO_WIDE, UNKNOWN,
+    THINNER, TOO_THIN, TOO_WIDE, WIDE,
 };
 use crate::nlp::{Solution, Start, Status};
 use crate::solution::switching_function_sizes;
@@ -37,7 +37,8 @@ impl Run<'_> {
         }
         self.set_relative(nlp, &start.v, FIRST_FACTOR);
         let first = self.sized(nlp, &start, watch);
-        let (mut best, mut factor) = self.or_thinner(nlp, &start, first, watch);
+        let (mut best, factor) = self.or_thinner(nlp, &start, first, watch);
+        let mut factor = factor.max(self.relative(nlp, &best.v));
         let (mut decrease, mut failures) = (DECREASE, 0);
         while best.status.is_solved() && factor > LAST_FACTOR && failures < MOST_FAILURES {
             let before = self.sigma.clone();
@@ -61,11 +62,16 @@ impl Run<'_> {
     }
 
     /// The widest layer; where the guess said nothing of the size of a switching function, with the
-    /// size that it turns out to have.
+    /// size that it turns out to have. Where such a layer cannot be solved it may be too thin.
     fn sized(&mut self, nlp: &mut TranscribedNlp, start: &Start, watch: &mut Watch) -> Solution {
         let mut best = self.first(nlp, start.clone(), watch);
         let mut is_open: Vec<bool> =
             switching_function_sizes(nlp, &start.v).iter().map(|size| *size == 0.0).collect();
+        if is_lost(&best.status) && is_open.contains(&true) {
+            let open = self.sigma.iter_mut().zip(&is_open).filter(|it| *it.1);
+            open.for_each(|(sigma, _)| *sigma *= WIDE);
+            best = self.first(nlp, start.clone(), watch);
+        }
         for _ in 0..MOST_SIZINGS {
             let (before, sizes) = (self.sigma.clone(), switching_function_sizes(nlp, &best.v));
             self.resize(&is_open, &sizes);
@@ -162,11 +168,21 @@ impl Run<'_> {
         Target { limit: MOST_ITERATIONS.min(target.limit), ..target }
     }
 
-    /// Widths relative to the size of each switching function along `v`.
+    /// Widths relative to the size of each switching function along `v`; to its unit where `v`
+    /// rests on the surface.
     fn set_relative(&mut self, nlp: &TranscribedNlp, v: &[f64], factor: f64) {
-        for (sigma, size) in self.sigma.iter_mut().zip(switching_function_sizes(nlp, v)) {
-            *sigma = factor * if size > 0.0 { size } else { UNKNOWN };
+        let units = self.problem.surfaces.iter().map(|it| self.problem.parameters[it.sigma].unit);
+        let sizes = switching_function_sizes(nlp, v).into_iter().zip(units);
+        for (sigma, (size, unit)) in self.sigma.iter_mut().zip(sizes) {
+            *sigma = factor * if size > 0.0 { size } else { unit };
         }
+    }
+
+    /// The least width relative to the size of its switching function along `v`; 0 if none has one.
+    fn relative(&self, nlp: &TranscribedNlp, v: &[f64]) -> f64 {
+        let sizes = self.sigma.iter().zip(switching_function_sizes(nlp, v));
+        let relative = sizes.map(|(sigma, size)| sigma / size).filter(|it| it.is_finite());
+        relative.reduce(f64::min).unwrap_or(0.0)
     }
 
     /// Smaller widths, by the factor `decrease`; but not below `factor` times the size of the

@@ -42,9 +42,10 @@ pub(crate) mod smoothing_widths {
     /// From one width to the next; after a failure the square root of it, and so on.
     pub(crate) const DECREASE: f64 = 0.3;
     pub(crate) const MOST_FAILURES: usize = 3;
-    /// Without a guess of its size the first width is a fraction of this; how large the function
-    /// is, is found out at most so often.
-    pub(crate) const UNKNOWN: f64 = 1.0;
+    /// Without a guess of its size the first width is a fraction of its unit; where that cannot be
+    /// solved it may be too thin, and so many times as much is tried.
+    pub(crate) const WIDE: f64 = 1e3;
+    /// How large the function is, is found out at most so often.
     pub(crate) const MOST_SIZINGS: usize = 3;
     /// A first width may be so many times the one that fits the size, or that part of it.
     pub(crate) const TOO_WIDE: f64 = 2.0;

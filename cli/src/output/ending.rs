@@ -38,6 +38,11 @@ enum Why {
         time: f64,
         state: Named<f64>,
     },
+    Discontinuous {
+        surface: String,
+        time: f64,
+        state: Named<f64>,
+    },
     StepLimit {
         time: f64,
         state: Named<f64>,
@@ -75,6 +80,10 @@ impl Ending {
                 let (line, of) = place(system, simulation, origin, source);
                 ("not_finite", Why::NotFinite { line, of, time, state })
             }
+            Status::Discontinuous { surface } => {
+                let surface = surface_name(surface);
+                ("discontinuous", Why::Discontinuous { surface, time, state })
+            }
             Status::StepLimit => ("step_limit", Why::StepLimit { time, state }),
             Status::Stopped(Stop::TimeLimit) => ("time_limit", Why::TimeLimit { time, state }),
             Status::Stopped(Stop::Interrupted) => ("interrupted", Why::Interrupted { time, state }),
@@ -91,6 +100,13 @@ impl Ending {
             Why::Zeno { jump, surface, limit_time } => zeno(jump.as_deref(), surface, *limit_time),
             Why::NotFinite { line, of, time, .. } => {
                 format!("not finite: `{of}` (line {line}) at t = {}", significant(*time, 12))
+            }
+            Why::Discontinuous { surface, time, .. } => {
+                format!(
+                    "the switching function of `{surface}` jumps over 0 at t = {}: a surface is \
+                     where it is 0; write one that is continuous there",
+                    significant(*time, 12)
+                )
             }
             Why::StepLimit { .. } => {
                 "step limit: its events may pile up, its tolerances may be too small, or it is \

@@ -34,6 +34,11 @@ pub(super) fn conclude(nlp: &mut dyn Nlp, ended: Ended, options: &Options) -> So
         status
     };
     let objective = nlp.values(&v, &mut vec![0.0; multipliers.constraints.len()]);
+    let status = if status.is_solved() && !objective.is_finite() {
+        Status::NotFinite(nlp.not_finite(&v).unwrap_or_default())
+    } else {
+        status
+    };
     let constraint_violation = constraint_violation(nlp, &v);
     let global = false;
     Solution {

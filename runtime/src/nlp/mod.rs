@@ -20,6 +20,7 @@ mod tuning;
 
 use crate::linalg::{Stages, Triplets};
 use crate::problem::{Bounds, Linear, Origin};
+pub(crate) use scaling::objective_unit;
 use std::ops::ControlFlow;
 
 /// First and second derivatives at a point, in the order of the structures of the NLP.

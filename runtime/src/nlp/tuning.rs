@@ -45,8 +45,8 @@ pub(crate) mod factors {
     pub(crate) const SMALLEST: f64 = 1e-30;
     /// Rows are not scaled down below this.
     pub(crate) const LEAST_FACTOR: f64 = 1e-8;
-    /// Factors of the objective beyond this, or below its inverse, come from slopes that are
-    /// rounding.
+    /// Factors of the objective beyond this over its unit, or below its inverse, come from slopes
+    /// that are rounding.
     pub(crate) const LARGEST_FACTOR: f64 = 1e12;
 }
 

@@ -173,6 +173,11 @@ pub enum Status {
     },
     /// Something has no value, or grows beyond all bounds.
     NotFinite(Origin),
+    /// A switching function jumps over 0: its surface has no normal there.
+    Discontinuous {
+        /// The surface.
+        surface: usize,
+    },
     /// Too many steps.
     StepLimit,
     /// The caller stopped it.

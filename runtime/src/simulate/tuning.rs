@@ -30,7 +30,7 @@ pub(crate) mod tolerance {
     /// A state counts at least as this part of how far its rate, whatever the selectors, could take
     /// it in the whole time: what leaves 0 may grow so slowly that no step is short enough.
     pub(crate) const REACHED: f64 = 1e-9;
-    /// The same of what nothing moves.
+    /// The same of what nothing moves, relative to the largest state.
     pub(crate) const LEAST: f64 = 1e-60;
     /// Selectors that solve a linear system are known so well.
     pub(crate) const SOLVED: f64 = 1e-13;
@@ -83,8 +83,22 @@ pub(crate) mod search {
     /// The lowest value of a shallow part is found with so many sections by the golden ratio.
     pub(crate) const SECTIONS: usize = 40;
     pub(crate) const GOLDEN: f64 = 0.618_033_988_749_895;
+    /// The values at the ends of a part agree with the rates between to this part of them.
+    pub(crate) const SLACK: f64 = 1e-9;
     /// Rounding of times, relative to them.
     pub(crate) const ROUNDING: f64 = 8.0 * f64::EPSILON;
+}
+
+pub(crate) mod discontinuity {
+    /// How far beside a change of sign a function is looked at, in the least parts of a step that
+    /// differ, and so many times as far for comparison.
+    pub(crate) const DISTANCE: f64 = 64.0;
+    pub(crate) const FARTHER: f64 = 16.0;
+    /// What is above so many times rounding is not 0.
+    pub(crate) const CLEAR: f64 = 4.0;
+    /// What does not fall to this part from far to near is not on the way to 0; even a cube root
+    /// falls to 0.4.
+    pub(crate) const FALLS: f64 = 0.7;
 }
 
 pub(crate) mod extremes {

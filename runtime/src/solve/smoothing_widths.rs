@@ -36,9 +36,14 @@ impl Run<'_> {
             }
         }
         self.set_relative(nlp, &start.v, FIRST_FACTOR);
+        let widest = self.sigma.clone();
         let first = self.sized(nlp, &start, watch);
-        let (mut best, factor) = self.or_thinner(nlp, &start, first, watch);
-        let mut factor = factor.max(self.relative(nlp, &best.v));
+        let (mut best, mut factor) = self.or_thinner(nlp, &start, first, watch);
+        let thin = is_lost(&best.status).then(|| (best.clone(), self.sigma.clone()));
+        if thin.is_some() {
+            best = self.or_wider(nlp, &start, best, &widest, watch);
+        }
+        factor = factor.max(self.relative(nlp, &best.v));
         let (mut decrease, mut failures) = (DECREASE, 0);
         while best.status.is_solved() && factor > LAST_FACTOR && failures < MOST_FAILURES {
             let before = self.sigma.clone();
@@ -56,22 +61,59 @@ impl Run<'_> {
                 best.status = solution.status;
             }
         }
+        // A layer that stays far too wide is no answer to one that was too thin.
+        if let Some((lost, widths)) = thin
+            && self.relative(nlp, &best.v) > TOO_WIDE * FIRST_FACTOR
+        {
+            (best, self.sigma) = (lost, widths);
+        }
         self.apply_sigma(nlp);
         best.counts = self.counts;
         best
     }
 
     /// The widest layer; where the guess said nothing of the size of a switching function, with the
-    /// size that it turns out to have. Where such a layer cannot be solved it may be too thin.
+    /// size that it turns out to have.
     fn sized(&mut self, nlp: &mut TranscribedNlp, start: &Start, watch: &mut Watch) -> Solution {
-        let mut best = self.first(nlp, start.clone(), watch);
-        let mut is_open: Vec<bool> =
-            switching_function_sizes(nlp, &start.v).iter().map(|size| *size == 0.0).collect();
-        if is_lost(&best.status) && is_open.contains(&true) {
-            let open = self.sigma.iter_mut().zip(&is_open).filter(|it| *it.1);
-            open.for_each(|(sigma, _)| *sigma *= WIDE);
-            best = self.first(nlp, start.clone(), watch);
+        let first = self.first(nlp, start.clone(), watch);
+        self.resized(nlp, start, first, watch)
+    }
+
+    /// Where the guess said nothing of that size and nothing was found, the widest layer may be too
+    /// thin: a far wider one.
+    fn or_wider(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        start: &Start,
+        lost: Solution,
+        widest: &[f64],
+        watch: &mut Watch,
+    ) -> Solution {
+        let is_open = is_open(nlp, start);
+        if !is_open.contains(&true) {
+            return lost;
         }
+        let thin = self.sigma.clone();
+        let wider =
+            widest.iter().zip(is_open).map(|(it, is_open)| if is_open { WIDE * it } else { *it });
+        self.sigma = wider.collect();
+        let wide = self.first(nlp, start.clone(), watch);
+        if !wide.status.is_solved() {
+            self.sigma = thin;
+            return lost;
+        }
+        self.resized(nlp, start, wide, watch)
+    }
+
+    /// The first solve again, until width and size fit.
+    fn resized(
+        &mut self,
+        nlp: &mut TranscribedNlp,
+        start: &Start,
+        mut best: Solution,
+        watch: &mut Watch,
+    ) -> Solution {
+        let mut is_open = is_open(nlp, start);
         for _ in 0..MOST_SIZINGS {
             let (before, sizes) = (self.sigma.clone(), switching_function_sizes(nlp, &best.v));
             self.resize(&is_open, &sizes);
@@ -192,4 +234,9 @@ impl Run<'_> {
             *sigma = (factor * size).clamp(decrease * *sigma, *sigma);
         }
     }
+}
+
+/// Where a guess says nothing of the size of a switching function, because it rests on the surface.
+fn is_open(nlp: &TranscribedNlp, start: &Start) -> Vec<bool> {
+    switching_function_sizes(nlp, &start.v).iter().map(|size| *size == 0.0).collect()
 }

@@ -22,7 +22,7 @@ pub(crate) mod tableau;
 mod tables;
 
 use crate::linalg::{Stages, Triplets};
-use crate::nlp::{Derivatives, Nlp, Place, Quantities};
+use crate::nlp::{Derivatives, Nlp, Place, Quantities, objective_unit};
 use crate::problem::{Bounds, Origin, Problem};
 use assembly::{Builder, Repeated};
 use boundary::Ends;
@@ -33,6 +33,8 @@ use sampled::{Matrices, Sampled, Target};
 /// The NLP of a problem on a grid.
 pub struct TranscribedNlp<'p> {
     problem: &'p Problem,
+    /// See [`Quantities::objective`].
+    objective_unit: f64,
     stages: Stages,
     interval: Interval,
     mesh: Mesh,
@@ -65,7 +67,8 @@ impl<'p> TranscribedNlp<'p> {
         let path = path(problem, &interval, &mut matrices);
         let Matrices { mut jacobian, mut hessian, .. } = matrices;
         let ends = Ends::new(problem, stages, &mut jacobian, &mut hessian);
-        TranscribedNlp {
+        let mut nlp = TranscribedNlp {
+            objective_unit: 1.0,
             problem,
             stages,
             variable_bounds: bounds::of_variables(problem, stages, &interval),
@@ -79,7 +82,12 @@ impl<'p> TranscribedNlp<'p> {
             path,
             ends,
             parameters: problem.parameters.iter().map(|parameter| parameter.value).collect(),
+        };
+        if problem.has_objective {
+            let guess = nlp.guess();
+            nlp.objective_unit = objective_unit(&mut nlp, &guess);
         }
+        nlp
     }
 
     /// What is transcribed.

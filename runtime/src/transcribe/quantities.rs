@@ -20,7 +20,7 @@ impl TranscribedNlp<'_> {
         let local = (0..stages.local_constraints).map(|row| signals + row % paths);
         let mut constraints = defects.chain(local).collect::<Vec<_>>().repeat(stages.intervals);
         constraints.extend((0..stages.coupling_constraints).map(|row| signals + paths + row));
-        Quantities { variables, constraints, stepped: signals, units: self.units(), objective: 1.0 }
+        Quantities { variables, constraints, stepped: signals, units: self.units() }
     }
 
     fn units(&self) -> Vec<f64> {

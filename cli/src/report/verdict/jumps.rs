@@ -13,6 +13,7 @@ pub fn lines(solution: &Solution, document: &Document) -> Vec<String> {
     let when =
         |it: &Happened| format!("{} at t = {}", it.jump, document.units.value("time", it.time, 6));
     let happened = match document.jumps.len() {
+        0 if solution.sequences.iter().any(is_unfinished) => "none".into(),
         0 => "none is best".into(),
         _ => document.jumps.iter().map(when).collect::<Vec<_>>().join(", "),
     };
@@ -26,6 +27,11 @@ pub fn lines(solution: &Solution, document: &Document) -> Vec<String> {
         );
     }
     lines
+}
+
+/// Whether nobody knows what a sequence is worth, because its solve was stopped.
+fn is_unfinished(sequence: &Sequence) -> bool {
+    ["time_limit", "interrupted", "iteration_limit"].contains(&sequence.ended.status)
 }
 
 /// So many of the other sequences are told.
@@ -44,6 +50,12 @@ fn with_others(solution: &Solution, document: &Document) -> Vec<String> {
         told.map(|it| format!("       {}: objective {}", it.words, value(it))).collect();
     let more = solved.len().saturating_sub(OTHERS);
     lines.extend((more > 0).then(|| format!("       {}: worse", plural(more, "other sequence"))));
+    let (unfinished, failed): (Vec<&Sequence>, Vec<&Sequence>) =
+        failed.into_iter().partition(|it| is_unfinished(it));
+    let many = plural(unfinished.len(), "other sequence");
+    lines.extend((!unfinished.is_empty()).then(|| {
+        format!("       {many}: not finished ({})", unfinished[0].ended.status.replace('_', " "))
+    }));
     match failed.as_slice() {
         [] => {}
         [one] => {

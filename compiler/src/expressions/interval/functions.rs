@@ -44,6 +44,8 @@ pub(crate) fn apply(builtin: Builtin, operands: &[Interval]) -> Interval {
     }
 }
 
+/// `pi/2` is between two numbers.
+const RIGHT_ANGLE: Interval = Interval { lower: FRAC_PI_2, upper: FRAC_PI_2.next_up() };
 /// More than a half turn.
 const ABOVE_PI: f64 = PI + 1e-9;
 const UNIT: Interval = Interval { lower: -1.0, upper: 1.0 };
@@ -76,14 +78,15 @@ fn tangent(a: Interval) -> Interval {
     a.grow(f64::tan)
 }
 
-/// `atan2(y, x)`: exact quadrants only where the half line `x <= 0, y = 0` is avoided.
+/// `atan2(y, x)`: `pi/2 - atan(x/y)` above the axis, `-pi/2 - atan(x/y)` below it; everything where
+/// the half line `x <= 0, y = 0` is met.
 fn angle(y: Interval, x: Interval) -> Interval {
     if x.is_positive() {
         return (y / x).grow(f64::atan);
     }
     match () {
-        _ if y.is_positive() => Interval { lower: 0.0, upper: ABOVE_PI },
-        _ if y.is_negative() => Interval { lower: -ABOVE_PI, upper: 0.0 },
+        _ if y.is_positive() => RIGHT_ANGLE + -(x / y).grow(f64::atan),
+        _ if y.is_negative() => -RIGHT_ANGLE + -(x / y).grow(f64::atan),
         _ => Interval { lower: -ABOVE_PI, upper: ABOVE_PI },
     }
 }

@@ -58,9 +58,21 @@ impl ScalingFactors {
             let at_near = slopes(nlp, &near);
             steepness = steepness.or(Steepness::new(nlp, quantities, &variables, &at_near));
         }
-        let objective = objective(steepness.objective);
+        let objective = objective(steepness.objective, quantities.objective);
         ScalingFactors { objective, rows: rows(quantities, &units, steepness), variables }
     }
+}
+
+/// One unit of the objective of an NLP that has none: how much it changes at a guess with the sizes
+/// of the variables, where that is less than 1.
+pub(crate) fn objective_unit(nlp: &mut dyn Nlp, guess: &[f64]) -> f64 {
+    let (quantities, v) = (nlp.quantities(), inside(nlp, guess));
+    let magnitudes = magnitudes(nlp, &quantities, &v);
+    let variables: Vec<f64> = quantities.variables.iter().map(|i| unit(magnitudes[*i])).collect();
+    let near = near(nlp, &quantities, &v, &magnitudes);
+    let slopes = [&v, &near].map(|v| objective_slope(&quantities, &variables, &slopes(nlp, v)));
+    let largest = slopes.into_iter().filter(|slope| slope.is_finite()).fold(0.0, f64::max);
+    if largest > 0.0 { largest.min(1.0) } else { 1.0 }
 }
 
 /// The point of the bounds that is nearest to `v`.
@@ -126,12 +138,12 @@ fn objective_slope(quantities: &Quantities, variables: &[f64], at: &Derivatives)
     sums.into_iter().fold(0.0, f64::max)
 }
 
-fn objective(slope: f64) -> f64 {
+fn objective(slope: f64, unit: f64) -> f64 {
     if slope == 0.0 || !slope.is_finite() {
         return 1.0;
     }
     let factor = slope.clamp(LEAST_OBJECTIVE, LARGEST_OBJECTIVE) / slope;
-    power_of_two(factor.clamp(1.0 / LARGEST_FACTOR, LARGEST_FACTOR))
+    power_of_two(factor.clamp(1.0 / LARGEST_FACTOR, LARGEST_FACTOR / unit))
 }
 
 fn rows(quantities: &Quantities, units: &[f64], steepness: Steepness) -> Vec<f64> {

@@ -14,6 +14,7 @@ use super::{Derivatives, Multipliers, Nlp, Place, Quantities, Start};
 use crate::linalg::{Stages, Triplets};
 use crate::problem::Bounds;
 use factors::ScalingFactors;
+pub(crate) use factors::objective_unit;
 
 /// The scaled NLP.
 pub(crate) struct Scaled<'a> {

@@ -51,6 +51,12 @@ impl Tolerance {
         PART * self.least[i]
     }
 
+    /// Whether a state that was larger has become so small that it may count too much.
+    pub fn may_be_rough(&self, x: &[f64]) -> bool {
+        let is_small = |(x, least): (&f64, &f64)| *x != 0.0 && x.abs() < PART / self.rtol * least;
+        x.iter().zip(&self.least).any(is_small)
+    }
+
     /// From now on rates are certain.
     pub fn forget_doubts(&mut self) {
         self.doubts.fill(0.0);
@@ -78,10 +84,12 @@ impl Field<'_> {
         let [first, last] = self.system.interval;
         let selectors = self.selectors.clone();
         let (rate, by_selector) = self.with_selectors(t, x, &selectors);
+        let largest = x.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
         for (i, rate) in rate.iter().enumerate() {
             let pushes: f64 = by_selector.row(i).iter().map(|push| push.abs()).sum();
             let reached = REACHED * (last - first) * (rate.abs() + pushes);
-            self.tolerance.least[i] = if reached.is_finite() { reached.max(LEAST) } else { LEAST };
+            let least = LEAST * if largest > 0.0 { largest } else { 1.0 };
+            self.tolerance.least[i] = if reached.is_finite() { reached.max(least) } else { least };
         }
     }
 

@@ -7,6 +7,7 @@
 //! itself, so it is as accurate as the integration.
 
 mod bisection;
+mod discontinuity;
 pub(crate) mod extremes;
 mod interval;
 mod search;
@@ -50,6 +51,8 @@ pub(crate) struct Found {
     /// How long the step is that ends there.
     pub h: f64,
     pub state: Vec<f64>,
+    /// Whether the switching function jumps there, and is not 0.
+    pub is_jump: bool,
 }
 
 /// What is known of the events in a step.
@@ -76,13 +79,19 @@ pub(crate) fn first(field: &mut Field, step: &Step) -> First {
             Search::Holds => {}
             Search::Fails(ends, noise) => {
                 until = root(&mut |theta| signal.value(theta), ends, noise);
-                (found, is_known) = (Some(condition), true);
+                let is_jump = matches!(condition, Condition::Reaches(_))
+                    && discontinuity::jumps(&mut signal, until);
+                (found, is_known) = (Some((condition, is_jump)), true);
             }
             Search::HoldsUntil(theta) => (until, found, is_known) = (theta, None, false),
         }
     }
     match found {
-        Some(condition) => First::At(refine(field, step, condition, until)),
+        Some((condition, true)) => {
+            let (h, state) = (until * step.h, step.at(until));
+            First::At(Found { condition, h, state, is_jump: true })
+        }
+        Some((condition, false)) => First::At(refine(field, step, condition, until)),
         None if is_known => First::None,
         None => First::NotBefore(until),
     }
@@ -193,7 +202,7 @@ fn refine(field: &mut Field, step: &Step, condition: Condition, theta: f64) -> F
     if let Condition::Reaches(surface) = condition {
         bring_to(field, surface, step.t + h, &mut state);
     }
-    Found { condition, h, state }
+    Found { condition, h, state, is_jump: false }
 }
 
 /// Newton's steps onto a surface that is reached but for rounding and tolerances: the least change

@@ -11,6 +11,8 @@
 //! the part is no longer than rounding                    the ends tell; to touch 0 is not to fail
 //! ```
 //!
+//! The second and the third need a `g` without jumps: its change has to agree with its rate.
+//!
 //! Any other part is halved, the earlier half first.
 
 use super::interval::{ALL, scaled};
@@ -20,7 +22,7 @@ use crate::simulate::field::Field;
 use crate::simulate::field::tube::Tube;
 use crate::simulate::steps::Step;
 use crate::simulate::system::Interval;
-use crate::simulate::tuning::search::{FLAT, GOLDEN, MOST_PARTS, ROUNDING, SECTIONS};
+use crate::simulate::tuning::search::{FLAT, GOLDEN, MOST_PARTS, ROUNDING, SECTIONS, SLACK};
 
 /// A condition along a step.
 pub(crate) struct Signal<'f, 'a> {
@@ -146,12 +148,29 @@ impl Signal<'_, '_> {
             let fails = theta > from && theta < to && value < -self.noise(theta);
             return if fails { Verdict::FailsAt(theta, value) } else { Verdict::Holds };
         }
-        if falls >= 0.0 || grows <= 0.0 || to - from <= self.shortest() {
+        let is_monotonic = falls >= 0.0 || grows <= 0.0;
+        let is_short = to - from <= self.shortest();
+        if !is_short && !self.is_smooth(part, [falls, grows], noise) {
+            return Verdict::Open;
+        }
+        if is_monotonic || is_short {
             return if part.values[1] < -noise { Verdict::Fails(noise) } else { Verdict::Holds };
         }
         let [at_from, at_to] = part.values;
         let until_lowest = (at_from - at_to + grows * (to - from)) / (grows - falls);
         if at_from + falls * until_lowest >= -noise { Verdict::Holds } else { Verdict::Open }
+    }
+
+    /// Whether the values at the ends agree with the rates between them, as the mean value theorem
+    /// has it: where they do not, a switching function jumps.
+    fn is_smooth(&self, part: Part, [falls, grows]: Interval, noise: f64) -> bool {
+        if matches!(self.condition, Condition::Leaves(_)) {
+            return true;
+        }
+        let ([from, to], [at_from, at_to]) = (part.ends, part.values);
+        let slack = noise + SLACK * (at_from.abs() + at_to.abs());
+        let change = at_to - at_from;
+        change >= falls * (to - from) - slack && change <= grows * (to - from) + slack
     }
 
     /// A part of the step where the value is lowest, and the value, by golden sections (J. Kiefer:
@@ -177,7 +196,7 @@ impl Signal<'_, '_> {
     }
 
     /// A part of the step that rounding hides.
-    fn shortest(&self) -> f64 {
+    pub fn shortest(&self) -> f64 {
         let last = (self.step.t + self.step.h).abs().max(self.step.t.abs());
         ROUNDING * (1.0 + last / self.step.h)
     }

@@ -127,6 +127,12 @@ impl Run<'_> {
         }
         if let Some(found) = self.first_event(step) {
             self.go(step, [step.t + found.h, found.h], &found.state);
+            if let Condition::Reaches(surface) = found.condition
+                && found.is_jump
+            {
+                self.record.point(self.t, &self.x);
+                return Err(Status::Discontinuous { surface });
+            }
             return self.stop(found.condition.into(), |run| run.handle(found.condition));
         }
         if let Some(theta) = self.attraction_ends(step) {
@@ -191,6 +197,9 @@ impl Run<'_> {
         // Near 0 the direction of a ball is stiff in a way of its own.
         let method =
             if self.field.moving().is_empty() { self.pace.method } else { Method::Explicit };
+        if self.field.tolerance.may_be_rough(&self.x) {
+            self.field.find_least_sizes(self.t, &self.x);
+        }
         step.begin(&mut self.field, self.t, &self.x, method, self.pace.is_continued);
         let selectors = self.field.selectors.clone();
         // What was uncertain in a short step says nothing about a long one.

@@ -31,7 +31,7 @@ fn what_one_grid_does_not_find_is_told_with_what_was_tried() {
     let (verdict, diagnostic) =
         (stdout(&told), stderr(&told).split_whitespace().collect::<Vec<_>>().join(" "));
     assert!(verdict.contains("NOT SOLVED, found none from this guess: "), "{verdict}");
-    assert!(verdict.contains("solves with N = 50, sigma 0.1 to 0.01"), "{verdict}");
+    assert!(verdict.contains("solves with N = 50, sigma 100 to 0.01"), "{verdict}");
     for text in [&verdict, &diagnostic] {
         assert!(
             text.contains("`--starts 8`") && text.contains("found none from this guess"),

@@ -206,3 +206,32 @@ fn a_contradiction_that_is_spread_over_the_grid_is_one() {
         assert_eq!(solution.status, Status::Infeasible, "{gap} over {intervals}");
     }
 }
+
+/// What an objective is worth depends on its unit: `c` is the best constant control, by calculus.
+#[test]
+fn a_small_objective_is_an_objective() {
+    // c + (exp(c) - 2) exp(c) = 0
+    let (mut low, mut high) = (0.0f64, 1.0f64);
+    while high - low > 1e-15 {
+        let c = 0.5 * (low + high);
+        if c + (c.exp() - 2.0) * c.exp() < 0.0 { low = c } else { high = c }
+    }
+    let curved = low.powi(2) + (low.exp() - 2.0).powi(2);
+    for factor in [1.0, 1e-12, 1e-19, 1e-25, 1e-40] {
+        for (goal, least) in [("(x(end) - 0.5)^2", 0.125), ("(exp(x(end)) - 2)^2", curved)] {
+            let text = format!(
+                "time t in [0, 1] state x start 0 control u in [-3, 3] dynamics {{ x' = u }}\n\
+                 minimize {factor:e}*({goal} + integral(u^2)) method {{ N = 20 }}"
+            );
+            assert_solved(&text, &solved(&text), factor * least);
+        }
+    }
+}
+
+#[test]
+fn an_objective_without_a_value_is_no_optimum() {
+    let text = "param a = 2 time t in [0, 1] state x start 0 control u in [-1, 1]\n\
+                dynamics { x' = u } minimize integral(u^2) + (x(end) - 1)^2 + log(a)";
+    let solution = solve(&problem(text, &[("a", "-1")], &[])).solution;
+    assert!(matches!(solution.status, Status::NotFinite(_)), "{solution:?}");
+}

@@ -19,8 +19,7 @@
 //! its declared unit, so that rounding is not mistaken for a value.
 
 use super::tuning::assessment::{
-    ACCEPTABLE_IMPROVEMENT, ACCEPTABLE_VIOLATION, AIM, IMPROVEMENT, NO_OBJECTIVE, NOTHING, PART,
-    SPREAD,
+    ACCEPTABLE_IMPROVEMENT, ACCEPTABLE_VIOLATION, AIM, IMPROVEMENT, NOTHING, PART, SPREAD,
 };
 use super::{Derivatives, Multipliers, Nlp, Quantities};
 use crate::problem::Bounds;
@@ -51,7 +50,7 @@ impl Assessment {
         let objective = nlp.values(v, &mut rows);
         nlp.derivatives(v, 1.0, &vec![0.0; rows.len()], &mut at);
         let terms = expansion(nlp, &quantities, &at, v, &magnitudes);
-        let size = objective.abs().max(terms).max(NO_OBJECTIVE * quantities.objective);
+        let size = nlp.objective_size(objective.abs().max(terms));
         let of_rows = constraint_magnitudes(nlp, &quantities, v, &at.jacobian, &magnitudes);
         let variables = nlp.variable_bounds().iter().zip(v);
         let sides = variables

@@ -22,6 +22,7 @@ use crate::linalg::{Stages, Triplets};
 use crate::problem::{Bounds, Linear, Origin};
 pub(crate) use scaling::objective_unit;
 use std::ops::ControlFlow;
+pub(crate) use tuning::assessment::NO_OBJECTIVE;
 
 /// First and second derivatives at a point, in the order of the structures of the NLP.
 #[derive(Clone, Debug, Default)]
@@ -67,8 +68,6 @@ pub struct Quantities {
     pub stepped: usize,
     /// One of the declared unit of each quantity of variables.
     pub units: Vec<f64>,
-    /// One of the unit of the objective.
-    pub objective: f64,
 }
 
 /// A nonlinear program. Evaluations take `&mut self` for working memory only: equal inputs give
@@ -86,6 +85,11 @@ pub trait Nlp {
     fn stages(&self) -> Option<Stages>;
     /// Which variables and constraints are one quantity of the model.
     fn quantities(&self) -> Quantities;
+    /// The size of an objective whose terms are this large: at least a small part of its unit.
+    fn objective_size(&mut self, terms: f64) -> f64;
+    /// How much the objective changes at the guess with the sizes of the variables, where that is
+    /// less than 1.
+    fn objective_unit(&mut self) -> f64;
     /// Objective and constraints.
     fn values(&mut self, v: &[f64], constraints: &mut [f64]) -> f64;
     /// Gradient, Jacobian and the Hessian of `weight * f + multipliers . c`.

@@ -43,7 +43,9 @@ impl Run<'_> {
         if thin.is_some() {
             best = self.or_wider(nlp, &start, best, &widest, watch);
         }
-        factor = factor.max(self.relative(nlp, &best.v));
+        if self.is_far_too_wide(nlp, &best.v) {
+            factor = factor.max(self.relative(nlp, &best.v));
+        }
         let (mut decrease, mut failures) = (DECREASE, 0);
         while best.status.is_solved() && factor > LAST_FACTOR && failures < MOST_FAILURES {
             let before = self.sigma.clone();
@@ -63,7 +65,7 @@ impl Run<'_> {
         }
         // A layer that stays far too wide is no answer to one that was too thin.
         if let Some((lost, widths)) = thin
-            && self.relative(nlp, &best.v) > TOO_WIDE * FIRST_FACTOR
+            && self.is_far_too_wide(nlp, &best.v)
         {
             (best, self.sigma) = (lost, widths);
         }
@@ -218,6 +220,11 @@ impl Run<'_> {
         for (sigma, (size, unit)) in self.sigma.iter_mut().zip(sizes) {
             *sigma = factor * if size > 0.0 { size } else { unit };
         }
+    }
+
+    /// Whether no layer is as thin as the widest should be.
+    fn is_far_too_wide(&self, nlp: &TranscribedNlp, v: &[f64]) -> bool {
+        self.relative(nlp, v) > TOO_WIDE * FIRST_FACTOR
     }
 
     /// The least width relative to the size of its switching function along `v`; 0 if none has one.

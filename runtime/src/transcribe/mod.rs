@@ -22,7 +22,7 @@ pub(crate) mod tableau;
 mod tables;
 
 use crate::linalg::{Stages, Triplets};
-use crate::nlp::{Derivatives, Nlp, Place, Quantities, objective_unit};
+use crate::nlp::{Derivatives, NO_OBJECTIVE, Nlp, Place, Quantities, objective_unit};
 use crate::problem::{Bounds, Origin, Problem};
 use assembly::{Builder, Repeated};
 use boundary::Ends;
@@ -33,8 +33,8 @@ use sampled::{Matrices, Sampled, Target};
 /// The NLP of a problem on a grid.
 pub struct TranscribedNlp<'p> {
     problem: &'p Problem,
-    /// See [`Quantities::objective`].
-    objective_unit: f64,
+    /// See [`Nlp::objective_unit`]; nothing as long as nobody asks.
+    objective_unit: Option<f64>,
     stages: Stages,
     interval: Interval,
     mesh: Mesh,
@@ -67,9 +67,9 @@ impl<'p> TranscribedNlp<'p> {
         let path = path(problem, &interval, &mut matrices);
         let Matrices { mut jacobian, mut hessian, .. } = matrices;
         let ends = Ends::new(problem, stages, &mut jacobian, &mut hessian);
-        let mut nlp = TranscribedNlp {
-            objective_unit: 1.0,
+        TranscribedNlp {
             problem,
+            objective_unit: None,
             stages,
             variable_bounds: bounds::of_variables(problem, stages, &interval),
             constraint_bounds: bounds::of_rows(problem, stages),
@@ -82,12 +82,7 @@ impl<'p> TranscribedNlp<'p> {
             path,
             ends,
             parameters: problem.parameters.iter().map(|parameter| parameter.value).collect(),
-        };
-        if problem.has_objective {
-            let guess = nlp.guess();
-            nlp.objective_unit = objective_unit(&mut nlp, &guess);
         }
-        nlp
     }
 
     /// What is transcribed.
@@ -242,6 +237,17 @@ impl Nlp for TranscribedNlp<'_> {
     }
     fn quantities(&self) -> Quantities {
         self.all_quantities()
+    }
+    /// The unit is at most 1, and takes time to find out.
+    fn objective_size(&mut self, terms: f64) -> f64 {
+        if terms >= NO_OBJECTIVE { terms } else { terms.max(NO_OBJECTIVE * self.objective_unit()) }
+    }
+    fn objective_unit(&mut self) -> f64 {
+        if self.objective_unit.is_none() {
+            let guess = self.guess();
+            self.objective_unit = Some(objective_unit(self, &guess));
+        }
+        self.objective_unit.unwrap_or(1.0)
     }
 
     fn values(&mut self, v: &[f64], rows: &mut [f64]) -> f64 {

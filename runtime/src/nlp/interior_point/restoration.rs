@@ -102,6 +102,12 @@ impl Nlp for Proximity<'_> {
     fn quantities(&self) -> Quantities {
         self.inner.quantities()
     }
+    fn objective_size(&mut self, terms: f64) -> f64 {
+        terms
+    }
+    fn objective_unit(&mut self) -> f64 {
+        1.0
+    }
     fn values(&mut self, v: &[f64], rows: &mut [f64]) -> f64 {
         self.inner.values(v, rows);
         let distances = v.iter().zip(&self.reference).zip(&self.weights);

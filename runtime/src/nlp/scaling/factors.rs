@@ -58,7 +58,10 @@ impl ScalingFactors {
             let at_near = slopes(nlp, &near);
             steepness = steepness.or(Steepness::new(nlp, quantities, &variables, &at_near));
         }
-        let objective = objective(steepness.objective, quantities.objective);
+        let mut objective = objective(steepness.objective);
+        if objective > LARGEST_FACTOR {
+            objective = objective.min(power_of_two(LARGEST_FACTOR / nlp.objective_unit()));
+        }
         ScalingFactors { objective, rows: rows(quantities, &units, steepness), variables }
     }
 }
@@ -138,12 +141,12 @@ fn objective_slope(quantities: &Quantities, variables: &[f64], at: &Derivatives)
     sums.into_iter().fold(0.0, f64::max)
 }
 
-fn objective(slope: f64, unit: f64) -> f64 {
+fn objective(slope: f64) -> f64 {
     if slope == 0.0 || !slope.is_finite() {
         return 1.0;
     }
     let factor = slope.clamp(LEAST_OBJECTIVE, LARGEST_OBJECTIVE) / slope;
-    power_of_two(factor.clamp(1.0 / LARGEST_FACTOR, LARGEST_FACTOR / unit))
+    power_of_two(factor.max(1.0 / LARGEST_FACTOR))
 }
 
 fn rows(quantities: &Quantities, units: &[f64], steepness: Steepness) -> Vec<f64> {

@@ -130,8 +130,14 @@ impl Nlp for Scaled<'_> {
             units[*i] = quantities.units[*i] / s;
         }
         quantities.units = units;
-        quantities.objective *= self.factors.objective;
         quantities
+    }
+    fn objective_size(&mut self, terms: f64) -> f64 {
+        let scale = self.factors.objective;
+        scale * self.inner.objective_size(terms / scale)
+    }
+    fn objective_unit(&mut self) -> f64 {
+        self.factors.objective * self.inner.objective_unit()
     }
     fn values(&mut self, w: &[f64], rows: &mut [f64]) -> f64 {
         self.load(w);

@@ -61,25 +61,15 @@ impl Nlp for Dense {
         None
     }
     fn quantities(&self) -> Quantities {
-        let (variables, rows) =
+        let (variables, constraints) =
             ((0..self.variables.len()).collect(), (0..self.rows.len()).collect());
-<<<<<<< HEAD
-        Quantities {
-            units: vec![1.0; self.variables.len()],
-            objective: 1.0,
-            variables,
-            constraints: rows,
-            stepped: 0,
-        }
-=======
-        Quantities { units: vec![1.0; self.variables.len()], variables, rows, stepped: 0 }
+        Quantities { units: vec![1.0; self.variables.len()], variables, constraints, stepped: 0 }
     }
     fn objective_size(&mut self, terms: f64) -> f64 {
         terms.max(super::NO_OBJECTIVE)
     }
     fn objective_unit(&mut self) -> f64 {
         1.0
->>>>>>> 641e7ba (solve: the unit of an objective, for what falls to 0; tests)
     }
     fn values(&mut self, v: &[f64], rows: &mut [f64]) -> f64 {
         (self.functions.0)(v, rows)

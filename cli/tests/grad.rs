@@ -354,6 +354,28 @@ fn the_file_is_the_document() {
     assert_eq!(written, stdout(&output));
 }
 
+/// `x(end) = a`; only the kinks are at `a = 2`.
+#[test]
+fn an_objective_at_a_kink_has_no_derivative_to_trust() {
+    for (objective, is_kink) in [
+        ("max(x(end), 2)", true),
+        ("abs(x(end) - 2)", true),
+        ("sqrt((x(end) - 2)^2)", true),
+        ("min(a, b)*x(end)", true),
+        ("max(x(end), 1)", false),
+        ("abs(x(end) - 2)^3", false),
+        ("1e6*(x(end) - 2)^2 + exp(x(end))", false),
+        ("(x(end) + 1e9) - 1e9", false),
+    ] {
+        let text = format!(
+            "param a = 2  param b = 2  time t in [0, 1]  state x start 0\ndynamics {{ x' = a }}\n\
+             minimize {objective}\n"
+        );
+        let found = found("grad_objective_kink", &text, &[], if is_kink { 2 } else { 0 });
+        assert_eq!(found["trusted"], !is_kink, "{objective}: {found}");
+    }
+}
+
 #[test]
 fn a_gradient_along_a_kink_is_not_trusted() {
     let text = "param p = 1  time t in [0, 2]  state x start 0\ndynamics { x' = p*abs(x) \

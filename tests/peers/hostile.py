@@ -94,6 +94,7 @@ INPUTS = [
     ("n lines that no item begins with", 100_000, lambda n: "x y\n" * n, CHECK, {1}),
     ("a unit that never ends, n words", 100_000, lambda n: "param a = 1 [" + "m " * n, CHECK, {1}),
     ("n times `start )`", 50_000, lambda n: "state x " + "start ) " * n, CHECK, {1}),
+    ("n comments that allow what there is not", 20_000, lambda n: "# fdc: allow FDC0404\n" * n + motion("x"), CHECK, {0, 1}),
     ("n lines of one sum", 5_000, lambda n: motion("\n+ ".join(["x"] * n)), CHECK, {0, 1}),
     ("a name of n letters", 20_000, lambda n: f"param {'a' * n} = 1\n", CHECK, {1}),
     ("n names of 255 letters", 5_000, lambda n: "".join(f"param {'a' * 240}{i:015d} = 1\n" for i in range(n)), CHECK, {0, 1}),

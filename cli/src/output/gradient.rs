@@ -222,13 +222,15 @@ fn doubts(system: &System, exact: &Exact) -> Vec<String> {
 /// What is to be known of a kink that the trajectory stays on.
 fn bent(kink: &Kink, source: &SourceFile) -> String {
     let line = source.line_column(kink.of.span.0).line;
-    format!(
-        "from t = {} on the state stays on a kink of `{}` (line {line}: `abs`, `min`, `max` or a \
-         knot of `piecewise`): the derivatives are \
-         those of one side of it",
-        short(kink.time),
+    let which = format!(
+        "a kink of `{}` (line {line}: `abs`, `min`, `max` or a knot of `piecewise`): the \
+         derivatives are those of one side of it",
         kink.of.label
-    )
+    );
+    match kink.time {
+        Some(time) => format!("from t = {} on the state stays on {which}", short(time)),
+        None => format!("the trajectory ends on {which}"),
+    }
 }
 
 impl Other {

@@ -21,8 +21,15 @@ pub(crate) fn apply(text: &str, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
     if !text.contains("fdc:") {
         return found;
     }
-    let allowed: Vec<Allowed<'_>> =
-        comments(text).into_iter().flat_map(|comment| read(text, comment)).collect();
+    let mut line = Span::new(0, 0);
+    let mut allowed: Vec<Allowed<'_>> = Vec::new();
+    for comment in comments(text) {
+        // What stands between a comment and its line are comments that are about the same line.
+        if comment.end > line.start {
+            line = line_of(text, comment);
+        }
+        allowed.extend(read(text, comment, line));
+    }
     let has_error = found.iter().any(|it| it.severity == Severity::Error);
     let (silenced, mut left): (Vec<_>, Vec<_>) = found.into_iter().partition(|it| {
         it.severity != Severity::Error && allowed.iter().any(|one| one.is_about(it))
@@ -40,7 +47,7 @@ impl Allowed<'_> {
 }
 
 /// The codes that a comment allows; what follows them is the reason.
-fn read<'t>(text: &'t str, comment: Span) -> Vec<Allowed<'t>> {
+fn read<'t>(text: &'t str, comment: Span, line: Span) -> Vec<Allowed<'t>> {
     let words = &text[comment.range()][1..];
     let Some(list) = words
         .trim_start()
@@ -49,7 +56,6 @@ fn read<'t>(text: &'t str, comment: Span) -> Vec<Allowed<'t>> {
     else {
         return Vec::new();
     };
-    let line = line_of(text, comment);
     let codes: Vec<&'t str> = list
         .split_whitespace()
         .take_while(|word| word.to_ascii_uppercase().starts_with("FDC"))

@@ -127,7 +127,7 @@ fn make_machine_code(problem: &Problem) {
 }
 
 /// More need more memory than a computer has to spare: about 1 kB each.
-const MOST_UNKNOWNS: usize = 8_000_000;
+const MOST_UNKNOWNS: usize = 2_000_000;
 
 /// What a solver cannot begin with.
 fn refuse_senseless(problem: &Problem) -> Result<(), Error> {

@@ -1,10 +1,12 @@
 //! The entry: a simulation, its gradient in both ways, and what they say of each other.
 
 use super::Objective;
+use super::one_sided;
 use super::quantity::{Directions, Gradient, Quantity};
 use crate::sensitivity::linearized::linearization::Linearizer;
 use crate::sensitivity::linearized::variational_equation::LinearTape;
 use crate::sensitivity::nondifferentiability::kink::{Kink, first_kink};
+use crate::sensitivity::nondifferentiability::objective_kink::{Direction, objective_kink};
 use crate::sensitivity::nondifferentiability::{Nondifferentiability, nondifferentiabilities};
 use crate::simulate::{Controls, Options, Simulation, Status, System, simulate};
 use nalgebra::DMatrix;
@@ -99,6 +101,16 @@ pub fn gradient(
     let forward = super::along(&linearizer, &objective, &directions, &end);
     let along = weights.tr_mul(&DMatrix::from_column_slice(adjoint.len(), 1, &adjoint));
     let size = super::size(&linearizer, &objective, &directions, &end).max(all);
+    let starts = super::start(&linearizer, &directions);
+    let along_each = quantities.iter().take(weights.ncols()).enumerate().map(|(at, quantity)| {
+        let parts = [starts.column(at), end.column(at), directions.parameters.column(at)];
+        let by = parts.iter().flat_map(|part| part.iter().copied()).collect::<Vec<f64>>().into();
+        Direction { value: one_sided::value(system, controls, quantity), by }
+    });
+    let ends: Vec<f64> = system.start.iter().chain(&simulation.end).copied().collect();
+    let slopes = [&objective.by_start, &objective.by_end, &objective.by_parameters];
+    let slopes: Vec<f64> = slopes.into_iter().flat_map(|row| row.iter().copied()).collect();
+    let kink = objective_kink(&linearizer, &slopes, &ends.into(), along_each);
     Ok(Sensitivity {
         value: objective.value,
         agreement: agreement(&forward, along.as_slice(), size),
@@ -107,7 +119,7 @@ pub fn gradient(
         adjoint,
         costates,
         nondifferentiabilities: nondifferentiabilities(&pieces),
-        kink: first_kink(&linearizer, tape),
+        kink: first_kink(&linearizer, tape).or(kink),
         simulation,
     })
 }

@@ -32,7 +32,8 @@ pub fn one_sided(
     quantities.iter().map(|quantity| [side(quantity, -1.0), side(quantity, 1.0)]).collect()
 }
 
-fn value(system: &System, controls: &Controls, quantity: &Quantity) -> f64 {
+/// What a quantity is.
+pub(crate) fn value(system: &System, controls: &Controls, quantity: &Quantity) -> f64 {
     match (*quantity, controls) {
         (Quantity::Parameter(at), _) => system.parameters[at].value,
         (Quantity::Start(at), _) => system.start[at],

@@ -10,13 +10,13 @@ use crate::sensitivity::linearized::linearization::{Jacobian, Linearizer, slidin
 use crate::simulate::{Cause, Instant, Piece, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-/// A kink that a trajectory stays on.
+/// A kink that a trajectory stays on, or ends on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kink {
-    /// The right side.
+    /// The right side, or the objective.
     pub of: Origin,
-    /// Since when.
-    pub time: f64,
+    /// Since when; nothing for the objective.
+    pub time: Option<f64>,
 }
 
 /// The first.
@@ -34,7 +34,7 @@ pub(crate) fn first_kink(linearizer: &Linearizer, tape: &Tape) -> Option<Kink> {
         let end = Here::new(linearizer, tape, &piece.end());
         let stays = |k: &usize| here.is_on(*k) && end.is_on(*k) && !here.is_fixed(*k);
         let kink = (0..kinks.outputs()).find(stays)?;
-        Some(Kink { of: kinks.origin(kink), time: start.time })
+        Some(Kink { of: kinks.origin(kink), time: Some(start.time) })
     })
 }
 

@@ -5,6 +5,7 @@
 //! suspicions; [`one_sided()`](super::first_order::one_sided::one_sided()) decides.
 
 pub(crate) mod kink;
+pub(crate) mod objective_kink;
 
 use super::linearized::linearization::{Jacobian, Linearizer};
 use super::linearized::variational_equation::LinearTape;

@@ -1,0 +1,74 @@
+//! An objective that has a kink where a trajectory ends: `max(x(end), 2)` at 2.
+//!
+//! Along a direction of the quantities the slopes from both sides differ, and do not come together
+//! as the distance shrinks: `|J(z + e d) - 2 J(z) + J(z - e d)|` falls like `e` at a kink, like
+//! `e^2` where there are two derivatives.
+
+use super::kink::Kink;
+use crate::problem::Columns;
+use crate::sensitivity::linearized::linearization::Linearizer;
+use nalgebra::DVector;
+
+/// The distance, as a part of the quantity, and what it is divided by for comparison.
+const DISTANCE: f64 = 1e-6;
+const NEARER: f64 = 16.0;
+
+/// What falls more slowly than to this part is a kink; without one it falls to 1/256.
+const FALLS: f64 = 1.0 / 64.0;
+
+/// What is less than this part of the terms is rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// How the ends of a trajectory move with a quantity.
+pub(crate) struct Direction {
+    /// The quantity.
+    pub value: f64,
+    /// `[x(start), x(end), p]` by it.
+    pub by: DVector<f64>,
+}
+
+/// Whether the objective has a kink at `[x(start), x(end)]` along one of the directions; `slopes`
+/// are those by the ends, then the parameters.
+pub(crate) fn objective_kink(
+    linearizer: &Linearizer,
+    slopes: &[f64],
+    ends: &DVector<f64>,
+    mut directions: impl Iterator<Item = Direction>,
+) -> Option<Kink> {
+    let inputs = ends.iter().chain(&linearizer.parameters);
+    let terms: f64 = slopes.iter().zip(inputs).map(|(by, value)| (by * value).abs()).sum();
+    let is_kinked = directions.any(|direction| is_kinked(linearizer, ends, &direction, terms));
+    is_kinked.then(|| Kink { of: linearizer.system.objective.origin(0), time: None })
+}
+
+fn is_kinked(
+    linearizer: &Linearizer,
+    ends: &DVector<f64>,
+    direction: &Direction,
+    terms: f64,
+) -> bool {
+    let distance = DISTANCE * if direction.value == 0.0 { 1.0 } else { direction.value.abs() };
+    let value = |part: f64| value(linearizer, ends, &(part * distance * &direction.by));
+    let own = value(0.0);
+    let bend = |part: f64| {
+        let [above, below] = [value(part), value(-part)];
+        ((above - own) - (own - below)).abs()
+    };
+    let (far, near) = (bend(1.0), bend(1.0 / NEARER));
+    near > ROUNDING * (terms + own.abs()) && near > FALLS * far
+}
+
+/// The objective at the ends, moved.
+fn value(linearizer: &Linearizer, ends: &DVector<f64>, by: &DVector<f64>) -> f64 {
+    let objective = &linearizer.system.objective;
+    let mut point = Columns::new(ends.len(), 1);
+    for (at, end) in ends.iter().enumerate() {
+        point.column_mut(at)[0] = end + by[at];
+    }
+    let moves = by.iter().skip(ends.len());
+    let parameters: Vec<f64> =
+        linearizer.parameters.iter().zip(moves).map(|(value, by)| value + by).collect();
+    let mut values = Columns::new(objective.outputs(), 1);
+    objective.value(&point, &parameters, &mut values);
+    values.column(0)[0]
+}

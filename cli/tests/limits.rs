@@ -232,3 +232,16 @@ fn a_gap_is_a_finite_number() {
         }
     }
 }
+
+/// `check` sees the value of the model, `solve` that of the command line.
+#[test]
+fn a_start_without_a_value_is_refused() {
+    let text = "param a = 2  time t in [0, 1]  state x start log(a)  control u in [-1, 1]\n\
+                dynamics { x' = u }  minimize integral(u^2)  method { N = 10 }\n";
+    let folder = folder("start_nan", &[("start.fdc", text.as_bytes())]);
+    let solve = |a: &str| fdcc(&folder, &["solve", "start.fdc", "--log", "none", "--set", a], "");
+    expect_exit(&solve("a=3"), 0, "a start with a value");
+    let refused = solve("a=-1");
+    expect_exit(&refused, 1, "a start without a value");
+    assert!(stderr(&refused).contains("FDC0401"), "{}", stderr(&refused));
+}

@@ -28,7 +28,10 @@ fn all(problem: &Problem) -> impl Iterator<Item = (Origin, Bounds)> {
         problem.path_bounds.iter().enumerate().map(|(i, bounds)| (problem.path.origin(i), *bounds));
     let boundary = problem.boundary_bounds.iter().enumerate();
     let boundary = boundary.map(|(i, bounds)| (problem.boundary.origin(i + 1), *bounds));
-    variables.chain(unknowns).chain(path).chain(boundary)
+    let starts = problem.states.iter().zip(&problem.start);
+    let starts =
+        starts.filter_map(|(it, start)| Some((it.origin.clone(), Bounds::fixed((*start)?))));
+    variables.chain(starts).chain(unknowns).chain(path).chain(boundary)
 }
 
 /// Not so either if one of them is not a number.

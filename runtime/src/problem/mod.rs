@@ -236,9 +236,9 @@ impl Bounds {
     pub fn is_equality(&self) -> bool {
         self.lower == self.upper
     }
-    /// How far `value` is outside; 0 inside, infinite for what is not a number.
+    /// How far `value` is outside; 0 inside, infinite where one of the three is not a number.
     pub fn violation(&self, value: f64) -> f64 {
-        if value.is_nan() {
+        if value.is_nan() || self.lower.is_nan() || self.upper.is_nan() {
             f64::INFINITY
         } else {
             (self.lower - value).max(value - self.upper).max(0.0)

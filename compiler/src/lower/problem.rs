@@ -10,7 +10,8 @@ use fdcc_runtime::problem::{
 };
 use std::sync::Arc;
 
-/// Puts together what the runtime needs. `functions` are those of [`LoweredProblem::functions`], compiled.
+/// Puts together what the runtime needs. `functions` are those of [`LoweredProblem::functions`],
+/// compiled.
 pub fn problem(
     model: &Model,
     lowered: &LoweredProblem,
@@ -55,8 +56,8 @@ pub fn problem(
     }
 }
 
-/// Start rows were made after the model, so their bounds may be numbers of the graph of the lowered problem
-/// alone.
+/// Start rows were made after the model, so their bounds may be numbers of the graph of the lowered
+/// problem alone.
 fn row_bounds(
     lowered: &LoweredProblem,
     numbers: &Numbers,

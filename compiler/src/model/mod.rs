@@ -1,9 +1,9 @@
 //! A model with its meaning: names resolved, shapes known, every expression an entry of one graph.
 //!
-//! An [`Input`](crate::expressions::graph::Expr::Input) of this graph is a *symbol*: time, a state, a control
-//! and so on, all scalar. Real time, real units (SI), and a selector for each surface; lowering
-//! gives them the places that compiled functions want. Bounds and parameters stay expressions, so
-//! that the command line can change a number.
+//! An [`Input`](crate::expressions::graph::Expr::Input) of this graph is a *symbol*: time, a state,
+//! a control and so on, all scalar. Real time, real units (SI), and a selector for each surface;
+//! lowering gives them the places that compiled functions want. Bounds and parameters stay
+//! expressions, so that the command line can change a number.
 
 pub(crate) mod guess;
 pub(crate) mod numbers;

@@ -5,8 +5,8 @@ use super::MultiPhase;
 use crate::model::{Constraint, Place, Range};
 
 impl MultiPhase<'_> {
-    /// `psi = 0` and the resets at each jump, that the last phase has a duration, and what is written
-    /// of the ends.
+    /// `psi = 0` and the resets at each jump, that the last phase has a duration, and what is
+    /// written of the ends.
     pub(super) fn boundary(&mut self) -> Vec<Constraint> {
         let mut rows = Vec::new();
         for j in 0..self.sequence.len() {

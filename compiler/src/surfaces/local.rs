@@ -48,8 +48,8 @@ pub(crate) struct Local {
     pub constraints: Vec<(ExprId, Interval)>,
     /// Replaced on the surface: a state's input and its value, over what is replaced after it.
     pub replaced: Vec<(u32, ExprId)>,
-    /// The states whose rates the selectors of many other surfaces enter, with the inputs that stand
-    /// for these.
+    /// The states whose rates the selectors of many other surfaces enter, with the inputs that
+    /// stand for these.
     others: Vec<(usize, u32)>,
     known: ById<ExprId>,
     forms: NormalForms,

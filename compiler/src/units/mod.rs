@@ -2,9 +2,9 @@
 //!
 //! A text without any unit is never bothered. As soon as one is written, every name has a
 //! dimension, written or to be found: each sum, comparison and equation is a linear equation
-//! between exponents of units, and [`inference::solve`] finds what follows. A number without a unit has none,
-//! except where it stands alone against something that has one: in a bound, a start, a guess or a
-//! comparison it takes the unit of the other side.
+//! between exponents of units, and [`inference::solve`] finds what follows. A number without a unit
+//! has none, except where it stands alone against something that has one: in a bound, a start, a
+//! guess or a comparison it takes the unit of the other side.
 
 mod dimension;
 mod inference;

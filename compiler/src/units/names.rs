@@ -52,8 +52,8 @@ pub(crate) struct Findings<'f, 'a> {
 }
 
 impl Findings<'_, '_> {
-    /// All names whose units are known, in the order of the text; then the objective, as the first name
-    /// in it is written that measures the same.
+    /// All names whose units are known, in the order of the text; then the objective, as the first
+    /// name in it is written that measures the same.
     pub fn names(&self, items: &[Item]) -> Vec<NamedUnit> {
         let mut all = Vec::new();
         for item in items {

@@ -49,8 +49,8 @@ pub struct By {
 pub enum NotBy {
     /// The model has no parameter, no unknown and no free start; a given start has to be named.
     Nothing,
-    /// A parameter that is computed from others, and its value: [`with`](crate::Model::with) that value it is
-    /// one of its own.
+    /// A parameter that is computed from others, and its value: [`with`](crate::Model::with) that
+    /// value it is one of its own.
     Computed(String, f64),
     /// A control that follows its guess: only one that is [held](Controls::Held) has values to
     /// differentiate by.

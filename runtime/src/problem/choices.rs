@@ -1,6 +1,6 @@
 //! What a method chooses from, besides its scheme: for each choice **the table** of its words. One
-//! row says everything about a word: how models and files write it, what it stands for, what editors
-//! say of it.
+//! row says everything about a word: how models and files write it, what it stands for, what
+//! editors say of it.
 
 /// A word of the `method` block.
 pub struct Word<T: 'static> {

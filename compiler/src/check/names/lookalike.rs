@@ -2,8 +2,8 @@
 //!
 //! Names are compared in the normal form NFKC, and then letter by letter by the skeletons of
 //! Unicode's table of confusables. Greek letters stand for themselves: `ν` beside `v` and `ρ`
-//! beside `p` are what formulas are made of; but for those that nobody can tell from Latin ones. So do names of ASCII letters alone: `l` and `I` are
-//! lengths and currents.
+//! beside `p` are what formulas are made of; but for those that nobody can tell from Latin ones. So
+//! do names of ASCII letters alone: `l` and `I` are lengths and currents.
 
 use crate::syntax::scope;
 use fdcc_grammar::ast::{self, Ident, Item, ItemKind};

@@ -1,5 +1,5 @@
-//! FDC0302 and FDC0312 for the vector of a `Dir`: it stays the same, or it pushes away from 0 in every direction, so what leaves it
-//! is not determined.
+//! FDC0302 and FDC0312 for the vector of a `Dir`: it stays the same, or it pushes away from 0 in
+//! every direction, so what leaves it is not determined.
 
 use super::uses::Use;
 use crate::check::facts::Facts;

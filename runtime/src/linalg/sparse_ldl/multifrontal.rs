@@ -4,9 +4,9 @@
 //! I. S. Duff and J. K. Reid, "The multifrontal solution of indefinite sparse symmetric linear
 //! equations", ACM Transactions on Mathematical Software 9 (1983) 302-325. Rows are eliminated
 //! along a tree ([`tree`]). Each node adds up its entries of the matrix and what its children
-//! leave, in a small dense matrix, its front, and eliminates its own rows ([`super::front`]). A row that
-//! has no good pivot there is left to the parent. So the factors are accurate without any change of
-//! the matrix, and the signs of `D` are its inertia.
+//! leave, in a small dense matrix, its front, and eliminates its own rows ([`super::front`]). A row
+//! that has no good pivot there is left to the parent. So the factors are accurate without any
+//! change of the matrix, and the signs of `D` are its inertia.
 
 use super::balance::Balance;
 use super::factors::Factors;

@@ -7,8 +7,8 @@
 //! eigenvalue, and the Lagrangian falls along it to either side. Curvature that can gain nothing
 //! that counts is none.
 //!
-//! Where the lowest curvature is 0, as of `u^3` and `-u^4` at 0, derivatives of higher order decide:
-//! short steps to both sides along its direction show what they say.
+//! Where the lowest curvature is 0, as of `u^3` and `-u^4` at 0, derivatives of higher order
+//! decide: short steps to both sides along its direction show what they say.
 
 use super::algorithm::Algorithm;
 use super::iterate::{Step, Values};

@@ -10,11 +10,13 @@
 //! special treatment: it is a parameter like any other, and its derivatives come out of the
 //! functions.
 
+mod chain;
 mod choices;
 mod method;
 mod often_called;
 mod scheme;
 
+pub use chain::{Chain, End, Link};
 pub use choices::{ControlShape, Linear, Solver, Word};
 pub use method::{FIRST_GRID, Grid, Method, Order};
 pub use often_called::often_called;

@@ -144,3 +144,22 @@ fn every_classical_problem_says_where_it_is_from_and_has_a_peer() {
         );
     }
 }
+
+/// Each has its objective in `tests/peers/phases.csv` or `tests/peers/fits.csv`, which closed forms
+/// and programs that share nothing with fdcc have written.
+#[test]
+fn every_problem_with_phases_or_measurements_has_an_answer_from_elsewhere() {
+    for folder in ["phases", "fits"] {
+        let path = repository().join("tests/peers").join(folder).with_extension("csv");
+        let table = std::fs::read_to_string(path).expect("the table is there");
+        let models = documents(&format!("tests/classics/{folder}"), "fdc");
+        assert!(models.len() >= 12);
+        for (name, text) in &models {
+            assert!(text.contains(&format!("\nmodel {name}\n")), "{name}: its name");
+            assert!(text.contains("\nexpect {"), "{name}: what it expects");
+            let row = format!("{name},objective,");
+            assert!(table.lines().any(|line| line.starts_with(&row)), "{name}: an answer");
+            assert!(text.lines().take_while(|line| line.starts_with("#! ")).count() >= 2);
+        }
+    }
+}

@@ -20,7 +20,7 @@ def ball(h, v, kept, times):
 
 
 def block(speed, friction, mass, times, force):
-    """Positions at `times` of a block under a force that is linear between these; sticking, sliding, turning exactly."""
+    """Positions at `times` of a block under a force that is linear between these, events found exactly."""
     x, v, out = 0.0, speed, [0.0]
     limit = friction * mass * GRAVITY
     for t0, t1, f0, f1 in zip(times, times[1:], force, force[1:]):

@@ -6,16 +6,19 @@ from typing import Callable
 import numpy as np
 from fits_events import ball, block
 from scipy.integrate import solve_ivp
+from scipy.linalg import expm
 
 
 @dataclass
 class Fit:
-    """`data` gives {table: (columns, rows)}; `residuals` takes the unknowns and {table: columns}."""
+    """`data` gives {table: (columns, rows)}, or is None for a file that is only read; `residuals` takes the unknowns
+    and {table: columns}."""
 
     data: Callable
     unknowns: dict
     residuals: Callable
     loss: str = 'linear'
+    lower: float = -np.inf  # bound of all unknowns
     plain: bool = True  # a sum of squares of measured values, with standard errors
     published: dict = field(default_factory=dict)
 
@@ -62,6 +65,25 @@ def hares(p, d):
     def rate(t, y):
         return [p[0] * y[0] - p[1] * y[0] * y[1], -p[2] * y[1] + p[3] * y[0] * y[1]]
     return (curve(rate, p[4:], d['hares'][0]) - d['hares'][1:]).ravel()
+
+
+def methanol(k, d):
+    def rate(t, y):
+        q = (k[1] + k[4]) * y[0] + y[1]
+        return [-(2 * k[1] - k[0] * y[1] / q + k[2] + k[3]) * y[0],
+                k[0] * y[0] * (k[1] * y[0] - y[1]) / q + k[2] * y[0],
+                k[0] * y[0] * (y[1] + k[4] * y[0]) / q + k[3] * y[0]]
+    return (curve(rate, [1, 0, 0], d['methanol'][0]) - d['methanol'][1:]).ravel()
+
+
+def marine(p, d):
+    """Growth and mortality in eight stages, linear, with the numbers at the start in the last eight unknowns."""
+    growth, mortality = np.append(p[:7], 0), p[7:15]
+    step = expm(0.5 * (np.diag(-(mortality + growth)) + np.diag(growth[:7], -1)))
+    states = [p[15:]]
+    for _ in d['marine'][0][1:]:
+        states.append(step @ states[-1])
+    return (np.array(states).T - d['marine'][1:]).ravel()
 
 
 # ---- Measurements made here ----
@@ -200,6 +222,11 @@ FITS = {
     'hares': Fit(
         lambda: {'hares': table('t hares lynxes', range(21), HARES, LYNXES)},
         {'a': 0.5, 'b': 0.025, 'c': 0.9, 'd': 0.027, 'h0': 35, 'l0': 4}, hares),
+    'methanol': Fit(None, {f'k{i}': 1 for i in range(1, 6)}, methanol, lower=0, published={'objective': '9.02229E-03'}),
+    'marine': Fit(
+        None, {**{f'g{i}': 1 for i in range(1, 8)}, **{f'm{i}': 0.1 for i in range(1, 9)},
+               **{f's{i}': s for i, s in enumerate([20000, 17000, 10000, 15000, 12000, 9000, 7000, 3000], 1)}},
+        marine, lower=0, published={'objective': '1.97465E+07'}),
     'michaelis_menten': Fit(
         michaelis_data, {'vmax': 1, 'km': 1},
         lambda p, d: substrate(p, d['michaelis_menten'][0]) - d['michaelis_menten'][1]),

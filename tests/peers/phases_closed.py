@@ -5,6 +5,9 @@ The derivation stands beside each; where a minimum of a formula is taken, by sci
 
 from math import cosh, exp, log, pi, sin, sinh, sqrt, tanh
 
+import numpy as np
+from scipy.integrate import quad_vec
+from scipy.linalg import expm
 from scipy.optimize import minimize, minimize_scalar
 
 
@@ -86,6 +89,20 @@ def hohmann(r=2):
             'T': pi * ((1 + r) / 2)**1.5}
 
 
+def walker(duration=0.8, length=0.5, kept=0.9):
+    """The effort d' W^-1 d is quadratic in v(T); d is the end less where nothing would lead, W the Gramian."""
+    a = np.array([[0, 1], [9.81, 0]])
+    gramian = quad_vec(lambda s: np.outer(expm(a * s)[:, 1], expm(a * s)[:, 1]), 0, duration, epsabs=1e-14)[0]
+    free = expm(a * duration)
+    # d = row v1 + constant, from (-length/2, kept v1) to (length/2, v1)
+    row = np.array([0, 1]) - free @ [0, kept]
+    constant = np.array([length / 2, 0]) - free @ [-length / 2, 0]
+    weight = np.linalg.inv(gramian)
+    v1 = -(row @ weight @ constant) / (row @ weight @ row)
+    d = row * v1 + constant
+    return {'objective': d @ weight @ d, 'v1': v1}
+
+
 LEVEL = 2 / (1 + exp(-1))
 CHAIN = {'objective': tanh(5), 'end': 1 / cosh(5)}
 
@@ -114,5 +131,14 @@ CLOSED = {
     # T + 12/T^3 is least at T^4 = 36
     'chain_shared': {'objective': 4 / 3 * sqrt(6), 'T': sqrt(6)},
     'two_stages': two_stages(),
+    # 6.75 + 4.5 (a + b) + 3 (a^2 + a b + b^2), the sum of two `hermite`
+    'periodic_tour': {'objective': 4.5, 'v0': -0.5, 'v2': -0.5},
+    'walker': walker(),
+    # each goes and brakes for half the time: T^2/4 and 2 T^2/4 make 10
+    'meet_soon': {'objective': sqrt(40 / 3), 'T': sqrt(40 / 3), 'x': 10 / 3},
+    # the ceiling binds where the second phase begins
+    'ceiling_after_link': {'objective': exp(-1) - 0.0125, 'x': 0.5},
+    # speeds k^(-1/3) use up 8 u1^2 + u2^2 = 3
+    'two_roads': {'objective': 3, 'T1': 2, 'T2': 1},
     'hohmann': hohmann(),
 }

@@ -3,7 +3,7 @@
 from math import pi
 
 from casadi import cos, exp, sin
-from phases_transcription import Phase, Problem
+from phases_transcription import INF, Phase, Problem
 
 
 def cart(t, x, u, p):
@@ -103,7 +103,46 @@ def reactor(t, x, u, p):
     return [-forward * x[0]**2, forward * x[0]**2 - onward * x[1]]
 
 
+def walk(t, x, u, p):
+    return [x[1], 9.81 * x[0] + u[0]]
+
+
+def road(k):
+    """Place and charge."""
+    return lambda t, x, u, p: [u[0], -k * u[0]**3]
+
+
 GROUND = {
+    'periodic_tour': Problem(
+        {'out': Phase(fixed(0, 2), cart, lambda s: [1 - 2 * s, -1], start=[1, None], bounds=[(-50, 50)], cost=effort),
+         'home': Phase(fixed(2, 6), cart, lambda s: [2 * s - 1, 0.5], bounds=[(-50, 50)], cost=effort)},
+        links={('out', 'home'): same, ('home', 'out'): same}, ends=lambda a, b, p: [(b['out'][0], -1, -1)],
+        tell=lambda a, b, p: {'v0': a['out'][1], 'v2': b['out'][1]}),
+    'walker': Problem(
+        {'step': Phase(fixed(0, 0.8), walk, lambda s: [s / 2 - 0.25, 0.6], start=[-0.25, None], bounds=[(-20, 20)],
+                       cost=effort)},
+        links={('step', 'step'): lambda x, p: [x[0] - 0.5, 0.9 * x[1]]},
+        tell=lambda a, b, p: {'v1': b['step'][1]}),
+    # at their bounds by the maximum principle
+    'meet_soon': Problem(
+        {'go': Phase(lambda p: (0, p[0] / 2), lambda t, x, u, p: [x[1], 1, x[3], -2], lambda s: [s, s, 10 - s, -s],
+                     start=[0, 0, 10, 0], N=2),
+         'brake': Phase(lambda p: (p[0] / 2, p[0]), lambda t, x, u, p: [x[1], -1, x[3], 2], lambda s: [2, 1, 7, -1],
+                        N=2)},
+        {'T': (0.5, 20, 5)}, {('go', 'brake'): same}, ends=lambda a, b, p: [(b['brake'][0] - b['brake'][2], 0, 0)],
+        mayer=lambda a, b, p: p[0], tell=lambda a, b, p: {'x': b['brake'][0]}),
+    'ceiling_after_link': Problem(
+        {'fill': Phase(fixed(0, 2), lambda t, x, u, p: [u[0]], lambda s: [s / 2], start=[0], bounds=[(-1, 1)],
+                       cost=lambda t, x, u, p: -0.1 * u[0]**2),
+         'drain': Phase(fixed(2, 3), lambda t, x, u, p: [-x[0]], lambda s: [0.5], state_bounds={0: (-INF, 1)})},
+        links={('fill', 'drain'): lambda x, p: [2 * x[0]]}, mayer=lambda a, b, p: b['drain'][0], maximize=True,
+        tell=lambda a, b, p: {'x': b['fill'][0]}),
+    'two_roads': Problem(
+        {'rough': Phase(on(0), road(8), lambda s: [s, 3 - 2 * s], start=[0, 3], bounds=[(0.1, 5)], controls=[1]),
+         'smooth_road': Phase(on(0, 1), road(1), lambda s: [1 + s, 1 - s], bounds=[(0.1, 5)], controls=[1])},
+        {'T1': (0.2, 10, 1.5), 'T2': (0.2, 10, 1.5)}, {('rough', 'smooth_road'): same},
+        ends=lambda a, b, p: [(b['rough'][0], 1, 1), (b['smooth_road'][0], 2, 2), (b['smooth_road'][1], 0, INF)],
+        mayer=lambda a, b, p: p[0] + p[1]),
     'via_point': Problem(
         {'out': Phase(fixed(0, 1), cart, lambda s: [s, 1], start=[0, 0], bounds=[(-50, 50)], cost=effort),
          'back': Phase(fixed(1, 3), cart, lambda s: [1 - s, 0], bounds=[(-50, 50)], cost=effort)},

@@ -30,7 +30,7 @@ impl Context<'_> {
     /// What a phase means, or meant; without a name, what stands outside of all phases.
     pub fn model_of(&self, phase: Option<&str>) -> Option<&Model> {
         let Some(name) = phase else { return self.model() };
-        self.document.modelled()?.analysis.phases.iter().find(|it| it.name == name)
+        self.model()?.phases.iter().map(|phase| &phase.model).find(|it| it.name == name)
     }
 
     /// The unit of each name; what was known before where the text has none that can be told now.

@@ -6,18 +6,19 @@ use crate::check::Facts;
 use crate::model::Model;
 use crate::preflight;
 use crate::resolve::elaborator::Elaborator;
-use crate::resolve::resolve;
-use crate::units::{self, NamedUnit};
-use fdcc_grammar::ast::{self, Item, ItemKind};
+use crate::resolve::elaborator::phases::Inner;
+use crate::resolve::phases::in_order;
+use crate::resolve::{Around, resolve, resolve_phase};
+use crate::units::{self, NamedUnit, Units};
+use fdcc_grammar::ast::{self, Assignment, Item, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Severity, Span};
+use std::collections::HashSet;
 
 /// What a syntax tree means, and what is wrong with it.
 pub struct Checked {
     /// Present if there is no error, but for parameters that wait for a value and trajectories that
     /// are not unique.
     pub model: Option<Model>,
-    /// Each phase by itself, with what stands outside of all phases, if there is a model.
-    pub phases: Vec<Model>,
     /// In the order of the text.
     pub diagnostics: Vec<Diagnostic>,
     /// The unit of each name, if the text uses units; for hover and hints.
@@ -28,57 +29,64 @@ pub struct Checked {
 /// mistake once.
 pub fn check(tree: &ast::Model) -> Checked {
     let everything: Vec<&Item> = tree.items.iter().collect();
-    let phases: Vec<Phase<'_>> = tree.items.iter().filter_map(phase).collect();
+    let phases = phases(&tree.items);
     let units = units::infer(tree);
-    let mut whole = resolve(&[], &everything, &units.readings);
-    let mut diagnostics = checked(&mut whole, everything.clone(), tree, phases.is_empty());
-    let mut parts = Vec::new();
-    for Phase { name, items, .. } in &phases {
-        let items: Vec<&Item> = items.iter().collect();
-        let mut part = resolve(&everything, &items, &units.readings);
-        diagnostics.extend(checked(&mut part, items, tree, true));
-        whole.not_yet(name.span, "a model with phases");
-        whole.not_yet.append(&mut part.not_yet);
-        // Each phase knows the names of all, and there may be many.
-        (part.values, part.scope) = Default::default();
-        parts.push(part);
+    let (mut diagnostics, mut not_yet) = (Vec::new(), Vec::new());
+    let mut inner = Vec::new();
+    for phase in &phases {
+        let mut part = resolve_phase(&everything, &phase.around, &units.readings);
+        diagnostics.extend(checked(&mut part, phase.around.items.clone(), tree, true));
+        not_yet.append(&mut part.not_yet);
+        inner.push(Inner::new(phase.name, part));
     }
+    let mut whole = resolve(&everything, inner, &units.readings);
+    diagnostics.extend(checked(&mut whole, everything, tree, phases.is_empty()));
+    whole.not_yet.append(&mut not_yet);
     diagnostics.extend(checks::unused(tree));
     diagnostics.extend(checks::lookalike(tree));
     diagnostics.extend(units.diagnostics.iter().cloned());
     sort(&mut diagnostics);
     let mut diagnostics = without_echoes(without_consequences(diagnostics));
     sort(&mut whole.not_yet);
-    let name = tree.name.as_ref().map_or("model", |name| &name.name);
-    let model = (!diagnostics.iter().any(is_fatal)).then(|| Model {
-        name: name.into(),
-        units: units.names.clone(),
-        condition_units: units.conditions.clone(),
-        width_unit: units.width.clone(),
-        ..whole.into_model()
+    let model = (!diagnostics.iter().any(is_fatal)).then(|| {
+        let mut model = whole.into_model();
+        model.name = tree.name.as_ref().map_or("model", |name| &name.name).into();
+        model.take_units(&units, &phases);
+        model
     });
-    let understood = phases.iter().zip(parts).filter(|_| model.is_some());
-    let units_in = |phase: &Phase<'_>| {
-        units.names.iter().filter(|unit| phase.knows(unit.span, &phases)).cloned().collect()
-    };
-    let model_of = |(phase, part): (&Phase<'_>, Elaborator<'_>)| Model {
-        name: phase.name.name.clone(),
-        units: units_in(phase),
-        width_unit: units.width.clone(),
-        ..part.into_model()
-    };
-    let phases = understood.map(model_of).collect();
     if let Some(model) = &model {
         diagnostics.extend(told_early(model));
         diagnostics.extend(preflight::check(model, tree));
         sort(&mut diagnostics);
     }
-    Checked { model, phases, diagnostics, units: units.names }
+    Checked { model, diagnostics, units: units.names }
+}
+
+impl Model {
+    /// Gives the whole and each phase the units of the names that it knows.
+    fn take_units(&mut self, units: &Units, phases: &[Phase<'_>]) {
+        let own = |unit: &&NamedUnit| phases.iter().find(|phase| phase.holds(unit.span));
+        let mut names = units.names.clone();
+        for unit in &units.names {
+            let prefixed = own(&unit).map(|phase| format!("{}.{}", phase.name.name, unit.name));
+            names.extend(prefixed.map(|name| NamedUnit { name, ..unit.clone() }));
+        }
+        for (phase, part) in phases.iter().zip(&mut self.phases) {
+            let is_known =
+                |unit: &&NamedUnit| unit.name.contains('.') || phase.knows(unit.span, phases);
+            part.model.units = names.iter().filter(is_known).cloned().collect();
+            part.model.width_unit.clone_from(&units.width);
+            part.model.condition_units.clone_from(&units.conditions);
+        }
+        self.units = names;
+        self.condition_units.clone_from(&units.conditions);
+        self.width_unit.clone_from(&units.width);
+    }
 }
 
 /// What `solve` will refuse. To `check` it is no mistake: the model is right, and waits.
 fn told_early(model: &Model) -> Option<Diagnostic> {
-    let mut first = model.not_yet.first()?.clone();
+    let mut first = model.first_not_yet()?;
     first.severity = Severity::Advice;
     Some(first.help("it is checked all the same; `solve`, `simulate` and `grad` refuse it"))
 }
@@ -96,8 +104,8 @@ fn is_fatal(found: &Diagnostic) -> bool {
 /// A phase of a tree.
 struct Phase<'a> {
     name: &'a ast::Ident,
-    items: &'a [Item],
     span: Span,
+    around: Around<'a>,
 }
 
 impl Phase<'_> {
@@ -111,9 +119,28 @@ impl Phase<'_> {
     }
 }
 
-fn phase(item: &Item) -> Option<Phase<'_>> {
+/// The phases of a text, those that are linked in the order of time.
+fn phases(items: &[Item]) -> Vec<Phase<'_>> {
+    let mut before: HashSet<&str> = HashSet::new();
+    let mut phases = Vec::new();
+    let links: Vec<(&str, &str, &[Assignment])> = items.iter().filter_map(link).collect();
+    for item in in_order(items) {
+        let ItemKind::Phase { name, items } = &item.kind else { continue };
+        let own = links.iter().filter(|link| link.0 == name.name).map(|link| link.2);
+        let around = Around {
+            items: items.iter().collect(),
+            follows: links.iter().any(|link| link.1 == name.name && before.contains(link.0)),
+            links: own.collect(),
+        };
+        before.insert(&name.name);
+        phases.push(Phase { name, span: item.span, around });
+    }
+    phases
+}
+
+fn link(item: &Item) -> Option<(&str, &str, &[Assignment])> {
     match &item.kind {
-        ItemKind::Phase { name, items } => Some(Phase { name, items, span: item.span }),
+        ItemKind::Link { from, to, assignments } => Some((&from.name, &to.name, assignments)),
         _ => None,
     }
 }

@@ -21,8 +21,6 @@ pub struct Analysis {
     pub tree: ast::Model,
     /// What it means, if it has no error.
     pub model: Option<Model>,
-    /// What each phase means, if it has any.
-    pub phases: Vec<Model>,
     /// What is wrong with it, in the order of the text, but for what the text allows.
     pub diagnostics: Vec<Diagnostic>,
     /// The unit of each name, if the text uses units.
@@ -42,12 +40,11 @@ pub fn analyze_with(cache: &mut ParseCache, text: &str) -> Analysis {
 /// Checks a text that has been read.
 pub(crate) fn analyze_parsed(text: &str, parsed: Parse) -> Analysis {
     let mut diagnostics = parsed.diagnostics;
-    let (mut model, mut phases, mut units) = (None, Vec::new(), Vec::new());
+    let (mut model, mut units) = (None, Vec::new());
     if !parsed.tree.items.is_empty() {
         let is_broken = !diagnostics.is_empty();
         let checked = check(&parsed.tree);
         model = checked.model.filter(|_| !is_broken);
-        phases = checked.phases;
         units = checked.units;
         let source = SourceFile::new("", text);
         let regions = UnparsedRegions::new(&source, &diagnostics, &parsed.lost);
@@ -57,5 +54,5 @@ pub(crate) fn analyze_parsed(text: &str, parsed: Parse) -> Analysis {
     diagnostics.extend(unseen::found(text));
     let mut diagnostics = allow::apply(text, diagnostics);
     diagnostics.sort_by_key(Diagnostic::span);
-    Analysis { tree: parsed.tree, model, phases, diagnostics, units }
+    Analysis { tree: parsed.tree, model, diagnostics, units }
 }

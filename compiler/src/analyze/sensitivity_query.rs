@@ -37,7 +37,7 @@ pub fn check_with_objective(tree: &ast::Model, of: &str) -> Checked {
     diagnostics
         .iter_mut()
         .for_each(|it| it.message = it.message.replace(" in the objective", " here"));
-    Checked { model, phases: Vec::new(), diagnostics, units }
+    Checked { model, diagnostics, units }
 }
 
 fn with_objective(tree: &ast::Model, asked: &Item, value: &ast::Expr) -> ast::Model {

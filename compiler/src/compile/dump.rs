@@ -63,6 +63,12 @@ fn symbol_name(model: &Model, symbol: Symbol) -> String {
         Symbol::AtStart(index) => format!("{}(start)", model.states[index].place.name),
         Symbol::AtEnd(index) => format!("{}(end)", model.states[index].place.name),
         Symbol::Integral(index) => model.integrals[index].place.name.clone(),
+        Symbol::ControlAtEnd(index) => format!("{}(end)", model.controls[index].place.name),
+        Symbol::OfPhase { phase, input } => {
+            let phase = &model.phases[phase];
+            let symbol = phase.model.symbols[input as usize];
+            format!("{}.{}", phase.place.name, symbol_name(&phase.model, symbol))
+        }
         Symbol::Simulated(_) | Symbol::Argument(_) => "_".into(),
     }
 }

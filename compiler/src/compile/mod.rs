@@ -1,5 +1,6 @@
 //! The pipeline: lowering, derivatives, machine code.
 
+pub(crate) mod chain;
 pub(crate) mod dump;
 
 use crate::differentiate::differentiate;
@@ -112,7 +113,7 @@ pub fn expectations(model: &Model) -> Expectations {
 
 /// The first construct that is understood but cannot be solved.
 fn not_yet(model: &Model) -> Result<(), Vec<Diagnostic>> {
-    model.not_yet.first().map_or(Ok(()), |first| Err(vec![first.clone()]))
+    model.first_not_yet().map_or(Ok(()), |first| Err(vec![first]))
 }
 
 /// Derivatives, then machine code.

@@ -191,6 +191,14 @@ fn multiplied(a: &Monomial, b: &Monomial) -> Monomial {
     powers.into_iter().filter(|power| power.1 != 0).collect()
 }
 
+/// `a - b`, without what both have in common: `(T1 + T2) - T1` is `T2`.
+pub(crate) fn difference(graph: &mut Graph, a: ExprId, b: ExprId) -> ExprId {
+    let written = graph.sub(a, b);
+    let collected = NormalForms::default().expr(graph, written);
+    let inputs = |id: ExprId| graph.inputs_of(&[id]).len();
+    if inputs(collected) < inputs(written) { collected } else { written }
+}
+
 /// Normal forms of the expressions of one graph, each computed once.
 #[derive(Default)]
 pub(crate) struct NormalForms {

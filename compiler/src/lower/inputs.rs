@@ -7,6 +7,7 @@
 use super::kernel;
 use crate::expressions::graph::{ExprId, Graph};
 use crate::expressions::kernels;
+use crate::expressions::polynomial::difference;
 use crate::model::{Model, Symbol};
 use fdcc_runtime::problem::Layout;
 
@@ -114,7 +115,7 @@ pub(crate) fn of_parameters(model: &Model, graph: &mut Graph, layout: &Layout) -
         model.symbols.iter().map(|symbol| place(symbol).map(|at| graph.input(at as u32))).collect();
     let mut inputs = Inputs { by_symbol, duration: model.interval[1] };
     let ends = inputs.apply(graph, &model.interval);
-    inputs.duration = graph.sub(ends[1], ends[0]);
+    inputs.duration = difference(graph, ends[1], ends[0]);
     inputs
 }
 

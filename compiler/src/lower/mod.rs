@@ -18,6 +18,7 @@ mod function;
 mod guess;
 mod inputs;
 mod kinks;
+mod links;
 mod objective;
 mod problem;
 mod simulation;
@@ -26,7 +27,9 @@ pub(crate) use by_parameters::by_parameters;
 pub use expectations::Expected;
 pub(crate) use expectations::{LoweredExpectations, expectations};
 pub use function::{Order, VectorFunction};
+pub(crate) use links::{LoweredLink, links};
 pub use problem::problem;
+pub(crate) use problem::unknowns;
 pub(crate) use simulation::{Purpose, simulation, system};
 
 use crate::expressions::graph::{ExprId, Graph};

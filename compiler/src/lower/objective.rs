@@ -31,7 +31,9 @@ pub(crate) fn split(model: &Model, graph: &mut Graph) -> Objective {
         None => (Origin::default(), zero),
     };
     let rows: Vec<ExprId> = model.boundary.iter().map(|row| row.value).collect();
-    let in_rows = integrals_in(model, graph, &rows);
+    let mut in_rows = integrals_in(model, graph, &rows);
+    let linked = (0..model.integrals.len()).filter(|&at| model.integrals[at].is_linked);
+    in_rows.extend(linked.filter(|at| !in_rows.contains(at)).collect::<Vec<_>>());
     let mut split = Objective { mayer: value, running: None, hidden: in_rows, origin };
     let mut running = Vec::new();
     for at in integrals_in(model, graph, &[value]) {

@@ -128,7 +128,7 @@ fn width(method: &Method) -> f64 {
     method.sigma.or(method.continuation.last().copied()).unwrap_or(1.0)
 }
 
-fn unknowns(model: &Model, numbers: &Numbers) -> Vec<Unknown> {
+pub(crate) fn unknowns(model: &Model, numbers: &Numbers) -> Vec<Unknown> {
     let unknown = |(at, free): (usize, &crate::model::Free)| Unknown {
         parameter: model.params.len() + at,
         bounds: numbers.bounds(model, free.range),

@@ -5,16 +5,20 @@
 //! lowering gives them the places that compiled functions want. Bounds and parameters stay
 //! expressions, so that the command line can change a number.
 
+mod expected;
 pub(crate) mod guess;
 pub(crate) mod numbers;
 mod overrides;
+pub(crate) mod phases;
 
 use crate::expressions::graph::{ExprId, Graph};
 use crate::settings;
 use crate::units::{NamedUnit, WidthUnit};
+pub use expected::{Comparison, Expectation, Report, Simulated};
 use fdcc_grammar::ast::Direction;
 use fdcc_grammar::{Code, Diagnostic, Span};
 use fdcc_runtime::problem::Method;
+pub use phases::{Link, Phase};
 
 /// What an input of the model's graph stands for. The numbers are indices into the lists of
 /// [`Model`].
@@ -42,6 +46,15 @@ pub enum Symbol {
     Simulated(usize),
     /// An argument of a function, while its body is examined by itself; all functions share them.
     Argument(usize),
+    /// A control in the last interval.
+    ControlAtEnd(usize),
+    /// What an input of the graph of a phase stands for, as the whole reads it.
+    OfPhase {
+        /// One of [`Model::phases`].
+        phase: usize,
+        /// An input of its graph.
+        input: u32,
+    },
 }
 
 /// Where something was written, and what to call it.
@@ -177,51 +190,8 @@ pub struct Integral {
     pub place: Place,
     /// What is integrated over real time.
     pub integrand: ExprId,
-}
-
-/// One scalar of the `report` block.
-#[derive(Clone, Debug)]
-pub struct Report {
-    /// Its name, with the part for a vector.
-    pub place: Place,
-    /// Its value over time.
-    pub value: ExprId,
-}
-
-/// How the two sides of an expectation compare.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Comparison {
-    /// `==`
-    Equal,
-    /// `<=`
-    LessEqual,
-    /// `>=`
-    GreaterEqual,
-}
-
-/// One line of the `expect` block.
-#[derive(Clone, Debug)]
-pub struct Expectation {
-    /// The line; named by its text.
-    pub place: Place,
-    /// The comparison.
-    pub comparison: Comparison,
-    /// Left side, right side and tolerance.
-    pub values: [ExprId; 3],
-}
-
-/// A number that only a simulation of the true system can tell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Simulated {
-    /// For how long a surface is held.
-    Sliding(usize),
-    /// The derivative of a number.
-    Sensitivity {
-        /// Over the symbols that an objective may read.
-        of: ExprId,
-        /// A parameter, an unknown or a start.
-        by: Symbol,
-    },
+    /// Whether something outside of its phase needs its value.
+    pub is_linked: bool,
 }
 
 /// A line of the `sweep` block.
@@ -279,6 +249,8 @@ pub struct Model {
     pub boundary: Vec<Constraint>,
     /// What is minimised, as written; none for a pure feasibility problem.
     pub objective: Option<(Place, ExprId)>,
+    /// The part of the objective that belongs to no single phase.
+    pub linked_objective: Option<ExprId>,
     /// `-1` for `maximize`.
     pub sense: f64,
     /// Every `integral` of the objective, of conditions and of expectations.
@@ -303,6 +275,10 @@ pub struct Model {
     pub sweep: Vec<Swept>,
     /// Whether `abs`, `min` and `max` are smoothed: there is a surface, or the model says `smooth`.
     pub smooth: bool,
+    /// Phases, those that are linked in the order of time; none if the model is of one piece.
+    pub phases: Vec<Phase>,
+    /// What ties phases together.
+    pub links: Vec<Link>,
     /// What is understood but cannot be solved yet, in the order of the text.
     pub not_yet: Vec<Diagnostic>,
     /// The unit of each name, if the text uses units.
@@ -335,6 +311,7 @@ impl Model {
             path: Vec::new(),
             boundary: Vec::new(),
             objective: None,
+            linked_objective: None,
             sense: 1.0,
             integrals: Vec::new(),
             widths: Vec::new(),
@@ -347,6 +324,8 @@ impl Model {
             method: settings::default_method(),
             sweep: Vec::new(),
             smooth: false,
+            phases: Vec::new(),
+            links: Vec::new(),
             not_yet: Vec::new(),
             units: Vec::new(),
             condition_units: Vec::new(),
@@ -378,6 +357,12 @@ impl Model {
         all.extend(self.balls.iter().map(of));
         all.sort_by_key(|switch| switch.surfaces.start);
         all
+    }
+
+    /// The first construct that is understood but cannot be solved.
+    pub(crate) fn first_not_yet(&self) -> Option<Diagnostic> {
+        let phases = self.phases.iter().map(|it| not_yet(it.place.span, "a model with phases"));
+        self.not_yet.iter().cloned().chain(phases).min_by_key(Diagnostic::span)
     }
 
     /// The graph input that is a symbol.

@@ -87,6 +87,7 @@ impl Model {
     }
 
     fn give(&mut self, index: usize, value: f64) {
+        self.phases.iter_mut().for_each(|phase| phase.model.give(index, value));
         self.params[index].value = Some(self.graph.number(value));
         if !self.param_order.contains(&index) {
             self.param_order.insert(0, index);
@@ -110,6 +111,7 @@ impl Model {
 
     /// Gives an unknown the value that a solution found.
     pub fn set_free(&mut self, name: &str, value: f64) {
+        self.phases.iter_mut().for_each(|phase| phase.model.set_free(name, value));
         let value = self.graph.number(value);
         for free in self.frees.iter_mut().filter(|free| free.place.name == name) {
             free.guess = Some(value);
@@ -142,6 +144,7 @@ impl Model {
     fn set(&mut self, key: &str, value: &str, given: &Given) -> Result<(), String> {
         match set(&mut self.method, key, given) {
             Ok(()) => {
+                self.phases.iter_mut().try_for_each(|phase| phase.model.set(key, value, given))?;
                 self.smooth |= matches!(key, "sigma" | "kernel" | "continue");
                 Ok(())
             }

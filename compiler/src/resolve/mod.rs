@@ -7,30 +7,87 @@
 pub(crate) mod elaborator;
 pub(crate) mod expressions;
 mod items;
+pub(crate) mod phases;
 
-use crate::model::{Model, Surface};
+use crate::model::{Model, Phase, Place, Surface};
 use crate::syntax::scope::Scope;
 use crate::units::{self, Readings};
 use elaborator::Elaborator;
+use elaborator::phases::Inner;
 use fdcc_grammar::Diagnostic;
-use fdcc_grammar::ast::Item;
+use fdcc_grammar::ast::{Assignment, Item, ItemKind};
 
-/// Resolves the items of one phase together with those around it. `items` are resolved; the
-/// declarations of `outer` are known to them.
+/// Resolves what stands outside of all phases, and reads of them what they turned out to mean.
 pub(crate) fn resolve<'a>(
-    outer: &[&'a Item],
     items: &[&'a Item],
+    phases: Vec<Inner<'a>>,
     readings: &'a Readings,
 ) -> Elaborator<'a> {
+    let mut elaborator = declared(items, readings);
+    items.iter().for_each(|item| units::unknown(item, &mut elaborator.diagnostics));
+    elaborator.phases = phases;
+    elaborator.declare_all();
+    let is_split = !elaborator.phases.is_empty();
+    let is_own = |item: &&&Item| {
+        let is_of_both = matches!(item.kind, ItemKind::Guess { .. } | ItemKind::Method { .. });
+        !is_split || is_of_both || !is_of_each_phase(item)
+    };
+    let own: Vec<&Item> = items.iter().filter(is_own).copied().collect();
+    elaborator.resolve_items(&own);
+    elaborator
+}
+
+/// Resolves one phase. The declarations of `outer` are known to it, and what is said there of
+/// states that stand outside of all phases holds in each.
+pub(crate) fn resolve_phase<'a>(
+    outer: &[&'a Item],
+    phase: &Around<'a>,
+    readings: &'a Readings,
+) -> Elaborator<'a> {
+    let all: Vec<&Item> = outer.iter().chain(&phase.items).copied().collect();
+    let mut elaborator = declared(&all, readings);
+    phase.items.iter().for_each(|item| units::unknown(item, &mut elaborator.diagnostics));
+    elaborator.declare_all();
+    if phase.follows {
+        elaborator.begin_by_link(outer);
+    }
+    let shared = outer.iter().filter(|item| is_of_each_phase(item));
+    let items: Vec<&Item> = shared.chain(&phase.items).copied().collect();
+    elaborator.resolve_items(&items);
+    phase.links.iter().for_each(|link| elaborator.hand_over(link));
+    elaborator
+}
+
+/// A phase of a text with what leads into it and out of it.
+pub(crate) struct Around<'a> {
+    /// Its own items.
+    pub items: Vec<&'a Item>,
+    /// Whether a link from an earlier phase leads into it.
+    pub follows: bool,
+    /// The links that begin with it.
+    pub links: Vec<&'a [Assignment]>,
+}
+
+fn declared<'a>(items: &[&'a Item], readings: &'a Readings) -> Elaborator<'a> {
     let mut diagnostics: Vec<Diagnostic> = Vec::new();
-    let all: Vec<&Item> = outer.iter().chain(items).copied().collect();
-    let scope = Scope::new(&all, &mut diagnostics);
-    items.iter().for_each(|item| units::unknown(item, &mut diagnostics));
+    let scope = Scope::new(items, &mut diagnostics);
     let mut elaborator = Elaborator::new(scope, readings);
     elaborator.diagnostics = diagnostics;
-    elaborator.declare_all();
-    elaborator.resolve_items(items);
     elaborator
+}
+
+/// What speaks of a motion: outside of all phases it speaks of that of each.
+fn is_of_each_phase(item: &Item) -> bool {
+    matches!(
+        item.kind,
+        ItemKind::Dynamics { .. }
+            | ItemKind::Path { .. }
+            | ItemKind::Jump { .. }
+            | ItemKind::Metric { .. }
+            | ItemKind::Guess { .. }
+            | ItemKind::Report { .. }
+            | ItemKind::Method { .. }
+    )
 }
 
 impl Elaborator<'_> {
@@ -43,7 +100,12 @@ impl Elaborator<'_> {
             psi: entry.psi.unwrap_or(zero),
         };
         let surfaces: Vec<Surface> = self.surfaces.into_iter().map(surface).collect();
-        Model {
+        let phase = |inner: Inner<'_>| Phase {
+            place: Place { name: inner.name.name.clone(), span: inner.name.span },
+            model: Model { name: inner.name.name.clone(), ..inner.meaning.into_model() },
+        };
+        let phases = self.phases.into_iter().map(phase).collect();
+        let mut model = Model {
             smooth: self.model.smooth || !surfaces.is_empty(),
             surfaces,
             balls: self.balls,
@@ -52,7 +114,10 @@ impl Elaborator<'_> {
             integrals: self.integrals,
             interval: self.interval,
             not_yet: self.not_yet,
+            phases,
             ..self.model
-        }
+        };
+        phases::distribute(&mut model);
+        model
     }
 }

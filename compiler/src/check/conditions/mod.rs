@@ -3,5 +3,4 @@
 pub(super) mod bounds;
 pub(super) mod contradictions;
 pub(super) mod ends;
-pub(super) mod links;
 pub(super) mod values;

@@ -24,7 +24,9 @@ const SIGNAL: Reads = Reads::TIME
     .or(Reads::FREE)
     .or(Reads::SELECTOR);
 const AT_AN_END: Reads = Reads::TIME.or(Reads::STATE).or(Reads::PARAM).or(Reads::FREE);
-const WHOLE: Reads = Reads::PARAM.or(Reads::FREE).or(Reads::WHOLE);
+const WHOLE: Reads = Reads::PARAM.or(Reads::FREE).or(Reads::WHOLE).or(Reads::PHASE);
+/// What a definition outside of all phases reads of a phase has no meaning within another.
+const ANY_PHASE: Reads = Reads::PHASE.or(Reads::FOREIGN);
 
 impl Context {
     const fn new(name: &'static str, allowed: Reads) -> Self {
@@ -42,12 +44,14 @@ impl Context {
         Context::new("the guess of an unknown", Reads::PARAM.or(Reads::FREE));
     pub const DYNAMICS: Context = Context::new("the dynamics", SIGNAL);
     pub const PATH: Context = Context::new("a path constraint", SIGNAL);
-    pub const INTEGRAND: Context = Context::new("an integral", SIGNAL);
+    pub const INTEGRAND: Context = Context::new("an integral", SIGNAL.or(ANY_PHASE));
     pub const REPORT: Context = Context::new("a report", SIGNAL);
     pub const SURFACE: Context = Context::new("a surface", AT_AN_END);
-    pub const AT_AN_END: Context = Context::new("a value at the start or the end", AT_AN_END);
+    pub const AT_AN_END: Context =
+        Context::new("a value at the start or the end", AT_AN_END.or(ANY_PHASE));
     pub const BOUNDARY: Context =
-        Context::new("a start or end condition", AT_AN_END.or(Reads::WHOLE));
+        Context::new("a start or end condition", AT_AN_END.or(Reads::WHOLE).or(Reads::PHASE));
+    pub const LINK: Context = Context::new("a link", AT_AN_END.or(Reads::CONTROL).or(Reads::WHOLE));
     pub const OBJECTIVE: Context = Context::new("the objective", WHOLE);
     pub const SENSITIVITY: Context = Context::new("a sensitivity", WHOLE);
     pub const EXPECT: Context = Context::new("an expectation", WHOLE.or(Reads::SIMULATION));
@@ -75,7 +79,21 @@ impl Elaborator<'_> {
 /// Why a kind of symbol has no meaning in a context, and what could be meant.
 fn explain(what: &str, beyond: Reads, context: Context) -> (&'static str, String) {
     let whole = context.allowed.has(Reads::WHOLE);
-    if beyond.has(Reads::SIMULATION) {
+    if beyond.has(Reads::FOREIGN) {
+        (
+            "is of another phase",
+            "what ties phases together stands outside of them: a `link`, a condition, the \
+             objective; what several phases need is declared outside"
+                .into(),
+        )
+    } else if beyond.has(Reads::PHASE) {
+        (
+            "is of one phase",
+            "it may stand in the objective, in `start` and `end` conditions and in `expect`; or \
+             write this within the phase"
+                .into(),
+        )
+    } else if beyond.has(Reads::SIMULATION) {
         ("only a simulation can tell", "it may stand in `expect`".into())
     } else if beyond.has(Reads::WHOLE) {
         (

@@ -7,10 +7,12 @@
 pub(crate) mod constants;
 pub(crate) mod context;
 pub(crate) mod knots;
+pub(crate) mod phases;
 pub(crate) mod value;
 
 use super::elaborator::constants::ConstantPart;
 use super::elaborator::context::Context;
+use super::elaborator::phases::{Handed, Inner};
 use super::elaborator::value::{Parts, Reads, Traits, Value};
 use crate::expressions::blend::Guards;
 use crate::expressions::graph::evaluate;
@@ -123,6 +125,14 @@ pub(crate) struct Elaborator<'a> {
     pub usages: Vec<Usage<'a>>,
     /// First and last time.
     pub interval: [ExprId; 2],
+    /// The phases, resolved before what stands outside of them.
+    pub phases: Vec<Inner<'a>>,
+    /// What names the components of what is read of phases.
+    pub named_in_phases: Vec<&'a ast::Item>,
+    /// What this phase hands over.
+    pub handed: Vec<Handed<'a>>,
+    /// The guesses of a `guess` block for unknowns.
+    pub guessed: Vec<(usize, ExprId)>,
     /// Findings.
     pub diagnostics: Vec<Diagnostic>,
     /// What cannot be solved yet.
@@ -168,6 +178,10 @@ impl<'a> Elaborator<'a> {
             at_end: Vec::new(),
             usages: Vec::new(),
             interval,
+            phases: Vec::new(),
+            named_in_phases: Vec::new(),
+            handed: Vec::new(),
+            guessed: Vec::new(),
             diagnostics: Vec::new(),
             not_yet: Vec::new(),
         }

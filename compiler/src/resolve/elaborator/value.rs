@@ -68,7 +68,11 @@ impl Reads {
     pub const WHOLE: Reads = Reads(64);
     /// `sliding` and `sensitivity`.
     pub const SIMULATION: Reads = Reads(128);
-    pub const ALL: Reads = Reads(255);
+    /// Of a phase, outside of all phases.
+    pub const PHASE: Reads = Reads(256);
+    /// Of a phase, within one.
+    pub const FOREIGN: Reads = Reads(512);
+    pub const ALL: Reads = Reads(1023);
 
     pub const fn or(self, other: Reads) -> Reads {
         Reads(self.0 | other.0)
@@ -76,6 +80,10 @@ impl Reads {
     /// What is in `self` but not in `allowed`.
     pub fn beyond(self, allowed: Reads) -> Reads {
         Reads(self.0 & !allowed.0)
+    }
+    /// What is in both.
+    pub fn within(self, other: Reads) -> Reads {
+        Reads(self.0 & other.0)
     }
     pub fn has(self, other: Reads) -> bool {
         self.0 & other.0 != 0

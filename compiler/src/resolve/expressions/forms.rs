@@ -9,6 +9,7 @@ use crate::resolve::elaborator::{Elaborator, SurfaceEntry};
 use crate::syntax::{scope, text};
 use fdcc_grammar::ast::{Argument, Expr, ExprKind, Ident, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Span};
+use std::collections::HashMap;
 
 impl<'a> Elaborator<'a> {
     /// One of the special forms; the number of arguments is right.
@@ -197,19 +198,27 @@ impl<'a> Elaborator<'a> {
     fn integral(&mut self, integrand: &'a Expr, whole: &'a Expr) -> Value {
         let value = self.evaluate_in(Context::INTEGRAND, integrand);
         let part = self.expect_number(&value, integrand.span);
-        let traits = Traits { reads: Reads::WHOLE, ..value.traits };
-        let Some(part) = part.filter(|_| !self.examining) else {
-            return self.admit("integral", Value::unknown(traits), whole.span);
-        };
-        let at = self.integrals.iter().position(|it| it.integrand == part).unwrap_or_else(|| {
-            let place = Place { name: text::expr(whole), span: whole.span };
-            self.integrals.push(Integral { place, integrand: part });
+        let of_phases = value.traits.reads.within(Reads::PHASE.or(Reads::FOREIGN));
+        let traits = Traits { reads: of_phases.or(Reads::WHOLE), ..value.traits };
+        let place = Place { name: text::expr(whole), span: whole.span };
+        let input = part.filter(|_| !self.examining).and_then(|part| match self.phases.len() {
+            0 => Some(self.integrated(part, place)),
+            _ => self.integral_of_phases(part, &place),
+        });
+        let value = input.map_or(Value::unknown(traits.clone()), |it| Value::scalar(it, traits));
+        self.admit("integral", value, whole.span)
+    }
+
+    /// The symbol of an integral over the whole time.
+    pub fn integrated(&mut self, integrand: ExprId, place: Place) -> ExprId {
+        let known = self.integrals.iter().position(|it| it.integrand == integrand);
+        let at = known.unwrap_or_else(|| {
+            self.integrals.push(Integral { place, integrand, is_linked: false });
             let input = self.symbol(Symbol::Integral(self.integrals.len() - 1));
             self.integral_inputs.push(input);
             self.integrals.len() - 1
         });
-        let value = Value::scalar(self.integral_inputs[at], traits);
-        self.admit("integral", value, whole.span)
+        self.integral_inputs[at]
     }
 
     /// `x(end)` and `x(start)`.
@@ -225,11 +234,16 @@ impl<'a> Elaborator<'a> {
 
     /// Replaces states and time by their values at an end.
     pub fn move_to_end(&mut self, parts: Vec<ExprId>, at_end: bool) -> Vec<ExprId> {
+        let of_phases = match self.phases.is_empty() {
+            true => HashMap::new(),
+            false => self.ends_of_phases(&parts, at_end),
+        };
         let (time, states) = (self.interval[at_end as usize], &self.at_ends[at_end as usize]);
         let symbols = &self.symbols;
         let moved = |input: u32| match symbols[input as usize] {
             Symbol::Time => Some(time),
             Symbol::State(index) => Some(states[index]),
+            Symbol::OfPhase { .. } => of_phases.get(&input).copied(),
             _ => None,
         };
         // Most are bare states, which need no walk through the graph.

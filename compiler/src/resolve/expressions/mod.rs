@@ -60,7 +60,7 @@ impl<'a> Elaborator<'a> {
             }
             ExprKind::Binary(..) => self.chain(expr),
             ExprKind::Call(callee, arguments) => self.call(expr, callee, arguments),
-            ExprKind::Part(base, part) => self.part(base, part),
+            ExprKind::Part(base, part) => self.part(base, part, expr.span),
             ExprKind::Index(base, index) => self.index(base, *index, expr.span),
             ExprKind::Prime(base) => self.prime(base, expr.span),
             ExprKind::Tuple(parts) => self.tuple(parts),
@@ -148,12 +148,12 @@ impl<'a> Elaborator<'a> {
         self.fail(Diagnostic::new(Code::WrongKind, message, span, format!("a {kind}")).help(help))
     }
 
-    fn part(&mut self, base: &'a Expr, part: &'a Ident) -> Value {
-        if let Some(value) = self.part_of_container(base, part) {
+    fn part(&mut self, base: &'a Expr, part: &'a Ident, span: Span) -> Value {
+        if let Some(value) = self.part_of_container(base, part, span) {
             return value;
         }
         let value = self.evaluate(base);
-        let Some(item) = value.named.map(|at| self.scope.declarations[at].item) else {
+        let Some(item) = value.named.map(|at| self.item_named(at)) else {
             return self.no_part(value, part, &[]);
         };
         if let ItemKind::Data { columns, .. } = &item.kind {
@@ -167,8 +167,8 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// `obs.t` of a data set and `coast.h` of a phase: known by name, without a value here.
-    fn part_of_container(&mut self, base: &Expr, part: &Ident) -> Option<Value> {
+    /// `obs.t` of a data set, known by name, without a value here; `coast.h` of a phase.
+    fn part_of_container(&mut self, base: &'a Expr, part: &'a Ident, span: Span) -> Option<Value> {
         let ExprKind::Name(name) = &base.kind else { return None };
         let item = self.scope.declarations[self.scope.find(name)?].item;
         match &item.kind {
@@ -176,10 +176,7 @@ impl<'a> Elaborator<'a> {
                 let names: Vec<&Ident> = columns.iter().map(|column| &column.0).collect();
                 Some(self.column(&names, part))
             }
-            ItemKind::Phase { items, .. } => {
-                let names: Vec<&Ident> = items.iter().filter_map(scope::declared).collect();
-                Some(self.column(&names, part))
-            }
+            ItemKind::Phase { items, .. } => Some(self.of_phase(name, items, part, span)),
             _ => None,
         }
     }
@@ -191,7 +188,7 @@ impl<'a> Elaborator<'a> {
         self.no_part(Value::default(), part, names)
     }
 
-    fn no_part(&mut self, value: Value, part: &Ident, names: &[&Ident]) -> Value {
+    pub fn no_part(&mut self, value: Value, part: &Ident, names: &[&Ident]) -> Value {
         if value.parts == Parts::Unknown && names.is_empty() {
             return Value::default();
         }

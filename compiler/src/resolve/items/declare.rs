@@ -20,6 +20,8 @@ impl<'a> Elaborator<'a> {
             self.at_ends[0].push(ends[0]);
             self.at_ends[1].push(ends[1]);
         }
+        let outer = [self.model.params.len(), self.model.frees.len()];
+        self.adopt_phases();
         let order = order::order(&self.scope, &mut self.diagnostics);
         self.circular = order.circular;
         for at in order.sequence {
@@ -30,6 +32,7 @@ impl<'a> Elaborator<'a> {
         for at in 0..self.scope.declarations.len() {
             self.bound(at);
         }
+        self.adopt_values(outer);
     }
 
     /// The symbols of a name.
@@ -299,7 +302,12 @@ impl<'a> Elaborator<'a> {
 
     /// The index of a declaration's first scalar among those of its kind.
     pub fn index_of(&self, at: usize) -> Option<usize> {
-        let first: ExprId = *self.values[at].parts.as_slice().first()?;
+        self.index_of_value(&self.values[at])
+    }
+
+    /// The index of a value's first scalar, if that is one symbol.
+    pub fn index_of_value(&self, value: &Value) -> Option<usize> {
+        let first: ExprId = *value.parts.as_slice().first()?;
         let crate::expressions::graph::Expr::Input(input) = self.graph.expr(first) else {
             return None;
         };

@@ -30,7 +30,10 @@ impl<'a> Elaborator<'a> {
         let Some(first) = self.index_of(at) else { return };
         for (part, &guess) in parts.iter().enumerate() {
             match item.kind {
-                ItemKind::Free { .. } => self.model.frees[first].guess = Some(guess),
+                ItemKind::Free { .. } => {
+                    self.model.frees[first].guess = Some(guess);
+                    self.guessed.push((first, guess));
+                }
                 ItemKind::State { .. } => self.model.states[first + part].guess = Some(guess),
                 _ => self.model.controls[first + part].guess = Some(guess),
             }

@@ -54,6 +54,7 @@ impl<'a> Elaborator<'a> {
                 weights.iter().for_each(|(name, weight)| self.weight(name, weight))
             }
             ItemKind::Jump { .. } => self.jump(item),
+            ItemKind::Link { from, to, assignments } => self.link(from, to, assignments),
             ItemKind::Data { file_span, .. } => {
                 self.not_yet(*file_span, "a model with measured data")
             }
@@ -192,8 +193,7 @@ impl<'a> Elaborator<'a> {
     /// `name`, or `name.x` and `name[1]` for a component of a vector.
     pub fn component(&self, name: &str, value: &Value, at: usize) -> String {
         let size = value.parts.as_slice().len();
-        let parts =
-            value.named.map_or(&[][..], |named| scope::parts(self.scope.declarations[named].item));
+        let parts = value.named.map_or(&[][..], |named| scope::parts(self.item_named(named)));
         match parts.get(at) {
             _ if size < 2 => name.into(),
             Some(part) if parts.len() == size => format!("{name}.{}", part.name),

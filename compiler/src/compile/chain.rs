@@ -1,0 +1,83 @@
+//! A model with phases as a chain of problems.
+
+use super::{ProblemCode, machine_code};
+use crate::lower::{self, LoweredLink, LoweredProblem};
+use crate::model::Model;
+use crate::model::numbers::{Numbers, numbers};
+use fdcc_grammar::Diagnostic;
+use fdcc_runtime::problem::{Chain, Function, Link, Problem};
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// Turns a model into a chain of optimal control problems with compiled functions, of one problem
+/// if it has no phases; or says what cannot be solved yet.
+pub fn compile_chain(model: &Model) -> Result<Chain, Vec<Diagnostic>> {
+    ChainCode::new(model)?.chain(model)
+}
+
+/// The compiled functions of a chain, which take parameters as inputs: one for all values.
+pub struct ChainCode {
+    phases: Vec<ProblemCode>,
+    links: Vec<(LoweredLink, Arc<dyn Function>)>,
+}
+
+impl ChainCode {
+    /// Compiles a model.
+    pub fn new(model: &Model) -> Result<Self, Vec<Diagnostic>> {
+        if let Some(first) = model.not_yet.first() {
+            return Err(vec![first.clone()]);
+        }
+        if model.phases.is_empty() {
+            return Ok(ChainCode { phases: vec![ProblemCode::new(model)?], links: Vec::new() });
+        }
+        let phases = model.phases.iter().map(|phase| ProblemCode::new(&phase.model));
+        let phases: Vec<ProblemCode> = phases.collect::<Result<_, _>>()?;
+        let lowered: Vec<&LoweredProblem> = phases.iter().map(|code| &code.lowered).collect();
+        let (graph, links) = lower::links(model, &lowered);
+        let functions = links.iter().map(|link| link.function.clone()).collect();
+        let functions = machine_code(graph, functions);
+        Ok(ChainCode { phases, links: links.into_iter().zip(functions).collect() })
+    }
+
+    /// The chain of the model, or of one that differs from it in the values of parameters only.
+    pub fn chain(&self, model: &Model) -> Result<Chain, Vec<Diagnostic>> {
+        if model.phases.is_empty() {
+            return Ok(Chain::single(self.phases[0].problem(model)?));
+        }
+        let numbers = numbers(model)?;
+        let mut phases = Vec::new();
+        for (code, phase) in self.phases.iter().zip(&model.phases) {
+            phases.push(phase_of(model, code.problem(&phase.model)?));
+        }
+        let links = self.links.iter().map(|it| link(model, &numbers, it)).collect();
+        let unknowns = lower::unknowns(model, &numbers);
+        Ok(Chain { name: model.name.clone(), phases, unknowns, links })
+    }
+}
+
+/// A phase with the unknowns on which it depends.
+fn phase_of(model: &Model, mut problem: Problem) -> Problem {
+    let mut read: HashSet<usize> = HashSet::new();
+    for function in [&problem.dynamics, &problem.path, &problem.boundary] {
+        let first = function.layout().parameters().start;
+        let columns = function.jacobian_pattern().entries.iter().map(|it| it.1 as usize);
+        read.extend(columns.filter_map(|column| column.checked_sub(first)));
+    }
+    problem.unknowns.retain(|unknown| read.contains(&unknown.parameter));
+    problem.sense = model.sense;
+    let of_phases = model.phases.iter().any(|phase| phase.model.objective.is_some());
+    problem.has_objective = of_phases || model.linked_objective.is_some();
+    problem
+}
+
+fn link(
+    model: &Model,
+    numbers: &Numbers,
+    (link, function): &(LoweredLink, Arc<dyn Function>),
+) -> Link {
+    Link {
+        ends: link.ends.clone(),
+        function: function.clone(),
+        bounds: link.rows.iter().map(|row| numbers.bounds(model, row.range)).collect(),
+    }
+}

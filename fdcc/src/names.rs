@@ -2,14 +2,13 @@
 
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::solution::modes::Mode;
-use fdcc_runtime::solve::Outcome;
 
 /// The name of a status in files and verdicts. `infeasible` is what is proved to be so.
-pub fn status_name(outcome: &Outcome) -> &'static str {
-    match &outcome.solution.status {
+pub fn status_name(status: &Status, is_impossible: bool) -> &'static str {
+    match status {
         Status::Solved => "solved",
         Status::Acceptable => "acceptable",
-        Status::Infeasible if outcome.is_impossible => "infeasible",
+        Status::Infeasible if is_impossible => "infeasible",
         Status::Infeasible => "none_found",
         Status::Unbounded => "unbounded",
         Status::IterationLimit => "iteration_limit",

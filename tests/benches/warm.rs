@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use fdcc_runtime::nlp::Start;
-use fdcc_runtime::problem::{Problem, Solver};
+use fdcc_runtime::problem::{Chain, Problem, Solver};
 use fdcc_runtime::solve::warm_start::again;
 use fdcc_runtime::solve::{self, Outcome};
 use fdcc_tests::models::{Changes, load};
@@ -42,7 +42,7 @@ fn main() {
         problem.method.solver = Solver::InteriorPoint;
         let change = format!("{parameter} = {before} to {after}");
         let intervals = problem.method.intervals();
-        let warm = again(&problem, &solved.solution, &[]);
+        let warm = again(&Chain::single(problem.clone()), &solved.solution, &[]);
         for (name, start) in [("from the guess", None), ("warm", Some(warm))] {
             let (outcome, seconds) = fastest(&problem, &start);
             let (solution, status) = (&outcome.solution, &outcome.solution.status);

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use fdcc_compiler::Model;
 use fdcc_grammar::{Diagnostic, Severity};
-use fdcc_runtime::problem::Problem;
+use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::solve::{self, Outcome, Refusal};
 
 use crate::repository;
@@ -82,4 +82,22 @@ pub fn solve(problem: &Problem) -> Outcome {
 /// Solves from the model's own guess, or is refused.
 pub fn try_solve(problem: &Problem) -> Result<Outcome, Refusal> {
     solve::solve(problem, None, &mut |_, _| ControlFlow::Continue(()))
+}
+
+/// A solution on the grid that was found for it.
+pub struct Refined {
+    /// The problem on its last grid.
+    pub problem: Problem,
+    /// Its solution.
+    pub outcome: Outcome,
+    /// The sum of the errors of all steps, if they were asked for.
+    pub error: Option<f64>,
+}
+
+/// Solves a problem of one phase on a grid of our own choice, where it asks for that.
+pub fn refine(problem: &Problem, watch: &mut solve::Watch) -> Refined {
+    let chain = Chain::single(problem.clone());
+    let found = solve::refinement::solve(&chain, None, watch).expect("it is not refused");
+    let solve::refinement::Refined { mut chain, outcome, error } = found;
+    Refined { problem: chain.phases.swap_remove(0), outcome: outcome.into_single(), error }
 }

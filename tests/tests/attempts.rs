@@ -2,10 +2,10 @@
 //! reasonable time.
 
 use fdcc_runtime::nlp::{Status, Stop};
+use fdcc_runtime::problem::Chain;
 use fdcc_runtime::solve::multistart;
-use fdcc_runtime::solve::refinement;
 use fdcc_runtime::solve::{self, Outcome};
-use fdcc_tests::models::{problem, solve};
+use fdcc_tests::models::{problem, refine, solve};
 use fdcc_tests::repository;
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -106,7 +106,7 @@ fn what_no_attempt_from_the_guess_finds_is_found_from_other_starts() {
     for scheme in ["radau2", "radau3", "gauss2"] {
         let problem = problem(&text, &[], &[("scheme", scheme), ("N", "50")]);
         let is_solved = |index: u32| {
-            let start = multistart::perturbed(&problem, None, index);
+            let start = multistart::perturbed(&Chain::single(problem.clone()), None, index);
             let outcome =
                 solve::solve(&problem, Some(start), &mut |_, _| ControlFlow::Continue(()));
             outcome.expect("it is not refused").solution.status == Status::Solved
@@ -157,10 +157,7 @@ fn a_grid_of_our_own_choice_that_is_too_coarse_is_no_verdict() {
             let sigma = sigma.map(|sigma| ("sigma", sigma));
             let method: Vec<(&str, &str)> =
                 [("N", intervals), ("tolerance", "1")].into_iter().chain(sigma).collect();
-            refinement::solve(&problem(&text, &[], &method), None, &mut |_, _| {
-                ControlFlow::Continue(())
-            })
-            .expect("it is not refused")
+            refine(&problem(&text, &[], &method), &mut |_, _| ControlFlow::Continue(()))
         };
         let named = found("50").outcome;
         assert_eq!(

@@ -1,14 +1,12 @@
 //! `N = auto`: grids that follow the solution down to a tolerance.
 
-use fdcc_runtime::solve::refinement::{Refined, solve};
-use fdcc_tests::models::problem;
+use fdcc_tests::models::{Refined, problem, refine};
 use fdcc_tests::optimality::residuals;
 use std::ops::ControlFlow;
 
 fn refined(text: &str, methods: &[(&str, &str)]) -> Refined {
     let problem = problem(text, &[], methods);
-    solve(&problem, None, &mut |_, _| ControlFlow::Continue(()))
-        .unwrap_or_else(|_| panic!("not refused"))
+    refine(&problem, &mut |_, _| ControlFlow::Continue(()))
 }
 
 /// A fast transient, `x' = -500 (x - cos t)`, without a control: `x` follows `cos t` after a layer

@@ -3,8 +3,7 @@
 use fdcc_compiler::{Model, compile};
 use fdcc_runtime::nlp::{Progress, Status};
 use fdcc_runtime::solve::Level;
-use fdcc_runtime::solve::refinement::{Refined, solve};
-use fdcc_tests::models::meaning;
+use fdcc_tests::models::{Refined, meaning, refine};
 use fdcc_tests::repository;
 use std::ops::ControlFlow;
 
@@ -13,8 +12,7 @@ fn refined(mut model: Model, methods: &[(&str, &str)]) -> Refined {
         model.set_method(key, value).unwrap_or_else(|error| panic!("{key} = {value}: {error}"));
     }
     let problem = compile(&model).expect("it can be solved");
-    solve(&problem, None, &mut |_, _| ControlFlow::Continue(()))
-        .unwrap_or_else(|_| panic!("not refused"))
+    refine(&problem, &mut |_, _| ControlFlow::Continue(()))
 }
 
 fn stages(found: &Refined) -> usize {
@@ -162,7 +160,7 @@ fn a_solve_with_another_stage_begins_near_its_solution() {
             }
             ControlFlow::Continue(())
         };
-        solve(&problem, None, watch).unwrap_or_else(|_| panic!("not refused"));
+        refine(&problem, watch);
         assert!(!begun.is_empty(), "{scheme}");
         for (primal, dual) in begun {
             assert!(primal < 1e-3 && dual < 0.05, "{scheme}: begins with {primal} and {dual}");

@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 
 use fdcc_runtime::nlp::{Options, Start, Status, Stop, interior_point};
-use fdcc_runtime::problem::{Linear, Problem, Solver};
+use fdcc_runtime::problem::{Chain, Linear, Problem, Solver};
 use fdcc_runtime::solve::warm_start::again;
 use fdcc_runtime::solve::{self, Outcome};
 use fdcc_runtime::transcribe::TranscribedNlp;
@@ -31,12 +31,16 @@ fn a_small_change_of_a_parameter_takes_fewer_iterations_than_the_guess() {
         let before = solve(&load(name, &[], settings));
         let mut problem = load(name, &[parameter], settings);
         problem.method.solver = Solver::InteriorPoint;
-        let [cold, warm] = [None, Some(again(&problem, &before.solution, &[]))].map(|start| {
-            let outcome = solve::solve(&problem, start, &mut |_, _| ControlFlow::Continue(()));
-            let outcome = outcome.expect(name);
-            assert_optimal(name, &problem, &outcome);
-            outcome.solution
-        });
+        let [cold, warm] =
+            [None, Some(again(&Chain::single(problem.clone()), &before.solution, &[]))].map(
+                |start| {
+                    let outcome =
+                        solve::solve(&problem, start, &mut |_, _| ControlFlow::Continue(()));
+                    let outcome = outcome.expect(name);
+                    assert_optimal(name, &problem, &outcome);
+                    outcome.solution
+                },
+            );
         let objectives = [cold.objective, warm.objective];
         let is_near = (cold.objective - warm.objective).abs() <= 1e-4 * cold.objective.abs();
         assert!(is_near, "{name}: {objectives:?}");

@@ -3,8 +3,8 @@
 use super::report::Ended;
 use crate::names::status_name;
 use fdcc_compiler::Model;
-use fdcc_runtime::problem::Problem;
-use fdcc_runtime::solve::Outcome;
+use fdcc_runtime::problem::{Chain, Problem};
+use fdcc_runtime::solve::{ChainOutcome, Outcome};
 
 /// The best answer, and what else was tried.
 pub(super) struct Found {
@@ -83,39 +83,44 @@ pub struct Phases {
     pub outcome: Outcome,
 }
 
-impl Found {
-    pub fn new(problem: Problem, outcome: Outcome) -> Self {
+/// The best answer to one chain of phases.
+pub(super) struct FoundChain {
+    pub chain: Chain,
+    pub outcome: ChainOutcome,
+    pub step_errors: Option<f64>,
+    pub starts: Vec<Ended>,
+}
+
+impl FoundChain {
+    /// Whether it can be used.
+    pub fn is_solved(&self) -> bool {
+        self.outcome.solution.status.is_solved()
+    }
+
+    /// That of a problem of one phase.
+    pub fn into_single(mut self) -> Found {
         Found {
-            problem,
-            outcome,
-            step_errors: None,
-            starts: Vec::new(),
+            problem: self.chain.phases.swap_remove(0),
+            outcome: self.outcome.into_single(),
+            step_errors: self.step_errors,
+            starts: self.starts,
             jumps: Vec::new(),
             sequences: Vec::new(),
             is_cut: false,
             phases: None,
         }
     }
-
-    /// Whether it can be used.
-    pub fn is_solved(&self) -> bool {
-        is_solved(&self.outcome)
-    }
-}
-
-/// Whether an outcome can be used.
-pub(super) fn is_solved(outcome: &Outcome) -> bool {
-    outcome.solution.status.is_solved()
 }
 
 impl Ended {
     /// How a solve ended.
-    pub(super) fn of(problem: &Problem, outcome: &Outcome) -> Self {
+    pub(super) fn of(chain: &Chain, outcome: &ChainOutcome) -> Self {
+        let ChainOutcome { solution, is_impossible, .. } = outcome;
         Ended {
-            status: status_name(outcome),
-            is_solved: is_solved(outcome),
-            objective: problem.sense * outcome.solution.objective,
-            iterations: outcome.solution.counts.iterations,
+            status: status_name(&solution.status, *is_impossible),
+            is_solved: solution.status.is_solved(),
+            objective: chain.phases[0].sense * solution.objective,
+            iterations: solution.counts.iterations,
         }
     }
 }

@@ -19,7 +19,7 @@ use crate::error::Error;
 use crate::executor::Executor;
 use crate::model::Model;
 use crate::warm_start;
-use fdcc_runtime::problem::{Linear, Problem, often_called};
+use fdcc_runtime::problem::{Chain, Linear, Problem, often_called};
 use fdcc_runtime::transcribe::unknowns;
 
 /// A model with the problem that is solved for it.
@@ -105,7 +105,8 @@ impl Compiled {
                 Start::Record(record) => Some(warm_start::from_record(record, &self.problem)),
                 Start::Solution(it) => Some(it.as_start(&self.problem)),
             };
-            multistart::solve(&self.problem, start, options, Part::default())?
+            let chain = Chain::single(self.problem.clone());
+            multistart::solve(&chain, start, options, Part::default())?.into_single()
         } else {
             match options.start {
                 Start::Guess => sequences::solve(meaning, &self.problem, None, options)?,

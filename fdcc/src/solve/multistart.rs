@@ -1,28 +1,28 @@
 //! Looking for an answer from one starting point or from several, and keeping the best.
 
-use super::found::Found;
+use super::found::FoundChain;
 use super::report::{Ended, Options, Part, Report};
 use crate::error::Error;
-use fdcc_runtime::nlp::{self, Status};
-use fdcc_runtime::problem::Problem;
+use fdcc_runtime::nlp::{self, Solution, Status};
+use fdcc_runtime::problem::Chain;
 use fdcc_runtime::solve::multistart::{is_better, perturbed};
 use fdcc_runtime::solve::refinement::{self, Refined};
-use fdcc_runtime::solve::{Attempt, Outcome, Refusal};
+use fdcc_runtime::solve::{Attempt, ChainOutcome, Refusal};
 
 /// The best answer from all starting points; `part` is what it is a part of.
 pub(super) fn solve(
-    problem: &Problem,
+    chain: &Chain,
     start: Option<nlp::Start>,
     options: &Options,
     part: Part,
-) -> Result<Found, Error> {
+) -> Result<FoundChain, Error> {
     let all = match options.starts {
-        0 | 1 => vec![run(problem, start, options, part)?],
-        _ => many(problem, start, options, part)?,
+        0 | 1 => vec![run(chain, start, options, part)?],
+        _ => many(chain, start, options, part)?,
     };
     let starts: Vec<Ended> = match all.len() {
         1 => Vec::new(),
-        _ => all.iter().map(|it| Ended::of(&it.problem, &it.outcome)).collect(),
+        _ => all.iter().map(|it| Ended::of(&it.chain, &it.outcome)).collect(),
     };
     for (index, ended) in starts.iter().enumerate() {
         (options.report)(&Report::Ended(Part { start: Some(index), ..part }, ended));
@@ -32,16 +32,16 @@ pub(super) fn solve(
     };
     let outcomes = all.iter().map(|it| &it.outcome);
     let (attempts, stopped) = (all_attempts(outcomes.clone()), first_stopped(outcomes));
-    let Refined { problem, outcome, error } =
+    let Refined { chain, outcome, error } =
         all.into_iter().reduce(best).expect("there is at least one start");
-    let mut outcome = Outcome { attempts, ..outcome };
-    unless_stopped(&mut outcome, stopped);
-    Ok(Found { starts, step_errors: error, ..Found::new(problem, outcome) })
+    let mut outcome = ChainOutcome { attempts, ..outcome };
+    unless_stopped(&mut outcome.solution, stopped);
+    Ok(FoundChain { chain, outcome, step_errors: error, starts })
 }
 
 /// From the start as it is given and from variations of it, in parallel.
 fn many(
-    problem: &Problem,
+    chain: &Chain,
     start: Option<nlp::Start>,
     options: &Options,
     part: Part,
@@ -51,16 +51,16 @@ fn many(
             0 => start.clone(),
             _ => {
                 let base = start.clone().map(|start| start.v);
-                Some(perturbed(problem, base, index as u32))
+                Some(perturbed(chain, base, index as u32))
             }
         };
-        run(problem, start, options, Part { start: Some(index), ..part })
+        run(chain, start, options, Part { start: Some(index), ..part })
     };
-    let ends =
-        |found: &Result<Refined, Error>| found.as_ref().map_or(true, |it| is_stopped(&it.outcome));
+    let is_over = |it: &Refined| is_stopped(&it.outcome.solution);
+    let ends = |found: &Result<Refined, Error>| found.as_ref().map_or(true, is_over);
     let all = options.executor.in_order(options.starts, one, ends);
     let all: Vec<Refined> = all.into_iter().collect::<Result<_, Error>>()?;
-    let stopped = all.iter().filter(|it| is_stopped(&it.outcome)).count();
+    let stopped = all.iter().filter(|it| is_over(it)).count();
     if stopped > 0 {
         let (ended, starts) = (all.len() - stopped, options.starts);
         (options.report)(&Report::Stopped { ended, stopped, starts });
@@ -69,34 +69,37 @@ fn many(
 }
 
 /// Whether a solve was stopped from outside.
-pub(super) fn is_stopped(outcome: &Outcome) -> bool {
-    matches!(outcome.solution.status, Status::Interrupted | Status::TimeLimit)
+pub(super) fn is_stopped(solution: &Solution) -> bool {
+    matches!(solution.status, Status::Interrupted | Status::TimeLimit)
 }
 
 /// The solves of several outcomes.
-pub(super) fn all_attempts<'o>(outcomes: impl Iterator<Item = &'o Outcome>) -> Vec<Attempt> {
+pub(super) fn all_attempts<'o>(outcomes: impl Iterator<Item = &'o ChainOutcome>) -> Vec<Attempt> {
     outcomes.flat_map(|outcome| outcome.attempts.clone()).collect()
 }
 
 /// How several outcomes were stopped, if one was.
-pub(super) fn first_stopped<'o>(mut outcomes: impl Iterator<Item = &'o Outcome>) -> Option<Status> {
-    outcomes.find(|outcome| is_stopped(outcome)).map(|outcome| outcome.solution.status.clone())
+pub(super) fn first_stopped<'o>(
+    mut outcomes: impl Iterator<Item = &'o ChainOutcome>,
+) -> Option<Status> {
+    let stopped = outcomes.find(|outcome| is_stopped(&outcome.solution))?;
+    Some(stopped.solution.status.clone())
 }
 
 /// Whoever stops a search is not told that there is nothing.
-pub(super) fn unless_stopped(outcome: &mut Outcome, stopped: Option<Status>) {
-    if let (Some(stopped), Status::Infeasible) = (stopped, &outcome.solution.status) {
-        outcome.solution.status = stopped;
+pub(super) fn unless_stopped(solution: &mut Solution, stopped: Option<Status>) {
+    if let (Some(stopped), Status::Infeasible) = (stopped, &solution.status) {
+        solution.status = stopped;
     }
 }
 
 fn run(
-    problem: &Problem,
+    chain: &Chain,
     start: Option<nlp::Start>,
     options: &Options,
     part: Part,
 ) -> Result<Refined, Error> {
-    let found = refinement::solve(problem, start, &mut |progress, level| {
+    let found = refinement::solve(chain, start, &mut |progress, level| {
         (options.report)(&Report::Iteration(part, progress, level));
         (options.stop)()
     });

@@ -1,7 +1,7 @@
 //! A model with jumps: each sequence of jumps that may happen is a problem of its own, and the best
 //! answer is taken.
 
-use super::found::{Found, Jump, Phases, Sequence};
+use super::found::{Found, FoundChain, Jump, Phases, Sequence};
 use super::multistart::{self, all_attempts, first_stopped, is_stopped, unless_stopped};
 use super::report::{Ended, Options, Part, Report};
 use crate::error::Error;
@@ -12,7 +12,7 @@ use fdcc_compiler::{
     Model, Sequences, compile, compile_simulation, crossings, sequences, with_phases,
 };
 use fdcc_runtime::nlp;
-use fdcc_runtime::problem::{ControlShape, Problem};
+use fdcc_runtime::problem::{Chain, ControlShape, Problem};
 use fdcc_runtime::simulate::{
     Controls, Event, Kind, Options as Accuracy, Status, System, simulate,
 };
@@ -56,7 +56,7 @@ pub(super) fn solve(
     let words = all.iter().map(|it| it.words.as_str());
     for (sequence, found) in words.zip(&found) {
         let part = Part { sequence: Some(sequence), start: None };
-        (options.report)(&Report::Ended(part, &Ended::of(&found.problem, &found.outcome)));
+        (options.report)(&Report::Ended(part, &Ended::of(&found.chain, &found.outcome)));
     }
     let solutions = found.iter().map(|it| &it.outcome.solution).enumerate();
     let best = solutions.reduce(|a, b| if is_better(b.1, a.1) { b } else { a });
@@ -69,8 +69,8 @@ pub(super) fn solve(
     let (alternatives, found) = (all.into_iter().nth(best), found.into_iter().nth(best));
     let (alternative, mut found) = alternatives.zip(found).expect("it is one of them");
     found.outcome.attempts = attempts;
-    unless_stopped(&mut found.outcome, stopped);
-    Ok(alternative.joined(between, Found { sequences: tried, is_cut, ..found }))
+    unless_stopped(&mut found.outcome.solution, stopped);
+    Ok(alternative.joined(between, Found { sequences: tried, is_cut, ..found.into_single() }))
 }
 
 /// The answer of each, up to the first that is enough.
@@ -79,21 +79,23 @@ fn each(
     between: &Problem,
     earlier: Option<&Record>,
     options: &Options,
-) -> Result<Vec<Found>, Error> {
+) -> Result<Vec<FoundChain>, Error> {
     let one = |index: usize| {
         let alternative = &all[index];
         let start = alternative.start(between, earlier);
         let part = Part { sequence: Some(&alternative.words), start: None };
-        let mut found = multistart::solve(&alternative.problem, start, options, part)?;
+        let chain = Chain::single(alternative.problem.clone());
+        let mut found = multistart::solve(&chain, start, options, part)?;
         // A proof says something of the phases of this sequence only.
         found.outcome.is_impossible = false;
         found.outcome.solution.global = false;
         Ok(found)
     };
     // Without an objective one trajectory is as good as another.
-    let is_enough =
-        |found: &Found| is_stopped(&found.outcome) || !between.has_objective && found.is_solved();
-    let ends = |found: &Result<Found, Error>| found.as_ref().map_or(true, is_enough);
+    let is_enough = |it: &FoundChain| {
+        is_stopped(&it.outcome.solution) || !between.has_objective && it.is_solved()
+    };
+    let ends = |found: &Result<FoundChain, Error>| found.as_ref().map_or(true, is_enough);
     // Several starts run in parallel already.
     let executor = if options.starts == 1 { options.executor } else { Executor::serial() };
     executor.in_order(all.len(), one, ends).into_iter().collect()
@@ -174,13 +176,13 @@ impl Alternative {
         earlier.filter(is_its).and_then(|it| warm_start::phases::start(it, between, &self.problem))
     }
 
-    fn tried(&self, found: &Found, is_answer: bool) -> Sequence {
+    fn tried(&self, found: &FoundChain, is_answer: bool) -> Sequence {
         Sequence {
             jumps: self.jumps.iter().flatten().cloned().collect(),
             crosses: self.crosses.clone(),
             words: self.words.clone(),
             is_answer,
-            ended: Ended::of(&found.problem, &found.outcome),
+            ended: Ended::of(&found.chain, &found.outcome),
         }
     }
 

@@ -1,6 +1,6 @@
 //! What came out of a solve, asked in the words of the model.
 
-use super::found::{Found, Jump, Phases, Sequence, is_solved};
+use super::found::{Found, Jump, Phases, Sequence};
 use super::report::Ended;
 use crate::error::Error;
 use crate::model::Model;
@@ -10,7 +10,7 @@ use crate::verification::{Verification, verify};
 use crate::warm_start::from_record;
 use fdcc_compiler::compile_by_parameters;
 use fdcc_runtime::nlp::{self, Status};
-use fdcc_runtime::problem::{Problem, Variable};
+use fdcc_runtime::problem::{Chain, Problem, Variable};
 use fdcc_runtime::solution::by_parameters;
 use fdcc_runtime::solve::Outcome;
 use fdcc_runtime::solve::warm_start::again;
@@ -86,12 +86,12 @@ impl Solution {
 
     /// The same in one word, as in files.
     pub fn status_name(&self) -> &'static str {
-        status_name(&self.outcome)
+        status_name(self.status(), self.outcome.is_impossible)
     }
 
     /// Whether it can be used: solved, or nearly as accurate as asked for.
     pub fn is_solved(&self) -> bool {
-        is_solved(&self.outcome)
+        self.status().is_solved()
     }
 
     /// The objective as the model writes it: what is maximised is not negated.
@@ -197,7 +197,7 @@ impl Solution {
         };
         if shape(&self.problem) == shape(problem) {
             let widths: &[f64] = if self.has_chosen_widths() { &self.outcome.sigma } else { &[] };
-            return again(problem, &self.outcome.solution, widths);
+            return again(&Chain::single(problem.clone()), &self.outcome.solution, widths);
         }
         from_record(&self.record(), problem)
     }

@@ -6,7 +6,7 @@ pub(crate) mod phases;
 use crate::error::Error;
 use crate::record::{Record, find, number, whole};
 use fdcc_runtime::nlp::Start;
-use fdcc_runtime::problem::Problem;
+use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::solve::warm_start::{Earlier, from_earlier};
 
 /// Whether a record has something of a problem, and that wholly.
@@ -20,7 +20,7 @@ pub(crate) fn check(record: &Record, problem: &Problem) -> Result<(), Error> {
 
 /// The record on the grid of the problem. What it does not have is guessed.
 pub(crate) fn from_record(record: &Record, problem: &Problem) -> Start {
-    from_earlier(problem, &earlier(record, problem))
+    from_earlier(&Chain::single(problem.clone()), &[earlier(record, problem)])
 }
 
 /// From 0 to 1; none if one is missing.

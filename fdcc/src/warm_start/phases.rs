@@ -4,7 +4,7 @@
 use super::{normalised, widths};
 use crate::record::{Record, find, number, whole};
 use fdcc_runtime::nlp::Start;
-use fdcc_runtime::problem::Problem;
+use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::solve::warm_start::{Earlier, from_earlier};
 
 /// The start from the solution, whose jumps are those of the problem; nothing if it is not whole.
@@ -23,7 +23,8 @@ pub(crate) fn start(record: &Record, between: &Problem, problem: &Problem) -> Op
     let times = normalised(record.time.get(..=intervals)?);
     (intervals * phases + 1 == record.time.len() && cut.is_at_jumps()).then(|| {
         let widths = widths(record, problem);
-        from_earlier(problem, &Earlier { times, states, controls, unknowns, widths })
+        let earlier = Earlier { times, states, controls, unknowns, widths };
+        from_earlier(&Chain::single(problem.clone()), &[earlier])
     })
 }
 

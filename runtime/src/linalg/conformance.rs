@@ -11,20 +11,20 @@ use crate::random::Random;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// A random problem: structure, values and diagonals.
-struct Case {
-    stages: Stages,
-    hessian: Triplets,
-    jacobian: Triplets,
-    hessian_values: Vec<f64>,
-    jacobian_values: Vec<f64>,
-    sigma: Vec<f64>,
-    d: Vec<f64>,
-    fixed: Vec<bool>,
+pub(super) struct Case {
+    pub(super) stages: Stages,
+    pub(super) hessian: Triplets,
+    pub(super) jacobian: Triplets,
+    pub(super) hessian_values: Vec<f64>,
+    pub(super) jacobian_values: Vec<f64>,
+    pub(super) sigma: Vec<f64>,
+    pub(super) d: Vec<f64>,
+    pub(super) fixed: Vec<bool>,
 }
 
 impl Case {
     /// Full blocks; curvature of both signs, strong enough to matter if `indefinite`.
-    fn new(
+    pub(super) fn new(
         stages: Stages,
         coupled_ends: bool,
         penalised: bool,
@@ -94,7 +94,13 @@ impl Case {
     }
 
     /// The law: `K x = b` and inertia = signs of the eigenvalues.
-    fn check(&self, name: &str, factor: &mut dyn Factor, refinements: usize, random: &mut Random) {
+    pub(super) fn check(
+        &self,
+        name: &str,
+        factor: &mut dyn Factor,
+        refinements: usize,
+        random: &mut Random,
+    ) {
         let dense = self.dense();
         let eigenvalues = SymmetricEigen::new(dense.clone()).eigenvalues;
         let positive = eigenvalues.iter().filter(|value| **value > 0.0).count();

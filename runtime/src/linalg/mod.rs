@@ -12,6 +12,8 @@
 
 #[cfg(test)]
 mod conformance;
+#[cfg(test)]
+mod conformance_of_phases;
 mod cost;
 pub(crate) mod dense;
 mod products;
@@ -24,5 +26,6 @@ pub use dense::lanes::is_fused;
 pub(crate) use products::Products;
 pub(crate) use structure::columns::Columns;
 pub use structure::factor::{Factor, Inertia};
+pub use structure::phases::PhaseStages;
 pub use structure::stages::Stages;
 pub use structure::triplets::{Family, Triplets};

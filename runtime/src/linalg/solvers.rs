@@ -1,17 +1,21 @@
 //! **The table** of linear solvers. A new one is a file that implements [`Factor`] and a row here.
 
 use super::cost::is_sparse_cheaper;
-use super::riccati::Riccati;
+use super::riccati::{PhasedRiccati, Riccati};
 use super::sparse_ldl::SparseLdl;
 use super::structure::factor::Factor;
+use super::structure::phases::PhaseStages;
 use super::structure::stages::Stages;
 use super::structure::triplets::Triplets;
 use crate::problem::Linear;
 
 /// The matrix before it has values.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(crate) struct Structure<'a> {
+    /// Of one chain.
     pub(crate) stages: Option<Stages>,
+    /// Of several.
+    pub(crate) phases: Vec<PhaseStages>,
     pub(crate) hessian: &'a Triplets,
     pub(crate) jacobian: &'a Triplets,
     /// Which variables have one value only.
@@ -28,6 +32,14 @@ const SOLVERS: [Row; 2] = [(Linear::Riccati, riccati), (Linear::SparseLdl, spars
 
 fn riccati(of: &Structure) -> Option<Box<dyn Factor>> {
     // What belongs to the only interval cannot be told from what belongs to the ends.
+    if of.phases.iter().any(|phase| phase.stages.intervals < 2) {
+        return None;
+    }
+    let matrices = (of.hessian, of.jacobian);
+    if !of.phases.is_empty() {
+        let factor = PhasedRiccati::new(&of.phases, matrices, of.fixed, of.equality).ok()?;
+        return Some(Box::new(factor));
+    }
     let stages = of.stages.filter(|stages| stages.intervals > 1)?;
     let factor = Riccati::new(stages, of.hessian, of.jacobian, of.fixed, of.equality).ok()?;
     Some(Box::new(factor))
@@ -52,8 +64,14 @@ pub(crate) fn more_robust(linear: Linear) -> Option<Linear> {
 
 /// The solver to begin with where the choice is open: the recursion wherever there are stages,
 /// unless its border makes it too dear.
-pub(crate) fn cheapest(stages: Option<Stages>, hessian: &Triplets, jacobian: &Triplets) -> Linear {
+pub(crate) fn cheapest(
+    stages: Option<Stages>,
+    phases: &[PhaseStages],
+    hessian: &Triplets,
+    jacobian: &Triplets,
+) -> Linear {
     match stages {
+        None if !phases.is_empty() => Linear::Riccati,
         Some(stages) if !is_sparse_cheaper(stages, hessian, jacobian) => Linear::Riccati,
         _ => Linear::SparseLdl,
     }

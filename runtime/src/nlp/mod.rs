@@ -18,7 +18,7 @@ mod scaling;
 mod tests;
 mod tuning;
 
-use crate::linalg::{Stages, Triplets};
+use crate::linalg::{PhaseStages, Stages, Triplets};
 use crate::problem::{Bounds, Linear, Origin};
 pub(crate) use scaling::objective_unit;
 use std::ops::ControlFlow;
@@ -51,7 +51,9 @@ impl Derivatives {
 pub struct Place {
     /// Where in the model.
     pub origin: Origin,
-    /// Grid point, if it belongs to one.
+    /// The phase, 0 if there is one only.
+    pub phase: usize,
+    /// Grid point of the phase, if it belongs to one.
     pub grid_point: Option<usize>,
 }
 
@@ -83,6 +85,10 @@ pub trait Nlp {
     fn hessian_structure(&self) -> &Triplets;
     /// The chain of stages, if the NLP is one.
     fn stages(&self) -> Option<Stages>;
+    /// The chains of stages, if the NLP is several that are tied together; else nothing.
+    fn phases(&self) -> Vec<PhaseStages> {
+        Vec::new()
+    }
     /// Which variables and constraints are one quantity of the model.
     fn quantities(&self) -> Quantities;
     /// The size of an objective whose terms are this large: at least a small part of its unit.

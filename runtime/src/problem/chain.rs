@@ -1,6 +1,6 @@
 //! A chain of phases: problems that are solved at once, and what ties them together.
 
-use super::{Bounds, Function, Problem, Unknown};
+use super::{Bounds, Function, Method, Parameter, Problem, Surface, Unknown};
 use std::sync::Arc;
 
 /// Phases with their links.
@@ -45,6 +45,18 @@ pub struct Link {
 }
 
 impl Chain {
+    /// What is said of the solve as a whole: that of the first phase.
+    pub fn method(&self) -> &Method {
+        &self.phases[0].method
+    }
+
+    /// The surfaces of all phases, with the unit of their widths.
+    pub fn surfaces(&self) -> impl Iterator<Item = (&Surface, &Parameter)> {
+        self.phases
+            .iter()
+            .flat_map(|phase| phase.surfaces.iter().map(|it| (it, &phase.parameters[it.sigma])))
+    }
+
     /// A problem of one phase.
     pub fn single(problem: Problem) -> Self {
         Chain {

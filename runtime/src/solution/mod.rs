@@ -11,7 +11,7 @@ mod quadrature;
 mod trajectory;
 
 pub use lagrangian::{Hamiltonian, by_parameters};
-pub use outcome::{Attempt, Limiting, Outcome};
+pub use outcome::{Attempt, ChainOutcome, Limiting, Outcome};
 pub(crate) use pause::gain as gain_of_pauses;
 pub use quadrature::integrals;
 pub(crate) use trajectory::switching_function_sizes;

@@ -5,7 +5,36 @@ use super::trajectory::Trajectory;
 use crate::nlp::Solution;
 use crate::problem::Origin;
 
-/// A solved (or not solved) problem.
+/// A solved (or not solved) chain of phases.
+#[derive(Clone, Debug)]
+pub struct ChainOutcome {
+    /// The last solution of all phases and links together; its counts are those of all solves.
+    pub solution: Solution,
+    /// Each phase by itself: its part of the solution, with the status and the objective of the
+    /// whole.
+    pub phases: Vec<Outcome>,
+    /// The smoothing width of each surface at the end, phase by phase.
+    pub sigma: Vec<f64>,
+    /// See [`Outcome::convex`].
+    pub convex: bool,
+    /// See [`Outcome::limiting`].
+    pub limiting: Option<Limiting>,
+    /// See [`Outcome::is_impossible`].
+    pub is_impossible: bool,
+    /// See [`Outcome::attempts`].
+    pub attempts: Vec<Attempt>,
+}
+
+impl ChainOutcome {
+    /// That of a chain of one phase.
+    pub fn into_single(mut self) -> Outcome {
+        let ChainOutcome { convex, limiting, is_impossible, attempts, .. } = self;
+        let first = self.phases.swap_remove(0);
+        Outcome { convex, limiting, is_impossible, attempts, ..first }
+    }
+}
+
+/// A solved (or not solved) problem of one phase.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// The last solution; its counts are those of all solves together.
@@ -45,6 +74,8 @@ pub struct Limiting {
     /// Where it is a step of a differential equation: the condition that stands against the
     /// equations most.
     pub condition: Option<Origin>,
+    /// The phase, 0 if there is one only.
+    pub phase: usize,
     /// The time of its largest violation, if it belongs to one.
     pub time: Option<f64>,
     /// How far it is violated.

@@ -1,6 +1,7 @@
 //! A solution in the words of the model: signals over real time.
 
 use super::lagrangian::{Hamiltonian, end_multipliers, path_multipliers};
+use crate::linalg::Stages;
 use crate::nlp::{Derivatives, Nlp, Solution};
 use crate::problem::{Columns, Function, Problem};
 use crate::transcribe::mesh::Mesh;
@@ -65,6 +66,20 @@ impl Trajectory {
             hamiltonian: Hamiltonian::new(problem, nlp, solution, time[time.len() - 1] - time[0]),
             time,
             parameters,
+        }
+    }
+
+    /// Adds to the costates at the last time what the links of a chain add to the gradient by the
+    /// last state; `slopes` has one number per variable of the phase.
+    pub(crate) fn add_costates_of_links(
+        &mut self,
+        problem: &Problem,
+        slopes: &[f64],
+        chain: Stages,
+    ) {
+        let last = chain.state(chain.intervals).start;
+        for (costates, slope) in self.costates.iter_mut().zip(&slopes[last..]) {
+            *costates.last_mut().expect("a last grid point") += problem.sense * slope;
         }
     }
 }

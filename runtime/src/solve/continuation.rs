@@ -16,21 +16,20 @@ use super::tuning::continuation::{
     CAREFUL, FEWEST_HALVINGS, MOST_HALVINGS, MOST_ITERATIONS, ROUGH, WIDE, WIDER,
 };
 use crate::nlp::{Solution, Start, Status};
-use crate::solution::switching_function_sizes;
-use crate::transcribe::TranscribedNlp;
+use crate::transcribe::chain::ChainNlp;
 
 impl Run<'_> {
     /// Solves with the widths that the model names, if there are surfaces.
     pub(super) fn with_named_widths(
         &mut self,
-        nlp: &mut TranscribedNlp,
+        nlp: &mut ChainNlp,
         start: Start,
         widths: &[f64],
         watch: &mut Watch,
     ) -> Solution {
         let target = self.target();
         let patience = Target { limit: MOST_ITERATIONS.min(target.limit), ..target };
-        let grids = grids(self.problem);
+        let grids = grids(self.chain);
         let shrinking = match widths {
             [sigma] if !self.sigma.is_empty() => {
                 WIDER.iter().map(|wider| wider * sigma).chain([*sigma]).collect()
@@ -71,7 +70,7 @@ impl Run<'_> {
     /// From width to width on one grid; with the widths as they are if none are given.
     pub(super) fn shrink(
         &mut self,
-        nlp: &mut TranscribedNlp,
+        nlp: &mut ChainNlp,
         mut start: Start,
         widths: &[f64],
         target: Target,
@@ -80,7 +79,8 @@ impl Run<'_> {
         let Some((last, before)) = widths.split_last() else {
             return self.solve(nlp, &start, target, watch);
         };
-        let is_coarse = nlp.chain().intervals < self.problem.method.intervals();
+        let all = self.chain.phases.iter().map(|phase| phase.method.intervals());
+        let is_coarse = nlp.intervals() < all.sum();
         let rough =
             Target { tol: target.tol.max(if is_coarse { ROUGH } else { CAREFUL }), ..target };
         for width in before {
@@ -97,8 +97,8 @@ impl Run<'_> {
 }
 
 /// Half the size of a switching function, halved until it is the width.
-fn halved(nlp: &TranscribedNlp, known: [&Vec<f64>; 2], sigma: f64) -> Vec<f64> {
-    let sizes = known.into_iter().flat_map(|v| switching_function_sizes(nlp, v));
+fn halved(nlp: &mut ChainNlp, known: [&Vec<f64>; 2], sigma: f64) -> Vec<f64> {
+    let sizes = known.into_iter().flat_map(|v| nlp.switching_function_sizes(v));
     let size = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
     let halvings = (WIDE * size / sigma).log2().ceil().clamp(FEWEST_HALVINGS, MOST_HALVINGS) as i32;
     (0..=halvings).rev().map(|k| sigma * 2.0_f64.powi(k)).collect()

@@ -17,11 +17,11 @@ mod tuning;
 pub mod warm_start;
 
 use crate::nlp::{Nlp, Progress, Solution, Start, Status, Stop, convex};
-use crate::problem::{Origin, Problem, Solver};
+use crate::problem::{Chain, Origin, Problem, Solver};
 use crate::solution::modes::modes;
-pub use crate::solution::{Attempt, Limiting, Outcome};
+pub use crate::solution::{Attempt, ChainOutcome, Limiting, Outcome};
 use crate::solution::{Trajectory, gain_of_pauses};
-use crate::transcribe::TranscribedNlp;
+use crate::transcribe::chain::{ChainNlp, own_multipliers};
 use run::Run;
 use std::ops::ControlFlow;
 
@@ -46,19 +46,30 @@ pub struct Level<'a> {
 /// What is reported while solving.
 pub type Watch<'a> = dyn FnMut(&Progress, Level) -> ControlFlow<Stop> + 'a;
 
-/// Solves a problem with its own method, from its own guess or from `start`.
+/// Solves a problem of one phase with its own method, from its own guess or from `start`.
 pub fn solve(
     problem: &Problem,
     start: Option<Start>,
     watch: &mut Watch,
 ) -> Result<Outcome, Refusal> {
-    let mut nlp = TranscribedNlp::new(problem);
-    let mut run = Run::new(problem);
+    Ok(solve_chain(&Chain::single(problem.clone()), start, watch)?.into_single())
+}
+
+/// Solves a chain of phases with the method of the first and the grids and schemes of all, from its
+/// own guess or from `start`.
+pub fn solve_chain(
+    chain: &Chain,
+    start: Option<Start>,
+    watch: &mut Watch,
+) -> Result<ChainOutcome, Refusal> {
+    let mut nlp = ChainNlp::new(chain);
+    let mut run = Run::new(chain);
     run.apply_sigma(&mut nlp);
     let start = start.unwrap_or_else(|| Start { v: nlp.guess(), warm: None });
-    let is_open = matches!(problem.method.solver, Solver::Automatic | Solver::Convex);
-    let is_convex = convex::is_quadratic_program(problem) && convex::is_proved(&mut nlp);
-    if !is_convex && problem.method.solver == Solver::Convex {
+    let solver = chain.method().solver;
+    let is_open = matches!(solver, Solver::Automatic | Solver::Convex);
+    let is_convex = convex::is_quadratic_program(chain) && convex::is_proved(&mut nlp);
+    if !is_convex && solver == Solver::Convex {
         return Err(Refusal::NotConvex);
     }
     let options = run.options(run.target());
@@ -73,7 +84,7 @@ pub fn solve(
     if let Some(solution) = conic.as_ref().filter(|it| it.status == Status::Solved) {
         return Ok(finish(run, &mut nlp, solution.clone(), true));
     }
-    let mut solution = match widths(problem) {
+    let mut solution = match widths(chain) {
         Some(widths) => run.with_named_widths(&mut nlp, start.clone(), &widths, watch),
         None => run.with_chosen_widths(&mut nlp, start.clone(), watch),
     };
@@ -94,48 +105,83 @@ pub fn solve(
     Ok(outcome)
 }
 
-/// Solves a problem from a start that is near its solution, with the widths that another solve has
+/// Solves a chain from a start that is near its solution, with the widths that another solve has
 /// ended with.
 pub(crate) fn solve_near(
-    problem: &Problem,
+    chain: &Chain,
     start: Start,
-    before: &Outcome,
+    before: &ChainOutcome,
     watch: &mut Watch,
-) -> Result<Outcome, Refusal> {
+) -> Result<ChainOutcome, Refusal> {
     if before.convex {
-        return solve(problem, Some(start), watch);
+        return solve_chain(chain, Some(start), watch);
     }
-    let mut nlp = TranscribedNlp::new(problem);
+    let mut nlp = ChainNlp::new(chain);
     let (counts, sigma) = (before.solution.counts, before.sigma.clone());
-    let mut run = Run { problem, counts, sigma, attempts: Vec::new() };
+    let mut run = Run { chain, counts, sigma, attempts: Vec::new() };
     let target = run.target();
     let solution = run.solve(&mut nlp, &start, target, watch);
     Ok(finish(run, &mut nlp, solution, false))
 }
 
 /// The widths the model names, in their order; `None` where the choice is ours.
-fn widths(problem: &Problem) -> Option<Vec<f64>> {
-    let method = &problem.method;
+fn widths(chain: &Chain) -> Option<Vec<f64>> {
+    let method = chain.method();
     let widths: Vec<f64> = method.continuation.iter().copied().chain(method.sigma).collect();
-    let is_ours = widths.is_empty() && !problem.surfaces.is_empty();
+    let is_ours = widths.is_empty() && chain.surfaces().next().is_some();
     (!is_ours).then_some(widths)
 }
 
-fn finish(run: Run, nlp: &mut TranscribedNlp, solution: Solution, convex: bool) -> Outcome {
-    let Run { problem, sigma, attempts, .. } = run;
-    let mut trajectory = Trajectory::new(problem, nlp, &solution);
+fn finish(run: Run, nlp: &mut ChainNlp, solution: Solution, convex: bool) -> ChainOutcome {
+    let Run { chain, sigma, attempts, .. } = run;
+    let slopes = nlp.slopes_of_links(&solution);
+    let mut widths = sigma.iter().copied();
+    let phases = chain.phases.iter().enumerate().map(|(at, problem)| {
+        let own = widths.by_ref().take(problem.surfaces.len()).collect();
+        phase(problem, nlp, at, own, (&solution, &slopes))
+    });
+    let phases: Vec<Outcome> = phases.collect();
+    let limiting = limiting(nlp, &solution, &phases, chain.method().tol);
+    let is_impossible = convex && solution.status == Status::Infeasible;
+    ChainOutcome { solution, phases, sigma, convex, limiting, is_impossible, attempts }
+}
+
+/// The part of a phase in the solution of a chain.
+fn phase(
+    problem: &Problem,
+    nlp: &mut ChainNlp,
+    at: usize,
+    sigma: Vec<f64>,
+    (whole, slopes): (&Solution, &[f64]),
+) -> Outcome {
+    let shape = nlp.shape().phases[at].clone();
+    let solution = Solution {
+        v: shape.own(&whole.v),
+        multipliers: own_multipliers(&shape, &whole.multipliers),
+        ..whole.clone()
+    };
+    let own = nlp.phase_at(at, &whole.v);
+    let mut trajectory = Trajectory::new(problem, own, &solution);
+    trajectory.add_costates_of_links(problem, &shape.own(slopes), shape.stages);
     trajectory.hamiltonian.pause = gain_of_pauses(problem, &trajectory);
     let surfaces = trajectory.switching.iter().zip(&sigma);
     let modes = surfaces.map(|(psi, sigma)| modes(&trajectory.time, psi, *sigma)).collect();
-    let limiting = limiting(nlp, &solution, &trajectory, problem.method.tol);
-    let is_impossible = convex && solution.status == Status::Infeasible;
-    Outcome { solution, trajectory, sigma, modes, convex, limiting, is_impossible, attempts }
+    Outcome {
+        solution,
+        trajectory,
+        sigma,
+        modes,
+        convex: false,
+        limiting: None,
+        is_impossible: false,
+        attempts: Vec::new(),
+    }
 }
 
 fn limiting(
-    nlp: &mut TranscribedNlp,
+    nlp: &mut ChainNlp,
     solution: &Solution,
-    trajectory: &Trajectory,
+    phases: &[Outcome],
     tol: f64,
 ) -> Option<Limiting> {
     let (row, violation) = crate::nlp::worst_constraint(nlp, &solution.v)?;
@@ -143,13 +189,14 @@ fn limiting(
         return None;
     }
     let place = nlp.constraint_place(row);
-    let time = place.grid_point.map(|k| trajectory.time[k]);
+    let time = place.grid_point.map(|k| phases[place.phase].trajectory.time[k]);
     let condition = if nlp.is_defect(row) { strongest_condition(nlp, solution) } else { None };
-    Some(Limiting { origin: place.origin, condition, time, violation })
+    let phase = place.phase;
+    Some(Limiting { origin: place.origin, condition, phase, time, violation })
 }
 
 /// The path or boundary condition with the largest multiplier.
-fn strongest_condition(nlp: &TranscribedNlp, solution: &Solution) -> Option<Origin> {
+fn strongest_condition(nlp: &ChainNlp, solution: &Solution) -> Option<Origin> {
     let rows = solution.multipliers.constraints.iter().enumerate();
     let conditions = rows.filter(|(row, lambda)| !nlp.is_defect(*row) && **lambda != 0.0);
     let strongest = conditions.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;

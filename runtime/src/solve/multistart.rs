@@ -3,26 +3,43 @@
 use super::tuning::multistart::VARIATION;
 use super::warm_start::values_of;
 use crate::nlp::{Nlp, Solution, Start};
-use crate::problem::Problem;
+use crate::problem::{Bounds, Chain};
 use crate::random::Random;
 use crate::transcribe::TranscribedNlp;
+use crate::transcribe::chain::ChainNlp;
 use crate::transcribe::interval::Signal;
 
-/// The guess (or `base`) with smooth random variations of every signal; the same for the same seed
-/// and index.
-pub fn perturbed(problem: &Problem, base: Option<Vec<f64>>, index: u32) -> Start {
-    let mut nlp = TranscribedNlp::new(problem);
-    let stages = nlp.chain();
-    let mut v = base.unwrap_or_else(|| nlp.guess());
-    let mut random = random(problem.method.seed, index);
+/// The guess (or `base`) with smooth random variations of every signal and unknown; the same for
+/// the same seed and index.
+pub fn perturbed(chain: &Chain, base: Option<Vec<f64>>, index: u32) -> Start {
+    let mut nlp = ChainNlp::new(chain);
+    let v = base.unwrap_or_else(|| nlp.guess());
+    let mut random = random(chain.method().seed, index);
+    let whole = Start { v, warm: None };
+    let mut own = nlp.shape().split(&whole);
+    for (phase, start) in nlp.each().zip(&mut own) {
+        vary_signals(phase, &mut random, &mut start.v);
+    }
+    let mut start = nlp.shape().joined(&own, &whole);
+    for place in nlp.shape().unknowns[0]..nlp.shape().unknowns[1] {
+        let value = &mut start.v[place];
+        let size = room(nlp.variable_bounds()[place], *value, *value);
+        *value += VARIATION * size.min(value.abs().max(1.0)) * random.next();
+    }
+    start
+}
+
+fn vary_signals(nlp: &TranscribedNlp, random: &mut Random, v: &mut [f64]) {
+    let problem = nlp.problem();
     let signals =
         (0..problem.layout.x).map(Signal::State).chain((0..problem.layout.u).map(Signal::Control));
     for signal in signals {
-        let places = places_of(&nlp, signal);
+        let places = places_of(nlp, signal);
         let values = places.iter().map(|(place, _)| v[*place]);
         let (low, high) =
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-        let size = VARIATION * room(&nlp, places[places.len() - 1].0, low, high);
+        let bounds = nlp.variable_bounds()[places[places.len() - 1].0];
+        let size = VARIATION * room(bounds, low, high);
         let (constant, wave, cycles) =
             (random.next(), random.next(), 1.0 + 2.0 * random.next().abs());
         for (place, tau) in places {
@@ -33,11 +50,6 @@ pub fn perturbed(problem: &Problem, base: Option<Vec<f64>>, index: u32) -> Start
                 size * envelope * (constant + wave * (std::f64::consts::TAU * cycles * tau).sin());
         }
     }
-    for place in stages.globals() {
-        let size = room(&nlp, place, v[place], v[place]);
-        v[place] += VARIATION * size.min(v[place].abs().max(1.0)) * random.next();
-    }
-    Start { v, warm: None }
 }
 
 /// The variables that are values of a signal, with their normalised times; at grid points last.
@@ -52,8 +64,7 @@ fn places_of(nlp: &TranscribedNlp, signal: Signal) -> Vec<(usize, f64)> {
 }
 
 /// How far a signal may reasonably move: the width of its bounds, else its own range or size.
-fn room(nlp: &TranscribedNlp, place: usize, low: f64, high: f64) -> f64 {
-    let bounds = nlp.variable_bounds()[place];
+fn room(bounds: Bounds, low: f64, high: f64) -> f64 {
     let width = bounds.upper - bounds.lower;
     if width.is_finite() { width } else { (high - low).max(low.abs().max(high.abs())).max(1.0) }
 }

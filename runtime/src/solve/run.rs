@@ -3,15 +3,15 @@
 
 use super::{Attempt, Level, Watch};
 use crate::nlp::{Counts, Options, Progress, Solution, Start, Status, convex, interior_point};
-use crate::problem::{Order, Problem};
-use crate::transcribe::TranscribedNlp;
+use crate::problem::{Chain, Order};
+use crate::transcribe::chain::ChainNlp;
 
 /// All solves of one problem.
 pub(super) struct Run<'p> {
-    pub(super) problem: &'p Problem,
+    pub(super) chain: &'p Chain,
     /// The work of all solves so far.
     pub(super) counts: Counts,
-    /// The smoothing width of each surface.
+    /// The smoothing width of each surface, phase by phase.
     pub(super) sigma: Vec<f64>,
     /// All solves so far.
     pub(super) attempts: Vec<Attempt>,
@@ -39,34 +39,32 @@ pub(crate) fn is_lost(status: &Status) -> bool {
 
 impl<'p> Run<'p> {
     /// Before the first solve, with the widths that the problem has.
-    pub(super) fn new(problem: &'p Problem) -> Self {
-        let sigma = problem.surfaces.iter().map(|surface| problem.parameters[surface.sigma].value);
-        Run { problem, counts: Counts::default(), sigma: sigma.collect(), attempts: Vec::new() }
+    pub(super) fn new(chain: &'p Chain) -> Self {
+        let sigma = chain.surfaces().map(|(_, width)| width.value).collect();
+        Run { chain, counts: Counts::default(), sigma, attempts: Vec::new() }
     }
 
     /// What the model asks of a solve.
     pub(super) fn target(&self) -> Target {
-        Target { tol: self.problem.method.tol, limit: self.problem.method.max_iter }
+        Target { tol: self.chain.method().tol, limit: self.chain.method().max_iter }
     }
 
     /// The options of a solve with such an end.
     pub(super) fn options(&self, target: Target) -> Options {
-        let method = &self.problem.method;
+        let method = self.chain.method();
         let is_final = target.tol <= method.tol;
         Options { tol: target.tol, max_iter: target.limit, linear: method.linear, is_final }
     }
 
     /// Gives the NLP the widths as they are now.
-    pub(super) fn apply_sigma(&self, nlp: &mut TranscribedNlp) {
-        for (surface, sigma) in self.problem.surfaces.iter().zip(&self.sigma) {
-            nlp.set_parameter(surface.sigma, *sigma);
-        }
+    pub(super) fn apply_sigma(&self, nlp: &mut ChainNlp) {
+        nlp.set_widths(&self.sigma);
     }
 
     /// One solve; a warm start that fails is repeated with fresh multipliers.
     pub(super) fn solve(
         &mut self,
-        nlp: &mut TranscribedNlp,
+        nlp: &mut ChainNlp,
         start: &Start,
         target: Target,
         watch: &mut Watch,
@@ -81,12 +79,12 @@ impl<'p> Run<'p> {
     /// The answer of the conic solver to a convex problem.
     pub(super) fn conic(
         &self,
-        nlp: &mut TranscribedNlp,
+        nlp: &mut ChainNlp,
         start: &Start,
         options: &Options,
         watch: &mut Watch,
     ) -> Option<Solution> {
-        let intervals = nlp.chain().intervals;
+        let intervals = nlp.intervals();
         let level = Level { intervals, stages: None, sigma: &self.sigma };
         convex::solve(nlp, start, options, &mut |progress| watch(progress, level))
     }
@@ -94,16 +92,16 @@ impl<'p> Run<'p> {
     /// One solve; its counts are those of all solves so far.
     pub(super) fn once(
         &mut self,
-        nlp: &mut TranscribedNlp,
+        nlp: &mut ChainNlp,
         start: &Start,
         target: Target,
         watch: &mut Watch,
     ) -> Solution {
         self.apply_sigma(nlp);
-        let method = &self.problem.method;
+        let method = self.chain.method();
         let options = self.options(target);
         let stages = (method.order == Order::Auto).then(|| method.scheme.stages());
-        let level = Level { intervals: nlp.chain().intervals, stages, sigma: &self.sigma };
+        let level = Level { intervals: nlp.intervals(), stages, sigma: &self.sigma };
         self.attempts.push(Attempt { intervals: level.intervals, sigma: self.sigma.clone() });
         let before = self.counts.iterations;
         let mut solution = interior_point::solve(nlp, start, &options, &mut |progress| {

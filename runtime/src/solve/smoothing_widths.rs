@@ -16,14 +16,13 @@ use super::tuning::smoothing_widths::{
     THINNER, TOO_THIN, TOO_WIDE, WIDE,
 };
 use crate::nlp::{Solution, Start, Status};
-use crate::solution::switching_function_sizes;
-use crate::transcribe::TranscribedNlp;
+use crate::transcribe::chain::ChainNlp;
 
 impl Run<'_> {
     /// Solves with widths of our own choice, as small as can be solved.
     pub(super) fn with_chosen_widths(
         &mut self,
-        nlp: &mut TranscribedNlp,
+        nlp: &mut ChainNlp,
         mut start: Start,
         watch: &mut Watch,
     ) -> Solution {
@@ -76,7 +75,7 @@ impl Run<'_> {
 
     /// The widest layer; where the guess said nothing of the size of a switching function, with the
     /// size that it turns out to have.
-    fn sized(&mut self, nlp: &mut TranscribedNlp, start: &Start, watch: &mut Watch) -> Solution {
+    fn sized(&mut self, nlp: &mut ChainNlp, start: &Start, watch: &mut Watch) -> Solution {
         let first = self.first(nlp, start.clone(), watch);
         self.resized(nlp, start, first, watch)
     }
@@ -85,7 +84,7 @@ impl Run<'_> {
     /// thin: a far wider one.
     fn or_wider(
         &mut self,
-        nlp: &mut TranscribedNlp,
+        nlp: &mut ChainNlp,
         start: &Start,
         lost: Solution,
         widest: &[f64],
@@ -110,14 +109,14 @@ impl Run<'_> {
     /// The first solve again, until width and size fit.
     fn resized(
         &mut self,
-        nlp: &mut TranscribedNlp,
+        nlp: &mut ChainNlp,
         start: &Start,
         mut best: Solution,
         watch: &mut Watch,
     ) -> Solution {
         let mut is_open = is_open(nlp, start);
         for _ in 0..MOST_SIZINGS {
-            let (before, sizes) = (self.sigma.clone(), switching_function_sizes(nlp, &best.v));
+            let (before, sizes) = (self.sigma.clone(), nlp.switching_function_sizes(&best.v));
             self.resize(&is_open, &sizes);
             if self.sigma == before {
                 break;
@@ -131,7 +130,7 @@ impl Run<'_> {
                 break;
             }
             best = solution;
-            let after = switching_function_sizes(nlp, &best.v);
+            let after = nlp.switching_function_sizes(&best.v);
             self.undo_where_held(&mut is_open, &before, &|at| after[at] < SHRUNK * sizes[at]);
         }
         best
@@ -168,8 +167,8 @@ impl Run<'_> {
     }
 
     /// The widest layer: over coarse grids, or at once.
-    fn first(&mut self, nlp: &mut TranscribedNlp, start: Start, watch: &mut Watch) -> Solution {
-        let grids = grids(self.problem);
+    fn first(&mut self, nlp: &mut ChainNlp, start: Start, watch: &mut Watch) -> Solution {
+        let grids = grids(self.chain);
         if start.warm.is_none() && grids.len() > 1 {
             let solution =
                 self.over_grids(nlp, start.clone(), (&grids, &[]), self.patience(), watch);
@@ -184,7 +183,7 @@ impl Run<'_> {
     /// size of each switching function where it was lost.
     fn or_thinner(
         &mut self,
-        nlp: &mut TranscribedNlp,
+        nlp: &mut ChainNlp,
         start: &Start,
         first: Solution,
         watch: &mut Watch,
@@ -214,36 +213,36 @@ impl Run<'_> {
 
     /// Widths relative to the size of each switching function along `v`; to its unit where `v`
     /// rests on the surface.
-    fn set_relative(&mut self, nlp: &TranscribedNlp, v: &[f64], factor: f64) {
-        let units = self.problem.surfaces.iter().map(|it| self.problem.parameters[it.sigma].unit);
-        let sizes = switching_function_sizes(nlp, v).into_iter().zip(units);
+    fn set_relative(&mut self, nlp: &mut ChainNlp, v: &[f64], factor: f64) {
+        let units = self.chain.surfaces().map(|(_, width)| width.unit);
+        let sizes = nlp.switching_function_sizes(v).into_iter().zip(units);
         for (sigma, (size, unit)) in self.sigma.iter_mut().zip(sizes) {
             *sigma = factor * if size > 0.0 { size } else { unit };
         }
     }
 
     /// Whether no layer is as thin as the widest should be.
-    fn is_far_too_wide(&self, nlp: &TranscribedNlp, v: &[f64]) -> bool {
+    fn is_far_too_wide(&self, nlp: &mut ChainNlp, v: &[f64]) -> bool {
         self.relative(nlp, v) > TOO_WIDE * FIRST_FACTOR
     }
 
     /// The least width relative to the size of its switching function along `v`; 0 if none has one.
-    fn relative(&self, nlp: &TranscribedNlp, v: &[f64]) -> f64 {
-        let sizes = self.sigma.iter().zip(switching_function_sizes(nlp, v));
+    fn relative(&self, nlp: &mut ChainNlp, v: &[f64]) -> f64 {
+        let sizes = self.sigma.iter().zip(nlp.switching_function_sizes(v));
         let relative = sizes.map(|(sigma, size)| sigma / size).filter(|it| it.is_finite());
         relative.reduce(f64::min).unwrap_or(0.0)
     }
 
     /// Smaller widths, by the factor `decrease`; but not below `factor` times the size of the
     /// switching function. On a held surface that size is the layer itself, and says nothing.
-    fn decrease(&mut self, nlp: &TranscribedNlp, v: &[f64], factor: f64, decrease: f64) {
-        for (sigma, size) in self.sigma.iter_mut().zip(switching_function_sizes(nlp, v)) {
+    fn decrease(&mut self, nlp: &mut ChainNlp, v: &[f64], factor: f64, decrease: f64) {
+        for (sigma, size) in self.sigma.iter_mut().zip(nlp.switching_function_sizes(v)) {
             *sigma = (factor * size).clamp(decrease * *sigma, *sigma);
         }
     }
 }
 
 /// Where a guess says nothing of the size of a switching function, because it rests on the surface.
-fn is_open(nlp: &TranscribedNlp, start: &Start) -> Vec<bool> {
-    switching_function_sizes(nlp, &start.v).iter().map(|size| *size == 0.0).collect()
+fn is_open(nlp: &mut ChainNlp, start: &Start) -> Vec<bool> {
+    nlp.switching_function_sizes(&start.v).iter().map(|size| *size == 0.0).collect()
 }

@@ -4,8 +4,9 @@
 use super::tuning::warm_start::{FACTOR, LEAST};
 use crate::linalg::Stages;
 use crate::nlp::{Solution, Start, Warm, constraint_violation, multiplier_estimate};
-use crate::problem::Problem;
+use crate::problem::{Chain, Problem};
 use crate::transcribe::TranscribedNlp;
+use crate::transcribe::chain::ChainNlp;
 use crate::transcribe::interval::Signal;
 
 /// Signals of an earlier solution over normalised time; `None` where it has none of that name.
@@ -23,11 +24,31 @@ pub struct Earlier {
     pub widths: Vec<Option<f64>>,
 }
 
-/// The earlier solution on the grid of the problem; what it lacks comes from the guess.
-fn resample(problem: &Problem, earlier: &Earlier) -> Vec<f64> {
-    let mut nlp = TranscribedNlp::new(problem);
+/// The earlier solutions of all phases on the grids of the chain; what they lack comes from the
+/// guess.
+fn resample(chain: &Chain, earlier: &[Earlier]) -> Vec<f64> {
+    let mut nlp = ChainNlp::new(chain);
+    let whole = Start { v: nlp.guess(), warm: None };
+    let mut own = nlp.shape().split(&whole);
+    for ((phase, start), earlier) in nlp.each().zip(&mut own).zip(earlier) {
+        resample_phase(phase, earlier, &mut start.v);
+    }
+    let mut v = nlp.shape().joined(&own, &whole).v;
+    for (unknown, place) in chain.unknowns.iter().zip(nlp.shape().unknowns[0]..) {
+        let known = |phase: &Problem| {
+            phase.unknowns.iter().position(|it| it.parameter == unknown.parameter)
+        };
+        let values =
+            chain.phases.iter().zip(earlier).filter_map(|(phase, earlier)| {
+                earlier.unknowns.get(known(phase)?).copied().flatten()
+            });
+        v[place] = values.last().unwrap_or(v[place]);
+    }
+    v
+}
+
+fn resample_phase(nlp: &TranscribedNlp, earlier: &Earlier, v: &mut [f64]) {
     let stages = nlp.chain();
-    let mut v = nlp.guess();
     let slots = nlp.interval().slots.clone();
     for (place, slot) in slots.iter().enumerate() {
         for k in 0..values_of(place, stages) {
@@ -43,10 +64,6 @@ fn resample(problem: &Problem, earlier: &Earlier) -> Vec<f64> {
             *variable = value.unwrap_or(*variable);
         }
     }
-    for (variable, value) in stages.globals().zip(&earlier.unknowns) {
-        v[variable] = value.unwrap_or(v[variable]);
-    }
-    v
 }
 
 /// How often a variable of an interval is there: what is carried once more, at the last grid point.
@@ -74,50 +91,48 @@ impl Earlier {
     }
 }
 
-/// The earlier solution as a warm start on the grid of the problem. Its multipliers are estimated,
-/// with the widths of its layers where the problem names none.
-pub fn from_earlier(problem: &Problem, earlier: &Earlier) -> Start {
-    let v = resample(problem, earlier);
-    let widths: Vec<f64> =
-        earlier.widths.iter().copied().collect::<Option<_>>().unwrap_or_default();
-    let warm = first_width(problem, &widths).and_then(|(mut nlp, widths)| {
+/// The earlier solutions of all phases as a warm start on the grids of the chain. Its multipliers
+/// are estimated, with the widths of its layers where the problem names none.
+pub fn from_earlier(chain: &Chain, earlier: &[Earlier]) -> Start {
+    let v = resample(chain, earlier);
+    let widths = earlier.iter().flat_map(|it| it.widths.iter().copied());
+    let widths: Vec<f64> = widths.collect::<Option<_>>().unwrap_or_default();
+    let warm = first_width(chain, &widths).and_then(|(mut nlp, widths)| {
         let multipliers = multiplier_estimate::multipliers(&mut nlp, &v)?;
         Some(Warm { multipliers, mu: room(&mut nlp, &v), widths })
     });
     Start { v, warm }
 }
 
-/// A solution on the same grid, found with these widths, of a problem with other parameters or
+/// A solution on the same grids, found with these widths, of a chain with other parameters or
 /// another width.
-pub fn again(problem: &Problem, solution: &Solution, widths: &[f64]) -> Start {
+pub fn again(chain: &Chain, solution: &Solution, widths: &[f64]) -> Start {
     let mut start = Start::near(solution);
-    if let (Some(warm), Some((mut nlp, widths))) = (&mut start.warm, first_width(problem, widths)) {
+    if let (Some(warm), Some((mut nlp, widths))) = (&mut start.warm, first_width(chain, widths)) {
         (warm.mu, warm.widths) = (room(&mut nlp, &start.v), widths);
     }
     start
 }
 
 /// The NLP with the width that is solved first, and with it the earlier widths where these
-/// are taken, because the problem names none; `None` if there are none either.
-fn first_width<'p>(
-    problem: &'p Problem,
-    earlier: &[f64],
-) -> Option<(TranscribedNlp<'p>, Vec<f64>)> {
-    let named = problem.method.continuation.first().copied().or(problem.method.sigma);
+/// are taken, because the model names none; `None` if there are none either.
+fn first_width<'c>(chain: &'c Chain, earlier: &[f64]) -> Option<(ChainNlp<'c>, Vec<f64>)> {
+    let method = chain.method();
+    let named = method.continuation.first().copied().or(method.sigma);
     let taken = if named.is_none() { earlier } else { &[] };
-    if named.is_none() && taken.len() != problem.surfaces.len() {
+    let count = chain.surfaces().count();
+    if named.is_none() && taken.len() != count {
         return None;
     }
-    let mut nlp = TranscribedNlp::new(problem);
-    for (i, surface) in problem.surfaces.iter().enumerate() {
-        nlp.set_parameter(surface.sigma, named.unwrap_or_else(|| taken[i]));
-    }
+    let widths = (0..count).map(|at| named.unwrap_or_else(|| taken[at]));
+    let mut nlp = ChainNlp::new(chain);
+    nlp.set_widths(&widths.collect::<Vec<_>>());
     Some((nlp, taken.to_vec()))
 }
 
 /// The barrier parameter for a start that violates rows by `r`. Distances from bounds and their
 /// multipliers will change in proportion to `r`, and their products by its square.
-fn room(nlp: &mut TranscribedNlp, v: &[f64]) -> f64 {
+fn room(nlp: &mut ChainNlp, v: &[f64]) -> f64 {
     let violation = constraint_violation(nlp, v);
     (FACTOR * violation * violation).clamp(LEAST, Warm::ROOM)
 }

@@ -12,6 +12,7 @@
 mod assembly;
 mod boundary;
 mod bounds;
+pub mod chain;
 pub(crate) mod collocation;
 mod guess;
 pub(crate) mod interval;
@@ -286,14 +287,14 @@ impl Nlp for TranscribedNlp<'_> {
     fn constraint_place(&self, row: usize) -> Place {
         let stages = self.stages;
         if let Some(i) = row.checked_sub(stages.coupling().start) {
-            return Place { origin: self.problem.boundary.origin(i + 1), grid_point: None };
+            return Place { origin: self.problem.boundary.origin(i + 1), ..Place::default() };
         }
         let (k, i) = (row / stages.row_step(), row % stages.row_step());
         let origin = match i.checked_sub(stages.defect_rows()) {
             Some(row) => self.problem.path.origin(row % self.problem.path_bounds.len()),
             None => self.defect_origin(i),
         };
-        Place { origin, grid_point: Some(k + 1) }
+        Place { origin, grid_point: Some(k + 1), ..Place::default() }
     }
 
     fn not_finite(&mut self, v: &[f64]) -> Option<Place> {
@@ -304,6 +305,7 @@ impl Nlp for TranscribedNlp<'_> {
                 return Some(Place {
                     origin: self.problem.dynamics.origin(output),
                     grid_point: Some(k),
+                    ..Place::default()
                 });
             }
         }
@@ -312,10 +314,11 @@ impl Nlp for TranscribedNlp<'_> {
                 return Some(Place {
                     origin: self.problem.path.origin(output),
                     grid_point: Some(k + 1),
+                    ..Place::default()
                 });
             }
         }
         let output = self.ends.not_finite(stages, &self.parameters, rows)?;
-        Some(Place { origin: self.problem.boundary.origin(output), grid_point: None })
+        Some(Place { origin: self.problem.boundary.origin(output), ..Place::default() })
     }
 }

@@ -2,7 +2,7 @@
 //! loops unroll, and for machines with and without fused multiply-add and registers of four
 //! numbers.
 
-use super::Riccati;
+use super::recursion::Recursion;
 use super::sizes::Sizes;
 use super::solve::Travel;
 use crate::linalg::dense::lanes::Lanes;
@@ -31,28 +31,40 @@ pub(super) struct Matrix<'a> {
     pub(super) d: &'a [f64],
 }
 
-impl Riccati {
+impl Recursion {
     /// Factors all intervals; returns how many negative eigenvalues there are beyond one per row,
-    /// or `None` at a zero pivot or when the border cannot make up for them.
-    pub(super) fn factor_chain(&mut self, matrix: Matrix) -> Option<usize> {
+    /// or `None` at a zero pivot or when there are more than `most`.
+    pub(super) fn factor_chain(&mut self, matrix: Matrix, most: usize) -> Option<usize> {
         #[cfg(target_arch = "x86_64")]
         if self.fused {
             // SAFETY: `fused` is set only if this machine has both features.
             #[allow(unsafe_code)]
-            return unsafe { with_constant_sizes!(self.factor_fused(matrix)) };
+            return unsafe { with_constant_sizes!(self.factor_fused(matrix, most)) };
         }
-        with_constant_sizes!(self.factor_plain(matrix))
+        with_constant_sizes!(self.factor_plain(matrix, most))
     }
 
-    /// Goes backward, solves for the border, and goes forward.
-    pub(super) fn solve_chain(&self, travel: &mut Travel, a: &mut [f64], b: &mut [f64]) {
+    /// Goes backward: what travels is the gradient of the value function of the last state, and
+    /// becomes that of the first.
+    pub(super) fn backward(&self, travel: &mut Travel, a: &mut [f64], b: &mut [f64]) {
         #[cfg(target_arch = "x86_64")]
         if self.fused {
             // SAFETY: `fused` is set only if this machine has both features.
             #[allow(unsafe_code)]
-            return unsafe { with_constant_sizes!(self.solve_fused(travel, a, b)) };
+            return unsafe { with_constant_sizes!(self.backward_fused(travel, a, b)) };
         }
-        with_constant_sizes!(self.solve_plain(travel, a, b))
+        with_constant_sizes!(self.backward_plain(travel, a, b))
+    }
+
+    /// Goes forward: what travels is `(x, theta)` at the first state, and becomes that at the last.
+    pub(super) fn forward(&self, travel: &mut Travel, a: &mut [f64], b: &mut [f64]) {
+        #[cfg(target_arch = "x86_64")]
+        if self.fused {
+            // SAFETY: `fused` is set only if this machine has both features.
+            #[allow(unsafe_code)]
+            return unsafe { with_constant_sizes!(self.forward_fused(travel, a, b)) };
+        }
+        with_constant_sizes!(self.forward_plain(travel, a, b))
     }
 
     #[cfg(target_arch = "x86_64")]
@@ -60,35 +72,57 @@ impl Riccati {
     fn factor_fused<const N: usize, const M: usize, const Q: usize>(
         &mut self,
         matrix: Matrix,
+        most: usize,
     ) -> Option<usize> {
-        self.factor_intervals::<true>(self.sizes.known::<N, M, Q>(), matrix)
+        self.factor_intervals::<true>(self.sizes.known::<N, M, Q>(), matrix, most)
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
-    fn solve_fused<const N: usize, const M: usize, const Q: usize>(
+    fn backward_fused<const N: usize, const M: usize, const Q: usize>(
         &self,
         travel: &mut Travel,
         a: &mut [f64],
         b: &mut [f64],
     ) {
-        self.solve_intervals::<true>(self.sizes.known::<N, M, Q>(), travel, (a, b))
+        self.backward_intervals::<true>(self.sizes.known::<N, M, Q>(), travel, (a, b))
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn forward_fused<const N: usize, const M: usize, const Q: usize>(
+        &self,
+        travel: &mut Travel,
+        a: &mut [f64],
+        b: &mut [f64],
+    ) {
+        self.forward_intervals::<true>(self.sizes.known::<N, M, Q>(), travel, (a, b))
     }
 
     fn factor_plain<const N: usize, const M: usize, const Q: usize>(
         &mut self,
         matrix: Matrix,
+        most: usize,
     ) -> Option<usize> {
-        self.factor_intervals::<false>(self.sizes.known::<N, M, Q>(), matrix)
+        self.factor_intervals::<false>(self.sizes.known::<N, M, Q>(), matrix, most)
     }
 
-    fn solve_plain<const N: usize, const M: usize, const Q: usize>(
+    fn backward_plain<const N: usize, const M: usize, const Q: usize>(
         &self,
         travel: &mut Travel,
         a: &mut [f64],
         b: &mut [f64],
     ) {
-        self.solve_intervals::<false>(self.sizes.known::<N, M, Q>(), travel, (a, b))
+        self.backward_intervals::<false>(self.sizes.known::<N, M, Q>(), travel, (a, b))
+    }
+
+    fn forward_plain<const N: usize, const M: usize, const Q: usize>(
+        &self,
+        travel: &mut Travel,
+        a: &mut [f64],
+        b: &mut [f64],
+    ) {
+        self.forward_intervals::<false>(self.sizes.known::<N, M, Q>(), travel, (a, b))
     }
 
     #[inline(always)]
@@ -96,9 +130,9 @@ impl Riccati {
         &mut self,
         sizes: Sizes,
         matrix: Matrix,
+        most: usize,
     ) -> Option<usize> {
-        let Riccati { stages, assembly, fixed, border, factors, condensed, block, value, .. } =
-            self;
+        let Recursion { stages, assembly, fixed, factors, condensed, block, value, .. } = self;
         let mut negative = 0;
         for first in (0..stages.intervals).step_by(Lanes::COUNT).rev() {
             let intervals = first..(first + Lanes::COUNT).min(stages.intervals);
@@ -115,8 +149,8 @@ impl Riccati {
                 let q = condensed.quadratic_mut(sizes, k - first);
                 negative +=
                     block.factor::<FUSED>(sizes, q, factors, (k, fixed, penalties), value)?;
-                // The border cannot have fewer than no negative eigenvalues.
-                if negative > border.rows() {
+                // The rest cannot have fewer than no negative eigenvalues.
+                if negative > most {
                     return None;
                 }
             }

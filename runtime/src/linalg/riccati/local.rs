@@ -1,9 +1,9 @@
 //! Local rows in a solve: they are taken out of the right side before the recursion, and have their
 //! multipliers afterwards.
 
-use super::Riccati;
+use super::recursion::Recursion;
 
-impl Riccati {
+impl Recursion {
     /// `a += J' diag(1/d) b`
     pub(super) fn remove_local_constraints(&self, a: &mut [f64], b: &[f64]) {
         for k in 0..self.stages.intervals {

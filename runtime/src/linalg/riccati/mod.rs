@@ -25,41 +25,30 @@ mod factors;
 mod interval;
 mod kernels;
 mod local;
+mod phases;
+mod recursion;
 mod sizes;
 mod solve;
 mod value;
 
-use super::dense::lanes::is_fused;
 use super::structure::factor::{Factor, Inertia};
 use super::structure::stages::Stages;
 use super::structure::triplets::Triplets;
-use assemble::Assembly;
 use border::Border;
 use chain::Matrix;
-use condense::Condensed;
-use factors::Factors;
-use interval::Block;
-use sizes::Sizes;
+pub(super) use phases::PhasedRiccati;
+use recursion::Recursion;
 use solve::Travel;
-use value::Value;
 
-/// The recursion, with all its memory.
+/// The recursion along one chain, with both its ends.
 pub struct Riccati {
-    stages: Stages,
-    sizes: Sizes,
-    /// Whether the machine multiplies and adds in one instruction.
-    fused: bool,
-    fixed: Vec<bool>,
-    assembly: Assembly,
+    recursion: Recursion,
     border: Border,
-    condensed: Condensed,
-    block: Block,
-    factors: Factors,
-    /// The value function of the stage being left.
-    value: Value,
     /// `[P Lambda; Lambda' Theta]` of the last stage, then of the first.
     ends: Vec<f64>,
     travel: Travel,
+    /// Right side of the last system.
+    last: Vec<f64>,
 }
 
 impl Riccati {
@@ -73,37 +62,16 @@ impl Riccati {
         fixed: &[bool],
         equality_rows: &[bool],
     ) -> Result<Self, &'static str> {
-        if stages.states == 0 {
-            return Err("there are no states");
-        }
-        if (1..=stages.intervals).any(|k| stages.state(k).any(|i| fixed[i])) {
-            return Err("a state is fixed inside the chain");
-        }
-        if (0..stages.intervals).any(|k| stages.inner(k).any(|i| fixed[i])) {
-            return Err("an inner variable is fixed");
-        }
-        if (0..stages.intervals).any(|k| stages.local(k).any(|i| equality_rows[i])) {
-            return Err("an equality holds at every stage");
-        }
         let border = Border::new(stages, hessian, jacobian, fixed);
-        let sizes =
-            Sizes { n: stages.states, m: stages.controls, inner: stages.inner, q: border.theta() };
-        let assembly = Assembly::new(stages, sizes, hessian, jacobian)
-            .ok_or("entries couple distant stages")?;
-        let local_values = assembly.local_entries.len();
+        let recursion =
+            Recursion::new(stages, border.theta(), (hessian, jacobian), fixed, equality_rows)?;
+        let kept = recursion.sizes.kept();
         Ok(Riccati {
-            stages,
-            sizes,
-            fused: is_fused(),
-            fixed: fixed.to_vec(),
-            travel: Travel::new(sizes, border.size()),
+            travel: Travel::new(recursion.sizes),
+            last: vec![0.0; border.size()],
             border,
-            condensed: Condensed::new(sizes, stages, &assembly),
-            block: Block::new(sizes),
-            factors: Factors::new(sizes, stages.intervals, stages.local_constraints, local_values),
-            assembly,
-            value: Value::new(sizes),
-            ends: vec![0.0; sizes.kept() * sizes.kept()],
+            recursion,
+            ends: vec![0.0; kept * kept],
         })
     }
 }
@@ -111,22 +79,20 @@ impl Riccati {
 #[cfg(test)]
 impl Riccati {
     /// As on a machine that cannot multiply and add in one instruction.
-    pub(crate) fn without_fused(self) -> Self {
-        Riccati { fused: false, ..self }
+    pub(crate) fn without_fused(mut self) -> Self {
+        self.recursion.fused = false;
+        self
     }
 }
 
 impl Factor for Riccati {
     fn factor(&mut self, hessian: &[f64], jacobian: &[f64], sigma: &[f64], d: &[f64]) -> Inertia {
         self.border.assemble(hessian, jacobian, sigma, d, &mut self.ends);
-        let mut intervals = d.chunks(self.stages.row_step().max(1)).take(self.stages.intervals);
-        let defects = self.stages.defect_rows();
-        self.factors.penalised = intervals.any(|d| d[..defects].iter().sum::<f64>() > 0.0);
-        self.value.set(self.sizes, &self.ends);
-        let Some(negative) = self.factor_chain(Matrix { hessian, jacobian, sigma, d }) else {
+        let matrix = Matrix { hessian, jacobian, sigma, d };
+        let most = self.border.rows();
+        let Some(negative) = self.recursion.factor(matrix, &mut self.ends, most) else {
             return Inertia::Wrong;
         };
-        self.value.write(self.sizes, &mut self.ends);
         match self.border.factor(&self.ends) {
             None => Inertia::Singular,
             Some(count) if count + negative == self.border.rows() => Inertia::Correct,
@@ -135,15 +101,17 @@ impl Factor for Riccati {
     }
 
     fn solve(&mut self, right_side: &mut [f64]) {
-        let (a, b) = right_side.split_at_mut(self.stages.variables());
-        let mut travel = std::mem::take(&mut self.travel);
-        self.remove_local_constraints(a, b);
-        self.border.terminal_gradient(a, b, &mut travel.gradient);
-        self.solve_chain(&mut travel, a, b);
-        let (x, theta) = travel.state.split_at(self.stages.states);
-        a[self.stages.state(self.stages.intervals)].copy_from_slice(x);
-        self.border.finish(theta, a, b);
-        self.local_multipliers(a, b);
-        self.travel = travel;
+        let Riccati { recursion, border, travel, last, .. } = self;
+        let stages = recursion.stages;
+        let (a, b) = right_side.split_at_mut(stages.variables());
+        recursion.remove_local_constraints(a, b);
+        border.terminal_gradient(a, b, &mut travel.gradient);
+        recursion.backward(travel, a, b);
+        border.solve(&travel.gradient, last, &mut travel.state);
+        recursion.forward(travel, a, b);
+        let (x, theta) = travel.state.split_at(stages.states);
+        a[stages.state(stages.intervals)].copy_from_slice(x);
+        border.finish(theta, a, b);
+        recursion.local_multipliers(a, b);
     }
 }

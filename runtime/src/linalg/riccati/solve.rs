@@ -10,10 +10,10 @@
 //! Here `x+` is `(y, x+)`. From one pass to the other, `p` waits in the place of `x+`, `c` in that
 //! of `b` and `u_0` in that of `u`. Local rows are not seen here: [`super::local`].
 
-use super::Riccati;
 use super::compliance::{give_way, push_back_where_given_way};
 use super::factors::Factors;
 use super::kernels::{View, add_row_product, dot};
+use super::recursion::Recursion;
 use super::sizes::Sizes;
 
 /// The vectors that travel along the chain.
@@ -23,17 +23,13 @@ pub(super) struct Travel {
     pub(super) gradient: Vec<f64>,
     /// `(x, theta)`
     pub(super) state: Vec<f64>,
-    /// Right side of the last system.
-    last: Vec<f64>,
     scratch: Vec<f64>,
 }
 
 impl Travel {
-    /// `last` is the size of the last system.
-    pub(super) fn new(sizes: Sizes, last: usize) -> Self {
+    pub(super) fn new(sizes: Sizes) -> Self {
         let zeros = |length: usize| vec![0.0; length];
         Travel {
-            last: zeros(last),
             gradient: zeros(sizes.kept()),
             state: zeros(sizes.kept()),
             scratch: zeros(sizes.kept() + sizes.all() + 2 * sizes.next()),
@@ -71,35 +67,44 @@ impl<'a> Scratch<'a> {
     }
 }
 
-impl Riccati {
+impl Recursion {
     #[inline(always)]
-    pub(super) fn solve_intervals<const FUSED: bool>(
+    pub(super) fn backward_intervals<const FUSED: bool>(
         &self,
         sizes: Sizes,
         travel: &mut Travel,
         (a, b): (&mut [f64], &mut [f64]),
     ) {
-        let Travel { gradient, state, last, scratch } = travel;
+        let Travel { gradient, scratch, .. } = travel;
         let mut few = [[0.0; FEW]; 3];
         let mut backward = Scratch::new(sizes, &mut few, scratch);
         backward.travelling.copy_from_slice(gradient);
         for k in (0..self.stages.intervals).rev() {
-            self.backward::<FUSED>(sizes, k, &mut backward, (a, b));
+            self.backward_interval::<FUSED>(sizes, k, &mut backward, (a, b));
         }
         gradient.copy_from_slice(backward.travelling);
-        self.border.solve(gradient, last, state);
+    }
+
+    #[inline(always)]
+    pub(super) fn forward_intervals<const FUSED: bool>(
+        &self,
+        sizes: Sizes,
+        travel: &mut Travel,
+        (a, b): (&mut [f64], &mut [f64]),
+    ) {
+        let Travel { state, scratch, .. } = travel;
         let mut few = [[0.0; FEW]; 3];
         let mut forward = Scratch::new(sizes, &mut few, scratch);
         forward.travelling.copy_from_slice(state);
         for k in 0..self.stages.intervals {
-            self.forward::<FUSED>(sizes, k, &mut forward, (a, b));
+            self.forward_interval::<FUSED>(sizes, k, &mut forward, (a, b));
         }
         state.copy_from_slice(forward.travelling);
     }
 
     /// Backward: what travels is the gradient of `V_{k+1}` and becomes that of `V_k`.
     #[inline(always)]
-    fn backward<const FUSED: bool>(
+    fn backward_interval<const FUSED: bool>(
         &self,
         sizes: Sizes,
         k: usize,
@@ -183,7 +188,7 @@ impl Riccati {
 
     /// Forward: what travels is `(x_k, theta)` and becomes `(x_{k+1}, theta)`.
     #[inline(always)]
-    fn forward<const FUSED: bool>(
+    fn forward_interval<const FUSED: bool>(
         &self,
         sizes: Sizes,
         k: usize,

@@ -3,5 +3,6 @@
 
 pub(crate) mod columns;
 pub(crate) mod factor;
+pub(crate) mod phases;
 pub(crate) mod stages;
 pub(crate) mod triplets;

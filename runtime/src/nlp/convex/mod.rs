@@ -18,17 +18,29 @@ use crate::linalg::{Columns, Triplets};
 use crate::nlp::tuning::convex::{
     CONIC_TOLERANCE, FARTHEST, FLAT_RAY, LEAST_CONIC_TOLERANCE, RAY_ROUNDING,
 };
-use crate::problem::{Bounds, Degree, Problem};
+use crate::problem::{Bounds, Chain, Degree, Link, Problem};
 use clarabel::{ConicProgram, ConicSolution, ConicStatus, solve_conic};
 use one_sided::OneSidedConstraints;
 
-/// Whether the transcription of a problem is affine in its rows and quadratic in its objective.
-pub fn is_quadratic_program(problem: &Problem) -> bool {
+/// Whether the transcription of a chain is affine in its rows and quadratic in its objective.
+pub fn is_quadratic_program(chain: &Chain) -> bool {
+    let is_linear = |link: &Link| {
+        let conditions = (1..link.function.outputs()).map(|row| link.function.degree(row));
+        is_affine(conditions) && link.function.degree(0) <= Degree::Quadratic
+    };
+    chain.phases.iter().all(is_quadratic_phase) && chain.links.iter().all(is_linear)
+}
+
+fn is_affine(mut degrees: impl Iterator<Item = Degree>) -> bool {
+    degrees.all(|degree| degree == Degree::Affine)
+}
+
+fn is_quadratic_phase(problem: &Problem) -> bool {
     let states = problem.layout.x;
-    let affine = |degree: Degree| degree == Degree::Affine;
-    let dynamics = (0..states).all(|row| affine(problem.dynamics.degree(row)));
-    let path = (0..problem.path.outputs()).all(|row| affine(problem.path.degree(row)));
-    let boundary = (1..problem.boundary.outputs()).all(|row| affine(problem.boundary.degree(row)));
+    let dynamics = is_affine((0..states).map(|row| problem.dynamics.degree(row)));
+    let path = is_affine((0..problem.path.outputs()).map(|row| problem.path.degree(row)));
+    let rows = 1..problem.boundary.outputs();
+    let boundary = is_affine(rows.map(|row| problem.boundary.degree(row)));
     let cost = !problem.running_cost || problem.dynamics.degree(states) <= Degree::Quadratic;
     dynamics && path && boundary && cost && problem.boundary.degree(0) <= Degree::Quadratic
 }

@@ -308,6 +308,7 @@ fn structure<'a>(
 ) -> Structure<'a> {
     Structure {
         stages: nlp.stages(),
+        phases: nlp.phases(),
         hessian: nlp.hessian_structure(),
         jacobian: nlp.jacobian_structure(),
         fixed: &formulation.fixed,

@@ -39,7 +39,7 @@ pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Wa
     let mut options = *options;
     if is_automatic {
         let (hessian, jacobian) = (nlp.hessian_structure(), nlp.jacobian_structure());
-        options.linear = cheapest(nlp.stages(), hessian, jacobian);
+        options.linear = cheapest(nlp.stages(), &nlp.phases(), hessian, jacobian);
     }
     let mut best = attempt(nlp, start, &options, watch);
     if options.is_final {

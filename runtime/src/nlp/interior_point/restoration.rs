@@ -18,7 +18,7 @@ use super::iterate::{Iterate, Values};
 use super::residuals::Residuals;
 use super::tuning::restoration::{FIRST_DECREASE, LARGEST_BOUND_MULTIPLIER, RHO};
 
-use crate::linalg::{Family, Stages, Triplets};
+use crate::linalg::{Family, PhaseStages, Stages, Triplets};
 use crate::nlp::{Derivatives, Nlp, Options, Place, Progress, Quantities, Status, Watch};
 use crate::problem::Bounds;
 
@@ -50,7 +50,10 @@ pub(super) struct Proximity<'a> {
 impl<'a> Proximity<'a> {
     fn new(inner: &'a mut dyn Nlp, reference: &[f64], zeta: f64) -> Self {
         let weight = |value: &f64| (1.0 / value.abs()).min(1.0).powi(2);
-        let appended = diagonal_families(inner.stages(), reference.len());
+        let appended = match &inner.phases()[..] {
+            [] => diagonal_families(inner.stages(), reference.len()),
+            phases => diagonal_families_of(phases, reference.len()),
+        };
         let diagonal = Triplets { families: appended.clone() }.entries().map(|(i, _)| i).collect();
         let mut hessian = inner.hessian_structure().clone();
         hessian.families.extend(appended);
@@ -83,6 +86,22 @@ fn diagonal_families(stages: Option<Stages>, variables: usize) -> Vec<Family> {
     }
 }
 
+/// The same for several chains of stages.
+fn diagonal_families_of(phases: &[PhaseStages], variables: usize) -> Vec<Family> {
+    let of = |phase: &PhaseStages| -> Vec<Family> {
+        let stages = Stages { globals: 0, ..phase.stages };
+        let own = diagonal_families(Some(stages), phase.variables.len());
+        let moved = |it: Family| {
+            let place = phase.variables.start + it.row;
+            Family { row: place, column: place, ..it }
+        };
+        own.into_iter().map(moved).collect()
+    };
+    let unknowns = phases.last().map_or(0, |last| last.variables.end)..variables;
+    let unknowns = unknowns.map(|i| Family::single(i, i));
+    phases.iter().flat_map(of).chain(unknowns).collect()
+}
+
 impl Nlp for Proximity<'_> {
     fn variable_bounds(&self) -> &[Bounds] {
         self.inner.variable_bounds()
@@ -98,6 +117,9 @@ impl Nlp for Proximity<'_> {
     }
     fn stages(&self) -> Option<Stages> {
         self.inner.stages()
+    }
+    fn phases(&self) -> Vec<PhaseStages> {
+        self.inner.phases()
     }
     fn quantities(&self) -> Quantities {
         self.inner.quantities()

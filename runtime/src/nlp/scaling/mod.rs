@@ -11,7 +11,7 @@ pub(in crate::nlp) mod factors;
 mod nominal;
 
 use super::{Derivatives, Multipliers, Nlp, Place, Quantities, Start};
-use crate::linalg::{Stages, Triplets};
+use crate::linalg::{PhaseStages, Stages, Triplets};
 use crate::problem::Bounds;
 use factors::ScalingFactors;
 pub(crate) use factors::objective_unit;
@@ -121,6 +121,9 @@ impl Nlp for Scaled<'_> {
     }
     fn stages(&self) -> Option<Stages> {
         self.inner.stages()
+    }
+    fn phases(&self) -> Vec<PhaseStages> {
+        self.inner.phases()
     }
     fn quantities(&self) -> Quantities {
         let mut quantities = self.inner.quantities();

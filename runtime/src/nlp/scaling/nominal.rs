@@ -204,7 +204,8 @@ fn find_controls(nlp: &mut dyn Nlp, quantities: &Quantities, near: &[f64], magni
 }
 
 fn intervals(nlp: &dyn Nlp) -> f64 {
-    nlp.stages().map_or(1.0, |stages| stages.intervals as f64)
+    let phases = nlp.phases().iter().map(|phase| phase.stages.intervals).max();
+    nlp.stages().map(|stages| stages.intervals).or(phases).map_or(1.0, |count| count as f64)
 }
 
 fn mean(values: &[f64]) -> f64 {

@@ -77,6 +77,12 @@ impl Case {
         matrix
     }
 
+    /// Whether it has a solution and an inertia to speak of.
+    pub(super) fn is_regular(&self) -> bool {
+        let eigenvalues = SymmetricEigen::new(self.dense()).eigenvalues;
+        eigenvalues.iter().all(|value| value.abs() > 1e-10)
+    }
+
     /// `[H J'; J 0] x`, entry by entry.
     fn times(&self, x: &[f64]) -> Vec<f64> {
         let (variables, mut y) = (self.stages.variables(), vec![0.0; x.len()]);

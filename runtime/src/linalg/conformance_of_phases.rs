@@ -129,6 +129,10 @@ fn phases_are_solved_as_the_whole_and_their_inertia_is_known() {
     for case in 0..120 {
         let count = 2 + case % 5;
         let Tied { phases, whole } = tied(count, case % 4 == 1, case % 2 == 0, &mut random);
+        // Phases without controls may have more rows than they can meet.
+        if !whole.is_regular() {
+            continue;
+        }
         let equality: Vec<bool> = whole.d.iter().map(|d| *d == 0.0).collect();
         let matrices = (&whole.hessian, &whole.jacobian);
         let mut factor = PhasedRiccati::new(&phases, matrices, &whole.fixed, &equality)

@@ -30,7 +30,7 @@ pub use compile::{compile_sensitivities, compile_simulation, compile_smoothed};
 pub use expressions::graph::builtins;
 pub use expressions::{graph, interval, kernels};
 pub use lower::{Expected, LoweredProblem};
-pub use model::Model;
+pub use model::{Model, Phase};
 pub use phases::{Sequences, crossings, sequences, with_phases};
 pub use settings::is_key as is_method_key;
 pub use surfaces::{Order, Smoothness, SurfaceClass, SurfaceReport, smoothness, surfaces};

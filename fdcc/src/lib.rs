@@ -42,7 +42,7 @@ pub use solve::{
     Compiled, Ended, Grid, Jump, Options, Part, Phases, Report, Sequence, Solution, Start, Sweep,
     optimality,
 };
-pub use verification::{Condition, Gap, Stay, TIME_OF, Verification, modes};
+pub use verification::{Condition, Gap, LinkGap, Stay, TIME_OF, Verification, modes};
 
 /// The code of the page about the library.
 #[cfg(doctest)]

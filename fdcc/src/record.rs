@@ -39,6 +39,9 @@ pub struct Record<'s> {
     pub nodes: Option<NodesRecord<'s>>,
     /// The jumps, in their order.
     pub jumps: Vec<JumpRecord<'s>>,
+    /// Those of the phases, by the names of their models, if there are any: then all signals are
+    /// theirs.
+    pub phases: Vec<Record<'s>>,
 }
 
 /// The settings of the method that a replay or a start depends on, as far as they are known.

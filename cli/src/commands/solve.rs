@@ -12,7 +12,7 @@ use crate::solved::Solved;
 use crate::watch::catch_interrupts;
 use clap::Args;
 use fdcc::Model;
-use fdcc_runtime::problem::Problem;
+use fdcc_runtime::problem::Chain;
 use std::time::Instant;
 
 /// Find an optimal trajectory
@@ -50,9 +50,9 @@ impl Solve {
     }
 
     fn solve(&self, model: &Model, begin: Instant) -> Result<Solved, Failure> {
-        let headline = |problem: &Problem| {
+        let headline = |chain: &Chain| {
             if !self.options.json {
-                output::print(&verdict::headline(problem));
+                output::print(&verdict::headline(chain));
             }
         };
         let mut solved = solver::solve(model, &self.options, begin, Level::Short, headline)?;

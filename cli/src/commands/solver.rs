@@ -13,7 +13,7 @@ use crate::watch::Deadline;
 use fdcc::{Error, Model, Start};
 use fdcc_grammar::SourceFile;
 use fdcc_runtime::nlp::Stop;
-use fdcc_runtime::problem::Problem;
+use fdcc_runtime::problem::Chain;
 use sha2::{Digest, Sha256};
 use std::time::Instant;
 
@@ -68,20 +68,20 @@ pub fn warm(options: &Options) -> Result<Option<Saved>, Failure> {
 }
 
 /// Compiles a model and solves it from where `--warm` says; `begin` is when the work on it began.
-/// `ready` sees the problem before it is solved; `level` is how much is told where no option says.
+/// `ready` sees its phases before it is solved; `level` is how much is told where no option says.
 pub fn solve(
     model: &Model,
     options: &Options,
     begin: Instant,
     level: Level,
-    ready: impl FnOnce(&Problem),
+    ready: impl FnOnce(&Chain),
 ) -> Result<Solved, Failure> {
     let compiled = Compiled::new(model, begin, options.time_limit)?;
     let saved = warm(options)?;
     let record = saved.as_ref().map(Saved::record);
     let start = record.as_ref().map_or(Start::Guess, Start::Record);
     compiled.check(start, options)?;
-    ready(compiled.compiled.problem());
+    ready(compiled.compiled.chain());
     let mut log = Log::new(options.log.unwrap_or(level));
     let solved = compiled.solve(start, options, &mut log);
     log.finish();
@@ -146,6 +146,7 @@ impl Compiled {
         let total = begin.elapsed().as_secs_f64();
         let seconds = Seconds { compile: seconds, solve: total - seconds, total };
         let document = Document::new(&solution, &sha256(&source.text), units, seconds);
+        let document = document.with_phases(&solution);
         Ok(Solved { solution, document })
     }
 }

@@ -3,6 +3,7 @@
 use super::named::Named;
 use super::number::significant;
 use super::optimality::Optimality;
+use super::phases::Phase;
 use super::tried::{Ended, Happened, Tried};
 use super::units::Units;
 use super::verified::Verification;
@@ -58,6 +59,9 @@ pub struct Document {
     pub sensitivities: Named<f64>,
     pub report: Named<Vec<f64>>,
     pub surfaces: Named<Vec<Span>>,
+    /// What holds in each phase, where the model has any: then all signals are theirs.
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    pub phases: Named<Phase>,
     /// The jumps, in their order; the grid has the states after them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub jumps: Vec<Happened>,
@@ -230,6 +234,7 @@ impl Document {
                 .zip(trajectory.report.iter().cloned())
                 .collect(),
             surfaces: surfaces(problem, outcome),
+            phases: Named::default(),
             jumps: found.jumps.iter().map(Happened::from).collect(),
             sequences: found.sequences.iter().map(Tried::from).collect(),
             sequences_left_out: found.sequences_left_out,
@@ -238,6 +243,21 @@ impl Document {
             optimality: claims.then(|| Optimality::new(&found.optimality(None))),
             verification: None,
         }
+    }
+
+    /// The same with the documents of its phases.
+    pub fn with_phases(mut self, found: &Solution) -> Self {
+        let seconds = self.seconds;
+        let phase = |own: &Solution| {
+            let units = Units::from(own.model().meaning());
+            let document = Document::new(own, &self.source_sha256, units, seconds);
+            (own.problem.name.clone(), Phase(document))
+        };
+        self.phases = found.phases().iter().map(phase).collect();
+        if !self.phases.is_empty() {
+            self.method.n = self.phases.0.iter().map(|(_, phase)| phase.0.method.n).sum();
+        }
+        self
     }
 
     /// Whether the replay confirms it and nothing contradicts that it is an optimum.

@@ -11,12 +11,24 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Writes `NAME.sol.json`, `NAME.csv` and `NAME.html` to a folder, which is made if need be;
-/// returns their paths.
+/// Writes `NAME.sol.json`, `NAME.csv` (one for each phase, if there are any) and `NAME.html` to a
+/// folder, which is made if need be; returns their paths.
 pub fn write(document: &Document, folder: &Path, name: &str) -> Result<Vec<String>, Failure> {
-    let files =
-        [("sol.json", json(document)), ("csv", csv::csv(document)), ("html", html::html(document))];
+    let mut files = vec![("sol.json".to_owned(), json(document))];
+    files.extend(tables(document));
+    files.push(("html".to_owned(), html::html(document)));
+    let files: Vec<(&str, String)> =
+        files.iter().map(|(ending, text)| (ending.as_str(), text.clone())).collect();
     write_all(folder, name, &files)
+}
+
+/// `NAME.csv`, or `NAME.PHASE.csv` for each phase.
+fn tables(document: &Document) -> Vec<(String, String)> {
+    if document.phases.is_empty() {
+        return vec![("csv".into(), csv::csv(document))];
+    }
+    let phases = document.phases.0.iter();
+    phases.map(|(name, phase)| (format!("{name}.csv"), csv::csv(&phase.0))).collect()
 }
 
 /// Writes files `NAME.ENDING` to a folder, which is made if need be; returns their paths.

@@ -4,6 +4,7 @@
 use super::document::{Document, switching};
 use super::number::scientific;
 use super::optimality::on_the_true_system;
+use super::phases::on_one_axis;
 use super::plot::{escape, plot};
 use super::units::Units;
 
@@ -17,6 +18,7 @@ svg text{font:11px system-ui,sans-serif;fill:#666}.held{fill:#f4b942;fill-opacit
 
 /// The text of `MODEL.html`.
 pub fn html(document: &Document) -> String {
+    let document = &on_one_axis(document);
     let sections = [
         ("States", &document.states, &document.units),
         ("Controls (constant on each interval)", &document.controls, &document.units),

@@ -12,6 +12,7 @@ pub mod html;
 pub mod named;
 pub mod number;
 pub mod optimality;
+pub mod phases;
 pub mod plot;
 pub mod sarif;
 pub mod saved;

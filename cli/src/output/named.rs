@@ -7,8 +7,14 @@ use std::fmt;
 use std::marker::PhantomData;
 
 /// Pairs of a name and a value.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Named<T>(pub Vec<(String, T)>);
+
+impl<T> Default for Named<T> {
+    fn default() -> Self {
+        Named(Vec::new())
+    }
+}
 
 impl<T> Named<T> {
     /// Whether there are no pairs.

@@ -31,6 +31,20 @@ pub struct Saved {
     control_nodes: Option<SavedNodes>,
     #[serde(default)]
     jumps: Vec<SavedJump>,
+    #[serde(default)]
+    phases: Named<SavedPhase>,
+}
+
+/// A phase of a solution.
+#[derive(Deserialize)]
+struct SavedPhase {
+    #[serde(flatten)]
+    method: SavedMethod,
+    time: Column,
+    states: Named<Column>,
+    controls: Named<Column>,
+    #[serde(default)]
+    control_nodes: Option<SavedNodes>,
 }
 
 /// A jump of a solution.
@@ -116,6 +130,11 @@ impl Saved {
         are_numbers("params", &self.params)?;
         are_whole("states", &self.states)?;
         are_whole("controls", &self.controls)?;
+        for (name, phase) in &self.phases.0 {
+            is_whole(&format!("phases.{name}.time"), &phase.time)?;
+            are_whole(&format!("phases.{name}.states"), &phase.states)?;
+            are_whole(&format!("phases.{name}.controls"), &phase.controls)?;
+        }
         for (at, jump) in self.jumps.iter().enumerate() {
             are_numbers(&format!("jumps[{at}].before"), &jump.before)?;
         }
@@ -165,6 +184,27 @@ impl Saved {
                 .as_ref()
                 .map(|nodes| NodesRecord { time: &nodes.time.0, values: columns(&nodes.values) }),
             jumps: self.jumps.iter().map(jump).collect(),
+            phases: self.phases.0.iter().map(|(name, phase)| self.phase(name, phase)).collect(),
+        }
+    }
+
+    fn phase<'s>(&'s self, name: &'s str, of: &'s SavedPhase) -> Record<'s> {
+        let nodes = of.control_nodes.as_ref();
+        Record {
+            model: name,
+            free: numbers(&self.free),
+            params: numbers(&self.params),
+            settings: Settings {
+                sigma_chosen: self.method.sigma_chosen,
+                kernel: self.method.kernel.as_deref(),
+                ..of.method.settings()
+            },
+            time: &of.time.0,
+            states: columns(&of.states),
+            controls: columns(&of.controls),
+            nodes: nodes.map(|it| NodesRecord { time: &it.time.0, values: columns(&it.values) }),
+            jumps: Vec::new(),
+            phases: Vec::new(),
         }
     }
 }

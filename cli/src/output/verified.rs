@@ -8,7 +8,7 @@ use super::number::{scientific, short};
 use super::units::Units;
 use comfy_table::{CellAlignment, Table, presets};
 use fdcc::modes::name;
-use fdcc::{Condition, Gap, Stay, TIME_OF};
+use fdcc::{Condition, Gap, LinkGap, Stay, TIME_OF};
 use fdcc_grammar::SourceFile;
 use serde::Serialize;
 
@@ -80,6 +80,50 @@ impl Verification {
                 .then_some(worst.as_ref().map_or(0.0, |worst| worst.violation)),
             worst: worst.filter(|_| is_whole),
             events: verified.simulation.events.len(),
+        }
+    }
+
+    /// Those of phases, with the links between their ends.
+    pub fn of_phases(phases: &[(&str, &Verification)], links: &[LinkGap], asked: f64) -> Self {
+        let named = |phase: &str, name: &str| format!("{phase}.{name}");
+        let completed = phases.iter().all(|(_, it)| it.completed);
+        let gap = |it: &Verification| it.state_gap.unwrap_or(0.0);
+        let part = |it: &Verification| it.relative_violation.unwrap_or(0.0);
+        let most = |of: &dyn Fn(&Verification) -> f64| {
+            phases.iter().max_by(|a, b| of(a.1).total_cmp(&of(b.1))).copied()
+        };
+        let differs = most(&gap).and_then(|(phase, it)| {
+            let of = it.differs.clone()?;
+            Some(Differs { state: named(phase, &of.state), ..of })
+        });
+        let worst = most(&part).and_then(|(phase, it)| {
+            let of = it.worst.clone()?;
+            Some((part(it), Worst { condition: named(phase, &of.condition), ..of }))
+        });
+        let link = links.iter().max_by(|a, b| a.part.total_cmp(&b.part));
+        let link = link.filter(|it| it.part > worst.as_ref().map_or(0.0, |(part, _)| *part));
+        let worst = match link {
+            Some(LinkGap { label, violation, part }) => {
+                let (condition, state) = (label.clone(), Named::default());
+                Some((*part, Worst { condition, time: None, violation: *violation, state }))
+            }
+            None => worst,
+        };
+        let (part, worst) = worst.unzip();
+        let (gap, part) = (phases.iter().map(|(_, it)| gap(it)).fold(0.0, f64::max), part);
+        let part = part.unwrap_or(0.0);
+        let violation = worst.as_ref().map_or(0.0, |worst: &Worst| worst.violation);
+        Verification {
+            confirmed: completed && gap <= asked && part <= asked,
+            asked,
+            completed,
+            objective: None,
+            state_gap: completed.then_some(gap),
+            differs: differs.filter(|_| completed),
+            relative_violation: completed.then_some(part),
+            constraint_violation: completed.then_some(violation),
+            worst: worst.filter(|_| completed),
+            events: phases.iter().map(|(_, it)| it.events).sum(),
         }
     }
 

@@ -8,14 +8,18 @@ use crate::report::attempts;
 use crate::solved::Solved;
 use fdcc::{Ended, Solution};
 use fdcc_runtime::nlp::Status;
-use fdcc_runtime::problem::{Method, Order, Problem};
+use fdcc_runtime::problem::{Chain, Method, Order, Problem};
 use fdcc_runtime::transcribe::unknowns;
 
 mod jumps;
 mod rest;
 
-/// One line: the size of the problem.
-pub fn headline(problem: &Problem) -> String {
+/// The size of the problem: one line, or one for each phase.
+pub fn headline(chain: &Chain) -> String {
+    chain.phases.iter().map(phase).collect()
+}
+
+fn phase(problem: &Problem) -> String {
     let shown = problem.states.iter().filter(|state| !state.hidden).count();
     let method = &problem.method;
     format!(

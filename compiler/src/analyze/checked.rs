@@ -86,7 +86,7 @@ impl Model {
 
 /// What `solve` will refuse. To `check` it is no mistake: the model is right, and waits.
 fn told_early(model: &Model) -> Option<Diagnostic> {
-    let mut first = model.first_not_yet()?;
+    let mut first = model.not_yet.first()?.clone();
     first.severity = Severity::Advice;
     Some(first.help("it is checked all the same; `solve`, `simulate` and `grad` refuse it"))
 }

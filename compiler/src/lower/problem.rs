@@ -3,10 +3,12 @@
 use super::boundary::is_fixed;
 use super::by_parameters::{is_autonomous, last_time};
 use super::{LoweredProblem, origin};
+use crate::model::guess::fixed_by_a_row;
 use crate::model::numbers::Numbers;
 use crate::model::{Model, Place, Switch, Symbol};
 use fdcc_runtime::problem::{
-    Bounds, Function, Layout, Method, Origin, Parameter, Problem, Surface, Unknown, Variable,
+    Bounds, Function, Layout, Method, Origin, Parameter, Problem, StartGuess, Surface, Unknown,
+    Variable,
 };
 use std::sync::Arc;
 
@@ -45,6 +47,7 @@ pub fn problem(
         sense: model.sense,
         has_objective: model.objective.is_some(),
         start: starts(model, lowered, numbers),
+        start_guesses: start_guesses(model, lowered.hidden.len()),
         guess,
         interval,
         switching,
@@ -156,6 +159,23 @@ pub(super) fn surfaces(model: &Model, first_sigma: usize) -> Vec<Surface> {
         sigma: first_sigma + at,
     };
     each.map(surface).collect()
+}
+
+fn start_guesses(model: &Model, hidden: usize) -> Vec<StartGuess> {
+    let mut graph = model.graph.clone();
+    let mut of = |(index, state): (usize, &crate::model::State)| {
+        let mut is_given = |symbol| fixed_by_a_row(model, &mut graph, symbol).is_some();
+        let is_known = state.guess.is_some() || state.start.is_some();
+        if is_known || is_given(Symbol::AtStart(index)) {
+            StartGuess::Known
+        } else if is_given(Symbol::AtEnd(index)) {
+            StartGuess::BeforeEnd
+        } else {
+            StartGuess::Unknown
+        }
+    };
+    let declared: Vec<StartGuess> = model.states.iter().enumerate().map(&mut of).collect();
+    declared.into_iter().chain(vec![StartGuess::Known; hidden]).collect()
 }
 
 fn starts(model: &Model, lowered: &LoweredProblem, numbers: &Numbers) -> Vec<Option<f64>> {

@@ -359,9 +359,13 @@ impl Model {
         all
     }
 
-    /// The first construct that is understood but cannot be solved.
+    /// The first construct that is understood but cannot be simulated or differentiated as a whole.
     pub(crate) fn first_not_yet(&self) -> Option<Diagnostic> {
-        let phases = self.phases.iter().map(|it| not_yet(it.place.span, "a model with phases"));
+        let phases = self.phases.iter().map(|it| {
+            let message = "a model with phases cannot be simulated as a whole yet";
+            let label = "`solve` replays each phase by itself";
+            Diagnostic::new(Code::NotYet, message, it.place.span, label)
+        });
         self.not_yet.iter().cloned().chain(phases).min_by_key(Diagnostic::span)
     }
 

@@ -10,7 +10,7 @@ pub use values::Value;
 use crate::error::Error;
 use code::Code;
 use fdcc_grammar::{Diagnostic, SourceFile};
-use fdcc_runtime::problem::Problem;
+use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::simulate::System;
 use std::sync::Arc;
 
@@ -37,6 +37,34 @@ pub struct Model {
     diagnostics: Arc<Vec<Diagnostic>>,
     meaning: Arc<fdcc_compiler::Model>,
     code: Arc<Code>,
+}
+
+/// What all phases share, as a problem without signals; the problem itself if there is one phase.
+pub(crate) fn frame(chain: &Chain) -> Problem {
+    let first = chain.phases[0].clone();
+    if chain.phases.len() == 1 && chain.links.is_empty() {
+        return first;
+    }
+    let shared = first.parameters.len() - widths(&first);
+    Problem {
+        name: chain.name.clone(),
+        parameters: first.parameters[..shared].to_vec(),
+        unknowns: chain.unknowns.clone(),
+        states: Vec::new(),
+        controls: Vec::new(),
+        surfaces: Vec::new(),
+        path_bounds: Vec::new(),
+        boundary_bounds: Vec::new(),
+        start: Vec::new(),
+        report_names: Vec::new(),
+        ..first
+    }
+}
+
+/// How many smoothing widths a problem has; they come last.
+fn widths(problem: &Problem) -> usize {
+    let is_width = |it: &&fdcc_runtime::problem::Parameter| it.name.starts_with("sigma(");
+    problem.parameters.iter().rev().take_while(is_width).count()
 }
 
 impl Model {
@@ -100,13 +128,32 @@ impl Model {
         &self.meaning
     }
 
-    /// The problem that is solved for it: bounds, guesses and parameters with their values.
+    /// The problem that is solved for it: bounds, guesses and parameters with their values. Of a
+    /// model with phases, what they share: parameters, unknowns and method.
     ///
     /// # Errors
     ///
     /// What cannot be solved yet; parameters without a value.
     pub fn problem(&self) -> Result<Problem, Error> {
-        self.code.problem(&self.meaning).map_err(Error::Model)
+        Ok(frame(&self.chain()?))
+    }
+
+    /// The problems of its phases and the links between them; one problem if it has no phases.
+    ///
+    /// # Errors
+    ///
+    /// As for [`problem`](Model::problem).
+    pub fn chain(&self) -> Result<Chain, Error> {
+        self.code.chain(&self.meaning).map_err(Error::Model)
+    }
+
+    /// Its phases, as models of their own; none if it has none.
+    pub fn phases(&self) -> Vec<Model> {
+        let own = |phase: &fdcc_compiler::Phase| {
+            let (source, diagnostics) = (Arc::clone(&self.source), Arc::clone(&self.diagnostics));
+            Model::new(source, diagnostics, phase.model.clone())
+        };
+        self.meaning.phases.iter().map(own).collect()
     }
 
     /// The true system, for simulation.

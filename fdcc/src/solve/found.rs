@@ -69,7 +69,7 @@ pub struct Sequence {
 /// ```
 /// let model = fdcc::Model::from_file("../models/bounce.fdc")?.with_method("N", 20)?;
 /// let solution = model.solve(&fdcc::Options::default())?;
-/// let phases = solution.phases.as_ref().expect("the model has a jump");
+/// let phases = solution.between_jumps.as_ref().expect("the model has a jump");
 /// let count = solution.jumps.len() + 1;
 /// assert!(phases.problem.states.len() >= count * solution.problem.states.len());
 /// # Ok::<(), fdcc::Error>(())
@@ -81,6 +81,21 @@ pub struct Phases {
     pub problem: Problem,
     /// The solution of that.
     pub outcome: Outcome,
+}
+
+impl Found {
+    pub fn new(problem: Problem, outcome: Outcome) -> Self {
+        Found {
+            problem,
+            outcome,
+            step_errors: None,
+            starts: Vec::new(),
+            jumps: Vec::new(),
+            sequences: Vec::new(),
+            is_cut: false,
+            phases: None,
+        }
+    }
 }
 
 /// The best answer to one chain of phases.
@@ -99,16 +114,9 @@ impl FoundChain {
 
     /// That of a problem of one phase.
     pub fn into_single(mut self) -> Found {
-        Found {
-            problem: self.chain.phases.swap_remove(0),
-            outcome: self.outcome.into_single(),
-            step_errors: self.step_errors,
-            starts: self.starts,
-            jumps: Vec::new(),
-            sequences: Vec::new(),
-            is_cut: false,
-            phases: None,
-        }
+        let FoundChain { step_errors, starts, .. } = self;
+        let problem = self.chain.phases.swap_remove(0);
+        Found { step_errors, starts, ..Found::new(problem, self.outcome.into_single()) }
     }
 }
 

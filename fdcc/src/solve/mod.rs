@@ -5,6 +5,7 @@ mod bounds;
 mod found;
 mod multistart;
 pub mod optimality;
+mod phases;
 mod report;
 mod sequences;
 mod solution;
@@ -17,7 +18,7 @@ pub use sweep::{Grid, Sweep};
 
 use crate::error::Error;
 use crate::executor::Executor;
-use crate::model::Model;
+use crate::model::{Model, frame};
 use crate::warm_start;
 use fdcc_runtime::problem::{Chain, Linear, Problem, often_called};
 use fdcc_runtime::transcribe::unknowns;
@@ -38,6 +39,7 @@ use fdcc_runtime::transcribe::unknowns;
 pub struct Compiled {
     model: Model,
     problem: Problem,
+    chain: Chain,
 }
 
 impl Model {
@@ -48,12 +50,12 @@ impl Model {
     ///
     /// A model that cannot be solved.
     pub fn compile(&self) -> Result<Compiled, Error> {
-        let problem = self.problem()?;
-        refuse_senseless(&problem)?;
+        let chain = self.chain()?;
+        refuse_senseless(&chain)?;
         if self.meaning().jumps.is_empty() {
-            make_machine_code(&problem);
+            chain.phases.iter().for_each(make_machine_code);
         }
-        Ok(Compiled { model: self.clone(), problem })
+        Ok(Compiled { model: self.clone(), problem: frame(&chain), chain })
     }
 
     /// Solves. That nothing was found is no error: the [status](Solution::status) says so.
@@ -69,9 +71,14 @@ impl Model {
 
 impl Compiled {
     /// The problem: states, controls, bounds, functions. Of a model with jumps, what holds between
-    /// them.
+    /// them; of one with phases, what these share.
     pub fn problem(&self) -> &Problem {
         &self.problem
+    }
+
+    /// The problems of all phases, and the links between them.
+    pub fn chain(&self) -> &Chain {
+        &self.chain
     }
 
     /// The model.
@@ -86,7 +93,7 @@ impl Compiled {
     /// A record that has nothing of this model, or a hole in what it has.
     pub fn check_start(&self, start: Start) -> Result<(), Error> {
         match start {
-            Start::Record(record) => warm_start::check(record, &self.problem),
+            Start::Record(record) => warm_start::check(record, &self.chain),
             Start::Guess | Start::Solution(_) => Ok(()),
         }
     }
@@ -102,11 +109,14 @@ impl Compiled {
         let found = if meaning.jumps.is_empty() {
             let start = match options.start {
                 Start::Guess => None,
-                Start::Record(record) => Some(warm_start::from_record(record, &self.problem)),
-                Start::Solution(it) => Some(it.as_start(&self.problem)),
+                Start::Record(record) => Some(warm_start::from_record(record, &self.chain)),
+                Start::Solution(it) => Some(it.as_start(&self.chain)),
             };
-            let chain = Chain::single(self.problem.clone());
-            multistart::solve(&chain, start, options, Part::default())?.into_single()
+            let found = multistart::solve(&self.chain, start, options, Part::default())?;
+            if !meaning.phases.is_empty() {
+                return Ok(Solution::of_phases(self.model.clone(), found));
+            }
+            found.into_single()
         } else {
             match options.start {
                 Start::Guess => sequences::solve(meaning, &self.problem, None, options)?,
@@ -131,7 +141,11 @@ fn make_machine_code(problem: &Problem) {
 const MOST_UNKNOWNS: usize = 2_000_000;
 
 /// What a solver cannot begin with.
-fn refuse_senseless(problem: &Problem) -> Result<(), Error> {
+fn refuse_senseless(chain: &Chain) -> Result<(), Error> {
+    chain.phases.iter().try_for_each(refuse_phase)
+}
+
+fn refuse_phase(problem: &Problem) -> Result<(), Error> {
     if let Some(diagnostic) = bounds::empty(problem) {
         return Err(Error::Model(vec![diagnostic]));
     }

@@ -84,6 +84,9 @@ impl Solution {
     /// # Ok::<(), fdcc::Error>(())
     /// ```
     pub fn optimality(&self, replay: Option<&Verification>) -> Vec<Check> {
+        if !self.phases().is_empty() {
+            return self.phases().iter().flat_map(|phase| phase.optimality(replay)).collect();
+        }
         let hamiltonian = &self.outcome.trajectory.hamiltonian;
         let is_global = self.outcome.solution.global;
         let gap = replay.and_then(Verification::state_gap).unwrap_or(0.0);

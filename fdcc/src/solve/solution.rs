@@ -1,6 +1,7 @@
 //! What came out of a solve, asked in the words of the model.
 
 use super::found::{Found, Jump, Phases, Sequence};
+use super::phases::Whole;
 use super::report::Ended;
 use crate::error::Error;
 use crate::model::Model;
@@ -56,7 +57,11 @@ pub struct Solution {
     /// Whether the model allows more jumps than were tried.
     pub sequences_left_out: bool,
     /// What the solver saw of a model with jumps.
-    pub phases: Option<Phases>,
+    pub between_jumps: Option<Phases>,
+    /// Those of its phases.
+    pub(super) parts: Vec<Solution>,
+    /// What the solver saw of a model with phases.
+    pub(super) whole: Option<Whole>,
 }
 
 impl Solution {
@@ -70,7 +75,9 @@ impl Solution {
             jumps: found.jumps,
             sequences: found.sequences,
             sequences_left_out: found.is_cut,
-            phases: found.phases,
+            between_jumps: found.phases,
+            parts: Vec::new(),
+            whole: None,
         }
     }
 
@@ -185,21 +192,26 @@ impl Solution {
             controls: pairs(&problem.controls, &trajectory.controls),
             nodes,
             jumps: self.jumps.iter().map(jump).collect(),
+            phases: self.parts.iter().map(Solution::record).collect(),
         }
     }
 
     /// Where another solve begins that starts at this one: with all multipliers if the grid is the
     /// same.
-    pub(super) fn as_start(&self, problem: &Problem) -> nlp::Start {
+    pub(super) fn as_start(&self, chain: &Chain) -> nlp::Start {
         let shape = |problem: &Problem| {
             let method = &problem.method;
             (method.intervals(), method.scheme, method.controls, method.grid.times().to_vec())
         };
-        if shape(&self.problem) == shape(problem) {
+        let own: Vec<&Problem> = match &self.whole {
+            Some(whole) => whole.chain.phases.iter().collect(),
+            None => vec![&self.problem],
+        };
+        if own.into_iter().map(shape).eq(chain.phases.iter().map(shape)) {
             let widths: &[f64] = if self.has_chosen_widths() { &self.outcome.sigma } else { &[] };
-            return again(&Chain::single(problem.clone()), &self.outcome.solution, widths);
+            return again(chain, &self.outcome.solution, widths);
         }
-        from_record(&self.record(), problem)
+        from_record(&self.record(), chain)
     }
 
     fn settings(&self) -> Settings<'_> {
@@ -228,7 +240,7 @@ impl Solution {
     /// What the solver saw: model, problem and outcome. Of a model with jumps, its phases side by
     /// side.
     pub fn as_solved(&self) -> (&fdcc_compiler::Model, &Problem, &Outcome) {
-        match &self.phases {
+        match &self.between_jumps {
             Some(it) => (&it.model, &it.problem, &it.outcome),
             None => (self.model.meaning(), &self.problem, &self.outcome),
         }

@@ -4,12 +4,15 @@
 mod alignment;
 mod conditions;
 mod gaps;
+mod links;
 pub mod modes;
 mod motion;
 mod terms;
 
 pub use conditions::Condition;
 pub use gaps::{Gap, TIME_OF};
+pub use links::LinkGap;
+pub(crate) use links::gaps_of_links;
 pub use modes::Stay;
 
 use crate::error::Error;

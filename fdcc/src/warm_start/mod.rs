@@ -10,17 +10,39 @@ use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::solve::warm_start::{Earlier, from_earlier};
 
 /// Whether a record has something of a problem, and that wholly.
-pub(crate) fn check(record: &Record, problem: &Problem) -> Result<(), Error> {
-    let earlier = earlier(record, problem);
-    if earlier.states.iter().chain(&earlier.controls).all(Option::is_none) {
-        return Err(Error::Foreign(problem.name.clone()));
+pub(crate) fn check(record: &Record, chain: &Chain) -> Result<(), Error> {
+    let known = own(record, chain);
+    let is_foreign = |(record, problem): &(&Record, &Problem)| {
+        let earlier = earlier(record, problem);
+        earlier.states.iter().chain(&earlier.controls).all(Option::is_none)
+    };
+    if known.iter().all(is_foreign) {
+        return Err(Error::Foreign(chain.name.clone()));
     }
-    complete::check(record, problem).map_err(Error::Record)
+    let whole = |(record, problem): &(&Record, &Problem)| complete::check(record, problem);
+    known.iter().try_for_each(whole).map_err(Error::Record)
 }
 
-/// The record on the grid of the problem. What it does not have is guessed.
-pub(crate) fn from_record(record: &Record, problem: &Problem) -> Start {
-    from_earlier(&Chain::single(problem.clone()), &[earlier(record, problem)])
+/// The record of each phase that has one.
+fn own<'r, 'c>(record: &'r Record, chain: &'c Chain) -> Vec<(&'r Record<'r>, &'c Problem)> {
+    let of = |problem: &'c Problem| Some((of_phase(record, chain, problem)?, problem));
+    chain.phases.iter().filter_map(of).collect()
+}
+
+fn of_phase<'r>(record: &'r Record, chain: &Chain, problem: &Problem) -> Option<&'r Record<'r>> {
+    match chain.phases.len() {
+        1 if record.phases.is_empty() => Some(record),
+        _ => record.phases.iter().find(|it| it.model == problem.name),
+    }
+}
+
+/// The record on the grids of the chain. What it does not have is guessed.
+pub(crate) fn from_record(record: &Record, chain: &Chain) -> Start {
+    let of = |problem: &Problem| match of_phase(record, chain, problem) {
+        Some(record) => earlier(record, problem),
+        None => Earlier::default(),
+    };
+    from_earlier(chain, &chain.phases.iter().map(of).collect::<Vec<_>>())
 }
 
 /// From 0 to 1; none if one is missing.

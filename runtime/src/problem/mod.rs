@@ -297,6 +297,17 @@ pub struct Surface {
     pub sigma: usize,
 }
 
+/// What a guess knows of the start of a state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StartGuess {
+    /// It was given, or follows from conditions.
+    Known,
+    /// Nothing; the guess is constant.
+    Unknown,
+    /// Nothing, but where the state ends: the guess is to go there straight.
+    BeforeEnd,
+}
+
 /// An optimal control problem on one phase.
 #[derive(Clone)]
 pub struct Problem {
@@ -335,6 +346,9 @@ pub struct Problem {
     pub has_objective: bool,
     /// States whose start is a number.
     pub start: Vec<Option<f64>>,
+    /// What the guess of each state knows of its start; nothing is known of hidden ones, which a
+    /// model cannot link.
+    pub start_guesses: Vec<StartGuess>,
     /// Inputs `[t | p]`; outputs the guess of all states, then of all controls, at normalised time
     /// `t`.
     pub guess: Arc<dyn Function>,

@@ -22,6 +22,8 @@ pub(super) struct TranscribedLink<'c> {
     pub rows: Range<usize>,
     pub jacobian: Triplets,
     pub hessian: Triplets,
+    /// How many inputs `x` each of its ends has.
+    sizes: Vec<usize>,
     /// For each input `x` the sum of variables that it is.
     inputs: Vec<Combination>,
     /// The variable of each entry of `p`; `None` of what is given.
@@ -40,6 +42,7 @@ impl<'c> TranscribedLink<'c> {
             let rows = row..row + link.bounds.len();
             row = rows.end;
             let mut transcribed = TranscribedLink {
+                sizes: link.ends.iter().map(|end| signals(parts, *end).len()).collect(),
                 inputs: link.ends.iter().flat_map(|end| signals(parts, *end)).collect(),
                 unknowns: unknowns(chain, link, first_unknown),
                 tables: Tables::new(&link.function, 1),
@@ -188,6 +191,30 @@ impl<'c> TranscribedLink<'c> {
             .or_else(|| curvature().then_some(0))?;
         let origin = self.link.function.origin(output);
         Some(Place { origin, ..Place::default() })
+    }
+
+    /// By how much each variable of one of its ends has to move for the equation in which it is the
+    /// only one of that end to hold.
+    pub fn newton_moves(&mut self, end: usize, parameters: &[f64]) -> Vec<(usize, f64)> {
+        self.tables.differentiate(self.link.own(parameters));
+        let pattern = &self.link.function.jacobian_pattern().entries;
+        let own: Vec<usize> = {
+            let sizes = self.sizes.iter().take(end).sum::<usize>();
+            let inputs = &self.inputs[sizes..sizes + self.sizes[end]];
+            inputs.iter().flatten().map(|(variable, _)| *variable).collect()
+        };
+        let given = |row: usize| {
+            let bounds = self.link.bounds[row];
+            let entries = self.jacobian_moves.iter().zip(self.jacobian_columns());
+            let mut entries = entries.filter(|(it, variable)| {
+                pattern[it.column].0 as usize == row + 1 && own.contains(variable)
+            });
+            let ((entry, variable), None) = (entries.next()?, entries.next()) else { return None };
+            let slope = entry.coefficient * self.tables.jacobian.column(entry.column)[0];
+            let misses = bounds.lower - self.tables.values.column(row + 1)[0];
+            bounds.is_equality().then_some((variable, misses / slope))
+        };
+        (0..self.link.bounds.len()).filter_map(given).collect()
     }
 
     /// Variables that a condition by itself gives a value, such as `psi(x) = x - 1 = 0`, with that

@@ -8,6 +8,7 @@
 //! The NLP of a phase has its stages and, of all unknowns, those that it depends on ([`part`]). A
 //! single phase is the NLP itself.
 
+mod guess;
 mod links;
 mod part;
 mod quantities;
@@ -148,19 +149,6 @@ impl<'c> ChainNlp<'c> {
     pub(crate) fn is_defect(&self, row: usize) -> bool {
         let part = self.parts.iter().find(|part| part.shape.rows.contains(&row));
         part.is_some_and(|part| part.nlp.is_defect(row - part.shape.rows.start))
-    }
-
-    /// The guess of the model on the grids.
-    pub fn guess(&mut self) -> Vec<f64> {
-        let mut v = vec![0.0; self.shape.unknowns[1]];
-        for part in &mut self.parts {
-            let own = part.nlp.guess();
-            v[part.shape.variables.clone()].copy_from_slice(&own[..part.shape.variables.len()]);
-        }
-        for (unknown, value) in self.chain.unknowns.iter().zip(&mut v[self.shape.unknowns[0]..]) {
-            *value = self.parameters[unknown.parameter];
-        }
-        v
     }
 
     fn load_links(&mut self, v: &[f64]) {

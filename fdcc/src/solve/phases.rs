@@ -1,0 +1,79 @@
+//! Solutions of models with phases: each phase is a solution of its own.
+
+use super::found::FoundChain;
+use super::solution::Solution;
+use crate::error::Error;
+use crate::model::{Model, frame};
+use crate::verification::{LinkGap, Verification, gaps_of_links};
+use fdcc_runtime::problem::Chain;
+use fdcc_runtime::solution::Trajectory;
+use fdcc_runtime::solve::{ChainOutcome, Outcome};
+
+/// The answer to a chain, as the solver has it.
+pub(super) struct Whole {
+    pub chain: Chain,
+    pub outcome: ChainOutcome,
+}
+
+impl Solution {
+    /// The solution of a model with phases.
+    pub(super) fn of_phases(model: Model, found: FoundChain) -> Self {
+        let FoundChain { chain, outcome, step_errors, starts } = found;
+        let own = model.phases().into_iter().zip(&chain.phases).zip(&outcome.phases);
+        let parts = own.map(|((model, problem), outcome)| {
+            Solution::new(model, super::found::Found::new(problem.clone(), outcome.clone()))
+        });
+        let parts: Vec<Solution> = parts.collect();
+        let problem = frame(&chain);
+        let outcome_of_all = of_all(&outcome, problem.parameters.len());
+        let whole = super::found::Found::new(problem, outcome_of_all);
+        let mut solution = Solution::new(model, whole);
+        (solution.step_errors, solution.starts) = (step_errors, starts);
+        (solution.parts, solution.whole) = (parts, Some(Whole { chain, outcome }));
+        solution
+    }
+
+    /// The solution of each phase, in the order of time; none where the model has no phases.
+    pub fn phases(&self) -> &[Solution] {
+        &self.parts
+    }
+
+    /// Replays each phase on the true system, from the state at which it begins in the solution,
+    /// and the links between the ends of the replays.
+    ///
+    /// # Errors
+    ///
+    /// As for [`verify`](Solution::verify).
+    pub fn verify_phases(&self) -> Result<(Vec<Verification>, Vec<LinkGap>), Error> {
+        let all: Vec<Verification> =
+            self.parts.iter().map(Solution::verify).collect::<Result<_, _>>()?;
+        let gaps = match &self.whole {
+            Some(Whole { chain, outcome }) => gaps_of_links(chain, outcome, &all),
+            None => Vec::new(),
+        };
+        Ok((all, gaps))
+    }
+}
+
+/// What is said of all phases together: no signals.
+fn of_all(outcome: &ChainOutcome, parameters: usize) -> Outcome {
+    let ends = [outcome.phases.first(), outcome.phases.last()];
+    let [first, last] = ends.map(|it| it.map(|it| &it.trajectory));
+    let time = first.into_iter().flat_map(|it| it.time.first());
+    let time = time.chain(last.into_iter().flat_map(|it| it.time.last()));
+    let values = first.map(|it| it.parameters[..parameters].to_vec());
+    Outcome {
+        solution: outcome.solution.clone(),
+        trajectory: Trajectory {
+            time: time.copied().collect(),
+            parameters: values.unwrap_or_default(),
+            ..Trajectory::default()
+        },
+        sigma: outcome.sigma.clone(),
+        modes: Vec::new(),
+        convex: outcome.convex,
+        limiting: outcome.limiting.clone(),
+        is_impossible: outcome.is_impossible,
+        attempts: outcome.attempts.clone(),
+    }
+}

@@ -1,19 +1,26 @@
 //! Model files: read, unless that takes too long, and checked by the library.
 
 use crate::watch::Deadline;
-use fdcc::Checked;
+use fdcc::{Checked, DataFiles};
 use fdcc_grammar::{Diagnostic, SourceFile};
 use fdcc_runtime::nlp::Stop;
 use std::fs::File;
 use std::io::{self, Read};
+use std::path::Path;
 
 /// More is not even read; the parser complains about far less.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// Reads and checks a file, unless it takes too long; `-` is the standard input.
-pub fn check(path: &str, deadline: Deadline) -> Result<io::Result<Checked>, Stop> {
+/// Reads and checks a file, unless it takes too long; `-` is the standard input. Data files are
+/// those in a folder, or beside the model.
+pub fn check(
+    path: &str,
+    data: Option<&Path>,
+    deadline: Deadline,
+) -> Result<io::Result<Checked>, Stop> {
     let path = path.to_owned();
-    deadline.within(move || Ok(fdcc::check(name(&path), bytes(&path)?)))
+    let files = data.map_or_else(|| DataFiles::beside(&path), DataFiles::in_folder);
+    deadline.within(move || Ok(fdcc::check_with(name(&path), bytes(&path)?, Some(files))))
 }
 
 /// The text of a file, and what is wrong if it is none.

@@ -5,6 +5,7 @@
 mod analyze;
 mod check;
 mod compile;
+mod data;
 pub mod differentiate;
 pub(crate) mod expressions;
 pub mod generate;
@@ -21,12 +22,13 @@ pub mod units;
 
 pub use analyze::repair::repair;
 pub use analyze::sensitivity_query::check_with_objective;
-pub use analyze::{Analysis, Checked, analyze, analyze_with, check};
+pub use analyze::{Analysis, Checked, analyze, analyze_with, check, check_with};
 pub use compile::chain::{ChainCode, compile_chain};
 pub use compile::dump::{Stage, dump};
 pub use compile::{Expectations, expectations};
 pub use compile::{ProblemCode, compile, compile_by_parameters};
 pub use compile::{compile_sensitivities, compile_simulation, compile_smoothed};
+pub use data::{Files, Table};
 pub use expressions::graph::builtins;
 pub use expressions::{graph, interval, kernels};
 pub use lower::{Expected, LoweredProblem};

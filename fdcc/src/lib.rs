@@ -13,7 +13,7 @@
 //! ```
 //!
 //! All numbers are in SI. An `Err` is a wrong model or a wrong call; that nothing was found is a
-//! status. Nothing here prints, and files are read by [`Model::from_file`] alone.
+//! status. Nothing here prints, and files are read by [`Model::from_file`] and [`DataFiles`] alone.
 
 mod error;
 mod executor;
@@ -34,7 +34,7 @@ pub use expectations::{Checked as Expectation, Outcome as Expected, Sides};
 pub use fdcc_runtime::nlp::{Status, Stop};
 pub use fdcc_runtime::simulate::{Controls, Options as Accuracy};
 pub use gradient::{By, Exact, Gradient, NotBy, Stepped, by_names};
-pub use model::{Checked, Model, Value, check, text};
+pub use model::{Checked, DataFiles, Model, Value, check, check_with, text};
 pub use record::Record;
 pub use replay::Replay;
 pub use simulation::Simulation;

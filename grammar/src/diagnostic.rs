@@ -187,6 +187,11 @@ codes! {
     UnitHere = "FDC0702", Error, "a unit where a plain number is needed";
     UnitOfPower = "FDC0703", Error, "a power whose unit is not fixed";
     BareNumber = "FDC0704", Error, "a plain number that would have to guess its unit";
+    DataFile = "FDC0801", Error, "a data file that cannot be read";
+    DataColumns = "FDC0802", Error, "a data file that does not fit its columns";
+    RowOrder = "FDC0803", Error, "rows that are not in the order of time";
+    RowBeyondTime = "FDC0804", Error, "a row beyond the time of the model";
+    BeyondTable = "FDC0805", Warning, "a curve that is needed beyond its data";
 }
 
 impl std::fmt::Display for Code {

@@ -11,15 +11,17 @@ pub fn values(points: &[f64], time: f64) -> Vec<f64> {
 
 /// The derivatives of the Lagrange polynomials over `points` at a time.
 pub fn slopes(points: &[f64], time: f64) -> Vec<f64> {
-    let slope = |polynomial: Vec<f64>| {
-        polynomial
-            .iter()
-            .enumerate()
-            .skip(1)
-            .rev()
-            .fold(0.0, |sum, (power, c)| sum * time + power as f64 * c)
+    derivatives(points, time, 1)
+}
+
+/// Their derivatives of this order; [`values`] is more exact for 0.
+pub fn derivatives(points: &[f64], time: f64, order: usize) -> Vec<f64> {
+    let factor = |power: usize| (0..order).map(|i| (power - i) as f64).product::<f64>();
+    let derivative = |polynomial: Vec<f64>| {
+        let terms = polynomial.iter().enumerate().skip(order).rev();
+        terms.fold(0.0, |sum, (power, c)| sum * time + factor(power) * c)
     };
-    (0..points.len()).map(|j| slope(coefficients(points, j))).collect()
+    (0..points.len()).map(|j| derivative(coefficients(points, j))).collect()
 }
 
 /// The coefficients of the polynomial that is 1 at `points[j]` and 0 at the others, constant term
@@ -49,5 +51,6 @@ mod tests {
         };
         assert!((sum(values(&points, 1.5)) - 0.75).abs() < 1e-15);
         assert!((sum(slopes(&points, 1.5)) - 2.0).abs() < 1e-14);
+        assert!((sum(derivatives(&points, 1.5, 2)) - 2.0).abs() < 1e-14);
     }
 }

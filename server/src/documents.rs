@@ -1,7 +1,9 @@
 //! The open texts, as the client has them on its screen.
 
+use crate::pages;
 use crate::snapshot::Snapshot;
 use crate::text::{Encoding, Text};
+use fdcc::DataFiles;
 use fdcc_grammar::ParseCache;
 use lsp_types::{TextDocumentContentChangeEvent, Uri};
 use std::cell::{OnceCell, RefCell};
@@ -27,8 +29,12 @@ pub struct Document {
 impl Document {
     /// What is known about it, found out when it is first asked for.
     pub fn snapshot(&self) -> &Rc<Snapshot> {
-        let found = || Rc::new(Snapshot::new(self.text.clone(), &mut self.cache.borrow_mut()));
-        self.snapshot.get_or_init(found)
+        self.snapshot.get_or_init(|| {
+            let folder = pages::path(&self.uri).and_then(|path| Some(path.parent()?.to_owned()));
+            let files = folder.map(DataFiles::in_folder);
+            let cache = &mut self.cache.borrow_mut();
+            Rc::new(Snapshot::new(self.text.clone(), cache, files.as_ref()))
+        })
     }
 
     /// The last state that could be read: this one if possible.

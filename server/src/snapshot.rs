@@ -1,8 +1,9 @@
 //! All that is known about one state of a text.
 
 use crate::text::Text;
+use fdcc::DataFiles;
 use fdcc_compiler::symbols::Names;
-use fdcc_compiler::{Analysis, SurfaceReport, analyze_with, surfaces};
+use fdcc_compiler::{Analysis, Files, SurfaceReport, analyze_with, surfaces};
 use fdcc_grammar::{Code, ParseCache, Severity};
 use std::cell::OnceCell;
 
@@ -19,9 +20,11 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// Reads and checks a text, with a cache of its former states.
-    pub fn new(text: Text, cache: &mut ParseCache) -> Self {
-        let analysis = analyze_with(cache, &text.text);
+    /// Reads and checks a text, with a cache of its former states and the data files beside it.
+    pub fn new(text: Text, cache: &mut ParseCache, files: Option<&DataFiles>) -> Self {
+        let load = files.map(|files| |name: &str| files.text(name));
+        let load = load.as_ref().map(|load| load as &Files);
+        let analysis = analyze_with(cache, &text.text, load);
         let is_syntax = |code: Code| code.as_str().starts_with("FDC00");
         let is_readable = !analysis
             .diagnostics

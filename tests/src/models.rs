@@ -2,8 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use fdcc_compiler::Model;
-use fdcc_grammar::{Diagnostic, Severity};
+use fdcc::DataFiles;
+use fdcc_compiler::{Analysis, Model, analyze_with};
+use fdcc_grammar::{Diagnostic, ParseCache, Severity};
 use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::solve::{self, Outcome, Refusal};
 
@@ -12,9 +13,24 @@ use crate::repository;
 /// Pairs of a name and its new value, as `--set` and `--method` take them.
 pub type Changes<'a> = &'a [(&'a str, &'a str)];
 
-/// The meaning of a model without errors.
+/// The data files of the examples.
+pub fn data_files() -> DataFiles {
+    DataFiles::from(|name| {
+        let folders = ["models", "tests/right", "tests/classics/fits"];
+        let texts = folders.map(|it| DataFiles::in_folder(repository().join(it)).text(name));
+        texts.into_iter().reduce(Result::or).expect("there is a folder")
+    })
+}
+
+/// What is found in a text, with the data files of the examples.
+pub fn analyze(text: &str) -> Analysis {
+    let files = data_files();
+    analyze_with(&mut ParseCache::default(), text, Some(&|name: &str| files.text(name)))
+}
+
+/// The meaning of a model without errors, with the data files of the examples.
 pub fn meaning(text: &str) -> Model {
-    let checked = fdcc::check("a test", text.into());
+    let checked = fdcc::check_with("a test", text.into(), Some(data_files()));
     let is_error = |it: &&Diagnostic| it.severity == Severity::Error;
     let Some(model) = &checked.model else {
         let error = checked.diagnostics.iter().find(is_error);

@@ -28,7 +28,7 @@ fn functions(problem: &Problem) -> [Arc<dyn Function>; 7] {
 /// The expressions behind [`functions`], in the same order.
 fn symbols(model: &Model) -> (Graph, Vec<Differentiated>) {
     let program = lower(model);
-    let functions = program.functions().map(Clone::clone);
+    let functions: Vec<_> = program.functions().into_iter().cloned().collect();
     let mut graph = program.graph;
     let functions =
         functions.into_iter().map(|function| differentiate(&mut graph, function)).collect();

@@ -6,8 +6,9 @@
 //! answers FDC0603.
 
 use fdcc_compiler::builtins::{self, Domain, Notation, Row, Smoothness};
-use fdcc_compiler::{analyze, check, compile};
+use fdcc_compiler::{check, compile};
 use fdcc_grammar::{Code, Diagnostic, Severity, parse};
+use fdcc_tests::models::analyze;
 use fdcc_tests::{blocks, documents, repository, unclaimed};
 use std::fs;
 
@@ -69,8 +70,7 @@ fn models_compile_unless_the_page_says_that_they_cannot_be_solved_yet() {
         if diagnostics(&example.text).iter().any(|it| it.severity == Severity::Error) {
             continue;
         }
-        let model =
-            check(&parse(&example.text).tree).model.expect("a model without errors has a meaning");
+        let model = analyze(&example.text).model.expect("a model without errors has a meaning");
         let codes: Vec<Code> =
             compile(&model).err().unwrap_or_default().iter().map(|it| it.code).collect();
         let expected: &[Code] = if example.is_later { &[Code::NotYet] } else { &[] };

@@ -86,7 +86,7 @@ fn product(factors: usize) -> String {
 /// The expressions of a step and of its derivatives, up to the second.
 fn expressions(right: &str, more: &str) -> usize {
     let program = lower(&meaning(&motion(right, more, "scheme = rk4")));
-    let functions = program.functions().map(Clone::clone);
+    let functions: Vec<_> = program.functions().into_iter().cloned().collect();
     let mut graph = program.graph;
     functions.into_iter().for_each(|function| drop(differentiate(&mut graph, function)));
     graph.len()

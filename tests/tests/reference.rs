@@ -74,5 +74,5 @@ fn check(text: &str) -> Vec<Diagnostic> {
     if !parsed.diagnostics.is_empty() {
         return parsed.diagnostics;
     }
-    fdcc_compiler::analyze(text).diagnostics
+    fdcc_tests::models::analyze(text).diagnostics
 }

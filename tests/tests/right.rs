@@ -11,7 +11,6 @@ use fdcc_tests::models::{meaning, try_solve};
 
 /// What is not solved yet, and why.
 const UNSOLVED: &[(&str, &str)] = &[
-    ("decay_fit", "measured data"),
     (
         "gripper",
         "the same as the sled; it was called solved, at an objective 10 % too high, while \

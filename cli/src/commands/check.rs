@@ -11,6 +11,7 @@ use crate::model;
 use crate::output::{self, diagnostics, plural, sarif};
 use crate::watch::{self, Deadline};
 use fdcc::Checked;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// Report everything that is wrong with models
@@ -28,6 +29,9 @@ pub struct Check {
     /// Check again whenever one of the files changes, until Ctrl-C
     #[arg(long)]
     watch: bool,
+    /// Look for data files in this folder instead of that of the model
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
     /// Give up a file after this many seconds
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     time_limit: Option<f64>,
@@ -91,7 +95,8 @@ impl Check {
         let mut exit = Exit::Fine;
         let mut loaded = Vec::new();
         for file in &self.files {
-            match model::check(file, Deadline::after(Instant::now(), self.time_limit)) {
+            let deadline = Deadline::after(Instant::now(), self.time_limit);
+            match model::check(file, self.data.as_deref(), deadline) {
                 Ok(Ok(model)) => {
                     exit = exit.max(self.verdict(&model.diagnostics));
                     loaded.push(model);

@@ -56,7 +56,7 @@ impl Driven {
                 "`--seed` and `--starts` change nothing here: a simulation searches nothing",
             );
         }
-        read_at_any_rate(&self.file, &Changes::default(), self.deadline())
+        read_at_any_rate(&self.file, &self.changes.of_data(), self.deadline())
     }
 
     /// When to stop, counted from the first time that somebody asks; Ctrl-C stops at once.

@@ -22,9 +22,17 @@ pub struct Changes {
     /// Give a key of the `method` block another value, such as `N=500` (repeatable)
     #[arg(long, value_name = "KEY=VALUE")]
     method: Vec<String>,
+    /// Look for data files in this folder instead of that of the model
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
 }
 
 impl Changes {
+    /// Only where data files are.
+    pub fn of_data(&self) -> Changes {
+        Changes { data: self.data.clone(), ..Changes::default() }
+    }
+
     /// Applies them, or says what is wrong with one.
     pub fn apply(&self, model: &Model) -> Result<Model, String> {
         model.changed(|meaning| {
@@ -128,7 +136,8 @@ fn load(
     at_any_rate: bool,
     deadline: Deadline,
 ) -> Result<Model, Exit> {
-    let checked = model::check(file, deadline).map_err(|stop| stopped(file, stop))?;
+    let checked = model::check(file, changes.data.as_deref(), deadline)
+        .map_err(|stop| stopped(file, stop))?;
     let checked = checked.map_err(|error| {
         output::complain(&format!("{file} cannot be read: {error}"));
         Exit::File

@@ -3,7 +3,9 @@
 use super::consequences::{sort, without_consequences, without_echoes};
 use crate::check as checks;
 use crate::check::Facts;
+use crate::data::{self, Files, Tables};
 use crate::model::Model;
+use crate::model::numbers::numbers;
 use crate::preflight;
 use crate::resolve::elaborator::Elaborator;
 use crate::resolve::elaborator::phases::Inner;
@@ -28,18 +30,37 @@ pub struct Checked {
 /// Finds out what a syntax tree means. Never fails: it reports everything that is wrong, each
 /// mistake once.
 pub fn check(tree: &ast::Model) -> Checked {
+    check_with(tree, None)
+}
+
+/// The same with the texts of data files; without them a model with data waits for them.
+pub fn check_with(tree: &ast::Model, files: Option<&Files>) -> Checked {
+    let mut unread = Vec::new();
+    let tables =
+        files.map_or_else(Tables::new, |files| data::read(&tree.items, files, &mut unread));
+    let mut found = check_tables(tree, &tables);
+    if !unread.is_empty() {
+        found.model = None;
+        found.diagnostics.retain(|it| it.code != Code::NotYet);
+        found.diagnostics.extend(unread);
+        sort(&mut found.diagnostics);
+    }
+    found
+}
+
+fn check_tables(tree: &ast::Model, tables: &Tables) -> Checked {
     let everything: Vec<&Item> = tree.items.iter().collect();
     let phases = phases(&tree.items);
     let units = units::infer(tree);
     let (mut diagnostics, mut not_yet) = (Vec::new(), Vec::new());
     let mut inner = Vec::new();
     for phase in &phases {
-        let mut part = resolve_phase(&everything, &phase.around, &units.readings);
+        let mut part = resolve_phase(&everything, &phase.around, &units.readings, tables);
         diagnostics.extend(checked(&mut part, phase.around.items.clone(), tree, true));
         not_yet.append(&mut part.not_yet);
         inner.push(Inner::new(phase.name, part));
     }
-    let mut whole = resolve(&everything, inner, &units.readings);
+    let mut whole = resolve(&everything, inner, &units.readings, tables);
     diagnostics.extend(checked(&mut whole, everything, tree, phases.is_empty()));
     whole.not_yet.append(&mut not_yet);
     diagnostics.extend(checks::unused(tree));
@@ -56,6 +77,7 @@ pub fn check(tree: &ast::Model) -> Checked {
     });
     if let Some(model) = &model {
         diagnostics.extend(told_early(model));
+        diagnostics.extend(numbers(model).iter().flat_map(|it| model.misplaced_rows(it)));
         diagnostics.extend(preflight::check(model, tree));
         sort(&mut diagnostics);
     }

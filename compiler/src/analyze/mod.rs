@@ -8,9 +8,10 @@ pub(crate) mod sensitivity_query;
 mod unparsed;
 mod unseen;
 
+use crate::data::Files;
 use crate::model::Model;
 use crate::units::NamedUnit;
-pub use checked::{Checked, check};
+pub use checked::{Checked, check, check_with};
 use fdcc_grammar::ast;
 use fdcc_grammar::{Diagnostic, Parse, ParseCache, SourceFile, parse_with};
 use unparsed::UnparsedRegions;
@@ -29,21 +30,22 @@ pub struct Analysis {
 
 /// Reads and checks a text.
 pub fn analyze(text: &str) -> Analysis {
-    analyze_with(&mut ParseCache::default(), text)
+    analyze_with(&mut ParseCache::default(), text, None)
 }
 
-/// The same with a cache of the text as it was before, which spares reading what has not changed.
-pub fn analyze_with(cache: &mut ParseCache, text: &str) -> Analysis {
-    analyze_parsed(text, parse_with(cache, text))
+/// The same with a cache of the text as it was before, which spares reading what has not changed,
+/// and with the texts of data files.
+pub fn analyze_with(cache: &mut ParseCache, text: &str, files: Option<&Files>) -> Analysis {
+    analyze_parsed(text, parse_with(cache, text), files)
 }
 
 /// Checks a text that has been read.
-pub(crate) fn analyze_parsed(text: &str, parsed: Parse) -> Analysis {
+pub(crate) fn analyze_parsed(text: &str, parsed: Parse, files: Option<&Files>) -> Analysis {
     let mut diagnostics = parsed.diagnostics;
     let (mut model, mut units) = (None, Vec::new());
     if !parsed.tree.items.is_empty() {
         let is_broken = !diagnostics.is_empty();
-        let checked = check(&parsed.tree);
+        let checked = check_with(&parsed.tree, files);
         model = checked.model.filter(|_| !is_broken);
         units = checked.units;
         let source = SourceFile::new("", text);

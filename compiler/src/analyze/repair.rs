@@ -42,7 +42,7 @@ impl Unreadable {
 
 impl Draft {
     fn new(text: String, unreadable: Unreadable, parsed: Parse) -> Self {
-        Draft { found: analyze_parsed(&text, parsed).diagnostics, text, unreadable }
+        Draft { found: analyze_parsed(&text, parsed, None).diagnostics, text, unreadable }
     }
 
     /// All repairs at once, or the first one that helps.

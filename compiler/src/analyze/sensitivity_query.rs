@@ -2,7 +2,8 @@
 //!
 //! The text is read as if it stood behind that of the model, so that no two places are the same.
 
-use super::{Checked, check};
+use super::{Checked, check_with};
+use crate::data::Files;
 use crate::syntax::functions::is_function;
 use crate::syntax::{closest, scope, walk};
 use fdcc_grammar::ast::{self, Binding, Item, ItemKind};
@@ -14,7 +15,7 @@ const WORD: &str = "minimize ";
 /// What a tree without errors means with another objective: any expression that has a value once
 /// the run is over. A `report` may stand in it by name. The diagnostics are about that expression
 /// alone, and so are their places.
-pub fn check_with_objective(tree: &ast::Model, of: &str) -> Checked {
+pub fn check_with_objective(tree: &ast::Model, of: &str, files: Option<&Files>) -> Checked {
     let start = tree.items.iter().map(|item| item.span.end as usize).max().unwrap_or(0) + 1;
     let parsed = parse(&format!("{:start$}{WORD}{of}", ""));
     let first = (start + WORD.len()) as u32;
@@ -24,7 +25,7 @@ pub fn check_with_objective(tree: &ast::Model, of: &str) -> Checked {
     match parsed.tree.items.as_slice() {
         _ if !diagnostics.is_empty() => {}
         [asked @ Item { kind: ItemKind::Objective { value, .. }, .. }] => {
-            let checked = check(&with_objective(tree, asked, value));
+            let checked = check_with(&with_objective(tree, asked, value), files);
             model = checked.model;
             diagnostics = checked.diagnostics;
             units = checked.units;

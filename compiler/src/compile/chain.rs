@@ -58,7 +58,10 @@ impl ChainCode {
 /// A phase with the unknowns on which it depends.
 fn phase_of(model: &Model, mut problem: Problem) -> Problem {
     let mut read: HashSet<usize> = HashSet::new();
-    for function in [&problem.dynamics, &problem.path, &problem.boundary] {
+    let measured = problem.measurements.iter().map(|it| &it.function);
+    for function in
+        [&problem.dynamics, &problem.path, &problem.boundary].into_iter().chain(measured)
+    {
         let first = function.layout().parameters().start;
         let columns = function.jacobian_pattern().entries.iter().map(|it| it.1 as usize);
         read.extend(columns.filter_map(|column| column.checked_sub(first)));

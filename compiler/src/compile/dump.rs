@@ -69,6 +69,8 @@ fn symbol_name(model: &Model, symbol: Symbol) -> String {
             let symbol = phase.model.symbols[input as usize];
             format!("{}.{}", phase.place.name, symbol_name(&phase.model, symbol))
         }
+        Symbol::Sum(index) => model.sums[index].place.name.clone(),
+        Symbol::Column(table, column) => format!("{}[{}]", model.tables[table].name, column + 1),
         Symbol::Simulated(_) | Symbol::Argument(_) => "_".into(),
     }
 }
@@ -107,23 +109,35 @@ fn symbols(model: &Model) -> String {
 
 /// The names of a function's inputs.
 fn input_names(model: &Model, lowered: &LoweredProblem, layout: &Layout) -> Vec<String> {
-    let hidden = lowered.hidden.iter().map(|&at| model.integrals[at].place.name.clone());
+    let hidden = lowered.hidden.iter().map(|it| it.place(model).name.clone());
     let states: Vec<String> =
         model.states.iter().map(|it| it.place.name.clone()).chain(hidden).collect();
     let mut names: Vec<String> = (0..layout.t).map(|_| "tau".into()).collect();
-    match layout.x == 2 * states.len() {
-        true => ["start", "end"]
-            .iter()
-            .for_each(|end| names.extend(states.iter().map(|name| format!("{name}({end})")))),
-        false => names.extend(states.iter().take(layout.x).cloned()),
-    }
-    names.extend(model.controls.iter().take(layout.u).map(|it| it.place.name.clone()));
+    names.extend(several(&states, layout.x));
+    let controls: Vec<String> = model.controls.iter().map(|it| it.place.name.clone()).collect();
+    names.extend(several(&controls, layout.u));
     names.extend(model.params.iter().map(|it| it.place.name.clone()));
     names.extend(model.frees.iter().map(|it| it.place.name.clone()));
     names.extend(model.switches().iter().map(|it| format!("sigma({})", it.place.name)));
     names.resize(layout.parameters().end, "sigma(abs)".into());
-    names.extend((0..layout.s).map(|index| selector_name(model, index)));
+    let is_of_surfaces = layout.s == model.surfaces.len();
+    let selector = |index: usize| match is_of_surfaces {
+        true => selector_name(model, index),
+        false => format!("row[{}]", index + 1),
+    };
+    names.extend((0..layout.s).map(selector));
     names
+}
+
+/// The names once, at both ends, or with two derivatives.
+fn several(names: &[String], count: usize) -> Vec<String> {
+    let suffixes: &[&str] = match count.checked_div(names.len()) {
+        Some(2) => &["(start)", "(end)"],
+        Some(3) => &["", "'", "''"],
+        _ => &[""],
+    };
+    let all = suffixes.iter().flat_map(|end| names.iter().map(move |it| format!("{it}{end}")));
+    all.take(count).collect()
 }
 
 fn functions(model: &Model, lowered: &LoweredProblem) -> String {
@@ -147,7 +161,7 @@ fn labelled(function: &VectorFunction) -> Vec<(String, ExprId)> {
 
 fn differentiated(lowered: &LoweredProblem) -> (Graph, Vec<Differentiated>) {
     let mut graph = lowered.graph.clone();
-    let functions = lowered.functions().map(VectorFunction::clone);
+    let functions = lowered.functions().into_iter().cloned().collect::<Vec<_>>();
     let functions =
         functions.into_iter().map(|function| differentiate(&mut graph, function)).collect();
     (graph, functions)

@@ -10,10 +10,10 @@ use crate::lower::{
     self, Expected, LoweredExpectations, LoweredProblem, Purpose, VectorFunction, by_parameters,
     lower, problem,
 };
-use crate::model::numbers::numbers;
+use crate::model::numbers::{Numbers, numbers};
 use crate::model::{self, Model, Simulated};
 use crate::phases::between_jumps;
-use fdcc_grammar::Diagnostic;
+use fdcc_grammar::{Diagnostic, Severity};
 use fdcc_runtime::problem::{ByParameters, Function, Problem};
 use fdcc_runtime::simulate::System;
 use std::sync::Arc;
@@ -35,10 +35,11 @@ impl ProblemCode {
     /// Compiles a model.
     pub fn new(model: &Model) -> Result<Self, Vec<Diagnostic>> {
         not_yet(model)?;
+        sums_or_jumps(model)?;
         let model = &between_jumps(model);
-        numbers(model)?;
+        known(model)?;
         let lowered = lower(model);
-        let functions = lowered.functions().map(VectorFunction::clone).to_vec();
+        let functions = lowered.functions().into_iter().cloned().collect();
         let functions = machine_code(lowered.graph.clone(), functions);
         Ok(ProblemCode { lowered, functions })
     }
@@ -46,7 +47,7 @@ impl ProblemCode {
     /// The problem of the model, or of one that differs from it in the values of parameters only.
     pub fn problem(&self, model: &Model) -> Result<Problem, Vec<Diagnostic>> {
         let model = &between_jumps(model);
-        Ok(problem(model, &self.lowered, &numbers(model)?, self.functions.clone()))
+        Ok(problem(model, &self.lowered, &known(model)?, self.functions.clone()))
     }
 }
 
@@ -55,11 +56,14 @@ impl ProblemCode {
 pub fn compile_by_parameters(model: &Model) -> Result<ByParameters, Vec<Diagnostic>> {
     not_yet(model)?;
     let mut lowered = lower(model);
-    let functions = by_parameters(model, &mut lowered).to_vec();
+    let functions = by_parameters(model, &mut lowered);
     let functions = machine_code(lowered.graph, functions);
-    let [dynamics, path, boundary, given] =
-        functions.try_into().unwrap_or_else(|_| unreachable!("there are four"));
-    Ok(ByParameters { parameters: model.params.len(), dynamics, path, boundary, given })
+    let Some((first, sums)) = functions.split_first_chunk::<4>() else {
+        unreachable!("there are four at least")
+    };
+    let ([dynamics, path, boundary, given], measurements) = (first.clone(), sums.to_vec());
+    let parameters = model.params.len();
+    Ok(ByParameters { parameters, dynamics, path, boundary, measurements, given })
 }
 
 /// Turns a model into the true system, for simulation; or says what cannot be simulated yet.
@@ -83,7 +87,10 @@ pub fn compile_smoothed(model: &Model) -> Result<System, Vec<Diagnostic>> {
 
 fn compile_system(model: &Model, purpose: Purpose) -> Result<System, Vec<Diagnostic>> {
     not_yet(model)?;
-    let numbers = numbers(model)?;
+    if let Some(sum) = model.sums.first() {
+        return Err(vec![model::not_yet(sum.place.span, "a simulation of a sum over rows")]);
+    }
+    let numbers = known(model)?;
     let (graph, lowered) = lower::simulation(model, purpose);
     let functions = machine_code(graph, lowered.functions.clone());
     Ok(lower::system(model, &lowered, &numbers, functions))
@@ -109,6 +116,24 @@ pub fn expectations(model: &Model) -> Expectations {
     let [function, integrands] =
         <[_; 2]>::try_from(compiled).unwrap_or_else(|_| unreachable!("two functions were given"));
     Expectations { list, simulated: model.simulated.clone(), function, integrands }
+}
+
+/// The numbers of a model whose rows are all within its time.
+fn known(model: &Model) -> Result<Numbers, Vec<Diagnostic>> {
+    let numbers = numbers(model)?;
+    let mut found = model.misplaced_rows(&numbers);
+    found.retain(|it| it.severity == Severity::Error);
+    if found.is_empty() { Ok(numbers) } else { Err(found) }
+}
+
+/// Rows may be in any of the phases between jumps.
+fn sums_or_jumps(model: &Model) -> Result<(), Vec<Diagnostic>> {
+    match (model.jumps.first(), model.sums.first()) {
+        (Some(_), Some(sum)) => {
+            Err(vec![model::not_yet(sum.place.span, "a sum over rows in a model with jumps")])
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The first construct that is understood but cannot be solved.

@@ -2,6 +2,7 @@
 //! functions, intervals, polynomials, and what smooths them.
 
 pub(crate) mod blend;
+pub(crate) mod curve;
 pub mod graph;
 pub mod interval;
 pub mod kernels;

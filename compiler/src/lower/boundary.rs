@@ -5,7 +5,7 @@ use super::inputs::{Sizes, at_ends, solved_for};
 use super::objective::Objective;
 use super::{origin, smoothed};
 use crate::expressions::graph::{ExprId, Graph};
-use crate::model::{Model, Place, Range, State, Symbol};
+use crate::model::{Model, Place, Range, State, Sum, Symbol};
 
 /// A row of the function but the first.
 pub(crate) struct Condition {
@@ -30,6 +30,11 @@ pub(crate) fn lower(
     let mut conditions: Vec<Condition> = written.collect();
     for (index, state) in model.states.iter().enumerate() {
         conditions.extend(start(model, graph, index, state));
+    }
+    if model.has_free_ends() {
+        for sum in objective.sums() {
+            conditions.extend(within_time(model, graph, &model.sums[sum]));
+        }
     }
     let layout = sizes.ends();
     let inputs = at_ends(model, graph, &layout, &objective.hidden);
@@ -68,6 +73,41 @@ fn start(model: &Model, graph: &mut Graph, index: usize, state: &State) -> Optio
         (None, Some(range)) => Some(Condition { value: at_start, place, range }),
         _ => None,
     }
+}
+
+/// All rows of a sum are within the time: the model has states nowhere else.
+fn within_time(model: &Model, graph: &mut Graph, sum: &Sum) -> [Condition; 2] {
+    let [zero, infinity] = [0.0, f64::INFINITY].map(|it| graph.number(it));
+    let times = row_times(model, graph, sum);
+    let [first, last] = model.interval;
+    let (mut earliest, mut latest) = (times[0], times[0]);
+    for &time in &times[1..] {
+        earliest = graph.min(earliest, time);
+        latest = graph.max(latest, time);
+    }
+    let table = &model.tables[sum.table];
+    let condition = |words: &str, value| Condition {
+        value,
+        place: Place { name: format!("{words} row of {}", table.name), span: sum.place.span },
+        range: Range { lower: zero, upper: infinity },
+    };
+    let [before, behind] = [graph.sub(earliest, first), graph.sub(last, latest)];
+    [condition("first", before), condition("last", behind)]
+}
+
+/// The time of each row, over parameters.
+fn row_times(model: &Model, graph: &mut Graph, sum: &Sum) -> Vec<ExprId> {
+    let table = &model.tables[sum.table];
+    let time = |row: usize| {
+        let columns: Vec<ExprId> =
+            table.columns.iter().map(|column| graph.number(column[row])).collect();
+        let value = |input: u32| match model.symbols[input as usize] {
+            Symbol::Column(_, column) => Some(columns[column]),
+            _ => None,
+        };
+        graph.substitute(&[sum.time], &value)[0]
+    };
+    (0..table.rows()).map(time).collect()
 }
 
 /// Whether a value is a number once the parameters are known.

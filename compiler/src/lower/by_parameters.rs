@@ -8,13 +8,13 @@ use crate::expressions::graph::{Expr, ExprId, Graph};
 use crate::model::{Model, Range, Symbol};
 use fdcc_runtime::problem::{Layout, Origin};
 
-/// Right side, path constraints, both ends, and what is given; in the order of
-/// [`ByParameters`](fdcc_runtime::problem::ByParameters).
-pub(crate) fn by_parameters(model: &Model, lowered: &mut LoweredProblem) -> [VectorFunction; 4] {
+/// Right side, path constraints, both ends, and what is given, in the order of
+/// [`ByParameters`](fdcc_runtime::problem::ByParameters); then the sums over rows.
+pub(crate) fn by_parameters(model: &Model, lowered: &mut LoweredProblem) -> Vec<VectorFunction> {
     let given = given(model, lowered);
-    let [dynamics, path, boundary] =
-        [&lowered.dynamics, &lowered.path, &lowered.boundary].map(|it| by_first(model, it.clone()));
-    [dynamics, path, boundary, by_first(model, given)]
+    let first = [&lowered.dynamics, &lowered.path, &lowered.boundary, &given];
+    let sums = lowered.measured.iter().map(|it| &it.term);
+    first.into_iter().chain(sums).map(|it| by_first(model, it.clone())).collect()
 }
 
 /// The parameters are the first entries of `p`.

@@ -5,7 +5,7 @@
 
 use super::function::{Order, VectorFunction};
 use super::inputs::{self, Sizes};
-use super::objective::{self, Objective};
+use super::objective::{self, Hidden, Objective};
 use super::origin;
 use crate::expressions::graph::{ExprId, Graph};
 use crate::model::{Comparison, Model, Symbol};
@@ -47,7 +47,13 @@ pub(crate) fn expectations(model: &Model) -> LoweredExpectations {
             simulated: simulated_in(model, &graph, &expectation.values),
         });
     }
-    let needed = objective::integrals_in(model, &graph, &values);
+    let needed: Vec<usize> = objective::hidden_in(model, &graph, &values)
+        .into_iter()
+        .filter_map(|it| match it {
+            Hidden::Integral(at) => Some(at),
+            Hidden::Sum(_) => None,
+        })
+        .collect();
     let over_grid = inputs::over_grid(model, &mut graph, &sizes);
     let integrands: Vec<ExprId> = needed.iter().map(|&at| model.integrals[at].integrand).collect();
     let integrands = over_grid.apply(&mut graph, &integrands);

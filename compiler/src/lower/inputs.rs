@@ -5,6 +5,7 @@
 //! with.
 
 use super::kernel;
+use super::objective::Hidden;
 use crate::expressions::graph::{ExprId, Graph};
 use crate::expressions::kernels;
 use crate::expressions::polynomial::difference;
@@ -96,7 +97,8 @@ impl Inputs {
         });
     }
 
-    fn set(&mut self, model: &Model, choose: impl Fn(Symbol) -> Option<ExprId>) {
+    /// Gives those symbols another place for which there is one.
+    pub fn set(&mut self, model: &Model, choose: impl Fn(Symbol) -> Option<ExprId>) {
         for (slot, &symbol) in self.by_symbol.iter_mut().zip(&model.symbols) {
             *slot = choose(symbol).or(*slot);
         }
@@ -168,7 +170,7 @@ pub(crate) fn at_ends(
     model: &Model,
     graph: &mut Graph,
     layout: &Layout,
-    hidden: &[usize],
+    hidden: &[Hidden],
 ) -> Inputs {
     let mut inputs = of_parameters(model, graph, layout);
     let states = layout.x / 2;
@@ -176,11 +178,10 @@ pub(crate) fn at_ends(
     inputs.set(model, |symbol| match symbol {
         Symbol::AtStart(index) => Some(ends[index]),
         Symbol::AtEnd(index) => Some(ends[states + index]),
-        Symbol::Integral(index) => {
-            let at = hidden.iter().position(|&it| it == index)?;
+        symbol => {
+            let at = hidden.iter().position(|it| it.symbol() == symbol)?;
             Some(ends[states + model.states.len() + at])
         }
-        _ => None,
     });
     inputs
 }

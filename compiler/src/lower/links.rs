@@ -4,6 +4,7 @@
 //! parameters and unknowns. Output 0 is a part of the objective.
 
 use super::function::{Order, VectorFunction};
+use super::objective::Hidden;
 use super::{LoweredProblem, origin};
 use crate::expressions::graph::{ExprId, Graph};
 use crate::model::{Constraint, Model, Symbol};
@@ -91,7 +92,7 @@ impl<'m> Places<'m> {
             Symbol::AtEnd(at) => (End::Last(phase), at),
             Symbol::ControlAtEnd(at) => (End::Last(phase), lowered.flow.layout.x + at),
             Symbol::Integral(at) => {
-                let hidden = lowered.hidden.iter().position(|it| *it == at)?;
+                let hidden = lowered.hidden.iter().position(|it| *it == Hidden::Integral(at))?;
                 (End::Last(phase), model.states.len() + hidden)
             }
             _ => return None,

@@ -19,6 +19,7 @@ mod guess;
 mod inputs;
 mod kinks;
 mod links;
+mod measured;
 mod objective;
 mod problem;
 mod simulation;
@@ -28,6 +29,7 @@ pub use expectations::Expected;
 pub(crate) use expectations::{LoweredExpectations, expectations};
 pub use function::{Order, VectorFunction};
 pub(crate) use links::{LoweredLink, links};
+pub use objective::Hidden;
 pub use problem::problem;
 pub(crate) use problem::unknowns;
 pub(crate) use simulation::{Purpose, simulation, system};
@@ -37,6 +39,7 @@ use crate::expressions::kernels;
 use crate::model::{Model, Place, Switch};
 use fdcc_runtime::problem::{Layout, Origin};
 use inputs::Sizes;
+pub use measured::Measured;
 use objective::Objective;
 
 /// All functions of a problem, still expressions.
@@ -61,8 +64,10 @@ pub struct LoweredProblem {
     pub report: VectorFunction,
     /// Whether the last output of `dynamics` is the integrand of the objective.
     pub running_cost: bool,
-    /// The integrals that became states, as indices into [`Model::integrals`].
-    pub hidden: Vec<usize>,
+    /// The integrals and sums that became states.
+    pub hidden: Vec<Hidden>,
+    /// The terms of sums over rows of measured data.
+    pub measured: Vec<Measured>,
     /// The bounds of the outputs of `boundary` but the first.
     pub(crate) boundary_rows: Vec<boundary::Condition>,
 }
@@ -75,7 +80,10 @@ pub fn lower(model: &Model) -> LoweredProblem {
     let flow = flow(model, &mut graph, &sizes, &objective);
     let over_grid =
         OverGrid { model, sizes: &sizes, inputs: inputs::over_grid(model, &mut graph, &sizes) };
-    let dynamics = over_grid.dynamics(&mut graph, &objective);
+    let mut dynamics = over_grid.dynamics(&mut graph, &objective);
+    let measured = measured::lower(model, &mut graph, &sizes, &objective, &dynamics);
+    dynamics.outputs =
+        composed::compose(&mut graph, &model.method, &dynamics.layout, dynamics.outputs);
     let path = over_grid.function(
         &mut graph,
         "path",
@@ -104,14 +112,15 @@ pub fn lower(model: &Model) -> LoweredProblem {
         report,
         running_cost,
         hidden,
+        measured,
         boundary_rows,
     }
 }
 
 impl LoweredProblem {
     /// The functions that a problem compiles, in the order in which [`problem()`] takes them back.
-    pub fn functions(&self) -> [&VectorFunction; 7] {
-        [
+    pub fn functions(&self) -> Vec<&VectorFunction> {
+        let mut all = vec![
             &self.dynamics,
             &self.path,
             &self.boundary,
@@ -119,7 +128,9 @@ impl LoweredProblem {
             &self.interval,
             &self.switching,
             &self.report,
-        ]
+        ];
+        all.extend(self.measured.iter().map(|it| &it.term));
+        all
     }
 }
 
@@ -163,31 +174,39 @@ impl OverGrid<'_> {
         VectorFunction { name: name.into(), layout, outputs, origins, by, order: Order::Second }
     }
 
+    /// The rates, not yet as the increments of a composed scheme.
     fn dynamics(&self, graph: &mut Graph, objective: &Objective) -> VectorFunction {
-        let outputs = rates(self.model, objective);
+        let zero = graph.number(0.0);
+        let outputs = rates(self.model, zero, objective);
         let mut function = self.function(graph, "dynamics", outputs.into_iter(), true);
         let outputs =
             function.outputs.iter().map(|&output| graph.mul(self.inputs.duration, output));
         let rates: Vec<ExprId> = outputs.collect();
-        function.outputs = composed::compose(graph, &self.model.method, &function.layout, rates);
+        function.outputs = rates;
         function
     }
 }
 
 /// Right sides: of the states, of the integrals that became states, of the running cost.
-fn rates(model: &Model, objective: &Objective) -> Vec<(ExprId, Origin)> {
+fn rates(model: &Model, zero: ExprId, objective: &Objective) -> Vec<(ExprId, Origin)> {
     let states = model.states.iter().map(|state| (state.rate, origin(&state.equation)));
-    let integral =
-        |&at: &usize| (model.integrals[at].integrand, origin(&model.integrals[at].place));
+    let hidden = |it: &Hidden| {
+        let rate = match it {
+            Hidden::Integral(at) => model.integrals[*at].integrand,
+            Hidden::Sum(_) => zero,
+        };
+        (rate, origin(it.place(model)))
+    };
     let running = objective.running.map(|cost| (cost, objective.origin.clone()));
-    states.chain(objective.hidden.iter().map(integral)).chain(running).collect()
+    states.chain(objective.hidden.iter().map(hidden)).chain(running).collect()
 }
 
 fn flow(model: &Model, graph: &mut Graph, sizes: &Sizes, objective: &Objective) -> VectorFunction {
     let layout = sizes.flow();
     let inputs = inputs::of_flow(model, graph, &layout);
+    let zero = graph.number(0.0);
     let (outputs, origins): (Vec<ExprId>, Vec<Origin>) =
-        rates(model, objective).into_iter().unzip();
+        rates(model, zero, objective).into_iter().unzip();
     let outputs = inputs.apply(graph, &outputs);
     VectorFunction {
         name: "flow".into(),

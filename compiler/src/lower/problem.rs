@@ -2,6 +2,7 @@
 
 use super::boundary::is_fixed;
 use super::by_parameters::{is_autonomous, last_time};
+use super::objective::Hidden;
 use super::{LoweredProblem, origin};
 use crate::model::guess::fixed_by_a_row;
 use crate::model::numbers::Numbers;
@@ -13,16 +14,19 @@ use fdcc_runtime::problem::{
 use std::sync::Arc;
 
 /// Puts together what the runtime needs. `functions` are those of [`LoweredProblem::functions`],
-/// compiled.
+/// compiled: seven, then one for each sum over rows.
 pub fn problem(
     model: &Model,
     lowered: &LoweredProblem,
     numbers: &Numbers,
     functions: Vec<Arc<dyn Function>>,
 ) -> Problem {
-    let functions: [Arc<dyn Function>; 7] =
-        functions.try_into().unwrap_or_else(|_| unreachable!("a problem has seven functions"));
-    let [dynamics, path, boundary, guess, interval, switching, report] = functions;
+    let Some((first, terms)) = functions.split_first_chunk::<7>() else {
+        unreachable!("a problem has seven functions at least")
+    };
+    let [dynamics, path, boundary, guess, interval, switching, report] = first.clone();
+    let measurements = lowered.measured.iter().zip(terms);
+    let measurements = measurements.map(|(it, term)| it.with_rows(model, numbers, term));
     let parameters = parameters(model, lowered.flow.layout.p, numbers);
     let first_sigma = model.params.len() + model.frees.len();
     let layout: Layout = lowered.flow.layout;
@@ -51,8 +55,9 @@ pub fn problem(
         guess,
         interval,
         switching,
-        is_autonomous: is_autonomous(lowered),
-        last_time: last_time(model, lowered),
+        is_autonomous: is_autonomous(lowered) && lowered.measured.is_empty(),
+        last_time: last_time(model, lowered).filter(|_| lowered.measured.is_empty()),
+        measurements: measurements.collect(),
         report_names: model.report.iter().map(|report| report.place.name.clone()).collect(),
         report,
         method: model.method.clone(),
@@ -72,7 +77,7 @@ fn row_bounds(
 }
 
 /// The states of the model, then the integrals `hidden`.
-pub(super) fn states(model: &Model, hidden: &[usize], numbers: &Numbers) -> Vec<Variable> {
+pub(super) fn states(model: &Model, hidden: &[Hidden], numbers: &Numbers) -> Vec<Variable> {
     let declared = model.states.iter().map(|state| Variable {
         name: state.place.name.clone(),
         bounds: numbers.bounds(model, state.range),
@@ -80,11 +85,11 @@ pub(super) fn states(model: &Model, hidden: &[usize], numbers: &Numbers) -> Vec<
         origin: origin(&state.place),
         hidden: false,
     });
-    let hidden = hidden.iter().map(|&at| Variable {
-        name: model.integrals[at].place.name.clone(),
+    let hidden = hidden.iter().map(|it| it.place(model)).map(|place| Variable {
+        name: place.name.clone(),
         bounds: Bounds::FREE,
         unit: 1.0,
-        origin: origin(&model.integrals[at].place),
+        origin: origin(place),
         hidden: true,
     });
     declared.chain(hidden).collect()

@@ -17,6 +17,7 @@ use super::function::{Order, VectorFunction};
 use super::guess;
 use super::inputs::{self, Inputs, Sizes};
 use super::kinks::take_out;
+use super::objective::Hidden;
 use super::problem::{controls, parameters, states, surfaces};
 use super::{interval, origin, smoothed};
 use crate::expressions::graph::derivative::derivative;
@@ -46,14 +47,14 @@ pub(crate) struct Simulated {
     pub functions: Vec<VectorFunction>,
     enclosures: Enclosures,
     layout: Layout,
-    hidden: Vec<usize>,
+    hidden: Vec<Hidden>,
     surfaces: usize,
 }
 
 /// Lowers a model.
 pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) {
     let mut graph = model.graph.clone();
-    let hidden: Vec<usize> = (0..model.integrals.len()).collect();
+    let hidden: Vec<Hidden> = (0..model.integrals.len()).map(Hidden::Integral).collect();
     let sizes = Sizes::new(model, hidden.len());
     let surfaces = if purpose == Purpose::Smoothed { 0 } else { model.surfaces.len() };
     let layout = Layout { s: surfaces, ..sizes.flow() };
@@ -223,7 +224,7 @@ impl OverTime<'_> {
         self.over_inputs("resets", outputs, origins, 0..self.layout.states().end)
     }
 
-    fn objective(&mut self, hidden: &[usize]) -> VectorFunction {
+    fn objective(&mut self, hidden: &[Hidden]) -> VectorFunction {
         let layout = self.sizes.ends();
         let inputs = inputs::at_ends(self.model, self.graph, &layout, hidden);
         let objective = self.model.objective.as_ref();

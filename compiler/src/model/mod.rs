@@ -7,10 +7,17 @@
 
 mod expected;
 pub(crate) mod guess;
+mod measured;
 pub(crate) mod numbers;
 mod overrides;
 pub(crate) mod phases;
+mod switches;
 
+pub use measured::Sum;
+pub(crate) use measured::by_row;
+pub use switches::Switch;
+
+use crate::data::Table;
 use crate::expressions::graph::{ExprId, Graph};
 use crate::settings;
 use crate::units::{NamedUnit, WidthUnit};
@@ -42,6 +49,10 @@ pub enum Symbol {
     AtEnd(usize),
     /// The integral over the whole time of [`Model::integrals`].
     Integral(usize),
+    /// A sum over rows, one of [`Model::sums`].
+    Sum(usize),
+    /// In the current row of one of [`Model::tables`], one of its columns.
+    Column(usize, usize),
     /// A number that only a simulation can tell, one of [`Model::simulated`].
     Simulated(usize),
     /// An argument of a function, while its body is examined by itself; all functions share them.
@@ -145,16 +156,6 @@ pub struct Ball {
     pub surfaces: std::ops::Range<usize>,
 }
 
-/// What is smoothed with one width: a surface by itself, or the components of a [`Ball`].
-pub struct Switch<'m> {
-    /// The surface or the ball.
-    pub place: &'m Place,
-    /// Indices into [`Model::surfaces`].
-    pub surfaces: std::ops::Range<usize>,
-    /// Whether it is a ball.
-    pub is_ball: bool,
-}
-
 /// A reset of the state: `x+ = r(t, x-, p)` where a surface is crossed in one direction.
 #[derive(Clone, Debug)]
 pub struct Jump {
@@ -255,6 +256,10 @@ pub struct Model {
     pub sense: f64,
     /// Every `integral` of the objective, of conditions and of expectations.
     pub integrals: Vec<Integral>,
+    /// Measured data.
+    pub tables: Vec<Table>,
+    /// Every `sum` that reads the trajectory at the times of rows.
+    pub sums: Vec<Sum>,
     /// The width of every `blend`, where it is written and over parameters.
     pub widths: Vec<(Span, ExprId)>,
     /// What is reported.
@@ -314,6 +319,8 @@ impl Model {
             linked_objective: None,
             sense: 1.0,
             integrals: Vec::new(),
+            tables: Vec::new(),
+            sums: Vec::new(),
             widths: Vec::new(),
             report: Vec::new(),
             simulated: Vec::new(),
@@ -337,26 +344,6 @@ impl Model {
     pub fn with_objective(&self, value: ExprId) -> Model {
         let place = self.objective.as_ref().map(|(place, _)| place.clone()).unwrap_or_default();
         Model { objective: Some((place, value)), sense: 1.0, ..self.clone() }
-    }
-
-    /// The surfaces, with those of a ball taken together.
-    pub fn switches<'m>(&'m self) -> Vec<Switch<'m>> {
-        let is_alone = |at: &usize| self.balls.iter().all(|ball| !ball.surfaces.contains(at));
-        let alone = |at: usize| Switch {
-            place: &self.surfaces[at].place,
-            surfaces: at..at + 1,
-            is_ball: false,
-        };
-        let mut all: Vec<Switch<'m>> =
-            (0..self.surfaces.len()).filter(is_alone).map(alone).collect();
-        let of = |ball: &'m Ball| Switch {
-            place: &ball.place,
-            surfaces: ball.surfaces.clone(),
-            is_ball: true,
-        };
-        all.extend(self.balls.iter().map(of));
-        all.sort_by_key(|switch| switch.surfaces.start);
-        all
     }
 
     /// The first construct that is understood but cannot be simulated or differentiated as a whole.

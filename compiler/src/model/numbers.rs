@@ -53,6 +53,11 @@ impl Numbers {
         Bounds { lower: self.value(model, range.lower), upper: self.value(model, range.upper) }
     }
 
+    /// One for each symbol of the model.
+    pub(crate) fn inputs(&self) -> &[f64] {
+        &self.inputs
+    }
+
     /// The value of a parameter or unknown.
     pub fn of(&self, symbol: Symbol) -> f64 {
         self.places.get(&symbol).map_or(f64::NAN, |&input| self.inputs[input])

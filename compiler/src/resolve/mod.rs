@@ -9,6 +9,7 @@ pub(crate) mod expressions;
 mod items;
 pub(crate) mod phases;
 
+use crate::data::Tables;
 use crate::model::{Model, Phase, Place, Surface};
 use crate::syntax::scope::Scope;
 use crate::units::{self, Readings};
@@ -22,8 +23,9 @@ pub(crate) fn resolve<'a>(
     items: &[&'a Item],
     phases: Vec<Inner<'a>>,
     readings: &'a Readings,
+    tables: &'a Tables,
 ) -> Elaborator<'a> {
-    let mut elaborator = declared(items, readings);
+    let mut elaborator = declared(items, readings, tables);
     items.iter().for_each(|item| units::unknown(item, &mut elaborator.diagnostics));
     elaborator.phases = phases;
     elaborator.declare_all();
@@ -43,9 +45,10 @@ pub(crate) fn resolve_phase<'a>(
     outer: &[&'a Item],
     phase: &Around<'a>,
     readings: &'a Readings,
+    tables: &'a Tables,
 ) -> Elaborator<'a> {
     let all: Vec<&Item> = outer.iter().chain(&phase.items).copied().collect();
-    let mut elaborator = declared(&all, readings);
+    let mut elaborator = declared(&all, readings, tables);
     phase.items.iter().for_each(|item| units::unknown(item, &mut elaborator.diagnostics));
     elaborator.declare_all();
     if phase.follows {
@@ -68,10 +71,10 @@ pub(crate) struct Around<'a> {
     pub links: Vec<&'a [Assignment]>,
 }
 
-fn declared<'a>(items: &[&'a Item], readings: &'a Readings) -> Elaborator<'a> {
+fn declared<'a>(items: &[&'a Item], readings: &'a Readings, tables: &'a Tables) -> Elaborator<'a> {
     let mut diagnostics: Vec<Diagnostic> = Vec::new();
     let scope = Scope::new(items, &mut diagnostics);
-    let mut elaborator = Elaborator::new(scope, readings);
+    let mut elaborator = Elaborator::new(scope, readings, tables);
     elaborator.diagnostics = diagnostics;
     elaborator
 }

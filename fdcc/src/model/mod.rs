@@ -1,10 +1,12 @@
 //! A model: read, checked, and compiled once for all values of its parameters.
 
 mod code;
+mod data;
 mod reading;
 mod values;
 
-pub use reading::{Checked, check, text};
+pub use data::DataFiles;
+pub use reading::{Checked, check, check_with, text};
 pub use values::Value;
 
 use crate::error::Error;
@@ -36,6 +38,7 @@ pub struct Model {
     source: Arc<SourceFile>,
     diagnostics: Arc<Vec<Diagnostic>>,
     meaning: Arc<fdcc_compiler::Model>,
+    files: Option<DataFiles>,
     code: Arc<Code>,
 }
 
@@ -68,26 +71,15 @@ fn widths(problem: &Problem) -> usize {
 }
 
 impl Model {
-    /// Reads and checks a file.
+    /// Reads and checks a file, with the data files beside it.
     ///
     /// # Errors
     ///
     /// A file that cannot be read; a model with mistakes.
     pub fn from_file(path: &str) -> Result<Self, Error> {
-        Model::load(path, |path| std::fs::read(path))
-    }
-
-    /// The same with another way to come by the bytes of a name.
-    ///
-    /// # Errors
-    ///
-    /// Those of `load`; a model with mistakes.
-    pub fn load(
-        name: &str,
-        load: impl FnOnce(&str) -> std::io::Result<Vec<u8>>,
-    ) -> Result<Self, Error> {
-        let cannot = |error| Error::File(format!("{name} cannot be read: {error}"));
-        check(name, load(name).map_err(cannot)?).into_model()
+        let cannot = |error| Error::File(format!("{path} cannot be read: {error}"));
+        let bytes = std::fs::read(path).map_err(cannot)?;
+        check_with(path, bytes, Some(DataFiles::beside(path))).into_model()
     }
 
     /// Reads and checks a text; `name` stands in messages.
@@ -104,8 +96,9 @@ impl Model {
         source: Arc<SourceFile>,
         diagnostics: Arc<Vec<Diagnostic>>,
         meaning: fdcc_compiler::Model,
+        files: Option<DataFiles>,
     ) -> Self {
-        Model { source, diagnostics, meaning: Arc::new(meaning), code: Arc::default() }
+        Model { source, diagnostics, meaning: Arc::new(meaning), files, code: Arc::default() }
     }
 
     /// The name that the model gives itself.
@@ -151,7 +144,7 @@ impl Model {
     pub fn phases(&self) -> Vec<Model> {
         let own = |phase: &fdcc_compiler::Phase| {
             let (source, diagnostics) = (Arc::clone(&self.source), Arc::clone(&self.diagnostics));
-            Model::new(source, diagnostics, phase.model.clone())
+            Model::new(source, diagnostics, phase.model.clone(), self.files.clone())
         };
         self.meaning.phases.iter().map(own).collect()
     }

@@ -1,9 +1,9 @@
 //! From bytes to a model, with everything that is wrong with it as plain data.
 
-use super::Model;
+use super::{DataFiles, Model};
 use crate::error::Error;
-use fdcc_compiler::{Analysis, analyze, check_with_objective};
-use fdcc_grammar::{Code, Diagnostic, Severity, SourceFile, Span, parse};
+use fdcc_compiler::{Analysis, Files, analyze_with, check_with_objective};
+use fdcc_grammar::{Code, Diagnostic, ParseCache, Severity, SourceFile, Span, parse};
 use std::string::FromUtf8Error;
 use std::sync::Arc;
 
@@ -25,15 +25,22 @@ pub struct Checked {
     pub diagnostics: Arc<Vec<Diagnostic>>,
 }
 
-/// Reads and checks a text; `name` stands in messages.
+/// Reads and checks a text; `name` stands in messages. A model with measured data waits for it.
 pub fn check(name: &str, bytes: Vec<u8>) -> Checked {
+    check_with(name, bytes, None)
+}
+
+/// The same with data files.
+pub fn check_with(name: &str, bytes: Vec<u8>, files: Option<DataFiles>) -> Checked {
     let (source, not_text) = text(name, bytes);
     let source = Arc::new(source);
     if let Some(diagnostic) = not_text {
         return Checked { source, model: None, diagnostics: Arc::new(vec![diagnostic]) };
     }
-    let Analysis { model, diagnostics, .. } = analyze(&source.text);
-    Checked::new(source, model, diagnostics)
+    let cache = &mut ParseCache::default();
+    let Analysis { model, diagnostics, .. } =
+        analyze_with(cache, &source.text, loader(&files).as_deref());
+    Checked::new(source, model, diagnostics, files)
 }
 
 impl Checked {
@@ -41,9 +48,10 @@ impl Checked {
         source: Arc<SourceFile>,
         meaning: Option<fdcc_compiler::Model>,
         diagnostics: Vec<Diagnostic>,
+        files: Option<DataFiles>,
     ) -> Self {
         let diagnostics = Arc::new(diagnostics);
-        let model = meaning.map(|it| Model::new(source.clone(), diagnostics.clone(), it));
+        let model = meaning.map(|it| Model::new(source.clone(), diagnostics.clone(), it, files));
         Checked { source, model, diagnostics }
     }
 
@@ -74,10 +82,19 @@ impl Model {
     /// The same with another objective: any expression that has a value at the end, such as
     /// `x(end)`. The places of what is found are in that expression.
     pub fn with_objective(&self, of: &str) -> Checked {
-        let checked = check_with_objective(&parse(&self.source.text).tree, of);
-        let found = Checked::new(self.source.clone(), checked.model, Vec::new());
+        let load = loader(&self.files);
+        let tree = parse(&self.source.text).tree;
+        let checked = check_with_objective(&tree, of, load.as_deref());
+        let files = self.files.clone();
+        let found = Checked::new(self.source.clone(), checked.model, Vec::new(), files);
         Checked { diagnostics: Arc::new(checked.diagnostics), ..found }
     }
+}
+
+/// Data files as the compiler wants them.
+fn loader(files: &Option<DataFiles>) -> Option<Box<Files<'_>>> {
+    let files = files.as_ref()?;
+    Some(Box::new(|name: &str| files.text(name)))
 }
 
 /// The text of some bytes, and what is wrong if they are none.

@@ -12,12 +12,14 @@
 
 mod chain;
 mod choices;
+mod measurements;
 mod method;
 mod often_called;
 mod scheme;
 
 pub use chain::{Chain, End, Link};
 pub use choices::{ControlShape, Linear, Solver, Word};
+pub use measurements::{Interpolant, Measurements};
 pub use method::{FIRST_GRID, Grid, Method, Order};
 pub use often_called::often_called;
 pub(crate) use scheme::RADAU;
@@ -356,7 +358,10 @@ pub struct Problem {
     pub interval: Arc<dyn Function>,
     /// `psi`, or `|psi|` of a `Dir`, one output per surface, over normalised time.
     pub switching: Arc<dyn Function>,
-    /// Whether neither `dynamics` nor `path` depends on the time but through states and controls.
+    /// Sums over rows of measured data, which are part of the objective or of a state.
+    pub measurements: Vec<Measurements>,
+    /// Whether neither `dynamics` nor `path` depends on the time but through states and controls,
+    /// and nothing is measured at certain times.
     pub is_autonomous: bool,
     /// The unknown that is the last time and appears in no right side, path constraint or first
     /// time.
@@ -379,6 +384,8 @@ pub struct ByParameters {
     pub path: Arc<dyn Function>,
     /// See [`Problem::boundary`].
     pub boundary: Arc<dyn Function>,
+    /// The functions of [`Problem::measurements`].
+    pub measurements: Vec<Arc<dyn Function>>,
     /// Numbers that the parameters give. Inputs `[p]`; outputs: the parameters themselves, each
     /// over the others; the starts of all states; then lower and upper bounds, in pairs, of states,
     /// controls, unknowns, path constraints and boundary conditions.

@@ -221,6 +221,11 @@ impl Scheme {
         self.family().map_or(&[], |row| row.nodes[self.stages() - 1])
     }
 
+    /// Whether the states of an interval are a polynomial with nodes.
+    pub fn is_collocation(self) -> bool {
+        self.family().is_some()
+    }
+
     fn one_step(self) -> Option<&'static OneStep> {
         ONE_STEP.iter().find(|row| row.scheme == self)
     }

@@ -42,7 +42,8 @@ pub fn by_parameters(
     p.iter().enumerate().for_each(|(index, value)| nlp.set_parameter(index, *value));
     // What a start that is given as a number counts.
     let at_start = minimum::slopes(&mut nlp, solution)[nlp.chain().state(0)].to_vec();
-    Lagrangian::new(problem, &nlp, solution).by_parameters(by, &at_start)
+    let rows = nlp.rows(&solution.v, &solution.multipliers.constraints);
+    Lagrangian::new(problem, &nlp, solution).by_parameters(by, &at_start, &rows)
 }
 
 /// What the objective of the model changes by with the bound of each path constraint, per time: one
@@ -221,11 +222,19 @@ impl<'a> Lagrangian<'a> {
     }
 
     /// By each parameter, those included that are computed from it.
-    fn by_parameters(&self, by: &ByParameters, at_start: &[f64]) -> Vec<f64> {
+    fn by_parameters(
+        &self,
+        by: &ByParameters,
+        at_start: &[f64],
+        rows: &[(Columns, Vec<f64>)],
+    ) -> Vec<f64> {
         let mut sums = vec![0.0; by.parameters];
         self.add_dynamics(by, &mut sums);
         self.add_path(by, &mut sums);
         self.add_boundary(by, &mut sums);
+        for (function, (points, weights)) in by.measurements.iter().zip(rows) {
+            add_slopes(&**function, points, &self.parameters, &mut sums, |_| weights.clone());
+        }
         self.add_given(by, at_start, &mut sums);
         sums.iter().map(|sum| self.problem.sense * sum).collect()
     }

@@ -11,6 +11,8 @@
 //! nodes, or, where controls are linear, the values at the end of the interval, which `w_{k+1}`
 //! hands on to the next.
 
+mod between;
+
 use super::mesh::Mesh;
 use super::{collocation, tableau};
 use crate::lagrange;
@@ -280,29 +282,6 @@ impl Places {
         let ends_in_node = self.nodes.is_none_or(|nodes| nodes.len() > self.inner_nodes().len());
         let end = ends_in_node.then_some((1.0, self.joint(step + 1)));
         [(0.0, self.joint(step))].into_iter().chain(inner).chain(end).unzip()
-    }
-
-    fn state(&self, state: usize, time: f64) -> Combination {
-        let passed = time * self.steps as f64;
-        let step = (passed as usize).min(self.steps - 1);
-        let (points, places) = self.support(step);
-        let values = lagrange::values(&points, passed - step as f64);
-        places.iter().map(|place| place + state).zip(values).collect()
-    }
-
-    fn control(&self, control: usize, time: f64) -> Combination {
-        let combination: Combination = match (self.shape, self.nodes) {
-            (ControlShape::Linear, _) => {
-                vec![(self.states + control, 1.0 - time), (self.carried + control, time)]
-            }
-            (ControlShape::Polynomial, Some(nodes)) => {
-                let place = |j: usize| self.carried + j * self.controls + control;
-                let values = lagrange::values(nodes, time).into_iter().enumerate();
-                values.map(|(j, value)| (place(j), value)).collect()
-            }
-            _ => vec![(self.carried + control, 1.0)],
-        };
-        combination.into_iter().filter(|(_, factor)| *factor != 0.0).collect()
     }
 
     fn mean(&self, control: usize) -> Combination {

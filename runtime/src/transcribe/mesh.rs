@@ -25,6 +25,17 @@ impl Mesh {
         }
     }
 
+    /// The interval in which a time is, and which part of it has passed; the first and the last
+    /// one go on.
+    pub(crate) fn find(&self, tau: f64) -> (usize, f64) {
+        let k = match &self.points {
+            None => (tau * self.intervals as f64) as usize,
+            Some(points) => points.partition_point(|point| *point <= tau).saturating_sub(1),
+        };
+        let k = k.min(self.intervals - 1);
+        (k, (tau - self.at(k, 0.0)) / (self.at(k, 1.0) - self.at(k, 0.0)))
+    }
+
     /// The length of interval `k`, relative to that of a uniform grid.
     pub(crate) fn relative(&self, k: usize) -> f64 {
         self.points

@@ -16,6 +16,7 @@ pub mod chain;
 pub(crate) mod collocation;
 mod guess;
 pub(crate) mod interval;
+mod measured;
 pub(crate) mod mesh;
 mod quantities;
 mod sampled;
@@ -24,10 +25,11 @@ mod tables;
 
 use crate::linalg::{Stages, Triplets};
 use crate::nlp::{Derivatives, NO_OBJECTIVE, Nlp, Place, Quantities, objective_unit};
-use crate::problem::{Bounds, Origin, Problem};
+use crate::problem::{Bounds, Columns, Origin, Problem};
 use assembly::{Builder, Repeated};
 use boundary::Ends;
 use interval::{Interval, Node, Point};
+use measured::Measured;
 use mesh::Mesh;
 use sampled::{Matrices, Sampled, Target};
 
@@ -50,6 +52,8 @@ pub struct TranscribedNlp<'p> {
     nodes: Vec<Sampled>,
     /// The path constraints, once per point of an interval.
     path: Vec<Sampled>,
+    /// Sums over rows of measured data.
+    measured: Vec<Measured<'p>>,
     ends: Ends,
     /// All of `p`, unknowns included.
     parameters: Vec<f64>,
@@ -66,6 +70,9 @@ impl<'p> TranscribedNlp<'p> {
         let constant = constant(&interval, &mut matrices);
         let nodes = nodes(problem, &interval, &mut matrices);
         let path = path(problem, &interval, &mut matrices);
+        let measured = problem.measurements.iter();
+        let measured: Vec<Measured> =
+            measured.map(|it| Measured::new(problem, it, &interval, &mut matrices)).collect();
         let Matrices { mut jacobian, mut hessian, .. } = matrices;
         let ends = Ends::new(problem, stages, &mut jacobian, &mut hessian);
         TranscribedNlp {
@@ -81,6 +88,7 @@ impl<'p> TranscribedNlp<'p> {
             constant,
             nodes,
             path,
+            measured,
             ends,
             parameters: problem.parameters.iter().map(|parameter| parameter.value).collect(),
         }
@@ -127,8 +135,16 @@ impl<'p> TranscribedNlp<'p> {
     pub(crate) fn gradient_from_here_on(&self) -> Vec<f64> {
         let mut gradient = vec![0.0; self.stages.variables()];
         self.nodes.iter().for_each(|node| node.add_own_gradient(self.stages, &mut gradient));
+        self.measured.iter().for_each(|it| it.add_own_gradient(&mut gradient));
         self.ends.add_last_gradient(self.stages, &mut gradient);
         gradient
+    }
+
+    /// The points of the rows of each sum at `v`, and what its term counts there in the Lagrangian.
+    pub(crate) fn rows(&mut self, v: &[f64], multipliers: &[f64]) -> Vec<(Columns, Vec<f64>)> {
+        self.load(v);
+        let of = |it: &Measured| (it.points().clone(), it.weights(1.0, multipliers));
+        self.measured.iter().map(of).collect()
     }
 
     /// Whether a row is a step of a differential equation.
@@ -155,6 +171,8 @@ impl<'p> TranscribedNlp<'p> {
             .iter_mut()
             .chain(&mut self.path)
             .for_each(|sampled| sampled.load(self.stages, v));
+        let (interval, mesh) = (&self.interval, &self.mesh);
+        self.measured.iter_mut().for_each(|it| it.load(interval, mesh, &self.parameters, v));
         self.ends.load(self.stages, v);
     }
 }
@@ -266,6 +284,9 @@ impl Nlp for TranscribedNlp<'_> {
         for sampled in self.nodes.iter_mut().chain(&mut self.path) {
             objective += sampled.add_values(stages, &self.parameters, rows);
         }
+        for measured in &mut self.measured {
+            objective += measured.add_values(&self.parameters, rows);
+        }
         objective
     }
 
@@ -279,6 +300,10 @@ impl Nlp for TranscribedNlp<'_> {
         for sampled in self.nodes.iter_mut().chain(&mut self.path) {
             sampled.differentiate(self.stages, &self.parameters, weight, multipliers);
             sampled.scatter(gradient, jacobian, hessian);
+        }
+        for measured in &mut self.measured {
+            measured.differentiate(&self.parameters, weight, multipliers);
+            measured.scatter(gradient, jacobian, hessian);
         }
         self.ends.differentiate(self.stages, &self.parameters, weight, multipliers);
         self.ends.scatter(gradient, jacobian, hessian);
@@ -316,6 +341,12 @@ impl Nlp for TranscribedNlp<'_> {
                     grid_point: Some(k + 1),
                     ..Place::default()
                 });
+            }
+        }
+        for measured in &mut self.measured {
+            if let Some(k) = measured.not_finite(&self.parameters) {
+                let origin = measured.origin();
+                return Some(Place { origin, grid_point: Some(k), ..Place::default() });
             }
         }
         let output = self.ends.not_finite(stages, &self.parameters, rows)?;

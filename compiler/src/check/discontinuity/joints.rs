@@ -34,6 +34,7 @@ fn with_integrands(meaning: &Elaborator<'_>, parts: &[ExprId]) -> Vec<ExprId> {
     let inputs = meaning.graph.inputs_of(parts).into_iter();
     let integrands = inputs.filter_map(|input| match meaning.symbols[input as usize] {
         Symbol::Integral(at) => Some(meaning.integrals[at].integrand),
+        Symbol::Sum(at) => Some(meaning.model.sums[at].term),
         _ => None,
     });
     parts.iter().copied().chain(integrands).collect()

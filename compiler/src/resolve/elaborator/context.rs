@@ -55,10 +55,19 @@ impl Context {
     pub const OBJECTIVE: Context = Context::new("the objective", WHOLE);
     pub const SENSITIVITY: Context = Context::new("a sensitivity", WHOLE);
     pub const EXPECT: Context = Context::new("an expectation", WHOLE.or(Reads::SIMULATION));
+    pub const TABLE: Context = Context::new("a table", Reads::ROW);
+    pub const ROW_TIME: Context = Context::new("the time of a row", Reads::ROW.or(Reads::PARAM));
+    pub const AT_A_ROW: Context =
+        Context::new("a value at the time of a row", AT_AN_END.or(Reads::CONTROL));
     pub const GUESS: Context = Context {
         is_guess: true,
         ..Context::new("a guess", Reads::TIME.or(Reads::PARAM).or(Reads::FREE))
     };
+
+    /// The same inside a sum over rows.
+    pub fn of_rows(self) -> Context {
+        Context { name: "a sum over data", allowed: self.allowed.or(Reads::ROW), ..self }
+    }
 }
 
 impl Elaborator<'_> {
@@ -79,6 +88,7 @@ impl Elaborator<'_> {
 /// Why a kind of symbol has no meaning in a context, and what could be meant.
 fn explain(what: &str, beyond: Reads, context: Context) -> (&'static str, String) {
     let whole = context.allowed.has(Reads::WHOLE);
+    let in_a_sum = context.allowed.has(Reads::ROW) && context.allowed.has(Reads::PARAM);
     if beyond.has(Reads::FOREIGN) {
         (
             "is of another phase",
@@ -93,6 +103,15 @@ fn explain(what: &str, beyond: Reads, context: Context) -> (&'static str, String
              write this within the phase"
                 .into(),
         )
+    } else if beyond.has(Reads::ROW) {
+        (
+            "a column, which has a value in each row",
+            "go through the rows with `sum(k in obs, ...)`, or draw a curve through them with \
+             `interpolate(obs.t, obs.y, t)`"
+                .into(),
+        )
+    } else if in_a_sum && beyond.has(Reads::STATE.or(Reads::CONTROL).or(Reads::TIME)) {
+        ("at which time?", format!("write `{what}(k.t)`: its value at the time of a row"))
     } else if beyond.has(Reads::SIMULATION) {
         ("only a simulation can tell", "it may stand in `expect`".into())
     } else if beyond.has(Reads::WHOLE) {

@@ -14,6 +14,7 @@ use super::elaborator::constants::ConstantPart;
 use super::elaborator::context::Context;
 use super::elaborator::phases::{Handed, Inner};
 use super::elaborator::value::{Parts, Reads, Traits, Value};
+use crate::data::Tables;
 use crate::expressions::blend::Guards;
 use crate::expressions::graph::evaluate;
 use crate::expressions::graph::{ExprId, Graph};
@@ -32,6 +33,26 @@ pub(crate) struct SurfaceEntry {
     pub psi: Option<ExprId>,
     /// Its selector.
     pub selector: ExprId,
+}
+
+/// A curve through measured data.
+#[derive(Clone, Copy)]
+pub(crate) struct Curve {
+    /// Through the rows of this table.
+    pub table: usize,
+    /// Where it begins and ends.
+    pub ends: [f64; 2],
+    /// Where it is read.
+    pub place: ExprId,
+    /// The call.
+    pub span: Span,
+}
+
+/// The rows of a sum over data.
+#[derive(Default)]
+pub(crate) struct Rows {
+    /// At which time the trajectory is read.
+    pub time: Option<ExprId>,
 }
 
 /// What a value is used for, and what it is made of: the subject of the checks.
@@ -82,8 +103,12 @@ pub(crate) struct Elaborator<'a> {
     pub owner: Option<usize>,
     /// Whether a function's body is examined with arguments that are no real values.
     pub examining: bool,
-    /// How many sums over data we are in.
-    pub sums: usize,
+    /// The rows of the sum over data that we are in.
+    pub rows: Option<Rows>,
+    /// Data sets that were read.
+    pub tables: &'a Tables,
+    /// Curves through them.
+    pub curves: Vec<Curve>,
     /// Surfaces, declared and unnamed.
     pub surfaces: Vec<SurfaceEntry>,
     /// The vectors of every `Dir`.
@@ -141,7 +166,7 @@ pub(crate) struct Elaborator<'a> {
 
 impl<'a> Elaborator<'a> {
     /// Nothing evaluated yet.
-    pub fn new(scope: Scope<'a>, readings: &'a Readings) -> Self {
+    pub fn new(scope: Scope<'a>, readings: &'a Readings, tables: &'a Tables) -> Self {
         let mut graph = Graph::new();
         let interval = [graph.number(0.0), graph.number(1.0)];
         let values = vec![Value::default(); scope.declarations.len()];
@@ -158,7 +183,9 @@ impl<'a> Elaborator<'a> {
             depth: 0,
             owner: None,
             examining: false,
-            sums: 0,
+            rows: None,
+            tables,
+            curves: Vec::new(),
             surfaces: Vec::new(),
             balls: Vec::new(),
             surface_of: HashMap::new(),
@@ -191,6 +218,14 @@ impl<'a> Elaborator<'a> {
     pub fn symbol(&mut self, symbol: Symbol) -> ExprId {
         self.symbols.push(symbol);
         self.graph.input(self.symbols.len() as u32 - 1)
+    }
+
+    /// The input of a symbol, new or not.
+    pub fn known_symbol(&mut self, symbol: Symbol) -> ExprId {
+        match self.symbols.iter().position(|known| *known == symbol) {
+            Some(input) => self.graph.input(input as u32),
+            None => self.symbol(symbol),
+        }
     }
 
     /// Reports and gives the unknown value.

@@ -73,6 +73,8 @@ impl Reads {
     /// Of a phase, within one.
     pub const FOREIGN: Reads = Reads(512);
     pub const ALL: Reads = Reads(1023);
+    /// A column of measured data, which has a value in each row.
+    pub const ROW: Reads = Reads(1024);
 
     pub const fn or(self, other: Reads) -> Reads {
         Reads(self.0 | other.0)

@@ -32,6 +32,11 @@ impl<'a> Elaborator<'a> {
             return self.at_an_end(callee, &arguments[0], expr.span);
         }
         let ExprKind::Name(name) = &callee.kind else {
+            if let (ExprKind::Part(..) | ExprKind::Index(..), true, [at]) =
+                (&callee.kind, self.rows.is_some(), arguments)
+            {
+                return self.at_a_row(callee, at, expr.span);
+            }
             return self.call_of_value(expr, callee, arguments);
         };
         let declared = self.scope.find(name).map(|at| (at, self.scope.declarations[at].item));
@@ -40,11 +45,8 @@ impl<'a> Elaborator<'a> {
                 ItemKind::Fn { arguments: formal, body, .. } => {
                     self.own_function(at, formal, body, arguments, expr.span)
                 }
-                _ if self.sums > 0 && arguments.len() == 1 => {
-                    // `x(k.t)`: the model at the time of a measurement.
-                    self.plain_arguments(arguments);
-                    self.evaluate(callee);
-                    Value::default()
+                _ if self.rows.is_some() && arguments.len() == 1 => {
+                    self.at_a_row(callee, &arguments[0], expr.span)
                 }
                 _ if !is_function(name) => {
                     self.not_a_function(name, scope::kind_word(item), callee.span, arguments)
@@ -123,7 +125,8 @@ impl<'a> Elaborator<'a> {
     fn builtin_call(&mut self, name: &'a str, expr: &'a Expr, arguments: &'a [Argument]) -> Value {
         let wanted = functions::arity(name).expect("asked only for functions of the language");
         let is_form = functions::find(name).is_some_and(|it| it.kind == functions::Kind::Form);
-        if !self.count_is(name, wanted, arguments.len(), expr.span, None) {
+        let has_shape = name == "interpolate" && arguments.len() == wanted + 1;
+        if !has_shape && !self.count_is(name, wanted, arguments.len(), expr.span, None) {
             // What a form reads, it reads in its own way: nothing is to be said of it here.
             if !is_form {
                 self.plain_arguments(arguments);

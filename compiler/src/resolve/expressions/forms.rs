@@ -7,7 +7,7 @@ use crate::resolve::elaborator::context::Context;
 use crate::resolve::elaborator::value::{Parts, Reads, SetForm, SetUse, Traits, Value};
 use crate::resolve::elaborator::{Elaborator, SurfaceEntry};
 use crate::syntax::{scope, text};
-use fdcc_grammar::ast::{Argument, Expr, ExprKind, Ident, ItemKind};
+use fdcc_grammar::ast::{Argument, Expr, ExprKind, Ident};
 use fdcc_grammar::{Code, Diagnostic, Span};
 use std::collections::HashMap;
 
@@ -20,11 +20,9 @@ impl<'a> Elaborator<'a> {
             ("selected", [Argument::Expr(set)]) => self.selected(set, expr.span),
             ("integral", [Argument::Expr(integrand)]) => self.integral(integrand, expr),
             ("sum", [Argument::Iteration(name, data), Argument::Expr(term)]) => {
-                self.sum(name, data, term, expr.span)
+                self.sum(name, data, term, expr)
             }
-            ("interpolate", [Argument::Expr(_), Argument::Expr(_), Argument::Expr(at)]) => {
-                self.interpolate(arguments, at, expr.span)
-            }
+            ("interpolate", _) => self.interpolate(arguments, expr.span),
             ("blend", [Argument::Expr(function), Argument::Expr(width)]) => {
                 self.blend(function, width, expr.span)
             }
@@ -32,17 +30,16 @@ impl<'a> Elaborator<'a> {
             ("sensitivity", [Argument::Expr(of), Argument::Expr(by)]) => {
                 self.sensitivity(of, by, expr.span)
             }
-            _ => {
-                let message = format!("these are no arguments for `{name}`");
-                let found = Diagnostic::new(
-                    Code::NotAllowedHere,
-                    message,
-                    argument_span(&arguments[0]),
-                    "not an expression it takes",
-                );
-                self.fail(found.help(form_help(name)))
-            }
+            _ => self.no_arguments(name, &arguments[0]),
         }
+    }
+
+    /// Arguments of another kind than a form takes.
+    pub fn no_arguments(&mut self, name: &str, first: &Argument) -> Value {
+        let message = format!("these are no arguments for `{name}`");
+        let (place, label) = (argument_span(first), "not an expression it takes");
+        let found = Diagnostic::new(Code::NotAllowedHere, message, place, label);
+        self.fail(found.help(form_help(name)))
     }
 
     /// `Sgn(surface)`, or of an expression that then is a surface named by its text.
@@ -257,45 +254,6 @@ impl<'a> Elaborator<'a> {
         bare.unwrap_or_else(|| self.graph.substitute(&parts, &moved))
     }
 
-    fn sum(&mut self, name: &'a Ident, data: &'a Ident, term: &'a Expr, span: Span) -> Value {
-        let Some(at) = self.scope.find(&data.name) else {
-            let found = self.scope.unknown(
-                &data.name,
-                data.span,
-                &[],
-                &format!("data {} = csv(\"FILE\") columns t, x", data.name),
-            );
-            return self.fail(found);
-        };
-        let item = self.scope.declarations[at].item;
-        if !matches!(item.kind, ItemKind::Data { .. }) {
-            let kind = scope::kind_word(item);
-            let message = format!("`{}` is a {kind}, not a data set", data.name);
-            let found = Diagnostic::new(Code::WrongKind, message, data.span, format!("a {kind}"));
-            return self.fail(found.help("declare it: `data obs = csv(\"FILE\") columns t, x`"));
-        }
-        let row = Value { named: Some(at), ..Value::default() };
-        self.locals.push((&name.name, row));
-        self.sums += 1;
-        let context = Context { allowed: Reads::ALL, ..self.context };
-        let value = self.evaluate_in(context, term);
-        self.sums -= 1;
-        self.locals.pop();
-        self.not_yet(span, "a sum over data");
-        Value::unknown(Traits { reads: Reads::WHOLE, ..value.traits })
-    }
-
-    fn interpolate(&mut self, arguments: &'a [Argument], at: &'a Expr, span: Span) -> Value {
-        for argument in &arguments[..2] {
-            if let Argument::Expr(column) = argument {
-                self.evaluate(column);
-            }
-        }
-        let value = self.evaluate(at);
-        self.not_yet(span, "interpolated data");
-        Value::unknown(value.traits)
-    }
-
     fn sliding(&mut self, surface: &'a Expr, span: Span) -> Value {
         let known = match &surface.kind {
             ExprKind::Name(name) => self.surface_named(name),
@@ -350,10 +308,7 @@ impl<'a> Elaborator<'a> {
             self.model.simulated.push(what);
             self.model.simulated.len() - 1
         });
-        let part = match self.symbols.iter().position(|symbol| *symbol == Symbol::Simulated(at)) {
-            Some(input) => self.graph.input(input as u32),
-            None => self.symbol(Symbol::Simulated(at)),
-        };
+        let part = self.known_symbol(Symbol::Simulated(at));
         let traits = Traits { reads: Reads::SIMULATION, ..Traits::default() };
         self.admit(name, Value::scalar(part, traits), span)
     }

@@ -2,6 +2,7 @@
 
 mod blend;
 mod calls;
+mod data;
 mod direction;
 mod forms;
 pub(crate) mod knots;
@@ -13,7 +14,7 @@ use super::elaborator::value::{Parts, Traits, Value};
 use crate::syntax::DEEPEST;
 use crate::syntax::{scope, walk};
 use crate::units;
-use fdcc_grammar::ast::{Expr, ExprKind, Ident, ItemKind};
+use fdcc_grammar::ast::{Expr, ExprKind, Ident, ItemKind, Unit};
 use fdcc_grammar::{Code, Diagnostic, Span};
 
 impl<'a> Elaborator<'a> {
@@ -156,9 +157,8 @@ impl<'a> Elaborator<'a> {
         let Some(item) = value.named.map(|at| self.item_named(at)) else {
             return self.no_part(value, part, &[]);
         };
-        if let ItemKind::Data { columns, .. } = &item.kind {
-            let names: Vec<&Ident> = columns.iter().map(|column| &column.0).collect();
-            return self.column(&names, part);
+        if let (ItemKind::Data { columns, .. }, Some(at)) = (&item.kind, value.named) {
+            return self.column_named(at, columns, part);
         }
         let names: Vec<&Ident> = scope::parts(item).iter().collect();
         match names.iter().position(|name| name.name == part.name) {
@@ -170,22 +170,31 @@ impl<'a> Elaborator<'a> {
     /// `obs.t` of a data set, known by name, without a value here; `coast.h` of a phase.
     fn part_of_container(&mut self, base: &'a Expr, part: &'a Ident, span: Span) -> Option<Value> {
         let ExprKind::Name(name) = &base.kind else { return None };
-        let item = self.scope.declarations[self.scope.find(name)?].item;
+        if self.locals[self.frame..].iter().any(|local| local.0 == name) {
+            return None;
+        }
+        let at = self.scope.find(name)?;
+        let item = self.scope.declarations[at].item;
         match &item.kind {
-            ItemKind::Data { columns, .. } => {
-                let names: Vec<&Ident> = columns.iter().map(|column| &column.0).collect();
-                Some(self.column(&names, part))
-            }
+            ItemKind::Data { columns, .. } => Some(self.column_named(at, columns, part)),
             ItemKind::Phase { items, .. } => Some(self.of_phase(name, items, part, span)),
             _ => None,
         }
     }
 
-    fn column(&mut self, names: &[&Ident], part: &Ident) -> Value {
-        if names.iter().any(|name| name.name == part.name) {
-            return Value::default();
+    fn column_named(
+        &mut self,
+        at: usize,
+        columns: &[(Ident, Option<Unit>)],
+        part: &Ident,
+    ) -> Value {
+        match columns.iter().position(|column| column.0.name == part.name) {
+            Some(column) => self.data_column(at, column, part.span),
+            None => {
+                let names: Vec<&Ident> = columns.iter().map(|column| &column.0).collect();
+                self.no_part(Value::default(), part, &names)
+            }
         }
-        self.no_part(Value::default(), part, names)
     }
 
     pub fn no_part(&mut self, value: Value, part: &Ident, names: &[&Ident]) -> Value {

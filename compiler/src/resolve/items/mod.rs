@@ -30,6 +30,7 @@ impl<'a> Elaborator<'a> {
         }
         items.iter().for_each(|item| self.item(item));
         self.move_boundary();
+        self.check_curves();
     }
 
     fn item(&mut self, item: &'a Item) {
@@ -55,8 +56,8 @@ impl<'a> Elaborator<'a> {
             }
             ItemKind::Jump { .. } => self.jump(item),
             ItemKind::Link { from, to, assignments } => self.link(from, to, assignments),
-            ItemKind::Data { file_span, .. } => {
-                self.not_yet(*file_span, "a model with measured data")
+            ItemKind::Data { file_span, .. } if !self.tables.contains_key(file_span) => {
+                self.not_yet(*file_span, "a model whose data was not read")
             }
             _ => {}
         }

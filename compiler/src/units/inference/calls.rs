@@ -28,7 +28,7 @@ impl<'a> Inference<'a> {
             // `blend(f, width)(x)` measures what `f(x)` does.
             return self.blended(function, given.get(1), |it| it.call(expr, function, arguments));
         }
-        let ExprKind::Name(name) = &callee.kind else { return Value::new() };
+        let ExprKind::Name(name) = &callee.kind else { return self.at_a_row(callee, arguments) };
         let declared = self.scope.find(name);
         let Some(at) = declared.filter(|_| !is_function(name)) else {
             return self.builtin(name, expr, arguments);
@@ -42,14 +42,22 @@ impl<'a> Inference<'a> {
                 self.apply(call, given.into_iter().map(|it| it.0).collect())
             }
             ItemKind::Fn { .. } => Value::new(),
-            // `x(k.t)`: a state at the time of a measurement.
-            _ => {
-                let (value, time) = (self.evaluate(callee), self.time());
-                let Some(at) = given.first() else { return value };
-                self.compare(Reason::Together(name), at, &(time, at.1.clone()));
-                value
-            }
+            _ => self.at_a_row(callee, arguments),
         }
+    }
+
+    /// `x(k.t)`: a state at the time of a measurement.
+    fn at_a_row(&mut self, callee: &'a Expr, arguments: &'a [Argument]) -> Value {
+        let name = match &callee.kind {
+            ExprKind::Name(name) => name,
+            ExprKind::Part(_, part) if !self.rows.is_empty() => &part.name,
+            _ => return Value::new(),
+        };
+        let (value, time) = (self.evaluate(callee), self.time());
+        if let Some(at) = self.given(arguments).first() {
+            self.compare(Reason::Together(name), at, &(time, at.1.clone()));
+        }
+        value
     }
 
     fn given(&mut self, arguments: &'a [Argument]) -> Vec<Operand<'a>> {
@@ -155,7 +163,7 @@ impl<'a> Inference<'a> {
             ("integral", [only]) => self.integral(only),
             ("sliding", _) => self.time(),
             ("sensitivity", [of, by]) => pairwise(&of.0, &by.0, Part::over),
-            ("interpolate", [times, values, at]) => {
+            ("interpolate", [times, values, at, ..]) => {
                 self.compare(Reason::Together(name), at, times);
                 values.0.clone()
             }

@@ -42,7 +42,12 @@ fn is_quadratic_phase(problem: &Problem) -> bool {
     let rows = 1..problem.boundary.outputs();
     let boundary = is_affine(rows.map(|row| problem.boundary.degree(row)));
     let cost = !problem.running_cost || problem.dynamics.degree(states) <= Degree::Quadratic;
-    dynamics && path && boundary && cost && problem.boundary.degree(0) <= Degree::Quadratic
+    let measured = problem.measurements.iter().all(|it| match it.state {
+        Some(_) => is_affine([it.function.degree(0)].into_iter()),
+        None => it.function.degree(0) <= Degree::Quadratic,
+    });
+    let objective = problem.boundary.degree(0) <= Degree::Quadratic;
+    dynamics && path && boundary && cost && measured && objective
 }
 
 /// Whether the objective of a quadratic program is proved to be convex in the variables that are

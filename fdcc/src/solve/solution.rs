@@ -192,7 +192,7 @@ impl Solution {
             controls: pairs(&problem.controls, &trajectory.controls),
             nodes,
             jumps: self.jumps.iter().map(jump).collect(),
-            phases: self.parts.iter().map(Solution::record).collect(),
+            phases: self.parts.iter().map(|part| self.record_of(part)).collect(),
         }
     }
 

@@ -11,7 +11,7 @@ pub struct LinkGap {
     pub label: String,
     /// In SI.
     pub violation: f64,
-    /// As a part of the size of its terms.
+    /// As a part of the size that its terms have over the phases.
     pub part: f64,
 }
 
@@ -23,9 +23,10 @@ pub(crate) fn gaps_of_links(
     replays: &[Verification],
 ) -> Vec<LinkGap> {
     let of = |link: &Link| {
-        let inputs: Vec<f64> =
-            link.ends.iter().flat_map(|end| signals(outcome, replays, *end)).collect();
-        gaps(link, &inputs, &outcome.phases[0].trajectory.parameters)
+        let ends = || link.ends.iter();
+        let inputs: Vec<f64> = ends().flat_map(|end| signals(outcome, replays, *end)).collect();
+        let sizes: Vec<f64> = ends().flat_map(|end| sizes(outcome, *end)).collect();
+        gaps(link, (&inputs, &sizes), &outcome.phases[0].trajectory.parameters)
     };
     chain.links.iter().flat_map(of).collect()
 }
@@ -48,7 +49,14 @@ fn signals(outcome: &ChainOutcome, replays: &[Verification], end: End) -> Vec<f6
     [states, own(&trajectory.controls)].concat()
 }
 
-fn gaps(link: &Link, inputs: &[f64], parameters: &[f64]) -> Vec<LinkGap> {
+/// The largest size of each state and control of a phase.
+fn sizes(outcome: &ChainOutcome, end: End) -> impl Iterator<Item = f64> {
+    let trajectory = &outcome.phases[end.phase()].trajectory;
+    let size = |column: &Vec<f64>| column.iter().fold(0.0, |size: f64, it| size.max(it.abs()));
+    trajectory.states.iter().chain(&trajectory.controls).map(size)
+}
+
+fn gaps(link: &Link, (inputs, sizes): (&[f64], &[f64]), parameters: &[f64]) -> Vec<LinkGap> {
     let (function, first) = (&link.function, link.function.layout().states().start);
     let points = Columns::of_point(inputs);
     let entries = &function.jacobian_pattern().entries;
@@ -57,7 +65,9 @@ fn gaps(link: &Link, inputs: &[f64], parameters: &[f64]) -> Vec<LinkGap> {
     let parameters = &parameters[..function.layout().p];
     function.jacobian(&points, parameters, &mut values, &mut slopes);
     let term = |column: usize, input: usize| {
-        let value = inputs.get(input - first).or(parameters.get(input - first - inputs.len()));
+        let place = input - first;
+        let parameter = || parameters.get(place.checked_sub(inputs.len())?);
+        let value = sizes.get(place).or_else(parameter);
         (slopes.column(column)[0] * value.copied().unwrap_or(0.0)).abs()
     };
     let gap = |(row, bounds): (usize, &fdcc_runtime::problem::Bounds)| {

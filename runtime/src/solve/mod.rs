@@ -163,6 +163,10 @@ fn phase(
     let own = nlp.phase_at(at, &whole.v);
     let mut trajectory = Trajectory::new(problem, own, &solution);
     trajectory.add_costates_of_links(problem, &shape.own(slopes), shape.stages);
+    if !nlp.phases().is_empty() {
+        // A free time may end one phase and begin the next.
+        trajectory.hamiltonian.expected = None;
+    }
     trajectory.hamiltonian.pause = gain_of_pauses(problem, &trajectory);
     let surfaces = trajectory.switching.iter().zip(&sigma);
     let modes = surfaces.map(|(psi, sigma)| modes(&trajectory.time, psi, *sigma)).collect();

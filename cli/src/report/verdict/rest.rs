@@ -3,6 +3,7 @@
 
 use crate::output::units::Units;
 use crate::solved::Solved;
+use fdcc::Solution;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Columns, Problem};
 use fdcc_runtime::solution::Trajectory;
@@ -14,7 +15,14 @@ const ENOUGH: f64 = 0.01;
 
 /// One line for each surface that has to be 0 at the end.
 pub(super) fn lines(solved: &Solved) -> Vec<String> {
-    let (problem, outcome) = (&solved.solution.problem, &solved.solution.outcome);
+    match solved.solution.phases() {
+        [] => of(&solved.solution, &solved.document.units),
+        phases => phases.iter().flat_map(|phase| of(phase, &solved.document.units)).collect(),
+    }
+}
+
+fn of(solution: &Solution, units: &Units) -> Vec<String> {
+    let (problem, outcome) = (&solution.problem, &solution.outcome);
     let is_open = !matches!(outcome.solution.status, Status::Solved | Status::NotFinite(_));
     let Some(ends) = is_open.then(|| misses(problem, &outcome.trajectory)) else {
         return Vec::new();
@@ -26,7 +34,7 @@ pub(super) fn lines(solved: &Solved) -> Vec<String> {
             && last <= NOTHING * **sigma
             && ends.iter().any(|miss| (miss - last).abs() <= 1e-6 * last)
     });
-    asked.map(|((surface, _), sigma)| line(&surface.name, *sigma, &solved.document.units)).collect()
+    asked.map(|((surface, _), sigma)| line(&surface.name, *sigma, units)).collect()
 }
 
 fn line(name: &str, sigma: f64, units: &Units) -> String {

@@ -176,6 +176,9 @@ codes! {
     GuessOutside = "FDC0409", Warning, "a guess outside its bounds";
     Contradiction = "FDC0410", Error, "conditions that contradict each other";
     NotANumber = "FDC0411", Error, "a constant or bound that is no finite number";
+    LinkedStart = "FDC0412", Error, "a link onto a start that is given";
+    LeftOut = "FDC0413", Advice, "a state that a link leaves out";
+    TimeGap = "FDC0414", Advice, "linked phases whose times do not meet";
     LongStep = "FDC0501", Warning, "a step too long for the smoothed layer";
     SweepTooSlow = "FDC0502", Warning, "a sweep that refines the grid too slowly";
     NoRoom = "FDC0503", Warning, "a smoothing width without room";

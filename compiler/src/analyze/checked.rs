@@ -56,12 +56,12 @@ fn check_tables(tree: &ast::Model, tables: &Tables) -> Checked {
     let mut inner = Vec::new();
     for phase in &phases {
         let mut part = resolve_phase(&everything, &phase.around, &units.readings, tables);
-        diagnostics.extend(checked(&mut part, phase.around.items.clone(), tree, true));
+        diagnostics.extend(checked(&mut part, phase.around.items.clone(), tree, Some(phase.name)));
         not_yet.append(&mut part.not_yet);
         inner.push(Inner::new(phase.name, part));
     }
     let mut whole = resolve(&everything, inner, &units.readings, tables);
-    diagnostics.extend(checked(&mut whole, everything, tree, phases.is_empty()));
+    diagnostics.extend(checked(&mut whole, everything, tree, None));
     whole.not_yet.append(&mut not_yet);
     diagnostics.extend(checks::unused(tree));
     diagnostics.extend(checks::lookalike(tree));
@@ -171,9 +171,10 @@ fn checked<'a>(
     meaning: &mut Elaborator<'a>,
     items: Vec<&'a Item>,
     tree: &'a ast::Model,
-    is_phase: bool,
+    phase: Option<&'a ast::Ident>,
 ) -> Vec<Diagnostic> {
-    let found = checks::check(&mut Facts { items, meaning, tree }, is_phase);
+    let is_one = meaning.phases.is_empty();
+    let found = checks::check(&mut Facts { items, phase, meaning, tree }, is_one);
     let mut all = std::mem::take(&mut meaning.diagnostics);
     all.extend(found);
     all

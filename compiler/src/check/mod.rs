@@ -32,6 +32,8 @@ const OF_A_PHASE: &[Check] = &[
 
 /// Checks of what stands outside all phases.
 const AROUND_PHASES: &[Check] = &[
+    conditions::around::check,
+    conditions::links::check,
     discontinuity::sets::check,
     discontinuity::hidden_jump::check,
     discontinuity::smoothness::check,

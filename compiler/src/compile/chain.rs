@@ -1,9 +1,9 @@
 //! A model with phases as a chain of problems.
 
 use super::{ProblemCode, machine_code};
-use crate::lower::{self, LoweredLink, LoweredProblem};
-use crate::model::Model;
+use crate::lower::{self, Expected, LoweredLink, LoweredProblem};
 use crate::model::numbers::{Numbers, numbers};
+use crate::model::{Model, Phase, not_yet};
 use fdcc_grammar::Diagnostic;
 use fdcc_runtime::problem::{Chain, Function, Link, Problem};
 use std::collections::HashSet;
@@ -24,8 +24,10 @@ pub struct ChainCode {
 impl ChainCode {
     /// Compiles a model.
     pub fn new(model: &Model) -> Result<Self, Vec<Diagnostic>> {
-        if let Some(first) = model.not_yet.first() {
-            return Err(vec![first.clone()]);
+        let jump = model.phases.iter().find_map(|phase| phase.model.jumps.first());
+        let jump = jump.map(|jump| not_yet(jump.place.span, "a jump within a phase"));
+        if let Some(first) = model.not_yet.first().cloned().or(jump) {
+            return Err(vec![first]);
         }
         if model.phases.is_empty() {
             return Ok(ChainCode { phases: vec![ProblemCode::new(model)?], links: Vec::new() });
@@ -69,7 +71,7 @@ fn phase_of(model: &Model, mut problem: Problem) -> Problem {
     problem.unknowns.retain(|unknown| read.contains(&unknown.parameter));
     problem.sense = model.sense;
     let of_phases = model.phases.iter().any(|phase| phase.model.objective.is_some());
-    problem.has_objective = of_phases || model.linked_objective.is_some();
+    problem.has_objective = of_phases || model.links.iter().any(|it| it.objective.is_some());
     problem
 }
 
@@ -83,4 +85,29 @@ fn link(
         function: function.clone(),
         bounds: link.rows.iter().map(|row| numbers.bounds(model, row.range)).collect(),
     }
+}
+
+/// All expectations of a model with phases, compiled.
+pub struct ChainExpectations {
+    /// In the order of the text.
+    pub list: Vec<Expected>,
+    /// Inputs `[x | p, integrals]`: for each phase its states at the start, its controls in the
+    /// first interval, its states at the end, its controls in the last interval, hidden states left
+    /// out; parameters and unknowns; the integrals of each phase in turn. Three outputs for each
+    /// expectation: left side, right side, tolerance; values only.
+    pub function: Arc<dyn Function>,
+    /// For each phase its integrands over normalised time `[tau | x | u | p]`, times the duration;
+    /// values only.
+    pub integrands: Vec<Arc<dyn Function>>,
+}
+
+/// Compiles the expectations of a model with phases.
+pub fn chain_expectations(model: &Model) -> ChainExpectations {
+    let (graph, function, list) = lower::expectations_of_phases(model);
+    let function = machine_code(graph, vec![function]).remove(0);
+    let of = |phase: &Phase| {
+        let (graph, integrands) = lower::integrands(&phase.model);
+        machine_code(graph, vec![integrands]).remove(0)
+    };
+    ChainExpectations { list, function, integrands: model.phases.iter().map(of).collect() }
 }

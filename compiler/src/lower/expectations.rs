@@ -5,11 +5,12 @@
 
 use super::function::{Order, VectorFunction};
 use super::inputs::{self, Sizes};
+use super::links::Places;
 use super::objective::{self, Hidden, Objective};
 use super::origin;
 use crate::expressions::graph::{ExprId, Graph};
 use crate::model::{Comparison, Model, Symbol};
-use fdcc_runtime::problem::{Layout, Origin};
+use fdcc_runtime::problem::{End, Layout, Origin};
 
 /// One expectation.
 #[derive(Clone, Debug)]
@@ -73,6 +74,39 @@ pub(crate) fn expectations(model: &Model) -> LoweredExpectations {
         values_only("integrands", sizes.grid(), integrands),
     ];
     LoweredExpectations { list, graph, functions }
+}
+
+/// Expectations of a model with phases. Inputs `[x | p, integrals]`: `x` as in a
+/// [`Link`](fdcc_runtime::problem::Link) to both ends of each phase, without hidden states; the
+/// integrals of each phase in turn.
+pub(crate) fn expectations_of_phases(model: &Model) -> (Graph, VectorFunction, Vec<Expected>) {
+    let mut graph = model.graph.clone();
+    let ends: Vec<End> =
+        (0..model.phases.len()).flat_map(|at| [End::First(at), End::Last(at)]).collect();
+    let hidden: Vec<&[Hidden]> = vec![&[]; model.phases.len()];
+    let mut places = Places::new(model, &hidden, &ends);
+    places.with_integrals();
+    let values: Vec<ExprId> = model.expectations.iter().flat_map(|it| it.values).collect();
+    let list = model.expectations.iter().map(|it| Expected {
+        origin: origin(&it.place),
+        comparison: it.comparison,
+        simulated: Vec::new(),
+    });
+    let list = list.collect();
+    let values = places.apply(&mut graph, &values);
+    (graph, values_only("expectations", places.layout, values), list)
+}
+
+/// All integrands of a phase over normalised time, times its duration.
+pub(crate) fn integrands(model: &Model) -> (Graph, VectorFunction) {
+    let mut graph = model.graph.clone();
+    let hidden = objective::split(model, &mut graph).hidden.len();
+    let sizes = Sizes::new(model, hidden);
+    let over_grid = inputs::over_grid(model, &mut graph, &sizes);
+    let integrands: Vec<ExprId> = model.integrals.iter().map(|it| it.integrand).collect();
+    let integrands = over_grid.apply(&mut graph, &integrands);
+    let integrands = integrands.iter().map(|&it| graph.mul(over_grid.duration, it)).collect();
+    (graph, values_only("integrands", sizes.grid(), integrands))
 }
 
 fn simulated_in(model: &Model, graph: &Graph, roots: &[ExprId]) -> Vec<usize> {

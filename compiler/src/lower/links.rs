@@ -7,7 +7,7 @@ use super::function::{Order, VectorFunction};
 use super::objective::Hidden;
 use super::{LoweredProblem, origin};
 use crate::expressions::graph::{ExprId, Graph};
-use crate::model::{Constraint, Model, Symbol};
+use crate::model::{Constraint, Link, Model, Symbol};
 use fdcc_runtime::problem::{End, Layout, Origin};
 
 /// A link, still expressions.
@@ -23,55 +23,71 @@ pub(crate) struct LoweredLink {
 /// All links of a model whose phases have been lowered, over a copy of its graph.
 pub(crate) fn links(model: &Model, phases: &[&LoweredProblem]) -> (Graph, Vec<LoweredLink>) {
     let mut graph = model.graph.clone();
-    let zero = graph.number(0.0);
-    let mut all: Vec<(Vec<End>, Option<ExprId>, Vec<Constraint>)> =
-        model.links.iter().map(|link| (link.ends.clone(), None, link.rows.clone())).collect();
-    if let Some(objective) = model.linked_objective {
-        let ends = model.ends_read(objective);
-        match all.iter_mut().find(|link| link.0 == ends) {
-            Some(link) => link.1 = Some(objective),
-            None => all.push((ends, Some(objective), Vec::new())),
-        }
-    }
-    all.retain(|link| link.1.is_some() || !link.2.is_empty());
-    let links = all.into_iter().map(|(ends, objective, rows)| {
-        let objective = objective.map_or(zero, |value| graph.scale(model.sense, value));
-        let outputs: Vec<ExprId> =
-            std::iter::once(objective).chain(rows.iter().map(|row| row.value)).collect();
-        let places = Places::new(model, phases, &ends);
-        let outputs = places.apply(&mut graph, &outputs);
-        let function = places.function(outputs, origins(model, &rows));
-        LoweredLink { ends, function, rows }
-    });
-    let links = links.collect();
+    let hidden: Vec<&[Hidden]> = phases.iter().map(|phase| phase.hidden.as_slice()).collect();
+    let is_told = |link: &&Link| link.objective.is_some() || !link.rows.is_empty();
+    let told = model.links.iter().filter(is_told);
+    let links = told.map(|link| lower(model, &mut graph, &hidden, link)).collect();
     (graph, links)
 }
 
-fn origins(model: &Model, rows: &[Constraint]) -> Vec<Origin> {
-    let objective = model.objective.as_ref().map_or(Origin::default(), |it| origin(&it.0));
-    std::iter::once(objective).chain(rows.iter().map(|row| origin(&row.place))).collect()
+fn lower(model: &Model, graph: &mut Graph, hidden: &[&[Hidden]], link: &Link) -> LoweredLink {
+    let zero = graph.number(0.0);
+    let objective = link.objective.map_or(zero, |value| graph.scale(model.sense, value));
+    let rows = link.rows.iter().map(|row| row.value);
+    let outputs: Vec<ExprId> = std::iter::once(objective).chain(rows).collect();
+    let places = Places::new(model, hidden, &link.ends);
+    let outputs = places.apply(graph, &outputs);
+    let layout = places.layout;
+    let unknowns = layout.parameters().skip(model.params.len());
+    let function = VectorFunction {
+        name: "link".into(),
+        layout,
+        outputs,
+        origins: origins(model, link),
+        by: layout.states().chain(unknowns).map(|at| at as u32).collect(),
+        order: Order::Second,
+    };
+    LoweredLink { ends: link.ends.clone(), function, rows: link.rows.clone() }
 }
 
-/// Where the symbols of the whole stand among the inputs of a link.
-struct Places<'m> {
+fn origins(model: &Model, link: &Link) -> Vec<Origin> {
+    let objective = model.objective.as_ref().map_or(Origin::default(), |it| origin(&it.0));
+    std::iter::once(objective).chain(link.rows.iter().map(|row| origin(&row.place))).collect()
+}
+
+/// Where the symbols of the whole stand among the inputs of a function of ends.
+pub(super) struct Places<'m> {
     model: &'m Model,
-    phases: &'m [&'m LoweredProblem],
+    /// The integrals of each phase that are states.
+    hidden: &'m [&'m [Hidden]],
     /// Each end with the place of its first state.
     ends: Vec<(End, usize)>,
-    layout: Layout,
+    /// The sizes of the inputs.
+    pub layout: Layout,
+    /// Where the integrals of each phase begin among the parameters, if they are no states.
+    integrals: Vec<usize>,
 }
 
 impl<'m> Places<'m> {
-    fn new(model: &'m Model, phases: &'m [&'m LoweredProblem], ends: &[End]) -> Self {
+    pub fn new(model: &'m Model, hidden: &'m [&'m [Hidden]], ends: &[End]) -> Self {
         let mut x = 0;
         let mut placed = Vec::new();
         for &end in ends {
             placed.push((end, x));
-            let layout = phases[end.phase()].flow.layout;
-            x += layout.x + layout.u;
+            let phase = &model.phases[end.phase()].model;
+            x += phase.states.len() + hidden[end.phase()].len() + phase.controls.len();
         }
         let p = model.params.len() + model.frees.len();
-        Places { model, phases, ends: placed, layout: Layout { x, p, ..Layout::default() } }
+        let layout = Layout { x, p, ..Layout::default() };
+        Places { model, hidden, ends: placed, layout, integrals: Vec::new() }
+    }
+
+    /// Puts all integrals of each phase behind the parameters.
+    pub fn with_integrals(&mut self) {
+        for phase in &self.model.phases {
+            self.integrals.push(self.layout.parameters().end);
+            self.layout.p += phase.model.integrals.len();
+        }
     }
 
     fn place(&self, symbol: Symbol) -> Option<usize> {
@@ -85,41 +101,28 @@ impl<'m> Places<'m> {
     }
 
     fn place_in(&self, phase: usize, input: u32) -> Option<usize> {
-        let lowered = self.phases[phase];
-        let model = &self.model.phases[phase].model;
+        let (hidden, model) = (self.hidden[phase], &self.model.phases[phase].model);
+        let states = model.states.len();
         let (end, place) = match model.symbols[input as usize] {
             Symbol::AtStart(at) => (End::First(phase), at),
             Symbol::AtEnd(at) => (End::Last(phase), at),
-            Symbol::ControlAtEnd(at) => (End::Last(phase), lowered.flow.layout.x + at),
+            Symbol::ControlAtEnd(at) => (End::Last(phase), states + hidden.len() + at),
+            Symbol::Integral(at) if !self.integrals.is_empty() => {
+                return Some(self.integrals[phase] + at);
+            }
             Symbol::Integral(at) => {
-                let hidden = lowered.hidden.iter().position(|it| *it == Hidden::Integral(at))?;
-                (End::Last(phase), model.states.len() + hidden)
+                (End::Last(phase), states + hidden.iter().position(|it| *it == Hidden::Integral(at))?)
             }
             _ => return None,
         };
         self.ends.iter().find(|it| it.0 == end).map(|it| it.1 + place)
     }
 
-    fn apply(&self, graph: &mut Graph, outputs: &[ExprId]) -> Vec<ExprId> {
-        let places: Vec<Option<ExprId>> = self
-            .model
-            .symbols
-            .iter()
-            .map(|symbol| self.place(*symbol).map(|at| graph.input(at as u32)))
-            .collect();
+    /// Replaces the symbols in some expressions.
+    pub fn apply(&self, graph: &mut Graph, outputs: &[ExprId]) -> Vec<ExprId> {
+        let places = self.model.symbols.iter();
+        let places: Vec<Option<ExprId>> =
+            places.map(|symbol| self.place(*symbol).map(|at| graph.input(at as u32))).collect();
         graph.substitute(outputs, &|symbol| places[symbol as usize])
-    }
-
-    fn function(&self, outputs: Vec<ExprId>, origins: Vec<Origin>) -> VectorFunction {
-        let layout = self.layout;
-        let unknowns = layout.parameters().skip(self.model.params.len());
-        VectorFunction {
-            name: "link".into(),
-            layout,
-            outputs,
-            origins,
-            by: layout.states().chain(unknowns).map(|at| at as u32).collect(),
-            order: Order::Second,
-        }
     }
 }

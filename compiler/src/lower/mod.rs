@@ -27,6 +27,7 @@ mod simulation;
 pub(crate) use by_parameters::by_parameters;
 pub use expectations::Expected;
 pub(crate) use expectations::{LoweredExpectations, expectations};
+pub(crate) use expectations::{expectations_of_phases, integrands};
 pub use function::{Order, VectorFunction};
 pub(crate) use links::{LoweredLink, links};
 pub use objective::Hidden;

@@ -250,8 +250,6 @@ pub struct Model {
     pub boundary: Vec<Constraint>,
     /// What is minimised, as written; none for a pure feasibility problem.
     pub objective: Option<(Place, ExprId)>,
-    /// The part of the objective that belongs to no single phase.
-    pub linked_objective: Option<ExprId>,
     /// `-1` for `maximize`.
     pub sense: f64,
     /// Every `integral` of the objective, of conditions and of expectations.
@@ -316,7 +314,6 @@ impl Model {
             path: Vec::new(),
             boundary: Vec::new(),
             objective: None,
-            linked_objective: None,
             sense: 1.0,
             integrals: Vec::new(),
             tables: Vec::new(),

@@ -22,6 +22,8 @@ pub struct Phase {
 pub struct Link {
     /// The ends that it reads.
     pub ends: Vec<End>,
+    /// A part of the objective.
+    pub objective: Option<ExprId>,
     /// What must hold.
     pub rows: Vec<Constraint>,
 }
@@ -57,6 +59,27 @@ impl Symbols<'_> {
         let place = |at| places[places.partition_point(|it| it.0 < at)].1;
         self.graph
             .import(from, roots, &mut ById::default(), &mut |graph, at| graph.input(place(at)))
+    }
+}
+
+impl Symbols<'_> {
+    /// Copies expressions of a phase, these being the symbols of the whole. `known` is what has
+    /// been copied of it.
+    pub fn take_of(
+        &mut self,
+        phase: usize,
+        (from, meanings): (&Graph, &[Symbol]),
+        roots: &[ExprId],
+        known: &mut ById<ExprId>,
+    ) -> Vec<ExprId> {
+        let Symbols { graph, symbols } = self;
+        graph.import(from, roots, known, &mut |graph, input| {
+            let meaning = meanings[input as usize];
+            let is_shared = matches!(meaning, Symbol::Param(_) | Symbol::Free(_));
+            let symbol = if is_shared { meaning } else { Symbol::OfPhase { phase, input } };
+            let input = Symbols { graph, symbols: &mut **symbols }.input(symbol);
+            graph.input(input)
+        })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::check::facts::Facts;
 use crate::syntax::walk;
-use fdcc_grammar::ast::{Ident, ItemKind};
+use fdcc_grammar::ast::{Expr, ExprKind, Ident, Item, ItemKind};
 use fdcc_grammar::{Code, Diagnostic};
 use std::collections::HashSet;
 
@@ -17,10 +17,8 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
                 .for_each(|expr| walk::names(expr, &mut |name, _| tied.extend([name])));
         }
     }
-    for item in &facts.tree.items {
-        if let ItemKind::Link { assignments, .. } = &item.kind {
-            tied.extend(assignments.iter().map(|it| it.name.name.as_str()));
-        }
+    if let Some(phase) = facts.phase {
+        tied_from_outside(&facts.tree.items, phase, &mut tied);
     }
     // What a `let` in a condition mentions is tied as well.
     for at in (0..facts.meaning.scope.declarations.len()).rev() {
@@ -36,6 +34,35 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
             && !tied.contains(name.name.as_str())
         {
             found.push(untied(name, parts.len()));
+        }
+    }
+}
+
+/// The states of a phase that links and conditions outside of all phases tie down.
+fn tied_from_outside<'a>(items: &'a [Item], phase: &Ident, tied: &mut HashSet<&'a str>) {
+    let mut of_phase = |expr: &'a Expr| {
+        walk::visit(expr, &mut |inner| {
+            if let ExprKind::Part(base, part) = &inner.kind
+                && matches!(&base.kind, ExprKind::Name(name) if *name == phase.name)
+            {
+                tied.insert(&part.name);
+            }
+        });
+    };
+    for item in items {
+        if matches!(item.kind, ItemKind::Start { .. } | ItemKind::End { .. }) {
+            walk::expressions(item).into_iter().for_each(&mut of_phase);
+        }
+    }
+    for item in items {
+        let ItemKind::Link { from, to, assignments } = &item.kind else { continue };
+        if to.name == phase.name {
+            tied.extend(assignments.iter().map(|it| it.name.name.as_str()));
+        }
+        if from.name == phase.name {
+            for assignment in assignments {
+                walk::names(&assignment.value, &mut |name, _| tied.extend([name]));
+            }
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::resolve::elaborator::{Elaborator, Role};
 use crate::surfaces::{View, view};
 use crate::syntax::text;
-use fdcc_grammar::ast::{self, Equation, Item};
+use fdcc_grammar::ast::{self, Equation, Ident, Item};
 use fdcc_grammar::{Diagnostic, Severity, Span};
 use std::collections::HashMap;
 
@@ -11,6 +11,8 @@ use std::collections::HashMap;
 pub(crate) struct Facts<'a, 'e> {
     /// The items of the phase.
     pub items: Vec<&'a Item>,
+    /// The name of the phase, if there are several.
+    pub phase: Option<&'a Ident>,
     /// What they mean.
     pub meaning: &'e mut Elaborator<'a>,
     /// The whole tree.

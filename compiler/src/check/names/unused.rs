@@ -7,7 +7,7 @@
 
 use crate::syntax::scope::{declared, kind_word};
 use crate::syntax::walk;
-use fdcc_grammar::ast::{self, Item, ItemKind};
+use fdcc_grammar::ast::{self, Expr, ExprKind, Item, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Fix};
 use std::collections::{HashMap, HashSet};
 
@@ -15,7 +15,8 @@ use std::collections::{HashMap, HashSet};
 pub(crate) fn check(tree: &ast::Model) -> Vec<Diagnostic> {
     let mut items: Vec<&Item> = Vec::new();
     flatten(&tree.items, &mut items);
-    let mentions: Vec<Vec<&str>> = items.iter().map(|item| mentioned(item)).collect();
+    let phases: HashSet<&str> = items.iter().filter_map(|item| phase(item)).collect();
+    let mentions: Vec<Vec<&str>> = items.iter().map(|item| mentioned(item, &phases)).collect();
     let anywhere = reached(&items, &mentions, |_| true);
     let problem = reached(&items, &mentions, |kind| {
         !matches!(
@@ -114,11 +115,28 @@ fn reached<'a>(
     seen
 }
 
-/// The names an item mentions, in expressions and otherwise.
-fn mentioned(item: &Item) -> Vec<&str> {
+fn phase(item: &Item) -> Option<&str> {
+    match &item.kind {
+        ItemKind::Phase { name, .. } => Some(&name.name),
+        _ => None,
+    }
+}
+
+/// The names an item mentions, in expressions and otherwise; `q` of `PHASE.q`, too.
+fn mentioned<'a>(item: &'a Item, phases: &HashSet<&str>) -> Vec<&'a str> {
     let mut names = Vec::new();
     for expr in walk::expressions(item) {
         walk::names(expr, &mut |name, _| names.push(name));
+        let mut of_phase = |inner: &'a Expr| {
+            if let ExprKind::Part(base, part) = &inner.kind
+                && matches!(&base.kind, ExprKind::Name(name) if phases.contains(name.as_str()))
+            {
+                names.push(&part.name);
+            }
+        };
+        if !phases.is_empty() {
+            walk::visit(expr, &mut of_phase);
+        }
     }
     match &item.kind {
         ItemKind::Jump { surface, then_hold, .. } => {

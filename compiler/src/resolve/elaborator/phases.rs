@@ -3,7 +3,7 @@
 use super::Elaborator;
 use super::value::Value;
 use crate::expressions::graph::{ById, ExprId};
-use crate::model::Symbol;
+use crate::model::phases::Symbols;
 use fdcc_grammar::ast::{Assignment, Ident, Item, ItemKind};
 use std::collections::HashMap;
 
@@ -73,17 +73,7 @@ impl<'a> Elaborator<'a> {
     pub fn import(&mut self, phase: usize, roots: &[ExprId]) -> Vec<ExprId> {
         let Elaborator { phases, graph, symbols, .. } = self;
         let Inner { meaning, imported, .. } = &mut phases[phase];
-        graph.import(&meaning.graph, roots, imported, &mut |graph, input| {
-            let symbol = meaning.symbols[input as usize];
-            let known = match symbol {
-                Symbol::Param(_) | Symbol::Free(_) => symbols.iter().position(|it| *it == symbol),
-                _ => None,
-            };
-            let at = known.unwrap_or_else(|| {
-                symbols.push(Symbol::OfPhase { phase, input });
-                symbols.len() - 1
-            });
-            graph.input(at as u32)
-        })
+        let from = (&meaning.graph, meaning.symbols.as_slice());
+        Symbols { graph, symbols }.take_of(phase, from, roots, imported)
     }
 }

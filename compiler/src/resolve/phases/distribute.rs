@@ -4,8 +4,8 @@
 use crate::expressions::graph::builtins::Builtin;
 use crate::expressions::graph::{ById, Expr, ExprId, Graph};
 use crate::expressions::polynomial::difference;
-use crate::model::phases::moved;
-use crate::model::{Constraint, Link, Model, Symbol};
+use crate::model::phases::{Symbols, moved};
+use crate::model::{Constraint, Expectation, Link, Model, Symbol};
 use fdcc_runtime::problem::End;
 use std::collections::HashSet;
 
@@ -40,6 +40,7 @@ pub(crate) fn distribute(model: &mut Model) {
     let unknowns: Vec<HashSet<u32>> = (0..model.phases.len()).map(|at| model.read_by(at)).collect();
     model.distribute_objective(&unknowns);
     model.distribute_conditions(&unknowns);
+    model.collect_expectations();
     model.keep_linked_integrals();
 }
 
@@ -72,11 +73,15 @@ impl Model {
             return;
         };
         let mut shares: Vec<Vec<ExprId>> = vec![Vec::new(); self.phases.len()];
-        let mut linked = Vec::new();
         for term in self.terms(value) {
             match self.owner(term, unknowns) {
                 Some(phase) => shares[phase].push(term),
-                None => linked.push(term),
+                None => {
+                    let link = self.link_of(term);
+                    let sum = self.links[link].objective.into_iter().chain([term]);
+                    let sum = self.graph.sum(&sum.collect::<Vec<_>>());
+                    self.links[link].objective = Some(sum);
+                }
             }
         }
         for (phase, share) in shares.into_iter().enumerate().filter(|it| !it.1.is_empty()) {
@@ -86,7 +91,6 @@ impl Model {
         }
         let sense = self.sense;
         self.phases.iter_mut().for_each(|phase| phase.model.sense = sense);
-        self.linked_objective = (!linked.is_empty()).then(|| self.graph.sum(&linked));
     }
 
     fn distribute_conditions(&mut self, unknowns: &[HashSet<u32>]) {
@@ -98,18 +102,34 @@ impl Model {
                     let row = Constraint { value, range, ..row };
                     self.phases[phase].model.boundary.push(row);
                 }
-                None => self.add_linked(row),
+                None => {
+                    let link = self.link_of(row.value);
+                    self.links[link].rows.push(row);
+                }
             }
         }
     }
 
-    /// A condition that several phases meet, beside those that read the same ends.
-    fn add_linked(&mut self, row: Constraint) {
-        let ends = self.ends_read(row.value);
-        match self.links.iter_mut().find(|link| link.ends == ends) {
-            Some(link) => link.rows.push(row),
-            None => self.links.push(Link { ends, rows: vec![row] }),
-        }
+    /// The link to which an expression belongs: one that reads the same ends, or the same unknowns
+    /// where it reads no end.
+    fn link_of(&mut self, value: ExprId) -> usize {
+        let ends = self.ends_read(value);
+        let unknowns = self.unknowns_in(&[value]);
+        let reads_all = |link: &Link| {
+            let rows: Vec<ExprId> = link.rows.iter().map(|row| row.value).collect();
+            let own = self.unknowns_in(&rows);
+            unknowns.iter().all(|unknown| own.contains(unknown))
+        };
+        let is_of = |link: &Link| link.ends == ends || ends.is_empty() && reads_all(link);
+        self.links.iter().position(is_of).unwrap_or_else(|| {
+            self.links.push(Link { ends, objective: None, rows: Vec::new() });
+            self.links.len() - 1
+        })
+    }
+
+    fn unknowns_in(&self, values: &[ExprId]) -> Vec<u32> {
+        let is_free = |at: &u32| matches!(self.symbols[*at as usize], Symbol::Free(_));
+        self.graph.inputs_of(values).into_iter().filter(is_free).collect()
     }
 
     /// The ends of phases that an expression reads, in the order of the phases.
@@ -133,9 +153,7 @@ impl Model {
             Reads::One(phase) => Some(phase),
             Reads::Several => None,
             Reads::None => {
-                let is_free = |at: &u32| matches!(self.symbols[*at as usize], Symbol::Free(_));
-                let all = self.graph.inputs_of(&[value]).into_iter().filter(is_free);
-                let all: Vec<u32> = all.collect();
+                let all = self.unknowns_in(&[value]);
                 unknowns.iter().position(|own| all.iter().all(|it| own.contains(it)))
             }
         }
@@ -195,6 +213,29 @@ impl Model {
         terms
     }
 
+    /// What phases expect of themselves, over the symbols of the whole; not what only a simulation
+    /// of a phase can tell.
+    fn collect_expectations(&mut self) {
+        let Model { phases, graph, symbols, expectations, .. } = self;
+        for (at, phase) in phases.iter_mut().enumerate() {
+            let Model { graph: own, symbols: meanings, expectations: asked, .. } = &mut phase.model;
+            let is_told = |it: &Expectation| {
+                let simulated = |at: &u32| matches!(meanings[*at as usize], Symbol::Simulated(_));
+                !own.inputs_of(&it.values).iter().any(simulated)
+            };
+            let told: Vec<Expectation>;
+            (told, *asked) = std::mem::take(asked).into_iter().partition(is_told);
+            let mut known = ById::default();
+            for expectation in told {
+                let mut whole = Symbols { graph, symbols };
+                let values = whole.take_of(at, (own, meanings), &expectation.values, &mut known);
+                let values = values.try_into().expect("three values are copied");
+                expectations.push(Expectation { values, ..expectation });
+            }
+        }
+        expectations.sort_by_key(|it| it.place.span);
+    }
+
     fn copy_into(&mut self, phase: usize, value: ExprId) -> ExprId {
         let Model { phases, graph, symbols, .. } = self;
         phases[phase].model.symbols_mut().take(graph, symbols, &[value])[0]
@@ -203,7 +244,8 @@ impl Model {
     /// Notes which integrals of phases are read by links.
     fn keep_linked_integrals(&mut self) {
         let rows = self.links.iter().flat_map(|link| link.rows.iter().map(|row| row.value));
-        let read: Vec<ExprId> = rows.chain(self.linked_objective).collect();
+        let parts = self.links.iter().filter_map(|link| link.objective);
+        let read: Vec<ExprId> = rows.chain(parts).collect();
         for input in self.graph.inputs_of(&read) {
             let Symbol::OfPhase { phase, input } = self.symbols[input as usize] else { continue };
             let phase = &mut self.phases[phase].model;

@@ -1,12 +1,14 @@
 //! `link a -> b { x := e }`: `x` at the start of `b` is `e` at the end of `a`.
 
 use crate::expressions::graph::ExprId;
+use crate::expressions::polynomial::difference;
 use crate::model::{Constraint, Link, Place, Range, Symbol};
 use crate::resolve::elaborator::Elaborator;
 use crate::resolve::elaborator::context::Context;
 use crate::resolve::elaborator::phases::Handed;
 use crate::resolve::elaborator::value::Parts;
 use crate::syntax::scope::kind_word;
+use crate::syntax::text;
 use fdcc_grammar::ast::{Assignment, Ident, Item, ItemKind};
 use fdcc_grammar::{Code, Diagnostic};
 use fdcc_runtime::problem::End;
@@ -61,6 +63,9 @@ impl<'a> Elaborator<'a> {
         let (Some(source), Some(target)) = (source, target) else { return };
         let name = format!("{} -> {}", from.name, to.name);
         let place = Place { name, span: from.span.to(to.span) };
+        if source < target {
+            self.times_meet([source, target], &place);
+        }
         let mut rows = Vec::new();
         let mut given = HashSet::new();
         for assignment in assignments {
@@ -75,7 +80,32 @@ impl<'a> Elaborator<'a> {
             let end = self.import(source, &[end])[0];
             rows.push(self.link_row(&place, target, (state, end)));
         }
-        self.model.links.push(Link { ends: vec![End::Last(source), End::First(target)], rows });
+        let ends = vec![End::Last(source), End::First(target)];
+        self.model.links.push(Link { ends, objective: None, rows });
+    }
+
+    /// Tells a gap between the end of a phase and the start of the one that follows.
+    fn times_meet(&mut self, [source, target]: [usize; 2], place: &Place) {
+        let before = self.phases[source].meaning.interval[1];
+        let after = self.phases[target].meaning.interval[0];
+        let times = [self.import(source, &[before])[0], self.import(target, &[after])[0]];
+        let gap = difference(&mut self.graph, times[1], times[0]);
+        let size = self.numeric(gap);
+        let largest = times.map(|time| self.numeric(time).abs()).into_iter().fold(0.0, f64::max);
+        if self.graph.as_number(gap) == Some(0.0) || size.abs() <= ROUNDING * largest {
+            return;
+        }
+        let [first, second] = [source, target].map(|it| &self.phases[it].name.name);
+        let message = format!("the time of `{second}` does not begin where that of `{first}` ends");
+        let label = match size.is_nan() {
+            true => "the times need not meet".into(),
+            false => format!("a gap of {}", text::number(size)),
+        };
+        let found = Diagnostic::new(Code::TimeGap, message, place.span, label);
+        self.diagnostics.push(found.help(
+            "nothing happens in between; to go on without a gap let the time of the second phase \
+             begin with the end of the first: `time t in [T1, T1 + T2]` after `[0, T1]`",
+        ));
     }
 
     fn linked_phase(&mut self, name: &Ident) -> Option<usize> {
@@ -144,6 +174,9 @@ impl<'a> Elaborator<'a> {
         Constraint { place: Place { name, span: link.span }, value, range }
     }
 }
+
+/// Of times, relative to the larger one.
+const ROUNDING: f64 = 1e-12;
 
 /// The phases of a text in an order in which those that are linked stand next to each other, the
 /// first one in front: as far as links are no circle.

@@ -79,7 +79,7 @@ module.exports = grammar({
         "jump", field("name", $.name), "on", field("surface", $.name), choice("falling", "rising"),
         optional(seq("at", "most", $._expression)), optional(seq("then", "hold", field("surface", $.name))), block($.assignment),
       ),
-    assignment: ($) => seq($.name, ":=", $._expression),
+    assignment: ($) => seq(choice($.name, alias("same", $.name)), optional(seq(".", field("part", $.name))), ":=", $._expression),
 
     // ---- Conditions and objective ----
 
@@ -94,8 +94,10 @@ module.exports = grammar({
 
     guess: ($) => item("guess", block($.binding)),
     binding: ($) => seq($.name, "=", $._expression),
-    phase: ($) => item("phase", field("name", $.name), block($._item)),
-    link: ($) => item("link", $.name, "->", $.name, block($.assignment)),
+    phase: ($) => item("phase", field("name", $.name), optional($.like), block($._item)),
+    like: ($) => seq("like", $.name),
+    link: ($) => item("link", $.name, "->", $.name, block(choice($.same, $.assignment))),
+    same: (_) => "same",
     method: ($) => item("method", block($._setting)),
     _setting: ($) => choice($.smooth, $.grid, $.continuation, $.kernel, $.steps, $.scheme, $.entry),
     // What may belong to the setting before does so, as much of it as there is; `scheme = radau` is a setting of its own.

@@ -103,10 +103,10 @@ pub enum ItemKind {
     Objective { sense: Sense, keyword: Span, value: Expr },
     /// `guess { name = expr }`
     Guess { bindings: Vec<Binding> },
-    /// `phase name { items }`
-    Phase { name: Ident, items: Vec<Item> },
-    /// `link a -> b { x := expr }`
-    Link { from: Ident, to: Ident, assignments: Vec<Assignment> },
+    /// `phase name like other { items }`
+    Phase { name: Ident, like: Option<Ident>, items: Vec<Item> },
+    /// `link a -> b { same  x := expr }`
+    Link { from: Ident, to: Ident, same: Option<Span>, assignments: Vec<Assignment> },
     /// `method { settings }`
     Method { settings: Vec<Setting> },
     /// `sweep { name = expr, expr }`
@@ -213,11 +213,13 @@ pub struct Binding {
     pub value: Expr,
 }
 
-/// `name := expr`
+/// `name := expr` or `name.part := expr`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assignment {
     /// Left side.
     pub name: Ident,
+    /// The part of a vector.
+    pub part: Option<Ident>,
     /// Right side.
     pub value: Expr,
 }

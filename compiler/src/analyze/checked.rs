@@ -11,6 +11,7 @@ use crate::resolve::elaborator::Elaborator;
 use crate::resolve::elaborator::phases::Inner;
 use crate::resolve::phases::in_order;
 use crate::resolve::{Around, resolve, resolve_phase};
+use crate::syntax::like::written_out;
 use crate::units::{self, NamedUnit, Units};
 use fdcc_grammar::ast::{self, Assignment, Item, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Severity, Span};
@@ -49,10 +50,12 @@ pub fn check_with(tree: &ast::Model, files: Option<&Files>) -> Checked {
 }
 
 fn check_tables(tree: &ast::Model, tables: &Tables) -> Checked {
+    let mut diagnostics = Vec::new();
+    let tree = &*written_out(tree, &mut diagnostics);
     let everything: Vec<&Item> = tree.items.iter().collect();
     let phases = phases(&tree.items);
     let units = units::infer(tree);
-    let (mut diagnostics, mut not_yet) = (Vec::new(), Vec::new());
+    let mut not_yet = Vec::new();
     let mut inner = Vec::new();
     for phase in &phases {
         let mut part = resolve_phase(&everything, &phase.around, &units.readings, tables);
@@ -87,11 +90,12 @@ fn check_tables(tree: &ast::Model, tables: &Tables) -> Checked {
 impl Model {
     /// Gives the whole and each phase the units of the names that it knows.
     fn take_units(&mut self, units: &Units, phases: &[Phase<'_>]) {
-        let own = |unit: &&NamedUnit| phases.iter().find(|phase| phase.holds(unit.span));
         let mut names = units.names.clone();
         for unit in &units.names {
-            let prefixed = own(&unit).map(|phase| format!("{}.{}", phase.name.name, unit.name));
-            names.extend(prefixed.map(|name| NamedUnit { name, ..unit.clone() }));
+            for phase in phases.iter().filter(|phase| phase.holds(unit.span)) {
+                let name = format!("{}.{}", phase.name.name, unit.name);
+                names.push(NamedUnit { name, ..unit.clone() });
+            }
         }
         for (phase, part) in phases.iter().zip(&mut self.phases) {
             let is_known =
@@ -126,13 +130,14 @@ fn is_fatal(found: &Diagnostic) -> bool {
 /// A phase of a tree.
 struct Phase<'a> {
     name: &'a ast::Ident,
-    span: Span,
+    /// Its block, and the items that it takes over from others.
+    spans: Vec<Span>,
     around: Around<'a>,
 }
 
 impl Phase<'_> {
     fn holds(&self, place: Span) -> bool {
-        self.span.start <= place.start && place.end <= self.span.end
+        self.spans.iter().any(|span| span.start <= place.start && place.end <= span.end)
     }
 
     /// Whether what is declared at a place is known in this phase.
@@ -147,7 +152,7 @@ fn phases(items: &[Item]) -> Vec<Phase<'_>> {
     let mut phases = Vec::new();
     let links: Vec<(&str, &str, &[Assignment])> = items.iter().filter_map(link).collect();
     for item in in_order(items) {
-        let ItemKind::Phase { name, items } = &item.kind else { continue };
+        let ItemKind::Phase { name, items, .. } = &item.kind else { continue };
         let own = links.iter().filter(|link| link.0 == name.name).map(|link| link.2);
         let around = Around {
             items: items.iter().collect(),
@@ -155,14 +160,18 @@ fn phases(items: &[Item]) -> Vec<Phase<'_>> {
             links: own.collect(),
         };
         before.insert(&name.name);
-        phases.push(Phase { name, span: item.span, around });
+        let is_taken_over =
+            |it: &&Item| it.span.end < item.span.start || item.span.end < it.span.start;
+        let taken_over = items.iter().filter(is_taken_over).map(|it| it.span);
+        let spans = std::iter::once(item.span).chain(taken_over).collect();
+        phases.push(Phase { name, spans, around });
     }
     phases
 }
 
 fn link(item: &Item) -> Option<(&str, &str, &[Assignment])> {
     match &item.kind {
-        ItemKind::Link { from, to, assignments } => Some((&from.name, &to.name, assignments)),
+        ItemKind::Link { from, to, assignments, .. } => Some((&from.name, &to.name, assignments)),
         _ => None,
     }
 }

@@ -110,9 +110,10 @@ impl<'m> Places<'m> {
             Symbol::Integral(at) if !self.integrals.is_empty() => {
                 return Some(self.integrals[phase] + at);
             }
-            Symbol::Integral(at) => {
-                (End::Last(phase), states + hidden.iter().position(|it| *it == Hidden::Integral(at))?)
-            }
+            Symbol::Integral(at) => (
+                End::Last(phase),
+                states + hidden.iter().position(|it| *it == Hidden::Integral(at))?,
+            ),
             _ => return None,
         };
         self.ends.iter().find(|it| it.0 == end).map(|it| it.1 + place)

@@ -2,6 +2,7 @@
 //! in which order their definitions are evaluated, and how it is written.
 
 pub(crate) mod functions;
+pub(crate) mod like;
 pub(crate) mod order;
 pub(crate) mod scope;
 mod spelling;

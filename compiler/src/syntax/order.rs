@@ -92,6 +92,10 @@ fn mentioned(scope: &Scope<'_>, at: usize) -> Vec<(usize, Span)> {
         ItemKind::Param { value: Some(value), .. } | ItemKind::Free { guess: Some(value), .. } => {
             add(value)
         }
+        ItemKind::Time { interval, .. } => {
+            add(&interval.lower);
+            add(&interval.upper);
+        }
         _ => {}
     }
     if let ItemKind::Fn { arguments, .. } = &item.kind {

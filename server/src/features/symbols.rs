@@ -29,7 +29,7 @@ impl Outline<'_> {
 
     fn item(&self, item: &Item) -> Option<DocumentSymbol> {
         match &item.kind {
-            ItemKind::Phase { name, items } => Some(DocumentSymbol {
+            ItemKind::Phase { name, items, .. } => Some(DocumentSymbol {
                 children: Some(self.items(items)),
                 ..self.symbol(&name.name, SymbolKind::Module, item.span, name.span)
             }),

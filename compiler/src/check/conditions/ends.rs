@@ -1,6 +1,7 @@
 //! FDC0403: a state needs a condition at the start or at the end, or nothing ties it down.
 
 use crate::check::facts::Facts;
+use crate::syntax::scope::declared;
 use crate::syntax::walk;
 use fdcc_grammar::ast::{Expr, ExprKind, Ident, Item, ItemKind};
 use fdcc_grammar::{Code, Diagnostic};
@@ -55,7 +56,10 @@ fn tied_from_outside<'a>(items: &'a [Item], phase: &Ident, tied: &mut HashSet<&'
         }
     }
     for item in items {
-        let ItemKind::Link { from, to, assignments } = &item.kind else { continue };
+        let ItemKind::Link { from, to, same, assignments } = &item.kind else { continue };
+        if to.name == phase.name && same.is_some() {
+            tied.extend(states_of(items, from));
+        }
         if to.name == phase.name {
             tied.extend(assignments.iter().map(|it| it.name.name.as_str()));
         }
@@ -65,6 +69,15 @@ fn tied_from_outside<'a>(items: &'a [Item], phase: &Ident, tied: &mut HashSet<&'
             }
         }
     }
+}
+
+fn states_of<'a>(items: &'a [Item], phase: &Ident) -> Vec<&'a str> {
+    let inner = items.iter().filter_map(|item| match &item.kind {
+        ItemKind::Phase { name, items, .. } if name.name == phase.name => Some(items),
+        _ => None,
+    });
+    let states = inner.flatten().filter(|item| matches!(item.kind, ItemKind::State { .. }));
+    states.filter_map(declared).map(|name| name.name.as_str()).collect()
 }
 
 fn untied(name: &Ident, parts: usize) -> Diagnostic {

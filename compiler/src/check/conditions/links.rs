@@ -12,12 +12,12 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let mut phases: HashMap<&str, &[Item]> = HashMap::new();
     let mut known: HashMap<(&str, &str), Span> = HashMap::new();
     for item in &facts.items {
-        if let ItemKind::Phase { name, items } = &item.kind {
+        if let ItemKind::Phase { name, items, .. } = &item.kind {
             phases.entry(&name.name).or_insert(items);
         }
     }
     for item in &facts.items {
-        let ItemKind::Link { from, to, assignments } = &item.kind else { continue };
+        let ItemKind::Link { from, to, same, assignments } = &item.kind else { continue };
         let place = from.span.to(to.span);
         if let Some(first) = known.insert((&from.name, &to.name), place) {
             let what = format!("`{}` is linked to `{}` twice", from.name, to.name);
@@ -30,13 +30,17 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
             continue;
         };
         for state in states(target) {
-            let given = assignments.iter().find(|it| it.name.name == state.name.name);
-            match given {
-                Some(given) => found.extend(onto_start(given, &state)),
-                None if state.start.is_none() && states(source).any(|it| it.is_like(&state)) => {
-                    found.push(left_out(item, place, state.name));
-                }
-                None => {}
+            let given: Vec<&Assignment> =
+                assignments.iter().filter(|it| it.name.name == state.name.name).collect();
+            let goes_on = || states(source).any(|it| it.is_like(&state));
+            let by_same = same.filter(|_| goes_on());
+            let place_of = given.first().map(|it| it.name.span).or(by_same);
+            found.extend(place_of.and_then(|place| onto_start(place, &state)));
+            let is_all = given.iter().any(|it| it.part.is_none());
+            if !is_all && state.start.is_none() && same.is_none() && goes_on() {
+                let missing = state.missing(&given);
+                found
+                    .extend((!missing.is_empty()).then(|| left_out(item, place, &state, &missing)));
             }
         }
     }
@@ -45,30 +49,45 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
 /// A state of a phase.
 struct State<'a> {
     name: &'a Ident,
-    parts: usize,
+    parts: &'a [Ident],
     start: Option<&'a Start>,
 }
 
 impl State<'_> {
     fn is_like(&self, other: &State<'_>) -> bool {
-        self.name.name == other.name.name && self.parts == other.parts
+        self.name.name == other.name.name && self.parts.len() == other.parts.len()
+    }
+
+    /// What no line of a link gives a value: `x`, or parts such as `p.x`.
+    fn missing(&self, given: &[&Assignment]) -> Vec<String> {
+        let name = &self.name.name;
+        if given.is_empty() {
+            return vec![name.clone()];
+        }
+        let is_given = |part: &&Ident| {
+            given.iter().any(|it| it.part.as_ref().is_some_and(|it| it.name == part.name))
+        };
+        let missing = self.parts.iter().filter(|part| !is_given(part));
+        missing.map(|part| format!("{name}.{}", part.name)).collect()
     }
 }
 
 fn states(items: &[Item]) -> impl Iterator<Item = State<'_>> {
     items.iter().filter_map(|item| match &item.kind {
         ItemKind::State { parts, start, .. } => {
-            Some(State { name: declared(item)?, parts: parts.len(), start: start.as_ref() })
+            Some(State { name: declared(item)?, parts, start: start.as_ref() })
         }
         _ => None,
     })
 }
 
 fn given_twice(assignments: &[Assignment], found: &mut Vec<Diagnostic>) {
-    let mut known: HashMap<&str, Span> = HashMap::new();
+    let mut known: HashMap<(&str, Option<&str>), Span> = HashMap::new();
     for assignment in assignments {
-        let name = &assignment.name;
-        if let Some(first) = known.insert(&name.name, name.span) {
+        let (name, part) = (&assignment.name, assignment.part.as_ref());
+        let whole = known.get(&(name.name.as_str(), None)).copied();
+        let before = known.insert((&name.name, part.map(|it| it.name.as_str())), name.span);
+        if let Some(first) = before.or(whole) {
             let what = format!("`{}` is handed over twice", name.name);
             found.push(twice(what, name.span, first, "keep one of them"));
         }
@@ -79,12 +98,11 @@ fn twice(what: String, place: Span, first: Span, help: &str) -> Diagnostic {
     Diagnostic::new(Code::DuplicateName, what, place, "again").label(first, "first here").help(help)
 }
 
-fn onto_start(given: &Assignment, state: &State<'_>) -> Option<Diagnostic> {
+fn onto_start(given: Span, state: &State<'_>) -> Option<Diagnostic> {
     let Some(Start::Value(value)) = state.start else { return None };
     let name = &state.name.name;
     let message = format!("`{name}` has a start, and a link gives it another");
-    let found =
-        Diagnostic::new(Code::LinkedStart, message, given.name.span, "handed over by the link");
+    let found = Diagnostic::new(Code::LinkedStart, message, given, "handed over by the link");
     let declared = state.name.span.to(value.span);
     Some(found.label(declared, "its start is given here").help(format!(
         "leave out `start` in the phase, or `{name}` in the link; to meet a value on the way write \
@@ -92,13 +110,18 @@ fn onto_start(given: &Assignment, state: &State<'_>) -> Option<Diagnostic> {
     )))
 }
 
-fn left_out(link: &Item, place: Span, name: &Ident) -> Diagnostic {
-    let message = format!("the link leaves out `{}`, a state of both phases", name.name);
+fn left_out(link: &Item, place: Span, state: &State<'_>, missing: &[String]) -> Diagnostic {
+    let names = missing.join("`, `");
+    let message = format!("the link leaves out `{names}` of both phases");
     let found = Diagnostic::new(Code::LeftOut, message, place, "it may jump here");
-    let line = format!("{0} := {0}", name.name);
-    let before = Span { start: link.span.end - 1, end: link.span.end - 1 };
+    let lines: Vec<String> = missing.iter().map(|name| format!("{name} := {name}")).collect();
+    let lines = lines.join("  ");
+    let help = format!(
+        "to go on, write `{lines}`, or `same` for all states that are not given; if it is to begin \
+         anew, say `start free`"
+    );
     found
-        .label(name.span, "begins anew here")
-        .help(format!("to go on, write `{line}`; if it is to begin anew, say `start free`"))
-        .fix(Fix::likely(format!("write `{line}`")).insert(before.start, format!("{line} ")))
+        .label(state.name.span, "begins anew here")
+        .help(help)
+        .fix(Fix::likely(format!("write `{lines}`")).insert(link.span.end - 1, format!("{lines} ")))
 }

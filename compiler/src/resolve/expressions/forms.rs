@@ -223,8 +223,11 @@ impl<'a> Elaborator<'a> {
         let mut value = self.evaluate_in(Context::AT_AN_END, callee);
         let at_end = matches!(end, Argument::End(_));
         let parts = self.move_to_end(value.parts.as_slice().to_vec(), at_end);
-        let kept = value.traits.reads.beyond(Reads::TIME.or(Reads::STATE));
-        value.traits.reads = kept.or(Reads::WHOLE);
+        let reads = value.traits.reads;
+        // The time is known of a run beforehand, as far as unknowns are.
+        let is_time = !reads.has(Reads::STATE.or(Reads::PHASE).or(Reads::FOREIGN));
+        let known = if is_time { Reads::PARAM.or(Reads::FREE) } else { Reads::WHOLE };
+        value.traits.reads = reads.beyond(Reads::TIME.or(Reads::STATE)).or(known);
         value.parts = Parts::from_list(&parts);
         self.admit(&text::expr(callee), value, span)
     }

@@ -125,6 +125,7 @@ impl<'a> Elaborator<'a> {
             }
             ItemKind::Param { value: Some(value), .. } => self.define_param(at, value),
             ItemKind::Surface { value, name } => self.define_surface(at, name, value),
+            ItemKind::Time { interval, .. } => self.time_interval(interval),
             ItemKind::Fn { name: _, arguments, body } => self.examine(at, arguments, body),
             _ => {}
         }

@@ -4,7 +4,11 @@ use crate::expressions::graph::ExprId;
 use crate::model::{Jump, Place};
 use crate::resolve::elaborator::Elaborator;
 use crate::resolve::elaborator::context::Context;
+use crate::resolve::elaborator::value::Value;
+use crate::syntax::scope;
 use fdcc_grammar::ast::{Assignment, Ident, Item, ItemKind};
+use fdcc_grammar::{Code, Diagnostic};
+use std::ops::Range;
 
 impl<'a> Elaborator<'a> {
     /// Resolves a jump; one with a mistake in it is told and left out.
@@ -47,8 +51,39 @@ impl<'a> Elaborator<'a> {
         let value = self.evaluate_in(Context::DYNAMICS, &reset.value);
         let Some(at) = state else { return Vec::new() };
         let size = self.values[at].parts.as_slice().len();
-        let parts = self.expect_parts(&value, size, reset.value.span);
         let Some(first) = self.index_of(at) else { return Vec::new() };
-        parts.into_iter().enumerate().map(|(part, value)| (first + part, value)).collect()
+        let item = self.scope.declarations[at].item;
+        let Some(states) = self.assigned(reset, item, first..first + size) else {
+            return Vec::new();
+        };
+        let parts = self.expect_parts(&value, states.len(), reset.value.span);
+        states.zip(parts).collect()
     }
+
+    /// The states that an assignment to a vector or to a part of it gives a value.
+    pub fn assigned(
+        &mut self,
+        assignment: &'a Assignment,
+        item: &'a Item,
+        states: Range<usize>,
+    ) -> Option<Range<usize>> {
+        let Some(part) = &assignment.part else { return Some(states) };
+        let names: Vec<&Ident> = scope::parts(item).iter().collect();
+        match names.iter().position(|name| name.name == part.name) {
+            Some(at) => Some(states.start + at..states.start + at + 1),
+            None => {
+                match names.is_empty() {
+                    true => self.diagnostics.push(not_a_vector(&assignment.name, part)),
+                    false => _ = self.no_part(Value::default(), part, &names),
+                }
+                None
+            }
+        }
+    }
+}
+
+fn not_a_vector(name: &Ident, part: &Ident) -> Diagnostic {
+    let message = format!("there is no part `{}`", part.name);
+    Diagnostic::new(Code::UnknownPart, message, part.span, "no such part")
+        .help(format!("`{}` is a number: give it a value as a whole", name.name))
 }

@@ -20,14 +20,8 @@ use fdcc_grammar::ast::{
 use fdcc_grammar::{Code, Diagnostic, Span};
 
 impl<'a> Elaborator<'a> {
-    /// Resolves items in an order in which each finds what it needs: time before conditions,
-    /// guesses last.
+    /// Resolves what is no declaration; declarations are known.
     pub fn resolve_items(&mut self, items: &[&'a Item]) {
-        for item in items {
-            if let ItemKind::Time { interval, .. } = &item.kind {
-                self.time_interval(interval);
-            }
-        }
         items.iter().for_each(|item| self.item(item));
         self.move_boundary();
         self.check_curves();
@@ -55,7 +49,9 @@ impl<'a> Elaborator<'a> {
                 weights.iter().for_each(|(name, weight)| self.weight(name, weight))
             }
             ItemKind::Jump { .. } => self.jump(item),
-            ItemKind::Link { from, to, assignments } => self.link(from, to, assignments),
+            ItemKind::Link { from, to, same, assignments } => {
+                self.link(from, to, *same, assignments)
+            }
             ItemKind::Data { file_span, .. } if !self.tables.contains_key(file_span) => {
                 self.not_yet(*file_span, "a model whose data was not read")
             }
@@ -63,7 +59,8 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn time_interval(&mut self, interval: &'a Interval) {
+    /// First and last time.
+    pub fn time_interval(&mut self, interval: &'a Interval) {
         for (at, end) in [&interval.lower, &interval.upper].into_iter().enumerate() {
             let value = self.evaluate_for(Role::Number("a bound of time"), Context::TIME, end);
             if let Some(part) = self.expect_number(&value, end.span) {

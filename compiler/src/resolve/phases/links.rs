@@ -10,7 +10,7 @@ use crate::resolve::elaborator::value::Parts;
 use crate::syntax::scope::kind_word;
 use crate::syntax::text;
 use fdcc_grammar::ast::{Assignment, Ident, Item, ItemKind};
-use fdcc_grammar::{Code, Diagnostic};
+use fdcc_grammar::{Code, Diagnostic, Span};
 use fdcc_runtime::problem::End;
 use std::collections::{HashMap, HashSet};
 
@@ -58,7 +58,13 @@ impl<'a> Elaborator<'a> {
     }
 
     /// A link between two phases that have been resolved.
-    pub fn link(&mut self, from: &'a Ident, to: &'a Ident, assignments: &'a [Assignment]) {
+    pub fn link(
+        &mut self,
+        from: &'a Ident,
+        to: &'a Ident,
+        same: Option<Span>,
+        assignments: &'a [Assignment],
+    ) {
         let [source, target] = [from, to].map(|name| self.linked_phase(name));
         let (Some(source), Some(target)) = (source, target) else { return };
         let name = format!("{} -> {}", from.name, to.name);
@@ -75,13 +81,28 @@ impl<'a> Elaborator<'a> {
             let pairs: Vec<(usize, ExprId)> = states.zip(values).collect();
             rows.extend(pairs.into_iter().map(|it| self.link_row(&place, target, it)));
         }
-        for state in (0..self.model.states.len()).filter(|state| !given.contains(state)) {
-            let end = self.phases[source].meaning.at_ends[1][state];
-            let end = self.import(source, &[end])[0];
-            rows.push(self.link_row(&place, target, (state, end)));
+        for (after, before) in self.continued(source, target, same.is_some()) {
+            if !given.contains(&after) {
+                let end = self.phases[source].meaning.at_ends[1][before];
+                let end = self.import(source, &[end])[0];
+                rows.push(self.link_row(&place, target, (after, end)));
+            }
         }
         let ends = vec![End::Last(source), End::First(target)];
         self.model.links.push(Link { ends, objective: None, rows });
+    }
+
+    /// The states that go on unless a link says otherwise, in the second phase and in the first:
+    /// those outside of all phases, or `same`, all that both have.
+    fn continued(&self, source: usize, target: usize, same: bool) -> Vec<(usize, usize)> {
+        let shared = self.model.states.len();
+        let mut pairs: Vec<(usize, usize)> = (0..shared).map(|state| (state, state)).collect();
+        let [before, after] = [source, target].map(|at| &self.phases[at].meaning.model.states);
+        for (state, known) in after.iter().enumerate().skip(shared).filter(|_| same) {
+            let like = before.iter().skip(shared).position(|it| it.place.name == known.place.name);
+            pairs.extend(like.map(|like| (state, shared + like)));
+        }
+        pairs
     }
 
     /// Tells a gap between the end of a phase and the start of the one that follows.
@@ -146,7 +167,8 @@ impl<'a> Elaborator<'a> {
             return None;
         };
         let first = phase.meaning.index_of_value(&state.value)?;
-        Some(first..first + state.value.parts.as_slice().len())
+        let (item, size) = (state.item, state.value.parts.as_slice().len());
+        self.assigned(assignment, item, first..first + size)
     }
 
     /// What a line of a link hands over, as many numbers as its state has.

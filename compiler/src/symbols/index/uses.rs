@@ -13,7 +13,8 @@ use std::collections::HashMap;
 /// Adds all uses.
 pub(super) fn collect(tree: &ast::Model, names: &mut Names) {
     let known = known(names);
-    let mut walker = Walker { names, known, phase: None };
+    let likes = likes(&tree.items, names);
+    let mut walker = Walker { names, known, likes, phase: None };
     walker.items(&tree.items);
 }
 
@@ -30,12 +31,27 @@ fn known(names: &Names) -> Known {
     known
 }
 
+fn likes(items: &[Item], names: &Names) -> HashMap<usize, usize> {
+    let is_phase = |name: &str| {
+        names.definitions.iter().position(|it| it.kind == Kind::Phase && it.name == name)
+    };
+    let like = |item: &Item| match &item.kind {
+        ItemKind::Phase { name, like: Some(like), .. } => {
+            Some((names.definition_named(name)?, is_phase(&like.name)?))
+        }
+        _ => None,
+    };
+    items.iter().filter_map(like).collect()
+}
+
 /// A name that only an expression knows, and the one around it.
 type Local<'a> = (&'a str, usize, Option<usize>);
 
 struct Walker<'n> {
     names: &'n mut Names,
     known: Known,
+    /// The phase whose names each phase takes over.
+    likes: HashMap<usize, usize>,
     phase: Option<usize>,
 }
 
@@ -51,13 +67,14 @@ impl Walker<'_> {
             self.unit(unit);
         }
         match &item.kind {
-            ItemKind::Phase { name, items } => {
+            ItemKind::Phase { name, like, items } => {
+                like.iter().for_each(|it| self.name(it, Role::Read));
                 let outer = self.phase;
                 self.phase = self.names.definition_named(name);
                 self.items(items);
                 self.phase = outer;
             }
-            ItemKind::Link { from, to, assignments } => self.link(from, to, assignments),
+            ItemKind::Link { from, to, assignments, .. } => self.link(from, to, assignments),
             ItemKind::Fn { name, body, .. } => {
                 let function = self.names.definition_named(name);
                 self.expression(body, function);
@@ -87,7 +104,7 @@ impl Walker<'_> {
             }
             ItemKind::Jump { surface, then_hold, assignments, .. } => {
                 std::iter::once(surface).chain(then_hold).for_each(|it| self.name(it, Role::Read));
-                assignments.iter().for_each(|it| self.name(&it.name, Role::Write));
+                assignments.iter().for_each(|it| self.assigned(it));
             }
             ItemKind::Sweep { lists } => lists.iter().for_each(|it| match is_key(&it.name.name) {
                 true => self.add(it.name.span, Meaning::Setting, Role::Write),
@@ -105,7 +122,7 @@ impl Walker<'_> {
         let outer = self.phase;
         for it in assignments {
             self.phase = self.find(&to.name, outer);
-            self.name(&it.name, Role::Write);
+            self.assigned(it);
             self.phase = self.find(&from.name, outer);
             self.expression(&it.value, None);
         }
@@ -148,9 +165,27 @@ impl Walker<'_> {
         self.part_of(None, name).or_else(|| self.part_of(Some(phase?), name))
     }
 
-    /// What belongs to a phase, a vector, a function or a data set, or to none.
-    fn part_of(&self, owner: Option<usize>, name: &str) -> Option<usize> {
-        self.known.get(&owner)?.get(name).copied()
+    /// What belongs to a phase, a vector, a function or a data set, or to none; a phase has what
+    /// it takes over from another.
+    fn part_of(&self, mut owner: Option<usize>, name: &str) -> Option<usize> {
+        for _ in 0..=self.likes.len() {
+            let found = self.known.get(&owner).and_then(|own| own.get(name)).copied();
+            match (found, owner.and_then(|at| self.likes.get(&at))) {
+                (None, Some(other)) => owner = Some(*other),
+                _ => return found,
+            }
+        }
+        None
+    }
+
+    /// The left side of an assignment.
+    fn assigned(&mut self, assignment: &Assignment) {
+        self.name(&assignment.name, Role::Write);
+        if let Some(part) = &assignment.part {
+            let whole = self.find(&assignment.name.name, self.phase);
+            let found = whole.and_then(|at| self.part_of(Some(at), &part.name));
+            self.add(part.span, found.map_or(Meaning::Unknown, Meaning::Declared), Role::Write);
+        }
     }
 
     /// All names in an expression, perhaps the body of a function. In a loop: sums are trees as

@@ -3,7 +3,7 @@
 use super::requirement::Reason;
 use super::value::{Part, Value, pairwise};
 use super::{Inference, Operand, named, side};
-use crate::syntax::scope::{Declaration, Scope};
+use crate::syntax::scope::{Declaration, Scope, parts};
 use fdcc_grammar::Span;
 use fdcc_grammar::ast::{
     self, Assignment, Check, Condition, Equation, Expr, ExprKind, Ident, Item, ItemKind, Setting,
@@ -16,7 +16,7 @@ impl<'a> Inference<'a> {
         let outer: Vec<&'a Item> = tree.items.iter().collect();
         self.enter(Scope::new(&outer, &mut Vec::new()));
         for item in &tree.items {
-            let ItemKind::Phase { name, items } = &item.kind else { continue };
+            let ItemKind::Phase { name, items, .. } = &item.kind else { continue };
             let inner: Vec<&'a Item> = items.iter().collect();
             let all: Vec<&'a Item> = outer.iter().chain(&inner).copied().collect();
             self.enter(Scope::new(&all, &mut Vec::new()));
@@ -63,7 +63,7 @@ impl<'a> Inference<'a> {
                 at_most.iter().for_each(|number| self.plain("at most", number));
                 assignments.iter().for_each(|it| self.reset(it))
             }
-            ItemKind::Link { from, to, assignments } => {
+            ItemKind::Link { from, to, assignments, .. } => {
                 assignments.iter().for_each(|it| self.handed_over(from, to, it))
             }
             ItemKind::Method { settings } => settings.iter().for_each(|it| self.setting(it)),
@@ -116,11 +116,6 @@ impl<'a> Inference<'a> {
     }
 
     /// A value for a name in a block.
-    fn assigned(&mut self, what: &'static str, name: &'a Ident, value: &'a Expr) {
-        let given = self.operand(value);
-        self.assigned_value(what, name, given);
-    }
-
     fn assigned_value(&mut self, what: &'static str, name: &'a Ident, given: Operand<'a>) {
         if let Some(it) = self.declared(name) {
             let subject = (self.subject(it).0, named(name.span));
@@ -142,7 +137,19 @@ impl<'a> Inference<'a> {
     }
 
     fn reset(&mut self, reset: &'a Assignment) {
-        self.assigned("the new value", &reset.name, &reset.value);
+        let given = self.operand(&reset.value);
+        if let Some(it) = self.declared(&reset.name) {
+            let subject = (self.assigned_to(it, reset), named(reset.name.span));
+            self.compare(Reason::Given("the new value", &reset.name), &subject, &given);
+        }
+    }
+
+    /// What the left side of an assignment measures.
+    fn assigned_to(&mut self, it: Declaration<'a>, assignment: &Assignment) -> Value {
+        let whole = self.subject(it).0;
+        let Some(part) = &assignment.part else { return whole };
+        let at = parts(it.item).iter().position(|name| name.name == part.name);
+        at.and_then(|at| whole.get(at).or(whole.first()).cloned()).into_iter().collect()
     }
 
     /// A link reads its right side in the phase before it, and gives it to a state of the phase
@@ -155,7 +162,7 @@ impl<'a> Inference<'a> {
         let outer: Scope<'a> = std::mem::replace(&mut self.scope, source);
         let given = self.operand(&assignment.value);
         if let Some(target) = target {
-            let subject = (self.subject(target).0, named(assignment.name.span));
+            let subject = (self.assigned_to(target, assignment), named(assignment.name.span));
             self.compare(Reason::Given("the new value", &assignment.name), &subject, &given);
         }
         let source = std::mem::replace(&mut self.scope, outer);

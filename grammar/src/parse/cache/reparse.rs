@@ -113,7 +113,7 @@ macro_rules! fields {
 
 fields! {
     Arm { left, relation, relation_span, right, guard_span, value }
-    Assignment { name, value }
+    Assignment { name, part, value }
     Binding { name, value }
     Check { left, relation, right, within, span }
     Condition { first, rest, span }
@@ -187,8 +187,8 @@ variants! {
         Path { name, condition },
         Objective { sense, keyword, value },
         Guess { bindings },
-        Phase { name, items },
-        Link { from, to, assignments },
+        Phase { name, like, items },
+        Link { from, to, same, assignments },
         Method { settings },
         Sweep { lists },
         Report { bindings },

@@ -255,7 +255,8 @@ fn looks_like_entry(so_far: &SoFar<'_, '_>, at: usize, block: &str) -> bool {
                 && (second == "'" || (second == "*" && fourth == "'"))
         }
         "guess" | "report" | "sweep" => is_name && second == "=",
-        "jump" | "link" => is_name && second == ":=",
+        "link" if first == "same" && second != ":=" => true,
+        "jump" | "link" => is_name && (second == ":=" || (second == "." && fourth == ":=")),
         "method" => {
             let is_key = is_name && second == "=" && so_far.tokens[at].begins_line;
             is_key || (["smooth", "grid", "continue"].contains(&first) && third == "=")

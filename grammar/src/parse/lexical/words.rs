@@ -120,6 +120,8 @@ pub fn inner_words(item: &str) -> &'static [&'static str] {
     match item {
         "jump" => &["on", "falling", "rising", "at", "most", "then", "hold"],
         "data" => &["csv", "columns"],
+        "phase" => &["like"],
+        "link" => &["same"],
         "method" => &["smooth", "kernel", "grid", "steps", "scheme", "lagged", "continue"],
         "state" => &["start", "in", "free"],
         "control" | "free" => &["guess", "in"],

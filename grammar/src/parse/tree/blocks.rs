@@ -123,7 +123,11 @@ impl Reader<'_> {
 
     /// The assignments of a `jump` or `link`.
     pub(super) fn assignments(&mut self, block: &Pair<'_, Rule>) -> Vec<Assignment> {
-        let read = |pair| Assignment { name: ident(self, &pair), value: self.one(&pair) };
+        let read = |pair| Assignment {
+            name: ident(self, &pair),
+            part: child(&pair, Rule::part).map(|part| ident(self, &part)),
+            value: self.one(&pair),
+        };
         children(block, Rule::assignment).map(read).collect()
     }
 

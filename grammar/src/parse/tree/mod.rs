@@ -74,7 +74,8 @@ impl Reader<'_> {
     fn kind(&mut self, pair: &Pair<'_, Rule>) -> ItemKind {
         match pair.as_rule() {
             Rule::phase => {
-                ItemKind::Phase { name: ident(self, pair), items: self.phase_items(pair) }
+                let like = child(pair, Rule::like).map(|like| ident(self, &like));
+                ItemKind::Phase { name: ident(self, pair), like, items: self.phase_items(pair) }
             }
             Rule::dynamics => ItemKind::Dynamics { equations: self.equations(pair) },
             Rule::equation => ItemKind::Dynamics { equations: vec![self.equation(pair)] },
@@ -152,7 +153,7 @@ impl Reader<'_> {
 
     fn phase_items(&mut self, pair: &Pair<'_, Rule>) -> Vec<Item> {
         let keyword_or_punctuation =
-            [Rule::kw_phase, Rule::name, Rule::left_brace, Rule::right_brace];
+            [Rule::kw_phase, Rule::name, Rule::like, Rule::left_brace, Rule::right_brace];
         let items = pair
             .clone()
             .into_inner()
@@ -197,7 +198,8 @@ impl Reader<'_> {
 
     fn link(&mut self, pair: &Pair<'_, Rule>) -> ItemKind {
         let [from, to] = self.two_names(pair);
-        ItemKind::Link { from, to, assignments: self.assignments(pair) }
+        let same = child(pair, Rule::same).map(|same| self.span(&same));
+        ItemKind::Link { from, to, same, assignments: self.assignments(pair) }
     }
 
     fn two_names(&self, pair: &Pair<'_, Rule>) -> [Ident; 2] {

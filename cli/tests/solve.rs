@@ -319,7 +319,7 @@ fn exit_codes_and_words_are_those_of_the_contract() {
             3,
             "without jumps",
         ),
-        (&[&twostage], 1, "FDC0603"),
+        (&[&twostage], 0, "confirmed on the true system"),
         (&[&racecar, "--set", "w=-1"], 1, "FDC0401"),
         (&["ramp.fdc", "--set", "goal=5"], 2, "FDC0602"),
         (&["ramp.fdc", "--set", "gaol=1"], 3, "did you mean `goal`?"),

@@ -136,15 +136,14 @@ fn times_are_in_the_unit_of_time() {
 /// What `solve` refuses is no mistake: who checks all models of a folder gets 0.
 #[test]
 fn what_cannot_be_solved_yet_is_advice() {
-    let folder = folder("units_advice", &[]);
-    let output = fdcc(
-        &folder,
-        &["check", &model("twostage"), "--format", "short", "--deny", "warnings"],
-        "",
-    );
+    let text = b"time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]\ndynamics { x' = u }\n\
+        end x == 0.5\nminimize integral(u^2)\nmethod { scheme fesd }\n";
+    let folder = folder("units_advice", &[("waiting.fdc", text)]);
+    let arguments = ["check", "waiting.fdc", "--format", "short", "--deny", "warnings"];
+    let output = fdcc(&folder, &arguments, "");
     expect_exit(&output, 0, "check");
     assert!(
-        stdout(&output).contains("advice[FDC0603]: a model with phases"),
+        stdout(&output).contains("advice[FDC0603]: a model with `scheme = fesd`"),
         "{}",
         stdout(&output)
     );

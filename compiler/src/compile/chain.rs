@@ -2,7 +2,7 @@
 
 use super::{ProblemCode, machine_code};
 use crate::lower::{self, Expected, LoweredLink, LoweredProblem};
-use crate::model::numbers::{Numbers, numbers};
+use crate::model::numbers::{Numbers, numbers as numbers_of};
 use crate::model::{Model, Phase, not_yet};
 use fdcc_grammar::Diagnostic;
 use fdcc_runtime::problem::{Chain, Function, Link, Problem};
@@ -46,12 +46,14 @@ impl ChainCode {
         if model.phases.is_empty() {
             return Ok(Chain::single(self.phases[0].problem(model)?));
         }
-        let numbers = numbers(model)?;
+        let numbers = numbers_of(model)?;
         let mut phases = Vec::new();
         for (code, phase) in self.phases.iter().zip(&model.phases) {
             phases.push(phase_of(model, code.problem(&phase.model)?));
         }
-        let links = self.links.iter().map(|it| link(model, &numbers, it)).collect();
+        let all = model.phases.iter().map(|phase| numbers_of(&phase.model));
+        let all: Vec<Numbers> = all.collect::<Result<_, _>>()?;
+        let links = self.links.iter().map(|it| link(model, (&numbers, &all), it)).collect();
         let unknowns = lower::unknowns(model, &numbers);
         Ok(Chain { name: model.name.clone(), phases, unknowns, links })
     }
@@ -77,9 +79,11 @@ fn phase_of(model: &Model, mut problem: Problem) -> Problem {
 
 fn link(
     model: &Model,
-    numbers: &Numbers,
+    (numbers, all): (&Numbers, &[Numbers]),
     (link, function): &(LoweredLink, Arc<dyn Function>),
 ) -> Link {
+    let of_phase = link.of_phase.map(|phase| (&model.phases[phase].model, &all[phase]));
+    let (model, numbers) = of_phase.unwrap_or((model, numbers));
     Link {
         ends: link.ends.clone(),
         function: function.clone(),

@@ -3,6 +3,8 @@
 //! Inputs `[x | p]`: the states, hidden ones included, then the controls of each end in turn;
 //! parameters and unknowns. Output 0 is a part of the objective.
 
+mod first_points;
+
 use super::function::{Order, VectorFunction};
 use super::objective::Hidden;
 use super::{LoweredProblem, origin};
@@ -18,6 +20,8 @@ pub(crate) struct LoweredLink {
     pub function: VectorFunction,
     /// The rows, with their bounds.
     pub rows: Vec<Constraint>,
+    /// The phase in whose graph the bounds are, if it is not that of the whole.
+    pub of_phase: Option<usize>,
 }
 
 /// All links of a model whose phases have been lowered, over a copy of its graph.
@@ -26,7 +30,9 @@ pub(crate) fn links(model: &Model, phases: &[&LoweredProblem]) -> (Graph, Vec<Lo
     let hidden: Vec<&[Hidden]> = phases.iter().map(|phase| phase.hidden.as_slice()).collect();
     let is_told = |link: &&Link| link.objective.is_some() || !link.rows.is_empty();
     let told = model.links.iter().filter(is_told);
-    let links = told.map(|link| lower(model, &mut graph, &hidden, link)).collect();
+    let mut links: Vec<LoweredLink> =
+        told.map(|link| lower(model, &mut graph, &hidden, link)).collect();
+    links.extend(first_points::links(model, phases, &mut graph));
     (graph, links)
 }
 
@@ -47,7 +53,7 @@ fn lower(model: &Model, graph: &mut Graph, hidden: &[&[Hidden]], link: &Link) ->
         by: layout.states().chain(unknowns).map(|at| at as u32).collect(),
         order: Order::Second,
     };
-    LoweredLink { ends: link.ends.clone(), function, rows: link.rows.clone() }
+    LoweredLink { ends: link.ends.clone(), function, rows: link.rows.clone(), of_phase: None }
 }
 
 fn origins(model: &Model, link: &Link) -> Vec<Origin> {

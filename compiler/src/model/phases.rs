@@ -15,6 +15,9 @@ pub struct Phase {
     pub place: Place,
     /// What holds in it, with its part of the objective and all conditions that read no other phase.
     pub model: Model,
+    /// Whether its path conditions hold at its first point, too: not where a jump of the state puts
+    /// it on the surface that they are about.
+    pub holds_at_first: bool,
 }
 
 /// Conditions between phases, over the symbols of the whole.

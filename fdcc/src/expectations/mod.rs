@@ -3,6 +3,7 @@
 //! Values of states are those at the ends of the trajectory; integrals are taken by the scheme's
 //! own quadrature. What only a simulation can tell is that of the replay on the true system.
 
+mod of_phases;
 mod replayed;
 
 use crate::solve::Solution;
@@ -78,7 +79,7 @@ pub struct Sides {
 impl Solution {
     /// What the model expects of its solution, compared with this one.
     pub fn expectations(&self) -> Vec<Checked> {
-        evaluate(self)
+        if self.phases().is_empty() { evaluate(self) } else { of_phases::evaluate(self) }
     }
 }
 
@@ -106,13 +107,17 @@ fn evaluate(solution: &Solution) -> Vec<Checked> {
 }
 
 fn checked(expected: &Expected, at: usize, values: &Columns, replayed: &Replayed) -> Checked {
-    let [left, right, tolerance] = [0, 1, 2].map(|side| values.column(3 * at + side)[0]);
-    let holds = holds(expected.comparison, left, right, tolerance);
     let outcome = match expected.simulated.iter().find_map(|&asked| replayed.why_not(asked)) {
         Some(why) => Outcome::Untold(why),
-        None => Outcome::Compared(Sides { left, right, tolerance, holds }),
+        None => Outcome::Compared(sides(expected, at, values)),
     };
     Checked { origin: expected.origin.clone(), outcome }
+}
+
+fn sides(expected: &Expected, at: usize, values: &Columns) -> Sides {
+    let [left, right, tolerance] = [0, 1, 2].map(|side| values.column(3 * at + side)[0]);
+    let holds = holds(expected.comparison, left, right, tolerance);
+    Sides { left, right, tolerance, holds }
 }
 
 fn holds(comparison: Comparison, left: f64, right: f64, tolerance: f64) -> bool {

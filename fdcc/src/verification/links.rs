@@ -5,6 +5,15 @@ use fdcc_runtime::problem::{Chain, Columns, End, Link};
 use fdcc_runtime::solve::ChainOutcome;
 
 /// How far a condition of a link is violated by the ends of the replays.
+///
+/// ```
+/// let model = fdcc::Model::from_file("../models/twostage.fdc")?;
+/// let solution = model.solve(&fdcc::Options::default())?;
+/// let (replays, links) = solution.verify_phases()?;
+/// assert_eq!((replays.len(), links.len()), (2, 3));
+/// assert!(links.iter().all(|link| link.part < 1e-4));
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct LinkGap {
     /// The condition.

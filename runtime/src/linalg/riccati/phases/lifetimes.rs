@@ -8,7 +8,7 @@
 
 use super::direct::Direct;
 use crate::linalg::structure::phases::PhaseStages;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 /// A variable or row at the ends of phases.
@@ -38,17 +38,20 @@ impl Item {
 /// The node at which each member of the border is born, and that at which it dies.
 pub(super) struct Lifetimes {
     spans: Spans,
+    /// Rows for which a first state makes up.
+    links: BTreeSet<Item>,
 }
 
 type Spans = BTreeMap<Item, [usize; 2]>;
 
 impl Lifetimes {
-    /// Finds them; or says why an entry has no node at which both of its members are there.
+    /// Finds them, with those members of the border that are `waiting` longer; or says why an entry has no node at which both of its members are there.
     pub fn new(
         phases: &[PhaseStages],
         unknowns: Range<usize>,
         rows: &[usize],
         direct: &[Direct],
+        waiting: &BTreeSet<Item>,
     ) -> Result<Self, &'static str> {
         let members = unknowns.map(Item::Unknown).chain(rows.iter().copied().map(Item::Row));
         let mut spans: Spans = members.map(|item| (item, [0, phases.len()])).collect();
@@ -73,7 +76,12 @@ impl Lifetimes {
         }
         let kind = |item: &Item| kind(item, of(item));
         (1..phases.len()).rev().for_each(|j| delay(&mut spans, j, &phases[j], &kind));
-        let mut lifetimes = Lifetimes { spans };
+        // What was found to have nothing that makes up for it waits for the first node.
+        for item in waiting {
+            spans.entry(*item).and_modify(|span| span[1] = 0);
+        }
+        let links = spans.keys().filter(|item| kind(item) == Kind::Link).copied().collect();
+        let mut lifetimes = Lifetimes { spans, links };
         direct.iter().for_each(|entry| lifetimes.meet(entry));
         let fits = |entry: &Direct| lifetimes.place(entry, phases.len()).is_some();
         if direct.iter().filter(|entry| entry.count > 0).all(fits) {
@@ -111,6 +119,13 @@ impl Lifetimes {
     pub fn theta(&self, phase: usize) -> Vec<Item> {
         let is_there = |(_, [born, dies]): &(&Item, &[usize; 2])| *dies <= phase && phase < *born;
         self.spans.iter().filter(is_there).map(|(item, _)| *item).collect()
+    }
+
+    /// Whether a member of the border is an unknown, or a row that holds at the end of a phase, that
+    /// dies at a node and can wait.
+    pub fn may_wait(&self, item: &Item, node: usize) -> bool {
+        let is_later = self.spans.get(item).is_some_and(|span| span[1] == node && node > 0);
+        is_later && !self.links.contains(item)
     }
 
     /// What dies at a node.

@@ -25,6 +25,7 @@ use crate::linalg::structure::triplets::{Family, Triplets};
 use direct::direct_entries;
 use lifetimes::{Item, Lifetimes};
 use node::Node;
+use std::collections::BTreeSet;
 
 /// A phase with its recursion.
 struct Phase {
@@ -53,12 +54,27 @@ struct Copied {
 
 /// The recursion over all phases.
 pub(in crate::linalg) struct PhasedRiccati {
+    recipe: Recipe,
     variables: usize,
     /// Rows that are no stages: as many negative eigenvalues are left to the nodes.
     coupling: usize,
+    lifetimes: Lifetimes,
     phases: Vec<Phase>,
     /// The node before each phase, and the one behind the last.
     nodes: Vec<Node>,
+}
+
+/// What it was prepared from.
+#[derive(Clone)]
+struct Recipe {
+    phases: Vec<PhaseStages>,
+    hessian: Triplets,
+    jacobian: Triplets,
+    fixed: Vec<bool>,
+    equality_rows: Vec<bool>,
+    /// Members of the border that cannot be eliminated where their phase begins: the phase does not
+    /// reach what they ask for.
+    waiting: BTreeSet<Item>,
 }
 
 impl PhasedRiccati {
@@ -69,18 +85,75 @@ impl PhasedRiccati {
         fixed: &[bool],
         equality_rows: &[bool],
     ) -> Result<Self, &'static str> {
+        PhasedRiccati::of(Recipe {
+            phases: phases.to_vec(),
+            hessian: hessian.clone(),
+            jacobian: jacobian.clone(),
+            fixed: fixed.to_vec(),
+            equality_rows: equality_rows.to_vec(),
+            waiting: BTreeSet::new(),
+        })
+    }
+
+    fn of(recipe: Recipe) -> Result<Self, &'static str> {
+        let Recipe { phases, hessian, jacobian, fixed, equality_rows, waiting } = &recipe;
         let direct = direct_entries(phases, hessian, jacobian).ok_or("distant stages are tied")?;
         let unknowns = phases.last().map_or(0, |last| last.variables.end)..fixed.len();
         let stage_rows = |row: &usize| phases.iter().any(|phase| is_of_stage(phase, *row));
         let rows: Vec<usize> = (0..equality_rows.len()).filter(|row| !stage_rows(row)).collect();
-        let lifetimes = Lifetimes::new(phases, unknowns, &rows, &direct)?;
+        let lifetimes = Lifetimes::new(phases, unknowns, &rows, &direct, waiting)?;
         let all = phases.iter().enumerate().map(|(j, phase)| {
             Phase::new(phase, lifetimes.theta(j), (hessian, jacobian), fixed, equality_rows)
         });
         let all: Vec<Phase> = all.collect::<Result<_, _>>()?;
-        let nodes =
-            (0..=phases.len()).map(|j| Node::new(j, phases, &lifetimes, &direct, fixed)).collect();
-        Ok(PhasedRiccati { variables: fixed.len(), coupling: rows.len(), phases: all, nodes })
+        let node = |j| Node::new(j, phases, &lifetimes, &direct, fixed);
+        let nodes = (0..=phases.len()).map(node).collect();
+        let (variables, coupling) = (fixed.len(), rows.len());
+        Ok(PhasedRiccati { variables, coupling, phases: all, nodes, lifetimes, recipe })
+    }
+
+    /// Lets what dies at a node, and is no link, wait for the first node; whether there is any.
+    fn wait(&mut self, node: usize) -> bool {
+        let dying = self.lifetimes.dying(node);
+        let waiting: Vec<Item> = dying.filter(|item| self.lifetimes.may_wait(item, node)).collect();
+        let mut recipe = self.recipe.clone();
+        recipe.waiting.extend(waiting.iter().copied());
+        match PhasedRiccati::of(recipe) {
+            Ok(prepared) if !waiting.is_empty() => {
+                *self = prepared;
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Factors; or says at which node nothing makes up for what dies there.
+    fn try_factor(
+        &mut self,
+        (hessian, jacobian): (&[f64], &[f64]),
+        sigma: &[f64],
+        d: &[f64],
+    ) -> Result<Inertia, usize> {
+        let mut negative = 0;
+        for j in (0..=self.phases.len()).rev() {
+            let (before, behind) = self.phases.split_at_mut(j);
+            let node = &mut self.nodes[j];
+            node.assemble(behind.first().map(|phase| &phase.value[..]), hessian, jacobian);
+            node.add_diagonals(sigma, d);
+            negative += node.eliminate().ok_or(j)?;
+            if !node.is_sound() && self.lifetimes.dying(j).any(|it| self.lifetimes.may_wait(&it, j))
+            {
+                return Err(j);
+            }
+            let Some(phase) = before.last_mut() else { break };
+            node.write(&mut phase.value);
+            let matrices = (hessian, jacobian);
+            match phase.factor(matrices, sigma, d, self.coupling.saturating_sub(negative)) {
+                Some(count) => negative += count,
+                None => return Ok(Inertia::Wrong),
+            }
+        }
+        Ok(if negative == self.coupling { Inertia::Correct } else { Inertia::Wrong })
     }
 }
 
@@ -217,23 +290,13 @@ fn copy(copies: &[Copied], from: &[f64], to: &mut [f64]) {
 
 impl Factor for PhasedRiccati {
     fn factor(&mut self, hessian: &[f64], jacobian: &[f64], sigma: &[f64], d: &[f64]) -> Inertia {
-        let mut negative = 0;
-        for j in (0..=self.phases.len()).rev() {
-            let (before, behind) = self.phases.split_at_mut(j);
-            let node = &mut self.nodes[j];
-            node.assemble(behind.first().map(|phase| &phase.value[..]), hessian, jacobian);
-            node.add_diagonals(sigma, d);
-            let Some(count) = node.eliminate() else { return Inertia::Singular };
-            negative += count;
-            let Some(phase) = before.last_mut() else { break };
-            node.write(&mut phase.value);
-            let matrices = (hessian, jacobian);
-            match phase.factor(matrices, sigma, d, self.coupling.saturating_sub(negative)) {
-                Some(count) => negative += count,
-                None => return Inertia::Wrong,
+        loop {
+            match self.try_factor((hessian, jacobian), sigma, d) {
+                Ok(inertia) => return inertia,
+                Err(node) if self.wait(node) => {}
+                Err(_) => return Inertia::Singular,
             }
         }
-        if negative == self.coupling { Inertia::Correct } else { Inertia::Wrong }
     }
 
     fn solve(&mut self, right_side: &mut [f64]) {

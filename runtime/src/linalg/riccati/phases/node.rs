@@ -13,6 +13,9 @@ use super::lifetimes::{Item, Lifetimes};
 use crate::linalg::dense::symmetric::SymmetricFactor;
 use crate::linalg::structure::phases::PhaseStages;
 
+/// An answer of this size leaves half of the digits.
+const LARGEST: f64 = 1e8;
+
 /// `matrix[target] += sum of values[from .. from + count]`
 struct Added {
     is_hessian: bool,
@@ -158,6 +161,11 @@ impl Node {
             }
             self.matrix[at * size + at] = 1.0;
         }
+    }
+
+    /// Whether the elimination left enough digits.
+    pub fn is_sound(&self) -> bool {
+        self.response.iter().all(|w| w.abs() <= LARGEST)
     }
 
     /// Eliminates; the number of negative eigenvalues, or nothing where that is impossible.

@@ -1,0 +1,77 @@
+//! Models with phases from the command line: documents, files, starts.
+
+mod common;
+
+use common::*;
+use serde_json::Value;
+
+const HOP: &[u8] = b"model hop\n\
+phase up {\n  time t in [0, 1] [s]\n  state h [m] start 0\n  state v [m/s] start 0\n\
+  control a in [-4, 4] [m/s^2]\n  dynamics { h' = v  v' = a }\n  minimize integral(a^2)\n}\n\
+phase down {\n  time t in [1, 3] [s]\n  state h [m]\n  state v [m/s]\n\
+  control a in [-4, 4] [m/s^2]\n  dynamics { h' = v  v' = a }\n  end h == 0\n  end v == 0\n\
+  minimize integral(a^2)\n  method { grid N = 40 scheme midpoint }\n}\n\
+link up -> down { h := h  v := v + 1 [m/s] }\n\
+method { grid N = 20 scheme midpoint }\n";
+
+fn solved(folder: &std::path::Path, arguments: &[&str]) -> Value {
+    json(&fdcc(folder, &[&["solve", "hop.fdc", "--json"], arguments].concat(), ""))
+}
+
+/// The value of a signal at its first or last point.
+fn at(document: &Value, phase: &str, kind: &str, name: &str, is_last: bool) -> f64 {
+    let column = document["phases"][phase][kind][name].as_array().expect("a signal");
+    let value = if is_last { column.last() } else { column.first() };
+    value.and_then(Value::as_f64).expect("a number")
+}
+
+#[test]
+fn each_phase_has_its_signals_and_links_hold() {
+    let folder = folder("phases_signals", &[("hop.fdc", HOP)]);
+    let document = solved(&folder, &[]);
+    assert_eq!(document["status"], "solved");
+    assert_eq!(document["states"], serde_json::json!({}));
+    assert_eq!(document["phases"]["up"]["time"].as_array().map(Vec::len), Some(21));
+    assert_eq!(document["phases"]["down"]["time"].as_array().map(Vec::len), Some(41));
+    let end = |name| at(&document, "up", "states", name, true);
+    let start = |name| at(&document, "down", "states", name, false);
+    assert!((start("h") - end("h")).abs() < 1e-9);
+    assert!((start("v") - end("v") - 1.0).abs() < 1e-9);
+    // The costate goes through a link whose reset adds a constant.
+    for name in ["h", "v"] {
+        let before = at(&document, "up", "costates", name, true);
+        let after = at(&document, "down", "costates", name, false);
+        assert!((before - after).abs() < 1e-6 * after.abs().max(1.0), "{name}: {before} {after}");
+    }
+    assert_eq!(document["verification"]["confirmed"], true);
+    assert_eq!(document["phases"]["down"]["verification"]["confirmed"], true);
+}
+
+#[test]
+fn files_are_written_for_each_phase() {
+    let folder = folder("phases_files", &[("hop.fdc", HOP)]);
+    let output = fdcc(&folder, &["solve", "hop.fdc", "--out", "out", "--log", "none"], "");
+    expect_exit(&output, 0, "solve");
+    let table = std::fs::read_to_string(folder.join("out/hop.down.csv")).expect("it is written");
+    assert_eq!(table.lines().next(), Some("t,h,v,a"));
+    assert_eq!(table.lines().count(), 42);
+    let page = std::fs::read_to_string(folder.join("out/hop.html")).expect("it is written");
+    assert!(page.contains("<figcaption>h [m]</figcaption>"), "{page}");
+    assert!(!page.contains("NaN"), "{page}");
+}
+
+#[test]
+fn a_solution_with_phases_is_a_start() {
+    let folder = folder("phases_warm", &[("hop.fdc", HOP)]);
+    let output = fdcc(&folder, &["solve", "hop.fdc", "--out", "out", "--log", "none"], "");
+    expect_exit(&output, 0, "solve");
+    let interior = ["--method", "solver=interior_point", "--warm", "out/hop.sol.json"];
+    let warm = solved(&folder, &interior);
+    let cold = solved(&folder, &interior[..2]);
+    let iterations = |of: &Value| of["iterations"].as_u64().expect("a count");
+    assert_eq!(warm["status"], "solved");
+    assert!(iterations(&warm) < iterations(&cold), "{} {}", warm["iterations"], cold["iterations"]);
+    let several = solved(&folder, &["--method", "solver=interior_point", "--starts", "3"]);
+    let difference = number(&several["objective"]) - number(&cold["objective"]);
+    assert!(difference.abs() < 1e-8 * number(&cold["objective"]), "{difference}");
+}

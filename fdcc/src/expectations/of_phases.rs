@@ -1,0 +1,40 @@
+//! Expectations of a model with phases: over the ends of all phases and their integrals.
+
+use super::{Checked, Outcome, sides};
+use crate::solve::Solution;
+use fdcc_compiler::chain_expectations;
+use fdcc_runtime::problem::{Columns, Function};
+use fdcc_runtime::solution::integrals;
+use std::sync::Arc;
+
+pub(super) fn evaluate(solution: &Solution) -> Vec<Checked> {
+    let expectations = chain_expectations(solution.model().meaning());
+    let inputs: Vec<f64> = solution.phases().iter().flat_map(ends).collect();
+    let shared = solution.problem.parameters.len();
+    let mut parameters = solution.outcome.trajectory.parameters[..shared].to_vec();
+    let phases = solution.phases().iter().zip(&expectations.integrands);
+    parameters.extend(phases.flat_map(|(phase, integrands)| integrals_of(phase, integrands)));
+    let mut values = Columns::new(expectations.function.outputs(), 1);
+    expectations.function.value(&Columns::of_point(&inputs), &parameters, &mut values);
+    let checked = |(at, expected): (usize, &fdcc_compiler::Expected)| Checked {
+        origin: expected.origin.clone(),
+        outcome: Outcome::Compared(sides(expected, at, &values)),
+    };
+    expectations.list.iter().enumerate().map(checked).collect()
+}
+
+/// States and controls at the start of a phase, then at its end; hidden states left out.
+fn ends(phase: &Solution) -> Vec<f64> {
+    let trajectory = &phase.outcome.trajectory;
+    let states = trajectory.states.iter().zip(&phase.problem.states);
+    let shown: Vec<&Vec<f64>> =
+        states.filter(|(_, state)| !state.hidden).map(|(column, _)| column).collect();
+    let all = || shown.iter().copied().chain(&trajectory.controls);
+    let first = all().map(|column| column[0]);
+    first.chain(all().map(|column| column[column.len() - 1])).collect()
+}
+
+fn integrals_of(phase: &Solution, integrands: &Arc<dyn Function>) -> Vec<f64> {
+    let parameters = &phase.outcome.trajectory.parameters;
+    integrals(&phase.problem, &phase.outcome.solution, parameters, &**integrands)
+}

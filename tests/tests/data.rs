@@ -7,6 +7,7 @@ use fdcc_runtime::nlp::{Derivatives, Nlp, Status};
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::transcribe::TranscribedNlp;
 use fdcc_tests::models::solve;
+use fdcc_tests::{documents, repository};
 
 /// The meaning of a model with one data file, `a.csv`.
 fn meaning(text: &str, data: &str) -> fdcc_compiler::Model {
@@ -218,4 +219,31 @@ fn the_optimum_depends_on_parameters_of_the_rows() {
         let difference = (right - left) / 2e-3;
         assert!((difference - own).abs() < 1e-4 * (1.0 + own.abs()), "{name}: {difference} {own}");
     }
+}
+
+/// Fits that wait: for jumps with measured data, and for what a chain of phases is expected to be.
+const WAITING: [&str; 3] = ["bounces", "bouncing_ball", "two_runs"];
+
+/// Published fits, and those that a script of `tests/peers/` makes and solves elsewhere, have the
+/// answers that stand in their `expect` blocks.
+#[test]
+fn fits_of_the_literature_have_their_published_answers() {
+    let mut failed = Vec::new();
+    for (name, _) in documents("tests/classics/fits", "fdc") {
+        let path = repository().join("tests/classics/fits").join(&name).with_extension("fdc");
+        let path = path.display().to_string();
+        if WAITING.contains(&name.as_str()) {
+            continue;
+        }
+        let model = fdcc::Model::from_file(&path).expect("it has no mistake");
+        let solution = model.solve(&fdcc::Options::default()).expect("it can be solved");
+        let found = solution.expectations();
+        assert!(!found.is_empty(), "{name} expects nothing");
+        let holds = |it: &fdcc::Expectation| matches!(&it.outcome, fdcc::Expected::Compared(sides) if sides.holds);
+        let unmet = found.iter().filter(|it| !holds(it)).map(|it| it.origin.label.clone());
+        failed.extend(unmet.map(|label| format!("{name}: {label}")));
+        failed
+            .extend((!solution.is_solved()).then(|| format!("{name}: {}", solution.status_name())));
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
 }

@@ -14,7 +14,7 @@ use crate::model::numbers::{Numbers, numbers};
 use crate::model::{self, Model, Simulated};
 use crate::phases::between_jumps;
 use fdcc_grammar::{Diagnostic, Severity};
-use fdcc_runtime::problem::{ByParameters, Function, Problem};
+use fdcc_runtime::problem::{ByParameters, Function, Measurements, Problem};
 use fdcc_runtime::simulate::System;
 use std::sync::Arc;
 
@@ -102,20 +102,33 @@ pub struct Expectations {
     pub list: Vec<Expected>,
     /// What only a simulation can tell.
     pub simulated: Vec<Simulated>,
-    /// Over `[x(start), x(end) | p, integrals, simulated]`, the states of
+    /// Over `[x(start), x(end) | p, integrals, sums, simulated]`, the states of
     /// [`Problem`] with the hidden ones; values only.
     pub function: Arc<dyn Function>,
     /// The integrands over normalised time `[tau | x | u | p]`, times the duration; values only.
     pub integrands: Arc<dyn Function>,
+    /// Sums over rows of measured data; values only.
+    pub sums: Vec<Measurements>,
 }
 
 /// Compiles the expectations.
 pub fn expectations(model: &Model) -> Expectations {
-    let LoweredExpectations { list, graph, functions } = lower::expectations(model);
-    let compiled = machine_code(graph, functions.to_vec());
-    let [function, integrands] =
-        <[_; 2]>::try_from(compiled).unwrap_or_else(|_| unreachable!("two functions were given"));
-    Expectations { list, simulated: model.simulated.clone(), function, integrands }
+    let LoweredExpectations { list, graph, functions, sums } = lower::expectations(model);
+    let terms = sums.iter().map(|it| it.term.clone());
+    let compiled = machine_code(graph, functions.into_iter().chain(terms).collect());
+    let Some(([function, integrands], terms)) = compiled.split_first_chunk::<2>() else {
+        unreachable!("two functions were given at least")
+    };
+    let numbers = numbers(model).ok();
+    let rows = sums.iter().zip(terms);
+    let rows = rows.filter_map(|(it, term)| Some(it.with_rows(model, numbers.as_ref()?, term)));
+    Expectations {
+        list,
+        simulated: model.simulated.clone(),
+        function: function.clone(),
+        integrands: integrands.clone(),
+        sums: rows.collect(),
+    }
 }
 
 /// The numbers of a model whose rows are all within its time.

@@ -1,13 +1,14 @@
 //! What a model expects of its solution, as a function that can be evaluated once there is one.
 //!
-//! Inputs `[x(start), x(end) | p, integrals, simulated]`; three outputs for each expectation: left
+//! Inputs `[x(start), x(end) | p, integrals, sums, simulated]`; three outputs for each expectation: left
 //! side, right side, tolerance.
 
 use super::function::{Order, VectorFunction};
 use super::inputs::{self, Sizes};
 use super::links::Places;
+use super::measured::{self, Measured};
 use super::objective::{self, Hidden, Objective};
-use super::origin;
+use super::{OverGrid, origin};
 use crate::expressions::graph::{ExprId, Graph};
 use crate::model::{Comparison, Model, Symbol};
 use fdcc_runtime::problem::{End, Layout, Origin};
@@ -31,13 +32,15 @@ pub(crate) struct LoweredExpectations {
     pub graph: Graph,
     /// The two sides with the tolerance of each expectation; and the integrands.
     pub functions: [VectorFunction; 2],
+    /// The sums over rows, values only.
+    pub sums: Vec<Measured>,
 }
 
 /// Lowers the expectations.
 pub(crate) fn expectations(model: &Model) -> LoweredExpectations {
     let mut graph = model.graph.clone();
-    let Objective { hidden, .. } = objective::split(model, &mut graph);
-    let sizes = Sizes::new(model, hidden.len());
+    let objective = objective::split(model, &mut graph);
+    let sizes = Sizes::new(model, objective.hidden.len());
     let mut list = Vec::new();
     let mut values: Vec<ExprId> = Vec::new();
     for expectation in &model.expectations {
@@ -48,23 +51,24 @@ pub(crate) fn expectations(model: &Model) -> LoweredExpectations {
             simulated: simulated_in(model, &graph, &expectation.values),
         });
     }
-    let needed: Vec<usize> = objective::hidden_in(model, &graph, &values)
-        .into_iter()
-        .filter_map(|it| match it {
-            Hidden::Integral(at) => Some(at),
-            Hidden::Sum(_) => None,
-        })
-        .collect();
+    let (mut needed, mut sums) = (Vec::new(), Vec::new());
+    for it in objective::hidden_in(model, &graph, &values) {
+        match it {
+            Hidden::Integral(at) => needed.push(at),
+            Hidden::Sum(at) => sums.push(at),
+        }
+    }
     let over_grid = inputs::over_grid(model, &mut graph, &sizes);
     let integrands: Vec<ExprId> = needed.iter().map(|&at| model.integrals[at].integrand).collect();
     let integrands = over_grid.apply(&mut graph, &integrands);
     let integrands = integrands.iter().map(|&it| graph.mul(over_grid.duration, it)).collect();
-    let more = needed.len() + model.simulated.len();
+    let more = needed.len() + sums.len() + model.simulated.len();
     let layout = Layout { p: sizes.parameters + more, ..sizes.ends() };
     let mut at_ends = inputs::at_ends(model, &mut graph, &layout, &[]);
     let integrals = needed.iter().map(|&at| Symbol::Integral(at));
     let simulated = (0..model.simulated.len()).map(Symbol::Simulated);
-    for (position, symbol) in integrals.chain(simulated).enumerate() {
+    let added = sums.iter().map(|&at| Symbol::Sum(at));
+    for (position, symbol) in integrals.chain(added).chain(simulated).enumerate() {
         let place = graph.input((layout.parameters().end - more + position) as u32);
         at_ends.replace(model, symbol, place);
     }
@@ -73,7 +77,28 @@ pub(crate) fn expectations(model: &Model) -> LoweredExpectations {
         values_only("expectations", layout, values),
         values_only("integrands", sizes.grid(), integrands),
     ];
-    LoweredExpectations { list, graph, functions }
+    let sums = alone(model, &mut graph, &sizes, objective, &sums);
+    LoweredExpectations { list, graph, functions, sums }
+}
+
+/// Sums by themselves, over the states of the problem.
+fn alone(
+    model: &Model,
+    graph: &mut Graph,
+    sizes: &Sizes,
+    objective: Objective,
+    sums: &[usize],
+) -> Vec<Measured> {
+    let over_grid = OverGrid { model, sizes, inputs: inputs::over_grid(model, graph, sizes) };
+    let dynamics = over_grid.dynamics(graph, &objective);
+    let one = graph.number(1.0);
+    let measured = sums.iter().map(|&sum| (sum, one)).collect();
+    let asked = Objective { measured, ..objective };
+    let mut all = measured::lower(model, graph, sizes, &asked, &dynamics);
+    // Those that became states follow.
+    all.truncate(sums.len());
+    all.iter_mut().for_each(|it| it.term.by.clear());
+    all
 }
 
 /// Expectations of a model with phases. Inputs `[x | p, integrals]`: `x` as in a

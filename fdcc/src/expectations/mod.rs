@@ -10,7 +10,7 @@ use crate::solve::Solution;
 use fdcc_compiler::model::Comparison;
 use fdcc_compiler::{Expected, expectations};
 use fdcc_runtime::problem::{Columns, Origin};
-use fdcc_runtime::solution::integrals;
+use fdcc_runtime::solution::{integrals, sums_over_rows};
 use replayed::Replayed;
 
 /// One line of the `expect` block and what became of it.
@@ -97,6 +97,12 @@ fn evaluate(solution: &Solution) -> Vec<Checked> {
         &outcome.solution,
         &trajectory.parameters,
         &*expectations.integrands,
+    ));
+    parameters.extend(sums_over_rows(
+        problem,
+        &outcome.solution,
+        &trajectory.parameters,
+        &expectations.sums,
     ));
     let replayed = Replayed::new(solution, &expectations.simulated);
     parameters.extend(replayed.values());

@@ -13,6 +13,6 @@ mod trajectory;
 pub use lagrangian::{Hamiltonian, by_parameters};
 pub use outcome::{Attempt, ChainOutcome, Limiting, Outcome};
 pub(crate) use pause::gain as gain_of_pauses;
-pub use quadrature::integrals;
+pub use quadrature::{integrals, sums_over_rows};
 pub(crate) use trajectory::switching_function_sizes;
 pub use trajectory::{ControlNodes, Trajectory, times};

@@ -7,8 +7,19 @@
 //! So an `integral(...)` outside the objective has the value that it would have in the objective.
 
 use crate::nlp::Solution;
-use crate::problem::{Columns, Function, Problem};
+use crate::problem::{Columns, Function, Measurements, Problem};
 use crate::transcribe::TranscribedNlp;
+
+/// Sums over rows of measured data along a solution.
+pub fn sums_over_rows(
+    problem: &Problem,
+    solution: &Solution,
+    parameters: &[f64],
+    sums: &[Measurements],
+) -> Vec<f64> {
+    let nlp = TranscribedNlp::new(problem);
+    sums.iter().map(|sum| nlp.sum_over_rows(sum, parameters, &solution.v)).collect()
+}
 
 /// The integrals over normalised time of all outputs of a function of `[tau | x | u | p]`.
 pub fn integrals(

@@ -25,7 +25,7 @@ mod tables;
 
 use crate::linalg::{Stages, Triplets};
 use crate::nlp::{Derivatives, NO_OBJECTIVE, Nlp, Place, Quantities, objective_unit};
-use crate::problem::{Bounds, Columns, Origin, Problem};
+use crate::problem::{Bounds, Columns, Measurements, Origin, Problem};
 use assembly::{Builder, Repeated};
 use boundary::Ends;
 use interval::{Interval, Node, Point};
@@ -145,6 +145,16 @@ impl<'p> TranscribedNlp<'p> {
         self.load(v);
         let of = |it: &Measured| (it.points().clone(), it.weights(1.0, multipliers));
         self.measured.iter().map(of).collect()
+    }
+
+    /// What a sum over rows is at `v`.
+    pub(crate) fn sum_over_rows(&self, sum: &Measurements, parameters: &[f64], v: &[f64]) -> f64 {
+        let (jacobian, hessian) = (Builder::default(), Builder::default());
+        let mesh = self.mesh.clone();
+        let mut unused = Matrices { stages: self.stages, mesh, jacobian, hessian };
+        let mut measured = Measured::new(self.problem, sum, &self.interval, &mut unused);
+        measured.load(&self.interval, &self.mesh, parameters, v);
+        measured.add_values(parameters, &mut [])
     }
 
     /// Whether a row is a step of a differential equation.

@@ -152,13 +152,6 @@ impl<'a> Elaborator<'a> {
                  time of a row: `x(k.t)`",
             ));
         }
-        if self.context.name == Context::EXPECT.name {
-            let message = "a sum over the times of rows has no meaning in an expectation";
-            let found =
-                Diagnostic::new(Code::NotAllowedHere, message, whole.span, "a sum over rows");
-            return self
-                .fail(found.help("expect something of the unknowns: `mu == 0.3 within 0.01`"));
-        }
         let Measured { part: term, table, time, .. } = sum;
         let known = self.model.sums.iter().position(|it| (it.term, it.time) == (term, time));
         let at = known.unwrap_or_else(|| {

@@ -10,6 +10,12 @@ use std::ops::ControlFlow;
 const COARSE: &[(&str, f64, &str)] =
     &[("two_limits", 5e-5, "the control switches between two grid points")];
 
+/// What is not solved, and why; an entry that is solved has to go.
+const UNSOLVED: &[(&str, &str)] = &[(
+    "goddard_arcs",
+    "thrust on the singular arc is flat: the tolerance is met on the way, and lost again",
+)];
+
 /// The objective of each problem in the table of the peer.
 fn objectives() -> Vec<(String, f64)> {
     let path = repository().join("tests/peers/phases.csv");
@@ -33,7 +39,8 @@ fn problems_with_phases_have_the_objectives_of_other_programs() {
         let reached = chain.phases[0].sense * solution.objective;
         let difference = (reached - objective).abs() / objective.abs().max(1.0);
         let coarse = COARSE.iter().find(|row| row.0 == name).map_or(1e-6, |row| row.1);
-        if !solution.status.is_solved() || difference > coarse {
+        let is_unsolved = UNSOLVED.iter().any(|row| row.0 == name);
+        if solution.status.is_solved() == is_unsolved || difference > coarse {
             wrong.push(format!("{name}: {:?} {reached}, not {objective}", solution.status));
         }
     }

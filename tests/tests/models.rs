@@ -43,6 +43,10 @@ fn check_refusal(name: &str, text: &str, code: &str, message: &str) {
 #[test]
 fn every_model_meets_its_expectation() {
     for (name, text) in documents("models", "fdc") {
+        // Those with phases say themselves what is expected, and `fdcc test` compares.
+        if text.contains("\nphase ") {
+            continue;
+        }
         let expected = expected(&name);
         match &expected.error {
             Some((code, message)) => check_refusal(&name, &text, code, message),

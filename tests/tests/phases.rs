@@ -224,8 +224,10 @@ fn a_state_outside_of_all_phases_goes_on() {
     assert_eq!(chain.phases[0].start, [Some(0.0), Some(10.0)]);
     assert_eq!(chain.phases[1].start, [None, None]);
     assert_eq!(chain.phases[1].states[0].bounds, Bounds { lower: 0.0, upper: 100.0 });
-    let [link] = &chain.links[..] else { panic!("{} links", chain.links.len()) };
+    let [link, first] = &chain.links[..] else { panic!("{} links", chain.links.len()) };
     assert_eq!(labels(link), ["up -> down: v", "up -> down: x"]);
+    assert_eq!(labels(first), ["ceiling"]);
+    assert_eq!(first.ends, [End::First(1)]);
     let rows = values(&*link.function, &[3.0, 4.0, 5.0, 7.0], &[1.0]);
     assert_eq!(rows, [0.0, 7.0 - 0.5 * 4.0, 5.0 - 3.0]);
     for phase in &chain.phases {
@@ -331,7 +333,7 @@ fn a_phase_like_another_takes_over_what_it_does_not_replace() {
 #[test]
 fn what_a_link_does_not_give_goes_on_by_same() {
     let chain = chain(LIKE);
-    let [link] = &chain.links[..] else { panic!("{} links", chain.links.len()) };
+    let [link, _] = &chain.links[..] else { panic!("{} links", chain.links.len()) };
     assert_eq!(labels(link), ["up -> down: p.y", "up -> down: p.x", "up -> down: m"]);
     let ends = [1.0, 2.0, 3.0, 0.0, 4.0, 5.0, 6.0, 0.0];
     assert_eq!(values(&*link.function, &ends, &[10.0]), [0.0, 5.0 + 0.5 * 2.0, 3.0, 3.0]);

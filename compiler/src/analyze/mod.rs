@@ -13,7 +13,7 @@ use crate::model::Model;
 use crate::units::NamedUnit;
 pub use checked::{Checked, check, check_with};
 use fdcc_grammar::ast;
-use fdcc_grammar::{Diagnostic, Parse, ParseCache, SourceFile, parse_with};
+use fdcc_grammar::{Code, Diagnostic, Parse, ParseCache, SourceFile, parse_with};
 use unparsed::UnparsedRegions;
 
 /// What a text means, and what is to be said about it.
@@ -50,7 +50,9 @@ pub(crate) fn analyze_parsed(text: &str, parsed: Parse, files: Option<&Files>) -
         units = checked.units;
         let source = SourceFile::new("", text);
         let regions = UnparsedRegions::new(&source, &diagnostics, &parsed.lost);
-        let trusted = |it: &Diagnostic| !is_broken || !regions.may_be_behind(it);
+        // Where an item stands is not known where a phase may have lost its head.
+        let is_place = |it: &Diagnostic| it.code == Code::NotAllowedHere;
+        let trusted = |it: &Diagnostic| !is_broken || !(is_place(it) || regions.may_be_behind(it));
         diagnostics.extend(checked.diagnostics.into_iter().filter(trusted));
     }
     diagnostics.extend(unseen::found(text));

@@ -3,8 +3,7 @@
 //! Inputs `[x | p]`: the states, hidden ones included, then the controls of each end in turn;
 //! parameters and unknowns. Output 0 is a part of the objective.
 
-mod first_points;
-
+use super::first_points;
 use super::function::{Order, VectorFunction};
 use super::objective::Hidden;
 use super::{LoweredProblem, origin};

@@ -14,6 +14,7 @@ mod composed;
 mod derived;
 mod enclosures;
 mod expectations;
+mod first_points;
 mod function;
 mod guess;
 mod inputs;

@@ -15,7 +15,7 @@ const MOST_BYTES: u64 = 64 << 20;
 /// state x start 0\ndynamics { x' = p }\nminimize sum(k in obs, (x(k.t) - k.x)^2)";
 /// let files = fdcc::DataFiles::from(|_| Ok("t,x\n1,0.5\n2,1\n".into()));
 /// let model = fdcc::check_with("line", text.into(), Some(files)).into_model()?;
-/// let p = model.solve(&fdcc::Options::default())?.free("p").expect("it is declared");
+/// let p = model.solve(&fdcc::Options::default())?.value("p").expect("it is declared");
 /// assert!((p - 0.5).abs() < 1e-6);
 /// # Ok::<(), fdcc::Error>(())
 /// ```

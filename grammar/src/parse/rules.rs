@@ -11,7 +11,7 @@ macro_rules! pages {
 
 const PAGES: &[&str] = &pages! {
     "models" "numbers" "expressions" "piecewise" "dynamics" "surfaces" "conditions" "objective" "guess" "method"
-    "report-and-expect" "jumps" "simulate" "gradient" "not-yet"
+    "report-and-expect" "jumps" "phases" "data" "simulate" "gradient" "not-yet"
 };
 
 const GRAMMAR: &str = include_str!("../fdc.pest");

@@ -53,7 +53,7 @@ struct Copied {
 }
 
 /// The recursion over all phases.
-pub(in crate::linalg) struct PhasedRiccati {
+pub(crate) struct PhasedRiccati {
     recipe: Recipe,
     variables: usize,
     /// Rows that are no stages: as many negative eigenvalues are left to the nodes.

@@ -4,10 +4,10 @@
 //! it does. A later phase begins where a link puts it, which may be beyond a condition. Those that
 //! read a control hold on the first interval as they are.
 
-use super::LoweredLink;
+use super::function::{Order, VectorFunction};
+use super::links::LoweredLink;
+use super::{LoweredProblem, origin};
 use crate::expressions::graph::{ById, ExprId, Graph};
-use crate::lower::LoweredProblem;
-use crate::lower::function::{Order, VectorFunction};
 use crate::model::{Constraint, Model, Symbol};
 use fdcc_runtime::problem::{End, Layout};
 
@@ -43,7 +43,7 @@ fn link(
     let outputs = at_first(own, &layout, &values, graph);
     let zero = graph.number(0.0);
     let unknowns = layout.parameters().skip(model.params.len());
-    let origins = rows.iter().map(|row| crate::lower::origin(&row.place));
+    let origins = rows.iter().map(|row| origin(&row.place));
     let function = VectorFunction {
         name: "first point".into(),
         outputs: std::iter::once(zero).chain(outputs).collect(),

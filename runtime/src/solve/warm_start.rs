@@ -38,11 +38,11 @@ fn resample(chain: &Chain, earlier: &[Earlier]) -> Vec<f64> {
         let known = |phase: &Problem| {
             phase.unknowns.iter().position(|it| it.parameter == unknown.parameter)
         };
-        let values =
+        let mut values =
             chain.phases.iter().zip(earlier).filter_map(|(phase, earlier)| {
                 earlier.unknowns.get(known(phase)?).copied().flatten()
             });
-        v[place] = values.last().unwrap_or(v[place]);
+        v[place] = values.next_back().unwrap_or(v[place]);
     }
     v
 }

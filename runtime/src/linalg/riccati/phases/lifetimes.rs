@@ -38,22 +38,23 @@ impl Item {
 /// The node at which each member of the border is born, and that at which it dies.
 pub(super) struct Lifetimes {
     spans: Spans,
-    /// Rows for which a first state makes up.
+    /// Rows for which a first state, or a slack of their own, makes up.
     links: BTreeSet<Item>,
 }
 
 type Spans = BTreeMap<Item, [usize; 2]>;
 
 impl Lifetimes {
-    /// Finds them, with those members of the border that are `waiting` longer; or says why an entry has no node at which both of its members are there.
+    /// Finds them, with those members of the border that are `waiting` longer; or says why an entry
+    /// has no node at which both of its members are there. Each row says whether it is an equality.
     pub fn new(
         phases: &[PhaseStages],
         unknowns: Range<usize>,
-        rows: &[usize],
+        rows: &[(usize, bool)],
         direct: &[Direct],
         waiting: &BTreeSet<Item>,
     ) -> Result<Self, &'static str> {
-        let members = unknowns.map(Item::Unknown).chain(rows.iter().copied().map(Item::Row));
+        let members = unknowns.map(Item::Unknown).chain(rows.iter().map(|it| Item::Row(it.0)));
         let mut spans: Spans = members.map(|item| (item, [0, phases.len()])).collect();
         let mut touched: BTreeMap<Item, Vec<Item>> = BTreeMap::new();
         for entry in direct {
@@ -74,13 +75,20 @@ impl Lifetimes {
                 span[0] = span[1];
             }
         }
-        let kind = |item: &Item| kind(item, of(item));
+        // An inequality has a slack that makes up for it.
+        let is_loose = |item: &Item| rows.iter().any(|it| Item::Row(it.0) == *item && !it.1);
+        let loose: BTreeSet<Item> = spans.keys().filter(|it| is_loose(it)).copied().collect();
+        let kind = |item: &Item| match loose.contains(item) {
+            true => Kind::Loose,
+            false => kind(item, of(item)),
+        };
         (1..phases.len()).rev().for_each(|j| delay(&mut spans, j, &phases[j], &kind));
         // What was found to have nothing that makes up for it waits for the first node.
         for item in waiting {
             spans.entry(*item).and_modify(|span| span[1] = 0);
         }
-        let links = spans.keys().filter(|item| kind(item) == Kind::Link).copied().collect();
+        let has_own = |item: &&Item| matches!(kind(item), Kind::Link | Kind::Loose);
+        let links = spans.keys().filter(has_own).copied().collect();
         let mut lifetimes = Lifetimes { spans, links };
         direct.iter().for_each(|entry| lifetimes.meet(entry));
         let fits = |entry: &Direct| lifetimes.place(entry, phases.len()).is_some();
@@ -170,6 +178,8 @@ enum Kind {
     Start,
     /// A row for a last state, or for unknowns.
     End,
+    /// A row with a slack.
+    Loose,
 }
 
 fn kind(item: &Item, touched: &[Item]) -> Kind {

@@ -100,7 +100,8 @@ impl PhasedRiccati {
         let direct = direct_entries(phases, hessian, jacobian).ok_or("distant stages are tied")?;
         let unknowns = phases.last().map_or(0, |last| last.variables.end)..fixed.len();
         let stage_rows = |row: &usize| phases.iter().any(|phase| is_of_stage(phase, *row));
-        let rows: Vec<usize> = (0..equality_rows.len()).filter(|row| !stage_rows(row)).collect();
+        let rows = (0..equality_rows.len()).filter(|row| !stage_rows(row));
+        let rows: Vec<(usize, bool)> = rows.map(|row| (row, equality_rows[row])).collect();
         let lifetimes = Lifetimes::new(phases, unknowns, &rows, &direct, waiting)?;
         let all = phases.iter().enumerate().map(|(j, phase)| {
             Phase::new(phase, lifetimes.theta(j), (hessian, jacobian), fixed, equality_rows)

@@ -16,7 +16,10 @@ pub fn diagnostic(solved: &Solved) -> Option<Diagnostic> {
     match &outcome.solution.status {
         // The runtime may not know the place.
         Status::NotFinite(place) if place.origin.label.is_empty() => None,
-        Status::NotFinite(place) => Some(not_finite(outcome, place, &document.units)),
+        Status::NotFinite(place) => {
+            let phase = solution.phases().get(place.phase).map_or(outcome, |it| &it.outcome);
+            Some(not_finite(phase, place, &document.units))
+        }
         Status::Infeasible => {
             outcome.limiting.as_ref().map(|limiting| infeasible(solved, limiting))
         }
@@ -74,6 +77,9 @@ fn infeasible(solved: &Solved, limiting: &Limiting) -> Diagnostic {
             Diagnostic::new(Code::Infeasible, message, span(origin.span), label)
         }
     };
+    let phase = solution.phases().get(limiting.phase);
+    let (problem, outcome) =
+        phase.map_or((problem, outcome), |phase| (&phase.problem, &phase.outcome));
     for (control, text) in saturated(problem, outcome, limiting, units) {
         diagnostic = diagnostic.label(span(control.origin.span), text);
     }

@@ -63,7 +63,10 @@ pub fn verdict(solved: &Solved) -> String {
     lines.push(format!("       {work}"));
     lines.extend(jumps::lines(&solved.solution, document));
     lines.extend(spread(&solved.solution, document));
-    lines.extend(surfaces(document));
+    lines.extend(surfaces(document, ""));
+    for (name, phase) in &document.phases.0 {
+        lines.extend(surfaces(&phase.0, &format!("{name}.")));
+    }
     lines.extend(rest::lines(solved));
     lines.extend(replayed(document));
     lines.extend(refined(solved));
@@ -101,16 +104,17 @@ fn spread(solution: &Solution, document: &Document) -> Vec<String> {
 }
 
 /// What each surface did, if the trajectory says anything about it.
-fn surfaces(document: &Document) -> impl Iterator<Item = String> {
+fn surfaces(document: &Document, phase: &str) -> impl Iterator<Item = String> {
     let has_trajectory = document.status != "not_finite";
     let units = &document.units;
     let sigmas = document.method.sigmas.0.iter().filter(move |_| has_trajectory);
-    sigmas.map(move |(name, sigma)| {
+    sigmas.map(move |(own, sigma)| {
         let modes =
-            document.surfaces.get(name).map(|spans| switching(spans, units)).unwrap_or_default();
+            document.surfaces.get(own).map(|spans| switching(spans, units)).unwrap_or_default();
+        let name = format!("{phase}{own}");
         format!(
             " {name:<5} {modes}   (sigma {}, kernel {})",
-            units.width(name, *sigma),
+            units.width(own, *sigma),
             document.method.kernel
         )
     })

@@ -80,7 +80,7 @@ impl Symbols<'_> {
             let meaning = meanings[input as usize];
             let is_shared = matches!(meaning, Symbol::Param(_) | Symbol::Free(_));
             let symbol = if is_shared { meaning } else { Symbol::OfPhase { phase, input } };
-            let input = Symbols { graph, symbols: &mut **symbols }.input(symbol);
+            let input = Symbols { graph, symbols }.input(symbol);
             graph.input(input)
         })
     }

@@ -23,7 +23,9 @@ pub mod units;
 pub use analyze::repair::repair;
 pub use analyze::sensitivity_query::check_with_objective;
 pub use analyze::{Analysis, Checked, analyze, analyze_with, check, check_with};
-pub use compile::chain::{ChainCode, ChainExpectations, chain_expectations, compile_chain};
+pub use compile::chain::{
+    ChainCode, ChainExpectations, chain_expectations, compile_chain, compile_chain_by_parameters,
+};
 pub use compile::dump::{Stage, dump};
 pub use compile::{Expectations, expectations};
 pub use compile::{ProblemCode, compile, compile_by_parameters};

@@ -3,10 +3,10 @@
 use std::ops::ControlFlow;
 
 use fdcc::DataFiles;
-use fdcc_compiler::{Analysis, Model, analyze_with};
+use fdcc_compiler::{Analysis, Model, analyze_with, compile_chain};
 use fdcc_grammar::{Diagnostic, ParseCache, Severity};
 use fdcc_runtime::problem::{Chain, Problem};
-use fdcc_runtime::solve::{self, Outcome, Refusal};
+use fdcc_runtime::solve::{self, ChainOutcome, Outcome, Refusal};
 
 use crate::repository;
 
@@ -72,17 +72,42 @@ pub fn load(name: &str, parameters: Changes, methods: Changes) -> Problem {
     problem(&text_of(name), parameters, methods)
 }
 
-/// The model itself, or for each sequence of jumps that may happen the model in which they do, with
-/// their number.
-pub fn in_phases(model: &Model) -> Vec<(usize, Model)> {
+/// The chain of the model itself, or for each sequence of jumps that may happen the one in which
+/// they do.
+pub fn in_phases(model: &Model) -> Vec<Chained> {
+    let of = |jumps: usize, model: Model| {
+        let chain = compile_chain(&model).expect("the model can be solved");
+        Chained { jumps, model, chain }
+    };
     if model.jumps.is_empty() {
-        return vec![(0, model.clone())];
+        return vec![of(0, model.clone())];
     }
     let all = fdcc_compiler::sequences(model).expect("the model can be solved").all;
     let one = |jumps: &Vec<usize>| {
-        fdcc_compiler::with_phases(model, jumps).expect("the model can be solved")
+        of(jumps.len(), fdcc_compiler::with_phases(model, jumps).expect("it can be solved"))
     };
-    all.iter().map(|jumps| (jumps.len(), one(jumps))).collect()
+    all.iter().map(one).collect()
+}
+
+/// A chain with the model that it is compiled from.
+pub struct Chained {
+    /// How many jumps happen.
+    pub jumps: usize,
+    /// What it is compiled from.
+    pub model: Model,
+    /// Its phases.
+    pub chain: Chain,
+}
+
+impl Chained {
+    /// The models of the phases, with their problems.
+    pub fn phases(&self) -> impl Iterator<Item = (&Model, &Problem)> {
+        let models: Vec<&Model> = match &self.model.phases[..] {
+            [] => vec![&self.model],
+            phases => phases.iter().map(|phase| &phase.model).collect(),
+        };
+        models.into_iter().zip(&self.chain.phases)
+    }
 }
 
 /// What `compile` says about a model that it understands but cannot treat yet.
@@ -93,6 +118,12 @@ pub fn refusal(text: &str) -> Option<Vec<Diagnostic>> {
 /// Solves from the model's own guess, however it ends.
 pub fn solve(problem: &Problem) -> Outcome {
     try_solve(problem).expect("the problem is not refused")
+}
+
+/// Solves a chain from its own guess, however it ends.
+pub fn solve_chain(chain: &Chain) -> ChainOutcome {
+    let found = solve::solve_chain(chain, None, &mut |_, _| ControlFlow::Continue(()));
+    found.expect("the chain is not refused")
 }
 
 /// Solves from the model's own guess, or is refused.

@@ -57,15 +57,16 @@ fn points(function: &dyn Function, random: &mut Random) -> Columns {
 
 fn check(text: &str, kernel: &str) -> Result<(), String> {
     let model = changed(text, &[], &[("kernel", kernel)]);
-    in_phases(&model).iter().try_for_each(|(_, model)| check_model(model, kernel))
+    let all = in_phases(&model);
+    let mut phases = all.iter().flat_map(|chained| chained.phases());
+    phases.try_for_each(|(model, problem)| check_model(model, problem, kernel))
 }
 
-fn check_model(model: &Model, kernel: &str) -> Result<(), String> {
-    let problem = compile(model).expect("the model can be solved");
+fn check_model(model: &Model, problem: &Problem, kernel: &str) -> Result<(), String> {
     let (graph, symbols) = symbols(model);
     let mut random = Random::new(1);
-    for (function, symbols) in functions(&problem).iter().zip(&symbols) {
-        let parameters = parameters(&problem, &mut random);
+    for (function, symbols) in functions(problem).iter().zip(&symbols) {
+        let parameters = parameters(problem, &mut random);
         let points = points(&**function, &mut random);
         let multipliers = table(&mut random, function.outputs(), points.count(), -1.0, 1.0);
         let by = &symbols.function.by;

@@ -1,21 +1,23 @@
 //! Models with jumps, solved with a phase between each two jumps: against closed forms, and against
 //! other programs (`tests/peers/bounce.py`).
 
-use fdcc_compiler::{compile, compile_by_parameters, sequences, with_phases};
+use fdcc_compiler::{
+    Model, compile, compile_by_parameters, compile_chain, compile_chain_by_parameters, sequences,
+    with_phases,
+};
 use fdcc_grammar::Code;
 use fdcc_runtime::nlp::Status;
+use fdcc_runtime::problem::Chain;
 use fdcc_runtime::solution::by_parameters;
 use fdcc_runtime::solution::phases::{Jump, joined};
-use fdcc_runtime::solve::Outcome;
+use fdcc_runtime::solve::{ChainOutcome, Outcome, by_parameters_of_chain};
 use fdcc_tests::Solved;
-use fdcc_tests::models::{Changes, changed, meaning, text_of};
+use fdcc_tests::models::{Changes, changed, meaning, solve_chain, text_of};
 
 /// A solution in which given jumps happen.
 struct Pieces {
-    /// The phases between the jumps.
+    /// The phases between the jumps, one after the other.
     solved: Solved,
-    /// One after the other.
-    whole: Outcome,
     jumps: Vec<Jump>,
     /// What the optimum is worth to each parameter.
     slopes: Vec<f64>,
@@ -24,14 +26,23 @@ struct Pieces {
 fn solve(text: &str, sequence: &[usize], methods: Changes) -> Pieces {
     let model = changed(text, &[], methods);
     let phases = with_phases(&model, sequence).expect("its jumps can be phases");
-    let solved = Solved::of(compile(&phases).expect("it can be solved"));
+    let chain = compile_chain(&phases).expect("it can be solved");
+    let outcome = solve_chain(&chain);
+    assert_eq!(outcome.solution.status, Status::Solved, "{text}");
     let between = compile(&model).expect("there is something between the jumps");
-    let (whole, jumps) = joined(&between, &solved.problem, &solved.outcome);
-    let by = compile_by_parameters(&phases).expect("it can be solved");
-    let trajectory = &solved.outcome.trajectory;
-    let slopes =
-        by_parameters(&solved.problem, &solved.outcome.solution, &trajectory.parameters, &by);
-    Pieces { solved, whole, jumps, slopes }
+    let (whole, jumps) = joined(&between, &chain, &outcome);
+    let slopes = slopes(&phases, &chain, &outcome);
+    Pieces { solved: Solved { problem: between, outcome: whole }, jumps, slopes }
+}
+
+fn slopes(model: &Model, chain: &Chain, outcome: &ChainOutcome) -> Vec<f64> {
+    if model.phases.is_empty() {
+        let by = compile_by_parameters(model).expect("it can be solved");
+        let Outcome { solution, trajectory, .. } = &outcome.phases[0];
+        return by_parameters(&chain.phases[0], solution, &trajectory.parameters, &by);
+    }
+    let by = compile_chain_by_parameters(model).expect("it can be solved");
+    by_parameters_of_chain(chain, outcome, &by)
 }
 
 #[track_caller]
@@ -88,11 +99,8 @@ fn a_bounce_with_a_control_is_that_of_another_program() {
     expect_near(found.solved.value("T"), 1.430562444782, 1e-6);
     expect_near(found.jumps[0].time, 0.548708373339, 1e-6);
     let slope = |e: &str| {
-        let model = changed(&text_of("bounce"), &[("e", e)], &[("scheme", "midpoint")]);
-        Solved::of(
-            compile(&with_phases(&model, &[0]).expect("it bounces")).expect("it can be solved"),
-        )
-        .objective()
+        let text = text_of("bounce").replace("param e = 0.8", &format!("param e = {e}"));
+        solve(&text, &[0], &[("scheme", "midpoint")]).solved.objective()
     };
     expect_near(found.slopes[0], (slope("0.801") - slope("0.799")) / 0.002, 1e-4);
 }
@@ -122,7 +130,7 @@ fn jumps_that_take_turns_happen_when_they_have_to() {
 #[test]
 fn no_jump_follows_itself_after_no_time() {
     let phases = with_phases(&meaning(HEATER), &[0, 0, 1]).expect("its jumps can be phases");
-    let outcome = fdcc_tests::models::solve(&compile(&phases).expect("it can be tried"));
+    let outcome = solve_chain(&compile_chain(&phases).expect("it can be tried"));
     assert_eq!(outcome.solution.status, Status::Infeasible);
 }
 
@@ -144,7 +152,7 @@ fn after_the_last_bounce_the_ball_lies_still() {
     expect_near(found.jumps[1].time, 2.0 * fall, 1e-7);
     expect_near(found.jumps[1].after[1], 0.0, 1e-9);
     expect_near(found.solved.objective(), 1.0 / 3.0, 1e-7);
-    let height = &found.whole.trajectory.states[0];
+    let height = &found.solved.outcome.trajectory.states[0];
     assert!(height[40..].iter().all(|height| height.abs() < 1e-7), "{height:?}");
 }
 
@@ -191,7 +199,7 @@ fn friction_and_an_impact_go_together() {
     let found = solve(text, &[0], &[]);
     let expected = 2.0 * a * (1.0 + 0.5 / (e * e));
     expect_near(found.solved.objective(), expected, 1e-3);
-    assert_eq!(found.whole.modes.len(), 1, "the wall is no surface of friction");
+    assert_eq!(found.solved.outcome.modes.len(), 1, "the wall is no surface of friction");
 }
 
 /// From `depth` below the rim up through it, down on it, and up to `height` above it: `v0^2 = 2g
@@ -279,7 +287,7 @@ fn a_surface_is_crossed_first_where_the_state_may_begin_beyond_it() {
 #[test]
 fn phases_are_put_one_after_the_other() {
     let found = solve(&text_of("bounce"), &[0], &[("scheme", "midpoint"), ("N", "10")]);
-    let trajectory = &found.whole.trajectory;
+    let trajectory = &found.solved.outcome.trajectory;
     assert_eq!((trajectory.time.len(), trajectory.controls[0].len()), (21, 20));
     assert!(trajectory.time.windows(2).all(|pair| pair[0] < pair[1]), "{:?}", trajectory.time);
     expect_near(trajectory.time[10], found.jumps[0].time, 1e-15);
@@ -331,7 +339,7 @@ fn sequences_are_all_that_may_happen() {
             "the short ones come first"
         );
     }
-    let reads = jumps("control u in [0, 1]\njump f on a falling at most 1 { x := u }\n");
-    let refused = sequences(&meaning(&reads)).err().expect("there is no one control at the jump");
+    let reads = jumps("jump f on a falling at most 1 { x := Sgn(b) }\n");
+    let refused = sequences(&meaning(&reads)).err().expect("a jump has no time to choose a side");
     assert_eq!(refused[0].code, Code::NotYet);
 }

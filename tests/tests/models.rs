@@ -1,8 +1,10 @@
 //! Every model of the repository has an expectation, and meets it.
 
 use fdcc_compiler::{Model, compile};
+use fdcc_runtime::nlp::Status;
+use fdcc_runtime::solution::phases::joined;
 use fdcc_tests::expected::Expected;
-use fdcc_tests::models::{borrowed, changed, in_phases, meaning, refusal};
+use fdcc_tests::models::{borrowed, changed, in_phases, meaning, refusal, solve_chain};
 use fdcc_tests::{Solved, documents, repository};
 
 fn expected(name: &str) -> Expected {
@@ -14,9 +16,12 @@ fn expected(name: &str) -> Expected {
 
 /// The best of all sequences of jumps.
 fn best(model: &Model) -> Solved {
-    let all = in_phases(model).into_iter();
-    let solved =
-        all.map(|(_, model)| Solved::of(compile(&model).expect("the model can be solved")));
+    let between = compile(model).expect("the model can be solved");
+    let solved = in_phases(model).into_iter().map(|it| {
+        let outcome = solve_chain(&it.chain);
+        assert_eq!(outcome.solution.status, Status::Solved, "{}", model.name);
+        Solved { problem: between.clone(), outcome: joined(&between, &it.chain, &outcome).0 }
+    });
     let better = |a: Solved, b: Solved| if b.objective() < a.objective() { b } else { a };
     solved.reduce(better).expect("there is at least one")
 }

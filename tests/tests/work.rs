@@ -5,12 +5,12 @@
 
 use std::fmt::Write;
 
-use fdcc_compiler::{Model, compile};
+use fdcc_compiler::Model;
 use fdcc_runtime::linalg::is_fused;
 use fdcc_runtime::nlp::Nlp;
-use fdcc_runtime::problem::Problem;
-use fdcc_runtime::transcribe::TranscribedNlp;
-use fdcc_tests::models::{in_phases, meaning, problem, refusal, solve};
+use fdcc_runtime::problem::Chain;
+use fdcc_runtime::transcribe::chain::ChainNlp;
+use fdcc_tests::models::{in_phases, meaning, problem, refusal, solve_chain};
 use fdcc_tests::{documents, repository};
 
 const HEADINGS: [&str; 12] = [
@@ -33,33 +33,32 @@ const SIZES: usize = 4;
 
 /// Each model as it stands, with each sequence of jumps that may happen, and the rows of Table 7.1
 /// that are hardest for their size.
-fn cases() -> Vec<(String, Problem)> {
+fn cases() -> Vec<(String, Chain)> {
     let models = documents("models", "fdc").into_iter().filter(|(_, text)| refusal(text).is_none());
-    let mut cases: Vec<(String, Problem)> =
+    let mut cases: Vec<(String, Chain)> =
         models.flat_map(|(name, text)| with_jumps(&name, &meaning(&text))).collect();
     let race = fdcc_tests::models::text_of("racecar");
     for (name, method) in [
         ("racecar 0.05 500", [("sigma", "0.05"), ("N", "500")]),
         ("racecar 0.025 1000", [("sigma", "0.025"), ("N", "1000")]),
     ] {
-        cases.push((name.into(), problem(&race, &[], &method)));
+        cases.push((name.into(), Chain::single(problem(&race, &[], &method))));
     }
     cases
 }
 
-fn with_jumps(name: &str, model: &Model) -> Vec<(String, Problem)> {
+fn with_jumps(name: &str, model: &Model) -> Vec<(String, Chain)> {
     let all = in_phases(model).into_iter();
-    let problem = |model: &Model| compile(model).expect("it is not refused");
-    all.map(|(jumps, pieces)| match model.jumps.len() {
-        0 => (name.to_owned(), problem(&pieces)),
-        _ => (format!("{name}, {jumps} jumps"), problem(&pieces)),
+    all.map(|it| match model.jumps.len() {
+        0 => (name.to_owned(), it.chain),
+        _ => (format!("{name}, {} jumps", it.jumps), it.chain),
     })
     .collect()
 }
 
-fn row(name: &str, problem: &Problem) -> Vec<String> {
-    let solution = solve(problem).solution;
-    let nlp = TranscribedNlp::new(problem);
+fn row(name: &str, chain: &Chain) -> Vec<String> {
+    let solution = solve_chain(chain).solution;
+    let nlp = ChainNlp::new(chain);
     let counts = solution.counts;
     let numbers = [
         counts.iterations,

@@ -1,11 +1,11 @@
 //! A model with phases as a chain of problems.
 
-use super::{ProblemCode, machine_code};
+use super::{ProblemCode, compile_by_parameters, machine_code};
 use crate::lower::{self, Expected, LoweredLink, LoweredProblem};
 use crate::model::numbers::{Numbers, numbers as numbers_of};
 use crate::model::{Model, Phase, not_yet};
 use fdcc_grammar::Diagnostic;
-use fdcc_runtime::problem::{Chain, Function, Link, Problem};
+use fdcc_runtime::problem::{ByParameters, Chain, ChainByParameters, Function, Link, Problem};
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -13,6 +13,19 @@ use std::sync::Arc;
 /// if it has no phases; or says what cannot be solved yet.
 pub fn compile_chain(model: &Model) -> Result<Chain, Vec<Diagnostic>> {
     ChainCode::new(model)?.chain(model)
+}
+
+/// The functions of a chain differentiated by the parameters of the model, for what its optimum is
+/// worth to them. The model has phases.
+pub fn compile_chain_by_parameters(model: &Model) -> Result<ChainByParameters, Vec<Diagnostic>> {
+    let phases = model.phases.iter().map(|phase| compile_by_parameters(&phase.model));
+    let phases: Vec<ByParameters> = phases.collect::<Result<_, _>>()?;
+    let lowered: Vec<LoweredProblem> =
+        model.phases.iter().map(|phase| lower::lower(&phase.model)).collect();
+    let (graph, functions) = lower::links_by_parameters(model, &lowered.iter().collect::<Vec<_>>());
+    let mut functions = machine_code(graph, functions);
+    let given = functions.pop().expect("what is given is the last of the functions");
+    Ok(ChainByParameters { phases, links: functions, given })
 }
 
 /// The compiled functions of a chain, which take parameters as inputs: one for all values.
@@ -71,6 +84,8 @@ fn phase_of(model: &Model, mut problem: Problem) -> Problem {
         read.extend(columns.filter_map(|column| column.checked_sub(first)));
     }
     problem.unknowns.retain(|unknown| read.contains(&unknown.parameter));
+    // A free time may end one phase and begin the next.
+    problem.last_time = None;
     problem.sense = model.sense;
     let of_phases = model.phases.iter().any(|phase| phase.model.objective.is_some());
     problem.has_objective = of_phases || model.links.iter().any(|it| it.objective.is_some());

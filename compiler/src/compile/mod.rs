@@ -62,8 +62,8 @@ pub fn compile_by_parameters(model: &Model) -> Result<ByParameters, Vec<Diagnost
         unreachable!("there are four at least")
     };
     let ([dynamics, path, boundary, given], measurements) = (first.clone(), sums.to_vec());
-    let parameters = model.params.len();
-    Ok(ByParameters { parameters, dynamics, path, boundary, measurements, given })
+    let (parameters, unknowns) = (model.params.len(), model.frees.len());
+    Ok(ByParameters { parameters, unknowns, dynamics, path, boundary, measurements, given })
 }
 
 /// Turns a model into the true system, for simulation; or says what cannot be simulated yet.

@@ -18,7 +18,7 @@ pub(crate) fn by_parameters(model: &Model, lowered: &mut LoweredProblem) -> Vec<
 }
 
 /// The parameters are the first entries of `p`.
-fn by_first(model: &Model, function: VectorFunction) -> VectorFunction {
+pub(super) fn by_first(model: &Model, function: VectorFunction) -> VectorFunction {
     let first = function.layout.parameters().start;
     let by = (first..first + model.params.len()).map(|at| at as u32).collect();
     VectorFunction { by, order: Order::First, ..function }

@@ -42,6 +42,7 @@ pub fn problem(
         running_cost: lowered.running_cost,
         path,
         path_bounds: model.path.iter().map(|row| numbers.bounds(model, row.range)).collect(),
+        half_open: model.half_open.clone(),
         boundary,
         boundary_bounds: lowered
             .boundary_rows

@@ -246,6 +246,8 @@ pub struct Model {
     pub interval: [ExprId; 2],
     /// Conditions at all times.
     pub path: Vec<Constraint>,
+    /// Which of them need not hold at the last time: what ends the phase says what they say.
+    pub half_open: Vec<usize>,
     /// Conditions at the ends.
     pub boundary: Vec<Constraint>,
     /// What is minimised, as written; none for a pure feasibility problem.
@@ -312,6 +314,7 @@ impl Model {
             jumps: Vec::new(),
             interval,
             path: Vec::new(),
+            half_open: Vec::new(),
             boundary: Vec::new(),
             objective: None,
             sense: 1.0,

@@ -39,7 +39,7 @@ pub(crate) struct Symbols<'g> {
 
 impl Symbols<'_> {
     /// The input that is a symbol, a new one if there is none.
-    fn input(&mut self, symbol: Symbol) -> u32 {
+    pub fn input(&mut self, symbol: Symbol) -> u32 {
         let known = self.symbols.iter().position(|known| *known == symbol);
         let at = known.unwrap_or_else(|| {
             self.symbols.push(symbol);

@@ -77,7 +77,7 @@ impl MultiPhase<'_> {
     /// that stands still.
     pub(super) fn at_rest(&mut self, j: usize, state: usize) -> Option<ExprId> {
         let held = self.held.filter(|held| held.from == j && held.state == state)?;
-        let (input, start) = (self.input_of_state(state), self.phases[j].starts[state]);
+        let (input, start) = (self.input_of_state(state), self.of_phase(j, Symbol::AtStart(state)));
         Some(self.graph.substitute(&[held.approach], &|at| (at == input).then_some(start))[0])
     }
 

@@ -1,23 +1,22 @@
-//! A model with jumps as one without: a phase between each two jumps, all on the same grid.
+//! A model with jumps as a chain of phases: one between each two jumps.
 //!
-//! Jumps `1..n` at unknown times divide time into `n + 1` phases of unknown durations `D_j` that
-//! begin at `T_j`. Each has states and controls of its own over the same `tau` in [0, 1], and
-//! linkage conditions at its ends:
+//! Jumps `1..n` at unknown times `T_1..T_n` divide time into `n + 1` phases, which are models of
+//! their own: `T_0` and `T_n+1` are the first and last time. Links tie the end of each to the start
+//! of the next:
 //!
 //! ```text
-//! x_j' = D_j f(T_j + tau D_j, x_j, u_j, p)      psi(T_j+1, x_j(1), p) = 0      x_j+1(0) = r(T_j+1, x_j(1), p)
+//! x_j' = f(t, x_j, u_j, p) on [T_j, T_j+1]      psi(T_j+1, x_j, p) = 0      x_j+1 = r(T_j+1, x_j, u_j, p)
 //! ```
 //!
-//! Which jumps happen, and in which order, is given ([`sequences()`]). The result is a model like
-//! any other: smooth between the jumps, and differentiated through them by the dependence of all
-//! phases on the durations.
+//! Which jumps happen, and in which order, is given ([`sequences()`]). A phase depends on the two
+//! times at its ends only, so that the cost of a solve is that of all phases one after the other.
 
 mod crossings;
 mod hold;
 mod links;
 mod path;
-mod phase;
 mod sequences;
+mod shares;
 
 pub use crossings::crossings;
 pub use sequences::{Sequences, sequences};
@@ -25,14 +24,11 @@ pub use sequences::{Sequences, sequences};
 use crate::expressions::graph::{ExprId, Graph};
 use crate::model::guess::straight_guesses;
 use crate::model::numbers::numbers;
-use crate::model::{
-    Ball, Control, Expectation, Free, Integral, Jump, Model, Place, Range, Report, State, Surface,
-    Symbol,
-};
+use crate::model::{Free, Jump, Model, Phase, Place, Range, State, Symbol};
 use crossings::Beginning;
 use fdcc_grammar::Diagnostic;
 use hold::Held;
-use phase::Phase;
+use shares::Shares;
 
 /// What holds between the jumps of a model: the model without them, and without surfaces at which
 /// nothing else happens.
@@ -72,7 +68,8 @@ fn used_surfaces(model: &Model) -> Vec<usize> {
     (0..model.surfaces.len()).filter(|&at| is_read(at) || in_ball(at)).collect()
 }
 
-/// The model in which exactly these jumps and [`mod@crossings`] happen, one after the other.
+/// The model in which exactly these jumps and [`mod@crossings`] happen, one after the other; of one
+/// piece if there are none.
 pub fn with_phases(model: &Model, sequence: &[usize]) -> Result<Model, Vec<Diagnostic>> {
     let numbers = numbers(model)?;
     let begins = crossings::beginnings(model, &numbers);
@@ -80,48 +77,60 @@ pub fn with_phases(model: &Model, sequence: &[usize]) -> Result<Model, Vec<Diagn
     limits.resize(2 * model.jumps.len(), None);
     let whole = Model { jumps: [model.jumps.clone(), crossings(model)].concat(), ..model.clone() };
     let mut between = between_jumps(model);
-    phase::input(&mut between.graph, &mut between.symbols, Symbol::Time);
+    let times = times(&mut between, &whole, sequence);
     let mut graph = between.graph.clone();
-    let mut symbols = between.symbols.clone();
     let held = Held::new(&whole, &mut graph, sequence, &limits);
-    let durations = durations(&between, sequence, &mut graph, &mut symbols);
-    let phases = Phase::all(&between, &mut graph, &mut symbols, &durations);
-    let mut multi_phase = MultiPhase {
+    let multi_phase = MultiPhase {
         whole: &whole,
+        symbols: between.symbols.clone(),
         model: &between,
         sequence,
         held,
         begins,
         limits,
         graph,
-        durations,
-        phases,
+        times,
     };
-    let parts = multi_phase.parts();
-    Ok(Model { graph: multi_phase.graph, symbols, ..parts })
+    Ok(multi_phase.into_model())
 }
 
-/// `D_j`: an unknown for each phase but the last, which is what they leave of the time.
-fn durations(
-    model: &Model,
-    sequence: &[usize],
-    graph: &mut Graph,
-    symbols: &mut Vec<Symbol>,
-) -> Vec<ExprId> {
+/// `T_j`: an unknown for each jump, between the first and the last time. Gives the model all
+/// symbols that phases or links read.
+fn times(model: &mut Model, whole: &Model, sequence: &[usize]) -> Vec<ExprId> {
     let first = model.frees.len();
-    let mut durations: Vec<ExprId> = (0..sequence.len())
-        .map(|j| phase::input(graph, symbols, Symbol::Free(first + j)))
-        .collect();
-    let known = graph.sum(&durations);
-    let whole = graph.sub(model.interval[1], model.interval[0]);
-    durations.push(graph.sub(whole, known));
-    durations
+    let of = |model: &mut Model, symbol| {
+        let input = model.symbols_mut().input(symbol);
+        model.graph.input(input)
+    };
+    of(model, Symbol::Time);
+    for at in 0..model.states.len() {
+        of(model, Symbol::AtStart(at));
+        of(model, Symbol::AtEnd(at));
+    }
+    (0..model.controls.len()).for_each(|at| _ = of(model, Symbol::ControlAtEnd(at)));
+    let [begin, end] = model.interval;
+    let unbounded = [f64::NEG_INFINITY, f64::INFINITY].map(|it| model.graph.number(it));
+    let mut times = vec![begin];
+    for (j, at) in sequence.iter().enumerate() {
+        times.push(of(model, Symbol::Free(first + j)));
+        let place = &whole.jumps[*at].place;
+        let duration = model.graph.sub(end, begin);
+        let part = (j + 1) as f64 / (sequence.len() + 1) as f64;
+        let passed = model.graph.scale(part, duration);
+        model.frees.push(Free {
+            place: Place { name: format!("time of {} {}", place.name, j + 1), span: place.span },
+            range: Range { lower: unbounded[0], upper: unbounded[1] },
+            guess: Some(model.graph.add(begin, passed)),
+        });
+    }
+    times.push(end);
+    times
 }
 
 struct MultiPhase<'m> {
     /// As it is written, with the crossings behind its jumps.
     whole: &'m Model,
-    /// What holds between the jumps.
+    /// What holds between the jumps, with the times of the jumps as unknowns.
     model: &'m Model,
     /// The jumps and crossings that happen, in their order.
     sequence: &'m [usize],
@@ -132,8 +141,10 @@ struct MultiPhase<'m> {
     /// How often each jump may happen.
     limits: Vec<Option<usize>>,
     graph: Graph,
-    durations: Vec<ExprId>,
-    phases: Vec<Phase>,
+    /// What the inputs of the graph are: those of a phase, then what links read of phases.
+    symbols: Vec<Symbol>,
+    /// When phases begin; and the last time.
+    times: Vec<ExprId>,
 }
 
 impl<'m> MultiPhase<'m> {
@@ -142,145 +153,73 @@ impl<'m> MultiPhase<'m> {
         &self.whole.jumps[self.sequence[j]]
     }
 
-    /// The lists of the model, each with what every phase has of it.
-    fn parts(&mut self) -> Model {
+    fn into_model(mut self) -> Model {
         let model = self.model;
-        let [zero, one] = [0.0, 1.0].map(|it| self.graph.number(it));
-        let count = self.phases.len();
-        let each = |it: &std::ops::Range<usize>, j: usize| {
-            it.start + j * model.surfaces.len()..it.end + j * model.surfaces.len()
-        };
-        let balls = (0..count).flat_map(|j| {
-            model
-                .balls
-                .iter()
-                .map(move |ball| Ball { surfaces: each(&ball.surfaces, j), ..ball.clone() })
-        });
-        let mut method = model.method.clone();
-        let lagged = |j| model.method.lagged.iter().map(move |it| it + j * model.states.len());
-        method.lagged = (0..count).flat_map(lagged).collect();
+        let shares = Shares::new(model, &mut self.graph);
+        if self.sequence.is_empty() {
+            let (boundary, objective) = (model.boundary.clone(), model.objective.clone());
+            return Model { boundary, objective, ..self.phase(0, &shares) };
+        }
+        let phases: Vec<Phase> = (0..=self.sequence.len())
+            .map(|j| Phase {
+                place: self.named(j),
+                model: self.phase(j, &shares),
+                holds_at_first: false,
+            })
+            .collect();
+        let mut links: Vec<_> = (0..self.sequence.len()).map(|j| self.link(j)).collect();
+        links.extend(self.link_of_whole(&shares));
+        let (graph, symbols) = (self.graph, self.symbols);
+        Model { graph, symbols, phases, links, ..model.clone() }
+    }
+
+    /// What holds until a jump, or until the last time.
+    fn phase(&mut self, j: usize, shares: &Shares) -> Model {
+        let model = self.model;
+        let (path, half_open) = self.path(j);
+        let states = self.states(j);
+        let value = shares.of_phase(&mut self.graph, j, self.sequence.len());
+        let place = model.objective.as_ref().map(|it| it.0.clone());
+        let mut integrals = model.integrals.clone();
+        shares.integrals.iter().for_each(|at| integrals[*at].is_linked = true);
         Model {
-            frees: self.frees(),
-            states: self.states(),
-            controls: self.controls(),
-            surfaces: self.surfaces(),
-            balls: balls.collect(),
-            interval: [zero, one],
-            path: self.path(),
-            boundary: self.boundary(),
-            objective: model.objective.clone().map(|(place, value)| (place, self.of_whole(value))),
-            integrals: self.integrals(),
-            report: self.report(),
-            expectations: self.expectations(),
-            method,
+            graph: self.graph.clone(),
+            interval: [self.times[j], self.times[j + 1]],
+            states,
+            path,
+            half_open,
+            boundary: Vec::new(),
+            objective: place.zip(value),
+            integrals,
             ..model.clone()
         }
     }
 
-    /// The unknowns, then the durations of all phases but the last.
-    fn frees(&mut self) -> Vec<Free> {
-        let mut frees = self.model.frees.clone();
-        let [zero, infinity] = [0.0, f64::INFINITY].map(|it| self.graph.number(it));
-        let whole = self.graph.sub(self.model.interval[1], self.model.interval[0]);
-        let guess = self.graph.scale(1.0 / self.phases.len() as f64, whole);
-        frees.extend((0..self.sequence.len()).map(|j| self.jump(j)).map(|jump| Free {
-            place: Place {
-                name: format!("time before {}", jump.place.name),
-                span: jump.place.span,
-            },
-            range: Range { lower: zero, upper: infinity },
-            guess: Some(guess),
-        }));
-        frees
-    }
-
-    fn states(&mut self) -> Vec<State> {
+    fn states(&mut self, j: usize) -> Vec<State> {
         let guesses = straight_guesses(self.model, &mut self.graph);
         let mut states = Vec::new();
-        for j in 0..self.phases.len() {
-            for (index, state) in self.model.states.iter().enumerate() {
-                let rate = match self.is_still(j, index) {
-                    true => self.graph.number(0.0),
-                    false => self.in_phase(j, state.rate),
-                };
-                let is_first = j == 0;
-                states.push(State {
-                    place: self.named(j, &state.place),
-                    range: self.range_of(index),
-                    start: state.start.filter(|_| is_first),
-                    start_range: state.start_range.filter(|_| is_first),
-                    rate: self.graph.mul(self.durations[j], rate),
-                    equation: state.equation.clone(),
-                    guess: Some(self.in_phase(j, guesses[index])),
-                });
-            }
+        for (index, state) in self.model.states.iter().enumerate() {
+            let rate = match self.is_still(j, index) {
+                true => self.graph.number(0.0),
+                false => state.rate,
+            };
+            states.push(State {
+                range: self.range_of(index),
+                start: state.start.filter(|_| j == 0),
+                start_range: state.start_range.filter(|_| j == 0),
+                rate,
+                guess: Some(guesses[index]),
+                ..state.clone()
+            });
         }
         states
     }
 
-    fn controls(&mut self) -> Vec<Control> {
-        let mut controls = Vec::new();
-        for j in 0..self.phases.len() {
-            for control in &self.model.controls {
-                let guess = control.guess.map(|guess| self.in_phase(j, guess));
-                controls.push(Control {
-                    place: self.named(j, &control.place),
-                    guess,
-                    ..control.clone()
-                });
-            }
+    /// A phase has the name of the jump before it.
+    fn named(&self, j: usize) -> Place {
+        match j.checked_sub(1) {
+            Some(before) => self.jump(before).place.clone(),
+            None => Place { name: self.model.name.clone(), ..Place::default() },
         }
-        controls
-    }
-
-    fn surfaces(&mut self) -> Vec<Surface> {
-        let mut surfaces = Vec::new();
-        for j in 0..self.phases.len() {
-            for surface in &self.model.surfaces {
-                let psi = self.in_phase(j, surface.psi);
-                surfaces.push(Surface { place: self.named(j, &surface.place), psi });
-            }
-        }
-        surfaces
-    }
-
-    /// Integrals add up over the phases.
-    fn integrals(&mut self) -> Vec<Integral> {
-        let mut integrals = self.model.integrals.clone();
-        for integral in &mut integrals {
-            let terms: Vec<ExprId> = (0..self.phases.len())
-                .map(|j| {
-                    let here = self.in_phase(j, integral.integrand);
-                    self.graph.mul(self.durations[j], here)
-                })
-                .collect();
-            integral.integrand = self.graph.sum(&terms);
-        }
-        integrals
-    }
-
-    fn report(&mut self) -> Vec<Report> {
-        let mut report = Vec::new();
-        for j in 0..self.phases.len() {
-            for row in &self.model.report {
-                report.push(Report { value: self.in_phase(j, row.value), ..row.clone() });
-            }
-        }
-        report
-    }
-
-    fn expectations(&mut self) -> Vec<Expectation> {
-        let mut all = self.model.expectations.clone();
-        for expectation in &mut all {
-            expectation.values = expectation.values.map(|value| self.of_whole(value));
-        }
-        all
-    }
-
-    /// A name of its own for each phase but the first.
-    fn named(&self, j: usize, place: &Place) -> Place {
-        let Some(before) = j.checked_sub(1) else { return place.clone() };
-        let earlier = &self.jump(before).place.name;
-        Place { name: format!("{} after {earlier} {j}", place.name), span: place.span }
     }
 }

@@ -12,9 +12,6 @@ use crate::expressions::graph::{ExprId, Graph};
 use crate::model::{Constraint, Jump, Place, Range, Symbol};
 use fdcc_grammar::ast::Direction;
 
-/// The last time of a phase, with room for rounding.
-const LAST: f64 = 1.0 - 1e-9;
-
 impl MultiPhase<'_> {
     /// The bounds of a state at all times; none where they are a path constraint.
     pub(super) fn range_of(&mut self, state: usize) -> Range {
@@ -26,17 +23,19 @@ impl MultiPhase<'_> {
         Range { lower, upper }
     }
 
-    /// What is written, phase by phase; then what the jumps add, phase by phase.
-    pub(super) fn path(&mut self) -> Vec<Constraint> {
-        let mut rows = Vec::new();
-        for j in 0..self.phases.len() {
-            rows.extend(self.model.path.iter().map(|row| self.until(j, row.clone())));
+    /// What is written, then what the jumps add; and which of these rows give way at the end of the
+    /// phase.
+    pub(super) fn path(&mut self, j: usize) -> (Vec<Constraint>, Vec<usize>) {
+        let mut rows = self.model.path.clone();
+        rows.extend(self.bounds());
+        rows.extend(self.sides(j));
+        let half_open = (0..rows.len()).filter(|at| self.ends_on(j, rows[*at].value)).collect();
+        for row in &mut rows {
+            if self.is_held(j, row) {
+                row.value = within(&mut self.graph, row.range);
+            }
         }
-        for j in 0..self.phases.len() {
-            let more: Vec<Constraint> = self.bounds().into_iter().chain(self.sides(j)).collect();
-            rows.extend(more.into_iter().map(|row| self.until(j, row)));
-        }
-        rows
+        (rows, half_open)
     }
 
     /// Bounds of states that are functions of a surface.
@@ -107,7 +106,7 @@ impl MultiPhase<'_> {
         self.limits[index].is_none_or(|limit| before < limit)
     }
 
-    fn not_below(&mut self) -> Range {
+    pub(super) fn not_below(&mut self) -> Range {
         Range { lower: self.graph.number(0.0), upper: self.graph.number(f64::INFINITY) }
     }
 
@@ -170,22 +169,13 @@ impl MultiPhase<'_> {
         Some(Constraint { place, value: self.at_end(j, rate), range })
     }
 
-    /// A constraint in a phase; where the phase ends on this very surface, it gives way there, and
-    /// where the surface is held, everywhere.
-    fn until(&mut self, j: usize, row: Constraint) -> Constraint {
-        if self.is_held(j, &row) {
-            return Constraint { value: within(&mut self.graph, row.range), ..row };
+    /// Whether the surface on which a phase ends says what a value is there.
+    fn ends_on(&mut self, j: usize, value: ExprId) -> bool {
+        let psi = |at: &usize| self.whole.surfaces[self.whole.jumps[*at].surface].psi;
+        match self.sequence.get(j).map(psi) {
+            Some(psi) => self.is_switching_function(psi, value),
+            None => false,
         }
-        let value = self.in_phase(j, row.value);
-        let ends_here = j < self.sequence.len()
-            && self.is_switching_function(self.whole.surfaces[self.jump(j).surface].psi, row.value);
-        if !ends_here {
-            return Constraint { value, ..row };
-        }
-        let inside = within(&mut self.graph, row.range);
-        let tau = self.model.input_of(Symbol::Time).expect("time is a symbol");
-        let (tau, last) = (self.graph.input(tau), self.graph.number(LAST));
-        Constraint { value: self.graph.select_le(tau, last, value, inside), ..row }
     }
 
     /// Whether a value is known where the function of a surface is 0: both depend on one state

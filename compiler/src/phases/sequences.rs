@@ -31,8 +31,8 @@ pub struct Sequences {
 /// All sequences in which no jump happens more often than it may; or says what cannot be solved
 /// yet.
 pub fn sequences(model: &Model) -> Result<Sequences, Vec<Diagnostic>> {
-    if let Some(jump) = model.jumps.iter().find(|jump| reads_controls(model, jump)) {
-        return Err(vec![not_yet(jump.place.span, "a jump that reads a control")]);
+    if let Some(jump) = model.jumps.iter().find(|jump| reads_selectors(model, jump)) {
+        return Err(vec![not_yet(jump.place.span, "a jump that reads the side of a surface")]);
     }
     let numbers = numbers(model)?;
     let (most, is_cut) = most(model, &numbers);
@@ -70,12 +70,10 @@ fn may_follow(earlier: &[usize], event: usize, most: &[usize], begins: &[Beginni
     }
 }
 
-fn reads_controls(model: &Model, jump: &Jump) -> bool {
+fn reads_selectors(model: &Model, jump: &Jump) -> bool {
     let values: Vec<ExprId> = jump.resets.iter().map(|reset| reset.1).collect();
     let read = model.graph.inputs_of(&values);
-    let is_beyond =
-        |at: &u32| matches!(model.symbols[*at as usize], Symbol::Control(_) | Symbol::Selector(_));
-    read.iter().any(is_beyond)
+    read.iter().any(|at| matches!(model.symbols[*at as usize], Symbol::Selector(_)))
 }
 
 /// How often each jump may happen, if that is limited.

@@ -6,11 +6,12 @@
 mod of_phases;
 mod replayed;
 
-use crate::solve::Solution;
+use crate::solve::{Phases, Solution};
 use fdcc_compiler::model::Comparison;
-use fdcc_compiler::{Expected, expectations};
-use fdcc_runtime::problem::{Columns, Origin};
+use fdcc_compiler::{Expected, Model, expectations};
+use fdcc_runtime::problem::{Columns, Function, Origin, Problem};
 use fdcc_runtime::solution::{integrals, sums_over_rows};
+use fdcc_runtime::solve::Outcome as Solved;
 use replayed::Replayed;
 
 /// One line of the `expect` block and what became of it.
@@ -85,31 +86,54 @@ impl Solution {
 
 /// Evaluates all expectations of its model at a solution.
 fn evaluate(solution: &Solution) -> Vec<Checked> {
-    let (seen, problem, outcome) = solution.as_solved();
-    let expectations = expectations(seen);
-    let trajectory = &outcome.trajectory;
+    let between = solution.between_jumps.as_ref();
+    let expectations = expectations(between.map_or(solution.model().meaning(), |it| &it.model));
+    let trajectory = &solution.outcome.trajectory;
     let ends = |column: fn(&[f64]) -> f64| trajectory.states.iter().map(move |state| column(state));
     let inputs: Vec<f64> =
         ends(|state| state[0]).chain(ends(|state| state[state.len() - 1])).collect();
-    let mut parameters = trajectory.parameters.clone();
-    parameters.extend(integrals(
-        problem,
-        &outcome.solution,
-        &trajectory.parameters,
-        &*expectations.integrands,
-    ));
-    parameters.extend(sums_over_rows(
-        problem,
-        &outcome.solution,
-        &trajectory.parameters,
-        &expectations.sums,
-    ));
+    let mut parameters = match between {
+        Some(it) => it.outcome.phases[0].trajectory.parameters.clone(),
+        None => trajectory.parameters.clone(),
+    };
+    parameters.extend(match between {
+        Some(phases) => integrals_of_phases(phases),
+        None => of_phase(&solution.problem, &solution.outcome, &*expectations.integrands),
+    });
+    if between.is_none() {
+        parameters.extend(sums_over_rows(
+            &solution.problem,
+            &solution.outcome.solution,
+            &trajectory.parameters,
+            &expectations.sums,
+        ));
+    }
     let replayed = Replayed::new(solution, &expectations.simulated);
     parameters.extend(replayed.values());
     let mut values = Columns::new(expectations.function.outputs(), 1);
     expectations.function.value(&Columns::of_point(&inputs), &parameters, &mut values);
     let list = expectations.list.iter().enumerate();
     list.map(|(at, expected)| checked(expected, at, &values, &replayed)).collect()
+}
+
+/// The integrals that expectations read, over the time of one phase.
+fn of_phase(problem: &Problem, outcome: &Solved, integrands: &dyn Function) -> Vec<f64> {
+    integrals(problem, &outcome.solution, &outcome.trajectory.parameters, integrands)
+}
+
+/// The same over that of all phases between jumps.
+fn integrals_of_phases(phases: &Phases) -> Vec<f64> {
+    let Phases { model, chain, outcome } = phases;
+    let models: Vec<&Model> = match &model.phases[..] {
+        [] => vec![model],
+        own => own.iter().map(|phase| &phase.model).collect(),
+    };
+    let own = models.into_iter().zip(&chain.phases).zip(&outcome.phases);
+    let own = own.map(|((model, problem), outcome)| {
+        of_phase(problem, outcome, &*expectations(model).integrands)
+    });
+    let add = |sum: Vec<f64>, more: Vec<f64>| sum.iter().zip(more).map(|(a, b)| a + b).collect();
+    own.reduce(add).unwrap_or_default()
 }
 
 fn checked(expected: &Expected, at: usize, values: &Columns, replayed: &Replayed) -> Checked {

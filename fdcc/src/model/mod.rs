@@ -57,6 +57,7 @@ pub(crate) fn frame(chain: &Chain) -> Problem {
         controls: Vec::new(),
         surfaces: Vec::new(),
         path_bounds: Vec::new(),
+        half_open: Vec::new(),
         boundary_bounds: Vec::new(),
         start: Vec::new(),
         report_names: Vec::new(),

@@ -70,17 +70,16 @@ pub struct Sequence {
 /// let model = fdcc::Model::from_file("../models/bounce.fdc")?.with_method("N", 20)?;
 /// let solution = model.solve(&fdcc::Options::default())?;
 /// let phases = solution.between_jumps.as_ref().expect("the model has a jump");
-/// let count = solution.jumps.len() + 1;
-/// assert!(phases.problem.states.len() >= count * solution.problem.states.len());
+/// assert_eq!(phases.chain.phases.len(), solution.jumps.len() + 1);
 /// # Ok::<(), fdcc::Error>(())
 /// ```
 pub struct Phases {
-    /// A model without jumps.
+    /// A model of several phases, or of one piece if nothing jumps.
     pub model: Model,
-    /// Its problem.
-    pub problem: Problem,
-    /// The solution of that.
-    pub outcome: Outcome,
+    /// Its problems, each on the grid of the answer.
+    pub chain: Chain,
+    /// The solution of these.
+    pub outcome: ChainOutcome,
 }
 
 impl Found {

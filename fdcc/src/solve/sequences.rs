@@ -9,17 +9,17 @@ use crate::executor::Executor;
 use crate::record::Record;
 use crate::warm_start;
 use fdcc_compiler::{
-    Model, Sequences, compile, compile_simulation, crossings, sequences, with_phases,
+    Model, Sequences, compile_chain, compile_simulation, crossings, sequences, with_phases,
 };
 use fdcc_runtime::nlp;
-use fdcc_runtime::problem::{Chain, ControlShape, Problem};
+use fdcc_runtime::problem::{Chain, Method, Problem};
 use fdcc_runtime::simulate::{
     Controls, Event, Kind, Options as Accuracy, Status, System, simulate,
 };
 use fdcc_runtime::solution::phases::{self, joined};
 use fdcc_runtime::solve::multistart::is_better;
 
-/// A sequence of jumps and crossings, and the problem in which it happens.
+/// A sequence of jumps and crossings, and the chain of phases in which it happens.
 struct Alternative {
     /// The names of the jumps, with nothing for a surface that is crossed without one.
     jumps: Vec<Option<String>>,
@@ -28,7 +28,7 @@ struct Alternative {
     /// `no jump`, or `bounce, bounce`, or `crossing of rim, bounce`.
     words: String,
     model: Model,
-    problem: Problem,
+    chain: Chain,
 }
 
 /// Solves for every sequence; `between` is what holds between the jumps. An earlier solution is the
@@ -39,7 +39,6 @@ pub(super) fn solve(
     earlier: Option<&Record>,
     options: &Options,
 ) -> Result<Found, Error> {
-    refuse(between)?;
     let mut possible = sequences(model).map_err(Error::Model)?;
     if let Some(likely) = simulated(model, &possible) {
         possible.all.retain(|sequence| *sequence != likely);
@@ -70,7 +69,7 @@ pub(super) fn solve(
     let (alternative, mut found) = alternatives.zip(found).expect("it is one of them");
     found.outcome.attempts = attempts;
     unless_stopped(&mut found.outcome.solution, stopped);
-    Ok(alternative.joined(between, Found { sequences: tried, is_cut, ..found.into_single() }))
+    Ok(Found { sequences: tried, is_cut, ..alternative.joined(between, found) })
 }
 
 /// The answer of each, up to the first that is enough.
@@ -84,8 +83,7 @@ fn each(
         let alternative = &all[index];
         let start = alternative.start(between, earlier);
         let part = Part { sequence: Some(&alternative.words), start: None };
-        let chain = Chain::single(alternative.problem.clone());
-        let mut found = multistart::solve(&chain, start, options, part)?;
+        let mut found = multistart::solve(&alternative.chain, start, options, part)?;
         // A proof says something of the phases of this sequence only.
         found.outcome.is_impossible = false;
         found.outcome.solution.global = false;
@@ -98,13 +96,19 @@ fn each(
     let ends = |found: &Result<FoundChain, Error>| found.as_ref().map_or(true, is_enough);
     // Several starts run in parallel already.
     let executor = if options.starts == 1 { options.executor } else { Executor::serial() };
-    executor.in_order(all.len(), one, ends).into_iter().collect()
+    // The first may be all that is needed.
+    let alone = if between.has_objective { 0 } else { 1 };
+    let mut found: Vec<Result<FoundChain, Error>> = (0..alone).map(&one).collect();
+    if !found.last().is_some_and(ends) {
+        found.extend(executor.in_order(all.len() - alone, |at| one(at + alone), ends));
+    }
+    found.into_iter().collect()
 }
 
 /// A guess is not worth more steps of a simulation.
 const STEPS: usize = 20_000;
 /// More are not looked for where the guess leads to that many.
-const LONGEST: usize = 12;
+const LONGEST: usize = 100;
 
 /// The jumps and crossings on the true system with everything as it is guessed.
 fn simulated(model: &Model, possible: &Sequences) -> Option<Vec<usize>> {
@@ -143,20 +147,10 @@ fn happening(
     (0..system.jumps.len()).find(crossed).map(|at| at + system.jumps.len())
 }
 
-/// What only a model without jumps can do.
-fn refuse(between: &Problem) -> Result<(), Error> {
-    match between.method.controls {
-        ControlShape::Constant => Ok(()),
-        ControlShape::Linear | ControlShape::Polynomial => Err(Error::Call(
-            "`controls = linear` and `polynomial` are for models without jumps".into(),
-        )),
-    }
-}
-
 impl Alternative {
     fn new(between: &Model, sequence: Vec<usize>) -> Result<Self, Error> {
         let model = with_phases(between, &sequence).map_err(Error::Model)?;
-        let problem = compile(&model).map_err(Error::Model)?;
+        let chain = compile_chain(&model).map_err(Error::Model)?;
         let all = [between.jumps.clone(), crossings(between)].concat();
         let names: Vec<&str> = sequence.iter().map(|at| all[*at].place.name.as_str()).collect();
         let words = if names.is_empty() { "no jump".into() } else { names.join(", ") };
@@ -165,7 +159,7 @@ impl Alternative {
         let crosses = against.map(surface).collect();
         let jump = |at: &usize| Some(between.jumps.get(*at)?.place.name.clone());
         let jumps = sequence.iter().map(jump).collect();
-        Ok(Alternative { jumps, crosses, words, model, problem })
+        Ok(Alternative { jumps, crosses, words, model, chain })
     }
 
     fn start(&self, between: &Problem, earlier: Option<&Record>) -> Option<nlp::Start> {
@@ -173,7 +167,7 @@ impl Alternative {
             let jumps = it.jumps.iter().map(|jump| jump.jump);
             self.jumps.iter().flatten().eq(jumps) && self.crosses.is_empty()
         };
-        earlier.filter(is_its).and_then(|it| warm_start::phases::start(it, between, &self.problem))
+        earlier.filter(is_its).and_then(|it| warm_start::phases::start(it, between, &self.chain))
     }
 
     fn tried(&self, found: &FoundChain, is_answer: bool) -> Sequence {
@@ -187,14 +181,21 @@ impl Alternative {
     }
 
     /// The answer as one trajectory.
-    fn joined(self, between: &Problem, found: Found) -> Found {
-        let (outcome, jumps) = joined(between, &found.problem, &found.outcome);
+    fn joined(self, between: &Problem, found: FoundChain) -> Found {
+        let FoundChain { chain, outcome, step_errors, starts } = found;
+        let (whole, jumps) = joined(between, &chain, &outcome);
         let jumps = self.jumps.into_iter().zip(jumps);
         let jumps = jumps.filter_map(|(name, jump)| Some(happened(between, name?, jump))).collect();
-        let problem = between.clone();
-        let phases = Phases { model: self.model, problem: found.problem, outcome: found.outcome };
-        Found { problem, outcome, jumps, phases: Some(phases), ..found }
+        let problem = Problem { method: finest(&chain).clone(), ..between.clone() };
+        let phases = Some(Phases { model: self.model, chain, outcome });
+        Found { step_errors, starts, jumps, phases, ..Found::new(problem, whole) }
     }
+}
+
+/// The method of the phase with most intervals.
+fn finest(chain: &Chain) -> &Method {
+    let methods = chain.phases.iter().rev().map(|phase| &phase.method);
+    methods.max_by_key(|method| method.intervals()).expect("a chain has a phase")
 }
 
 fn happened(between: &Problem, name: String, found: phases::Jump) -> Jump {

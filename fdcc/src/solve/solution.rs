@@ -9,12 +9,13 @@ use crate::names::status_name;
 use crate::record::{JumpRecord, NodesRecord, Record, Settings};
 use crate::verification::{Verification, verify};
 use crate::warm_start::from_record;
-use fdcc_compiler::compile_by_parameters;
+use fdcc_compiler::{compile_by_parameters, compile_chain_by_parameters};
+use fdcc_grammar::Diagnostic;
 use fdcc_runtime::nlp::{self, Status};
 use fdcc_runtime::problem::{Chain, Problem, Variable};
 use fdcc_runtime::solution::by_parameters;
-use fdcc_runtime::solve::Outcome;
 use fdcc_runtime::solve::warm_start::again;
+use fdcc_runtime::solve::{ChainOutcome, Outcome, by_parameters_of_chain};
 
 /// A solution, or the best iterate where there is none; numbers are in SI.
 ///
@@ -237,26 +238,41 @@ impl Solution {
         verify(self.model.meaning(), &self.problem, &self.record())
     }
 
-    /// What the solver saw: model, problem and outcome. Of a model with jumps, its phases side by
-    /// side.
-    pub fn as_solved(&self) -> (&fdcc_compiler::Model, &Problem, &Outcome) {
-        match &self.between_jumps {
-            Some(it) => (&it.model, &it.problem, &it.outcome),
-            None => (self.model.meaning(), &self.problem, &self.outcome),
-        }
+    /// What the solver saw of a model of several phases, or with jumps.
+    fn in_phases(&self) -> Option<(&fdcc_compiler::Model, &Chain, &ChainOutcome)> {
+        let between = self.between_jumps.as_ref().map(|it| (&it.model, &it.chain, &it.outcome));
+        let whole = self.whole.as_ref();
+        between.or(whole.map(|it| (self.model.meaning(), &it.chain, &it.outcome)))
     }
 
     /// The derivative of the optimal objective by each parameter, by its multipliers; nothing
     /// without an objective.
     pub fn sensitivities(&self) -> Vec<(&str, f64)> {
-        let (model, problem, outcome) = self.as_solved();
-        if model.params.is_empty() || !problem.has_objective {
+        let params = &self.model.meaning().params;
+        if params.is_empty() || !self.problem.has_objective {
             return Vec::new();
         }
-        let Ok(by) = compile_by_parameters(model) else { return Vec::new() };
-        let found = by_parameters(problem, &outcome.solution, &outcome.trajectory.parameters, &by);
-        model.params.iter().map(|param| param.place.name.as_str()).zip(found).collect()
+        let found = match self.in_phases() {
+            Some((model, chain, outcome)) if !model.phases.is_empty() => {
+                let by = compile_chain_by_parameters(model);
+                by.map(|by| by_parameters_of_chain(chain, outcome, &by))
+            }
+            Some((model, chain, outcome)) => of_one(model, &chain.phases[0], &outcome.phases[0]),
+            None => of_one(self.model.meaning(), &self.problem, &self.outcome),
+        };
+        let names = params.iter().map(|param| param.place.name.as_str());
+        found.map(|found| names.zip(found).collect()).unwrap_or_default()
     }
+}
+
+/// The derivatives of an optimum of one phase.
+fn of_one(
+    model: &fdcc_compiler::Model,
+    problem: &Problem,
+    outcome: &Outcome,
+) -> Result<Vec<f64>, Vec<Diagnostic>> {
+    let by = compile_by_parameters(model)?;
+    Ok(by_parameters(problem, &outcome.solution, &outcome.trajectory.parameters, &by))
 }
 
 fn jump(it: &Jump) -> JumpRecord<'_> {

@@ -1,83 +1,82 @@
-//! An earlier solution with jumps, cut at them, for the problem in which its phases are side by
-//! side.
+//! An earlier solution with jumps, cut at them: an earlier solution of each phase.
 
 use super::{normalised, widths};
 use crate::record::{Record, find, number, whole};
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::solve::warm_start::{Earlier, from_earlier};
+use std::ops::Range;
 
-/// The start from the solution, whose jumps are those of the problem; nothing if it is not whole.
+/// The start from the solution, whose jumps are those of the chain; nothing if it is not whole.
 /// `between` is what holds between the jumps.
-pub(crate) fn start(record: &Record, between: &Problem, problem: &Problem) -> Option<Start> {
-    let phases = record.jumps.len() + 1;
-    let intervals = (record.time.len().checked_sub(1)?) / phases;
-    let cut = Cut { record, phases, intervals };
-    let shown = between.states.iter().filter(|state| !state.hidden);
-    let states = cut.all(shown.map(|state| cut.state(&state.name)).collect());
-    let controls =
-        cut.all(between.controls.iter().map(|control| cut.control(&control.name)).collect());
-    let names = between.unknowns.iter().map(|unknown| &between.parameters[unknown.parameter].name);
-    let mut unknowns: Vec<Option<f64>> = names.map(|name| number(&record.free, name)).collect();
-    unknowns.extend(cut.durations());
-    let times = normalised(record.time.get(..=intervals)?);
-    (intervals * phases + 1 == record.time.len() && cut.is_at_jumps()).then(|| {
-        let widths = widths(record, problem);
-        let earlier = Earlier { times, states, controls, unknowns, widths };
-        from_earlier(&Chain::single(problem.clone()), &[earlier])
-    })
+pub(crate) fn start(record: &Record, between: &Problem, chain: &Chain) -> Option<Start> {
+    let intervals = intervals(record, chain.phases.len())?;
+    let cut = Cut { record, between, chain };
+    let phases: Vec<Earlier> =
+        intervals.into_iter().enumerate().map(|(j, intervals)| cut.phase(j, intervals)).collect();
+    Some(from_earlier(chain, &phases))
 }
 
-/// A solution of several phases with so many intervals each.
+/// The intervals of each phase, which begins at the time of a jump.
+fn intervals(record: &Record, phases: usize) -> Option<Vec<Range<usize>>> {
+    let last = record.time.len().checked_sub(1)?;
+    let mut begins = vec![0];
+    for jump in &record.jumps {
+        // A phase has an interval at least, which may be of no length.
+        let first = begins[begins.len() - 1] + 1;
+        let later = record.time.get(first..last)?.iter().position(|time| *time == jump.time)?;
+        begins.push(first + later);
+    }
+    let ends = begins[1..].iter().copied().chain([last]);
+    let all: Vec<Range<usize>> = begins.iter().copied().zip(ends).map(|(a, b)| a..b).collect();
+    (all.len() == phases).then_some(all)
+}
+
+/// A solution with jumps.
 struct Cut<'s> {
     record: &'s Record<'s>,
-    phases: usize,
-    intervals: usize,
+    between: &'s Problem,
+    chain: &'s Chain,
 }
 
-/// One column for each phase.
-type Columns = Vec<Option<Vec<f64>>>;
-
 impl Cut<'_> {
-    /// Whether the phases begin where jumps happen: a surface that was crossed without a jump ended
-    /// a phase, too.
-    fn is_at_jumps(&self) -> bool {
-        let begins = self.record.time.iter().step_by(self.intervals.max(1)).skip(1);
-        self.record.jumps.iter().zip(begins).all(|(jump, begin)| jump.time == *begin)
-    }
-
-    /// Those of the first phase, then those of the second, and so on.
-    fn all(&self, signals: Vec<Columns>) -> Columns {
-        (0..self.phases).flat_map(|j| signals.iter().map(move |phases| phases[j].clone())).collect()
+    fn phase(&self, j: usize, intervals: Range<usize>) -> Earlier {
+        let (record, problem) = (self.record, &self.chain.phases[j]);
+        let times = &record.time[intervals.start..=intervals.end];
+        let shown = self.between.states.iter().filter(|state| !state.hidden);
+        let own =
+            |of: &[(&str, &[f64])], name: &str| whole(find(of, name)?.get(intervals.clone())?);
+        let state = |name: &str| {
+            let mut column = own(&record.states, name)?;
+            column.push(self.end(j, name)?);
+            Some(column)
+        };
+        let mut states: Vec<Option<Vec<f64>>> = shown.map(|it| state(&it.name)).collect();
+        states.resize(problem.states.len(), None);
+        let controls = problem.controls.iter();
+        Earlier {
+            times: normalised(times),
+            states,
+            controls: controls.map(|it| own(&record.controls, &it.name)).collect(),
+            unknowns: problem.unknowns.iter().map(|it| self.unknown(it.parameter)).collect(),
+            widths: widths(record, problem),
+        }
     }
 
     /// A phase ends with the state before the jump.
-    fn state(&self, name: &str) -> Columns {
-        let end = |j: usize| match self.record.jumps.get(j) {
+    fn end(&self, j: usize, name: &str) -> Option<f64> {
+        match self.record.jumps.get(j) {
             Some(jump) => number(&jump.before, name),
             None => find(&self.record.states, name)?.last().copied().filter(|it| it.is_finite()),
-        };
-        let phase = |j| {
-            let mut column = self.phase(&self.record.states, name, j)?;
-            column.push(end(j)?);
-            Some(column)
-        };
-        (0..self.phases).map(phase).collect()
+        }
     }
 
-    fn control(&self, name: &str) -> Columns {
-        (0..self.phases).map(|j| self.phase(&self.record.controls, name, j)).collect()
-    }
-
-    /// What begins at the grid points of a phase; nothing if there is a hole in it.
-    fn phase(&self, of: &[(&str, &[f64])], name: &str, j: usize) -> Option<Vec<f64>> {
-        whole(find(of, name)?.get(j * self.intervals..(j + 1) * self.intervals)?)
-    }
-
-    /// Of all phases but the last.
-    fn durations(&self) -> impl Iterator<Item = Option<f64>> {
-        let ends = self.record.jumps.iter().map(|jump| jump.time);
-        let begins = self.record.time.first().copied().into_iter().chain(ends.clone());
-        begins.zip(ends).map(|(begin, end)| Some(end - begin).filter(|it| it.is_finite()))
+    /// The unknowns of the model, then the times of the jumps.
+    fn unknown(&self, parameter: usize) -> Option<f64> {
+        let at = self.chain.unknowns.iter().position(|it| it.parameter == parameter)?;
+        match at.checked_sub(self.between.unknowns.len()) {
+            Some(jump) => self.record.jumps.get(jump).map(|it| it.time).filter(|it| it.is_finite()),
+            None => number(&self.record.free, &self.between.parameters[parameter].name),
+        }
     }
 }

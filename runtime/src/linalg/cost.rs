@@ -7,9 +7,9 @@
 //!     N ( next^2 (2 w + next) + 3/2 next w^2 + kept^2 w + n w^2 )
 //! ```
 //!
-//! multiplications ([`super::riccati`]). That is little while the border is small; but phases
-//! between jumps are solved at once, and each end and each duration of a phase is one more row or
-//! variable of the border, which hardly any state has to do with.
+//! multiplications ([`super::riccati`]). That is little while the border is small; but each unknown
+//! of a large fit, and each condition between the ends, is one more variable or row of the border,
+//! which hardly any state may have to do with.
 
 use super::sparse_ldl::SparseLdl;
 use super::structure::stages::Stages;
@@ -52,8 +52,8 @@ mod tests {
     use super::*;
     use crate::linalg::structure::triplets::Family;
 
-    /// Pieces of one state each, which share their length with no other, tied end to start.
-    fn pieces(count: usize) -> (Stages, Triplets, Triplets) {
+    /// States with an unknown rate each, where each ends at which the next one begins.
+    fn rates(count: usize) -> (Stages, Triplets, Triplets) {
         let stages = Stages {
             intervals: 100,
             states: count,
@@ -116,9 +116,9 @@ mod tests {
     }
 
     #[test]
-    fn many_pieces_side_by_side_are_for_the_sparse_factorisation_and_one_is_not() {
+    fn many_unknowns_of_one_state_each_are_for_the_sparse_factorisation_and_one_is_not() {
         let is_sparse = |count| {
-            let (stages, hessian, jacobian) = pieces(count);
+            let (stages, hessian, jacobian) = rates(count);
             is_sparse_cheaper(stages, &hessian, &jacobian)
         };
         assert!(!is_sparse(1) && is_sparse(8));

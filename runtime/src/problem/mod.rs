@@ -10,6 +10,7 @@
 //! special treatment: it is a parameter like any other, and its derivatives come out of the
 //! functions.
 
+mod by_parameters;
 mod chain;
 mod choices;
 mod measurements;
@@ -17,6 +18,7 @@ mod method;
 mod often_called;
 mod scheme;
 
+pub use by_parameters::{ByParameters, ChainByParameters};
 pub use chain::{Chain, End, Link};
 pub use choices::{ControlShape, Linear, Solver, Word};
 pub use measurements::{Interpolant, Measurements};
@@ -240,6 +242,15 @@ impl Bounds {
     pub fn is_equality(&self) -> bool {
         self.lower == self.upper
     }
+    /// A number inside of them, as far from them as there is room, up to 1.
+    pub fn inside(&self) -> f64 {
+        match (self.lower.is_finite(), self.upper.is_finite()) {
+            (true, true) => 0.5 * (self.lower + self.upper),
+            (true, false) => self.lower + 1.0,
+            (false, true) => self.upper - 1.0,
+            (false, false) => 0.0,
+        }
+    }
     /// How far `value` is outside; 0 inside, infinite where one of the three is not a number.
     pub fn violation(&self, value: f64) -> f64 {
         if value.is_nan() || self.lower.is_nan() || self.upper.is_nan() {
@@ -337,6 +348,8 @@ pub struct Problem {
     pub path: Arc<dyn Function>,
     /// One per output of `path`.
     pub path_bounds: Vec<Bounds>,
+    /// Which path constraints need not hold at the last time.
+    pub half_open: Vec<usize>,
     /// Inputs `[x(start), x(end) | p]` in the layout `x = 2n`. Output 0 is the Mayer objective, the
     /// others are boundary conditions. Differentiated by both ends and the unknowns.
     pub boundary: Arc<dyn Function>,
@@ -372,22 +385,4 @@ pub struct Problem {
     pub report: Arc<dyn Function>,
     /// How the model asks to be solved.
     pub method: Method,
-}
-
-/// The functions of a problem once more, differentiated by the entries of `p` that are parameters.
-pub struct ByParameters {
-    /// How many entries of `p` are parameters; they come first.
-    pub parameters: usize,
-    /// See [`Problem::dynamics`].
-    pub dynamics: Arc<dyn Function>,
-    /// See [`Problem::path`].
-    pub path: Arc<dyn Function>,
-    /// See [`Problem::boundary`].
-    pub boundary: Arc<dyn Function>,
-    /// The functions of [`Problem::measurements`].
-    pub measurements: Vec<Arc<dyn Function>>,
-    /// Numbers that the parameters give. Inputs `[p]`; outputs: the parameters themselves, each
-    /// over the others; the starts of all states; then lower and upper bounds, in pairs, of states,
-    /// controls, unknowns, path constraints and boundary conditions.
-    pub given: Arc<dyn Function>,
 }

@@ -38,10 +38,22 @@ pub fn by_parameters(
     p: &[f64],
     by: &ByParameters,
 ) -> Vec<f64> {
+    by_parameters_of_part(problem, solution, p, by, &[])
+}
+
+/// The same where links add slopes to the gradient of the Lagrangian, one per variable.
+pub(crate) fn by_parameters_of_part(
+    problem: &Problem,
+    solution: &Solution,
+    p: &[f64],
+    by: &ByParameters,
+    linked: &[f64],
+) -> Vec<f64> {
     let mut nlp = TranscribedNlp::new(problem);
     p.iter().enumerate().for_each(|(index, value)| nlp.set_parameter(index, *value));
     // What a start that is given as a number counts.
-    let at_start = minimum::slopes(&mut nlp, solution)[nlp.chain().state(0)].to_vec();
+    let mut at_start = minimum::slopes(&mut nlp, solution)[nlp.chain().state(0)].to_vec();
+    at_start.iter_mut().zip(linked).for_each(|(slope, more)| *slope += more);
     let rows = nlp.rows(&solution.v, &solution.multipliers.constraints);
     Lagrangian::new(problem, &nlp, solution).by_parameters(by, &at_start, &rows)
 }
@@ -276,22 +288,7 @@ impl<'a> Lagrangian<'a> {
 
     /// Bounds and starts, and parameters that follow from others.
     fn add_given(&self, by: &ByParameters, at_start: &[f64], sums: &mut [f64]) {
-        let given = &*by.given;
-        let weights = self.weights_of_given(by.parameters, at_start);
-        let points = Columns::new(given.layout().point_inputs(), 1);
-        add_slopes(given, &points, &self.parameters, sums, |output| vec![weights[output]]);
-        let direct = sums.to_vec();
-        // A parameter may follow from another that follows from a third, and so on.
-        for _ in 0..by.parameters {
-            let known = sums.to_vec();
-            sums.copy_from_slice(&direct);
-            add_slopes(given, &points, &self.parameters, sums, |output| {
-                vec![known.get(output).copied().unwrap_or(0.0)]
-            });
-            if known == sums {
-                break;
-            }
-        }
+        add_given(&*by.given, &self.weights_of_given(by, at_start), &self.parameters, sums);
     }
 
     /// The variables that are values of a signal.
@@ -307,17 +304,22 @@ impl<'a> Lagrangian<'a> {
     }
 
     /// What each of the numbers that the parameters give counts in the Lagrangian.
-    fn weights_of_given(&self, parameters: usize, at_start: &[f64]) -> Vec<f64> {
+    fn weights_of_given(&self, by: &ByParameters, at_start: &[f64]) -> Vec<f64> {
         let (problem, stages) = (self.problem, self.nlp.chain());
         let multipliers = &self.solution.multipliers;
-        let mut weights = vec![0.0; parameters];
+        let mut weights = vec![0.0; by.parameters];
         let starts = problem.start.iter().zip(at_start);
         weights.extend(starts.map(|(start, slope)| start.map_or(0.0, |_| *slope)));
         let signals = (0..problem.layout.x)
             .map(Signal::State)
             .chain((0..problem.layout.u).map(Signal::Control));
         let signals = signals.map(|signal| self.variables_of(signal));
-        for variables in signals.chain(stages.globals().map(|at| vec![at])) {
+        let unknown = |parameter: usize| {
+            let at = problem.unknowns.iter().position(|it| it.parameter == parameter);
+            at.map(|at| stages.globals().start + at).into_iter().collect()
+        };
+        let unknowns = (by.parameters..by.parameters + by.unknowns).map(unknown);
+        for variables in signals.chain(unknowns) {
             let sum = |of: &[f64]| variables.iter().map(|at| of[*at]).sum::<f64>();
             weights.extend([sum(&multipliers.lower), -sum(&multipliers.upper)]);
         }
@@ -338,15 +340,39 @@ impl<'a> Lagrangian<'a> {
 }
 
 /// What lower and upper bound of rows count: a multiplier below zero belongs to the lower one.
-fn at_bounds(multipliers: impl IntoIterator<Item = f64>, bounds: &Bounds) -> [f64; 2] {
+pub(crate) fn at_bounds(multipliers: impl IntoIterator<Item = f64>, bounds: &Bounds) -> [f64; 2] {
     multipliers.into_iter().fold([0.0; 2], |[lower, upper], lambda| {
         let is_lower = lambda < 0.0 && bounds.lower > f64::NEG_INFINITY;
         if is_lower { [lower - lambda, upper] } else { [lower, upper - lambda] }
     })
 }
 
+/// Adds what is given counts, and that parameters follow from others: these are the first outputs.
+pub(crate) fn add_given(
+    given: &dyn Function,
+    weights: &[f64],
+    parameters: &[f64],
+    sums: &mut [f64],
+) {
+    let points = Columns::new(given.layout().point_inputs(), 1);
+    let parameters = &parameters[..given.layout().p];
+    add_slopes(given, &points, parameters, sums, |output| vec![weights[output]]);
+    let direct = sums.to_vec();
+    // A parameter may follow from another that follows from a third, and so on.
+    for _ in 0..direct.len() {
+        let known = sums.to_vec();
+        sums.copy_from_slice(&direct);
+        add_slopes(given, &points, parameters, sums, |output| {
+            vec![known.get(output).copied().unwrap_or(0.0)]
+        });
+        if known == sums {
+            break;
+        }
+    }
+}
+
 /// Adds the Jacobian by the first entries of `p`, each output with its weights at all points.
-fn add_slopes(
+pub(crate) fn add_slopes(
     function: &dyn Function,
     points: &Columns,
     parameters: &[f64],

@@ -1,7 +1,7 @@
 //! A solution of the transcribed problem in the words of the model: signals over real time, the
 //! modes of surfaces, costates and multipliers, and what contradicts that it is an optimum.
 
-mod lagrangian;
+pub(crate) mod lagrangian;
 mod minimum;
 pub mod modes;
 mod outcome;

@@ -1,19 +1,15 @@
-//! One trajectory of phases that were solved at once.
+//! One trajectory of phases between jumps.
 //!
-//! A problem with jumps is solved as one without: each phase between two jumps has its own states
-//! and controls over the same `tau` in [0, 1], and the durations of all phases but the last are its
-//! last unknowns. Here they are put one after the other again: phase `j` begins at `T_j` and
-//!
-//! ```text
-//! t = T_j + tau D_j,     x(t) = x_j(tau),     u(t) = u_j(tau),     T_j+1 = T_j + D_j
-//! ```
+//! At the time of a jump it has the state after it. What each phase says of its times is put one
+//! after the other; each has a grid of its own.
 
 use super::lagrangian::Hamiltonian;
 use super::modes::modes;
-use super::outcome::{Limiting, Outcome};
-use super::trajectory::{Trajectory, sample, times};
+use super::outcome::{ChainOutcome, Limiting, Outcome};
+use super::trajectory::{ControlNodes, Trajectory};
+use crate::lagrange;
 use crate::nlp::{Place, Status};
-use crate::problem::{Columns, Problem};
+use crate::problem::{Chain, Problem};
 
 /// The state on both sides of a jump.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,170 +23,184 @@ pub struct Jump {
 }
 
 /// Puts the phases of a solution one after the other, with a jump between each two. `between` is
-/// the problem of one phase by itself over the whole time. At the time of a jump the trajectory has
-/// the state after it.
-pub fn joined(between: &Problem, solved: &Problem, outcome: &Outcome) -> (Outcome, Vec<Jump>) {
-    let phases = Phases::new(between, solved, &outcome.trajectory);
-    let trajectory = phases.trajectory();
+/// the problem of one phase by itself over the whole time.
+pub fn joined(between: &Problem, chain: &Chain, outcome: &ChainOutcome) -> (Outcome, Vec<Jump>) {
+    let phases: Vec<&Trajectory> = outcome.phases.iter().map(|it| &it.trajectory).collect();
+    let phases = Phases { between, phases };
+    let trajectory = Trajectory {
+        parameters: phases.parameters(chain),
+        end_multipliers: end_multipliers(between, chain, outcome),
+        ..phases.trajectory()
+    };
     let sigma: Vec<f64> = outcome.sigma[..between.surfaces.len()].to_vec();
     let switching = trajectory.switching.iter().zip(&sigma);
     let modes = switching.map(|(psi, sigma)| modes(&trajectory.time, psi, *sigma)).collect();
-    let limiting = outcome.limiting.clone().map(|it| Limiting { time: None, ..it });
+    let limiting = outcome.limiting.clone().map(|it| Limiting { phase: 0, ..it });
     let mut solution = outcome.solution.clone();
     if let Status::NotFinite(place) = &solution.status {
-        solution.status = Status::NotFinite(Place { grid_point: None, ..place.clone() });
+        solution.status = Status::NotFinite(Place { grid_point: None, phase: 0, ..place.clone() });
     }
-    let jumps = phases.jumps();
     let attempts = outcome.attempts.clone();
     let (convex, is_impossible) = (outcome.convex, outcome.is_impossible);
     (
         Outcome { solution, trajectory, sigma, modes, convex, limiting, is_impossible, attempts },
-        jumps,
+        phases.jumps(),
     )
+}
+
+/// Of the conditions that are written, which are the last ones of the links; then of starts, which
+/// belong to the first phase.
+fn end_multipliers(between: &Problem, chain: &Chain, outcome: &ChainOutcome) -> Vec<f64> {
+    let of_starts = &outcome.phases[0].trajectory.end_multipliers;
+    if chain.links.is_empty() {
+        return of_starts.clone();
+    }
+    let rows = &outcome.solution.multipliers.constraints;
+    let written = between.boundary_bounds.len() - of_starts.len();
+    let linked = rows[rows.len() - written..].iter().map(|lambda| -between.sense * lambda);
+    linked.chain(of_starts.iter().copied()).collect()
 }
 
 struct Phases<'a> {
     between: &'a Problem,
-    solved: &'a Problem,
-    /// Over `tau`.
-    own: &'a Trajectory,
-    /// When each phase begins, and when the last one ends.
-    begins: Vec<f64>,
-    /// `p` of the problem of one phase.
-    parameters: Vec<f64>,
+    /// In the order of time.
+    phases: Vec<&'a Trajectory>,
 }
 
-impl<'a> Phases<'a> {
-    fn new(between: &'a Problem, solved: &'a Problem, own: &'a Trajectory) -> Self {
-        let known = between.unknowns.len();
-        let mut parameters: Vec<f64> = between.parameters.iter().map(|it| it.value).collect();
-        // Both have the same parameters, then the same unknowns; then one has durations, and both
-        // have widths.
-        let shared = solved.unknowns.get(known).map_or(parameters.len(), |first| first.parameter);
-        parameters[..shared].copy_from_slice(&own.parameters[..shared]);
-        let widths = parameters.len() - shared;
-        let first_width = shared + solved.unknowns.len() - known;
-        parameters[shared..].copy_from_slice(&own.parameters[first_width..][..widths]);
-        let whole = times(between, &parameters);
-        let mut begins = vec![whole[0]];
-        for duration in &solved.unknowns[known..] {
-            begins.push(begins[begins.len() - 1] + own.parameters[duration.parameter]);
-        }
-        begins.push(whole[whole.len() - 1]);
-        Phases { between, solved, own, begins, parameters }
-    }
-
-    fn count(&self) -> usize {
-        self.begins.len() - 1
-    }
-
+impl Phases<'_> {
     fn trajectory(&self) -> Trajectory {
-        let states = self.shown_states();
-        let time = self.time();
-        let controls = self.controls();
-        let points = self.points(&time, &states, &controls);
         Trajectory {
-            report: sample(&*self.between.report, &points, &self.parameters),
-            switching: sample(&*self.between.switching, &points, &self.parameters),
-            costates: self.signals(&self.own.costates),
-            path_multipliers: self.path_multipliers(),
-            end_multipliers: self.end_multipliers(),
-            // That of all phases at once is not that of any of them.
+            time: self.at_points(&|it| std::slice::from_ref(&it.time)).swap_remove(0),
+            states: self.shown_states(),
+            controls: self.on_intervals(&|it| &it.controls),
+            nodes: self.nodes(),
+            costates: self.shown(self.at_points(&|it| &it.costates)),
+            path_multipliers: self
+                .on_intervals(&|it| &it.path_multipliers[..self.between.path_bounds.len()]),
+            end_multipliers: Vec::new(),
+            // That of one phase is not that of another.
             hamiltonian: Hamiltonian::default(),
-            nodes: None,
-            time,
-            states,
-            controls,
-            parameters: self.parameters.clone(),
+            report: self.at_points(&|it| &it.report),
+            switching: self.at_points(&|it| &it.switching),
+            parameters: Vec::new(),
         }
     }
 
-    /// The start of each interval, and the last time.
-    fn time(&self) -> Vec<f64> {
-        let intervals = self.own.time.len() - 1;
-        let of = |j: usize| {
-            let (begin, duration) = (self.begins[j], self.begins[j + 1] - self.begins[j]);
-            self.own.time[..intervals].iter().map(move |tau| begin + tau * duration)
-        };
-        (0..self.count()).flat_map(of).chain(self.begins.last().copied()).collect()
+    /// Without the times of the jumps, which stand between the unknowns of the model and the
+    /// widths.
+    fn parameters(&self, chain: &Chain) -> Vec<f64> {
+        let (own, known) = (&self.phases[0].parameters, self.between.unknowns.len());
+        let Some(first) = chain.unknowns.get(known) else { return own.clone() };
+        let behind = first.parameter + chain.unknowns.len() - known;
+        [&own[..first.parameter], &own[behind..]].concat()
     }
 
-    /// States, and zeros for integrals that are states to the solver only: they belong to no phase.
+    /// Columns with a number for each grid point: the last one of a phase is the first of the next.
+    fn at_points(&self, columns: &dyn Fn(&Trajectory) -> &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let last = self.phases.len() - 1;
+        let of = |i: usize| {
+            let phases = self.phases.iter().enumerate();
+            let own = phases.flat_map(|(j, it)| {
+                let column = &columns(it)[i];
+                &column[..column.len() - usize::from(j < last)]
+            });
+            own.copied().collect()
+        };
+        (0..columns(self.phases[0]).len()).map(of).collect()
+    }
+
+    /// Columns with a number for each interval.
+    fn on_intervals(&self, columns: &dyn Fn(&Trajectory) -> &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let of = |i: usize| self.phases.iter().flat_map(|it| &columns(it)[i]).copied().collect();
+        (0..columns(self.phases[0]).len()).map(of).collect()
+    }
+
+    /// Without integrals that are states to the solver only: they belong to no phase.
+    fn shown(&self, mut columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        columns.truncate(self.between.states.iter().filter(|state| !state.hidden).count());
+        columns
+    }
+
+    /// States, and zeros for those that are not shown.
     fn shown_states(&self) -> Vec<Vec<f64>> {
-        let mut states = self.signals(&self.own.states);
-        let points = states.first().map_or(0, Vec::len);
+        let mut states = self.shown(self.at_points(&|it| &it.states));
+        let points = self.phases.iter().map(|it| it.time.len() - 1).sum::<usize>() + 1;
         states.resize(self.between.states.len(), vec![0.0; points]);
         states
     }
 
-    /// What all states have, one phase after the other.
-    fn signals(&self, own: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        let states = self.shown();
-        let phase = |i: usize, j: usize| {
-            let column = &own[i + j * states];
-            let is_last = j + 1 == self.count();
-            column[..column.len() - usize::from(!is_last)].iter().copied()
-        };
-        (0..states).map(|i| (0..self.count()).flat_map(|j| phase(i, j)).collect()).collect()
-    }
-
-    fn shown(&self) -> usize {
-        self.between.states.iter().filter(|state| !state.hidden).count()
-    }
-
-    fn controls(&self) -> Vec<Vec<f64>> {
-        let controls = self.between.controls.len();
-        let phases = |i: usize| (0..self.count()).map(move |j| i + j * controls);
-        (0..controls)
-            .map(|i| phases(i).flat_map(|at| self.own.controls[at].iter().copied()).collect())
-            .collect()
-    }
-
-    /// `[t | x | u]` over the normalised time of the whole, with the last control at the end.
-    fn points(&self, time: &[f64], states: &[Vec<f64>], controls: &[Vec<f64>]) -> Columns {
-        let mut points = Columns::new(1 + states.len() + controls.len(), time.len());
-        let (first, duration) = (time[0], time[time.len() - 1] - time[0]);
-        let taus = time.iter().map(|t| (t - first) / duration);
-        points.column_mut(0).iter_mut().zip(taus).for_each(|(place, tau)| *place = tau);
-        for (at, column) in states.iter().chain(controls).enumerate() {
-            let last = column.last().copied().unwrap_or(0.0);
-            let values = column.iter().copied().chain([last]);
-            points
-                .column_mut(1 + at)
-                .iter_mut()
-                .zip(values)
-                .for_each(|(place, value)| *place = value);
+    /// As many nodes in each interval, so that each has its own values at its ends.
+    fn nodes(&self) -> Option<ControlNodes> {
+        if let [only] = &self.phases[..] {
+            return only.nodes.clone();
         }
-        points
-    }
-
-    /// Of the constraints that are written; those that keep a phase on its side of a surface come
-    /// after them.
-    fn path_multipliers(&self) -> Vec<Vec<f64>> {
-        let rows = self.between.path_bounds.len();
-        let phase = |row: usize, j: usize| {
-            let duration = self.begins[j + 1] - self.begins[j];
-            self.own.path_multipliers[row + j * rows].iter().map(move |it| it / duration)
-        };
-        (0..rows).map(|row| (0..self.count()).flat_map(|j| phase(row, j)).collect()).collect()
-    }
-
-    /// Of the conditions that are written; those that tie the phases together come before them.
-    fn end_multipliers(&self) -> Vec<f64> {
-        let ties = self.solved.boundary_bounds.len() - self.between.boundary_bounds.len();
-        self.own.end_multipliers[ties..].to_vec()
+        let own: Option<Vec<Vec<Piece>>> = self.phases.iter().map(|it| pieces(it)).collect();
+        let own = own?.concat();
+        let most = own.iter().map(|piece| piece.time.len()).max()?;
+        let own: Vec<Piece> = own.into_iter().map(|piece| piece.with_nodes(most)).collect();
+        let values = |i: usize| own.iter().flat_map(|piece| &piece.values[i]).copied().collect();
+        Some(ControlNodes {
+            time: own.iter().flat_map(|piece| &piece.time).copied().collect(),
+            values: (0..self.between.controls.len()).map(values).collect(),
+        })
     }
 
     fn jumps(&self) -> Vec<Jump> {
-        let states = self.shown();
-        let state = |j: usize, of: fn(&[f64]) -> f64| -> Vec<f64> {
-            (0..states).map(|i| of(&self.own.states[i + j * states])).collect()
+        let states = |it: &Trajectory, of: fn(&[f64]) -> f64| -> Vec<f64> {
+            self.shown(it.states.clone()).iter().map(|column| of(column)).collect()
         };
-        let jump = |j: usize| Jump {
-            time: self.begins[j],
-            before: state(j - 1, |column| column[column.len() - 1]),
-            after: state(j, |column| column[0]),
+        let jump = |pair: &[&Trajectory]| Jump {
+            time: pair[1].time[0],
+            before: states(pair[0], |column| column[column.len() - 1]),
+            after: states(pair[1], |column| column[0]),
         };
-        (1..self.count()).map(jump).collect()
+        self.phases.windows(2).map(jump).collect()
+    }
+}
+
+/// The controls of an interval.
+#[derive(Clone)]
+struct Piece {
+    /// First and last time.
+    ends: [f64; 2],
+    /// Of its nodes.
+    time: Vec<f64>,
+    /// One column per control.
+    values: Vec<Vec<f64>>,
+}
+
+/// The intervals of a phase whose controls are not constant on them.
+fn pieces(phase: &Trajectory) -> Option<Vec<Piece>> {
+    let nodes = phase.nodes.as_ref()?;
+    let intervals = phase.time.len() - 1;
+    let is_linear = nodes.time.len() == intervals + 1;
+    let own = if is_linear { 1 } else { nodes.time.len() / intervals };
+    let piece = |k: usize| {
+        let range = k * own..(k + 1) * own + usize::from(is_linear);
+        let of = |column: &Vec<f64>| column[range.clone()].to_vec();
+        Piece {
+            ends: [phase.time[k], phase.time[k + 1]],
+            time: of(&nodes.time),
+            values: nodes.values.iter().map(of).collect(),
+        }
+    };
+    Some((0..intervals).map(piece).collect())
+}
+
+impl Piece {
+    /// The same polynomials by so many nodes.
+    fn with_nodes(self, count: usize) -> Piece {
+        if self.time.len() == count {
+            return self;
+        }
+        let [first, last] = self.ends;
+        let at = |node: usize| first + (last - first) * (node as f64 + 0.5) / count as f64;
+        let time: Vec<f64> = (0..count).map(at).collect();
+        let value = |column: &[f64], time: f64| -> f64 {
+            lagrange::values(&self.time, time).iter().zip(column).map(|(w, u)| w * u).sum()
+        };
+        let of = |column: &Vec<f64>| time.iter().map(|time| value(column, *time)).collect();
+        let values = self.values.iter().map(of).collect();
+        Piece { values, time, ..self }
     }
 }

@@ -6,6 +6,7 @@
 //! what both do again and again: one solve. [`refinement`] finds the grid, [`multistart`] and
 //! [`warm_start`] begin elsewhere than at the guess of the model.
 
+mod by_parameters;
 mod continuation;
 mod grid_sequencing;
 pub mod multistart;
@@ -22,6 +23,7 @@ use crate::solution::modes::modes;
 pub use crate::solution::{Attempt, ChainOutcome, Limiting, Outcome};
 use crate::solution::{Trajectory, gain_of_pauses};
 use crate::transcribe::chain::{ChainNlp, own_multipliers};
+pub use by_parameters::by_parameters_of_chain;
 use run::Run;
 use std::ops::ControlFlow;
 
@@ -163,10 +165,6 @@ fn phase(
     let own = nlp.phase_at(at, &whole.v);
     let mut trajectory = Trajectory::new(problem, own, &solution);
     trajectory.add_costates_of_links(problem, &shape.own(slopes), shape.stages);
-    if !nlp.phases().is_empty() {
-        // A free time may end one phase and begin the next.
-        trajectory.hamiltonian.expected = None;
-    }
     trajectory.hamiltonian.pause = gain_of_pauses(problem, &trajectory);
     let surfaces = trajectory.switching.iter().zip(&sigma);
     let modes = surfaces.map(|(psi, sigma)| modes(&trajectory.time, psi, *sigma)).collect();

@@ -28,6 +28,8 @@ pub(super) struct Sampled {
     /// By which its outputs are multiplied in each interval; nothing where that is 1.
     lengths: Option<Vec<f64>>,
     targets: Vec<Target>,
+    /// Outputs that say nothing in the last interval, with the number that they are there.
+    silent: Vec<(usize, f64)>,
     row_moves: Vec<Contribution>,
     /// Target: a variable of interval 0, and its step along the chain.
     gradient_moves: Vec<(Contribution, usize)>,
@@ -58,6 +60,7 @@ impl Sampled {
             point,
             lengths: None,
             targets,
+            silent: Vec::new(),
             row_moves,
             gradient_moves,
             hessian_moves,
@@ -70,6 +73,23 @@ impl Sampled {
     /// The same with outputs that count by the relative length of each interval.
     pub(super) fn per_length(self, mesh: &Mesh) -> Self {
         Sampled { lengths: mesh.all_relative(), ..self }
+    }
+
+    /// The path constraints at the end of each interval, without those that give way at the last
+    /// time: there they are inside of their bounds, whatever the state.
+    pub(super) fn half_open(self, problem: &Problem) -> Self {
+        let inside = |row: &usize| (*row, problem.path_bounds[*row].inside());
+        Sampled { silent: problem.half_open.iter().map(inside).collect(), ..self }
+    }
+
+    /// Silences what is said in the last interval: values and first derivatives.
+    fn silence(&mut self) {
+        let pattern = &self.tables.function.jacobian_pattern().entries;
+        for &(output, inside) in &self.silent {
+            set_last(&mut self.tables.values, output, inside);
+            let own = pattern.iter().enumerate().filter(|(_, it)| it.0 as usize == output);
+            own.for_each(|(column, _)| set_last(&mut self.tables.jacobian, column, 0.0));
+        }
     }
 
     /// Multiplies every column by the relative lengths.
@@ -159,6 +179,7 @@ impl Sampled {
         rows: &mut [f64],
     ) -> f64 {
         self.tables.evaluate(parameters);
+        self.silence();
         Self::scale(&self.lengths, &mut self.tables.values);
         let mut objective = 0.0;
         for (output, target) in self.targets.iter().enumerate() {
@@ -197,7 +218,11 @@ impl Sampled {
         }
         // The Hessian is that of the multipliers times the lengths.
         Self::scale(&self.lengths, &mut self.tables.multipliers);
+        for (output, _) in &self.silent {
+            set_last(&mut self.tables.multipliers, *output, 0.0);
+        }
         self.tables.differentiate(parameters);
+        self.silence();
         Self::scale(&self.lengths, &mut self.tables.jacobian);
     }
 
@@ -250,4 +275,8 @@ impl Sampled {
                 .map(|k| (output, k))
         })
     }
+}
+
+fn set_last(table: &mut Columns, column: usize, value: f64) {
+    *table.column_mut(column).last_mut().expect("there is an interval") = value;
 }

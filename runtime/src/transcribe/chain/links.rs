@@ -116,6 +116,11 @@ impl<'c> TranscribedLink<'c> {
         }
     }
 
+    /// Its inputs `x`.
+    pub fn points(&self) -> &Columns {
+        &self.tables.points
+    }
+
     /// Writes its rows; returns its part of the objective.
     pub fn values(&mut self, parameters: &[f64], rows: &mut [f64]) -> f64 {
         self.tables.evaluate(self.link.own(parameters));

@@ -17,11 +17,12 @@ mod shape;
 use super::TranscribedNlp;
 use crate::linalg::{PhaseStages, Stages, Triplets};
 use crate::nlp::{Derivatives, NO_OBJECTIVE, Nlp, Place, Quantities, Solution, objective_unit};
-use crate::problem::{Bounds, Chain};
+use crate::problem::{Bounds, Chain, Columns};
 use crate::solution::switching_function_sizes;
 use links::TranscribedLink;
 use part::Part;
 pub(crate) use shape::{Shape, own_multipliers};
+use std::ops::Range;
 
 /// The NLP of a chain, each phase on its own grid.
 pub struct ChainNlp<'c> {
@@ -128,6 +129,17 @@ impl<'c> ChainNlp<'c> {
             link.add_slopes(1.0, rows, &mut gradient);
         }
         gradient
+    }
+
+    /// All parameters and unknowns at `v`, where the links are evaluated from now on.
+    pub(crate) fn parameters_of_links(&mut self, v: &[f64]) -> Vec<f64> {
+        self.load_links(v);
+        self.parameters.clone()
+    }
+
+    /// The inputs of each link, where they were evaluated last, and its rows.
+    pub(crate) fn links(&self) -> impl Iterator<Item = (&Columns, Range<usize>)> {
+        self.links.iter().map(|link| (link.points(), link.rows.clone()))
     }
 
     /// Intervals of all phases together.

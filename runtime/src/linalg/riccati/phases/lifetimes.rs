@@ -45,14 +45,15 @@ pub(super) struct Lifetimes {
 type Spans = BTreeMap<Item, [usize; 2]>;
 
 impl Lifetimes {
-    /// Finds them, with those members of the border that are `waiting` longer; or says why an entry
-    /// has no node at which both of its members are there. Each row says whether it is an equality.
+    /// Finds them, with those members of the border that are `waiting` for an earlier node; or says
+    /// why an entry has no node at which both of its members are there. Each row says whether it is
+    /// an equality.
     pub fn new(
         phases: &[PhaseStages],
         unknowns: Range<usize>,
         rows: &[(usize, bool)],
         direct: &[Direct],
-        waiting: &BTreeSet<Item>,
+        waiting: &BTreeMap<Item, usize>,
     ) -> Result<Self, &'static str> {
         let members = unknowns.map(Item::Unknown).chain(rows.iter().map(|it| Item::Row(it.0)));
         let mut spans: Spans = members.map(|item| (item, [0, phases.len()])).collect();
@@ -82,10 +83,13 @@ impl Lifetimes {
             true => Kind::Loose,
             false => kind(item, of(item)),
         };
-        (1..phases.len()).rev().for_each(|j| delay(&mut spans, j, &phases[j], &kind));
-        // What was found to have nothing that makes up for it waits for the first node.
-        for item in waiting {
-            spans.entry(*item).and_modify(|span| span[1] = 0);
+        // In a restoration every row has slacks.
+        if rows.iter().any(|it| it.1) {
+            (1..phases.len()).rev().for_each(|j| delay(&mut spans, j, &phases[j], &kind));
+        }
+        // What was found to have nothing that makes up for it waits.
+        for (item, node) in waiting {
+            spans.entry(*item).and_modify(|span| span[1] = span[1].min(*node));
         }
         let has_own = |item: &&Item| matches!(kind(item), Kind::Link | Kind::Loose);
         let links = spans.keys().filter(has_own).copied().collect();

@@ -18,6 +18,7 @@ mod node;
 use super::chain::Matrix;
 use super::recursion::Recursion;
 use super::solve::Travel;
+use crate::linalg::sparse_ldl::SparseLdl;
 use crate::linalg::structure::factor::{Factor, Inertia};
 use crate::linalg::structure::phases::PhaseStages;
 use crate::linalg::structure::stages::Stages;
@@ -25,7 +26,7 @@ use crate::linalg::structure::triplets::{Family, Triplets};
 use direct::direct_entries;
 use lifetimes::{Item, Lifetimes};
 use node::Node;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 /// A phase with its recursion.
 struct Phase {
@@ -62,6 +63,8 @@ pub(crate) struct PhasedRiccati {
     phases: Vec<Phase>,
     /// The node before each phase, and the one behind the last.
     nodes: Vec<Node>,
+    /// Does the work where the border has grown too large.
+    sparse: Option<SparseLdl>,
 }
 
 /// What it was prepared from.
@@ -72,10 +75,15 @@ struct Recipe {
     jacobian: Triplets,
     fixed: Vec<bool>,
     equality_rows: Vec<bool>,
-    /// Members of the border that cannot be eliminated where their phase begins: the phase does not
-    /// reach what they ask for.
-    waiting: BTreeSet<Item>,
+    /// Members of the border that cannot be eliminated where their phase begins, as the phase does
+    /// not reach what they ask for; and the node for which they wait.
+    waiting: BTreeMap<Item, usize>,
+    /// The largest border that is worth the recursion, once something waits.
+    most: usize,
 }
+
+/// So many times the border may grow before the sparse factorisation is cheaper.
+const GROWTH: usize = 2;
 
 impl PhasedRiccati {
     /// Prepares the recursion, or says why the structure does not allow it.
@@ -85,18 +93,21 @@ impl PhasedRiccati {
         fixed: &[bool],
         equality_rows: &[bool],
     ) -> Result<Self, &'static str> {
-        PhasedRiccati::of(Recipe {
+        let mut prepared = PhasedRiccati::of(Recipe {
             phases: phases.to_vec(),
             hessian: hessian.clone(),
             jacobian: jacobian.clone(),
             fixed: fixed.to_vec(),
             equality_rows: equality_rows.to_vec(),
-            waiting: BTreeSet::new(),
-        })
+            waiting: BTreeMap::new(),
+            most: 0,
+        })?;
+        prepared.recipe.most = GROWTH * (prepared.largest_border() + 1);
+        Ok(prepared)
     }
 
     fn of(recipe: Recipe) -> Result<Self, &'static str> {
-        let Recipe { phases, hessian, jacobian, fixed, equality_rows, waiting } = &recipe;
+        let Recipe { phases, hessian, jacobian, fixed, equality_rows, waiting, .. } = &recipe;
         let direct = direct_entries(phases, hessian, jacobian).ok_or("distant stages are tied")?;
         let unknowns = phases.last().map_or(0, |last| last.variables.end)..fixed.len();
         let stage_rows = |row: &usize| phases.iter().any(|phase| is_of_stage(phase, *row));
@@ -110,17 +121,27 @@ impl PhasedRiccati {
         let node = |j| Node::new(j, phases, &lifetimes, &direct, fixed);
         let nodes = (0..=phases.len()).map(node).collect();
         let (variables, coupling) = (fixed.len(), rows.len());
-        Ok(PhasedRiccati { variables, coupling, phases: all, nodes, lifetimes, recipe })
+        let sparse = None;
+        Ok(PhasedRiccati { variables, coupling, phases: all, nodes, lifetimes, recipe, sparse })
     }
 
-    /// Lets what dies at a node, and is no link, wait for the first node; whether there is any.
+    fn largest_border(&self) -> usize {
+        self.phases.iter().map(|phase| phase.theta.len()).max().unwrap_or(0)
+    }
+
+    /// Lets what dies at a node, and is no link, wait for the one before; whether there is any.
     fn wait(&mut self, node: usize) -> bool {
         let dying = self.lifetimes.dying(node);
         let waiting: Vec<Item> = dying.filter(|item| self.lifetimes.may_wait(item, node)).collect();
         let mut recipe = self.recipe.clone();
-        recipe.waiting.extend(waiting.iter().copied());
+        recipe.waiting.extend(waiting.iter().map(|item| (*item, node - 1)));
         match PhasedRiccati::of(recipe) {
-            Ok(prepared) if !waiting.is_empty() => {
+            Ok(mut prepared) if !waiting.is_empty() => {
+                if prepared.largest_border() > prepared.recipe.most {
+                    let Recipe { hessian, jacobian, fixed, equality_rows, .. } = &prepared.recipe;
+                    let sparse = SparseLdl::new(hessian, jacobian, fixed, equality_rows.len());
+                    prepared.sparse = Some(sparse);
+                }
                 *self = prepared;
                 true
             }
@@ -292,6 +313,9 @@ fn copy(copies: &[Copied], from: &[f64], to: &mut [f64]) {
 impl Factor for PhasedRiccati {
     fn factor(&mut self, hessian: &[f64], jacobian: &[f64], sigma: &[f64], d: &[f64]) -> Inertia {
         loop {
+            if let Some(sparse) = &mut self.sparse {
+                return sparse.factor(hessian, jacobian, sigma, d);
+            }
             match self.try_factor((hessian, jacobian), sigma, d) {
                 Ok(inertia) => return inertia,
                 Err(node) if self.wait(node) => {}
@@ -301,6 +325,9 @@ impl Factor for PhasedRiccati {
     }
 
     fn solve(&mut self, right_side: &mut [f64]) {
+        if let Some(sparse) = &mut self.sparse {
+            return sparse.solve(right_side);
+        }
         let (a, b) = right_side.split_at_mut(self.variables);
         self.phases.iter_mut().for_each(|phase| phase.begin(a, b));
         // Backward: gradients of value functions.

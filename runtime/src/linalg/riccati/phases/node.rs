@@ -13,7 +13,7 @@ use super::lifetimes::{Item, Lifetimes};
 use crate::linalg::dense::symmetric::SymmetricFactor;
 use crate::linalg::structure::phases::PhaseStages;
 
-/// An answer of this size leaves half of the digits.
+/// An answer of this size, times that of the entries, leaves half of the digits.
 const LARGEST: f64 = 1e8;
 
 /// `matrix[target] += sum of values[from .. from + count]`
@@ -165,7 +165,8 @@ impl Node {
 
     /// Whether the elimination left enough digits.
     pub fn is_sound(&self) -> bool {
-        self.response.iter().all(|w| w.abs() <= LARGEST)
+        let size = self.matrix.iter().fold(1.0, |size: f64, entry| size.max(entry.abs()));
+        self.response.iter().all(|w| w.abs() <= LARGEST * size)
     }
 
     /// Eliminates; the number of negative eigenvalues, or nothing where that is impossible.

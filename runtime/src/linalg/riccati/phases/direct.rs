@@ -1,7 +1,7 @@
 //! Entries that belong to no stage: between ends of phases, unknowns and coupling rows.
 
-use super::is_of_stage;
 use super::lifetimes::Item;
+use super::phase::is_of_stage;
 use crate::linalg::structure::phases::PhaseStages;
 use crate::linalg::structure::triplets::{Family, Triplets};
 

@@ -50,8 +50,11 @@ pub(crate) fn analyze_parsed(text: &str, parsed: Parse, files: Option<&Files>) -
         units = checked.units;
         let source = SourceFile::new("", text);
         let regions = UnparsedRegions::new(&source, &diagnostics, &parsed.lost);
-        // Where an item stands is not known where a phase may have lost its head.
-        let is_place = |it: &Diagnostic| it.code == Code::NotAllowedHere;
+        // Behind a phase that has lost its head, where an item stands is not known.
+        let broken = diagnostics.iter().map(|it| it.span().start).min();
+        let is_place = |it: &Diagnostic| {
+            it.code == Code::NotAllowedHere && broken.is_some_and(|first| first <= it.span().start)
+        };
         let trusted = |it: &Diagnostic| !is_broken || !(is_place(it) || regions.may_be_behind(it));
         diagnostics.extend(checked.diagnostics.into_iter().filter(trusted));
     }

@@ -44,7 +44,18 @@ fn each_phase_has_its_signals_and_links_hold() {
         assert!((before - after).abs() < 1e-6 * after.abs().max(1.0), "{name}: {before} {after}");
     }
     assert_eq!(document["verification"]["confirmed"], true);
+    assert_eq!(document["verification"]["phase_by_phase"], true);
     assert_eq!(document["phases"]["down"]["verification"]["confirmed"], true);
+    assert_eq!(document["phases"]["down"]["verification"].get("phase_by_phase"), None);
+}
+
+/// A model of phases has its own `expect`.
+#[test]
+fn a_staged_flight_meets_its_expectation() {
+    let folder = folder("phases_twostage", &[]);
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/twostage.fdc");
+    let output = fdcc(&folder, &["test", model], "");
+    assert!(output.status.success(), "{}", stderr(&output));
 }
 
 /// What is not solved yet: `tests/tests/chains.rs` says why.

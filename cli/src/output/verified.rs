@@ -19,6 +19,10 @@ pub struct Verification {
     pub confirmed: bool,
     /// The largest gap and violation that is called confirmation.
     pub asked: f64,
+    /// Whether each phase was replayed by itself, from the state at which it begins in the solution;
+    /// absent where there is one phase.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub phase_by_phase: bool,
     /// Whether the replay reached the last time.
     pub completed: bool,
     /// The objective of the replay.
@@ -71,6 +75,7 @@ impl Verification {
         Verification {
             confirmed: verified.confirms(asked),
             asked,
+            phase_by_phase: false,
             completed: is_whole,
             objective: verified.simulation.objective,
             state_gap: is_whole.then_some(gap),
@@ -116,6 +121,7 @@ impl Verification {
         Verification {
             confirmed: completed && gap <= asked && part <= asked,
             asked,
+            phase_by_phase: true,
             completed,
             objective: None,
             state_gap: completed.then_some(gap),
@@ -129,9 +135,11 @@ impl Verification {
 
     /// The verdict in few words.
     pub fn words(&self) -> String {
+        let how = if self.phase_by_phase { ", phase by phase," } else { "" };
         match (self.state_gap, self.relative_violation) {
             (Some(gap), Some(violation)) if self.confirmed => {
-                format!("confirmed on the true system to {}", scientific(gap.max(violation), 1))
+                let off = scientific(gap.max(violation), 1);
+                format!("confirmed on the true system{how} to {off}")
             }
             (Some(_), Some(_)) => "NOT CONFIRMED on the true system".into(),
             _ => "and its replay on the true system does not reach the end".into(),

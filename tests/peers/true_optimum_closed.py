@@ -50,7 +50,7 @@ def gear(u, low, ratio, top, length):
 
 
 def pension():
-    """c = c0 exp(0.01 t) (its costate falls as exp(-0.02 t)); c0 spends wealth and income, both discounted, by t = 60."""
+    """c = c0 exp(0.01 t), as its costate falls like exp(-0.02 t); c0 spends wealth and income, discounted, by 60."""
     c0 = (1 + 75 * (1 - exp(-0.8))) / (100 * (1 - exp(-0.6)))
     whole = (1 - exp(-0.6)) / 0.01
     drift = 100 * (1 - exp(-0.6)) - 60 * exp(-0.6)  # integral of 0.01 t exp(-0.01 t)
@@ -62,7 +62,7 @@ def inclined_plane():
     return 4 * 12 * G * (sin(pi / 12) + 0.25 * cos(pi / 12))
 
 
-def dc_motor(R=1.2, L=2e-3, k=0.05, J=2e-4, dry=0.01, U=24.0, T=0.5):
+def dc_motor(R=1.2, L=2e-3, k=0.05, J=2e-4, dry=0.01, U=24.0, T=0.5, angle=4 * pi):
     """Full voltage while it sticks (i = 20 (1 - exp(-600 t)) until k i = dry) and for t2 on, then a singular arc.
 
     On that arc the costate of i is 0, so that i = i2 + b t; t2 and b meet the two conditions at the end.
@@ -74,9 +74,9 @@ def dc_motor(R=1.2, L=2e-3, k=0.05, J=2e-4, dry=0.01, U=24.0, T=0.5):
         return expm(a * t) @ np.array([0, 0, dry / k, 1])
 
     def end(q):
-        angle, w, i, _ = after(q[0] * 1e-4)
+        turned, w, i, _ = after(q[0] * 1e-4)
         D, acceleration, jerk = T - t1 - q[0] * 1e-4, (k * i - dry) / J, k * q[1] / J
-        return [angle + w * D + acceleration * D**2 / 2 + jerk * D**3 / 6 - 4 * pi,
+        return [turned + w * D + acceleration * D**2 / 2 + jerk * D**3 / 6 - angle,
                 (w + acceleration * D + jerk * D**2 / 2) / 10]
     scaled, b = fsolve(end, [1.0, -4.8], xtol=1e-12)
     t2 = scaled * 1e-4

@@ -8,7 +8,8 @@ from math import pi
 import casadi as ca
 import numpy as np
 
-from true_optimum_transcription import INF, Model
+from phases_transcription import INF
+from true_optimum_model import Model
 
 G = 9.81
 
@@ -91,7 +92,7 @@ def stacked():
 
 def turbo(low=10.0, ratio=3.0, length=200.0, u=5.0, top=20.0, guess=15.0):
     """The motor of `turbo`, and of the template `switched`."""
-    return Model(start=lambda p: [0, 0], T=(1, 60, guess), bounds=[(-u, u)], N=4,
+    return Model(start=lambda p: [0, 0], T=(1, 60, guess), bounds=[(-u, u)], N=4, joined=False,
                  guess=lambda s: [length * s, 4 * top * s * (1 - s)],
                  rate=lambda t, x, u, s, p: [x[1], u[0] * ((1 + s[0]) / 2 * ratio + (1 - s[0]) / 2)],
                  surfaces=lambda t, x, p: [x[1] - low], mayer=lambda x, t, p: t,
@@ -151,11 +152,10 @@ def dc_motor():
     return Model(start=lambda p: [0, 0, 0], T=(0.5, 0.5, 0.5), bounds=[(-24, 24)],
                  guess=lambda s: [*slide(s, 4 * pi, 0.5), 1.4 - 2.4 * s],
                  rate=lambda t, x, u, s, p: [x[1], (k * x[2] - dry * s[0]) / J, (u[0] - R * x[2] - k * x[1]) / L],
-                 surfaces=lambda t, x, p: [x[1]], state_bounds={2: (-10, 10)}, joined=False,
+                 surfaces=lambda t, x, p: [x[1]], state_bounds={2: (-10, 10)}, joined=False, gap=1e-5, scale=1e3, N=16,
                  cost=lambda t, x, u, s, p: R * x[2]**2, controls=lambda s: [2.0],
                  ends=lambda x, t, p: [(x[0], 4 * pi, 4 * pi, None), (x[1], 0, 0, 0)],
-                 sequences=['0^:2e-5 +^:1e-4 +:0.5', '0:2e-5 +:0.5', '0^:2e-5 +^:1e-4 +:0.49 0:0.01',
-                            '0^:2e-5 +^:1e-4 +:0.49 +_:1e-4'])
+                 sequences=['0^:2e-5 +^:1e-4 +:0.5', '0:2e-5 +:0.5', '0^:2e-5 +^:1e-4 +:0.49 0:0.01'])
 
 
 def gripper():

@@ -9,7 +9,8 @@ import casadi as ca
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from true_optimum_transcription import NODES, functions, steps_of, symbols
+from true_optimum_model import functions, steps_of, symbols
+from true_optimum_transcription import NODES
 
 NEAR = 1e-8  # of the surface
 SLACK = 1e-6  # of rates and selectors: a hold that ends at |s| = 1

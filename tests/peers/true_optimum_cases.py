@@ -11,6 +11,7 @@ import true_optimum_switched as switched
 
 WAIT = 'not unique: the mass may wait before, after or both; how long it slides is unique'
 ONE = 'one optimum'
+TRIED = 'no better one among the sequences that were tried'
 G = 9.81
 
 
@@ -77,9 +78,10 @@ def valve_motor():
     return J, [leaves], {'arcs': [singular]}
 
 
-def classic(name, unique=ONE):
+def classic(name, unique=None):
     """A model of tests/classics/switched."""
-    return Case(getattr(switched, name, None), getattr(formulas, name, None), unique)
+    formula = getattr(formulas, name, None)
+    return Case(getattr(switched, name, None), formula, unique or (ONE if formula else TRIED))
 
 
 SIMULATED = 'nothing is chosen or minimised: for `simulate`'
@@ -100,17 +102,17 @@ CASES = {
     'models/turbo': Case(models.turbo, lambda: gear(5, 10, 3, 20, 200)),
     'right/dc_motor': Case(models.dc_motor, dc_motor, 'one optimum; at first it sticks while the current rises'),
     'right/gripper': Case(models.gripper, None,
-                          'the finger draws back, runs up and lets go; pushing at once is a local optimum of 3.0'),
+                          'the finger draws back, runs up and lets go; pushing at once costs 3.0'),
     'right/inclined_plane': Case(models.inclined_plane, lambda: (closed.inclined_plane(), None, {}),
                                  'not unique: every way up that never slides back costs the same'),
     'right/pension': Case(models.pension, lambda: (closed.pension(), [40], {}), sense=-1),
     'right/pushed_table': Case(models.pushed_table, lambda: effort(40, (9 + 0.09)**0.5, 4, 20), WAIT),
-    'right/sled_on_ice': Case(models.sled_on_ice),
+    'right/sled_on_ice': Case(models.sled_on_ice, None, TRIED),
     **{f'right/{name}': Case(skipped=SIMULATED) for name in (
         'bouncing_ball', 'buck_switched', 'gene_switch', 'relay_reset', 'sliding_mode', 'stick_slip', 'thermostat')},
     'templates/bounce': Case(None, throw, 'one bounce is best: two 23.3070, none 54.1590'),
     'templates/fit': Case(None, fit),
-    'templates/friction': Case(models.friction, None, 'one optimum; it rests at its place'),
+    'templates/friction': Case(models.friction, None, TRIED + '; it rests at its place'),
     'templates/racecar': Case(race.twice, None, 'many local optima: the more often it drives back and forth, the less '
                               'it has to steer; best of those that were tried, with touch points'),
     'templates/racecar, back once': Case(race.once, None, 'a local optimum, that of the guess in the file'),
@@ -118,12 +120,12 @@ CASES = {
     **{f'switched/{name}': classic(name) for name in (
         'belt', 'drag_regimes', 'free_time', 'overdrive', 'puck_aside', 'relay', 'shoreline', 'speed_limit', 'toll',
         'turn_round', 'two_relays', 'uphill_soon', 'wall', 'window')},
-    'switched/cart_pole_friction': classic('cart_pole_friction', 'one optimum; the plant is unstable'),
+    'switched/cart_pole_friction': classic('cart_pole_friction', TRIED + '; the plant is unstable'),
     'switched/heater': classic('heater', 'one optimum; off once and on again once'),
     'switched/ridge': classic('ridge', 'the control falls from 1.25 to 0.25 at the surface, which then repels: an '
                               'infimum, and attained by the solution of the inclusion that goes on'),
     'switched/twins': classic('twins', 'one optimum; both surfaces are crossed at once'),
-    'switched/two_contacts': classic('two_contacts', 'the sled waits for the load at first; without that hold a local '
-                                     'optimum of 14.3420'),
+    'switched/two_contacts': classic('two_contacts', 'equal to 32/sqrt(5); the sled waits for the load at first, and '
+                                     'without that hold there is a local optimum of 14.3420'),
     'switched/valve_motor': Case(None, valve_motor, 'one optimum; at first it sticks while the current rises'),
 }

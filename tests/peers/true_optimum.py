@@ -43,6 +43,8 @@ def best_of(model, verbose):
             if gap < model.gap * size(model) and beyond < BEYOND:
                 found.append((answer, sequence, gap, seen))
         print(told, flush=True)
+    if not found:
+        raise SystemExit('no sequence led to an answer that its replay confirms')
     least = min(f[0].objective for f in found)
     near = [f for f in found if f[0].objective < least + 1e-7 * max(1.0, abs(least))]
     return min(near, key=lambda f: len(f[1].split()))

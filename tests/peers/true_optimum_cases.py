@@ -94,8 +94,8 @@ CASES = {
     'models/coulomb_reverse': Case(models.coulomb_reverse, reverse_soon),
     'models/crossing': Case(models.crossing, crossing),
     'models/puck': Case(models.puck, lambda: effort(0.5, 1, 3, 1, 0.5)),
-    'models/racecar': Case(skipped='not settled by this program: 17 arcs with touch points near 0.759, 1.345, 3.623 and '
-                           '4.535 come to 5.3020 on coarse elements but do not survive the replay; a prototype with '
+    'models/racecar': Case(skipped='not settled by this program: 17 arcs with touch points near 0.759, 1.345, 3.623 '
+                           'and 4.535 come to 5.3020 on coarse elements but do not survive the replay; a prototype with '
                            'located switches came to 5.30199 in the family of motions of the paper'),
     'models/slider_fit': Case(None, slider_fit),
     'models/stacked': Case(models.stacked, lambda: effort(0.8 * G, 1, 3, 4),

@@ -2,6 +2,7 @@
 
 use super::Model;
 use crate::error::Error;
+use std::fmt;
 use std::sync::Arc;
 
 /// A value: a number in the declared unit of the name, or a text such as `200[g]`, `radau3`, `0.1,
@@ -20,6 +21,16 @@ pub enum Value {
     Number(f64),
     /// As the language writes it.
     Text(String),
+}
+
+/// As the language writes it; a number without its unit.
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Value::Number(value) => write!(f, "{value}"),
+            Value::Text(text) => f.write_str(text),
+        }
+    }
 }
 
 impl From<f64> for Value {
@@ -67,13 +78,57 @@ impl Model {
     /// A key or a value that the method does not have; settings that do not fit each other.
     pub fn with_method(&self, key: &str, value: impl Into<Value>) -> Result<Model, Error> {
         self.changed(|meaning| {
-            match value.into() {
-                Value::Number(value) => meaning.set_method(key, &value.to_string()),
-                Value::Text(text) => meaning.set_method(key, &text),
-            }?;
+            meaning.set_method(key, &value.into().to_string())?;
             meaning.fits_together()
         })
         .map_err(Error::Call)
+    }
+
+    /// The same with several other values, each of a parameter or else of a key of the `method`
+    /// block. It is compiled anew only if there is one of a key.
+    ///
+    /// ```
+    /// let model = fdcc::Model::from_file("../models/block.fdc")?;
+    /// let other = model.with_all(&[("mu", 0.2.into()), ("scheme", "radau3".into())])?;
+    /// assert_eq!(other.problem()?.method.scheme.name(), "radau3");
+    /// assert!(model.with_all(&[("nu", 0.2.into())]).is_err(), "there is nothing of that name");
+    /// # Ok::<(), fdcc::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// A name that is neither; a value that does not go with it; settings that do not fit each
+    /// other.
+    pub fn with_all(&self, values: &[(&str, Value)]) -> Result<Model, Error> {
+        let (params, keys): (Vec<_>, Vec<_>) =
+            values.iter().partition(|(name, _)| self.has_param(name));
+        let mut model = self.clone();
+        if !keys.is_empty() {
+            let set = self.changed(|meaning| {
+                keys.iter().try_for_each(|(key, value)| {
+                    let set = meaning.set_method(key, &value.to_string());
+                    set.map_err(|message| self.neither(key, message))
+                })?;
+                meaning.fits_together()
+            });
+            model = set.map_err(Error::Call)?;
+        }
+        params.into_iter().try_fold(model, |it, (name, value)| it.with(name, value.clone()))
+    }
+
+    /// Whether a parameter has this name.
+    pub fn has_param(&self, name: &str) -> bool {
+        self.meaning.params.iter().any(|param| param.place.name == name)
+    }
+
+    /// What is wrong with a key of the method or its value, where the name is no parameter.
+    fn neither(&self, name: &str, message: String) -> String {
+        match self.with(name, 0) {
+            Err(no_param) if !fdcc_compiler::is_method_key(name) => {
+                format!("{no_param}\n      {message}")
+            }
+            _ => message,
+        }
     }
 
     /// The same with any change of what it means; it is compiled anew.

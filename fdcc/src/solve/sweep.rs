@@ -3,7 +3,7 @@
 use super::{Options, Solution};
 use crate::error::Error;
 use crate::executor::Executor;
-use crate::model::Model;
+use crate::model::{Model, Value};
 
 /// A name and its values.
 type List = (String, Vec<String>);
@@ -82,29 +82,10 @@ impl Grid {
     ///
     /// A name that is neither; a value that does not go with it.
     pub fn apply(&self, index: usize, model: &Model) -> Result<Model, Error> {
-        let mut model = model.clone();
-        for (name, value) in self.row(index) {
-            let is_param = model.meaning().params.iter().any(|param| param.place.name == name);
-            model = match is_param {
-                true => model.with(name, value)?,
-                false => {
-                    let set = model.changed(|meaning| meaning.set_method(name, value));
-                    set.map_err(|message| Error::Call(neither(&model, name, message)))?
-                }
-            };
-        }
-        model.meaning().fits_together().map_err(Error::Call)?;
-        Ok(model)
-    }
-}
-
-/// What is wrong with a name or its value.
-fn neither(model: &Model, name: &str, message: String) -> String {
-    match model.with(name, "0") {
-        Err(no_param) if !fdcc_compiler::is_method_key(name) => {
-            format!("{no_param}\n      {message}")
-        }
-        _ => message,
+        let row = self.row(index);
+        let values: Vec<(&str, Value)> =
+            row.into_iter().map(|(name, value)| (name, value.into())).collect();
+        model.with_all(&values)
     }
 }
 

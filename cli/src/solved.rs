@@ -5,10 +5,12 @@ use crate::output::document::Document;
 use crate::output::optimality::Optimality;
 use crate::output::verified::Verification;
 use fdcc::Solution;
+use std::sync::Arc;
 
 /// Everything that came out of a solve.
+#[derive(Clone)]
 pub struct Solved {
-    pub solution: Solution,
+    pub solution: Arc<Solution>,
     pub document: Document,
 }
 

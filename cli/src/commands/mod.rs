@@ -14,10 +14,12 @@ mod rewrite;
 mod show;
 mod simulate;
 mod solve;
-mod solver;
+pub mod solver;
 mod sweep;
 mod test;
 mod verify;
+
+pub use options::USUAL_GAP;
 
 use crate::exit::Exit;
 use clap::Subcommand;

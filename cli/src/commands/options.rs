@@ -55,12 +55,15 @@ fn split<'t>(text: &'t str, form: &str) -> Result<(&'t str, &'t str), String> {
     Ok((name.trim(), value.trim()))
 }
 
+/// The difference that is called confirmation where nobody names one.
+pub const USUAL_GAP: f64 = 1e-3;
+
 /// When a replay confirms a solution.
 #[derive(Args, Clone)]
 pub struct Gap {
     /// The largest difference between solution and true system that is called confirmation: of a
     /// state for how far it moves, of a condition for the size of its terms
-    #[arg(long, value_name = "G", default_value_t = 1e-3, value_parser = difference, allow_negative_numbers = true)]
+    #[arg(long, value_name = "G", default_value_t = USUAL_GAP, value_parser = difference, allow_negative_numbers = true)]
     pub gap: f64,
 }
 

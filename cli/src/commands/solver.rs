@@ -10,11 +10,12 @@ use crate::output::units::Units;
 use crate::report::log::{Level, Log};
 use crate::solved::Solved;
 use crate::watch::Deadline;
-use fdcc::{Error, Model, Start};
+use fdcc::{Error, Model, Solution, Start};
 use fdcc_grammar::SourceFile;
 use fdcc_runtime::nlp::Stop;
 use fdcc_runtime::problem::Chain;
 use sha2::{Digest, Sha256};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// A problem that is ready to be solved.
@@ -131,9 +132,7 @@ impl Compiled {
     /// Solves from `start`, and from variations of it if there are to be several starts.
     pub fn solve(self, start: Start, options: &Options, log: &mut Log) -> Result<Solved, Failure> {
         let Compiled { compiled, begin, seconds } = self;
-        let source = compiled.model().source();
-        let units = Units::from(compiled.model().meaning());
-        log.show_widths_in(&units);
+        log.show_widths_in(&Units::from(compiled.model().meaning()));
         let log = &*log;
         let deadline = Deadline::after(begin, options.time_limit);
         let solution = compiled.solve(&fdcc::Options {
@@ -145,10 +144,16 @@ impl Compiled {
         })?;
         let total = begin.elapsed().as_secs_f64();
         let seconds = Seconds { compile: seconds, solve: total - seconds, total };
-        let document = Document::new(&solution, &sha256(&source.text), units, seconds);
-        let document = document.with_phases(&solution);
-        Ok(Solved { solution, document })
+        Ok(solved(Arc::new(solution), seconds))
     }
+}
+
+/// A solution with its document, before it is replayed.
+pub fn solved(solution: Arc<Solution>, seconds: Seconds) -> Solved {
+    let model = solution.model();
+    let (sha256, units) = (sha256(&model.source().text), Units::from(model.meaning()));
+    let document = Document::new(&solution, &sha256, units, seconds).with_phases(&solution);
+    Solved { solution, document }
 }
 
 /// How a document says which text was solved.

@@ -43,6 +43,11 @@ impl Renderer {
         Renderer::new(std::io::stderr().is_terminal())
     }
 
+    /// Without colours, for texts that others show.
+    pub fn plain() -> Self {
+        Renderer::new(false)
+    }
+
     fn new(is_terminal: bool) -> Self {
         let no_color = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
         let options =

@@ -18,6 +18,21 @@ svg text{font:11px system-ui,sans-serif;fill:#666}.held{fill:#f4b942;fill-opacit
 
 /// The text of `MODEL.html`.
 pub fn html(document: &Document) -> String {
+    let title = escape(&document.model);
+    format!(
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta \
+         charset=\"utf-8\"/>\n<title>{title}</title>\n\
+         <style>{STYLE}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
+        body(document)
+    )
+}
+
+/// The same as a part of a page of others, to which its style does not apply.
+pub fn fragment(document: &Document) -> String {
+    format!("<div class=\"fdcc\">\n<style>.fdcc{{{STYLE}}}</style>\n{}</div>\n", body(document))
+}
+
+fn body(document: &Document) -> String {
     let document = &on_one_axis(document);
     let sections = [
         ("States", &document.states, &document.units),
@@ -42,13 +57,7 @@ pub fn html(document: &Document) -> String {
         })
         .collect();
     let title = escape(&document.model);
-    format!(
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta \
-         charset=\"utf-8\"/>\n<title>{title}</title>\n\
-         <style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n{}{}{sections}</body>\n</html>\n",
-        summary(document),
-        legend(document)
-    )
+    format!("<h1>{title}</h1>\n{}{}{sections}", summary(document), legend(document))
 }
 
 /// The values of a state just before jumps, in its unit, with the grid points of those after them.

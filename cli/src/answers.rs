@@ -1,0 +1,126 @@
+//! What the command says and writes of the answers of the library, for front ends in other
+//! languages: the same words, and the same documents.
+
+use crate::commands::USUAL_GAP;
+use crate::commands::solver::solved;
+use crate::drawing::render::Renderer;
+use crate::failure::Failure;
+use crate::output::document::Seconds;
+use crate::output::named::Named;
+use crate::output::{self, gradient as gradients, html, saved, simulation as simulations};
+use crate::report::{failure, verdict};
+use crate::solved::Solved;
+use fdcc::{Gradient, Model, Record, Simulation, Solution};
+use fdcc_grammar::{Diagnostic, SourceFile};
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+/// A solution with what is said of it: its sensitivities and its replay on the true system, both
+/// computed when they are first needed.
+pub struct Answer {
+    solution: Arc<Solution>,
+    seconds: Seconds,
+    solved: OnceLock<Solved>,
+}
+
+impl Answer {
+    /// Of a solution; `seconds` are those of compiling and of solving.
+    pub fn new(solution: Solution, [compile, solve]: [f64; 2]) -> Self {
+        let seconds = Seconds { compile, solve, total: compile + solve };
+        Answer { solution: Arc::new(solution), seconds, solved: OnceLock::new() }
+    }
+
+    /// The solution.
+    pub fn solution(&self) -> &Solution {
+        &self.solution
+    }
+
+    fn solved(&self) -> &Solved {
+        self.solved.get_or_init(|| {
+            let mut solved = solved(self.solution.clone(), self.seconds);
+            if solved.is_good() {
+                solved.document.sensitivities = Named::of(self.solution.sensitivities());
+                solved.replay(USUAL_GAP);
+            }
+            solved
+        })
+    }
+
+    /// Whether the replay confirms it and nothing contradicts that it is an optimum.
+    pub fn is_confirmed(&self) -> bool {
+        self.solved().document.is_confirmed()
+    }
+
+    /// What the replay says where `gap` is the largest difference that is called confirmation, as
+    /// the object `verification` of the document: `null` where nothing can be replayed.
+    pub fn verification(&self, gap: f64) -> String {
+        let mut solved = self.solved().clone();
+        solved.replay(gap);
+        output::json(&solved.document.verification)
+    }
+
+    /// The text of a `.sol.json`.
+    pub fn json(&self) -> String {
+        output::json(&self.solved().document)
+    }
+
+    /// What it looks like, as a part of an HTML page: a table, and a plot of each signal.
+    pub fn html(&self) -> String {
+        html::fragment(&self.solved().document)
+    }
+
+    /// The verdict that `fdcc solve` ends with, behind the place in the model that keeps it from
+    /// being solved, where one does.
+    pub fn words(&self) -> String {
+        let solved = self.solved();
+        let why = failure::diagnostic(solved);
+        drawn(why.as_slice(), self.solution.model().source()) + &verdict::verdict(solved)
+    }
+}
+
+/// A solution that was read from a `.sol.json`.
+pub struct Saved(saved::Saved);
+
+impl Saved {
+    /// Reads a file.
+    ///
+    /// # Errors
+    ///
+    /// A file that cannot be read or is no solution, in words.
+    pub fn read(path: &Path) -> Result<Self, String> {
+        saved::Saved::read(path).map(Saved).map_err(|failure| match failure {
+            Failure::File(message) => message,
+            _ => unreachable!("a solution depends on nothing but its file"),
+        })
+    }
+
+    /// What a replay and another solve need of it, lent.
+    pub fn record(&self) -> Record<'_> {
+        self.0.record()
+    }
+}
+
+/// Diagnostics as `fdcc check` draws them, without colours.
+pub fn drawn(diagnostics: &[Diagnostic], source: &SourceFile) -> String {
+    let renderer = Renderer::plain();
+    diagnostics.iter().map(|it| renderer.render(it, source)).collect()
+}
+
+/// Diagnostics as `fdcc check --format json` prints them.
+pub fn diagnostics(diagnostics: &[Diagnostic], source: &SourceFile) -> String {
+    let entries: Vec<_> =
+        diagnostics.iter().map(|it| output::diagnostics::entry((source, it))).collect();
+    output::json(&entries)
+}
+
+/// The document that `fdcc simulate --json` prints.
+pub fn simulation(simulated: &Simulation, model: &Model) -> String {
+    output::json(&simulations::Document::new(simulated, model))
+}
+
+/// The document that `fdcc grad --json` prints of the derivatives of the expression `of`; with
+/// second derivatives if they are wanted.
+pub fn gradient(of: &str, found: &Gradient, has_second: bool, model: &Model) -> String {
+    let document = gradients::Document::new(of, found, has_second, model);
+    output::json(&document.in_units(model.meaning().into()))
+}

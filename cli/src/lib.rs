@@ -1,0 +1,45 @@
+//! The command `fdcc` as a library: what it says and writes, for the command itself and for front
+//! ends in other languages.
+
+mod answers;
+mod commands;
+mod drawing;
+mod exit;
+mod failure;
+mod input;
+mod model;
+mod output;
+mod report;
+mod solved;
+mod watch;
+
+pub use answers::{Answer, Saved, diagnostics, drawn, gradient, simulation};
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use exit::Exit;
+
+/// Optimal control of systems with friction, switches and impacts.
+#[derive(Parser)]
+#[command(name = "fdcc", version, arg_required_else_help = true)]
+struct CommandLine {
+    #[command(subcommand)]
+    command: commands::Command,
+}
+
+/// Reads the command line and hands over to one file for each command.
+pub fn run() -> ExitCode {
+    match CommandLine::try_parse() {
+        Ok(line) => output::ended(line.command.run()).into(),
+        Err(error) if error.use_stderr() => {
+            // Nothing is left to do where even the complaint cannot be printed.
+            let _ = error.print();
+            Exit::Usage.into()
+        }
+        Err(help) => {
+            output::note(help.print());
+            output::ended(Exit::Fine).into()
+        }
+    }
+}

@@ -1,0 +1,268 @@
+"""Solutions, asked by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+from typing import Any, cast
+
+from . import _fdcc, _tables
+from ._arrays import Number, Signal
+from ._records import Named, Record, no_such, read
+
+
+class Solution:
+    """A solution, or the best iterate where there is none; all numbers are in SI.
+
+    ``s["x"]`` is a state, control, report, unknown or parameter. What stands in the document of
+    ``fdcc solve --json`` is an attribute of the same name, such as ``s.iterations``,
+    ``s.method.sigma``, ``s.jumps``.
+
+    >>> import fdcc
+    >>> m = fdcc.compile("time t in [0, 1] [s]  state x [m] start 0"
+    ...     "  control v in [-1, 1] [m/s]  dynamics { x' = v }  end x == 0.5  minimize integral(v^2)")
+    >>> s = m.solve(N=10)
+    >>> s
+    <fdcc.Solution model: solved, objective 0.25 m^2/s>
+    >>> s.t.shape, s["x"].shape, s.u["v"].shape, s.costates["x"].shape
+    ((11,), (11,), (10,), (11,))
+    >>> s["y"]
+    Traceback (most recent call last):
+    KeyError: "there is no 'y'; there is time, x, v"
+    """
+
+    def __init__(self, solution: _fdcc.Solution) -> None:
+        self.__dict__["_solution"] = solution
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError("a solution cannot be changed")
+
+    @property
+    def model(self) -> str:
+        """The name of the model, or of the phase."""
+        return self._solution.model
+
+    @property
+    def status(self) -> str:
+        """How the solve ended: ``solved``, ``acceptable``, ``infeasible``, ``none_found``,
+        ``unbounded``, ``iteration_limit``, ``time_limit``, ``interrupted``, ``not_finite``,
+        ``numerical_failure``."""
+        return self._solution.status
+
+    @property
+    def is_solved(self) -> bool:
+        """Whether it can be used: solved, or nearly as accurate as asked for."""
+        return self._solution.is_solved
+
+    @property
+    def objective(self) -> Number:
+        """The objective as the model writes it: what is maximised is not negated."""
+        return Number(self._solution.objective, self.units.get("objective", ""))
+
+    @cached_property
+    def confirmed(self) -> bool:
+        """Whether a replay on the true system confirms it to 0.1 % and nothing contradicts that it
+        is an optimum. The replay is made when it is first asked for."""
+        return self._solution.confirmed()
+
+    @property
+    def certificate(self) -> Record | None:
+        """What certifies it as an optimum of the true system, check by check; ``None`` where nothing
+        does."""
+        return self.document.get("certificate")
+
+    @cached_property
+    def units(self) -> Named[str]:
+        """The SI unit of each name; ``""`` for a plain number."""
+        return Named(dict(self._solution.units))
+
+    def _signals(self, columns: list[tuple[str, _fdcc.Column]]) -> Named[Signal]:
+        unit = self.units.get
+        return Named({name: Signal(column, name, unit(name, "")) for name, column in columns})
+
+    @cached_property
+    def time(self) -> Signal:
+        """The grid points, one more than intervals. Shape ``(N + 1,)``; of a model with phases its
+        ends."""
+        return Signal(self._solution.time(), "time", self.units.get("time", ""))
+
+    @property
+    def t(self) -> Signal:
+        """The same as ``time``."""
+        return self.time
+
+    @cached_property
+    def states(self) -> Named[Signal]:
+        """The states at the grid points, each of shape ``(N + 1,)``; after a jump where one
+        happens."""
+        return self._signals(self._solution.states())
+
+    @cached_property
+    def controls(self) -> Named[Signal]:
+        """The controls on the intervals, each of shape ``(N,)``."""
+        return self._signals(self._solution.controls())
+
+    @property
+    def u(self) -> Named[Signal]:
+        """The same as ``controls``."""
+        return self.controls
+
+    @cached_property
+    def costates(self) -> Named[Signal]:
+        """The derivatives of the objective by the states at the grid points, each of shape
+        ``(N + 1,)``."""
+        of = self.units.get("objective", "")
+        columns = self._solution.costates()
+        return Named({name: Signal(it, name, self._per(of, name)) for name, it in columns})
+
+    @cached_property
+    def report(self) -> Named[Signal]:
+        """What the model reports, at the grid points or on the intervals."""
+        return self._signals(self._solution.report())
+
+    @cached_property
+    def hamiltonian(self) -> Signal:
+        """The Hamiltonian on the intervals. Shape ``(N,)``."""
+        of = self.units.get("objective", "")
+        return Signal(self._solution.hamiltonian(), "hamiltonian", self._per(of, "time"))
+
+    @cached_property
+    def free(self) -> Named[Number]:
+        """The unknowns that were found."""
+        return self._numbers(self._solution.free)
+
+    @cached_property
+    def params(self) -> Named[Number]:
+        """The parameters that were given."""
+        return self._numbers(self._solution.params)
+
+    @cached_property
+    def sensitivities(self) -> Named[Number]:
+        """The derivatives of the optimal objective by the parameters, where it is solved."""
+        of = self.units.get("objective", "")
+        found = self.document.get("sensitivities", {}).items()
+        return Named({name: Number(it, self._per(of, name)) for name, it in found})
+
+    def _numbers(self, pairs: list[tuple[str, float]]) -> Named[Number]:
+        return Named({name: Number(it, self.units.get(name, "")) for name, it in pairs})
+
+    def _per(self, of: str, name: str) -> str:
+        """``J per kg``"""
+        by = self.units.get(name, "")
+        return f"{of or 1} per {by}" if by else of
+
+    @property
+    def surfaces(self) -> Named[tuple[Record, ...]]:
+        """The spans of time of each surface in one ``mode``, ``from`` one time ``to`` another."""
+        return self.document.surfaces
+
+    @property
+    def switches(self) -> tuple[Record, ...]:
+        """When surfaces change their mode, in the order of time: ``time``, ``surface``, and what
+        else the document says of them, or the modes ``before`` and ``after``."""
+        found = self.document.get("switches")
+        return tuple(self._changes()) if found is None else found
+
+    def _changes(self) -> Iterator[Record]:
+        pairs = (
+            (later["from"], surface, first.mode, later.mode)
+            for surface, spans in self.surfaces.items()
+            for first, later in zip(spans, spans[1:])
+        )
+        for time, surface, before, after in sorted(pairs):
+            yield Record({"time": time, "surface": surface, "before": before, "after": after})
+
+    @property
+    def arcs(self) -> Any:
+        """The arcs of controls and constraints where switches were located; else none."""
+        return self.document.get("arcs", Named())
+
+    @cached_property
+    def phases(self) -> Named["Solution"]:
+        """The solutions of the phases, by name; all signals are theirs."""
+        return Named({it.model: Solution(it) for it in self._solution.phases()})
+
+    @cached_property
+    def document(self) -> Record:
+        """Everything that ``fdcc solve --json`` prints, under the same names; the same for a phase
+        as for the whole."""
+        return read(self._solution.json())
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self.document, name)
+
+    def __getitem__(self, name: str) -> Any:
+        if name in ("t", "time"):
+            return self.time
+        for named in (self.states, self.controls, self.report, self.free, self.params):
+            if name in named:
+                return named[name]
+        raise KeyError(no_such(name, self._ipython_key_completions_()))
+
+    def _ipython_key_completions_(self) -> list[str]:
+        named = (self.states, self.controls, self.report, self.free, self.params)
+        return ["time", *(name for own in named for name in own)]
+
+    def verify(self, gap: float = 1e-3) -> Record | None:
+        """What the controls do on the true system: whether it is ``confirmed``, and by how much
+        states differ and conditions are violated. ``gap`` is the largest difference that is called
+        confirmation, as a part of how far states move and how large terms are. ``None`` where the
+        model cannot be simulated.
+
+        >>> import fdcc
+        >>> m = fdcc.compile("time t in [0, 1]  state x start 0  control u in [-1, 1]"
+        ...     "  dynamics { x' = u }  end x == 0.5  minimize integral(u^2)")
+        >>> m.solve(N=10).verify(gap=1e-6).confirmed
+        True
+        """
+        return read(self._solution.verification(gap))
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Writes what ``fdcc solve`` writes as ``.sol.json``: ``fdcc verify`` reads it, and
+        ``warm`` and ``u`` take its path."""
+        Path(path).write_text(self._solution.json())
+
+    def to_pandas(self) -> Any:
+        """A ``pandas.DataFrame``: a column for each state, control and report, indexed by ``time``;
+        of a model with phases a frame for each, by name."""
+        if self.phases:
+            return Named({name: it.to_pandas() for name, it in self.phases.items()})
+        return _tables.frame(self.time, {**self.states, **self.controls, **self.report})
+
+    def to_xarray(self) -> Any:
+        """An ``xarray.Dataset``: states and costates (``costate(x)``) over ``time``, controls over
+        ``interval``, where each begins; units are the attribute ``units``. Of a model with phases a
+        dataset for each, by name."""
+        if self.phases:
+            return Named({name: it.to_xarray() for name, it in self.phases.items()})
+        costates = {f"costate({name})": it for name, it in self.costates.items()}
+        data = _tables.dataset(
+            {"time": self.time, "interval": cast(Signal, self.time[:-1])},
+            {"time": {**self.states, **costates}, "interval": self.controls},
+        )
+        return data.assign_attrs(model=self.model, status=self.status, objective=self.objective)
+
+    def plot(self, names: list[str] | None = None) -> Any:
+        """Draws states and controls over time with matplotlib, the times shaded at which a surface
+        is held; returns its axes, one for each name."""
+        from ._plot import axes
+
+        signals = {**self.states, **self.controls}
+        spans = (span for spans in self.surfaces.values() for span in spans)
+        held = [(span["from"], span["to"]) for span in spans if span.mode == "held"]
+        return axes(self.time, signals if names is None else {it: self[it] for it in names}, held)
+
+    def __str__(self) -> str:
+        return self._solution.words().rstrip()
+
+    def __repr__(self) -> str:
+        unit = self.objective.unit
+        value = f"{self.objective:.9g}{' ' + unit if unit else ''}"
+        return f"<fdcc.Solution {self.model}: {self.status}, objective {value}>"
+
+    def _repr_html_(self) -> str:
+        return self._solution.html()

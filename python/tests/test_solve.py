@@ -1,0 +1,164 @@
+"""Solves: values by name, results by name, nothing copied, nothing that can be changed."""
+
+import json
+
+import numpy as np
+import pytest
+
+import fdcc
+
+
+def test_a_file_is_solved_with_values_by_name(models):
+    model = fdcc.Model(models / "racecar.fdc")
+    solution = model.solve(muN=1.2, N=250, sigma=0.1)
+    assert solution.status == "solved" and solution.is_solved
+    assert solution.params["muN"] == 1.2
+    assert solution.t.shape == (251,) and solution["pos.x"].shape == (251,)
+    assert solution.u["a"].shape == (250,) and solution.costates["th"].shape == (251,)
+    assert solution.free["T"] == solution["T"] > 5
+    # Table 7.1 of Stewart & Anitescu, as the README has it for N = 250.
+    assert model.solve(N=250, sigma=0.1).objective == pytest.approx(5.544655, abs=1e-5)
+
+
+def test_numbers_are_in_the_declared_unit_and_results_in_si(hop):
+    assert hop.solve(reach=80).params["reach"] == pytest.approx(0.8)
+    solution = hop.solve(reach="80[cm]", N=20)
+    assert solution["reach"] == pytest.approx(0.8) and solution["reach"].unit == "m"
+    assert solution.objective == pytest.approx(0.64) and solution.objective.unit == "m^2/s"
+    assert solution["x"].unit == "m" and solution.t.unit == "s"
+    assert solution.costates["x"].unit == "m^2/s per m"
+    assert hop.units["v"] == "m/s" and hop.scale("reach") == 0.01
+
+
+def test_names_that_are_no_names_of_python_go_into_values(hop):
+    assert hop.solve(values={"reach": 80}).objective == pytest.approx(0.64)
+
+
+def test_the_sensitivity_is_that_of_the_closed_form(hop):
+    by = hop.solve().sensitivities  # of w * reach^2
+    assert by["w"] == pytest.approx(0.25) and by["reach"] == pytest.approx(1.0)
+    assert by["reach"].unit == "m^2/s per m"
+
+
+def test_arrays_are_the_memory_of_the_result(hop):
+    x = hop.solve()["x"]
+    again = x[1:3]
+    assert not x.flags.owndata and not x.flags.writeable and again.name == "x"
+    assert np.shares_memory(x, again)
+    with pytest.raises(ValueError):
+        x[0] = 1.0
+    assert type(2 * x) is np.ndarray and type(np.stack([x, x])) is np.ndarray
+    assert isinstance(np.max(x), float)
+
+
+def test_two_views_of_one_column_share_it(hop):
+    solution = hop.solve()
+    assert np.shares_memory(solution.states["x"], fdcc.Solution(solution._solution)["x"])
+
+
+def test_results_outlive_what_they_came_from(hop):
+    x = hop.solve(N=40)["x"]
+    import gc
+
+    gc.collect()
+    assert np.allclose(x, np.linspace(0, 0.5, 41))
+
+
+def test_results_cannot_be_changed(hop):
+    solution = hop.solve()
+    for wrong in ("status", "time", "anything"):
+        with pytest.raises(AttributeError):
+            setattr(solution, wrong, 1)
+    with pytest.raises(TypeError):
+        solution.states["x"] = 1
+    with pytest.raises(AttributeError):
+        hop.name = "other"
+    with pytest.raises(AttributeError):
+        solution.objective.unit = "m"
+
+
+def test_what_the_document_says_has_the_same_names(hop, tmp_path):
+    solution = hop.solve(N=20)
+    solution.save(tmp_path / "r.sol.json")
+    document = json.loads((tmp_path / "r.sol.json").read_text())
+    assert solution.document.keys() == document.keys()
+    assert solution.iterations == document["iterations"] and solution.method.N == 20
+    for role in ("states", "controls", "costates"):
+        own = getattr(solution, role)
+        assert {name: list(it) for name, it in own.items()} == document[role]
+    assert list(solution.time) == document["time"]
+    assert list(solution.hamiltonian) == document["hamiltonian"]
+    assert solution.free == document["free"] and solution.params == document["params"]
+    assert document["verification"]["confirmed"] is solution.confirmed is True
+
+
+def test_a_warm_start_needs_fewer_iterations(models, tmp_path):
+    model = fdcc.Model(models / "racecar.fdc")
+    cold = model.solve(N=100, sigma=0.1)
+    warm = model.solve(N=100, sigma=0.1, muN=1.01, warm=cold)
+    assert warm.is_solved and warm.iterations < cold.iterations / 2
+    cold.save(tmp_path / "r.sol.json")
+    assert model.solve(N=100, sigma=0.1, warm=tmp_path / "r.sol.json").is_solved
+
+
+def test_not_solved_is_a_status(hop):
+    solution = hop.solve(reach=200)
+    assert solution.status == "infeasible" and not solution.is_solved
+    assert "x == reach" in str(solution)
+    assert not solution.confirmed and solution.sensitivities == {}
+
+
+def test_wrong_calls_are_told(hop):
+    with pytest.raises(ValueError, match="did you mean `reach`"):
+        hop.solve(raech=1)
+    with pytest.raises(ValueError):
+        hop.solve(N=-1)
+    with pytest.raises(ValueError, match="starts"):
+        hop.solve(starts=0)
+    with pytest.raises(TypeError):
+        hop.solve(w=True)
+    with pytest.raises(KeyError, match="there is no 'y'"):
+        hop.solve()["y"]
+    with pytest.raises(OSError):
+        hop.solve(warm="nowhere.sol.json")
+
+
+def test_several_numbers_are_a_list(slide, models):
+    solution = fdcc.Model(models / "block.fdc").solve(**{"continue": [0.3, 0.1]}, N=50)
+    assert solution.is_solved
+
+
+def test_several_starts_are_told(hop):
+    solution = hop.solve(starts=3)
+    assert [it.status for it in solution.starts] == ["solved"] * 3
+
+
+def test_modes_and_switches(models):
+    solution = fdcc.Model(models / "block.fdc").solve()
+    spans = solution.surfaces["slip"]
+    assert {it.mode for it in spans} <= {"below", "held", "above"}
+    times = [it.time for it in solution.switches]
+    assert times == sorted(times) and all(it.surface == "slip" for it in solution.switches)
+
+
+def test_phases_are_solutions(models):
+    solution = fdcc.Model(models / "twostage.fdc").solve()
+    assert solution.is_solved and len(solution.phases) == 2
+    for name, phase in solution.phases.items():
+        own = solution.document.phases[name]
+        assert list(phase.time) == list(own.time)
+        assert {it: tuple(column) for it, column in phase.states.items()} == dict(own.states)
+
+
+def test_jumps_are_told(models):
+    solution = fdcc.Model(models / "bounce.fdc").solve(N=20)
+    assert solution.is_solved
+    for jump in solution.jumps:
+        assert jump.jump == "bounce" and jump.before.keys() == jump.after.keys()
+
+
+def test_verify_asks_for_what_it_is_told(models):
+    solution = fdcc.Model(models / "racecar.fdc").solve(N=100, sigma=0.1)
+    assert not solution.confirmed and not solution.verify().confirmed
+    assert solution.verify(gap=10).confirmed
+    assert solution.verify().state_gap > 1e-3

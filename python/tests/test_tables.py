@@ -1,0 +1,40 @@
+"""Tables and plots."""
+
+import numpy as np
+import pytest
+
+import fdcc
+
+
+def test_a_frame_has_a_column_for_each_signal(hop):
+    pytest.importorskip("pandas")
+    solution = hop.solve(N=10)
+    table = solution.to_pandas()
+    assert list(table.columns) == ["x", "v"] and table.index.name == "time" and len(table) == 11
+    assert np.array_equal(table["x"], solution["x"]) and table.attrs["units"]["x"] == "m"
+    assert len(hop.simulate(u=solution, t=[0, 1]).to_pandas()) == 2
+
+
+def test_a_dataset_has_units_and_both_axes(hop):
+    pytest.importorskip("xarray")
+    solution = hop.solve(N=10)
+    data = solution.to_xarray()
+    assert data["x"].dims == ("time",) and data["v"].dims == ("interval",)
+    assert data["v"].attrs["units"] == "m/s" and data["costate(x)"].shape == (11,)
+    assert data.attrs["status"] == "solved"
+    assert hop.simulate(u=solution).to_xarray()["x"].attrs["units"] == "m"
+
+
+def test_phases_have_a_table_each(models):
+    pytest.importorskip("pandas")
+    solution = fdcc.Model(models / "twostage.fdc").solve()
+    assert list(solution.to_pandas()) == list(solution.phases)
+
+
+def test_plots_have_a_row_for_each_signal(models):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    solution = fdcc.Model(models / "block.fdc").solve(N=50)
+    assert [it.get_ylabel() for it in solution.plot()] == ["x [m]", "v [m/s]", "F [N]"]
+    assert len(solution.plot(["F"])) == 1
+    assert len(fdcc.Model(models / "crossing.fdc").simulate().plot()) == 1

@@ -1,0 +1,83 @@
+"""Simulations and gradients of the true system, against closed forms."""
+
+import numpy as np
+import pytest
+
+import fdcc
+
+
+def test_a_block_comes_to_rest(slide):
+    found = slide.simulate(t=np.linspace(0, 2, 9))
+    assert found.status == "completed" and found["v"].unit == "m/s"
+    assert np.allclose(found["v"], np.maximum(1 - 2 * found.t, 0), atol=1e-9)
+    (event,) = found.events
+    assert event.time == pytest.approx(0.5) and event.surface == "slip"
+    assert found.end["x"] == pytest.approx(0.25) and found.end["x"].unit == "m"
+    assert not found["v"].flags.writeable
+
+
+def test_values_change_simulations(slide):
+    assert slide.simulate(mu=4).end["x"] == pytest.approx(1 / 8)
+    assert slide.simulate(values={"v0": 2}).end["x"] == pytest.approx(1)
+
+
+def test_controls_are_held(slide):
+    equal = slide.simulate(u={"F": [2, -2]})
+    assert equal.end["v"] == pytest.approx(0, abs=1e-9)
+    from_times = slide.simulate(u={"F": [2, -2], "t": [0, 1.5]})
+    assert from_times.end["x"] == pytest.approx(1.5 + 1 / 8)
+    with pytest.raises(ValueError, match="control 'F'"):
+        slide.simulate(u={})
+    with pytest.raises(ValueError, match="ascend"):
+        slide.simulate(u={"F": [2, -2], "t": [1, 0]})
+
+
+def test_the_controls_of_a_solution_drive_a_simulation(hop, tmp_path):
+    solution = hop.solve(N=20, reach=80)
+    solution.save(tmp_path / "r.sol.json")
+    for u in (solution, tmp_path / "r.sol.json"):
+        found = hop.simulate(u=u, t=solution.t)
+        assert np.allclose(found["x"], solution["x"], atol=1e-8)
+
+
+def test_times_outside_are_refused(slide):
+    with pytest.raises(ValueError, match="3"):
+        slide.simulate(t=[0, 3])
+    with pytest.raises(ValueError, match="ascending"):
+        slide.simulate(t=[1, 0])
+
+
+def test_the_gradient_is_exact_through_the_event(slide):
+    # The way until it rests is v0^2 / (2 mu).
+    found = slide.grad("x(end)", wrt=["mu", "v0", "x(start)"])
+    assert found.trusted and found.value == pytest.approx(0.25)
+    assert found["mu"] == pytest.approx(-1 / 8) and found["v0"] == pytest.approx(0.5)
+    assert found["x(start)"] == pytest.approx(1)
+    assert list(found) == ["mu", "v0", "x(start)"] and found.differentiable
+
+
+def test_the_gradient_by_controls_has_a_number_for_each_row(slide):
+    rows = np.array([4.0, 5.0, 6.0])
+    found = slide.grad("x(end)", wrt=["F"], u={"F": rows})["F"]
+    step = 1e-5
+    for at in range(3):
+        ends = [
+            slide.simulate(u={"F": rows + sign * step * (np.arange(3) == at)}).end["x"]
+            for sign in (1, -1)
+        ]
+        assert found[at] == pytest.approx((ends[0] - ends[1]) / (2 * step), rel=1e-6)
+
+
+def test_second_derivatives_are_there_when_asked_for(slide):
+    found = slide.grad("x(end)", wrt=["mu", "v0"], second=True).second
+    assert found["mu"]["mu"] == pytest.approx(1 / 8)  # v0^2 / mu^3
+    assert found["mu"]["v0"] == pytest.approx(-1 / 4)
+
+
+def test_what_cannot_be_differentiated_is_told(slide):
+    with pytest.raises(ValueError, match="no objective"):
+        slide.grad()
+    with pytest.raises(ValueError, match="x\\(start\\)"):
+        slide.grad("x(end)", wrt=["x"])
+    with pytest.raises(fdcc.ModelError, match="y"):
+        slide.grad("y(end)")

@@ -56,7 +56,7 @@ pub enum Earlier {
 /// A solution that is at hand.
 pub enum Known {
     Solution(Py<Solution>),
-    File(Saved),
+    File(Box<Saved>),
 }
 
 impl Earlier {
@@ -64,7 +64,9 @@ impl Earlier {
     pub fn read(self) -> PyResult<Known> {
         match self {
             Earlier::Solution(solution) => Ok(Known::Solution(solution)),
-            Earlier::File(path) => Saved::read(&path).map(Known::File).map_err(PyOSError::new_err),
+            Earlier::File(path) => {
+                Saved::read(&path).map(|it| Known::File(Box::new(it))).map_err(PyOSError::new_err)
+            }
         }
     }
 }

@@ -2,32 +2,31 @@
 //! languages: the same words, and the same documents.
 
 use crate::commands::USUAL_GAP;
-use crate::commands::solver::solved;
+use crate::commands::solver::document;
 use crate::drawing::render::Renderer;
 use crate::failure::Failure;
-use crate::output::document::Seconds;
+use crate::output::document::{Document, Seconds};
 use crate::output::named::Named;
+use crate::output::optimality::on_the_true_system;
 use crate::output::{self, gradient as gradients, html, saved, simulation as simulations};
-use crate::report::{failure, verdict};
-use crate::solved::Solved;
 use fdcc::{Gradient, Model, Record, Simulation, Solution};
 use fdcc_grammar::{Diagnostic, SourceFile};
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 /// A solution with what is said of it: its sensitivities and its replay on the true system, both
 /// computed when they are first needed.
 pub struct Answer {
-    solution: Arc<Solution>,
+    solution: Solution,
     seconds: Seconds,
-    solved: OnceLock<Solved>,
+    document: OnceLock<Document>,
 }
 
 impl Answer {
     /// Of a solution; `seconds` are those of compiling and of solving.
     pub fn new(solution: Solution, [compile, solve]: [f64; 2]) -> Self {
         let seconds = Seconds { compile, solve, total: compile + solve };
-        Answer { solution: Arc::new(solution), seconds, solved: OnceLock::new() }
+        Answer { solution, seconds, document: OnceLock::new() }
     }
 
     /// The solution.
@@ -35,46 +34,43 @@ impl Answer {
         &self.solution
     }
 
-    fn solved(&self) -> &Solved {
-        self.solved.get_or_init(|| {
-            let mut solved = solved(self.solution.clone(), self.seconds);
-            if solved.is_good() {
-                solved.document.sensitivities = Named::of(self.solution.sensitivities());
-                solved.replay(USUAL_GAP);
+    fn document(&self) -> &Document {
+        self.document.get_or_init(|| {
+            let mut document = document(&self.solution, self.seconds);
+            if self.solution.is_solved() {
+                document.sensitivities = Named::of(self.solution.sensitivities());
+                document.replay(&self.solution, USUAL_GAP);
             }
-            solved
+            document
         })
     }
 
     /// Whether the replay confirms it and nothing contradicts that it is an optimum.
     pub fn is_confirmed(&self) -> bool {
-        self.solved().document.is_confirmed()
+        self.document().is_confirmed()
     }
 
     /// What the replay says where `gap` is the largest difference that is called confirmation, as
     /// the object `verification` of the document: `null` where nothing can be replayed.
     pub fn verification(&self, gap: f64) -> String {
-        let mut solved = self.solved().clone();
-        solved.replay(gap);
-        output::json(&solved.document.verification)
+        let mut document = self.document().clone();
+        document.replay(&self.solution, gap);
+        output::json(&document.verification)
     }
 
     /// The text of a `.sol.json`.
     pub fn json(&self) -> String {
-        output::json(&self.solved().document)
+        output::json(self.document())
     }
 
     /// What it looks like, as a part of an HTML page: a table, and a plot of each signal.
     pub fn html(&self) -> String {
-        html::fragment(&self.solved().document)
+        html::fragment(self.document())
     }
 
-    /// The verdict that `fdcc solve` ends with, behind the place in the model that keeps it from
-    /// being solved, where one does.
+    /// What the replay says of it, and what contradicts that it is an optimum.
     pub fn words(&self) -> String {
-        let solved = self.solved();
-        let why = failure::diagnostic(solved);
-        drawn(why.as_slice(), self.solution.model().source()) + &verdict::verdict(solved)
+        on_the_true_system(self.document())
     }
 }
 

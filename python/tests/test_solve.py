@@ -104,7 +104,7 @@ def test_a_warm_start_needs_fewer_iterations(models, tmp_path):
 def test_not_solved_is_a_status(hop):
     solution = hop.solve(reach=200)
     assert solution.status == "infeasible" and not solution.is_solved
-    assert "x == reach" in str(solution)
+    assert "infeasible" in str(solution)
     assert not solution.confirmed and solution.sensitivities == {}
 
 

@@ -15,7 +15,6 @@ use fdcc_grammar::SourceFile;
 use fdcc_runtime::nlp::Stop;
 use fdcc_runtime::problem::Chain;
 use sha2::{Digest, Sha256};
-use std::sync::Arc;
 use std::time::Instant;
 
 /// A problem that is ready to be solved.
@@ -144,16 +143,16 @@ impl Compiled {
         })?;
         let total = begin.elapsed().as_secs_f64();
         let seconds = Seconds { compile: seconds, solve: total - seconds, total };
-        Ok(solved(Arc::new(solution), seconds))
+        let document = document(&solution, seconds);
+        Ok(Solved { solution, document })
     }
 }
 
-/// A solution with its document, before it is replayed.
-pub fn solved(solution: Arc<Solution>, seconds: Seconds) -> Solved {
+/// The document of a solution, before it is replayed.
+pub fn document(solution: &Solution, seconds: Seconds) -> Document {
     let model = solution.model();
     let (sha256, units) = (sha256(&model.source().text), Units::from(model.meaning()));
-    let document = Document::new(&solution, &sha256, units, seconds).with_phases(&solution);
-    Solved { solution, document }
+    Document::new(solution, &sha256, units, seconds).with_phases(solution)
 }
 
 /// How a document says which text was solved.

@@ -48,7 +48,7 @@ fn not_finite(outcome: &Outcome, place: &Place, units: &Units) -> Diagnostic {
 
 fn infeasible(solved: &Solved, limiting: &Limiting) -> Diagnostic {
     let Solved { solution, document } = solved;
-    let Solution { problem, outcome, .. } = &**solution;
+    let Solution { problem, outcome, .. } = solution;
     let units = &document.units;
     let Limiting { origin, condition, violation, .. } = limiting;
     let (found, is_not) = match outcome.is_impossible {

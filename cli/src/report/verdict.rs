@@ -124,7 +124,7 @@ fn surfaces(document: &Document, phase: &str) -> impl Iterator<Item = String> {
 /// true system.
 fn how(solved: &Solved) -> String {
     let Solved { solution, document } = solved;
-    let Solution { problem, outcome, .. } = &**solution;
+    let Solution { problem, outcome, .. } = solution;
     let status = &outcome.solution.status;
     let found = match problem.has_objective {
         false => "feasible trajectory",

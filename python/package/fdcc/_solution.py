@@ -257,7 +257,7 @@ class Solution:
         return axes(self.time, signals if names is None else {it: self[it] for it in names}, held)
 
     def __str__(self) -> str:
-        return self._solution.words().rstrip()
+        return f"{repr(self)[1:-1]}, {self._solution.words()}"
 
     def __repr__(self) -> str:
         unit = self.objective.unit

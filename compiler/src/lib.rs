@@ -35,7 +35,9 @@ pub use expressions::graph::builtins;
 pub use expressions::{graph, interval, kernels};
 pub use lower::{Expected, LoweredProblem};
 pub use model::{Model, Phase};
-pub use phases::{Sequences, crossings, sequences, with_phases};
+pub use phases::{
+    Arc, Mode, PhaseOfModes, Sequences, crossings, sequences, with_modes, with_phases,
+};
 pub use settings::is_key as is_method_key;
 pub use surfaces::{Order, Smoothness, SurfaceClass, SurfaceReport, smoothness, surfaces};
 pub use symbols::{Grid, SymbolInformation, grid, symbol_information, vocabulary};

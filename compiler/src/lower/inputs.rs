@@ -160,7 +160,8 @@ fn place_signals(model: &Model, graph: &mut Graph, layout: &Layout, inputs: &mut
     let controls: Vec<ExprId> = layout.controls().map(|at| graph.input(at as u32)).collect();
     inputs.set(model, |symbol| match symbol {
         Symbol::State(index) => Some(states[index]),
-        Symbol::Control(index) => Some(controls[index]),
+        // A phase has no more than its own.
+        Symbol::Control(index) => controls.get(index).copied(),
         _ => None,
     });
 }

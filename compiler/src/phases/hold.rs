@@ -77,8 +77,14 @@ impl MultiPhase<'_> {
     /// that stands still.
     pub(super) fn at_rest(&mut self, j: usize, state: usize) -> Option<ExprId> {
         let held = self.held.filter(|held| held.from == j && held.state == state)?;
-        let (input, start) = (self.input_of_state(state), self.of_phase(j, Symbol::AtStart(state)));
-        Some(self.graph.substitute(&[held.approach], &|at| (at == input).then_some(start))[0])
+        let (input, start) = (
+            self.division.input_of_state(state),
+            self.division.of_phase(j, Symbol::AtStart(state)),
+        );
+        Some(
+            self.division.graph.substitute(&[held.approach], &|at| (at == input).then_some(start))
+                [0],
+        )
     }
 
     /// Whether a constraint says of a held surface what is so anyway.

@@ -12,20 +12,24 @@
 //! times at its ends only, so that the cost of a solve is that of all phases one after the other.
 
 mod crossings;
+mod division;
 mod hold;
 mod links;
+mod modes;
 mod path;
 mod sequences;
 mod shares;
 
 pub use crossings::crossings;
+pub use modes::{Arc, Mode, PhaseOfModes, with_modes};
 pub use sequences::{Sequences, sequences};
 
-use crate::expressions::graph::{ExprId, Graph};
+use crate::expressions::graph::ExprId;
 use crate::model::guess::straight_guesses;
 use crate::model::numbers::numbers;
-use crate::model::{Free, Jump, Model, Phase, Place, Range, State, Symbol};
+use crate::model::{Jump, Model, Phase, Place, State, Symbol};
 use crossings::Beginning;
+use division::{Division, divide};
 use fdcc_grammar::Diagnostic;
 use hold::Held;
 use shares::Shares;
@@ -78,60 +82,26 @@ pub fn with_phases(model: &Model, sequence: &[usize]) -> Result<Model, Vec<Diagn
     let whole = Model { jumps: [model.jumps.clone(), crossings(model)].concat(), ..model.clone() };
     let mut between = between_jumps(model);
     let times = times(&mut between, &whole, sequence);
-    let mut graph = between.graph.clone();
-    let held = Held::new(&whole, &mut graph, sequence, &limits);
-    let multi_phase = MultiPhase {
-        whole: &whole,
-        symbols: between.symbols.clone(),
-        model: &between,
-        sequence,
-        held,
-        begins,
-        limits,
-        graph,
-        times,
-    };
+    let mut division = Division::new(&between, times);
+    let held = Held::new(&whole, &mut division.graph, sequence, &limits);
+    let multi_phase = MultiPhase { whole: &whole, division, sequence, held, begins, limits };
     Ok(multi_phase.into_model())
 }
 
-/// `T_j`: an unknown for each jump, between the first and the last time. Gives the model all
-/// symbols that phases or links read.
+/// The times of the jumps, between the first and the last time.
 fn times(model: &mut Model, whole: &Model, sequence: &[usize]) -> Vec<ExprId> {
-    let first = model.frees.len();
-    let of = |model: &mut Model, symbol| {
-        let input = model.symbols_mut().input(symbol);
-        model.graph.input(input)
-    };
-    of(model, Symbol::Time);
-    for at in 0..model.states.len() {
-        of(model, Symbol::AtStart(at));
-        of(model, Symbol::AtEnd(at));
-    }
-    (0..model.controls.len()).for_each(|at| _ = of(model, Symbol::ControlAtEnd(at)));
-    let [begin, end] = model.interval;
-    let unbounded = [f64::NEG_INFINITY, f64::INFINITY].map(|it| model.graph.number(it));
-    let mut times = vec![begin];
-    for (j, at) in sequence.iter().enumerate() {
-        times.push(of(model, Symbol::Free(first + j)));
+    let place = |(j, at): (usize, &usize)| {
         let place = &whole.jumps[*at].place;
-        let duration = model.graph.sub(end, begin);
-        let part = (j + 1) as f64 / (sequence.len() + 1) as f64;
-        let passed = model.graph.scale(part, duration);
-        model.frees.push(Free {
-            place: Place { name: format!("time of {} {}", place.name, j + 1), span: place.span },
-            range: Range { lower: unbounded[0], upper: unbounded[1] },
-            guess: Some(model.graph.add(begin, passed)),
-        });
-    }
-    times.push(end);
-    times
+        Place { name: format!("time of {} {}", place.name, j + 1), span: place.span }
+    };
+    divide(model, sequence.iter().enumerate().map(place).collect())
 }
 
 struct MultiPhase<'m> {
     /// As it is written, with the crossings behind its jumps.
     whole: &'m Model,
     /// What holds between the jumps, with the times of the jumps as unknowns.
-    model: &'m Model,
+    division: Division<'m>,
     /// The jumps and crossings that happen, in their order.
     sequence: &'m [usize],
     /// The surface that is held in the end.
@@ -140,11 +110,6 @@ struct MultiPhase<'m> {
     begins: Vec<Beginning>,
     /// How often each jump may happen.
     limits: Vec<Option<usize>>,
-    graph: Graph,
-    /// What the inputs of the graph are: those of a phase, then what links read of phases.
-    symbols: Vec<Symbol>,
-    /// When phases begin; and the last time.
-    times: Vec<ExprId>,
 }
 
 impl<'m> MultiPhase<'m> {
@@ -154,8 +119,8 @@ impl<'m> MultiPhase<'m> {
     }
 
     fn into_model(mut self) -> Model {
-        let model = self.model;
-        let shares = Shares::new(model, &mut self.graph);
+        let model = self.division.model;
+        let shares = Shares::new(model, &mut self.division.graph);
         if self.sequence.is_empty() {
             let (boundary, objective) = (model.boundary.clone(), model.objective.clone());
             return Model { boundary, objective, ..self.phase(0, &shares) };
@@ -168,23 +133,23 @@ impl<'m> MultiPhase<'m> {
             })
             .collect();
         let mut links: Vec<_> = (0..self.sequence.len()).map(|j| self.link(j)).collect();
-        links.extend(self.link_of_whole(&shares));
-        let (graph, symbols) = (self.graph, self.symbols);
+        links.extend(self.division.link_of_whole(&shares));
+        let Division { graph, symbols, .. } = self.division;
         Model { graph, symbols, phases, links, ..model.clone() }
     }
 
     /// What holds until a jump, or until the last time.
     fn phase(&mut self, j: usize, shares: &Shares) -> Model {
-        let model = self.model;
+        let model = self.division.model;
         let (path, half_open) = self.path(j);
         let states = self.states(j);
-        let value = shares.of_phase(&mut self.graph, j, self.sequence.len());
+        let value = shares.of_phase(&mut self.division.graph, j, self.sequence.len());
         let place = model.objective.as_ref().map(|it| it.0.clone());
         let mut integrals = model.integrals.clone();
         shares.integrals.iter().for_each(|at| integrals[*at].is_linked = true);
         Model {
-            graph: self.graph.clone(),
-            interval: [self.times[j], self.times[j + 1]],
+            graph: self.division.graph.clone(),
+            interval: [self.division.times[j], self.division.times[j + 1]],
             states,
             path,
             half_open,
@@ -196,11 +161,11 @@ impl<'m> MultiPhase<'m> {
     }
 
     fn states(&mut self, j: usize) -> Vec<State> {
-        let guesses = straight_guesses(self.model, &mut self.graph);
+        let guesses = straight_guesses(self.division.model, &mut self.division.graph);
         let mut states = Vec::new();
-        for (index, state) in self.model.states.iter().enumerate() {
+        for (index, state) in self.division.model.states.iter().enumerate() {
             let rate = match self.is_still(j, index) {
-                true => self.graph.number(0.0),
+                true => self.division.graph.number(0.0),
                 false => state.rate,
             };
             states.push(State {
@@ -219,7 +184,7 @@ impl<'m> MultiPhase<'m> {
     fn named(&self, j: usize) -> Place {
         match j.checked_sub(1) {
             Some(before) => self.jump(before).place.clone(),
-            None => Place { name: self.model.name.clone(), ..Place::default() },
+            None => Place { name: self.division.model.name.clone(), ..Place::default() },
         }
     }
 }

@@ -15,24 +15,25 @@ use fdcc_grammar::ast::Direction;
 impl MultiPhase<'_> {
     /// The bounds of a state at all times; none where they are a path constraint.
     pub(super) fn range_of(&mut self, state: usize) -> Range {
-        let range = self.model.states[state].range;
+        let range = self.division.model.states[state].range;
         if !self.bounds_switching_function(state) {
             return range;
         }
-        let [lower, upper] = [f64::NEG_INFINITY, f64::INFINITY].map(|it| self.graph.number(it));
+        let [lower, upper] =
+            [f64::NEG_INFINITY, f64::INFINITY].map(|it| self.division.graph.number(it));
         Range { lower, upper }
     }
 
     /// What is written, then what the jumps add; and which of these rows give way at the end of the
     /// phase.
     pub(super) fn path(&mut self, j: usize) -> (Vec<Constraint>, Vec<usize>) {
-        let mut rows = self.model.path.clone();
+        let mut rows = self.division.model.path.clone();
         rows.extend(self.bounds());
         rows.extend(self.sides(j));
         let half_open = (0..rows.len()).filter(|at| self.ends_on(j, rows[*at].value)).collect();
         for row in &mut rows {
             if self.is_held(j, row) {
-                row.value = within(&mut self.graph, row.range);
+                row.value = within(&mut self.division.graph, row.range);
             }
         }
         (rows, half_open)
@@ -41,9 +42,9 @@ impl MultiPhase<'_> {
     /// Bounds of states that are functions of a surface.
     fn bounds(&mut self) -> Vec<Constraint> {
         let mut rows = Vec::new();
-        for (index, state) in self.model.states.iter().enumerate() {
+        for (index, state) in self.division.model.states.iter().enumerate() {
             if self.bounds_switching_function(index) {
-                let value = self.graph.input(self.input_of_state(index));
+                let value = self.division.graph.input(self.division.input_of_state(index));
                 rows.push(Constraint { place: state.place.clone(), value, range: state.range });
             }
         }
@@ -52,16 +53,12 @@ impl MultiPhase<'_> {
 
     /// Whether a state is the function of a surface where a jump happens.
     fn bounds_switching_function(&self, state: usize) -> bool {
-        let input = self.input_of_state(state);
+        let input = self.division.input_of_state(state);
         let is_it = |jump: &usize| {
             let psi = self.whole.surfaces[self.whole.jumps[*jump].surface].psi;
             self.whole.graph.inputs_of(&[psi]) == [input]
         };
         self.sequence.iter().any(is_it)
-    }
-
-    pub(super) fn input_of_state(&self, state: usize) -> u32 {
-        self.model.input_of(Symbol::State(state)).expect("each state is a symbol")
     }
 
     /// On which sides of the surfaces a phase stays.
@@ -76,8 +73,12 @@ impl MultiPhase<'_> {
             let range = match (self.is_not_yet_before(j, index), jump.direction) {
                 (false, _) if self.is_beyond(j, index) => continue,
                 (true, _) if self.is_moved(j, index) => continue,
-                (false, Direction::Falling) | (true, Direction::Rising) => self.not_below(),
-                (false, Direction::Rising) | (true, Direction::Falling) => self.not_above(),
+                (false, Direction::Falling) | (true, Direction::Rising) => {
+                    self.division.not_below()
+                }
+                (false, Direction::Rising) | (true, Direction::Falling) => {
+                    self.division.not_above()
+                }
             };
             rows.push(Constraint {
                 place: jump.place.clone(),
@@ -92,26 +93,18 @@ impl MultiPhase<'_> {
     /// Whether a path constraint of the model says the same.
     fn is_written(&self, row: &Constraint) -> bool {
         let same = |it: &&Constraint| it.value == row.value;
-        let number = |id| self.graph.as_number(id).unwrap_or(f64::NAN);
+        let number = |id| self.division.graph.as_number(id).unwrap_or(f64::NAN);
         let within = |it: &Constraint| {
             number(it.range.lower) >= number(row.range.lower)
                 && number(it.range.upper) <= number(row.range.upper)
         };
-        self.model.path.iter().filter(same).any(within)
+        self.division.model.path.iter().filter(same).any(within)
     }
 
     /// Whether a jump has not yet happened as often as it may.
     fn may_happen(&self, j: usize, index: usize) -> bool {
         let before = self.sequence[..j].iter().filter(|it| **it == index).count();
         self.limits[index].is_none_or(|limit| before < limit)
-    }
-
-    pub(super) fn not_below(&mut self) -> Range {
-        Range { lower: self.graph.number(0.0), upper: self.graph.number(f64::INFINITY) }
-    }
-
-    fn not_above(&mut self) -> Range {
-        Range { lower: self.graph.number(f64::NEG_INFINITY), upper: self.graph.number(0.0) }
     }
 
     /// Whether the state began beyond the surface, and has not come back through it.
@@ -128,7 +121,7 @@ impl MultiPhase<'_> {
         let read =
             self.whole.graph.inputs_of(&[self.whole.surfaces[self.whole.jumps[index].surface].psi]);
         let resets = self.sequence[..j].iter().flat_map(|it| &self.whole.jumps[*it].resets);
-        resets.map(|reset| self.input_of_state(reset.0)).any(|state| read.contains(&state))
+        resets.map(|reset| self.division.input_of_state(reset.0)).any(|state| read.contains(&state))
     }
 
     /// Whether the state went through the surface at an earlier jump.
@@ -139,14 +132,21 @@ impl MultiPhase<'_> {
     /// Whether a jump changes the speed at which its surface is approached.
     fn turns(&mut self, jump: &Jump) -> bool {
         let rate = self.approach_of(jump);
-        let resets: Vec<(u32, ExprId)> =
-            jump.resets.iter().map(|&(state, value)| (self.input_of_state(state), value)).collect();
+        let resets: Vec<(u32, ExprId)> = jump
+            .resets
+            .iter()
+            .map(|&(state, value)| (self.division.input_of_state(state), value))
+            .collect();
         let reset = |input: u32| resets.iter().find(|it| it.0 == input).map(|it| it.1);
-        self.graph.substitute(&[rate], &reset)[0] != rate
+        self.division.graph.substitute(&[rate], &reset)[0] != rate
     }
 
     fn approach_of(&mut self, jump: &Jump) -> ExprId {
-        approach(self.model, &mut self.graph, self.whole.surfaces[jump.surface].psi)
+        approach(
+            self.division.model,
+            &mut self.division.graph,
+            self.whole.surfaces[jump.surface].psi,
+        )
     }
 
     /// That a phase comes to its end in the direction of the jump, or two jumps could be one upon
@@ -155,18 +155,21 @@ impl MultiPhase<'_> {
         let jump = self.jump(j);
         let rate = self.approach_of(jump);
         let is_of_state = |at: &u32| {
-            !matches!(self.model.symbols[*at as usize], Symbol::Control(_) | Symbol::Selector(_))
+            !matches!(
+                self.division.model.symbols[*at as usize],
+                Symbol::Control(_) | Symbol::Selector(_)
+            )
         };
-        if !self.graph.inputs_of(&[rate]).iter().all(is_of_state) {
+        if !self.division.graph.inputs_of(&[rate]).iter().all(is_of_state) {
             return None;
         }
         let range = match jump.direction {
-            Direction::Falling => self.not_above(),
-            Direction::Rising => self.not_below(),
+            Direction::Falling => self.division.not_above(),
+            Direction::Rising => self.division.not_below(),
         };
         let place =
             Place { name: format!("direction of {}", jump.place.name), span: jump.place.span };
-        Some(Constraint { place, value: self.at_end(j, rate), range })
+        Some(Constraint { place, value: self.division.at_end(j, rate), range })
     }
 
     /// Whether the surface on which a phase ends says what a value is there.
@@ -184,18 +187,22 @@ impl MultiPhase<'_> {
         let varies = |symbol: &Symbol| !matches!(symbol, Symbol::Param(_) | Symbol::Free(_));
         let moving = |graph: &Graph, of: ExprId| -> Vec<u32> {
             let inputs = graph.inputs_of(&[of]).into_iter();
-            inputs.filter(|at| varies(&self.model.symbols[*at as usize])).collect()
+            inputs.filter(|at| varies(&self.division.model.symbols[*at as usize])).collect()
         };
-        let inputs = moving(&self.graph, psi);
-        if moving(&self.graph, value) != inputs {
+        let inputs = moving(&self.division.graph, psi);
+        if moving(&self.division.graph, value) != inputs {
             return false;
         }
         let mut slopes = |of: ExprId| -> Vec<ExprId> {
-            inputs.iter().map(|at| derivative(&mut self.graph, of, *at)).collect()
+            inputs.iter().map(|at| derivative(&mut self.division.graph, of, *at)).collect()
         };
         let (own, its) = (slopes(value), slopes(psi));
-        let opposite: Vec<ExprId> = its.iter().map(|slope| self.graph.neg(*slope)).collect();
-        inputs.len() == 1 || own == its || own == opposite || in_proportion(&self.graph, &own, &its)
+        let opposite: Vec<ExprId> =
+            its.iter().map(|slope| self.division.graph.neg(*slope)).collect();
+        inputs.len() == 1
+            || own == its
+            || own == opposite
+            || in_proportion(&self.division.graph, &own, &its)
     }
 }
 

@@ -288,6 +288,7 @@ pub fn default_method() -> Method {
     Method {
         scheme: Scheme::ImplicitEuler,
         controls: ControlShape::Constant,
+        path_at_nodes: false,
         grid: Grid::Uniform(200),
         order: Order::Fixed,
         tolerance: 1e-3,

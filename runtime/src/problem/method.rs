@@ -43,6 +43,9 @@ pub struct Method {
     pub lagged: Vec<usize>,
     /// What a control is on an interval; constant where the scheme does not allow this shape.
     pub controls: ControlShape,
+    /// Whether path constraints hold at the nodes of a collocation scheme alone, where they may
+    /// determine a control, and not between intervals.
+    pub path_at_nodes: bool,
     /// Control intervals.
     pub grid: Grid,
     /// Whether the stages of the scheme are given.

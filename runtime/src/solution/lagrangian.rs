@@ -52,10 +52,13 @@ pub(crate) fn by_parameters_of_part(
     let mut nlp = TranscribedNlp::new(problem);
     p.iter().enumerate().for_each(|(index, value)| nlp.set_parameter(index, *value));
     // What a start that is given as a number counts.
-    let mut at_start = minimum::slopes(&mut nlp, solution)[nlp.chain().state(0)].to_vec();
+    let slopes = minimum::slopes(&mut nlp, solution);
+    let mut at_start = slopes[nlp.chain().state(0)].to_vec();
     at_start.iter_mut().zip(linked).for_each(|(slope, more)| *slope += more);
+    let mut solution = solution.clone();
+    minimum::add_multipliers_of_fixed(&nlp, &slopes, &mut solution.multipliers.lower);
     let rows = nlp.rows(&solution.v, &solution.multipliers.constraints);
-    Lagrangian::new(problem, &nlp, solution).by_parameters(by, &at_start, &rows)
+    Lagrangian::new(problem, &nlp, &solution).by_parameters(by, &at_start, &rows)
 }
 
 /// What the objective of the model changes by with the bound of each path constraint, per time: one

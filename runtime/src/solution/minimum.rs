@@ -17,8 +17,9 @@
 //! than the control ever is from 0 says nothing of its size: then it is that size which could be
 //! gained.
 
+use super::outcome::Outcome;
 use crate::nlp::{Derivatives, Nlp, Solution};
-use crate::problem::{Bounds, Variable};
+use crate::problem::{Bounds, Problem, Variable};
 use crate::transcribe::TranscribedNlp;
 use crate::transcribe::interval::Signal;
 
@@ -47,6 +48,23 @@ pub(crate) fn violations(
     gains.map(violated).collect()
 }
 
+/// For each control the least and the largest slope of the Hamiltonian of the minimisation problem
+/// by it, over all of its values in a phase.
+pub fn control_slopes(problem: &Problem, outcome: &Outcome) -> Vec<[f64; 2]> {
+    let mut nlp = TranscribedNlp::new(problem);
+    let parameters = outcome.trajectory.parameters.iter().enumerate();
+    parameters.for_each(|(index, value)| nlp.set_parameter(index, *value));
+    let slopes = slopes(&mut nlp, &outcome.solution);
+    let time = &outcome.trajectory.time;
+    let stages = problem.method.scheme.stages() as f64;
+    let of = |control: usize| {
+        let all =
+            variables(&nlp, control).map(|(k, at)| slopes[at] * stages / (time[k + 1] - time[k]));
+        all.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], it| [a.min(it), b.max(it)])
+    };
+    (0..problem.controls.len()).map(of).collect()
+}
+
 /// The gradient of the Lagrangian without the multipliers of bounds.
 pub(crate) fn slopes(nlp: &mut TranscribedNlp, solution: &Solution) -> Vec<f64> {
     let rows = &solution.multipliers.constraints;
@@ -55,6 +73,15 @@ pub(crate) fn slopes(nlp: &mut TranscribedNlp, solution: &Solution) -> Vec<f64> 
     let Derivatives { mut gradient, jacobian, .. } = derivatives;
     nlp.jacobian_structure().transposed_multiply_add(&jacobian, rows, &mut gradient);
     gradient
+}
+
+/// Gives a control whose bounds are equal, which no solver sees, the multiplier that its value has:
+/// the slope.
+pub(crate) fn add_multipliers_of_fixed(nlp: &TranscribedNlp, slopes: &[f64], lower: &mut [f64]) {
+    for control in 0..nlp.problem().controls.len() {
+        let fixed = variables(nlp, control).filter(|it| nlp.variable_bounds()[it.1].is_equality());
+        fixed.for_each(|(_, at)| lower[at] = slopes[at]);
+    }
 }
 
 /// The variables that are values of a control, each with its interval; a value that two intervals

@@ -11,6 +11,7 @@ mod quadrature;
 mod trajectory;
 
 pub use lagrangian::{Hamiltonian, by_parameters};
+pub use minimum::control_slopes;
 pub use outcome::{Attempt, ChainOutcome, Limiting, Outcome};
 pub(crate) use pause::gain as gain_of_pauses;
 pub use quadrature::{integrals, sums_over_rows};

@@ -4,12 +4,12 @@
 //! after the other; each has a grid of its own.
 
 use super::lagrangian::Hamiltonian;
-use super::modes::modes;
+use super::modes::{Span, modes};
 use super::outcome::{ChainOutcome, Limiting, Outcome};
 use super::trajectory::{ControlNodes, Trajectory};
 use crate::lagrange;
 use crate::nlp::{Place, Status};
-use crate::problem::{Chain, Problem};
+use crate::problem::{Chain, Columns, Problem};
 
 /// The state on both sides of a jump.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +48,40 @@ pub fn joined(between: &Problem, chain: &Chain, outcome: &ChainOutcome) -> (Outc
     )
 }
 
+/// Puts the phases of given modes of the true system one after the other. `between` is the smoothed
+/// problem over the whole time, `modes` what each of its surfaces does.
+pub fn located(
+    between: &Problem,
+    chain: &Chain,
+    outcome: &ChainOutcome,
+    modes: Vec<Vec<Span>>,
+) -> Outcome {
+    let bare = Problem { surfaces: Vec::new(), ..between.clone() };
+    let (mut whole, _) = joined(&bare, chain, outcome);
+    let trajectory = &mut whole.trajectory;
+    trajectory.parameters.resize(between.parameters.len(), 0.0);
+    trajectory.switching = switching(between, trajectory);
+    whole.sigma = vec![0.0; between.surfaces.len()];
+    Outcome { modes, ..whole }
+}
+
+/// The functions of all surfaces at the grid points.
+fn switching(between: &Problem, trajectory: &Trajectory) -> Vec<Vec<f64>> {
+    let count = trajectory.time.len();
+    let mut points = Columns::new(between.switching.layout().point_inputs(), count);
+    let [first, last] = [trajectory.time[0], trajectory.time[count - 1]];
+    for (tau, time) in points.column_mut(0).iter_mut().zip(&trajectory.time) {
+        *tau = (time - first) / (last - first);
+    }
+    let states = between.layout.x.min(trajectory.states.len());
+    for (at, column) in trajectory.states[..states].iter().enumerate() {
+        points.column_mut(1 + at).copy_from_slice(column);
+    }
+    let mut values = Columns::new(between.switching.outputs(), count);
+    between.switching.value(&points, &trajectory.parameters, &mut values);
+    (0..between.switching.outputs()).map(|at| values.column(at).to_vec()).collect()
+}
+
 /// Of the conditions that are written, which are the last ones of the links; then of starts, which
 /// belong to the first phase.
 fn end_multipliers(between: &Problem, chain: &Chain, outcome: &ChainOutcome) -> Vec<f64> {
@@ -72,7 +106,7 @@ impl Phases<'_> {
         Trajectory {
             time: self.at_points(&|it| std::slice::from_ref(&it.time)).swap_remove(0),
             states: self.shown_states(),
-            controls: self.on_intervals(&|it| &it.controls),
+            controls: self.on_intervals(&|it| &it.controls[..self.between.controls.len()]),
             nodes: self.nodes(),
             costates: self.shown(self.at_points(&|it| &it.costates)),
             path_multipliers: self

@@ -104,7 +104,7 @@ impl Interval {
             chosen: places.chosen,
             slots: places.slots(),
             start: places.point(0.0, |state| vec![(state, 1.0)]),
-            path: places.inner_points().into_iter().chain([end.clone()]).collect(),
+            path: places.path_points(method, &end),
             means: (0..places.controls).map(|control| places.mean(control)).collect(),
             end,
             nodes,
@@ -245,6 +245,14 @@ impl Places {
     fn inner_points(&self) -> Vec<Point> {
         let inner = self.inner().into_iter();
         inner.map(|(time, place)| self.point(time, |state| vec![(place + state, 1.0)])).collect()
+    }
+
+    /// Where path constraints hold.
+    fn path_points(&self, method: &Method, end: &Point) -> Vec<Point> {
+        let is_left_out = method.path_at_nodes
+            && self.nodes.is_some_and(|nodes| nodes.last().is_some_and(|last| *last < 1.0));
+        let end = (!is_left_out).then(|| end.clone());
+        self.inner_points().into_iter().chain(end).collect()
     }
 
     fn slots(&self) -> Vec<Slot> {

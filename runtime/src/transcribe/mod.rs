@@ -224,8 +224,7 @@ fn path(problem: &Problem, interval: &Interval, matrices: &mut Matrices) -> Vec<
         let first = matrices.stages.defect_rows() + at * rows;
         let targets = (first..first + rows).map(|row| Target::Row(row, 1.0)).collect();
         let sampled = Sampled::new(problem, &problem.path, point.clone(), targets, matrices);
-        let is_end = at + 1 == interval.path.len();
-        if is_end { sampled.half_open(problem) } else { sampled }
+        if point.time == 1.0 { sampled.half_open(problem) } else { sampled }
     };
     interval.path.iter().enumerate().map(sampled).collect()
 }

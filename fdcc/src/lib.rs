@@ -38,6 +38,7 @@ pub use model::{Checked, DataFiles, Model, Value, check, check_with, text};
 pub use record::Record;
 pub use replay::Replay;
 pub use simulation::Simulation;
+pub use solve::true_optimum;
 pub use solve::{
     Compiled, Ended, Grid, Jump, Options, Part, Phases, Report, Sequence, Solution, Start, Sweep,
     optimality,

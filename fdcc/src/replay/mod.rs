@@ -1,7 +1,7 @@
 //! What a simulation takes over: controls over time, and of a solution also its parameters,
 //! unknowns, starts and method.
 
-mod piecewise;
+pub(crate) mod piecewise;
 
 pub(crate) use piecewise::pieces_of_one;
 

@@ -9,7 +9,7 @@ use fdcc_runtime::lagrange;
 
 const PIECES_OF_INTERVAL: usize = 8;
 /// Few intervals of a high order are long.
-const FEWEST_PIECES: usize = 1600;
+const FEWEST_PIECES: usize = 4000;
 
 /// Pieces in each of so many intervals.
 pub(crate) fn pieces_of_one(intervals: usize) -> usize {
@@ -17,7 +17,7 @@ pub(crate) fn pieces_of_one(intervals: usize) -> usize {
 }
 
 /// When pieces begin, and a row of controls for each; an interval is between two of the times.
-pub(super) fn pieces(
+pub(crate) fn pieces(
     record: &Record,
     nodes: &NodesRecord,
     names: &[&str],
@@ -56,7 +56,7 @@ pub(super) fn pieces(
 
 /// See [`pieces`].
 #[derive(Default)]
-pub(super) struct Pieces {
+pub(crate) struct Pieces {
     pub times: Vec<f64>,
     pub rows: Vec<Vec<f64>>,
 }

@@ -2,7 +2,9 @@
 //! [`sequences`] all sequences of jumps.
 
 mod bounds;
+mod certify;
 mod found;
+mod located;
 mod multistart;
 pub mod optimality;
 mod phases;
@@ -10,6 +12,7 @@ mod report;
 mod sequences;
 mod solution;
 mod sweep;
+pub mod true_optimum;
 
 pub use found::{Jump, Phases, Sequence};
 pub use report::{Ended, Options, Part, Report, Start};
@@ -116,7 +119,7 @@ impl Compiled {
             if !meaning.phases.is_empty() {
                 return Ok(Solution::of_phases(self.model.clone(), found));
             }
-            found.into_single()
+            return Ok(located::solution(&self.model, found.into_single(), options));
         } else {
             match options.start {
                 Start::Guess => sequences::solve(meaning, &self.problem, None, options)?,

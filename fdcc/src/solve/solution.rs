@@ -3,10 +3,12 @@
 use super::found::{Found, Jump, Phases, Sequence};
 use super::phases::Whole;
 use super::report::Ended;
+use super::true_optimum::Certificate;
 use crate::error::Error;
 use crate::model::Model;
 use crate::names::status_name;
 use crate::record::{JumpRecord, NodesRecord, Record, Settings};
+use crate::replay::piecewise::pieces;
 use crate::verification::{Verification, verify};
 use crate::warm_start::from_record;
 use fdcc_compiler::{compile_by_parameters, compile_chain_by_parameters};
@@ -59,6 +61,8 @@ pub struct Solution {
     pub sequences_left_out: bool,
     /// What the solver saw of a model with jumps.
     pub between_jumps: Option<Phases>,
+    /// What was checked of the optimum of the true system; nothing where nobody looked for one.
+    pub certificate: Option<Certificate>,
     /// Those of its phases.
     pub(super) parts: Vec<Solution>,
     /// What the solver saw of a model with phases.
@@ -77,6 +81,7 @@ impl Solution {
             sequences: found.sequences,
             sequences_left_out: found.is_cut,
             between_jumps: found.phases,
+            certificate: None,
             parts: Vec::new(),
             whole: None,
         }
@@ -167,11 +172,27 @@ impl Solution {
         (&self.problem.parameters[at].name, self.outcome.trajectory.parameters[at])
     }
 
+    /// Whether it is shown to be a local optimum of the system that was written.
+    pub fn is_certified(&self) -> bool {
+        self.certificate.as_ref().is_some_and(Certificate::is_certified)
+    }
+
+    /// Each control at many times: its nodes, and between them.
+    pub(crate) fn dense_controls(&self) -> Vec<Vec<f64>> {
+        let names: Vec<&str> = self.problem.controls.iter().map(|it| it.name.as_str()).collect();
+        let record = self.record();
+        let rows = match &record.nodes {
+            Some(nodes) => pieces(&record, nodes, &names).map(|it| it.rows).unwrap_or_default(),
+            None => Vec::new(),
+        };
+        (0..names.len()).map(|at| rows.iter().map(|row| row[at]).collect()).collect()
+    }
+
     /// Whether the smoothing widths were chosen by the solver, as small as it could.
     pub fn has_chosen_widths(&self) -> bool {
         let method = &self.problem.method;
         let is_open = method.sigma.is_none() && method.continuation.is_empty();
-        is_open && self.is_solved() && !self.outcome.sigma.is_empty()
+        is_open && self.is_solved() && !self.outcome.sigma.is_empty() && !self.is_certified()
     }
 
     /// What a replay and another solve need of it, lent.

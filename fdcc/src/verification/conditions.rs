@@ -163,10 +163,16 @@ impl<'a> Conditions<'a> {
         for (at, column) in self.columns.iter().enumerate() {
             inputs.column_mut(1 + at)[0] = extreme.state[*column];
         }
-        let terms = self.of_path(&inputs)[row][0].1;
+        // What is no violation at the state itself is rounding, and has no terms to compare with.
+        let (value, terms) = self.of_path(&inputs)[row][0];
+        let is_any = bounds.violation(value) > 0.0;
+        let (violation, part) = match is_any {
+            true => (bounds.violation(extreme.value), terms.part(extreme.value, &bounds)),
+            false => (0.0, 0.0),
+        };
         Condition {
-            violation: bounds.violation(extreme.value),
-            part: terms.part(extreme.value, &bounds),
+            violation,
+            part,
             time: Some(extreme.time),
             state: extreme.state.clone(),
             ..at_points.clone()

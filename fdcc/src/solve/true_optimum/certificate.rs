@@ -1,0 +1,108 @@
+//! What shows that a located answer is a local optimum of the system that was written: figures of
+//! the true system, each with its limit.
+
+use fdcc_runtime::solution::modes::Mode;
+
+/// Everything that was checked of a located answer.
+///
+/// ```
+/// let model = fdcc::Model::from_file("../models/block.fdc")?;
+/// let solution = model.solve(&fdcc::Options::default())?;
+/// let certificate = solution.certificate.as_ref().expect("the model has a surface");
+/// assert!(certificate.is_certified() && (solution.objective() - 65.956825710).abs() < 1e-7);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Certificate {
+    /// In the order in which they are told.
+    pub checks: Vec<Check>,
+    /// Where a surface changes its mode, in the order of time.
+    pub switches: Vec<Switch>,
+    /// What each control does from when to when.
+    pub arcs: Vec<(String, Vec<Stretch>)>,
+}
+
+/// A change of the mode of a surface.
+///
+/// ```
+/// let model = fdcc::Model::from_file("../models/block.fdc")?;
+/// let solution = model.solve(&fdcc::Options::default())?;
+/// let certificate = solution.certificate.as_ref().expect("the model has a surface");
+/// assert!(certificate.switches.iter().all(|switch| switch.surface == "slip"));
+/// # Ok::<(), fdcc::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Switch {
+    /// The surface.
+    pub surface: String,
+    /// When it happens.
+    pub time: f64,
+    /// Before it.
+    pub from: Mode,
+    /// After it.
+    pub to: Mode,
+}
+
+/// A control at a bound, or free.
+///
+/// ```
+/// let model = fdcc::Model::from_file("../models/block.fdc")?;
+/// let solution = model.solve(&fdcc::Options::default())?;
+/// let certificate = solution.certificate.as_ref().expect("the model has a surface");
+/// assert!(certificate.arcs.iter().all(|(control, arcs)| control == "F" && arcs.len() == 1));
+/// # Ok::<(), fdcc::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Stretch {
+    /// `min`, `max` or `free`.
+    pub arc: &'static str,
+    /// When it begins.
+    pub from: f64,
+    /// When it ends.
+    pub to: f64,
+}
+
+/// One figure, and what it may be at most.
+///
+/// ```
+/// let model = fdcc::Model::from_file("../models/block.fdc")?;
+/// let solution = model.solve(&fdcc::Options::default())?;
+/// let certificate = solution.certificate.as_ref().expect("the model has a surface");
+/// assert!(certificate.checks.iter().all(|check| check.figure <= check.limit));
+/// # Ok::<(), fdcc::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Check {
+    /// In one word or two.
+    pub name: &'static str,
+    /// What was measured.
+    pub figure: f64,
+    /// What it may be.
+    pub limit: f64,
+}
+
+impl Check {
+    /// Whether it is within its limit; what is not a number is not.
+    pub fn passes(&self) -> bool {
+        self.figure <= self.limit
+    }
+}
+
+impl Certificate {
+    /// Whether all checks pass.
+    pub fn is_certified(&self) -> bool {
+        !self.checks.is_empty() && self.checks.iter().all(Check::passes)
+    }
+
+    /// Where no structure could be solved, or the search was stopped from outside.
+    pub(crate) fn nothing_located(is_stopped: bool) -> Self {
+        let name = if is_stopped { "finished" } else { "located" };
+        let check = Check { name, figure: f64::INFINITY, limit: 0.0 };
+        Certificate { checks: vec![check], ..Certificate::default() }
+    }
+
+    /// A figure by its name.
+    pub fn figure(&self, name: &str) -> Option<f64> {
+        self.checks.iter().find(|check| check.name == name).map(|check| check.figure)
+    }
+}

@@ -1,0 +1,72 @@
+//! Where the solve of a structure begins: signals of an earlier answer, cut at its switches.
+
+use super::structure::Structure;
+use fdcc_compiler::Model;
+use fdcc_runtime::nlp::Start;
+use fdcc_runtime::problem::Chain;
+use fdcc_runtime::solution::Trajectory;
+use fdcc_runtime::solve::warm_start::{Earlier, from_earlier};
+
+/// Signals of a whole trajectory.
+pub(super) struct Signals<'t> {
+    pub trajectory: &'t Trajectory,
+    /// The unknowns of the model.
+    pub unknowns: Vec<f64>,
+}
+
+impl Signals<'_> {
+    pub fn start(&self, model: &Model, chain: &Chain, structure: &Structure) -> Start {
+        let phases = structure.times.windows(2).enumerate();
+        let phases: Vec<Earlier> =
+            phases.map(|(j, ends)| self.phase(model, chain, structure, j, ends)).collect();
+        from_earlier(chain, &phases)
+    }
+
+    fn phase(
+        &self,
+        model: &Model,
+        chain: &Chain,
+        structure: &Structure,
+        j: usize,
+        ends: &[f64],
+    ) -> Earlier {
+        let (problem, own) = (&chain.phases[j], self.trajectory);
+        let inside = own.time.iter().copied().filter(|time| *time > ends[0] && *time < ends[1]);
+        let times: Vec<f64> = [ends[0]].into_iter().chain(inside).chain([ends[1]]).collect();
+        let shown = model.states.len();
+        let state = |i: usize| {
+            let column = own.states.get(i).filter(|_| i < shown)?;
+            Some(times.iter().map(|time| linear(&own.time, column, *time)).collect())
+        };
+        let control = |i: usize| {
+            let column = own.controls.get(i).filter(|_| i < model.controls.len())?;
+            let middle = times.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+            Some(middle.map(|time| column[interval(&own.time, time)]).collect())
+        };
+        let unknown = |parameter: usize| {
+            let at = parameter - model.params.len();
+            match at.checked_sub(model.frees.len()) {
+                Some(switch) => structure.times.get(switch + 1).copied(),
+                None => self.unknowns.get(at).copied(),
+            }
+        };
+        let duration = ends[1] - ends[0];
+        Earlier {
+            states: (0..problem.states.len()).map(state).collect(),
+            controls: (0..problem.controls.len()).map(control).collect(),
+            unknowns: problem.unknowns.iter().map(|it| unknown(it.parameter)).collect(),
+            widths: Vec::new(),
+            times: times.iter().map(|time| (time - ends[0]) / duration).collect(),
+        }
+    }
+}
+
+fn interval(times: &[f64], time: f64) -> usize {
+    times.partition_point(|it| *it <= time).saturating_sub(1).min(times.len() - 2)
+}
+
+fn linear(times: &[f64], column: &[f64], time: f64) -> f64 {
+    let k = interval(times, time);
+    let part = (time - times[k]) / (times[k + 1] - times[k]);
+    column[k] + part * (column[k + 1] - column[k])
+}

@@ -146,7 +146,7 @@ fn reordered(text: &str, value: &Value) -> String {
 fn the_page_is_well_formed_and_needs_nothing_else() {
     let folder = folder("page", &[]);
     let block = model("block");
-    solved(&folder, &[&block, "--method", "N=40", "--out", "."]);
+    solved(&folder, &[&block, "--method", "N=40", "--method", "sigma=0.01", "--out", "."]);
     let page = std::fs::read_to_string(folder.join("block.html")).expect("the page was written");
     for outside in ["http", "src=", "href=", "<script", "@import", "url(", "NaN", "inf"] {
         assert!(!page.contains(outside), "{outside}");
@@ -177,6 +177,8 @@ fn parameters_take_units_and_settings_take_words() {
         "N=40",
         "--method",
         "scheme=midpoint",
+        "--method",
+        "sigma=0.05",
     ];
     let document = solved(&folder, &arguments);
     assert_eq!(document["params"], serde_json::json!({ "m": 0.2, "mu": 0.2 }));

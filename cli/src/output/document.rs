@@ -1,5 +1,6 @@
 //! The JSON document of a solve: the contract that people script against.
 
+use super::certificate::Certificate;
 use super::named::Named;
 use super::number::significant;
 use super::optimality::Optimality;
@@ -77,6 +78,10 @@ pub struct Document {
     /// The units of the values; absent where the model has none.
     #[serde(skip_serializing_if = "Units::is_empty")]
     pub units: Units,
+    /// What shows that it is an optimum of the true system, or why it is not shown; absent where
+    /// nobody looked for one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificate>,
     /// What contradicts that it is an optimum; absent where nothing is claimed to be one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub optimality: Option<Optimality>,
@@ -241,6 +246,7 @@ impl Document {
             starts: found.starts.iter().map(Ended::from).collect(),
             units,
             optimality: claims.then(|| Optimality::new(&found.optimality(None))),
+            certificate: found.certificate.as_ref().map(Certificate::new),
             verification: None,
         }
     }
@@ -258,6 +264,11 @@ impl Document {
             self.method.n = self.phases.0.iter().map(|(_, phase)| phase.0.method.n).sum();
         }
         self
+    }
+
+    /// Whether it is shown to be a local optimum of the true system.
+    pub fn is_certified(&self) -> bool {
+        self.certificate.as_ref().is_some_and(|it| it.certified)
     }
 
     /// Whether the replay confirms it and nothing contradicts that it is an optimum.

@@ -1,5 +1,6 @@
 //! Everything that leaves the program: types for JSON, and the two streams.
 
+pub mod certificate;
 pub mod control;
 pub mod csv;
 pub mod diagnostics;

@@ -67,6 +67,10 @@ pub fn verdict(solved: &Solved) -> String {
     for (name, phase) in &document.phases.0 {
         lines.extend(surfaces(&phase.0, &format!("{name}.")));
     }
+    if let Some(certificate) = &document.certificate {
+        lines.extend(certificate.lines(&document.units));
+        lines.extend(certificate.failure());
+    }
     lines.extend(rest::lines(solved));
     lines.extend(replayed(document));
     lines.extend(refined(solved));
@@ -112,6 +116,9 @@ fn surfaces(document: &Document, phase: &str) -> impl Iterator<Item = String> {
         let modes =
             document.surfaces.get(own).map(|spans| switching(spans, units)).unwrap_or_default();
         let name = format!("{phase}{own}");
+        if document.is_certified() {
+            return format!(" {name:<5} {modes}");
+        }
         format!(
             " {name:<5} {modes}   (sigma {}, kernel {})",
             units.width(own, *sigma),
@@ -124,6 +131,9 @@ fn surfaces(document: &Document, phase: &str) -> impl Iterator<Item = String> {
 /// true system.
 fn how(solved: &Solved) -> String {
     let Solved { solution, document } = solved;
+    if let Some(certificate) = document.certificate.as_ref().filter(|it| it.certified) {
+        return certificate.headline();
+    }
     let Solution { problem, outcome, .. } = solution;
     let status = &outcome.solution.status;
     let found = match problem.has_objective {

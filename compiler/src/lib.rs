@@ -36,7 +36,7 @@ pub use expressions::{graph, interval, kernels};
 pub use lower::{Expected, LoweredProblem};
 pub use model::{Model, Phase};
 pub use phases::{
-    Arc, Mode, PhaseOfModes, Sequences, crossings, sequences, with_modes, with_phases,
+    Arc, Mode, PhaseOfModes, Sequences, crossings, may_hold, sequences, with_modes, with_phases,
 };
 pub use settings::is_key as is_method_key;
 pub use surfaces::{Order, Smoothness, SurfaceClass, SurfaceReport, smoothness, surfaces};

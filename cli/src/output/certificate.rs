@@ -106,6 +106,7 @@ fn words(it: &Check) -> String {
         "located" => "no structure of phases could be solved".into(),
         "finished" => "the search was stopped".into(),
         "second order" => "a direction of negative curvature".into(),
+        "insertion" => "whether a hold at a switch is better could not be found out".into(),
         "holds" => "a surface that repels is held".into(),
         "replayed" => format!("the replay is off by {figure} (limit {limit})"),
         "conditions" => format!("the replay violates a condition by {figure} (limit {limit})"),

@@ -21,7 +21,7 @@ mod sequences;
 mod shares;
 
 pub use crossings::crossings;
-pub use modes::{Arc, Mode, PhaseOfModes, with_modes};
+pub use modes::{Arc, Mode, PhaseOfModes, may_hold, with_modes};
 pub use sequences::{Sequences, sequences};
 
 use crate::expressions::graph::ExprId;

@@ -44,6 +44,7 @@ pub(super) fn certificate(
         check("bounds", beyond_bounds(between, solution), REPLAYED),
         check("arcs", wrong_sign(between, located).map_or(0.0, |it| it.2.max(0.0)), WRONG_SIGN),
         check("holds", f64::from(u8::from(!is_held)), 0.0),
+        check("insertion", f64::from(u8::from(!located.is_tested)), 0.0),
         check("hamiltonian", hamiltonian(located), HAMILTONIAN),
     ];
     let switches = switches(between, solution);

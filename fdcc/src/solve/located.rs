@@ -6,7 +6,7 @@ use super::found::{Found, Phases};
 use super::report::Options;
 use super::true_optimum::{Certificate, Located, locate};
 use crate::model::Model;
-use fdcc_runtime::problem::{ControlShape, Problem};
+use fdcc_runtime::problem::{Grid, Method, Problem};
 
 /// The located optimum if it is certified; else the smoothed answer, with what was checked.
 pub(super) fn solution(model: &Model, found: Found, options: &Options) -> Solution {
@@ -49,7 +49,7 @@ fn of(model: &Model, between: &Problem, located: Located) -> Solution {
     let outcome = located.whole(between);
     let finest = located.chain.phases.iter().max_by_key(|phase| phase.method.intervals());
     let method = finest.map_or(&between.method, |phase| &phase.method).clone();
-    debug_assert_eq!(method.controls, ControlShape::Polynomial);
+    let method = Method { grid: grid(&outcome.trajectory.time), ..method };
     let problem = Problem { method, ..between.clone() };
     let mut solution = Solution::new(model.clone(), Found::new(problem, outcome));
     let replay = solution.verify().ok();
@@ -57,4 +57,10 @@ fn of(model: &Model, between: &Problem, located: Located) -> Solution {
     let Located { model: phased, chain, outcome, .. } = located;
     solution.between_jumps = Some(Phases { model: phased, chain, outcome });
     solution
+}
+
+/// The grids of all phases, one after the other.
+fn grid(time: &[f64]) -> Grid {
+    let [first, last] = [time[0], time[time.len() - 1]];
+    Grid::Mesh(time.iter().map(|it| (it - first) / (last - first)).collect())
 }

@@ -20,6 +20,7 @@ mod links;
 mod phase;
 
 use super::division::{Division, divide};
+use super::hold::approach;
 use super::shares::Shares;
 use crate::model::numbers::numbers;
 use crate::model::{Model, Phase, Place, Symbol, not_yet};
@@ -76,6 +77,18 @@ pub fn with_modes(model: &Model, phases: &[PhaseOfModes]) -> Result<Model, Vec<D
     let times = divide(&mut whole, (1..phases.len()).map(place).collect());
     let division = Division::new(&whole, times);
     Ok(Modes { division, phases }.into_model())
+}
+
+/// For each of [`Model::switches`] whether its own selector acts on `psi'`: else no choice of it holds
+/// the surface.
+pub fn may_hold(model: &Model) -> Vec<bool> {
+    let mut graph = model.graph.clone();
+    let mut acts = |surface: usize| {
+        let rate = approach(model, &mut graph, model.surfaces[surface].psi);
+        let selector = model.input_of(Symbol::Selector(surface));
+        selector.is_some_and(|it| graph.inputs_of(&[rate]).contains(&it))
+    };
+    model.switches().iter().map(|switch| switch.surfaces.clone().all(&mut acts)).collect()
 }
 
 fn refuse(model: &Model) -> Result<(), Vec<Diagnostic>> {

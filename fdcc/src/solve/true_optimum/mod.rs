@@ -47,6 +47,18 @@ pub(crate) struct Located {
     pub chain: Chain,
     pub outcome: ChainOutcome,
     pub structure: Structure,
+    /// Whether every hold that was tried could be solved.
+    pub is_tested: bool,
+}
+
+/// How a hold that was tried ended.
+enum Trial {
+    /// There is no place for one.
+    Nowhere,
+    /// No optimum was found with it.
+    Unsolved,
+    NotBetter,
+    Better(Located),
 }
 
 /// What a search needs to know.
@@ -56,6 +68,8 @@ struct Search<'s> {
     problem: &'s Problem,
     stop: &'s (dyn Fn() -> ControlFlow<Stop> + Sync),
     solves: usize,
+    /// Whether the last solve found no trajectory.
+    was_infeasible: bool,
 }
 
 /// Looks for the optimum of the true system near a smoothed solution; nothing where none is found.
@@ -65,10 +79,10 @@ pub(crate) fn locate(
     smoothed: &Outcome,
     stop: &(dyn Fn() -> ControlFlow<Stop> + Sync),
 ) -> Option<Located> {
-    let mut search = Search { model, problem, stop, solves: 0 };
+    let mut search = Search { model, problem, stop, solves: 0, was_infeasible: false };
     let structure = Structure::of(problem, smoothed);
     let first = search.repaired(structure, &smoothed.trajectory)?;
-    search.with_holds(first)
+    Some(search.with_holds(first))
 }
 
 impl Search<'_> {
@@ -109,23 +123,50 @@ impl Search<'_> {
         None
     }
 
-    /// With holds where surfaces are crossed, if that is better.
-    fn with_holds(&mut self, located: Located) -> Option<Located> {
+    /// With holds where surfaces are crossed, if that is better: all of them, and each by itself
+    /// where they cannot be solved together.
+    fn with_holds(&mut self, located: Located) -> Located {
+        match self.held(&located, None) {
+            Trial::Better(better) => return self.with_holds(better),
+            Trial::Nowhere | Trial::NotBetter => return located,
+            Trial::Unsolved => {}
+        }
+        let mut is_tested = true;
+        for place in 0.. {
+            match self.held(&located, Some(place)) {
+                Trial::Better(better) => return self.with_holds(better),
+                Trial::Nowhere => break,
+                Trial::NotBetter => {}
+                Trial::Unsolved => is_tested = false,
+            }
+        }
+        Located { is_tested, ..located }
+    }
+
+    fn held(&mut self, located: &Located, only: Option<usize>) -> Trial {
         let whole = located.whole(self.problem);
-        let Some(structure) = repair::with_holds(self.model, &located, &whole) else {
-            return Some(located);
+        let Some(structure) = repair::with_holds(self.model, located, &whole, only) else {
+            return Trial::Nowhere;
         };
         let is_better = |held: &Located| {
-            let [own, its] = [held, &located].map(|it| it.outcome.solution.objective);
+            let [own, its] = [held, located].map(|it| it.outcome.solution.objective);
             own < its - GAIN * its.abs().max(1.0)
         };
-        let held = self.solve(structure, &whole.trajectory).filter(is_better);
-        let better = held.and_then(|it| self.mended(it)).filter(is_better);
-        if let Some(better) = better { self.with_holds(better) } else { Some(located) }
+        match self.solve(structure, &whole.trajectory) {
+            // Nothing holds the surface there.
+            None if self.was_infeasible => Trial::NotBetter,
+            None => Trial::Unsolved,
+            Some(held) if !is_better(&held) => Trial::NotBetter,
+            Some(held) => match self.mended(held) {
+                Some(mended) if is_better(&mended) => Trial::Better(mended),
+                _ => Trial::NotBetter,
+            },
+        }
     }
 
     fn solve(&mut self, structure: Structure, from: &Trajectory) -> Option<Located> {
         self.solves += 1;
+        self.was_infeasible = false;
         if self.solves > MOST_SOLVES || (self.stop)().is_break() {
             return None;
         }
@@ -136,7 +177,8 @@ impl Search<'_> {
         let signals = Signals { trajectory: from, unknowns: unknowns.collect() };
         let start = signals.start(self.model, &chain, &structure);
         let outcome = solve_chain(&chain, Some(start), &mut |_, _| (self.stop)()).ok()?;
-        let mut located = Located { model, chain, outcome, structure };
+        self.was_infeasible = outcome.solution.status == Status::Infeasible;
+        let mut located = Located { model, chain, outcome, structure, is_tested: true };
         located.structure.times = located.times();
         (located.outcome.solution.status == Status::Solved).then_some(located)
     }

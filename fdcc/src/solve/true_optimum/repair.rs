@@ -2,7 +2,7 @@
 
 use super::Located;
 use super::structure::{Structure, width};
-use fdcc_compiler::{Arc, Mode, Model, PhaseOfModes};
+use fdcc_compiler::{Arc, Mode, Model, PhaseOfModes, may_hold};
 use fdcc_runtime::problem::{Columns, Problem};
 use fdcc_runtime::solution::{Trajectory, control_slopes};
 use fdcc_runtime::solve::Outcome;
@@ -109,9 +109,14 @@ fn slopes(problem: &Problem, trajectory: &Trajectory, row: usize, control: usize
     }
 }
 
-/// With a hold wherever a surface is crossed, and where the motion begins or ends on a surface;
-/// nothing where there is no such place.
-pub(super) fn with_holds(model: &Model, located: &Located, whole: &Outcome) -> Option<Structure> {
+/// With a hold wherever a surface is crossed, and where the motion begins or ends on a surface, or
+/// with the `only`th of these alone; nothing where there is no such place.
+pub(super) fn with_holds(
+    model: &Model,
+    located: &Located,
+    whole: &Outcome,
+    only: Option<usize>,
+) -> Option<Structure> {
     let structure = &located.structure;
     let [first, last] = structure.ends();
     let tried = TRIED * (last - first);
@@ -120,17 +125,20 @@ pub(super) fn with_holds(model: &Model, located: &Located, whole: &Outcome) -> O
         other.phases.push(phase);
         other.times.push(until);
     };
+    let mut places = 0..;
+    let mut is_asked =
+        |_: &PhaseOfModes| places.next().is_some_and(|at| only.is_none_or(|only| only == at));
     let count = structure.phases.len();
     for j in 0..count {
         let own = &structure.phases[j];
         let length = structure.times[j + 1] - structure.times[j];
         let step = tried.min(0.2 * length);
-        if let Some(held) = begins_on(model, located, whole, j) {
+        if let Some(held) = begins_on(model, located, whole, j).filter(&mut is_asked) {
             add(held, structure.times[j] + step);
         }
-        let crossed = structure.phases.get(j + 1).and_then(|next| crossing(own, next));
+        let crossed = structure.phases.get(j + 1).and_then(|next| crossing(model, own, next));
         let end = ends_on(model, located, whole, j).filter(|_| j + 1 == count).or(crossed);
-        match end {
+        match end.filter(&mut is_asked) {
             Some(held) => {
                 add(own.clone(), structure.times[j + 1] - step);
                 add(held, structure.times[j + 1]);
@@ -164,8 +172,8 @@ fn held_where(
     is_zero: &dyn Fn(usize) -> bool,
 ) -> Option<PhaseOfModes> {
     let mut held = phase.clone();
-    for switch in 0..model.switches().len() {
-        if is_zero(switch) {
+    for (switch, may_hold) in may_hold(model).into_iter().enumerate() {
+        if may_hold && is_zero(switch) {
             held.modes[switch] = Mode::Held;
         }
     }
@@ -174,10 +182,11 @@ fn held_where(
 }
 
 /// A hold between two phases on different sides of a surface.
-fn crossing(before: &PhaseOfModes, after: &PhaseOfModes) -> Option<PhaseOfModes> {
+fn crossing(model: &Model, before: &PhaseOfModes, after: &PhaseOfModes) -> Option<PhaseOfModes> {
     let mut held = before.clone();
-    for (mode, next) in held.modes.iter_mut().zip(&after.modes) {
-        if *mode != *next && *mode != Mode::Held && *next != Mode::Held {
+    let modes = held.modes.iter_mut().zip(&after.modes).zip(may_hold(model));
+    for ((mode, next), may_hold) in modes {
+        if may_hold && *mode != *next && *mode != Mode::Held && *next != Mode::Held {
             *mode = Mode::Held;
         }
     }

@@ -58,7 +58,7 @@ enum Trial {
     /// No optimum was found with it.
     Unsolved,
     NotBetter,
-    Better(Located),
+    Better(Box<Located>),
 }
 
 /// What a search needs to know.
@@ -127,14 +127,14 @@ impl Search<'_> {
     /// where they cannot be solved together.
     fn with_holds(&mut self, located: Located) -> Located {
         match self.held(&located, None) {
-            Trial::Better(better) => return self.with_holds(better),
+            Trial::Better(better) => return self.with_holds(*better),
             Trial::Nowhere | Trial::NotBetter => return located,
             Trial::Unsolved => {}
         }
         let mut is_tested = true;
         for place in 0.. {
             match self.held(&located, Some(place)) {
-                Trial::Better(better) => return self.with_holds(better),
+                Trial::Better(better) => return self.with_holds(*better),
                 Trial::Nowhere => break,
                 Trial::NotBetter => {}
                 Trial::Unsolved => is_tested = false,
@@ -158,7 +158,7 @@ impl Search<'_> {
             None => Trial::Unsolved,
             Some(held) if !is_better(&held) => Trial::NotBetter,
             Some(held) => match self.mended(held) {
-                Some(mended) if is_better(&mended) => Trial::Better(mended),
+                Some(mended) if is_better(&mended) => Trial::Better(Box::new(mended)),
                 _ => Trial::NotBetter,
             },
         }

@@ -8,7 +8,9 @@ use crate::failure::Failure;
 use crate::output::document::{Document, Seconds};
 use crate::output::named::Named;
 use crate::output::optimality::on_the_true_system;
-use crate::output::{self, gradient as gradients, html, saved, simulation as simulations};
+use crate::output::rows::Row;
+use crate::output::{self, gradient as gradients, saved, simulation as simulations};
+use crate::page::notebook;
 use fdcc::{Gradient, Model, Record, Simulation, Solution};
 use fdcc_grammar::{Diagnostic, SourceFile};
 use std::path::Path;
@@ -37,7 +39,7 @@ impl Answer {
     fn document(&self) -> &Document {
         self.document.get_or_init(|| {
             let mut document = document(&self.solution, self.seconds);
-            if self.solution.is_solved() {
+            if self.solution.status().is_solved() {
                 document.sensitivities = Named::of(self.solution.sensitivities());
                 document.replay(&self.solution, USUAL_GAP);
             }
@@ -63,9 +65,10 @@ impl Answer {
         output::json(self.document())
     }
 
-    /// What it looks like, as a part of an HTML page: a table, and a plot of each signal.
+    /// What it looks like, as a part of an HTML page: what is certain of it, and a plot of each state
+    /// and control.
     pub fn html(&self) -> String {
-        html::fragment(self.document())
+        notebook::fragment(&self.json())
     }
 
     /// What the replay says of it, and what contradicts that it is an optimum.
@@ -94,6 +97,16 @@ impl Saved {
     pub fn record(&self) -> Record<'_> {
         self.0.record()
     }
+}
+
+/// What stands in a row of `fdcc sweep --json` of a solution, but for what was swept; `seconds` are
+/// those of compiling and of solving. Where `gap` is given it is replayed, as with `--confirmed`.
+pub fn row(solution: &Solution, [compile, solve]: [f64; 2], gap: Option<f64>) -> String {
+    let mut document = document(solution, Seconds { compile, solve, total: compile + solve });
+    if let Some(gap) = gap.filter(|_| solution.status().is_solved()) {
+        document.replay(solution, gap);
+    }
+    output::json(&Row::new(&[], &document, gap.is_some()).scalars)
 }
 
 /// Diagnostics as `fdcc check` draws them, without colours.

@@ -9,11 +9,14 @@ mod failure;
 mod input;
 mod model;
 mod output;
+mod page;
 mod report;
 mod solved;
+mod sweep;
+mod version;
 mod watch;
 
-pub use answers::{Answer, Saved, diagnostics, drawn, gradient, simulation};
+pub use answers::{Answer, Saved, diagnostics, drawn, gradient, row, simulation};
 
 use std::process::ExitCode;
 
@@ -22,7 +25,8 @@ use exit::Exit;
 
 /// Optimal control of systems with friction, switches and impacts.
 #[derive(Parser)]
-#[command(name = "fdcc", version, arg_required_else_help = true)]
+#[command(name = "fdcc", version = version::VERSION, long_version = version::LONG.as_str())]
+#[command(arg_required_else_help = true)]
 struct CommandLine {
     #[command(subcommand)]
     command: commands::Command,

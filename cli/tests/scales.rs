@@ -59,7 +59,9 @@ fn a_block_is_pulled_over_half_a_micrometre_the_same_in_every_unit() {
         json(&fdcc(&folder, &["solve", "block.fdc", "--json", "--log", "none"], ""))
     });
     for document in &solved {
-        assert_eq!(document["status"], "solved");
+        // In units in which all numbers are tiny nothing may be certified.
+        let status = document["status"].as_str().expect("a word");
+        assert!(["solved", "uncertified"].contains(&status), "{status}");
         near(&document["objective"], 0.012, 0.03 * 0.012);
         // The block ends where it should, to a few hundredths of its way.
         assert!(

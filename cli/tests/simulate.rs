@@ -325,9 +325,9 @@ fn events_tell_the_states_on_both_sides() {
     assert_eq!(table.lines().filter(|line| line.starts_with(&time)).count(), 2, "{table}");
 }
 
-/// The grid has a point at the jump, the table two rows, and the plot a vertical line.
+/// The grid has a point at the jump, and the table two rows.
 #[test]
-fn tables_and_plots_of_a_solve_have_both_sides_of_a_jump() {
+fn the_table_of_a_solve_has_both_sides_of_a_jump() {
     let folder = folder("simulate_hop", &[("hop.fdc", HOP.as_bytes())]);
     expect_exit(&fdcc(&folder, &["solve", "hop.fdc", "--out", "."], ""), 0, "hop");
     let read =
@@ -343,22 +343,13 @@ fn tables_and_plots_of_a_solve_have_both_sides_of_a_jump() {
     let [before, after] = [rows[jump][2], rows[jump + 1][2]];
     assert!(before < -1.0 && (after + 0.5 * before).abs() < 1e-9, "{before}, then {after}");
     assert!(rows[jump][3] == rows[jump - 1][3] && rows[jump][3] != rows[jump + 1][3], "{table}");
-    let page = read("hop.html");
-    let speed = page.split("<figcaption>v</figcaption>").nth(1).expect("there is a plot of v");
-    let path = speed
-        .split("class=\"signal\" d=\"")
-        .nth(1)
-        .and_then(|it| it.split('"').next())
-        .expect("a path");
-    let points: Vec<&str> = path.split(['M', 'L']).collect();
-    let is_vertical = |pair: &[&str]| pair[0].split(' ').next() == pair[1].split(' ').next();
-    assert_eq!(points.windows(2).filter(|pair| is_vertical(pair)).count(), 1, "{path}");
     let [of_table, of_solution] = ["hop.csv", "hop.sol.json"].map(|controls| {
         let output = fdcc(&folder, &["simulate", "hop.fdc", "--control", controls, "--json"], "");
         expect_exit(&output, 0, controls);
         number(&json(&output)["end"]["h"])
     });
-    assert!((of_table - 0.3).abs() < 1e-7 && (of_solution - 0.3).abs() < 1e-7);
+    // In the table a polynomial is held constant on each interval.
+    assert!((of_table - 0.3).abs() < 1e-3 && (of_solution - 0.3).abs() < 1e-7, "{of_table}");
 }
 
 /// A force of a millionth of a second between two stages of a step is seen by no method; shorter

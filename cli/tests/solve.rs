@@ -143,27 +143,6 @@ fn reordered(text: &str, value: &Value) -> String {
 }
 
 #[test]
-fn the_page_is_well_formed_and_needs_nothing_else() {
-    let folder = folder("page", &[]);
-    let block = model("block");
-    solved(&folder, &[&block, "--method", "N=40", "--method", "sigma=0.01", "--out", "."]);
-    let page = std::fs::read_to_string(folder.join("block.html")).expect("the page was written");
-    for outside in ["http", "src=", "href=", "<script", "@import", "url(", "NaN", "inf"] {
-        assert!(!page.contains(outside), "{outside}");
-    }
-    let mut open = Vec::new();
-    for tag in page.split('<').skip(1).map(|rest| rest.split('>').next().expect("a tag")) {
-        match tag.strip_prefix('/') {
-            Some(name) => assert_eq!(open.pop(), Some(name), "closed out of order"),
-            None if tag.starts_with('!') || tag.ends_with('/') => {}
-            None => open.push(tag.split(' ').next().expect("a name")),
-        }
-    }
-    assert!(open.is_empty(), "{open:?} is not closed");
-    assert!(page.contains("class=\"held\"") && page.contains("NOT CONFIRMED on the true system"));
-}
-
-#[test]
 fn parameters_take_units_and_settings_take_words() {
     let folder = folder("overrides", &[]);
     let block = model("block");
@@ -217,12 +196,19 @@ fn a_warm_start_begins_at_the_earlier_solution_on_any_grid() {
     }
 }
 
-/// `turbo` names no width: the second solve begins with that which the first chose.
+/// `ridge` names no width, and nothing certifies its optimum: the second solve begins with that which the first chose.
 #[test]
 fn a_warm_start_takes_the_widths_that_were_chosen() {
-    let (folder, turbo) = (folder("chosen", &[]), model("turbo"));
-    let cold = solved(&folder, &[&turbo, "--method", "N=80", "--out", "."]);
-    let warm = solved(&folder, &[&turbo, "--method", "N=80", "--warm", "turbo.sol.json"]);
+    let (folder, ridge) = (folder("chosen", &[]), classic("switched/ridge"));
+    let uncertified = |more: &[&str]| {
+        let first = ["solve", "--json", "--log", "none", &ridge, "--method", "N=80"];
+        let output = fdcc(&folder, &[&first[..], more].concat(), "");
+        expect_exit(&output, 2, "uncertified");
+        assert_eq!(json(&output)["status"], "uncertified");
+        json(&output)
+    };
+    let cold = uncertified(&["--out", "."]);
+    let warm = uncertified(&["--warm", "ridge.sol.json"]);
     assert_eq!(cold["method"]["sigmas"], warm["method"]["sigmas"]);
     let number = |document: &Value, key: &str| document[key].as_f64().expect("a number");
     assert!((number(&cold, "objective") - number(&warm, "objective")).abs() < 1e-6);
@@ -230,9 +216,9 @@ fn a_warm_start_takes_the_widths_that_were_chosen() {
     assert!(after < 0.5 * before, "{after} iterations instead of {before}");
     // A width that somebody named is not taken: it may be a wide one.
     let wide =
-        solved(&folder, &[&turbo, "--method", "N=80", "--method", "sigma=0.5", "--out", "."]);
+        solved(&folder, &[&ridge, "--method", "N=80", "--method", "sigma=0.5", "--out", "."]);
     assert!((number(&cold, "objective") - number(&wide, "objective")).abs() > 1e-3);
-    let warm = solved(&folder, &[&turbo, "--method", "N=80", "--warm", "turbo.sol.json"]);
+    let warm = uncertified(&["--warm", "ridge.sol.json"]);
     assert!((number(&cold, "objective") - number(&warm, "objective")).abs() < 1e-6);
 }
 
@@ -255,8 +241,10 @@ fn the_table_is_as_long_as_asked_for() {
 fn several_starts_are_listed_and_the_best_is_kept() {
     let folder = folder("starts", &[]);
     let turbo = model("turbo");
-    let arguments = ["solve", &turbo, "--method", "N=40", "--starts", "3", "--seed", "5", "--json"];
-    let output = fdcc(&folder, &arguments, "");
+    // With a width that is named, what is listed and what is kept solve the same problem.
+    let method = ["--method", "N=40", "--method", "sigma=0.05"];
+    let arguments = ["solve", &turbo, "--starts", "3", "--seed", "5", "--json"];
+    let output = fdcc(&folder, &[&arguments[..], &method].concat(), "");
     expect_exit(&output, 0, "starts");
     let said = stderr(&output);
     let objectives: Vec<f64> = said
@@ -309,8 +297,8 @@ fn exit_codes_and_words_are_those_of_the_contract() {
         (&["timeless.fdc"], 1, "FDC0407"),
         (&["waits.fdc"], 1, "FDC0408"),
         (&["waits.fdc", "--set", "goal=1"], 0, "global optimum"),
-        (&[&bounce], 0, "jumps bounce at t = 0.547"),
-        (&[&bounce, "--method", "scheme=midpoint"], 0, "confirmed on the true system"),
+        (&[&bounce], 0, "jumps bounce at t = 0.548709"),
+        (&[&bounce, "--method", "scheme=midpoint"], 0, "local optimum of the true system"),
         (
             &[&bounce, "--warm", "other.sol.json"],
             4,
@@ -459,12 +447,12 @@ fn a_solution_with_jumps_is_a_warm_start() {
         json(&output)
     };
     let cold = solve(&["--out", "."]);
-    let page = std::fs::read_to_string(folder.join("bounce.html")).expect("it was written");
-    assert!(page.contains("<td>jump bounce</td><td>at t = 0.54870837"), "{page}");
     let near = solve(&["--set", "e=0.81"]);
     let warm = solve(&["--set", "e=0.81", "--warm", "bounce.sol.json", "--method", "N=200"]);
+    // Those of the search for the true optimum, which has a start of its own, are not counted.
+    let iterations = |it: &Value| number(&it["sequences"][0]["iterations"]);
     let [cold, near, warm] =
-        [cold, near, warm].map(|it| (number(&it["objective"]), number(&it["iterations"]), it));
+        [cold, near, warm].map(|it| (number(&it["objective"]), iterations(&it), it));
     assert!((near.0 - warm.0).abs() < 1e-6 * near.0 && near.0 < cold.0, "{} {}", near.0, warm.0);
     assert!(warm.1 < 0.7 * near.1, "{} iterations instead of {}", warm.1, near.1);
     assert_eq!(warm.2["jumps"][0]["jump"], "bounce");
@@ -478,7 +466,8 @@ fn a_solution_with_jumps_is_a_warm_start() {
 #[test]
 fn where_friction_alone_has_to_bring_something_to_rest_exactly_that_is_said_and_helps() {
     const SLED: &str = include_str!("../../tests/right/sled_on_ice.fdc");
-    let advice = "end abs(slip) <= 0.001";
+    const SMOOTHED: [&str; 6] = ["solve", "--log", "none", "--no-verify", "--method", "sigma=0.01"];
+    let advice = "end abs(slip) <= 0.0004";
     let [followed, free] = [advice, ""].map(|end| SLED.replace("end v == 0", end));
     let folder = folder(
         "rest",
@@ -493,8 +482,7 @@ fn where_friction_alone_has_to_bring_something_to_rest_exactly_that_is_said_and_
         (&["followed.fdc"], 0, false),
         (&["free.fdc", "--method", "max_iter=3"], 2, false),
     ] {
-        let output =
-            fdcc(&folder, &[&["solve", "--log", "none", "--no-verify"], arguments].concat(), "");
+        let output = fdcc(&folder, &[&SMOOTHED[..], arguments].concat(), "");
         expect_exit(&output, code, &format!("{arguments:?}"));
         assert_eq!(stdout(&output).contains(advice), is_said, "{arguments:?}: {}", stdout(&output));
     }

@@ -82,17 +82,78 @@ fn the_answer_does_not_depend_on_the_number_of_threads() {
     assert_eq!(one, rows("4"));
 }
 
+/// Keys of the method leave the parameters as they are: it begins where `solve` does.
 #[test]
 fn a_row_is_what_solve_finds() {
     let folder = folder("sweep_solve", &[]);
     let racecar = model("racecar");
-    let swept = json(&fdcc(&folder, &["sweep", &racecar, "N=40", "w=0.4", "--json"], ""));
-    let arguments = ["solve", &racecar, "--method", "N=40", "--set", "w=0.4", "--json"];
+    let swept = json(&fdcc(&folder, &["sweep", &racecar, "N=40", "kernel=sqrt", "--json"], ""));
+    let arguments = ["solve", &racecar, "--method", "N=40", "--json"];
     let solved = json(&fdcc(&folder, &arguments, ""));
     for field in ["status", "objective", "free", "iterations", "kkt_error", "constraint_violation"]
     {
         assert_eq!(swept[0][field], solved[field], "{field}");
     }
+}
+
+/// `goal^2`, whatever else is in the sweep.
+#[test]
+fn ranges_and_all_combinations_are_rows() {
+    let rows = |arguments: &[&str]| {
+        let arguments = [&["sweep", "ramp.fdc", "--json"], arguments].concat();
+        let output = fdcc(&ramp("sweep_product"), &arguments, "");
+        expect_exit(&output, 0, &format!("{arguments:?}"));
+        let rows = json(&output);
+        let row = |row: &Value| {
+            let (goal, objective) = (number(&row["swept"]["goal"]), number(&row["objective"]));
+            assert!((objective - goal * goal).abs() < 1e-6, "{row}");
+            (goal, number(&row["swept"]["N"]) as usize)
+        };
+        rows.as_array().expect("rows").iter().map(row).collect::<Vec<_>>()
+    };
+    assert_eq!(rows(&["goal=0.5:0.1:0.7", "N=4"]), [(0.5, 4), (0.6, 4), (0.7, 4)]);
+    let all = [(1.0, 4), (1.0, 8), (2.0, 4), (2.0, 8), (3.0, 4), (3.0, 8)];
+    assert_eq!(rows(&["goal=1:1:3", "N=4,8", "--product"]), all);
+}
+
+#[test]
+fn the_values_may_stand_in_a_file() {
+    let table = "goal,N\n1,4\n\"200[cm]\",8\n";
+    let lines = "{\"goal\": 1, \"N\": 4}\n{\"N\": 8, \"goal\": \"200[cm]\"}\n";
+    let text = RAMP.replace("goal = 1", "goal = 1 [m]");
+    let files = [("ramp.fdc", &*text), ("a.csv", table), ("a.jsonl", lines), ("b.csv", "goal\n")];
+    let folder = folder("sweep_values", &files.map(|(name, text)| (name, text.as_bytes())));
+    let rows = |file: &str| {
+        let arguments = ["sweep", "ramp.fdc", "scheme=euler", "--values", file, "--json"];
+        let output = fdcc(&folder, &arguments, "");
+        expect_exit(&output, 0, file);
+        without_seconds(json(&output))
+    };
+    let found = rows("a.csv");
+    assert_eq!(found, rows("a.jsonl"));
+    assert_eq!(found[1]["swept"], json!({"goal": 2.0, "N": 8, "scheme": "euler"}));
+    assert!((number(&found[1]["objective"]) - 4.0).abs() < 1e-6, "{found}");
+    let wrong = fdcc(&folder, &["sweep", "ramp.fdc", "--values", "b.csv"], "");
+    expect_exit(&wrong, 4, "no cases");
+    assert!(stderr(&wrong).contains("no case below the names"), "{}", stderr(&wrong));
+}
+
+/// A row alone is what it is among others, and costs less than from the guess.
+#[test]
+fn a_row_begins_at_the_solution_for_the_parameters_of_the_model() {
+    let (folder, block) = (folder("sweep_base", &[]), model("block"));
+    let rows = |values: &str| {
+        let arguments = ["sweep", &block, values, "sigma=0.1", "N=50", "--json"];
+        without_seconds(json(&fdcc(&folder, &arguments, "")))
+    };
+    let (all, alone) = (rows("mu=0.25,0.5,0.2"), rows("mu=0.2"));
+    assert_eq!(all[2], alone[0]);
+    let arguments = ["solve", &block, "--set", "mu=0.2", "--method", "sigma=0.1"];
+    let arguments = [&arguments[..], &["--method", "N=50", "--json"]].concat();
+    let guessed = json(&fdcc(&folder, &arguments, ""));
+    let difference = number(&alone[0]["objective"]) / number(&guessed["objective"]) - 1.0;
+    assert!(difference.abs() < 1e-6, "{difference}");
+    assert!(number(&alone[0]["iterations"]) < number(&guessed["iterations"]) / 2.0, "{alone}");
 }
 
 #[test]
@@ -115,20 +176,6 @@ fn a_continued_sweep_starts_from_the_row_before() {
     let (apart, continued) = (iterations(&[]), iterations(&["--continue"]));
     assert_eq!(apart[0], continued[0]);
     assert!(continued[1] < apart[1] / 2.0, "the same problem again: {continued:?} and {apart:?}");
-}
-
-#[test]
-fn each_row_has_its_files() {
-    let folder = ramp("sweep_files");
-    expect_exit(&fdcc(&folder, &["sweep", "ramp.fdc", "goal=1,2", "--out", "all"], ""), 0, "sweep");
-    for row in 1..=2 {
-        let text = std::fs::read_to_string(folder.join(format!("all/ramp.{row}.sol.json")))
-            .expect("a file");
-        let saved: Value = serde_json::from_str(&text).expect("JSON");
-        assert_eq!(number(&saved["params"]["goal"]), f64::from(row));
-        assert!(folder.join(format!("all/ramp.{row}.csv")).exists());
-        assert!(folder.join(format!("all/ramp.{row}.html")).exists());
-    }
 }
 
 /// The lists of the model, in the unit that stands behind the last number.
@@ -163,6 +210,12 @@ fn wrong_lists_are_explained() {
         (&[], 3, "write a `sweep` block"),
         (&["goal=1", "--jobs", "0"], 3, "--jobs"),
         (&["goal=1", "--jobs", "2", "--continue"], 3, "cannot be used with"),
+        (&["goal=1:-1:2"], 3, "from 1 in steps of -1 nobody gets to 2"),
+        (&["goal=1:2"], 3, "FIRST:STEP:LAST"),
+        (&["goal=1", "--part", "1/2"], 3, "--out"),
+        (&["goal=1", "--part", "3/2", "--out", "x"], 3, "as in 1/4 to 4/4"),
+        (&["--product", "--values", "x.csv"], 3, "cannot be used with"),
+        (&["--values", "missing.csv"], 4, "missing.csv"),
         (&["goal=1,2", "--warm", "missing.json"], 4, "missing.json cannot be read"),
     ];
     for (lists, code, words) in cases {

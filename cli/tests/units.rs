@@ -40,7 +40,7 @@ fn spans_widths_and_axes_are_in_declared_units() {
         verdict.lines().find(|line| line.starts_with(" slip")).expect("a line of the surface");
     assert!(slip.contains(" ms   (sigma 0.5 mm/s, kernel"), "{slip}");
     let page = std::fs::read_to_string(folder.join("block.html")).expect("a page");
-    for told in ["sigma 0.5 mm/s", ">2000 ms<", "x [mm]"] {
+    for told in ["0.5 mm/s around slip", "\"label\":\"t [ms]\"", "x <span class=\"unit\">[mm]<"] {
         assert!(page.contains(told), "{told}");
     }
     let text = std::fs::read_to_string(folder.join("block.sol.json")).expect("a document");

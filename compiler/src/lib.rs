@@ -23,10 +23,13 @@ pub mod units;
 pub use analyze::repair::repair;
 pub use analyze::sensitivity_query::check_with_objective;
 pub use analyze::{Analysis, Checked, analyze, analyze_with, check, check_with};
+pub use compile::alike::Alike;
 pub use compile::chain::{
     ChainCode, ChainExpectations, chain_expectations, compile_chain, compile_chain_by_parameters,
+    compile_chain_like,
 };
 pub use compile::dump::{Stage, dump};
+pub use compile::residuals::{Residuals, residuals};
 pub use compile::{Expectations, expectations};
 pub use compile::{ProblemCode, compile, compile_by_parameters};
 pub use compile::{compile_sensitivities, compile_simulation, compile_smoothed};
@@ -34,9 +37,10 @@ pub use data::{Files, Table};
 pub use expressions::graph::builtins;
 pub use expressions::{graph, interval, kernels};
 pub use lower::{Expected, LoweredProblem};
-pub use model::{Model, Phase};
+pub use model::{Model, Phase, Switch};
 pub use phases::{
-    Arc, Mode, PhaseOfModes, Sequences, crossings, may_hold, sequences, with_modes, with_phases,
+    Arc, Limit, Mode, PhaseOfModes, Point, Sequences, between_jumps, crossings, ends_at,
+    hamiltonian, is_uncontrolled, limits, may_hold, sequences, with_modes, with_phases, with_times,
 };
 pub use settings::is_key as is_method_key;
 pub use surfaces::{Order, Smoothness, SurfaceClass, SurfaceReport, smoothness, surfaces};

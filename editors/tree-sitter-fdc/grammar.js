@@ -1,7 +1,7 @@
 // The syntax of `.fdc` models for editors. Its rules have the names of those in `grammar/src/fdc.pest`, which says what a model is;
 // every model of the repository is read by both. Words of items stand in `../words.json`, which the compiler writes.
 
-const { items, keywords } = require("../words.json");
+const { items, keywords, clauses } = require("../words.json");
 
 const PRECEDENCE = { sum: 1, product: 2, sign: 3, power: 4, quantity: 5, derivative: 6 };
 
@@ -10,7 +10,7 @@ const block = (rule) => seq("{", repeat(rule), "}");
 
 // An item of the language: a rule whose first word is one of the list.
 const item = (word, ...rest) => {
-  if (!items.includes(word)) throw new Error(`${word} is no item of the language`);
+  if (!items.includes(word) && !clauses.includes(word)) throw new Error(`${word} is no item of the language`);
   return seq(word, ...rest);
 };
 
@@ -37,7 +37,7 @@ module.exports = grammar({
     _item: ($) =>
       choice(
         $.parameter, $.constant, $.definition, $.function, $.data, $.free, $.time, $.state, $.control, $.surface,
-        $.dynamics, $.metric, $.jump, $.start, $.end, $.path, $.objective, $.guess, $.phase, $.link, $.method, $.sweep,
+        $.dynamics, $.metric, $.jump, $.start, $.end, $.at, $.path, $.objective, $.fit, $.guess, $.phase, $.link, $.method, $.sweep,
         $.report, $.expect,
       ),
 
@@ -85,10 +85,14 @@ module.exports = grammar({
 
     start: ($) => item("start", $.condition),
     end: ($) => item("end", $.condition),
+    at: ($) => item("at", field("time", $._expression), ":", $.condition),
     path: ($) => item("path", optional(seq(field("name", $.name), ":")), $.condition),
     condition: ($) => seq($._expression, $.relation, $._expression, optional(seq($.relation, $._expression))),
     relation: (_) => choice("<=", ">=", "=="),
     objective: ($) => choice(item("minimize", $._expression), item("maximize", $._expression)),
+
+    fit: ($) => item("fit", field("data", $.name), ":", list($.fitted)),
+    fitted: ($) => seq($._expression, optional(seq("=", field("column", $.name))), "sd", $._expression),
 
     // ---- Guess, phases, method, report, expect ----
 

@@ -1,7 +1,7 @@
 //! Independent pieces of work on several threads.
 
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, OnceLock};
 
 /// Does independent pieces of work, some at the same time; how many makes no difference to their
 /// results.
@@ -20,7 +20,10 @@ pub struct Executor {
 impl Default for Executor {
     /// As many threads as there are processors.
     fn default() -> Self {
-        Executor::threads(std::thread::available_parallelism().map_or(1, |count| count.get()))
+        // To ask the system takes as long as a few iterations of a small problem.
+        static PROCESSORS: OnceLock<usize> = OnceLock::new();
+        let count = || std::thread::available_parallelism().map_or(1, |count| count.get());
+        Executor::threads(*PROCESSORS.get_or_init(count))
     }
 }
 

@@ -16,11 +16,13 @@
 //! status. Nothing here prints, and files are read by [`Model::from_file`] and [`DataFiles`] alone.
 
 mod error;
+mod estimates;
 mod executor;
 mod expectations;
 mod gradient;
 mod model;
 pub mod names;
+mod plant;
 pub mod record;
 mod replay;
 mod simulation;
@@ -29,23 +31,26 @@ mod verification;
 mod warm_start;
 
 pub use error::Error;
+pub use estimates::{Estimate, Estimates, Residual};
 pub use executor::Executor;
 pub use expectations::{Checked as Expectation, Outcome as Expected, Sides};
 pub use fdcc_runtime::nlp::{Status, Stop};
-pub use fdcc_runtime::simulate::{Controls, Options as Accuracy};
+pub use fdcc_runtime::simulate::{Controls, Options as Accuracy, Polynomials};
 pub use gradient::{By, Exact, Gradient, NotBy, Stepped, by_names};
 pub use model::{Checked, DataFiles, Model, Value, check, check_with, text};
+pub use plant::Plant;
 pub use record::Record;
 pub use replay::Replay;
 pub use simulation::Simulation;
 pub use solve::true_optimum;
 pub use solve::{
-    Compiled, Ended, Grid, Jump, Options, Part, Phases, Report, Sequence, Solution, Start, Sweep,
-    optimality,
+    Case, Cases, Compiled, Controller, Ended, Grid, Jump, Options, Part, Phases, Report, Sequence,
+    Solution, Start, Sweep, optimality,
 };
 pub use verification::{Condition, Gap, LinkGap, Stay, TIME_OF, Verification, modes};
 
 /// The code of the page about the library.
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/library.md")]
-struct Page;
+#[doc = include_str!("../../docs/real-time.md")]
+struct Pages;

@@ -97,10 +97,14 @@ pub enum ItemKind {
     Start { condition: Condition },
     /// `end condition`
     End { condition: Condition },
+    /// `at time: condition`
+    At { time: Expr, condition: Condition },
     /// `path name: condition`
     Path { name: Option<Ident>, condition: Condition },
     /// `minimize expr` or `maximize expr`
     Objective { sense: Sense, keyword: Span, value: Expr },
+    /// `fit data: expr = column sd expr, expr sd expr`
+    Fit { keyword: Span, data: Ident, signals: Vec<Fitted> },
     /// `guess { name = expr }`
     Guess { bindings: Vec<Binding> },
     /// `phase name like other { items }`
@@ -202,6 +206,19 @@ pub enum Relation {
     GreaterEqual,
     /// `==`
     Equal,
+}
+
+/// `signal = column sd deviation`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fitted {
+    /// What was measured.
+    pub signal: Expr,
+    /// The column in which it is, where its name is another.
+    pub column: Option<Ident>,
+    /// The standard deviation of the measurements.
+    pub deviation: Expr,
+    /// The whole entry.
+    pub span: Span,
 }
 
 /// `name = expr`

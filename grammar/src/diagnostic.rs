@@ -179,6 +179,10 @@ codes! {
     LinkedStart = "FDC0412", Error, "a link onto a start that is given";
     LeftOut = "FDC0413", Advice, "a state that a link leaves out";
     TimeGap = "FDC0414", Advice, "linked phases whose times do not meet";
+    TimeOutside = "FDC0415", Error, "a condition at a time that is not inside of the horizon";
+    TimeBeside = "FDC0416", Error, "a condition at a time beside phases, surfaces or data";
+    NothingMoves = "FDC0417", Warning, "a condition at a time that reads no state";
+    OrderOfTimes = "FDC0418", Advice, "conditions at times whose order the bounds leave open";
     LongStep = "FDC0501", Warning, "a step too long for the smoothed layer";
     SweepTooSlow = "FDC0502", Warning, "a sweep that refines the grid too slowly";
     NoRoom = "FDC0503", Warning, "a smoothing width without room";

@@ -5,8 +5,12 @@ from typing import Callable
 
 import true_optimum_closed as closed
 import true_optimum_formulas as formulas
+import true_optimum_formulas_kept as formulas_kept
+import true_optimum_kept as kept
 import true_optimum_models as models
 import true_optimum_race as race
+import true_optimum_struck as struck
+import true_optimum_surfaces as surfaces
 import true_optimum_switched as switched
 
 WAIT = 'not unique: the mass may wait before, after or both; how long it slides is unique'
@@ -78,10 +82,16 @@ def valve_motor():
     return J, [leaves], {'arcs': [singular]}
 
 
-def classic(name, unique=None):
+def named(name, *modules):
+    """What the first of the modules has by this name."""
+    return next((getattr(module, name) for module in modules if hasattr(module, name)), None)
+
+
+def classic(name, unique=None, **more):
     """A model of tests/classics/switched."""
-    formula = getattr(formulas, name, None)
-    return Case(getattr(switched, name, None), formula, unique or (ONE if formula else TRIED))
+    formula = named(name, formulas, formulas_kept)
+    problem = named(name, switched, kept, surfaces, struck)
+    return Case(problem, formula, unique or (ONE if formula else TRIED), **more)
 
 
 SIMULATED = 'nothing is chosen or minimised: for `simulate`'
@@ -129,4 +139,19 @@ CASES = {
     'switched/two_contacts': classic('two_contacts', 'equal to 32/sqrt(5); the sled waits for the load at first, and '
                                      'without that hold there is a local optimum of 14.3420'),
     'switched/valve_motor': Case(None, valve_motor, 'one optimum; at first it sticks while the current rises'),
+    **{f'switched/{name}': classic(name) for name in (
+        'ball_on_belt', 'billiard', 'both_curves', 'breakaway', 'bryson_denham_friction', 'conveyor', 'curling',
+        'dip', 'dir_drift', 'dir_reverse', 'dir_ride', 'doses', 'drying_joint', 'fan', 'free_throw', 'fuel_abs',
+        'fuel_stop', 'gear_loss', 'graze_in', 'hard_pull', 'hit_and_hold', 'hysteresis_car', 'ice_patch', 'jump_cost',
+        'moving_wall', 'narrow_toll', 'nearly_together', 'paddle', 'pendulum_wall', 'place_border', 'power_limit',
+        'rain_front', 'ratchet', 'ricochet', 'road', 'roof', 'rougher', 'saddle', 'singular_brake', 'slip_then_hit',
+        'slow_motor', 'speed_cap_time', 'stay', 'stribeck', 'swing_up', 'tariff', 'three_gears', 'three_media',
+        'three_relays', 'thrust_hopper', 'to_and_fro', 'to_the_bound', 'touch_friction', 'turbo_effort', 'twins_apart', 'two_edges',
+        'two_pedals', 'valley')},
+    'switched/furthest': classic('furthest', sense=-1),
+    'switched/furthest_jump': classic('furthest_jump', TRIED + '; two bounces', sense=-1),
+    'switched/lens': classic('lens', 'a local optimum; a way round the lens is shorter, 4.4901'),
+    'switched/stacked_reverse': classic('stacked_reverse', TRIED),
+    'switched/symmetric_relays': classic('symmetric_relays', 'two optima, one the image of the other; between them a '
+                                         'stationary point of 4/3'),
 }

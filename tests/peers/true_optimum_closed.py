@@ -106,12 +106,14 @@ def throw(e=0.8):
 
 
 def slider_fit():
-    """x = a t^2/2 - 2.5 t^3/(6 m), a = 10/m - mu g, until v = 0 at t = 0.8 a m, and fixed from there on."""
+    """x = a t^2/2 - 2.5 t^3/(6 m), a = 10/m - mu g, until v = 0 at t = 0.8 a m, and fixed from there on; errors in
+    standard deviations."""
     data = np.genfromtxt(Path(__file__).parents[2] / 'models' / 'slider.csv', delimiter=',', names=True)
 
     def misfit(q):
         a, stop = 10 / q[1] - q[0] * G, 0.8 * (10 - q[0] * q[1] * G)
         t = np.minimum(data['t'], stop)
-        return 1e6 * (a * t**2 / 2 - 2.5 * t**3 / (6 * q[1]) - data['x'])
+        x, v = a * t**2 / 2 - 2.5 * t**3 / (6 * q[1]), a * t - 2.5 * t**2 / (2 * q[1])
+        return np.concatenate([(x - data['x']) / 0.01, (v - data['v']) / 0.03])
     q = least_squares(misfit, [0.3, 2.0], xtol=1e-15, ftol=1e-15, gtol=1e-15).x
-    return 1e-12 * sum(misfit(q)**2), q, 0.8 * (10 - q[0] * q[1] * G)
+    return sum(misfit(q)**2), q, 0.8 * (10 - q[0] * q[1] * G)

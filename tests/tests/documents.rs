@@ -89,6 +89,31 @@ fn documents_name_only_what_exists() {
     all_well(breaches);
 }
 
+/// The files to which a page links, without what is code.
+fn links(text: &str) -> Vec<String> {
+    let mut is_fenced = false;
+    let lines = text.lines().filter(|line| {
+        is_fenced ^= line.trim_start().starts_with("```");
+        !is_fenced
+    });
+    let plain: Vec<String> = lines.map(|line| line.split('`').step_by(2).collect()).collect();
+    let targets = plain.iter().flat_map(|line| line.split("](").skip(1));
+    let targets = targets.filter_map(|rest| rest.split([')', '#']).next());
+    let is_file = |it: &&str| !it.is_empty() && !it.contains(':') && !it.contains(' ');
+    targets.filter(is_file).map(str::to_owned).collect()
+}
+
+#[test]
+fn links_lead_to_files() {
+    let mut breaches = Vec::new();
+    for Source { path, text } in sources().iter().filter(|it| it.path.ends_with(".md")) {
+        let folder = repository().join(path).parent().expect("a file has a folder").to_owned();
+        let missing = links(text).into_iter().filter(|link| !folder.join(link).exists());
+        breaches.extend(missing.map(|link| format!("{path}: there is no file `{link}`")));
+    }
+    all_well(breaches);
+}
+
 #[test]
 fn every_page_about_the_method_names_its_files() {
     let is_page =

@@ -6,7 +6,7 @@
 
 use fdcc_compiler::{analyze, function_names};
 use fdcc_grammar::parse;
-use fdcc_grammar::words::{WORDS, inner_words};
+use fdcc_grammar::words::{WORDS, Word, inner_words};
 use fdcc_tests::pages::check_file;
 use fdcc_tests::repository;
 use serde_json::Value;
@@ -16,10 +16,14 @@ use std::fs;
 /// The words of each kind, in the order in which the compiler lists them.
 fn words() -> BTreeMap<&'static str, Vec<&'static str>> {
     let reserved = |is_item: bool| {
-        WORDS.iter().filter(move |it| it.item.is_some() == is_item).map(|it| it.text)
+        let is_kind = move |it: &&Word| it.is_reserved && it.item.is_some() == is_item;
+        WORDS.iter().filter(is_kind).map(|it| it.text)
     };
-    let mut clauses: Vec<&str> = reserved(true).flat_map(inner_words).copied().collect();
+    let items = WORDS.iter().filter(|it| it.item.is_some());
+    let mut clauses: Vec<&str> =
+        items.clone().flat_map(|it| inner_words(it.text)).copied().collect();
     clauses.retain(|word| WORDS.iter().all(|it| it.text != *word));
+    clauses.extend(items.filter(|it| !it.is_reserved).map(|it| it.text));
     BTreeMap::from([
         ("items", reserved(true).collect()),
         ("keywords", reserved(false).collect()),

@@ -17,17 +17,28 @@ mod differences;
 mod family;
 
 use differences::{Seen, check};
-use family::Family;
+use family::{Case, Family};
 use fdcc_tests::random::Random;
 
 /// So many systems of families that are compiled in turn.
 fn check_all(families: &[Family], seed: u64, count: usize) -> Seen {
+    check_along(families, seed, count, |case, _| case)
+}
+
+/// The same, each driven otherwise.
+fn check_along(
+    families: &[Family],
+    seed: u64,
+    count: usize,
+    driven: impl Fn(Case, &mut Random) -> Case,
+) -> Seen {
     let times =
         std::env::var("SYSTEMS").map_or(1, |times| times.parse().expect("SYSTEMS is a number"));
     let mut random = Random::new(seed);
     let mut seen = Seen::default();
     for case in 0..times * count {
-        check(&families[case % families.len()].random(&mut random), &mut random, &mut seen);
+        let case = driven(families[case % families.len()].random(&mut random), &mut random);
+        check(&case, &mut random, &mut seen);
     }
     assert!(10 * seen.skipped < seen.compared, "skipping is rare: {seen:?}");
     assert!(2 * seen.events > seen.differentiated, "the systems are worth their while: {seen:?}");
@@ -65,4 +76,11 @@ fn gradients_of_affine_systems_with_four_surfaces() {
 fn gradients_of_curved_systems_with_jumps() {
     let seen = check_all(&[Family::curved()], 77, 60);
     assert!(seen.jumps > 20, "{seen:?}");
+}
+
+#[test]
+fn gradients_along_polynomial_controls() {
+    let families = [Family::affine(1, 2), Family::affine(2, 2), Family::curved()];
+    let seen = check_along(&families, 4711, 90, Case::with_polynomials);
+    assert!(seen.jumps > 5 && seen.held_together > 0, "{seen:?}");
 }

@@ -29,8 +29,14 @@ fn documents_claim_every_diagnostic() {
 
 #[test]
 fn models_give_neither_errors_nor_warnings() {
-    let folders =
-        ["models", "tests/right", "tests/classics", "tests/classics/phases", "tests/classics/fits"];
+    let folders = [
+        "models",
+        "tests/right",
+        "tests/classics",
+        "tests/classics/phases",
+        "tests/classics/fits",
+        "tests/classics/at_times",
+    ];
     for (name, text) in folders.iter().flat_map(|folder| documents(folder, "fdc")) {
         let mut found = analyze(&text).diagnostics;
         found.retain(|it| it.severity > Severity::Advice);

@@ -3,7 +3,7 @@
 use fdcc_compiler::{compile_sensitivities, compile_simulation, compile_smoothed};
 use fdcc_runtime::fixed_step::{Failure, Gradient, Grid, Stepped, gradient, step_through};
 use fdcc_runtime::problem::{Grid as Intervals, Method};
-use fdcc_runtime::simulate::{Controls, Options, Status, System, simulate};
+use fdcc_runtime::simulate::{Controls, Options, Polynomials, Status, System, simulate};
 use fdcc_tests::models::{meaning, problem, text_of};
 use fdcc_tests::{documents, rate};
 
@@ -124,13 +124,26 @@ fn the_gradient_is_the_derivative_of_what_the_steps_compute() {
 fn the_gradient_by_held_controls_is_that_of_their_rows() {
     let times: Vec<f64> = (0..10).map(|row| 0.2 + 0.21 * f64::from(row)).collect();
     let rows = times.iter().map(|t| vec![0.7 * t]).collect();
-    for (title, mut case) in cases(&Controls::Held { times, rows, is_stretched: true }) {
+    check_by_rows(&Controls::Held { times, rows, is_stretched: true });
+}
+
+#[test]
+fn the_gradient_by_polynomials_is_that_of_their_values_at_nodes() {
+    let nodes: Vec<f64> = (0..6).map(|row| 0.3 + 0.35 * f64::from(row)).collect();
+    check_by_rows(&Controls::Polynomial(Polynomials {
+        times: vec![0.2, 1.25, 2.3],
+        ranges: vec![0..3, 3..6],
+        rows: nodes.iter().map(|t| vec![0.7 * t * t]).collect(),
+        nodes,
+        is_stretched: true,
+    }));
+}
+
+fn check_by_rows(controls: &Controls) {
+    for (title, mut case) in cases(controls) {
         let gradient = case.gradient();
-        for row in 0..10 {
-            let difference = case.difference(|case, step| match &mut case.controls {
-                Controls::Held { rows, .. } => rows[row][0] += step,
-                Controls::Guess => unreachable!("the controls are held"),
-            });
+        for row in 0..controls.rows().len() {
+            let difference = case.difference(|case, step| case.controls.rows_mut()[row][0] += step);
             assert_same(gradient.controls[row][0], difference, &format!("{title}, row {row}"));
         }
     }

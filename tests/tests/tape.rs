@@ -67,12 +67,12 @@ fn the_changes_of_a_tape_are_the_events() {
 }
 
 #[test]
-fn regimes_name_the_row_of_the_controls() {
+fn regimes_name_the_segment_of_the_controls() {
     let text = documents("tests/simulations", "fdc").into_iter().find(|(name, _)| name == "sticks");
     let rows = vec![vec![2.0], vec![0.0], vec![-3.0]];
     let controls = Controls::Held { times: vec![0.0, 1.0, 2.5], rows, is_stretched: true };
     let (_, tape) = taped(&text.expect("a model").1, &controls);
-    let mut rows: Vec<_> = tape.regimes.iter().map(|regime| regime.row).collect();
-    rows.dedup();
-    assert_eq!(rows, [Some(0), Some(1), Some(2)]);
+    let mut segments: Vec<_> = tape.regimes.iter().map(|regime| regime.segment).collect();
+    segments.dedup();
+    assert_eq!(segments, [Some(0), Some(1), Some(2)]);
 }

@@ -24,6 +24,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("fdcc", &["fdcc-grammar", "fdcc-compiler", "fdcc-runtime"]),
     ("server", &["fdcc-grammar", "fdcc-compiler", "fdcc"]),
     ("cli", &["fdcc-grammar", "fdcc-compiler", "fdcc-runtime", "fdcc", "fdcc-server"]),
+    ("c", &["fdcc"]),
     ("python", &["fdcc-grammar", "fdcc-runtime", "fdcc", "fdcc-cli"]),
     ("tests", &["fdcc-grammar", "fdcc-compiler", "fdcc-runtime", "fdcc"]),
 ];
@@ -61,9 +62,10 @@ const FOREIGN: &[(&str, &[&str])] = &[
     ("clarabel", &["runtime/src/nlp/convex/clarabel.rs"]),
     ("amd", &["runtime/src/linalg/sparse_ldl/tree.rs"]),
     ("miette", &["cli/src/drawing/render.rs"]),
+    ("plotters", &["cli/src/page/svg.rs"]),
     ("similar", &["cli/src/drawing/difference.rs"]),
-    ("serde", &["cli/src/output/", "server/src/dispatch.rs"]),
-    ("serde_json", &["cli/src/output/", "cli/tests/", "server/", "tests/"]),
+    ("serde", &["cli/src/output/", "cli/src/page/", "server/src/dispatch.rs"]),
+    ("serde_json", &["cli/src/output/", "cli/src/page/", "cli/tests/", "server/", "tests/"]),
     ("pyo3", &["python/src/"]),
     ("lsp_server", &["server/"]),
     ("lsp_types", &["server/"]),
@@ -113,7 +115,7 @@ fn foreign_crates_are_named_in_one_place_each() {
 
 /// Crates whose folders import each other in one direction only.
 const WITHOUT_CIRCLES: &[&str] =
-    &["grammar", "compiler", "runtime", "fdcc", "server", "cli", "python"];
+    &["grammar", "compiler", "runtime", "fdcc", "server", "cli", "c", "python"];
 
 #[test]
 fn folders_import_each_other_in_no_circle() {
@@ -296,6 +298,7 @@ fn unsafe_code_is_in_its_places_and_says_why_it_is_sound() {
         "runtime/src/nlp/convex/clarabel.rs",
         "editors/tree-sitter-fdc/bindings/",
         "python/src/column.rs",
+        "c/src/lib.rs",
     ];
     let mut breaches = Vec::new();
     for source in rust_sources() {

@@ -122,11 +122,11 @@ impl Driven {
         if let Some(wrong) = wrong {
             return Err(Failure::Usage(format!("time runs from {first} to {last}; {wrong}")));
         }
-        let Driver { replay, source_sha256 } = driver;
+        let Driver { replay, .. } = driver;
         let doubt = replay.doubts(system.interval).filter(|_| self.log != Some(Level::None));
         if let (Some(doubt), Some(path)) = (doubt, &self.control) {
             output::complain(&format!("{}: {doubt}", path.display()));
         }
-        Ok(replay.held(source_sha256.is_some()).unwrap_or(Controls::Guess))
+        Ok(replay.controls)
     }
 }

@@ -2,14 +2,20 @@
 
 mod accuracy;
 mod check;
+mod completions;
 mod driven;
 mod explain;
 mod fix;
 mod fmt;
 mod grad;
 mod lsp;
+mod man;
+mod merge;
+mod mpc;
 mod new;
 mod options;
+mod plot;
+mod report;
 mod rewrite;
 mod show;
 mod simulate;
@@ -18,6 +24,7 @@ pub mod solver;
 mod sweep;
 mod test;
 mod verify;
+mod written;
 
 pub use options::USUAL_GAP;
 
@@ -32,7 +39,11 @@ pub enum Command {
     Simulate(Box<simulate::Simulate>),
     Grad(Box<grad::Grad>),
     Verify(verify::Verify),
+    Mpc(Box<mpc::Mpc>),
+    Report(report::Report),
+    Plot(plot::Plot),
     Sweep(Box<sweep::Sweep>),
+    Merge(merge::Merge),
     Test(Box<test::Test>),
     Show(show::Show),
     Fix(fix::Fix),
@@ -40,6 +51,8 @@ pub enum Command {
     New(new::New),
     Explain(explain::Explain),
     Lsp(lsp::Lsp),
+    Completions(completions::Completions),
+    Man(man::Man),
 }
 
 impl Command {
@@ -51,7 +64,11 @@ impl Command {
             Command::Simulate(simulate) => simulate.run(),
             Command::Grad(grad) => grad.run(),
             Command::Verify(verify) => verify.run(),
+            Command::Mpc(mpc) => mpc.run(),
+            Command::Report(report) => report.run(),
+            Command::Plot(plot) => plot.run(),
             Command::Sweep(sweep) => sweep.run(),
+            Command::Merge(merge) => merge.run(),
             Command::Test(test) => test.run(),
             Command::Show(show) => show.run(),
             Command::Fix(fix) => fix.run(),
@@ -59,6 +76,8 @@ impl Command {
             Command::New(new) => new.run(),
             Command::Explain(explain) => explain.run(),
             Command::Lsp(lsp) => lsp.run(),
+            Command::Completions(completions) => completions.run(),
+            Command::Man(man) => man.run(),
         }
     }
 }

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 /// What may be changed without touching the model.
-#[derive(Args, Clone, Default)]
+#[derive(Args, Clone, Debug, Default)]
 pub struct Changes {
     /// Give a `param` another value, such as `w=1` or `m=200[g]` (repeatable)
     #[arg(long, value_name = "NAME=VALUE")]

@@ -2,10 +2,11 @@
 
 use super::options::{Gap, Options, prepare, show};
 use super::solver;
+use super::written;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::output;
 use crate::output::named::Named;
-use crate::output::{self, files};
 use crate::report::log::Level;
 use crate::report::{failure, verdict};
 use crate::solved::Solved;
@@ -56,10 +57,10 @@ impl Solve {
             }
         };
         let mut solved = solver::solve(model, &self.options, begin, Level::Short, headline)?;
-        if solved.is_good() {
+        if solved.solution.status().is_solved() {
             solved.document.sensitivities = Named::of(solved.solution.sensitivities());
         }
-        if solved.is_good() && !self.no_verify {
+        if solved.solution.status().is_solved() && !self.no_verify {
             solved.replay(self.gap.gap);
         }
         Ok(solved)
@@ -68,7 +69,7 @@ impl Solve {
     fn report(&self, model: &Model, solved: &Solved) -> Exit {
         show(failure::diagnostic(solved).iter(), model.source());
         let written = match &self.options.out {
-            Some(folder) => files::write(&solved.document, folder, &solved.document.model),
+            Some(folder) => written::write(&solved.document, folder, &solved.document.model),
             None => Ok(Vec::new()),
         };
         // The answer is printed whether or not its files could be written.

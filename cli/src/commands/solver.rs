@@ -118,14 +118,7 @@ impl Compiled {
 
     /// Whether a solve can begin at the solution that `--warm` names.
     pub fn check(&self, start: Start, options: &Options) -> Result<(), Failure> {
-        let path = options.warm.as_deref().unwrap_or("-".as_ref()).display();
-        self.compiled.check_start(start).map_err(|error| match error {
-            Error::Foreign(model) => {
-                Failure::File(format!("{path} has no state or control of the model `{model}`"))
-            }
-            Error::Record(what) => Failure::File(format!("{path}: {what}")),
-            other => other.into(),
-        })
+        self.compiled.check_start(start).map_err(|error| wrong_start(error, options))
     }
 
     /// Solves from `start`, and from variations of it if there are to be several starts.
@@ -143,8 +136,21 @@ impl Compiled {
         })?;
         let total = begin.elapsed().as_secs_f64();
         let seconds = Seconds { compile: seconds, solve: total - seconds, total };
-        let document = document(&solution, seconds);
+        let mut document = document(&solution, seconds);
+        document.convergence = log.convergence();
         Ok(Solved { solution, document })
+    }
+}
+
+/// Why there is no solution, where it may be the file that `--warm` names.
+pub fn wrong_start(error: Error, options: &Options) -> Failure {
+    let path = options.warm.as_deref().unwrap_or("-".as_ref()).display();
+    match error {
+        Error::Foreign(model) => {
+            Failure::File(format!("{path} has no state or control of the model `{model}`"))
+        }
+        Error::Record(what) => Failure::File(format!("{path}: {what}")),
+        other => other.into(),
     }
 }
 
@@ -152,7 +158,9 @@ impl Compiled {
 pub fn document(solution: &Solution, seconds: Seconds) -> Document {
     let model = solution.model();
     let (sha256, units) = (sha256(&model.source().text), Units::from(model.meaning()));
-    Document::new(solution, &sha256, units, seconds).with_phases(solution)
+    Document::new(solution, &sha256, units, seconds)
+        .with_phases(solution)
+        .with_estimates(solution.estimates())
 }
 
 /// How a document says which text was solved.

@@ -2,11 +2,12 @@
 
 use super::options::{Options, prepare, show};
 use super::solver;
+use super::written;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::output;
 use crate::output::tested::{Line, Tested, Word};
 use crate::output::units::Units;
-use crate::output::{self, files};
 use crate::report::failure;
 use crate::report::log::Level;
 use crate::solved::Solved;
@@ -75,7 +76,7 @@ impl Test {
     fn solve(&self, model: &Model, begin: Instant) -> Result<Solved, Failure> {
         let solved = solver::solve(model, &self.options, begin, Level::None, |_| {})?;
         if let Some(folder) = &self.options.out {
-            files::write(&solved.document, folder, &solved.document.model)?;
+            written::write(&solved.document, folder, &solved.document.model)?;
         }
         Ok(solved)
     }

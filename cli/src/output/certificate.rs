@@ -3,6 +3,7 @@
 use super::document::{Span, switching};
 use super::named::Named;
 use super::number::scientific;
+use super::plural;
 use super::units::Units;
 use fdcc::names::mode_name;
 use fdcc::true_optimum;
@@ -67,19 +68,18 @@ impl Certificate {
         self.checks.iter().find(|it| it.check == name).map_or(f64::NAN, |it| it.figure)
     }
 
-    /// The first line of a certified answer.
-    pub fn headline(&self) -> String {
-        let located = match self.switches.len() {
-            1 => "1 switch located".to_owned(),
-            0 => "no switch to locate".into(),
-            many => format!("{many} switches located"),
-        };
+    /// The first line of a certified answer; without an objective it is no optimum.
+    pub fn headline(&self, has_objective: bool, jumps: usize) -> String {
+        let located = located(self.switches.len(), jumps);
         let replayed = self.figure("replayed").max(self.figure("conditions"));
+        let replayed = scientific(replayed, 1);
+        if !has_objective {
+            return format!("trajectory of the true system, {located}, replayed to {replayed}");
+        }
+        let stationary = scientific(self.figure("stationary"), 1);
         format!(
-            "local optimum of the true system, {located}, replayed to {}, stationary to {}, second \
-             order ok",
-            scientific(replayed, 1),
-            scientific(self.figure("stationary"), 1)
+            "local optimum of the true system, {located}, replayed to {replayed}, stationary to \
+             {stationary}, second order ok"
         )
     }
 
@@ -89,6 +89,14 @@ impl Certificate {
         let what = failed.join(", ");
         (!failed.is_empty())
             .then(|| format!(" true  no certified optimum of the true system: {what}"))
+    }
+
+    /// What may help where it is not certified.
+    pub fn advice(&self) -> Option<&'static str> {
+        (!self.certified).then_some(
+            "       try another N, scheme or guess, or --starts 8; --method sigma=... asks for the \
+             smoothed problem alone",
+        )
     }
 
     /// What each control does that is at a bound anywhere.
@@ -101,18 +109,63 @@ impl Certificate {
 }
 
 fn words(it: &Check) -> String {
-    let (figure, limit) = (scientific(it.figure, 1), scientific(it.limit, 0));
-    match it.check {
+    missed(it.check, [it.figure, it.limit])
+}
+
+/// How many switches and jumps were located: `2 switches and 1 jump located`.
+pub fn located(switches: usize, jumps: usize) -> String {
+    let all = [
+        (switches > 0).then(|| {
+            if switches == 1 { "1 switch".into() } else { format!("{switches} switches") }
+        }),
+        (jumps > 0).then(|| plural(jumps, "jump")),
+    ];
+    let all: Vec<String> = all.into_iter().flatten().collect();
+    match all.is_empty() {
+        true => "no switch to locate".into(),
+        false => format!("{} located", all.join(" and ")),
+    }
+}
+
+/// What a check that fails says: its figure is above its limit.
+pub fn missed(check: &str, [figure, limit]: [f64; 2]) -> String {
+    let is_unknown = !figure.is_finite();
+    let (figure, limit) = (scientific(figure, 1), scientific(limit, 0));
+    match check {
         "located" => "no structure of phases could be solved".into(),
         "finished" => "the search was stopped".into(),
+        "without data" => "switches are not located yet where measured data are added up".into(),
         "second order" => "a direction of negative curvature".into(),
-        "insertion" => "whether a hold at a switch is better could not be found out".into(),
+        "insertion" if is_unknown => {
+            "whether a hold at a switch is better could not be found out".into()
+        }
+        "insertion" => format!(
+            "the objective falls with a hold at a switch by {figure} of its size per time (limit \
+             {limit})"
+        ),
+        "contacts" if is_unknown => "the motion is kept from the surface of a jump".into(),
+        "replayed" if is_unknown => "the replay does not reach the end".into(),
+        "contacts" => format!(
+            "the multiplier of a limit at its bound has the wrong sign by {figure} (limit {limit})"
+        ),
         "holds" => "a surface that repels is held".into(),
         "replayed" => format!("the replay is off by {figure} (limit {limit})"),
+        "timing" if is_unknown => "a replay of controls a moment early or late does not end".into(),
+        "timing" => format!(
+            "controls that come a moment early or late lead elsewhere, by {figure} (limit {limit})"
+        ),
+        "objective" => {
+            format!("the objective of the replay is another one by {figure} (limit {limit})")
+        }
         "conditions" => format!("the replay violates a condition by {figure} (limit {limit})"),
         "modes" => format!("the replay is in other modes on {figure} of the time (limit {limit})"),
         "bounds" => {
             format!("a control leaves its bounds by {figure} between nodes (limit {limit})")
+        }
+        "minimum" => {
+            format!(
+                "another control makes the Hamiltonian less by {figure} of its size (limit {limit})"
+            )
         }
         "arcs" => format!("a bound multiplier has the wrong sign by {figure} (limit {limit})"),
         "hamiltonian" => {

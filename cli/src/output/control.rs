@@ -41,7 +41,7 @@ fn from_csv(text: &str, model: &fdcc_compiler::Model) -> Result<Replay, String> 
     let names: Vec<&str> =
         header.trim_start_matches('\u{feff}').split(',').map(str::trim).collect();
     let columns = columns(&names, model)?;
-    let (mut replay, mut twice) = (Replay::default(), None);
+    let (mut times, mut rows, mut twice) = (Vec::new(), Vec::new(), None);
     for (at, line) in lines {
         let cells: Vec<&str> = line.split(',').map(str::trim).collect();
         if cells.len() != names.len() {
@@ -60,7 +60,7 @@ fn from_csv(text: &str, model: &fdcc_compiler::Model) -> Result<Replay, String> 
         let time = number(0)?;
         let row = columns.iter().map(|&column| number(column)).collect::<Result<_, _>>()?;
         // The first of two rows at one time, on both sides of a jump, holds for no time.
-        if replay.times.last() == Some(&time) {
+        if times.last() == Some(&time) {
             if twice == Some(time) {
                 return Err(format!(
                     "line {}: a third row at t = {time}; a jump has two sides",
@@ -68,13 +68,13 @@ fn from_csv(text: &str, model: &fdcc_compiler::Model) -> Result<Replay, String> 
                 ));
             }
             twice = Some(time);
-            replay.times.pop();
-            replay.rows.pop();
+            times.pop();
+            rows.pop();
         }
-        replay.times.push(time);
-        replay.rows.push(row);
+        times.push(time);
+        rows.push(row);
     }
-    Ok(replay)
+    Ok(Replay::of_rows(times, rows))
 }
 
 /// The column of each control. States and reports may stand beside them, as in the `.csv` of a

@@ -1,13 +1,17 @@
 //! The JSON document of a solve: the contract that people script against.
 
 use super::certificate::Certificate;
+use super::convergence::Convergence;
+use super::estimates::{Estimates, Residual};
 use super::named::Named;
 use super::number::significant;
 use super::optimality::Optimality;
 use super::phases::Phase;
+use super::picture::Picture;
 use super::tried::{Ended, Happened, Tried};
 use super::units::Units;
 use super::verified::Verification;
+use crate::version::VERSION;
 use fdcc::Solution;
 use fdcc::names::mode_name;
 use fdcc_runtime::nlp::{self, Status};
@@ -15,7 +19,7 @@ use fdcc_runtime::problem::{Function, Method, Problem, Solver, Variable};
 use fdcc_runtime::solution;
 use fdcc_runtime::solution::Hamiltonian;
 use fdcc_runtime::solve::Outcome;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// One solve. Numbers are written so that they read back to the same bits.
 #[derive(Clone, Debug, Serialize)]
@@ -48,6 +52,9 @@ pub struct Document {
     pub path_multipliers: Named<Vec<f64>>,
     /// What the objective changes by with the bound of each condition at the ends.
     pub end_multipliers: Named<f64>,
+    /// The same of each condition at a time between the ends.
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    pub at_multipliers: Named<f64>,
     /// One for each interval.
     pub hamiltonian: Vec<f64>,
     /// The sum of the errors of all steps, where the grid was refined.
@@ -75,6 +82,12 @@ pub struct Document {
     /// How each of several starts ended, in their order; absent where there was one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub starts: Vec<Ended>,
+    /// What the estimates of a fit are worth; absent where no squares over rows of data are minimised.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub estimates: Option<Estimates>,
+    /// What remains of each signal that was measured.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub residuals: Vec<Residual>,
     /// The units of the values; absent where the model has none.
     #[serde(skip_serializing_if = "Units::is_empty")]
     pub units: Units,
@@ -82,6 +95,11 @@ pub struct Document {
     /// nobody looked for one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Certificate>,
+    #[serde(flatten)]
+    pub picture: Picture,
+    /// How the solve went; absent where there were several, or none that iterates.
+    #[serde(skip_serializing_if = "Convergence::is_empty")]
+    pub convergence: Convergence,
     /// What contradicts that it is an optimum; absent where nothing is claimed to be one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub optimality: Option<Optimality>,
@@ -175,7 +193,7 @@ impl Counts {
 }
 
 /// Wall-clock times: the only entries that differ between two runs.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Seconds {
     pub compile: f64,
     pub solve: f64,
@@ -197,13 +215,13 @@ impl Document {
         let shown = |columns: &[Vec<f64>]| {
             named_columns(problem.states.iter().zip(columns).filter(|(state, _)| !state.hidden))
         };
-        let claims = problem.has_objective && found.is_solved();
+        let claims = problem.has_objective && found.status().is_solved();
         // Where an expression has no value, no error was measured.
         let measured = |error: f64| {
             if matches!(solution.status, Status::NotFinite(_)) { f64::NAN } else { error }
         };
         Document {
-            fdcc: env!("CARGO_PKG_VERSION").to_string(),
+            fdcc: VERSION.to_string(),
             model: problem.name.clone(),
             source_sha256: source_sha256.to_string(),
             status: found.status_name().to_string(),
@@ -228,6 +246,7 @@ impl Document {
             costates: shown(&trajectory.costates),
             path_multipliers: labelled(&*problem.path, 0, &trajectory.path_multipliers),
             end_multipliers: labelled(&*problem.boundary, 1, &trajectory.end_multipliers),
+            at_multipliers: found.at_multipliers().into_iter().collect(),
             hamiltonian: trajectory.hamiltonian.values.clone(),
             step_errors: found.step_errors,
             hamiltonian_check: HamiltonianCheck::new(&problem.controls, &trajectory.hamiltonian),
@@ -244,7 +263,11 @@ impl Document {
             sequences: found.sequences.iter().map(Tried::from).collect(),
             sequences_left_out: found.sequences_left_out,
             starts: found.starts.iter().map(Ended::from).collect(),
+            picture: Picture::new(found, &units),
+            estimates: None,
+            residuals: Vec::new(),
             units,
+            convergence: Convergence::default(),
             optimality: claims.then(|| Optimality::new(&found.optimality(None))),
             certificate: found.certificate.as_ref().map(Certificate::new),
             verification: None,

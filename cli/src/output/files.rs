@@ -1,35 +1,13 @@
-//! The one place that writes files, and the files of a solution.
+//! The one place that writes files.
 //!
 //! A file is as it was or as it should be, whatever stops the program: its new content is put
 //! beside it under another name, is brought to the disk, and takes its name in one step.
 
-use super::document::Document;
-use super::{csv, html, json};
 use crate::failure::Failure;
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
-
-/// Writes `NAME.sol.json`, `NAME.csv` (one for each phase, if there are any) and `NAME.html` to a
-/// folder, which is made if need be; returns their paths.
-pub fn write(document: &Document, folder: &Path, name: &str) -> Result<Vec<String>, Failure> {
-    let mut files = vec![("sol.json".to_owned(), json(document))];
-    files.extend(tables(document));
-    files.push(("html".to_owned(), html::html(document)));
-    let files: Vec<(&str, String)> =
-        files.iter().map(|(ending, text)| (ending.as_str(), text.clone())).collect();
-    write_all(folder, name, &files)
-}
-
-/// `NAME.csv`, or `NAME.PHASE.csv` for each phase.
-fn tables(document: &Document) -> Vec<(String, String)> {
-    if document.phases.is_empty() {
-        return vec![("csv".into(), csv::csv(document))];
-    }
-    let phases = document.phases.0.iter();
-    phases.map(|(name, phase)| (format!("{name}.csv"), csv::csv(&phase.0))).collect()
-}
 
 /// Writes files `NAME.ENDING` to a folder, which is made if need be; returns their paths.
 pub fn write_all(
@@ -37,17 +15,23 @@ pub fn write_all(
     name: &str,
     files: &[(&str, String)],
 ) -> Result<Vec<String>, Failure> {
-    let failure = |place: &Path, error| {
-        Failure::File(format!("cannot write to {}: {error}", place.display()))
-    };
-    fs::create_dir_all(folder).map_err(|error| failure(folder, error))?;
+    fs::create_dir_all(folder).map_err(|error| failure(folder, &error))?;
     let mut paths = Vec::new();
     for (ending, text) in files {
         let path = folder.join(format!("{name}.{ending}"));
-        replace(&path, text).map_err(|error| failure(&path, error))?;
+        write_file(&path, text)?;
         paths.push(path.display().to_string());
     }
     Ok(paths)
+}
+
+/// Writes a file, or replaces the one that is there.
+pub fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
+    replace(path, text).map_err(|error| failure(path, &error))
+}
+
+fn failure(place: &Path, error: &io::Error) -> Failure {
+    Failure::File(format!("cannot write to {}: {error}", place.display()))
 }
 
 /// Writes a file that must not be there yet.

@@ -4,6 +4,7 @@ use super::ending::{Ending, EventEntry, events};
 use super::named::Named;
 use super::number::{scientific, short, significant};
 use super::units::Units;
+use crate::version::VERSION;
 use fdcc::{By, Exact, Gradient, Model, Stepped};
 use fdcc_grammar::SourceFile;
 use fdcc_runtime::problem::Method;
@@ -147,7 +148,7 @@ impl Document {
     /// No gradient: the simulation does not reach the end.
     fn without(of: &str, system: &System, simulation: &Simulation, source: &SourceFile) -> Self {
         Document {
-            fdcc: env!("CARGO_PKG_VERSION").to_string(),
+            fdcc: VERSION.to_string(),
             model: system.name.clone(),
             of: of.to_string(),
             ending: Ending::new(system, simulation, source),

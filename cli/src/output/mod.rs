@@ -1,20 +1,23 @@
 //! Everything that leaves the program: types for JSON, and the two streams.
 
 pub mod certificate;
+pub mod closed_loop;
 pub mod control;
+pub mod convergence;
 pub mod csv;
 pub mod diagnostics;
 pub mod document;
 pub mod ending;
+pub mod estimates;
 pub mod files;
 pub mod gradient;
 mod gradient_words;
-pub mod html;
 pub mod named;
 pub mod number;
 pub mod optimality;
 pub mod phases;
-pub mod plot;
+pub mod picture;
+pub mod rows;
 pub mod sarif;
 pub mod saved;
 pub mod simulation;

@@ -14,7 +14,7 @@ pub fn log<'d>(found: impl Iterator<Item = (&'d SourceFile, &'d Diagnostic)>) ->
         "$schema": "https://json.schemastore.org/sarif-2.1.0.json",
         "version": "2.1.0",
         "runs": [{
-            "tool": { "driver": { "name": "fdcc", "version": env!("CARGO_PKG_VERSION"), "rules": rules } },
+            "tool": { "driver": { "name": "fdcc", "version": crate::version::VERSION, "rules": rules } },
             "columnKind": "unicodeCodePoints",
             "results": results,
         }],

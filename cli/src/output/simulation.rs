@@ -3,6 +3,7 @@
 use super::ending::{Ending, EventEntry, events, state};
 use super::named::Named;
 use super::units::Units;
+use crate::version::VERSION;
 use fdcc::{Model, Simulation};
 use serde::Serialize;
 use std::fmt::Write;
@@ -45,7 +46,7 @@ impl Document {
         end.extend(state(system, &simulation.end).0);
         let counts = simulation.counts;
         Document {
-            fdcc: env!("CARGO_PKG_VERSION").to_string(),
+            fdcc: VERSION.to_string(),
             model: system.name.clone(),
             ending: Ending::new(system, simulation, model.source()),
             time: simulation.time.clone(),

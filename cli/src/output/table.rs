@@ -1,88 +1,30 @@
-//! The rows of a sweep: as a table for people, and as compact JSON.
+//! The rows of a sweep as a table for people.
 
-use super::document::{Document, Seconds};
-use super::named::Named;
 use super::number::aligned;
-use super::optimality::Optimality;
-use super::verified::Verification;
+use super::rows::{Row, Scalars};
+use super::units::Units;
 use comfy_table::{CellAlignment, Table, presets};
-use serde::Serialize;
-
-/// One row as JSON.
-#[derive(Serialize)]
-pub struct Row<'d> {
-    /// What was swept: numbers in SI units, or words.
-    swept: Named<Value<'d>>,
-    status: &'d str,
-    objective: f64,
-    free: &'d Named<f64>,
-    iterations: usize,
-    kkt_error: f64,
-    constraint_violation: f64,
-    seconds: Seconds,
-    /// Whether the replay confirms it and nothing contradicts that it is an optimum; only where
-    /// that was asked.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    confirmed: Option<bool>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    verification: Option<&'d Verification>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    optimality: Option<&'d Optimality>,
-}
-
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Value<'d> {
-    Whole(u64),
-    Number(f64),
-    Word(&'d str),
-}
-
-/// The compact form of a solve, with what the replay says where confirmation was asked.
-pub fn row<'d>(swept: &'d Named<String>, document: &'d Document, confirmed: bool) -> Row<'d> {
-    Row {
-        swept: swept.0.iter().map(|(name, text)| (name.clone(), value(text))).collect(),
-        status: &document.status,
-        objective: document.objective,
-        free: &document.free,
-        iterations: document.iterations,
-        kkt_error: document.kkt_error,
-        constraint_violation: document.constraint_violation,
-        seconds: document.seconds,
-        confirmed: confirmed.then(|| document.is_confirmed()),
-        verification: document.verification.as_ref().filter(|_| confirmed),
-        optimality: document.optimality.as_ref().filter(|_| confirmed),
-    }
-}
-
-fn value(text: &str) -> Value<'_> {
-    match (text.parse(), fdcc_compiler::parse_quantity(text)) {
-        (Ok(whole), _) => Value::Whole(whole),
-        (_, Ok(quantity)) => Value::Number(quantity.value),
-        _ => Value::Word(text),
-    }
-}
 
 /// As many digits as Table 7.1 of the paper has.
 const DIGITS: usize = 7;
 
-/// The table: what was swept, then what came out.
+/// The table: what was swept, as it was given, then what came out.
 pub fn table<'d>(
-    rows: impl Iterator<Item = (&'d Named<String>, &'d Document)>,
+    rows: impl Iterator<Item = (Vec<(&'d str, &'d str)>, &'d Row)>,
+    units: &Units,
     confirmed: bool,
 ) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING);
-    for (swept, document) in rows {
-        let names = swept.0.iter().map(|(name, _)| name.as_str());
-        let found =
-            ["objective"].into_iter().chain(document.free.0.iter().map(|(name, _)| name.as_str()));
-        let found = found.map(|name| document.units.title(name));
+    for (swept, row) in rows {
+        let found = row.scalars.free.0.iter().map(|(name, _)| name.as_str());
+        let found = ["objective"].into_iter().chain(found).map(|name| units.title(name));
         let results =
             ["iterations", "seconds", "status"].into_iter().chain(confirmed.then_some("confirmed"));
-        table.set_header(names.map(str::to_string).chain(found).chain(results.map(str::to_string)));
-        let confirmed = confirmed.then(|| answer(document).to_string());
-        table.add_row(cells(swept, document).into_iter().chain(confirmed));
+        let names = swept.iter().map(|(name, _)| (*name).to_owned());
+        table.set_header(names.chain(found).chain(results.map(str::to_string)));
+        let confirmed = confirmed.then(|| answer(row).to_string());
+        table.add_row(cells(&swept, &row.scalars, units).into_iter().chain(confirmed));
     }
     let last = table.column_count().saturating_sub(1 + usize::from(confirmed));
     table
@@ -94,8 +36,8 @@ pub fn table<'d>(
 }
 
 /// Whether a row is confirmed, and why not.
-fn answer(document: &Document) -> &'static str {
-    match (&document.verification, &document.optimality) {
+fn answer(row: &Row) -> &'static str {
+    match (&row.verification, &row.optimality) {
         (None, _) => "no: not replayed",
         (Some(it), _) if !it.confirmed => "NO: the true system differs",
         (_, Some(it)) if it.contradicted => "NO: contradicted as an optimum",
@@ -103,17 +45,15 @@ fn answer(document: &Document) -> &'static str {
     }
 }
 
-fn cells(swept: &Named<String>, document: &Document) -> Vec<String> {
-    let values = swept.0.iter().map(|(_, value)| value.clone());
-    let free = document
-        .free
-        .0
-        .iter()
-        .map(|(name, value)| aligned(document.units.scaled(name, *value), DIGITS));
+fn cells(swept: &[(&str, &str)], row: &Scalars, units: &Units) -> Vec<String> {
+    let values = swept.iter().map(|(_, value)| (*value).to_owned());
+    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    let free = row.free.0.iter();
+    let free = free.map(|(name, value)| aligned(units.scaled(name, number(*value)), DIGITS));
     let rest = [
-        document.iterations.to_string(),
-        format!("{:.3}", document.seconds.total),
-        document.status.replace('_', " "),
+        row.iterations.to_string(),
+        format!("{:.3}", row.seconds.total),
+        row.status.replace('_', " "),
     ];
-    values.chain([aligned(document.objective, DIGITS)]).chain(free).chain(rest).collect()
+    values.chain([aligned(number(row.objective), DIGITS)]).chain(free).chain(rest).collect()
 }

@@ -17,7 +17,24 @@ impl From<&Model> for Units {
     }
 }
 
+/// A unit in which people see a value.
+#[derive(Clone, Debug, Serialize)]
+pub struct Shown {
+    /// Such as `km/h`; empty for a plain number.
+    pub unit: String,
+    /// How many SI units one of it is.
+    pub si: f64,
+}
+
 impl Units {
+    /// The unit in which people see each name; that of time is also under `time`.
+    pub fn shown(&self) -> Named<Shown> {
+        let shown = |it: &NamedUnit| Shown { unit: it.unit.clone(), si: it.scale };
+        let time = self.of("time").map(|it| ("time".to_owned(), shown(it)));
+        let names = self.0.iter().chain(&self.1).map(|it| (it.name.clone(), shown(it)));
+        time.into_iter().chain(names).collect()
+    }
+
     /// Whether the model uses no units.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()

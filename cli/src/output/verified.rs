@@ -6,10 +6,12 @@ use super::ending::{Ending, EventEntry, events, state};
 use super::named::Named;
 use super::number::{scientific, short};
 use super::units::Units;
+use crate::version::VERSION;
 use comfy_table::{CellAlignment, Table, presets};
 use fdcc::modes::name;
 use fdcc::{Condition, Gap, LinkGap, Stay, TIME_OF};
 use fdcc_grammar::SourceFile;
+use fdcc_runtime::problem::Variable;
 use serde::Serialize;
 
 /// What a replay says of a solution.
@@ -40,6 +42,35 @@ pub struct Verification {
     /// Where that is.
     pub worst: Option<Worst>,
     pub events: usize,
+    /// What the states do in the replay; absent of phases, which have their own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub replay: Option<Replay>,
+}
+
+/// A replay has thousands of times; a picture needs no more than about these.
+const SHOWN: usize = 500;
+
+/// The states of a replay at some of its times, the first and the last among them.
+#[derive(Clone, Debug, Serialize)]
+pub struct Replay {
+    pub time: Vec<f64>,
+    pub states: Named<Vec<f64>>,
+}
+
+impl Replay {
+    fn new(verified: &fdcc::Verification) -> Self {
+        let states = verified.simulation.states.iter().zip(&verified.system.states);
+        let states = states.filter(|(_, state)| !state.hidden);
+        let shown = |(column, state): (&Vec<f64>, &Variable)| (state.name.clone(), thinned(column));
+        let time = thinned(&verified.simulation.time);
+        Replay { time, states: states.map(shown).collect() }
+    }
+}
+
+fn thinned(column: &[f64]) -> Vec<f64> {
+    let last = column.len().saturating_sub(1);
+    let step = last.div_ceil(SHOWN).max(1);
+    (0..last).step_by(step).chain([last]).filter_map(|k| column.get(k).copied()).collect()
 }
 
 /// The state that differs most for how far it moves.
@@ -85,6 +116,7 @@ impl Verification {
                 .then_some(worst.as_ref().map_or(0.0, |worst| worst.violation)),
             worst: worst.filter(|_| is_whole),
             events: verified.simulation.events.len(),
+            replay: Some(Replay::new(verified)),
         }
     }
 
@@ -130,6 +162,7 @@ impl Verification {
             constraint_violation: completed.then_some(violation),
             worst: worst.filter(|_| completed),
             events: phases.iter().map(|(_, it)| it.events).sum(),
+            replay: None,
         }
     }
 
@@ -236,7 +269,7 @@ impl Document {
         // The components of a ball are one surface.
         surfaces.dedup_by(|later, first| later.0 == first.0);
         Document {
-            fdcc: env!("CARGO_PKG_VERSION").to_string(),
+            fdcc: VERSION.to_string(),
             model: system.name.clone(),
             same_source,
             ending: Ending::new(system, simulation, source),

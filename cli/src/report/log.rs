@@ -1,6 +1,7 @@
 //! What a person sees while a solve runs, on stderr: Ipopt's iteration table with the width of the
 //! layer and the grid, and on a terminal a progress line.
 
+use crate::output::convergence::Convergence;
 use crate::output::number::{scientific, significant};
 use crate::output::units::Units;
 use crate::output::{complain, tell};
@@ -29,6 +30,7 @@ const HEADER: &str = " iter    objective    inf_pr   inf_du lg(mu)  ||d||  lg(rg
 /// The header is repeated after this many lines.
 const PAGE: usize = 20;
 const SHORT: usize = 10;
+const UNPOISONED: &str = "no thread panics with the lock";
 
 /// A sequence of jumps and a starting point.
 type Table = (Option<String>, Option<usize>);
@@ -41,6 +43,8 @@ pub struct Log {
     /// How many lines each table has.
     lines: Mutex<HashMap<Table, usize>>,
     bar: ProgressBar,
+    /// Of the only solve.
+    convergence: Mutex<Convergence>,
     /// How many SI units one of the unit of a width is.
     scale: f64,
 }
@@ -49,19 +53,24 @@ impl Log {
     /// The table of the only solve.
     pub fn new(level: Level) -> Self {
         let bar = progress(ProgressBar::no_length(), level, "{spinner} {elapsed} {msg}");
-        Log { level, label: String::new(), lines: Mutex::default(), bar, scale: 1.0 }
+        let (lines, convergence) = (Mutex::default(), Mutex::default());
+        Log { level, label: String::new(), lines, bar, convergence, scale: 1.0 }
     }
 
     /// The table of one of several solves, which share a [`bar`]; only a full log has tables.
     pub fn of_several(level: Level, bar: &ProgressBar, label: &str) -> Self {
         let level = if level == Level::Full { level } else { Level::None };
-        let (label, bar) = (label.to_owned(), bar.clone());
-        Log { level, label, lines: Mutex::default(), bar, scale: 1.0 }
+        Log { level, label: label.to_owned(), bar: bar.clone(), ..Log::new(Level::None) }
     }
 
     /// From now on widths are in the unit of the surfaces, as in the verdict.
     pub fn show_widths_in(&mut self, units: &Units) {
         self.scale = units.width_scale();
+    }
+
+    /// How the only solve went so far.
+    pub fn convergence(&self) -> Convergence {
+        self.convergence.lock().expect(UNPOISONED).clone()
     }
 
     /// What the library says.
@@ -82,6 +91,9 @@ impl Log {
         let label = name(part).map_or(self.label.clone(), |name| format!("{name} "));
         let is_part = name(part).is_some();
         let (iteration, violation) = (progress.iteration, progress.primal_infeasibility);
+        if !is_part && !progress.is_conic {
+            self.convergence.lock().expect(UNPOISONED).push(progress, level);
+        }
         self.bar.set_message(format!("{label}iteration {iteration}  violation {violation:.1e}"));
         let wanted = match self.level {
             _ if progress.is_conic => false,
@@ -105,7 +117,7 @@ impl Log {
     /// How many lines the table of a part has had so far.
     fn next_line(&self, part: &Part) -> usize {
         let table = (part.sequence.map(str::to_owned), part.start);
-        let mut lines = self.lines.lock().expect("no thread panics with the lock");
+        let mut lines = self.lines.lock().expect(UNPOISONED);
         let count = lines.entry(table).or_default();
         *count += 1;
         *count - 1

@@ -63,6 +63,9 @@ pub fn verdict(solved: &Solved) -> String {
     lines.push(format!("       {work}"));
     lines.extend(jumps::lines(&solved.solution, document));
     lines.extend(spread(&solved.solution, document));
+    if let Some(estimates) = &document.estimates {
+        lines.extend(estimates.lines(document));
+    }
     lines.extend(surfaces(document, ""));
     for (name, phase) in &document.phases.0 {
         lines.extend(surfaces(&phase.0, &format!("{name}.")));
@@ -70,11 +73,12 @@ pub fn verdict(solved: &Solved) -> String {
     if let Some(certificate) = &document.certificate {
         lines.extend(certificate.lines(&document.units));
         lines.extend(certificate.failure());
+        lines.extend(certificate.advice().map(str::to_owned));
     }
     lines.extend(rest::lines(solved));
     lines.extend(replayed(document));
     lines.extend(refined(solved));
-    if solved.is_good() && solved.solution.problem.has_objective {
+    if solved.solution.status().is_solved() && solved.solution.problem.has_objective {
         lines.extend(hamiltonian(document));
     }
     lines.extend(sensitivities(document));
@@ -132,7 +136,7 @@ fn surfaces(document: &Document, phase: &str) -> impl Iterator<Item = String> {
 fn how(solved: &Solved) -> String {
     let Solved { solution, document } = solved;
     if let Some(certificate) = document.certificate.as_ref().filter(|it| it.certified) {
-        return certificate.headline();
+        return certificate.headline(solution.problem.has_objective, solution.jumps.len());
     }
     let Solution { problem, outcome, .. } = solution;
     let status = &outcome.solution.status;
@@ -143,19 +147,20 @@ fn how(solved: &Solved) -> String {
     };
     let of =
         if document.surfaces.0.is_empty() { "discretised problem" } else { "smoothed problem" };
+    let uncertified = if document.certificate.is_some() { "NOT CERTIFIED, " } else { "" };
     let tolerance = format!("tolerance {:e}", document.method.tol);
     let proof = if document.global || !problem.has_objective { "" } else { "; not proved global" };
     match status {
         Status::Solved => {
             format!(
-                "{found} of the {of}, {} ({tolerance} met{proof})",
+                "{uncertified}{found} of the {of}, {} ({tolerance} met{proof})",
                 on_the_true_system(document)
             )
         }
         Status::Acceptable => {
             format!(
-                "{found} of the {of}, less accurate than asked for, {} ({tolerance} NOT \
-                 met{proof})",
+                "{uncertified}{found} of the {of}, less accurate than asked for, {} ({tolerance} \
+                 NOT met{proof})",
                 on_the_true_system(document)
             )
         }

@@ -27,6 +27,11 @@ pub fn model(name: &str) -> String {
     format!("{}/../models/{name}.fdc", env!("CARGO_MANIFEST_DIR"))
 }
 
+/// A model of the literature, by its place in `tests/classics`.
+pub fn classic(name: &str) -> String {
+    format!("{}/../tests/classics/{name}.fdc", env!("CARGO_MANIFEST_DIR"))
+}
+
 /// An empty folder for one test, with some files.
 pub fn folder(test: &str, files: &[(&str, &[u8])]) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(test);

@@ -81,6 +81,7 @@ fn check_tables(tree: &ast::Model, tables: &Tables) -> Checked {
     if let Some(model) = &model {
         diagnostics.extend(told_early(model));
         diagnostics.extend(numbers(model).iter().flat_map(|it| model.misplaced_rows(it)));
+        diagnostics.extend(numbers(model).iter().flat_map(|it| model.misplaced_times(it)));
         diagnostics.extend(preflight::check(model, tree));
         sort(&mut diagnostics);
     }

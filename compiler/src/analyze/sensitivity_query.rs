@@ -43,7 +43,8 @@ pub fn check_with_objective(tree: &ast::Model, of: &str, files: Option<&Files>) 
 
 fn with_objective(tree: &ast::Model, asked: &Item, value: &ast::Expr) -> ast::Model {
     let mut tree = tree.clone();
-    tree.items.retain(|item| !matches!(item.kind, ItemKind::Objective { .. }));
+    tree.items
+        .retain(|item| !matches!(item.kind, ItemKind::Objective { .. } | ItemKind::Fit { .. }));
     let lets: Vec<Item> =
         reports(&tree).filter(|report| is_let(&tree, report, value)).map(as_let).collect();
     tree.items.extend(lets);

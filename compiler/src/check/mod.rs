@@ -26,6 +26,7 @@ const OF_A_PHASE: &[Check] = &[
     surfaces::check,
     conditions::bounds::check,
     conditions::contradictions::check,
+    conditions::at_times::check,
     dynamics::finite::check,
     conditions::values::check,
 ];
@@ -34,6 +35,7 @@ const OF_A_PHASE: &[Check] = &[
 const AROUND_PHASES: &[Check] = &[
     conditions::around::check,
     conditions::links::check,
+    conditions::at_times::check,
     discontinuity::sets::check,
     discontinuity::hidden_jump::check,
     discontinuity::smoothness::check,

@@ -1,29 +1,38 @@
 //! A model with phases as a chain of problems.
 
-use super::{ProblemCode, compile_by_parameters, machine_code};
+use super::alike::Alike;
+use super::{ProblemCode, by_parameters_like, machine_code};
 use crate::lower::{self, Expected, LoweredLink, LoweredProblem};
 use crate::model::numbers::{Numbers, numbers as numbers_of};
 use crate::model::{Model, Phase, not_yet};
 use fdcc_grammar::Diagnostic;
-use fdcc_runtime::problem::{ByParameters, Chain, ChainByParameters, Function, Link, Problem};
+use fdcc_runtime::problem::{
+    ByParameters, Chain, ChainByParameters, Function, Link, Measurements, Problem,
+};
 use std::collections::HashSet;
 use std::sync::Arc;
 
 /// Turns a model into a chain of optimal control problems with compiled functions, of one problem
 /// if it has no phases; or says what cannot be solved yet.
 pub fn compile_chain(model: &Model) -> Result<Chain, Vec<Diagnostic>> {
-    ChainCode::new(model)?.chain(model)
+    compile_chain_like(model, &mut Alike::default())
+}
+
+/// The same for one of several models of which phases are alike: these are compiled once.
+pub fn compile_chain_like(model: &Model, alike: &mut Alike) -> Result<Chain, Vec<Diagnostic>> {
+    ChainCode::like(model, alike)?.chain(model)
 }
 
 /// The functions of a chain differentiated by the parameters of the model, for what its optimum is
 /// worth to them. The model has phases.
 pub fn compile_chain_by_parameters(model: &Model) -> Result<ChainByParameters, Vec<Diagnostic>> {
-    let phases = model.phases.iter().map(|phase| compile_by_parameters(&phase.model));
+    let mut alike = Alike::default();
+    let phases = model.phases.iter().map(|phase| by_parameters_like(&phase.model, &mut alike));
     let phases: Vec<ByParameters> = phases.collect::<Result<_, _>>()?;
     let lowered: Vec<LoweredProblem> =
         model.phases.iter().map(|phase| lower::lower(&phase.model)).collect();
     let (graph, functions) = lower::links_by_parameters(model, &lowered.iter().collect::<Vec<_>>());
-    let mut functions = machine_code(graph, functions);
+    let mut functions = alike.compiled(graph, functions, machine_code);
     let given = functions.pop().expect("what is given is the last of the functions");
     Ok(ChainByParameters { phases, links: functions, given })
 }
@@ -37,20 +46,27 @@ pub struct ChainCode {
 impl ChainCode {
     /// Compiles a model.
     pub fn new(model: &Model) -> Result<Self, Vec<Diagnostic>> {
+        Self::like(model, &mut Alike::default())
+    }
+
+    fn like(model: &Model, alike: &mut Alike) -> Result<Self, Vec<Diagnostic>> {
         let jump = model.phases.iter().find_map(|phase| phase.model.jumps.first());
         let jump = jump.map(|jump| not_yet(jump.place.span, "a jump within a phase"));
         if let Some(first) = model.not_yet.first().cloned().or(jump) {
             return Err(vec![first]);
         }
         if model.phases.is_empty() {
-            return Ok(ChainCode { phases: vec![ProblemCode::new(model)?], links: Vec::new() });
+            return Ok(ChainCode {
+                phases: vec![ProblemCode::like(model, alike)?],
+                links: Vec::new(),
+            });
         }
-        let phases = model.phases.iter().map(|phase| ProblemCode::new(&phase.model));
+        let phases = model.phases.iter().map(|phase| ProblemCode::like(&phase.model, alike));
         let phases: Vec<ProblemCode> = phases.collect::<Result<_, _>>()?;
         let lowered: Vec<&LoweredProblem> = phases.iter().map(|code| &code.lowered).collect();
         let (graph, links) = lower::links(model, &lowered);
         let functions = links.iter().map(|link| link.function.clone()).collect();
-        let functions = machine_code(graph, functions);
+        let functions = alike.compiled(graph, functions, machine_code);
         Ok(ChainCode { phases, links: links.into_iter().zip(functions).collect() })
     }
 
@@ -112,12 +128,21 @@ pub struct ChainExpectations {
     pub list: Vec<Expected>,
     /// Inputs `[x | p, integrals]`: for each phase its states at the start, its controls in the
     /// first interval, its states at the end, its controls in the last interval, hidden states left
-    /// out; parameters and unknowns; the integrals of each phase in turn. Three outputs for each
-    /// expectation: left side, right side, tolerance; values only.
+    /// out; parameters and unknowns; the integrals and the sums over rows of each phase in turn.
+    /// Three outputs for each expectation: left side, right side, tolerance; values only.
     pub function: Arc<dyn Function>,
     /// For each phase its integrands over normalised time `[tau | x | u | p]`, times the duration;
     /// values only.
     pub integrands: Vec<Arc<dyn Function>>,
+    /// For each phase its sums; values only.
+    pub sums: Vec<Vec<Measurements>>,
+}
+
+fn sums_of(model: &Model) -> Vec<Measurements> {
+    let Ok(numbers) = numbers_of(model) else { return Vec::new() };
+    let (graph, sums) = lower::sums(model);
+    let terms = machine_code(graph, sums.iter().map(|it| it.term.clone()).collect());
+    sums.iter().zip(&terms).map(|(it, term)| it.with_rows(model, &numbers, term)).collect()
 }
 
 /// Compiles the expectations of a model with phases.
@@ -128,5 +153,10 @@ pub fn chain_expectations(model: &Model) -> ChainExpectations {
         let (graph, integrands) = lower::integrands(&phase.model);
         machine_code(graph, vec![integrands]).remove(0)
     };
-    ChainExpectations { list, function, integrands: model.phases.iter().map(of).collect() }
+    ChainExpectations {
+        list,
+        function,
+        integrands: model.phases.iter().map(of).collect(),
+        sums: model.phases.iter().map(|phase| sums_of(&phase.model)).collect(),
+    }
 }

@@ -63,6 +63,7 @@ fn symbol_name(model: &Model, symbol: Symbol) -> String {
         Symbol::AtStart(index) => format!("{}(start)", model.states[index].place.name),
         Symbol::AtEnd(index) => format!("{}(end)", model.states[index].place.name),
         Symbol::Integral(index) => model.integrals[index].place.name.clone(),
+        Symbol::ControlAtStart(index) => format!("{}(start)", model.controls[index].place.name),
         Symbol::ControlAtEnd(index) => format!("{}(end)", model.controls[index].place.name),
         Symbol::OfPhase { phase, input } => {
             let phase = &model.phases[phase];
@@ -99,7 +100,9 @@ fn symbols(model: &Model) -> String {
         roots.push((state.equation.name.clone(), state.rate));
     }
     roots.extend(model.path.iter().map(|it| (format!("path {}", it.place.name), it.value)));
-    roots.extend(model.boundary.iter().map(|it| (it.place.name.clone(), it.value)));
+    let at_times = model.at_times.iter().flat_map(|it| &it.rows);
+    let conditions = model.boundary.iter().chain(at_times);
+    roots.extend(conditions.map(|it| (it.place.name.clone(), it.value)));
     roots
         .extend(model.integrals.iter().map(|it| (format!("d/dt {}", it.place.name), it.integrand)));
     roots.extend(model.objective.iter().map(|it| (it.0.name.clone(), it.1)));
@@ -208,6 +211,8 @@ fn summary(model: &Model, lowered: &LoweredProblem, numbers: &Numbers) -> String
     let path = model.path.iter().map(|it| bounded(&it.place.name, numbers.bounds(model, it.range)));
     section(&mut text, "path", path);
     section(&mut text, "boundary", model.boundary.iter().map(|it| it.place.name.clone()));
+    let at_times = model.at_times.iter().flat_map(|it| &it.rows);
+    section(&mut text, "at times", at_times.map(|it| it.place.name.clone()));
     let objective: Vec<(String, ExprId)> =
         model.objective.iter().map(|it| (it.0.name.clone(), it.1)).collect();
     section(&mut text, "objective", over_symbols(model, &objective).lines().map(str::to_string));

@@ -1,7 +1,9 @@
 //! The pipeline: lowering, derivatives, machine code.
 
+pub(crate) mod alike;
 pub(crate) mod chain;
 pub(crate) mod dump;
+pub(crate) mod residuals;
 
 use crate::differentiate::differentiate;
 use crate::expressions::graph::{self, Graph};
@@ -13,6 +15,7 @@ use crate::lower::{
 use crate::model::numbers::{Numbers, numbers};
 use crate::model::{self, Model, Simulated};
 use crate::phases::between_jumps;
+use alike::Alike;
 use fdcc_grammar::{Diagnostic, Severity};
 use fdcc_runtime::problem::{ByParameters, Function, Measurements, Problem};
 use fdcc_runtime::simulate::System;
@@ -34,13 +37,18 @@ pub struct ProblemCode {
 impl ProblemCode {
     /// Compiles a model.
     pub fn new(model: &Model) -> Result<Self, Vec<Diagnostic>> {
+        Self::like(model, &mut Alike::default())
+    }
+
+    /// Compiles what is not alike to what has been compiled.
+    pub(super) fn like(model: &Model, alike: &mut Alike) -> Result<Self, Vec<Diagnostic>> {
         not_yet(model)?;
         sums_or_jumps(model)?;
         let model = &between_jumps(model);
         known(model)?;
         let lowered = lower(model);
         let functions = lowered.functions().into_iter().cloned().collect();
-        let functions = machine_code(lowered.graph.clone(), functions);
+        let functions = alike.compiled(lowered.graph.clone(), functions, machine_code);
         Ok(ProblemCode { lowered, functions })
     }
 
@@ -54,10 +62,15 @@ impl ProblemCode {
 /// The functions of a problem differentiated by the parameters of the model, for what its optimum
 /// is worth to them.
 pub fn compile_by_parameters(model: &Model) -> Result<ByParameters, Vec<Diagnostic>> {
+    by_parameters_like(model, &mut Alike::default())
+}
+
+/// The same, where some of it may have been compiled.
+fn by_parameters_like(model: &Model, alike: &mut Alike) -> Result<ByParameters, Vec<Diagnostic>> {
     not_yet(model)?;
     let mut lowered = lower(model);
     let functions = by_parameters(model, &mut lowered);
-    let functions = machine_code(lowered.graph, functions);
+    let functions = alike.compiled(lowered.graph, functions, machine_code);
     let Some((first, sums)) = functions.split_first_chunk::<4>() else {
         unreachable!("there are four at least")
     };

@@ -25,6 +25,8 @@ pub struct Table {
     pub place: Span,
     /// The line of the file at which each row stands, counted from 1.
     pub lines: Vec<usize>,
+    /// The names of the columns that the model takes.
+    pub names: Vec<String>,
     /// In SI, one entry for each row.
     pub columns: Vec<Vec<f64>>,
 }
@@ -87,6 +89,7 @@ fn table(
         file: file.to_owned(),
         place,
         lines,
+        names: columns.iter().map(|it| it.0.name.clone()).collect(),
         columns: columns.iter().zip(numbers).map(in_si).collect(),
     })
 }

@@ -27,7 +27,7 @@ pub(super) struct Watched<'a> {
 /// The enclosures of all of them.
 pub(super) fn enclosures(graph: &mut Graph, layout: &Layout, watched: &Watched) -> Enclosures {
     let Watched { flow, switching, kinks, rates, path, guess } = watched;
-    let along = 0..layout.states().end;
+    let along = 0..layout.controls().end;
     let mut of = |function: &VectorFunction, by: &Range<usize>| -> Vec<Enclosure> {
         function
             .outputs

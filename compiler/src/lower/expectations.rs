@@ -103,14 +103,14 @@ fn alone(
 
 /// Expectations of a model with phases. Inputs `[x | p, integrals]`: `x` as in a
 /// [`Link`](fdcc_runtime::problem::Link) to both ends of each phase, without hidden states; the
-/// integrals of each phase in turn.
+/// integrals of each phase and its sums over rows in turn.
 pub(crate) fn expectations_of_phases(model: &Model) -> (Graph, VectorFunction, Vec<Expected>) {
     let mut graph = model.graph.clone();
     let ends: Vec<End> =
         (0..model.phases.len()).flat_map(|at| [End::First(at), End::Last(at)]).collect();
     let hidden: Vec<&[Hidden]> = vec![&[]; model.phases.len()];
     let mut places = Places::new(model, &hidden, &ends);
-    places.with_integrals();
+    places.with_totals();
     let values: Vec<ExprId> = model.expectations.iter().flat_map(|it| it.values).collect();
     let list = model.expectations.iter().map(|it| Expected {
         origin: origin(&it.place),
@@ -120,6 +120,16 @@ pub(crate) fn expectations_of_phases(model: &Model) -> (Graph, VectorFunction, V
     let list = list.collect();
     let values = places.apply(&mut graph, &values);
     (graph, values_only("expectations", places.layout, values), list)
+}
+
+/// All sums over rows of a phase, values only.
+pub(crate) fn sums(model: &Model) -> (Graph, Vec<Measured>) {
+    let mut graph = model.graph.clone();
+    let objective = objective::split(model, &mut graph);
+    let sizes = Sizes::new(model, objective.hidden.len());
+    let all: Vec<usize> = (0..model.sums.len()).collect();
+    let sums = alone(model, &mut graph, &sizes, objective, &all);
+    (graph, sums)
 }
 
 /// All integrands of a phase over normalised time, times its duration.

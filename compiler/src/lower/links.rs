@@ -69,8 +69,9 @@ pub(super) struct Places<'m> {
     ends: Vec<(End, usize)>,
     /// The sizes of the inputs.
     pub layout: Layout,
-    /// Where the integrals of each phase begin among the parameters, if they are no states.
-    integrals: Vec<usize>,
+    /// Where the integrals and sums of each phase begin among the parameters, if they are no
+    /// states.
+    totals: Vec<usize>,
 }
 
 impl<'m> Places<'m> {
@@ -84,14 +85,14 @@ impl<'m> Places<'m> {
         }
         let p = model.params.len() + model.frees.len();
         let layout = Layout { x, p, ..Layout::default() };
-        Places { model, hidden, ends: placed, layout, integrals: Vec::new() }
+        Places { model, hidden, ends: placed, layout, totals: Vec::new() }
     }
 
-    /// Puts all integrals of each phase behind the parameters.
-    pub fn with_integrals(&mut self) {
+    /// Puts all integrals of each phase behind the parameters, and then all its sums over rows.
+    pub fn with_totals(&mut self) {
         for phase in &self.model.phases {
-            self.integrals.push(self.layout.parameters().end);
-            self.layout.p += phase.model.integrals.len();
+            self.totals.push(self.layout.parameters().end);
+            self.layout.p += phase.model.integrals.len() + phase.model.sums.len();
         }
     }
 
@@ -111,9 +112,13 @@ impl<'m> Places<'m> {
         let (end, place) = match model.symbols[input as usize] {
             Symbol::AtStart(at) => (End::First(phase), at),
             Symbol::AtEnd(at) => (End::Last(phase), at),
+            Symbol::ControlAtStart(at) => (End::First(phase), states + hidden.len() + at),
             Symbol::ControlAtEnd(at) => (End::Last(phase), states + hidden.len() + at),
-            Symbol::Integral(at) if !self.integrals.is_empty() => {
-                return Some(self.integrals[phase] + at);
+            Symbol::Sum(at) if !self.totals.is_empty() => {
+                return Some(self.totals[phase] + model.integrals.len() + at);
+            }
+            Symbol::Integral(at) if !self.totals.is_empty() => {
+                return Some(self.totals[phase] + at);
             }
             Symbol::Integral(at) => (
                 End::Last(phase),

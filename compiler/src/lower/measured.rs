@@ -50,16 +50,35 @@ pub(crate) fn lower(
     let all: Vec<_> = (objective.measured.iter().map(|(sum, factor)| (*sum, *factor, None)))
         .chain(in_states)
         .collect();
-    let interpolant = match model.method.scheme.is_collocation() {
-        true => Interpolant::Polynomial,
-        false => Interpolant::Hermite,
-    };
+    let interpolant = interpolant(model);
     let term = |(sum, factor, state): (usize, ExprId, Option<usize>)| {
         let mut row = Row::new(model, graph, sizes, &model.sums[sum], interpolant);
         let value = row.graph.mul(factor, model.sums[sum].term);
         Measured { term: row.function(value, dynamics), sum, state, interpolant }
     };
     all.into_iter().map(term).collect()
+}
+
+/// A value in each row of a sum, for whoever asks for it alone: values only.
+pub(crate) fn alone(
+    model: &Model,
+    graph: &mut Graph,
+    sizes: &Sizes,
+    (sum, value): (usize, ExprId),
+    dynamics: &VectorFunction,
+) -> Measured {
+    let interpolant = interpolant(model);
+    let mut row = Row::new(model, graph, sizes, &model.sums[sum], interpolant);
+    let mut term = row.function(value, dynamics);
+    term.by.clear();
+    Measured { term, sum, state: None, interpolant }
+}
+
+fn interpolant(model: &Model) -> Interpolant {
+    match model.method.scheme.is_collocation() {
+        true => Interpolant::Polynomial,
+        false => Interpolant::Hermite,
+    }
 }
 
 impl Measured {

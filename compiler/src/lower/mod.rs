@@ -24,18 +24,20 @@ mod links_by_parameters;
 mod measured;
 mod objective;
 mod problem;
+mod residuals;
 mod simulation;
 
 pub(crate) use by_parameters::by_parameters;
 pub use expectations::Expected;
 pub(crate) use expectations::{LoweredExpectations, expectations};
-pub(crate) use expectations::{expectations_of_phases, integrands};
+pub(crate) use expectations::{expectations_of_phases, integrands, sums};
 pub use function::{Order, VectorFunction};
 pub(crate) use links::{LoweredLink, links};
 pub(crate) use links_by_parameters::links_by_parameters;
 pub use objective::Hidden;
 pub use problem::problem;
 pub(crate) use problem::unknowns;
+pub(crate) use residuals::squares;
 pub(crate) use simulation::{Purpose, simulation, system};
 
 use crate::expressions::graph::{ExprId, Graph};

@@ -187,7 +187,7 @@ impl OverTime<'_> {
         let kinks = take_out(self.graph, flow, &switching);
         self.layout.s += kinks.zeros.len();
         flow.layout = self.layout;
-        self.over_inputs("kinks", kinks.zeros, kinks.origins, 0..self.layout.states().end)
+        self.over_inputs("kinks", kinks.zeros, kinks.origins, 0..self.layout.controls().end)
     }
 
     /// `psi'` along the flow.

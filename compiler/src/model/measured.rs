@@ -19,6 +19,8 @@ pub struct Sum {
     /// What is added up, over states, controls and time at the time of a row, its columns,
     /// parameters and unknowns.
     pub term: ExprId,
+    /// Whether it is that of a signal of a `fit`, whose standard deviations are known.
+    pub is_fit: bool,
 }
 
 /// So much beyond an end is rounding, of the times that are looked at.

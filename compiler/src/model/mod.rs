@@ -5,6 +5,7 @@
 //! lowering gives them the places that compiled functions want. Bounds and parameters stay
 //! expressions, so that the command line can change a number.
 
+mod at_times;
 mod expected;
 pub(crate) mod guess;
 mod measured;
@@ -13,6 +14,7 @@ mod overrides;
 pub(crate) mod phases;
 mod switches;
 
+pub(crate) use at_times::Instant;
 pub use measured::Sum;
 pub(crate) use measured::by_row;
 pub use switches::Switch;
@@ -57,6 +59,8 @@ pub enum Symbol {
     Simulated(usize),
     /// An argument of a function, while its body is examined by itself; all functions share them.
     Argument(usize),
+    /// A control in the first interval.
+    ControlAtStart(usize),
     /// A control in the last interval.
     ControlAtEnd(usize),
     /// What an input of the graph of a phase stands for, as the whole reads it.
@@ -184,6 +188,17 @@ pub struct Constraint {
     pub range: Range,
 }
 
+/// `at TIME: CONDITION`, between the ends of time.
+#[derive(Clone, Debug)]
+pub struct AtTime {
+    /// The time as it was written.
+    pub place: Place,
+    /// When the rows hold, over parameters and unknowns.
+    pub time: ExprId,
+    /// What holds then, over the symbols of any time.
+    pub rows: Vec<Constraint>,
+}
+
 /// An `integral(...)`.
 #[derive(Clone, Debug)]
 pub struct Integral {
@@ -250,6 +265,8 @@ pub struct Model {
     pub half_open: Vec<usize>,
     /// Conditions at the ends.
     pub boundary: Vec<Constraint>,
+    /// Conditions at times between the ends.
+    pub at_times: Vec<AtTime>,
     /// What is minimised, as written; none for a pure feasibility problem.
     pub objective: Option<(Place, ExprId)>,
     /// `-1` for `maximize`.
@@ -316,6 +333,7 @@ impl Model {
             path: Vec::new(),
             half_open: Vec::new(),
             boundary: Vec::new(),
+            at_times: Vec::new(),
             objective: None,
             sense: 1.0,
             integrals: Vec::new(),

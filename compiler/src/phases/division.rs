@@ -5,20 +5,30 @@ use crate::expressions::graph::{ExprId, Graph};
 use crate::model::{Constraint, Free, Link, Model, Place, Range, Symbol};
 use fdcc_runtime::problem::End;
 
+/// Gives a model all symbols that phases or links read.
+pub(super) fn add_symbols(model: &mut Model) {
+    model.symbols_mut().input(Symbol::Time);
+    for at in 0..model.states.len() {
+        let mut symbols = model.symbols_mut();
+        symbols.input(Symbol::AtStart(at));
+        symbols.input(Symbol::AtEnd(at));
+    }
+    for at in 0..model.controls.len() {
+        let mut symbols = model.symbols_mut();
+        symbols.input(Symbol::ControlAtStart(at));
+        symbols.input(Symbol::ControlAtEnd(at));
+    }
+}
+
 /// Makes the times at which a new phase begins unknowns of the model, between its first and last
 /// time, and gives it all symbols that phases or links read.
 pub(super) fn divide(model: &mut Model, between: Vec<Place>) -> Vec<ExprId> {
+    add_symbols(model);
     let first = model.frees.len();
     let of = |model: &mut Model, symbol| {
         let input = model.symbols_mut().input(symbol);
         model.graph.input(input)
     };
-    of(model, Symbol::Time);
-    for at in 0..model.states.len() {
-        of(model, Symbol::AtStart(at));
-        of(model, Symbol::AtEnd(at));
-    }
-    (0..model.controls.len()).for_each(|at| _ = of(model, Symbol::ControlAtEnd(at)));
     let [begin, end] = model.interval;
     let unbounded = [f64::NEG_INFINITY, f64::INFINITY].map(|it| model.graph.number(it));
     let (mut times, count) = (vec![begin], between.len());
@@ -73,9 +83,9 @@ impl<'m> Division<'m> {
         Range { lower: zero, upper: zero }
     }
 
-    /// What is written of the ends of the whole time.
-    pub fn link_of_whole(&mut self, shares: &Shares) -> Option<Link> {
-        let rows: Vec<Constraint> = (self.model.boundary.iter())
+    /// The conditions at the ends of the whole time, and what is minimised of these.
+    pub fn link_of_whole(&mut self, shares: &Shares, boundary: &[Constraint]) -> Option<Link> {
+        let rows: Vec<Constraint> = (boundary.iter())
             .map(|row| Constraint { value: self.of_whole(row.value), ..row.clone() })
             .collect();
         let objective = shares.linked.map(|value| self.of_whole(value));
@@ -105,6 +115,15 @@ impl<'m> Division<'m> {
             Symbol::Time => Some(own.times[j + 1]),
             Symbol::State(at) => Some(own.of_phase(j, Symbol::AtEnd(at))),
             Symbol::Control(at) => Some(own.of_phase(j, Symbol::ControlAtEnd(at))),
+            _ => None,
+        })
+    }
+
+    /// A function of time and state at the beginning of a phase.
+    pub fn at_start(&mut self, j: usize, value: ExprId) -> ExprId {
+        self.with_symbols(value, &mut |own, symbol| match symbol {
+            Symbol::Time => Some(own.times[j]),
+            Symbol::State(at) => Some(own.of_phase(j, Symbol::AtStart(at))),
             _ => None,
         })
     }

@@ -70,13 +70,13 @@ pub(super) fn approach(model: &Model, graph: &mut Graph, psi: ExprId) -> ExprId 
 impl MultiPhase<'_> {
     /// Whether a state stands still in a phase.
     pub(super) fn is_still(&self, j: usize, state: usize) -> bool {
-        self.held.is_some_and(|held| j >= held.from && state == held.state)
+        self.held.is_some_and(|held| self.count_before(j) >= held.from && state == held.state)
     }
 
     /// `psi'` at the start of the phase from which on the surface is held, where the state begins
     /// that stands still.
     pub(super) fn at_rest(&mut self, j: usize, state: usize) -> Option<ExprId> {
-        let held = self.held.filter(|held| held.from == j && held.state == state)?;
+        let held = self.held.filter(|it| it.from == self.count_before(j) && it.state == state)?;
         let (input, start) = (
             self.division.input_of_state(state),
             self.division.of_phase(j, Symbol::AtStart(state)),
@@ -89,7 +89,9 @@ impl MultiPhase<'_> {
 
     /// Whether a constraint says of a held surface what is so anyway.
     pub(super) fn is_held(&mut self, j: usize, row: &Constraint) -> bool {
-        let Some(held) = self.held.filter(|held| j >= held.from) else { return false };
+        let Some(held) = self.held.filter(|it| self.count_before(j) >= it.from) else {
+            return false;
+        };
         self.is_switching_function(held.psi, row.value)
     }
 }

@@ -7,6 +7,16 @@ use fdcc_runtime::problem::End;
 impl MultiPhase<'_> {
     /// `psi = 0` and the resets at a jump, and that the phases beside it have durations.
     pub(super) fn link(&mut self, j: usize) -> Link {
+        let mut rows = self.at_jump(j);
+        rows.push(self.duration(j, "before"));
+        if j + 1 == self.sequence.len() {
+            rows.push(self.duration(j + 1, "after"));
+        }
+        Link { ends: vec![End::Last(j), End::First(j + 1)], objective: None, rows }
+    }
+
+    /// `psi = 0`, in the direction of the jump, and the resets.
+    pub(super) fn at_jump(&mut self, j: usize) -> Vec<Constraint> {
         let jump = self.jump(j);
         let zero = self.division.graph.number(0.0);
         let row = |name: String, value| Constraint {
@@ -14,13 +24,9 @@ impl MultiPhase<'_> {
             value,
             range: Range { lower: zero, upper: zero },
         };
-        let psi = self.division.at_end(j, self.whole.surfaces[jump.surface].psi);
+        let psi = self.division.at_end(j, self.whole().surfaces[jump.surface].psi);
         let mut rows = vec![row(jump.place.name.clone(), psi)];
         rows.extend(self.direction(j));
-        rows.push(self.duration(j, "before"));
-        if j + 1 == self.sequence.len() {
-            rows.push(self.duration(j + 1, "after"));
-        }
         for (index, state) in self.division.model.states.iter().enumerate() {
             let reset = jump.resets.iter().find(|it| it.0 == index).map(|it| it.1);
             let before = match reset {
@@ -34,7 +40,7 @@ impl MultiPhase<'_> {
             };
             rows.push(row(format!("{} after {}", state.place.name, jump.place.name), gap));
         }
-        Link { ends: vec![End::Last(j), End::First(j + 1)], objective: None, rows }
+        rows
     }
 
     /// That a phase does not end before it begins; it is told by the jump before or after it.

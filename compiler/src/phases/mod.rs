@@ -11,6 +11,7 @@
 //! Which jumps happen, and in which order, is given ([`sequences()`]). A phase depends on the two
 //! times at its ends only, so that the cost of a solve is that of all phases one after the other.
 
+mod at_times;
 mod crossings;
 mod division;
 mod hold;
@@ -20,8 +21,12 @@ mod path;
 mod sequences;
 mod shares;
 
+pub use at_times::{ends_at, with_times};
 pub use crossings::crossings;
-pub use modes::{Arc, Mode, PhaseOfModes, may_hold, with_modes};
+pub use modes::{
+    Arc, Limit, Mode, PhaseOfModes, Point, hamiltonian, is_uncontrolled, limits, may_hold,
+    with_modes,
+};
 pub use sequences::{Sequences, sequences};
 
 use crate::expressions::graph::ExprId;
@@ -36,7 +41,7 @@ use shares::Shares;
 
 /// What holds between the jumps of a model: the model without them, and without surfaces at which
 /// nothing else happens.
-pub(crate) fn between_jumps(model: &Model) -> Model {
+pub fn between_jumps(model: &Model) -> Model {
     if model.jumps.is_empty() {
         return model.clone();
     }
@@ -75,17 +80,32 @@ fn used_surfaces(model: &Model) -> Vec<usize> {
 /// The model in which exactly these jumps and [`mod@crossings`] happen, one after the other; of one
 /// piece if there are none.
 pub fn with_phases(model: &Model, sequence: &[usize]) -> Result<Model, Vec<Diagnostic>> {
-    let numbers = numbers(model)?;
-    let begins = crossings::beginnings(model, &numbers);
-    let mut limits = sequences::limits(model, &numbers);
-    limits.resize(2 * model.jumps.len(), None);
-    let whole = Model { jumps: [model.jumps.clone(), crossings(model)].concat(), ..model.clone() };
+    let jumps = Jumps::new(model)?;
     let mut between = between_jumps(model);
-    let times = times(&mut between, &whole, sequence);
-    let mut division = Division::new(&between, times);
-    let held = Held::new(&whole, &mut division.graph, sequence, &limits);
-    let multi_phase = MultiPhase { whole: &whole, division, sequence, held, begins, limits };
-    Ok(multi_phase.into_model())
+    let times = times(&mut between, &jumps.whole, sequence);
+    let events: Vec<Option<usize>> = sequence.iter().copied().map(Some).collect();
+    Ok(MultiPhase::new(&jumps, Division::new(&between, times), &events).into_model())
+}
+
+/// The jumps of a model, and what is known of them beforehand.
+struct Jumps {
+    /// The model as it is written, with the crossings behind its jumps.
+    whole: Model,
+    /// Where the state may begin, for each jump.
+    begins: Vec<Beginning>,
+    /// How often each jump may happen.
+    limits: Vec<Option<usize>>,
+}
+
+impl Jumps {
+    fn new(model: &Model) -> Result<Self, Vec<Diagnostic>> {
+        let numbers = numbers(model)?;
+        let begins = crossings::beginnings(model, &numbers);
+        let mut limits = sequences::limits(model, &numbers);
+        limits.resize(2 * model.jumps.len(), None);
+        let jumps = [model.jumps.clone(), crossings(model)].concat();
+        Ok(Jumps { whole: Model { jumps, ..model.clone() }, begins, limits })
+    }
 }
 
 /// The times of the jumps, between the first and the last time.
@@ -98,24 +118,37 @@ fn times(model: &mut Model, whole: &Model, sequence: &[usize]) -> Vec<ExprId> {
 }
 
 struct MultiPhase<'m> {
-    /// As it is written, with the crossings behind its jumps.
-    whole: &'m Model,
-    /// What holds between the jumps, with the times of the jumps as unknowns.
+    jumps: &'m Jumps,
+    /// What holds between the jumps, with the times at which phases end as unknowns.
     division: Division<'m>,
+    /// The jump or crossing at the end of each phase but the last, if one happens there.
+    events: Vec<Option<usize>>,
     /// The jumps and crossings that happen, in their order.
-    sequence: &'m [usize],
+    sequence: Vec<usize>,
     /// The surface that is held in the end.
     held: Option<Held>,
-    /// Where the state may begin, for each jump.
-    begins: Vec<Beginning>,
-    /// How often each jump may happen.
-    limits: Vec<Option<usize>>,
 }
 
 impl<'m> MultiPhase<'m> {
+    fn new(jumps: &'m Jumps, mut division: Division<'m>, events: &[Option<usize>]) -> Self {
+        let sequence: Vec<usize> = events.iter().copied().flatten().collect();
+        let held = Held::new(&jumps.whole, &mut division.graph, &sequence, &jumps.limits);
+        MultiPhase { jumps, division, events: events.to_vec(), sequence, held }
+    }
+
+    /// As it is written, with the crossings behind its jumps.
+    fn whole(&self) -> &'m Model {
+        &self.jumps.whole
+    }
+
     /// The jump at the end of a phase.
     fn jump(&self, j: usize) -> &'m Jump {
-        &self.whole.jumps[self.sequence[j]]
+        &self.whole().jumps[self.events[j].expect("a jump happens there")]
+    }
+
+    /// How many jumps happen before a phase.
+    fn count_before(&self, j: usize) -> usize {
+        self.events[..j].iter().flatten().count()
     }
 
     fn into_model(mut self) -> Model {
@@ -133,7 +166,7 @@ impl<'m> MultiPhase<'m> {
             })
             .collect();
         let mut links: Vec<_> = (0..self.sequence.len()).map(|j| self.link(j)).collect();
-        links.extend(self.division.link_of_whole(&shares));
+        links.extend(self.division.link_of_whole(&shares, &model.boundary));
         let Division { graph, symbols, .. } = self.division;
         Model { graph, symbols, phases, links, ..model.clone() }
     }

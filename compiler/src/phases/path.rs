@@ -32,11 +32,16 @@ impl MultiPhase<'_> {
         rows.extend(self.sides(j));
         let half_open = (0..rows.len()).filter(|at| self.ends_on(j, rows[*at].value)).collect();
         for row in &mut rows {
-            if self.is_held(j, row) {
-                row.value = within(&mut self.division.graph, row.range);
-            }
+            self.give_way(j, row);
         }
         (rows, half_open)
+    }
+
+    /// Makes a row say nothing where a held surface says the same.
+    pub(super) fn give_way(&mut self, j: usize, row: &mut Constraint) {
+        if self.is_held(j, row) {
+            row.value = within(&mut self.division.graph, row.range);
+        }
     }
 
     /// Bounds of states that are functions of a surface.
@@ -55,17 +60,17 @@ impl MultiPhase<'_> {
     fn bounds_switching_function(&self, state: usize) -> bool {
         let input = self.division.input_of_state(state);
         let is_it = |jump: &usize| {
-            let psi = self.whole.surfaces[self.whole.jumps[*jump].surface].psi;
-            self.whole.graph.inputs_of(&[psi]) == [input]
+            let psi = self.whole().surfaces[self.whole().jumps[*jump].surface].psi;
+            self.whole().graph.inputs_of(&[psi]) == [input]
         };
         self.sequence.iter().any(is_it)
     }
 
     /// On which sides of the surfaces a phase stays.
-    fn sides(&mut self, j: usize) -> Vec<Constraint> {
-        let whole = self.whole;
+    pub(super) fn sides(&mut self, j: usize) -> Vec<Constraint> {
+        let whole = self.whole();
         let mut rows = Vec::new();
-        let own = &whole.jumps[..self.begins.len()];
+        let own = &whole.jumps[..self.jumps.begins.len()];
         for (index, jump) in own.iter().enumerate() {
             if !self.may_happen(j, index) || has_both(own, jump) {
                 continue;
@@ -90,43 +95,54 @@ impl MultiPhase<'_> {
         rows
     }
 
-    /// Whether a path constraint of the model says the same.
+    /// Whether a path constraint of the model, or the bounds of a state, say the same.
     fn is_written(&self, row: &Constraint) -> bool {
-        let same = |it: &&Constraint| it.value == row.value;
+        let model = self.division.model;
         let number = |id| self.division.graph.as_number(id).unwrap_or(f64::NAN);
-        let within = |it: &Constraint| {
-            number(it.range.lower) >= number(row.range.lower)
-                && number(it.range.upper) <= number(row.range.upper)
+        let within = |range: Range| {
+            number(range.lower) >= number(row.range.lower)
+                && number(range.upper) <= number(row.range.upper)
         };
-        self.division.model.path.iter().filter(same).any(within)
+        let is_state = |at: &usize| {
+            let input = self.division.input_of_state(*at);
+            self.division.graph.clone().input(input) == row.value
+        };
+        let mut states = (0..model.states.len()).filter(is_state);
+        let mut rows = model.path.iter().filter(|it| it.value == row.value);
+        states.any(|at| within(model.states[at].range)) || rows.any(|it| within(it.range))
     }
 
     /// Whether a jump has not yet happened as often as it may.
     fn may_happen(&self, j: usize, index: usize) -> bool {
-        let before = self.sequence[..j].iter().filter(|it| **it == index).count();
-        self.limits[index].is_none_or(|limit| before < limit)
+        let before =
+            self.sequence[..self.count_before(j)].iter().filter(|it| **it == index).count();
+        self.jumps.limits[index].is_none_or(|limit| before < limit)
     }
 
     /// Whether the state began beyond the surface, and has not come back through it.
     fn is_not_yet_before(&self, j: usize, index: usize) -> bool {
-        let crossing = index + self.begins.len();
+        let crossing = index + self.jumps.begins.len();
         match self.sequence.iter().position(|it| *it == index || *it == crossing) {
-            Some(first) => self.sequence[first] == crossing && j <= first,
-            None => self.begins[index].is_beyond(),
+            Some(first) => self.sequence[first] == crossing && self.count_before(j) <= first,
+            None => self.jumps.begins[index].is_beyond(),
         }
     }
 
     /// Whether an earlier jump may have moved the state through the surface.
     fn is_moved(&self, j: usize, index: usize) -> bool {
-        let read =
-            self.whole.graph.inputs_of(&[self.whole.surfaces[self.whole.jumps[index].surface].psi]);
-        let resets = self.sequence[..j].iter().flat_map(|it| &self.whole.jumps[*it].resets);
+        let read = self
+            .whole()
+            .graph
+            .inputs_of(&[self.whole().surfaces[self.whole().jumps[index].surface].psi]);
+        let earlier = &self.sequence[..self.count_before(j)];
+        let resets = earlier.iter().flat_map(|it| &self.whole().jumps[*it].resets);
         resets.map(|reset| self.division.input_of_state(reset.0)).any(|state| read.contains(&state))
     }
 
     /// Whether the state went through the surface at an earlier jump.
     fn is_beyond(&mut self, j: usize, index: usize) -> bool {
-        self.sequence[..j].contains(&index) && !self.turns(&self.whole.jumps[index])
+        self.sequence[..self.count_before(j)].contains(&index)
+            && !self.turns(&self.whole().jumps[index])
     }
 
     /// Whether a jump changes the speed at which its surface is approached.
@@ -142,11 +158,8 @@ impl MultiPhase<'_> {
     }
 
     fn approach_of(&mut self, jump: &Jump) -> ExprId {
-        approach(
-            self.division.model,
-            &mut self.division.graph,
-            self.whole.surfaces[jump.surface].psi,
-        )
+        let psi = self.whole().surfaces[jump.surface].psi;
+        approach(self.division.model, &mut self.division.graph, psi)
     }
 
     /// That a phase comes to its end in the direction of the jump, or two jumps could be one upon
@@ -174,8 +187,8 @@ impl MultiPhase<'_> {
 
     /// Whether the surface on which a phase ends says what a value is there.
     fn ends_on(&mut self, j: usize, value: ExprId) -> bool {
-        let psi = |at: &usize| self.whole.surfaces[self.whole.jumps[*at].surface].psi;
-        match self.sequence.get(j).map(psi) {
+        let psi = |at: &usize| self.whole().surfaces[self.whole().jumps[*at].surface].psi;
+        match self.events.get(j).and_then(Option::as_ref).map(psi) {
             Some(psi) => self.is_switching_function(psi, value),
             None => false,
         }

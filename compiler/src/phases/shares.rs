@@ -85,7 +85,7 @@ fn integrals(model: &Model, graph: &Graph, roots: &[ExprId]) -> Vec<usize> {
 }
 
 /// Whether a value is a number once the parameters are known.
-fn is_given(model: &Model, graph: &Graph, value: ExprId) -> bool {
+pub(super) fn is_given(model: &Model, graph: &Graph, value: ExprId) -> bool {
     let inputs = graph.inputs_of(&[value]);
     inputs.iter().all(|at| matches!(model.symbols[*at as usize], Symbol::Param(_)))
 }

@@ -4,6 +4,7 @@
 //! gives the unknown value, from which nothing follows: so several mistakes are told at once, and
 //! none because of another.
 
+mod chosen_bounds;
 pub(crate) mod elaborator;
 pub(crate) mod expressions;
 mod items;
@@ -121,6 +122,7 @@ impl Elaborator<'_> {
             phases,
             ..self.model
         };
+        model.bounds_as_conditions();
         phases::distribute(&mut model);
         model
     }

@@ -31,11 +31,14 @@ enum Takes {
 pub(crate) const KEYS: &[Key] = &[
     Key {
         name: "sigma",
-        takes: Takes::Number("a number above 0"),
+        takes: Takes::Number("a number from 0"),
         doc: "The width of the layer in which `Sgn` and `match` are smoothed. Half the width, half the \
-         error, and a steeper layer that asks for a finer grid.",
+         error, and a steeper layer that asks for a finer grid. With 0, as without a width, the \
+         answer is that of the true system, with every switch located.",
         set: |m, given| {
-            m.sigma = Some(positive(given)?);
+            let width = number(given).filter(|it| *it >= 0.0)?;
+            m.exact = width == 0.0;
+            m.sigma = (!m.exact).then_some(width);
             Some(())
         },
     },
@@ -295,6 +298,7 @@ pub fn default_method() -> Method {
         lagged: Vec::new(),
         steps: 1,
         sigma: None,
+        exact: false,
         continuation: Vec::new(),
         kernel: "cubic".into(),
         solver: Solver::Automatic,

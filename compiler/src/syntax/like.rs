@@ -180,7 +180,8 @@ fn replaces(later: &Item, item: &Item) -> bool {
     let left = |condition: &Condition| text::expr(&condition.first);
     match (&later.kind, &item.kind) {
         (ItemKind::Time { .. }, ItemKind::Time { .. })
-        | (ItemKind::Objective { .. }, ItemKind::Objective { .. }) => true,
+        | (ItemKind::Objective { .. }, ItemKind::Objective { .. })
+        | (ItemKind::Fit { .. }, ItemKind::Fit { .. }) => true,
         (ItemKind::Start { condition: a }, ItemKind::Start { condition: b })
         | (ItemKind::End { condition: a }, ItemKind::End { condition: b }) => left(a) == left(b),
         _ => named(later).is_some() && named(later) == named(item),

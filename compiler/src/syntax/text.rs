@@ -37,6 +37,11 @@ pub(crate) fn condition(condition: &Condition) -> String {
     out
 }
 
+/// A condition at a time as it was written.
+pub(crate) fn at_time(time: &Expr, condition: &Condition) -> String {
+    format!("at {}: {}", expr(time), self::condition(condition))
+}
+
 /// The sign of a comparison.
 pub(crate) fn relation(relation: Relation) -> &'static str {
     match relation {

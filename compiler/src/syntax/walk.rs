@@ -129,7 +129,14 @@ pub(crate) fn expressions(item: &Item) -> Vec<&Expr> {
             all.push(&condition.first);
             all.extend(condition.rest.iter().map(|it| &it.1));
         }
+        ItemKind::At { time, condition } => {
+            all.extend([time, &condition.first]);
+            all.extend(condition.rest.iter().map(|it| &it.1));
+        }
         ItemKind::Objective { value, .. } => all.push(value),
+        ItemKind::Fit { signals, .. } => {
+            all.extend(signals.iter().flat_map(|it| [&it.signal, &it.deviation]))
+        }
         ItemKind::Guess { bindings } | ItemKind::Report { bindings } => {
             all.extend(bindings.iter().map(|it| &it.value))
         }

@@ -93,6 +93,7 @@ impl Findings<'_, '_> {
                 ItemKind::End { condition } => {
                     (format!("end {}", text::condition(condition)), condition)
                 }
+                ItemKind::At { time, condition } => (text::at_time(time, condition), condition),
                 ItemKind::Path { name: Some(name), condition } => (name.name.clone(), condition),
                 ItemKind::Path { condition, .. } => (text::condition(condition), condition),
                 _ => return None,

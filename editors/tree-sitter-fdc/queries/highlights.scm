@@ -13,7 +13,7 @@
 
 [
   ; words: clauses
-"csv" "columns" "on" "falling" "rising" "at" "most" "then" "hold" "like" "same" "smooth" "kernel" "grid" "steps" "scheme" "lagged" "continue"
+"csv" "columns" "on" "falling" "rising" "most" "then" "hold" "sd" "like" "same" "smooth" "kernel" "grid" "steps" "scheme" "lagged" "continue" "at" "fit"
 ] @keyword
 
 (start_free "free" @keyword)

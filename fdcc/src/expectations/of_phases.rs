@@ -1,10 +1,10 @@
-//! Expectations of a model with phases: over the ends of all phases and their integrals.
+//! Expectations of a model with phases: over the ends of all phases, their integrals and sums.
 
 use super::{Checked, Outcome, sides};
 use crate::solve::Solution;
 use fdcc_compiler::chain_expectations;
 use fdcc_runtime::problem::{Columns, Function};
-use fdcc_runtime::solution::integrals;
+use fdcc_runtime::solution::{integrals, sums_over_rows};
 use std::sync::Arc;
 
 pub(super) fn evaluate(solution: &Solution) -> Vec<Checked> {
@@ -12,8 +12,12 @@ pub(super) fn evaluate(solution: &Solution) -> Vec<Checked> {
     let inputs: Vec<f64> = solution.phases().iter().flat_map(ends).collect();
     let shared = solution.problem.parameters.len();
     let mut parameters = solution.outcome.trajectory.parameters[..shared].to_vec();
-    let phases = solution.phases().iter().zip(&expectations.integrands);
-    parameters.extend(phases.flat_map(|(phase, integrands)| integrals_of(phase, integrands)));
+    let totals = expectations.integrands.iter().zip(&expectations.sums);
+    for (phase, (integrands, sums)) in solution.phases().iter().zip(totals) {
+        parameters.extend(integrals_of(phase, integrands));
+        let known = &phase.outcome.trajectory.parameters;
+        parameters.extend(sums_over_rows(&phase.problem, &phase.outcome.solution, known, sums));
+    }
     let mut values = Columns::new(expectations.function.outputs(), 1);
     expectations.function.value(&Columns::of_point(&inputs), &parameters, &mut values);
     let checked = |(at, expected): (usize, &fdcc_compiler::Expected)| Checked {

@@ -11,7 +11,7 @@ use crate::verification::modes::held;
 use fdcc_compiler::graph::ExprId;
 use fdcc_compiler::model::{Simulated, Symbol};
 use fdcc_runtime::sensitivity::Quantity;
-use fdcc_runtime::simulate::{Controls, Options};
+use fdcc_runtime::simulate::Options;
 
 /// The answers, each a number or the reason why there is none.
 pub(super) struct Replayed(Vec<Result<f64, String>>);
@@ -70,8 +70,7 @@ fn sensitivity(solution: &Solution, of: ExprId, by: Symbol) -> Result<f64, Strin
         Symbol::AtStart(at) => Quantity::Start(at),
         other => unreachable!("the compiler lets no sensitivity by {other:?} through"),
     };
-    let controls = replay.held(true).unwrap_or(Controls::Guess);
-    let exact = Exact::new(&system, &controls, &Options::default(), &[quantity]);
+    let exact = Exact::new(&system, &replay.controls, &Options::default(), &[quantity]);
     let exact =
         exact.map_err(|it| format!("the replay on the true system ends at t = {}", it.end_time))?;
     if exact.is_trusted() {

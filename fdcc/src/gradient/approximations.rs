@@ -44,7 +44,7 @@ impl Gradient {
         let model = self.model.meaning();
         let mut smooth = fdcc_compiler::compile_smoothed(model).ok()?;
         let first = self.system.surfaces.first()?;
-        if model.method.sigma.is_none() && model.method.continuation.is_empty() {
+        if !model.method.names_width() {
             let sizes = sizes(&self.system, self.simulation());
             for (surface, size) in self.system.surfaces.iter().zip(sizes) {
                 smooth.parameters[surface.sigma].value =

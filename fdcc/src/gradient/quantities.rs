@@ -133,10 +133,11 @@ fn starts(name: &str, state: &str, system: &System) -> Result<Vec<By>, NotBy> {
 
 fn control(at: usize, system: &System, controls: &Controls) -> Result<By, NotBy> {
     let name = system.controls[at].name.clone();
-    let Controls::Held { rows, .. } = controls else {
+    if *controls == Controls::Guess {
         return Err(NotBy::Guessed(name));
-    };
-    let quantities = (0..rows.len()).map(|row| Quantity::Control { row, control: at }).collect();
+    }
+    let rows = 0..controls.rows().len();
+    let quantities = rows.map(|row| Quantity::Control { row, control: at }).collect();
     Ok(By { name, quantities, is_control: true })
 }
 

@@ -9,9 +9,15 @@ use std::sync::OnceLock;
 #[derive(Default)]
 pub(super) struct Code {
     chain: OnceLock<ChainCode>,
+    ready: OnceLock<()>,
 }
 
 impl Code {
+    /// Makes its functions ready, unless that was done for a variant with other values.
+    pub fn make_ready(&self, make: impl FnOnce()) {
+        self.ready.get_or_init(make);
+    }
+
     /// The chain of its phases with the values of the model.
     pub fn chain(&self, model: &Model) -> Result<Chain, Vec<Diagnostic>> {
         if let Some(code) = self.chain.get() {

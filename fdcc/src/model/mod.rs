@@ -141,6 +141,24 @@ impl Model {
         self.code.chain(&self.meaning).map_err(Error::Model)
     }
 
+    /// The texts of the data files that it reads, by the names that it gives them.
+    ///
+    /// # Errors
+    ///
+    /// A file that cannot be read any more.
+    pub fn data(&self) -> Result<Vec<(String, String)>, Error> {
+        let Some(files) = &self.files else { return Ok(Vec::new()) };
+        let phases = self.meaning.phases.iter().flat_map(|phase| &phase.model.tables);
+        let names = phases.chain(&self.meaning.tables).map(|table| &table.file);
+        let text = |name: &String| Ok((name.clone(), files.text(name).map_err(Error::File)?));
+        names.map(text).collect()
+    }
+
+    /// Does once for all values of its parameters what makes its functions ready.
+    pub(crate) fn make_ready(&self, make: impl FnOnce()) {
+        self.code.make_ready(make);
+    }
+
     /// Its phases, as models of their own; none if it has none.
     pub fn phases(&self) -> Vec<Model> {
         let own = |phase: &fdcc_compiler::Phase| {

@@ -62,12 +62,17 @@ impl Model {
     /// A name that is no parameter; a value out of its range or in another unit.
     pub fn with(&self, name: &str, value: impl Into<Value>) -> Result<Model, Error> {
         let mut model = self.clone();
-        let meaning = Arc::make_mut(&mut model.meaning);
-        let set = match value.into() {
-            Value::Number(value) => meaning.set_param_number(name, value),
-            Value::Text(text) => meaning.set_param(name, &text),
+        model.set(name, &value.into())?;
+        Ok(model)
+    }
+
+    fn set(&mut self, name: &str, value: &Value) -> Result<(), Error> {
+        let meaning = Arc::make_mut(&mut self.meaning);
+        let set = match value {
+            Value::Number(value) => meaning.set_param_number(name, *value),
+            Value::Text(text) => meaning.set_param(name, text),
         };
-        set.map(|()| model).map_err(Error::Call)
+        set.map_err(Error::Call)
     }
 
     /// The same with another value of a key of the `method` block; it is compiled anew, since
@@ -113,7 +118,8 @@ impl Model {
             });
             model = set.map_err(Error::Call)?;
         }
-        params.into_iter().try_fold(model, |it, (name, value)| it.with(name, value.clone()))
+        params.into_iter().try_for_each(|(name, value)| model.set(name, value))?;
+        Ok(model)
     }
 
     /// Whether a parameter has this name.

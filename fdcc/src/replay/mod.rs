@@ -1,16 +1,14 @@
 //! What a simulation takes over: controls over time, and of a solution also its parameters,
 //! unknowns, starts and method.
 
-pub(crate) mod piecewise;
-
-pub(crate) use piecewise::pieces_of_one;
+pub(crate) mod polynomials;
 
 use crate::record::{Record, Settings, find};
 use fdcc_compiler::Model;
 use fdcc_compiler::kernels;
 use fdcc_runtime::problem::{ControlShape, Grid, Order, Scheme};
 use fdcc_runtime::simulate::Controls;
-use piecewise::{Pieces, pieces};
+use polynomials::polynomials;
 
 /// Controls over time; parameters, unknowns, start values and method of a solution.
 ///
@@ -22,17 +20,15 @@ use piecewise::{Pieces, pieces};
 /// let model = Model::from_text("hop", text)?;
 /// let solution = model.solve(&Options::default())?;
 /// let replay = Replay::new(&solution.record(), model.meaning()).map_err(fdcc::Error::Record)?;
-/// let controls = replay.held(true).expect("there is a control");
-/// let simulation = model.simulate(&controls, &Accuracy::default())?;
+/// let simulation = model.simulate(&replay.controls, &Accuracy::default())?;
 /// assert!((simulation.result.end[0] - 0.5).abs() < 1e-6);
 /// # Ok::<(), fdcc::Error>(())
 /// ```
 #[derive(Default)]
 pub struct Replay {
-    /// When each row begins.
-    pub times: Vec<f64>,
-    /// One row of controls for each time.
-    pub rows: Vec<Vec<f64>>,
+    /// Over time, with a segment for each interval of a solution; the times of a solution stretch
+    /// with those of the model.
+    pub controls: Controls,
     params: Vec<(String, f64)>,
     free: Vec<(String, f64)>,
     start: Vec<(String, f64)>,
@@ -58,16 +54,15 @@ impl Replay {
         ascend(record.time)?;
         let names: Vec<&str> =
             model.controls.iter().map(|control| control.place.name.as_str()).collect();
-        let Pieces { times, rows } = match &record.nodes {
-            Some(nodes) => pieces(record, nodes, &names)?,
-            None => rows(record, &names)?,
+        let controls = match &record.nodes {
+            Some(nodes) => polynomials(record, nodes, &names)?,
+            None => held(record, &names)?,
         };
         let starts = record.states.iter();
         let starts: Vec<(&str, f64)> =
             starts.filter_map(|(name, column)| Some((*name, *column.first()?))).collect();
         Ok(Replay {
-            times,
-            rows,
+            controls,
             params: numbers(&record.params),
             free: numbers(&record.free),
             start: numbers(&starts),
@@ -75,12 +70,18 @@ impl Replay {
         })
     }
 
+    /// Controls alone, each row of which holds from its time on; the times stand still.
+    pub fn of_rows(times: Vec<f64>, rows: Vec<Vec<f64>>) -> Replay {
+        let controls = Controls::Held { times, rows, is_stretched: false };
+        Replay { controls, ..Replay::default() }
+    }
+
     /// Whether the controls can be followed.
     pub fn check(&self) -> Result<(), String> {
-        if self.times.is_empty() {
+        if self.controls.begins().is_empty() {
             return Err("there is no row of values".into());
         }
-        ascend(&self.times)
+        ascend(self.controls.begins())
     }
 
     /// Gives the model the parameters, unknowns and method of the solution, and the start of states
@@ -95,21 +96,15 @@ impl Replay {
     /// What about the times is likely a slip, though it can be followed.
     pub fn doubts(&self, [first, last]: [f64; 2]) -> Option<String> {
         let slack = 1e-9 * (last - first);
-        let begin = *self.times.first()?;
-        let unused = self.times.iter().filter(|time| **time > last + slack).count();
+        let times = self.controls.begins();
+        let begin = *times.first()?;
+        let unused = times.iter().filter(|time| **time > last + slack).count();
         if unused > 0 {
             let begin = if unused == 1 { "row begins" } else { "rows begin" };
             return Some(format!("{unused} {begin} after the last time, {last}: not used"));
         }
         let is_late = begin > first + slack;
         is_late.then(|| format!("the first row begins at {begin}: used from {first} on"))
-    }
-
-    /// The controls, if there are any; `is_stretched` if they are those of a solution, whose times
-    /// stretch with those of the model.
-    pub fn held(self, is_stretched: bool) -> Option<Controls> {
-        let Replay { times, rows, .. } = self;
-        (!times.is_empty()).then_some(Controls::Held { times, rows, is_stretched })
     }
 }
 
@@ -157,18 +152,18 @@ fn ascend(times: &[f64]) -> Result<(), String> {
 }
 
 /// One row for each interval.
-fn rows(record: &Record, names: &[&str]) -> Result<Pieces, String> {
+fn held(record: &Record, names: &[&str]) -> Result<Controls, String> {
     let times = record.time[..record.time.len().saturating_sub(1)].to_vec();
     let mut rows = vec![Vec::new(); times.len()];
     for name in names {
-        let column = held(record, name, times.len())?;
+        let column = column(record, name, times.len())?;
         rows.iter_mut().zip(column).for_each(|(row, value)| row.push(*value));
     }
-    Ok(Pieces { times, rows })
+    Ok(Controls::Held { times, rows, is_stretched: true })
 }
 
 /// The values of a control, one for each interval.
-fn held<'s>(record: &Record<'s>, name: &str, intervals: usize) -> Result<&'s [f64], String> {
+fn column<'s>(record: &Record<'s>, name: &str, intervals: usize) -> Result<&'s [f64], String> {
     let column = find(&record.controls, name).ok_or(format!("there is no control `{name}`"))?;
     if column.len() != intervals {
         return Err(format!("`{name}` has {} values for {intervals} intervals", column.len()));

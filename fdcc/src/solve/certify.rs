@@ -1,29 +1,24 @@
 //! What is checked of a located answer before it is called an optimum of the true system.
 
 use super::Solution;
-use super::true_optimum::{
-    Certificate, Check, Located, Stretch, Switch, is_attracted, width, wrong_sign,
+use super::timing::gap_of_a_moment;
+use super::true_optimum::certificate_limits::{
+    CONTACT, GAIN, HAMILTONIAN, MODES, REPLAYED, STATIONARY, TIMING, WORTH, WRONG_SIGN,
 };
-use crate::verification::{Verification, modes};
-use fdcc_compiler::Arc;
-use fdcc_runtime::problem::Problem;
+use super::true_optimum::{
+    Certificate, Check, Contacts, Located, Stretch, Switch, beyond_bounds, is_attracted, variation,
+    wrong_sign,
+};
+use crate::verification::{Stay, Verification, modes};
+use fdcc_compiler::{Arc, Model, PhaseOfModes, Switch as Switched, limits};
+use fdcc_runtime::problem::{Problem, Variable};
 use fdcc_runtime::solution::modes::Span;
 
-/// The replay may differ by so much, for how far each state moves; so may conditions and bounds be
-/// violated.
-const REPLAYED: f64 = 1e-6;
-/// The optimality error of the chain of phases.
-const STATIONARY: f64 = 1e-7;
-/// A slope of the Hamiltonian on an arc may have the wrong sign by so much of its size.
-const WRONG_SIGN: f64 = 1e-5;
-/// Inside of a phase the Hamiltonian of an autonomous system may change by so much of its size.
-const HAMILTONIAN: f64 = 1e-4;
-/// For so much of the time plan and replay may be in different modes.
-const MODES: f64 = 1e-4;
-
-/// Of a located answer with its replay; `between` is the smoothed problem.
+/// Of a located answer with its replay; `model` is what holds between jumps, `between` the smoothed
+/// problem of that.
 pub(super) fn certificate(
     located: &Located,
+    model: &Model,
     between: &Problem,
     solution: &Solution,
     replay: Option<&Verification>,
@@ -32,23 +27,49 @@ pub(super) fn certificate(
     let check = |name, figure, limit| Check { name, figure, limit };
     let unknown = f64::INFINITY;
     let violation = |it: &Verification| it.worst().map_or(0.0, |condition| condition.part.abs());
-    let model = solution.model().meaning();
+    let objective = |it: &Verification| other_objective(located, solution, it);
     let phases = 0..located.structure.phases.len();
+    let trajectories = located.outcome.phases.iter().map(|it| &it.trajectory);
+    let beyond = trajectories.map(|it| beyond_bounds(&between.controls, it)).fold(0.0, f64::max);
     let is_held = phases.clone().all(|j| is_attracted(model, located, j));
     let checks = vec![
         check("stationary", own.kkt_error, STATIONARY),
         check("second order", f64::from(u8::from(own.is_saddle)), 0.0),
         check("replayed", replay.and_then(Verification::state_gap).unwrap_or(unknown), REPLAYED),
+        check("objective", replay.map_or(unknown, objective), REPLAYED),
         check("conditions", replay.map_or(unknown, violation), REPLAYED),
-        check("modes", replay.map_or(unknown, |it| other_modes(solution, it)), MODES),
-        check("bounds", beyond_bounds(between, solution), REPLAYED),
+        check("modes", replay.map_or(unknown, |it| other_modes(model, solution, it)), MODES),
+        check("timing", gap_of_a_moment(solution), TIMING),
+        check("bounds", beyond, REPLAYED),
         check("arcs", wrong_sign(between, located).map_or(0.0, |it| it.2.max(0.0)), WRONG_SIGN),
+        check("contacts", wrong_contact(between, model, located), CONTACT),
         check("holds", f64::from(u8::from(!is_held)), 0.0),
-        check("insertion", f64::from(u8::from(!located.is_tested)), 0.0),
+        check("insertion", located.insertion, WORTH),
+        check("minimum", located.gain, GAIN),
         check("hamiltonian", hamiltonian(located), HAMILTONIAN),
     ];
     let switches = switches(between, solution);
-    Certificate { checks, switches, arcs: arcs(between, located) }
+    Certificate { checks, switches, arcs: arcs(between, model, located) }
+}
+
+/// The difference between the objective of the replay and that of the plan, for its size; infinite
+/// where the replay does not reach the end.
+fn other_objective(located: &Located, solution: &Solution, replay: &Verification) -> f64 {
+    let own = solution.objective();
+    let size = own.abs().max(located.objective_size());
+    match replay.simulation.objective {
+        Some(its) => (its - own).abs() / size,
+        None if solution.problem.has_objective => f64::INFINITY,
+        None => 0.0,
+    }
+}
+
+/// How wrong the sign of the multiplier of a state or a path condition at its bound is; infinite
+/// where the motion is kept from a jump.
+fn wrong_contact(between: &Problem, model: &Model, located: &Located) -> f64 {
+    let contacts = Contacts::new(model, located);
+    let wrong = contacts.wrong_sign().map_or(0.0, |it| it.part.max(0.0));
+    if between.has_objective && contacts.is_at_jump() { f64::INFINITY } else { wrong }
 }
 
 fn switches(between: &Problem, solution: &Solution) -> Vec<Switch> {
@@ -65,69 +86,88 @@ fn switches(between: &Problem, solution: &Solution) -> Vec<Switch> {
     all
 }
 
-fn arcs(between: &Problem, located: &Located) -> Vec<(String, Vec<Stretch>)> {
-    let of = |control: usize| {
-        let mut all: Vec<Stretch> = Vec::new();
-        let structure = &located.structure;
-        for (phase, pair) in structure.phases.iter().zip(structure.times.windows(2)) {
-            let arc = match phase.arcs[control] {
-                Arc::Lower => "min",
-                Arc::Free => "free",
-                Arc::Upper => "max",
-            };
-            match all.last_mut().filter(|it| it.arc == arc) {
-                Some(stretch) => stretch.to = pair[1],
-                None => all.push(Stretch { arc, from: pair[0], to: pair[1] }),
-            }
-        }
-        all
+/// What each control does, and each state and path condition that is at a bound anywhere; where it
+/// only touches the bound, for no time.
+fn arcs(between: &Problem, model: &Model, located: &Located) -> Vec<(String, Vec<Stretch>)> {
+    let controls = between.controls.iter().enumerate();
+    let of_control = |(at, it): (usize, &Variable)| {
+        (it.name.clone(), stretches(located, &|phase| [phase.arcs[at], Arc::Free]))
     };
-    between.controls.iter().enumerate().map(|(at, it)| (it.name.clone(), of(at))).collect()
+    let mut all: Vec<(String, Vec<Stretch>)> = controls.map(of_control).collect();
+    let mut conditions = model.path.iter();
+    for (at, limit) in limits(model).into_iter().enumerate() {
+        let name = match limit.state {
+            Some(state) => model.states[state].place.name.clone(),
+            None => conditions.next().map_or(String::new(), |it| it.place.name.clone()),
+        };
+        let own = stretches(located, &|phase| [phase.contacts[at], phase.touches[at]]);
+        if own.len() > 1 || own.iter().any(|it| it.arc != "free") {
+            all.push((name, own));
+        }
+    }
+    all
 }
 
-/// By how much a control leaves its bounds anywhere, for their distance: between nodes it is a
-/// polynomial.
-fn beyond_bounds(between: &Problem, solution: &Solution) -> f64 {
-    let dense = solution.dense_controls();
-    let columns = between.controls.iter().zip(&dense);
-    let beyond = columns.map(|(control, values)| {
-        let width = width(control.bounds);
-        let most = values.iter().map(|value| control.bounds.violation(*value));
-        most.fold(0.0, f64::max) / width
-    });
-    beyond.fold(0.0, f64::max)
+/// From what each phase has along it, and where it begins.
+fn stretches(located: &Located, of: &dyn Fn(&PhaseOfModes) -> [Arc; 2]) -> Vec<Stretch> {
+    let mut all: Vec<Stretch> = Vec::new();
+    let structure = &located.structure;
+    for (phase, pair) in structure.phases.iter().zip(structure.times.windows(2)) {
+        let [along, begin] = of(phase).map(arc_name);
+        if begin != "free" && along == "free" {
+            all.push(Stretch { arc: begin, from: pair[0], to: pair[0] });
+        }
+        match all.last_mut().filter(|it| it.arc == along) {
+            Some(stretch) => stretch.to = pair[1],
+            None => all.push(Stretch { arc: along, from: pair[0], to: pair[1] }),
+        }
+    }
+    all
+}
+
+fn arc_name(arc: Arc) -> &'static str {
+    match arc {
+        Arc::Lower => "min",
+        Arc::Free => "free",
+        Arc::Upper => "max",
+    }
 }
 
 /// The part of the time on which the replay is in another mode than the plan, of the surface where
-/// that is most.
-fn other_modes(solution: &Solution, replay: &Verification) -> f64 {
+/// that is most. Where the plan is on the surface itself, its selector may be 1 or -1 in either mode.
+fn other_modes(model: &Model, solution: &Solution, replay: &Verification) -> f64 {
     let time = solution.time();
     let duration = time[time.len() - 1] - time[0];
-    let planned = &solution.outcome.modes;
-    // A `Dir` has a surface for each component in a replay: all are held, or none.
-    if planned.len() != replay.stays.len() {
-        return 0.0;
-    }
-    let of = |(spans, stays): (&Vec<Span>, &Vec<crate::verification::Stay>)| {
-        let same: f64 = spans
-            .iter()
-            .flat_map(|span| stays.iter().map(move |stay| (span, stay)))
-            .filter(|(span, stay)| crate::names::mode_name(span.mode) == modes::name(stay.mode))
-            .map(|(span, stay)| (span.to.min(stay.to) - span.from.max(stay.from)).max(0.0))
-            .sum();
-        1.0 - same / duration
+    let written = &solution.model().meaning().surfaces;
+    let of = |(at, switch): (usize, &Switched)| {
+        // The components of a `Dir` are held together.
+        let name = &model.surfaces[switch.surfaces.start].place.name;
+        let stays = written.iter().position(|it| it.place.name == *name);
+        let Some(stays) = stays.and_then(|at| replay.stays.get(at)) else { return f64::INFINITY };
+        let spans = &solution.outcome.modes[at];
+        let psi = &solution.outcome.trajectory.switching[at];
+        let largest = psi.iter().fold(0.0, |a: f64, it| a.max(it.abs()));
+        let is_off = |k: usize| psi[k..].iter().take(2).any(|it| it.abs() > REPLAYED * largest);
+        let is_other = |k: usize| {
+            let middle = 0.5 * (time[k] + time[k + 1]);
+            let span = spans.iter().find(|it| middle <= it.to);
+            let stay = stays.iter().find(|it| middle <= it.to);
+            !span.zip(stay).is_some_and(|(span, stay)| is_same(switch, span, stay))
+        };
+        let others = (0..time.len() - 1).filter(|k| is_off(*k) && is_other(*k));
+        others.map(|k| time[k + 1] - time[k]).sum::<f64>() / duration
     };
-    planned.iter().zip(&replay.stays).map(of).fold(0.0, f64::max)
+    model.switches().iter().enumerate().map(of).fold(0.0, f64::max)
 }
 
-/// By how much of its size the Hamiltonian changes inside of a phase, at most; 0 where time matters
-/// by itself.
+fn is_same(switch: &Switched, span: &Span, stay: &Stay) -> bool {
+    let held = "held";
+    let [own, its] = [crate::names::mode_name(span.mode), modes::name(stay.mode)];
+    if switch.is_ball { (own == held) == (its == held) } else { own == its }
+}
+
+/// By how much of its size the Hamiltonian changes inside of phases, over the whole time.
 fn hamiltonian(located: &Located) -> f64 {
-    let of = |phase: &fdcc_runtime::solve::Outcome| {
-        let own = &phase.trajectory.hamiltonian;
-        let least = own.values.iter().copied().fold(f64::INFINITY, f64::min);
-        let largest = own.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        if own.is_constant && !own.is_noise { (largest - least) / own.size } else { 0.0 }
-    };
-    located.outcome.phases.iter().map(of).fold(0.0, f64::max)
+    let [first, last] = located.structure.ends();
+    located.outcome.phases.iter().map(variation).fold(0.0, f64::max) / (last - first)
 }

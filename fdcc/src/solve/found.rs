@@ -7,6 +7,7 @@ use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::solve::{ChainOutcome, Outcome};
 
 /// The best answer, and what else was tried.
+#[derive(Clone)]
 pub(super) struct Found {
     pub problem: Problem,
     pub outcome: Outcome,
@@ -16,6 +17,8 @@ pub(super) struct Found {
     pub sequences: Vec<Sequence>,
     pub is_cut: bool,
     pub phases: Option<Phases>,
+    /// Which jumps and crossings happen, one between each two of these phases.
+    pub events: Vec<usize>,
 }
 
 /// A jump of a solution.
@@ -64,15 +67,17 @@ pub struct Sequence {
     pub ended: Ended,
 }
 
-/// What was solved in place of a model with jumps: its phases, all at once.
+/// What was solved in place of a model with jumps, with conditions at times, or with located
+/// switches: its phases, all at once.
 ///
 /// ```
 /// let model = fdcc::Model::from_file("../models/bounce.fdc")?.with_method("N", 20)?;
 /// let solution = model.solve(&fdcc::Options::default())?;
 /// let phases = solution.between_jumps.as_ref().expect("the model has a jump");
-/// assert_eq!(phases.chain.phases.len(), solution.jumps.len() + 1);
+/// assert!(phases.chain.phases.len() > solution.jumps.len());
 /// # Ok::<(), fdcc::Error>(())
 /// ```
+#[derive(Clone)]
 pub struct Phases {
     /// A model of several phases, or of one piece if nothing jumps.
     pub model: Model,
@@ -93,11 +98,13 @@ impl Found {
             sequences: Vec::new(),
             is_cut: false,
             phases: None,
+            events: Vec::new(),
         }
     }
 }
 
 /// The best answer to one chain of phases.
+#[derive(Clone)]
 pub(super) struct FoundChain {
     pub chain: Chain,
     pub outcome: ChainOutcome,

@@ -4,63 +4,179 @@ use super::Solution;
 use super::certify::certificate;
 use super::found::{Found, Phases};
 use super::report::Options;
-use super::true_optimum::{Certificate, Located, locate};
+use super::sequences::happened;
+use super::true_optimum::{
+    Certificate, Contacts, Located, Spent, Whole, locate, on_half_intervals, replayed,
+};
 use crate::model::Model;
+use fdcc_compiler::between_jumps;
+use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Grid, Method, Problem};
+use fdcc_runtime::solution::phases;
+
+/// An answer that is not certified is replayed so often, to look near what the true system does.
+const MOST_REPLAYS: usize = 3;
 
 /// The located optimum if it is certified; else the smoothed answer, with what was checked.
 pub(super) fn solution(model: &Model, found: Found, options: &Options) -> Solution {
-    let smoothed = found.problem.clone();
-    if !asks_for_truth(model, &found) {
+    let between = between_jumps(model.meaning());
+    if !asks_for_truth(model, &between, &found) {
         return Solution::new(model.clone(), found);
     }
-    let Some(located) = locate(model.meaning(), &smoothed, &found.outcome, options.stop) else {
-        let mut answer = Solution::new(model.clone(), found);
-        let is_stopped = (options.stop)().is_break();
-        answer.certificate = Some(Certificate::nothing_located(is_stopped));
-        return answer;
-    };
-    let counts = [found.outcome.solution.counts, located.outcome.solution.counts];
-    let mut answer = of(model, &smoothed, located);
-    answer.outcome.solution.counts.iterations = counts[0].iterations + counts[1].iterations;
-    answer.starts = found.starts.clone();
-    if answer.is_certified() {
-        return answer;
+    let spent = Spent::default();
+    let mut search = Search { model, between: &between, found: &found, options, spent };
+    match search.certified() {
+        Ok(answer) => answer,
+        Err(certificate) => {
+            let is_solved = found.outcome.solution.status.is_solved();
+            let mut smoothed = Solution::new(model.clone(), found);
+            smoothed.certificate = is_solved.then_some(certificate);
+            smoothed
+        }
     }
-    let mut smoothed = Solution::new(model.clone(), found);
-    smoothed.certificate = answer.certificate;
-    smoothed
 }
 
-/// Whether no width is named, so that the system that was written is meant, and there is an
-/// optimum to begin with.
-fn asks_for_truth(model: &Model, found: &Found) -> bool {
-    let meaning = model.meaning();
-    let method = &meaning.method;
-    let has_switches = !meaning.surfaces.is_empty();
-    let is_named = method.sigma.is_some() || !method.continuation.is_empty();
-    has_switches
-        && !is_named
-        && found.problem.has_objective
-        && found.outcome.solution.status.is_solved()
+/// What is known before anything is located.
+struct Search<'s> {
+    model: &'s Model,
+    /// What holds between its jumps.
+    between: &'s fdcc_compiler::Model,
+    /// The smoothed answer.
+    found: &'s Found,
+    options: &'s Options<'s>,
+    spent: Spent,
 }
 
-fn of(model: &Model, between: &Problem, located: Located) -> Solution {
-    let outcome = located.whole(between);
+impl Search<'_> {
+    /// The first answer that is certified, or the certificate that fails least. It is looked for near
+    /// the smoothed answer, then near what the true system does with the controls of what was found
+    /// there, then near what it does with those of the smoothed answer.
+    fn certified(&mut self) -> Result<Solution, Certificate> {
+        let found = self.found;
+        let smoothed =
+            Whole { outcome: found.outcome.clone(), is_exact: false, jumps: jumps(found) };
+        let mut least = self.nothing();
+        let mut near = self.attempt(&smoothed);
+        for replays in 0..=MOST_REPLAYS {
+            let Some(located) = near.take() else { break };
+            let (answer, whole) = self.refined(located);
+            least = least.least(answer.certificate.clone().unwrap_or_default());
+            if least.is_certified() {
+                return Ok(self.ended(answer));
+            }
+            if replays < MOST_REPLAYS {
+                near = self.replayed(&answer, &whole);
+            }
+        }
+        let answer = Solution::new(self.model.clone(), found.clone());
+        if let Some(located) = self.replayed(&answer, &smoothed) {
+            let (answer, _) = self.refined(located);
+            least = least.least(answer.certificate.clone().unwrap_or_default());
+            if least.is_certified() {
+                return Ok(self.ended(answer));
+            }
+        }
+        Err(least)
+    }
+
+    /// On shorter and shorter intervals where nothing is wrong but the replay.
+    fn refined(&mut self, mut located: Located) -> (Solution, Whole) {
+        let mut answer = self.answer(&located);
+        while answer.certificate.as_ref().is_some_and(Certificate::is_inaccurate) {
+            let models = [self.model.meaning(), self.between];
+            let (problem, stop) = (&self.found.problem, self.options.stop);
+            let finer = on_half_intervals(models, problem, &located, stop, &mut self.spent);
+            let Some(finer) = finer else { break };
+            located = finer;
+            answer = self.answer(&located);
+        }
+        (answer, located.whole(&self.found.problem))
+    }
+
+    fn answer(&self, located: &Located) -> Solution {
+        of(self.model, self.between, self.found, located.clone())
+    }
+
+    /// Near what the true system does with the controls of an answer.
+    fn replayed(&mut self, answer: &Solution, whole: &Whole) -> Option<Located> {
+        let replay = answer.verify().ok()?;
+        self.attempt(&replayed(self.between, whole, &replay)?)
+    }
+
+    fn attempt(&mut self, near: &Whole) -> Option<Located> {
+        let models = [self.model.meaning(), self.between];
+        locate(models, &self.found.problem, near, self.options.stop, &mut self.spent)
+    }
+
+    /// What is certified meets more than the tolerance of the search.
+    fn ended(&self, mut answer: Solution) -> Solution {
+        let solution = &mut answer.outcome.solution;
+        solution.status = Status::Solved;
+        solution.counts.iterations += self.found.outcome.solution.counts.iterations;
+        answer
+    }
+
+    /// Where no structure could be solved.
+    fn nothing(&self) -> Certificate {
+        let missing = match () {
+            () if (self.options.stop)().is_break() => "finished",
+            () if !self.between.sums.is_empty() => "without data",
+            () => "located",
+        };
+        Certificate::nothing_located(missing)
+    }
+}
+
+/// The jumps and crossings of a smoothed answer.
+fn jumps(found: &Found) -> Vec<(usize, phases::Jump)> {
+    let Some(own) = &found.phases else { return Vec::new() };
+    let (_, jumps) = phases::joined(&found.problem, &own.chain, &own.outcome);
+    found.events.iter().copied().zip(jumps).collect()
+}
+
+/// Whether the system that was written is meant, because no width is named of what would be
+/// smoothed, and there is an answer to begin with. `between` is what holds between jumps.
+fn asks_for_truth(model: &Model, between: &fdcc_compiler::Model, found: &Found) -> bool {
+    let is_meant = match between.surfaces.is_empty() {
+        true => !model.meaning().jumps.is_empty(),
+        false => !between.method.names_width(),
+    };
+    // What cannot be solved where it is smoothed, such as a rest to which friction alone leads, may
+    // be near an answer of the true system.
+    let status = &found.outcome.solution.status;
+    let may_be_near = matches!(status, Status::IterationLimit | Status::Infeasible);
+    is_meant && (status.is_solved() || may_be_near && !found.outcome.is_impossible)
+}
+
+fn of(model: &Model, between: &fdcc_compiler::Model, found: &Found, located: Located) -> Solution {
+    let smoothed = &found.problem;
+    let Whole { mut outcome, jumps, .. } = located.whole(smoothed);
+    Contacts::new(between, &located).put_multipliers(&mut outcome.trajectory);
     let finest = located.chain.phases.iter().max_by_key(|phase| phase.method.intervals());
-    let method = finest.map_or(&between.method, |phase| &phase.method).clone();
+    let method = finest.map_or(&smoothed.method, |phase| &phase.method).clone();
     let method = Method { grid: grid(&outcome.trajectory.time), ..method };
-    let problem = Problem { method, ..between.clone() };
-    let mut solution = Solution::new(model.clone(), Found::new(problem, outcome));
+    let problem = Problem { method, ..smoothed.clone() };
+    let own = &model.meaning().jumps;
+    let named = jumps.into_iter().filter_map(|(at, jump)| Some((own.get(at)?, jump)));
+    let named = named.map(|(it, jump)| happened(smoothed, it.place.name.clone(), jump));
+    let whole = Found {
+        jumps: named.collect(),
+        starts: found.starts.clone(),
+        sequences: found.sequences.clone(),
+        is_cut: found.is_cut,
+        ..Found::new(problem, outcome)
+    };
+    let mut solution = Solution::new(model.clone(), whole);
     let replay = solution.verify().ok();
-    solution.certificate = Some(certificate(&located, between, &solution, replay.as_ref()));
+    let certificate = certificate(&located, between, smoothed, &solution, replay.as_ref());
+    solution.certificate = Some(certificate);
     let Located { model: phased, chain, outcome, .. } = located;
     solution.between_jumps = Some(Phases { model: phased, chain, outcome });
     solution
 }
 
 /// The grids of all phases, one after the other.
-fn grid(time: &[f64]) -> Grid {
+pub(super) fn grid(time: &[f64]) -> Grid {
     let [first, last] = [time[0], time[time.len() - 1]];
     Grid::Mesh(time.iter().map(|it| (it - first) / (last - first)).collect())
 }

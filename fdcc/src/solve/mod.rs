@@ -1,9 +1,13 @@
 //! From a compiled model to a [`Solution`]: [`multistart`] tries several starting points,
 //! [`sequences`] all sequences of jumps.
 
+mod at_times;
 mod bounds;
+mod cases;
 mod certify;
+mod controller;
 mod found;
+mod grid;
 mod located;
 mod multistart;
 pub mod optimality;
@@ -12,12 +16,16 @@ mod report;
 mod sequences;
 mod solution;
 mod sweep;
+mod timing;
 pub mod true_optimum;
 
+pub use cases::{Case, Cases};
+pub use controller::Controller;
 pub use found::{Jump, Phases, Sequence};
+pub use grid::Grid;
 pub use report::{Ended, Options, Part, Report, Start};
 pub use solution::Solution;
-pub use sweep::{Grid, Sweep};
+pub use sweep::Sweep;
 
 use crate::error::Error;
 use crate::executor::Executor;
@@ -55,8 +63,8 @@ impl Model {
     pub fn compile(&self) -> Result<Compiled, Error> {
         let chain = self.chain()?;
         refuse_senseless(&chain)?;
-        if self.meaning().jumps.is_empty() {
-            chain.phases.iter().for_each(make_machine_code);
+        if self.meaning().jumps.is_empty() && self.meaning().at_times.is_empty() {
+            self.make_ready(|| chain.phases.iter().for_each(make_machine_code));
         }
         Ok(Compiled { model: self.clone(), problem: frame(&chain), chain })
     }
@@ -109,7 +117,15 @@ impl Compiled {
     pub fn solve(&self, options: &Options) -> Result<Solution, Error> {
         self.check_start(options.start)?;
         let meaning = self.model.meaning();
-        let found = if meaning.jumps.is_empty() {
+        let found = if !meaning.at_times.is_empty() {
+            match options.start {
+                Start::Guess => at_times::solve(meaning, &self.problem, None, options)?,
+                Start::Record(it) => at_times::solve(meaning, &self.problem, Some(it), options)?,
+                Start::Solution(it) => {
+                    at_times::solve(meaning, &self.problem, Some(&it.record()), options)?
+                }
+            }
+        } else if meaning.jumps.is_empty() {
             let start = match options.start {
                 Start::Guess => None,
                 Start::Record(record) => Some(warm_start::from_record(record, &self.chain)),
@@ -129,7 +145,7 @@ impl Compiled {
                 }
             }
         };
-        Ok(Solution::new(self.model.clone(), found))
+        Ok(located::solution(&self.model, found, options))
     }
 }
 

@@ -9,10 +9,11 @@ use crate::executor::Executor;
 use crate::record::Record;
 use crate::warm_start;
 use fdcc_compiler::{
-    Model, Sequences, compile_chain, compile_simulation, crossings, sequences, with_phases,
+    Alike, Model, Sequences, compile_chain_like, compile_simulation, crossings, sequences,
+    with_phases,
 };
 use fdcc_runtime::nlp;
-use fdcc_runtime::problem::{Chain, Method, Problem};
+use fdcc_runtime::problem::{Chain, Grid, Method, Problem};
 use fdcc_runtime::simulate::{
     Controls, Event, Kind, Options as Accuracy, Status, System, simulate,
 };
@@ -20,7 +21,10 @@ use fdcc_runtime::solution::phases::{self, joined};
 use fdcc_runtime::solve::multistart::is_better;
 
 /// A sequence of jumps and crossings, and the chain of phases in which it happens.
+#[derive(Clone)]
 struct Alternative {
+    /// Of numbers.
+    events: Vec<usize>,
     /// The names of the jumps, with nothing for a surface that is crossed without one.
     jumps: Vec<Option<String>>,
     /// The names of these surfaces.
@@ -47,8 +51,9 @@ pub(super) fn solve(
     let count = possible.all.len();
     let in_time = |at: usize| at == 0 || (options.stop)().is_continue();
     let all = possible.all.into_iter().enumerate().take_while(|(at, _)| in_time(*at));
+    let mut alike = Alike::default();
     let all: Result<Vec<Alternative>, Error> =
-        all.map(|(_, sequence)| Alternative::new(model, sequence)).collect();
+        all.map(|(_, sequence)| Alternative::new(model, sequence, &mut alike)).collect();
     let all = all?;
     let is_cut = possible.is_cut || all.len() < count;
     let found = each(&all, between, earlier, options)?;
@@ -72,8 +77,51 @@ pub(super) fn solve(
     Ok(Found { sequences: tried, is_cut, ..alternative.joined(between, found) })
 }
 
-/// The answer of each, up to the first that is enough.
+/// More sequences than so many are solved on coarse grids first.
+const FEW_SEQUENCES: usize = 3;
+/// So many iterations are enough there.
+const BRIEF: usize = 150;
+/// A phase has so many intervals there at least.
+const FEWEST_INTERVALS: usize = 20;
+/// Sequences that are worse than the best by more than this part of its objective are not solved
+/// once more.
+const WORSE: f64 = 0.05;
+
+/// The answer of each, up to the first that is enough. Where there are many, those that lead to
+/// nothing on a coarse grid, or to something clearly worse, are left at that.
 fn each(
+    all: &[Alternative],
+    between: &Problem,
+    earlier: Option<&Record>,
+    options: &Options,
+) -> Result<Vec<FoundChain>, Error> {
+    if all.len() <= FEW_SEQUENCES || !between.has_objective {
+        return on_own_grids(all, between, earlier, options);
+    }
+    let briefly: Vec<Alternative> = all.iter().map(Alternative::brief).collect();
+    let mut found = on_own_grids(&briefly, between, earlier, options)?;
+    let objectives = found.iter().filter(|it| it.is_solved());
+    let best = objectives.map(|it| it.outcome.solution.objective).fold(f64::INFINITY, f64::min);
+    if best.is_infinite() && found.len() == all.len() {
+        return on_own_grids(all, between, earlier, options);
+    }
+    for (alternative, own) in all.iter().zip(&mut found) {
+        let objective = own.outcome.solution.objective;
+        if own.is_solved() && objective <= best + WORSE * best.abs() {
+            let alone = std::slice::from_ref(alternative);
+            let whole = on_own_grids(alone, between, earlier, options)?;
+            *own = whole
+                .into_iter()
+                .next()
+                .filter(FoundChain::is_solved)
+                .unwrap_or_else(|| own.clone());
+        }
+    }
+    Ok(found)
+}
+
+/// The same on the grids that they have.
+fn on_own_grids(
     all: &[Alternative],
     between: &Problem,
     earlier: Option<&Record>,
@@ -109,6 +157,10 @@ fn each(
 const STEPS: usize = 20_000;
 /// More are not looked for where the guess leads to that many.
 const LONGEST: usize = 100;
+/// More than so many events pile up where two of them are nearer than this part of the largest
+/// distance.
+const FEW: usize = 8;
+const SHORTEST: f64 = 1e-3;
 
 /// The jumps and crossings on the true system with everything as it is guessed.
 fn simulated(model: &Model, possible: &Sequences) -> Option<Vec<usize>> {
@@ -120,7 +172,16 @@ fn simulated(model: &Model, possible: &Sequences) -> Option<Vec<usize>> {
         sequence.extend(happening(&system, possible, &sequence, event));
     }
     let is_whole = matches!(simulation.status, Status::Completed);
-    (is_whole && sequence.len() <= LONGEST).then_some(sequence)
+    let is_finite = !piles_up(&simulation.events);
+    (is_whole && is_finite && sequence.len() <= LONGEST).then_some(sequence)
+}
+
+/// Whether events follow each other ever faster: no finite number of phases is all of them.
+fn piles_up(events: &[Event]) -> bool {
+    let between = |pair: &[Event]| pair[1].time - pair[0].time;
+    let longest = events.windows(2).map(between).fold(0.0, f64::max);
+    let is_short = |pair: &[Event]| between(pair) < SHORTEST * longest;
+    events.len() > FEW && events.windows(2).any(is_short)
 }
 
 /// The jump or the crossing that an event is, if it is one.
@@ -148,9 +209,9 @@ fn happening(
 }
 
 impl Alternative {
-    fn new(between: &Model, sequence: Vec<usize>) -> Result<Self, Error> {
+    fn new(between: &Model, sequence: Vec<usize>, alike: &mut Alike) -> Result<Self, Error> {
         let model = with_phases(between, &sequence).map_err(Error::Model)?;
-        let chain = compile_chain(&model).map_err(Error::Model)?;
+        let chain = compile_chain_like(&model, alike).map_err(Error::Model)?;
         let all = [between.jumps.clone(), crossings(between)].concat();
         let names: Vec<&str> = sequence.iter().map(|at| all[*at].place.name.as_str()).collect();
         let words = if names.is_empty() { "no jump".into() } else { names.join(", ") };
@@ -159,7 +220,24 @@ impl Alternative {
         let crosses = against.map(surface).collect();
         let jump = |at: &usize| Some(between.jumps.get(*at)?.place.name.clone());
         let jumps = sequence.iter().map(jump).collect();
-        Ok(Alternative { jumps, crosses, words, model, chain })
+        Ok(Alternative { events: sequence, jumps, crosses, words, model, chain })
+    }
+
+    /// On coarse grids, which together have as many intervals as one phase is to have.
+    fn brief(&self) -> Self {
+        let count = self.chain.phases.len();
+        let coarse = |method: &Method| match method.grid {
+            Grid::Uniform(n) => Grid::Uniform((n / count).max(FEWEST_INTERVALS).min(n)),
+            _ => method.grid.clone(),
+        };
+        let brief = |problem: &Problem| {
+            let own = &problem.method;
+            let max_iter = own.max_iter.min(BRIEF);
+            let method = Method { grid: coarse(own), max_iter, ..own.clone() };
+            Problem { method, ..problem.clone() }
+        };
+        let phases = self.chain.phases.iter().map(brief).collect();
+        Alternative { chain: Chain { phases, ..self.chain.clone() }, ..self.clone() }
     }
 
     fn start(&self, between: &Problem, earlier: Option<&Record>) -> Option<nlp::Start> {
@@ -188,7 +266,8 @@ impl Alternative {
         let jumps = jumps.filter_map(|(name, jump)| Some(happened(between, name?, jump))).collect();
         let problem = Problem { method: finest(&chain).clone(), ..between.clone() };
         let phases = Some(Phases { model: self.model, chain, outcome });
-        Found { step_errors, starts, jumps, phases, ..Found::new(problem, whole) }
+        let events = self.events;
+        Found { step_errors, starts, jumps, phases, events, ..Found::new(problem, whole) }
     }
 }
 
@@ -198,7 +277,7 @@ fn finest(chain: &Chain) -> &Method {
     methods.max_by_key(|method| method.intervals()).expect("a chain has a phase")
 }
 
-fn happened(between: &Problem, name: String, found: phases::Jump) -> Jump {
+pub(super) fn happened(between: &Problem, name: String, found: phases::Jump) -> Jump {
     let phases::Jump { time, before, after } = found;
     let named = |values: Vec<f64>| -> Vec<(String, f64)> {
         between.states.iter().map(|state| state.name.clone()).zip(values).collect()

@@ -8,7 +8,6 @@ use crate::error::Error;
 use crate::model::Model;
 use crate::names::status_name;
 use crate::record::{JumpRecord, NodesRecord, Record, Settings};
-use crate::replay::piecewise::pieces;
 use crate::verification::{Verification, verify};
 use crate::warm_start::from_record;
 use fdcc_compiler::{compile_by_parameters, compile_chain_by_parameters};
@@ -59,7 +58,7 @@ pub struct Solution {
     pub sequences: Vec<Sequence>,
     /// Whether the model allows more jumps than were tried.
     pub sequences_left_out: bool,
-    /// What the solver saw of a model with jumps.
+    /// What the solver saw of a model with jumps, or with conditions at times.
     pub between_jumps: Option<Phases>,
     /// What was checked of the optimum of the true system; nothing where nobody looked for one.
     pub certificate: Option<Certificate>,
@@ -97,14 +96,23 @@ impl Solution {
         &self.outcome.solution.status
     }
 
-    /// The same in one word, as in files.
+    /// The same in one word, as in files; `uncertified` where the true system was asked for and this
+    /// is an answer to the smoothed problem.
     pub fn status_name(&self) -> &'static str {
-        status_name(self.status(), self.outcome.is_impossible)
+        match self.is_uncertified() {
+            true => "uncertified",
+            false => status_name(self.status(), self.outcome.is_impossible),
+        }
     }
 
-    /// Whether it can be used: solved, or nearly as accurate as asked for.
+    /// Whether it is what was asked for: solved, or nearly as accurately; and certified where nothing
+    /// was to be smoothed.
     pub fn is_solved(&self) -> bool {
-        self.status().is_solved()
+        self.status().is_solved() && !self.is_uncertified()
+    }
+
+    fn is_uncertified(&self) -> bool {
+        self.status().is_solved() && self.certificate.is_some() && !self.is_certified()
     }
 
     /// The objective as the model writes it: what is maximised is not negated.
@@ -177,22 +185,14 @@ impl Solution {
         self.certificate.as_ref().is_some_and(Certificate::is_certified)
     }
 
-    /// Each control at many times: its nodes, and between them.
-    pub(crate) fn dense_controls(&self) -> Vec<Vec<f64>> {
-        let names: Vec<&str> = self.problem.controls.iter().map(|it| it.name.as_str()).collect();
-        let record = self.record();
-        let rows = match &record.nodes {
-            Some(nodes) => pieces(&record, nodes, &names).map(|it| it.rows).unwrap_or_default(),
-            None => Vec::new(),
-        };
-        (0..names.len()).map(|at| rows.iter().map(|row| row[at]).collect()).collect()
-    }
-
     /// Whether the smoothing widths were chosen by the solver, as small as it could.
     pub fn has_chosen_widths(&self) -> bool {
         let method = &self.problem.method;
         let is_open = method.sigma.is_none() && method.continuation.is_empty();
-        is_open && self.is_solved() && !self.outcome.sigma.is_empty() && !self.is_certified()
+        is_open
+            && self.status().is_solved()
+            && !self.outcome.sigma.is_empty()
+            && !self.is_certified()
     }
 
     /// What a replay and another solve need of it, lent.
@@ -260,7 +260,7 @@ impl Solution {
     }
 
     /// What the solver saw of a model of several phases, or with jumps.
-    fn in_phases(&self) -> Option<(&fdcc_compiler::Model, &Chain, &ChainOutcome)> {
+    pub(crate) fn in_phases(&self) -> Option<(&fdcc_compiler::Model, &Chain, &ChainOutcome)> {
         let between = self.between_jumps.as_ref().map(|it| (&it.model, &it.chain, &it.outcome));
         let whole = self.whole.as_ref();
         between.or(whole.map(|it| (self.model.meaning(), &it.chain, &it.outcome)))

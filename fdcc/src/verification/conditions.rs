@@ -4,8 +4,8 @@
 //! A violation counts for the size of the terms of its condition there: what each input moves it by
 //! ([`terms`]), and the bound.
 
-use super::Points;
 use super::motion::Motion;
+use super::points::Points;
 use super::terms::{Inputs, Terms, terms};
 use crate::record::{Record, number};
 use fdcc_runtime::problem::{Bounds, Columns, Function, Parameter, Problem, Variable};
@@ -50,7 +50,7 @@ struct Worst {
 /// The conditions of a problem along a replay.
 pub(super) struct Conditions<'a> {
     problem: &'a Problem,
-    points: &'a Points,
+    points: &'a Points<'a>,
     simulation: &'a Simulation,
     /// Where the states of the problem are among those of the system.
     columns: Vec<usize>,
@@ -67,7 +67,7 @@ impl<'a> Conditions<'a> {
         record: &Record,
         system: &System,
         simulation: &'a Simulation,
-        points: &'a Points,
+        points: &'a Points<'a>,
     ) -> Option<Self> {
         let column = |it: &Variable| system.states.iter().position(|state| state.name == it.name);
         let columns: Vec<usize> = problem.states.iter().map(column).collect::<Option<_>>()?;
@@ -90,7 +90,7 @@ impl<'a> Conditions<'a> {
         let mut all: Vec<Condition> = self.bounds().filter(|it| it.violation > 0.0).collect();
         all.extend(self.path());
         if is_whole {
-            all.extend(self.at_ends());
+            all.extend(self.ending_at(self.points.times.len() - 1, false));
         }
         merged(all)
     }
@@ -125,12 +125,12 @@ impl<'a> Conditions<'a> {
         })
     }
 
-    /// Time and controls of an input of the path conditions; the controls are those of a point.
+    /// Time and controls of an input of the path conditions, in the interval of a point.
     fn set(&self, inputs: &mut Columns, k: usize, time: f64, point: usize) {
         let (first, last) = (self.points.times[0], self.points.times[self.points.times.len() - 1]);
         inputs.column_mut(0)[k] = (time - first) / (last - first);
-        for (at, value) in self.points.row(point).iter().enumerate() {
-            inputs.column_mut(1 + self.states.len() + at)[k] = *value;
+        for (at, value) in self.points.control(point, time).into_iter().enumerate() {
+            inputs.column_mut(1 + self.states.len() + at)[k] = value;
         }
     }
 
@@ -188,18 +188,21 @@ impl<'a> Conditions<'a> {
         Condition { label: label.into(), violation, part, time, state }
     }
 
-    fn at_ends(&self) -> impl Iterator<Item = Condition> {
+    /// The conditions on the first point and another one, with the time of that if it is asked for.
+    pub fn ending_at(&self, point: usize, has_time: bool) -> impl Iterator<Item = Condition> {
         let boundary = &*self.problem.boundary;
         let mut inputs = Columns::new(boundary.layout().point_inputs(), 1);
         for (at, column) in self.states.iter().enumerate() {
             inputs.column_mut(at)[0] = column[0];
-            inputs.column_mut(self.states.len() + at)[0] = column[column.len() - 1];
+            inputs.column_mut(self.states.len() + at)[0] = column[point];
         }
         // The first output is the objective.
         let bounds = [&[Bounds::FREE], &*self.problem.boundary_bounds].concat();
         let rows = self.evaluated(boundary, &inputs, self.motions.repeat(2), &bounds).into_iter();
         rows.zip(bounds).enumerate().skip(1).map(move |(row, (values, bounds))| {
-            let worst = Worst { point: None, ..worst_of(bounds, values) };
+            let worst = worst_of(bounds, values);
+            let point = worst.point.filter(|_| has_time).map(|_| point);
+            let worst = Worst { point, ..worst };
             self.condition(&boundary.origin(row).label, worst)
         })
     }

@@ -2,8 +2,8 @@
 
 use super::alignment::Alignment;
 use super::motion::Motion;
+use super::points::points_of_one;
 use crate::record::{JumpRecord, Record, find};
-use crate::replay::pieces_of_one;
 use fdcc_runtime::problem::Variable;
 use fdcc_runtime::simulate::{Simulation, System};
 
@@ -72,7 +72,7 @@ fn gap(
 ) -> Gap {
     let own = own(record, name);
     let points =
-        replay.time.iter().zip(replayed).step_by(pieces_of_one(own.len().saturating_sub(1)));
+        replay.time.iter().zip(replayed).step_by(points_of_one(own.len().saturating_sub(1)));
     let start = replay.time.first().copied().unwrap_or(replay.end_time);
     let mut largest = (0.0, start);
     for ((&time, &replayed), &own) in points.zip(own) {

@@ -2,11 +2,13 @@
 //! what the solution says.
 
 mod alignment;
+mod at_times;
 mod conditions;
 mod gaps;
 mod links;
 pub mod modes;
 mod motion;
+mod points;
 mod terms;
 
 pub use conditions::Condition;
@@ -17,14 +19,15 @@ pub use modes::Stay;
 
 use crate::error::Error;
 use crate::record::{Record, find};
-use crate::replay::{Replay, pieces_of_one};
+use crate::replay::Replay;
 use alignment::Alignment;
 use conditions::Conditions;
 use fdcc_compiler::Model;
 use fdcc_runtime::problem::Problem;
-use fdcc_runtime::simulate::{Controls, Options, Simulation, Status, System, simulate};
+use fdcc_runtime::simulate::{Options, Simulation, Status, System, simulate};
 use gaps::{gaps, gaps_of_jumps};
 use modes::stays;
+use points::Points;
 
 /// A replay that needs more steps, of a very stiff system, is given up: nobody waits for it.
 const FEWEST_STEPS: usize = 200_000;
@@ -50,7 +53,7 @@ pub struct Verification {
     pub is_whole: bool,
     /// For each state, as far as the replay came.
     pub gaps: Vec<Gap>,
-    /// Bounds of states that are violated; all path and end conditions.
+    /// Bounds of states that are violated; all path and end conditions, and those at times.
     pub conditions: Vec<Condition>,
     /// For each surface.
     pub stays: Vec<Vec<Stay>>,
@@ -109,9 +112,8 @@ pub(crate) fn verify(
     let system = fdcc_compiler::compile_simulation(&model).map_err(Error::Model)?;
     fits(record, &system).map_err(Error::Record)?;
     let intervals = record.time.len().saturating_sub(1);
-    let points = Points::new(record, replay, system.interval);
-    let controls =
-        Controls::Held { times: points.starts(), rows: points.rows.clone(), is_stretched: true };
+    let controls = replay.controls;
+    let points = Points::new(record, &controls, system.interval);
     let max_steps = FEWEST_STEPS.max(STEPS_PER_INTERVAL * intervals);
     let options = Options {
         times: points.times.clone(),
@@ -127,6 +129,10 @@ pub(crate) fn verify(
     let stays = (0..system.surfaces.len()).map(|surface| stays(tape, surface)).collect();
     let conditions =
         Conditions::new(problem, record, &system, &simulation, &points).map(|it| it.all(is_whole));
+    let mut conditions = conditions.unwrap_or_default();
+    if is_whole {
+        conditions.extend(at_times::conditions(&model, record, &system, &simulation, &points)?);
+    }
     let gaps = match Alignment::new(&record.jumps, &system, &simulation) {
         Some(alignment) if is_whole && !record.jumps.is_empty() => {
             let times = alignment.moved(&points.times);
@@ -140,14 +146,7 @@ pub(crate) fn verify(
         }
         _ => gaps(record, &system, &simulation),
     };
-    Ok(Verification {
-        gaps,
-        conditions: conditions.unwrap_or_default(),
-        stays,
-        is_whole,
-        system,
-        simulation,
-    })
+    Ok(Verification { gaps, conditions, stays, is_whole, system, simulation })
 }
 
 /// Whether a solution has the time and the states of a system.
@@ -171,39 +170,4 @@ fn fits(record: &Record, system: &System) -> Result<(), String> {
     missing.map_or(Ok(()), |name| {
         Err(format!("it does not have the state `{name}` at each of its times"))
     })
-}
-
-/// The times at which the replay is looked at: the grid, and between its points.
-pub(crate) struct Points {
-    pub times: Vec<f64>,
-    rows: Vec<Vec<f64>>,
-    /// How many points are in the time of a row.
-    in_row: usize,
-}
-
-impl Points {
-    fn new(record: &Record, replay: Replay, [first, last]: [f64; 2]) -> Self {
-        let mut grid: Vec<f64> = record.time.to_vec();
-        let end = grid.len() - 1;
-        // The grid has been rounded at its ends.
-        (grid[0], grid[end]) = (first, last);
-        let count = pieces_of_one(end);
-        let inside = |pair: &[f64]| {
-            let (from, length) = (pair[0], pair[1] - pair[0]);
-            (0..count).map(move |j| from + length * j as f64 / count as f64)
-        };
-        let times = grid.windows(2).flat_map(inside).chain([last]).collect();
-        let in_row = count * end / replay.rows.len();
-        Points { times, rows: replay.rows, in_row }
-    }
-
-    fn starts(&self) -> Vec<f64> {
-        self.times.iter().copied().step_by(self.in_row).take(self.rows.len()).collect()
-    }
-
-    /// The controls at a point; at a grid point those of the row that ends there, as a
-    /// transcription has it.
-    pub fn row(&self, point: usize) -> &[f64] {
-        &self.rows[point.saturating_sub(1) / self.in_row]
-    }
 }

@@ -1,4 +1,4 @@
-//! An earlier solution with jumps, cut at them: an earlier solution of each phase.
+//! An earlier solution cut at jumps, or at other times: an earlier solution of each phase.
 
 use super::{normalised, widths};
 use crate::record::{Record, find, number, whole};
@@ -32,7 +32,30 @@ fn intervals(record: &Record, phases: usize) -> Option<Vec<Range<usize>>> {
     (all.len() == phases).then_some(all)
 }
 
-/// A solution with jumps.
+/// The start from a solution without jumps, whose phases begin where its grid is nearest to some
+/// ascending times; nothing if it is not whole.
+pub(crate) fn start_at(
+    record: &Record,
+    times: &[f64],
+    between: &Problem,
+    chain: &Chain,
+) -> Option<Start> {
+    let last = record.time.len().checked_sub(1)?;
+    let distance = |k: &usize, time: f64| (record.time[*k] - time).abs();
+    let nearest =
+        |time: &f64| (1..last).min_by(|a, b| distance(a, *time).total_cmp(&distance(b, *time)));
+    let inner: Vec<usize> = times.iter().map(nearest).collect::<Option<_>>()?;
+    let begins: Vec<usize> = std::iter::once(0).chain(inner).chain([last]).collect();
+    let intervals: Vec<Range<usize>> = begins.windows(2).map(|pair| pair[0]..pair[1]).collect();
+    if !record.jumps.is_empty() || intervals.iter().any(Range::is_empty) {
+        return None;
+    }
+    let cut = Cut { record, between, chain };
+    let phases = intervals.into_iter().enumerate().map(|(j, own)| cut.phase(j, own));
+    Some(from_earlier(chain, &phases.collect::<Vec<_>>()))
+}
+
+/// A solution of several pieces.
 struct Cut<'s> {
     record: &'s Record<'s>,
     between: &'s Problem,
@@ -48,7 +71,7 @@ impl Cut<'_> {
             |of: &[(&str, &[f64])], name: &str| whole(find(of, name)?.get(intervals.clone())?);
         let state = |name: &str| {
             let mut column = own(&record.states, name)?;
-            column.push(self.end(j, name)?);
+            column.push(self.end(j, intervals.end, name)?);
             Some(column)
         };
         let mut states: Vec<Option<Vec<f64>>> = shown.map(|it| state(&it.name)).collect();
@@ -64,10 +87,12 @@ impl Cut<'_> {
     }
 
     /// A phase ends with the state before the jump.
-    fn end(&self, j: usize, name: &str) -> Option<f64> {
+    fn end(&self, j: usize, point: usize, name: &str) -> Option<f64> {
         match self.record.jumps.get(j) {
             Some(jump) => number(&jump.before, name),
-            None => find(&self.record.states, name)?.last().copied().filter(|it| it.is_finite()),
+            None => {
+                find(&self.record.states, name)?.get(point).copied().filter(|it| it.is_finite())
+            }
         }
     }
 

@@ -158,8 +158,10 @@ impl Marks {
             | Rule::jump
             | Rule::start
             | Rule::end
+            | Rule::at
             | Rule::path
             | Rule::objective
+            | Rule::fit
             | Rule::guess
             | Rule::phase
             | Rule::link

@@ -52,18 +52,27 @@ impl<'a> Field<'a> {
         self.first_time + tau * self.duration
     }
 
-    /// The row of the controls at a normalised time; none for those of the guess.
-    pub fn row(&self, tau: f64) -> Option<usize> {
-        self.controls.index(self.time(tau))
-    }
-
     /// The controls at a normalised time.
     pub fn control(&self, tau: f64) -> Vec<f64> {
-        match self.row(tau) {
+        let time = self.time(tau);
+        match self.controls.segment(time) {
             _ if self.system.layout.u == 0 => Vec::new(),
             None => self.system.guessed(tau)[self.system.layout.x..].to_vec(),
-            row => self.controls.row(row).to_vec(),
+            segment => self.controls.values(segment, time),
         }
+    }
+
+    /// The rows that make the controls at a normalised time, each with its weight; none for those
+    /// of the guess.
+    pub fn rows(&self, tau: f64) -> impl Iterator<Item = (usize, f64)> {
+        let time = self.time(tau);
+        let segment = self.controls.segment(time);
+        self.controls.range(segment).zip(self.controls.weights(segment, time, 0))
+    }
+
+    /// Whether the controls are the guess.
+    pub fn follows_guess(&self) -> bool {
+        *self.controls == Controls::Guess && self.system.layout.u > 0
     }
 
     pub fn rate(&self, point: &Point) -> DVector<f64> {

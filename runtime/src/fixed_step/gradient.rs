@@ -27,7 +27,7 @@ pub struct Gradient {
     pub parameters: Vec<f64>,
     /// By the start of each state, integrals last.
     pub starts: Vec<f64>,
-    /// By the rows of held controls.
+    /// By the rows of the controls.
     pub controls: Vec<Vec<f64>>,
 }
 
@@ -75,17 +75,13 @@ impl<'a> Adjoint<'a> {
         objective: &DVector<f64>,
     ) -> Self {
         let layout = field.system.layout;
-        let rows = match controls {
-            Controls::Guess => 0,
-            Controls::Held { rows, .. } => rows.len(),
-        };
         Adjoint {
             field,
             grid,
             state: objective.rows(layout.x, layout.x).into_owned(),
             selectors: DVector::zeros(field.system.surfaces.len()),
             parameters: objective.rows(2 * layout.x, layout.p).into_owned(),
-            controls: vec![vec![0.0; layout.u]; rows],
+            controls: vec![vec![0.0; layout.u]; controls.rows().len()],
             first_time: 0.0,
             duration: 0.0,
         }
@@ -153,18 +149,14 @@ impl<'a> Adjoint<'a> {
         self.parameters += by.rows_range(layout.parameters());
         let by_controls = by.rows_range(layout.controls());
         let middle = self.grid.middle(step.index);
-        match self.field.row(middle) {
-            _ if layout.u == 0 => {}
-            Some(row) => self.controls[row]
-                .iter_mut()
-                .zip(by_controls.iter())
-                .for_each(|(sum, by)| *sum += by),
-            None => {
-                let guess =
-                    jacobian(&*self.field.system.guess, &[middle], &self.field.parameters).by;
-                let guess = guess.view((layout.x, 1), (layout.u, layout.p));
-                self.parameters += guess.transpose() * by_controls;
-            }
+        for (row, weight) in self.field.rows(middle) {
+            let sums = self.controls[row].iter_mut();
+            sums.zip(by_controls.iter()).for_each(|(sum, by)| *sum += weight * by);
+        }
+        if self.field.follows_guess() {
+            let guess = jacobian(&*self.field.system.guess, &[middle], &self.field.parameters).by;
+            let guess = guess.view((layout.x, 1), (layout.u, layout.p));
+            self.parameters += guess.transpose() * by_controls;
         }
     }
 

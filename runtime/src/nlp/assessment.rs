@@ -18,6 +18,7 @@
 //! The size of a quantity is its largest value over time. A quantity that is 0 has a millionth of
 //! its declared unit, so that rounding is not mistaken for a value.
 
+use super::curvature::curvatures;
 use super::tuning::assessment::{
     ACCEPTABLE_IMPROVEMENT, ACCEPTABLE_VIOLATION, AIM, IMPROVEMENT, NOTHING, PART, SPREAD,
 };
@@ -186,34 +187,11 @@ fn constraint_magnitudes(
             [bounds.lower, bounds.upper].map(f64::abs).into_iter().filter(|end| end.is_finite());
         largest[*i] = largest[*i].max(ends.fold(terms, f64::max));
     }
-    for (i, size) in largest.iter_mut().enumerate().skip(quantities.stepped) {
-        *size += curvature(nlp, quantities, v, magnitudes, i);
-    }
+    let of_conditions = (quantities.stepped, kinds);
+    let curvatures = curvatures(nlp, quantities, v, magnitudes, of_conditions);
+    largest.iter_mut().zip(curvatures).for_each(|(size, more)| *size += more);
     let size = |i: usize| if i < quantities.stepped { magnitudes[i] } else { largest[i] };
     quantities.constraints.iter().map(|i| size(*i)).collect()
-}
-
-/// The mean size of the terms of second order of the rows of one kind: a square that has to be 0
-/// has no others there.
-fn curvature(
-    nlp: &mut dyn Nlp,
-    quantities: &Quantities,
-    v: &[f64],
-    magnitudes: &[f64],
-    kind: usize,
-) -> f64 {
-    let is_its = |i: &usize| if *i == kind { 1.0 } else { 0.0 };
-    let weights: Vec<f64> = quantities.constraints.iter().map(is_its).collect();
-    let (count, mut at) = (weights.iter().sum::<f64>(), Derivatives::new(nlp));
-    if count == 0.0 {
-        return 0.0;
-    }
-    nlp.derivatives(v, 0.0, &weights, &mut at);
-    let size = |j: usize| magnitudes[quantities.variables[j]];
-    let terms = nlp.hessian_structure().entries().zip(&at.hessian);
-    let terms =
-        terms.map(|((i, j), h)| if i == j { 0.5 } else { 1.0 } * (h * size(i) * size(j)).abs());
-    terms.sum::<f64>() / count
 }
 
 /// The terms of the objective to second order around the point: near a minimum its gradient says

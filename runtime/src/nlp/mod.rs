@@ -11,6 +11,8 @@
 mod assessment;
 mod conclusion;
 pub mod convex;
+pub(crate) mod covariance;
+mod curvature;
 pub mod interior_point;
 pub(crate) mod multiplier_estimate;
 mod scaling;
@@ -20,6 +22,7 @@ mod tuning;
 
 use crate::linalg::{PhaseStages, Stages, Triplets};
 use crate::problem::{Bounds, Linear, Origin};
+pub use covariance::Covariance;
 pub(crate) use scaling::objective_unit;
 use std::ops::ControlFlow;
 pub(crate) use tuning::assessment::NO_OBJECTIVE;
@@ -100,6 +103,10 @@ pub trait Nlp {
     fn values(&mut self, v: &[f64], constraints: &mut [f64]) -> f64;
     /// Gradient, Jacobian and the Hessian of `weight * f + multipliers . c`.
     fn derivatives(&mut self, v: &[f64], weight: f64, multipliers: &[f64], out: &mut Derivatives);
+    /// Whether a constraint is known to be linear by its structure.
+    fn is_linear(&self, _constraint: usize) -> bool {
+        false
+    }
     /// Where a constraint comes from.
     fn constraint_place(&self, constraint: usize) -> Place;
     /// Which part of the model is not finite at `v`, if any.

@@ -1,6 +1,6 @@
 //! Every tuned number of what all solvers of a nonlinear program share, by the file that uses it:
-//! measures of an answer, scaling, multiplier estimates and convex programs (decisions 27 and 30 in
-//! `docs/decisions`).
+//! measures of an answer, scaling, multiplier estimates, covariances and convex programs (decisions
+//! 27, 30 and 36 in `docs/decisions`).
 
 pub(crate) mod assessment {
     /// The improvement that may be left, in units of the tolerance: 1e-6 at the default tolerance
@@ -31,6 +31,19 @@ pub(crate) mod multiplier_estimate {
     pub(crate) const WEIGHTLESS: f64 = 1e8;
     /// What rows that depend on each other are shifted by, so that they share their multiplier.
     pub(crate) const SHIFT: f64 = 1e-8;
+}
+
+pub(crate) mod covariance {
+    /// Distances from bounds, and multipliers, are at least this.
+    pub(crate) const TINY: f64 = 1e-20;
+    /// What does not hold a variable within so many times its size does not hold it.
+    pub(crate) const SOFT: f64 = 100.0;
+    /// What a bound holds is held by a spring so much stiffer than the rest.
+    pub(crate) const HARD: f64 = 1e12;
+    /// A variable is at a bound if it is as near as this part of its size.
+    pub(crate) const NEAR: f64 = 1e-4;
+    /// A smaller component of a direction does not belong to it.
+    pub(crate) const SMALL: f64 = 0.1;
 }
 
 pub(crate) mod factors {

@@ -27,7 +27,7 @@ fn name<T: PartialEq>(table: &[Word<T>], value: &T) -> &'static str {
 }
 
 /// What a control is on an interval.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ControlShape {
     /// One value.
     Constant,

@@ -56,6 +56,9 @@ pub struct Method {
     pub steps: usize,
     /// Smoothing width, if the model names one.
     pub sigma: Option<f64>,
+    /// Whether `sigma = 0` is written: nothing is smoothed in the end, and `continuation` is on the
+    /// way there.
+    pub exact: bool,
     /// Widths to pass through before `sigma`, decreasing; the last is the target if `sigma` is
     /// absent.
     pub continuation: Vec<f64>,
@@ -84,6 +87,11 @@ impl Grid {
 }
 
 impl Method {
+    /// Whether something is to stay smoothed, with a width that is named.
+    pub fn names_width(&self) -> bool {
+        !self.exact && (self.sigma.is_some() || !self.continuation.is_empty())
+    }
+
     /// How many control intervals there are; where the grid is to be refined, at first: a
     /// polynomial on each interval says much with few of them.
     pub fn intervals(&self) -> usize {

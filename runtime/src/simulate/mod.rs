@@ -9,8 +9,10 @@
 //! of a `Dir` are a direction or such unknowns. [`run`] is the loop, [`system`] the contract with
 //! the compiler. Where the continuation is not unique it stops and says so; it never chooses.
 
+mod bernstein;
 mod controls;
 mod field;
+mod interval;
 mod location;
 mod mode;
 mod modes;
@@ -21,7 +23,7 @@ mod system;
 mod tape;
 mod tuning;
 
-pub use controls::Controls;
+pub use controls::{Controls, Polynomials};
 pub use mode::Mode;
 pub(crate) use modes::complementarity::selectors;
 pub use result::{

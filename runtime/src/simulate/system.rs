@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! x' = f(t, x, u, p, s),   s in Sgn(psi(t, x, p)) or Dir(psi)
-//! x+ = r_j(t, x-, p)       where psi is crossed
+//! x+ = r_j(t, x-, u, p)    where psi is crossed
 //! ```
 //!
 //! A system for sensitivities has the first and second derivatives of all functions by all their
@@ -68,13 +68,13 @@ pub struct Enclosures {
     pub flow: Vec<Enclosure>,
     /// Of [`System::switching`]; by `t` and `x`.
     pub switching: Vec<Enclosure>,
-    /// Of [`System::kinks`]; by `t` and `x`.
+    /// Of [`System::kinks`]; by `t`, `x` and `u`.
     pub kinks: Vec<Enclosure>,
     /// Of [`System::rates`]; by `s`.
     pub rates: Vec<Enclosure>,
-    /// The same; by `t` and `x`.
+    /// The same; by `t`, `x` and `u`.
     pub accelerations: Vec<Enclosure>,
-    /// Of the path conditions of the model, over the inputs of `flow`; by `t` and `x`.
+    /// Of the path conditions of the model, over the inputs of `flow`; by `t`, `x` and `u`.
     pub path: Vec<Enclosure>,
     /// Of the controls of [`System::guess`], over `[tau | p]`; by `tau`.
     pub controls: Vec<Enclosure>,
@@ -118,7 +118,7 @@ pub struct System {
     pub guess: Arc<dyn Function>,
     /// Over the inputs of `flow`, what is 0 where `flow` has a kink that is no surface, such as
     /// that of `abs`; the selectors behind those of the surfaces say on which side of each the
-    /// state is. Kinks inside others come first; differentiated by `t` and `x`.
+    /// state is. Kinks inside others come first; differentiated by `t`, `x` and `u`.
     pub kinks: Arc<dyn Function>,
     /// Bounds of the functions that are watched along a step.
     pub enclosures: Enclosures,

@@ -1,7 +1,7 @@
 //! What a simulation did, piece by piece, so that it can be differentiated: steps, and stops
 //! between them.
 //!
-//! Between two stops the modes, the states that stand still and the row of the controls do not
+//! Between two stops the modes, the states that stand still and the segment of the controls do not
 //! change; that is a [`Regime`]. A stop is an event, a change of the controls, or both ends of the
 //! simulation's first instant.
 
@@ -24,8 +24,8 @@ pub struct Regime {
     pub modes: Vec<Mode>,
     /// States that stand still.
     pub held: Vec<usize>,
-    /// Which row of the controls holds; none where controls are the guess.
-    pub row: Option<usize>,
+    /// Which segment of the controls is followed; none where controls are the guess.
+    pub segment: Option<usize>,
 }
 
 /// An instant.
@@ -109,7 +109,7 @@ pub enum Rule {
 pub enum Cause {
     /// The first time.
     Start,
-    /// The next row of the controls.
+    /// The next segment of the controls.
     Controls,
     /// The state reaches a surface.
     Reaches(usize),

@@ -7,6 +7,11 @@ pub(crate) mod options {
     pub(crate) const RTOL: f64 = 1e-10;
 }
 
+pub(crate) mod controls {
+    /// What is outside a segment by less than this part of it is inside but for rounding.
+    pub(crate) const ROUNDING: f64 = 1e-9;
+}
+
 pub(crate) mod field {
     /// Newton's method on the selectors ends with a relative change of this.
     pub(crate) const SOLVED: f64 = 1e-13;

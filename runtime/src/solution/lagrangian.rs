@@ -93,7 +93,8 @@ pub(crate) fn end_multipliers(
 pub struct Hamiltonian {
     /// One for each interval, of the objective of the model.
     pub values: Vec<f64>,
-    /// The mean size of the terms that it is a sum of: what deviations are to be compared with.
+    /// The mean size of the terms that it is a sum of, or of noise where that is more: what
+    /// deviations are to be compared with.
     pub size: f64,
     /// Whether it has to be constant: time itself does not matter.
     pub is_constant: bool,
@@ -121,7 +122,9 @@ impl Hamiltonian {
     ) -> Self {
         let lagrangian = Lagrangian::new(problem, nlp, solution);
         let ((values, size), expected) = (lagrangian.hamiltonian(duration), lagrangian.expected());
-        let is_noise = size * duration.abs() <= NOISE * problem.method.tol;
+        let noise = NOISE * problem.method.tol / duration.abs();
+        let is_noise = size <= noise;
+        let size = size.max(noise);
         let violations = match is_noise {
             true => vec![0.0; problem.layout.u],
             false => minimum::violations(&problem.controls, nlp, solution, (duration, size)),

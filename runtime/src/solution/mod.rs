@@ -14,6 +14,6 @@ pub use lagrangian::{Hamiltonian, by_parameters};
 pub use minimum::control_slopes;
 pub use outcome::{Attempt, ChainOutcome, Limiting, Outcome};
 pub(crate) use pause::gain as gain_of_pauses;
-pub use quadrature::{integrals, sums_over_rows};
+pub use quadrature::{integrals, sums_over_rows, terms_of_rows};
 pub(crate) use trajectory::switching_function_sizes;
 pub use trajectory::{ControlNodes, Trajectory, times};

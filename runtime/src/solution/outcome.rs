@@ -26,6 +26,14 @@ pub struct ChainOutcome {
 }
 
 impl ChainOutcome {
+    /// That of a chain of one phase, from that of the phase.
+    pub fn single(outcome: Outcome) -> Self {
+        let Outcome { solution, sigma, convex, limiting, is_impossible, attempts, .. } =
+            outcome.clone();
+        let phases = vec![outcome];
+        ChainOutcome { solution, phases, sigma, convex, limiting, is_impossible, attempts }
+    }
+
     /// That of a chain of one phase.
     pub fn into_single(mut self) -> Outcome {
         let ChainOutcome { convex, limiting, is_impossible, attempts, .. } = self;

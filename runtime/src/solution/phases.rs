@@ -48,21 +48,22 @@ pub fn joined(between: &Problem, chain: &Chain, outcome: &ChainOutcome) -> (Outc
     )
 }
 
-/// Puts the phases of given modes of the true system one after the other. `between` is the smoothed
-/// problem over the whole time, `modes` what each of its surfaces does.
+/// Puts the phases of given modes of the true system one after the other; and the state on both
+/// sides of each end of a phase. `between` is the smoothed problem over the whole time, `modes` what
+/// each of its surfaces does.
 pub fn located(
     between: &Problem,
     chain: &Chain,
     outcome: &ChainOutcome,
     modes: Vec<Vec<Span>>,
-) -> Outcome {
+) -> (Outcome, Vec<Jump>) {
     let bare = Problem { surfaces: Vec::new(), ..between.clone() };
-    let (mut whole, _) = joined(&bare, chain, outcome);
+    let (mut whole, ends) = joined(&bare, chain, outcome);
     let trajectory = &mut whole.trajectory;
     trajectory.parameters.resize(between.parameters.len(), 0.0);
     trajectory.switching = switching(between, trajectory);
     whole.sigma = vec![0.0; between.surfaces.len()];
-    Outcome { modes, ..whole }
+    (Outcome { modes, ..whole }, ends)
 }
 
 /// The functions of all surfaces at the grid points.
@@ -168,8 +169,8 @@ impl Phases<'_> {
         if let [only] = &self.phases[..] {
             return only.nodes.clone();
         }
-        let own: Option<Vec<Vec<Piece>>> = self.phases.iter().map(|it| pieces(it)).collect();
-        let own = own?.concat();
+        self.phases.iter().find(|it| it.nodes.is_some())?;
+        let own: Vec<Piece> = self.phases.iter().flat_map(|it| pieces(it)).collect();
         let most = own.iter().map(|piece| piece.time.len()).max()?;
         let own: Vec<Piece> = own.into_iter().map(|piece| piece.with_nodes(most)).collect();
         let values = |i: usize| own.iter().flat_map(|piece| &piece.values[i]).copied().collect();
@@ -203,10 +204,15 @@ struct Piece {
     values: Vec<Vec<f64>>,
 }
 
-/// The intervals of a phase whose controls are not constant on them.
-fn pieces(phase: &Trajectory) -> Option<Vec<Piece>> {
-    let nodes = phase.nodes.as_ref()?;
+/// The intervals of a phase; a control that is constant has its value in the middle.
+fn pieces(phase: &Trajectory) -> Vec<Piece> {
     let intervals = phase.time.len() - 1;
+    let middle = |k: usize| 0.5 * (phase.time[k] + phase.time[k + 1]);
+    let constant = || ControlNodes {
+        time: (0..intervals).map(middle).collect(),
+        values: phase.controls.clone(),
+    };
+    let nodes = phase.nodes.clone().unwrap_or_else(constant);
     let is_linear = nodes.time.len() == intervals + 1;
     let own = if is_linear { 1 } else { nodes.time.len() / intervals };
     let piece = |k: usize| {
@@ -218,7 +224,7 @@ fn pieces(phase: &Trajectory) -> Option<Vec<Piece>> {
             values: nodes.values.iter().map(of).collect(),
         }
     };
-    Some((0..intervals).map(piece).collect())
+    (0..intervals).map(piece).collect()
 }
 
 impl Piece {

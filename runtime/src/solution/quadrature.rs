@@ -21,6 +21,17 @@ pub fn sums_over_rows(
     sums.iter().map(|sum| nlp.sum_over_rows(sum, parameters, &solution.v)).collect()
 }
 
+/// The terms of all rows of such sums.
+pub fn terms_of_rows(
+    problem: &Problem,
+    solution: &Solution,
+    parameters: &[f64],
+    sums: &[&Measurements],
+) -> Vec<Vec<f64>> {
+    let nlp = TranscribedNlp::new(problem);
+    sums.iter().map(|sum| nlp.terms_of_rows(sum, parameters, &solution.v)).collect()
+}
+
 /// The integrals over normalised time of all outputs of a function of `[tau | x | u | p]`.
 pub fn integrals(
     problem: &Problem,

@@ -8,6 +8,7 @@
 
 mod by_parameters;
 mod continuation;
+mod covariance;
 mod grid_sequencing;
 pub mod multistart;
 mod prolong;
@@ -24,6 +25,7 @@ pub use crate::solution::{Attempt, ChainOutcome, Limiting, Outcome};
 use crate::solution::{Trajectory, gain_of_pauses};
 use crate::transcribe::chain::{ChainNlp, own_multipliers};
 pub use by_parameters::by_parameters_of_chain;
+pub use covariance::covariance_of_chain;
 use run::Run;
 use std::ops::ControlFlow;
 

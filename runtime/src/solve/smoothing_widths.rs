@@ -12,8 +12,8 @@ use super::Watch;
 use super::grid_sequencing::grids;
 use super::run::{Run, Target, is_lost, is_retried};
 use super::tuning::smoothing_widths::{
-    DECREASE, FIRST_FACTOR, LAST_FACTOR, MOST_FAILURES, MOST_ITERATIONS, MOST_SIZINGS, SHRUNK,
-    THINNER, TOO_THIN, TOO_WIDE, WIDE,
+    DECREASE, FIRST_FACTOR, LAST_FACTOR, MOST_FAILURES, MOST_ITERATIONS, MOST_SIZINGS, ROUNDING,
+    SHRUNK, THINNER, TOO_THIN, TOO_WIDE, WIDE,
 };
 use crate::nlp::{Solution, Start, Status};
 use crate::transcribe::chain::ChainNlp;
@@ -90,7 +90,7 @@ impl Run<'_> {
         widest: &[f64],
         watch: &mut Watch,
     ) -> Solution {
-        let is_open = is_open(nlp, start);
+        let is_open = self.is_open(nlp, start);
         if !is_open.contains(&true) {
             return lost;
         }
@@ -114,7 +114,7 @@ impl Run<'_> {
         mut best: Solution,
         watch: &mut Watch,
     ) -> Solution {
-        let mut is_open = is_open(nlp, start);
+        let mut is_open = self.is_open(nlp, start);
         for _ in 0..MOST_SIZINGS {
             let (before, sizes) = (self.sigma.clone(), nlp.switching_function_sizes(&best.v));
             self.resize(&is_open, &sizes);
@@ -217,7 +217,7 @@ impl Run<'_> {
         let units = self.chain.surfaces().map(|(_, width)| width.unit);
         let sizes = nlp.switching_function_sizes(v).into_iter().zip(units);
         for (sigma, (size, unit)) in self.sigma.iter_mut().zip(sizes) {
-            *sigma = factor * if size > 0.0 { size } else { unit };
+            *sigma = factor * if size > ROUNDING * unit { size } else { unit };
         }
     }
 
@@ -240,9 +240,12 @@ impl Run<'_> {
             *sigma = (factor * size).clamp(decrease * *sigma, *sigma);
         }
     }
-}
 
-/// Where a guess says nothing of the size of a switching function, because it rests on the surface.
-fn is_open(nlp: &mut ChainNlp, start: &Start) -> Vec<bool> {
-    nlp.switching_function_sizes(&start.v).iter().map(|size| *size == 0.0).collect()
+    /// Where a guess says nothing of the size of a switching function, because it rests on the
+    /// surface.
+    fn is_open(&self, nlp: &mut ChainNlp, start: &Start) -> Vec<bool> {
+        let units = self.chain.surfaces().map(|(_, width)| width.unit);
+        let sizes = nlp.switching_function_sizes(&start.v).into_iter();
+        sizes.zip(units).map(|(size, unit)| size <= ROUNDING * unit).collect()
+    }
 }

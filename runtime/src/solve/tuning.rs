@@ -17,6 +17,11 @@ pub(crate) mod continuation {
     pub(crate) const MOST_HALVINGS: f64 = 12.0;
 }
 
+pub(crate) mod covariance {
+    /// An unknown is at least this part of the width of its bounds.
+    pub(crate) const LEAST: f64 = 1e-2;
+}
+
 pub(crate) mod grid_sequencing {
     /// A grid of fewer intervals is not made coarser by half: it would say too little of the
     /// problem.
@@ -50,6 +55,9 @@ pub(crate) mod smoothing_widths {
     /// A first width may be so many times the one that fits the size, or that part of it.
     pub(crate) const TOO_WIDE: f64 = 2.0;
     pub(crate) const TOO_THIN: f64 = 0.1;
+    /// A function that is smaller than this, for its unit, is rounding: the guess rests on the
+    /// surface.
+    pub(crate) const ROUNDING: f64 = 1e-12;
     /// A function that shrinks below this with its layer is held: its size is that of the layer.
     pub(crate) const SHRUNK: f64 = 0.5;
     /// A step that takes longer than this is too long.

@@ -228,6 +228,12 @@ impl<'p> Measured<'p> {
         self.hessian.moves = hessian;
     }
 
+    /// The terms of all rows at the loaded points.
+    pub(super) fn terms(&mut self, parameters: &[f64]) -> &[f64] {
+        self.tables.evaluate(parameters);
+        self.tables.values.column(0)
+    }
+
     /// Adds the terms to the rows; returns their part of the objective.
     pub(super) fn add_values(&mut self, parameters: &[f64], rows: &mut [f64]) -> f64 {
         self.tables.evaluate(parameters);

@@ -25,7 +25,7 @@ mod tables;
 
 use crate::linalg::{Stages, Triplets};
 use crate::nlp::{Derivatives, NO_OBJECTIVE, Nlp, Place, Quantities, objective_unit};
-use crate::problem::{Bounds, Columns, Measurements, Origin, Problem};
+use crate::problem::{Bounds, Columns, Degree, Measurements, Origin, Problem};
 use assembly::{Builder, Repeated};
 use boundary::Ends;
 use interval::{Interval, Node, Point};
@@ -149,12 +149,22 @@ impl<'p> TranscribedNlp<'p> {
 
     /// What a sum over rows is at `v`.
     pub(crate) fn sum_over_rows(&self, sum: &Measurements, parameters: &[f64], v: &[f64]) -> f64 {
+        self.terms_of_rows(sum, parameters, v).iter().sum()
+    }
+
+    /// What it adds up.
+    pub(crate) fn terms_of_rows(
+        &self,
+        sum: &Measurements,
+        parameters: &[f64],
+        v: &[f64],
+    ) -> Vec<f64> {
         let (jacobian, hessian) = (Builder::default(), Builder::default());
         let mesh = self.mesh.clone();
         let mut unused = Matrices { stages: self.stages, mesh, jacobian, hessian };
         let mut measured = Measured::new(self.problem, sum, &self.interval, &mut unused);
         measured.load(&self.interval, &self.mesh, parameters, v);
-        measured.add_values(parameters, &mut [])
+        measured.terms(parameters).to_vec()
     }
 
     /// Whether a row is a step of a differential equation.
@@ -318,6 +328,16 @@ impl Nlp for TranscribedNlp<'_> {
         }
         self.ends.differentiate(self.stages, &self.parameters, weight, multipliers);
         self.ends.scatter(gradient, jacobian, hessian);
+    }
+
+    fn is_linear(&self, row: usize) -> bool {
+        let problem = self.problem;
+        if let Some(i) = row.checked_sub(self.stages.coupling().start) {
+            return problem.boundary.degree(i + 1) == Degree::Affine;
+        }
+        let path = (row % self.stages.row_step()).checked_sub(self.stages.defect_rows());
+        let is_affine = |i| problem.path.degree(i) == Degree::Affine;
+        path.is_some_and(|row| is_affine(row % problem.path_bounds.len()))
     }
 
     fn constraint_place(&self, row: usize) -> Place {

@@ -144,10 +144,11 @@ impl<'t> CursorContext<'t> {
     }
 
     /// An item begins with its word; `start`, `end`, `free` and `guess` also stand inside of
-    /// others.
+    /// others, and so do words that may be names.
     fn word(&mut self, word: &'t str) {
-        let is_inner = matches!(word, "start" | "end" | "free" | "guess") && !self.begins_line;
-        if self.is_among_items() && !is_inner && words::items().any(|it| it.text == word) {
+        let Some(known) = words::items().find(|it| it.text == word) else { return };
+        let may_be_inner = !known.is_reserved || matches!(word, "start" | "end" | "free" | "guess");
+        if self.is_among_items() && (self.begins_line || !may_be_inner) {
             self.item = word;
         }
     }

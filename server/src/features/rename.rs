@@ -4,7 +4,7 @@
 use crate::client::Failure;
 use crate::context::Context;
 use crate::snapshot::Snapshot;
-use fdcc_compiler::symbols::{Meaning, Names, Role};
+use fdcc_compiler::symbols::{Meaning, Names, Occurrence, Role};
 use fdcc_grammar::ast::ItemKind;
 use fdcc_grammar::{Edit, parse};
 use lsp_types::{
@@ -69,8 +69,22 @@ fn check_name(name: &str) -> Result<(), Failure> {
     }
 }
 
+/// A column that has the name of its signal keeps it: it is named then.
 fn edits(names: &Names, definition: usize, new_name: &str) -> Vec<Edit> {
-    names.of(definition).map(|it| Edit { span: it.span, replacement: new_name.into() }).collect()
+    let old_name = &names.definitions[definition].name;
+    let has_column = |end: u32| {
+        let is_it = |it: &Occurrence| (it.span.start, it.span.end) == (end, end);
+        names.occurrences.iter().any(is_it)
+    };
+    let edit = |it: &Occurrence| {
+        let replacement = match it.span {
+            span if span.start == span.end => format!(" = {new_name}"),
+            span if has_column(span.end) => format!("{new_name} = {old_name}"),
+            _ => new_name.into(),
+        };
+        Edit { span: it.span, replacement }
+    };
+    names.of(definition).map(edit).collect()
 }
 
 /// Whether all names stand for the same things in the new text.

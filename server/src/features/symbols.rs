@@ -50,6 +50,9 @@ impl Outline<'_> {
                 let word = if *sense == Sense::Minimize { "minimize" } else { "maximize" };
                 Some(self.symbol(word, SymbolKind::Operator, item.span, *keyword))
             }
+            ItemKind::Fit { keyword, .. } => {
+                Some(self.symbol("fit", SymbolKind::Operator, item.span, *keyword))
+            }
             _ => self.declaration(item),
         }
     }

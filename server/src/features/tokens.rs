@@ -64,6 +64,7 @@ fn within(context: &Context<'_>, wanted: Span) -> SemanticTokens {
     for it in names
         .occurrences
         .iter()
+        .filter(|it| it.span.start < it.span.end)
         .filter(|it| wanted.start <= it.span.start && it.span.end <= wanted.end)
     {
         let Some(word) = type_of(names, it) else { continue };

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Two minutes of random problems, judged by CasADi with IPOPT, and a minute of random events, judged by SciPy:
+# Two minutes of random problems, judged by CasADi with IPOPT, and random events, judged by SciPy:
 # `ci.sh target/release/fdcc`. Skipped where these cannot be had.
 set -euo pipefail
 folder=$(mktemp -d)
@@ -9,5 +9,5 @@ if ! { python3 -m venv "$folder/venv" && timeout 300 "$folder/venv/bin/pip" inst
   exit 0
 fi
 "$folder/venv/bin/python" "$(dirname "$0")/check_judge.py"
-"$folder/venv/bin/python" "$(dirname "$0")/run.py" "$1" --seconds 120 --seed 7
-"$folder/venv/bin/python" "$(dirname "$0")/../events.py" "$1" --seconds 60 --seed 7
+"$folder/venv/bin/python" "$(dirname "$0")/run.py" "$1" --seconds 80 --seed 7
+"$folder/venv/bin/python" "$(dirname "$0")/../events.py" "$1" --seconds 40 --seed 7

@@ -39,10 +39,10 @@ fn options() -> Options {
     Options { rtol: 1e-12, atol: Some(1e-13), max_steps: 20_000, ..Options::default() }
 }
 
-fn quantity(system: &System, random: &mut Random) -> Quantity {
+fn quantity(Case { system, controls }: &Case, random: &mut Random) -> Quantity {
     match random.below(8) {
         0 => Quantity::Start(random.below(system.layout.x - 1)),
-        1 => Quantity::Control { row: random.below(4), control: 0 },
+        1 => Quantity::Control { row: random.below(controls.rows().len()), control: 0 },
         _ => {
             let is_width = |at: usize| system.parameters[at].name.starts_with("sigma(");
             let written = (0..system.layout.p).filter(|&at| !is_width(at)).collect::<Vec<_>>();
@@ -52,10 +52,10 @@ fn quantity(system: &System, random: &mut Random) -> Quantity {
 }
 
 /// Different ones.
-fn quantities(system: &System, random: &mut Random) -> Vec<Quantity> {
+fn quantities(case: &Case, random: &mut Random) -> Vec<Quantity> {
     let mut chosen = Vec::new();
     while chosen.len() < QUANTITIES {
-        let next = quantity(system, random);
+        let next = quantity(case, random);
         if !chosen.contains(&next) {
             chosen.push(next);
         }
@@ -65,7 +65,7 @@ fn quantities(system: &System, random: &mut Random) -> Vec<Quantity> {
 
 /// Everything about one system.
 pub fn check(case: &Case, random: &mut Random, seen: &mut Seen) {
-    let quantities = quantities(&case.system, random);
+    let quantities = quantities(case, random);
     let Ok(found) = gradient(&case.system, &case.controls, &options(), &quantities) else {
         seen.stopped += 1;
         return;

@@ -3,7 +3,7 @@
 use crate::affine::Affine;
 use fdcc_compiler::compile_sensitivities;
 use fdcc_runtime::problem::Parameter;
-use fdcc_runtime::simulate::{Controls, System};
+use fdcc_runtime::simulate::{Controls, Polynomials, System};
 use fdcc_tests::models::meaning;
 use fdcc_tests::random::Random;
 use std::collections::BTreeMap;
@@ -11,6 +11,9 @@ use std::fmt::Write;
 
 /// How often the control changes.
 const ROWS: usize = 4;
+
+/// How many nodes a polynomial has between two changes.
+const NODES: usize = 3;
 
 /// One system with what drives it.
 pub struct Case {
@@ -164,5 +167,22 @@ impl Family {
         let times = (0..ROWS).map(|row| system.interval[1] * row as f64 / ROWS as f64).collect();
         let rows = (0..ROWS).map(|_| vec![random.between(-1.0, 1.0)]).collect();
         Case { system, controls: Controls::Held { times, rows, is_stretched: true } }
+    }
+}
+
+impl Case {
+    /// The same system with polynomials in the place of rows that are held.
+    pub fn with_polynomials(self, random: &mut Random) -> Self {
+        let [first, last] = self.system.interval;
+        let at = |part: f64| first + (last - first) * part / ROWS as f64;
+        let node = |k: usize| at((k as f64 + 0.3) / NODES as f64);
+        let controls = Controls::Polynomial(Polynomials {
+            times: (0..=ROWS).map(|segment| at(segment as f64)).collect(),
+            ranges: (0..ROWS).map(|segment| segment * NODES..(segment + 1) * NODES).collect(),
+            nodes: (0..ROWS * NODES).map(node).collect(),
+            rows: (0..ROWS * NODES).map(|_| vec![random.between(-1.0, 1.0)]).collect(),
+            is_stretched: true,
+        });
+        Case { controls, ..self }
     }
 }

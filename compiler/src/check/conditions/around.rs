@@ -42,6 +42,7 @@ fn items_of(item: &Item) -> Option<&[Item]> {
 fn objective(item: &Item) -> Option<(Sense, Span)> {
     match &item.kind {
         ItemKind::Objective { sense, keyword, .. } => Some((*sense, *keyword)),
+        ItemKind::Fit { keyword, .. } => Some((Sense::Minimize, *keyword)),
         _ => None,
     }
 }

@@ -213,7 +213,13 @@ fn backwards(meaning: &Elaborator<'_>, interval: &Interval, scale: f64, mistakes
 
 /// Conditions between constants that exclude each other.
 fn rows(meaning: &Elaborator<'_>, mistakes: &mut Mistakes) {
-    for row in meaning.model.path.iter().chain(&meaning.model.boundary) {
+    for row in meaning
+        .model
+        .path
+        .iter()
+        .chain(&meaning.model.boundary)
+        .chain(meaning.model.at_times.iter().flat_map(|it| &it.rows))
+    {
         let [lower, upper] = numbers(meaning, row.range);
         if lower > upper {
             let text = format!(

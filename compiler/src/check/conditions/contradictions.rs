@@ -57,7 +57,7 @@ impl Row {
 }
 
 /// Starts that are formulas, conditions at the ends, then path conditions at the start and at the
-/// end.
+/// end; conditions at times between them.
 fn rows(meaning: &mut Elaborator<'_>) -> Vec<Row> {
     let mut all = starts(meaning);
     let boundary = meaning.model.boundary.iter().zip(&meaning.at_end);
@@ -70,6 +70,8 @@ fn rows(meaning: &mut Elaborator<'_>) -> Vec<Row> {
             Row { is_timeless, ..Row::new(Constraint { value, ..row }, at_end) }
         }));
     }
+    let at_times = meaning.model.at_times.iter().flat_map(|it| &it.rows).cloned();
+    all.extend(at_times.map(|row| Row { point: "that time", ..Row::new(row, false) }));
     all
 }
 

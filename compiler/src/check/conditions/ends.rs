@@ -12,7 +12,7 @@ use std::collections::HashSet;
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let mut tied: HashSet<&str> = HashSet::new();
     for item in &facts.items {
-        if matches!(item.kind, ItemKind::Start { .. } | ItemKind::End { .. }) {
+        if is_at_a_time(item) {
             walk::expressions(item)
                 .into_iter()
                 .for_each(|expr| walk::names(expr, &mut |name, _| tied.extend([name])));
@@ -39,6 +39,11 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     }
 }
 
+/// Whether an item says what holds at one time.
+fn is_at_a_time(item: &Item) -> bool {
+    matches!(item.kind, ItemKind::Start { .. } | ItemKind::End { .. } | ItemKind::At { .. })
+}
+
 /// The states of a phase that links and conditions outside of all phases tie down.
 fn tied_from_outside<'a>(items: &'a [Item], phase: &Ident, tied: &mut HashSet<&'a str>) {
     let mut of_phase = |expr: &'a Expr| {
@@ -51,7 +56,7 @@ fn tied_from_outside<'a>(items: &'a [Item], phase: &Ident, tied: &mut HashSet<&'
         });
     };
     for item in items {
-        if matches!(item.kind, ItemKind::Start { .. } | ItemKind::End { .. }) {
+        if is_at_a_time(item) {
             walk::expressions(item).into_iter().for_each(&mut of_phase);
         }
     }

@@ -48,7 +48,7 @@ impl Role<'_> {
             Role::Path(Some(name), _) => format!("path constraint `{}`", name.name),
             Role::Path(None, _) => "a path constraint".into(),
             Role::Objective => "the objective".into(),
-            Role::Boundary(word) => format!("a condition at the {word}"),
+            Role::Boundary(word) => format!("a condition at {word}"),
             Role::Surface(name) => format!("surface `{}`", name.name),
             Role::Report(name) => format!("report `{}`", name.name),
             Role::Number(what) => (*what).into(),

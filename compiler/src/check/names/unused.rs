@@ -142,6 +142,7 @@ fn mentioned<'a>(item: &'a Item, phases: &HashSet<&str>) -> Vec<&'a str> {
         ItemKind::Jump { surface, then_hold, .. } => {
             names.extend(std::iter::once(surface).chain(then_hold).map(|it| it.name.as_str()))
         }
+        ItemKind::Fit { data, .. } => names.push(&data.name),
         ItemKind::Guess { bindings } => {
             names.extend(bindings.iter().map(|it| it.name.name.as_str()))
         }

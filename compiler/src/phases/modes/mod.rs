@@ -14,17 +14,28 @@
 //! times at which phases end are unknowns, and everything is smooth inside of a phase, so that an
 //! optimum of the chain is one of the system that was written, with its switches located.
 //!
-//! A control may have an *arc*: it is at one of its bounds throughout a phase.
+//! A control may have an *arc*: it is at one of its bounds throughout a phase. So may a state or a
+//! path condition: `limits`.
 
+mod departures;
+mod ends;
+mod hamiltonian;
+mod independent;
+mod junctions;
+mod limits;
 mod links;
 mod phase;
 
+pub use departures::{is_uncontrolled, may_hold};
+pub use hamiltonian::{Point, hamiltonian};
+pub use limits::{Limit, limits};
+
 use super::division::{Division, divide};
-use super::hold::approach;
 use super::shares::Shares;
-use crate::model::numbers::numbers;
+use super::{Jumps, MultiPhase, between_jumps};
 use crate::model::{Model, Phase, Place, Symbol, not_yet};
 use fdcc_grammar::Diagnostic;
+use fdcc_runtime::problem::ControlShape;
 
 /// Where the state is relative to a surface in a phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -37,12 +48,12 @@ pub enum Mode {
     Above,
 }
 
-/// What a control does in a phase.
+/// What a control, a state or a path condition does in a phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Arc {
     /// It is at its lower bound.
     Lower,
-    /// It is chosen.
+    /// It is between its bounds.
     Free,
     /// It is at its upper bound.
     Upper,
@@ -55,62 +66,107 @@ pub struct PhaseOfModes {
     pub modes: Vec<Mode>,
     /// One for each control.
     pub arcs: Vec<Arc>,
+    /// One for each of [`limits()`].
+    pub contacts: Vec<Arc>,
+    /// One for each of [`limits()`]: which are touched at the beginning, and left at once.
+    pub touches: Vec<Arc>,
+    /// The jump that happens at the beginning: an index into [`Model::jumps`] and behind these into
+    /// [`crossings`](super::crossings()).
+    pub jump: Option<usize>,
+    /// What its controls are on an interval.
+    pub shape: ControlShape,
+    /// How often its intervals are halved.
+    pub halvings: u32,
+    /// Whether its intervals get shorter and shorter towards its ends.
+    pub is_graded: bool,
+}
+
+impl PhaseOfModes {
+    /// Whether it is the same as the phase before it, and nothing happens between them.
+    pub fn goes_on(&self, before: &Self) -> bool {
+        let is_same = self.modes == before.modes && self.arcs == before.arcs;
+        let is_touched = self.touches.iter().any(|it| *it != Arc::Free);
+        is_same
+            && self.contacts == before.contacts
+            && self.shape == before.shape
+            && self.halvings == before.halvings
+            && self.is_graded == before.is_graded
+            && !is_touched
+            && self.jump.is_none()
+    }
+
+    /// Whether something determines the controls at each node.
+    pub fn needs_polynomials(&self) -> bool {
+        self.modes.contains(&Mode::Held) || self.contacts.iter().any(|it| *it != Arc::Free)
+    }
+
+    /// Controls and limits are between their bounds.
+    pub fn release(&mut self) {
+        for arcs in [&mut self.arcs, &mut self.contacts, &mut self.touches] {
+            arcs.fill(Arc::Free);
+        }
+    }
+
+    /// Begins where a phase that is left out began, with what happens there.
+    pub fn begin_like(&mut self, gone: &Self) {
+        self.jump = self.jump.or(gone.jump);
+        let touched = gone.contacts.iter().zip(&gone.touches);
+        for ((own, contact), (arc, touch)) in
+            self.touches.iter_mut().zip(&self.contacts).zip(touched)
+        {
+            let of_gone = if *arc == Arc::Free { *touch } else { *arc };
+            if *own == Arc::Free && *contact == Arc::Free {
+                *own = of_gone;
+            }
+        }
+    }
 }
 
 /// The model in which exactly these phases follow each other; none has surfaces.
 ///
 /// # Errors
 ///
-/// What cannot be divided into phases of given modes yet: jumps, phases, sums over rows.
+/// What cannot be divided into phases of given modes yet: phases, sums over rows.
 pub fn with_modes(model: &Model, phases: &[PhaseOfModes]) -> Result<Model, Vec<Diagnostic>> {
     refuse(model)?;
-    numbers(model)?;
-    let mut whole = Model { smooth: false, ..model.clone() };
-    let held = |phase: &PhaseOfModes| phase.modes.contains(&Mode::Held);
-    if phases.iter().any(held) {
-        // Selectors that are chosen stand behind the controls.
-        for at in 0..model.surfaces.len() {
-            whole.symbols_mut().input(Symbol::Control(model.controls.len() + at));
-        }
-    }
+    let (jumps, mut whole) = (Jumps::new(model)?, prepared(model));
     let place = |j: usize| Place { name: format!("time of switch {j}"), ..Place::default() };
     let times = divide(&mut whole, (1..phases.len()).map(place).collect());
-    let division = Division::new(&whole, times);
-    Ok(Modes { division, phases }.into_model())
+    let events: Vec<Option<usize>> = phases[1..].iter().map(|it| it.jump).collect();
+    let between = MultiPhase::new(&jumps, Division::new(&whole, times), &events);
+    Ok(Modes { between, phases }.into_model())
 }
 
-/// For each of [`Model::switches`] whether its own selector acts on `psi'`: else no choice of it holds
-/// the surface.
-pub fn may_hold(model: &Model) -> Vec<bool> {
-    let mut graph = model.graph.clone();
-    let mut acts = |surface: usize| {
-        let rate = approach(model, &mut graph, model.surfaces[surface].psi);
-        let selector = model.input_of(Symbol::Selector(surface));
-        selector.is_some_and(|it| graph.inputs_of(&[rate]).contains(&it))
-    };
-    model.switches().iter().map(|switch| switch.surfaces.clone().all(&mut acts)).collect()
+/// The model with symbols of selectors that are chosen, which stand behind the controls.
+fn prepared(model: &Model) -> Model {
+    let mut whole = Model { smooth: false, ..between_jumps(model) };
+    for at in 0..whole.surfaces.len() {
+        whole.symbols_mut().input(Symbol::Control(model.controls.len() + at));
+        whole.symbols_mut().input(Symbol::ControlAtEnd(model.controls.len() + at));
+    }
+    whole
 }
 
 fn refuse(model: &Model) -> Result<(), Vec<Diagnostic>> {
-    let jump = model.jumps.first().map(|it| not_yet(it.place.span, "a switch beside a jump"));
     let phase = model.phases.first().map(|it| not_yet(it.place.span, "a switch within a phase"));
     let sum = model.sums.first().map(|it| not_yet(it.place.span, "a sum over rows with switches"));
-    let found = model.not_yet.first().cloned().or(jump).or(phase).or(sum);
+    let found = model.not_yet.first().cloned().or(phase).or(sum);
     found.map_or(Ok(()), |it| Err(vec![it]))
 }
 
 struct Modes<'m> {
-    division: Division<'m>,
+    /// What the jumps make of the phases.
+    between: MultiPhase<'m>,
     phases: &'m [PhaseOfModes],
 }
 
 impl Modes<'_> {
     fn into_model(mut self) -> Model {
-        let model = self.division.model;
-        let shares = Shares::new(model, &mut self.division.graph);
-        let last = self.division.last();
+        let model = self.between.division.model;
+        let shares = Shares::new(model, &mut self.between.division.graph);
+        let (last, boundary) = (self.between.division.last(), self.boundary());
         if last == 0 {
-            let (boundary, objective) = (model.boundary.clone(), model.objective.clone());
+            let objective = model.objective.clone();
             return Model { boundary, objective, ..self.phase(0, &shares) };
         }
         let phases: Vec<Phase> = (0..=last)
@@ -121,8 +177,8 @@ impl Modes<'_> {
             })
             .collect();
         let mut links: Vec<_> = (0..last).map(|j| self.link(j)).collect();
-        links.extend(self.division.link_of_whole(&shares));
-        let Division { graph, symbols, .. } = self.division;
+        links.extend(self.between.division.link_of_whole(&shares, &boundary));
+        let Division { graph, symbols, .. } = self.between.division;
         let (surfaces, balls) = (Vec::new(), Vec::new());
         Model { graph, symbols, phases, links, surfaces, balls, ..model.clone() }
     }

@@ -37,6 +37,8 @@ impl Context {
     pub const NUMBER: Context = Context::new("a constant", Reads::PARAM);
     pub const WIDTH: Context = Context::new("a width", Reads::PARAM);
     pub const BOUND: Context = Context { is_bound: true, ..Context::new("a bound", Reads::PARAM) };
+    pub const SIGNAL_BOUND: Context =
+        Context { is_bound: true, ..Context::new("a bound", Reads::PARAM.or(Reads::FREE)) };
     pub const SETTING: Context = Context::new("a setting", Reads::PARAM);
     pub const TIME: Context = Context::new("the bounds of time", Reads::PARAM.or(Reads::FREE));
     pub const START: Context = Context::new("a start value", Reads::PARAM.or(Reads::FREE));
@@ -51,6 +53,9 @@ impl Context {
         Context::new("a value at the start or the end", AT_AN_END.or(ANY_PHASE));
     pub const BOUNDARY: Context =
         Context::new("a start or end condition", AT_AN_END.or(Reads::WHOLE).or(Reads::PHASE));
+    pub const TIME_OF_CONDITION: Context =
+        Context::new("the time of a condition", Reads::PARAM.or(Reads::FREE));
+    pub const AT_A_TIME: Context = Context::new("a condition at a time", AT_AN_END);
     pub const LINK: Context = Context::new("a link", AT_AN_END.or(Reads::CONTROL).or(Reads::WHOLE));
     pub const OBJECTIVE: Context = Context::new("the objective", WHOLE);
     pub const SENSITIVITY: Context = Context::new("a sensitivity", WHOLE);
@@ -58,7 +63,10 @@ impl Context {
     pub const TABLE: Context = Context::new("a table", Reads::ROW);
     pub const ROW_TIME: Context = Context::new("the time of a row", Reads::ROW.or(Reads::PARAM));
     pub const AT_A_ROW: Context =
-        Context::new("a value at the time of a row", AT_AN_END.or(Reads::CONTROL));
+        Context::new("a value at the time of a row", AT_AN_END.or(Reads::CONTROL).or(ANY_PHASE));
+    pub const FIT: Context = Context::new("a fit", Reads::ROW);
+    pub const DEVIATION: Context =
+        Context::new("a standard deviation", Reads::ROW.or(Reads::PARAM));
     pub const GUESS: Context = Context {
         is_guess: true,
         ..Context::new("a guess", Reads::TIME.or(Reads::PARAM).or(Reads::FREE))
@@ -88,7 +96,7 @@ impl Elaborator<'_> {
 /// Why a kind of symbol has no meaning in a context, and what could be meant.
 fn explain(what: &str, beyond: Reads, context: Context) -> (&'static str, String) {
     let whole = context.allowed.has(Reads::WHOLE);
-    let in_a_sum = context.allowed.has(Reads::ROW) && context.allowed.has(Reads::PARAM);
+    let in_a_sum = context.allowed.has(Reads::ROW) && whole;
     if beyond.has(Reads::FOREIGN) {
         (
             "is of another phase",
@@ -119,6 +127,13 @@ fn explain(what: &str, beyond: Reads, context: Context) -> (&'static str, String
             "one number for the whole run",
             "it may stand in the objective, in `start` and `end` conditions and in `expect`".into(),
         )
+    } else if context.name == Context::AT_A_TIME.name && beyond.has(Reads::CONTROL) {
+        (
+            "a control, which may jump at that time",
+            format!("bound `{what}` with `path`, or make it a state whose derivative is a control"),
+        )
+    } else if context.name == Context::TIME_OF_CONDITION.name {
+        ("varies over time", "the time is made of numbers, `param` and `free` names".into())
     } else if context.is_guess {
         (
             "has no guess above this line",

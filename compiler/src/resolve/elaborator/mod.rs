@@ -148,6 +148,8 @@ pub(crate) struct Elaborator<'a> {
     pub at_end: Vec<bool>,
     /// Values and their uses.
     pub usages: Vec<Usage<'a>>,
+    /// The first `fit`, and the sums of all.
+    pub fits: Option<(Span, Vec<ExprId>)>,
     /// First and last time.
     pub interval: [ExprId; 2],
     /// The phases, resolved before what stands outside of them.
@@ -204,6 +206,7 @@ impl<'a> Elaborator<'a> {
             model: Model::empty(),
             at_end: Vec::new(),
             usages: Vec::new(),
+            fits: None,
             interval,
             phases: Vec::new(),
             named_in_phases: Vec::new(),

@@ -12,7 +12,7 @@ use fdcc_grammar::ast::{Argument, Expr, ExprKind, Ident, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Span};
 
 /// What the trajectory has at a time.
-const AT_A_TIME: Reads = Reads::TIME.or(Reads::STATE).or(Reads::CONTROL);
+pub(crate) const AT_A_TIME: Reads = Reads::TIME.or(Reads::STATE).or(Reads::CONTROL);
 
 impl<'a> Elaborator<'a> {
     /// `obs.x`, or `k.x` for a row of it.
@@ -25,7 +25,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The table of a data set, among those of the model; none if it was not read.
-    fn table_of(&mut self, at: usize) -> Option<usize> {
+    pub fn table_of(&mut self, at: usize) -> Option<usize> {
         let ItemKind::Data { file_span, .. } = self.scope.declarations[at].item.kind else {
             return None;
         };
@@ -76,7 +76,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn data_set(&mut self, data: &Ident) -> Option<usize> {
+    pub fn data_set(&mut self, data: &Ident) -> Option<usize> {
         let Some(at) = self.scope.find(&data.name) else {
             let declaration = format!("data {} = csv(\"FILE\") columns t, x", data.name);
             let found = self.scope.unknown(&data.name, data.span, &[], &declaration);
@@ -95,7 +95,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Whether all columns in some expressions belong to one data set.
-    fn is_of_table(&mut self, parts: &[Option<ExprId>], table: usize, span: Span) -> bool {
+    pub fn is_of_table(&mut self, parts: &[Option<ExprId>], table: usize, span: Span) -> bool {
         let parts: Vec<ExprId> = parts.iter().flatten().copied().collect();
         let other = self.graph.inputs_of(&parts).into_iter().find_map(|input| {
             match self.symbols[input as usize] {
@@ -140,7 +140,7 @@ impl<'a> Elaborator<'a> {
     }
 
     fn measured(&mut self, sum: Measured<'a>, traits: Traits, whole: &'a Expr) -> Value {
-        let beyond = traits.reads.beyond(Reads::PARAM.or(Reads::FREE));
+        let beyond = traits.reads.beyond(Reads::PARAM.or(Reads::FREE).or(Reads::PHASE));
         if !self.single_valued(&traits.sets, sum.term.span, "the term of a sum") {
             return Value::default();
         }
@@ -153,13 +153,9 @@ impl<'a> Elaborator<'a> {
             ));
         }
         let Measured { part: term, table, time, .. } = sum;
-        let known = self.model.sums.iter().position(|it| (it.term, it.time) == (term, time));
-        let at = known.unwrap_or_else(|| {
-            let place = Place { name: text::expr(whole), span: whole.span };
-            self.model.sums.push(Sum { place, table, time, term });
-            self.model.sums.len() - 1
-        });
-        let part = self.known_symbol(Symbol::Sum(at));
+        let place = Place { name: text::expr(whole), span: whole.span };
+        let sum = Sum { place, table, time, term, is_fit: false };
+        let Some(part) = self.sum_over_rows(sum) else { return Value::default() };
         let traits = Traits { reads: Reads::WHOLE, ..traits };
         self.admit("sum", Value::scalar(part, traits), whole.span)
     }

@@ -2,7 +2,7 @@
 
 mod blend;
 mod calls;
-mod data;
+pub(crate) mod data;
 mod direction;
 mod forms;
 pub(crate) mod knots;

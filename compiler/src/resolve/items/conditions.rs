@@ -5,7 +5,7 @@
 //! no kink.
 
 use crate::expressions::graph::ExprId;
-use crate::model::{Constraint, Place, Range};
+use crate::model::{AtTime, Constraint, Place, Range};
 use crate::resolve::elaborator::context::Context;
 use crate::resolve::elaborator::value::{Traits, Value};
 use crate::resolve::elaborator::{Elaborator, Role};
@@ -27,12 +27,25 @@ impl<'a> Elaborator<'a> {
 
     /// A condition at the start or the end.
     pub fn boundary(&mut self, condition: &'a Condition, at_end: bool) {
-        let word = if at_end { "end" } else { "start" };
+        let (word, role) = if at_end { ("end", "the end") } else { ("start", "the start") };
         let place =
             Place { name: format!("{word} {}", text::condition(condition)), span: condition.span };
-        let rows = self.condition(condition, Role::Boundary(word), Context::BOUNDARY, place);
+        let rows = self.condition(condition, Role::Boundary(role), Context::BOUNDARY, place);
         self.at_end.extend(rows.iter().map(|_| at_end));
         self.model.boundary.extend(rows);
+    }
+
+    /// A condition at a time between the ends. In a text with phases there is none.
+    pub fn at_time(&mut self, time: &'a Expr, condition: &'a Condition) {
+        if !self.phases.is_empty() {
+            return;
+        }
+        let known =
+            self.evaluate_number("the time of a condition", Context::TIME_OF_CONDITION, time);
+        let place = Place { name: text::at_time(time, condition), span: condition.span };
+        let rows = self.condition(condition, Role::Boundary("a time"), Context::AT_A_TIME, place);
+        let place = Place { name: text::expr(time), span: time.span };
+        self.model.at_times.extend(known.map(|time| AtTime { place, time, rows }));
     }
 
     /// Moves all boundary rows to their ends, in one walk for each end.

@@ -234,7 +234,7 @@ impl<'a> Elaborator<'a> {
     ) {
         let Some(first) = self.index_of(at) else { return };
         if let Some(bounds) = bounds {
-            let ranges = self.ranges(Context::BOUND, bounds, size);
+            let ranges = self.ranges(Context::SIGNAL_BOUND, bounds, size);
             (0..size).for_each(|part| self.model.states[first + part].range = ranges[part]);
         }
         match start {
@@ -264,7 +264,7 @@ impl<'a> Elaborator<'a> {
     ) {
         let Some(first) = self.index_of(at) else { return };
         if let Some(bounds) = bounds {
-            let ranges = self.ranges(Context::BOUND, bounds, size);
+            let ranges = self.ranges(Context::SIGNAL_BOUND, bounds, size);
             (0..size).for_each(|part| self.model.controls[first + part].range = ranges[part]);
         }
         if let Some(guess) = guess {

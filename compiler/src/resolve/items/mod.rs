@@ -3,6 +3,7 @@
 
 pub(crate) mod conditions;
 mod declare;
+mod fit;
 mod guess;
 mod jumps;
 mod settings;
@@ -23,6 +24,7 @@ impl<'a> Elaborator<'a> {
     /// Resolves what is no declaration; declarations are known.
     pub fn resolve_items(&mut self, items: &[&'a Item]) {
         items.iter().for_each(|item| self.item(item));
+        self.add_fits();
         self.move_boundary();
         self.check_curves();
     }
@@ -34,10 +36,12 @@ impl<'a> Elaborator<'a> {
             }
             ItemKind::Start { condition } => self.boundary(condition, false),
             ItemKind::End { condition } => self.boundary(condition, true),
+            ItemKind::At { time, condition } => self.at_time(time, condition),
             ItemKind::Path { name, condition } => self.path(name.as_ref(), condition),
             ItemKind::Objective { sense, keyword, value } => {
                 self.objective(*sense, *keyword, value)
             }
+            ItemKind::Fit { keyword, data, signals } => self.fit(*keyword, data, signals),
             ItemKind::Guess { bindings } => self.guess(bindings),
             ItemKind::Method { settings } => self.settings(settings),
             ItemKind::Sweep { lists } => self.sweep(lists),

@@ -4,6 +4,7 @@
 mod distribute;
 mod integrals;
 mod links;
+mod sums;
 
 pub(crate) use distribute::distribute;
 pub(crate) use links::in_order;

@@ -6,7 +6,8 @@ use crate::settings::is_key;
 use crate::syntax::{scope, walk};
 use fdcc_grammar::Span;
 use fdcc_grammar::ast::{
-    self, Argument, Assignment, Expr, ExprKind, Ident, Item, ItemKind, Setting, SettingValue, Unit,
+    self, Argument, Assignment, Expr, ExprKind, Fitted, Ident, Item, ItemKind, Setting,
+    SettingValue, Unit,
 };
 use std::collections::HashMap;
 
@@ -96,6 +97,7 @@ impl Walker<'_> {
             ItemKind::Dynamics { equations } => {
                 equations.iter().for_each(|it| self.name(&it.state, Role::Write))
             }
+            ItemKind::Fit { data, signals, .. } => self.fitted(data, signals),
             ItemKind::Metric { weights } => {
                 weights.iter().for_each(|it| self.name(&it.0, Role::Read))
             }
@@ -111,6 +113,24 @@ impl Walker<'_> {
                 false => self.name(&it.name, Role::Write),
             }),
             _ => {}
+        }
+    }
+
+    /// A column that is not named has the name of its signal: it stands behind that, without a
+    /// letter.
+    fn fitted(&mut self, data: &Ident, signals: &[Fitted]) {
+        self.name(data, Role::Read);
+        let data = self.find(&data.name, self.phase);
+        for it in signals {
+            let end = it.signal.span.end;
+            let (name, span) = match (&it.column, &it.signal.kind) {
+                (Some(column), _) => (&column.name, column.span),
+                (None, ExprKind::Name(name)) => (name, Span { start: end, end }),
+                (None, ExprKind::Part(_, part)) => (&part.name, Span { start: end, end }),
+                _ => continue,
+            };
+            let found = data.and_then(|data| self.part_of(Some(data), name));
+            self.add(span, found.map_or(Meaning::Unknown, Meaning::Declared), Role::Read);
         }
     }
 

@@ -6,8 +6,8 @@ use super::{Inference, Operand, named, side};
 use crate::syntax::scope::{Declaration, Scope, parts};
 use fdcc_grammar::Span;
 use fdcc_grammar::ast::{
-    self, Assignment, Check, Condition, Equation, Expr, ExprKind, Ident, Item, ItemKind, Setting,
-    SettingValue, Swept, Unit,
+    self, Assignment, Check, Condition, Equation, Expr, ExprKind, Fitted, Ident, Item, ItemKind,
+    Setting, SettingValue, Swept, Unit,
 };
 
 impl<'a> Inference<'a> {
@@ -46,9 +46,16 @@ impl<'a> Inference<'a> {
             | ItemKind::Path { condition, .. } => {
                 self.condition(condition);
             }
+            ItemKind::At { time, condition } => {
+                self.at(time);
+                self.condition(condition);
+            }
             ItemKind::Objective { keyword, value, .. } => {
                 let value = self.evaluate(value);
                 self.values.insert(*keyword, value);
+            }
+            ItemKind::Fit { data, signals, .. } => {
+                signals.iter().for_each(|it| self.fitted(data, it))
             }
             ItemKind::Guess { bindings } => {
                 bindings.iter().for_each(|it| self.guess(&it.name, &it.value))
@@ -101,6 +108,34 @@ impl<'a> Inference<'a> {
             self.compare(Reason::Comparison, &left, &right);
             left = right;
         }
+    }
+
+    /// The time of a condition measures what time does.
+    fn at(&mut self, time: &'a Expr) {
+        let is_time = |it: &&Declaration<'a>| matches!(it.item.kind, ItemKind::Time { .. });
+        let Some(declared) = self.scope.declarations.iter().find(is_time).copied() else { return };
+        let subject = (self.subject(declared).0, named(declared.name.span));
+        self.value_for("the time of a condition", declared.name, &subject, time);
+    }
+
+    /// A signal, its column and the standard deviation measure the same.
+    fn fitted(&mut self, data: &'a Ident, fitted: &'a Fitted) {
+        let signal = self.operand(&fitted.signal);
+        let Some(ItemKind::Data { columns, .. }) = self.declared(data).map(|it| &it.item.kind)
+        else {
+            return;
+        };
+        let name = match (&fitted.column, &fitted.signal.kind) {
+            (Some(column), _) => column.name.as_str(),
+            (None, ExprKind::Name(name)) => name,
+            (None, ExprKind::Part(_, part)) => &part.name,
+            _ => return,
+        };
+        let Some((column, _)) = columns.iter().find(|it| it.0.name == name) else { return };
+        let measured = self.values.get(&column.span).cloned().unwrap_or_default();
+        let measured = (measured, named(column.span));
+        self.compare(Reason::Given("the signal", column), &measured, &signal);
+        self.value_for("the standard deviation", column, &measured, &fitted.deviation);
     }
 
     fn check(&mut self, check: &'a Check) {
@@ -289,6 +324,7 @@ fn authority(kind: &ItemKind) -> u8 {
         ItemKind::Dynamics { .. } => 0,
         ItemKind::Start { .. }
         | ItemKind::End { .. }
+        | ItemKind::At { .. }
         | ItemKind::Path { .. }
         | ItemKind::Jump { .. } => 1,
         ItemKind::Method { .. } | ItemKind::Sweep { .. } => 4,

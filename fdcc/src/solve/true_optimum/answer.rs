@@ -4,14 +4,27 @@ use super::Located;
 use fdcc_compiler::Mode;
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::solution::modes::{self, Span};
-use fdcc_runtime::solution::phases::located;
+use fdcc_runtime::solution::phases::{Jump, located};
 use fdcc_runtime::solve::Outcome;
+
+/// One trajectory, and where it jumps.
+#[derive(Clone)]
+pub(crate) struct Whole {
+    pub outcome: Outcome,
+    /// Whether its modes are those of the true system: then none is too short to be meant.
+    pub is_exact: bool,
+    /// Each with its number, and the state on both sides.
+    pub jumps: Vec<(usize, Jump)>,
+}
 
 impl Located {
     /// All phases one after the other; `between` is the smoothed problem.
-    pub fn whole(&self, between: &Problem) -> Outcome {
+    pub fn whole(&self, between: &Problem) -> Whole {
         let modes = (0..between.surfaces.len()).map(|surface| self.spans(surface)).collect();
-        located(between, &self.chain, &self.outcome, modes)
+        let (outcome, ends) = located(between, &self.chain, &self.outcome, modes);
+        let begins = self.structure.phases[1..].iter().zip(ends);
+        let jumps = begins.filter_map(|(phase, end)| Some((phase.jump?, end))).collect();
+        Whole { outcome, is_exact: true, jumps }
     }
 
     /// What a surface does from when to when.

@@ -94,11 +94,29 @@ impl Certificate {
         !self.checks.is_empty() && self.checks.iter().all(Check::passes)
     }
 
-    /// Where no structure could be solved, or the search was stopped from outside.
-    pub(crate) fn nothing_located(is_stopped: bool) -> Self {
-        let name = if is_stopped { "finished" } else { "located" };
+    /// Whether nothing is wrong but that the replay differs from what was planned.
+    pub(crate) fn is_inaccurate(&self) -> bool {
+        let mut failing = self.checks.iter().filter(|check| !check.passes()).peekable();
+        failing.peek().is_some()
+            && failing
+                .all(|it| matches!(it.name, "replayed" | "objective" | "conditions" | "modes"))
+    }
+
+    /// Where no structure could be solved (`located`), the search was stopped from outside
+    /// (`finished`), or there are sums over measured data (`without data`).
+    pub(crate) fn nothing_located(name: &'static str) -> Self {
         let check = Check { name, figure: f64::INFINITY, limit: 0.0 };
         Certificate { checks: vec![check], ..Certificate::default() }
+    }
+
+    /// The one of two with fewer checks that fail.
+    pub(crate) fn least(self, other: Self) -> Self {
+        let missing = |it: &Self| match it.checks.len() {
+            // Nothing was located.
+            1 => usize::MAX,
+            _ => it.checks.iter().filter(|check| !check.passes()).count(),
+        };
+        if missing(&other) < missing(&self) { other } else { self }
     }
 
     /// A figure by its name.

@@ -5,11 +5,13 @@ use fdcc_compiler::Model;
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::problem::Chain;
 use fdcc_runtime::solution::Trajectory;
+use fdcc_runtime::solution::phases::Jump;
 use fdcc_runtime::solve::warm_start::{Earlier, from_earlier};
 
 /// Signals of a whole trajectory.
 pub(super) struct Signals<'t> {
     pub trajectory: &'t Trajectory,
+    pub jumps: &'t [(usize, Jump)],
     /// The unknowns of the model.
     pub unknowns: Vec<f64>,
 }
@@ -34,9 +36,16 @@ impl Signals<'_> {
         let inside = own.time.iter().copied().filter(|time| *time > ends[0] && *time < ends[1]);
         let times: Vec<f64> = [ends[0]].into_iter().chain(inside).chain([ends[1]]).collect();
         let shown = model.states.len();
+        let jump = self.jumps.iter().find(|it| it.1.time == ends[1]);
         let state = |i: usize| {
             let column = own.states.get(i).filter(|_| i < shown)?;
-            Some(times.iter().map(|time| linear(&own.time, column, *time)).collect())
+            let mut values: Vec<f64> =
+                times.iter().map(|time| linear(&own.time, column, *time)).collect();
+            // At the time of a jump a trajectory has the state behind it.
+            if let (Some((_, jump)), Some(last)) = (jump, values.last_mut()) {
+                *last = jump.before[i];
+            }
+            Some(values)
         };
         let control = |i: usize| {
             let column = own.controls.get(i).filter(|_| i < model.controls.len())?;
@@ -67,6 +76,8 @@ fn interval(times: &[f64], time: f64) -> usize {
 
 fn linear(times: &[f64], column: &[f64], time: f64) -> f64 {
     let k = interval(times, time);
-    let part = (time - times[k]) / (times[k + 1] - times[k]);
+    let length = times[k + 1] - times[k];
+    // Of a phase without a duration both ends are the same.
+    let part = if length > 0.0 { (time - times[k]) / length } else { 0.0 };
     column[k] + part * (column[k + 1] - column[k])
 }

@@ -1,18 +1,24 @@
 //! Which modes and arcs follow each other, read from a trajectory.
 
+use super::Whole;
+use super::contacts::{Contacts, InPhase};
+use super::polynomials::{beyond_bounds, is_rough, polynomials};
+use super::tracks::Track;
+use super::tuning::repair::NOTHING;
+use super::tuning::structure::{
+    BEYOND, FEWEST_INTERVALS, HALVINGS, INACCURATE, MOST_HALVINGS, SHORT, SHORTEST, TRIED,
+};
 use fdcc_compiler::{Arc, Mode, PhaseOfModes};
-use fdcc_runtime::problem::{Bounds, Problem};
-use fdcc_runtime::solution::modes::{self, Span};
+use fdcc_runtime::problem::{Bounds, ControlShape, Problem, Variable};
 use fdcc_runtime::solve::Outcome;
 
-/// A shorter phase, for the whole time, is dropped.
-const SHORTEST: f64 = 0.004;
-/// So is one of fewer intervals of the grid.
-const FEWEST_INTERVALS: f64 = 1.6;
-/// A phase that is shorter than this, for the whole time, may be a mistake.
-const SHORT: f64 = 0.15;
-/// A control is at a bound that is nearer than this, for the distance of its bounds.
-const AT_BOUND: f64 = 1e-3;
+/// Which of the arcs that controls have in a phase are taken over.
+#[derive(Clone, Copy)]
+pub(crate) enum NewArcs {
+    All,
+    /// The longest of each control: short ones may be noise.
+    Longest,
+}
 
 /// Phases of given modes and the times at which they begin; and the last time.
 #[derive(Clone, Debug)]
@@ -21,21 +27,18 @@ pub(crate) struct Structure {
     pub times: Vec<f64>,
 }
 
-/// What one surface or one control does over time.
-struct Track<T> {
-    /// Each with the time at which it begins.
-    pieces: Vec<(f64, T)>,
-}
-
 impl Structure {
-    /// That of a smoothed solution.
-    pub fn of(problem: &Problem, outcome: &Outcome) -> Self {
+    /// That of a trajectory.
+    pub fn of(problem: &Problem, whole: &Whole, limits: usize) -> Self {
+        let outcome = &whole.outcome;
+        let jumps: Vec<(f64, usize)> = whole.jumps.iter().map(|it| (it.1.time, it.0)).collect();
         let time = &outcome.trajectory.time;
         let last = time[time.len() - 1];
         let duration = last - time[0];
         let step = duration / (time.len() - 1) as f64;
         let shortest = (SHORTEST * duration).max(FEWEST_INTERVALS * step);
-        let modes = outcome.modes.iter().map(|spans| track_of_modes(spans, shortest));
+        let least = if whole.is_exact { NOTHING * duration } else { shortest };
+        let modes = outcome.modes.iter().map(|spans| Track::of_modes(spans, least));
         let modes: Vec<Track<Mode>> = modes.collect();
         let controls = problem.controls.iter().zip(&outcome.trajectory.controls);
         let arcs = controls
@@ -45,22 +48,55 @@ impl Structure {
         begins.extend(modes.iter().flat_map(Track::switches));
         begins.extend(arcs.iter().flat_map(Track::switches));
         begins.sort_by(f64::total_cmp);
-        let mut times: Vec<f64> = Vec::new();
+        let mut times: Vec<f64> = jumps.iter().map(|it| it.0).collect();
         for begin in begins {
-            if times.last().is_none_or(|it| begin - it > 0.5 * shortest) {
+            if times.iter().all(|it| (begin - it).abs() > 0.5 * least) {
                 times.push(begin);
             }
         }
         times.push(last);
+        times.sort_by(f64::total_cmp);
+        let is_coarse = problem.has_objective && !whole.is_exact;
         let phase = |pair: &[f64]| {
             let middle = 0.5 * (pair[0] + pair[1]);
             PhaseOfModes {
+                jump: jumps.iter().find(|it| it.0 == pair[0]).map(|it| it.1),
                 modes: modes.iter().map(|it| it.at(middle)).collect(),
                 arcs: arcs.iter().map(|it| it.at(middle)).collect(),
+                contacts: vec![Arc::Free; limits],
+                touches: vec![Arc::Free; limits],
+                shape: ControlShape::Polynomial,
+                halvings: if is_coarse { 0 } else { HALVINGS },
+                is_graded: false,
             }
         };
         let phases = times.windows(2).map(phase).collect();
         Structure { phases, times }.merged()
+    }
+
+    /// How many limits are reached and surfaces held.
+    pub fn conditions(&self) -> usize {
+        let of = |phase: &PhaseOfModes| {
+            let limits = phase.contacts.iter().chain(&phase.touches);
+            let held = phase.modes.iter().filter(|it| **it == Mode::Held);
+            limits.filter(|it| **it != Arc::Free).count() + held.count()
+        };
+        self.phases.iter().map(of).sum()
+    }
+
+    /// How much finer than at first its intervals are.
+    pub fn fineness(&self) -> u32 {
+        self.phases.iter().map(|it| it.halvings + u32::from(it.is_graded)).sum()
+    }
+
+    /// Whether a phase is a hold between two phases on the same side: where it shrinks to nothing
+    /// the surface is touched.
+    pub fn is_touch(&self, j: usize) -> bool {
+        let beside = j.checked_sub(1).map(|it| &self.phases[it]).zip(self.phases.get(j + 1));
+        beside.is_some_and(|(before, after)| {
+            let modes = self.phases[j].modes.iter().zip(&before.modes).zip(&after.modes);
+            modes.into_iter().any(|((own, a), b)| *own == Mode::Held && a == b && *a != Mode::Held)
+        })
     }
 
     /// First and last time.
@@ -68,40 +104,116 @@ impl Structure {
         [self.times[0], self.times[self.times.len() - 1]]
     }
 
-    /// With new arcs of controls at bounds, as a trajectory that was found for it has them.
-    pub fn with_arcs(&self, between: &Problem, located: &[Outcome]) -> Self {
+    /// With new touch points and arcs of limits, and arcs of the controls of a problem, as a
+    /// trajectory that was found for it has them.
+    pub fn with_arcs(
+        &self,
+        between: Option<(&Problem, NewArcs)>,
+        contacts: &Contacts,
+        located: &[Outcome],
+    ) -> Self {
         let mut other = Structure { phases: Vec::new(), times: vec![self.times[0]] };
-        for (phase, outcome) in self.phases.iter().zip(located) {
-            let time = &outcome.trajectory.time;
-            let last = time[time.len() - 1];
-            let step = (last - time[0]) / (time.len() - 1) as f64;
-            let tracks: Vec<Track<Arc>> =
-                (between.controls.iter().zip(&outcome.trajectory.controls))
-                    .map(|(it, values)| Track::of_arcs(time, values, it.bounds, 1.5 * step))
-                    .collect();
-            let mut begins: Vec<f64> = tracks.iter().flat_map(Track::switches).collect();
-            begins.sort_by(f64::total_cmp);
-            begins.dedup_by(|b, a| *b - *a < 0.5 * step);
-            let ends = begins.iter().copied().chain([last]);
-            for (begin, end) in [time[0]].into_iter().chain(begins.iter().copied()).zip(ends) {
-                let middle = 0.5 * (begin + end);
-                let own = |(arc, track): (&Arc, &Track<Arc>)| match arc {
-                    Arc::Free => track.at(middle),
-                    arc => *arc,
-                };
-                let arcs = phase.arcs.iter().zip(&tracks).map(own).collect();
-                other.phases.push(PhaseOfModes { arcs, ..phase.clone() });
-                other.times.push(end);
+        let mut touched_before = Vec::new();
+        for ((j, phase), outcome) in self.phases.iter().enumerate().zip(located) {
+            let arcs = between.map_or(Vec::new(), |it| arcs_of(it.0, outcome, it.1));
+            let mut phase = phase.clone();
+            if between.is_some_and(|it| is_rough(it.0, outcome)) && !phase.needs_polynomials() {
+                // What is steep at an end is smooth on graded grids; a singular arc is rough on all.
+                match (phase.is_graded, phase.halvings) {
+                    (false, _) => phase.is_graded = true,
+                    (true, 0) => phase.halvings = 1,
+                    (true, _) => phase.shape = ControlShape::Constant,
+                }
             }
+            let found = contacts.of_phase(j, &phase);
+            for touch in found.at_ends[0].iter().chain(&touched_before) {
+                if phase.contacts[touch.limit] == Arc::Free {
+                    phase.touches[touch.limit] = touch.arc;
+                }
+            }
+            other.append(&phase, &outcome.trajectory.time, &arcs, &found);
+            [_, touched_before] = found.at_ends;
         }
         other.merged()
+    }
+
+    /// Appends a phase, divided where its controls and limits change what they do.
+    fn append(
+        &mut self,
+        phase: &PhaseOfModes,
+        time: &[f64],
+        arcs: &[Track<Arc>],
+        contacts: &InPhase,
+    ) {
+        let last = time[time.len() - 1];
+        let step = least_step(time);
+        let touched = contacts.touches.iter().map(|it| it.time);
+        let tracks = arcs.iter().chain(&contacts.arcs).flat_map(Track::switches);
+        let held = contacts.modes.iter().flat_map(Track::switches);
+        let mut begins: Vec<f64> = tracks.chain(held).chain(touched).collect();
+        begins.sort_by(f64::total_cmp);
+        begins.dedup_by(|b, a| *b - *a < 0.25 * step);
+        let ends = begins.iter().copied().chain([last]);
+        for (begin, end) in [time[0]].into_iter().chain(begins.iter().copied()).zip(ends) {
+            let middle = 0.5 * (begin + end);
+            let mut own = phase.clone();
+            for (arc, track) in own.arcs.iter_mut().zip(arcs).filter(|it| *it.0 == Arc::Free) {
+                *arc = track.at(middle);
+            }
+            own.contacts = contacts.arcs.iter().map(|it| it.at(middle)).collect();
+            if own.contacts != phase.contacts {
+                own.arcs.fill(Arc::Free);
+            }
+            own.modes = contacts.modes.iter().map(|it| it.at(middle)).collect();
+            if own.modes != phase.modes {
+                own.release();
+            }
+            if own.needs_polynomials() {
+                own.shape = ControlShape::Polynomial;
+            }
+            if !begins.is_empty() {
+                // What was steep at an end has a phase of its own now.
+                own.is_graded = false;
+            }
+            if begin > time[0] {
+                own.touches.fill(Arc::Free);
+                own.jump = None;
+            }
+            for touch in contacts.touches.iter().filter(|it| (it.time - begin).abs() < 0.5 * step) {
+                own.touches[touch.limit] = touch.arc;
+            }
+            self.phases.push(own);
+            self.times.push(end);
+        }
+    }
+
+    /// With shorter intervals where the Hamiltonian varies though time itself does not matter, or a
+    /// control is beyond its bounds between nodes: there the trajectory is not accurate.
+    pub fn finer(&self, between: &Problem, located: &[Outcome]) -> Self {
+        let mut other = self.clone();
+        let [first, last] = self.ends();
+        for (phase, outcome) in other.phases.iter_mut().zip(located) {
+            let is_rough = phase.shape == ControlShape::Polynomial
+                && (variation(outcome) > INACCURATE * (last - first)
+                    || beyond_bounds(&between.controls, &outcome.trajectory) > BEYOND);
+            phase.halvings += u32::from(is_rough && phase.halvings < MOST_HALVINGS);
+        }
+        other
+    }
+
+    /// With all intervals halved; nothing where they were halved often enough.
+    pub fn halved(&self) -> Option<Self> {
+        let mut other = self.clone();
+        other.phases.iter_mut().for_each(|it| it.halvings += 1);
+        let is_too_fine = other.phases.iter().any(|it| it.halvings > MOST_HALVINGS);
+        (!is_too_fine).then_some(other)
     }
 
     /// Neighbours that are alike are one phase.
     pub fn merged(mut self) -> Self {
         let mut j = 1;
         while j < self.phases.len() {
-            if self.phases[j] == self.phases[j - 1] {
+            if self.phases[j].goes_on(&self.phases[j - 1]) {
                 self.phases.remove(j);
                 self.times.remove(j);
             } else {
@@ -122,10 +234,52 @@ impl Structure {
             return Some(other.merged());
         }
         let durations = self.times.windows(2).map(|pair| pair[1] - pair[0]).enumerate();
+        let durations = durations.filter(|it| self.may_leave_out(it.0));
         let shortest = durations.min_by(|a, b| a.1.total_cmp(&b.1))?;
         let [first, last] = self.ends();
         let is_short = shortest.1 < SHORT * (last - first);
-        (self.phases.len() > 1 && is_short).then(|| self.without(shortest.0))
+        is_short.then(|| self.without(shortest.0))
+    }
+
+    /// With a limit released, or touched only where control acts on its second derivative at first.
+    pub fn without_contact(&self, j: usize, limit: usize) -> Self {
+        let mut other = self.clone();
+        let own = &mut other.phases[j];
+        match own.contacts[limit] {
+            Arc::Free => own.touches[limit] = Arc::Free,
+            _ => own.contacts[limit] = Arc::Free,
+        }
+        other.merged()
+    }
+
+    /// With a short phase before another, or behind the last.
+    pub fn with_phase(&self, before: usize, phase: PhaseOfModes) -> Self {
+        let mut other = self.clone();
+        let [first, last] = self.ends();
+        let count = self.phases.len();
+        let beside = [before.checked_sub(1), Some(before).filter(|it| *it < count)];
+        let lengths = beside.into_iter().flatten().map(|j| self.times[j + 1] - self.times[j]);
+        let shortest = lengths.fold(f64::INFINITY, f64::min);
+        let length = (TRIED * (last - first)).min(0.2 * shortest);
+        let at = self.times[before];
+        let ends = match before {
+            0 => [at, at + length],
+            _ if before == count => [at - length, at],
+            _ => [at - 0.5 * length, at + 0.5 * length],
+        };
+        other.phases.insert(before, phase);
+        other.times.splice(before..=before, ends);
+        other
+    }
+
+    /// Whether a phase can be left out: the jumps before and behind it are not one upon the other,
+    /// and none is the first or the last thing to happen.
+    pub fn may_leave_out(&self, j: usize) -> bool {
+        let (own, next) = (self.phases[j].jump, self.phases.get(j + 1).map(|it| it.jump));
+        match next {
+            Some(next) => next.is_none() || j > 0 && own.is_none(),
+            None => j > 0 && own.is_none(),
+        }
     }
 
     /// Without a phase, whose time its neighbours share.
@@ -136,7 +290,10 @@ impl Structure {
     /// The same; neighbours that are alike stay two.
     pub fn without_phase(self, j: usize) -> Self {
         let mut other = self.clone();
-        other.phases.remove(j);
+        let gone = other.phases.remove(j);
+        if let Some(next) = other.phases.get_mut(j).filter(|_| j > 0) {
+            next.begin_like(&gone);
+        }
         let middle = 0.5 * (other.times[j] + other.times[j + 1]);
         other.times.remove(j);
         if j > 0 && j < other.phases.len() {
@@ -151,92 +308,54 @@ impl Structure {
     }
 }
 
-/// The distance of the bounds of a control, or their size where one is infinite.
-pub(crate) fn width(bounds: Bounds) -> f64 {
-    match bounds.upper - bounds.lower {
-        width if width.is_finite() => width,
-        _ => [bounds.lower, bounds.upper]
-            .into_iter()
-            .filter(|it| it.is_finite())
-            .fold(1.0, |a: f64, it| a.max(it.abs())),
-    }
+/// The distance of the bounds of a control; how large it is where one of them is infinite.
+pub(crate) fn width(bounds: Bounds, values: &[f64]) -> f64 {
+    let finite = bounds.upper - bounds.lower;
+    let largest = values.iter().fold(f64::MIN_POSITIVE, |a, it| a.max(it.abs()));
+    if finite.is_finite() { finite } else { largest }
 }
 
-fn track_of_modes(spans: &[Span], shortest: f64) -> Track<Mode> {
-    let mode = |span: &Span| match span.mode {
-        modes::Mode::Below => Mode::Below,
-        modes::Mode::Held => Mode::Held,
-        modes::Mode::Above => Mode::Above,
+/// By how much of its size the Hamiltonian changes inside of a phase, times its duration; 0 where
+/// time matters by itself.
+pub(crate) fn variation(phase: &Outcome) -> f64 {
+    let (own, time) = (&phase.trajectory.hamiltonian, &phase.trajectory.time);
+    let least = own.values.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = own.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let is_meant = own.is_constant && !own.is_noise;
+    let duration = time[time.len() - 1] - time[0];
+    if is_meant { (largest - least) / own.size * duration } else { 0.0 }
+}
+
+/// The length of the shortest interval.
+fn least_step(time: &[f64]) -> f64 {
+    time.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min)
+}
+
+/// What each control does in a phase, by its values at the nodes.
+fn arcs_of(between: &Problem, outcome: &Outcome, which: NewArcs) -> Vec<Track<Arc>> {
+    let own = &outcome.trajectory;
+    let [first, last] = [own.time[0], own.time[own.time.len() - 1]];
+    let step = least_step(&own.time);
+    let of = |(at, control): (usize, &Variable)| match &own.nodes {
+        Some(nodes) => {
+            // A value holds until half way to the next node.
+            let halves = nodes.time.windows(2).map(|it| 0.5 * (it[0] + it[1]));
+            let time: Vec<f64> = [first].into_iter().chain(halves).chain([last]).collect();
+            let track = Track::of_arcs(&time, &nodes.values[at], control.bounds, 0.5 * step);
+            let pieces = polynomials(own, at);
+            let ends = [(&pieces[0], 0), (&pieces[pieces.len() - 1], 1)];
+            let bounds = ends.map(|(piece, end)| piece.bound_at(end, control.bounds));
+            track.with_ends(
+                bounds,
+                [first, last],
+                [0, own.time.len() - 2].map(|k| 0.1 * (own.time[k + 1] - own.time[k])),
+            )
+        }
+        None => Track::of_arcs(&own.time, &own.controls[at], control.bounds, 1.5 * step),
     };
-    let pieces = spans.iter().map(|span| (span.from, mode(span))).collect();
-    let last = spans.last().map_or(0.0, |span| span.to);
-    Track { pieces }.without_short(last, shortest)
-}
-
-impl Track<Arc> {
-    /// Of a control by its values on the intervals.
-    fn of_arcs(time: &[f64], values: &[f64], bounds: Bounds, shortest: f64) -> Self {
-        let width = width(bounds);
-        let arc = |value: &f64| match () {
-            () if value - bounds.lower < AT_BOUND * width => Arc::Lower,
-            () if bounds.upper - value < AT_BOUND * width => Arc::Upper,
-            () => Arc::Free,
-        };
-        let mut pieces: Vec<(f64, Arc)> = Vec::new();
-        for (time, value) in time.iter().zip(values) {
-            let arc = arc(value);
-            if pieces.last().is_none_or(|it| it.1 != arc) {
-                pieces.push((*time, arc));
-            }
-        }
-        let last = time[time.len() - 1];
-        Track { pieces }.with_switches(shortest).without_short(last, shortest)
-    }
-
-    /// A short free piece between opposite bounds is one switch, in its middle.
-    fn with_switches(mut self, shortest: f64) -> Self {
-        let mut j = 1;
-        while j + 1 < self.pieces.len() {
-            let [before, own, after] = [self.pieces[j - 1], self.pieces[j], self.pieces[j + 1]];
-            let is_short = after.0 - own.0 <= 1.5 * shortest;
-            let are_opposite = before.1 != after.1 && before.1 != Arc::Free && after.1 != Arc::Free;
-            if own.1 == Arc::Free && is_short && are_opposite {
-                self.pieces[j + 1].0 = 0.5 * (own.0 + after.0);
-                self.pieces.remove(j);
-            } else {
-                j += 1;
-            }
-        }
-        self
-    }
-}
-
-impl<T: Copy + PartialEq> Track<T> {
-    fn switches(&self) -> impl Iterator<Item = f64> {
-        self.pieces.iter().skip(1).map(|it| it.0)
-    }
-
-    fn at(&self, time: f64) -> T {
-        let at = self.pieces.partition_point(|it| it.0 <= time).saturating_sub(1);
-        self.pieces[at].1
-    }
-
-    /// Short pieces go to the one before, the first to the one behind.
-    fn without_short(mut self, last: f64, shortest: f64) -> Self {
-        let mut j = 0;
-        while j < self.pieces.len() && self.pieces.len() > 1 {
-            let end = self.pieces.get(j + 1).map_or(last, |it| it.0);
-            if end - self.pieces[j].0 < shortest {
-                let begin = self.pieces.remove(j).0;
-                if j < self.pieces.len() {
-                    self.pieces[j].0 = begin;
-                }
-                j = j.saturating_sub(1);
-            } else {
-                j += 1;
-            }
-        }
-        self.pieces.dedup_by(|b, a| a.1 == b.1);
-        self
+    let tracks = between.controls.iter().enumerate().map(of);
+    match which {
+        NewArcs::All => tracks.collect(),
+        NewArcs::Longest => tracks.map(|it| it.with_longest(last)).collect(),
     }
 }

@@ -121,6 +121,7 @@ fields! {
     Edit { span, replacement }
     Equation { factor, state, relation, relation_span, right, span }
     Expr { kind, span }
+    Fitted { signal, column, deviation, span }
     Fix { title, edits, certain }
     Ident { name, span }
     Interval { lower, upper, span }
@@ -184,8 +185,10 @@ variants! {
         Jump { name, surface, direction, direction_span, at_most, then_hold, assignments },
         Start { condition },
         End { condition },
+        At { time, condition },
         Path { name, condition },
         Objective { sense, keyword, value },
+        Fit { keyword, data, signals },
         Guess { bindings },
         Phase { name, like, items },
         Link { from, to, same, assignments },

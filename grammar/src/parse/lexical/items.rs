@@ -3,7 +3,8 @@
 //! A file and a phase are split where an item word begins; a block such as `dynamics { ... }` where
 //! an entry begins. Item words are reserved, so they begin an item wherever the text before them is
 //! complete, and at the beginning of a line even inside brackets that somebody forgot to close.
-//! `start`, `end`, `guess` and `free` also stand inside items and need a closer look.
+//! `start`, `end`, `guess` and `free` also stand inside items and need a closer look. `fit` and
+//! `at` may be names, and begin an item where no name could stand.
 
 use std::ops::Range;
 
@@ -12,6 +13,9 @@ use super::words;
 
 /// Words and signs; nobody writes half as many.
 const LONGEST_UNIT: usize = 100;
+
+/// Words and signs of the time of a condition; nobody writes half as many.
+const LONGEST_TIME: usize = 100;
 
 /// Pieces are ranges of token numbers.
 pub(crate) type Region = Range<usize>;
@@ -51,8 +55,8 @@ impl<'t> SoFar<'_, 't> {
     }
 
     fn is_item_of_phase(&self, at: usize) -> bool {
-        let is_item = words::form(self.tokens[at].text).is_some() && !is_argument(self, at);
-        is_item || is_misspelt_item(self, at)
+        let is_item = words::always_begins(self.tokens[at].text) && !is_argument(self, at);
+        is_item || begins_soft(self, at) || is_misspelt_item(self, at)
     }
 
     /// Whether the region is a block, or holds a `piecewise`, whose `{` has not come yet.
@@ -125,7 +129,9 @@ fn begins_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
             may_begin && !continues_item(so_far, at)
         }
         (Kind::Word, None) if !so_far.in_phase() => {
-            is_misspelt_item(so_far, at) || (outside && is_unknown_item(so_far, at))
+            begins_soft(so_far, at)
+                || is_misspelt_item(so_far, at)
+                || (outside && is_unknown_item(so_far, at))
         }
         _ => false,
     }
@@ -179,11 +185,48 @@ fn has_relation(so_far: &SoFar<'_, '_>, at: usize) -> bool {
             "{" => braces += 1,
             "}" => braces -= 1,
             "<=" | ">=" | "==" if braces == 0 => return true,
-            word if words::form(word).is_some() && !is_argument(so_far, at) => return false,
+            word if words::always_begins(word) && !is_argument(so_far, at) => return false,
+            _ if begins_soft(so_far, at) => return false,
             _ => {}
         }
     }
     false
+}
+
+/// Whether an item begins with a word that may be a name.
+fn begins_soft(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    begins_fit(so_far, at) || begins_at(so_far, at)
+}
+
+/// `at 1.5:`, with an expression before the colon, behind a text that is complete.
+fn begins_at(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    if so_far.tokens[at].text != "at" || !can_begin(so_far, at) {
+        return false;
+    }
+    let (mut open, mut follows_value) = (0, false);
+    for (count, token) in so_far.tokens[at + 1..so_far.end].iter().take(LONGEST_TIME).enumerate() {
+        let is_value = matches!(token.kind, Kind::Word | Kind::Number);
+        match token.text {
+            ":" if open == 0 => return count > 0,
+            _ if token.kind == Kind::Open => open += 1,
+            _ if token.kind == Kind::Close => open -= 1,
+            _ if open > 0 => {}
+            "+" | "-" | "*" | "/" | "^" | "." | "'" => {}
+            _ if !is_value || follows_value || words::always_begins(token.text) => return false,
+            _ => {}
+        }
+        follows_value = open == 0 && (is_value || token.kind == Kind::Close);
+    }
+    false
+}
+
+/// `fit obs:`, of which no other item can have a part.
+fn begins_fit(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let is_name = |at: usize| {
+        let token = so_far.tokens[..so_far.end].get(at);
+        token.is_some_and(|it| it.kind == Kind::Word && words::reserved(it.text).is_none())
+    };
+    so_far.tokens[at].text == "fit" && is_name(at + 1) && so_far.text(at + 2) == ":"
 }
 
 /// Whether a line begins with nearly an item word and a name, as in `stat v`. Two names side by

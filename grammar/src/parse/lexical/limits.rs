@@ -38,7 +38,7 @@ pub(crate) fn exceeded(tokens: &[Token<'_>], region: &Region) -> Option<Failure>
 /// Whether an item is too long, be it one of a phase.
 fn is_too_long(tokens: &[Token<'_>]) -> bool {
     let is_item_word =
-        |token: &Token<'_>| token.kind == Kind::Word && words::form(token.text).is_some();
+        |token: &Token<'_>| token.kind == Kind::Word && words::always_begins(token.text);
     tokens.len() > MOST_TOKENS && tokens.split(is_item_word).any(|item| item.len() > MOST_TOKENS)
 }
 

@@ -1,6 +1,7 @@
-//! The table of reserved words: what each is for, and what to write instead of it as a name.
+//! The table of reserved words, and of those that begin an item but may be names elsewhere: what
+//! each is for, and what to write instead of it as a name.
 
-/// A reserved word.
+/// A reserved word, or one that begins an item.
 pub struct Word {
     /// The word.
     pub text: &'static str,
@@ -10,6 +11,8 @@ pub struct Word {
     pub instead: &'static str,
     /// What the item is that it introduces, if it introduces one.
     pub item: Option<Form>,
+    /// Whether it can be no name.
+    pub is_reserved: bool,
 }
 
 /// An item as messages speak of it.
@@ -27,14 +30,24 @@ const fn item(
     noun: &'static str,
     example: &'static str,
 ) -> Word {
-    Word { text, role, instead, item: Some(Form { noun, example }) }
+    Word { text, role, instead, item: Some(Form { noun, example }), is_reserved: true }
+}
+
+/// A word that begins an item, and may be a name elsewhere.
+const fn soft(
+    text: &'static str,
+    role: &'static str,
+    noun: &'static str,
+    example: &'static str,
+) -> Word {
+    Word { is_reserved: false, ..item(text, role, text, noun, example) }
 }
 
 const fn inner(text: &'static str, role: &'static str, instead: &'static str) -> Word {
-    Word { text, role, instead, item: None }
+    Word { text, role, instead, item: None, is_reserved: true }
 }
 
-/// Every reserved word.
+/// Every reserved word, and every word that begins an item.
 #[rustfmt::skip]
 pub const WORDS: &[Word] = &[
     item("model", "names the model", "model_1", "a model line", "model block"),
@@ -59,11 +72,13 @@ pub const WORDS: &[Word] = &[
         condition", "start x >= 0"),
     item("end", "introduces a condition at the final time", "t_end", "an end condition", "end x == \
         1"),
+    soft("at", "introduces a condition at a time", "a condition at a time", "at 1.5: x <= 3"),
     item("path", "introduces a condition at all times", "route", "a path constraint", "path track: \
         abs(y) <= w/2"),
     item("minimize", "introduces the objective", "smallest", "an objective", "minimize \
         integral(F^2)"),
     item("maximize", "introduces the objective", "largest", "an objective", "maximize h(end)"),
+    soft("fit", "introduces what was measured", "a fit", "fit obs: x sd 0.1"),
     item("guess", "introduces a first trajectory", "first", "a guess", "guess { x = t/T }"),
     item("phase", "introduces a phase", "stage", "a phase", "phase boost { time t in [0, 1]  state \
         h start 0 }"),
@@ -91,12 +106,17 @@ pub fn items() -> impl Iterator<Item = &'static Word> {
 
 /// The entry of a reserved word.
 pub(crate) fn reserved(text: &str) -> Option<&'static Word> {
-    WORDS.iter().find(|word| word.text == text)
+    WORDS.iter().find(|word| word.is_reserved && word.text == text)
 }
 
 /// The form of the item that a word introduces.
 pub(crate) fn form(text: &str) -> Option<&'static Form> {
-    reserved(text).and_then(|word| word.item.as_ref())
+    items().find(|word| word.text == text).and_then(|word| word.item.as_ref())
+}
+
+/// Whether an item begins with a word wherever it stands.
+pub(crate) fn always_begins(text: &str) -> bool {
+    reserved(text).is_some_and(|word| word.item.is_some())
 }
 
 /// An entry of a block, as messages speak of it; an item that is no block has none.
@@ -120,6 +140,7 @@ pub fn inner_words(item: &str) -> &'static [&'static str] {
     match item {
         "jump" => &["on", "falling", "rising", "at", "most", "then", "hold"],
         "data" => &["csv", "columns"],
+        "fit" => &["sd"],
         "phase" => &["like"],
         "link" => &["same"],
         "method" => &["smooth", "kernel", "grid", "steps", "scheme", "lagged", "continue"],
@@ -159,7 +180,11 @@ const ELSEWHERE: &[(&str, &str)] = &[
 
 /// The item word that a word is nearly, or that it stands for elsewhere.
 pub(crate) fn closest_item(word: &str) -> Option<&'static str> {
-    let items = WORDS.iter().filter(|known| known.item.is_some()).map(|known| known.text);
+    // So short a name is near to many that are no slips.
+    let may_be_meant = |known: &&Word| {
+        known.is_reserved || known.text.len() > 2 || word.eq_ignore_ascii_case(known.text)
+    };
+    let items = items().filter(may_be_meant).map(|known| known.text);
     let elsewhere = || ELSEWHERE.iter().find(|(other, _)| *other == word).map(|(_, meant)| *meant);
     elsewhere().or_else(|| closest(word, items))
 }

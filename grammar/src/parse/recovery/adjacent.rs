@@ -18,7 +18,8 @@ pub(super) fn missing_operator(context: &ErrorContext<'_, '_>) -> Option<Diagnos
     {
         return None;
     }
-    if let Some(found) = bare_unit(context).or_else(|| foreign_choice(previous)) {
+    let special = || bare_unit(context).or_else(|| foreign_choice(previous));
+    if let Some(found) = special().or_else(|| no_colon(context)) {
         return Some(found);
     }
     let (left, right) = (value_before(context), value_after(context));
@@ -42,6 +43,19 @@ pub(super) fn missing_operator(context: &ErrorContext<'_, '_>) -> Option<Diagnos
             .help(help)
             .fix(fix),
     )
+}
+
+/// `at 1.5 x <= 3`: two values before any colon.
+fn no_colon(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
+    let before = &context.tokens[context.region.start..context.at];
+    if context.word != "at" || before.iter().any(|token| token.text == ":") {
+        return None;
+    }
+    let previous = context.previous()?;
+    let message = format!("`:` is missing after `{}`", previous.text);
+    let fix = Fix::certain("write `:`").insert(previous.span().end, ":");
+    let found = Diagnostic::new(Code::Unfinished, message, previous.span(), "`:` should follow");
+    Some(found.help("a condition at a time looks like this: `at 1.5: x <= 3`").fix(fix))
 }
 
 /// `param l = 50 cm`: what follows the number of a declaration to the end of its line is most

@@ -81,7 +81,7 @@ impl Reader<'_> {
         self.expression_in(pair).expect("the grammar has an expression here")
     }
 
-    /// The condition of a `start`, `end` or `path` item.
+    /// The condition of a `start`, `end`, `at` or `path` item.
     pub(super) fn condition(&mut self, item: &Pair<'_, Rule>) -> Condition {
         let pair = child(item, Rule::condition).expect("the item has a condition");
         let relations: Vec<Relation> =

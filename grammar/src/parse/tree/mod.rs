@@ -87,8 +87,10 @@ impl Reader<'_> {
             Rule::metric => ItemKind::Metric { weights: self.weights(pair) },
             Rule::start => ItemKind::Start { condition: self.condition(pair) },
             Rule::end => ItemKind::End { condition: self.condition(pair) },
+            Rule::at => ItemKind::At { time: self.one(pair), condition: self.condition(pair) },
             Rule::path => self.path(pair),
             Rule::objective => self.objective(pair),
+            Rule::fit => self.fit(pair),
             Rule::jump => self.jump(pair),
             Rule::link => self.link(pair),
             _ => self.declaration(pair),
@@ -176,6 +178,18 @@ impl Reader<'_> {
         let keyword = child(pair, Rule::sense).expect("an objective has a sense");
         let sense = if keyword.as_str() == "minimize" { Sense::Minimize } else { Sense::Maximize };
         ItemKind::Objective { sense, keyword: self.span(&keyword), value: self.one(pair) }
+    }
+
+    fn fit(&mut self, pair: &Pair<'_, Rule>) -> ItemKind {
+        let keyword = child(pair, Rule::kw_fit).expect("a fit begins with its word");
+        let mut signal = |fitted: Pair<'_, Rule>| {
+            let sides = self.expressions_in(&fitted);
+            let [signal, deviation] = sides.try_into().expect("a signal and its deviation");
+            let column = child(&fitted, Rule::name).map(|column| self.name(&column));
+            Fitted { signal, column, deviation, span: self.span(&fitted) }
+        };
+        let signals = children(pair, Rule::fitted).map(&mut signal).collect();
+        ItemKind::Fit { keyword: self.span(&keyword), data: ident(self, pair), signals }
     }
 
     fn jump(&mut self, pair: &Pair<'_, Rule>) -> ItemKind {

@@ -159,6 +159,9 @@ impl Nlp for Scaled<'_> {
         out.jacobian.iter_mut().zip(&self.entries).for_each(|(value, s)| *value *= s);
         out.hessian.iter_mut().zip(&self.curvatures).for_each(|(value, s)| *value *= s);
     }
+    fn is_linear(&self, row: usize) -> bool {
+        self.inner.is_linear(row)
+    }
     fn constraint_place(&self, row: usize) -> Place {
         self.inner.constraint_place(row)
     }

@@ -91,7 +91,7 @@ pub fn gradient(
     } else {
         signs(adjoint.len())
     };
-    let directions = Directions::new(system, quantities, &weights);
+    let directions = Directions::new(system, controls, quantities, &weights);
     let (mut on_the_way, mut largest): (f64, f64) = (0.0, 0.0);
     let end = super::forward(&pieces, &directions, &mut |at, s| {
         on_the_way = on_the_way.max(costates.pairing(at + 1, s));

@@ -10,7 +10,6 @@ pub(crate) mod one_sided;
 pub(crate) mod perturbed;
 pub(crate) mod quantity;
 
-use super::linearized::event::Timing;
 use super::linearized::linearization::{Jacobian, Linearizer};
 use super::linearized::variational_equation::LinearTape;
 use crate::problem::Columns;
@@ -76,10 +75,7 @@ fn end_shift(linearizer: &Linearizer, tape: &Tape) -> DMatrix<f64> {
     let Some(last) = last_instant(tape) else {
         return DMatrix::zeros(linearizer.system.layout.x, linearizer.system.layout.p);
     };
-    let timing = Timing::of_clock(linearizer, linearizer.system.interval[1]);
-    let controls = linearizer.system.layout.u;
-    let moved = timing.by_inputs.columns(controls, linearizer.system.layout.p);
-    linearizer.at_instant(tape, &last).rate * moved
+    linearizer.at_instant(tape, &last).rate * linearizer.clock(linearizer.system.interval[1])
 }
 
 /// The derivative in each direction.
@@ -117,13 +113,12 @@ pub(crate) fn adjoint(
     visit: &mut dyn FnMut(Option<usize>, &DVector<f64>),
 ) -> Gradient {
     let LinearTape { linearizer, tape, .. } = *pieces;
-    let controls = linearizer.system.layout.u;
     let mut lambda: DVector<f64> = objective.by_end.transpose();
     let at_end = end_shift(linearizer, tape).tr_mul(&lambda) + objective.by_parameters.transpose();
     gradient.parameters.iter_mut().zip(at_end.iter()).for_each(|(sum, value)| *sum += value);
     for at in (0..tape.pieces.len()).rev() {
         let mut add = |regime: &Regime, by: &DVector<f64>| {
-            gradient.add_inputs(regime, controls, by.iter().copied());
+            gradient.add_inputs(linearizer.rows(regime), by);
         };
         lambda = pieces.with(at, |piece| {
             let on_surfaces = piece.unproject(lambda, &mut add);

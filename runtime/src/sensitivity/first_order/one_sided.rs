@@ -34,11 +34,10 @@ pub fn one_sided(
 
 /// What a quantity is.
 pub(crate) fn value(system: &System, controls: &Controls, quantity: &Quantity) -> f64 {
-    match (*quantity, controls) {
-        (Quantity::Parameter(at), _) => system.parameters[at].value,
-        (Quantity::Start(at), _) => system.start[at],
-        (Quantity::Control { row, control }, Controls::Held { rows, .. }) => rows[row][control],
-        (Quantity::Control { .. }, Controls::Guess) => 0.0,
+    match *quantity {
+        Quantity::Parameter(at) => system.parameters[at].value,
+        Quantity::Start(at) => system.start[at],
+        Quantity::Control { row, control } => controls.rows()[row][control],
     }
 }
 

@@ -18,7 +18,7 @@ pub fn perturbed(
             let mut values = system.parameter_values();
             values[at] += amount;
             let moved = system.with_parameters(&values);
-            stretch(&mut controls, system.interval, moved.interval);
+            controls.stretch(system.interval, moved.interval);
             (moved, controls)
         }
         Quantity::Start(at) => {
@@ -27,18 +27,8 @@ pub fn perturbed(
             (moved, controls)
         }
         Quantity::Control { row, control } => {
-            if let Controls::Held { rows, .. } = &mut controls {
-                rows[row][control] += amount;
-            }
+            controls.rows_mut()[row][control] += amount;
             (system.clone(), controls)
         }
-    }
-}
-
-fn stretch(controls: &mut Controls, [old_first, old_last]: [f64; 2], [first, last]: [f64; 2]) {
-    let Controls::Held { times, is_stretched: true, .. } = controls else { return };
-    if (old_first, old_last) != (first, last) && old_last > old_first {
-        let factor = (last - first) / (old_last - old_first);
-        times.iter_mut().for_each(|time| *time = first + factor * (*time - old_first));
     }
 }

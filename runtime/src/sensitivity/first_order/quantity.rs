@@ -1,8 +1,9 @@
 //! What to differentiate by, as directions in the space of parameters, starts and controls.
 
 use crate::simulate::{Controls, Regime, System};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// A number that a derivative can be taken by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,7 +12,7 @@ pub enum Quantity {
     Parameter(usize),
     /// The start of a state, whatever it is computed from.
     Start(usize),
-    /// A control in a row of [`Controls::Held`]. Where the interval moves, the rows keep their
+    /// A control in one of the [`Controls::rows`]. Where the interval moves, the rows keep their
     /// normalised times.
     Control {
         /// The row.
@@ -22,9 +23,10 @@ pub enum Quantity {
 }
 
 /// Directions in the space of all quantities, one column each.
-pub(crate) struct Directions {
+pub(crate) struct Directions<'a> {
     count: usize,
     control_count: usize,
+    of: &'a Controls,
     /// `dp`.
     pub parameters: DMatrix<f64>,
     /// The part of `dx(t0)` that does not come from parameters.
@@ -33,18 +35,25 @@ pub(crate) struct Directions {
     controls: BTreeMap<usize, Vec<(usize, usize, f64)>>,
 }
 
-impl Directions {
+impl<'a> Directions<'a> {
     /// Each quantity alone.
-    pub fn each(system: &System, quantities: &[Quantity]) -> Self {
-        Self::new(system, quantities, &DMatrix::identity(quantities.len(), quantities.len()))
+    pub fn each(system: &System, controls: &'a Controls, quantities: &[Quantity]) -> Self {
+        let weights = DMatrix::identity(quantities.len(), quantities.len());
+        Self::new(system, controls, quantities, &weights)
     }
 
     /// Sums of the quantities, weighted by the columns of a matrix.
-    pub fn new(system: &System, quantities: &[Quantity], weights: &DMatrix<f64>) -> Self {
+    pub fn new(
+        system: &System,
+        controls: &'a Controls,
+        quantities: &[Quantity],
+        weights: &DMatrix<f64>,
+    ) -> Self {
         let count = weights.ncols();
         let mut directions = Directions {
             count,
             control_count: system.layout.u,
+            of: controls,
             parameters: DMatrix::zeros(system.layout.p, count),
             starts: DMatrix::zeros(system.layout.x, count),
             controls: BTreeMap::new(),
@@ -73,13 +82,17 @@ impl Directions {
         self.count
     }
 
-    /// `d(u, p)` in a regime.
+    /// `d(U, p)` in a regime.
     pub fn inputs(&self, regime: &Regime) -> DMatrix<f64> {
-        let mut inputs = DMatrix::zeros(self.control_count + self.parameters.nrows(), self.count);
-        inputs.rows_mut(self.control_count, self.parameters.nrows()).copy_from(&self.parameters);
-        let moved = regime.row.and_then(|row| self.controls.get(&row));
-        for &(control, column, weight) in moved.into_iter().flatten() {
-            inputs[(control, column)] += weight;
+        let rows = self.of.range(regime.segment);
+        let (numbers, parameters) =
+            (self.control_count * rows.len().max(1), self.parameters.nrows());
+        let mut inputs = DMatrix::zeros(numbers + parameters, self.count);
+        inputs.rows_mut(numbers, parameters).copy_from(&self.parameters);
+        for (k, row) in rows.enumerate() {
+            for &(control, column, weight) in self.controls.get(&row).into_iter().flatten() {
+                inputs[(k * self.control_count + control, column)] += weight;
+            }
         }
         inputs
     }
@@ -96,14 +109,10 @@ pub(crate) struct Gradient {
 
 impl Gradient {
     pub fn zero(system: &System, controls: &Controls) -> Self {
-        let rows = match controls {
-            Controls::Guess => 0,
-            Controls::Held { rows, .. } => rows.len(),
-        };
         Gradient {
             parameters: vec![0.0; system.layout.p],
             starts: vec![0.0; system.layout.x],
-            controls: vec![vec![0.0; system.layout.u]; rows],
+            controls: vec![vec![0.0; system.layout.u]; controls.rows().len()],
         }
     }
 
@@ -116,14 +125,12 @@ impl Gradient {
         }
     }
 
-    /// Adds the derivative by `(u, p)` in a regime.
-    pub fn add_inputs(&mut self, regime: &Regime, controls: usize, by: impl Iterator<Item = f64>) {
-        for (at, value) in by.enumerate() {
-            match (at.checked_sub(controls), regime.row) {
-                (Some(parameter), _) => self.parameters[parameter] += value,
-                (None, Some(row)) => self.controls[row][at] += value,
-                (None, None) => {}
-            }
-        }
+    /// Adds the derivative by `(U, p)` where `U` are the numbers of some rows.
+    pub fn add_inputs(&mut self, rows: Range<usize>, by: &DVector<f64>) {
+        let first = by.len() - self.parameters.len();
+        let parameters = self.parameters.iter_mut();
+        let numbers = self.controls[rows].iter_mut().flatten();
+        parameters.zip(by.iter().skip(first)).for_each(|(sum, by)| *sum += by);
+        numbers.zip(by.iter()).for_each(|(sum, by)| *sum += by);
     }
 }

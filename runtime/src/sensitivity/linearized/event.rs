@@ -17,18 +17,18 @@
 use super::linearization::{Jacobian, Linearization, Linearizer};
 use super::reset::Reset;
 use crate::problem::Function;
-use crate::simulate::{Cause, Change, Instant, Tape};
+use crate::simulate::{Cause, Change, Instant, Regime, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 /// An event, linearised.
 pub(crate) struct LinearEvent {
     /// `r_x`.
     pub by_state: DMatrix<f64>,
-    /// `r_(u, p)`.
+    /// `r_(U, p)`.
     pub by_inputs: DMatrix<f64>,
     /// `c`.
     pub shift: DVector<f64>,
-    /// `tau = tau_x S + tau_(u, p) W`.
+    /// `tau = tau_x S + tau_(U, p) W`.
     pub timing: Timing,
 }
 
@@ -62,13 +62,13 @@ impl LinearEvent {
         LinearEvent { by_state, by_inputs, shift, timing }
     }
 
-    /// `w` are the directions of `(u, p)` before the event.
+    /// `w` are the directions of `(U, p)` before the event.
     pub fn forward(&self, s: &DMatrix<f64>, w: &DMatrix<f64>) -> DMatrix<f64> {
         let moved = self.timing.of(s, w);
         &self.by_state * s + &self.by_inputs * w + &self.shift * moved
     }
 
-    /// The adjoint before the event and the derivative by the `(u, p)` before it.
+    /// The adjoint before the event and the derivative by the `(U, p)` before it.
     pub fn adjoint(&self, after: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
         let by_time = self.shift.dot(after);
         let before = self.by_state.tr_mul(after) + self.timing.by_state.transpose() * by_time;
@@ -84,19 +84,22 @@ impl Timing {
     }
 
     pub fn new(linearizer: &Linearizer, tape: &Tape, event: &EventOnTape) -> Self {
+        let regime = &tape.regimes[event.before.regime];
         match event.cause {
-            Cause::Controls if !linearizer.is_stretched() => return Timing::fixed(linearizer),
+            Cause::Controls if !linearizer.is_stretched() => {
+                return Timing::fixed(linearizer, regime);
+            }
             Cause::Start | Cause::Controls => {
-                return Timing::of_clock(linearizer, event.before.time);
+                return Timing::of_clock(linearizer, regime, event.before.time);
             }
             _ => {}
         }
-        let regime = &tape.regimes[event.before.regime];
         let reached = linearizer.at_instant(tape, event.before);
         let slopes_of = |function: &dyn Function| {
             let x = DVector::from_column_slice(&event.before.state);
             let table = linearizer.table(regime, &reached.selectors, event.before.time, &x);
             let by = Jacobian::of(function, &table, &linearizer.parameters).by;
+            let by = linearizer.spread(by, regime, event.before.time);
             by.columns(0, reached.by().ncols()).into_owned()
         };
         match event.cause {
@@ -117,24 +120,20 @@ impl Timing {
     }
 
     /// A time that does not move.
-    fn fixed(linearizer: &Linearizer) -> Self {
-        let layout = linearizer.system.layout;
-        let by_inputs = RowDVector::zeros(layout.u + layout.p);
-        Timing { by_state: RowDVector::zeros(layout.x), by_inputs }
+    fn fixed(linearizer: &Linearizer, regime: &Regime) -> Self {
+        let by_inputs = RowDVector::zeros(linearizer.inputs(regime));
+        Timing { by_state: RowDVector::zeros(linearizer.system.layout.x), by_inputs }
     }
 
     /// A time that is a fixed part of the interval.
-    pub fn of_clock(linearizer: &Linearizer, time: f64) -> Self {
-        let layout = linearizer.system.layout;
-        let tau = linearizer.tau(time);
-        let ends = &linearizer.ends_by;
-        let moved = ends.row(0) * (1.0 - tau) + ends.row(1) * tau;
-        let mut timing = Timing::fixed(linearizer);
-        timing.by_inputs.columns_mut(layout.u, layout.p).copy_from(&moved);
+    pub fn of_clock(linearizer: &Linearizer, regime: &Regime, time: f64) -> Self {
+        let layout = linearizer.layout(regime);
+        let mut timing = Timing::fixed(linearizer, regime);
+        timing.by_inputs.columns_mut(layout.u, layout.p).copy_from(&linearizer.clock(time));
         timing
     }
 
-    /// The time at which `g = 0`, from `g_(t | x | u | p)`; it does not move if nothing moves `g`.
+    /// The time at which `g = 0`, from `g_(t | x | U | p)`; it does not move if nothing moves `g`.
     fn implicit(slopes: &RowDVector<f64>, rate: &DVector<f64>) -> Self {
         let states = rate.len();
         let normal = slopes.columns(1, states);

@@ -7,13 +7,11 @@
 //! s_w = -r_s^-1 r_w,      f*_w = f_w + f_s s_w
 //! ```
 //!
-//! Controls that follow the guess are functions of time and parameters, `u = g(tau(t, p), p)`;
-//! their derivatives are folded into those by `t` and `p`.
+//! Controls may be functions of time and parameters; see [`super::controls`].
 
 use crate::problem::{Columns, Function, Layout};
 use crate::simulate::{Ball, Controls, Mode, Regime, System};
 use nalgebra::{DMatrix, DMatrixView, DVector};
-use std::borrow::Cow;
 use std::cell::RefCell;
 
 /// A vector below this many times what it is made of is 0, as for the simulator.
@@ -27,13 +25,13 @@ pub(crate) struct Linearization {
     pub selectors: Vec<f64>,
     /// `s_w`, one row for each selector; no rows where all are constant.
     pub selectors_by: DMatrix<f64>,
-    /// `f*_w`, then `f_s`: `[t | x | u | p | s]`.
+    /// `f*_w`, then `f_s`: `[t | x | U | p | s]`.
     whole: DMatrix<f64>,
     layout: Layout,
 }
 
 impl Linearization {
-    /// `f*_w`, with the columns `[t | x | u | p]`.
+    /// `f*_w`, with the columns `[t | x | U | p]`.
     pub fn by(&self) -> DMatrixView<'_, f64> {
         self.whole.columns(0, self.layout.selectors().start)
     }
@@ -43,7 +41,7 @@ impl Linearization {
         self.whole.columns(1, self.layout.x)
     }
 
-    /// `f*_(u, p)`.
+    /// `f*_(U, p)`.
     pub fn by_inputs(&self) -> DMatrixView<'_, f64> {
         self.whole.columns(1 + self.layout.x, self.layout.u + self.layout.p)
     }
@@ -73,7 +71,7 @@ pub(crate) struct Linearizer<'a> {
     pub parameters: Vec<f64>,
     /// `d(t0, tf)/dp`.
     pub ends_by: DMatrix<f64>,
-    controls: &'a Controls,
+    pub controls: &'a Controls,
     /// Values and derivatives of the right side as its function gives them, again and again in the
     /// same memory.
     pub results: RefCell<[Columns; 2]>,
@@ -86,11 +84,6 @@ impl<'a> Linearizer<'a> {
         let entries = system.flow.jacobian_pattern().entries.len();
         let results = RefCell::new([Columns::new(system.layout.x, 1), Columns::new(entries, 1)]);
         Linearizer { system, parameters, ends_by, controls, results }
-    }
-
-    /// How many of `[u | p]` there are.
-    pub fn inputs(&self) -> usize {
-        self.system.layout.u + self.system.layout.p
     }
 
     /// The right side at a point of a regime; sliding selectors are searched from `near` on.
@@ -106,7 +99,9 @@ impl<'a> Linearizer<'a> {
         if let Some(rates) = &rates {
             self.eliminate(&mut point, &rates.by, &sliding);
         }
-        self.fold_guess(&mut point, t);
+        point.whole = self.spread(point.whole, regime, t);
+        point.selectors_by = self.spread(point.selectors_by, regime, t);
+        point.layout = self.layout(regime);
         point
     }
 
@@ -128,30 +123,6 @@ impl<'a> Linearizer<'a> {
         let mut table = Columns::new(self.system.layout.point_inputs(), 1);
         values.enumerate().for_each(|(column, value)| table.column_mut(column)[0] = *value);
         table
-    }
-
-    /// The controls that act.
-    fn control(&self, regime: &Regime, t: f64) -> Cow<'a, [f64]> {
-        match (self.controls, regime.row) {
-            (Controls::Held { rows, .. }, Some(row)) => Cow::Borrowed(&rows[row]),
-            _ if self.system.layout.u == 0 => Cow::Borrowed(&[]),
-            _ => Cow::Owned(self.system.guessed(self.tau(t))[self.system.layout.x..].to_vec()),
-        }
-    }
-
-    pub fn is_guessed(&self) -> bool {
-        *self.controls == Controls::Guess && self.system.layout.u > 0
-    }
-
-    /// Whether the times of control rows move with the interval.
-    pub fn is_stretched(&self) -> bool {
-        matches!(self.controls, Controls::Held { is_stretched: true, .. })
-    }
-
-    /// Normalised time.
-    pub fn tau(&self, t: f64) -> f64 {
-        let [first, last] = self.system.interval;
-        if last > first { (t - first) / (last - first) } else { 0.0 }
     }
 
     /// Gives the selectors of moving balls their values, `psi/|psi|`; their slopes, `(I - s
@@ -245,46 +216,6 @@ impl<'a> Linearizer<'a> {
         }
         let Some(slopes) = by_selectors.lu().solve(&-by_rest.select_rows(sliding)) else { return };
         point.add_through(sliding, &slopes);
-    }
-
-    fn fold_guess(&self, point: &mut Linearization, t: f64) {
-        if !self.is_guessed() {
-            return;
-        }
-        let guess = self.guess_slopes(t);
-        let Linearization { whole, selectors_by, .. } = point;
-        for matrix in [whole, selectors_by].into_iter().filter(|matrix| !matrix.is_empty()) {
-            let through = self.by_controls(matrix) * &guess;
-            let (first, count) = (self.system.layout.parameters().start, self.system.layout.p);
-            let mut by_time = matrix.column_mut(0);
-            by_time += through.column(0);
-            let mut by_parameters = matrix.columns_mut(first, count);
-            by_parameters += through.columns(1, count);
-        }
-    }
-
-    fn by_controls(&self, by: &DMatrix<f64>) -> DMatrix<f64> {
-        by.columns(self.system.layout.controls().start, self.system.layout.u).into_owned()
-    }
-
-    /// `du/d[t | p]` of guessed controls.
-    pub fn guess_slopes(&self, t: f64) -> DMatrix<f64> {
-        let tau = self.tau(t);
-        let mut table = Columns::new(1, 1);
-        table.column_mut(0)[0] = tau;
-        let by = Jacobian::of(&*self.system.guess, &table, &self.parameters).by;
-        let mut by = by.rows(self.system.layout.x, self.system.layout.u).into_owned();
-        let [first, last] = self.system.interval;
-        let duration = last - first;
-        let ends = &self.ends_by;
-        let by_tau = by.column(0) / if duration > 0.0 { duration } else { f64::INFINITY };
-        by.column_mut(0).copy_from(&by_tau);
-        for parameter in 0..self.system.layout.p {
-            let moved = (1.0 - tau) * ends[(0, parameter)] + tau * ends[(1, parameter)];
-            let mut column = by.column_mut(1 + parameter);
-            column -= &by_tau * moved;
-        }
-        by
     }
 
     /// `dx(t0)/dp`.

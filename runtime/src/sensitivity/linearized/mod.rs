@@ -1,6 +1,7 @@
 //! A tape, linearised: each step and each event as a linear map, and the product of all, which
 //! solves the variational equation.
 
+mod controls;
 pub(crate) mod event;
 pub(crate) mod linearization;
 mod reset;

@@ -3,10 +3,10 @@
 
 use super::event::EventOnTape;
 use super::linearization::{Jacobian, Linearizer};
-use crate::simulate::{Instant, Kind, Mode, Tape};
+use crate::simulate::{Instant, Kind, Mode, Regime, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-/// The derivatives of the state after an event by the state, the time and the inputs `(u, p)`
+/// The derivatives of the state after an event by the state, the time and the inputs `(U, p)`
 /// before it.
 pub(crate) struct Reset {
     pub by_state: DMatrix<f64>,
@@ -17,15 +17,16 @@ pub(crate) struct Reset {
 impl Reset {
     pub fn new(linearizer: &Linearizer, tape: &Tape, event: &EventOnTape) -> Self {
         let states = event.before.state.len();
+        let regime = &tape.regimes[event.before.regime];
         let mut reset = Reset {
             by_state: DMatrix::identity(states, states),
             by_time: DVector::zeros(states),
-            by_inputs: DMatrix::zeros(states, linearizer.inputs()),
+            by_inputs: DMatrix::zeros(states, linearizer.inputs(regime)),
         };
         let mut from = event.before;
         for change in event.changes {
             if let Kind::Jump(jump) = change.kind {
-                reset.then(&jump_slopes(linearizer, tape, from, jump));
+                reset.then(&jump_slopes(linearizer, tape, from, (jump, regime)));
             }
             if change.after.time == event.before.time {
                 from = &change.after;
@@ -33,7 +34,7 @@ impl Reset {
         }
         let gap = event.after.time - event.before.time;
         if gap > 0.0 {
-            reset.then(&straight_on(linearizer, tape, from, gap));
+            reset.then(&straight_on(linearizer, tape, from, (gap, regime)));
         }
         for slopes in rest_slopes(linearizer, tape, event) {
             reset.then(&slopes);
@@ -41,7 +42,7 @@ impl Reset {
         reset
     }
 
-    /// Puts a map with the derivatives `[t | x | u | p]` behind.
+    /// Puts a map with the derivatives `[t | x | U | p]` behind.
     fn then(&mut self, slopes: &DMatrix<f64>) {
         let states = self.by_time.len();
         let by_state = slopes.columns(1, states);
@@ -52,16 +53,30 @@ impl Reset {
     }
 }
 
-/// `r_(t | x | u | p)` of one jump.
-fn jump_slopes(linearizer: &Linearizer, tape: &Tape, from: &Instant, jump: usize) -> DMatrix<f64> {
+/// `r_(t | x | U | p)` of one jump, with the `U` of a regime.
+fn jump_slopes(
+    linearizer: &Linearizer,
+    tape: &Tape,
+    from: &Instant,
+    (jump, regime): (usize, &Regime),
+) -> DMatrix<f64> {
     let states = from.state.len();
     let all = jacobian(linearizer, tape, from, &*linearizer.system.resets).by;
-    all.view((jump * states, 0), (states, 1 + states + linearizer.inputs())).into_owned()
+    let all = linearizer.spread(all, regime, from.time);
+    all.view((jump * states, 0), (states, 1 + states + linearizer.inputs(regime))).into_owned()
 }
 
-/// Where jumps accumulate the state goes straight on until their limit: `x + gap f`.
-fn straight_on(linearizer: &Linearizer, tape: &Tape, from: &Instant, gap: f64) -> DMatrix<f64> {
-    let mut slopes = linearizer.at_instant(tape, from).by() * gap;
+/// Where jumps accumulate the state goes straight on until their limit: `x + gap f`, with the
+/// controls of the regime before.
+fn straight_on(
+    linearizer: &Linearizer,
+    tape: &Tape,
+    from: &Instant,
+    (gap, before): (f64, &Regime),
+) -> DMatrix<f64> {
+    let regime = Regime { segment: before.segment, ..tape.regimes[from.regime].clone() };
+    let x = DVector::from_column_slice(&from.state);
+    let mut slopes = linearizer.at(&regime, &from.selectors, from.time, &x).by() * gap;
     (0..from.state.len()).for_each(|state| slopes[(state, 1 + state)] += 1.0);
     slopes
 }
@@ -75,15 +90,18 @@ fn rest_slopes(linearizer: &Linearizer, tape: &Tape, event: &EventOnTape) -> Vec
     let states = event.after.state.len();
     let psi = jacobian(linearizer, tape, event.before, &*linearizer.system.switching).by;
     let rates = jacobian(linearizer, tape, event.before, &*linearizer.system.rates).by;
-    let columns = 1 + states + linearizer.inputs();
-    let [psi, rates] = [psi, rates].map(|by| by.row(surface).columns(0, columns).into_owned());
+    let columns = 1 + states + linearizer.inputs(old);
+    let [psi, rates] = [psi, rates].map(|by| {
+        let by = linearizer.spread(by, old, event.before.time);
+        by.row(surface).columns(0, columns).into_owned()
+    });
     let along = psi.columns(1, states).into_owned();
     let mut pushes = rates.columns(1, states).into_owned();
     (0..states).filter(|i| !new.held.contains(i)).for_each(|i| pushes[i] = 0.0);
     vec![correction(&along, &psi), correction(&pushes, &rates)]
 }
 
-/// The derivative of `x - a c / |a|^2` where `c = 0`, given `c_(t | x | u | p)`.
+/// The derivative of `x - a c / |a|^2` where `c = 0`, given `c_(t | x | U | p)`.
 fn correction(along: &RowDVector<f64>, slopes: &RowDVector<f64>) -> DMatrix<f64> {
     let states = along.len();
     let mut matrix = DMatrix::zeros(states, slopes.len());

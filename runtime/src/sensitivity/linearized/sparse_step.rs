@@ -1,6 +1,6 @@
-//! One step of the explicit pair where every selector is given: most steps of most tapes. Its
-//! stages keep their Jacobians as the compiled function gives them, sparse and in one piece of
-//! memory; the equations are those of [`super::step`].
+//! One step of the explicit pair where every selector is given and no control changes: most steps
+//! of most tapes. Its stages keep their Jacobians as the compiled function gives them, sparse and in
+//! one piece of memory; the equations are those of [`super::step`].
 
 use super::linearization::Linearizer;
 use crate::problem::Columns;
@@ -35,7 +35,7 @@ impl<'l> SparseStep<'l> {
     pub fn fits(linearizer: &Linearizer, regime: &Regime, rule: Rule) -> bool {
         let is_given = |mode: &Mode| matches!(mode, Mode::Below | Mode::Above);
         let is_plain = regime.held.is_empty() && regime.modes.iter().all(is_given);
-        is_plain && rule == Rule::Explicit && !linearizer.is_guessed()
+        is_plain && rule == Rule::Explicit && !linearizer.is_curved(regime)
     }
 
     /// Takes the step again.
@@ -55,7 +55,7 @@ impl<'l> SparseStep<'l> {
             rates[stage] = first_row(values);
             entries.extend((0..pattern.len()).map(|entry| derivatives.column(entry)[0]));
         }
-        SparseStep { h, pattern, entries, states, inputs: linearizer.inputs() }
+        SparseStep { h, pattern, entries, states, inputs: linearizer.inputs(regime) }
     }
 
     /// The entries of a stage: row, what by, value.

@@ -2,7 +2,7 @@
 //!
 //! The derivative of the stages that were computed, not of the solution (H. G. Bock's internal
 //! differentiation), so forward and adjoint differ by rounding only. With `A_i = f*_x` and `G_i =
-//! f*_(u,p)` at stage `i`
+//! f*_(U,p)` at stage `i`
 //!
 //! ```text
 //! Y_i = S + h sum_j a_ij K_j,    K_j = A_j Y_j + g_j,    g_j = G_j W,    S+ = S + h sum_j b_j K_j
@@ -71,7 +71,7 @@ pub(crate) struct LinearStep {
     pub points: Vec<(f64, DVector<f64>)>,
     /// `I - h a_ij A_i` of an implicit method.
     implicit: Option<LU<f64, Dyn, Dyn>>,
-    /// How many of `(u, p)` there are.
+    /// How many of `(U, p)` there are.
     inputs: usize,
 }
 
@@ -91,7 +91,7 @@ impl LinearStep {
             stages: Vec::new(),
             points: Vec::new(),
             implicit: None,
-            inputs: linearizer.inputs(),
+            inputs: linearizer.inputs(regime),
         };
         match rule {
             Rule::Explicit | Rule::Straight => step.take_explicit(linearizer, regime, start),
@@ -234,7 +234,7 @@ impl LinearStep {
         sum
     }
 
-    /// The adjoint before the step and the derivative by `(u, p)`.
+    /// The adjoint before the step and the derivative by `(U, p)`.
     pub fn adjoint(&self, after: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
         let mut pulled = match &self.implicit {
             None => vec![DVector::zeros(0); self.stages.len()],

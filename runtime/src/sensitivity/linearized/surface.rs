@@ -21,7 +21,7 @@ pub(crate) struct Projection {
     along: DMatrix<f64>,
     /// `d`.
     normals: DMatrix<f64>,
-    /// `psi_(u, p)`.
+    /// `psi_(U, p)`.
     by_inputs: DMatrix<f64>,
 }
 
@@ -37,9 +37,9 @@ impl Projection {
         let point = linearizer.at(regime, &at.selectors, at.time, &x);
         let table = linearizer.table(regime, &point.selectors, at.time, &x);
         let switching = Jacobian::of(&*linearizer.system.switching, &table, &linearizer.parameters);
-        let by = switching.by.select_rows(&sliding);
+        let by = linearizer.spread(switching.by.select_rows(&sliding), regime, at.time);
         let normals = by.columns(1, layout.x).into_owned();
-        let by_inputs = by.columns(1 + layout.x, layout.u + layout.p).into_owned();
+        let by_inputs = by.columns(1 + layout.x, linearizer.inputs(regime)).into_owned();
         let directions = point.by_selectors().select_columns(&sliding);
         let inverse = (&normals * &directions).try_inverse()?;
         Some(Projection { surfaces: sliding, along: directions * inverse, normals, by_inputs })
@@ -55,7 +55,7 @@ impl Projection {
         x - &self.along * (&self.normals * x + bent)
     }
 
-    /// The adjoint before the projection and the derivative by `(u, p)`.
+    /// The adjoint before the projection and the derivative by `(U, p)`.
     pub fn adjoint(&self, after: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
         let along = self.along.tr_mul(after);
         (after - self.normals.tr_mul(&along), -self.by_inputs.tr_mul(&along))

@@ -1,6 +1,6 @@
 //! The tape, linearised piece by piece.
 //!
-//! Each piece is a linear map `S+ = M S + N W`, with `W` the directions of `(u, p)` that act in it;
+//! Each piece is a linear map `S+ = M S + N W`, with `W` the directions of `(U, p)` that act in it;
 //! forward sensitivities apply the maps in order, the adjoint applies their transposes in reverse.
 
 use super::event::{EventOnTape, LinearEvent};
@@ -95,7 +95,7 @@ impl<'t> LinearPiece<'t> {
         }
     }
 
-    /// `S+`, given the directions of `(u, p)` in a regime.
+    /// `S+`, given the directions of `(U, p)` in a regime.
     pub fn forward(&self, s: &DMatrix<f64>, w: &dyn Fn(&Regime) -> DMatrix<f64>) -> DMatrix<f64> {
         let inputs = w(self.regime);
         let after = match &self.map {

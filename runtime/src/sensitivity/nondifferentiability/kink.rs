@@ -1,7 +1,7 @@
 //! A trajectory that stays on a kink of the right side which is no surface: only derivatives of one
 //! side are known there.
 //!
-//! With `e = 0` at the kink, it does no harm where nothing moves `e`: where `e_(x, u, p)` is a
+//! With `e = 0` at the kink, it does no harm where nothing moves `e`: where `e_(x, U, p)` is a
 //! combination of the normals of the surfaces that the state slides on.
 
 use super::{TANGENT, TOUCHING};
@@ -40,15 +40,16 @@ pub(crate) fn first_kink(linearizer: &Linearizer, tape: &Tape) -> Option<Kink> {
 
 /// Whether a kink is met almost along itself, so that the second derivative of the time is nothing
 /// to rely on; or together with another event, so that their order is not fixed; or moved by
-/// controls that follow the guess.
+/// controls that change with time.
 pub(crate) fn is_doubtful(linearizer: &Linearizer, tape: &Tape, at: usize) -> bool {
     let Piece::Event { cause: Cause::CrossesKink(kink), before, .. } = &tape.pieces[at] else {
         return false;
     };
-    let controls = linearizer.system.layout.controls();
+    let regime = &tape.regimes[before.regime];
+    let controls = linearizer.layout(regime).controls();
     let here = Here::new(linearizer, tape, before);
     let follows =
-        linearizer.is_guessed() && here.by.row(*kink).columns_range(controls).amax() > 0.0;
+        linearizer.is_curved(regime) && here.by.row(*kink).columns_range(controls).amax() > 0.0;
     let is_near = |piece: &Piece| {
         let [first, last] = linearizer.system.interval;
         matches!(piece, Piece::Event { before: other, .. } if (other.time - before.time).abs() <= TOUCHING * (last - first))
@@ -60,11 +61,11 @@ pub(crate) fn is_doubtful(linearizer: &Linearizer, tape: &Tape, at: usize) -> bo
 /// The kinks at one instant.
 struct Here {
     e: DVector<f64>,
-    /// `e_(t, x, u, p, s)`
+    /// `e_(t, x, U, p, s)`
     by: DMatrix<f64>,
     state: DVector<f64>,
     rate: DVector<f64>,
-    /// `psi_(x, u, p)` of the surfaces that the state slides on.
+    /// `psi_(x, U, p)` of the surfaces that the state slides on.
     normals: DMatrix<f64>,
 }
 
@@ -76,7 +77,8 @@ impl Here {
         let system = linearizer.system;
         let Jacobian { values, by } = Jacobian::of(&*system.kinks, &table, &linearizer.parameters);
         let switching = Jacobian::of(&*system.switching, &table, &linearizer.parameters).by;
-        let moving = 1..system.layout.selectors().start;
+        let [by, switching] = [by, switching].map(|by| linearizer.spread(by, regime, at.time));
+        let moving = 1..linearizer.layout(regime).selectors().start;
         let normals = switching.select_rows(&sliding(regime)).columns_range(moving).into_owned();
         Here { e: values, by, state, rate: linearizer.rate_at_instant(tape, at), normals }
     }

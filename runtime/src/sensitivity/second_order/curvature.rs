@@ -1,13 +1,13 @@
 //! Second derivatives of the right side in a regime, selectors eliminated, along pairs of
 //! directions.
 //!
-//! With `W_i` a direction of `(t, x, u, p)` completed by `s_i = s_w W_i`
+//! With `W_i` a direction of `(t, x, U, p)` completed by the controls and `s_i = s_w W_i`
 //!
 //! ```text
 //! f*_ww[W_i, W_j] = f_zz[W_i, W_j] + f_s s_ij + f*_u u_ij,     s_ij = -r_s^-1 (r_zz[W_i, W_j])
 //! ```
 //!
-//! where `u_ij` is the curvature of controls that follow the guess.
+//! where `u_ij` is the curvature of controls that change with time.
 
 use crate::problem::{Columns, Function};
 use crate::sensitivity::linearized::linearization::{Jacobian, Linearization, Linearizer, sliding};
@@ -68,9 +68,18 @@ impl Hessians {
     }
 }
 
+/// A direction.
+pub(crate) struct Completed {
+    /// `[t | x | u | p | s]`.
+    pub whole: DVector<f64>,
+    /// How the rate of the controls moves with the numbers that make them.
+    slope: DVector<f64>,
+}
+
 /// The right side at one point to the second order.
 pub(crate) struct Curvature<'l, 'a> {
     linearizer: &'l Linearizer<'a>,
+    regime: &'l Regime,
     point: &'l Linearization,
     flow: Hessians,
     /// Second derivatives of the rates of the sliding surfaces, and `-f_s r_s^-1`.
@@ -82,7 +91,7 @@ impl<'l, 'a> Curvature<'l, 'a> {
     pub fn new(
         linearizer: &'l Linearizer<'a>,
         point: &'l Linearization,
-        regime: &Regime,
+        regime: &'l Regime,
         time: f64,
         x: &DVector<f64>,
     ) -> Self {
@@ -91,40 +100,40 @@ impl<'l, 'a> Curvature<'l, 'a> {
         let sliding = sliding(regime);
         let rates =
             if sliding.is_empty() { None } else { rates(linearizer, point, &table, sliding) };
-        Curvature { linearizer, point, flow, rates, time }
+        Curvature { linearizer, regime, point, flow, rates, time }
     }
 
-    /// A direction `(t, x, u, p)` with the controls that follow the guess and the selectors: `[t |
-    /// x | u | p | s]`.
-    pub fn complete(&self, direction: &DVector<f64>) -> DVector<f64> {
-        let layout = self.linearizer.system.layout;
-        let mut whole = direction.clone().resize_vertically(layout.inputs(), 0.0);
-        if self.linearizer.is_guessed() {
-            let slopes = self.linearizer.guess_slopes(self.time);
-            let parameters = direction.rows(layout.parameters().start, layout.p);
-            let moved = slopes.column(0) * direction[0] + slopes.columns(1, layout.p) * parameters;
-            whole.rows_mut(layout.controls().start, layout.u).copy_from(&moved);
-        }
+    /// A direction `(t, x, U, p)` with what follows it.
+    pub fn complete(&self, direction: &DVector<f64>) -> Completed {
+        let mut completed = self.linearizer.completed(direction, self.regime, self.time);
         if !self.point.selectors_by.is_empty() {
             let selectors = &self.point.selectors_by * direction;
-            whole.rows_mut(layout.selectors().start, layout.s).copy_from(&selectors);
+            let layout = self.linearizer.system.layout;
+            completed.whole.rows_range_mut(layout.selectors()).copy_from(&selectors);
         }
-        whole
+        completed
     }
 
     /// `f*_ww` along two completed directions.
-    pub fn along(&self, a: &DVector<f64>, b: &DVector<f64>) -> DVector<f64> {
-        let mut sum = self.flow.along(a, b);
+    pub fn along(&self, a: &Completed, b: &Completed) -> DVector<f64> {
+        let mut sum = self.flow.along(&a.whole, &b.whole);
         if let Some((hessians, sliding, push)) = &self.rates {
-            sum += push * hessians.along(a, b).select_rows(sliding);
+            sum += push * hessians.along(&a.whole, &b.whole).select_rows(sliding);
         }
-        if self.linearizer.is_guessed() {
-            let layout = self.linearizer.system.layout;
-            let by = self.point.by();
-            let by_controls = by.columns(layout.controls().start, layout.u);
-            sum += by_controls * self.linearizer.guess_curvature(self.time, a, b);
+        if self.linearizer.is_curved(self.regime) {
+            let bent = self.linearizer.control_curvature(self.regime, self.time, [a, b], 0.0);
+            sum += self.by_controls() * bent;
         }
         sum
+    }
+
+    /// `f*_u`: what the numbers of a polynomial contribute to it are parts of 1.
+    fn by_controls(&self) -> DMatrix<f64> {
+        let own = self.linearizer.layout(self.regime).controls();
+        let count = self.linearizer.system.layout.u;
+        let by = self.point.by();
+        let blocks = own.clone().step_by(count).map(|first| by.columns(first, count));
+        blocks.fold(DMatrix::zeros(by.nrows(), count), |sum, block| sum + block)
     }
 }
 
@@ -154,30 +163,68 @@ impl Linearizer<'_> {
         Hessians::of(&*self.system.start_of, &Columns::new(0, 1), &self.parameters).along(a, b)
     }
 
-    /// `u_ij` of controls that follow the guess, along two directions `[t | x | u | p | ...]`.
-    fn guess_curvature(&self, time: f64, a: &DVector<f64>, b: &DVector<f64>) -> DVector<f64> {
-        let layout = self.system.layout;
+    /// A direction `(t, x, U, p)` with the controls; selectors do not move.
+    pub fn completed(&self, direction: &DVector<f64>, regime: &Regime, time: f64) -> Completed {
+        let whole = self.whole(direction, regime, time);
+        Completed { whole, slope: self.of_numbers(direction, regime, time, 1) }
+    }
+
+    /// `u_ij` of controls that change with time, where the time itself moves by `t_ij`.
+    pub fn control_curvature(
+        &self,
+        regime: &Regime,
+        time: f64,
+        [a, b]: [&Completed; 2],
+        t_ij: f64,
+    ) -> DVector<f64> {
         let [first, last] = self.system.interval;
+        let [tau_a, tau_b, tau_ab] = self.moved_tau(time, [&a.whole, &b.whole], t_ij);
+        if self.is_guessed() {
+            return self.guess_curvature(time, [tau_a, tau_b, tau_ab], [&a.whole, &b.whole]);
+        }
+        let [t_a, t_b, t_ab] = [tau_a, tau_b, tau_ab].map(|tau| tau * (last - first));
+        let of_order = |order: usize| {
+            DVector::from_vec(self.controls.derivatives(regime.segment, time, order))
+        };
+        of_order(2) * (t_a * t_b) + of_order(1) * t_ab + &a.slope * t_b + &b.slope * t_a
+    }
+
+    /// How normalised time moves along two directions, at first and at second order.
+    fn moved_tau(&self, time: f64, [a, b]: [&DVector<f64>; 2], t_ij: f64) -> [f64; 3] {
+        let ([first, last], layout) = (self.system.interval, self.system.layout);
         let (tau, duration) = (self.tau(time), last - first);
-        let parameters =
-            |whole: &DVector<f64>| whole.rows(layout.parameters().start, layout.p).into_owned();
-        let ends = &self.ends_by;
+        if !self.is_guessed() && !self.is_stretched() {
+            return [a[0] / duration, b[0] / duration, t_ij / duration];
+        }
+        let parameters = |whole: &DVector<f64>| whole.rows_range(layout.parameters()).into_owned();
         let slopes = |whole: &DVector<f64>| {
-            let ends = ends * parameters(whole);
+            let ends = &self.ends_by * parameters(whole);
             let stretch = ends[1] - ends[0];
             ((whole[0] - ends[0] - tau * stretch) / duration, stretch)
         };
         let ((tau_a, stretch_a), (tau_b, stretch_b)) = (slopes(a), slopes(b));
         let bent = self.interval_curvature(&parameters(a), &parameters(b));
-        let tau_ab = (-bent[0] - tau_a * stretch_b - tau_b * stretch_a - tau * (bent[1] - bent[0]))
-            / duration;
-        let mut table = Columns::new(1, 1);
-        table.column_mut(0)[0] = tau;
-        let over_curve = |tau: f64, whole: &DVector<f64>| parameters(whole).insert_row(0, tau);
-        let hessians = Hessians::of(&*self.system.guess, &table, &self.parameters);
+        let ends = bent[0] + tau * (bent[1] - bent[0]);
+        let tau_ab = (t_ij - ends - tau_a * stretch_b - tau_b * stretch_a) / duration;
+        [tau_a, tau_b, tau_ab]
+    }
+
+    /// The same of controls that follow the guess.
+    fn guess_curvature(
+        &self,
+        time: f64,
+        [tau_a, tau_b, tau_ab]: [f64; 3],
+        [a, b]: [&DVector<f64>; 2],
+    ) -> DVector<f64> {
+        let layout = self.system.layout;
+        let table = Columns::of_point(&[self.tau(time)]);
+        let over_curve = |tau: f64, whole: &DVector<f64>| {
+            whole.rows_range(layout.parameters()).into_owned().insert_row(0, tau)
+        };
+        let guess = &*self.system.guess;
+        let hessians = Hessians::of(guess, &table, &self.parameters);
         let second = hessians.along(&over_curve(tau_a, a), &over_curve(tau_b, b));
-        let by_tau =
-            Jacobian::of(&*self.system.guess, &table, &self.parameters).by.column(0).into_owned();
+        let by_tau = Jacobian::of(guess, &table, &self.parameters).by.column(0).into_owned();
         (second + by_tau * tau_ab).rows(layout.x, layout.u).into_owned()
     }
 }

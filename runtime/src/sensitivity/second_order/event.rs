@@ -1,11 +1,11 @@
 //! The second-order part of an event: to the moved time, through the resets, back to the fixed
 //! time.
 
-use super::curvature::Hessians;
+use super::curvature::{Completed, Hessians};
 use crate::problem::Columns;
 use crate::sensitivity::linearized::event::EventOnTape;
 use crate::sensitivity::linearized::linearization::{Jacobian, Linearization, Linearizer};
-use crate::simulate::{Cause, Instant, Kind, Tape};
+use crate::simulate::{Cause, Instant, Kind, Regime, Tape};
 use nalgebra::{DMatrix, DVector, DVectorView, RowDVector};
 
 /// One vector for each pair of directions.
@@ -57,7 +57,7 @@ pub(crate) struct Moved {
 }
 
 impl SecondOrderEvent<'_> {
-    /// The state that meets the event, from what it is at a fixed time; `directions` are `(t, x, u,
+    /// The state that meets the event, from what it is at a fixed time; `directions` are `(t, x, U,
     /// p)`.
     pub fn meet(&self, s: &DMatrix<f64>, x: &Pairs, directions: &[DVector<f64>]) -> Moved {
         if self.event.cause == Cause::Start {
@@ -85,15 +85,15 @@ impl SecondOrderEvent<'_> {
                 let hessians = Hessians::of(&*system.resets, &table, &self.linearizer.parameters);
                 let whole = self.moved(directions, &moved.s);
                 let (by_state, by_time) = (by.columns(1, states), by.column(0));
+                let by_controls = by.columns_range(system.layout.controls());
                 moved.x = moved.x.map(|i, j, x| {
-                    let bent = hessians
-                        .along(&whole[i], &whole[j])
-                        .rows(jump * states, states)
-                        .into_owned();
-                    by_state * x + by_time * moved.tau.at(i, j)[0] + bent
+                    let (pair, tau) = ([&whole[i], &whole[j]], moved.tau.at(i, j)[0]);
+                    let bent = hessians.along(&pair[0].whole, &pair[1].whole);
+                    let bent = bent.rows(jump * states, states) + by_time * tau;
+                    by_state * x + bent + by_controls * self.control_curvature(pair, tau)
                 });
                 for (i, whole) in whole.iter().enumerate() {
-                    moved.s.set_column(i, &(by * whole));
+                    moved.s.set_column(i, &(by * &whole.whole));
                 }
             }
             from = &change.after;
@@ -156,17 +156,16 @@ impl SecondOrderEvent<'_> {
         let hessians = Hessians::of(&**function, &table, &self.linearizer.parameters);
         let whole = self.moved(directions, s);
         x.map(|i, j, x| {
-            let bent = hessians.along(&whole[i], &whole[j])[row];
+            let bent = hessians.along(&whole[i].whole, &whole[j].whole)[row];
             DVector::from_element(1, -((&normal * x)[0] + bent) / speed)
         })
     }
 
     /// `tau_ij` of a time that is a fixed part of the interval.
     fn clock(&self, directions: &[DVector<f64>]) -> Pairs {
-        let layout = self.linearizer.system.layout;
+        let layout = self.linearizer.layout(self.regime());
         let tau = self.linearizer.tau(self.event.before.time);
-        let parameters =
-            |i: usize| directions[i].rows(layout.parameters().start, layout.p).into_owned();
+        let parameters = |i: usize| directions[i].rows_range(layout.parameters()).into_owned();
         Pairs::new(directions.len(), |i, j| {
             let ends = self.linearizer.interval_curvature(&parameters(i), &parameters(j));
             DVector::from_element(1, (1.0 - tau) * ends[0] + tau * ends[1])
@@ -178,15 +177,28 @@ impl SecondOrderEvent<'_> {
         self.linearizer.table(&self.tape.regimes[at.regime], &at.selectors, at.time, &state)
     }
 
+    /// `u_ij` at the moved time.
+    fn control_curvature(&self, pair: [&Completed; 2], t_ij: f64) -> DVector<f64> {
+        let (regime, time) = (self.regime(), self.event.before.time);
+        if self.linearizer.is_curved(regime) {
+            self.linearizer.control_curvature(regime, time, pair, t_ij)
+        } else {
+            DVector::zeros(self.linearizer.system.layout.u)
+        }
+    }
+
+    fn regime(&self) -> &Regime {
+        &self.tape.regimes[self.event.before.regime]
+    }
+
     /// Directions with the moved time and state, `[t | x | u | p | s]`; selectors enter neither
     /// surfaces nor resets.
-    fn moved(&self, directions: &[DVector<f64>], s: &DMatrix<f64>) -> Vec<DVector<f64>> {
-        let inputs = self.linearizer.system.layout.inputs();
+    fn moved(&self, directions: &[DVector<f64>], s: &DMatrix<f64>) -> Vec<Completed> {
         let one = |(i, direction): (usize, &DVector<f64>)| {
-            let mut whole = direction.clone().resize_vertically(inputs, 0.0);
-            whole[0] = self.tau[i];
-            whole.rows_mut(1, s.nrows()).copy_from(&s.column(i));
-            whole
+            let mut moved = direction.clone();
+            moved[0] = self.tau[i];
+            moved.rows_mut(1, s.nrows()).copy_from(&s.column(i));
+            self.linearizer.completed(&moved, self.regime(), self.event.before.time)
         };
         directions.iter().enumerate().map(one).collect()
     }

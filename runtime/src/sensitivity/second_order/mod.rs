@@ -27,7 +27,7 @@ use super::linearized::surface::Projection;
 use super::nondifferentiability::kink::is_doubtful;
 use crate::problem::Columns;
 use crate::simulate::{Cause, Controls, Instant, Mode, Piece, Regime, Simulation, System, Tape};
-use curvature::{Curvature, Hessians};
+use curvature::{Completed, Curvature, Hessians};
 use event::{Pairs, SecondOrderEvent};
 use nalgebra::{DMatrix, DVector};
 
@@ -44,7 +44,7 @@ pub fn hessian(
     let linearizer = Linearizer::new(system, controls);
     let tape = simulation.tape.as_ref().filter(|tape| !has_no_second_order(tape))?;
     let objective = Objective::new(&linearizer, simulation)?;
-    let directions = Directions::each(system, quantities);
+    let directions = Directions::each(system, controls, quantities);
     let mut second = Second::new(&linearizer, tape, &directions);
     (0..tape.pieces.len()).for_each(|at| second.pass(at));
     if second.leaves_at_start || (0..tape.pieces.len()).any(|at| is_doubtful(&linearizer, tape, at))
@@ -66,7 +66,7 @@ fn has_no_second_order(tape: &Tape) -> bool {
 struct Second<'t> {
     linearizer: &'t Linearizer<'t>,
     tape: &'t Tape,
-    directions: &'t Directions,
+    directions: &'t Directions<'t>,
     s: DMatrix<f64>,
     x: Pairs,
     /// Whether a direction leaves a surface on which the state starts and slides.
@@ -87,7 +87,7 @@ impl<'t> Second<'t> {
         &self.tape.regimes[at.regime]
     }
 
-    /// The directions `(t, x, u, p)` at a fixed time, one for each quantity.
+    /// The directions `(t, x, U, p)` at a fixed time, one for each quantity.
     fn directions_at(&self, regime: &Regime, s: &DMatrix<f64>) -> Vec<DVector<f64>> {
         let inputs = self.directions.inputs(regime);
         let one = |i: usize| {
@@ -125,7 +125,7 @@ impl<'t> Second<'t> {
         let stages = step.stages.iter().zip(&step.points).zip(&at_stages);
         let forcing = stages.map(|((point, (time, state)), s)| {
             let curvature = Curvature::new(self.linearizer, point, regime, *time, state);
-            let whole: Vec<DVector<f64>> =
+            let whole: Vec<Completed> =
                 self.directions_at(regime, s).iter().map(|it| curvature.complete(it)).collect();
             self.x.map(|i, j, _| curvature.along(&whole[i], &whole[j])).columns
         });
@@ -158,9 +158,9 @@ impl<'t> Second<'t> {
         let table = self.linearizer.table(regime, &at.selectors, at.time, &state);
         let hessians =
             Hessians::of(&*self.linearizer.system.switching, &table, &self.linearizer.parameters);
-        let inputs = self.linearizer.system.layout.inputs();
         let whole = self.directions_at(regime, &self.s);
-        let whole: Vec<_> = whole.into_iter().map(|it| it.resize_vertically(inputs, 0.0)).collect();
+        let whole: Vec<_> =
+            whole.iter().map(|it| self.linearizer.whole(it, regime, at.time)).collect();
         self.x = self.x.map(|i, j, x| {
             let bent = hessians.along(&whole[i], &whole[j]);
             projection.correct(x, &bent.select_rows(&projection.surfaces))
@@ -201,8 +201,9 @@ impl<'t> Second<'t> {
         };
         // The cause is of no matter: nothing but the clock moves the end.
         let event = EventOnTape { cause: Cause::Repels, before: &last, after: &last, changes: &[] };
-        let timing = Timing::of_clock(self.linearizer, self.linearizer.system.interval[1]);
         let regime = self.regime(&last);
+        let end = self.linearizer.system.interval[1];
+        let timing = Timing::of_clock(self.linearizer, regime, end);
         let tau = timing.of(&self.s, &self.directions.inputs(regime));
         let second = SecondOrderEvent {
             linearizer: self.linearizer,

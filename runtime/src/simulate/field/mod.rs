@@ -6,6 +6,7 @@
 
 use super::controls::Controls;
 use crate::simulate::tuning::field::{PROJECTED, SOLVED};
+pub(crate) mod curve;
 pub(crate) mod direction;
 mod kink_sides;
 mod memory;
@@ -17,6 +18,7 @@ use super::result::Options;
 use super::system::{System, value};
 use crate::problem::{Columns, Function};
 use crate::simulate::mode::Mode;
+use curve::Curve;
 use memory::Memory;
 use nalgebra::{DMatrix, DVector};
 use normals::Normals;
@@ -43,8 +45,10 @@ pub(crate) struct Field<'a> {
     /// What rounding makes of the terms of each surface, then of each kink.
     pub rounding: Vec<f64>,
     pub evaluations: usize,
-    /// Which row of the controls holds.
-    pub row: Option<usize>,
+    /// Which segment of the controls is followed.
+    pub segment: Option<usize>,
+    /// The controls of that segment, where they change in it.
+    pub curve: Option<Curve<'a>>,
     controls: &'a Controls,
     /// The values of the controls at the last point.
     control: Vec<f64>,
@@ -68,7 +72,8 @@ impl<'a> Field<'a> {
             tolerance: Tolerance::new(options, &system.start),
             rounding: vec![0.0; surfaces + system.kinks.outputs()],
             evaluations: 0,
-            row: None,
+            segment: None,
+            curve: None,
             controls,
             control: vec![0.0; system.layout.u],
             parameters: system.parameter_values(),
@@ -79,11 +84,12 @@ impl<'a> Field<'a> {
         field
     }
 
-    /// From now on the controls of a time hold.
+    /// From now on the controls are those of the segment that begins at a time, or before it.
     pub fn use_controls_of(&mut self, time: f64) {
-        self.row = self.controls.index(time);
-        let row = self.controls.row(self.row);
-        self.control[..row.len()].copy_from_slice(row);
+        self.segment = self.controls.segment(time);
+        self.curve = Curve::new(self.controls, self.segment);
+        let values = self.controls.values(self.segment, time);
+        self.control[..values.len()].copy_from_slice(&values);
     }
 
     pub fn set_mode(&mut self, surface: usize, mode: Mode) {
@@ -114,14 +120,25 @@ impl<'a> Field<'a> {
         &self.control
     }
 
+    /// Those at a time; of the guess at the last point.
+    pub fn control_at(&self, t: f64) -> Vec<f64> {
+        let mut control = self.control.clone();
+        if let Some(curve) = &self.curve {
+            curve.value_into(t, &mut control);
+        }
+        control
+    }
+
     /// The values of all parameters.
     pub fn parameters(&self) -> &[f64] {
         &self.parameters
     }
 
-    /// Guessed controls change all the time.
-    fn follow_guess(&mut self, t: f64) {
-        if self.follows_guess() {
+    /// Guessed controls change all the time, polynomials in time, too.
+    fn follow_controls(&mut self, t: f64) {
+        if let Some(curve) = &self.curve {
+            curve.value_into(t, &mut self.control);
+        } else if self.follows_guess() {
             let guessed = self.system.guessed(self.normalised(t));
             self.control.copy_from_slice(&guessed[self.system.layout.x..]);
         }
@@ -129,7 +146,7 @@ impl<'a> Field<'a> {
 
     /// The next point; with the selectors of the mode if no others are given.
     pub(crate) fn set_point(&mut self, t: f64, x: &[f64], selectors: Option<&[f64]>) {
-        self.follow_guess(t);
+        self.follow_controls(t);
         let selectors = selectors.unwrap_or(&self.selectors);
         let values = std::iter::once(&t).chain(x).chain(&self.control).chain(selectors);
         let stride = self.point.stride();

@@ -10,6 +10,7 @@ use nalgebra::DMatrix;
 /// The functions of the surfaces with their derivatives.
 pub(crate) struct Normals {
     pub psi: Vec<f64>,
+    /// By time, also through controls that are polynomials in time.
     pub by_time: Vec<f64>,
     /// One row for each surface.
     pub by_state: DMatrix<f64>,
@@ -49,8 +50,14 @@ impl Field<'_> {
 
     fn normals_of(&mut self, function: &dyn Function, first: usize, t: f64, x: &[f64]) -> Normals {
         self.set_point(t, x, None);
-        let (psi, matrix) = self.jacobian(function, 0..1 + x.len());
-        let by_time: Vec<f64> = matrix.column(0).iter().copied().collect();
+        let controls = self.system.layout.controls();
+        let (psi, matrix) = self.jacobian(function, 0..controls.end);
+        let mut by_time: Vec<f64> = matrix.column(0).iter().copied().collect();
+        if let Some(curve) = &self.curve {
+            let by_control = matrix.columns_range(controls);
+            let moved = by_control * curve.rates(t);
+            by_time.iter_mut().zip(moved.iter()).for_each(|(by_time, moved)| *by_time += moved);
+        }
         let floors = self.rounding[first..][..psi.len()].to_vec();
         let by_state = matrix.columns(1, x.len()).into_owned();
         let mut normals = Normals { psi, by_time, by_state, floors };

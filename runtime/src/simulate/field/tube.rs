@@ -7,7 +7,7 @@ use crate::simulate::system::{Enclosure, Interval};
 pub(crate) struct Tube {
     /// An interval for each input.
     pub inputs: Vec<Interval>,
-    /// How fast time and states change with the part of the step that is past.
+    /// How fast time, states and controls change with the part of the step that is past.
     pub speeds: Vec<Interval>,
     /// Value and derivatives of what was evaluated last.
     pub ranges: Vec<Interval>,
@@ -24,13 +24,14 @@ impl Tube {
         put(layout.controls().start, field.control());
         put(layout.parameters().start, field.parameters());
         put(layout.selectors().start, &field.selectors);
-        Tube { inputs, speeds: vec![[0.0; 2]; layout.states().end], ranges: Vec::new() }
+        Tube { inputs, speeds: vec![[0.0; 2]; layout.controls().end], ranges: Vec::new() }
     }
 
     /// At one point.
     pub fn at(field: &Field, t: f64, x: &[f64]) -> Self {
         let mut tube = Tube::new(field);
-        let point = std::iter::once(&t).chain(x);
+        let control = field.control_at(t);
+        let point = std::iter::once(&t).chain(x).chain(&control);
         tube.inputs.iter_mut().zip(point).for_each(|(input, value)| *input = [*value; 2]);
         tube
     }

@@ -2,9 +2,9 @@
 //!
 //! A part of a step is done where intervals say that nothing in it is beyond what is known already.
 
-use super::interval::scaled;
 use crate::simulate::field::Field;
 use crate::simulate::field::tube::Tube;
+use crate::simulate::interval::scaled;
 use crate::simulate::result::Extreme;
 use crate::simulate::steps::Step;
 use crate::simulate::system::Enclosure;

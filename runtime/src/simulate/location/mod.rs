@@ -9,7 +9,6 @@
 mod bisection;
 mod discontinuity;
 pub(crate) mod extremes;
-mod interval;
 mod search;
 mod sliding;
 mod tube;

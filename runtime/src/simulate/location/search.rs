@@ -15,11 +15,11 @@
 //!
 //! Any other part is halved, the earlier half first.
 
-use super::interval::{ALL, scaled};
 use super::sliding;
 use super::{Condition, noise, value};
 use crate::simulate::field::Field;
 use crate::simulate::field::tube::Tube;
+use crate::simulate::interval::{ALL, scaled};
 use crate::simulate::steps::Step;
 use crate::simulate::system::Interval;
 use crate::simulate::tuning::search::{FLAT, GOLDEN, MOST_PARTS, ROUNDING, SECTIONS, SLACK};

@@ -2,15 +2,16 @@
 //!
 //! ```text
 //! r(s) = 0:   s_i in s0_i - (r_i(s0) + sum_{j != i} R_ij (S_j - s0_j)) / R_ii
-//! r' = 0:     R s' = -(r_t + r_x x'),   R = dr/ds over S = [-1, 1]^k
+//! r' = 0:     R s' = -(r_t + r_x x' + r_u u'),   R = dr/ds over S = [-1, 1]^k
 //! ```
 //!
 //! Both after multiplication by the inverse of the middle of `R`. R. E. Moore, R. B. Kearfott,
 //! M. J. Cloud: Introduction to Interval Analysis, SIAM 2009, chapter 8. Where a state stands still
-//! or a `Dir` moves, three values stand in for intervals.
+//! or a `Dir` moves, a few values stand in for intervals.
 
-use super::interval::{ALL, around, both, length, minus, plus, quotient, scaled, times};
 use super::search::Signal;
+use crate::simulate::bernstein::{slopes, through};
+use crate::simulate::interval::{ALL, around, both, length, minus, plus, quotient, scaled, times};
 use crate::simulate::system::Interval;
 use nalgebra::DMatrix;
 
@@ -28,13 +29,23 @@ pub(crate) fn bounds(of: &mut Signal, part: [f64; 2], surface: usize) -> [Interv
     enclosed.unwrap_or_else(|| estimated(of, part))
 }
 
-/// From three values, as if they were those of a parabola, with as much beside it.
+/// From a few values, as if they were those of a polynomial, with as much beside it: a parabola, or
+/// of the degree of the controls.
 fn estimated(of: &mut Signal, [from, to]: [f64; 2]) -> [Interval; 2] {
-    let [first, middle, last] = [from, 0.5 * (from + to), to].map(|theta| of.value(theta));
-    let bend = (first - 2.0 * middle + last).abs();
-    let beside = |values: &[f64]| plus(around(values), [-bend, bend]);
-    let slopes = [-3.0 * first + 4.0 * middle - last, first - 4.0 * middle + 3.0 * last];
-    [beside(&[first, middle, last]), scaled(1.0 / (to - from), beside(&slopes))]
+    let degree = of.field.curve.as_ref().map_or(2, |curve| curve.degree().max(2));
+    let nodes: Vec<f64> = (0..=degree).map(|k| k as f64 / degree as f64).collect();
+    let values: Vec<f64> = nodes.iter().map(|node| of.value(from + node * (to - from))).collect();
+    let bend = highest_difference(values.clone());
+    let coefficients = through(&nodes, &values);
+    let beside = |range: &[f64]| plus(around(range), [-bend, bend]);
+    [beside(&coefficients), scaled(1.0 / (to - from), beside(&slopes(&coefficients)))]
+}
+
+fn highest_difference(mut values: Vec<f64>) -> f64 {
+    while values.len() > 1 {
+        values = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    }
+    values[0].abs()
 }
 
 fn enclosed(of: &mut Signal, part: [f64; 2], surface: usize) -> Option<[Interval; 2]> {

@@ -35,11 +35,11 @@ impl Writer {
     /// The place of the regime of a field; a new one only where something has changed.
     fn regime(&mut self, field: &Field) -> usize {
         let Some(tape) = &mut self.tape else { return 0 };
-        let row = field.row;
-        let is_last =
-            |last: &Regime| last.modes == field.modes && last.held == field.held && last.row == row;
+        let now = || (&field.modes, &field.held, field.segment);
+        let is_last = |last: &Regime| (&last.modes, &last.held, last.segment) == now();
         if !tape.regimes.last().is_some_and(is_last) {
-            tape.regimes.push(Regime { modes: field.modes.clone(), held: field.held.clone(), row });
+            let (modes, held, segment) = now();
+            tape.regimes.push(Regime { modes: modes.clone(), held: held.clone(), segment });
         }
         tape.regimes.len() - 1
     }

@@ -177,6 +177,10 @@ impl<'c> TranscribedLink<'c> {
         self.jacobian_moves.iter().map(|entry| self.jacobian.families[entry.target].column)
     }
 
+    pub fn is_linear(&self, row: usize) -> bool {
+        self.link.function.degree(row - self.rows.start + 1) == Degree::Affine
+    }
+
     pub fn place(&self, row: usize) -> Place {
         let origin = self.link.function.origin(row - self.rows.start + 1);
         Place { origin, ..Place::default() }

@@ -252,6 +252,14 @@ impl Nlp for ChainNlp<'_> {
         }
     }
 
+    fn is_linear(&self, row: usize) -> bool {
+        let phase = self.parts.iter().find(|part| part.shape.rows.contains(&row));
+        match phase {
+            Some(part) => part.nlp.is_linear(row - part.shape.rows.start),
+            None => self.links.iter().any(|it| it.rows.contains(&row) && it.is_linear(row)),
+        }
+    }
+
     fn constraint_place(&self, row: usize) -> Place {
         let phase = self.parts.iter().position(|part| part.shape.rows.contains(&row));
         match phase {

@@ -80,13 +80,14 @@ fn after_word(place: &CursorContext<'_>, scope: &Scope) -> Option<Vec<Proposal>>
         ("on", _) if place.item == "jump" => {
             Some(["falling", "rising"].into_iter().map(keyword).collect())
         }
-        (_, "link" | "->") if place.item == "link" => {
+        (_, "link") | ("-", ">") if place.item == "link" => {
             Some(scope.proposals(|kind| kind == Kind::Phase))
         }
         (_, key @ ("kernel" | "scheme")) if place.item == "method" => taken(key),
         (key, "=") if place.block() == Some("method") => {
             taken(key).filter(|it: &Vec<Proposal>| !it.is_empty())
         }
+        (_, "fit") if place.item == "fit" => Some(scope.proposals(|kind| kind == Kind::Data)),
         (_, "metric") => Some(scope.proposals(|kind| kind == Kind::State)),
         // Here a name is made up.
         (

@@ -1,29 +1,17 @@
-//! Controls that are not constant on an interval, as many short pieces that are: what a simulation
-//! can follow.
-//!
-//! A piece has the value of its middle, so that what the pieces miss falls with the square of their
-//! length.
+//! Controls that are polynomials on each interval of a solution, through its nodes.
 
 use crate::record::{NodesRecord, Record, find};
-use fdcc_runtime::lagrange;
+use fdcc_runtime::simulate::{Controls, Polynomials};
+use std::ops::Range;
 
-const PIECES_OF_INTERVAL: usize = 8;
-/// Few intervals of a high order are long.
-const FEWEST_PIECES: usize = 4000;
-
-/// Pieces in each of so many intervals.
-pub(crate) fn pieces_of_one(intervals: usize) -> usize {
-    PIECES_OF_INTERVAL.max(FEWEST_PIECES / intervals.max(1))
-}
-
-/// When pieces begin, and a row of controls for each; an interval is between two of the times.
-pub(crate) fn pieces(
+/// A segment for each interval; an interval is between two of the times.
+pub(crate) fn polynomials(
     record: &Record,
     nodes: &NodesRecord,
     names: &[&str],
-) -> Result<Pieces, String> {
-    let (time, knots) = (record.time, nodes.time);
-    let intervals = time.len().saturating_sub(1);
+) -> Result<Controls, String> {
+    let intervals = record.time.len().saturating_sub(1);
+    let knots = nodes.time;
     if knots.iter().any(|knot| !knot.is_finite()) {
         return Err("the time of a control is no number".into());
     }
@@ -37,28 +25,19 @@ pub(crate) fn pieces(
             record.model
         )
     })?;
-    let count = pieces_of_one(intervals);
-    let mut pieces = Pieces::default();
-    for (k, ends) in time.windows(2).enumerate() {
-        let range = stencil(k);
-        for piece in 0..count {
-            let at = |part: f64| ends[0] + (ends[1] - ends[0]) * part / count as f64;
-            let weights = lagrange::values(&knots[range.clone()], at(piece as f64 + 0.5));
-            let value = |column: &&[f64]| {
-                weights.iter().zip(&column[range.clone()]).map(|(w, u)| w * u).sum()
-            };
-            pieces.times.push(at(piece as f64));
-            pieces.rows.push(columns.iter().map(value).collect());
-        }
+    let ranges: Vec<Range<usize>> = (0..intervals).map(stencil).collect();
+    let ascends = |range: &Range<usize>| knots[range.clone()].is_sorted_by(|a, b| a < b);
+    if let Some(at) = ranges.iter().position(|range| !ascends(range)) {
+        return Err(format!("the times of its controls do not ascend in interval {}", at + 1));
     }
-    Ok(pieces)
-}
-
-/// See [`pieces`].
-#[derive(Default)]
-pub(crate) struct Pieces {
-    pub times: Vec<f64>,
-    pub rows: Vec<Vec<f64>>,
+    let row = |at: usize| columns.iter().map(|column| column[at]).collect();
+    Ok(Controls::Polynomial(Polynomials {
+        times: record.time.to_vec(),
+        ranges,
+        nodes: knots.to_vec(),
+        rows: (0..knots.len()).map(row).collect(),
+        is_stretched: true,
+    }))
 }
 
 fn column<'s>(nodes: &NodesRecord<'s>, name: &str) -> Result<&'s [f64], String> {
@@ -73,7 +52,7 @@ fn column<'s>(nodes: &NodesRecord<'s>, name: &str) -> Result<&'s [f64], String> 
 }
 
 /// Which values an interval sees: of linear controls those at its ends, of polynomials its own.
-fn stencil(knots: usize, intervals: usize) -> Option<impl Fn(usize) -> std::ops::Range<usize>> {
+fn stencil(knots: usize, intervals: usize) -> Option<impl Fn(usize) -> Range<usize>> {
     let is_linear = knots == intervals + 1;
     let own = if is_linear { 1 } else { knots.checked_div(intervals)? };
     let fits = is_linear || own > 0 && own * intervals == knots;
@@ -91,5 +70,13 @@ mod tests {
         assert_eq!(range(12, 4, 1), Some(3..6));
         assert_eq!(range(7, 4, 0), None);
         assert_eq!(range(0, 0, 0), None);
+    }
+
+    #[test]
+    fn two_nodes_at_one_time_are_refused() {
+        let nodes = NodesRecord { time: &[0.0, 1.0, 2.0, 2.0], values: vec![("u", &[0.0; 4])] };
+        let record = Record { time: &[0.0, 1.5, 3.0], ..Record::default() };
+        let refused = polynomials(&record, &nodes, &["u"]).expect_err("two values at one time");
+        assert_eq!(refused, "the times of its controls do not ascend in interval 2");
     }
 }

@@ -1,0 +1,74 @@
+//! `fdcc plot`: signals of a solution for papers, as SVG.
+
+use super::report::failed;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::output::{files, print};
+use crate::page::figures::{Figure, figures};
+use crate::page::{json::Json, svg};
+use clap::Args;
+use std::path::PathBuf;
+
+/// Draw signals of a solution as SVG
+#[derive(Args)]
+pub struct Plot {
+    /// The .sol.json of a solve
+    #[arg(value_name = "SOLUTION")]
+    solution: PathBuf,
+    /// What to draw: a state, a control, a path condition, a report, `costate(x)`, `multiplier(c)`
+    /// or `hamiltonian`; repeatable; all states and controls if left out
+    #[arg(long, value_name = "NAME")]
+    signal: Vec<String>,
+    /// Draw it over this signal instead of over the time
+    #[arg(long, value_name = "NAME", requires = "signal")]
+    over: Option<String>,
+    /// Where the picture is written
+    #[arg(long, value_name = "FILE.svg")]
+    out: PathBuf,
+}
+
+impl Plot {
+    /// Reads the solution and writes the picture.
+    pub fn run(self) -> Exit {
+        match self.write() {
+            Ok(()) => {
+                print(&format!(" wrote {}\n", self.out.display()));
+                Exit::Fine
+            }
+            Err(failure) => failed(&failure),
+        }
+    }
+
+    fn write(&self) -> Result<(), Failure> {
+        if self.out.extension().is_none_or(|it| it != "svg") {
+            let message = "`--out` needs a name that ends in .svg: that is what is written";
+            return Err(Failure::Usage(message.into()));
+        }
+        let document = [Json::read(&self.solution)?];
+        let all = figures(&document);
+        let wanted = self.wanted(&all)?;
+        let picture = match (&self.over, &wanted[..]) {
+            (None, wanted) => svg::over_time(&document[0], wanted),
+            (Some(over), [of]) => svg::over_another(&document[0], of, find(&all, over)?),
+            (Some(_), _) => {
+                return Err(Failure::Usage("`--over` is for one `--signal`".into()));
+            }
+        };
+        files::write_file(&self.out, &picture)
+    }
+
+    fn wanted<'f>(&self, all: &'f [Figure]) -> Result<Vec<&'f Figure>, Failure> {
+        if self.signal.is_empty() {
+            return Ok(all.iter().filter(|it| it.is_usual()).collect());
+        }
+        self.signal.iter().map(|name| find(all, name)).collect()
+    }
+}
+
+fn find<'f>(all: &'f [Figure], name: &str) -> Result<&'f Figure, Failure> {
+    let found = all.iter().find(|figure| figure.signal() == name);
+    found.ok_or_else(|| {
+        let known: Vec<String> = all.iter().map(Figure::signal).collect();
+        Failure::Usage(format!("no signal `{name}`; there are: {}", known.join(", ")))
+    })
+}

@@ -1,0 +1,114 @@
+// The numbers of the page: columns of the embedded documents, in the units in which they are shown.
+"use strict";
+
+const read = (id) => JSON.parse(document.getElementById(id).textContent);
+const page = read("page");
+const solutions = page.names.map((_, at) => read(`solution-${at}`));
+
+/// What stands under some keys of a document.
+const at = (of, keys) => keys.reduce((object, key) => object?.[key], solutions[of]);
+
+/// The values of a state or a costate just before jumps and switches, by the grid point that has
+/// the values after them.
+function valuesBefore(curve, time) {
+  const [group, name] = curve.values;
+  const solution = solutions[curve.of];
+  const all = {
+    states: () => (solution.jumps ?? []).map((it) => ({ time: it.time, value: it.before[name] })),
+    costates: () => (solution.costates_before ?? []).map((it) => ({ time: it.time, value: it.values[name] })),
+  };
+  const before = new Map();
+  for (const jump of all[group]?.() ?? []) {
+    const distance = (k) => Math.abs(time[k] - jump.time);
+    const nearest = time.reduce((best, _, k) => (distance(k) < distance(best) ? k : best), 0);
+    before.set(nearest, jump.value);
+  }
+  return before;
+}
+
+/// Whether a polynomial control may jump between two of its times.
+function jumpsBetween(curve, a, b) {
+  const { jumps, certificate } = solutions[curve.of];
+  const events = [...(jumps ?? []), ...(certificate?.switches ?? [])];
+  return curve.values[0] === "control_nodes" && events.some(({ time }) => a < time && time < b);
+}
+
+/// The pieces of a curve between jumps and gaps: lists of times and of values.
+function pieces(curve, unit) {
+  const time = at(curve.of, curve.time) ?? [];
+  const values = at(curve.of, curve.values) ?? [];
+  const before = valuesBefore(curve, time);
+  const all = [];
+  let piece = { x: [], y: [] };
+  const end = () => {
+    if (piece.x.length) all.push(piece);
+    piece = { x: [], y: [] };
+  };
+  const add = (t, value) => {
+    piece.x.push(t / page.time.si);
+    piece.y.push(value / unit.si);
+  };
+  time.forEach((t, k) => {
+    const value = curve.kind === "steps" ? values[Math.min(k, values.length - 1)] : values[k];
+    if (before.has(k)) {
+      add(t, before.get(k));
+      end();
+    }
+    if (t === time[k - 1] || jumpsBetween(curve, time[k - 1], t)) end();
+    if (value === null || value === undefined) end();
+    else add(t, value);
+  });
+  end();
+  return all;
+}
+
+/// The value of a curve at a time, or nothing outside of it.
+function valueAt(curve, time) {
+  for (const { x, y } of curve.pieces) {
+    const last = x.length - 1;
+    if (time < x[0] || time > x[last]) continue;
+    let [low, high] = [0, last];
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (x[middle] <= time) low = middle;
+      else high = middle;
+    }
+    if (curve.kind === "steps" || high === low) return y[low];
+    return y[low] + ((y[high] - y[low]) * (time - x[low])) / (x[high] - x[low]);
+  }
+  return undefined;
+}
+
+/// A number for people.
+function short(value, digits = 5) {
+  if (value === undefined || !Number.isFinite(value)) return "–";
+  const text = Number(value.toPrecision(digits)).toString();
+  return text.replace("-", "−");
+}
+
+/// Where a plot begins and ends: flat where the values differ by nothing but rounding.
+function rangeOf(values, limits) {
+  let low = Infinity;
+  let high = -Infinity;
+  for (const value of values) {
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  if (low > high) return { low: -1, high: 1, isFlat: true };
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  const isFlat = high - low <= 1e-9 * size || size < 1e-50;
+  if (isFlat) {
+    const middle = size < 1e-50 ? 0 : (low + high) / 2;
+    const room = middle === 0 ? 1 : Math.abs(middle) / 2;
+    [low, high] = [middle - room, middle + room];
+  }
+  for (const limit of limits) {
+    const width = high - low;
+    if (limit >= low - 0.7 * width && limit <= high + 0.7 * width) {
+      low = Math.min(low, limit);
+      high = Math.max(high, limit);
+    }
+  }
+  const margin = 0.06 * (high - low);
+  return { low: low - margin, high: high + margin, isFlat };
+}

@@ -1,0 +1,119 @@
+// A phase portrait: one signal over another, chosen by the reader.
+function choices() {
+  const all = page.figures.filter((figure) => ["States", "Reported"].includes(figure.group));
+  return all.filter((figure) => figure.curves.some((curve) => curve.kind === "line"));
+}
+
+/// The ranges of a plot in which one unit is as long on both axes.
+function toScale(x, y, width, height) {
+  const perPixel = Math.max((x.high - x.low) / width, (y.high - y.low) / height);
+  const around = (range, pixels) => {
+    const middle = (range.low + range.high) / 2;
+    return { low: middle - (perPixel * pixels) / 2, high: middle + (perPixel * pixels) / 2 };
+  };
+  return [around(x, width), around(y, height)];
+}
+
+/// The points of two figures at the same times, a list for each piece of each curve.
+function paired(over, of) {
+  return over.curves.flatMap((curve) => {
+    const isSame = (it) => it.of === curve.of && it.label === curve.label && it.kind === curve.kind;
+    const other = of.curves.find(isSame);
+    if (!other) return [];
+    const [xs, ys] = [pieces(curve, over.unit), pieces(other, of.unit)];
+    const isAligned = xs.length === ys.length && xs.every(({ x }, k) => x.length === ys[k].x.length);
+    const at = (time) => valueAt({ ...other, pieces: ys }, time) ?? null;
+    return xs.map((piece, k) => ({ x: piece.y, y: isAligned ? ys[k].y : piece.x.map(at), curve }));
+  });
+}
+
+function drawPath(chart, index) {
+  const [xs, ys] = chart.data[index];
+  const path = new Path2D();
+  xs.forEach((x, k) => {
+    const place = [chart.valToPos(x, "x", true), chart.valToPos(ys[k], "y", true)];
+    if (k === 0) path.moveTo(...place);
+    else path.lineTo(...place);
+  });
+  return { stroke: path, fill: null, clip: null };
+}
+
+/// A dot where a path begins and a ring where it ends.
+function drawEnds(chart, paths) {
+  const { ctx } = chart;
+  paths.forEach(({ x, y, curve }, at) => {
+    const dot = (k, isFull) => {
+      ctx.save();
+      ctx.beginPath();
+      ctx.arc(chart.valToPos(x[k], "x", true), chart.valToPos(y[k], "y", true), 4.5 * uPlot.pxRatio, 0, 7);
+      ctx.setLineDash([]);
+      ctx.lineWidth = 2 * uPlot.pxRatio;
+      ctx.strokeStyle = seriesOf({ ...curve, pieces: [0] })[0].stroke();
+      ctx.fillStyle = isFull ? ctx.strokeStyle : colour("paper");
+      ctx.fill();
+      ctx.stroke();
+      ctx.restore();
+    };
+    if (paths[at - 1]?.curve !== curve) dot(0, true);
+    if (paths[at + 1]?.curve !== curve) dot(x.length - 1, false);
+  });
+}
+
+function drawPortrait(element, over, of, isToScale) {
+  const paths = paired(over, of);
+  const height = Math.round(Math.min(Math.max(element.clientWidth * 0.55, 260), 560));
+  let [x, y] = ["x", "y"].map((key) => rangeOf(paths.flatMap((path) => path[key]), []));
+  if (isToScale) [x, y] = toScale(x, y, element.clientWidth - AXIS, height - 40);
+  element.replaceChildren();
+  element.setAttribute("role", "img");
+  element.setAttribute("aria-label", `${of.name} over ${over.name}`);
+  const titled = (figure) => figure.name + (figure.unit.name ? ` [${figure.unit.name}]` : "");
+  const chart = new uPlot(
+    {
+      mode: 2,
+      width: element.clientWidth,
+      height,
+      legend: { show: false },
+      cursor: { show: false },
+      scales: {
+        x: { time: false, auto: false, range: () => [x.low, x.high] },
+        y: { auto: false, range: () => [y.low, y.high] },
+      },
+      axes: [
+        axis({ label: titled(over), labelSize: 18, size: 40, gap: 3, values: ticks }),
+        axis({ label: titled(of), labelSize: 18, size: AXIS - 12, values: ticks }),
+      ],
+      series: [
+        {},
+        ...paths.map(({ curve }) => ({ ...seriesOf({ ...curve, pieces: [0] })[0], paths: drawPath })),
+      ],
+      hooks: { draw: [(own) => drawEnds(own, paths)] },
+    },
+    [null, ...paths.map((path) => [path.x, path.y])],
+    element,
+  );
+  return { chart, element, height };
+}
+
+/// Two lists to choose from, and the portrait of what is chosen.
+function portrait(element) {
+  const figures = choices();
+  const [over, of, isToScale] = ["over", "of", "to-scale"].map((id) => document.getElementById(id));
+  const option = (figure, at) => new Option(figure.name, at);
+  [over, of].forEach((list) => list.replaceChildren(...figures.map(option)));
+  const first = figures.findIndex((figure) => figure.name.endsWith(".x"));
+  over.value = Math.max(first, 0);
+  of.value = Math.max(first, 0) + 1;
+  isToScale.checked = first >= 0;
+  let own;
+  const draw = () => {
+    if (own) {
+      own.chart.destroy();
+      charts.splice(charts.indexOf(own), 1);
+    }
+    own = drawPortrait(element, figures[over.value], figures[of.value], isToScale.checked);
+    charts.push(own);
+  };
+  [over, of, isToScale].forEach((input) => input.addEventListener("change", draw));
+  draw();
+}

@@ -1,0 +1,109 @@
+//! The pictures of a page: an empty place for each, with its caption.
+
+use super::drawing::Drawing;
+use super::figures::{COSTATES, Figure, HAMILTONIAN, Kind, STATES};
+use super::json::Json;
+use super::tags::{escape, section};
+
+/// What stays in sight while reading: which line is which, the time at the cursor.
+pub fn tools(drawing: &Drawing) -> String {
+    let key = |(at, name): (usize, &String)| {
+        let name = if name.is_empty() { "solution" } else { name };
+        format!("<span class=\"key key-{at}\">{}</span>\n", escape(name))
+    };
+    let mut keys: String = drawing.names.iter().enumerate().map(key).collect();
+    if drawing.figures.iter().any(|it| it.curves.iter().any(|it| it.kind == Kind::Replay)) {
+        keys += "<span class=\"key key-replay\">replay on the true system</span>\n";
+    }
+    format!(
+        "<div class=\"tools\">\n{keys}<span>drag to zoom all plots</span>\n\
+         <button type=\"button\" id=\"whole\">whole time</button>\n\
+         <span class=\"at\" id=\"at\"></span>\n</div>\n\
+         <noscript><p>The plots need JavaScript; the numbers are in the files beside this \
+         page.</p></noscript>\n"
+    )
+}
+
+/// The strips, the plots over time, and one signal over another.
+pub fn pictures(drawing: &Drawing) -> String {
+    let rows = drawing.strips.iter().enumerate().filter(|(_, strips)| !strips.is_empty());
+    let rows: String = rows.map(|(at, _)| strip_figure(drawing, at)).collect();
+    let mut sections = String::new();
+    if !rows.is_empty() {
+        sections += &section("What holds when", &format!("<div class=\"plots\">\n{rows}</div>\n"));
+    }
+    for group in drawing.figures.chunk_by(|a, b| a.group == b.group) {
+        let first = drawing.figures.iter().position(|it| it.group == group[0].group);
+        let first = first.expect("it is one of them");
+        let figures = group.iter().enumerate().map(|(at, figure)| time_figure(figure, first + at));
+        let figures = format!("<div class=\"plots\">\n{}</div>\n", figures.collect::<String>());
+        sections += &section(heading(group[0].group), &figures);
+        if group[0].group == STATES {
+            sections += &portrait(drawing);
+        }
+    }
+    sections
+}
+
+fn heading(group: &str) -> &str {
+    match group {
+        COSTATES => "Costates: what the objective changes by with a state",
+        HAMILTONIAN => "Hamiltonian: running cost, and costates times right side",
+        other => other,
+    }
+}
+
+fn strip_figure(drawing: &Drawing, at: usize) -> String {
+    let name = escape(&drawing.names[at]);
+    format!(
+        "<figure class=\"wide\"><figcaption>{name}<output></output></figcaption>\n\
+         <div class=\"plot\" data-strips=\"{at}\"></div></figure>\n"
+    )
+}
+
+fn time_figure(figure: &Figure, at: usize) -> String {
+    let unit = &figure.unit.name;
+    let unit = if unit.is_empty() { String::new() } else { format!("[{}]", escape(unit)) };
+    format!(
+        "<figure><figcaption>{} <span class=\"unit\">{unit}</span><output></output></figcaption>\n\
+         <div class=\"plot\" data-figure=\"{at}\"></div></figure>\n",
+        escape(&figure.name)
+    )
+}
+
+/// One signal over another, where there are two.
+fn portrait(drawing: &Drawing) -> String {
+    let states = drawing.figures.iter().filter(|it| it.group == STATES).count();
+    if states < 2 {
+        return String::new();
+    }
+    let choice = |id: &str| format!("<select id=\"{id}\"></select>");
+    section(
+        "One over another",
+        &format!(
+            "<p class=\"choice\"><label>draw {}</label> <label>over {}</label> <label><input \
+             type=\"checkbox\" id=\"to-scale\"/> to scale</label></p>\n<figure><div class=\"plot\" \
+             data-portrait=\"\"></div></figure>\n",
+            choice("of"),
+            choice("over")
+        ),
+    )
+}
+
+/// How each of the solves went.
+pub fn convergence(documents: &[Json], names: &[&str]) -> String {
+    let has_any = |it: &(usize, &Json)| !it.1.at("convergence").is_absent();
+    let figure = |(at, _): (usize, &Json)| {
+        format!(
+            "<figure class=\"wide\"><figcaption>{} <span class=\"legend\"></span>\
+             <output></output></figcaption>\n<div class=\"plot\" data-convergence=\"{at}\"></div>\
+             </figure>\n",
+            escape(names[at])
+        )
+    };
+    let figures: String = documents.iter().enumerate().filter(has_any).map(figure).collect();
+    match figures.is_empty() {
+        true => figures,
+        false => section("Convergence", &format!("<div class=\"plots\">\n{figures}</div>\n")),
+    }
+}

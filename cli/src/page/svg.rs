@@ -1,0 +1,217 @@
+//! Plots of a solution for papers, as SVG: the same figures as those of its page, drawn by
+//! plotters.
+
+use super::curves::{Piece, pieces, range};
+use super::drawing::times;
+use super::figures::{Figure, Kind};
+use super::json::Json;
+use super::strips::strips;
+use super::units::{Unit, of_time};
+use crate::output::number::significant;
+use plotters::prelude::*;
+
+/// Coordinates are whole numbers: there are this many for a pixel.
+const FINE: i32 = 4;
+const WIDTH: i32 = 640;
+const HEIGHT: i32 = 210;
+/// Of a plot of one signal over another.
+const TALL: i32 = 400;
+const LEFT: i32 = 64;
+const BELOW: i32 = 40;
+const FONT: i32 = 13;
+
+const PLAN: RGBColor = RGBColor(31, 95, 168);
+const REPLAY: RGBColor = RGBColor(194, 65, 12);
+const LIMIT: RGBColor = RGBColor(179, 38, 30);
+const HELD: RGBColor = RGBColor(226, 160, 18);
+const GRID: RGBColor = RGBColor(222, 225, 230);
+const INK: RGBColor = RGBColor(60, 66, 74);
+
+type Place = (f64, f64);
+type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+type Chart<'a, 'b> = ChartContext<
+    'a,
+    SVGBackend<'b>,
+    Cartesian2d<plotters::coord::types::RangedCoordf64, plotters::coord::types::RangedCoordf64>,
+>;
+
+/// What is drawn in one plot.
+struct Plot {
+    titles: [String; 2],
+    ranges: [[f64; 2]; 2],
+    curves: Vec<Traced>,
+    limits: Vec<f64>,
+    /// Spans of the first axis that are coloured.
+    shaded: Vec<[f64; 2]>,
+}
+
+/// Figures of a document over time, one below the other.
+pub fn over_time(document: &Json, figures: &[&Figure]) -> String {
+    let time = of_time(document);
+    let across = times(std::slice::from_ref(document)).map(|it| it / time.si);
+    let plot = |figure: &&Figure| {
+        let curves = curves(document, figure);
+        let limits: Vec<f64> = figure.limits.iter().map(|it| it.value / figure.unit.si).collect();
+        let points = || curves.iter().flat_map(|(_, pieces)| pieces.iter().flatten());
+        Plot {
+            titles: [titled("t", &time), titled(&figure.signal(), &figure.unit)],
+            ranges: [across, range(points().map(|it| it.1), &limits)],
+            limits,
+            shaded: held(document, time.si),
+            curves,
+        }
+    };
+    drawn(&figures.iter().map(plot).collect::<Vec<_>>(), HEIGHT)
+}
+
+/// The pieces of a curve between its jumps, and what it is of.
+type Traced = (Kind, Vec<Piece>);
+
+/// One figure over another.
+pub fn over_another(document: &Json, of: &Figure, over: &Figure) -> String {
+    let [ys, xs] = [of, over].map(|figure| curves(document, figure));
+    let paired = |((kind, ys), (_, xs)): (&Traced, &Traced)| {
+        let pairs = xs.iter().zip(ys);
+        let piece =
+            |(xs, ys): (&Piece, &Piece)| xs.iter().zip(ys).map(|(x, y)| (x.1, y.1)).collect();
+        (*kind, pairs.map(piece).collect())
+    };
+    let curves: Vec<Traced> = ys.iter().zip(&xs).map(paired).collect();
+    let points = || curves.iter().flat_map(|(_, pieces)| pieces.iter().flatten());
+    let plot = Plot {
+        titles: [titled(&over.signal(), &over.unit), titled(&of.signal(), &of.unit)],
+        ranges: [range(points().map(|it| it.0), &[]), range(points().map(|it| it.1), &[])],
+        limits: Vec::new(),
+        shaded: Vec::new(),
+        curves,
+    };
+    drawn(&[plot], TALL)
+}
+
+fn curves(document: &Json, figure: &Figure) -> Vec<Traced> {
+    figure.curves.iter().map(|curve| (curve.kind, pieces(document, figure, curve))).collect()
+}
+
+fn titled(name: &str, unit: &Unit) -> String {
+    if unit.name.is_empty() { name.to_owned() } else { format!("{name} [{}]", unit.name) }
+}
+
+/// When any surface is held.
+fn held(document: &Json, second: f64) -> Vec<[f64; 2]> {
+    let strips = strips(std::slice::from_ref(document), 0);
+    let surfaces = strips.iter().filter(|strip| strip.of == "surface");
+    let spans = surfaces.flat_map(|strip| &strip.spans).filter(|span| span.mode == "held");
+    spans.map(|span| [span.from / second, span.to / second]).collect()
+}
+
+fn drawn(plots: &[Plot], height: i32) -> String {
+    let size = [WIDTH, height * plots.len() as i32].map(|it| (it * FINE) as u32);
+    let mut text = String::new();
+    {
+        let area = SVGBackend::with_string(&mut text, (size[0], size[1])).into_drawing_area();
+        let rows = area.split_evenly((plots.len(), 1));
+        let drawn = area
+            .fill(&WHITE)
+            .and_then(|()| plots.iter().zip(&rows).try_for_each(|(plot, row)| plot.draw(row)));
+        drawn.expect("a text takes everything");
+    }
+    let [width, height] = size.map(|it| it as i32 / FINE);
+    let fine = format!("width=\"{}\" height=\"{}\"", size[0], size[1]);
+    text.replacen(&fine, &format!("width=\"{width}\" height=\"{height}\""), 1)
+}
+
+type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
+impl Plot {
+    fn draw(&self, area: &Area) -> Drawn {
+        let [[left, right], [low, high]] = self.ranges;
+        let mut chart = ChartBuilder::on(area)
+            .margin(10 * FINE)
+            .x_label_area_size(BELOW * FINE)
+            .y_label_area_size(LEFT * FINE)
+            .build_cartesian_2d(left..right, low..high)?;
+        let shade = HELD.mix(0.15).filled();
+        chart.draw_series(
+            self.shaded.iter().map(|[from, to]| Rectangle::new([(*from, low), (*to, high)], shade)),
+        )?;
+        self.draw_axes(&mut chart)?;
+        for limit in self.limits.iter().filter(|it| (low..=high).contains(*it)) {
+            dashed(&mut chart, &[(left, *limit), (right, *limit)], LIMIT)?;
+        }
+        for (kind, pieces) in &self.curves {
+            for piece in pieces {
+                match kind {
+                    Kind::Replay => dashed(&mut chart, piece, REPLAY)?,
+                    _ => line(&mut chart, piece, PLAN)?,
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn draw_axes(&self, chart: &mut Chart) -> Drawn {
+        let font = ("sans-serif", FONT * FINE).into_font().color(&INK);
+        let [across_label, up_label] = self.ranges.map(|range| move |it: &f64| label(*it, range));
+        let [across, up] = &self.titles;
+        chart
+            .configure_mesh()
+            .label_style(font.clone())
+            .axis_desc_style(font)
+            .axis_style(GRID.stroke_width(FINE as u32))
+            .bold_line_style(GRID.stroke_width(FINE as u32))
+            .light_line_style(TRANSPARENT)
+            .x_labels(8)
+            .y_labels(6)
+            .x_label_formatter(&across_label)
+            .y_label_formatter(&up_label)
+            .x_desc(across)
+            .y_desc(up)
+            .draw()
+    }
+}
+
+/// Of a tick: 0 where nothing but rounding is left.
+fn label(value: f64, [low, high]: [f64; 2]) -> String {
+    let is_zero = value.abs() < 1e-9 * (high - low);
+    significant(if is_zero { 0.0 } else { value }, 5)
+}
+
+fn line(chart: &mut Chart, points: &[Place], colour: RGBColor) -> Drawn {
+    let style = colour.stroke_width(2 * FINE as u32);
+    chart.draw_series(LineSeries::new(points.iter().copied(), style)).map(|_| ())
+}
+
+fn dashed(chart: &mut Chart, points: &[Place], colour: RGBColor) -> Drawn {
+    let (style, size) = (colour.stroke_width(FINE as u32 * 3 / 2), 6 * FINE as u32);
+    chart.draw_series(DashedLineSeries::new(points.iter().copied(), size, size, style)).map(|_| ())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::figures::figures;
+    use super::*;
+
+    /// Coordinates are whole numbers of 32 bits, which a far limit exceeds.
+    #[test]
+    fn zero_is_a_round_number() {
+        let of = |value| label(value, [-0.25, 0.25]);
+        assert_eq!([of(-2.8e-17), of(0.1), of(1e-3)], ["0", "0.1", "0.001"]);
+    }
+
+    #[test]
+    fn limits_far_away_are_left_out() {
+        let text = r#"{"time":[0,1],"states":{"x":[0,1]},"bounds":{"x":[-1e30,1.2]}}"#;
+        let document = [serde_json::from_str(text).expect("it is JSON")];
+        let figures = figures(&document);
+        let svg = over_time(&document[0], &[&figures[0]]);
+        let limit = format!("#{:02X}{:02X}{:02X}", LIMIT.0, LIMIT.1, LIMIT.2);
+        let height = |line: &str| {
+            let points = line.split("points=\"").nth(1).expect("a line has points");
+            points.split([',', ' ']).nth(1).map(str::to_owned)
+        };
+        let dashes = svg.lines().filter(|line| line.contains(&limit));
+        let mut heights: Vec<_> = dashes.map(height).collect();
+        heights.dedup();
+        assert_eq!(heights.len(), 1, "one of two limits: {svg}");
+    }
+}

@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""Takes the pictures of docs/report.md: pages of solutions in Chromium, at three widths; and of the site, if it was built
+(docs/site/build).
+
+    cargo build --release && python3 docs/pictures/make.py target/release/fdcc
+
+Needs Chromium, and Pillow to make the files small.
+"""
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from PIL import Image
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = Path(__file__).resolve().parent
+# Pages, and the widths and heights at which they are looked at.
+SIZES = [(400, 1500), (1200, 1700), (1920, 1500)]
+MODELS = ["racecar", "block", "bounce", "slider_fit"]
+SWEEP = ["sweep", "block.fdc", "mu=0.1,0.2,0.3", "--out", "all", "--trajectories", "--log", "none"]
+DARK = ["--force-dark-mode", "--blink-settings=preferredColorScheme=0"]
+
+
+def shoot(page, picture, width, height, *options):
+    """Chromium windows are not narrower than 500 pixels: a narrow page stands in a frame."""
+    if width < 500:
+        frame = page.with_name(f"{page.stem}.frame.html")
+        frame.write_text(
+            f'<body style="margin:0"><iframe src="{page.name}" width="{width}" height="{height}" '
+            'style="border:0"></iframe>'
+        )
+        page = frame
+    subprocess.run(
+        ["chromium", "--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
+         "--virtual-time-budget=4000", f"--window-size={max(width, 500)},{height}",
+         *options, f"--screenshot={picture}", f"file://{page}"],
+        check=True, capture_output=True,
+    )
+    image = Image.open(picture).convert("RGB").crop((0, 0, width, height))
+    image.quantize(128, dither=Image.Dither.NONE).save(picture, optimize=True)
+
+
+def shoot_site():
+    pages = ROOT / "target" / "site" / "html" / "docs"
+    if pages.exists():
+        shoot(pages / "reference" / "jumps.html", FOLDER / "site-1280.png", 1280, 1000)
+        shoot(pages / "recipes" / "index.html", FOLDER / "site-400.png", 400, 1000, *DARK)
+
+
+def main():
+    fdcc = str(Path(sys.argv[1]).resolve())
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+
+        def run(*arguments):
+            subprocess.run([fdcc, *arguments], check=True, capture_output=True, cwd=folder)
+
+        for name in MODELS:
+            run("solve", str(ROOT / "models" / f"{name}.fdc"), "--out", ".", "--log", "none")
+        (folder / "block.fdc").write_text((ROOT / "models" / "block.fdc").read_text())
+        run(*SWEEP)
+        run("report", *(f"all/block.{row}.sol.json" for row in (1, 2, 3)), "--out", "sweep.html")
+        for name in [*MODELS, "sweep"]:
+            for width, height in SIZES:
+                picture = FOLDER / f"{name}-{width}.png"
+                shoot(folder / f"{name}.html", picture, width, height)
+        dark = FOLDER / "block-dark.png"
+        shoot(folder / "block.html", dark, 1200, 1000, *DARK)
+    shoot_site()
+
+
+main()

@@ -1,0 +1,230 @@
+//! What the estimates of a fit are worth: standard errors and correlations of the unknowns, what
+//! remains of the measurements, and what they do not determine.
+//!
+//! Where a sum of squares `J = sum r^2` is minimised whose residuals are in standard deviations,
+//! the estimates have the covariance
+//!
+//! ```text
+//!     C = 2 H^-1      and in an unknown unit     C = 2 s^2 H^-1,    s^2 = J / (rows - directions)
+//! ```
+//!
+//! with the Hessian `H` of the Lagrangian over the unknowns, all else following. That holds for
+//! measurements with independent normal errors, of a model that is right, as far as it is linear in
+//! the unknowns within their errors; a bound that is active holds its unknown. (Bard, Nonlinear
+//! parameter estimation, 1974, chapter 7.)
+
+use crate::Solution;
+use fdcc_compiler::{Model, residuals};
+use fdcc_runtime::nlp::Covariance;
+use fdcc_runtime::problem::{Chain, Problem};
+use fdcc_runtime::solution::terms_of_rows;
+use fdcc_runtime::solve::{ChainOutcome, Outcome, covariance_of_chain};
+
+/// What is known of the unknowns.
+///
+/// ```
+/// use fdcc::{Model, Options};
+///
+/// let model = Model::from_file("../models/slider_fit.fdc")?.with_method("N", 40)?;
+/// let solution = model.solve(&Options::default())?;
+/// let estimates = solution.estimates().expect("squares over rows of data are minimised");
+/// let mu = estimates.unknowns.iter().find(|it| it.name == "mu").expect("it is unknown");
+/// assert!(mu.standard_error.is_some_and(|error| (mu.value - 0.3).abs() < 3.0 * error));
+/// # Ok::<(), fdcc::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Estimates {
+    /// All unknowns of the model, in their order.
+    pub unknowns: Vec<Estimate>,
+    /// One row and one column for each of them; 0 beside what has no standard error.
+    pub correlations: Vec<Vec<f64>>,
+    /// Unknowns of which the data determine only some combination; one by itself has no influence.
+    pub undetermined: Vec<Vec<String>>,
+    /// What remains of the measurements, signal by signal.
+    pub residuals: Vec<Residual>,
+    /// How many measurements there are.
+    pub rows: usize,
+    /// How many there are more than directions in which the answer could change; none if there are
+    /// no more.
+    pub degrees_of_freedom: Option<usize>,
+    /// Sum of the squares of all residuals.
+    pub sum_of_squares: f64,
+    /// The root of that over the degrees of freedom: about 1 where the model is right and the
+    /// residuals are in standard deviations.
+    pub deviation: Option<f64>,
+    /// Whether the standard deviations of the measurements are known; else they are taken from what
+    /// remains.
+    pub is_known: bool,
+    /// Whether the answer is a strict minimum in what the data determine; else nothing has a
+    /// standard error.
+    pub is_minimum: bool,
+}
+
+/// One unknown.
+///
+/// ```
+/// let model = fdcc::Model::from_file("../models/slider_fit.fdc")?.with_method("N", 40)?;
+/// let estimates = model.solve(&fdcc::Options::default())?.estimates().expect("it is a fit");
+/// for it in &estimates.unknowns {
+///     println!("{} {} +- {:?}", it.name, it.value, it.standard_error);
+/// }
+/// # assert!(estimates.unknowns.iter().all(|it| it.standard_error.is_some()));
+/// # Ok::<(), fdcc::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Estimate {
+    /// Its name.
+    pub name: String,
+    /// Its value, in SI.
+    pub value: f64,
+    /// In its unit; none where the data or the model say too little.
+    pub standard_error: Option<f64>,
+    /// Whether a bound holds it.
+    pub is_at_bound: bool,
+}
+
+/// What remains of a signal.
+///
+/// ```
+/// let model = fdcc::Model::from_file("../models/slider_fit.fdc")?.with_method("N", 40)?;
+/// let estimates = model.solve(&fdcc::Options::default())?.estimates().expect("it is a fit");
+/// let [x, v] = &estimates.residuals[..] else { panic!("two signals were measured") };
+/// assert_eq!((x.name.as_str(), v.name.as_str(), x.values.len()), ("x", "v", 21));
+/// # Ok::<(), fdcc::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Residual {
+    /// The phase, if the model has any.
+    pub phase: Option<String>,
+    /// The signal or column, or the text of a sum.
+    pub name: String,
+    /// The data set.
+    pub data: String,
+    /// The time of each row.
+    pub time: Vec<f64>,
+    /// The signal less what was measured, times the root of the weight: their squares are added up.
+    pub values: Vec<f64>,
+    /// Whether something was measured in a row.
+    pub is_measured: Vec<bool>,
+}
+
+impl Solution {
+    /// What the estimates of a fit are worth; none where the answer is no solution, or what is
+    /// minimised over rows of data is no sum of squares.
+    pub fn estimates(&self) -> Option<Estimates> {
+        let (residuals, is_known) = self.residuals();
+        if residuals.is_empty() || !self.status().is_solved() {
+            return None;
+        }
+        let measured = residuals.iter().flat_map(|it| &it.is_measured);
+        let rows = measured.filter(|it| **it).count();
+        let values = residuals.iter().flat_map(|it| &it.values);
+        let sum_of_squares: f64 = values.map(|it| it * it).sum();
+        let unknowns: Vec<(&str, f64)> = self.unknowns().collect();
+        let unit = if is_known { 1.0 } else { sum_of_squares / rows.max(1) as f64 };
+        let known = self.with_chain(|chain, outcome| covariance_of_chain(chain, outcome, unit));
+        let directions = known.as_ref().map(|it| it.directions);
+        let degrees_of_freedom =
+            directions.and_then(|it| rows.checked_sub(it)).filter(|it| *it > 0);
+        let deviation = degrees_of_freedom.map(|it| (sum_of_squares / it as f64).sqrt());
+        let scale = if is_known { Some(1.0) } else { deviation };
+        let errors = known.as_ref().map_or(Vec::new(), errors);
+        let error = |at: usize| Some(errors.get(at).copied()?? * scale?);
+        let estimate = |(at, (name, value)): (usize, &(&str, f64))| Estimate {
+            name: (*name).into(),
+            value: *value,
+            standard_error: error(at),
+            is_at_bound: known.as_ref().is_some_and(|it| it.is_at_bound[at]),
+        };
+        Some(Estimates {
+            unknowns: unknowns.iter().enumerate().map(estimate).collect(),
+            is_minimum: known.is_some(),
+            undetermined: known.as_ref().map_or(Vec::new(), |it| undetermined(it, &unknowns)),
+            correlations: known.map_or(Vec::new(), |it| correlations(&it, &errors)),
+            residuals,
+            rows,
+            degrees_of_freedom,
+            sum_of_squares,
+            deviation,
+            is_known,
+        })
+    }
+
+    /// What remains of all signals, and whether their standard deviations are known.
+    fn residuals(&self) -> (Vec<Residual>, bool) {
+        let phases = match self.in_phases() {
+            Some((model, chain, outcome)) if !model.phases.is_empty() => {
+                model.phases.iter().zip(&chain.phases).zip(&outcome.phases)
+            }
+            _ => return of_phase(self.model().meaning(), &self.problem, &self.outcome, None),
+        };
+        let is_written = !self.phases().is_empty();
+        let (mut all, mut is_known) = (Vec::new(), true);
+        for ((phase, problem), outcome) in phases {
+            let name = is_written.then_some(phase.place.name.as_str());
+            let (own, known) = of_phase(&phase.model, problem, outcome, name);
+            all.extend(own);
+            is_known &= known;
+        }
+        (all, is_known)
+    }
+
+    fn with_chain<T>(&self, act: impl FnOnce(&Chain, &ChainOutcome) -> T) -> T {
+        match self.in_phases() {
+            Some((_, chain, outcome)) => act(chain, outcome),
+            None => {
+                let outcome = ChainOutcome::single(self.outcome.clone());
+                act(&Chain::single(self.problem.clone()), &outcome)
+            }
+        }
+    }
+}
+
+/// Standard errors for residuals in standard deviations; none of what is not determined.
+fn errors(known: &Covariance) -> Vec<Option<f64>> {
+    let is_open = |at: &usize| known.undetermined.iter().any(|it| it.contains(at));
+    let has_one = |at: &usize| !known.is_at_bound[*at] && !is_open(at);
+    let error = |at: usize| (2.0 * known.inverse[at][at]).max(0.0).sqrt();
+    (0..known.inverse.len()).map(|at| has_one(&at).then(|| error(at))).collect()
+}
+
+/// Of all pairs that have standard errors; 1 of each with itself.
+fn correlations(known: &Covariance, errors: &[Option<f64>]) -> Vec<Vec<f64>> {
+    let entry = |a: usize, b: usize| match errors[a].zip(errors[b]) {
+        _ if a == b => 1.0,
+        Some((one, other)) if one * other > 0.0 => 2.0 * known.inverse[a][b] / (one * other),
+        _ => 0.0,
+    };
+    let all = 0..errors.len();
+    all.clone().map(|a| all.clone().map(|b| entry(a, b)).collect()).collect()
+}
+
+/// The names of what is not determined, direction by direction.
+fn undetermined(known: &Covariance, unknowns: &[(&str, f64)]) -> Vec<Vec<String>> {
+    let mut all = known.undetermined.clone();
+    all.sort();
+    let named = |it: &Vec<usize>| it.iter().map(|at| unknowns[*at].0.to_owned()).collect();
+    all.iter().map(named).collect()
+}
+
+/// What remains in one phase.
+fn of_phase(
+    model: &Model,
+    problem: &Problem,
+    outcome: &Outcome,
+    phase: Option<&str>,
+) -> (Vec<Residual>, bool) {
+    let all = residuals(model);
+    let is_known = all.iter().all(|it| it.is_fit);
+    let rows: Vec<_> = all.iter().map(|it| &it.rows).collect();
+    let terms = terms_of_rows(problem, &outcome.solution, &outcome.trajectory.parameters, &rows);
+    let of_signal = all.iter().zip(terms).map(|(it, terms)| Residual {
+        phase: phase.map(str::to_owned),
+        name: it.name.clone(),
+        data: it.data.clone(),
+        time: it.rows.times.clone(),
+        values: terms.iter().zip(&it.weights).map(|(term, weight)| term * weight).collect(),
+        is_measured: it.weights.iter().map(|weight| *weight > 0.0).collect(),
+    });
+    (of_signal.collect(), is_known)
+}

@@ -1,0 +1,124 @@
+//! A model in closed loop: solved again and again, from the state that was measured.
+
+use super::{Compiled, Options, Solution, Start};
+use crate::error::Error;
+use crate::model::{Model, Value};
+
+/// Solves a model once for each state that it is told, from the solution before with its
+/// multipliers. The smoothed problem is solved.
+///
+/// ```
+/// let model = fdcc::Model::from_text("hop", "time t in [0, 1]
+/// param goal = 0.5
+/// state x start 0
+/// control u in [-1, 1]
+/// dynamics { x' = u }
+/// minimize integral((x - goal)^2 + 0.1 * u^2)")?;
+/// let mut controller = model.controller(20)?;
+/// let mut x = 0.0;
+/// for _ in 0..100 {
+///     let solution = controller.step(&[x], &fdcc::Options::default())?;
+///     let [u, until] = [solution.control("u").expect("it is declared")[0], solution.time()[1]];
+///     x += until * u;
+/// }
+/// assert!((x - 0.5).abs() < 1e-2);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
+pub struct Controller {
+    compiled: Compiled,
+    last: Option<Solution>,
+}
+
+impl Model {
+    /// A controller with so many intervals.
+    ///
+    /// # Errors
+    ///
+    /// A model that cannot be solved, that has phases, jumps or conditions at times, or that names
+    /// no width of its layers.
+    pub fn controller(&self, intervals: usize) -> Result<Controller, Error> {
+        let model = self.with_method("N", intervals as f64)?;
+        let meaning = model.meaning();
+        let refuse = |what: &str| Err(Error::Call(format!("a controller needs a model {what}")));
+        if !meaning.phases.is_empty() || !meaning.jumps.is_empty() {
+            return refuse("without phases or jumps");
+        }
+        if !meaning.at_times.is_empty() {
+            return refuse("without conditions at times");
+        }
+        if !meaning.surfaces.is_empty() && meaning.method.sigma.is_none() {
+            return refuse("that names the width of its layers, as in `method { sigma = 0.05 }`");
+        }
+        Ok(Controller { compiled: model.compile()?, last: None })
+    }
+}
+
+impl Controller {
+    /// The model with its values.
+    pub fn model(&self) -> &Model {
+        self.compiled.model()
+    }
+
+    /// The names of the states, in the order in which [`step`](Controller::step) takes them.
+    pub fn states(&self) -> impl Iterator<Item = &str> {
+        let states = self.compiled.problem().states.iter();
+        states.filter(|state| !state.hidden).map(|state| state.name.as_str())
+    }
+
+    /// The names of the controls.
+    pub fn controls(&self) -> impl Iterator<Item = &str> {
+        self.compiled.problem().controls.iter().map(|control| control.name.as_str())
+    }
+
+    /// The last solution.
+    pub fn last(&self) -> Option<&Solution> {
+        self.last.as_ref()
+    }
+
+    /// Gives a parameter another value, from the next step on; nothing is compiled anew.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Model::with`].
+    pub fn set(&mut self, name: &str, value: impl Into<Value>) -> Result<(), Error> {
+        self.compiled = self.compiled.model().with(name, value)?.compile()?;
+        Ok(())
+    }
+
+    /// Solves from a state, in SI; the options say when to stop, and not where to begin. The first
+    /// value of a control is meant until the second point of the grid. That nothing was found is a
+    /// status.
+    ///
+    /// # Errors
+    ///
+    /// Another number of values than there are states, or one that is not finite.
+    pub fn step(&mut self, state: &[f64], options: &Options) -> Result<&Solution, Error> {
+        let count = self.states().count();
+        if state.len() != count || state.iter().any(|value| !value.is_finite()) {
+            return Err(Error::Call(format!("a state has {count} finite values")));
+        }
+        self.compiled.begin_at(state);
+        let again = |earlier| Options { start: Start::Solution(earlier), ..*options };
+        let found = match &self.last {
+            Some(earlier) => self.compiled.solve(&again(earlier))?,
+            None => self.compiled.solve(&Options { start: Start::Guess, ..*options })?,
+        };
+        let is_lost = !found.is_solved() && (options.stop)().is_continue() && self.last.is_some();
+        let found = match is_lost {
+            true => self.compiled.solve(&Options { start: Start::Guess, ..*options })?,
+            false => found,
+        };
+        Ok(self.last.insert(found))
+    }
+}
+
+impl Compiled {
+    /// Gives the states that are shown other values at the first time.
+    fn begin_at(&mut self, state: &[f64]) {
+        for problem in self.chain.phases.iter_mut().chain([&mut self.problem]) {
+            let shown = problem.states.iter().map(|it| !it.hidden).zip(&mut problem.start);
+            let starts = shown.filter(|(is_shown, _)| *is_shown).map(|(_, start)| start);
+            starts.zip(state).for_each(|(start, value)| *start = Some(*value));
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! Whether a hold is worth having where a surface is crossed, or where the motion begins or ends on
+//! it: the derivative of the objective by its duration, without solving.
+//!
+//! A phase of length `delta` with other modes takes that time from its neighbour, so that
+//!
+//! ```text
+//! dJ/d delta = min over u, s of H' (t, x, p)  -  min over u, s of H (t, x, p)
+//! ```
+//!
+//! with `H'` of the hold and `H` of the neighbour, and the costate `p` on that side of the event on
+//! which no surface is left or reached that is not held. Where nothing holds the surface there is
+//! no `H'`.
+
+use super::polynomials::polynomials;
+use super::tuning::insertion::{INSIDE, ON_SURFACE, RELEASED, SETTLED};
+use super::{Located, Search};
+use fdcc_compiler::{
+    Mode, Model, PhaseOfModes, Point, compile_chain, hamiltonian, is_uncontrolled, may_hold,
+};
+use fdcc_runtime::nlp::{Status, Stop};
+use fdcc_runtime::problem::Chain;
+use fdcc_runtime::solve::warm_start::{Earlier, from_earlier};
+use fdcc_runtime::solve::{Outcome, solve_chain};
+use std::ops::ControlFlow;
+
+/// A hold that could be inserted.
+pub(super) struct Candidate {
+    /// It begins where this phase does; behind the last one where there is none of this number.
+    pub before: usize,
+    pub held: PhaseOfModes,
+    /// The derivative of the objective of the minimisation problem by its duration, for the size of
+    /// the Hamiltonian; less than nothing where it is not known.
+    pub slope: f64,
+    /// Whether nothing else is possible there: neither side can be left to.
+    pub is_forced: bool,
+}
+
+impl Search<'_> {
+    /// All holds that could be inserted.
+    pub(super) fn candidates(&self, located: &Located) -> Vec<Candidate> {
+        let whole = located.whole(self.problem).outcome;
+        let phases = &located.structure.phases;
+        let mut all = Vec::new();
+        let begin = self.held_where(&phases[0], &|at| is_zero(&whole, at, |column| column[0]));
+        all.extend(begin.map(|held| (0, held)));
+        for j in 1..phases.len() {
+            // Beside a jump nothing is inserted.
+            let pair = phases[j].jump.is_none().then(|| [&phases[j - 1], &phases[j]]);
+            let held = pair.and_then(|[before, after]| self.crossing(before, after));
+            all.extend(held.map(|held| (j, held)));
+        }
+        let last = phases.len() - 1;
+        let end = |column: &[f64]| column[column.len() - 1];
+        let held = self.held_where(&phases[last], &|at| is_zero(&whole, at, end));
+        all.extend(held.map(|held| (last + 1, held)));
+        let candidate = |(before, held)| {
+            let (slope, is_forced) = self.worth(located, before, &held);
+            Candidate { before, held, slope, is_forced }
+        };
+        let mut candidates: Vec<Candidate> = all.into_iter().map(candidate).collect();
+        for j in (1..phases.len()).filter(|j| phases[*j].jump.is_none()) {
+            candidates.extend(self.one_by_one(j, [&phases[j - 1], &phases[j]]));
+            candidates.extend(self.releases(located, j));
+        }
+        candidates
+    }
+
+    /// Where something else changes during a hold whose selector is at its bound: a moment off the
+    /// surface, before it or behind it.
+    fn releases(&self, located: &Located, j: usize) -> Vec<Candidate> {
+        let phases = &located.structure.phases;
+        let [before, after] = [&phases[j - 1], &phases[j]];
+        let mut next = self.model.controls.len();
+        let mut all = Vec::new();
+        for (at, switch) in self.model.switches().iter().enumerate() {
+            if before.modes[at] != Mode::Held {
+                continue;
+            }
+            let last = polynomials(&located.outcome.phases[j - 1].trajectory, next);
+            let selector = last.last().map_or(0.0, |it| it.at(it.ends[1]));
+            next += switch.surfaces.len();
+            let is_at_bound = selector.abs() > RELEASED && !switch.is_ball;
+            let goes_on = after.modes[at] == Mode::Held && before.modes != after.modes;
+            for beside in [before, after].into_iter().filter(|_| is_at_bound && goes_on) {
+                let mut off = PhaseOfModes { jump: None, ..beside.clone() };
+                off.modes[at] = if selector > 0.0 { Mode::Above } else { Mode::Below };
+                off.release();
+                let slope = f64::NEG_INFINITY;
+                all.push(Candidate { before: j, held: off, slope, is_forced: false });
+            }
+        }
+        all
+    }
+
+    /// Where several surfaces change their modes at once: all modes on the way from one phase to the
+    /// next. Each surface has a multiplier of its own there, so that their worth is tried.
+    fn one_by_one(&self, j: usize, [before, after]: [&PhaseOfModes; 2]) -> Vec<Candidate> {
+        let changes = |at: &usize| before.modes[*at] != after.modes[*at];
+        let changing: Vec<usize> = (0..before.modes.len()).filter(changes).collect();
+        if changing.len() < 2 {
+            return Vec::new();
+        }
+        let may_hold = may_hold(self.model);
+        let mut all = vec![before.modes.clone()];
+        for at in changing {
+            let mut options = vec![before.modes[at], after.modes[at], Mode::Held];
+            options.dedup();
+            options.truncate(if may_hold[at] && !options[..2].contains(&Mode::Held) {
+                3
+            } else {
+                2
+            });
+            let with = |modes: &Vec<Mode>, mode: Mode| {
+                let mut own = modes.clone();
+                own[at] = mode;
+                own
+            };
+            let each = all.iter().flat_map(|modes| options.iter().map(|it| with(modes, *it)));
+            all = each.collect();
+        }
+        all.retain(|modes| *modes != before.modes && *modes != after.modes);
+        let candidate = |modes| {
+            let mut held = PhaseOfModes { modes, jump: None, ..after.clone() };
+            held.release();
+            Candidate { before: j, held, slope: f64::NEG_INFINITY, is_forced: false }
+        };
+        all.into_iter().map(candidate).collect()
+    }
+
+    /// The modes of a phase with those surfaces held that are 0.
+    fn held_where(
+        &self,
+        phase: &PhaseOfModes,
+        is_zero: &dyn Fn(usize) -> bool,
+    ) -> Option<PhaseOfModes> {
+        let mut held = phase.clone();
+        for (switch, may_hold) in may_hold(self.model).into_iter().enumerate() {
+            if may_hold && is_zero(switch) {
+                held.modes[switch] = Mode::Held;
+            }
+        }
+        held.release();
+        held.jump = None;
+        (held.modes != phase.modes).then_some(held)
+    }
+
+    /// A hold between two phases on different sides of a surface.
+    fn crossing(&self, before: &PhaseOfModes, after: &PhaseOfModes) -> Option<PhaseOfModes> {
+        let mut held = after.clone();
+        let modes = held.modes.iter_mut().zip(&before.modes).zip(may_hold(self.model));
+        for ((mode, before), may_hold) in modes {
+            if may_hold && mode != before && *mode != Mode::Held && *before != Mode::Held {
+                *mode = Mode::Held;
+            }
+        }
+        held.release();
+        (held.modes != after.modes).then_some(held)
+    }
+
+    /// The derivative of the objective, and whether there is no other way.
+    fn worth(&self, located: &Located, before: usize, held: &PhaseOfModes) -> (f64, bool) {
+        let phases = &located.structure.phases;
+        let beside = before.min(phases.len() - 1);
+        let outcome = &located.outcome.phases[beside];
+        let ends = |column: &[f64]| match before == beside {
+            true => [column[0], column[1]],
+            false => [column[column.len() - 1], column[column.len() - 2]],
+        };
+        let point = self.point(outcome, &|column| ends(column)[0]);
+        // A `Dir` has a direction only off its surface.
+        let inside = self.point(outcome, &|column| {
+            let [end, next] = ends(column);
+            end + INSIDE * (next - end)
+        });
+        let size = outcome.trajectory.hamiltonian.size.max(f64::MIN_POSITIVE);
+        let mut own = phases[beside].clone();
+        own.arcs.fill(fdcc_compiler::Arc::Free);
+        let least = |of: &PhaseOfModes, point: &Point| match at_point(self.model, of, point) {
+            Some(chain) => least(&chain, None, self.stop),
+            None => Least::Unknown,
+        };
+        match (least(held, &point), least(&own, &inside)) {
+            (Least::Nothing, _) => (f64::INFINITY, false),
+            (Least::Value(least, controls), own_least) => {
+                let is_forced = before == 0 && self.is_settled([&own, held], &controls);
+                match own_least {
+                    Least::Value(own, _) => ((least - own) / size, is_forced),
+                    _ => (f64::NEG_INFINITY, is_forced),
+                }
+            }
+            _ => (f64::NEG_INFINITY, false),
+        }
+    }
+
+    /// Whether a selector that is held in the second phase and not in the first is inside of its
+    /// bounds, and no control would change that.
+    fn is_settled(&self, [own, held]: [&PhaseOfModes; 2], controls: &[f64]) -> bool {
+        let mut next = self.model.controls.len();
+        let switches = self.model.switches().into_iter().zip(is_uncontrolled(self.model));
+        for (at, (switch, is_uncontrolled)) in switches.enumerate() {
+            if held.modes[at] == Mode::Held {
+                let is_inside = controls[next].abs() < 1.0 - SETTLED;
+                if own.modes[at] != Mode::Held && is_uncontrolled && is_inside {
+                    return true;
+                }
+                next += switch.surfaces.len();
+            }
+        }
+        false
+    }
+
+    /// What a trajectory is where a phase begins, or ends.
+    pub(super) fn point(&self, outcome: &Outcome, end: &dyn Fn(&[f64]) -> f64) -> Point {
+        let own = &outcome.trajectory;
+        let of = |columns: &[Vec<f64>]| -> Vec<f64> {
+            columns.iter().take(self.model.states.len()).map(|it| end(it)).collect()
+        };
+        let unknowns = self.problem.unknowns.iter().map(|it| own.parameters[it.parameter]);
+        Point {
+            time: end(&own.time),
+            states: of(&own.states),
+            costates: of(&own.costates),
+            unknowns: unknowns.collect(),
+        }
+    }
+}
+
+/// The problem of the least Hamiltonian at a point; nothing where its terms are not known.
+pub(super) fn at_point(model: &Model, of: &PhaseOfModes, point: &Point) -> Option<Chain> {
+    let model = hamiltonian(model, of, point).ok().flatten()?;
+    compile_chain(&model).ok()
+}
+
+/// The least Hamiltonian of the minimisation problem, near these controls if they are given.
+pub(super) fn least(
+    chain: &Chain,
+    near: Option<&[f64]>,
+    stop: &(dyn Fn() -> ControlFlow<Stop> + Sync),
+) -> Least {
+    let problem = &chain.phases[0];
+    let start = near.map(|controls| {
+        let control = |at: usize| Some(vec![*controls.get(at)?]);
+        let earlier = Earlier {
+            states: vec![None; problem.states.len()],
+            controls: (0..problem.controls.len()).map(control).collect(),
+            unknowns: Vec::new(),
+            widths: Vec::new(),
+            times: vec![0.0, 1.0],
+        };
+        from_earlier(chain, &[earlier])
+    });
+    match solve_chain(chain, start, &mut |_, _| stop()) {
+        Ok(outcome) if outcome.solution.status.is_solved() => {
+            let controls = outcome.phases[0].trajectory.controls.iter().map(|it| it[0]);
+            Least::Value(outcome.solution.objective, controls.collect())
+        }
+        Ok(outcome) if outcome.solution.status == Status::Infeasible => Least::Nothing,
+        _ => Least::Unknown,
+    }
+}
+
+/// The least value of a Hamiltonian, with the controls and selectors there.
+pub(super) enum Least {
+    Value(f64, Vec<f64>),
+    /// No control holds the surface.
+    Nothing,
+    /// It could not be found.
+    Unknown,
+}
+
+/// Whether the function of a surface is 0 at an end.
+fn is_zero(whole: &Outcome, surface: usize, end: fn(&[f64]) -> f64) -> bool {
+    let own = &whole.trajectory.switching[surface];
+    let largest = own.iter().fold(0.0, |a: f64, it| a.max(it.abs()));
+    end(own).abs() <= ON_SURFACE * largest
+}

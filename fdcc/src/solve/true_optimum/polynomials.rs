@@ -1,0 +1,91 @@
+//! Controls that are polynomials on the intervals of a phase: what they do between their nodes.
+
+use super::structure::width;
+use super::tuning::polynomials::{AT_BOUND, PART_ROUGH, PARTS, ROUGH};
+use fdcc_compiler::Arc;
+use fdcc_runtime::lagrange;
+use fdcc_runtime::problem::{Bounds, Problem, Variable};
+use fdcc_runtime::solution::Trajectory;
+use fdcc_runtime::solve::Outcome;
+
+/// A control on one interval.
+pub(super) struct Polynomial<'t> {
+    /// First and last time.
+    pub ends: [f64; 2],
+    /// Of its nodes.
+    time: &'t [f64],
+    values: &'t [f64],
+}
+
+/// A control on each interval of a phase; nothing where it is no polynomial.
+pub(super) fn polynomials(trajectory: &Trajectory, control: usize) -> Vec<Polynomial<'_>> {
+    let Some(nodes) = &trajectory.nodes else { return Vec::new() };
+    let count = nodes.time.len() / (trajectory.time.len() - 1);
+    let values = nodes.values[control].chunks(count);
+    let ends = trajectory.time.windows(2).map(|pair| [pair[0], pair[1]]);
+    let pieces = ends.zip(nodes.time.chunks(count)).zip(values);
+    pieces.map(|((ends, time), values)| Polynomial { ends, time, values }).collect()
+}
+
+impl Polynomial<'_> {
+    /// Its value at a time.
+    pub fn at(&self, time: f64) -> f64 {
+        lagrange::values(self.time, time).iter().zip(self.values).map(|(w, u)| w * u).sum()
+    }
+
+    /// By how much it leaves its bounds.
+    fn violation(&self, bounds: Bounds) -> f64 {
+        let [from, to] = self.ends;
+        let part = |part: usize| from + (to - from) * part as f64 / PARTS as f64;
+        let all = (0..=PARTS).map(|it| bounds.violation(self.at(part(it))));
+        all.fold(0.0, f64::max)
+    }
+
+    /// The bound at or beyond which it is where it begins or ends, or at the node next to that.
+    pub fn bound_at(&self, end: usize, bounds: Bounds) -> Arc {
+        let slack = AT_BOUND * width(bounds, self.values);
+        let node = self.values[end * (self.values.len() - 1)];
+        let ends = [self.at(self.ends[end]), node];
+        match () {
+            () if ends.iter().any(|it| *it < bounds.lower + slack) => Arc::Lower,
+            () if ends.iter().any(|it| *it > bounds.upper - slack) => Arc::Upper,
+            () => Arc::Free,
+        }
+    }
+
+    /// The largest distance from the straight line that is nearest in the mean.
+    fn off_line(&self) -> f64 {
+        let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
+        let (time_mean, value_mean) = (mean(self.time), mean(self.values));
+        let moment = |a: &[f64], a_mean: f64| -> f64 {
+            self.time.iter().zip(a).map(|(t, a)| (t - time_mean) * (a - a_mean)).sum()
+        };
+        let slope = moment(self.values, value_mean) / moment(self.time, time_mean);
+        let gap = |(t, value): (&f64, &f64)| (value - value_mean - slope * (t - time_mean)).abs();
+        self.time.iter().zip(self.values).map(gap).fold(0.0, f64::max)
+    }
+}
+
+/// By how much a control leaves its bounds between its nodes, for their distance.
+pub(crate) fn beyond_bounds(controls: &[Variable], trajectory: &Trajectory) -> f64 {
+    let of = |(at, control): (usize, &Variable)| {
+        let width = width(control.bounds, &trajectory.controls[at]);
+        let pieces = polynomials(trajectory, at).into_iter();
+        pieces.map(|it| it.violation(control.bounds) / width).fold(0.0, f64::max)
+    };
+    controls.iter().enumerate().map(of).fold(0.0, f64::max)
+}
+
+/// Whether a control is far from linear on several intervals of a phase. On a singular arc the
+/// objective hardly depends on that, and what is found is nothing but noise.
+pub(super) fn is_rough(between: &Problem, outcome: &Outcome) -> bool {
+    let of = |(at, control): (usize, &Variable)| {
+        let width = width(control.bounds, &outcome.trajectory.controls[at]);
+        let pieces = polynomials(&outcome.trajectory, at);
+        let rough = pieces.iter().filter(|it| it.off_line() > ROUGH * width);
+        rough.count() as f64 > PART_ROUGH * pieces.len() as f64
+    };
+    // A control without bounds has no singular arcs: it would have no optimum.
+    let is_bounded = |it: &Variable| (it.bounds.upper - it.bounds.lower).is_finite();
+    between.controls.iter().enumerate().filter(|it| is_bounded(it.1)).any(of)
+}

@@ -1,0 +1,126 @@
+//! Every tuned number of the search for the true optimum, by the file that uses it, and every limit
+//! of its certificate.
+
+pub(super) mod search {
+    /// So many structures are solved at most.
+    pub(crate) const MOST_SOLVES: usize = 36;
+    /// No solve is begun after so many iterations of all, each times its intervals.
+    pub(crate) const BUDGET: usize = 120_000;
+    /// Intervals of the whole time; a phase has its part of them.
+    pub(crate) const INTERVALS: f64 = 40.0;
+    /// A phase has so many at least.
+    pub(crate) const FEWEST: usize = 6;
+    /// A graded phase has its first and its last interval halved so often.
+    pub(crate) const GRADES: i32 = 10;
+    /// So many times as many where controls are constant on them.
+    pub(crate) const FINER: usize = 4;
+    /// The tolerance of each solve.
+    pub(crate) const TOLERANCE: f64 = 1e-10;
+    /// A solve that is begun has so many at least.
+    pub(crate) const FEWEST_ITERATIONS: usize = 20;
+    /// More iterations are not worth it.
+    pub(crate) const MOST_ITERATIONS: usize = 150;
+    /// A structure without new conditions is another optimum where the objective rises by so much.
+    pub(crate) const WORSE: f64 = 1e-5;
+    /// An objective has to fall by so much of its size, or a phase is not worth having.
+    pub(crate) const GAIN: f64 = 1e-9;
+}
+
+pub(super) mod structure {
+    /// A shorter phase, for the whole time, is dropped.
+    pub(crate) const SHORTEST: f64 = 0.004;
+    /// So is one of fewer intervals of the grid.
+    pub(crate) const FEWEST_INTERVALS: f64 = 1.6;
+    /// A phase that is shorter than this, for the whole time, may be a mistake.
+    pub(crate) const SHORT: f64 = 0.15;
+    /// What a phase that is tried begins with, for the whole time.
+    pub(crate) const TRIED: f64 = 0.01;
+    /// The Hamiltonian may change by so much of its size, on average over the time.
+    pub(crate) const INACCURATE: f64 = 1e-6;
+    /// A control may leave its bounds by so much of their distance between nodes.
+    pub(crate) const BEYOND: f64 = 5e-7;
+    /// Intervals are halved so often where nothing tells how accurate a trajectory is.
+    pub(crate) const HALVINGS: u32 = 2;
+    /// Intervals are halved so often at most.
+    pub(crate) const MOST_HALVINGS: u32 = 3;
+}
+
+pub(super) mod polynomials {
+    /// An interval is looked at in so many parts.
+    pub(crate) const PARTS: usize = 32;
+    /// A control that is nearer than this to its bound, for their distance, where a phase begins or
+    /// ends may have an arc there.
+    pub(crate) const AT_BOUND: f64 = 1e-6;
+    /// A control that is farther than this from a straight line, for the distance of its bounds, on
+    /// such a part of the intervals is rough.
+    pub(crate) const ROUGH: f64 = 0.01;
+    pub(crate) const PART_ROUGH: f64 = 0.3;
+}
+
+pub(super) mod tracks {
+    /// A control is at a bound that is nearer than this, for the distance of its bounds.
+    pub(crate) const AT_BOUND: f64 = 1e-3;
+}
+
+pub(super) mod contacts {
+    /// A multiplier is none that is worth less than this, over the range of its limit, of the size of
+    /// the Hamiltonian.
+    pub(crate) const NONE: f64 = 1e-5;
+    /// A limit is near its bound where it is nearer than this part of its range, at one end of an
+    /// interval.
+    pub(crate) const NEAR_BOUND: f64 = 0.02;
+    /// A limit with two derivatives or more that is active on fewer intervals is touched.
+    pub(crate) const FEWEST_OF_ARC: usize = 4;
+    /// Where the motion is on a surface for so many intervals, it is held.
+    pub(crate) const FEWEST_OF_HOLD: usize = 2;
+    /// So many intervals beside an arc or a touch point belong to it.
+    pub(crate) const NEAR: usize = 2;
+}
+
+pub(super) mod repair {
+    /// A shorter phase, for the whole time, has shrunk to nothing.
+    pub(crate) const NOTHING: f64 = 1e-5;
+}
+
+pub(super) mod insertion {
+    /// A surface is 0 where it is smaller than this, for its largest value.
+    pub(crate) const ON_SURFACE: f64 = 1e-7;
+    /// A selector that is farther from its bounds than this lets nothing leave.
+    pub(crate) const SETTLED: f64 = 1e-6;
+    /// A hold whose selector is larger than this may be left for a moment.
+    pub(crate) const RELEASED: f64 = 0.999;
+    /// A neighbour is looked at by this part of an interval inside of it.
+    pub(crate) const INSIDE: f64 = 1e-7;
+}
+
+pub(super) mod minimum {
+    /// Where the Hamiltonian of a phase is looked at, as parts of its intervals.
+    pub(crate) const PARTS: [f64; 3] = [0.15, 0.5, 0.85];
+    /// Minima are looked for from so many values of each control, and one more.
+    pub(crate) const SAMPLES: usize = 4;
+}
+
+/// The largest figures of a certificate.
+pub(crate) mod certificate {
+    /// An answer whose optimality error is larger is none.
+    pub(crate) const STATIONARY: f64 = 1e-7;
+    /// A hold is tried where the objective falls with its duration by more than this, for the size of
+    /// the Hamiltonian.
+    pub(crate) const WORTH: f64 = 1e-5;
+    /// A slope of the Hamiltonian by a control that is at a bound may have the wrong sign by so much,
+    /// for the size of the Hamiltonian and the distance of the bounds.
+    pub(crate) const WRONG_SIGN: f64 = 1e-5;
+    /// Another control may make the Hamiltonian less by so much of its size.
+    pub(crate) const GAIN: f64 = 1e-5;
+    /// So may the multiplier of a limit that is at its bound, for its largest value.
+    pub(crate) const CONTACT: f64 = 1e-4;
+    /// The replay may differ by so much, for how far each state moves; so may conditions and bounds be
+    /// violated.
+    pub(crate) const REPLAYED: f64 = 1e-6;
+    /// So may a replay of controls that come a moment earlier or later.
+    pub(crate) const TIMING: f64 = 1e-2;
+    /// Inside of a phase the Hamiltonian of an autonomous system may change by so much of its size.
+    pub(crate) const HAMILTONIAN: f64 = 1e-4;
+    /// For so much of the time plan and replay may be in different modes.
+    pub(crate) const MODES: f64 = 1e-4;
+}

@@ -1,0 +1,233 @@
+//! The inverse of the reduced Hessian of a Lagrangian over a few variables: how far these can
+//! change, all others following by the constraints, before the objective has grown by 1/2.
+//!
+//! With the columns `E` of the identity that belong to these variables, the matrix `K` of the
+//! optimality conditions, in which active bounds and inequalities are springs, and springs `R` on
+//! the variables themselves,
+//!
+//! ```text
+//!     S = E' (K + E R E')^-1 E = (H + R)^-1,   H^-1 = R^-1/2 [ sum of L/(1 - L) w w' ] R^-1/2
+//! ```
+//!
+//! over the eigenvalues `L` and eigenvectors `w` of `R^1/2 S R^1/2`. An eigenvalue of 0 is a
+//! direction that constraints forbid, one of 1 a direction in which nothing changes. `R` is first
+//! soft: what holds a variable worse than that does not hold it. Then it is as stiff as what was
+//! found, so that no digits are lost.
+
+use super::tuning::covariance::{HARD, NEAR, SMALL, SOFT, TINY};
+use super::{Derivatives, Nlp, Solution};
+use crate::linalg::dense::eigen::eigen;
+use crate::linalg::solvers::{Structure, prepare};
+use crate::linalg::{Factor, Inertia};
+use crate::problem::{Bounds, Linear};
+use std::ops::Range;
+
+/// What it is at a solution, by the places of the variables among those that were asked for.
+#[derive(Clone, Debug)]
+pub struct Covariance {
+    /// The inverse, without the directions that change nothing.
+    pub inverse: Vec<Vec<f64>>,
+    /// Which variables a bound holds: the rest is that for their values.
+    pub is_at_bound: Vec<bool>,
+    /// The directions that change nothing, each by the variables that it changes.
+    pub undetermined: Vec<Vec<usize>>,
+    /// In how many directions all variables of the program could change that change something.
+    pub directions: usize,
+}
+
+/// That over a range of variables of which these are the sizes, where the objective is about
+/// `unit` times a number of order 1; none where the Lagrangian falls along some direction.
+pub(crate) fn covariance(
+    nlp: &mut dyn Nlp,
+    solution: &Solution,
+    of: Range<usize>,
+    (sizes, unit): (&[f64], f64),
+) -> Option<Covariance> {
+    let mut system = System::new(nlp, solution, of.clone(), unit);
+    let soft = |size: &f64| unit.max(TINY) / (SOFT * size).powi(2);
+    let mut springs: Vec<f64> = sizes.iter().map(soft).collect();
+    let first = system.inverse(&springs)?;
+    let own = |i: usize| first[i][i].max(TINY * sizes[i] * sizes[i]);
+    let is_held = |i: usize| {
+        let (v, bounds) = (solution.v[of.start + i], system.bounds[of.start + i]);
+        let room = (v - bounds.lower).min(bounds.upper - v);
+        room <= NEAR * sizes[i] && system.sigma[of.start + i] * own(i) > 1.0
+    };
+    let is_at_bound: Vec<bool> = (0..sizes.len()).map(is_held).collect();
+    let held = (0..sizes.len()).filter(|i| is_at_bound[*i]);
+    held.clone().for_each(|i| springs[i] = HARD / own(i));
+    let soft = Springs::new(&system.inverse(&springs)?, &springs, &is_at_bound);
+    for i in (0..sizes.len()).filter(|i| !is_at_bound[*i]) {
+        springs[i] = springs[i].max(1.0 / own(i));
+    }
+    let stiff = Springs::new(&system.inverse(&springs)?, &springs, &is_at_bound);
+    let directions = system.directions().saturating_sub(held.count());
+    Some(stiff.taken_off(soft.count_open(), is_at_bound, directions))
+}
+
+/// The inverse with springs, taken apart.
+struct Springs {
+    /// The variables that no bound holds, with the roots of their springs.
+    kept: Vec<(usize, f64)>,
+    /// With the smallest eigenvalue first.
+    directions: Vec<(f64, Vec<f64>)>,
+}
+
+impl Springs {
+    fn new(with: &[Vec<f64>], springs: &[f64], is_at_bound: &[bool]) -> Self {
+        let kept = springs.iter().map(|it| it.sqrt()).enumerate();
+        let kept: Vec<(usize, f64)> = kept.filter(|(i, _)| !is_at_bound[*i]).collect();
+        let row = |(i, root): &(usize, f64)| -> Vec<f64> {
+            kept.iter().map(|(j, other)| root * with[*i][*j] * other).collect()
+        };
+        let (values, vectors) = eigen(kept.iter().map(row).collect());
+        let vector = |k: usize| vectors.iter().map(|row| row[k]).collect();
+        let mut directions: Vec<(f64, Vec<f64>)> =
+            values.iter().enumerate().map(|(k, value)| (*value, vector(k))).collect();
+        directions.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Springs { kept, directions }
+    }
+
+    /// In how many directions springs hold more than everything else.
+    fn count_open(&self) -> usize {
+        self.directions.iter().filter(|it| it.0 > 0.5).count()
+    }
+
+    /// The inverse without springs, and without the directions that hold least.
+    fn taken_off(self, open: usize, is_at_bound: Vec<bool>, directions: usize) -> Covariance {
+        let (n, known) = (is_at_bound.len(), self.directions.len() - open);
+        let mut inverse = vec![vec![0.0; n]; n];
+        for (value, vector) in &self.directions[..known] {
+            let weight = value / (1.0 - value);
+            for ((i, root), a) in self.kept.iter().zip(vector) {
+                for ((j, other), b) in self.kept.iter().zip(vector) {
+                    inverse[*i][*j] += weight * a * b / (root * other);
+                }
+            }
+        }
+        let changed = |(_, vector): &(f64, Vec<f64>)| -> Vec<usize> {
+            let parts = self.kept.iter().zip(vector);
+            parts.filter(|(_, part)| part.abs() > SMALL).map(|((i, _), _)| *i).collect()
+        };
+        let undetermined = self.directions[known..].iter().map(changed).collect();
+        let directions = directions.saturating_sub(open);
+        Covariance { inverse, is_at_bound, undetermined, directions }
+    }
+}
+
+/// The optimality conditions at a solution.
+struct System {
+    factor: Box<dyn Factor>,
+    derivatives: Derivatives,
+    bounds: Vec<Bounds>,
+    /// What bounds add to the diagonal.
+    sigma: Vec<f64>,
+    /// What inequalities add to the diagonal of their rows.
+    d: Vec<f64>,
+    fixed: Vec<bool>,
+    equality: Vec<bool>,
+    of: Range<usize>,
+}
+
+impl System {
+    fn new(nlp: &mut dyn Nlp, solution: &Solution, of: Range<usize>, unit: f64) -> Self {
+        let worth = solution.objective.abs().max(unit).max(TINY);
+        let (v, multipliers) = (&solution.v, &solution.multipliers);
+        let mut derivatives = Derivatives::new(nlp);
+        nlp.derivatives(v, 1.0, &multipliers.constraints, &mut derivatives);
+        let mut values = vec![0.0; multipliers.constraints.len()];
+        nlp.values(v, &mut values);
+        let bounds = nlp.variable_bounds().to_vec();
+        let fixed: Vec<bool> = bounds.iter().map(Bounds::is_equality).collect();
+        let equality: Vec<bool> = nlp.constraint_bounds().iter().map(Bounds::is_equality).collect();
+        let structure = Structure {
+            stages: nlp.stages(),
+            phases: nlp.phases(),
+            hessian: nlp.hessian_structure(),
+            jacobian: nlp.jacobian_structure(),
+            fixed: &fixed,
+            equality: &equality,
+        };
+        let (_, factor) = prepare(Linear::SparseLdl, &structure);
+        let spring = |i: usize, distance: f64, multiplier: f64| {
+            spring(distance, multiplier, (v[i].abs(), worth))
+        };
+        let lower = |i: usize| spring(i, v[i] - bounds[i].lower, multipliers.lower[i]);
+        let upper = |i: usize| spring(i, bounds[i].upper - v[i], multipliers.upper[i]);
+        let sigma = (0..v.len()).map(|i| lower(i) + upper(i)).collect();
+        let rows = nlp.constraint_bounds().iter().zip(&values).zip(&multipliers.constraints);
+        let d = rows.map(|((bounds, value), lambda)| slack(bounds, *value, *lambda, worth));
+        let d = d.collect();
+        System { factor, derivatives, bounds, sigma, d, fixed, equality, of }
+    }
+
+    /// With these springs; none if the inertia is wrong.
+    fn inverse(&mut self, springs: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let mut sigma = self.sigma.clone();
+        sigma[self.of.clone()].copy_from_slice(springs);
+        let Derivatives { hessian, jacobian, .. } = &self.derivatives;
+        if self.factor.factor(hessian, jacobian, &sigma, &self.d) != Inertia::Correct {
+            return None;
+        }
+        let mut column = |at: usize| {
+            let mut right = vec![0.0; sigma.len() + self.d.len()];
+            right[at] = 1.0;
+            self.factor.solve(&mut right);
+            right[self.of.clone()].to_vec()
+        };
+        let columns: Vec<Vec<f64>> = self.of.clone().map(&mut column).collect();
+        let n = columns.len();
+        let mean = |i: usize, j: usize| 0.5 * (columns[i][j] + columns[j][i]);
+        Some((0..n).map(|i| (0..n).map(|j| mean(i, j)).collect()).collect())
+    }
+
+    /// How many variables may change at will: those that are not fixed, less the equations.
+    fn directions(&self) -> usize {
+        let variables = self.fixed.iter().filter(|it| !**it).count();
+        variables.saturating_sub(self.equality.iter().filter(|it| **it).count())
+    }
+}
+
+/// `z / distance` of a bound, 0 of none and of one that is not active: what its multiplier is
+/// worth, as a part of the objective, is less than the distance, as a part of the size.
+fn spring(distance: f64, multiplier: f64, (size, worth): (f64, f64)) -> f64 {
+    let (distance, size) = (distance.max(TINY), size.max(distance).max(TINY));
+    let is_active = multiplier * size / worth > distance / size;
+    if distance.is_finite() && is_active { multiplier / distance } else { 0.0 }
+}
+
+/// `distance / z` of a row from the bound that its multiplier belongs to.
+fn slack(bounds: &Bounds, value: f64, multiplier: f64, worth: f64) -> f64 {
+    if bounds.is_equality() {
+        return 0.0;
+    }
+    let distance = if multiplier > 0.0 { bounds.upper - value } else { value - bounds.lower };
+    let spring = spring(distance, multiplier.abs(), (value.abs(), worth));
+    1.0 / spring.max(TINY)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Hessian 2 on the sum of two, 8 on a third, nothing on a fourth, with springs of 1.
+    #[test]
+    fn what_changes_nothing_is_told_and_the_rest_is_known() {
+        // (H + 1)^-1 of the block [[2, 2], [2, 2]] + 1.
+        let with = vec![
+            vec![0.6, -0.4, 0.0, 0.0],
+            vec![-0.4, 0.6, 0.0, 0.0],
+            vec![0.0, 0.0, 1.0 / 9.0, 0.0],
+            vec![0.0, 0.0, 0.0, 1.0],
+        ];
+        let held = [false; 4];
+        let found = Springs::new(&with, &[1.0; 4], &held);
+        assert_eq!(found.count_open(), 2);
+        let found = found.taken_off(2, held.to_vec(), 4);
+        let mut undetermined = found.undetermined.clone();
+        undetermined.sort();
+        assert_eq!(undetermined, [vec![0, 1], vec![3]]);
+        assert!((found.inverse[2][2] - 1.0 / 8.0).abs() < 1e-14);
+        assert_eq!(found.directions, 2);
+    }
+}

@@ -1,0 +1,310 @@
+//! What estimates are worth: standard errors beside closed forms, and what data do not determine.
+
+use fdcc::{DataFiles, Estimate, Estimates, Options};
+
+/// The estimates of a model with one data file, `a.csv`.
+fn estimates(text: &str, data: &str) -> Estimates {
+    let data = data.to_owned();
+    let files = DataFiles::from(move |_| Ok(data.clone()));
+    let checked = fdcc::check_with("a test", text.into(), Some(files));
+    let model = checked.model.unwrap_or_else(|| panic!("{text}\n{:#?}", checked.diagnostics));
+    let solution = model.solve(&Options::default()).expect("it can be solved");
+    assert!(solution.is_solved(), "{text}");
+    solution.estimates().unwrap_or_else(|| panic!("no estimates of\n{text}"))
+}
+
+fn estimate<'e>(estimates: &'e Estimates, name: &str) -> &'e Estimate {
+    estimates.unknowns.iter().find(|it| it.name == name).expect("it is unknown")
+}
+
+fn error(estimates: &Estimates, name: &str) -> f64 {
+    let found = estimate(estimates, name).standard_error;
+    found.unwrap_or_else(|| panic!("`{name}` has no standard error: {estimates:#?}"))
+}
+
+const LINE: &str = "data obs = csv(\"a.csv\") columns t, x, s\nfree a in [-9, 9] guess 1\nfree b in \
+                    [-9, 9] guess 1\ntime t in [0, 4]\nstate x start a\ndynamics { x' = b }\n";
+const POINTS: [(f64, f64, f64); 5] =
+    [(0.0, 1.1, 0.1), (1.0, 2.7, 0.2), (2.0, 5.3, 0.1), (3.0, 6.9, 0.3), (4.0, 9.2, 0.1)];
+
+fn points() -> String {
+    let line = |(t, x, s): &(f64, f64, f64)| format!("{t},{x},{s}\n");
+    format!("t,x,s\n{}", POINTS.iter().map(line).collect::<String>())
+}
+
+/// Offset and slope of a line through points with these weights, their variances and covariance
+/// for errors of 1 over the root of the weight, and the weighted sum of squares that remains.
+fn line(weight: fn(f64) -> f64) -> ([f64; 2], [f64; 3], f64) {
+    let sum = |term: &dyn Fn(f64, f64) -> f64| -> f64 {
+        POINTS.iter().map(|(t, x, s)| weight(*s) * term(*t, *x)).sum()
+    };
+    let [s0, s1, s2] = [sum(&|_, _| 1.0), sum(&|t, _| t), sum(&|t, _| t * t)];
+    let [y0, y1] = [sum(&|_, x| x), sum(&|t, x| t * x)];
+    let determinant = s0 * s2 - s1 * s1;
+    let [a, b] = [(s2 * y0 - s1 * y1) / determinant, (s0 * y1 - s1 * y0) / determinant];
+    let rest = sum(&|t, x| (a + b * t - x).powi(2));
+    ([a, b], [s2 / determinant, s0 / determinant, -s1 / determinant], rest)
+}
+
+fn is_near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-7 * b.abs()
+}
+
+/// Linear regression has a closed form, with known deviations and with unknown ones.
+#[test]
+fn errors_of_a_line_are_those_of_linear_regression() {
+    let ([a, b], [aa, bb, ab], rest) = line(|s| 1.0 / (s * s));
+    let known = estimates(&format!("{LINE}fit obs: x sd obs.s"), &points());
+    assert!(is_near(estimate(&known, "a").value, a) && is_near(estimate(&known, "b").value, b));
+    assert!(is_near(error(&known, "a"), aa.sqrt()) && is_near(error(&known, "b"), bb.sqrt()));
+    assert!(is_near(known.correlations[0][1], ab / (aa * bb).sqrt()));
+    assert!(is_near(known.correlations[1][0], ab / (aa * bb).sqrt()));
+    assert_eq!((known.rows, known.degrees_of_freedom, known.is_known), (5, Some(3), true));
+    assert!(is_near(known.sum_of_squares, rest));
+    assert!(is_near(known.deviation.expect("3 degrees of freedom"), (rest / 3.0).sqrt()));
+
+    for text in [
+        "minimize sum(k in obs, ((x(k.t) - k.x)/k.s)^2)",
+        "minimize 0.5*sum(k in obs, (x(k.t) - k.x)^2/k.s^2)",
+        "minimize sum(k in obs, 3*(k.x - x(k.t))^2/(k.s*k.s))",
+    ] {
+        let free = estimates(&format!("{LINE}{text}"), &points());
+        assert!(!free.is_known && free.degrees_of_freedom == Some(3), "{text}");
+        let scale = (rest / 3.0).sqrt();
+        assert!(is_near(error(&free, "a"), scale * aa.sqrt()), "{text}");
+        assert!(is_near(error(&free, "b"), scale * bb.sqrt()), "{text}");
+    }
+}
+
+/// A row of weight 0 was not measured, whatever stands in it.
+#[test]
+fn rows_without_weight_do_not_count() {
+    let text = format!("{LINE}minimize sum(k in obs, k.s*(x(k.t) - k.x)^2)");
+    let found = estimates(&text, &format!("{}4,777,0\n", points()));
+    let (_, [aa, ..], rest) = line(|s| s);
+    assert_eq!((found.rows, found.degrees_of_freedom), (5, Some(3)));
+    assert!(is_near(error(&found, "a"), (aa * rest / 3.0).sqrt()));
+    let of = &found.residuals[0];
+    assert_eq!(
+        (of.name.as_str(), of.is_measured.as_slice()),
+        ("x", &[true, true, true, true, true, false][..])
+    );
+}
+
+/// What was known before counts like a measurement.
+#[test]
+fn what_was_known_before_makes_errors_smaller() {
+    let text = format!("{LINE}fit obs: x sd 1\nminimize ((b - 2)/0.1)^2");
+    let found = estimates(&text, &points());
+    // The information of the rows, and 1/0.1^2 more on b.
+    let [s0, s1, s2] = [5.0_f64, 10.0, 30.0 + 100.0];
+    assert!(is_near(error(&found, "b"), (s0 / (s0 * s2 - s1 * s1)).sqrt()));
+}
+
+const DECAY: &str = "data obs = csv(\"a.csv\") columns t, x\ntime t in [0, 2]\nstate x start 1\n";
+
+fn decay() -> String {
+    let row = |k: i32| {
+        let t = 0.2 * f64::from(k);
+        format!("{t},{}\n", (-0.7 * t).exp() + if k % 2 == 0 { 0.01 } else { -0.01 })
+    };
+    format!("t,x\n{}", (0..11).map(row).collect::<String>())
+}
+
+/// Of a product only the product is known; an unknown that nothing reads is not known at all.
+#[test]
+fn unknowns_that_data_do_not_determine_are_named() {
+    let text = format!(
+        "{DECAY}free p in [0.1, 9] guess 1\nfree q in [0.1, 9] guess 1\nfree r in [0, 1] guess \
+         0.5\nfree y in [0, 9] guess 1\ndynamics {{ x' = -p*q*x*(1 + 0*y) }}\nfit obs: x sd 0.01\n\
+         end r*x >= -1"
+    );
+    let found = estimates(&text, &decay());
+    assert!(found.is_minimum, "{found:#?}");
+    assert_eq!(found.undetermined, [vec!["p", "q"], vec!["r"], vec!["y"]]);
+    assert!(found.unknowns.iter().all(|it| it.standard_error.is_none()));
+    assert_eq!(found.degrees_of_freedom, Some(10));
+}
+
+/// The exact second derivative, errors of the model included: `J'' = 2 sum (t^2 y^2 + (y - x) t^2
+/// y)/sd^2` of `y = exp(-p t)`.
+#[test]
+fn the_hessian_is_exact() {
+    let text = format!(
+        "{DECAY}free p in [0.1, 9] guess 1\ndynamics {{ x' = -p*x }}\nfit obs: x sd 0.01\nmethod {{ \
+         grid N = 40 scheme radau3 }}"
+    );
+    let found = estimates(&text, &decay());
+    let p = estimate(&found, "p").value;
+    let data = decay();
+    let rows = data.lines().skip(1).map(|line| line.split_once(',').expect("two columns"));
+    let rows = rows.map(|(t, x)| [t, x].map(|it| it.parse::<f64>().expect("a number")));
+    let second = |[t, x]: [f64; 2]| {
+        let y = (-p * t).exp();
+        2.0 * (t * t * y * y + (y - x) * t * t * y) / 1e-4
+    };
+    let second: f64 = rows.map(second).sum();
+    let expected = (2.0 / second).sqrt();
+    assert!((error(&found, "p") - expected).abs() < 1e-6 * expected);
+}
+
+/// What remains determined beside it keeps its error.
+#[test]
+fn others_keep_their_errors() {
+    let alone =
+        format!("{DECAY}free p in [0.1, 9] guess 1\ndynamics {{ x' = -p*x }}\nfit obs: x sd 0.01");
+    let alone = estimates(&alone, &decay());
+    let both = format!(
+        "{DECAY}free p in [0.1, 9] guess 1\nfree r in [0, 1] guess 0.5\ndynamics {{ x' = -p*x \
+         }}\nend r*x >= -1\nfit obs: x sd 0.01"
+    );
+    let both = estimates(&both, &decay());
+    assert!(is_near(error(&both, "p"), error(&alone, "p")));
+    assert_eq!(both.undetermined, [vec!["r"]]);
+}
+
+/// The optimum would be beyond the bound.
+#[test]
+fn an_unknown_at_its_bound_is_held_there() {
+    let text = format!(
+        "{DECAY}free p in [0.1, 0.6] guess 0.5\nfree c in [0.5, 2] guess 1\ndynamics {{ x' = -p*x \
+         }}\nfit obs: x*c = x sd 0.01\nmethod {{ grid N = 40 scheme radau3 }}"
+    );
+    let found = estimates(&text, &decay());
+    let (p, c) = (estimate(&found, "p"), estimate(&found, "c"));
+    assert!(p.is_at_bound && p.standard_error.is_none(), "{p:?}");
+    // Linear in c: sd / sqrt(sum x^2) along exp(-0.6 t).
+    let squares: f64 = (0..11).map(|k| (-1.2 * 0.2 * f64::from(k)).exp()).sum();
+    let expected = 0.01 / squares.sqrt();
+    let got = c.standard_error.expect("c is free");
+    assert!((got - expected).abs() < 1e-4 * expected, "{got} {expected}");
+    assert_eq!(found.degrees_of_freedom, Some(10));
+}
+
+/// Two experiments, a phase for each, share an unknown.
+#[test]
+fn phases_share_unknowns() {
+    let phase = |name: &str, start: f64| {
+        format!(
+            "phase {name} {{ time t in [0, 2]\nstate x start {start}\ndynamics {{ x' = -p*x \
+             }}\nfit obs: x sd 0.01 }}\n"
+        )
+    };
+    let text = format!(
+        "data obs = csv(\"a.csv\") columns t, x\nfree p in [0.1, 9] guess 1\n{}{}",
+        phase("one", 1.0),
+        phase("two", 1.0)
+    );
+    let both = estimates(&text, &decay());
+    let alone =
+        format!("{DECAY}free p in [0.1, 9] guess 1\ndynamics {{ x' = -p*x }}\nfit obs: x sd 0.01");
+    let alone = estimates(&alone, &decay());
+    assert!(is_near(error(&both, "p") * 2.0_f64.sqrt(), error(&alone, "p")));
+    let phases: Vec<Option<&str>> = both.residuals.iter().map(|it| it.phase.as_deref()).collect();
+    assert_eq!((phases, both.rows), (vec![Some("one"), Some("two")], 22));
+}
+
+/// A fit outside of all phases reads them by their names.
+#[test]
+fn a_fit_of_several_phases_may_stand_outside() {
+    let phase = |name: &str| {
+        format!("phase {name} {{ time t in [0, 2]\nstate x start 1\ndynamics {{ x' = -p*x }} }}\n")
+    };
+    let text = |goal: &str| {
+        let data = "data obs = csv(\"a.csv\") columns t, x\nfree p in [0.1, 9] guess 1\n";
+        format!("{data}{}{}{goal}", phase("one"), phase("two"))
+    };
+    let fit = estimates(&text("fit obs: one.x sd 0.01, two.x sd 0.01"), &decay());
+    let sums = text(
+        "minimize sum(k in obs, ((one.x(k.t) - k.x)/0.01)^2) + sum(k in obs, ((two.x(k.t) - \
+         k.x)/0.01)^2)",
+    );
+    let sums = estimates(&sums, &decay());
+    assert_eq!((fit.rows, sums.rows), (22, 22));
+    assert!(is_near(estimate(&fit, "p").value, estimate(&sums, "p").value));
+    let deviation = sums.deviation.expect("there are enough rows");
+    assert!(is_near(error(&fit, "p") * deviation, error(&sums, "p")));
+}
+
+/// What is expected of sums over rows of several phases.
+#[test]
+fn expectations_read_sums_of_phases() {
+    let text = "data obs = csv(\"a.csv\") columns t, x\nfree p in [0.1, 9] guess 1\nphase one { time \
+                t in [0, 2]\nstate x start 1\ndynamics { x' = -p*x } }\nphase two { time t in [0, \
+                2]\nstate x start 2\ndynamics { x' = -p*x } }\nlet a = sum(k in obs, (one.x(k.t) - \
+                k.x)^2)\nlet b = sum(k in obs, (two.x(k.t) - k.x)^2)\nminimize a + b\nexpect { a >= \
+                0\na + b >= 1 }";
+    let data = decay();
+    let files = DataFiles::from(move |_| Ok(data.clone()));
+    let model = fdcc::check_with("a test", text.into(), Some(files)).model.expect("a right model");
+    let solution = model.solve(&Options::default()).expect("it is solved");
+    let left = |it: &fdcc::Expectation| match &it.outcome {
+        fdcc::Expected::Compared(sides) => sides.left,
+        fdcc::Expected::Untold(why) => panic!("{why:?}"),
+    };
+    let found: Vec<f64> = solution.expectations().iter().map(left).collect();
+    assert!(is_near(found[1], solution.objective()), "{found:?} {}", solution.objective());
+    assert!(found[0] > 0.0 && found[0] < found[1], "{found:?}");
+}
+
+/// A robust loss is no sum of squares, and a sum that is maximised neither.
+#[test]
+fn other_objectives_say_nothing_of_errors() {
+    let data = decay();
+    for goal in ["minimize sum(k in obs, log(1 + ((x(k.t) - k.x)/0.01)^2))", "minimize p^2"] {
+        let text = format!("{DECAY}free p in [0.1, 9] guess 1\ndynamics {{ x' = -p*x }}\n{goal}");
+        let data = data.clone();
+        let files = DataFiles::from(move |_| Ok(data.clone()));
+        let model =
+            fdcc::check_with("a test", text.into(), Some(files)).model.expect("a right model");
+        assert!(model.solve(&Options::default()).expect("it is solved").estimates().is_none());
+    }
+}
+
+/// The measurements of `models/slider_fit.fdc` were made with mu = 0.3 and m = 2, and with the
+/// deviations that the model states.
+#[test]
+fn the_truth_is_within_three_standard_errors() {
+    let path = fdcc_tests::repository().join("models/slider_fit.fdc");
+    let model = fdcc::Model::from_file(&path.display().to_string()).expect("the model is there");
+    let solution = model.solve(&Options::default()).expect("it can be solved");
+    let found = solution.estimates().expect("it is a fit");
+    for (name, truth) in [("mu", 0.3), ("m", 2.0)] {
+        let (it, error) = (estimate(&found, name), error(&found, name));
+        assert!((it.value - truth).abs() < 3.0 * error, "{name} {} +- {error}", it.value);
+        assert!(error < 0.02 * truth, "{name} {} +- {error}", it.value);
+    }
+    assert_eq!((found.rows, found.degrees_of_freedom), (42, Some(40)));
+    let deviation = found.deviation.expect("there are enough rows");
+    assert!((0.7..1.3).contains(&deviation), "{deviation}");
+}
+
+/// Every mistake that a fit alone can have, with its code and the beginning of its message.
+const MISTAKES: [(&str, &str, &str); 9] = [
+    ("fit obs: x sd -1", "FDC0109", "a standard deviation is above 0"),
+    ("fit obs: q sd 1", "FDC0110", "`obs` has no column `q`"),
+    ("fit obs: x + 1 sd 1", "FDC0110", "in which column of `obs` is `x + 1`?"),
+    ("fit obs: x = z sd 1", "FDC0110", "`obs` has no column `z`"),
+    ("fit a: x sd 1", "FDC0103", "`a` is a free unknown, not a data set"),
+    ("fit obs: x sd a", "FDC0109", "`a` has no meaning in a standard deviation"),
+    ("fit obs: x", "FDC0002", "`sd` with a standard deviation is missing after `x`"),
+    ("fit obs: x sd 1\nmaximize a", "FDC0109", "a fit makes squares small, and the objective"),
+    (
+        "data more = csv(\"a.csv\") columns x\nfit more: x sd 1",
+        "FDC0110",
+        "`more` has no column `t`",
+    ),
+];
+
+#[test]
+fn mistakes_in_a_fit_are_told() {
+    for (line, code, message) in MISTAKES {
+        let files = DataFiles::from(|_: &str| Ok("t,x,s\n0,1,1\n".to_owned()));
+        let text = format!("{LINE}{line}");
+        let checked = fdcc::check_with("a test", text.into(), Some(files));
+        let found: Vec<(&str, &str)> =
+            checked.diagnostics.iter().map(|it| (it.code.as_str(), it.message.as_str())).collect();
+        let is_it = |it: &(&str, &str)| it.0 == code && it.1.starts_with(message);
+        assert!(found.iter().any(is_it), "{line}: {found:#?}");
+    }
+}

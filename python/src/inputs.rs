@@ -129,8 +129,7 @@ impl Driven {
                     replay.adapt(meaning);
                     Ok::<(), Error>(())
                 });
-                let held = replay.held(true).unwrap_or(Controls::Guess);
-                adapted.and_then(|model| with(&model, Followed::Known(held)))
+                adapted.and_then(|model| with(&model, Followed::Known(replay.controls)))
             }
         })
     }

@@ -1,7 +1,9 @@
 //! The half of the Python package that is Rust: models, solutions, simulations and gradients of the
 //! library, lent to `package/fdcc`, which gives them the face that users see.
 
+mod cases;
 mod column;
+mod controller;
 mod errors;
 mod gradient;
 mod inputs;
@@ -14,7 +16,11 @@ mod watch;
 #[pyo3::pymodule]
 mod _fdcc {
     #[pymodule_export]
+    use super::cases::Cases;
+    #[pymodule_export]
     use super::column::Column;
+    #[pymodule_export]
+    use super::controller::Controller;
     #[pymodule_export]
     use super::gradient::Gradient;
     #[pymodule_export]

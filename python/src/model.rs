@@ -9,7 +9,7 @@ use crate::watch::Watch;
 use fdcc::{Accuracy, Error, Options, Report, Start, Value, by_names};
 use fdcc_cli::Answer;
 use fdcc_grammar::{Diagnostic, Severity, SourceFile};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -47,6 +47,11 @@ struct Variant {
 }
 
 impl Model {
+    /// As the library has it.
+    pub fn model(&self) -> &fdcc::Model {
+        &self.model
+    }
+
     /// The model with an objective and settings of the method, compiled once for all calls.
     fn variant(&self, py: Python, changes: &Changes) -> PyResult<Arc<Variant>> {
         if let Some(variant) = self.known(changes) {
@@ -130,6 +135,12 @@ impl Model {
     fn source(&self) -> (&str, &str) {
         let source = self.model.source();
         (&source.name, &source.text)
+    }
+
+    /// The texts of its data files, by the names that it gives them.
+    #[getter]
+    fn data(&self) -> PyResult<Vec<(String, String)>> {
+        self.model.data().map_err(|error| PyOSError::new_err(error.to_string()))
     }
 
     /// Warnings and advice as JSON, and as they are drawn.

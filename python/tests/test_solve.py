@@ -134,11 +134,31 @@ def test_several_starts_are_told(hop):
 
 
 def test_modes_and_switches(models):
-    solution = fdcc.Model(models / "block.fdc").solve()
+    solution = fdcc.Model(models / "block.fdc").solve(N=50, sigma=0.05)
     spans = solution.surfaces["slip"]
     assert {it.mode for it in spans} <= {"below", "held", "above"}
     times = [it.time for it in solution.switches]
     assert times == sorted(times) and all(it.surface == "slip" for it in solution.switches)
+    assert [it.from_ for it in solution.switches] == [it.mode for it in spans[:-1]]
+    assert [it.to for it in solution.switches] == [it.mode for it in spans[1:]]
+    assert solution.certificate is None and solution.arcs == {}
+
+
+def test_a_true_optimum_has_its_certificate(models):
+    solution = fdcc.Model(models / "block.fdc").solve()
+    assert solution.certificate.certified and all(it.passes for it in solution.certificate.checks)
+    assert solution.switches == solution.certificate.switches
+    # A block that moves for the time T costs f^2 T + 12 m^2 / T^3 with the friction f = mu m g,
+    # and nothing while it rests; T is where that is least.
+    m, f = 2.0, 0.3 * 2.0 * 9.81
+    moves = np.sqrt(6 * m / f)
+    assert solution.objective == pytest.approx(f**2 * moves + 12 * m**2 / moves**3, rel=1e-6)
+    # It may move at once or wait: that costs nothing.
+    (moving,) = [it for it in solution.surfaces["slip"] if it.mode == "above"]
+    assert moving.to - moving.from_ == pytest.approx(moves, rel=1e-6)
+    assert solution.switches[-1].to == "held"
+    (arc,) = solution.arcs["F"]
+    assert (arc.mode, arc.from_, arc.to) == ("free", 0, 4)
 
 
 def test_phases_are_solutions(models):

@@ -25,6 +25,7 @@ a unit, as in ``m.solve(reach="80[cm]")``.
 from importlib.metadata import version as _version
 
 from ._arrays import Number, Signal
+from ._controller import Controller, Step
 from ._errors import ModelError
 from ._gradient import Gradient
 from ._model import Model, check, compile
@@ -32,9 +33,11 @@ from ._notebook import load_ipython_extension
 from ._records import Diagnostics, Named, Record
 from ._simulation import Simulation
 from ._solution import Solution
+from ._sweep import sweep
 
 __version__ = _version("fdcc")
 __all__ = [
+    "Controller",
     "Diagnostics",
     "Gradient",
     "Model",
@@ -45,7 +48,9 @@ __all__ = [
     "Signal",
     "Simulation",
     "Solution",
+    "Step",
     "check",
     "compile",
     "load_ipython_extension",
+    "sweep",
 ]

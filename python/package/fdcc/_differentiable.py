@@ -5,8 +5,8 @@ and of what is computed in SI."""
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -16,6 +16,34 @@ from ._model import Model, Value
 Point = Mapping[str, np.ndarray]
 Function = Callable[[Point], tuple[float, dict[str, np.ndarray]]]
 """From arrays by name to a number, and its derivatives by each of them."""
+
+Differentiable = TypeVar("Differentiable")
+"""What a library that differentiates calls with a dictionary of numbers and arrays."""
+
+
+def functions(
+    differentiable: Callable[[Function], Differentiable],
+) -> tuple[Callable[..., Differentiable], Callable[..., Differentiable]]:
+    """``simulate`` and ``solve`` of such a library, which makes ``differentiable`` what has a value
+    and derivatives."""
+
+    def simulate(
+        model: Model,
+        of: str | None = None,
+        *,
+        u: Controls = None,
+        values: Mapping[str, Value] | None = None,
+        **named: Value,
+    ) -> Differentiable:
+        """The value of an expression such as ``"x(end)"`` on the true system, in SI; that of the
+        objective if it is left out. ``u`` and values are as for :meth:`fdcc.Model.simulate`."""
+        return differentiable(simulated(model, of, u, {**(values or {}), **named}))
+
+    def solve(model: Model, **options: Any) -> Differentiable:
+        """The objective of the optimum, in SI; options are those of :meth:`fdcc.Model.solve`."""
+        return differentiable(solved(model, options))
+
+    return simulate, solve
 
 
 def simulated(

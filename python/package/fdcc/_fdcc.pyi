@@ -21,6 +21,8 @@ class Model:
     @property
     def source(self) -> tuple[str, str]: ...
     @property
+    def data(self) -> list[tuple[str, str]]: ...
+    @property
     def diagnostics(self) -> tuple[str, str]: ...
     @property
     def names(self) -> list[tuple[str, list[str]]]: ...
@@ -50,6 +52,28 @@ class Model:
         controls: Any = None,
         rtol: float | None = None,
     ) -> Gradient: ...
+
+@final
+class Controller:
+    def __new__(cls, model: Model, given: _Values, intervals: int) -> Controller: ...
+    @property
+    def names(self) -> tuple[list[str], list[str]]: ...
+    def set(self, given: _Values) -> None: ...
+    def step(
+        self, state: Sequence[float], budget: float | None
+    ) -> tuple[list[float], str, bool, float, float, float, int]: ...
+
+@final
+class Cases:
+    def __new__(cls, model: Model) -> Cases: ...
+    def solve(
+        self,
+        given: Sequence[_Values],
+        jobs: int | None,
+        starts: int = 1,
+        time_limit: float | None = None,
+        gap: float | None = None,
+    ) -> list[str]: ...
 
 @final
 class Solution:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from . import _fdcc
+from ._controller import Controller
 from ._controls import Controls, driver
 from ._gradient import Gradient
 from ._progress import progress as _progress
@@ -65,6 +66,10 @@ def _texts(data: Data | None) -> dict[str, str] | str | None:
     return None if data is None else fspath(data)
 
 
+def _read_again(name: str, text: str, data: dict[str, str]) -> "Model":
+    return compile(text, name=name, data=data or None)
+
+
 def _given(values: Mapping[str, Value]) -> list[tuple[str, float | str]]:
     """Several numbers are a list of the language."""
     def given(value: Value) -> float | str:
@@ -116,6 +121,9 @@ class Model:
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError("a model cannot be changed; solve it with other values")
+
+    def __reduce__(self) -> Any:
+        return (_read_again, (*self._model.source, dict(self._model.data)))
 
     @property
     def name(self) -> str:
@@ -192,6 +200,14 @@ class Model:
                 _given({**(values or {}), **named}), earlier, starts, time_limit, report
             )
         return Solution(found)
+
+    def controller(
+        self, N: int, *, values: Mapping[str, Value] | None = None, **named: Value
+    ) -> Controller:
+        """A controller with so many intervals, for closed loops; it solves the smoothed problem, so
+        a model with surfaces names its ``sigma``."""
+        given = _given({**(values or {}), **named})
+        return Controller(_fdcc.Controller(self._model, given, N), self.units)
 
     def simulate(
         self,

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from html import escape
+from keyword import iskeyword
 from typing import Any, Generic, TypeVar
 
 T = TypeVar("T")
@@ -60,13 +61,14 @@ class Named(Mapping[str, T], Generic[T]):
 
 
 class Record(Named[Any]):
-    """An object of a JSON document: its entries are attributes, too."""
+    """An object of a JSON document: its entries are attributes, too; one that is a word of Python
+    with an underscore behind it, as ``from_``."""
 
     __slots__ = ()
 
     def __getattr__(self, name: str) -> Any:
         try:
-            return self._values[name]
+            return self._values[name[:-1] if iskeyword(name[:-1]) else name]
         except KeyError:
             raise AttributeError(no_such(name, list(self._values))) from None
 

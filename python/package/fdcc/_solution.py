@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -46,7 +45,7 @@ class Solution:
 
     @property
     def status(self) -> str:
-        """How the solve ended: ``solved``, ``acceptable``, ``infeasible``, ``none_found``,
+        """How the solve ended: ``solved``, ``acceptable``, ``uncertified``, ``infeasible``, ``none_found``,
         ``unbounded``, ``iteration_limit``, ``time_limit``, ``interrupted``, ``not_finite``,
         ``numerical_failure``."""
         return self._solution.status
@@ -69,8 +68,10 @@ class Solution:
 
     @property
     def certificate(self) -> Record | None:
-        """What certifies it as an optimum of the true system, check by check; ``None`` where nothing
-        does."""
+        """What was checked to show that it is an optimum of the true system: whether it is
+        ``certified``, and the ``checks``, each with its ``figure``, its ``limit`` and whether it
+        ``passes``. ``None`` where nobody looked for one: a model without surfaces or objective, or
+        that names a width."""
         return self.document.get("certificate")
 
     @cached_property
@@ -158,26 +159,23 @@ class Solution:
         """The spans of time of each surface in one ``mode``, ``from`` one time ``to`` another."""
         return self.document.surfaces
 
-    @property
+    @cached_property
     def switches(self) -> tuple[Record, ...]:
-        """When surfaces change their mode, in the order of time: ``time``, ``surface``, and what
-        else the document says of them, or the modes ``before`` and ``after``."""
-        found = self.document.get("switches")
-        return tuple(self._changes()) if found is None else found
-
-    def _changes(self) -> Iterator[Record]:
-        pairs = (
-            (later["from"], surface, first.mode, later.mode)
+        """When surfaces change their mode, in the order of time: ``surface``, ``time``, and the
+        modes ``from`` (``it.from_``) and ``to``. They are located where it is certified."""
+        changes = (
+            {"surface": surface, "time": later["from"], "from": first.mode, "to": later.mode}
             for surface, spans in self.surfaces.items()
             for first, later in zip(spans, spans[1:])
         )
-        for time, surface, before, after in sorted(pairs):
-            yield Record({"time": time, "surface": surface, "before": before, "after": after})
+        return tuple(Record(it) for it in sorted(changes, key=lambda it: it["time"]))
 
     @property
-    def arcs(self) -> Any:
-        """The arcs of controls and constraints where switches were located; else none."""
-        return self.document.get("arcs", Named())
+    def arcs(self) -> Named[tuple[Record, ...]]:
+        """The spans of time of each control at a bound or between, ``mode`` ``min``, ``max`` or
+        ``free``, where it is certified; else none."""
+        found = self.certificate
+        return found.arcs if found and found.certified else Named()
 
     @cached_property
     def phases(self) -> Named["Solution"]:

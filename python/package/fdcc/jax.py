@@ -23,33 +23,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ._controls import Controls
-from ._differentiable import Function, simulated, solved
-from ._model import Model, Value
+from ._differentiable import Function, functions
 
-Differentiable = Callable[[Mapping[str, Any]], jax.Array]
-"""From a dictionary of numbers and arrays to a number."""
-
-
-def simulate(
-    model: Model,
-    of: str | None = None,
-    *,
-    u: Controls = None,
-    values: Mapping[str, Value] | None = None,
-    **named: Value,
-) -> Differentiable:
-    """The value of an expression such as ``"x(end)"`` on the true system, in SI; that of the
-    objective if it is left out. ``u`` and values are as for :meth:`fdcc.Model.simulate`."""
-    return _differentiable(simulated(model, of, u, {**(values or {}), **named}))
-
-
-def solve(model: Model, **options: Any) -> Differentiable:
-    """The objective of the optimum, in SI; options are those of :meth:`fdcc.Model.solve`."""
-    return _differentiable(solved(model, options))
-
-
-def _differentiable(function: Function) -> Differentiable:
+def _differentiable(function: Function) -> Callable[[Mapping[str, Any]], jax.Array]:
     def both(point: dict[str, jax.Array]) -> tuple[jax.Array, dict[str, jax.Array]]:
         kind = jnp.result_type(float)
         shapes = {name: jax.ShapeDtypeStruct(jnp.shape(it), kind) for name, it in point.items()}
@@ -72,3 +48,6 @@ def _differentiable(function: Function) -> Differentiable:
 
     value.defvjp(both, backward)
     return lambda point: value({name: jnp.asarray(it, float) for name, it in point.items()})
+
+
+simulate, solve = functions(_differentiable)

@@ -21,31 +21,7 @@ from typing import Any
 
 import torch
 
-from ._controls import Controls
-from ._differentiable import Function, simulated, solved
-from ._model import Model, Value
-
-Differentiable = Callable[[Mapping[str, Any]], torch.Tensor]
-"""From a dictionary of numbers and tensors to a number."""
-
-
-def simulate(
-    model: Model,
-    of: str | None = None,
-    *,
-    u: Controls = None,
-    values: Mapping[str, Value] | None = None,
-    **named: Value,
-) -> Differentiable:
-    """The value of an expression such as ``"x(end)"`` on the true system, in SI; that of the
-    objective if it is left out. ``u`` and values are as for :meth:`fdcc.Model.simulate`."""
-    return _differentiable(simulated(model, of, u, {**(values or {}), **named}))
-
-
-def solve(model: Model, **options: Any) -> Differentiable:
-    """The objective of the optimum, in SI; options are those of :meth:`fdcc.Model.solve`."""
-    return _differentiable(solved(model, options))
-
+from ._differentiable import Function, functions
 
 class _Host(torch.autograd.Function):
     """A function of tensors that the library computes."""
@@ -63,7 +39,7 @@ class _Host(torch.autograd.Function):
         return (None, None, *(by * it for it in ctx.saved_tensors))
 
 
-def _differentiable(function: Function) -> Differentiable:
+def _differentiable(function: Function) -> Callable[[Mapping[str, Any]], torch.Tensor]:
     def value(point: Mapping[str, Any]) -> torch.Tensor:
         tensors = [
             it if isinstance(it, torch.Tensor) else torch.tensor(it, dtype=torch.float64)
@@ -72,3 +48,6 @@ def _differentiable(function: Function) -> Differentiable:
         return _Host.apply(function, list(point), *tensors)
 
     return value
+
+
+simulate, solve = functions(_differentiable)

@@ -1,0 +1,77 @@
+//! A model in closed loop.
+
+use crate::errors::raised;
+use crate::inputs::{Values, values};
+use crate::model::Model;
+use crate::watch::Watch;
+use fdcc::{Executor, Options};
+use pyo3::prelude::*;
+use std::sync::Mutex;
+
+/// Solves a model once for each state that it is told.
+#[pyclass(frozen, module = "fdcc._fdcc")]
+pub struct Controller {
+    model: fdcc::Model,
+    inner: Mutex<fdcc::Controller>,
+}
+
+/// What came out of a step: the first value of each control, how it ended, and its figures.
+type Step = (Vec<f64>, &'static str, bool, f64, f64, f64, usize);
+
+#[pymethods]
+impl Controller {
+    #[new]
+    fn new(py: Python, model: &Model, given: Values, intervals: usize) -> PyResult<Self> {
+        let (watch, source) = (Watch::new(None), model.model().source());
+        let given = values(given);
+        let made = watch.aside(py, || {
+            let given: Vec<_> =
+                given.iter().map(|(name, it)| (name.as_str(), it.clone())).collect();
+            let model = model.model().with_all(&given)?;
+            Ok((model.controller(intervals)?, model))
+        });
+        watch.raised()?;
+        let (inner, model) = made.map_err(|error| raised(py, error, source))?;
+        Ok(Controller { model, inner: Mutex::new(inner) })
+    }
+
+    /// The names of the states and of the controls.
+    #[getter]
+    fn names(&self) -> (Vec<String>, Vec<String>) {
+        let inner = self.inner.lock().expect("nobody panics with the lock");
+        let (states, controls) = (inner.states(), inner.controls());
+        (states.map(str::to_owned).collect(), controls.map(str::to_owned).collect())
+    }
+
+    /// Other values of parameters, from the next step on.
+    fn set(&self, py: Python, given: Values) -> PyResult<()> {
+        let mut inner = self.inner.lock().expect("nobody panics with the lock");
+        let mut set = values(given).into_iter();
+        let set = set.try_for_each(|(name, value)| inner.set(&name, value));
+        set.map_err(|error| raised(py, error, self.model.source()))
+    }
+
+    /// Solves from a state, for so many seconds at most.
+    fn step(&self, py: Python, state: Vec<f64>, budget: Option<f64>) -> PyResult<Step> {
+        let watch = Watch::new(budget);
+        let stop = || watch.check();
+        let options = Options { stop: &stop, executor: Executor::serial(), ..Options::default() };
+        let step = py.detach(|| {
+            let mut inner = self.inner.lock().expect("nobody panics with the lock");
+            let found = inner.step(&state, &options)?;
+            let first = |column: &Vec<f64>| column.first().copied().unwrap_or(f64::NAN);
+            let solution = &found.outcome.solution;
+            Ok((
+                found.outcome.trajectory.controls.iter().map(first).collect(),
+                found.status_name(),
+                found.is_solved(),
+                found.objective(),
+                found.time()[1] - found.time()[0],
+                solution.constraint_violation,
+                solution.counts.iterations,
+            ))
+        });
+        watch.raised()?;
+        step.map_err(|error| raised(py, error, self.model.source()))
+    }
+}

@@ -11,7 +11,7 @@ const AT_ONCE: Duration = Duration::from_secs(5);
 
 /// A sum that takes longer to compile than anybody waits for.
 fn long() -> String {
-    let terms: Vec<String> = (1..=2000).map(|i| format!("sin({i}*x + {i})")).collect();
+    let terms: Vec<String> = (1..=4000).map(|i| format!("sin({i}*x + {i})")).collect();
     format!(
         "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]\ndynamics {{ x' = u + {} \
          }}\nminimize integral(u^2)\n\

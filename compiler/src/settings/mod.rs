@@ -62,6 +62,7 @@ pub(crate) const KEYS: &[Key] = &[
         set: |m, given| {
             let is_open = matches!(given, Given::Word(word) if word == "auto");
             m.grid = if is_open { Grid::Auto } else { Grid::Uniform(count(given)?) };
+            m.names_grid = true;
             Some(())
         },
     },
@@ -293,6 +294,7 @@ pub fn default_method() -> Method {
         controls: ControlShape::Constant,
         path_at_nodes: false,
         grid: Grid::Uniform(200),
+        names_grid: false,
         order: Order::Fixed,
         tolerance: 1e-3,
         lagged: Vec::new(),

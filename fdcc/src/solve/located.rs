@@ -135,17 +135,24 @@ fn jumps(found: &Found) -> Vec<(usize, phases::Jump)> {
 }
 
 /// Whether the system that was written is meant, because no width is named of what would be
-/// smoothed, and there is an answer to begin with. `between` is what holds between jumps.
+/// smoothed, or no grid where nothing is, and there is an answer to begin with. `between` is what
+/// holds between jumps.
 fn asks_for_truth(model: &Model, between: &fdcc_compiler::Model, found: &Found) -> bool {
-    let is_meant = match between.surfaces.is_empty() {
-        true => !model.meaning().jumps.is_empty(),
-        false => !between.method.names_width(),
-    };
+    let status = &found.outcome.solution.status;
+    if between.surfaces.is_empty() && model.meaning().jumps.is_empty() {
+        return status.is_solved() && is_in_continuous_time(between);
+    }
     // What cannot be solved where it is smoothed, such as a rest to which friction alone leads, may
     // be near an answer of the true system.
-    let status = &found.outcome.solution.status;
     let may_be_near = matches!(status, Status::IterationLimit | Status::Infeasible);
+    let is_meant = between.surfaces.is_empty() || !between.method.names_width();
     is_meant && (status.is_solved() || may_be_near && !found.outcome.is_impossible)
+}
+
+/// Whether a smooth model has an optimum in continuous time that is looked for.
+fn is_in_continuous_time(model: &fdcc_compiler::Model) -> bool {
+    let is_one_phase = model.at_times.is_empty() && model.sums.is_empty();
+    !model.method.names_grid && model.objective.is_some() && is_one_phase
 }
 
 fn of(model: &Model, between: &fdcc_compiler::Model, found: &Found, located: Located) -> Solution {

@@ -52,6 +52,9 @@ pub struct Method {
     pub order: Order,
     /// The sum of the relative errors of all steps that a refined grid may have.
     pub tolerance: f64,
+    /// Whether the number of intervals is written: then the problem on these is meant, else that in
+    /// continuous time.
+    pub names_grid: bool,
     /// Integration steps in each control interval.
     pub steps: usize,
     /// Smoothing width, if the model names one.

@@ -9,6 +9,13 @@ pub fn values(points: &[f64], time: f64) -> Vec<f64> {
     (0..points.len()).map(value).collect()
 }
 
+/// What the polynomial through `column` at its points is where these are the Lagrange polynomials:
+/// of equal numbers exactly the same, so that what is at a bound stays there.
+pub fn combined(weights: &[f64], column: impl Iterator<Item = f64> + Clone) -> f64 {
+    let first = column.clone().next().unwrap_or(0.0);
+    weights.iter().zip(column).fold(first, |sum, (w, value)| sum + w * (value - first))
+}
+
 /// The derivatives of the Lagrange polynomials over `points` at a time.
 pub fn slopes(points: &[f64], time: f64) -> Vec<f64> {
     derivatives(points, time, 1)
@@ -42,6 +49,13 @@ pub fn coefficients(points: &[f64], j: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_constant_is_reproduced_exactly() {
+        let points = [0.1, 0.3, 0.7, 0.9];
+        let value = |k: usize| combined(&values(&points, 0.01 * k as f64), [0.3; 4].into_iter());
+        assert!((0..100).all(|k| value(k) == 0.3));
+    }
 
     #[test]
     fn a_polynomial_is_reproduced_with_its_slope() {

@@ -18,6 +18,9 @@ pub struct Certificate {
     pub switches: Vec<Switch>,
     /// What each control does from when to when: `min`, `max` or `free`.
     pub arcs: Named<Vec<Span>>,
+    /// Whether nothing switches and nothing jumps, so that only the grid stands between.
+    #[serde(skip)]
+    is_smooth: bool,
 }
 
 /// One figure of the true system.
@@ -39,8 +42,13 @@ pub struct Switch {
     pub to: &'static str,
 }
 
+/// What a certificate speaks of.
+pub fn system(is_smooth: bool) -> &'static str {
+    if is_smooth { "continuous problem" } else { "true system" }
+}
+
 impl Certificate {
-    pub fn new(it: &true_optimum::Certificate) -> Self {
+    pub fn new(it: &true_optimum::Certificate, is_smooth: bool) -> Self {
         let check = |it: &true_optimum::Check| Check {
             check: it.name,
             figure: it.figure,
@@ -61,6 +69,7 @@ impl Certificate {
             checks: it.checks.iter().map(check).collect(),
             switches: it.switches.iter().map(switch).collect(),
             arcs: arcs.map(|(name, of)| (name.clone(), of.iter().map(stretch).collect())).collect(),
+            is_smooth,
         }
     }
 
@@ -68,35 +77,47 @@ impl Certificate {
         self.checks.iter().find(|it| it.check == name).map_or(f64::NAN, |it| it.figure)
     }
 
-    /// The first line of a certified answer; without an objective it is no optimum.
-    pub fn headline(&self, has_objective: bool, jumps: usize) -> String {
-        let located = located(self.switches.len(), jumps);
+    /// The first line of a certified answer, which `found` something; without an objective it is no
+    /// optimum.
+    pub fn headline(&self, found: &str, has_objective: bool, jumps: usize) -> String {
+        let located = match self.is_smooth {
+            true => String::new(),
+            false => format!(" {},", located(self.switches.len(), jumps)),
+        };
         let replayed = self.figure("replayed").max(self.figure("conditions"));
         let replayed = scientific(replayed, 1);
+        let of = format!("{found} of the {},{located} replayed to {replayed}", self.system());
         if !has_objective {
-            return format!("trajectory of the true system, {located}, replayed to {replayed}");
+            return of;
         }
         let stationary = scientific(self.figure("stationary"), 1);
-        format!(
-            "local optimum of the true system, {located}, replayed to {replayed}, stationary to \
-             {stationary}, second order ok"
-        )
+        format!("{of}, stationary to {stationary}, second order ok")
+    }
+
+    fn system(&self) -> &'static str {
+        system(self.is_smooth)
     }
 
     /// Why it is not certified, in a line; nothing if it is.
     pub fn failure(&self) -> Option<String> {
         let failed: Vec<String> = self.checks.iter().filter(|it| !it.passes).map(words).collect();
         let what = failed.join(", ");
-        (!failed.is_empty())
-            .then(|| format!(" true  no certified optimum of the true system: {what}"))
+        let system = self.system();
+        (!failed.is_empty()).then(|| format!(" true  no certified optimum of the {system}: {what}"))
     }
 
     /// What may help where it is not certified.
     pub fn advice(&self) -> Option<&'static str> {
-        (!self.certified).then_some(
-            "       try another N, scheme or guess, or --starts 8; --method sigma=... asks for the \
-             smoothed problem alone",
-        )
+        (!self.certified).then_some(match self.is_smooth {
+            true => {
+                "       try another guess, or --starts 8; --method N=... asks for the problem on so \
+                 many intervals alone"
+            }
+            false => {
+                "       try another N, scheme or guess, or --starts 8; --method sigma=... asks for \
+                 the smoothed problem alone"
+            }
+        })
     }
 
     /// What each control does that is at a bound anywhere.

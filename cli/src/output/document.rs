@@ -220,6 +220,7 @@ impl Document {
         let measured = |error: f64| {
             if matches!(solution.status, Status::NotFinite(_)) { f64::NAN } else { error }
         };
+        let is_smooth = problem.surfaces.is_empty() && found.model().meaning().jumps.is_empty();
         Document {
             fdcc: VERSION.to_string(),
             model: problem.name.clone(),
@@ -269,7 +270,7 @@ impl Document {
             units,
             convergence: Convergence::default(),
             optimality: claims.then(|| Optimality::new(&found.optimality(None))),
-            certificate: found.certificate.as_ref().map(Certificate::new),
+            certificate: found.certificate.as_ref().map(|it| Certificate::new(it, is_smooth)),
             verification: None,
         }
     }

@@ -2,7 +2,7 @@
 
 use super::json::{Json, NULL};
 use super::units::{of_condition, of_time, of_value};
-use crate::output::certificate::{located, missed};
+use crate::output::certificate::{located, missed, system};
 use crate::output::number::{scientific, significant};
 
 /// How sure a sentence is.
@@ -47,13 +47,16 @@ pub fn title(document: &Json) -> String {
         return format!("Not solved: {}", document.at("status").text().replace('_', " "));
     }
     if is_certified(document) {
-        let switches = document.at("certificate").at("switches").list().len();
-        let located = located(switches, document.at("jumps").list().len());
         let what = match document.at("optimality").is_absent() {
             true => "A trajectory",
+            false if document.at("global").is_true() => "Global optimum",
             false => "Local optimum",
         };
-        return format!("{what} of the true system, {located}");
+        let of = format!("{what} of the {}", system(is_smooth(document)));
+        return match is_smooth(document) {
+            true => of,
+            false => format!("{of}, {}", all_located(document)),
+        };
     }
     let found = match () {
         _ if document.at("optimality").is_absent() => "A feasible trajectory",
@@ -74,6 +77,17 @@ pub fn title(document: &Json) -> String {
         }
         _ => format!("{found} of the {of} problem, {and}"),
     }
+}
+
+/// How many switches and jumps were located.
+fn all_located(document: &Json) -> String {
+    let switches = document.at("certificate").at("switches").list().len();
+    located(switches, document.at("jumps").list().len())
+}
+
+/// Whether nothing switches and nothing jumps.
+fn is_smooth(document: &Json) -> bool {
+    document.at("surfaces").pairs().is_empty() && document.at("jumps").list().is_empty()
 }
 
 fn smoothed(document: &Json) -> bool {
@@ -189,9 +203,14 @@ fn certified(document: &Json) -> Option<Claim> {
             let it = checks.iter().find(|it| it.at("check").text() == name);
             scientific(number(it.unwrap_or(&NULL).at("figure")), 1)
         };
+        let located = match is_smooth(document) {
+            true => "It is no longer that of a grid",
+            false => "Nothing is smoothed: every switch is located",
+        };
         let text = format!(
-            "Nothing is smoothed: every switch is located, the optimality conditions of the true \
-             system hold to {}, those of second order too. All {} checks of the certificate pass.",
+            "{located}, the optimality conditions of the {} hold to {}, those of second order too. \
+             All {} checks of the certificate pass.",
+            system(is_smooth(document)),
             figure("stationary"),
             checks.len()
         );
@@ -199,9 +218,11 @@ fn certified(document: &Json) -> Option<Claim> {
     }
     let failed = checks.iter().filter(|it| !it.at("passes").is_true());
     let why: Vec<String> = failed.map(|it| missed(it.at("check").text(), figures(it))).collect();
+    let of = if smoothed(document) { "smoothed" } else { "discretised" };
     let text = format!(
-        "This is the optimum of the smoothed problem. An optimum of the true system was looked \
-         for and is not certified: {}.",
+        "This is the optimum of the {of} problem. An optimum of the {} was looked for and is not \
+         certified: {}.",
+        system(is_smooth(document)),
         why.join("; ")
     );
     // Where nothing was located nothing is wrong, either.
@@ -233,6 +254,9 @@ fn contradicted(document: &Json) -> Option<Claim> {
 fn global(document: &Json) -> Option<Claim> {
     match document.at("global").is_true() {
         _ if document.at("optimality").is_absent() => None,
+        true if is_certified(document) => {
+            Some(claim(Mark::Certain, "No other trajectory is better: proved."))
+        }
         true => Some(claim(Mark::Certain, "No other trajectory on this grid is better: proved.")),
         false => Some(claim(
             Mark::Open,
@@ -305,7 +329,7 @@ mod tests {
     #[test]
     fn what_is_certified_was_replayed_for_it() {
         let of = document(
-            r#""status":"solved","optimality":{"contradicted":false},
+            r#""status":"solved","optimality":{"contradicted":false},"surfaces":{"slip":[]},
                "certificate":{"certified":true,"switches":[1]}"#,
         );
         assert_eq!(title(&of), "Local optimum of the true system, 1 switch located");
@@ -314,12 +338,26 @@ mod tests {
     }
 
     #[test]
+    fn without_surfaces_the_grid_alone_stood_between() {
+        let of = |global: bool| {
+            document(&format!(
+                r#""status":"solved","optimality":{{"contradicted":false}},"global":{global},
+                   "certificate":{{"certified":true,"switches":[],"checks":[]}}"#
+            ))
+        };
+        assert_eq!(title(&of(false)), "Local optimum of the continuous problem");
+        assert_eq!(title(&of(true)), "Global optimum of the continuous problem");
+        let says = |text: &str| claims(&of(true)).iter().any(|it| it.text.contains(text));
+        assert!(says("no longer that of a grid") && says("No other trajectory is better"));
+    }
+
+    #[test]
     fn a_certificate_names_what_fails() {
         let certificate = |certified: bool, passes: bool| {
             document(&format!(
                 r#""status":"solved","verification":{{"confirmed":true,"completed":true,
                    "state_gap":1e-9,"asked":0.001}},"optimality":{{"contradicted":false}},
-                   "certificate":{{"certified":{certified},"switches":[1,2],"checks":[
+                   "surfaces":{{"slip":[]}},"certificate":{{"certified":{certified},"switches":[1,2],"checks":[
                    {{"check":"stationary","figure":3e-13,"limit":1e-7,"passes":true}},
                    {{"check":"bounds","figure":0.01,"limit":1e-6,"passes":{passes}}}]}}"#
             ))

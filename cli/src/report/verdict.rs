@@ -135,16 +135,18 @@ fn surfaces(document: &Document, phase: &str) -> impl Iterator<Item = String> {
 /// true system.
 fn how(solved: &Solved) -> String {
     let Solved { solution, document } = solved;
-    if let Some(certificate) = document.certificate.as_ref().filter(|it| it.certified) {
-        return certificate.headline(solution.problem.has_objective, solution.jumps.len());
-    }
     let Solution { problem, outcome, .. } = solution;
-    let status = &outcome.solution.status;
+    let certificate = document.certificate.as_ref().filter(|it| it.certified);
     let found = match problem.has_objective {
+        false if certificate.is_some() => "trajectory",
         false => "feasible trajectory",
         true if document.global => "global optimum",
         true => "local optimum",
     };
+    if let Some(certificate) = certificate {
+        return certificate.headline(found, problem.has_objective, solution.jumps.len());
+    }
+    let status = &outcome.solution.status;
     let of =
         if document.surfaces.0.is_empty() { "discretised problem" } else { "smoothed problem" };
     let uncertified = if document.certificate.is_some() { "NOT CERTIFIED, " } else { "" };

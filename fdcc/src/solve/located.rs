@@ -110,10 +110,19 @@ impl Search<'_> {
 
     /// What is certified meets more than the tolerance of the search.
     fn ended(&self, mut answer: Solution) -> Solution {
+        let (is_global, first) = (self.is_global(), &self.found.outcome.solution);
         let solution = &mut answer.outcome.solution;
         solution.status = Status::Solved;
-        solution.counts.iterations += self.found.outcome.solution.counts.iterations;
+        solution.global = is_global;
+        solution.counts.iterations += first.counts.iterations;
         answer
+    }
+
+    /// Whether every optimum is global. A smooth problem that is convex on a grid is so in continuous
+    /// time where time itself does not matter: what was proved at one node holds between nodes.
+    fn is_global(&self) -> bool {
+        let Found { problem, outcome, .. } = self.found;
+        is_smooth(self.model, self.between) && outcome.solution.global && problem.is_autonomous
     }
 
     /// Where no structure could be solved.
@@ -139,7 +148,7 @@ fn jumps(found: &Found) -> Vec<(usize, phases::Jump)> {
 /// holds between jumps.
 fn asks_for_truth(model: &Model, between: &fdcc_compiler::Model, found: &Found) -> bool {
     let status = &found.outcome.solution.status;
-    if between.surfaces.is_empty() && model.meaning().jumps.is_empty() {
+    if is_smooth(model, between) {
         return status.is_solved() && is_in_continuous_time(between);
     }
     // What cannot be solved where it is smoothed, such as a rest to which friction alone leads, may
@@ -147,6 +156,11 @@ fn asks_for_truth(model: &Model, between: &fdcc_compiler::Model, found: &Found) 
     let may_be_near = matches!(status, Status::IterationLimit | Status::Infeasible);
     let is_meant = between.surfaces.is_empty() || !between.method.names_width();
     is_meant && (status.is_solved() || may_be_near && !found.outcome.is_impossible)
+}
+
+/// Whether nothing switches and nothing jumps.
+fn is_smooth(model: &Model, between: &fdcc_compiler::Model) -> bool {
+    between.surfaces.is_empty() && model.meaning().jumps.is_empty()
 }
 
 /// Whether a smooth model has an optimum in continuous time that is looked for.

@@ -18,7 +18,7 @@ const VIOLATED: f64 = 0.01;
 ///
 /// ```
 /// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
-/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)";
+/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)\nmethod { N = 50 }";
 /// let solution = fdcc::Model::from_text("hop", text)?.solve(&fdcc::Options::default())?;
 /// let checks = solution.optimality(None);
 /// let control = checks.iter().find_map(|check| check.control.as_deref());
@@ -43,7 +43,7 @@ pub struct Check {
 ///
 /// ```
 /// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
-/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)";
+/// # dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)\nmethod { N = 50 }";
 /// use fdcc::optimality::Condition;
 ///
 /// let solution = fdcc::Model::from_text("hop", text)?.solve(&fdcc::Options::default())?;

@@ -1,13 +1,16 @@
 //! Polynomials over [0, 1] by their Bernstein coefficients: a polynomial stays between the least
 //! and the greatest of them. R. T. Farouki: The Bernstein polynomial basis: a centennial
 //! retrospective, CAGD 29 (2012) 379-419.
+//!
+//! A polynomial that is constant is exactly so: a control at its bound stays there, and a rate that
+//! it makes 0 is no noise.
 
 /// The coefficients of the polynomial with these values at some nodes, which differ.
 pub(crate) fn through(nodes: &[f64], values: &[f64]) -> Vec<f64> {
-    let mut sum = vec![0.0; nodes.len()];
-    for (j, value) in values.iter().enumerate() {
+    let mut sum = vec![values[0]; nodes.len()];
+    for (j, value) in values.iter().enumerate().skip(1) {
         let one = lagrange(nodes, j);
-        sum.iter_mut().zip(one).for_each(|(sum, c)| *sum += value * c);
+        sum.iter_mut().zip(one).for_each(|(sum, c)| *sum += (value - values[0]) * c);
     }
     sum
 }
@@ -37,13 +40,13 @@ pub(crate) fn slopes(coefficients: &[f64]) -> Vec<f64> {
 /// The value at a point.
 pub(crate) fn value(coefficients: &[f64], at: f64) -> f64 {
     let (degree, rest) = (coefficients.len() - 1, 1.0 - at);
-    let (mut sum, mut power, mut binomial) = (coefficients[0], 1.0, 1.0);
+    let (mut sum, mut power, mut binomial) = (0.0, 1.0, 1.0);
     for (i, c) in coefficients.iter().enumerate().skip(1) {
         power *= at;
         binomial *= (degree + 1 - i) as f64 / i as f64;
-        sum = sum * rest + power * binomial * c;
+        sum = sum * rest + power * binomial * (c - coefficients[0]);
     }
-    sum
+    coefficients[0] + sum
 }
 
 /// The coefficients over a part of [0, 1], by de Casteljau's algorithm.
@@ -51,13 +54,14 @@ pub(crate) fn restrict(coefficients: &mut [f64], [from, to]: [f64; 2]) {
     let degree = coefficients.len() - 1;
     for turn in (1..=degree).filter(|_| to < 1.0) {
         for k in (turn..=degree).rev() {
-            coefficients[k] = (1.0 - to) * coefficients[k - 1] + to * coefficients[k];
+            let before = coefficients[k - 1];
+            coefficients[k] = before + to * (coefficients[k] - before);
         }
     }
     let from = if to > 0.0 { from / to } else { 0.0 };
     for turn in (1..=degree).filter(|_| from > 0.0) {
         for k in 0..=degree - turn {
-            coefficients[k] = (1.0 - from) * coefficients[k] + from * coefficients[k + 1];
+            coefficients[k] += from * (coefficients[k + 1] - coefficients[k]);
         }
     }
 }
@@ -74,6 +78,14 @@ mod tests {
         assert_eq!(cube, [0.125, 0.25, 0.5, 1.0]);
         restrict(&mut cube, [0.0, 0.5]);
         assert_eq!(cube, [0.125, 0.1875, 0.28125, 0.421875]);
+    }
+
+    #[test]
+    fn a_constant_is_reproduced_exactly() {
+        let mut constant = through(&[0.07, 0.33, 0.67, 0.93], &[0.3; 4]);
+        assert!((0..=100).all(|k| value(&constant, 0.01 * f64::from(k)) == 0.3));
+        restrict(&mut constant, [0.1, 0.7]);
+        assert_eq!(constant, [0.3; 4]);
     }
 
     /// `x^2 - x + 1`, whose coefficients are `1, 1/2, 1`.

@@ -154,7 +154,13 @@ impl Controls {
         let rows = &self.rows()[self.range(segment)];
         let weights = self.weights(segment, time, order);
         let count = rows.first().map_or(0, Vec::len);
-        let value = |at: usize| rows.iter().zip(&weights).map(|(row, w)| w * row[at]).sum();
+        let value = |at: usize| {
+            let column = rows.iter().map(|row| row[at]);
+            match order {
+                0 => lagrange::combined(&weights, column),
+                _ => weights.iter().zip(column).map(|(w, u)| w * u).sum(),
+            }
+        };
         (0..count).map(value).collect()
     }
 }

@@ -237,7 +237,7 @@ impl Piece {
         let at = |node: usize| first + (last - first) * (node as f64 + 0.5) / count as f64;
         let time: Vec<f64> = (0..count).map(at).collect();
         let value = |column: &[f64], time: f64| -> f64 {
-            lagrange::values(&self.time, time).iter().zip(column).map(|(w, u)| w * u).sum()
+            lagrange::combined(&lagrange::values(&self.time, time), column.iter().copied())
         };
         let of = |column: &Vec<f64>| time.iter().map(|time| value(column, *time)).collect();
         let values = self.values.iter().map(of).collect();

@@ -299,7 +299,7 @@ fn graded(intervals: usize) -> Grid {
 
 /// `part` is that of the whole time.
 fn polynomials(method: &mut Method, part: f64, phase: &PhaseOfModes) {
-    let finer = if method.controls == ControlShape::Constant { FINER } else { 1 };
+    let finer = if method.controls == ControlShape::Linear { FINER } else { 1 };
     let own = INTERVALS * part * f64::from(1 << phase.halvings);
     let intervals = (own.round() as usize).max(FEWEST) * finer;
     *method = Method {

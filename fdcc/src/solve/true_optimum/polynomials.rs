@@ -30,7 +30,7 @@ pub(super) fn polynomials(trajectory: &Trajectory, control: usize) -> Vec<Polyno
 impl Polynomial<'_> {
     /// Its value at a time.
     pub fn at(&self, time: f64) -> f64 {
-        lagrange::values(self.time, time).iter().zip(self.values).map(|(w, u)| w * u).sum()
+        lagrange::combined(&lagrange::values(self.time, time), self.values.iter().copied())
     }
 
     /// By how much it leaves its bounds.
@@ -76,16 +76,32 @@ pub(crate) fn beyond_bounds(controls: &[Variable], trajectory: &Trajectory) -> f
     controls.iter().enumerate().map(of).fold(0.0, f64::max)
 }
 
-/// Whether a control is far from linear on several intervals of a phase. On a singular arc the
-/// objective hardly depends on that, and what is found is nothing but noise.
-pub(super) fn is_rough(between: &Problem, outcome: &Outcome) -> bool {
+/// Where a control is far from linear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Rough {
+    /// Only near the ends of a phase.
+    AtEnds,
+    /// Also in its middle half. On a singular arc the objective hardly depends on what a polynomial
+    /// does between its nodes, and what is found is nothing but noise.
+    Throughout,
+}
+
+/// Whether a control is far from linear on several intervals of a phase, and where.
+pub(super) fn roughness(between: &Problem, outcome: &Outcome) -> Option<Rough> {
     let of = |(at, control): (usize, &Variable)| {
         let width = width(control.bounds, &outcome.trajectory.controls[at]);
         let pieces = polynomials(&outcome.trajectory, at);
-        let rough = pieces.iter().filter(|it| it.off_line() > ROUGH * width);
-        rough.count() as f64 > PART_ROUGH * pieces.len() as f64
+        let is_rough = |pieces: &[Polynomial]| {
+            let rough = pieces.iter().filter(|it| it.off_line() > ROUGH * width);
+            rough.count() as f64 > PART_ROUGH * pieces.len() as f64
+        };
+        let quarter = pieces.len() / 4;
+        let middle = &pieces[quarter..pieces.len() - quarter];
+        is_rough(&pieces).then(|| if is_rough(middle) { Rough::Throughout } else { Rough::AtEnds })
     };
     // A control without bounds has no singular arcs: it would have no optimum.
     let is_bounded = |it: &Variable| (it.bounds.upper - it.bounds.lower).is_finite();
-    between.controls.iter().enumerate().filter(|it| is_bounded(it.1)).any(of)
+    let controls = between.controls.iter().enumerate().filter(|it| is_bounded(it.1));
+    let all: Vec<Rough> = controls.filter_map(of).collect();
+    all.iter().find(|it| **it == Rough::Throughout).or(all.first()).copied()
 }

@@ -2,7 +2,7 @@
 
 use super::Whole;
 use super::contacts::{Contacts, InPhase};
-use super::polynomials::{beyond_bounds, is_rough, polynomials};
+use super::polynomials::{Rough, beyond_bounds, polynomials, roughness};
 use super::tracks::Track;
 use super::tuning::repair::NOTHING;
 use super::tuning::structure::{
@@ -115,15 +115,13 @@ impl Structure {
         let mut other = Structure { phases: Vec::new(), times: vec![self.times[0]] };
         let mut touched_before = Vec::new();
         for ((j, phase), outcome) in self.phases.iter().enumerate().zip(located) {
-            let arcs = between.map_or(Vec::new(), |it| arcs_of(it.0, outcome, it.1));
+            let mut arcs = between.map_or(Vec::new(), |it| arcs_of(it.0, outcome, it.1));
             let mut phase = phase.clone();
-            if between.is_some_and(|it| is_rough(it.0, outcome)) && !phase.needs_polynomials() {
-                // What is steep at an end is smooth on graded grids; a singular arc is rough on all.
-                match (phase.is_graded, phase.halvings) {
-                    (false, _) => phase.is_graded = true,
-                    (true, 0) => phase.halvings = 1,
-                    (true, _) => phase.shape = ControlShape::Constant,
-                }
+            let roughness = between.and_then(|it| roughness(it.0, outcome));
+            if let Some(roughness) = roughness.filter(|_| !phase.needs_polynomials()) {
+                // What noise does at bounds are no arcs.
+                arcs.clear();
+                smooth(&mut phase, roughness);
             }
             let found = contacts.of_phase(j, &phase);
             for touch in found.at_ends[0].iter().chain(&touched_before) {
@@ -324,6 +322,19 @@ pub(crate) fn variation(phase: &Outcome) -> f64 {
     let is_meant = own.is_constant && !own.is_noise;
     let duration = time[time.len() - 1] - time[0];
     if is_meant { (largest - least) / own.size * duration } else { 0.0 }
+}
+
+/// What is steep at an end is smooth on graded grids, and on shorter intervals; a singular arc is
+/// rough on all as long as its control is a polynomial.
+fn smooth(phase: &mut PhaseOfModes, rough: Rough) {
+    match (rough, phase.is_graded, phase.halvings) {
+        (Rough::AtEnds, false, _) => phase.is_graded = true,
+        (Rough::AtEnds, true, 0) => phase.halvings = 1,
+        _ => {
+            phase.is_graded = false;
+            phase.shape = ControlShape::Linear;
+        }
+    }
 }
 
 /// The length of the shortest interval.

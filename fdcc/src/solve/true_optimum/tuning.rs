@@ -12,7 +12,7 @@ pub(super) mod search {
     pub(crate) const FEWEST: usize = 6;
     /// A graded phase has its first and its last interval halved so often.
     pub(crate) const GRADES: i32 = 10;
-    /// So many times as many where controls are constant on them.
+    /// So many times as many where controls are linear on them.
     pub(crate) const FINER: usize = 4;
     /// The tolerance of each solve.
     pub(crate) const TOLERANCE: f64 = 1e-10;

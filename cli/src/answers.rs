@@ -65,8 +65,8 @@ impl Answer {
         output::json(self.document())
     }
 
-    /// What it looks like, as a part of an HTML page: what is certain of it, and a plot of each state
-    /// and control.
+    /// What it looks like, as a part of an HTML page: what is certain of it, and a plot of each
+    /// state and control.
     pub fn html(&self) -> String {
         notebook::fragment(&self.json())
     }

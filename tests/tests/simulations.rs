@@ -4,8 +4,8 @@
 //! ```text
 //! case WHAT, AND WHO SAYS SO
 //! set PARAM = VALUE
-//! control TIME VALUE               every control holds its value from TIME on; the guess if left out
-//! event TIME SURFACE KIND          every event, in order; `events many` if they are too many to list
+//! control TIME VALUE               every control, held from TIME on; the guess if left out
+//! event TIME SURFACE KIND          every event, in order; `events many` if there are too many
 //! status STATUS TIME               completed if left out; with the time where it ended
 //! at TIME STATE = VALUE            on the way
 //! STATE = VALUE                    at the end; also `objective = VALUE`

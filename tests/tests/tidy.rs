@@ -359,6 +359,21 @@ fn files_are_short() {
     all_well(breaches);
 }
 
+/// Most columns of a line; `rustfmt` leaves comments and strings as they are.
+const MOST_COLUMNS: usize = 100;
+
+#[test]
+fn lines_are_short() {
+    let mut breaches = Vec::new();
+    for source in rust_sources() {
+        let lines = source.text.lines().map(|line| line.chars().count()).enumerate();
+        breaches.extend(lines.filter(|(_, columns)| *columns > MOST_COLUMNS).map(|(at, columns)| {
+            format!("{}:{}: {columns} columns; break it at {MOST_COLUMNS}", source.path, at + 1)
+        }));
+    }
+    all_well(breaches);
+}
+
 #[test]
 fn files_say_what_they_do() {
     let silent = |source: &&Source| !source.text.starts_with("//! ");

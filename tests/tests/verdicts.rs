@@ -187,8 +187,8 @@ fn a_flat_point_that_is_no_minimum_is_left() {
 fn far_bounds_are_bounds() {
     for (bound, least) in [("1e6", -6485.74954136), ("1e9", -6485759.98918)] {
         let text = format!(
-            "time t in [0, 3] state x start 0 control u in [-inf, {bound}] dynamics {{ x' = u - x }}\n\
-             minimize (x(end) - 1)^2 + 0.001*integral(u) method {{ N = 5 }}"
+            "time t in [0, 3] state x start 0 control u in [-inf, {bound}] dynamics {{ x' = u - x \
+             }}\nminimize (x(end) - 1)^2 + 0.001*integral(u) method {{ N = 5 }}"
         );
         assert_solved(bound, &solved(&text), least);
     }

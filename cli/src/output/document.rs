@@ -82,7 +82,8 @@ pub struct Document {
     /// How each of several starts ended, in their order; absent where there was one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub starts: Vec<Ended>,
-    /// What the estimates of a fit are worth; absent where no squares over rows of data are minimised.
+    /// What the estimates of a fit are worth; absent where no squares over rows of data are
+    /// minimised.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub estimates: Option<Estimates>,
     /// What remains of each signal that was measured.

@@ -21,8 +21,8 @@ pub struct Verification {
     pub confirmed: bool,
     /// The largest gap and violation that is called confirmation.
     pub asked: f64,
-    /// Whether each phase was replayed by itself, from the state at which it begins in the solution;
-    /// absent where there is one phase.
+    /// Whether each phase was replayed by itself, from the state at which it begins in the
+    /// solution; absent where there is one phase.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub phase_by_phase: bool,
     /// Whether the replay reached the last time.

@@ -261,7 +261,8 @@ mod tests {
         let text = format!(
             r#"{{"constraint_violation":1e-10,"kkt_error":1e-9,"method":{{"tol":1e-8,
                 "sigmas":{{"slip":0.1}}}},"global":false,
-                "display_units":{{"x":{{"unit":"mm","si":0.001}},"time":{{"unit":"ms","si":0.001}}}},
+                "display_units":{{"x":{{"unit":"mm","si":0.001}},
+                "time":{{"unit":"ms","si":0.001}}}},
                 {more}}}"#
         );
         serde_json::from_str(&text).expect("it is JSON")

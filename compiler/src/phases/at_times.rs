@@ -5,8 +5,8 @@
 //! x_j+1(T_j+1) = x_j(T_j+1)      lower <= c(T_j+1, x_j(T_j+1), p) <= upper      T_j <= T_j+1
 //! ```
 //!
-//! The trajectory is continuous, the grid has these times as points, and where an equality holds the
-//! costate jumps by its multiplier.
+//! The trajectory is continuous, the grid has these times as points, and where an equality holds
+//! the costate jumps by its multiplier.
 
 use super::division::{Division, add_symbols};
 use super::shares::Shares;

@@ -48,9 +48,9 @@ struct Search<'s> {
 }
 
 impl Search<'_> {
-    /// The first answer that is certified, or the certificate that fails least. It is looked for near
-    /// the smoothed answer, then near what the true system does with the controls of what was found
-    /// there, then near what it does with those of the smoothed answer.
+    /// The first answer that is certified, or the certificate that fails least. It is looked for
+    /// near the smoothed answer, then near what the true system does with the controls of what was
+    /// found there, then near what it does with those of the smoothed answer.
     fn certified(&mut self) -> Result<Solution, Certificate> {
         let found = self.found;
         let smoothed =

@@ -49,8 +49,8 @@ pub fn joined(between: &Problem, chain: &Chain, outcome: &ChainOutcome) -> (Outc
 }
 
 /// Puts the phases of given modes of the true system one after the other; and the state on both
-/// sides of each end of a phase. `between` is the smoothed problem over the whole time, `modes` what
-/// each of its surfaces does.
+/// sides of each end of a phase. `between` is the smoothed problem over the whole time, `modes`
+/// what each of its surfaces does.
 pub fn located(
     between: &Problem,
     chain: &Chain,

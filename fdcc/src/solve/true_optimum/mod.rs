@@ -1,4 +1,5 @@
-//! The optimum of the system that was written, with every switch located: `docs/method/true-optimum.md`.
+//! The optimum of the system that was written, with every switch located:
+//! `docs/method/true-optimum.md`.
 //!
 //! ```text
 //! structure   modes and arcs, read from the smoothed solution

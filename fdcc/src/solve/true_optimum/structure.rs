@@ -118,7 +118,8 @@ impl Structure {
             let arcs = between.map_or(Vec::new(), |it| arcs_of(it.0, outcome, it.1));
             let mut phase = phase.clone();
             if between.is_some_and(|it| is_rough(it.0, outcome)) && !phase.needs_polynomials() {
-                // What is steep at an end is smooth on graded grids; a singular arc is rough on all.
+                // What is steep at an end is smooth on graded grids; a singular arc is rough on
+                // all.
                 match (phase.is_graded, phase.halvings) {
                     (false, _) => phase.is_graded = true,
                     (true, 0) => phase.halvings = 1,

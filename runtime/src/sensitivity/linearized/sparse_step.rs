@@ -1,6 +1,6 @@
 //! One step of the explicit pair where every selector is given and no control changes: most steps
-//! of most tapes. Its stages keep their Jacobians as the compiled function gives them, sparse and in
-//! one piece of memory; the equations are those of [`super::step`].
+//! of most tapes. Its stages keep their Jacobians as the compiled function gives them, sparse and
+//! in one piece of memory; the equations are those of [`super::step`].
 
 use super::linearization::Linearizer;
 use crate::problem::Columns;

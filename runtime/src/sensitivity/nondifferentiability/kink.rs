@@ -50,9 +50,12 @@ pub(crate) fn is_doubtful(linearizer: &Linearizer, tape: &Tape, at: usize) -> bo
     let here = Here::new(linearizer, tape, before);
     let follows =
         linearizer.is_curved(regime) && here.by.row(*kink).columns_range(controls).amax() > 0.0;
-    let is_near = |piece: &Piece| {
-        let [first, last] = linearizer.system.interval;
-        matches!(piece, Piece::Event { before: other, .. } if (other.time - before.time).abs() <= TOUCHING * (last - first))
+    let [first, last] = linearizer.system.interval;
+    let is_near = |piece: &Piece| match piece {
+        Piece::Event { before: other, .. } => {
+            (other.time - before.time).abs() <= TOUCHING * (last - first)
+        }
+        Piece::Step { .. } => false,
     };
     let others = tape.pieces[..at].iter().rev().take(2).chain(tape.pieces[at + 1..].iter().take(2));
     follows || here.is_along(*kink) || others.into_iter().any(is_near)

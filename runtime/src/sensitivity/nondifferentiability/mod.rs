@@ -205,7 +205,13 @@ impl Watch<'_> {
         };
         let own = time_of(&self.tape.pieces[at]);
         let is_near = |piece: &&Piece| (time_of(piece) - own).abs() <= TOGETHER * (last - first);
-        let is_other = |piece: &&Piece| matches!(piece, Piece::Event { cause, .. } if is_it(cause) && !matches!(cause, Cause::Start | Cause::Leaves(_) | Cause::CrossesKink(_)));
+        let is_passed_over = |cause: &Cause| {
+            matches!(cause, Cause::Start | Cause::Leaves(_) | Cause::CrossesKink(_))
+        };
+        let is_other = |piece: &&Piece| match piece {
+            Piece::Event { cause, .. } => is_it(cause) && !is_passed_over(cause),
+            Piece::Step { .. } => false,
+        };
         let before =
             self.tape.pieces[..at].iter().rev().take_while(is_near).any(|it| is_other(&it));
         before || self.tape.pieces[at + 1..].iter().take_while(is_near).any(|it| is_other(&it))

@@ -1,6 +1,6 @@
 //! What shows that an answer is an optimum of the true system, as data and in words.
 
-use super::document::{Span, switching};
+use super::modes::{Span, switching};
 use super::named::Named;
 use super::number::scientific;
 use super::plural;

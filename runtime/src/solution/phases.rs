@@ -3,7 +3,7 @@
 //! At the time of a jump it has the state after it. What each phase says of its times is put one
 //! after the other; each has a grid of its own.
 
-use super::lagrangian::Hamiltonian;
+use super::hamiltonian::Hamiltonian;
 use super::modes::{Span, modes};
 use super::outcome::{ChainOutcome, Limiting, Outcome};
 use super::trajectory::{ControlNodes, Trajectory};

@@ -366,10 +366,13 @@ const MOST_COLUMNS: usize = 100;
 fn lines_are_short() {
     let mut breaches = Vec::new();
     for source in rust_sources() {
-        let lines = source.text.lines().map(|line| line.chars().count()).enumerate();
-        breaches.extend(lines.filter(|(_, columns)| *columns > MOST_COLUMNS).map(|(at, columns)| {
-            format!("{}:{}: {columns} columns; break it at {MOST_COLUMNS}", source.path, at + 1)
-        }));
+        for (at, line) in source.text.lines().enumerate() {
+            let columns = line.chars().count();
+            if columns > MOST_COLUMNS {
+                let place = format!("{}:{}", source.path, at + 1);
+                breaches.push(format!("{place}: {columns} columns; break it at {MOST_COLUMNS}"));
+            }
+        }
     }
     all_well(breaches);
 }

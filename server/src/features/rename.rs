@@ -59,11 +59,10 @@ fn renamable(snapshot: &Snapshot, offset: u32) -> Result<usize, Failure> {
 /// The grammar decides what is a name.
 fn check_name(name: &str) -> Result<(), Failure> {
     let parsed = parse(&format!("param {name} = 1"));
-    let is_it = |item: &Item| {
-        matches!(&item.kind, ItemKind::Param { name: it, .. } if it.name == name)
-    };
-    let is_name = parsed.diagnostics.is_empty()
-        && matches!(&parsed.tree.items[..], [item] if is_it(item));
+    let is_it =
+        |item: &Item| matches!(&item.kind, ItemKind::Param { name: it, .. } if it.name == name);
+    let is_name =
+        parsed.diagnostics.is_empty() && matches!(&parsed.tree.items[..], [item] if is_it(item));
     let why = parsed.diagnostics.first().map_or("a name is one word", |it| it.message.as_str());
     if is_name {
         Ok(())

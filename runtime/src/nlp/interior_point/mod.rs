@@ -4,6 +4,7 @@
 //! line-search algorithm for large-scale nonlinear programming", Mathematical Programming 106
 //! (2006) 25-57. The loop is in [`algorithm`]; each noun of it has a file.
 
+mod acceptance;
 mod algorithm;
 mod barrier;
 mod error_scaling;
@@ -17,6 +18,7 @@ mod line_search;
 mod residuals;
 mod restoration;
 mod saddle;
+mod search_direction;
 mod termination;
 mod tuning;
 mod vectors;

@@ -12,7 +12,7 @@
 //! ```
 
 use fdcc_compiler::compile_simulation;
-use fdcc_runtime::simulate::{Controls, Kind, Options, Simulation, Status, System, simulate};
+use fdcc_runtime::simulate::{Controls, EventKind, Options, Simulation, Status, System, simulate};
 use fdcc_tests::documents;
 use fdcc_tests::models::changed;
 
@@ -60,16 +60,16 @@ fn read<'t>(line: &'t str, case: &mut Case<'t>) -> Option<()> {
     Some(())
 }
 
-fn kind(kind: Kind) -> &'static str {
+fn kind(kind: EventKind) -> &'static str {
     match kind {
-        Kind::CrossesUp => "crosses_up",
-        Kind::CrossesDown => "crosses_down",
-        Kind::EntersSliding => "enters_sliding",
-        Kind::LeavesUp => "leaves_up",
-        Kind::LeavesDown => "leaves_down",
-        Kind::Passes => "passes",
-        Kind::Jump(_) => "jump",
-        Kind::StartsSliding => "starts_sliding",
+        EventKind::CrossesUp => "crosses_up",
+        EventKind::CrossesDown => "crosses_down",
+        EventKind::EntersSliding => "enters_sliding",
+        EventKind::LeavesUp => "leaves_up",
+        EventKind::LeavesDown => "leaves_down",
+        EventKind::Passes => "passes",
+        EventKind::Jump(_) => "jump",
+        EventKind::StartsSliding => "starts_sliding",
     }
 }
 

@@ -5,7 +5,7 @@ use super::number::{short, significant};
 use fdcc_grammar::SourceFile;
 use fdcc_runtime::nlp::Stop;
 use fdcc_runtime::problem::Origin;
-use fdcc_runtime::simulate::{Candidate, Event, Kind, Simulation, Status, System};
+use fdcc_runtime::simulate::{Candidate, Event, EventKind, Simulation, Status, System};
 use serde::Serialize;
 
 /// The status, and one object that explains it unless it is `completed`.
@@ -203,7 +203,7 @@ impl EventEntry {
 
 fn entry(system: &System, event: &Event) -> EventEntry {
     let jump = match event.kind {
-        Kind::Jump(jump) => Some(system.jumps[jump].name.clone()),
+        EventKind::Jump(jump) => Some(system.jumps[jump].name.clone()),
         _ => None,
     };
     EventEntry {
@@ -218,16 +218,16 @@ fn entry(system: &System, event: &Event) -> EventEntry {
     }
 }
 
-fn kind_name(kind: Kind) -> &'static str {
+fn kind_name(kind: EventKind) -> &'static str {
     match kind {
-        Kind::CrossesUp => "crosses_up",
-        Kind::CrossesDown => "crosses_down",
-        Kind::EntersSliding => "enters_sliding",
-        Kind::LeavesUp => "leaves_up",
-        Kind::LeavesDown => "leaves_down",
-        Kind::Passes => "passes",
-        Kind::Jump(_) => "jump",
-        Kind::StartsSliding => "starts_sliding",
+        EventKind::CrossesUp => "crosses_up",
+        EventKind::CrossesDown => "crosses_down",
+        EventKind::EntersSliding => "enters_sliding",
+        EventKind::LeavesUp => "leaves_up",
+        EventKind::LeavesDown => "leaves_down",
+        EventKind::Passes => "passes",
+        EventKind::Jump(_) => "jump",
+        EventKind::StartsSliding => "starts_sliding",
     }
 }
 

@@ -1,6 +1,6 @@
 //! A gradient in words: the verdict, the derivatives beside those that others compute, the events.
 
-use super::gradient::{Derivative, Document, Reason};
+use super::gradient::{Derivative, GradientDocument, Reason};
 use super::named::Named;
 use super::number::{scientific, short, significant};
 use super::table::with_head;
@@ -8,7 +8,7 @@ use super::table::with_head;
 /// Digits of derivatives and times.
 const DIGITS: usize = 9;
 
-impl Document {
+impl GradientDocument {
     /// A verdict, the derivatives, the events.
     pub fn words(&self) -> String {
         let Some(value) = self.value else {

@@ -15,7 +15,7 @@ use serde::Serialize;
 
 /// What `fdcc verify --json` prints.
 #[derive(Serialize)]
-pub struct Document {
+pub struct VerifyDocument {
     fdcc: String,
     pub model: String,
     /// Whether the text of the model is still the one that was solved.
@@ -50,7 +50,7 @@ struct ConditionEntry {
     time: Option<f64>,
 }
 
-impl Document {
+impl VerifyDocument {
     pub fn new(
         verified: &fdcc::Verification,
         objective: Option<f64>,
@@ -73,7 +73,7 @@ impl Document {
             surfaces.map(|(name, stays)| (name, stays.iter().map(span).collect())).collect();
         // The components of a ball are one surface.
         surfaces.dedup_by(|later, first| later.0 == first.0);
-        Document {
+        VerifyDocument {
             fdcc: VERSION.to_string(),
             model: system.name.clone(),
             same_source,
@@ -90,7 +90,7 @@ impl Document {
 
     /// The same with the units of its values.
     pub fn in_units(self, units: Units) -> Self {
-        Document { units, ..self }
+        VerifyDocument { units, ..self }
     }
 
     /// Whether the solution is confirmed.

@@ -4,7 +4,7 @@
 use super::Whole;
 use crate::verification::{Verification, modes};
 use fdcc_compiler::Model;
-use fdcc_runtime::simulate::{Event, Kind, Mode as Motion};
+use fdcc_runtime::simulate::{Event, EventKind, Mode as Motion};
 use fdcc_runtime::solution::modes::{Mode, Span};
 use fdcc_runtime::solution::phases::Jump;
 
@@ -46,7 +46,7 @@ fn mode(of: Motion) -> Mode {
 }
 
 fn jump(event: &Event) -> Option<(usize, Jump)> {
-    let Kind::Jump(at) = event.kind else { return None };
+    let EventKind::Jump(at) = event.kind else { return None };
     let Event { time, before, after, .. } = event.clone();
     Some((at, Jump { time, before, after }))
 }

@@ -4,7 +4,7 @@
 use super::barrier::{Barrier, Terms};
 use super::filter::Filter;
 use super::formulation::Formulation;
-use super::iterate::{Iterate, Slopes, Step, Values};
+use super::iterate::{Iterate, SearchDirection, Slopes, Values};
 use super::kkt::Kkt;
 use super::residuals::Residuals;
 use super::restoration::Restored;
@@ -34,7 +34,7 @@ pub(super) struct Algorithm {
     pub(super) barrier: Barrier,
     pub(super) filter: Filter,
     pub(super) kkt: Kkt,
-    pub(super) step: Step,
+    pub(super) step: SearchDirection,
     pub(super) options: Options,
     pub(super) counts: Counts,
     pub(super) progress: Progress,
@@ -73,7 +73,7 @@ impl Algorithm {
     ) -> Self {
         Algorithm {
             kkt: Kkt::new(nlp, &formulation, options.linear),
-            step: Step::new(&formulation),
+            step: SearchDirection::new(&formulation),
             slopes: Slopes::new(nlp, &formulation),
             values: Values::default(),
             barrier: Barrier::new(mu, options.tol),

@@ -3,7 +3,7 @@
 
 use super::event::EventOnTape;
 use super::linearization::{Jacobian, Linearizer};
-use crate::simulate::{Instant, Kind, Mode, Regime, Tape};
+use crate::simulate::{EventKind, Instant, Mode, Regime, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 /// The derivatives of the state after an event by the state, the time and the inputs `(U, p)`
@@ -25,7 +25,7 @@ impl Reset {
         };
         let mut from = event.before;
         for change in event.changes {
-            if let Kind::Jump(jump) = change.kind {
+            if let EventKind::Jump(jump) = change.kind {
                 reset.then(&jump_slopes(linearizer, tape, from, (jump, regime)));
             }
             if change.after.time == event.before.time {

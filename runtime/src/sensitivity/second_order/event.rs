@@ -5,7 +5,7 @@ use super::curvature::{Completed, Hessians};
 use crate::problem::Columns;
 use crate::sensitivity::linearized::event::EventOnTape;
 use crate::sensitivity::linearized::linearization::{Jacobian, Linearization, Linearizer};
-use crate::simulate::{Cause, Instant, Kind, Regime, Tape};
+use crate::simulate::{Cause, EventKind, Instant, Regime, Tape};
 use nalgebra::{DMatrix, DVector, DVectorView, RowDVector};
 
 /// One vector for each pair of directions.
@@ -78,7 +78,7 @@ impl SecondOrderEvent<'_> {
         let states = system.layout.x;
         let mut from = self.event.before;
         for change in self.event.changes {
-            if let Kind::Jump(jump) = change.kind {
+            if let EventKind::Jump(jump) = change.kind {
                 let table = self.table(from);
                 let by = Jacobian::of(&*system.resets, &table, &self.linearizer.parameters).by;
                 let by = by.rows(jump * states, states);

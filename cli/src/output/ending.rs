@@ -2,6 +2,7 @@
 
 use super::named::Named;
 use super::number::{short, significant};
+use fdcc::names::event_name;
 use fdcc_grammar::SourceFile;
 use fdcc_runtime::nlp::Stop;
 use fdcc_runtime::problem::Origin;
@@ -209,25 +210,12 @@ fn entry(system: &System, event: &Event) -> EventEntry {
     EventEntry {
         time: event.time,
         surface: system.name_of(event.surface).to_owned(),
-        kind: kind_name(event.kind),
+        kind: event_name(event.kind),
         jump,
         margin: event.margin,
         state: state(system, &event.after),
         before: state(system, &event.before),
         after: state(system, &event.after),
-    }
-}
-
-fn kind_name(kind: EventKind) -> &'static str {
-    match kind {
-        EventKind::CrossesUp => "crosses_up",
-        EventKind::CrossesDown => "crosses_down",
-        EventKind::EntersSliding => "enters_sliding",
-        EventKind::LeavesUp => "leaves_up",
-        EventKind::LeavesDown => "leaves_down",
-        EventKind::Passes => "passes",
-        EventKind::Jump(_) => "jump",
-        EventKind::StartsSliding => "starts_sliding",
     }
 }
 

@@ -136,7 +136,7 @@ impl GradientDocument {
             trusted: exact.is_trusted(),
             is_bent: exact.found.kink.is_some(),
             one_sided: (!is_plain && !sides.0.is_empty()).then_some(sides),
-            cause: first.map(|trouble| Reason::new(system, trouble)),
+            cause: first.map(|found| Reason::new(system, found)),
             warnings,
             ..GradientDocument::without(of, system, &exact.found.simulation, source)
         }
@@ -173,9 +173,9 @@ impl GradientDocument {
 }
 
 impl Reason {
-    fn new(system: &System, trouble: &Nondifferentiability) -> Self {
-        let surface = system.name_of(trouble.surface).to_owned();
-        Reason { kind: kind_name(trouble.kind), surface, time: trouble.time }
+    fn new(system: &System, found: &Nondifferentiability) -> Self {
+        let surface = system.name_of(found.surface).to_owned();
+        Reason { kind: kind_name(found.kind), surface, time: found.time }
     }
 
     /// `a grazing of \`zero\` at t = 1`

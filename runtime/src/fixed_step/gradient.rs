@@ -13,7 +13,7 @@
 //! follow the interval: `t = t0(p) + tau (tf(p) - t0(p))`.
 
 use super::field::{Field, jacobian};
-use super::linearized::Linearized;
+use super::linearised::Linearised;
 use super::rule::Grid;
 use super::run::{Failure, Stepped, ends};
 use super::step::FixedStep;
@@ -110,7 +110,7 @@ impl<'a> Adjoint<'a> {
         let Some(node) = &self.grid.implicit else {
             return Ok((self.state.clone(), DVector::zeros(layout.inputs())));
         };
-        let local = Linearized::new(self.field, node, step.h, &step.new);
+        let local = Linearised::new(self.field, node, step.h, &step.new);
         let known = self.state.iter().copied().chain(free.iter().map(|&i| self.selectors[i]));
         let known = DVector::from_iterator(layout.x + free.len(), known);
         let solution = local.bordered(free).transpose().lu().solve(&known);

@@ -11,7 +11,7 @@
 //! where it cannot, because only the selectors were wrong, they are not.
 
 use super::field::{Field, Point};
-use super::linearized::Linearized;
+use super::linearised::Linearised;
 use super::rule::Grid;
 use super::run::Failure;
 use crate::simulate::selectors;
@@ -140,7 +140,7 @@ impl Implicit<'_> {
     /// One linear complementarity problem.
     fn change(&self, x: &DVector<f64>, s: &DVector<f64>) -> Result<Change, Failure> {
         let point = self.point(x, s);
-        let local = Linearized::new(self.field, self.node, self.h, &point);
+        let local = Linearised::new(self.field, self.node, self.h, &point);
         let residual = x - self.fixed - local.weight * &local.flow.values;
         finite(self.field, &point, &residual)?;
         let singular = || Failure::Singular { step: self.index, time: self.t };

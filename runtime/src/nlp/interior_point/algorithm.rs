@@ -1,5 +1,5 @@
 //! The loop: algorithm A of Waechter & Biegler 2006. Its steps are named where they are
-//! taken; A-1, the start, is in [`initialization`](super::initialization).
+//! taken; A-1, the start, is in [`initialisation`](super::initialisation).
 
 use super::barrier::{Barrier, Terms};
 use super::filter::Filter;

@@ -11,7 +11,7 @@ mod error_scaling;
 mod filter;
 mod formulation;
 mod inertia;
-mod initialization;
+mod initialisation;
 mod iterate;
 mod kkt;
 mod line_search;
@@ -191,7 +191,7 @@ fn attempt_scaled(
     let mut watch = |progress: &Progress| {
         watch(&Progress { objective: progress.objective / objective_scale, ..*progress })
     };
-    let mut algorithm = initialization::prepare(&mut scaled, &start, *options);
+    let mut algorithm = initialisation::prepare(&mut scaled, &start, *options);
     let status = run(&mut algorithm, &mut scaled, &mut watch);
     let mu = algorithm.barrier.mu;
     let Algorithm { at, counts, residuals, formulation, is_saddle, mut descent, decrement, .. } =

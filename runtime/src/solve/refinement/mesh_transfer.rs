@@ -17,16 +17,16 @@ pub(super) fn transferred(
     to: &TranscribedNlp,
     parts: &[usize],
 ) -> Start {
-    let carry = Carry { from, to, places: places(parts) };
+    let transfer = MeshTransfer { from, to, places: places(parts) };
     let warm = start.warm.as_ref().map(|Warm { multipliers, mu, widths }| {
         let multipliers = Multipliers {
-            constraints: carry.rows(&multipliers.constraints),
-            lower: carry.bounds(&multipliers.lower),
-            upper: carry.bounds(&multipliers.upper),
+            constraints: transfer.rows(&multipliers.constraints),
+            lower: transfer.bounds(&multipliers.lower),
+            upper: transfer.bounds(&multipliers.upper),
         };
         Warm { multipliers, mu: *mu, widths: widths.clone() }
     });
-    Start { v: carry.values(&start.v), warm }
+    Start { v: transfer.values(&start.v), warm }
 }
 
 /// The interval that each part is in, and which of its parts it is.
@@ -52,13 +52,13 @@ impl IntervalPart {
     }
 }
 
-struct Carry<'a> {
+struct MeshTransfer<'a> {
     from: &'a TranscribedNlp<'a>,
     to: &'a TranscribedNlp<'a>,
     places: Vec<IntervalPart>,
 }
 
-impl Carry<'_> {
+impl MeshTransfer<'_> {
     /// Calls `action` with each variable of the new grid but the unknowns: itself, its slot, and
     /// where it is on the old grid.
     fn each(&self, mut action: impl FnMut(usize, usize, IntervalPart, f64)) {

@@ -9,8 +9,8 @@
 //! Hermite      x = H_0(c) x_0 + H_1(c) x_1 + h (G_0(c) F_0 + G_1(c) F_1)  c = (tau_r(p) - begin)/h
 //! ```
 //!
-//! so that all derivatives, also those by an end of time, come from the graph. `d` itself is 0. Only
-//! the values of `d` and its first two powers matter, so the first polynomial is exact for any
+//! so that all derivatives, also those by an end of time, come from the graph. `d` itself is 0.
+//! Only the values of `d` and its first two powers matter, so the first polynomial is exact for any
 //! degree.
 
 use super::function::{Order, VectorFunction};

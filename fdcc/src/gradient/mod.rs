@@ -71,9 +71,8 @@ impl Gradient {
         let simulation = self.simulation();
         let found = hessian(&self.system, &self.controls, simulation, &quantities(&self.by));
         let why = "there are no second derivatives here: none are known where infinitely many \
-                   jumps come to rest, where a `Dir` \
-                   moves, by a start that leaves a surface on which it slides, and where a kink is \
-                   met together with something else";
+                   jumps come to rest, where a `Dir` moves, by a start that leaves a surface on \
+                   which it slides, and where a kink is met together with something else";
         found.ok_or(why.to_string())
     }
 

@@ -1,7 +1,7 @@
 //! The sensitivity of the optimal cost: its derivatives by parameters, from the multipliers.
 //!
-//! They are the partial derivatives of the [Lagrangian](super::lagrangian), of functions, bounds and
-//! starts that parameters enter.
+//! They are the partial derivatives of the [Lagrangian](super::lagrangian), of functions, bounds
+//! and starts that parameters enter.
 
 use super::lagrangian::{Lagrangian, add_slopes};
 use super::minimum;

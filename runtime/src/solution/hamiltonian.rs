@@ -1,7 +1,7 @@
 //! The Hamiltonian of a solution: the derivative of the optimum by time.
 //!
-//! By the length of interval `k`, over that of the time, the [Lagrangian](super::lagrangian) changes
-//! by the Hamiltonian of the interval
+//! By the length of interval `k`, over that of the time, the [Lagrangian](super::lagrangian)
+//! changes by the Hamiltonian of the interval
 //!
 //! ```text
 //!     H_k = sum_j b_j L(node j) - sum_j lambda_j . F(node j)  ~  L + p . f,        p = dJ/dx

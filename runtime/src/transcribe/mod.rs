@@ -36,7 +36,8 @@ use sampled::{Matrices, Sampled, Target};
 /// The NLP of a problem on a grid.
 pub struct TranscribedNlp<'p> {
     problem: &'p Problem,
-    /// See [`Nlp::objective_unit`](crate::nlp::Nlp::objective_unit); nothing as long as nobody asks.
+    /// See [`Nlp::objective_unit`](crate::nlp::Nlp::objective_unit); nothing as long as nobody
+    /// asks.
     objective_unit: Option<f64>,
     stages: Stages,
     interval: Interval,

@@ -1,5 +1,5 @@
-//! Calls: the builtin functions of numbers here; those of vectors, the model's own functions and the
-//! special forms in the files beside this one.
+//! Calls: the builtin functions of numbers here; those of vectors, the model's own functions and
+//! the special forms in the files beside this one.
 
 use crate::expressions::graph::ExprId;
 use crate::expressions::graph::builtins::{self, Builtin};

@@ -66,7 +66,11 @@ impl Gradient {
         self.found.as_ref().is_ok_and(Exact::is_trusted)
     }
 
-    /// The second derivatives, by each pair of numbers in the order of `by`; or why there are none.
+    /// The second derivatives, a square matrix: by each pair of numbers in the order of `by`, in SI.
+    ///
+    /// # Errors
+    ///
+    /// Why there are none, in words.
     pub fn second(&self) -> Result<Vec<Vec<f64>>, String> {
         let simulation = self.simulation();
         let found = hessian(&self.system, &self.controls, simulation, &quantities(&self.by));

@@ -142,7 +142,10 @@ pub unsafe extern "C" fn fdcc_step(
 
 /// Functions that ask a controller for something, and get `$none` where there is none.
 macro_rules! asked {
-    ($($(#[$doc:meta])* $name:ident($it:ident $(, $at:ident)?) -> $result:ty, $none:expr, $value:expr;)*) => {$(
+    ($(
+        $(#[$doc:meta])*
+        $name:ident($it:ident $(, $at:ident)?) -> $result:ty, $none:expr, $value:expr;
+    )*) => {$(
         $(#[$doc])*
         ///
         /// # Safety

@@ -65,8 +65,8 @@ impl Answer {
         output::json(self.document())
     }
 
-    /// What it looks like, as a part of an HTML page: what is certain of it, and a plot of each state
-    /// and control.
+    /// What it looks like, as a part of an HTML page: what is certain of it, and a plot of each
+    /// state and control.
     pub fn html(&self) -> String {
         notebook::fragment(&self.json())
     }
@@ -124,12 +124,12 @@ pub fn diagnostics(diagnostics: &[Diagnostic], source: &SourceFile) -> String {
 
 /// The document that `fdcc simulate --json` prints.
 pub fn simulation(simulated: &Simulation, model: &Model) -> String {
-    output::json(&simulations::Document::new(simulated, model))
+    output::json(&simulations::SimulationDocument::new(simulated, model))
 }
 
 /// The document that `fdcc grad --json` prints of the derivatives of the expression `of`; with
 /// second derivatives if they are wanted.
 pub fn gradient(of: &str, found: &Gradient, has_second: bool, model: &Model) -> String {
-    let document = gradients::Document::new(of, found, has_second, model);
+    let document = gradients::GradientDocument::new(of, found, has_second, model);
     output::json(&document.in_units(model.meaning().into()))
 }

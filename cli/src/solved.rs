@@ -3,7 +3,7 @@
 use crate::exit::Exit;
 use crate::output::document::Document;
 use crate::output::optimality::Optimality;
-use crate::output::verified::Verification;
+use crate::output::verification::Verification;
 use fdcc::Solution;
 
 /// Everything that came out of a solve.

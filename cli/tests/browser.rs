@@ -24,7 +24,8 @@ addEventListener('load', () => {
   body.dataset.overflow = documentElement.scrollWidth - documentElement.clientWidth;
   body.dataset.empty = document.querySelectorAll('.plot:not(:has(canvas))').length;
   body.dataset.unnamed = document.querySelectorAll('.plot:not([aria-label])').length;
-  body.dataset.told = [...document.querySelectorAll('output')].map((it) => it.textContent).join(';');
+  const told = [...document.querySelectorAll('output')];
+  body.dataset.told = told.map((it) => it.textContent).join(';');
 });
 </script>";
 

@@ -56,21 +56,21 @@ impl Server {
 #[test]
 fn an_editor_opens_a_model_solves_it_and_goes() {
     let mut server = Server::start();
-    server
-        .send(json!({ "jsonrpc": "2.0", "id": 1, "method": "initialize", "params": { "capabilities": {} } }));
+    let params = json!({ "capabilities": {} });
+    server.send(json!({ "jsonrpc": "2.0", "id": 1, "method": "initialize", "params": params }));
     let answer = server.wait_for(|it| it["id"] == 1);
     assert_eq!(answer["result"]["serverInfo"]["name"], "fdcc");
     server.send(json!({ "jsonrpc": "2.0", "method": "initialized", "params": {} }));
     let document =
         json!({ "uri": "untitled:fall", "languageId": "fdc", "version": 1, "text": MODEL });
-    server.send(
-        json!({ "jsonrpc": "2.0", "method": "textDocument/didOpen", "params": { "textDocument": document } }),
-    );
+    let params = json!({ "textDocument": document });
+    server.send(json!({ "jsonrpc": "2.0", "method": "textDocument/didOpen", "params": params }));
     let published = server.wait_for(|it| it["method"] == "textDocument/publishDiagnostics");
     assert_eq!(published["params"]["diagnostics"], json!([]));
     let command = json!({ "command": "fdcc.solve", "arguments": ["untitled:fall"] });
-    server
-        .send(json!({ "jsonrpc": "2.0", "id": 2, "method": "workspace/executeCommand", "params": command }));
+    server.send(json!({
+        "jsonrpc": "2.0", "id": 2, "method": "workspace/executeCommand", "params": command
+    }));
     let result = server.wait_for(|it| it["id"] == 2)["result"].clone();
     assert_eq!(result["exitCode"], 0, "{result}");
     // The least integral of u^2 that moves by 0.5 in time 1 is 0.25.

@@ -75,8 +75,7 @@ fn no_sequence_of_jumps_is_no_proof_that_there_is_none() {
     expect_exit(&output, 2, "nothing is that fast");
     let verdict = stdout(&output);
     let told = "none of the sequences tried (crossing of rim, bounce; no jump; crossing of rim) \
-                has a feasible \
-                trajectory near the guess";
+                has a feasible trajectory near the guess";
     assert!(verdict.contains(told), "{verdict}");
     let all = verdict + &stderr(&output);
     assert!(!all.contains("infeasible") && !all.contains("certain"), "{all}");

@@ -143,8 +143,8 @@ fn the_page_of_the_race_car_has_its_replay_and_is_small() {
 
 #[test]
 fn names_of_a_model_and_its_text_are_no_markup() {
-    let text = "model odd # </script><b>&\ntime t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]\n\
-                dynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)\n";
+    let text = "model odd # </script><b>&\ntime t in [0, 1]\nstate x start 0\n\
+                control u in [-1, 1]\ndynamics { x' = u }\nend x == 0.5\nminimize integral(u^2)\n";
     let page = page("page_markup", &[("odd.fdc", text.as_bytes())], "odd", &[]);
     assert!(page.markup().contains("odd # &lt;/script&gt;&lt;b&gt;&amp;"));
     assert_eq!(page.document["source"].as_str(), Some(text));

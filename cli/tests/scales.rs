@@ -22,7 +22,8 @@ const UNITS: [(&str, &str); 6] =
 
 /// The solution says that it moves; without any force it rests, and misses by all of its way.
 const RESTS: &str = r#"{"model": "block", "free": {}, "params": {"friction": 3, "goal": 5e-7},
-    "time": [0, 1e-3, 2e-3], "states": {"x": [0, 2.5e-7, 5e-7], "v": [0, 5e-4, 0]}, "controls": {"a": [0, 0]}}"#;
+    "time": [0, 1e-3, 2e-3], "states": {"x": [0, 2.5e-7, 5e-7], "v": [0, 5e-4, 0]},
+    "controls": {"a": [0, 0]}}"#;
 
 fn near(value: &Value, expected: f64, within: f64) {
     assert!((number(value) - expected).abs() <= within, "{value}, not {expected}");
@@ -170,7 +171,8 @@ fn what_does_not_move_does_not_differ() {
                 dynamics { x' = u\n y' = 0*u\n z' = 0*u }\nend y == 0\nend z == 300\nminimize \
                 integral(u^2)\n";
     let solution = r#"{"model": "rests", "free": {}, "params": {}, "time": [0, 1],
-        "states": {"x": [0, 1], "y": [0, 1e-16], "z": [300, 300.00000000001]}, "controls": {"u": [1]}}"#;
+        "states": {"x": [0, 1], "y": [0, 1e-16], "z": [300, 300.00000000001]},
+        "controls": {"u": [1]}}"#;
     let folder = folder(
         "scales_rests",
         &[("rests.fdc", text.as_bytes()), ("rests.sol.json", solution.as_bytes())],

@@ -196,7 +196,8 @@ fn a_warm_start_begins_at_the_earlier_solution_on_any_grid() {
     }
 }
 
-/// `ridge` names no width, and nothing certifies its optimum: the second solve begins with that which the first chose.
+/// `ridge` names no width, and nothing certifies its optimum: the second solve begins with that
+/// which the first chose.
 #[test]
 fn a_warm_start_takes_the_widths_that_were_chosen() {
     let (folder, ridge) = (folder("chosen", &[]), classic("switched/ridge"));

@@ -249,7 +249,8 @@ fn jumps_are_compared_with_jumps() {
     };
     let solution = |jumps: &str| {
         format!(
-            r#"{{"model": "drop", "free": {{"e": 0.5}}, "params": {{}}, "time": [0, 0.5, {late}, 1.375, 1.75],
+            r#"{{"model": "drop", "free": {{"e": 0.5}}, "params": {{}},
+              "time": [0, 0.5, {late}, 1.375, 1.75],
               "states": {{"h": [{}], "v": [{}]}}, "controls": {{}}{jumps}}}"#,
             column(|it| it.0),
             column(|it| it.1)

@@ -33,7 +33,7 @@ mod warm_start;
 pub use error::Error;
 pub use estimates::{Estimate, Estimates, Residual};
 pub use executor::Executor;
-pub use expectations::{Checked as Expectation, Outcome as Expected, Sides};
+pub use expectations::{Expectation, Expected, Sides};
 pub use fdcc_runtime::nlp::{Status, Stop};
 pub use fdcc_runtime::simulate::{Controls, Options as Accuracy, Polynomials};
 pub use gradient::{By, Exact, Gradient, NotBy, Stepped, by_names};

@@ -1,6 +1,7 @@
-//! The words that files and verdicts have for statuses and modes.
+//! The words that files and verdicts have for statuses, modes and events.
 
 use fdcc_runtime::nlp::Status;
+use fdcc_runtime::simulate::EventKind;
 use fdcc_runtime::solution::modes::Mode;
 
 /// The name of a status in files and verdicts. `infeasible` is what is proved to be so.
@@ -25,5 +26,19 @@ pub fn mode_name(mode: Mode) -> &'static str {
         Mode::Below => "below",
         Mode::Held => "held",
         Mode::Above => "above",
+    }
+}
+
+/// The name of what happens at an event, in files.
+pub fn event_name(kind: EventKind) -> &'static str {
+    match kind {
+        EventKind::CrossesUp => "crosses_up",
+        EventKind::CrossesDown => "crosses_down",
+        EventKind::EntersSliding => "enters_sliding",
+        EventKind::LeavesUp => "leaves_up",
+        EventKind::LeavesDown => "leaves_down",
+        EventKind::Passes => "passes",
+        EventKind::Jump(_) => "jump",
+        EventKind::StartsSliding => "starts_sliding",
     }
 }

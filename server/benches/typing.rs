@@ -79,7 +79,8 @@ fn percentiles(place: &str, before: &str, typed: &str) {
 #[divan::bench(sample_count = 200)]
 fn keystroke_in_a_comment(bencher: Bencher) {
     let (mut client, line) = opened("dynamics");
-    client.change(URI, 2, json!([{ "range": { "start": { "line": line, "character": 0 }, "end": { "line": line, "character": 0 } }, "text": "# \n" }]));
+    let at = json!({ "line": line, "character": 0 });
+    client.change(URI, 2, json!([{ "range": { "start": at, "end": at }, "text": "# \n" }]));
     client.diagnostics();
     let mut version = 2;
     bencher.bench_local(|| {

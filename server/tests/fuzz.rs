@@ -146,7 +146,8 @@ impl Fuzzer {
         let end = match self.random.below(4) {
             0 => self.place(),
             1 => {
-                json!({ "line": start["line"], "character": start["character"].as_u64().unwrap_or(0) + 5 })
+                let character = start["character"].as_u64().unwrap_or(0) + 5;
+                json!({ "line": start["line"], "character": character })
             }
             _ => start.clone(),
         };

@@ -11,7 +11,8 @@ const TEXT: &str = "\u{FEFF}param é𝛼 = 1 # ü\r\nlet b = é𝛼*zz\rlet c = 
 
 fn started(encodings: &Value) -> Client {
     let mut client = Client::connect();
-    let capabilities = json!({ "general": { "positionEncodings": encodings }, "textDocument": { "diagnostic": {} } });
+    let general = json!({ "positionEncodings": encodings });
+    let capabilities = json!({ "general": general, "textDocument": { "diagnostic": {} } });
     client.result("initialize", json!({ "capabilities": capabilities }));
     client
 }
@@ -41,7 +42,8 @@ fn columns_count_what_was_agreed_on() {
     let agreed = |offered: Value| {
         let mut client = Client::connect();
         let capabilities = json!({ "general": { "positionEncodings": offered } });
-        client.result("initialize", json!({ "capabilities": capabilities }))["capabilities"]["positionEncoding"].clone()
+        let answer = client.result("initialize", json!({ "capabilities": capabilities }));
+        answer["capabilities"]["positionEncoding"].clone()
     };
     assert_eq!(agreed(json!(["utf-8", "utf-16"])), "utf-8");
     assert_eq!(agreed(json!(["utf-32", "utf-16"])), "utf-32");
@@ -70,8 +72,9 @@ fn edits_hit_what_they_mean() {
         let mut client = started(&json!([encoding]));
         client.open(URI, TEXT);
         let edit = |(line, column, end_line, end_column): (u32, u32, u32, u32), text: &str| {
-            let range = json!({ "start": { "line": line, "character": column }, "end": { "line": end_line, "character": end_column } });
-            json!({ "range": range, "text": text })
+            let start = json!({ "line": line, "character": column });
+            let end = json!({ "line": end_line, "character": end_column });
+            json!({ "range": { "start": start, "end": end }, "text": text })
         };
         let changes: Vec<Value> =
             ranges.into_iter().zip(["1", "", "a", "a"]).map(|(it, text)| edit(it, text)).collect();

@@ -73,8 +73,8 @@ fn ten_states() -> String {
     };
     let equations: String = (1..=5).map(mass).collect();
     format!(
-        "{}{}control u in [-5, 5]\ndynamics {{\n{equations}}}\nminimize integral(q1^2 + q2^2 + q3^2 \
-         + q4^2 + q5^2 + u^2)\nmethod {{ scheme = radau2 }}\n",
+        "{}{}control u in [-5, 5]\ndynamics {{\n{equations}}}\n\
+         minimize integral(q1^2 + q2^2 + q3^2 + q4^2 + q5^2 + u^2)\nmethod {{ scheme = radau2 }}\n",
         states("q", 0.2),
         states("v", 0.0)
     )

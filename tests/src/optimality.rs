@@ -3,7 +3,8 @@
 //! ```text
 //! gradient f + J' lambda - z_lower + z_upper = 0        for every variable that is not fixed
 //! lower <= c <= upper,  lower <= v <= upper
-//! lambda > 0 only at an upper bound, lambda < 0 only at a lower bound;  z >= 0, and > 0 only at its bound
+//! lambda > 0 only at an upper bound, lambda < 0 only at a lower bound
+//! z >= 0, and > 0 only at its bound
 //! ```
 
 use fdcc_runtime::nlp::Multipliers;

@@ -2,7 +2,8 @@
 //! alpha) - Sgn(x)`, `x(0) = x0 < 0`.
 //!
 //! ```text
-//! J(x0) = (x(2) - 5/3)^2 + int x^2 = (x0 + 1)^2/9 - x0^3/9 + (x0 + 6)^3/81,    J' = 2(x0 + 1)/9 - x0^2/3 + (x0 + 6)^2/27
+//! J(x0) = (x(2) - 5/3)^2 + int x^2 = (x0 + 1)^2/9 - x0^3/9 + (x0 + 6)^3/81
+//! J'    = 2(x0 + 1)/9 - x0^2/3 + (x0 + 6)^2/27
 //! ```
 //!
 //! for alpha = 1. The discrete objective takes the trapezoidal sum for the integral, whatever the

@@ -1,7 +1,8 @@
 //! Figures for the pages in `docs/method/`: curves over two axes, as SVG.
 //!
 //! ```text
-//! Figure::new(Axis::new("h").logarithmic(), Axis::new("error")).line("explicit", &points).dots("paper", &others).svg()
+//! Figure::new(Axis::new("h").logarithmic(), Axis::new("error"))
+//!     .line("explicit", &points).dots("paper", &others).svg()
 //! ```
 //!
 //! Same curves, same bytes: a figure is compared with the one under version control.

@@ -2,14 +2,18 @@
 //! the problem.
 //!
 //! ```text
-//! variables    x_0 u_0 y_0  x_1 u_1 y_1  ...  x_N  g            h = tau_{k+1} - tau_k,  F over normalised time
+//! variables    x_0 u_0 y_0  x_1 u_1 y_1  ...  x_N  g
 //! rows         d_0 c_1  d_1 c_2  ...  d_{N-1} c_N  b(x_0, x_N)
-//! defects      x_{k+1} - x_k - h sum_j b_j F(tau_k + c_j h, (1 - w_j) x_k + w_j x_{k+1}, u_k)      one-step schemes
-//!              X'(c_i) - h F(tau_k + c_i h, X(c_i), u)      X: the polynomial through x_k, y_k and, for Radau, x_{k+1}
+//! defects      x_{k+1} - x_k - h sum_j b_j F(tau_k + c_j h, (1 - w_j) x_k + w_j x_{k+1}, u_k)
+//!                                                           of one-step schemes
+//!              X'(c_i) - h F(tau_k + c_i h, X(c_i), u)      of collocation
 //!              x_{k+1} - X(1)                               for Gauss
 //! path         c(tau, x, u) at all grid points but the first, and at the nodes of collocation
 //! objective    M(x_0, x_N) + h sum_k sum_j b_j cost_kj
 //! ```
+//!
+//! with `h = tau_{k+1} - tau_k`, `F` over normalised time, and `X` the polynomial through `x_k`,
+//! `y_k` and, for Radau, `x_{k+1}`.
 //!
 //! One point and one entry at a time, on purpose: nothing is shared with the transcription that it
 //! checks.

@@ -54,8 +54,8 @@ fn the_state_is_where_the_conditions_say() {
     assert!(at(&found, "vel.y", 2.0).abs() < 1e-8);
 }
 
-/// By the bound `b` the effort `12 + 3 (0.352 - b)^2/0.24^3` changes by `-6 (0.352 - b)/0.24^3`; the
-/// costate of `x` falls by as much there.
+/// By the bound `b` the effort `12 + 3 (0.352 - b)^2/0.24^3` changes by `-6 (0.352 - b)/0.24^3`;
+/// the costate of `x` falls by as much there.
 #[test]
 fn costates_jump_by_the_multiplier() {
     let found = solved(&model("held_back"));
@@ -143,9 +143,9 @@ fn elsewhere_params<'s>(params: &[(&'s str, f64)]) -> Vec<(&'s str, f64)> {
 /// Rows of data divide time as well.
 #[test]
 fn a_sum_over_data_is_refused_beside_it() {
-    let text = "free p in [0, 1]\ndata obs = csv(\"a.csv\") columns t, x\ntime t in [0, 1]\nstate x \
-                start 1\ndynamics { x' = -p*x }\nat 0.5: x <= 1\nminimize sum(k in obs, (x(k.t) - \
-                k.x)^2)";
+    let text = "free p in [0, 1]\ndata obs = csv(\"a.csv\") columns t, x\ntime t in [0, 1]\n\
+                state x start 1\ndynamics { x' = -p*x }\nat 0.5: x <= 1\n\
+                minimize sum(k in obs, (x(k.t) - k.x)^2)";
     let files = DataFiles::from(|_| Ok("t,x\n0.2,0.9\n0.7,0.8\n".to_owned()));
     let checked = check_with("a test", text.into(), Some(files));
     let codes: Vec<Code> = checked.diagnostics.iter().map(|it| it.code).collect();

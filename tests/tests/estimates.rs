@@ -22,8 +22,9 @@ fn error(estimates: &Estimates, name: &str) -> f64 {
     found.unwrap_or_else(|| panic!("`{name}` has no standard error: {estimates:#?}"))
 }
 
-const LINE: &str = "data obs = csv(\"a.csv\") columns t, x, s\nfree a in [-9, 9] guess 1\nfree b in \
-                    [-9, 9] guess 1\ntime t in [0, 4]\nstate x start a\ndynamics { x' = b }\n";
+const LINE: &str = "data obs = csv(\"a.csv\") columns t, x, s\nfree a in [-9, 9] guess 1\n\
+                    free b in [-9, 9] guess 1\ntime t in [0, 4]\nstate x start a\n\
+                    dynamics { x' = b }\n";
 const POINTS: [(f64, f64, f64); 5] =
     [(0.0, 1.1, 0.1), (1.0, 2.7, 0.2), (2.0, 5.3, 0.1), (3.0, 6.9, 0.3), (4.0, 9.2, 0.1)];
 
@@ -131,8 +132,8 @@ fn unknowns_that_data_do_not_determine_are_named() {
 #[test]
 fn the_hessian_is_exact() {
     let text = format!(
-        "{DECAY}free p in [0.1, 9] guess 1\ndynamics {{ x' = -p*x }}\nfit obs: x sd 0.01\nmethod {{ \
-         grid N = 40 scheme radau3 }}"
+        "{DECAY}free p in [0.1, 9] guess 1\ndynamics {{ x' = -p*x }}\nfit obs: x sd 0.01\n\
+         method {{ grid N = 40 scheme radau3 }}"
     );
     let found = estimates(&text, &decay());
     let p = estimate(&found, "p").value;
@@ -229,11 +230,12 @@ fn a_fit_of_several_phases_may_stand_outside() {
 /// What is expected of sums over rows of several phases.
 #[test]
 fn expectations_read_sums_of_phases() {
-    let text = "data obs = csv(\"a.csv\") columns t, x\nfree p in [0.1, 9] guess 1\nphase one { time \
-                t in [0, 2]\nstate x start 1\ndynamics { x' = -p*x } }\nphase two { time t in [0, \
-                2]\nstate x start 2\ndynamics { x' = -p*x } }\nlet a = sum(k in obs, (one.x(k.t) - \
-                k.x)^2)\nlet b = sum(k in obs, (two.x(k.t) - k.x)^2)\nminimize a + b\nexpect { a >= \
-                0\na + b >= 1 }";
+    let text = "data obs = csv(\"a.csv\") columns t, x\nfree p in [0.1, 9] guess 1\n\
+                phase one { time t in [0, 2]\nstate x start 1\ndynamics { x' = -p*x } }\n\
+                phase two { time t in [0, 2]\nstate x start 2\ndynamics { x' = -p*x } }\n\
+                let a = sum(k in obs, (one.x(k.t) - k.x)^2)\n\
+                let b = sum(k in obs, (two.x(k.t) - k.x)^2)\nminimize a + b\nexpect { a >= 0\n\
+                a + b >= 1 }";
     let data = decay();
     let files = DataFiles::from(move |_| Ok(data.clone()));
     let model = fdcc::check_with("a test", text.into(), Some(files)).model.expect("a right model");

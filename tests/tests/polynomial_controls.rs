@@ -3,7 +3,7 @@
 use fdcc_compiler::{compile_sensitivities, compile_simulation};
 use fdcc_runtime::sensitivity::{Quantity, gradient, hessian};
 use fdcc_runtime::simulate::{
-    Controls, Kind, Options, Polynomials, Simulation, Status, System, simulate,
+    Controls, EventKind, Options, Polynomials, Simulation, Status, System, simulate,
 };
 use fdcc_tests::models::meaning;
 
@@ -30,13 +30,14 @@ fn run(text: &str, controls: &Controls, options: &Options) -> (System, Simulatio
     (system, simulation)
 }
 
-fn events(simulation: &Simulation) -> Vec<(f64, Kind)> {
+fn events(simulation: &Simulation) -> Vec<(f64, EventKind)> {
     simulation.events.iter().map(|event| (event.time, event.kind)).collect()
 }
 
-fn check_events(simulation: &Simulation, expected: &[(f64, Kind)]) {
+fn check_events(simulation: &Simulation, expected: &[(f64, EventKind)]) {
     let found = events(simulation);
-    let agrees = |(a, b): (&(f64, Kind), &(f64, Kind))| (a.0 - b.0).abs() < 1e-12 && a.1 == b.1;
+    let agrees =
+        |(a, b): (&(f64, EventKind), &(f64, EventKind))| (a.0 - b.0).abs() < 1e-12 && a.1 == b.1;
     let are_same = found.len() == expected.len() && found.iter().zip(expected).all(agrees);
     assert!(are_same, "{found:?}, not {expected:?}");
 }
@@ -81,7 +82,7 @@ fn a_surface_is_crossed_in_time() {
     let text = "time t in [0, 1]  state x start 0  state y start 0  control u  surface s = x - 1/24
         dynamics { x' = u  y' in Sgn(s) }";
     let (_, simulation) = run(text, &through(&[0.0, 1.0], 3, |t| t * t), &Options::default());
-    check_events(&simulation, &[(0.5, Kind::CrossesUp)]);
+    check_events(&simulation, &[(0.5, EventKind::CrossesUp)]);
     assert!(simulation.end[1].abs() < 1e-12, "{:?}", simulation.end);
 }
 
@@ -96,7 +97,7 @@ fn a_block_slides_from_where_a_force_exceeds_the_friction() {
     let (_, simulation) = run(BLOCK, &through(&[0.0, 2.0], 3, u), &Options::default());
     let leaves = 1.0 - 0.5_f64.sqrt();
     let moved = |t: f64| 2.0 * t * t - 2.0 * t.powi(3) / 3.0 - t;
-    check_events(&simulation, &[(0.0, Kind::StartsSliding), (leaves, Kind::LeavesUp)]);
+    check_events(&simulation, &[(0.0, EventKind::StartsSliding), (leaves, EventKind::LeavesUp)]);
     assert!((simulation.end[0] - (moved(2.0) - moved(leaves))).abs() < 1e-12);
 }
 
@@ -122,11 +123,11 @@ fn no_short_excess_of_a_force_is_missed() {
         root(|t| moved(t) - moved(from), until_highest - 1e-4, until_highest + 2e-3)
     };
     let expected = [
-        Kind::StartsSliding,
-        Kind::LeavesUp,
-        Kind::EntersSliding,
-        Kind::LeavesUp,
-        Kind::EntersSliding,
+        EventKind::StartsSliding,
+        EventKind::LeavesUp,
+        EventKind::EntersSliding,
+        EventKind::LeavesUp,
+        EventKind::EntersSliding,
     ];
     let found = events(&simulation);
     assert_eq!(found.iter().map(|it| it.1).collect::<Vec<_>>(), expected, "{found:?}");
@@ -153,7 +154,12 @@ fn a_surface_that_is_passed_twice_is_not_missed() {
     let most = excess.sqrt() / 4.0;
     let [far, near] = [most, -most].map(|it| (0.04 + it).sqrt());
     let times = [0.5 - far, 0.5 - near, 0.5 + near, 0.5 + far];
-    let kinds = [Kind::CrossesUp, Kind::CrossesDown, Kind::CrossesUp, Kind::CrossesDown];
+    let kinds = [
+        EventKind::CrossesUp,
+        EventKind::CrossesDown,
+        EventKind::CrossesUp,
+        EventKind::CrossesDown,
+    ];
     let found = events(&simulation);
     assert_eq!(found.iter().map(|it| it.1).collect::<Vec<_>>(), kinds, "{found:?}");
     // The surface is met at a slope of 1e-3.

@@ -1,7 +1,7 @@
 //! The table and figures of `docs/method/racecar.md`: the race car of Section 7, planned and
 //! driven.
 
-use fdcc_runtime::simulate::{Kind, Piece, Simulation};
+use fdcc_runtime::simulate::{EventKind, Piece, Simulation};
 use fdcc_tests::pages::{check_file, check_tables};
 use fdcc_tests::race::{HALF_WIDTH, Race, Run, STEPS, centre_line};
 use fdcc_tests::svg::{Axis, Figure};
@@ -14,7 +14,7 @@ fn turns(run: &Run) -> Vec<f64> {
     changes.map(|k| run.time[k]).collect()
 }
 
-fn events(race: &Race, wanted: &[Kind]) -> Vec<f64> {
+fn events(race: &Race, wanted: &[EventKind]) -> Vec<f64> {
     race.replay.events.iter().filter(|it| wanted.contains(&it.kind)).map(|it| it.time).collect()
 }
 
@@ -59,9 +59,9 @@ fn column(race: &Race) -> Vec<String> {
         format!("{truly:.3}"),
         format!("{missed:.3}"),
         format!("{outside:.3} at {:.2}", race.driven.outside().1),
-        shown(&events(race, &[Kind::LeavesDown, Kind::LeavesUp])),
-        shown(&events(race, &[Kind::EntersSliding])),
-        shown(&events(race, &[Kind::CrossesUp, Kind::CrossesDown])),
+        shown(&events(race, &[EventKind::LeavesDown, EventKind::LeavesUp])),
+        shown(&events(race, &[EventKind::EntersSliding])),
+        shown(&events(race, &[EventKind::CrossesUp, EventKind::CrossesDown])),
         apart.join(", "),
     ]
 }
@@ -97,7 +97,7 @@ fn the_table_is_what_is_computed() {
             assert!((found - known).abs() < tolerance, "sigma = {sigma}: {found}, not {known}");
         }
         // With both controls at 2 the car rolls until s v_t^2 = muN, where v_t = 2 t.
-        let first = events(&race, &[Kind::LeavesDown, Kind::LeavesUp])[0];
+        let first = events(&race, &[EventKind::LeavesDown, EventKind::LeavesUp])[0];
         assert!(sigma == 0.1 || (first - 0.125_f64.sqrt()).abs() < 5e-6, "breaks away at {first}");
         rows.iter_mut().zip(column(&race)).for_each(|(row, cell)| row.push(cell));
     }

@@ -20,7 +20,7 @@ mod flow;
 use affine::Affine;
 use exact::{Ending, Exact, exact};
 use fdcc_compiler::compile_simulation;
-use fdcc_runtime::simulate::{Controls, Kind, Options, Simulation, Status, simulate};
+use fdcc_runtime::simulate::{Controls, EventKind, Options, Simulation, Status, simulate};
 use fdcc_tests::models::meaning;
 use fdcc_tests::random::Random;
 use std::fmt::Write;
@@ -151,11 +151,11 @@ fn random_systems_end_where_implicit_euler_ends() {
             assert!((got - slow).abs() < 2e-3, "{got}, not {slow}\n{text}");
         }
         entries +=
-            simulation.events.iter().filter(|event| event.kind == Kind::EntersSliding).count();
+            simulation.events.iter().filter(|event| event.kind == EventKind::EntersSliding).count();
         exits += simulation
             .events
             .iter()
-            .filter(|it| matches!(it.kind, Kind::LeavesUp | Kind::LeavesDown))
+            .filter(|it| matches!(it.kind, EventKind::LeavesUp | EventKind::LeavesDown))
             .count();
     }
     assert!(
@@ -182,8 +182,8 @@ fn random_systems_with_a_ball_end_where_implicit_euler_ends() {
             assert!((got - slow).abs() < 2e-3, "{got}, not {slow}\n{text}");
         }
         let of_ball = simulation.events.iter().filter(|event| event.surface == 0);
-        entries += of_ball.clone().filter(|event| event.kind == Kind::EntersSliding).count();
-        exits += of_ball.filter(|event| event.kind == Kind::LeavesUp).count();
+        entries += of_ball.clone().filter(|event| event.kind == EventKind::EntersSliding).count();
+        exits += of_ball.filter(|event| event.kind == EventKind::LeavesUp).count();
     }
     assert!(
         entries > 30 && exits > 20,

@@ -4,7 +4,7 @@
 //! ```text
 //! case WHAT, AND WHO SAYS SO
 //! set NAME = VALUE                  a `param` or a `free`
-//! control TIME VALUE                the control holds its value from TIME on; the guess if left out
+//! control TIME VALUE                held from TIME on; the guess if left out
 //! fixed times                       these TIMEs do not move with the end of the interval
 //! of EXPRESSION                     the model's own objective if left out
 //! by PARAM = VALUE                  or STATE(start), or CONTROL[ROW]

@@ -4,15 +4,16 @@
 //! ```text
 //! case WHAT, AND WHO SAYS SO
 //! set PARAM = VALUE
-//! control TIME VALUE               every control holds its value from TIME on; the guess if left out
-//! event TIME SURFACE KIND          every event, in order; `events many` if they are too many to list
+//! control TIME VALUE               every control, held from TIME on; the guess if left out
+//! event TIME SURFACE KIND          every event, in order; `events many` if there are too many
 //! status STATUS TIME               completed if left out; with the time where it ended
 //! at TIME STATE = VALUE            on the way
 //! STATE = VALUE                    at the end; also `objective = VALUE`
 //! ```
 
+use fdcc::names::event_name;
 use fdcc_compiler::compile_simulation;
-use fdcc_runtime::simulate::{Controls, Kind, Options, Simulation, Status, System, simulate};
+use fdcc_runtime::simulate::{Controls, Options, Simulation, Status, System, simulate};
 use fdcc_tests::documents;
 use fdcc_tests::models::changed;
 
@@ -58,19 +59,6 @@ fn read<'t>(line: &'t str, case: &mut Case<'t>) -> Option<()> {
         _ => return None,
     }
     Some(())
-}
-
-fn kind(kind: Kind) -> &'static str {
-    match kind {
-        Kind::CrossesUp => "crosses_up",
-        Kind::CrossesDown => "crosses_down",
-        Kind::EntersSliding => "enters_sliding",
-        Kind::LeavesUp => "leaves_up",
-        Kind::LeavesDown => "leaves_down",
-        Kind::Passes => "passes",
-        Kind::Jump(_) => "jump",
-        Kind::StartsSliding => "starts_sliding",
-    }
 }
 
 fn status(simulation: &Simulation) -> (&'static str, f64) {
@@ -128,7 +116,7 @@ fn wanted(case: &Case) -> (Controls, Options) {
 fn check_events(name: &str, case: &Case, system: &System, simulation: &Simulation) {
     let seen = simulation.events.iter();
     let seen: Vec<_> =
-        seen.map(|it| (it.time, system.name_of(it.surface), kind(it.kind))).collect();
+        seen.map(|it| (it.time, system.name_of(it.surface), event_name(it.kind))).collect();
     let agrees = |(a, b): (&(f64, &str, &str), &(f64, &str, &str))| {
         near(a.0, b.0) && (a.1, a.2) == (b.1, b.2)
     };
@@ -182,7 +170,7 @@ fn held_controls_restart_the_integration_at_their_rows() {
     };
     let (system, simulation) = run(&text("sticks"), &[], &controls, &Options::default());
     let events: Vec<_> =
-        simulation.events.iter().map(|event| (event.time, kind(event.kind))).collect();
+        simulation.events.iter().map(|event| (event.time, event_name(event.kind))).collect();
     let expected = [(2.0, "enters_sliding"), (2.5, "leaves_down")];
     assert!(events.len() == 2, "{events:?}");
     assert!(events.iter().zip(expected).all(|(a, b)| near(a.0, b.0) && a.1 == b.1), "{events:?}");

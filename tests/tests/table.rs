@@ -2,9 +2,10 @@
 //! hand.
 //!
 //! ```text
-//! v+  = v  + h (a t(th) - muN S(n(th).v+) n(th))       t(th) = (cos th, sin th),  n(th) = (-sin th, cos th)
-//! x+  = x  + h v+                                       S(z) = z / sqrt(z^2 + sigma^2)
-//! th+ = th + h s t(th).v+                               h = T/N
+//! v+  = v  + h (a t(th) - muN S(n(th).v+) n(th))       S(z) = z / sqrt(z^2 + sigma^2)
+//! x+  = x  + h v+                                       h = T/N
+//! th+ = th + h s t(th).v+
+//! t(th) = (cos th, sin th),  n(th) = (-sin th, cos th)
 //! |y_k - y_cl(x_k)| <= w/2 for k = 1..N,  |a| <= 2,  |s| <= 2,  x_0 = v_0 = 0,  th_0 = 0
 //! minimise  alpha |x_N - target|^2 + T
 //! ```

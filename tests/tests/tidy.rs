@@ -359,6 +359,70 @@ fn files_are_short() {
     all_well(breaches);
 }
 
+/// Most lines of a function; tests are free.
+const MOST_LINES_OF_FUNCTION: usize = 60;
+
+/// Functions that are longer, with their limit and the reason why they are still one idea.
+const LONGER_FUNCTIONS: &[(&str, &str, usize, &str)] =
+    &[("compiler/src/syntax/walk.rs", "expressions", 70, "a table: one arm for each kind of item")];
+
+/// The functions of a formatted file: name, line, number of lines. A function ends at the first
+/// closing brace below it that stands as far to the left as it does.
+fn functions(text: &str) -> Vec<(String, usize, usize)> {
+    let lines: Vec<&str> = text.lines().collect();
+    let begins = lines.iter().enumerate().filter_map(|(at, line)| {
+        let head = line.trim_start();
+        let (before, name) = head.split_once("fn ")?;
+        let words = ["pub", "pub(crate)", "pub(super)", "const", "unsafe", "extern", "\"C\""];
+        let is_head = before.split_whitespace().all(|word| words.contains(&word));
+        let name: String = name.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+        (is_head && !head.ends_with(['}', ';'])).then(|| (name, at, line.len() - head.len()))
+    });
+    let ends = begins.filter_map(|(name, at, indent)| {
+        let last = format!("{}}}", " ".repeat(indent));
+        let length = lines[at..].iter().position(|line| *line == last)?;
+        Some((name, at + 1, length + 1))
+    });
+    ends.collect()
+}
+
+#[test]
+fn functions_are_short() {
+    let mut breaches = Vec::new();
+    for source in rust_sources().iter().filter(|source| !source.path.contains("tests/")) {
+        for (name, line, lines) in functions(&source.text) {
+            let is_it = |row: &&(&str, &str, usize, &str)| row.0 == source.path && row.1 == name;
+            let exception = LONGER_FUNCTIONS.iter().find(is_it);
+            let most = exception.map_or(MOST_LINES_OF_FUNCTION, |row| row.2);
+            if lines > most {
+                breaches.push(format!(
+                    "{}:{line}: `{name}` has {lines} lines; divide it (at most {most})",
+                    source.path
+                ));
+            }
+        }
+    }
+    all_well(breaches);
+}
+
+/// Most columns of a line; `rustfmt` leaves comments and strings as they are.
+const MOST_COLUMNS: usize = 100;
+
+#[test]
+fn lines_are_short() {
+    let mut breaches = Vec::new();
+    for source in rust_sources() {
+        for (at, line) in source.text.lines().enumerate() {
+            let columns = line.chars().count();
+            if columns > MOST_COLUMNS {
+                let place = format!("{}:{}", source.path, at + 1);
+                breaches.push(format!("{place}: {columns} columns; break it at {MOST_COLUMNS}"));
+            }
+        }
+    }
+    all_well(breaches);
+}
+
 #[test]
 fn files_say_what_they_do() {
     let silent = |source: &&Source| !source.text.starts_with("//! ");

@@ -136,8 +136,8 @@ fn what_is_certified_is_the_true_optimum() {
     }
 }
 
-/// What follows from surfaces that are held in the end is not asked for again, or the Jacobian would
-/// lose rank; what does not follow is.
+/// What follows from surfaces that are held in the end is not asked for again, or the Jacobian
+/// would lose rank; what does not follow is.
 #[test]
 fn a_hold_says_what_is_zero_in_the_end() {
     let text = "param r = 2\ntime t in [0, 1]\nstate v start 0\nstate w start 0\nstate y start 0\n\
@@ -284,8 +284,8 @@ fn what_falls_between_the_nodes_is_not_certified() {
     }
 }
 
-/// `u^2 (u - 2)^2` has a minimum at 0 and one at 2: to walk and to wait in turns costs nothing, and to
-/// creep is better than what is near to it only.
+/// `u^2 (u - 2)^2` has a minimum at 0 and one at 2: to walk and to wait in turns costs nothing, and
+/// to creep is better than what is near to it only.
 #[test]
 fn controls_that_are_best_only_near_themselves_are_not_certified() {
     let text = "time t in [0, 2]\nstate x start 0\ncontrol u in [-1, 3] guess 0.3\n\

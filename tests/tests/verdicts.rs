@@ -149,6 +149,31 @@ fn what_is_out_of_reach_is_not_called_solved() {
     }
 }
 
+/// The last of many masses is pulled, the first is to be far away. A restoration phase whose own
+/// iteration runs away says nothing of the objective, which is never below 0 here.
+#[test]
+fn what_is_out_of_reach_is_not_called_unbounded() {
+    let count = 15;
+    let states: String =
+        (1..=count).map(|i| format!("state x{i} start 0 state v{i} start 0\n")).collect();
+    let pull = |i: usize, j: usize| format!("10*(x{j} - x{i}) + 0.1*(v{j} - v{i})");
+    let force = |i: usize| {
+        let left = if i > 1 { pull(i, i - 1) } else { "0".to_string() };
+        let right = if i < count { pull(i, i + 1) } else { "u".to_string() };
+        format!("x{i}' = v{i}  v{i}' = {left} + {right}\n")
+    };
+    let forces: String = (1..=count).map(force).collect();
+    for target in ["1e6", "1e7"] {
+        let text = format!(
+            "time t in [0, 5]\n{states}control u in [-1, 1]\ndynamics {{\n{forces}}}\n\
+             end x1 == {target}\nminimize integral(u^2)\n\
+             method {{ N = 100 linear = sparse_ldl }}"
+        );
+        let status = solved(&text).status;
+        assert!(!status.is_solved() && status != Status::Unbounded, "{target}: {status:?}");
+    }
+}
+
 /// A minimum to the fourth order, where the objective is 0: nothing is left of its terms to compare
 /// with.
 #[test]
@@ -187,8 +212,8 @@ fn a_flat_point_that_is_no_minimum_is_left() {
 fn far_bounds_are_bounds() {
     for (bound, least) in [("1e6", -6485.74954136), ("1e9", -6485759.98918)] {
         let text = format!(
-            "time t in [0, 3] state x start 0 control u in [-inf, {bound}] dynamics {{ x' = u - x }}\n\
-             minimize (x(end) - 1)^2 + 0.001*integral(u) method {{ N = 5 }}"
+            "time t in [0, 3] state x start 0 control u in [-inf, {bound}] dynamics {{ x' = u - x \
+             }}\nminimize (x(end) - 1)^2 + 0.001*integral(u) method {{ N = 5 }}"
         );
         assert_solved(bound, &solved(&text), least);
     }

@@ -8,7 +8,8 @@ use fdcc_runtime::simulate::{Integrator, Options};
 #[derive(Args)]
 pub struct Accuracy {
     /// Relative tolerance of one step
-    #[arg(long, value_name = "TOL", default_value = "1e-10", value_parser = relative, allow_negative_numbers = true)]
+    #[arg(allow_negative_numbers = true)]
+    #[arg(long, value_name = "TOL", default_value = "1e-10", value_parser = relative)]
     rtol: f64,
     /// Absolute tolerance of one step, in SI units; 1e-12 of the largest that each state has been
     /// if left out

@@ -5,7 +5,7 @@ use super::options::{show, usage};
 use super::solver::wrote;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::output::gradient::Document;
+use crate::output::gradient::GradientDocument;
 use crate::output::{self, files};
 use clap::Args;
 use fdcc::{By, Controls, Gradient, Model, NotBy, by_names};
@@ -66,7 +66,7 @@ impl Grad {
         checked.model.ok_or(Exit::Usage)
     }
 
-    fn gradient(&self, model: &Model) -> Result<Document, Failure> {
+    fn gradient(&self, model: &Model) -> Result<GradientDocument, Failure> {
         let (model, driver) = self.driven.adapt(model)?;
         let system = self.driven.compiled(&model, Model::sensitivity_system)?;
         if model.meaning().objective.is_none() {
@@ -80,7 +80,7 @@ impl Grad {
         let accuracy = self.driven.options(&model);
         let gradient = Gradient::new(&model, system, controls, by, &accuracy);
         let of = self.of.as_deref().unwrap_or("objective");
-        let document = Document::new(of, &gradient, has_second, &model);
+        let document = GradientDocument::new(of, &gradient, has_second, &model);
         Ok(document.in_units(model.meaning().into()))
     }
 
@@ -104,7 +104,7 @@ impl Grad {
         by_names(&names, system, controls, model).map_err(wrong)
     }
 
-    fn report(&self, document: &Document, model: &Model) -> Exit {
+    fn report(&self, document: &GradientDocument, model: &Model) -> Exit {
         let exit = if document.trusted { Exit::Fine } else { Exit::NotSolved };
         let written = match &self.out {
             Some(folder) => {

@@ -4,7 +4,7 @@ use super::options::{Changes, read};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output;
-use crate::output::closed_loop::{Document, Step};
+use crate::output::closed_loop::{ClosedLoopDocument, ClosedLoopStep};
 use crate::output::units::Units;
 use crate::watch::{Deadline, catch_interrupts, is_interrupted};
 use clap::Args;
@@ -61,9 +61,9 @@ impl Mpc {
     }
 
     /// The loop.
-    fn close(&self, model: &Model, plant: &Model) -> Result<Document, Failure> {
+    fn close(&self, model: &Model, plant: &Model) -> Result<ClosedLoopDocument, Failure> {
         let mut controller = model.controller(model.problem()?.method.intervals())?;
-        let mut document = Document::new(&controller, plant.name());
+        let mut document = ClosedLoopDocument::new(&controller, plant.name());
         let mut plant = plant.plant()?;
         for _ in 0..self.steps {
             if is_interrupted() {
@@ -91,14 +91,14 @@ impl Mpc {
         controller: &mut Controller,
         plant: &Plant,
         state: &[f64],
-    ) -> Result<(Step, f64), Failure> {
+    ) -> Result<(ClosedLoopStep, f64), Failure> {
         let begin = Instant::now();
         let seconds = self.budget.map(|budget| f64::from(budget) * 1e-6);
         let deadline = Deadline::after(begin, seconds);
         let options = Options { stop: &|| deadline.check(), ..Options::default() };
         let found = controller.step(state, &options)?;
         let first = |column: &Vec<f64>| column.first().copied().unwrap_or(f64::NAN);
-        let step = Step {
+        let step = ClosedLoopStep {
             time: plant.time(),
             state: state.to_vec(),
             controls: found.outcome.trajectory.controls.iter().map(first).collect(),
@@ -110,7 +110,7 @@ impl Mpc {
         Ok((step, found.time()[1] - found.time()[0]))
     }
 
-    fn report(&self, document: &Document, model: &Model) -> Exit {
+    fn report(&self, document: &ClosedLoopDocument, model: &Model) -> Exit {
         output::print(&match self.json {
             true => output::json(document),
             false => document.words(&Units::from(model.meaning())),

@@ -63,7 +63,8 @@ pub const USUAL_GAP: f64 = 1e-3;
 pub struct Gap {
     /// The largest difference between solution and true system that is called confirmation: of a
     /// state for how far it moves, of a condition for the size of its terms
-    #[arg(long, value_name = "G", default_value_t = USUAL_GAP, value_parser = difference, allow_negative_numbers = true)]
+    #[arg(allow_negative_numbers = true)]
+    #[arg(long, value_name = "G", default_value_t = USUAL_GAP, value_parser = difference)]
     pub gap: f64,
 }
 
@@ -98,7 +99,8 @@ pub struct Options {
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     /// Solve from K starting points, the guess and variations of it, and keep the best solution
-    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "K", default_value_t = 1)]
     pub starts: u32,
 }
 

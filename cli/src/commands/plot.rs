@@ -1,9 +1,9 @@
 //! `fdcc plot`: signals of a solution for papers, as SVG.
 
-use super::report::failed;
+use super::report::wrote;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::output::{files, print};
+use crate::output::files;
 use crate::page::figures::{Figure, figures};
 use crate::page::{json::Json, svg};
 use clap::Args;
@@ -30,13 +30,7 @@ pub struct Plot {
 impl Plot {
     /// Reads the solution and writes the picture.
     pub fn run(self) -> Exit {
-        match self.write() {
-            Ok(()) => {
-                print(&format!(" wrote {}\n", self.out.display()));
-                Exit::Fine
-            }
-            Err(failure) => failed(&failure),
-        }
+        wrote(self.write(), &self.out)
     }
 
     fn write(&self) -> Result<(), Failure> {

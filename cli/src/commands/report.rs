@@ -25,13 +25,7 @@ pub struct Report {
 impl Report {
     /// Reads the solutions and writes the page.
     pub fn run(self) -> Exit {
-        match self.write() {
-            Ok(()) => {
-                print(&format!(" wrote {}\n", self.out.display()));
-                Exit::Fine
-            }
-            Err(failure) => failed(&failure),
-        }
+        wrote(self.write(), &self.out)
     }
 
     fn write(&self) -> Result<(), Failure> {
@@ -48,8 +42,19 @@ impl Report {
     }
 }
 
+/// Says which file was written, or why there is none.
+pub fn wrote(written: Result<(), Failure>, path: &Path) -> Exit {
+    match written {
+        Ok(()) => {
+            print(&format!(" wrote {}\n", path.display()));
+            Exit::Fine
+        }
+        Err(failure) => failed(&failure),
+    }
+}
+
 /// Says why there is no picture of a solution.
-pub fn failed(failure: &Failure) -> Exit {
+fn failed(failure: &Failure) -> Exit {
     let (Failure::Usage(message) | Failure::File(message)) = failure else {
         unreachable!("a picture needs no model")
     };

@@ -5,7 +5,7 @@ use super::options::usage;
 use super::solver::wrote;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::output::simulation::Document;
+use crate::output::simulation::SimulationDocument;
 use crate::output::{self, files};
 use clap::Args;
 use fdcc::{Accuracy, Model, Simulation};
@@ -43,7 +43,7 @@ impl Simulate {
         }
     }
 
-    fn simulate(&self, model: &Model) -> Result<(Document, Exit), Failure> {
+    fn simulate(&self, model: &Model) -> Result<(SimulationDocument, Exit), Failure> {
         let (model, driver) = self.driven.adapt(model)?;
         let system = self.driven.compiled(&model, Model::system)?;
         let controls = self.driven.controls(driver, &system)?;
@@ -60,10 +60,10 @@ impl Simulate {
         }
         let simulation = Simulation::new(system, &controls, &options);
         let exit = if simulation.is_complete() { Exit::Fine } else { Exit::NotSolved };
-        Ok((Document::new(&simulation, &model), exit))
+        Ok((SimulationDocument::new(&simulation, &model), exit))
     }
 
-    fn report(&self, document: &Document, exit: Exit, model: &Model) -> Exit {
+    fn report(&self, document: &SimulationDocument, exit: Exit, model: &Model) -> Exit {
         let written = match &self.out {
             Some(folder) => files::write_all(
                 folder,

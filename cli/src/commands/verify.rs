@@ -6,7 +6,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output;
 use crate::output::saved::Saved;
-use crate::output::verified::Document;
+use crate::output::verified::VerifyDocument;
 use clap::Args;
 use fdcc::{Error, Model};
 use fdcc_grammar::SourceFile;
@@ -65,7 +65,7 @@ impl Verify {
         })
     }
 
-    fn verify(&self, saved: &Saved, model: &Model) -> Result<Document, Failure> {
+    fn verify(&self, saved: &Saved, model: &Model) -> Result<VerifyDocument, Failure> {
         let solved = model.changed(|meaning| {
             meaning.restore_params(&saved.params());
             Ok::<(), Error>(())
@@ -83,11 +83,11 @@ impl Verify {
             ));
         }
         let document =
-            Document::new(&verified, saved.objective(), source, same_source, self.gap.gap);
+            VerifyDocument::new(&verified, saved.objective(), source, same_source, self.gap.gap);
         Ok(document.in_units(model.meaning().into()))
     }
 
-    fn report(&self, document: &Document) -> Exit {
+    fn report(&self, document: &VerifyDocument) -> Exit {
         output::print(&if self.json { output::json(document) } else { document.words() });
         if document.is_confirmed() { Exit::Fine } else { Exit::NotSolved }
     }

@@ -1,6 +1,6 @@
 //! What shows that an answer is an optimum of the true system, as data and in words.
 
-use super::document::{Span, switching};
+use super::modes::{Span, switching};
 use super::named::Named;
 use super::number::scientific;
 use super::plural;
@@ -110,8 +110,8 @@ impl Certificate {
     pub fn advice(&self) -> Option<&'static str> {
         (!self.certified).then_some(match self.is_smooth {
             true => {
-                "       try another guess, or --starts 8; --method N=... asks for the problem on so \
-                 many intervals alone"
+                "       try another guess, or --starts 8; --method N=... asks for the problem on \
+                 so many intervals alone"
             }
             false => {
                 "       try another N, scheme or guess, or --starts 8; --method sigma=... asks for \

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 /// What happened in a closed loop.
 #[derive(Serialize)]
-pub struct Document {
+pub struct ClosedLoopDocument {
     fdcc: &'static str,
     model: String,
     plant: String,
@@ -30,7 +30,7 @@ pub struct Document {
 }
 
 /// One step of it.
-pub struct Step {
+pub struct ClosedLoopStep {
     pub time: f64,
     pub state: Vec<f64>,
     pub controls: Vec<f64>,
@@ -40,10 +40,10 @@ pub struct Step {
     pub seconds: f64,
 }
 
-impl Document {
+impl ClosedLoopDocument {
     pub fn new(controller: &Controller, plant: &str) -> Self {
         let named = |name: &str| (name.to_owned(), Vec::new());
-        Document {
+        ClosedLoopDocument {
             fdcc: VERSION,
             model: controller.model().name().to_owned(),
             plant: plant.to_owned(),
@@ -59,7 +59,7 @@ impl Document {
     }
 
     /// Adds a step.
-    pub fn add(&mut self, step: Step) {
+    pub fn add(&mut self, step: ClosedLoopStep) {
         self.close(step.time, &step.state);
         for ((_, column), value) in self.controls.0.iter_mut().zip(step.controls) {
             column.push(value);

@@ -12,7 +12,7 @@ pub struct Entry<'d> {
     message: &'d str,
     file: &'d str,
     #[serde(flatten)]
-    place: Place,
+    place: TextRange,
     labels: Vec<LabelEntry<'d>>,
     help: Option<&'d str>,
     fixes: Vec<FixEntry<'d>>,
@@ -28,19 +28,19 @@ struct FixEntry<'d> {
 
 #[derive(Serialize)]
 struct EditEntry<'d> {
-    span: Place,
+    span: TextRange,
     replacement: &'d str,
 }
 
 #[derive(Serialize)]
 struct LabelEntry<'d> {
-    span: Place,
+    span: TextRange,
     text: &'d str,
 }
 
 /// A range of the text as people count it.
 #[derive(Serialize)]
-struct Place {
+struct TextRange {
     line: usize,
     column: usize,
     end_line: usize,
@@ -76,9 +76,9 @@ fn fix_entry<'d>(source: &SourceFile, fix: &'d Fix) -> FixEntry<'d> {
     }
 }
 
-fn place(source: &SourceFile, span: Span) -> Place {
+fn place(source: &SourceFile, span: Span) -> TextRange {
     let (start, end) = (source.line_column(span.start), source.line_column(span.end));
-    Place { line: start.line, column: start.column, end_line: end.line, end_column: end.column }
+    TextRange { line: start.line, column: start.column, end_line: end.line, end_column: end.column }
 }
 
 /// `error`, `warning` or `advice`.

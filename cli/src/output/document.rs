@@ -3,22 +3,21 @@
 use super::certificate::Certificate;
 use super::convergence::Convergence;
 use super::estimates::{Estimates, Residual};
+use super::hamiltonian_check::HamiltonianCheck;
+use super::method_used::MethodUsed;
+use super::modes::{Span, spans_of};
 use super::named::Named;
-use super::number::significant;
 use super::optimality::Optimality;
 use super::phases::Phase;
 use super::picture::Picture;
 use super::tried::{Ended, Happened, Tried};
 use super::units::Units;
-use super::verified::Verification;
+use super::verification::Verification;
 use crate::version::VERSION;
 use fdcc::Solution;
-use fdcc::names::mode_name;
 use fdcc_runtime::nlp::{self, Status};
-use fdcc_runtime::problem::{Function, Method, Problem, Solver, Variable};
+use fdcc_runtime::problem::{Function, Variable};
 use fdcc_runtime::solution;
-use fdcc_runtime::solution::Hamiltonian;
-use fdcc_runtime::solve::Outcome;
 use serde::{Deserialize, Serialize};
 
 /// One solve. Numbers are written so that they read back to the same bits.
@@ -82,7 +81,8 @@ pub struct Document {
     /// How each of several starts ended, in their order; absent where there was one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub starts: Vec<Ended>,
-    /// What the estimates of a fit are worth; absent where no squares over rows of data are minimised.
+    /// What the estimates of a fit are worth; absent where no squares over rows of data are
+    /// minimised.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub estimates: Option<Estimates>,
     /// What remains of each signal that was measured.
@@ -108,32 +108,6 @@ pub struct Document {
     pub verification: Option<Verification>,
 }
 
-/// Where time itself does not matter the Hamiltonian is constant; where the last time is unknown,
-/// its value is known as well.
-#[derive(Clone, Debug, Serialize)]
-pub struct HamiltonianCheck {
-    pub is_constant: bool,
-    pub expected: Option<f64>,
-    /// The mean difference from what it has to be.
-    pub deviation: Option<f64>,
-    /// The mean size of its terms.
-    pub size: f64,
-    /// For each control the part of the time on which it does not minimise the Hamiltonian.
-    pub violations: Named<f64>,
-    /// What a pause on a surface would gain per time; `null` where none is possible.
-    pub pause: Option<f64>,
-}
-
-impl HamiltonianCheck {
-    fn new(controls: &[Variable], it: &Hamiltonian) -> Self {
-        let (is_constant, expected) = (it.is_constant, it.expected);
-        let names = controls.iter().map(|control| control.name.clone());
-        let violations = names.zip(it.violations.iter().copied()).collect();
-        let (deviation, size, pause) = (it.deviation(), it.size, it.pause);
-        HamiltonianCheck { is_constant, expected, deviation, size, violations, pause }
-    }
-}
-
 /// The values between which a control is linear, or through which it is a polynomial on each
 /// interval.
 #[derive(Clone, Debug, Serialize)]
@@ -149,27 +123,6 @@ impl ControlNodes {
             values: named_columns(controls.iter().zip(&nodes.values)),
         }
     }
-}
-
-/// The method that was used, defaults and choices included.
-#[derive(Clone, Debug, Serialize)]
-pub struct MethodUsed {
-    pub scheme: String,
-    pub controls: String,
-    #[serde(rename = "N")]
-    pub n: usize,
-    pub steps: usize,
-    /// The width of the first surface, or nothing where nothing is smoothed.
-    pub sigma: Option<f64>,
-    /// The width of every surface.
-    pub sigmas: Named<f64>,
-    /// Whether these were chosen by the solver, as small as it could, because the model names none.
-    pub sigma_chosen: bool,
-    pub kernel: String,
-    pub solver: String,
-    pub linear: String,
-    pub tol: f64,
-    pub seed: u64,
 }
 
 /// Work done.
@@ -200,14 +153,6 @@ pub struct Seconds {
     pub total: f64,
 }
 
-/// A time span in one mode of a surface.
-#[derive(Clone, Debug, Serialize)]
-pub struct Span {
-    pub mode: String,
-    pub from: f64,
-    pub to: f64,
-}
-
 impl Document {
     pub fn new(found: &Solution, source_sha256: &str, units: Units, seconds: Seconds) -> Self {
         let (problem, outcome) = (&found.problem, &found.outcome);
@@ -215,6 +160,8 @@ impl Document {
         let shown = |columns: &[Vec<f64>]| {
             named_columns(problem.states.iter().zip(columns).filter(|(state, _)| !state.hidden))
         };
+        let nodes = trajectory.nodes.as_ref();
+        let report = problem.report_names.iter().cloned().zip(trajectory.report.iter().cloned());
         let claims = problem.has_objective && found.status().is_solved();
         // Where an expression has no value, no error was measured.
         let measured = |error: f64| {
@@ -240,10 +187,7 @@ impl Document {
             time: trajectory.time.clone(),
             states: shown(&trajectory.states),
             controls: named_columns(problem.controls.iter().zip(&trajectory.controls)),
-            control_nodes: trajectory
-                .nodes
-                .as_ref()
-                .map(|nodes| ControlNodes::new(&problem.controls, nodes)),
+            control_nodes: nodes.map(|nodes| ControlNodes::new(&problem.controls, nodes)),
             costates: shown(&trajectory.costates),
             path_multipliers: labelled(&*problem.path, 0, &trajectory.path_multipliers),
             end_multipliers: labelled(&*problem.boundary, 1, &trajectory.end_multipliers),
@@ -252,13 +196,8 @@ impl Document {
             step_errors: found.step_errors,
             hamiltonian_check: HamiltonianCheck::new(&problem.controls, &trajectory.hamiltonian),
             sensitivities: Named::default(),
-            report: problem
-                .report_names
-                .iter()
-                .cloned()
-                .zip(trajectory.report.iter().cloned())
-                .collect(),
-            surfaces: surfaces(problem, outcome),
+            report: report.collect(),
+            surfaces: spans_of(problem, outcome),
             phases: Named::default(),
             jumps: found.jumps.iter().map(Happened::from).collect(),
             sequences: found.sequences.iter().map(Tried::from).collect(),
@@ -300,9 +239,7 @@ impl Document {
         let is_contradicted = self.optimality.as_ref().is_some_and(|it| it.contradicted);
         self.verification.as_ref().is_some_and(|it| it.confirmed) && !is_contradicted
     }
-}
 
-impl Document {
     /// The states before the jumps at a grid point, which has those after them.
     pub fn befores(&self, point: usize) -> impl Iterator<Item = &Named<f64>> {
         let nearest = |time: f64| {
@@ -327,53 +264,4 @@ fn named_columns<'a>(
     columns: impl Iterator<Item = (&'a Variable, &'a Vec<f64>)>,
 ) -> Named<Vec<f64>> {
     columns.map(|(control, column)| (control.name.clone(), column.clone())).collect()
-}
-
-fn surfaces(problem: &Problem, outcome: &Outcome) -> Named<Vec<Span>> {
-    let spans = |spans: &Vec<fdcc_runtime::solution::modes::Span>| {
-        let spans = spans.iter();
-        spans
-            .map(|s| Span { mode: mode_name(s.mode).to_string(), from: s.from, to: s.to })
-            .collect()
-    };
-    let surfaces = problem.surfaces.iter().zip(&outcome.modes);
-    surfaces.map(|(surface, modes)| (surface.name.clone(), spans(modes))).collect()
-}
-
-impl MethodUsed {
-    fn new(found: &Solution) -> Self {
-        let Solution { problem, outcome, .. } = found;
-        let method: &Method = &problem.method;
-        let surfaces = problem.surfaces.iter().zip(&outcome.sigma);
-        let is_convex = outcome.convex || method.solver == Solver::Convex;
-        let solver = if is_convex { Solver::Convex } else { Solver::InteriorPoint };
-        MethodUsed {
-            scheme: method.scheme.name(),
-            controls: method.controls.name().to_string(),
-            n: method.intervals(),
-            steps: method.steps,
-            sigma: outcome.sigma.first().copied(),
-            sigmas: surfaces.map(|(surface, sigma)| (surface.name.clone(), *sigma)).collect(),
-            sigma_chosen: found.has_chosen_widths(),
-            kernel: method.kernel.clone(),
-            solver: solver.name().to_string(),
-            linear: method.linear.name().to_string(),
-            tol: method.tol,
-            seed: method.seed,
-        }
-    }
-}
-
-/// `held 0-0.31, below 0.31-1.92 min`
-pub fn switching(spans: &[Span], units: &Units) -> String {
-    let range = |from: String, to: String| {
-        // A minus sign next to a dash cannot be read.
-        let dash = if from.contains('-') || to.contains('-') { " to " } else { "-" };
-        format!("{from}{dash}{to}")
-    };
-    let spans = spans.iter();
-    let time = |t: f64| significant(units.scaled("time", t), 4);
-    let spans: Vec<String> =
-        spans.map(|s| format!("{} {}", s.mode, range(time(s.from), time(s.to)))).collect();
-    if spans.is_empty() { String::new() } else { spans.join(", ") + &units.unit("time") }
 }

@@ -2,10 +2,11 @@
 
 use super::named::Named;
 use super::number::{short, significant};
+use fdcc::names::event_name;
 use fdcc_grammar::SourceFile;
 use fdcc_runtime::nlp::Stop;
 use fdcc_runtime::problem::Origin;
-use fdcc_runtime::simulate::{Candidate, Event, Kind, Simulation, Status, System};
+use fdcc_runtime::simulate::{Candidate, Event, EventKind, Simulation, Status, System};
 use serde::Serialize;
 
 /// The status, and one object that explains it unless it is `completed`.
@@ -203,31 +204,18 @@ impl EventEntry {
 
 fn entry(system: &System, event: &Event) -> EventEntry {
     let jump = match event.kind {
-        Kind::Jump(jump) => Some(system.jumps[jump].name.clone()),
+        EventKind::Jump(jump) => Some(system.jumps[jump].name.clone()),
         _ => None,
     };
     EventEntry {
         time: event.time,
         surface: system.name_of(event.surface).to_owned(),
-        kind: kind_name(event.kind),
+        kind: event_name(event.kind),
         jump,
         margin: event.margin,
         state: state(system, &event.after),
         before: state(system, &event.before),
         after: state(system, &event.after),
-    }
-}
-
-fn kind_name(kind: Kind) -> &'static str {
-    match kind {
-        Kind::CrossesUp => "crosses_up",
-        Kind::CrossesDown => "crosses_down",
-        Kind::EntersSliding => "enters_sliding",
-        Kind::LeavesUp => "leaves_up",
-        Kind::LeavesDown => "leaves_down",
-        Kind::Passes => "passes",
-        Kind::Jump(_) => "jump",
-        Kind::StartsSliding => "starts_sliding",
     }
 }
 

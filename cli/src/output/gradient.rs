@@ -14,7 +14,7 @@ use serde::Serialize;
 
 /// What `fdcc grad --json` prints.
 #[derive(Serialize)]
-pub struct Document {
+pub struct GradientDocument {
     fdcc: String,
     pub model: String,
     pub of: String,
@@ -89,12 +89,14 @@ pub struct Reason {
     time: f64,
 }
 
-impl Document {
+impl GradientDocument {
     /// A gradient, or what there is instead of one; with second derivatives if they are wanted.
     pub fn new(of: &str, found: &Gradient, has_second: bool, model: &Model) -> Self {
         match &found.found {
-            Ok(exact) => Document::with(of, found, exact, has_second, model),
-            Err(simulation) => Document::without(of, &found.system, simulation, model.source()),
+            Ok(exact) => GradientDocument::with(of, found, exact, has_second, model),
+            Err(simulation) => {
+                GradientDocument::without(of, &found.system, simulation, model.source())
+            }
         }
     }
 
@@ -123,7 +125,7 @@ impl Document {
         let sides = sides(by, exact);
         let is_plain = exact.is_differentiable;
         let first = exact.found.nondifferentiabilities.first().filter(|_| !is_plain);
-        Document {
+        GradientDocument {
             value: Some(exact.found.value),
             gradient: named(by, gradient),
             adjoint: named(by, &exact.adjoint),
@@ -134,20 +136,20 @@ impl Document {
             trusted: exact.is_trusted(),
             is_bent: exact.found.kink.is_some(),
             one_sided: (!is_plain && !sides.0.is_empty()).then_some(sides),
-            cause: first.map(|trouble| Reason::new(system, trouble)),
+            cause: first.map(|found| Reason::new(system, found)),
             warnings,
-            ..Document::without(of, system, &exact.found.simulation, source)
+            ..GradientDocument::without(of, system, &exact.found.simulation, source)
         }
     }
 
     /// The same with the units of its values.
     pub fn in_units(self, units: Units) -> Self {
-        Document { units, ..self }
+        GradientDocument { units, ..self }
     }
 
     /// No gradient: the simulation does not reach the end.
     fn without(of: &str, system: &System, simulation: &Simulation, source: &SourceFile) -> Self {
-        Document {
+        GradientDocument {
             fdcc: VERSION.to_string(),
             model: system.name.clone(),
             of: of.to_string(),
@@ -171,9 +173,9 @@ impl Document {
 }
 
 impl Reason {
-    fn new(system: &System, trouble: &Nondifferentiability) -> Self {
-        let surface = system.name_of(trouble.surface).to_owned();
-        Reason { kind: kind_name(trouble.kind), surface, time: trouble.time }
+    fn new(system: &System, found: &Nondifferentiability) -> Self {
+        let surface = system.name_of(found.surface).to_owned();
+        Reason { kind: kind_name(found.kind), surface, time: found.time }
     }
 
     /// `a grazing of \`zero\` at t = 1`

@@ -1,14 +1,14 @@
 //! A gradient in words: the verdict, the derivatives beside those that others compute, the events.
 
-use super::gradient::{Derivative, Document, Reason};
+use super::gradient::{Derivative, GradientDocument, Reason};
 use super::named::Named;
 use super::number::{scientific, short, significant};
-use super::verified::table;
+use super::table::with_head;
 
 /// Digits of derivatives and times.
 const DIGITS: usize = 9;
 
-impl Document {
+impl GradientDocument {
     /// A verdict, the derivatives, the events.
     pub fn words(&self) -> String {
         let Some(value) = self.value else {
@@ -70,7 +70,7 @@ impl Document {
                 .collect()
         };
         let rows = labels.enumerate().map(row).collect();
-        table(
+        with_head(
             std::iter::once("by").chain(columns.iter().map(|(head, _)| head.as_str())).collect(),
             rows,
         )
@@ -126,7 +126,7 @@ impl Document {
             };
             std::iter::once(name.clone()).chain(values.0.iter().map(value)).collect()
         };
-        table(head, second.0.iter().map(row).collect())
+        with_head(head, second.0.iter().map(row).collect())
     }
 
     fn events(&self) -> String {
@@ -138,7 +138,7 @@ impl Document {
                 short(it.margin),
             ]
         };
-        table(vec!["surface", "event", "at t", "margin"], self.events.iter().map(row).collect())
+        with_head(vec!["surface", "event", "at t", "margin"], self.events.iter().map(row).collect())
     }
 }
 

@@ -12,6 +12,9 @@ pub mod estimates;
 pub mod files;
 pub mod gradient;
 mod gradient_words;
+pub mod hamiltonian_check;
+mod method_used;
+pub mod modes;
 pub mod named;
 pub mod number;
 pub mod optimality;
@@ -25,6 +28,7 @@ pub mod table;
 pub mod tested;
 pub mod tried;
 pub mod units;
+pub mod verification;
 pub mod verified;
 
 use crate::exit::Exit;

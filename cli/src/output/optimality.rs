@@ -2,7 +2,7 @@
 
 use super::document::Document;
 use super::number::short;
-use super::verified::Verification;
+use super::verification::Verification;
 use fdcc::optimality::{self, Condition};
 use serde::Serialize;
 

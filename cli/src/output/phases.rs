@@ -1,9 +1,11 @@
 //! The phases of a solution: a part of its document for each.
 
-use super::document::{ControlNodes, Document, HamiltonianCheck, Span};
+use super::document::{ControlNodes, Document};
+use super::hamiltonian_check::HamiltonianCheck;
+use super::modes::Span;
 use super::named::Named;
 use super::picture::PathCondition;
-use super::verified::Verification;
+use super::verification::Verification;
 use serde::{Serialize, Serializer};
 
 /// The document of a phase by itself.

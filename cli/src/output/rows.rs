@@ -3,7 +3,7 @@
 use super::document::{Document, Seconds};
 use super::named::Named;
 use super::optimality::Optimality;
-use super::verified::Verification;
+use super::verification::Verification;
 use serde::{Deserialize, Serialize};
 
 /// What came out of a row, in numbers and words.

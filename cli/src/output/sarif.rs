@@ -10,11 +10,12 @@ pub fn log<'d>(found: impl Iterator<Item = (&'d SourceFile, &'d Diagnostic)>) ->
     let rules: Vec<Value> = Code::ALL.iter().map(rule).collect();
     let results: Vec<Value> =
         found.map(|(source, diagnostic)| result(source, diagnostic)).collect();
+    let driver = json!({ "name": "fdcc", "version": crate::version::VERSION, "rules": rules });
     json!({
         "$schema": "https://json.schemastore.org/sarif-2.1.0.json",
         "version": "2.1.0",
         "runs": [{
-            "tool": { "driver": { "name": "fdcc", "version": crate::version::VERSION, "rules": rules } },
+            "tool": { "driver": driver },
             "columnKind": "unicodeCodePoints",
             "results": results,
         }],
@@ -42,11 +43,15 @@ fn result(source: &SourceFile, diagnostic: &Diagnostic) -> Value {
 }
 
 fn fix(source: &SourceFile, fix: &Fix) -> Value {
-    let replacement = |edit: &Edit| json!({ "deletedRegion": region(source, edit.span), "insertedContent": { "text": edit.replacement } });
+    let replacement = |edit: &Edit| {
+        let inserted = json!({ "text": edit.replacement });
+        json!({ "deletedRegion": region(source, edit.span), "insertedContent": inserted })
+    };
     let replacements: Vec<Value> = fix.edits.iter().map(replacement).collect();
+    let artifact = json!({ "uri": source.name });
     json!({
         "description": { "text": fix.title },
-        "artifactChanges": [{ "artifactLocation": { "uri": source.name }, "replacements": replacements }],
+        "artifactChanges": [{ "artifactLocation": artifact, "replacements": replacements }],
     })
 }
 
@@ -57,7 +62,12 @@ fn location(source: &SourceFile, span: Span) -> Value {
 
 fn region(source: &SourceFile, span: Span) -> Value {
     let (start, end) = (source.line_column(span.start), source.line_column(span.end));
-    json!({ "startLine": start.line, "startColumn": start.column, "endLine": end.line, "endColumn": end.column })
+    json!({
+        "startLine": start.line,
+        "startColumn": start.column,
+        "endLine": end.line,
+        "endColumn": end.column,
+    })
 }
 
 fn level(severity: Severity) -> &'static str {

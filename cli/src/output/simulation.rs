@@ -10,7 +10,7 @@ use std::fmt::Write;
 
 /// One simulation. Numbers are written so that they read back to the same bits.
 #[derive(Serialize)]
-pub struct Document {
+pub struct SimulationDocument {
     fdcc: String,
     pub model: String,
     #[serde(flatten)]
@@ -35,7 +35,7 @@ struct Counts {
     evaluations: usize,
 }
 
-impl Document {
+impl SimulationDocument {
     pub fn new(simulated: &Simulation, model: &Model) -> Self {
         let Simulation { system, result: simulation } = simulated;
         let ends = simulation.end.iter().zip(&system.states);
@@ -45,7 +45,7 @@ impl Document {
         let mut end = vec![("time".to_string(), simulation.end_time)];
         end.extend(state(system, &simulation.end).0);
         let counts = simulation.counts;
-        Document {
+        SimulationDocument {
             fdcc: VERSION.to_string(),
             model: system.name.clone(),
             ending: Ending::new(system, simulation, model.source()),

@@ -1,4 +1,4 @@
-//! The rows of a sweep as a table for people.
+//! Tables for people: the rows of a sweep, and any columns with a head.
 
 use super::number::aligned;
 use super::rows::{Row, Scalars};
@@ -56,4 +56,20 @@ fn cells(swept: &[(&str, &str)], row: &Scalars, units: &Units) -> Vec<String> {
         row.status.replace('_', " "),
     ];
     values.chain([aligned(number(row.objective), DIGITS)]).chain(free).chain(rest).collect()
+}
+
+/// Aligned columns with a head; nothing without rows.
+pub fn with_head(head: Vec<&str>, rows: Vec<Vec<String>>) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING);
+    table.set_header(head);
+    table.add_rows(rows);
+    table
+        .column_iter_mut()
+        .skip(1)
+        .for_each(|column| column.set_cell_alignment(CellAlignment::Right));
+    table.lines().map(|line| line.trim_end().to_string() + "\n").collect()
 }

@@ -22,8 +22,8 @@ pub fn fragment(document: &str) -> String {
     let shown: Vec<&Figure> = all.iter().filter(|it| it.is_usual()).collect();
     let picture = if shown.is_empty() { String::new() } else { svg::over_time(own, &shown) };
     format!(
-        "<div class=\"fdcc\">\n<style>{STYLE}</style>\n<h3 class=\"{}\">{}: {}</h3>\n<ul>\n{}</ul>\n\
-         {}{picture}</div>\n",
+        "<div class=\"fdcc\">\n<style>{STYLE}</style>\n<h3 class=\"{}\">{}: {}</h3>\n<ul>\n\
+         {}</ul>\n{}{picture}</div>\n",
         class(mark(own)),
         escape(own.at("model").text()),
         escape(&title(own)),

@@ -27,7 +27,7 @@ const HELD: RGBColor = RGBColor(226, 160, 18);
 const GRID: RGBColor = RGBColor(222, 225, 230);
 const INK: RGBColor = RGBColor(60, 66, 74);
 
-type Place = (f64, f64);
+type ChartPoint = (f64, f64);
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 type Chart<'a, 'b> = ChartContext<
     'a,
@@ -176,12 +176,12 @@ fn label(value: f64, [low, high]: [f64; 2]) -> String {
     significant(if is_zero { 0.0 } else { value }, 5)
 }
 
-fn line(chart: &mut Chart, points: &[Place], colour: RGBColor) -> Drawn {
+fn line(chart: &mut Chart, points: &[ChartPoint], colour: RGBColor) -> Drawn {
     let style = colour.stroke_width(2 * FINE as u32);
     chart.draw_series(LineSeries::new(points.iter().copied(), style)).map(|_| ())
 }
 
-fn dashed(chart: &mut Chart, points: &[Place], colour: RGBColor) -> Drawn {
+fn dashed(chart: &mut Chart, points: &[ChartPoint], colour: RGBColor) -> Drawn {
     let (style, size) = (colour.stroke_width(FINE as u32 * 3 / 2), 6 * FINE as u32);
     chart.draw_series(DashedLineSeries::new(points.iter().copied(), size, size, style)).map(|_| ())
 }

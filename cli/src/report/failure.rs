@@ -39,10 +39,8 @@ fn not_finite(outcome: &Outcome, place: &Place, units: &Units) -> Diagnostic {
         format!("`{}` or one of its derivatives is infinite or undefined", place.origin.label);
     Diagnostic::new(Code::NotFinite, message, span(place.origin.span), label).help(
         "look for a division by 0, a `sqrt` or `log` at 0 or below, a power of a negative number. \
-         Keep the \
-         trajectory away from it by a bound, round it off as in `sqrt(e + 1e-6)`, or give a \
-         `guess` where \
-         everything has a value.",
+         Keep the trajectory away from it by a bound, round it off as in `sqrt(e + 1e-6)`, or give \
+         a `guess` where everything has a value.",
     )
 }
 
@@ -90,14 +88,12 @@ fn infeasible(solved: &Solved, limiting: &Limiting) -> Diagnostic {
 fn advice(solution: &Solution) -> String {
     if solution.outcome.is_impossible {
         return "this is certain, because the problem is convex: no `guess` can help. Loosen a \
-                condition, widen the bounds \
-                of a control, or allow more time."
+                condition, widen the bounds of a control, or allow more time."
             .into();
     }
     format!(
         "{}. No small change of this trajectory makes it better, but {}. Otherwise loosen a \
-         condition, widen the \
-         bounds of a control, or allow more time.",
+         condition, widen the bounds of a control, or allow more time.",
         attempts::words(solution),
         attempts::advice(solution)
     )

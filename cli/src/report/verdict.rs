@@ -1,6 +1,7 @@
 //! What is said at the end of a solve: how it ended, what was found, what each surface did.
 
-use crate::output::document::{Document, switching};
+use crate::output::document::Document;
+use crate::output::modes::switching;
 use crate::output::number::{scientific, short};
 use crate::output::optimality::on_the_true_system;
 use crate::output::plural;

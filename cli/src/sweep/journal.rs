@@ -1,9 +1,9 @@
 //! A file of rows that grows by a line for each row that is solved, so that a sweep that was ended,
 //! by whatever, goes on where it was.
 //!
-//! The name of a file has what all its rows have in common: `MODEL.IDENTITY.I-of-N.jsonl`, where the
-//! identity stands for the text of the model, its data, the version of the program and all options
-//! that change results. What was solved before a model was changed is in another file.
+//! The name of a file has what all its rows have in common: `MODEL.IDENTITY.I-of-N.jsonl`, where
+//! the identity stands for the text of the model, its data, the version of the program and all
+//! options that change results. What was solved before a model was changed is in another file.
 
 use super::part::Part;
 use crate::failure::Failure;

@@ -40,8 +40,8 @@ pub(crate) fn found(text: &str) -> Option<Diagnostic> {
 mod tests {
     use super::*;
 
-    const UNSEEN: &str = "\u{61c}\u{200b}\u{200e}\u{200f}\u{202a}\u{202b}\u{202c}\u{202d}\u{202e}\u{2060}\
-                          \u{2066}\u{2067}\u{2068}\u{2069}\u{ad}\u{180e}\u{feff}";
+    const UNSEEN: &str = "\u{61c}\u{200b}\u{200e}\u{200f}\u{202a}\u{202b}\u{202c}\u{202d}\
+                          \u{202e}\u{2060}\u{2066}\u{2067}\u{2068}\u{2069}\u{ad}\u{180e}\u{feff}";
 
     #[test]
     fn what_is_not_seen_is_told_once_and_taken_out() {

@@ -1,7 +1,8 @@
 //! Expressions as polynomials over what is not polynomial in them: their normal form.
 //!
 //! ```text
-//! c_1 a^i b^j ... + c_2 ...      atoms a, b: inputs, and calls such as sin(x); exponents may be negative
+//! c_1 a^i b^j ... + c_2 ...      exponents may be negative
+//! a, b                           atoms: inputs, and calls such as sin(x)
 //! cos(x)^2 = 1 - sin(x)^2,   sqrt(x)^2 = x,   abs(x)^2 = x^2
 //! ```
 //!

@@ -1,7 +1,7 @@
 //! What a model expects of its solution, as a function that can be evaluated once there is one.
 //!
-//! Inputs `[x(start), x(end) | p, integrals, sums, simulated]`; three outputs for each expectation: left
-//! side, right side, tolerance.
+//! Inputs `[x(start), x(end) | p, integrals, sums, simulated]`; three outputs for each expectation:
+//! left side, right side, tolerance.
 
 use super::function::{Order, VectorFunction};
 use super::inputs::{self, Sizes};

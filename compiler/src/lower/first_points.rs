@@ -1,8 +1,8 @@
 //! Path conditions at the first point of a phase that follows another.
 //!
-//! A transcription has them at every grid point after the first: where a motion begins, it begins as
-//! it does. A later phase begins where a link puts it, which may be beyond a condition. Those that
-//! read a control hold on the first interval as they are.
+//! A transcription has them at every grid point after the first: where a motion begins, it begins
+//! as it does. A later phase begins where a link puts it, which may be beyond a condition. Those
+//! that read a control hold on the first interval as they are.
 
 use super::function::{Order, VectorFunction};
 use super::links::LoweredLink;

@@ -2,8 +2,10 @@
 //! `piecewise`.
 //!
 //! ```text
-//! |e| = -e, e     min(a, b) = a, b     max(a, b) = b, a     select_le(a, b, x, y) = x, y     where e = a - b is below, above 0
+//! |e| = -e, e     min(a, b) = a, b     max(a, b) = b, a     select_le(a, b, x, y) = x, y
 //! ```
+//!
+//! where `e`, which is `a - b` but for `|e|`, is below 0 and above.
 //!
 //! Each `e` that time, a state or a control moves gets a selector behind those of the surfaces,
 //! which says on which side of 0 it is. So the right side is smooth on each side and goes on

@@ -5,12 +5,13 @@
 //! `tau_r(p) = (t_r - t0)/(tf - t0)` of a row, at which the parameters have it now, `tau`:
 //!
 //! ```text
-//! polynomial   x = X + X' d + X'' d^2/2                             d = tau_r(p) - tau, which is 0
-//! Hermite      x = H_0(c) x_0 + H_1(c) x_1 + h (G_0(c) F_0 + G_1(c) F_1)     c = (tau_r(p) - begin)/h
+//! polynomial   x = X + X' d + X'' d^2/2                                   d = tau_r(p) - tau
+//! Hermite      x = H_0(c) x_0 + H_1(c) x_1 + h (G_0(c) F_0 + G_1(c) F_1)  c = (tau_r(p) - begin)/h
 //! ```
 //!
-//! so that all derivatives, also those by an end of time, come from the graph. Only the values of
-//! `d` and its first two powers matter, so the first polynomial is exact for any degree.
+//! so that all derivatives, also those by an end of time, come from the graph. `d` itself is 0.
+//! Only the values of `d` and its first two powers matter, so the first polynomial is exact for any
+//! degree.
 
 use super::function::{Order, VectorFunction};
 use super::inputs::{self, Inputs, Sizes};

@@ -3,7 +3,8 @@
 //!
 //! ```text
 //! flow      f(t, x, u, p, s)                                 real time, selectors s as inputs
-//! dynamics  D f(t0 + tau D, x, u, p, s = Sgn_sigma(psi))     D = tf - t0, tau in [0, 1]; then D * running cost
+//! dynamics  D f(t0 + tau D, x, u, p, s = Sgn_sigma(psi))     D = tf - t0, tau in [0, 1]
+//!           D * running cost                                 behind it
 //! path, switching, report                                    over tau as well
 //! boundary  Mayer objective, conditions at [x(start), x(end)]
 //! ```

@@ -1,10 +1,14 @@
 //! The functions of the true system, in real time and with selectors as inputs.
 //!
 //! ```text
-//! flow      f(t, x, u, p, s), then the integrands      rates     psi' = psi_t + psi_x f(t, x, u, p, s)
-//! switching psi(t, x, p)                               resets    r(t, x, p), a block for each jump
-//! objective M(x(start), x(end), p)                     guess     of states, then controls, at (tau, p)
-//! interval  t0(p), tf(p)                               start     x(start)(p)
+//! flow      f(t, x, u, p, s), then the integrands
+//! rates     psi' = psi_t + psi_x f(t, x, u, p, s)
+//! switching psi(t, x, p)
+//! resets    r(t, x, p), a block for each jump
+//! objective M(x(start), x(end), p)
+//! guess     of states, then controls, at (tau, p)
+//! interval  t0(p), tf(p)
+//! start     x(start)(p)
 //! kinks     e(t, x, u, p) of abs(e), a - b of min(a, b) and max(a, b) in the flow
 //! ```
 //!

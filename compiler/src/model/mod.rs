@@ -6,6 +6,7 @@
 //! expressions, so that the command line can change a number.
 
 mod at_times;
+mod declarations;
 mod expected;
 pub(crate) mod guess;
 mod measured;
@@ -15,6 +16,10 @@ pub(crate) mod phases;
 mod switches;
 
 pub(crate) use at_times::Instant;
+pub use declarations::{
+    AtTime, Ball, Constraint, Control, Definition, Free, Integral, Jump, Param, Place, Range,
+    State, Surface, Swept,
+};
 pub use measured::Sum;
 pub(crate) use measured::by_row;
 pub use switches::Switch;
@@ -24,7 +29,6 @@ use crate::expressions::graph::{ExprId, Graph};
 use crate::settings;
 use crate::units::{NamedUnit, WidthUnit};
 pub use expected::{Comparison, Expectation, Report, Simulated};
-use fdcc_grammar::ast::Direction;
 use fdcc_grammar::{Code, Diagnostic, Span};
 use fdcc_runtime::problem::Method;
 pub use phases::{Link, Phase};
@@ -70,166 +74,6 @@ pub enum Symbol {
         /// An input of its graph.
         input: u32,
     },
-}
-
-/// Where something was written, and what to call it.
-#[derive(Clone, Debug, Default)]
-pub struct Place {
-    /// In the model's words.
-    pub name: String,
-    /// In its text.
-    pub span: Span,
-}
-
-/// `lower <= . <= upper` over parameters; infinite numbers where there is no bound.
-#[derive(Clone, Copy, Debug)]
-pub struct Range {
-    /// Lower bound.
-    pub lower: ExprId,
-    /// Upper bound.
-    pub upper: ExprId,
-}
-
-/// A `param`.
-#[derive(Clone, Debug)]
-pub struct Param {
-    /// Its declaration.
-    pub place: Place,
-    /// Its value over other parameters; `None` until the command line gives one.
-    pub value: Option<ExprId>,
-    /// What the command line may give.
-    pub range: Range,
-}
-
-/// A `free` unknown.
-#[derive(Clone, Debug)]
-pub struct Free {
-    /// Its declaration.
-    pub place: Place,
-    /// Its bounds.
-    pub range: Range,
-    /// Its guess, over parameters and other unknowns.
-    pub guess: Option<ExprId>,
-}
-
-/// A scalar state.
-#[derive(Clone, Debug)]
-pub struct State {
-    /// Its declaration.
-    pub place: Place,
-    /// Bounds at all times.
-    pub range: Range,
-    /// `start EXPR`, over parameters and unknowns.
-    pub start: Option<ExprId>,
-    /// `start free in [a, b]`.
-    pub start_range: Option<Range>,
-    /// Its derivative in real time, affine in the selectors.
-    pub rate: ExprId,
-    /// The equation; named `x'`.
-    pub equation: Place,
-    /// Its guess over time, parameters and unknowns.
-    pub guess: Option<ExprId>,
-}
-
-/// A scalar control.
-#[derive(Clone, Debug)]
-pub struct Control {
-    /// Its declaration.
-    pub place: Place,
-    /// Bounds at all times.
-    pub range: Range,
-    /// Its guess over time, parameters and unknowns.
-    pub guess: Option<ExprId>,
-}
-
-/// A switching surface.
-#[derive(Clone, Debug)]
-pub struct Surface {
-    /// Its declaration, or the first use of an unnamed one.
-    pub place: Place,
-    /// The switching function, whose sign decides.
-    pub psi: ExprId,
-}
-
-/// The vector of a `Dir`: the length of `s` is at most 1, and `s = psi/|psi|` off 0.
-#[derive(Clone, Debug)]
-pub struct Ball {
-    /// Its first use, named by the text of the vector.
-    pub place: Place,
-    /// Its components, as indices into [`Model::surfaces`].
-    pub surfaces: std::ops::Range<usize>,
-}
-
-/// A reset of the state: `x+ = r(t, x-, p)` where a surface is crossed in one direction.
-#[derive(Clone, Debug)]
-pub struct Jump {
-    /// Its declaration.
-    pub place: Place,
-    /// The surface, as an index into [`Model::surfaces`].
-    pub surface: usize,
-    /// Which crossing resets.
-    pub direction: Direction,
-    /// How often at most, over parameters.
-    pub at_most: Option<ExprId>,
-    /// The surface that is held after the last one.
-    pub then_hold: Option<usize>,
-    /// States, as indices into [`Model::states`], with their values after the jump.
-    pub resets: Vec<(usize, ExprId)>,
-}
-
-/// A scalar row of a condition: `lower <= value <= upper`.
-#[derive(Clone, Debug)]
-pub struct Constraint {
-    /// The condition.
-    pub place: Place,
-    /// What is bounded.
-    pub value: ExprId,
-    /// By what.
-    pub range: Range,
-}
-
-/// `at TIME: CONDITION`, between the ends of time.
-#[derive(Clone, Debug)]
-pub struct AtTime {
-    /// The time as it was written.
-    pub place: Place,
-    /// When the rows hold, over parameters and unknowns.
-    pub time: ExprId,
-    /// What holds then, over the symbols of any time.
-    pub rows: Vec<Constraint>,
-}
-
-/// An `integral(...)`.
-#[derive(Clone, Debug)]
-pub struct Integral {
-    /// The call; named by its text.
-    pub place: Place,
-    /// What is integrated over real time.
-    pub integrand: ExprId,
-    /// Whether something outside of its phase needs its value.
-    pub is_linked: bool,
-}
-
-/// A line of the `sweep` block.
-#[derive(Clone, Debug)]
-pub struct Swept {
-    /// The name of a parameter or of a setting.
-    pub place: Place,
-    /// Its values: numbers in SI, words.
-    pub values: Vec<String>,
-    /// Where the values stand.
-    pub values_span: Span,
-}
-
-/// A `const`, `let` or `fn`.
-#[derive(Clone, Debug)]
-pub struct Definition {
-    /// Its name.
-    pub name: String,
-    /// The names of its arguments, none but for a function.
-    pub arguments: Vec<String>,
-    /// Its components; a function over [`Symbol::Argument`], none if that gives no value.
-    pub parts: Vec<ExprId>,
 }
 
 /// A model whose text has no error.

@@ -13,7 +13,8 @@ use fdcc_runtime::problem::End;
 pub struct Phase {
     /// Its declaration.
     pub place: Place,
-    /// What holds in it, with its part of the objective and all conditions that read no other phase.
+    /// What holds in it, with its part of the objective and all conditions that read no other
+    /// phase.
     pub model: Model,
     /// Whether its path conditions hold at its first point, too: not where a jump of the state puts
     /// it on the surface that they are about.

@@ -5,15 +5,15 @@
 //! x_j+1(T_j+1) = x_j(T_j+1)      lower <= c(T_j+1, x_j(T_j+1), p) <= upper      T_j <= T_j+1
 //! ```
 //!
-//! The trajectory is continuous, the grid has these times as points, and where an equality holds the
-//! costate jumps by its multiplier.
+//! The trajectory is continuous, the grid has these times as points, and where an equality holds
+//! the costate jumps by its multiplier.
 
-use super::division::{Division, add_symbols};
+use super::division::{Division, add_symbols, numbered};
 use super::shares::Shares;
 use crate::expressions::graph::Graph;
 use crate::model::guess::straight_guesses;
 use crate::model::numbers::{Numbers, numbers};
-use crate::model::{Constraint, Instant, Link, Model, Phase, Place, Range, State, Symbol};
+use crate::model::{Constraint, Instant, Link, Model, Place, Range, State, Symbol};
 use fdcc_grammar::{Diagnostic, Severity};
 use fdcc_runtime::problem::{End, Grid, Method};
 
@@ -82,13 +82,7 @@ impl Pieces<'_> {
     fn into_model(mut self) -> Model {
         let (model, last) = (self.division.model, self.division.last());
         let shares = Shares::new(model, &mut self.division.graph);
-        let phases: Vec<Phase> = (0..=last)
-            .map(|j| Phase {
-                place: Place { name: format!("{} {}", model.name, j + 1), ..Place::default() },
-                model: self.phase(j, &shares),
-                holds_at_first: false,
-            })
-            .collect();
+        let phases = numbered(&model.name, (0..=last).map(|j| self.phase(j, &shares)));
         let mut links: Vec<Link> = (0..last).map(|j| self.link(j)).collect();
         links.extend(self.division.link_of_whole(&shares, &model.boundary));
         let Division { graph, symbols, .. } = self.division;

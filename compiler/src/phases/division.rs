@@ -2,8 +2,18 @@
 
 use super::shares::Shares;
 use crate::expressions::graph::{ExprId, Graph};
-use crate::model::{Constraint, Free, Link, Model, Place, Range, Symbol};
+use crate::model::{Constraint, Free, Link, Model, Phase, Place, Range, Symbol};
 use fdcc_runtime::problem::End;
+
+/// Phases that are called by the model and their number.
+pub(super) fn numbered(name: &str, models: impl Iterator<Item = Model>) -> Vec<Phase> {
+    let phase = |(j, model): (usize, Model)| Phase {
+        place: Place { name: format!("{name} {}", j + 1), ..Place::default() },
+        model,
+        holds_at_first: false,
+    };
+    models.enumerate().map(phase).collect()
+}
 
 /// Gives a model all symbols that phases or links read.
 pub(super) fn add_symbols(model: &mut Model) {

@@ -5,7 +5,8 @@
 //! of the next:
 //!
 //! ```text
-//! x_j' = f(t, x_j, u_j, p) on [T_j, T_j+1]      psi(T_j+1, x_j, p) = 0      x_j+1 = r(T_j+1, x_j, u_j, p)
+//! x_j' = f(t, x_j, u_j, p) on [T_j, T_j+1]
+//! psi(T_j+1, x_j, p) = 0      x_j+1 = r(T_j+1, x_j, u_j, p)
 //! ```
 //!
 //! Which jumps happen, and in which order, is given ([`sequences()`]). A phase depends on the two

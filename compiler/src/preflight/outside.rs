@@ -61,8 +61,7 @@ fn outside(
     let found = Diagnostic::new(Code::GuessOutside, message, guess, format!("{reached} here"));
     Some(found.label(bounds, format!("but it is {limit}")).help(
         "the solver moves a guess into the bounds before it begins, and what it begins with is no \
-         longer what is written; \
-         guess a value inside, or widen the bounds",
+         longer what is written; guess a value inside, or widen the bounds",
     ))
 }
 

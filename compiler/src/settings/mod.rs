@@ -32,9 +32,9 @@ pub(crate) const KEYS: &[Key] = &[
     Key {
         name: "sigma",
         takes: Takes::Number("a number from 0"),
-        doc: "The width of the layer in which `Sgn` and `match` are smoothed. Half the width, half the \
-         error, and a steeper layer that asks for a finer grid. With 0, as without a width, the \
-         answer is that of the true system, with every switch located.",
+        doc: "The width of the layer in which `Sgn` and `match` are smoothed. Half the width, half \
+         the error, and a steeper layer that asks for a finer grid. With 0, as without a width, \
+         the answer is that of the true system, with every switch located.",
         set: |m, given| {
             let width = number(given).filter(|it| *it >= 0.0)?;
             m.exact = width == 0.0;
@@ -45,8 +45,8 @@ pub(crate) const KEYS: &[Key] = &[
     Key {
         name: "kernel",
         takes: Takes::Words(words::kernels),
-        doc: "The shape of the smoothed step. `cubic` is the default: half the bias of `tanh`, and a \
-         clean expansion in the width.",
+        doc: "The shape of the smoothed step. `cubic` is the default: half the bias of `tanh`, and \
+         a clean expansion in the width.",
         set: |m, given| {
             let Given::Word(word) = given else { return None };
             m.kernel = kernels::find(word)?.name.into();
@@ -56,9 +56,9 @@ pub(crate) const KEYS: &[Key] = &[
     Key {
         name: "N",
         takes: Takes::Number("a whole number from 1, or auto"),
-        doc: "Control intervals. Time and memory of an iteration grow with it, in proportion. `auto` \
-         refines the grid where steps have errors, and with `scheme = radau` or `gauss` finds the \
-         order as well.",
+        doc: "Control intervals. Time and memory of an iteration grow with it, in proportion. \
+         `auto` refines the grid where steps have errors, and with `scheme = radau` or `gauss` \
+         finds the order as well.",
         set: |m, given| {
             let is_open = matches!(given, Given::Word(word) if word == "auto");
             m.grid = if is_open { Grid::Auto } else { Grid::Uniform(count(given)?) };
@@ -87,8 +87,8 @@ pub(crate) const KEYS: &[Key] = &[
     Key {
         name: "scheme",
         takes: Takes::Words(words::schemes),
-        doc: "How the equations are discretised. Implicit schemes may take steps that are long for the \
-         smoothed layer.",
+        doc: "How the equations are discretised. Implicit schemes may take steps that are long for \
+         the smoothed layer.",
         set: |m, given| {
             let Given::Word(word) = given else { return None };
             m.scheme = Scheme::named(word)?;
@@ -99,8 +99,8 @@ pub(crate) const KEYS: &[Key] = &[
     Key {
         name: "controls",
         takes: Takes::Words(words::shapes),
-        doc: "What a control is on an interval: `constant`, `linear` and continuous, or a `polynomial` \
-         through its values at the nodes.",
+        doc: "What a control is on an interval: `constant`, `linear` and continuous, or a \
+         `polynomial` through its values at the nodes.",
         set: |m, given| {
             let Given::Word(word) = given else { return None };
             m.controls = ControlShape::named(word)?;
@@ -110,8 +110,8 @@ pub(crate) const KEYS: &[Key] = &[
     Key {
         name: "solver",
         takes: Takes::Words(words::solvers),
-        doc: "Interior point method, or the conic solver for convex problems. Without it the problem \
-         decides.",
+        doc: "Interior point method, or the conic solver for convex problems. Without it the \
+         problem decides.",
         set: |m, given| {
             let Given::Word(word) = given else { return None };
             m.solver = if word == "auto" { Solver::Automatic } else { Solver::named(word)? };
@@ -121,8 +121,8 @@ pub(crate) const KEYS: &[Key] = &[
     Key {
         name: "linear",
         takes: Takes::Words(words::linear_solvers),
-        doc: "The factorisation of the interior point method: `riccati` along the grid, `sparse_ldl` \
-         for any structure.",
+        doc: "The factorisation of the interior point method: `riccati` along the grid, \
+         `sparse_ldl` for any structure.",
         set: |m, given| {
             let Given::Word(word) = given else { return None };
             m.linear = Linear::named(word)?;
@@ -132,8 +132,8 @@ pub(crate) const KEYS: &[Key] = &[
     Key {
         name: "continue",
         takes: Takes::Number("numbers above 0, each smaller than the one before"),
-        doc: "Widths that are passed through before `sigma`, each solve begun from the one before. Each \
-         costs a solve, a short one.",
+        doc: "Widths that are passed through before `sigma`, each solve begun from the one before. \
+         Each costs a solve, a short one.",
         set: |m, given| {
             m.continuation = decreasing(given)?;
             Some(())

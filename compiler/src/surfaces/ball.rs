@@ -1,7 +1,8 @@
 //! The vector of a `Dir` by itself: what happens where all of its components are 0.
 //!
 //! ```text
-//! psi' = a + B s,   |s| <= 1        a: drift,  B: pull,  S = (B + B^T)/2,  c_i = -S_ii - sum_(j != i) |S_ij|
+//! psi' = a + B s,   |s| <= 1        a: drift,  B: pull
+//! S = (B + B^T)/2                   c_i = -S_ii - sum_(j != i) |S_ij|
 //!
 //! c_i >= 0           S has no positive eigenvalue (Gershgorin): never repelling
 //! c_i > |a|          d . (a + B d) < 0 for every direction d: held

@@ -2,7 +2,8 @@
 //! brings it back.
 //!
 //! ```text
-//! psi(r(x)) = 0,   psi'(r(x)) = -e psi'(x) with 0 < e < 1,   psi'' < 0 where psi' = 0      (falling)
+//! psi(r(x)) = 0,   psi'(r(x)) = -e psi'(x) with 0 < e < 1
+//! psi'' < 0 where psi' = 0      (falling)
 //! ```
 //!
 //! The times between such resets shrink by `e`, so their sum is finite.

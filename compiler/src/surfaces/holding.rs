@@ -1,9 +1,11 @@
 //! When a surface is held, in the words of the model.
 //!
 //! ```text
-//! psi' = mean + s jump/2 = 0 has a solution s in [-1, 1]   if and only if   |mean| <= -jump/2      (jump < 0)
-//! psi' = a - c s = 0         has a solution |s| <= 1       if and only if   |a| <= c               (vectors)
+//! psi' = mean + s jump/2 = 0 has a solution s in [-1, 1]   if and only if   |mean| <= -jump/2
+//! psi' = a - c s = 0         has a solution |s| <= 1       if and only if   |a| <= c
 //! ```
+//!
+//! the first with `jump < 0`, the second for vectors.
 //!
 //! Both sides are multiplied by the positive denominators and by the number in front of the left
 //! one, and a product is taken apart: `abs(s)*v_t^2 <= muN` for the race car.

@@ -199,9 +199,11 @@ impl Local {
         for &(state, slope) in &self.gradient.clone() {
             let input = self.input_of(Symbol::State(state)).expect("psi depends on it");
             let factor = self.form(slope);
-            let is_constant = self.graph.inputs_of(&[slope]).iter().all(
-                |&it| matches!(self.symbols[it as usize], Symbol::Param(at) if view.values[at].is_finite()),
-            );
+            let is_known = |it: &u32| match self.symbols[*it as usize] {
+                Symbol::Param(at) => view.values[at].is_finite(),
+                _ => false,
+            };
+            let is_constant = self.graph.inputs_of(&[slope]).iter().all(is_known);
             let Some((monomial, _)) = factor.as_term().filter(|_| is_constant) else { continue };
             let nonzero = monomial.iter().all(|power| match self.graph.expr(power.0) {
                 Expr::Input(at) => !self.domain[*at as usize].contains(0.0),

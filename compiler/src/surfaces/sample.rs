@@ -12,15 +12,16 @@ const STEPS: usize = 30;
 /// Points within the bounds and path constraints at which `psi` is 0 to the last digits.
 pub(crate) fn points(local: &Local) -> Vec<Vec<f64>> {
     let found = (0..TRIALS).filter_map(|trial| {
-        let mut point: Vec<f64> = local
-            .domain
-            .iter()
-            .enumerate()
-            .map(|(at, domain)| inside(*domain, trial, at as u64))
-            .collect();
+        let mut point = start(local, trial);
         onto_surface(local, &mut point).then_some(point)
     });
     found.collect()
+}
+
+/// A point within the bounds, another one for each trial.
+fn start(local: &Local, trial: u64) -> Vec<f64> {
+    let domains = local.domain.iter().enumerate();
+    domains.map(|(at, domain)| inside(*domain, trial, at as u64)).collect()
 }
 
 /// Whether an expression can be 0 within the bounds.
@@ -36,12 +37,7 @@ pub(crate) fn zeros(local: &mut Local, expr: ExprId) -> Vec<Vec<f64>> {
     let is_fixed = |at: u32| matches!(local.symbols[at as usize], Symbol::Param(_));
     let moves: Vec<bool> = inputs.iter().map(|&at| !is_fixed(at)).collect();
     let found = (0..TRIALS).filter_map(|trial| {
-        let mut point: Vec<f64> = local
-            .domain
-            .iter()
-            .enumerate()
-            .map(|(at, domain)| inside(*domain, trial, at as u64))
-            .collect();
+        let mut point = start(local, trial);
         for _ in 0..STEPS {
             let values = evaluate(&local.graph, &roots, &point, &[]);
             if values[0].abs() <= 1e-12 {

@@ -1,7 +1,8 @@
 //! How smooth an expression is: the largest k for which it is C^k, and the places where that ends.
 //!
 //! ```text
-//! e = P for g <= 0, Q for g >= 0:     e is C^k across g = 0  if and only if  Q - P and its derivatives to the k-th vanish there
+//! e = P for g <= 0, Q for g >= 0:     e is C^k across g = 0  if and only if  Q - P and its
+//!                                     derivatives to the k-th vanish there
 //! e = P + Q sqrt(a):                  e is C^m at a = 0, where Q vanishes to the m-th order
 //! ```
 //!

@@ -1,6 +1,8 @@
-//! The grammar accepts every model that the compiler accepts, sees the same items, and gives the trees of `test/corpus/`.
+//! The grammar accepts every model that the compiler accepts, sees the same items, and gives the
+//! trees of `test/corpus/`.
 //!
-//! The models are written out by `cargo run -p fdcc-tests --example editor_texts target/editors/models`.
+//! The models are written out to `target/editors/models` by the example `editor_texts` of
+//! `fdcc-tests`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,7 +17,8 @@ fn parse(text: &str) -> Tree {
 
 fn files(folder: &str, extension: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
-    let entries = fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let entries =
+        fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let paths = entries.map(|entry| entry.expect("the folder can be read").path());
     paths.filter(|path| path.extension().is_some_and(|it| it == extension)).collect()
 }
@@ -32,9 +35,8 @@ fn item_words(node: Node<'_>, text: &str, words: &mut Vec<String>) {
     for child in node.children(&mut cursor).filter(is_item) {
         let first = child.child(0);
         if let (Some(first), "file" | "phase" | "ERROR") = (first, node.kind()) {
-            words.extend(
-                (!first.is_named()).then(|| format!("{} {}", first.start_byte(), &text[first.byte_range()])),
-            );
+            let word = || format!("{} {}", first.start_byte(), &text[first.byte_range()]);
+            words.extend((!first.is_named()).then(word));
         }
         if child.kind() == "phase" {
             item_words(child, text, words);
@@ -61,7 +63,8 @@ fn every_model_is_read_and_has_the_same_items() {
     assert!(problems.is_empty(), "\n{}", problems.join("\n"));
 }
 
-/// A model is typed: after each character the tree is mended, and it is the tree of the text as if read at once.
+/// A model is typed: after each character the tree is mended, and it is the tree of the text as if
+/// read at once.
 #[test]
 fn typing_gives_the_tree_of_the_text() {
     let text = read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/stacked.fdc"));
@@ -104,10 +107,12 @@ fn the_items_before_an_unfinished_one_stay() {
         let whole: Vec<String> = words(&text).into_iter().filter(outer).collect();
         for pair in whole.windows(2) {
             let (start, next) = (place(&pair[0]), place(&pair[1]));
-            let expected: Vec<&String> = whole.iter().take_while(|word| place(word) < start).collect();
+            let expected: Vec<&String> =
+                whole.iter().take_while(|word| place(word) < start).collect();
             for end in (start..next).filter(|&end| text.is_char_boundary(end)) {
                 let found = words(&text[..end]);
-                let missing: Vec<_> = expected.iter().filter(|word| !found.contains(word)).collect();
+                let missing: Vec<_> =
+                    expected.iter().filter(|word| !found.contains(word)).collect();
                 assert!(missing.is_empty(), "{}: {missing:?} in\n{}", path.display(), &text[..end]);
             }
         }
@@ -131,13 +136,16 @@ fn the_corpus_has_its_trees() {
     let mut cases = 0;
     for path in files("test/corpus", "txt") {
         let document = read(&path);
-        let parts: Vec<&str> = document.split("\n===\n").flat_map(|part| part.split("===\n")).collect();
+        let parts: Vec<&str> =
+            document.split("\n===\n").flat_map(|part| part.split("===\n")).collect();
         let titled = parts.iter().filter(|part| !part.trim().is_empty()).collect::<Vec<_>>();
         for pair in titled.chunks(2) {
             let [title, case] = pair else { panic!("{}: a title without a case", path.display()) };
-            let (text, expected) = case.split_once("\n---\n").expect("text and tree are parted by ---");
+            let (text, expected) =
+                case.split_once("\n---\n").expect("text and tree are parted by ---");
             let found = parse(text.trim_start_matches('\n')).root_node().to_sexp();
-            let expected = expected.split_whitespace().collect::<Vec<_>>().join(" ").replace(" )", ")");
+            let words: Vec<_> = expected.split_whitespace().collect();
+            let expected = words.join(" ").replace(" )", ")");
             assert_eq!(found, expected, "{}: {title}", path.display());
             cases += 1;
         }

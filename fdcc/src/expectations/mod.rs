@@ -8,10 +8,10 @@ mod replayed;
 
 use crate::solve::{Phases, Solution};
 use fdcc_compiler::model::Comparison;
-use fdcc_compiler::{Expected, Model, expectations};
+use fdcc_compiler::{Model, expectations};
 use fdcc_runtime::problem::{Columns, Function, Origin, Problem};
 use fdcc_runtime::solution::{integrals, sums_over_rows};
-use fdcc_runtime::solve::Outcome as Solved;
+use fdcc_runtime::solve::Outcome;
 use replayed::Replayed;
 
 /// One line of the `expect` block and what became of it.
@@ -27,11 +27,11 @@ use replayed::Replayed;
 /// assert!(matches!(&found[0].outcome, Expected::Compared(sides) if sides.holds));
 /// # Ok::<(), fdcc::Error>(())
 /// ```
-pub struct Checked {
+pub struct Expectation {
     /// The text and its place.
     pub origin: Origin,
     /// The comparison.
-    pub outcome: Outcome,
+    pub outcome: Expected,
 }
 
 /// What became of an expectation.
@@ -46,7 +46,7 @@ pub struct Checked {
 /// assert!(!sides.holds);
 /// # Ok::<(), fdcc::Error>(())
 /// ```
-pub enum Outcome {
+pub enum Expected {
     /// Both sides have values.
     Compared(Sides),
     /// The true system does not tell, and why.
@@ -79,13 +79,13 @@ pub struct Sides {
 
 impl Solution {
     /// What the model expects of its solution, compared with this one.
-    pub fn expectations(&self) -> Vec<Checked> {
+    pub fn expectations(&self) -> Vec<Expectation> {
         if self.phases().is_empty() { evaluate(self) } else { of_phases::evaluate(self) }
     }
 }
 
 /// Evaluates all expectations of its model at a solution.
-fn evaluate(solution: &Solution) -> Vec<Checked> {
+fn evaluate(solution: &Solution) -> Vec<Expectation> {
     let between = solution.between_jumps.as_ref();
     let expectations = expectations(between.map_or(solution.model().meaning(), |it| &it.model));
     let trajectory = &solution.outcome.trajectory;
@@ -117,7 +117,7 @@ fn evaluate(solution: &Solution) -> Vec<Checked> {
 }
 
 /// The integrals that expectations read, over the time of one phase.
-fn of_phase(problem: &Problem, outcome: &Solved, integrands: &dyn Function) -> Vec<f64> {
+fn of_phase(problem: &Problem, outcome: &Outcome, integrands: &dyn Function) -> Vec<f64> {
     integrals(problem, &outcome.solution, &outcome.trajectory.parameters, integrands)
 }
 
@@ -136,15 +136,20 @@ fn integrals_of_phases(phases: &Phases) -> Vec<f64> {
     own.reduce(add).unwrap_or_default()
 }
 
-fn checked(expected: &Expected, at: usize, values: &Columns, replayed: &Replayed) -> Checked {
+fn checked(
+    expected: &fdcc_compiler::Expected,
+    at: usize,
+    values: &Columns,
+    replayed: &Replayed,
+) -> Expectation {
     let outcome = match expected.simulated.iter().find_map(|&asked| replayed.why_not(asked)) {
-        Some(why) => Outcome::Untold(why),
-        None => Outcome::Compared(sides(expected, at, values)),
+        Some(why) => Expected::Untold(why),
+        None => Expected::Compared(sides(expected, at, values)),
     };
-    Checked { origin: expected.origin.clone(), outcome }
+    Expectation { origin: expected.origin.clone(), outcome }
 }
 
-fn sides(expected: &Expected, at: usize, values: &Columns) -> Sides {
+fn sides(expected: &fdcc_compiler::Expected, at: usize, values: &Columns) -> Sides {
     let [left, right, tolerance] = [0, 1, 2].map(|side| values.column(3 * at + side)[0]);
     let holds = holds(expected.comparison, left, right, tolerance);
     Sides { left, right, tolerance, holds }

@@ -1,13 +1,13 @@
 //! Expectations of a model with phases: over the ends of all phases, their integrals and sums.
 
-use super::{Checked, Outcome, sides};
+use super::{Expectation, Expected, sides};
 use crate::solve::Solution;
 use fdcc_compiler::chain_expectations;
 use fdcc_runtime::problem::{Columns, Function};
 use fdcc_runtime::solution::{integrals, sums_over_rows};
 use std::sync::Arc;
 
-pub(super) fn evaluate(solution: &Solution) -> Vec<Checked> {
+pub(super) fn evaluate(solution: &Solution) -> Vec<Expectation> {
     let expectations = chain_expectations(solution.model().meaning());
     let inputs: Vec<f64> = solution.phases().iter().flat_map(ends).collect();
     let shared = solution.problem.parameters.len();
@@ -20,9 +20,9 @@ pub(super) fn evaluate(solution: &Solution) -> Vec<Checked> {
     }
     let mut values = Columns::new(expectations.function.outputs(), 1);
     expectations.function.value(&Columns::of_point(&inputs), &parameters, &mut values);
-    let checked = |(at, expected): (usize, &fdcc_compiler::Expected)| Checked {
+    let checked = |(at, expected): (usize, &fdcc_compiler::Expected)| Expectation {
         origin: expected.origin.clone(),
-        outcome: Outcome::Compared(sides(expected, at, &values)),
+        outcome: Expected::Compared(sides(expected, at, &values)),
     };
     expectations.list.iter().enumerate().map(checked).collect()
 }

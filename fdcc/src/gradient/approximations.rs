@@ -32,14 +32,22 @@ pub struct Stepped {
 const RELATIVE_WIDTH: f64 = 0.01;
 
 impl Gradient {
-    /// The gradient of the true system, discretised, or why there is none; fixed steps know no
-    /// jumps.
+    /// The gradient of the true system, discretised, by the numbers of `by`; nothing of a model with
+    /// jumps, which fixed steps do not know.
+    ///
+    /// # Errors
+    ///
+    /// A scheme whose steps do not go through a set, or steps that do not reach the end, in words.
     pub fn discretised(&self) -> Option<Result<Stepped, String>> {
         let stepped = || Ok(Stepped { sigma: None, gradient: self.stepped(&self.system)? });
         self.system.jumps.is_empty().then(stepped)
     }
 
-    /// The same with the surfaces smoothed, as a solve has it.
+    /// The same with the surfaces smoothed, as a solve has it; nothing of a model without surfaces.
+    ///
+    /// # Errors
+    ///
+    /// As for [`discretised`](Gradient::discretised).
     pub fn smoothed(&self) -> Option<Result<Stepped, String>> {
         let model = self.model.meaning();
         let mut smooth = fdcc_compiler::compile_smoothed(model).ok()?;

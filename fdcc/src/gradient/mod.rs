@@ -66,14 +66,17 @@ impl Gradient {
         self.found.as_ref().is_ok_and(Exact::is_trusted)
     }
 
-    /// The second derivatives, by each pair of numbers in the order of `by`; or why there are none.
+    /// The second derivatives, a square matrix: by each pair of numbers in the order of `by`, in SI.
+    ///
+    /// # Errors
+    ///
+    /// Why there are none, in words.
     pub fn second(&self) -> Result<Vec<Vec<f64>>, String> {
         let simulation = self.simulation();
         let found = hessian(&self.system, &self.controls, simulation, &quantities(&self.by));
         let why = "there are no second derivatives here: none are known where infinitely many \
-                   jumps come to rest, where a `Dir` \
-                   moves, by a start that leaves a surface on which it slides, and where a kink is \
-                   met together with something else";
+                   jumps come to rest, where a `Dir` moves, by a start that leaves a surface on \
+                   which it slides, and where a kink is met together with something else";
         found.ok_or(why.to_string())
     }
 

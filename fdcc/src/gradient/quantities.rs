@@ -85,6 +85,10 @@ pub fn everything(system: &System, model: &Model) -> Vec<By> {
 }
 
 /// What a name asks for: `mu`, `x(start)`, all parts of `pos(start)`, or a control.
+///
+/// # Errors
+///
+/// A name that is none of these.
 pub fn named(
     name: &str,
     system: &System,

@@ -47,6 +47,10 @@ struct Restored {
 
 impl Replay {
     /// What a solution says, if it is one of this model.
+    ///
+    /// # Errors
+    ///
+    /// A control that is missing, or times that do not ascend, in words.
     pub fn new(record: &Record, model: &Model) -> Result<Replay, String> {
         if record.time.iter().any(|time| !time.is_finite()) {
             return Err("a time is no number".into());
@@ -77,6 +81,10 @@ impl Replay {
     }
 
     /// Whether the controls can be followed.
+    ///
+    /// # Errors
+    ///
+    /// Why they cannot, in words.
     pub fn check(&self) -> Result<(), String> {
         if self.controls.begins().is_empty() {
             return Err("there is no row of values".into());

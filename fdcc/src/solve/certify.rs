@@ -134,7 +134,8 @@ fn arc_name(arc: Arc) -> &'static str {
 }
 
 /// The part of the time on which the replay is in another mode than the plan, of the surface where
-/// that is most. Where the plan is on the surface itself, its selector may be 1 or -1 in either mode.
+/// that is most. Where the plan is on the surface itself, its selector may be 1 or -1 in either
+/// mode.
 fn other_modes(model: &Model, solution: &Solution, replay: &Verification) -> f64 {
     let time = solution.time();
     let duration = time[time.len() - 1] - time[0];

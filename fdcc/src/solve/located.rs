@@ -48,28 +48,35 @@ struct Search<'s> {
 }
 
 impl Search<'_> {
-    /// The first answer that is certified, or the certificate that fails least. It is looked for near
-    /// the smoothed answer, then near what the true system does with the controls of what was found
-    /// there, then near what it does with those of the smoothed answer.
+    /// The first answer that is certified, or the certificate that fails least. It is looked for
+    /// near the smoothed answer, then near what the true system does with the controls of what was
+    /// found there, then near what it does with those of the smoothed answer.
     fn certified(&mut self) -> Result<Solution, Certificate> {
         let found = self.found;
-        let smoothed =
-            Whole { outcome: found.outcome.clone(), is_exact: false, jumps: jumps(found) };
+        let smoothed = Whole {
+            outcome: found.outcome.clone(),
+            is_exact: false,
+            jumps: jumps(found),
+            phases: Vec::new(),
+        };
         let mut least = self.nothing();
         let mut near = self.attempt(&smoothed);
-        for replays in 0..=MOST_REPLAYS {
+        // Without modes and jumps a replay says nothing of the structure.
+        let most_replays = if is_smooth(self.model, self.between) { 0 } else { MOST_REPLAYS };
+        for replays in 0..=most_replays {
             let Some(located) = near.take() else { break };
             let (answer, whole) = self.refined(located);
             least = least.least(answer.certificate.clone().unwrap_or_default());
             if least.is_certified() {
                 return Ok(self.ended(answer));
             }
-            if replays < MOST_REPLAYS {
+            if replays < most_replays {
                 near = self.replayed(&answer, &whole);
             }
         }
         let answer = Solution::new(self.model.clone(), found.clone());
-        if let Some(located) = self.replayed(&answer, &smoothed) {
+        let near = if most_replays > 0 { self.replayed(&answer, &smoothed) } else { None };
+        if let Some(located) = near {
             let (answer, _) = self.refined(located);
             least = least.least(answer.certificate.clone().unwrap_or_default());
             if least.is_certified() {

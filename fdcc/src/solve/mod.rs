@@ -30,9 +30,11 @@ pub use sweep::Sweep;
 use crate::error::Error;
 use crate::executor::Executor;
 use crate::model::{Model, frame};
+use crate::record::Record;
 use crate::warm_start;
 use fdcc_runtime::problem::{Chain, Linear, Problem, often_called};
 use fdcc_runtime::transcribe::unknowns;
+use found::Found;
 
 /// A model with the problem that is solved for it.
 ///
@@ -117,35 +119,33 @@ impl Compiled {
     pub fn solve(&self, options: &Options) -> Result<Solution, Error> {
         self.check_start(options.start)?;
         let meaning = self.model.meaning();
-        let found = if !meaning.at_times.is_empty() {
-            match options.start {
-                Start::Guess => at_times::solve(meaning, &self.problem, None, options)?,
-                Start::Record(it) => at_times::solve(meaning, &self.problem, Some(it), options)?,
-                Start::Solution(it) => {
-                    at_times::solve(meaning, &self.problem, Some(&it.record()), options)?
-                }
-            }
-        } else if meaning.jumps.is_empty() {
-            let start = match options.start {
-                Start::Guess => None,
-                Start::Record(record) => Some(warm_start::from_record(record, &self.chain)),
-                Start::Solution(it) => Some(it.as_start(&self.chain)),
+        if !meaning.at_times.is_empty() || !meaning.jumps.is_empty() {
+            let found = match options.start {
+                Start::Guess => self.solve_divided(None, options)?,
+                Start::Record(it) => self.solve_divided(Some(it), options)?,
+                Start::Solution(it) => self.solve_divided(Some(&it.record()), options)?,
             };
-            let found = multistart::solve(&self.chain, start, options, Part::default())?;
-            if !meaning.phases.is_empty() {
-                return Ok(Solution::of_phases(self.model.clone(), found));
-            }
-            return Ok(located::solution(&self.model, found.into_single(), options));
-        } else {
-            match options.start {
-                Start::Guess => sequences::solve(meaning, &self.problem, None, options)?,
-                Start::Record(it) => sequences::solve(meaning, &self.problem, Some(it), options)?,
-                Start::Solution(it) => {
-                    sequences::solve(meaning, &self.problem, Some(&it.record()), options)?
-                }
-            }
+            return Ok(located::solution(&self.model, found, options));
+        }
+        let start = match options.start {
+            Start::Guess => None,
+            Start::Record(record) => Some(warm_start::from_record(record, &self.chain)),
+            Start::Solution(it) => Some(it.as_start(&self.chain)),
         };
-        Ok(located::solution(&self.model, found, options))
+        let found = multistart::solve(&self.chain, start, options, Part::default())?;
+        if !meaning.phases.is_empty() {
+            return Ok(Solution::of_phases(self.model.clone(), found));
+        }
+        Ok(located::solution(&self.model, found.into_single(), options))
+    }
+
+    /// Where time is divided at certain times, or at jumps.
+    fn solve_divided(&self, earlier: Option<&Record>, options: &Options) -> Result<Found, Error> {
+        let (meaning, between) = (self.model.meaning(), &self.problem);
+        match meaning.at_times.is_empty() {
+            true => sequences::solve(meaning, between, earlier, options),
+            false => at_times::solve(meaning, between, earlier, options),
+        }
     }
 }
 

@@ -15,7 +15,7 @@ use fdcc_compiler::{
 use fdcc_runtime::nlp;
 use fdcc_runtime::problem::{Chain, Grid, Method, Problem};
 use fdcc_runtime::simulate::{
-    Controls, Event, Kind, Options as Accuracy, Status, System, simulate,
+    Controls, Event, EventKind, Options as Accuracy, Status, System, simulate,
 };
 use fdcc_runtime::solution::phases::{self, joined};
 use fdcc_runtime::solve::multistart::is_better;
@@ -192,10 +192,10 @@ fn happening(
     event: &Event,
 ) -> Option<usize> {
     let is_falling = match event.kind {
-        Kind::Jump(at) => return Some(at),
+        EventKind::Jump(at) => return Some(at),
         // Against the direction of a jump.
-        Kind::CrossesUp => true,
-        Kind::CrossesDown => false,
+        EventKind::CrossesUp => true,
+        EventKind::CrossesDown => false,
         _ => return None,
     };
     let crossed = |at: &usize| {

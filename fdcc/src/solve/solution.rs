@@ -96,8 +96,8 @@ impl Solution {
         &self.outcome.solution.status
     }
 
-    /// The same in one word, as in files; `uncertified` where the true system was asked for and this
-    /// is an answer to the smoothed problem.
+    /// The same in one word, as in files; `uncertified` where the true system was asked for and
+    /// this is an answer to the smoothed problem.
     pub fn status_name(&self) -> &'static str {
         match self.is_uncertified() {
             true => "uncertified",
@@ -105,8 +105,8 @@ impl Solution {
         }
     }
 
-    /// Whether it is what was asked for: solved, or nearly as accurately; and certified where nothing
-    /// was to be smoothed.
+    /// Whether it is what was asked for: solved, or nearly as accurately; and certified where
+    /// nothing was to be smoothed.
     pub fn is_solved(&self) -> bool {
         self.status().is_solved() && !self.is_uncertified()
     }

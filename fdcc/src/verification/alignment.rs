@@ -5,7 +5,7 @@
 //! each stretched to the length of the other, and the times of the jumps by themselves.
 
 use crate::record::JumpRecord;
-use fdcc_runtime::simulate::{Kind, Simulation, System};
+use fdcc_runtime::simulate::{EventKind, Simulation, System};
 
 /// So much of the whole time after a jump the state is that after it.
 const AFTER: f64 = 1e-9;
@@ -20,7 +20,7 @@ impl Alignment {
     /// Nothing if the replay has other jumps than the solution.
     pub fn new(jumps: &[JumpRecord], system: &System, simulation: &Simulation) -> Option<Self> {
         let happened = simulation.events.iter().filter_map(|event| match event.kind {
-            Kind::Jump(at) => Some((system.jumps[at].name.as_str(), event.time)),
+            EventKind::Jump(at) => Some((system.jumps[at].name.as_str(), event.time)),
             _ => None,
         });
         let happened: Vec<(&str, f64)> = happened.collect();

@@ -7,8 +7,9 @@ use fdcc_runtime::simulate::{Mode, Piece, Tape};
 /// ```
 /// let model = fdcc::Model::from_file("../models/block.fdc")?;
 /// let replay = model.solve(&fdcc::Options::default())?.verify()?;
-/// let times = replay.stays[0].iter().map(|stay| (fdcc::modes::name(stay.mode), stay.to - stay.from));
-/// assert!(times.clone().all(|(_, length)| length > 0.0) && times.count() >= 2);
+/// let stays = &replay.stays[0];
+/// assert!(stays.iter().all(|stay| stay.to > stay.from) && stays.len() >= 2);
+/// println!("first {}", fdcc::modes::name(stays[0].mode));
 /// # Ok::<(), fdcc::Error>(())
 /// ```
 pub struct Stay {

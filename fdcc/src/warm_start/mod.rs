@@ -64,6 +64,7 @@ fn earlier(record: &Record, problem: &Problem) -> Earlier {
         controls: controls.collect(),
         unknowns: names.map(|name| number(&record.free, name)).collect(),
         widths: widths(record, problem),
+        variables: None,
     }
 }
 

@@ -6,12 +6,14 @@ use super::grammar::{Rule, pairs};
 
 /// Pages of the reference, read when the tests are built.
 macro_rules! pages {
-    ($($name:literal)*) => { [$(include_str!(concat!("../../../docs/reference/", $name, ".md"))),*] };
+    ($($name:literal)*) => {
+        [$(include_str!(concat!("../../../docs/reference/", $name, ".md"))),*]
+    };
 }
 
 const PAGES: &[&str] = &pages! {
-    "models" "numbers" "expressions" "piecewise" "dynamics" "surfaces" "conditions" "objective" "guess" "method"
-    "report-and-expect" "jumps" "phases" "data" "simulate" "gradient" "not-yet"
+    "models" "numbers" "expressions" "piecewise" "dynamics" "surfaces" "conditions" "objective"
+    "guess" "method" "report-and-expect" "jumps" "phases" "data" "simulate" "gradient" "not-yet"
 };
 
 const GRAMMAR: &str = include_str!("../fdc.pest");

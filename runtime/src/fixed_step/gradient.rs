@@ -13,10 +13,10 @@
 //! follow the interval: `t = t0(p) + tau (tf(p) - t0(p))`.
 
 use super::field::{Field, jacobian};
-use super::linearized::Linearized;
+use super::linearised::Linearised;
 use super::rule::Grid;
 use super::run::{Failure, Stepped, ends};
-use super::step::Step;
+use super::step::FixedStep;
 use crate::simulate::{Controls, System};
 use nalgebra::DVector;
 
@@ -88,7 +88,7 @@ impl<'a> Adjoint<'a> {
     }
 
     /// From the end of a step to its beginning.
-    fn pass(&mut self, step: &Step) -> Result<(), Failure> {
+    fn pass(&mut self, step: &FixedStep) -> Result<(), Failure> {
         let (mu, new) = self.implicit_part(step)?;
         let old = self.explicit_part(step, &mu);
         let layout = self.field.system.layout;
@@ -105,12 +105,12 @@ impl<'a> Adjoint<'a> {
     }
 
     /// `mu`, and the derivative by all inputs of the implicit part.
-    fn implicit_part(&mut self, step: &Step) -> Result<(DVector<f64>, DVector<f64>), Failure> {
+    fn implicit_part(&mut self, step: &FixedStep) -> Result<(DVector<f64>, DVector<f64>), Failure> {
         let (layout, free) = (self.field.system.layout, &step.free);
         let Some(node) = &self.grid.implicit else {
             return Ok((self.state.clone(), DVector::zeros(layout.inputs())));
         };
-        let local = Linearized::new(self.field, node, step.h, &step.new);
+        let local = Linearised::new(self.field, node, step.h, &step.new);
         let known = self.state.iter().copied().chain(free.iter().map(|&i| self.selectors[i]));
         let known = DVector::from_iterator(layout.x + free.len(), known);
         let solution = local.bordered(free).transpose().lu().solve(&known);
@@ -125,7 +125,7 @@ impl<'a> Adjoint<'a> {
     }
 
     /// The derivative by all inputs of the explicit part.
-    fn explicit_part(&mut self, step: &Step, mu: &DVector<f64>) -> DVector<f64> {
+    fn explicit_part(&mut self, step: &FixedStep, mu: &DVector<f64>) -> DVector<f64> {
         let Some(weight) = self.grid.explicit else {
             return DVector::zeros(self.field.system.layout.inputs());
         };
@@ -137,14 +137,14 @@ impl<'a> Adjoint<'a> {
 
     /// Through the time of an evaluation, a part of a step after its beginning, and through the
     /// step.
-    fn add_times(&mut self, step: &Step, part: f64, by_time: f64, by_step: f64) {
+    fn add_times(&mut self, step: &FixedStep, part: f64, by_time: f64, by_step: f64) {
         self.first_time += by_time;
         self.duration +=
             self.grid.tau(step.index, part) * by_time + by_step / self.grid.count() as f64;
     }
 
     /// Parameters, and controls or what their guess is made of.
-    fn add_inputs(&mut self, step: &Step, by: &DVector<f64>) {
+    fn add_inputs(&mut self, step: &FixedStep, by: &DVector<f64>) {
         let layout = self.field.system.layout;
         self.parameters += by.rows_range(layout.parameters());
         let by_controls = by.rows_range(layout.controls());

@@ -12,7 +12,7 @@
 
 mod field;
 mod gradient;
-mod linearized;
+mod linearised;
 mod rule;
 mod run;
 mod step;

@@ -2,7 +2,7 @@
 
 use super::field::Field;
 use super::rule::Grid;
-use super::step::Step;
+use super::step::FixedStep;
 use crate::problem::Origin;
 use crate::simulate::{Controls, System, value};
 use nalgebra::DVector;
@@ -49,7 +49,7 @@ pub struct Stepped {
     pub selectors: Vec<Vec<f64>>,
     /// The objective, if there is one.
     pub objective: Option<f64>,
-    pub(super) taken: Vec<Step>,
+    pub(super) taken: Vec<FixedStep>,
     pub(super) start: DVector<f64>,
 }
 
@@ -69,9 +69,9 @@ pub fn step_through(system: &System, controls: &Controls, grid: &Grid) -> Result
     }
     let field = Field::new(system, controls);
     let start = field.start();
-    let (mut x, mut taken) = (start.clone(), Vec::<Step>::with_capacity(grid.count()));
+    let (mut x, mut taken) = (start.clone(), Vec::<FixedStep>::with_capacity(grid.count()));
     for index in 0..grid.count() {
-        let step = Step::take(&field, grid, index, x, taken.last())?;
+        let step = FixedStep::take(&field, grid, index, x, taken.last())?;
         x = step.end.clone();
         taken.push(step);
     }

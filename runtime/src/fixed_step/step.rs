@@ -11,7 +11,7 @@
 //! where it cannot, because only the selectors were wrong, they are not.
 
 use super::field::{Field, Point};
-use super::linearized::Linearized;
+use super::linearised::Linearised;
 use super::rule::Grid;
 use super::run::Failure;
 use crate::simulate::selectors;
@@ -28,7 +28,7 @@ const LAST_CHANGE: f64 = 1e-10;
 const SIDE: f64 = 1e-12;
 
 /// A step with all that it was computed from.
-pub(super) struct Step {
+pub(super) struct FixedStep {
     pub index: usize,
     pub h: f64,
     /// What the explicit part was evaluated at.
@@ -42,14 +42,14 @@ pub(super) struct Step {
     pub end: DVector<f64>,
 }
 
-impl Step {
+impl FixedStep {
     /// The step with an index from a state; `before` is the step that ended there.
     pub fn take(
         field: &Field,
         grid: &Grid,
         index: usize,
         x: DVector<f64>,
-        before: Option<&Step>,
+        before: Option<&FixedStep>,
     ) -> Result<Self, Failure> {
         let surfaces = field.system.surfaces.len();
         let is_carried = |i| before.is_some_and(|step| step.free.contains(&i));
@@ -73,7 +73,7 @@ impl Step {
         };
         let is_free = |i: &usize| grid.implicit.is_some() && new.s[*i].abs() < 1.0;
         let free = (0..surfaces).filter(is_free).collect();
-        Ok(Step { index, h, old, carried, new, free, end })
+        Ok(FixedStep { index, h, old, carried, new, free, end })
     }
 }
 
@@ -140,7 +140,7 @@ impl Implicit<'_> {
     /// One linear complementarity problem.
     fn change(&self, x: &DVector<f64>, s: &DVector<f64>) -> Result<Change, Failure> {
         let point = self.point(x, s);
-        let local = Linearized::new(self.field, self.node, self.h, &point);
+        let local = Linearised::new(self.field, self.node, self.h, &point);
         let residual = x - self.fixed - local.weight * &local.flow.values;
         finite(self.field, &point, &residual)?;
         let singular = || Failure::Singular { step: self.index, time: self.t };

@@ -33,28 +33,54 @@ fn tied(count: usize, is_cyclic: bool, is_indefinite: bool, random: &mut Random)
     let own: Vec<Case> =
         all.iter().map(|it| Case::new(*it, false, false, is_indefinite, random)).collect();
     let first_unknown: usize = all.iter().map(|it| it.globals().start).sum();
+    let phases = places(&all, first_unknown);
+    let mut whole = untied(&phases, &own, first_unknown + count + 2);
+    whole.sigma.extend((0..count + 2).map(|_| 1.0 + 0.5 * random.next()));
+    whole.fixed.extend(vec![false; count + 2]);
+    // Only the first state of the first phase is given.
+    for phase in &phases[1..] {
+        whole.fixed[phase.first()].fill(false);
+    }
+    for j in 1..count {
+        tie(&phases[j - 1], &phases[j], first_unknown + j, random, &mut whole);
+    }
+    if is_cyclic {
+        let (first, last) = (phases[0].first().end - 1, phases[count - 1].last().start);
+        condition(vec![(first, 1.0), (last, -1.0), (first_unknown, 1.0)], &mut whole);
+    }
+    whole.stages.coupling_constraints = whole.d.len();
+    Tied { phases, whole }
+}
+
+/// Where phases of these sizes have their variables, unknowns and rows.
+fn places(all: &[Stages], first_unknown: usize) -> Vec<PhaseStages> {
     let (mut phases, mut variables, mut rows) = (Vec::new(), 0, 0);
     for (j, stages) in all.iter().enumerate() {
         let end = variables + stages.globals().start;
         phases.push(PhaseStages {
             stages: *stages,
             variables: variables..end,
-            globals: [j, j + 1, count + 1].map(|at| first_unknown + at).to_vec(),
+            globals: [j, j + 1, all.len() + 1].map(|at| first_unknown + at).to_vec(),
             rows: rows..rows + stages.rows(),
         });
         (variables, rows) = (end, rows + stages.rows());
     }
-    let total = first_unknown + count + 2;
-    let mut whole = Case {
-        stages: Stages {
-            intervals: 0,
-            states: 0,
-            controls: 0,
-            inner: 0,
-            globals: total,
-            local_constraints: 0,
-            coupling_constraints: 0,
-        },
+    phases
+}
+
+/// Nothing yet, of so many variables.
+fn empty(variables: usize) -> Case {
+    let stages = Stages {
+        intervals: 0,
+        states: 0,
+        controls: 0,
+        inner: 0,
+        globals: variables,
+        local_constraints: 0,
+        coupling_constraints: 0,
+    };
+    Case {
+        stages,
         hessian: Triplets::default(),
         jacobian: Triplets::default(),
         hessian_values: Vec::new(),
@@ -62,8 +88,13 @@ fn tied(count: usize, is_cyclic: bool, is_indefinite: bool, random: &mut Random)
         sigma: Vec::new(),
         d: Vec::new(),
         fixed: Vec::new(),
-    };
-    for (phase, case) in phases.iter().zip(&own) {
+    }
+}
+
+/// All phases, each by itself, as one case; of the unknowns their entries alone.
+fn untied(phases: &[PhaseStages], own: &[Case], variables: usize) -> Case {
+    let mut whole = empty(variables);
+    for (phase, case) in phases.iter().zip(own) {
         let stages = phase.variables.len();
         let place = |at: usize| phase.place(at);
         whole.hessian.families.extend(case.hessian.families.iter().map(|it| Family {
@@ -82,44 +113,40 @@ fn tied(count: usize, is_cyclic: bool, is_indefinite: bool, random: &mut Random)
         whole.fixed.extend(&case.fixed[..stages]);
         whole.d.extend(&case.d);
     }
-    whole.sigma.extend((0..count + 2).map(|_| 1.0 + 0.5 * random.next()));
-    whole.fixed.extend(vec![false; count + 2]);
-    // Only the first state of the first phase is given.
-    for phase in &phases[1..] {
-        whole.fixed[phase.first()].fill(false);
+    whole
+}
+
+/// One more row: the coefficients of its variables.
+fn condition(columns: Vec<(usize, f64)>, case: &mut Case) {
+    let row = case.d.len();
+    for (column, value) in columns {
+        case.jacobian.families.push(Family::single(row, column));
+        case.jacobian_values.push(value);
     }
-    let mut row = rows;
-    let mut condition = |columns: Vec<(usize, f64)>, case: &mut Case| {
-        for (column, value) in columns {
-            case.jacobian.families.push(Family::single(row, column));
-            case.jacobian_values.push(value);
-        }
-        case.d.push(0.0);
-        row += 1;
-    };
-    for j in 1..count {
-        let (before, behind) = (&phases[j - 1], &phases[j]);
-        for state in behind.first() {
-            let mut columns: Vec<(usize, f64)> =
-                before.last().map(|it| (it, random.next())).collect();
-            columns.extend([(state, 1.0), (first_unknown + j, random.next())]);
-            condition(columns, &mut whole);
-        }
-        let end = before.last().map(|it| (it, random.next()));
-        condition(end.chain([(first_unknown + j, 2.0)]).collect(), &mut whole);
-        // Curvature of a link.
-        let (a, b) = (behind.first().start, before.last().start);
-        for (row, column) in [(a, b), (first_unknown + j, a), (first_unknown + j, b)] {
-            whole.hessian.families.push(Family::single(row, column));
-            whole.hessian_values.push(0.1 * random.next());
-        }
+    case.d.push(0.0);
+}
+
+/// Ties a phase to the one before it.
+fn tie(
+    before: &PhaseStages,
+    behind: &PhaseStages,
+    unknown: usize,
+    random: &mut Random,
+    whole: &mut Case,
+) {
+    for state in behind.first() {
+        let mut columns: Vec<(usize, f64)> = before.last().map(|it| (it, random.next())).collect();
+        columns.extend([(state, 1.0), (unknown, random.next())]);
+        condition(columns, whole);
     }
-    if is_cyclic {
-        let (first, last) = (phases[0].first().end - 1, phases[count - 1].last().start);
-        condition(vec![(first, 1.0), (last, -1.0), (first_unknown, 1.0)], &mut whole);
+    let end = before.last().map(|it| (it, random.next()));
+    condition(end.chain([(unknown, 2.0)]).collect(), whole);
+    // Curvature of a link.
+    let (a, b) = (behind.first().start, before.last().start);
+    for (row, column) in [(a, b), (unknown, a), (unknown, b)] {
+        whole.hessian.families.push(Family::single(row, column));
+        whole.hessian_values.push(0.1 * random.next());
     }
-    whole.stages.coupling_constraints = row;
-    Tied { phases, whole }
 }
 
 #[test]

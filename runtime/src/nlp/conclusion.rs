@@ -66,6 +66,8 @@ fn judged(status: Status, found: &Assessment, is_saddle: bool, tol: f64) -> Stat
         }
         // What meets all conditions is feasible, whatever a search for less violation says.
         Status::Infeasible if found.is_feasible(tol) => Status::NumericalFailure,
+        // What falls without end falls at points that meet all conditions.
+        Status::Unbounded if !found.is_feasible(tol) => Status::NumericalFailure,
         status => status,
     }
 }

@@ -25,10 +25,10 @@ pub struct Measurements {
     /// time of the row, 0 or 1 for one outside; differentiated by `x`, `u` and the unknowns.
     ///
     /// Of a polynomial `x` holds the states at the time of the row and, where a parameter moves
-    /// rows or an end of time, their first and then their second derivatives by normalised time; `u` the same of
-    /// the controls; `s` the columns. Of a Hermite polynomial `x` holds the states at both ends of
-    /// the step, `u` the controls at both; `s` the columns, the normalised time at which the step
-    /// begins, and its length.
+    /// rows or an end of time, their first and then their second derivatives by normalised time;
+    /// `u` the same of the controls; `s` the columns. Of a Hermite polynomial `x` holds the states
+    /// at both ends of the step, `u` the controls at both; `s` the columns, the normalised time at
+    /// which the step begins, and its length.
     pub function: Arc<dyn Function>,
     /// Which of the two.
     pub interpolant: Interpolant,

@@ -45,7 +45,8 @@ const ONE_STEP: [OneStep; 5] = [
         scheme: Scheme::Euler,
         order: 1,
         evaluations: &[[1.0, 0.0, 0.0]],
-        doc: "`x1 = x0 + h f(x0)`, order 1. Oscillates where a step is longer than the smoothed layer.",
+        doc: "`x1 = x0 + h f(x0)`, order 1. Oscillates where a step is longer than the smoothed \
+              layer.",
     },
     OneStep {
         name: "implicit_euler",

@@ -2,7 +2,7 @@
 //! sliding and resets.
 //!
 //! ```text
-//! simulate (with a tape) -> linear maps, piece by piece (linearized)
+//! simulate (with a tape) -> linear maps, piece by piece (linearised)
 //!     -> forward, adjoint (first_order), Hessian (second_order)
 //! ```
 //!
@@ -10,7 +10,7 @@
 //! sliding with the oblique projection. [`gradient()`] is the entry.
 
 mod first_order;
-mod linearized;
+mod linearised;
 mod nondifferentiability;
 mod second_order;
 
@@ -18,7 +18,7 @@ pub use first_order::gradient::{Costates, Sensitivity, gradient};
 pub use first_order::one_sided::one_sided;
 pub use first_order::perturbed::perturbed;
 pub use first_order::quantity::Quantity;
-pub(crate) use linearized::linearization::Jacobian;
+pub(crate) use linearised::linearisation::Jacobian;
 pub use nondifferentiability::kink::Kink;
 pub use nondifferentiability::{Nondifferentiability, NondifferentiabilityKind};
 pub use second_order::hessian;

@@ -27,7 +27,8 @@ pub use controls::{Controls, Polynomials};
 pub use mode::Mode;
 pub(crate) use modes::complementarity::selectors;
 pub use result::{
-    Candidate, Counts, Event, Extreme, Integrator, Kind, Method, Options, Simulation, Status, Watch,
+    Candidate, Counts, Event, EventKind, Extreme, Integrator, Method, Options, Simulation, Status,
+    Watch,
 };
 pub use run::simulate;
 pub(crate) use steps::{departure, dormand_prince, radau};

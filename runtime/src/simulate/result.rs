@@ -106,7 +106,7 @@ impl Default for Options {
 
 /// What happens at an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum EventKind {
     /// From below a surface to above it.
     CrossesUp,
     /// From above a surface to below it.
@@ -133,7 +133,7 @@ pub struct Event {
     /// At which surface.
     pub surface: usize,
     /// What.
-    pub kind: Kind,
+    pub kind: EventKind,
     /// How far from grazing: the cosine between a field and the normal of its surface, the least of
     /// those that meet.
     pub margin: f64,

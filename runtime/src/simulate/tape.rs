@@ -6,7 +6,7 @@
 //! simulation's first instant.
 
 use super::mode::Mode;
-use super::result::Kind;
+use super::result::EventKind;
 
 /// Steps and stops in the order of time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -127,7 +127,7 @@ pub struct Change {
     /// At which surface.
     pub surface: usize,
     /// What.
-    pub kind: Kind,
+    pub kind: EventKind,
     /// How far from grazing.
     pub margin: f64,
     /// After it.

@@ -1,6 +1,8 @@
 //! A solution of the transcribed problem in the words of the model: signals over real time, the
 //! modes of surfaces, costates and multipliers, and what contradicts that it is an optimum.
 
+pub(crate) mod by_parameters;
+mod hamiltonian;
 pub(crate) mod lagrangian;
 mod minimum;
 pub mod modes;
@@ -10,7 +12,8 @@ pub mod phases;
 mod quadrature;
 mod trajectory;
 
-pub use lagrangian::{Hamiltonian, by_parameters};
+pub use by_parameters::by_parameters;
+pub use hamiltonian::Hamiltonian;
 pub use minimum::control_slopes;
 pub use outcome::{Attempt, ChainOutcome, Limiting, Outcome};
 pub(crate) use pause::gain as gain_of_pauses;

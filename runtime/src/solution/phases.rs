@@ -3,7 +3,7 @@
 //! At the time of a jump it has the state after it. What each phase says of its times is put one
 //! after the other; each has a grid of its own.
 
-use super::lagrangian::Hamiltonian;
+use super::hamiltonian::Hamiltonian;
 use super::modes::{Span, modes};
 use super::outcome::{ChainOutcome, Limiting, Outcome};
 use super::trajectory::{ControlNodes, Trajectory};
@@ -49,8 +49,8 @@ pub fn joined(between: &Problem, chain: &Chain, outcome: &ChainOutcome) -> (Outc
 }
 
 /// Puts the phases of given modes of the true system one after the other; and the state on both
-/// sides of each end of a phase. `between` is the smoothed problem over the whole time, `modes` what
-/// each of its surfaces does.
+/// sides of each end of a phase. `between` is the smoothed problem over the whole time, `modes`
+/// what each of its surfaces does.
 pub fn located(
     between: &Problem,
     chain: &Chain,

@@ -1,6 +1,7 @@
 //! A solution in the words of the model: signals over real time.
 
-use super::lagrangian::{Hamiltonian, end_multipliers, path_multipliers};
+use super::hamiltonian::Hamiltonian;
+use super::lagrangian::{end_multipliers, path_multipliers};
 use crate::linalg::Stages;
 use crate::nlp::{Derivatives, Nlp, Solution};
 use crate::problem::{Columns, Function, Problem};

@@ -4,7 +4,8 @@
 use crate::nlp::Solution;
 use crate::problem::{Chain, ChainByParameters};
 use crate::solution::ChainOutcome;
-use crate::solution::lagrangian::{add_given, add_slopes, at_bounds, by_parameters_of_part};
+use crate::solution::by_parameters::{add_given, at_bounds, by_parameters_of_part};
+use crate::solution::lagrangian::add_slopes;
 use crate::transcribe::chain::ChainNlp;
 
 /// The derivative of the optimal objective of the model by each parameter, those included that are

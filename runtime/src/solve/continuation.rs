@@ -13,7 +13,8 @@ use super::Watch;
 use super::grid_sequencing::grids;
 use super::run::{Run, Target, is_lost, is_retried};
 use super::tuning::continuation::{
-    CAREFUL, FEWEST_HALVINGS, MOST_HALVINGS, MOST_ITERATIONS, ROUGH, WIDE, WIDER,
+    COARSE_GRID_TOLERANCE, FEWEST_HALVINGS, INTERMEDIATE_TOLERANCE, MOST_HALVINGS, MOST_ITERATIONS,
+    WIDE, WIDER,
 };
 use crate::nlp::{Solution, Start, Status};
 use crate::transcribe::chain::ChainNlp;
@@ -81,8 +82,14 @@ impl Run<'_> {
         };
         let all = self.chain.phases.iter().map(|phase| phase.method.intervals());
         let is_coarse = nlp.intervals() < all.sum();
-        let rough =
-            Target { tol: target.tol.max(if is_coarse { ROUGH } else { CAREFUL }), ..target };
+        let rough = Target {
+            tol: target.tol.max(if is_coarse {
+                COARSE_GRID_TOLERANCE
+            } else {
+                INTERMEDIATE_TOLERANCE
+            }),
+            ..target
+        };
         for width in before {
             self.sigma.fill(*width);
             let solution = self.solve(nlp, &start, rough, watch);

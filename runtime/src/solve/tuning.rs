@@ -5,9 +5,9 @@ pub(crate) mod continuation {
     /// Widths on the way, relative to the one that is named.
     pub(crate) const WIDER: [f64; 3] = [8.0, 4.0, 2.0];
     /// The tolerance of a solve with another width on a coarse grid.
-    pub(crate) const ROUGH: f64 = 1e-2;
+    pub(crate) const COARSE_GRID_TOLERANCE: f64 = 1e-2;
     /// The same where there is no coarse grid, and no finer one will put right what was found.
-    pub(crate) const CAREFUL: f64 = 1e-3;
+    pub(crate) const INTERMEDIATE_TOLERANCE: f64 = 1e-3;
     /// A solve on the way that takes longer leads nowhere.
     pub(crate) const MOST_ITERATIONS: usize = 300;
     pub(crate) const WIDE: f64 = 0.5;

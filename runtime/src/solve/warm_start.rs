@@ -22,6 +22,8 @@ pub struct Earlier {
     pub unknowns: Vec<Option<f64>>,
     /// The smoothing width of each surface.
     pub widths: Vec<Option<f64>>,
+    /// All variables of the phase, where it was solved on the same grid.
+    pub variables: Option<Vec<f64>>,
 }
 
 /// The earlier solutions of all phases on the grids of the chain; what they lack comes from the
@@ -31,7 +33,10 @@ fn resample(chain: &Chain, earlier: &[Earlier]) -> Vec<f64> {
     let whole = Start { v: nlp.guess(), warm: None };
     let mut own = nlp.shape().split(&whole);
     for ((phase, start), earlier) in nlp.each().zip(&mut own).zip(earlier) {
-        resample_phase(phase, earlier, &mut start.v);
+        match earlier.variables.as_ref().filter(|it| it.len() == start.v.len()) {
+            Some(variables) => start.v.copy_from_slice(variables),
+            None => resample_phase(phase, earlier, &mut start.v),
+        }
     }
     let mut v = nlp.shape().joined(&own, &whole).v;
     for (unknown, place) in chain.unknowns.iter().zip(nlp.shape().unknowns[0]..) {

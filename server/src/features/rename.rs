@@ -5,7 +5,7 @@ use crate::client::Failure;
 use crate::context::Context;
 use crate::snapshot::Snapshot;
 use fdcc_compiler::symbols::{Meaning, Names, Occurrence, Role};
-use fdcc_grammar::ast::ItemKind;
+use fdcc_grammar::ast::{Item, ItemKind};
 use fdcc_grammar::{Edit, parse};
 use lsp_types::{
     PrepareRenameParams, PrepareRenamePlaceholder, PrepareRenameResult, RenameParams, WorkspaceEdit,
@@ -59,8 +59,10 @@ fn renamable(snapshot: &Snapshot, offset: u32) -> Result<usize, Failure> {
 /// The grammar decides what is a name.
 fn check_name(name: &str) -> Result<(), Failure> {
     let parsed = parse(&format!("param {name} = 1"));
-    let is_name = parsed.diagnostics.is_empty()
-        && matches!(&parsed.tree.items[..], [item] if matches!(&item.kind, ItemKind::Param { name: it, .. } if it.name == name));
+    let is_it =
+        |item: &Item| matches!(&item.kind, ItemKind::Param { name: it, .. } if it.name == name);
+    let is_name =
+        parsed.diagnostics.is_empty() && matches!(&parsed.tree.items[..], [item] if is_it(item));
     let why = parsed.diagnostics.first().map_or("a name is one word", |it| it.message.as_str());
     if is_name {
         Ok(())

@@ -2,7 +2,9 @@
 
 use crate::family::Case;
 use fdcc_runtime::sensitivity::{Quantity, Sensitivity, gradient, hessian, perturbed};
-use fdcc_runtime::simulate::{Controls, Kind, Mode, Options, Simulation, Status, System, simulate};
+use fdcc_runtime::simulate::{
+    Controls, EventKind, Mode, Options, Simulation, Status, System, simulate,
+};
 use fdcc_tests::random::Random;
 
 const AGREEMENT: f64 = 1e-10;
@@ -111,7 +113,7 @@ impl Seen {
         self.differentiated += 1;
         self.events += simulation.events.len();
         self.jumps +=
-            simulation.events.iter().filter(|it| matches!(it.kind, Kind::Jump(_))).count();
+            simulation.events.iter().filter(|it| matches!(it.kind, EventKind::Jump(_))).count();
         let tape = simulation.tape.as_ref().expect("it was asked for");
         let held = tape
             .regimes
@@ -193,7 +195,7 @@ impl Check<'_> {
             self.has_same_events(sides.each_ref().map(|it| &it.simulation))
         };
         let starts_sliding =
-            self.found.simulation.events.iter().any(|it| it.kind == Kind::StartsSliding);
+            self.found.simulation.events.iter().any(|it| it.kind == EventKind::StartsSliding);
         let Some((sides, matrix)) =
             sides.filter(has_same_events).filter(|_| !starts_sliding).zip(matrix)
         else {

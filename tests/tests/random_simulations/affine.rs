@@ -1,7 +1,8 @@
 //! Random systems that are affine on each side of their surfaces:
 //!
 //! ```text
-//! x' = A x + a + sum_i s_i (A_i x + b_i),   s_i in Sgn(psi_i),   psi_i = c_i x + e_i t - d_i,   c_i b_j = -D_ij
+//! x' = A x + a + sum_i s_i (A_i x + b_i),   s_i in Sgn(psi_i)
+//! psi_i = c_i x + e_i t - d_i,              c_i b_j = -D_ij
 //! ```
 //!
 //! `D` decides what the surfaces do, with the `A_i` where they are not 0: where it is a P-matrix

@@ -7,7 +7,7 @@
 
 use crate::affine::{Affine, LAST, Matrix, dot};
 use crate::flow::{Condition, Flow, NEAR};
-use fdcc_runtime::simulate::Kind;
+use fdcc_runtime::simulate::EventKind;
 
 /// A step of the search for events.
 const STEP: f64 = 0.04;
@@ -23,7 +23,7 @@ pub enum Ending {
 }
 
 /// When, at which surface, what.
-pub type Event = (f64, usize, Kind);
+pub type Event = (f64, usize, EventKind);
 
 pub struct Exact {
     pub events: Vec<Event>,
@@ -148,13 +148,13 @@ impl Way<'_> {
     fn change(&mut self, surface: usize, side: i8, is_start: bool) {
         let before = std::mem::replace(&mut self.sides[surface], side);
         let kind = match (before, side) {
-            _ if is_start && side == 0 => Kind::StartsSliding,
+            _ if is_start && side == 0 => EventKind::StartsSliding,
             _ if is_start || before == side => return,
-            (_, 0) => Kind::EntersSliding,
-            (0, 1) => Kind::LeavesUp,
-            (0, _) => Kind::LeavesDown,
-            (_, 1) => Kind::CrossesUp,
-            _ => Kind::CrossesDown,
+            (_, 0) => EventKind::EntersSliding,
+            (0, 1) => EventKind::LeavesUp,
+            (0, _) => EventKind::LeavesDown,
+            (_, 1) => EventKind::CrossesUp,
+            _ => EventKind::CrossesDown,
         };
         self.events.push((self.time(), surface, kind));
         self.most_held = self.most_held.max(self.sides.iter().filter(|side| **side == 0).count());

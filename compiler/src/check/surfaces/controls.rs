@@ -43,9 +43,8 @@ impl Subject<'_, '_, '_> {
         };
         Diagnostic::new(Code::ControlJumps, message, span, label).help(
             "Section 7 of the method needs d/du of the right side to be continuous. Without it, \
-             controls \
-             at the crossing time get a smeared gradient. Check the answer with `fdcc sweep \
-             --continue sigma`.",
+             controls at the crossing time get a smeared gradient. Check the answer with `fdcc \
+             sweep --continue sigma`.",
         )
     }
 }

@@ -8,7 +8,7 @@ use fdcc_grammar::{Code, Diagnostic, Fix};
 
 impl Subject<'_, '_, '_> {
     /// What is wrong with it, and what to write instead.
-    pub(super) fn vanishing(&mut self, trouble: &Degenerate) -> Diagnostic {
+    pub(super) fn vanishing(&mut self, degenerate: &Degenerate) -> Diagnostic {
         let name = self.name().to_string();
         let written = self.written();
         let function = written.map_or_else(|| name.clone(), text::expr);
@@ -16,8 +16,8 @@ impl Subject<'_, '_, '_> {
         let (state, slope) = (self.view.states[state].place.name.clone(), self.text(slope));
         let label = format!("d/d{state} = {slope}, which is 0 wherever {function} == 0");
         let message = format!("the gradient of surface `{name}` vanishes on the surface itself");
-        let instead = self.instead(trouble);
-        let never = trouble.never.map_or_else(String::new, |sign| {
+        let instead = self.instead(degenerate);
+        let never = degenerate.never.map_or_else(String::new, |sign| {
             let side = if sign < 0.0 { "below" } else { "above" };
             format!(
                 "\nNote that `{function}` never changes sign: as written this switch can never go \
@@ -39,9 +39,9 @@ impl Subject<'_, '_, '_> {
     }
 
     /// What has the same zero and changes its sign there.
-    fn instead(&mut self, trouble: &Degenerate) -> String {
+    fn instead(&mut self, degenerate: &Degenerate) -> String {
         let written = self.written();
-        let base = match (written.and_then(base_of), trouble.base) {
+        let base = match (written.and_then(base_of), degenerate.base) {
             (Some(base), _) => Some(text::expr(base)),
             (None, Some(base)) => Some(self.text(base)),
             (None, None) => None,

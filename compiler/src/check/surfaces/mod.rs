@@ -49,8 +49,8 @@ impl<'a> Subject<'_, 'a, '_> {
         if let Some(constant) = self.constant() {
             return found.push(constant);
         }
-        if let Some(trouble) = degenerate(&mut self.local) {
-            return found.push(self.vanishing(&trouble));
+        if let Some(degenerate) = degenerate(&mut self.local) {
+            return found.push(self.vanishing(&degenerate));
         }
         found.extend(self.start_on_surface());
         if self.local.gradient.is_empty() || !self.local.add_rates(self.view, self.at) {

@@ -49,8 +49,7 @@ fn repelling(ball: &Ball, place: Option<&Use<'_>>) -> Diagnostic {
     };
     found.help(format!(
         "where `{name}` is 0 the state may leave in any direction or stay: the solution is not \
-         unique \
-         and no gradient exists.{friction}"
+         unique and no gradient exists.{friction}"
     ))
 }
 

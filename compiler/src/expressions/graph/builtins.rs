@@ -417,8 +417,8 @@ table! {
     Min = Row {
         name: "min",
         arity: 2,
-        doc: "The smaller of two. `min(1, 2) = 1`. It has a kink where they are equal, and no value \
-              where one of them has none.",
+        doc: "The smaller of two. `min(1, 2) = 1`. It has a kink where they are equal, and no \
+              value where one of them has none.",
         smoothness: Smoothness::Kink,
         value: |a| if a[0] <= a[1] || a[0].is_nan() { a[0] } else { a[1] },
         partial: |g, _, a, which| indicator(g, a[0], a[1], which == 0),

@@ -1,8 +1,10 @@
 //! Derivatives of expressions, as expressions of the same graph.
 //!
 //! ```text
-//! adjoint(y) = 1,  adjoint(a) = sum over the calls c that use a of adjoint(c) * dc/da     (reverse mode)
+//! adjoint(y) = 1,  adjoint(a) = sum over the calls c that use a of adjoint(c) * dc/da
 //! ```
+//!
+//! in reverse mode.
 
 use super::builtins::Builtin;
 use super::{ById, Expr, ExprId, Graph, Operands};

@@ -9,6 +9,7 @@ pub mod derivative;
 pub mod evaluate;
 mod power;
 pub mod print;
+mod products;
 mod quick;
 mod simplify;
 pub mod verify;

@@ -4,8 +4,10 @@
 //! products; a quotient is a product with a reciprocal, so that one division serves everything over
 //! the same denominator; operands of `+` and `*` are sorted. Each identity holds wherever the left
 //! side has a finite value, up to rounding.
+
 use super::builtins::{Builtin, Parity};
 use super::power::pow;
+use super::products::{div, mul};
 use super::{Expr, ExprId, Graph, Operands};
 
 /// The simplest known equal of `builtin(operands)`.
@@ -22,7 +24,7 @@ pub(super) fn simplify(graph: &mut Graph, builtin: Builtin, operands: &[ExprId])
     simpler.unwrap_or_else(|| keep(graph, builtin, operands))
 }
 
-fn keep(graph: &mut Graph, builtin: Builtin, operands: &[ExprId]) -> ExprId {
+pub(super) fn keep(graph: &mut Graph, builtin: Builtin, operands: &[ExprId]) -> ExprId {
     graph.intern(Expr::Call(builtin, Operands::from_slice(operands)))
 }
 
@@ -75,7 +77,7 @@ fn unary(graph: &mut Graph, builtin: Builtin, a: ExprId) -> Option<ExprId> {
 }
 
 /// `a = factor * rest` with the number of a product, or the sign of a negation, as the factor.
-fn split(graph: &Graph, a: ExprId) -> (f64, ExprId) {
+pub(super) fn split(graph: &Graph, a: ExprId) -> (f64, ExprId) {
     if let Some(operands) = graph.as_call(a, Builtin::Neg) {
         return (-1.0, operands[0]);
     }
@@ -107,7 +109,7 @@ fn is_constant(graph: &Graph, a: ExprId, depth: usize) -> bool {
 }
 
 /// `factor * rest` for a rest without a factor of its own.
-fn join(graph: &mut Graph, factor: f64, rest: ExprId) -> ExprId {
+pub(super) fn join(graph: &mut Graph, factor: f64, rest: ExprId) -> ExprId {
     if factor == 0.0 && has_value(graph, rest) {
         // 0 * x = 0
         graph.number(0.0)
@@ -201,55 +203,6 @@ fn sub(graph: &mut Graph, a: ExprId, b: ExprId) -> ExprId {
         .unwrap_or_else(|| keep(graph, Builtin::Sub, &[a, b]))
 }
 
-fn mul(graph: &mut Graph, a: ExprId, b: ExprId) -> ExprId {
-    let (a, b) = sorted(graph, a, b);
-    let ((c, x), (d, y)) = (split(graph, a), split(graph, b));
-    // c (d x) = (c d) x
-    if let Some(number) = graph.as_number(a) {
-        return join(graph, number * d, y);
-    }
-    // (c x) (d y) = (c d) (x y)
-    if c != 1.0 || d != 1.0 {
-        let product = graph.mul(x, y);
-        return graph.scale(c * d, product);
-    }
-    cancel(graph, a, b)
-        .or_else(|| cancel(graph, b, a))
-        .or_else(|| gate(graph, a, b))
-        .or_else(|| gate(graph, b, a))
-        .unwrap_or_else(|| keep(graph, Builtin::Mul, &[a, b]))
-}
-
-fn cancel(graph: &mut Graph, a: ExprId, b: ExprId) -> Option<ExprId> {
-    let denominator = reciprocal_of(graph, b)?;
-    // x * (1 / x) = 1
-    if a == denominator {
-        return Some(graph.number(1.0));
-    }
-    // (x y) * (1 / y) = x
-    match *graph.as_call(a, Builtin::Mul)? {
-        [x, y] if y == denominator => Some(x),
-        [y, x] if y == denominator => Some(x),
-        _ => None,
-    }
-}
-
-/// Keeps what is infinite or undefined on the side not taken out of derivatives.
-fn gate(graph: &mut Graph, a: ExprId, factor: ExprId) -> Option<ExprId> {
-    let &[p, q, x, y] = graph.as_call(a, Builtin::SelectLe)? else { return None };
-    let zero = graph.number(0.0);
-    // select(p <= q, x, 0) * z = select(p <= q, x z, 0)
-    if y == zero {
-        let product = graph.mul(x, factor);
-        return Some(graph.select_le(p, q, product, zero));
-    }
-    // select(p <= q, 0, y) * z = select(p <= q, 0, y z)
-    (x == zero).then(|| {
-        let product = graph.mul(y, factor);
-        graph.select_le(p, q, zero, product)
-    })
-}
-
 // select(p <= q, x, y) + select(p <= q, u, v) = select(p <= q, x + u, y + v), and so for
 // differences
 fn merge_selections(graph: &mut Graph, operator: Builtin, a: ExprId, b: ExprId) -> Option<ExprId> {
@@ -259,34 +212,6 @@ fn merge_selections(graph: &mut Graph, operator: Builtin, a: ExprId, b: ExprId) 
         let (yes, no) = (graph.call(operator, &[x, u]), graph.call(operator, &[y, v]));
         graph.select_le(p, q, yes, no)
     })
-}
-
-fn div(graph: &mut Graph, a: ExprId, b: ExprId) -> Option<ExprId> {
-    if graph.as_number(a) == Some(1.0) {
-        return reciprocal(graph, b);
-    }
-    // x / c = (1/c) x, x / y = x * (1 / y)
-    let one = graph.number(1.0);
-    let reciprocal = graph.div(one, b);
-    Some(graph.mul(a, reciprocal))
-}
-
-fn reciprocal(graph: &mut Graph, b: ExprId) -> Option<ExprId> {
-    // 1 / (1 / x) = x
-    if let Some(x) = reciprocal_of(graph, b) {
-        return Some(x);
-    }
-    // 1 / (c x) = (1/c) (1 / x)
-    let (factor, rest) = split(graph, b);
-    (factor != 1.0).then(|| {
-        let reciprocal = graph.reciprocal(rest);
-        graph.scale(1.0 / factor, reciprocal)
-    })
-}
-
-fn reciprocal_of(graph: &Graph, a: ExprId) -> Option<ExprId> {
-    let operands = graph.as_call(a, Builtin::Div)?;
-    (graph.as_number(operands[0]) == Some(1.0)).then_some(operands[1])
 }
 
 fn select(graph: &mut Graph, a: ExprId, b: ExprId, x: ExprId, y: ExprId) -> Option<ExprId> {
@@ -311,7 +236,7 @@ fn select(graph: &mut Graph, a: ExprId, b: ExprId, x: ExprId, y: ExprId) -> Opti
 }
 
 /// x + y = y + x, x y = y x: numbers first, then by age.
-fn sorted(graph: &Graph, a: ExprId, b: ExprId) -> (ExprId, ExprId) {
+pub(super) fn sorted(graph: &Graph, a: ExprId, b: ExprId) -> (ExprId, ExprId) {
     let key = |id: ExprId| (graph.as_number(id).is_none(), id);
     if key(a) <= key(b) { (a, b) } else { (b, a) }
 }

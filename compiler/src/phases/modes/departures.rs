@@ -1,16 +1,16 @@
 //! Where a held surface is left: what the selector and the motion are there.
 //!
-//! With `c = -dpsi'/ds > 0` the rate of `psi` off the surface is `psi' = c (s - 1)` above it, for the
-//! selector `s` that would hold it. So the surface is left upwards where `s` gets to 1, unless a
-//! control or another selector may jump there.
+//! With `c = -dpsi'/ds > 0` the rate of `psi` off the surface is `psi' = c (s - 1)` above it, for
+//! the selector `s` that would hold it. So the surface is left upwards where `s` gets to 1, unless
+//! a control or another selector may jump there.
 
 use super::{Mode, Modes};
 use crate::expressions::graph::ExprId;
 use crate::model::{Constraint, Model, Place, Range, Switch, Symbol};
 use crate::phases::hold::approach;
 
-/// For each of [`Model::switches`] whether its own selector acts on `psi'`: else no choice of it holds
-/// the surface.
+/// For each of [`Model::switches`] whether its own selector acts on `psi'`: else no choice of it
+/// holds the surface.
 pub fn may_hold(model: &Model) -> Vec<bool> {
     let acts = |surface: usize| {
         let selector = model.input_of(Symbol::Selector(surface));
@@ -19,8 +19,8 @@ pub fn may_hold(model: &Model) -> Vec<bool> {
     model.switches().iter().map(|switch| switch.surfaces.clone().all(acts)).collect()
 }
 
-/// For each of [`Model::switches`] whether its own selector acts on `psi'`, and neither a control nor
-/// another selector does.
+/// For each of [`Model::switches`] whether its own selector acts on `psi'`, and neither a control
+/// nor another selector does.
 pub fn is_uncontrolled(model: &Model) -> Vec<bool> {
     let of = |switch: &Switch| {
         let surface = switch.surfaces.start;

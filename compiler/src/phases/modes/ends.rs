@@ -1,7 +1,7 @@
 //! Conditions at the last time that a held surface says already.
 //!
-//! Where `psi = 0` is held until the end, `end` conditions that add up to it would be said twice, and
-//! the Jacobian of the chain would lose rank: a block that rests in the end with `end v == 0`.
+//! Where `psi = 0` is held until the end, `end` conditions that add up to it would be said twice,
+//! and the Jacobian of the chain would lose rank: a block that rests in the end with `end v == 0`.
 
 use super::independent::Independent;
 use super::{Mode, Modes};

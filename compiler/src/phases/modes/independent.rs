@@ -1,6 +1,6 @@
-//! Conditions on the state at one time, of which none says what others say already: else the Jacobian
-//! of the chain would lose rank. Whether a function is a sum of others is asked of their values at
-//! points chosen once and for all.
+//! Conditions on the state at one time, of which none says what others say already: else the
+//! Jacobian of the chain would lose rank. Whether a function is a sum of others is asked of their
+//! values at points chosen once and for all.
 
 use super::Modes;
 use crate::expressions::graph::ExprId;
@@ -35,8 +35,8 @@ impl Independent {
 }
 
 impl Modes<'_> {
-    /// A function of the state at several points, more than there are conditions on it; the state at
-    /// the last time is the same as the current one.
+    /// A function of the state at several points, more than there are conditions on it; the state
+    /// at the last time is the same as the current one.
     fn sampled(&self, of: ExprId) -> Vec<f64> {
         let division = &self.between.division;
         let count = division.model.states.len();

@@ -1,10 +1,11 @@
 //! What controls do where one phase of given modes ends and the next begins.
 //!
-//! A control is *regular* where the Hamiltonian is strictly convex in it: the dynamics are affine in
-//! the control, the running cost is not. Then the control is continuous unless the costate jumps
-//! (Bryson & Ho, *Applied Optimal Control*, 1975, section 3.7), and it reaches or leaves an arc at the
-//! value of its bound. As an equation that determines the time of the junction, which the objective
-//! hardly does: it changes with the third power of that time, and Newton's method would be slow.
+//! A control is *regular* where the Hamiltonian is strictly convex in it: the dynamics are affine
+//! in the control, the running cost is not. Then the control is continuous unless the costate jumps
+//! (Bryson & Ho, *Applied Optimal Control*, 1975, section 3.7), and it reaches or leaves an arc at
+//! the value of its bound. As an equation that determines the time of the junction, which the
+//! objective hardly does: it changes with the third power of that time, and Newton's method would
+//! be slow.
 
 use super::{Arc, Modes};
 use crate::expressions::graph::ExprId;
@@ -14,8 +15,8 @@ use fdcc_runtime::problem::ControlShape;
 
 impl Modes<'_> {
     /// Bounds of free controls on both sides of the end of phase `j`: nodes alone would let a
-    /// polynomial go beyond where a control reaches its bound or leaves it continuously, and its arc
-    /// with it.
+    /// polynomial go beyond where a control reaches its bound or leaves it continuously, and its
+    /// arc with it.
     pub(super) fn ends_of_controls(&mut self, j: usize) -> Vec<Constraint> {
         let (model, phases) = (self.between.division.model, self.phases);
         let mut rows = Vec::new();

@@ -1,7 +1,7 @@
 //! States and path conditions at their bounds: boundary arcs and touch points.
 //!
-//! With `c` what is bounded, less its bound, and `q` the first derivative along the motion on which a
-//! control acts (Bryson & Ho, *Applied Optimal Control*, 1975, section 3.11):
+//! With `c` what is bounded, less its bound, and `q` the first derivative along the motion on which
+//! a control acts (Bryson & Ho, *Applied Optimal Control*, 1975, section 3.11):
 //!
 //! ```text
 //! arc       c = c' = ... = c^(q-1) = 0 where it begins,   c^(q) = 0 along it

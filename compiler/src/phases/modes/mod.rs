@@ -30,10 +30,10 @@ pub use departures::{is_uncontrolled, may_hold};
 pub use hamiltonian::{Point, hamiltonian};
 pub use limits::{Limit, limits};
 
-use super::division::{Division, divide};
+use super::division::{Division, divide, numbered};
 use super::shares::Shares;
 use super::{Jumps, MultiPhase, between_jumps};
-use crate::model::{Model, Phase, Place, Symbol, not_yet};
+use crate::model::{Model, Place, Symbol, not_yet};
 use fdcc_grammar::Diagnostic;
 use fdcc_runtime::problem::ControlShape;
 
@@ -93,6 +93,13 @@ impl PhaseOfModes {
             && self.is_graded == before.is_graded
             && !is_touched
             && self.jump.is_none()
+    }
+
+    /// Whether it has the same equations and the same grid as another; what happens where it begins
+    /// may differ.
+    pub fn is_alike_inside(&self, other: &Self) -> bool {
+        let begin = |it: &Self| PhaseOfModes { touches: Vec::new(), jump: None, ..it.clone() };
+        begin(self) == begin(other)
     }
 
     /// Whether something determines the controls at each node.
@@ -169,13 +176,7 @@ impl Modes<'_> {
             let objective = model.objective.clone();
             return Model { boundary, objective, ..self.phase(0, &shares) };
         }
-        let phases: Vec<Phase> = (0..=last)
-            .map(|j| Phase {
-                place: Place { name: format!("{} {}", model.name, j + 1), ..Place::default() },
-                model: self.phase(j, &shares),
-                holds_at_first: false,
-            })
-            .collect();
+        let phases = numbered(&model.name, (0..=last).map(|j| self.phase(j, &shares)));
         let mut links: Vec<_> = (0..last).map(|j| self.link(j)).collect();
         links.extend(self.between.division.link_of_whole(&shares, &boundary));
         let Division { graph, symbols, .. } = self.between.division;

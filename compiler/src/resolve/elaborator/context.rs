@@ -95,9 +95,15 @@ impl Elaborator<'_> {
 
 /// Why a kind of symbol has no meaning in a context, and what could be meant.
 fn explain(what: &str, beyond: Reads, context: Context) -> (&'static str, String) {
-    let whole = context.allowed.has(Reads::WHOLE);
-    let in_a_sum = context.allowed.has(Reads::ROW) && whole;
-    if beyond.has(Reads::FOREIGN) {
+    of_elsewhere(what, beyond, context)
+        .or_else(|| of_certain_contexts(what, beyond, context))
+        .unwrap_or_else(|| of_time(what, beyond, context))
+}
+
+/// Of what is read where it does not stand: in another phase, in rows of data, in a simulation.
+fn of_elsewhere(what: &str, beyond: Reads, context: Context) -> Option<(&'static str, String)> {
+    let in_a_sum = context.allowed.has(Reads::ROW) && context.allowed.has(Reads::WHOLE);
+    Some(if beyond.has(Reads::FOREIGN) {
         (
             "is of another phase",
             "what ties phases together stands outside of them: a `link`, a condition, the \
@@ -127,7 +133,18 @@ fn explain(what: &str, beyond: Reads, context: Context) -> (&'static str, String
             "one number for the whole run",
             "it may stand in the objective, in `start` and `end` conditions and in `expect`".into(),
         )
-    } else if context.name == Context::AT_A_TIME.name && beyond.has(Reads::CONTROL) {
+    } else {
+        return None;
+    })
+}
+
+/// Of conditions at a time, and of guesses.
+fn of_certain_contexts(
+    what: &str,
+    beyond: Reads,
+    context: Context,
+) -> Option<(&'static str, String)> {
+    Some(if context.name == Context::AT_A_TIME.name && beyond.has(Reads::CONTROL) {
         (
             "a control, which may jump at that time",
             format!("bound `{what}` with `path`, or make it a state whose derivative is a control"),
@@ -141,7 +158,15 @@ fn explain(what: &str, beyond: Reads, context: Context) -> (&'static str, String
                 "a guess may use time, `free` names and guesses above it: guess `{what}` first"
             ),
         )
-    } else if beyond.has(Reads::CONTROL) && whole {
+    } else {
+        return None;
+    })
+}
+
+/// Of what varies over time, or is chosen.
+fn of_time(what: &str, beyond: Reads, context: Context) -> (&'static str, String) {
+    let whole = context.allowed.has(Reads::WHOLE);
+    if beyond.has(Reads::CONTROL) && whole {
         (
             "a control, which varies over time and has no value at a single time",
             format!("write `integral({what})`, or bound it with `path`"),

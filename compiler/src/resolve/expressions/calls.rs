@@ -1,19 +1,14 @@
-//! Calls: the builtin functions of numbers and vectors, the model's own functions, and the special
-//! forms.
+//! Calls: the builtin functions of numbers here; those of vectors, the model's own functions and
+//! the special forms in the files beside this one.
 
 use crate::expressions::graph::ExprId;
 use crate::expressions::graph::builtins::{self, Builtin};
 use crate::resolve::elaborator::Elaborator;
-use crate::resolve::elaborator::context::Context;
-use crate::resolve::elaborator::value::{Parts, Traits, Value};
-use crate::syntax::DEEPEST;
+use crate::resolve::elaborator::value::Value;
 use crate::syntax::functions::{self, function_names, is_function};
 use crate::syntax::scope;
-use fdcc_grammar::ast::{Argument, Expr, ExprKind, Ident, ItemKind};
+use fdcc_grammar::ast::{Argument, Expr, ExprKind, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
-
-/// No sensible model applies its functions so often to different arguments.
-const MOST_APPLICATIONS: usize = 50_000;
 
 /// What functions are called in other languages.
 const ELSEWHERE: &[(&str, &str)] = &[
@@ -156,7 +151,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn count_is(
+    pub(super) fn count_is(
         &mut self,
         name: &str,
         wanted: usize,
@@ -179,7 +174,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Arguments that are ordinary expressions; reports the others.
-    fn plain_arguments(&mut self, arguments: &'a [Argument]) -> Option<Vec<Value>> {
+    pub(super) fn plain_arguments(&mut self, arguments: &'a [Argument]) -> Option<Vec<Value>> {
         let mut values = Vec::new();
         for argument in arguments {
             match argument {
@@ -227,157 +222,6 @@ impl<'a> Elaborator<'a> {
             true => Value::scalar(self.graph.call(builtin, &operands), traits),
             false => Value::unknown(traits),
         }
-    }
-
-    fn apply_to_vectors(
-        &mut self,
-        name: &str,
-        values: &[Value],
-        arguments: &'a [Argument],
-        span: Span,
-    ) -> Value {
-        let traits = Self::joined(values);
-        if values.iter().any(|value| value.parts == Parts::Unknown) {
-            return Value::unknown(traits);
-        }
-        let lengths: Vec<usize> = values.iter().map(|value| value.parts.as_slice().len()).collect();
-        if lengths.iter().any(|&length| length != lengths[0]) {
-            return self.different_sizes(name, values, arguments);
-        }
-        let (a, b) = (&values[0].parts, &values[values.len() - 1].parts);
-        match name {
-            "cross" => self.cross(&values[0], &values[1], traits, span),
-            "norm" => {
-                let square = self.dot(a, b);
-                Value::scalar(self.graph.sqrt(square), traits)
-            }
-            _ => self.product(&values[0], &values[values.len() - 1], name == "dot", traits, span),
-        }
-    }
-
-    /// `dot(a, b)`, and `normsq(a)` as `dot(a, a)`.
-    fn product(&mut self, a: &Value, b: &Value, is_dot: bool, traits: Traits, span: Span) -> Value {
-        if is_dot && !self.product_of_sets(&a.traits.sets, &b.traits.sets, span) {
-            return Value::default();
-        }
-        Value::scalar(self.dot(&a.parts, &b.parts), traits)
-    }
-
-    fn different_sizes(&mut self, name: &str, values: &[Value], arguments: &[Argument]) -> Value {
-        let described: Vec<String> = values.iter().map(|value| value.parts.describe()).collect();
-        let message = format!("`{name}` of {}", described.join(" and "));
-        let found = Diagnostic::new(
-            Code::ShapeMismatch,
-            message,
-            argument_span(&arguments[0]),
-            described[0].as_str(),
-        )
-        .label(argument_span(&arguments[1]), described[1].as_str());
-        self.fail_shape(found.help("both need the same size"))
-    }
-
-    /// `a x b`: a number in the plane, a vector in space.
-    fn cross(&mut self, a: &Value, b: &Value, traits: Traits, span: Span) -> Value {
-        if !self.product_of_sets(&a.traits.sets, &b.traits.sets, span) {
-            return Value::default();
-        }
-        let (a, b) = (a.parts.as_slice(), b.parts.as_slice());
-        let mut minor = |i: usize, j: usize| {
-            let (left, right) = (self.graph.mul(a[i], b[j]), self.graph.mul(a[j], b[i]));
-            self.graph.sub(left, right)
-        };
-        match a.len() {
-            2 => Value::scalar(minor(0, 1), traits),
-            3 => Value {
-                parts: Parts::from_list(&[minor(1, 2), minor(2, 0), minor(0, 1)]),
-                traits,
-                named: None,
-            },
-            _ => {
-                let found = Diagnostic::new(
-                    Code::ShapeMismatch,
-                    "`cross` is for two or three dimensions",
-                    span,
-                    "other sizes",
-                );
-                self.fail_shape(found.help("give it vectors of 2 or 3"))
-            }
-        }
-    }
-
-    fn own_function(
-        &mut self,
-        at: usize,
-        formal: &'a [Ident],
-        body: &'a Expr,
-        arguments: &'a [Argument],
-        span: Span,
-    ) -> Value {
-        let name = self.scope.declarations[at].name;
-        let fits = self.count_is(&name.name, formal.len(), arguments.len(), span, Some(name.span));
-        let values = self.plain_arguments(arguments);
-        let (true, Some(values), false) = (fits, values, self.circular[at]) else {
-            return Value::default();
-        };
-        if self.applied.len() > MOST_APPLICATIONS {
-            return self.too_much(span);
-        }
-        let mut value = self.apply(at, formal, body, values);
-        value.traits = value.traits.used_at(span);
-        self.admit(&name.name, value, span)
-    }
-
-    /// Functions that call each other twice, and so on, would take for ever.
-    fn too_much(&mut self, span: Span) -> Value {
-        if !self.diagnostics.iter().any(|it| it.code == Code::TooDeep) {
-            let message = format!(
-                "the functions of this model are applied more than {MOST_APPLICATIONS} times"
-            );
-            let found = Diagnostic::new(Code::TooDeep, message, span, "too much by here");
-            let help = "functions that call each other several times multiply; write a loop-like \
-                        chain as a formula";
-            self.diagnostics.push(found.help(help));
-        }
-        Value::default()
-    }
-
-    /// A function of the model for given arguments; remembered, because definitions build on each
-    /// other.
-    pub fn apply(
-        &mut self,
-        at: usize,
-        formal: &'a [Ident],
-        body: &'a Expr,
-        values: Vec<Value>,
-    ) -> Value {
-        let key = (at, self.examining, values);
-        if let Some(known) = self.applied.get(&key) {
-            return known.clone();
-        }
-        if self.depth > DEEPEST {
-            return Value::default();
-        }
-        let value = self.with_arguments(at, formal, key.2.clone(), |this| {
-            this.evaluate_in(Context::DEFINITION, body)
-        });
-        self.applied.insert(key, value.clone());
-        value
-    }
-
-    fn with_arguments(
-        &mut self,
-        at: usize,
-        formal: &'a [Ident],
-        values: Vec<Value>,
-        run: impl FnOnce(&mut Self) -> Value,
-    ) -> Value {
-        let outer = (self.frame, self.owner.replace(at));
-        self.frame = self.locals.len();
-        self.locals.extend(formal.iter().map(|name| name.name.as_str()).zip(values));
-        let value = run(self);
-        self.locals.truncate(self.frame);
-        (self.frame, self.owner) = outer;
-        value
     }
 }
 

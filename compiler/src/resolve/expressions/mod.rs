@@ -7,7 +7,9 @@ mod direction;
 mod forms;
 pub(crate) mod knots;
 mod operators;
+mod own_functions;
 mod piecewise;
+mod vectors;
 
 use super::elaborator::Elaborator;
 use super::elaborator::value::{Parts, Traits, Value};

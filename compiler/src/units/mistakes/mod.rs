@@ -46,7 +46,10 @@ impl<'a> Mistake<'a> {
 
 /// The side without what stretches a guessed curve.
 fn without_stretch<'a>(side: &Side<'a>, inference: &Inference<'a>) -> Side<'a> {
-    let is_stretch = |atom: Atom| matches!(atom, Atom::Number(at) if inference.numbers[at as usize].declared.is_none());
+    let is_stretch = |atom: Atom| match atom {
+        Atom::Number(at) => inference.numbers[at as usize].declared.is_none(),
+        _ => false,
+    };
     let stretch = side.dimension.factors().iter().map(|it| it.0).find(|&atom| is_stretch(atom));
     let rest = stretch.and_then(|atom| side.dimension.substituted(atom, &Dimension::none()));
     Side { dimension: rest.unwrap_or_else(|| side.dimension.clone()), ..side.clone() }

@@ -86,7 +86,10 @@ fn trial<'a>(
     let mut known = known.clone();
     known.suspects.insert(name);
     let walk = Walk::new(tree, known, false);
-    let is_it = |at: &&usize| matches!(walk.inference.requirements[**at].reason, Reason::Uses(it) if it.span == name);
+    let is_it = |at: &&usize| {
+        let reason = &walk.inference.requirements[**at].reason;
+        matches!(reason, Reason::Uses(it) if it.span == name)
+    };
     let blamed = walk.contradictions.iter().find(is_it).copied()?;
     let is_better = walk.contradictions.len() + uses <= so_far.contradictions.len() + 1;
     is_better.then(|| Found { walk, mistakes: vec![blamed], suspect: Some(name) })

@@ -1,7 +1,7 @@
 //! A located optimum as one trajectory, in the words of the model.
 
 use super::Located;
-use fdcc_compiler::Mode;
+use fdcc_compiler::{Mode, PhaseOfModes};
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::solution::modes::{self, Span};
 use fdcc_runtime::solution::phases::{Jump, located};
@@ -15,6 +15,24 @@ pub(crate) struct Whole {
     pub is_exact: bool,
     /// Each with its number, and the state on both sides.
     pub jumps: Vec<(usize, Jump)>,
+    /// The phases that it was solved in; none of what is no located optimum.
+    pub phases: Vec<SolvedPhase>,
+}
+
+/// A phase with all variables of its solution.
+#[derive(Clone)]
+pub(crate) struct SolvedPhase {
+    of: PhaseOfModes,
+    ends: [f64; 2],
+    variables: Vec<f64>,
+}
+
+impl Whole {
+    /// The variables of a phase that does the same between the same times.
+    pub fn variables_of(&self, phase: &PhaseOfModes, ends: &[f64]) -> Option<&[f64]> {
+        let is_same = |it: &&SolvedPhase| it.ends == ends && it.of.is_alike_inside(phase);
+        self.phases.iter().find(is_same).map(|it| &it.variables[..])
+    }
 }
 
 impl Located {
@@ -24,7 +42,18 @@ impl Located {
         let (outcome, ends) = located(between, &self.chain, &self.outcome, modes);
         let begins = self.structure.phases[1..].iter().zip(ends);
         let jumps = begins.filter_map(|(phase, end)| Some((phase.jump?, end))).collect();
-        Whole { outcome, is_exact: true, jumps }
+        Whole { outcome, is_exact: true, jumps, phases: self.solved_phases() }
+    }
+
+    fn solved_phases(&self) -> Vec<SolvedPhase> {
+        let all = self.structure.phases.iter().zip(self.structure.times.windows(2));
+        let solved = all.zip(&self.outcome.phases);
+        let of = |((of, pair), outcome): ((&PhaseOfModes, &[f64]), &Outcome)| SolvedPhase {
+            of: of.clone(),
+            ends: [pair[0], pair[1]],
+            variables: outcome.solution.v.clone(),
+        };
+        solved.map(of).collect()
     }
 
     /// What a surface does from when to when.

@@ -121,7 +121,8 @@ impl<'l> Contacts<'l> {
         begins && run.first < NEAR || ends && run.behind + NEAR > count
     }
 
-    /// The end of a phase at which a run is, where a surface changes its mode and nothing jumps: 0 or 1.
+    /// The end of a phase at which a run is, where a surface changes its mode and nothing jumps: 0
+    /// or 1.
     fn end_near(&self, j: usize, run: &Run) -> Option<usize> {
         let phases = &self.located.structure.phases;
         let count = self.located.outcome.phases[j].trajectory.time.len() - 1;

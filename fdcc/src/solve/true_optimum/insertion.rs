@@ -92,8 +92,8 @@ impl Search<'_> {
         all
     }
 
-    /// Where several surfaces change their modes at once: all modes on the way from one phase to the
-    /// next. Each surface has a multiplier of its own there, so that their worth is tried.
+    /// Where several surfaces change their modes at once: all modes on the way from one phase to
+    /// the next. Each surface has a multiplier of its own there, so that their worth is tried.
     fn one_by_one(&self, j: usize, [before, after]: [&PhaseOfModes; 2]) -> Vec<Candidate> {
         let changes = |at: &usize| before.modes[*at] != after.modes[*at];
         let changing: Vec<usize> = (0..before.modes.len()).filter(changes).collect();
@@ -246,6 +246,7 @@ pub(super) fn least(
             unknowns: Vec::new(),
             widths: Vec::new(),
             times: vec![0.0, 1.0],
+            variables: None,
         };
         from_earlier(chain, &[earlier])
     });

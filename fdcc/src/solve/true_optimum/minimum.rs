@@ -10,8 +10,8 @@ use fdcc_compiler::Arc;
 use fdcc_runtime::problem::Variable;
 
 impl Search<'_> {
-    /// By how much another control makes the Hamiltonian less, at some points of each phase, for its
-    /// largest size.
+    /// By how much another control makes the Hamiltonian less, at some points of each phase, for
+    /// its largest size.
     pub(super) fn gain(&self, located: &Located) -> f64 {
         let sizes = located.outcome.phases.iter().map(|it| it.trajectory.hamiltonian.size);
         let size = sizes.fold(f64::MIN_POSITIVE, f64::max);

@@ -4,7 +4,7 @@
 use super::Whole;
 use crate::verification::{Verification, modes};
 use fdcc_compiler::Model;
-use fdcc_runtime::simulate::{Event, Kind, Mode as Motion};
+use fdcc_runtime::simulate::{Event, EventKind, Mode as Motion};
 use fdcc_runtime::solution::modes::{Mode, Span};
 use fdcc_runtime::solution::phases::Jump;
 
@@ -14,7 +14,7 @@ pub(crate) fn replayed(model: &Model, whole: &Whole, replay: &Verification) -> O
     if !replay.is_whole {
         return None;
     }
-    let mut other = Whole { is_exact: true, ..whole.clone() };
+    let mut other = Whole { is_exact: true, phases: Vec::new(), ..whole.clone() };
     let (trajectory, simulation) = (&mut other.outcome.trajectory, &replay.simulation);
     let intervals = trajectory.time.len() - 1;
     for (column, found) in trajectory.states.iter_mut().zip(&simulation.states) {
@@ -46,7 +46,7 @@ fn mode(of: Motion) -> Mode {
 }
 
 fn jump(event: &Event) -> Option<(usize, Jump)> {
-    let Kind::Jump(at) = event.kind else { return None };
+    let EventKind::Jump(at) = event.kind else { return None };
     let Event { time, before, after, .. } = event.clone();
     Some((at, Jump { time, before, after }))
 }

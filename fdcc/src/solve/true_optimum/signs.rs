@@ -1,6 +1,8 @@
-//! The signs of multipliers of states and path conditions that are kept at their bounds or touch them.
+//! The signs of multipliers of states and path conditions that are kept at their bounds or touch
+//! them.
 //!
-//! Where a limit is on an arc, `nu` is the multiplier of `c^(q) = 0`, and that of the bound itself is
+//! Where a limit is on an arc, `nu` is the multiplier of `c^(q) = 0`, and that of the bound itself
+//! is
 //!
 //! ```text
 //! mu = (-1)^q d^q nu / dt^q
@@ -38,7 +40,8 @@ impl Contacts<'_> {
         all.into_iter().max_by(|a, b| a.part.total_cmp(&b.part))
     }
 
-    /// Gives path conditions on arcs the multipliers of their bounds, in a trajectory of all phases.
+    /// Gives path conditions on arcs the multipliers of their bounds, in a trajectory of all
+    /// phases.
     pub fn put_multipliers(&self, whole: &mut Trajectory) {
         let mut first = 0;
         for (j, phase) in self.located.structure.phases.iter().enumerate() {

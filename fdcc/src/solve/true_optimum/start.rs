@@ -1,17 +1,15 @@
 //! Where the solve of a structure begins: signals of an earlier answer, cut at its switches.
 
+use super::Whole;
 use super::structure::Structure;
 use fdcc_compiler::Model;
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::problem::Chain;
-use fdcc_runtime::solution::Trajectory;
-use fdcc_runtime::solution::phases::Jump;
 use fdcc_runtime::solve::warm_start::{Earlier, from_earlier};
 
 /// Signals of a whole trajectory.
 pub(super) struct Signals<'t> {
-    pub trajectory: &'t Trajectory,
-    pub jumps: &'t [(usize, Jump)],
+    pub from: &'t Whole,
     /// The unknowns of the model.
     pub unknowns: Vec<f64>,
 }
@@ -32,11 +30,11 @@ impl Signals<'_> {
         j: usize,
         ends: &[f64],
     ) -> Earlier {
-        let (problem, own) = (&chain.phases[j], self.trajectory);
+        let (problem, own) = (&chain.phases[j], &self.from.outcome.trajectory);
         let inside = own.time.iter().copied().filter(|time| *time > ends[0] && *time < ends[1]);
         let times: Vec<f64> = [ends[0]].into_iter().chain(inside).chain([ends[1]]).collect();
         let shown = model.states.len();
-        let jump = self.jumps.iter().find(|it| it.1.time == ends[1]);
+        let jump = self.from.jumps.iter().find(|it| it.1.time == ends[1]);
         let state = |i: usize| {
             let column = own.states.get(i).filter(|_| i < shown)?;
             let mut values: Vec<f64> =
@@ -65,6 +63,7 @@ impl Signals<'_> {
             controls: (0..problem.controls.len()).map(control).collect(),
             unknowns: problem.unknowns.iter().map(|it| unknown(it.parameter)).collect(),
             widths: Vec::new(),
+            variables: self.from.variables_of(&structure.phases[j], ends).map(<[f64]>::to_vec),
             times: times.iter().map(|time| (time - ends[0]) / duration).collect(),
         }
     }

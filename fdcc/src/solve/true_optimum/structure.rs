@@ -328,13 +328,11 @@ pub(crate) fn variation(phase: &Outcome) -> f64 {
 /// rough on all as long as its control is a polynomial.
 fn smooth(phase: &mut PhaseOfModes, rough: Rough) {
     match (rough, phase.is_graded, phase.halvings) {
-        (Rough::AtEnds, false, _) => phase.is_graded = true,
         (Rough::AtEnds, true, 0) => phase.halvings = 1,
-        _ => {
-            phase.is_graded = false;
-            phase.shape = ControlShape::Linear;
-        }
+        (Rough::AtEnds, true, _) | (Rough::Throughout, ..) => phase.shape = ControlShape::Linear,
+        _ => {}
     }
+    phase.is_graded = true;
 }
 
 /// The length of the shortest interval.

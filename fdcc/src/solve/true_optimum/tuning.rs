@@ -5,7 +5,7 @@ pub(super) mod search {
     /// So many structures are solved at most.
     pub(crate) const MOST_SOLVES: usize = 36;
     /// No solve is begun after so many iterations of all, each times its intervals.
-    pub(crate) const BUDGET: usize = 120_000;
+    pub(crate) const BUDGET: usize = 200_000;
     /// Intervals of the whole time; a phase has its part of them.
     pub(crate) const INTERVALS: f64 = 40.0;
     /// A phase has so many at least.
@@ -19,7 +19,7 @@ pub(super) mod search {
     /// A solve that is begun has so many at least.
     pub(crate) const FEWEST_ITERATIONS: usize = 20;
     /// More iterations are not worth it.
-    pub(crate) const MOST_ITERATIONS: usize = 150;
+    pub(crate) const MOST_ITERATIONS: usize = 250;
     /// A structure without new conditions is another optimum where the objective rises by so much.
     pub(crate) const WORSE: f64 = 1e-5;
     /// An objective has to fall by so much of its size, or a phase is not worth having.
@@ -63,8 +63,8 @@ pub(super) mod tracks {
 }
 
 pub(super) mod contacts {
-    /// A multiplier is none that is worth less than this, over the range of its limit, of the size of
-    /// the Hamiltonian.
+    /// A multiplier is none that is worth less than this, over the range of its limit, of the size
+    /// of the Hamiltonian.
     pub(crate) const NONE: f64 = 1e-5;
     /// A limit is near its bound where it is nearer than this part of its range, at one end of an
     /// interval.
@@ -104,18 +104,18 @@ pub(super) mod minimum {
 pub(crate) mod certificate {
     /// An answer whose optimality error is larger is none.
     pub(crate) const STATIONARY: f64 = 1e-7;
-    /// A hold is tried where the objective falls with its duration by more than this, for the size of
-    /// the Hamiltonian.
+    /// A hold is tried where the objective falls with its duration by more than this, for the size
+    /// of the Hamiltonian.
     pub(crate) const WORTH: f64 = 1e-5;
-    /// A slope of the Hamiltonian by a control that is at a bound may have the wrong sign by so much,
-    /// for the size of the Hamiltonian and the distance of the bounds.
+    /// A slope of the Hamiltonian by a control that is at a bound may have the wrong sign by so
+    /// much, for the size of the Hamiltonian and the distance of the bounds.
     pub(crate) const WRONG_SIGN: f64 = 1e-5;
     /// Another control may make the Hamiltonian less by so much of its size.
     pub(crate) const GAIN: f64 = 1e-5;
     /// So may the multiplier of a limit that is at its bound, for its largest value.
     pub(crate) const CONTACT: f64 = 1e-4;
-    /// The replay may differ by so much, for how far each state moves; so may conditions and bounds be
-    /// violated.
+    /// The replay may differ by so much, for how far each state moves; so may conditions and bounds
+    /// be violated.
     pub(crate) const REPLAYED: f64 = 1e-6;
     /// So may a replay of controls that come a moment earlier or later.
     pub(crate) const TIMING: f64 = 1e-2;

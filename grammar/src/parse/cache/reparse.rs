@@ -134,7 +134,9 @@ fields! {
 
 /// All that the variants of a type hold.
 macro_rules! variants {
-    ($($type:ident { $($variant:ident $({ $($field:ident),* })? $(( $($part:ident),* ))?,)* })*) => { $(
+    ($($type:ident {
+        $($variant:ident $({ $($field:ident),* })? $(( $($part:ident),* ))?,)*
+    })*) => { $(
         impl Placed for $type {
             fn move_by(&mut self, bytes: u32) {
                 match self {

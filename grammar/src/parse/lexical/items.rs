@@ -139,7 +139,10 @@ fn begins_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
 
 /// Whether what stands before could be the end of a region.
 fn can_begin(so_far: &SoFar<'_, '_>, at: usize) -> bool {
-    let is_start_free = matches!(&so_far.tokens[..at], [.., start, free] if start.text == "start" && free.text == "free");
+    let is_start_free = match &so_far.tokens[..at] {
+        [.., start, free] => start.text == "start" && free.text == "free",
+        _ => false,
+    };
     so_far.tokens[at].begins_line || can_end(&so_far.tokens[at - 1]) || is_start_free
 }
 

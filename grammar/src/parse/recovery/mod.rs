@@ -123,7 +123,10 @@ impl<'t> Reading<'t, '_> {
         let head =
             tokens.split(|token| matches!(token.text, "=" | "'" | ":=")).next().unwrap_or(tokens);
         let has_brace = head.iter().any(|token| token.text == "{");
-        let lacks_brace = matches!(failure, Failure::Stopped(_, expected) if expected.contains(&Rule::left_brace));
+        let lacks_brace = match failure {
+            Failure::Stopped(_, expected) => expected.contains(&Rule::left_brace),
+            _ => false,
+        };
         self.unopened +=
             usize::from(lacks_brace && !has_brace) + braces("{").saturating_sub(braces("}"));
         self.explained = region.end + usize::from(closer.is_some());

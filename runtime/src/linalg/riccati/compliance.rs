@@ -5,7 +5,9 @@
 //!
 //! ```text
 //!     [ M  E' ] [ T F A ]   [ -N 0 I ]        [ x+     ]   [ T F ] [ w ]   [ A  ]
-//!     [ E  -D ] [ L C . ] = [ -R I 0 ]        [ lambda ] = [ L C ] [ b ] - [ F' ] pull        Q = H_ww + Theta + [N; R]' [T; L]
+//!     [ E  -D ] [ L C . ] = [ -R I 0 ]        [ lambda ] = [ L C ] [ b ] - [ F' ] pull
+//!
+//!     Q = H_ww + Theta + [N; R]' [T; L]
 //! ```
 
 use super::factors::Factors;

@@ -6,7 +6,8 @@
 //! x+)` here, of which `V+` sees only the second part):
 //!
 //! ```text
-//!     N = H_{+w} + [0 Lambda' 0]       M = H_{++} + P       c = F b       p = pull + M c       T = -E^-1 R       F = E^-1
+//!     N = H_{+w} + [0 Lambda' 0]       M = H_{++} + P
+//!     T = -E^-1 R       F = E^-1       c = F b       p = pull + M c
 //!
 //!     x+ = T w + c       lambda = -F' (M x+ + N w + pull)       gradient by w:  g_w + T' p + N' c
 //!

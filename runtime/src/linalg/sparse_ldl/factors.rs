@@ -5,7 +5,7 @@ use super::front::Front;
 /// `L` and `D`.
 #[derive(Debug, Default)]
 pub(super) struct Factors {
-    fronts: Vec<Place>,
+    fronts: Vec<FrontStorage>,
     rows: Vec<u32>,
     values: Vec<f64>,
     blocks: Vec<u8>,
@@ -15,7 +15,7 @@ pub(super) struct Factors {
 
 /// Where a front is kept, and how many of its rows are eliminated.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct FrontStorage {
     row: usize,
     value: usize,
     block: usize,
@@ -42,7 +42,7 @@ impl Factors {
     pub(super) fn keep(&mut self, front: &Front) {
         let (size, pivots) = (front.size(), front.blocks.len());
         let (row, value, block) = (self.rows.len(), self.values.len(), self.blocks.len());
-        self.fronts.push(Place { row, value, block, size, pivots });
+        self.fronts.push(FrontStorage { row, value, block, size, pivots });
         self.rows.extend(&front.rows);
         self.values.extend(&front.values[..pivots * size]);
         self.blocks.extend(&front.blocks);
@@ -59,7 +59,7 @@ impl Factors {
     }
 
     fn visit(&mut self, at: usize, b: &mut [f64], action: impl Fn(&mut Kept<'_>)) {
-        let Place { row, value, block, size, pivots } = self.fronts[at];
+        let FrontStorage { row, value, block, size, pivots } = self.fronts[at];
         let rows = &self.rows[row..row + size];
         self.part.clear();
         self.part.extend(rows.iter().map(|row| b[*row as usize]));

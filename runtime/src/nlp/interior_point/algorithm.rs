@@ -1,22 +1,17 @@
 //! The loop: algorithm A of Waechter & Biegler 2006. Its steps are named where they are
-//! taken; A-1, the start, is in [`initialization`](super::initialization).
+//! taken; A-1, the start, is in [`initialisation`](super::initialisation).
 
 use super::barrier::{Barrier, Terms};
-use super::error_scaling::objective_scale;
 use super::filter::Filter;
 use super::formulation::Formulation;
-use super::iterate::{Iterate, Slopes, Step, Values};
-use super::kkt::{Kkt, System};
-use super::line_search::{Accepted, Search};
+use super::iterate::{Iterate, SearchDirection, Slopes, Values};
+use super::kkt::Kkt;
 use super::residuals::Residuals;
 use super::restoration::Restored;
 use super::termination::Target;
-use super::tuning::algorithm::{
-    LARGEST_MULTIPLIER, MOST_RESTARTS, MOST_TINY_STEPS, NEARLY_FEASIBLE, TINY_STEP,
-};
+use super::tuning::algorithm::MOST_RESTARTS;
 use super::tuning::restoration::REQUIRED_DECREASE;
 use super::tuning::termination::ACCEPTABLE_ERROR;
-use super::vectors::{add_scaled, largest};
 use super::watchdog::Watchdog;
 use crate::nlp::{Counts, Nlp, Options, Progress, Status, Stop, Watch};
 use std::ops::ControlFlow;
@@ -39,7 +34,7 @@ pub(super) struct Algorithm {
     pub(super) barrier: Barrier,
     pub(super) filter: Filter,
     pub(super) kkt: Kkt,
-    pub(super) step: Step,
+    pub(super) step: SearchDirection,
     pub(super) options: Options,
     pub(super) counts: Counts,
     pub(super) progress: Progress,
@@ -78,7 +73,7 @@ impl Algorithm {
     ) -> Self {
         Algorithm {
             kkt: Kkt::new(nlp, &formulation, options.linear),
-            step: Step::new(&formulation),
+            step: SearchDirection::new(&formulation),
             slopes: Slopes::new(nlp, &formulation),
             values: Values::default(),
             barrier: Barrier::new(mu, options.tol),
@@ -225,38 +220,6 @@ impl Algorithm {
         if has_step { self.take_step(nlp) } else { Outcome::Blocked }
     }
 
-    /// The Newton step with the right inertia; `false` if the linear system could not be solved.
-    /// Where rows seem to depend on each other the regularised one, if there is one.
-    fn find_step(&mut self) -> bool {
-        let found = self.newton_step(false);
-        if found && self.rows_seem_dependent() && !self.newton_step(true) {
-            return self.newton_step(false);
-        }
-        found
-    }
-
-    /// Whether a step from a point that is far from feasible leads to multipliers out of
-    /// proportion: rows that depend on each other cannot all be met, and rounding may hide that
-    /// from the inertia.
-    fn rows_seem_dependent(&self) -> bool {
-        let most = LARGEST_MULTIPLIER * objective_scale(self.values.objective);
-        let mut ahead = self
-            .at
-            .lambda
-            .iter()
-            .zip(&self.step.lambda)
-            .map(|(lambda, step)| (lambda + step).abs());
-        self.values.largest() > NEARLY_FEASIBLE && ahead.any(|lambda| lambda > most)
-    }
-
-    fn newton_step(&mut self, are_dependent: bool) -> bool {
-        let Algorithm { formulation, at, slopes, kkt, counts, step, values, .. } = self;
-        let mu = self.barrier.mu;
-        let system = System { formulation, at, slopes, mu };
-        kkt.factor_with_inertia(formulation, slopes, mu, are_dependent, counts)
-            && kkt.step(&system, &values.residuals, step)
-    }
-
     fn report(&mut self) -> Progress {
         self.progress = Progress {
             iteration: self.counts.iterations,
@@ -267,121 +230,6 @@ impl Algorithm {
             ..self.progress
         };
         self.progress
-    }
-
-    /// backtracking line search, or watchdog steps without one.
-    fn take_step(&mut self, nlp: &mut dyn Nlp) -> Outcome {
-        let formulation = &self.formulation;
-        let (longest, dual) = self.barrier.longest_steps(formulation, &self.at, &self.step);
-        if self.is_tiny() {
-            return self.accept_tiny(nlp, longest, dual);
-        }
-        let mut search = Search {
-            nlp,
-            formulation,
-            barrier: &self.barrier,
-            kkt: &mut self.kkt,
-            at: &self.at,
-            values: &self.values,
-            slopes: &self.slopes,
-            counts: &mut self.counts,
-        };
-        let accepted = if self.watchdog.is_due() {
-            let reference = search.reference(&self.step);
-            self.watchdog.begin(self.at.clone(), self.values.clone(), reference, longest);
-            search.full(&mut self.filter, &self.step, longest, reference, longest)
-        } else if let Some(saved) = &self.watchdog.saved {
-            search.full(&mut self.filter, &self.step, longest, saved.reference, saved.alpha)
-        } else {
-            let accepted = search.run(&mut self.filter, &mut self.step, longest);
-            let Some(accepted) = accepted else { return Outcome::Blocked };
-            Some((accepted, true))
-        };
-        self.tiny_steps = 0;
-        self.settle(accepted, longest, dual)
-    }
-
-    /// takes an accepted step or a watchdog step, or goes back to where the watchdog began.
-    fn settle(&mut self, accepted: Option<(Accepted, bool)>, longest: f64, dual: f64) -> Outcome {
-        match accepted {
-            Some((accepted, acceptable)) if acceptable || self.watchdog.take_step() => {
-                if acceptable && self.watchdog.end().is_none() {
-                    self.watchdog.note(accepted.alpha / longest, self.kkt.caution > 0.0);
-                    self.kkt.judge(accepted.alpha / longest);
-                }
-                self.progress.trials = accepted.trials;
-                self.stalled_steps =
-                    if self.is_negligible(accepted.alpha) { self.stalled_steps + 1 } else { 0 };
-                self.move_to(accepted.y, accepted.values, accepted.alpha, dual);
-                if self.stalled_steps > MOST_TINY_STEPS {
-                    self.stalled_steps = 0;
-                    self.watchdog.end();
-                    return Outcome::Blocked;
-                }
-            }
-            _ => {
-                self.go_back();
-            }
-        }
-        Outcome::Continue
-    }
-
-    /// Back to where watchdog steps began; `false` if there were none.
-    fn go_back(&mut self) -> bool {
-        let Some(saved) = self.watchdog.end() else { return false };
-        (self.at, self.values, self.fresh) = (saved.at, saved.values, false);
-        self.counts.iterations += 1;
-        true
-    }
-
-    fn is_tiny(&self) -> bool {
-        self.is_negligible(1.0) && self.residuals.primal < ACCEPTABLE_ERROR
-    }
-
-    /// Whether this fraction of the step is rounding.
-    fn is_negligible(&self, alpha: f64) -> bool {
-        let small = |(d, y): (&f64, &f64)| alpha * d.abs() <= TINY_STEP * (1.0 + y.abs());
-        self.step.y.iter().zip(&self.at.y).all(small)
-    }
-
-    /// A step that is rounding is taken without a search, and lowers the barrier parameter; when
-    /// that is as low as it gets and the multipliers have settled as well, nothing more can be
-    /// gained.
-    fn accept_tiny(&mut self, nlp: &mut dyn Nlp, alpha: f64, dual: f64) -> Outcome {
-        self.tiny_steps = if self.barrier.lower() { 0 } else { self.tiny_steps + 1 };
-        if self.tiny_steps > MOST_TINY_STEPS {
-            let error = self.residuals.error(0.0);
-            let is_small = error <= ACCEPTABLE_ERROR;
-            return Outcome::Done(if is_small {
-                self.stalled(nlp)
-            } else {
-                Status::NumericalFailure
-            });
-        }
-        let y: Vec<f64> = self.at.y.iter().zip(&self.step.y).map(|(y, d)| y + alpha * d).collect();
-        let mut values = Values::default();
-        if !values.evaluate(nlp, &self.formulation, &y, &mut self.counts) {
-            return Outcome::Blocked;
-        }
-        self.move_to(y, values, alpha, dual);
-        Outcome::Continue
-    }
-
-    fn move_to(&mut self, y: Vec<f64>, values: Values, alpha: f64, dual: f64) {
-        self.at.y = y;
-        self.values = values;
-        add_scaled(&mut self.at.lambda, &self.step.lambda, alpha);
-        add_scaled(&mut self.at.lower, &self.step.lower, dual);
-        add_scaled(&mut self.at.upper, &self.step.upper, dual);
-        let is_newton = self.kkt.regularization == 0.0 && self.watchdog.saved.is_none();
-        self.barrier.note(alpha, is_newton);
-        self.barrier.correct_multipliers(&self.formulation, &mut self.at);
-        self.counts.iterations += 1;
-        self.fresh = false;
-        self.progress.step = largest(&self.step.y);
-        self.progress.regularization = self.kkt.regularization;
-        self.progress.alpha_primal = alpha;
-        self.progress.alpha_dual = dual;
     }
 
     /// Row multipliers by least squares at the iterate.

@@ -7,7 +7,7 @@
 //! the monotone one of Fiacco and McCormick, and a superlinear one.
 
 use super::formulation::Formulation;
-use super::iterate::{Iterate, Slopes, Step, Values};
+use super::iterate::{Iterate, SearchDirection, Slopes, Values};
 use super::residuals::Residuals;
 use super::tuning::barrier::{
     BELOW_TOLERANCE, CLOSE, DAMPING, MONOTONE, MULTIPLIER_CORRIDOR, PRODUCTS, SMALLEST_FRACTION,
@@ -98,7 +98,7 @@ impl Barrier {
         formulation: &Formulation,
         slopes: &Slopes,
         barrier_gradient: &[f64],
-        step: &Step,
+        step: &SearchDirection,
     ) -> f64 {
         let gradient = dot(&slopes.derivatives.gradient, &step.y[..formulation.variables]);
         let costs = formulation
@@ -115,7 +115,7 @@ impl Barrier {
         &self,
         formulation: &Formulation,
         at: &Iterate,
-        step: &Step,
+        step: &SearchDirection,
     ) -> (f64, f64) {
         let tau = self.tau();
         let (mut primal, mut dual) = (1.0f64, 1.0f64);

@@ -32,19 +32,19 @@ impl Iterate {
     }
 }
 
-/// A direction in the same space.
+/// A direction in the same space: a Newton step, or one of negative curvature.
 #[derive(Clone, Debug)]
-pub(super) struct Step {
+pub(super) struct SearchDirection {
     pub(super) y: Vec<f64>,
     pub(super) lambda: Vec<f64>,
     pub(super) lower: Vec<f64>,
     pub(super) upper: Vec<f64>,
 }
 
-impl Step {
+impl SearchDirection {
     pub(super) fn new(formulation: &Formulation) -> Self {
         let (length, rows) = (formulation.len(), formulation.target.len());
-        Step {
+        SearchDirection {
             y: vec![0.0; length],
             lambda: vec![0.0; rows],
             lower: vec![0.0; length],

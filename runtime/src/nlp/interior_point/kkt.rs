@@ -12,7 +12,7 @@
 
 use super::barrier::Barrier;
 use super::formulation::Formulation;
-use super::iterate::{Iterate, Slopes, Step};
+use super::iterate::{Iterate, SearchDirection, Slopes};
 use super::tuning::kkt::{HUGE, INACCURATE, MOST_REFINEMENTS, REFINED};
 use super::vectors::{are_finite, dot, largest};
 use crate::linalg::solvers::{Structure, more_robust, prepare};
@@ -132,7 +132,7 @@ impl Kkt {
     }
 
     /// The slope of the barrier Lagrangian along a step, at the iterate that was assembled last.
-    pub(super) fn slope(&self, step: &Step) -> f64 {
+    pub(super) fn slope(&self, step: &SearchDirection) -> f64 {
         dot(&self.gradient, &step.y)
     }
 
@@ -143,7 +143,7 @@ impl Kkt {
         &mut self,
         formulation: &Formulation,
         slopes: &Slopes,
-        step: &mut Step,
+        step: &mut SearchDirection,
     ) -> Option<f64> {
         let variables = formulation.variables;
         self.right.fill(0.0);
@@ -167,7 +167,12 @@ impl Kkt {
 
     /// The Newton step that removes `residuals`; `false` if the linear system could not be solved
     /// accurately.
-    pub(super) fn step(&mut self, system: &System, residuals: &[f64], step: &mut Step) -> bool {
+    pub(super) fn step(
+        &mut self,
+        system: &System,
+        residuals: &[f64],
+        step: &mut SearchDirection,
+    ) -> bool {
         let System { formulation, at, slopes, mu } = *system;
         self.fill_right_side(formulation, residuals);
         if !self.solve_refined(formulation, slopes) {
@@ -180,7 +185,7 @@ impl Kkt {
             let slack_gradient = self.gradient[i] + slack.sign * step.lambda[slack.row];
             step.y[i] = -slack_gradient / (self.sigma[i] + self.regularization);
         }
-        let Step { y, lower, upper, .. } = step;
+        let SearchDirection { y, lower, upper, .. } = step;
         let mut inverses = self.inverses.iter();
         formulation.for_each_bound(&at.y, |i, _, direction| {
             let (z, dz) = if direction > 0.0 {

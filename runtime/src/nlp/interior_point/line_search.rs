@@ -4,7 +4,7 @@
 use super::barrier::Barrier;
 use super::filter::{Filter, Reference};
 use super::formulation::Formulation;
-use super::iterate::{Iterate, Slopes, Step, Values};
+use super::iterate::{Iterate, SearchDirection, Slopes, Values};
 use super::kkt::{Kkt, System};
 use super::tuning::line_search::{CORRECTION_DECREASE, MOST_CORRECTIONS};
 use crate::nlp::{Counts, Nlp};
@@ -35,7 +35,7 @@ impl Search<'_> {
     pub(super) fn run(
         &mut self,
         filter: &mut Filter,
-        step: &mut Step,
+        step: &mut SearchDirection,
         longest: f64,
     ) -> Option<Accepted> {
         let from = self.reference(step);
@@ -66,7 +66,7 @@ impl Search<'_> {
     }
 
     /// What a step from here is compared with.
-    pub(super) fn reference(&self, step: &Step) -> Reference {
+    pub(super) fn reference(&self, step: &SearchDirection) -> Reference {
         Reference {
             theta: self.values.violation,
             phi: self.barrier.value(self.values),
@@ -79,7 +79,7 @@ impl Search<'_> {
     pub(super) fn full(
         &mut self,
         filter: &mut Filter,
-        step: &Step,
+        step: &SearchDirection,
         longest: f64,
         from: Reference,
         alpha: f64,
@@ -89,7 +89,7 @@ impl Search<'_> {
         Some((Accepted { y, values, alpha: longest, trials: 1 }, acceptable))
     }
 
-    fn trial(&mut self, step: &Step, alpha: f64) -> Option<(Vec<f64>, Values)> {
+    fn trial(&mut self, step: &SearchDirection, alpha: f64) -> Option<(Vec<f64>, Values)> {
         let y: Vec<f64> = self.at.y.iter().zip(&step.y).map(|(y, d)| y + alpha * d).collect();
         let mut values = Values::default();
         values.evaluate(self.nlp, self.formulation, &y, self.counts).then_some((y, values))
@@ -106,7 +106,7 @@ impl Search<'_> {
         &mut self,
         filter: &mut Filter,
         from: Reference,
-        step: &mut Step,
+        step: &mut SearchDirection,
         alpha: f64,
         first: Values,
     ) -> Option<Accepted> {

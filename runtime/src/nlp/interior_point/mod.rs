@@ -4,19 +4,21 @@
 //! line-search algorithm for large-scale nonlinear programming", Mathematical Programming 106
 //! (2006) 25-57. The loop is in [`algorithm`]; each noun of it has a file.
 
+mod acceptance;
 mod algorithm;
 mod barrier;
 mod error_scaling;
 mod filter;
 mod formulation;
 mod inertia;
-mod initialization;
+mod initialisation;
 mod iterate;
 mod kkt;
 mod line_search;
 mod residuals;
 mod restoration;
 mod saddle;
+mod search_direction;
 mod termination;
 mod tuning;
 mod vectors;
@@ -189,7 +191,7 @@ fn attempt_scaled(
     let mut watch = |progress: &Progress| {
         watch(&Progress { objective: progress.objective / objective_scale, ..*progress })
     };
-    let mut algorithm = initialization::prepare(&mut scaled, &start, *options);
+    let mut algorithm = initialisation::prepare(&mut scaled, &start, *options);
     let status = run(&mut algorithm, &mut scaled, &mut watch);
     let mu = algorithm.barrier.mu;
     let Algorithm { at, counts, residuals, formulation, is_saddle, mut descent, decrement, .. } =

@@ -199,6 +199,8 @@ impl Algorithm {
                 Outcome::Continue => {}
                 Outcome::Blocked => break Restored::Blocked,
                 Outcome::Done(status) if status.is_solved() => break Restored::Stationary,
+                // Its own objective has a least value: what runs away is the iteration.
+                Outcome::Done(Status::Unbounded) => break Restored::Blocked,
                 Outcome::Done(status) => break Restored::Stopped(status),
             }
             if self.accepts(proximity.inner, &inner.at, decrease * violation) {

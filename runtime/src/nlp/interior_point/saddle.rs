@@ -11,7 +11,7 @@
 //! decide: short steps to both sides along its direction show what they say.
 
 use super::algorithm::Algorithm;
-use super::iterate::{Step, Values};
+use super::iterate::{SearchDirection, Values};
 use super::tuning::saddle::{
     FEW_ITERATIONS, GOLDEN, ITERATIONS, LARGEST_VIOLATION, LEAST_GAIN, MOST_DEPARTURES,
     MOST_HALVINGS, NOTHING, ROOM, ROUNDING, SHORT_STEPS, SPREAD,
@@ -84,7 +84,12 @@ impl Algorithm {
     }
 
     /// The point after a part of a step; `None` where it has no value.
-    fn moved(&mut self, nlp: &mut dyn Nlp, step: &Step, alpha: f64) -> Option<(Vec<f64>, Values)> {
+    fn moved(
+        &mut self,
+        nlp: &mut dyn Nlp,
+        step: &SearchDirection,
+        alpha: f64,
+    ) -> Option<(Vec<f64>, Values)> {
         let y: Vec<f64> = self.at.y.iter().zip(&step.y).map(|(y, d)| y + alpha * d).collect();
         let mut values = Values::default();
         values.evaluate(nlp, &self.formulation, &y, &mut self.counts).then_some((y, values))
@@ -92,7 +97,7 @@ impl Algorithm {
 
     /// A unit vector over `y` in the null space of the rows and the curvature along it, if that is
     /// below `-least`.
-    fn lowest_curvature(&mut self, nlp: &dyn Nlp, least: f64) -> Option<(Step, f64)> {
+    fn lowest_curvature(&mut self, nlp: &dyn Nlp, least: f64) -> Option<(SearchDirection, f64)> {
         if self.factor_at_iterate(least) {
             return None;
         }
@@ -111,9 +116,9 @@ impl Algorithm {
 
     /// A unit vector over `y` in the null space of the rows along which the matrix that was
     /// factored last has the lowest curvature, and the curvature without its regularisation.
-    fn softest_direction(&mut self, iterations: usize) -> Option<(Step, f64)> {
+    fn softest_direction(&mut self, iterations: usize) -> Option<(SearchDirection, f64)> {
         let Algorithm { formulation, slopes, kkt, .. } = self;
-        let mut step = Step::new(formulation);
+        let mut step = SearchDirection::new(formulation);
         // Nearly the same at all times: of several directions that are as good, one that goes to
         // one side.
         let start = |i: usize| 1.0 + SPREAD * (i as f64 * GOLDEN).fract();
@@ -155,7 +160,7 @@ impl Algorithm {
 
     /// Makes the step as long as bounds and the reach of the variable that moves most allow; its
     /// length.
-    fn stretch(&self, reach: &[f64], step: &mut Step) -> f64 {
+    fn stretch(&self, reach: &[f64], step: &mut SearchDirection) -> f64 {
         let moves = reach.iter().zip(&step.y).map(|(reach, d)| d.abs() / reach);
         let factor = 1.0 / moves.fold(f64::MIN_POSITIVE, f64::max);
         step.y.iter_mut().for_each(|d| *d *= factor);
@@ -165,7 +170,7 @@ impl Algorithm {
     }
 
     /// How far the step may go to the side that has more room.
-    fn longest_of_both(&self, step: &mut Step) -> f64 {
+    fn longest_of_both(&self, step: &mut SearchDirection) -> f64 {
         let ahead = self.barrier.longest_steps(&self.formulation, &self.at, step).0;
         turn(step);
         let back = self.barrier.longest_steps(&self.formulation, &self.at, step).0;
@@ -176,7 +181,7 @@ impl Algorithm {
     }
 
     /// Goes along the step, or back, as far as the Lagrangian falls; `false` if it does not.
-    fn depart(&mut self, nlp: &mut dyn Nlp, step: &mut Step, gain: f64) -> bool {
+    fn depart(&mut self, nlp: &mut dyn Nlp, step: &mut SearchDirection, gain: f64) -> bool {
         let lagrangian = self.barrier_lagrangian(&self.values);
         for halvings in 0..MOST_HALVINGS {
             let part = 0.5f64.powi(halvings as i32);
@@ -205,6 +210,6 @@ impl Algorithm {
     }
 }
 
-fn turn(step: &mut Step) {
+fn turn(step: &mut SearchDirection) {
     step.y.iter_mut().for_each(|d| *d = -*d);
 }

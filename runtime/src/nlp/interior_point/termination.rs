@@ -6,7 +6,7 @@
 //! negative eigenvalue, along which it is left.
 
 use super::algorithm::Algorithm;
-use super::iterate::Step;
+use super::iterate::SearchDirection;
 use super::kkt::System;
 use super::residuals::weighted_violation;
 use super::saddle::Departure;
@@ -108,7 +108,7 @@ impl Algorithm {
     fn newton_decrement(&mut self, nlp: &dyn Nlp, found: &Assessment) -> Option<f64> {
         let least = self.least_curvature(nlp, found);
         let Algorithm { formulation, at, slopes, kkt, barrier, counts, values, .. } = self;
-        let (mu, mut step) = (barrier.mu, Step::new(formulation));
+        let (mu, mut step) = (barrier.mu, SearchDirection::new(formulation));
         kkt.assemble(formulation, at, slopes, barrier);
         let system = System { formulation, at, slopes, mu };
         let is_found = kkt.factor_barely(formulation, slopes, mu, least, counts)

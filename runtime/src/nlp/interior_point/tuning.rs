@@ -95,7 +95,7 @@ pub(crate) mod inertia {
     pub(crate) const MU_POWER: f64 = 0.25;
 }
 
-pub(crate) mod initialization {
+pub(crate) mod initialisation {
     /// The first barrier parameter of a cold start, `mu_0`.
     pub(crate) const FIRST_MU: f64 = 0.1;
     /// How far inside of its bounds a start is moved: Ipopt's `bound_push` and `bound_frac`, cold

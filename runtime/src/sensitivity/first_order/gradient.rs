@@ -3,8 +3,8 @@
 use super::Objective;
 use super::one_sided;
 use super::quantity::{Directions, Gradient, Quantity};
-use crate::sensitivity::linearized::linearization::Linearizer;
-use crate::sensitivity::linearized::variational_equation::LinearTape;
+use crate::sensitivity::linearised::linearisation::Lineariser;
+use crate::sensitivity::linearised::variational_equation::LinearTape;
 use crate::sensitivity::nondifferentiability::kink::{Kink, first_kink};
 use crate::sensitivity::nondifferentiability::objective_kink::{Direction, objective_kink};
 use crate::sensitivity::nondifferentiability::{Nondifferentiability, nondifferentiabilities};
@@ -75,14 +75,14 @@ pub fn gradient(
     quantities: &[Quantity],
 ) -> Result<Sensitivity, Box<Simulation>> {
     let simulation = simulate(system, controls, &Options { tape: true, ..options.clone() });
-    let linearizer = Linearizer::new(system, controls);
-    let objective = Objective::new(&linearizer, &simulation);
+    let lineariser = Lineariser::new(system, controls);
+    let objective = Objective::new(&lineariser, &simulation);
     let (Some(tape), Some(objective), Status::Completed) =
         (&simulation.tape, objective, &simulation.status)
     else {
         return Err(Box::new(simulation));
     };
-    let pieces = LinearTape::new(&linearizer, tape);
+    let pieces = LinearTape::new(&lineariser, tape);
     let (whole, costates) = backward(&pieces, &objective, Gradient::zero(system, controls));
     let adjoint: Vec<f64> = quantities.iter().map(|quantity| whole.by(quantity)).collect();
     let is_each = quantities.len() <= MOST_FORWARD;
@@ -98,10 +98,10 @@ pub fn gradient(
         largest = largest.max(s.amax());
     });
     let all = on_the_way.max(FORGOTTEN * largest * costates.largest());
-    let forward = super::along(&linearizer, &objective, &directions, &end);
+    let forward = super::along(&lineariser, &objective, &directions, &end);
     let along = weights.tr_mul(&DMatrix::from_column_slice(adjoint.len(), 1, &adjoint));
-    let size = super::size(&linearizer, &objective, &directions, &end).max(all);
-    let starts = super::start(&linearizer, &directions);
+    let size = super::size(&lineariser, &objective, &directions, &end).max(all);
+    let starts = super::start(&lineariser, &directions);
     let along_each = quantities.iter().take(weights.ncols()).enumerate().map(|(at, quantity)| {
         let parts = [starts.column(at), end.column(at), directions.parameters.column(at)];
         let by = parts.iter().flat_map(|part| part.iter().copied()).collect::<Vec<f64>>().into();
@@ -110,7 +110,7 @@ pub fn gradient(
     let ends: Vec<f64> = system.start.iter().chain(&simulation.end).copied().collect();
     let slopes = [&objective.by_start, &objective.by_end, &objective.by_parameters];
     let slopes: Vec<f64> = slopes.into_iter().flat_map(|row| row.iter().copied()).collect();
-    let kink = objective_kink(&linearizer, &slopes, &ends.into(), along_each);
+    let kink = objective_kink(&lineariser, &slopes, &ends.into(), along_each);
     Ok(Sensitivity {
         value: objective.value,
         agreement: agreement(&forward, along.as_slice(), size),
@@ -119,22 +119,22 @@ pub fn gradient(
         adjoint,
         costates,
         nondifferentiabilities: nondifferentiabilities(&pieces),
-        kink: first_kink(&linearizer, tape).or(kink),
+        kink: first_kink(&lineariser, tape).or(kink),
         simulation,
     })
 }
 
 fn backward(pieces: &LinearTape, objective: &Objective, zero: Gradient) -> (Gradient, Costates) {
-    let LinearTape { linearizer, tape, .. } = *pieces;
+    let LinearTape { lineariser, tape, .. } = *pieces;
     let mut seen: Vec<(f64, Vec<f64>)> = Vec::new();
-    let first = linearizer.system.interval[0];
+    let first = lineariser.system.interval[0];
     let gradient = super::adjoint(pieces, objective, zero, &mut |at, lambda| {
         let time = at.map_or(first, |at| tape.pieces[at].end_time());
         seen.push((time, lambda.iter().copied().collect()));
     });
     seen.reverse();
     let column = |state: usize| seen.iter().map(|entry| entry.1[state]).collect();
-    let columns = (0..linearizer.system.layout.x).map(column).collect();
+    let columns = (0..lineariser.system.layout.x).map(column).collect();
     (gradient, Costates { time: seen.iter().map(|entry| entry.0).collect(), columns })
 }
 

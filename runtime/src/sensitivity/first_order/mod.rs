@@ -10,8 +10,8 @@ pub(crate) mod one_sided;
 pub(crate) mod perturbed;
 pub(crate) mod quantity;
 
-use super::linearized::linearization::{Jacobian, Linearizer};
-use super::linearized::variational_equation::LinearTape;
+use super::linearised::linearisation::{Jacobian, Lineariser};
+use super::linearised::variational_equation::LinearTape;
 use crate::problem::Columns;
 use crate::simulate::{Instant, Piece, Regime, Simulation, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
@@ -27,15 +27,15 @@ pub(crate) struct Objective {
 
 impl Objective {
     /// Nothing if the system has no objective.
-    pub fn new(linearizer: &Linearizer, simulation: &Simulation) -> Option<Self> {
-        let system = linearizer.system;
+    pub fn new(lineariser: &Lineariser, simulation: &Simulation) -> Option<Self> {
+        let system = lineariser.system;
         let states = system.layout.x;
         let mut point = Columns::new(2 * states, 1);
         for (at, value) in system.start.iter().chain(&simulation.end).enumerate() {
             point.column_mut(at)[0] = *value;
         }
         let Jacobian { values, by } =
-            Jacobian::of(&*system.objective, &point, &linearizer.parameters);
+            Jacobian::of(&*system.objective, &point, &lineariser.parameters);
         (!values.is_empty()).then(|| Objective {
             value: values[0],
             by_start: by.row(0).columns(0, states).into_owned(),
@@ -51,8 +51,8 @@ pub(crate) fn last_instant(tape: &Tape) -> Option<Instant> {
 }
 
 /// `dx(t0)` in each direction.
-pub(crate) fn start(linearizer: &Linearizer, directions: &Directions) -> DMatrix<f64> {
-    linearizer.start_by_parameters() * &directions.parameters + &directions.starts
+pub(crate) fn start(lineariser: &Lineariser, directions: &Directions) -> DMatrix<f64> {
+    lineariser.start_by_parameters() * &directions.parameters + &directions.starts
 }
 
 /// `dx(T)` in each direction, along the tape; `visit` sees `S` at the end of every piece.
@@ -61,31 +61,31 @@ pub(crate) fn forward(
     directions: &Directions,
     visit: &mut dyn FnMut(usize, &DMatrix<f64>),
 ) -> DMatrix<f64> {
-    let LinearTape { linearizer, tape, .. } = *pieces;
-    let mut s = start(linearizer, directions);
+    let LinearTape { lineariser, tape, .. } = *pieces;
+    let mut s = start(lineariser, directions);
     for at in 0..tape.pieces.len() {
         s = pieces.with(at, |piece| piece.forward(&s, &|regime| directions.inputs(regime)));
         visit(at, &s);
     }
-    s + end_shift(linearizer, tape) * &directions.parameters
+    s + end_shift(lineariser, tape) * &directions.parameters
 }
 
 /// `f T_p`: how the state at the end moves because the end does.
-fn end_shift(linearizer: &Linearizer, tape: &Tape) -> DMatrix<f64> {
+fn end_shift(lineariser: &Lineariser, tape: &Tape) -> DMatrix<f64> {
     let Some(last) = last_instant(tape) else {
-        return DMatrix::zeros(linearizer.system.layout.x, linearizer.system.layout.p);
+        return DMatrix::zeros(lineariser.system.layout.x, lineariser.system.layout.p);
     };
-    linearizer.at_instant(tape, &last).rate * linearizer.clock(linearizer.system.interval[1])
+    lineariser.at_instant(tape, &last).rate * lineariser.clock(lineariser.system.interval[1])
 }
 
 /// The derivative in each direction.
 pub(crate) fn along(
-    linearizer: &Linearizer,
+    lineariser: &Lineariser,
     objective: &Objective,
     directions: &Directions,
     end: &DMatrix<f64>,
 ) -> Vec<f64> {
-    let gradient = &objective.by_start * start(linearizer, directions)
+    let gradient = &objective.by_start * start(lineariser, directions)
         + &objective.by_end * end
         + &objective.by_parameters * &directions.parameters;
     gradient.iter().copied().collect()
@@ -93,12 +93,12 @@ pub(crate) fn along(
 
 /// The largest sum of the sizes of the terms in [`along`]: what rounding is to be compared with.
 pub(crate) fn size(
-    linearizer: &Linearizer,
+    lineariser: &Lineariser,
     objective: &Objective,
     directions: &Directions,
     end: &DMatrix<f64>,
 ) -> f64 {
-    let sizes = objective.by_start.abs() * start(linearizer, directions).abs()
+    let sizes = objective.by_start.abs() * start(lineariser, directions).abs()
         + objective.by_end.abs() * end.abs()
         + objective.by_parameters.abs() * directions.parameters.abs();
     sizes.iter().copied().fold(0.0, f64::max)
@@ -112,13 +112,13 @@ pub(crate) fn adjoint(
     mut gradient: Gradient,
     visit: &mut dyn FnMut(Option<usize>, &DVector<f64>),
 ) -> Gradient {
-    let LinearTape { linearizer, tape, .. } = *pieces;
+    let LinearTape { lineariser, tape, .. } = *pieces;
     let mut lambda: DVector<f64> = objective.by_end.transpose();
-    let at_end = end_shift(linearizer, tape).tr_mul(&lambda) + objective.by_parameters.transpose();
+    let at_end = end_shift(lineariser, tape).tr_mul(&lambda) + objective.by_parameters.transpose();
     gradient.parameters.iter_mut().zip(at_end.iter()).for_each(|(sum, value)| *sum += value);
     for at in (0..tape.pieces.len()).rev() {
         let mut add = |regime: &Regime, by: &DVector<f64>| {
-            gradient.add_inputs(linearizer.rows(regime), by);
+            gradient.add_inputs(lineariser.rows(regime), by);
         };
         lambda = pieces.with(at, |piece| {
             let on_surfaces = piece.unproject(lambda, &mut add);
@@ -129,7 +129,7 @@ pub(crate) fn adjoint(
     visit(None, &lambda);
     let by_start = lambda + objective.by_start.transpose();
     gradient.starts.iter_mut().zip(by_start.iter()).for_each(|(sum, value)| *sum += value);
-    let through_start = linearizer.start_by_parameters().tr_mul(&by_start);
+    let through_start = lineariser.start_by_parameters().tr_mul(&by_start);
     gradient.parameters.iter_mut().zip(through_start.iter()).for_each(|(sum, value)| *sum += value);
     gradient
 }

@@ -7,8 +7,8 @@
 use super::Objective;
 use super::perturbed::perturbed;
 use super::quantity::{Gradient, Quantity};
-use crate::sensitivity::linearized::linearization::Linearizer;
-use crate::sensitivity::linearized::variational_equation::LinearTape;
+use crate::sensitivity::linearised::linearisation::Lineariser;
+use crate::sensitivity::linearised::variational_equation::LinearTape;
 use crate::simulate::{Controls, Options, Status, System, simulate};
 
 /// The largest of the three distances, relative to `max(1, |q|)`.
@@ -49,13 +49,13 @@ fn derivative(
     quantity: &Quantity,
 ) -> Option<f64> {
     let simulation = simulate(system, controls, &Options { tape: true, ..options.clone() });
-    let linearizer = Linearizer::new(system, controls);
-    let objective = Objective::new(&linearizer, &simulation)?;
+    let lineariser = Lineariser::new(system, controls);
+    let objective = Objective::new(&lineariser, &simulation)?;
     let tape =
         simulation.tape.as_ref().filter(|_| matches!(simulation.status, Status::Completed))?;
     let zero = Gradient::zero(system, controls);
     let gradient =
-        super::adjoint(&LinearTape::new(&linearizer, tape), &objective, zero, &mut |_, _| ());
+        super::adjoint(&LinearTape::new(&lineariser, tape), &objective, zero, &mut |_, _| ());
     Some(gradient.by(quantity)).filter(|value| value.is_finite())
 }
 

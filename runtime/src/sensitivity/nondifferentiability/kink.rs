@@ -6,7 +6,7 @@
 
 use super::{TANGENT, TOUCHING};
 use crate::problem::Origin;
-use crate::sensitivity::linearized::linearization::{Jacobian, Linearizer, sliding};
+use crate::sensitivity::linearised::linearisation::{Jacobian, Lineariser, sliding};
 use crate::simulate::{Cause, Instant, Piece, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
@@ -20,8 +20,8 @@ pub struct Kink {
 }
 
 /// The first.
-pub(crate) fn first_kink(linearizer: &Linearizer, tape: &Tape) -> Option<Kink> {
-    let kinks = &linearizer.system.kinks;
+pub(crate) fn first_kink(lineariser: &Lineariser, tape: &Tape) -> Option<Kink> {
+    let kinks = &lineariser.system.kinks;
     if kinks.outputs() == 0 {
         return None;
     }
@@ -30,8 +30,8 @@ pub(crate) fn first_kink(linearizer: &Linearizer, tape: &Tape) -> Option<Kink> {
         if *h == 0.0 {
             return None;
         }
-        let here = Here::new(linearizer, tape, start);
-        let end = Here::new(linearizer, tape, &piece.end());
+        let here = Here::new(lineariser, tape, start);
+        let end = Here::new(lineariser, tape, &piece.end());
         let stays = |k: &usize| here.is_on(*k) && end.is_on(*k) && !here.is_fixed(*k);
         let kink = (0..kinks.outputs()).find(stays)?;
         Some(Kink { of: kinks.origin(kink), time: Some(start.time) })
@@ -41,18 +41,21 @@ pub(crate) fn first_kink(linearizer: &Linearizer, tape: &Tape) -> Option<Kink> {
 /// Whether a kink is met almost along itself, so that the second derivative of the time is nothing
 /// to rely on; or together with another event, so that their order is not fixed; or moved by
 /// controls that change with time.
-pub(crate) fn is_doubtful(linearizer: &Linearizer, tape: &Tape, at: usize) -> bool {
+pub(crate) fn is_doubtful(lineariser: &Lineariser, tape: &Tape, at: usize) -> bool {
     let Piece::Event { cause: Cause::CrossesKink(kink), before, .. } = &tape.pieces[at] else {
         return false;
     };
     let regime = &tape.regimes[before.regime];
-    let controls = linearizer.layout(regime).controls();
-    let here = Here::new(linearizer, tape, before);
+    let controls = lineariser.layout(regime).controls();
+    let here = Here::new(lineariser, tape, before);
     let follows =
-        linearizer.is_curved(regime) && here.by.row(*kink).columns_range(controls).amax() > 0.0;
-    let is_near = |piece: &Piece| {
-        let [first, last] = linearizer.system.interval;
-        matches!(piece, Piece::Event { before: other, .. } if (other.time - before.time).abs() <= TOUCHING * (last - first))
+        lineariser.is_curved(regime) && here.by.row(*kink).columns_range(controls).amax() > 0.0;
+    let [first, last] = lineariser.system.interval;
+    let is_near = |piece: &Piece| match piece {
+        Piece::Event { before: other, .. } => {
+            (other.time - before.time).abs() <= TOUCHING * (last - first)
+        }
+        Piece::Step { .. } => false,
     };
     let others = tape.pieces[..at].iter().rev().take(2).chain(tape.pieces[at + 1..].iter().take(2));
     follows || here.is_along(*kink) || others.into_iter().any(is_near)
@@ -70,17 +73,17 @@ struct Here {
 }
 
 impl Here {
-    fn new(linearizer: &Linearizer, tape: &Tape, at: &Instant) -> Self {
+    fn new(lineariser: &Lineariser, tape: &Tape, at: &Instant) -> Self {
         let regime = &tape.regimes[at.regime];
         let state = DVector::from_column_slice(&at.state);
-        let table = linearizer.table(regime, &at.selectors, at.time, &state);
-        let system = linearizer.system;
-        let Jacobian { values, by } = Jacobian::of(&*system.kinks, &table, &linearizer.parameters);
-        let switching = Jacobian::of(&*system.switching, &table, &linearizer.parameters).by;
-        let [by, switching] = [by, switching].map(|by| linearizer.spread(by, regime, at.time));
-        let moving = 1..linearizer.layout(regime).selectors().start;
+        let table = lineariser.table(regime, &at.selectors, at.time, &state);
+        let system = lineariser.system;
+        let Jacobian { values, by } = Jacobian::of(&*system.kinks, &table, &lineariser.parameters);
+        let switching = Jacobian::of(&*system.switching, &table, &lineariser.parameters).by;
+        let [by, switching] = [by, switching].map(|by| lineariser.spread(by, regime, at.time));
+        let moving = 1..lineariser.layout(regime).selectors().start;
         let normals = switching.select_rows(&sliding(regime)).columns_range(moving).into_owned();
-        Here { e: values, by, state, rate: linearizer.rate_at_instant(tape, at), normals }
+        Here { e: values, by, state, rate: lineariser.rate_at_instant(tape, at), normals }
     }
 
     /// Neither away from it nor leaving it.

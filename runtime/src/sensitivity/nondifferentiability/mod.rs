@@ -7,8 +7,8 @@
 pub(crate) mod kink;
 pub(crate) mod objective_kink;
 
-use super::linearized::linearization::{Jacobian, Linearizer};
-use super::linearized::variational_equation::LinearTape;
+use super::linearised::linearisation::{Jacobian, Lineariser};
+use super::linearised::variational_equation::LinearTape;
 use crate::problem::Columns;
 use crate::simulate::{Cause, Instant, Mode, Piece, Tape};
 use nalgebra::DVector;
@@ -48,8 +48,8 @@ pub struct Nondifferentiability {
 
 /// All suspicions, in the order of time.
 pub(crate) fn nondifferentiabilities(pieces: &LinearTape) -> Vec<Nondifferentiability> {
-    let LinearTape { linearizer, tape, .. } = *pieces;
-    let watch = Watch { linearizer, tape };
+    let LinearTape { lineariser, tape, .. } = *pieces;
+    let watch = Watch { lineariser, tape };
     let mut found = Vec::new();
     for (at, piece) in tape.pieces.iter().enumerate() {
         match piece {
@@ -71,7 +71,7 @@ pub(crate) fn nondifferentiabilities(pieces: &LinearTape) -> Vec<Nondifferentiab
 }
 
 struct Watch<'t> {
-    linearizer: &'t Linearizer<'t>,
+    lineariser: &'t Lineariser<'t>,
     tape: &'t Tape,
 }
 
@@ -95,13 +95,13 @@ impl Distances {
 
 impl Watch<'_> {
     fn distances(&self, at: &Instant) -> Distances {
-        let flow = self.linearizer.rate_at_instant(self.tape, at);
+        let flow = self.lineariser.rate_at_instant(self.tape, at);
         let state = DVector::from_column_slice(&at.state);
         let regime = &self.tape.regimes[at.regime];
-        let table = self.linearizer.table(regime, &at.selectors, at.time, &state);
-        let system = self.linearizer.system;
+        let table = self.lineariser.table(regime, &at.selectors, at.time, &state);
+        let system = self.lineariser.system;
         let Jacobian { values, by } =
-            Jacobian::of(&*system.switching, &table, &self.linearizer.parameters);
+            Jacobian::of(&*system.switching, &table, &self.lineariser.parameters);
         let normals = by.columns(1, state.len());
         let visible = system.states.iter().zip(flow.iter()).filter(|(state, _)| !state.hidden);
         let size = visible.map(|(_, rate)| rate * rate).sum::<f64>().sqrt();
@@ -119,10 +119,10 @@ impl Watch<'_> {
         let regime = &self.tape.regimes[start.regime];
         [(start.time, start.state.as_slice()), (start.time + h, end)].map(|(time, state)| {
             let state = DVector::from_column_slice(state);
-            let table = self.linearizer.table(regime, &start.selectors, time, &state);
-            let rates = &self.linearizer.system.rates;
+            let table = self.lineariser.table(regime, &start.selectors, time, &state);
+            let rates = &self.lineariser.system.rates;
             let mut values = Columns::new(rates.outputs(), 1);
-            rates.value(&table, &self.linearizer.parameters, &mut values);
+            rates.value(&table, &self.lineariser.parameters, &mut values);
             DVector::from_fn(rates.outputs(), |row, _| values.column(row)[0])
         })
     }
@@ -198,14 +198,20 @@ impl Watch<'_> {
 
     /// Whether the event before or after is at the same time.
     fn meets_stop(&self, at: usize, is_it: impl Fn(&Cause) -> bool) -> bool {
-        let [first, last] = self.linearizer.system.interval;
+        let [first, last] = self.lineariser.system.interval;
         let time_of = |piece: &Piece| match piece {
             Piece::Event { before, .. } => before.time,
             Piece::Step { start, .. } => start.time,
         };
         let own = time_of(&self.tape.pieces[at]);
         let is_near = |piece: &&Piece| (time_of(piece) - own).abs() <= TOGETHER * (last - first);
-        let is_other = |piece: &&Piece| matches!(piece, Piece::Event { cause, .. } if is_it(cause) && !matches!(cause, Cause::Start | Cause::Leaves(_) | Cause::CrossesKink(_)));
+        let is_passed_over = |cause: &Cause| {
+            matches!(cause, Cause::Start | Cause::Leaves(_) | Cause::CrossesKink(_))
+        };
+        let is_other = |piece: &&Piece| match piece {
+            Piece::Event { cause, .. } => is_it(cause) && !is_passed_over(cause),
+            Piece::Step { .. } => false,
+        };
         let before =
             self.tape.pieces[..at].iter().rev().take_while(is_near).any(|it| is_other(&it));
         before || self.tape.pieces[at + 1..].iter().take_while(is_near).any(|it| is_other(&it))
@@ -213,7 +219,7 @@ impl Watch<'_> {
 
     fn met_at_the_end(&self, end: &Instant) -> impl Iterator<Item = (usize, f64)> {
         let distances = self.distances(end);
-        let [first, last] = self.linearizer.system.interval;
+        let [first, last] = self.lineariser.system.interval;
         let events = self.tape.pieces.iter().rev().find_map(|piece| match piece {
             Piece::Event { cause: Cause::Reaches(surface), before, .. } => {
                 Some((*surface, before.time))

@@ -6,7 +6,7 @@
 
 use super::kink::Kink;
 use crate::problem::Columns;
-use crate::sensitivity::linearized::linearization::Linearizer;
+use crate::sensitivity::linearised::linearisation::Lineariser;
 use nalgebra::DVector;
 
 /// The distance, as a part of the quantity, and what it is divided by for comparison.
@@ -30,25 +30,25 @@ pub(crate) struct Direction {
 /// Whether the objective has a kink at `[x(start), x(end)]` along one of the directions; `slopes`
 /// are those by the ends, then the parameters.
 pub(crate) fn objective_kink(
-    linearizer: &Linearizer,
+    lineariser: &Lineariser,
     slopes: &[f64],
     ends: &DVector<f64>,
     mut directions: impl Iterator<Item = Direction>,
 ) -> Option<Kink> {
-    let inputs = ends.iter().chain(&linearizer.parameters);
+    let inputs = ends.iter().chain(&lineariser.parameters);
     let terms: f64 = slopes.iter().zip(inputs).map(|(by, value)| (by * value).abs()).sum();
-    let is_kinked = directions.any(|direction| is_kinked(linearizer, ends, &direction, terms));
-    is_kinked.then(|| Kink { of: linearizer.system.objective.origin(0), time: None })
+    let is_kinked = directions.any(|direction| is_kinked(lineariser, ends, &direction, terms));
+    is_kinked.then(|| Kink { of: lineariser.system.objective.origin(0), time: None })
 }
 
 fn is_kinked(
-    linearizer: &Linearizer,
+    lineariser: &Lineariser,
     ends: &DVector<f64>,
     direction: &Direction,
     terms: f64,
 ) -> bool {
     let distance = DISTANCE * if direction.value == 0.0 { 1.0 } else { direction.value.abs() };
-    let value = |part: f64| value(linearizer, ends, &(part * distance * &direction.by));
+    let value = |part: f64| value(lineariser, ends, &(part * distance * &direction.by));
     let own = value(0.0);
     let bend = |part: f64| {
         let [above, below] = [value(part), value(-part)];
@@ -59,15 +59,15 @@ fn is_kinked(
 }
 
 /// The objective at the ends, moved.
-fn value(linearizer: &Linearizer, ends: &DVector<f64>, by: &DVector<f64>) -> f64 {
-    let objective = &linearizer.system.objective;
+fn value(lineariser: &Lineariser, ends: &DVector<f64>, by: &DVector<f64>) -> f64 {
+    let objective = &lineariser.system.objective;
     let mut point = Columns::new(ends.len(), 1);
     for (at, end) in ends.iter().enumerate() {
         point.column_mut(at)[0] = end + by[at];
     }
     let moves = by.iter().skip(ends.len());
     let parameters: Vec<f64> =
-        linearizer.parameters.iter().zip(moves).map(|(value, by)| value + by).collect();
+        lineariser.parameters.iter().zip(moves).map(|(value, by)| value + by).collect();
     let mut values = Columns::new(objective.outputs(), 1);
     objective.value(&point, &parameters, &mut values);
     values.column(0)[0]

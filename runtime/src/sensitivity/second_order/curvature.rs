@@ -10,7 +10,7 @@
 //! where `u_ij` is the curvature of controls that change with time.
 
 use crate::problem::{Columns, Function};
-use crate::sensitivity::linearized::linearization::{Jacobian, Linearization, Linearizer, sliding};
+use crate::sensitivity::linearised::linearisation::{Jacobian, Linearisation, Lineariser, sliding};
 use crate::simulate::Regime;
 use nalgebra::{DMatrix, DVector};
 
@@ -78,9 +78,9 @@ pub(crate) struct Completed {
 
 /// The right side at one point to the second order.
 pub(crate) struct Curvature<'l, 'a> {
-    linearizer: &'l Linearizer<'a>,
+    lineariser: &'l Lineariser<'a>,
     regime: &'l Regime,
-    point: &'l Linearization,
+    point: &'l Linearisation,
     flow: Hessians,
     /// Second derivatives of the rates of the sliding surfaces, and `-f_s r_s^-1`.
     rates: Option<(Hessians, Vec<usize>, DMatrix<f64>)>,
@@ -89,26 +89,26 @@ pub(crate) struct Curvature<'l, 'a> {
 
 impl<'l, 'a> Curvature<'l, 'a> {
     pub fn new(
-        linearizer: &'l Linearizer<'a>,
-        point: &'l Linearization,
+        lineariser: &'l Lineariser<'a>,
+        point: &'l Linearisation,
         regime: &'l Regime,
         time: f64,
         x: &DVector<f64>,
     ) -> Self {
-        let table = linearizer.table(regime, &point.selectors, time, x);
-        let flow = Hessians::of(&*linearizer.system.flow, &table, &linearizer.parameters);
+        let table = lineariser.table(regime, &point.selectors, time, x);
+        let flow = Hessians::of(&*lineariser.system.flow, &table, &lineariser.parameters);
         let sliding = sliding(regime);
         let rates =
-            if sliding.is_empty() { None } else { rates(linearizer, point, &table, sliding) };
-        Curvature { linearizer, regime, point, flow, rates, time }
+            if sliding.is_empty() { None } else { rates(lineariser, point, &table, sliding) };
+        Curvature { lineariser, regime, point, flow, rates, time }
     }
 
     /// A direction `(t, x, U, p)` with what follows it.
     pub fn complete(&self, direction: &DVector<f64>) -> Completed {
-        let mut completed = self.linearizer.completed(direction, self.regime, self.time);
+        let mut completed = self.lineariser.completed(direction, self.regime, self.time);
         if !self.point.selectors_by.is_empty() {
             let selectors = &self.point.selectors_by * direction;
-            let layout = self.linearizer.system.layout;
+            let layout = self.lineariser.system.layout;
             completed.whole.rows_range_mut(layout.selectors()).copy_from(&selectors);
         }
         completed
@@ -120,8 +120,8 @@ impl<'l, 'a> Curvature<'l, 'a> {
         if let Some((hessians, sliding, push)) = &self.rates {
             sum += push * hessians.along(&a.whole, &b.whole).select_rows(sliding);
         }
-        if self.linearizer.is_curved(self.regime) {
-            let bent = self.linearizer.control_curvature(self.regime, self.time, [a, b], 0.0);
+        if self.lineariser.is_curved(self.regime) {
+            let bent = self.lineariser.control_curvature(self.regime, self.time, [a, b], 0.0);
             sum += self.by_controls() * bent;
         }
         sum
@@ -129,8 +129,8 @@ impl<'l, 'a> Curvature<'l, 'a> {
 
     /// `f*_u`: what the numbers of a polynomial contribute to it are parts of 1.
     fn by_controls(&self) -> DMatrix<f64> {
-        let own = self.linearizer.layout(self.regime).controls();
-        let count = self.linearizer.system.layout.u;
+        let own = self.lineariser.layout(self.regime).controls();
+        let count = self.lineariser.system.layout.u;
         let by = self.point.by();
         let blocks = own.clone().step_by(count).map(|first| by.columns(first, count));
         blocks.fold(DMatrix::zeros(by.nrows(), count), |sum, block| sum + block)
@@ -138,21 +138,21 @@ impl<'l, 'a> Curvature<'l, 'a> {
 }
 
 fn rates(
-    linearizer: &Linearizer,
-    point: &Linearization,
+    lineariser: &Lineariser,
+    point: &Linearisation,
     table: &Columns,
     sliding: Vec<usize>,
 ) -> Option<(Hessians, Vec<usize>, DMatrix<f64>)> {
-    let system = linearizer.system;
-    let by = Jacobian::of(&*system.rates, table, &linearizer.parameters).by;
+    let system = lineariser.system;
+    let by = Jacobian::of(&*system.rates, table, &lineariser.parameters).by;
     let by_selectors = by.columns(system.layout.selectors().start, system.layout.s);
     let inverse = by_selectors.select_columns(&sliding).select_rows(&sliding).try_inverse()?;
     let push = -(point.by_selectors().select_columns(&sliding) * inverse);
-    let hessians = Hessians::of(&*system.rates, table, &linearizer.parameters);
+    let hessians = Hessians::of(&*system.rates, table, &lineariser.parameters);
     Some((hessians, sliding, push))
 }
 
-impl Linearizer<'_> {
+impl Lineariser<'_> {
     /// `d2(t0, tf)` along two directions of parameters.
     pub fn interval_curvature(&self, a: &DVector<f64>, b: &DVector<f64>) -> DVector<f64> {
         Hessians::of(&*self.system.interval_of, &Columns::new(0, 1), &self.parameters).along(a, b)

@@ -3,9 +3,9 @@
 
 use super::curvature::{Completed, Hessians};
 use crate::problem::Columns;
-use crate::sensitivity::linearized::event::EventOnTape;
-use crate::sensitivity::linearized::linearization::{Jacobian, Linearization, Linearizer};
-use crate::simulate::{Cause, Instant, Kind, Regime, Tape};
+use crate::sensitivity::linearised::event::EventOnTape;
+use crate::sensitivity::linearised::linearisation::{Jacobian, Linearisation, Lineariser};
+use crate::simulate::{Cause, EventKind, Instant, Regime, Tape};
 use nalgebra::{DMatrix, DVector, DVectorView, RowDVector};
 
 /// One vector for each pair of directions.
@@ -43,7 +43,7 @@ impl Pairs {
 
 /// An event whose time moves by `tau` in each direction.
 pub(crate) struct SecondOrderEvent<'b> {
-    pub linearizer: &'b Linearizer<'b>,
+    pub lineariser: &'b Lineariser<'b>,
     pub tape: &'b Tape,
     pub event: &'b EventOnTape<'b>,
     pub tau: &'b RowDVector<f64>,
@@ -63,7 +63,7 @@ impl SecondOrderEvent<'_> {
         if self.event.cause == Cause::Start {
             return Moved { s: s.clone(), x: x.clone(), tau: self.clock(directions) };
         }
-        let arriving = self.linearizer.at_instant(self.tape, self.event.before);
+        let arriving = self.lineariser.at_instant(self.tape, self.event.before);
         let swept = self.swept(&arriving, directions);
         let x = x.map(|i, j, x| x + swept(i, j));
         let s = s + &arriving.rate * self.tau;
@@ -74,15 +74,15 @@ impl SecondOrderEvent<'_> {
 
     /// Through all resets, one after the other.
     pub fn reset(&self, mut moved: Moved, directions: &[DVector<f64>]) -> Moved {
-        let system = self.linearizer.system;
+        let system = self.lineariser.system;
         let states = system.layout.x;
         let mut from = self.event.before;
         for change in self.event.changes {
-            if let Kind::Jump(jump) = change.kind {
+            if let EventKind::Jump(jump) = change.kind {
                 let table = self.table(from);
-                let by = Jacobian::of(&*system.resets, &table, &self.linearizer.parameters).by;
+                let by = Jacobian::of(&*system.resets, &table, &self.lineariser.parameters).by;
                 let by = by.rows(jump * states, states);
-                let hessians = Hessians::of(&*system.resets, &table, &self.linearizer.parameters);
+                let hessians = Hessians::of(&*system.resets, &table, &self.lineariser.parameters);
                 let whole = self.moved(directions, &moved.s);
                 let (by_state, by_time) = (by.columns(1, states), by.column(0));
                 let by_controls = by.columns_range(system.layout.controls());
@@ -104,7 +104,7 @@ impl SecondOrderEvent<'_> {
     /// Back to the fixed time, along the right side after the event; `directions` are those there.
     pub fn leave(
         &self,
-        onward: &Linearization,
+        onward: &Linearisation,
         moved: &Moved,
         directions: &[DVector<f64>],
     ) -> Pairs {
@@ -116,7 +116,7 @@ impl SecondOrderEvent<'_> {
     /// along the flow.
     fn swept(
         &self,
-        point: &Linearization,
+        point: &Linearisation,
         directions: &[DVector<f64>],
     ) -> impl Fn(usize, usize) -> DVector<f64> {
         let mut along_flow = DVector::zeros(point.by().ncols());
@@ -134,26 +134,26 @@ impl SecondOrderEvent<'_> {
     /// no jump there.
     fn second_tau(
         &self,
-        arriving: &Linearization,
+        arriving: &Linearisation,
         s: &DMatrix<f64>,
         x: &Pairs,
         directions: &[DVector<f64>],
     ) -> Pairs {
-        let system = self.linearizer.system;
+        let system = self.lineariser.system;
         let (function, row) = match self.event.cause {
             Cause::Reaches(surface) => (&system.switching, surface),
             Cause::CrossesKink(kink) => (&system.kinks, kink),
-            Cause::Controls if !self.linearizer.is_stretched() => {
+            Cause::Controls if !self.lineariser.is_stretched() => {
                 return Pairs::new(directions.len(), |_, _| DVector::zeros(1));
             }
             _ => return self.clock(directions),
         };
         let table = self.table(self.event.before);
-        let by = Jacobian::of(&**function, &table, &self.linearizer.parameters).by;
+        let by = Jacobian::of(&**function, &table, &self.lineariser.parameters).by;
         let (normal, by_time) =
             (by.row(row).columns(1, system.layout.x).into_owned(), by[(row, 0)]);
         let speed = (&normal * &arriving.rate)[0] + by_time;
-        let hessians = Hessians::of(&**function, &table, &self.linearizer.parameters);
+        let hessians = Hessians::of(&**function, &table, &self.lineariser.parameters);
         let whole = self.moved(directions, s);
         x.map(|i, j, x| {
             let bent = hessians.along(&whole[i].whole, &whole[j].whole)[row];
@@ -163,27 +163,27 @@ impl SecondOrderEvent<'_> {
 
     /// `tau_ij` of a time that is a fixed part of the interval.
     fn clock(&self, directions: &[DVector<f64>]) -> Pairs {
-        let layout = self.linearizer.layout(self.regime());
-        let tau = self.linearizer.tau(self.event.before.time);
+        let layout = self.lineariser.layout(self.regime());
+        let tau = self.lineariser.tau(self.event.before.time);
         let parameters = |i: usize| directions[i].rows_range(layout.parameters()).into_owned();
         Pairs::new(directions.len(), |i, j| {
-            let ends = self.linearizer.interval_curvature(&parameters(i), &parameters(j));
+            let ends = self.lineariser.interval_curvature(&parameters(i), &parameters(j));
             DVector::from_element(1, (1.0 - tau) * ends[0] + tau * ends[1])
         })
     }
 
     fn table(&self, at: &Instant) -> Columns {
         let state = DVector::from_column_slice(&at.state);
-        self.linearizer.table(&self.tape.regimes[at.regime], &at.selectors, at.time, &state)
+        self.lineariser.table(&self.tape.regimes[at.regime], &at.selectors, at.time, &state)
     }
 
     /// `u_ij` at the moved time.
     fn control_curvature(&self, pair: [&Completed; 2], t_ij: f64) -> DVector<f64> {
         let (regime, time) = (self.regime(), self.event.before.time);
-        if self.linearizer.is_curved(regime) {
-            self.linearizer.control_curvature(regime, time, pair, t_ij)
+        if self.lineariser.is_curved(regime) {
+            self.lineariser.control_curvature(regime, time, pair, t_ij)
         } else {
-            DVector::zeros(self.linearizer.system.layout.u)
+            DVector::zeros(self.lineariser.system.layout.u)
         }
     }
 
@@ -198,7 +198,7 @@ impl SecondOrderEvent<'_> {
             let mut moved = direction.clone();
             moved[0] = self.tau[i];
             moved.rows_mut(1, s.nrows()).copy_from(&s.column(i));
-            self.linearizer.completed(&moved, self.regime(), self.event.before.time)
+            self.lineariser.completed(&moved, self.regime(), self.event.before.time)
         };
         directions.iter().enumerate().map(one).collect()
     }

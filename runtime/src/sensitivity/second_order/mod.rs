@@ -20,10 +20,10 @@ mod event;
 use super::first_order;
 use super::first_order::quantity::{Directions, Quantity};
 use super::first_order::{Objective, last_instant};
-use super::linearized::event::{EventOnTape, Timing};
-use super::linearized::linearization::Linearizer;
-use super::linearized::step::LinearStep;
-use super::linearized::surface::Projection;
+use super::linearised::event::{EventOnTape, Timing};
+use super::linearised::linearisation::Lineariser;
+use super::linearised::step::LinearStep;
+use super::linearised::surface::Projection;
 use super::nondifferentiability::kink::is_doubtful;
 use crate::problem::Columns;
 use crate::simulate::{Cause, Controls, Instant, Mode, Piece, Regime, Simulation, System, Tape};
@@ -41,13 +41,13 @@ pub fn hessian(
     simulation: &Simulation,
     quantities: &[Quantity],
 ) -> Option<Vec<Vec<f64>>> {
-    let linearizer = Linearizer::new(system, controls);
+    let lineariser = Lineariser::new(system, controls);
     let tape = simulation.tape.as_ref().filter(|tape| !has_no_second_order(tape))?;
-    let objective = Objective::new(&linearizer, simulation)?;
+    let objective = Objective::new(&lineariser, simulation)?;
     let directions = Directions::each(system, controls, quantities);
-    let mut second = Second::new(&linearizer, tape, &directions);
+    let mut second = Second::new(&lineariser, tape, &directions);
     (0..tape.pieces.len()).for_each(|at| second.pass(at));
-    if second.leaves_at_start || (0..tape.pieces.len()).any(|at| is_doubtful(&linearizer, tape, at))
+    if second.leaves_at_start || (0..tape.pieces.len()).any(|at| is_doubtful(&lineariser, tape, at))
     {
         return None;
     }
@@ -64,7 +64,7 @@ fn has_no_second_order(tape: &Tape) -> bool {
 
 /// First and second derivatives on their way along a tape.
 struct Second<'t> {
-    linearizer: &'t Linearizer<'t>,
+    lineariser: &'t Lineariser<'t>,
     tape: &'t Tape,
     directions: &'t Directions<'t>,
     s: DMatrix<f64>,
@@ -74,13 +74,13 @@ struct Second<'t> {
 }
 
 impl<'t> Second<'t> {
-    fn new(linearizer: &'t Linearizer<'t>, tape: &'t Tape, directions: &'t Directions) -> Self {
-        let s = first_order::start(linearizer, directions);
+    fn new(lineariser: &'t Lineariser<'t>, tape: &'t Tape, directions: &'t Directions) -> Self {
+        let s = first_order::start(lineariser, directions);
         let parameters = |i: usize| directions.parameters.column(i).into_owned();
         let x = Pairs::new(directions.count(), |i, j| {
-            linearizer.start_curvature(&parameters(i), &parameters(j))
+            lineariser.start_curvature(&parameters(i), &parameters(j))
         });
-        Second { linearizer, tape, directions, s, x, leaves_at_start: false }
+        Second { lineariser, tape, directions, s, x, leaves_at_start: false }
     }
 
     fn regime(&self, at: &Instant) -> &'t Regime {
@@ -105,16 +105,16 @@ impl<'t> Second<'t> {
                 let regime = self.regime(start);
                 self.step(
                     regime,
-                    &LinearStep::new(self.linearizer, regime, start, *h, stages, *rule),
+                    &LinearStep::new(self.lineariser, regime, start, *h, stages, *rule),
                 );
             }
             Piece::Event { cause, before, after, changes } => {
                 let event = EventOnTape { cause: *cause, before, after, changes };
-                self.event(&event, &Timing::new(self.linearizer, self.tape, &event));
+                self.event(&event, &Timing::new(self.lineariser, self.tape, &event));
             }
         }
         let end = piece.end();
-        if let Some(projection) = Projection::new(self.linearizer, self.regime(&end), &end) {
+        if let Some(projection) = Projection::new(self.lineariser, self.regime(&end), &end) {
             self.project(&projection, self.regime(&end), &end);
         }
     }
@@ -124,7 +124,7 @@ impl<'t> Second<'t> {
         let (at_stages, end) = step.forward(&self.s, &forcing);
         let stages = step.stages.iter().zip(&step.points).zip(&at_stages);
         let forcing = stages.map(|((point, (time, state)), s)| {
-            let curvature = Curvature::new(self.linearizer, point, regime, *time, state);
+            let curvature = Curvature::new(self.lineariser, point, regime, *time, state);
             let whole: Vec<Completed> =
                 self.directions_at(regime, s).iter().map(|it| curvature.complete(it)).collect();
             self.x.map(|i, j, _| curvature.along(&whole[i], &whole[j])).columns
@@ -139,9 +139,9 @@ impl<'t> Second<'t> {
         let tau = timing.of(&self.s, &self.directions.inputs(regime));
         let directions = self.directions_at(regime, &self.s);
         let second =
-            SecondOrderEvent { linearizer: self.linearizer, tape: self.tape, event, tau: &tau };
+            SecondOrderEvent { lineariser: self.lineariser, tape: self.tape, event, tau: &tau };
         let moved = second.reset(second.meet(&self.s, &self.x, &directions), &directions);
-        let onward = self.linearizer.at_instant(self.tape, event.after);
+        let onward = self.lineariser.at_instant(self.tape, event.after);
         self.s = &moved.s - &onward.rate * &tau;
         let directions = self.directions_at(self.regime(event.after), &self.s);
         self.x = second.leave(&onward, &moved, &directions);
@@ -151,16 +151,16 @@ impl<'t> Second<'t> {
     fn project(&mut self, projection: &Projection, regime: &Regime, at: &Instant) {
         let projected = projection.forward(&self.s, &self.directions.inputs(regime));
         let moved = (&projected - &self.s).amax();
-        let is_start = at.time == self.linearizer.system.interval[0];
+        let is_start = at.time == self.lineariser.system.interval[0];
         self.leaves_at_start |= is_start && moved > 1e-9 * (1.0 + projected.amax());
         self.s = projected;
         let state = DVector::from_column_slice(&at.state);
-        let table = self.linearizer.table(regime, &at.selectors, at.time, &state);
+        let table = self.lineariser.table(regime, &at.selectors, at.time, &state);
         let hessians =
-            Hessians::of(&*self.linearizer.system.switching, &table, &self.linearizer.parameters);
+            Hessians::of(&*self.lineariser.system.switching, &table, &self.lineariser.parameters);
         let whole = self.directions_at(regime, &self.s);
         let whole: Vec<_> =
-            whole.iter().map(|it| self.linearizer.whole(it, regime, at.time)).collect();
+            whole.iter().map(|it| self.lineariser.whole(it, regime, at.time)).collect();
         self.x = self.x.map(|i, j, x| {
             let bent = hessians.along(&whole[i], &whole[j]);
             projection.correct(x, &bent.select_rows(&projection.surfaces))
@@ -169,13 +169,13 @@ impl<'t> Second<'t> {
 
     /// `J_ij = J_z Z_ij + J_zz[Z_i, Z_j]` with `Z = (x(t0), x(T), p)`.
     fn of_objective(&self, objective: &Objective, simulation: &Simulation) -> DMatrix<f64> {
-        let system = self.linearizer.system;
+        let system = self.lineariser.system;
         let (start, end, bent_end) = self.at_end();
         let mut point = Columns::new(2 * system.layout.x, 1);
         for (at, value) in system.start.iter().chain(&simulation.end).enumerate() {
             point.column_mut(at)[0] = *value;
         }
-        let hessians = Hessians::of(&*system.objective, &point, &self.linearizer.parameters);
+        let hessians = Hessians::of(&*system.objective, &point, &self.lineariser.parameters);
         let parameters = |i: usize| self.directions.parameters.column(i);
         let whole = |i: usize| {
             let ends =
@@ -185,7 +185,7 @@ impl<'t> Second<'t> {
         };
         DMatrix::from_fn(self.directions.count(), self.directions.count(), |i, j| {
             let bent_start = self
-                .linearizer
+                .lineariser
                 .start_curvature(&parameters(i).into_owned(), &parameters(j).into_owned());
             (&objective.by_start * bent_start)[0]
                 + (&objective.by_end * bent_end.at(i, j))[0]
@@ -195,18 +195,18 @@ impl<'t> Second<'t> {
 
     /// First derivatives of both ends, second ones of the last: the end of the interval moves, too.
     fn at_end(&self) -> (DMatrix<f64>, DMatrix<f64>, Pairs) {
-        let start = first_order::start(self.linearizer, self.directions);
+        let start = first_order::start(self.lineariser, self.directions);
         let Some(last) = last_instant(self.tape) else {
             return (start.clone(), start, self.x.clone());
         };
         // The cause is of no matter: nothing but the clock moves the end.
         let event = EventOnTape { cause: Cause::Repels, before: &last, after: &last, changes: &[] };
         let regime = self.regime(&last);
-        let end = self.linearizer.system.interval[1];
-        let timing = Timing::of_clock(self.linearizer, regime, end);
+        let end = self.lineariser.system.interval[1];
+        let timing = Timing::of_clock(self.lineariser, regime, end);
         let tau = timing.of(&self.s, &self.directions.inputs(regime));
         let second = SecondOrderEvent {
-            linearizer: self.linearizer,
+            lineariser: self.lineariser,
             tape: self.tape,
             event: &event,
             tau: &tau,

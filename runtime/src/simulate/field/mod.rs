@@ -4,24 +4,25 @@
 //! dpsi/dx`, by Newton's method on `B = -d_A df/ds_A`; one iteration where selectors do not
 //! multiply each other.
 
-use super::controls::Controls;
-use crate::simulate::tuning::field::{PROJECTED, SOLVED};
 pub(crate) mod curve;
+mod derivatives;
 pub(crate) mod direction;
 mod kink_sides;
 mod memory;
 pub(crate) mod normals;
+mod sliding;
 pub(crate) mod tolerance;
 pub(crate) mod tube;
 
+pub(crate) use sliding::{correct, surface_rates};
+
+use super::controls::Controls;
 use super::result::Options;
 use super::system::{System, value};
-use crate::problem::{Columns, Function};
+use crate::problem::Columns;
 use crate::simulate::mode::Mode;
 use curve::Curve;
 use memory::Memory;
-use nalgebra::{DMatrix, DVector};
-use normals::Normals;
 use tolerance::Tolerance;
 
 /// The right side, with the memory that its evaluation needs.
@@ -157,25 +158,6 @@ impl<'a> Field<'a> {
             .for_each(|(column, value)| column[0] = *value);
     }
 
-    /// Values and the derivatives by one kind of inputs, as a dense matrix.
-    pub(crate) fn jacobian(
-        &self,
-        function: &dyn Function,
-        inputs: std::ops::Range<usize>,
-    ) -> (Vec<f64>, DMatrix<f64>) {
-        let pattern = function.jacobian_pattern();
-        let mut values = Columns::new(function.outputs(), 1);
-        let mut entries = Columns::new(pattern.entries.len(), 1);
-        function.jacobian(&self.point, &self.parameters, &mut values, &mut entries);
-        let mut matrix = DMatrix::zeros(function.outputs(), inputs.len());
-        for (at, &(row, column)) in pattern.entries.iter().enumerate() {
-            if inputs.contains(&(column as usize)) {
-                matrix[(row as usize, column as usize - inputs.start)] = entries.column(at)[0];
-            }
-        }
-        (column_values(&values), matrix)
-    }
-
     /// The functions of the surfaces.
     pub fn psi(&mut self, t: f64, x: &[f64]) -> Vec<f64> {
         self.set_point(t, x, None);
@@ -190,71 +172,6 @@ impl<'a> Field<'a> {
         let mut values = Columns::new(self.system.resets.outputs(), 1);
         self.system.resets.value(&self.point, &self.parameters, &mut values);
         column_values(&values)[jump * x.len()..][..x.len()].to_vec()
-    }
-
-    /// `f` and `df/ds` where all selectors are given.
-    pub fn with_selectors(
-        &mut self,
-        t: f64,
-        x: &[f64],
-        selectors: &[f64],
-    ) -> (Vec<f64>, DMatrix<f64>) {
-        self.derivatives(t, x, selectors, self.system.layout.selectors())
-    }
-
-    /// `df/dx` in the current mode.
-    pub fn by_state(&mut self, t: f64, x: &[f64]) -> DMatrix<f64> {
-        let selectors = self.selectors.clone();
-        self.derivatives(t, x, &selectors, self.system.layout.states()).1
-    }
-
-    /// `f` and `df/dx` where all selectors are given.
-    pub fn by_state_with(
-        &mut self,
-        t: f64,
-        x: &[f64],
-        selectors: &[f64],
-    ) -> (Vec<f64>, DMatrix<f64>) {
-        self.derivatives(t, x, selectors, self.system.layout.states())
-    }
-
-    /// The derivative of the right side in the current mode, in which the selectors of sliding
-    /// surfaces follow the state: `f_x + f_s s_x` with `psi'_s s_x = -psi'_x`.
-    pub fn jacobian_of_mode(&mut self, t: f64, x: &[f64]) -> DMatrix<f64> {
-        let (states, selectors) = (self.system.layout.states(), self.system.layout.selectors());
-        let now = self.selectors_at(t, x);
-        let (_, by_inputs) = self.derivatives(t, x, &now, 0..selectors.end);
-        let by_state = by_inputs.columns(states.start, states.len()).into_owned();
-        let sliding = self.sliding();
-        if sliding.is_empty() {
-            return by_state;
-        }
-        let (_, rates) = self.jacobian(&*self.system.rates, 0..selectors.end);
-        let rates = rates.select_rows(&sliding);
-        let places: Vec<usize> = sliding.iter().map(|&i| selectors.start + i).collect();
-        let follows =
-            rates.select_columns(&places).lu().solve(&rates.columns(states.start, states.len()));
-        match follows {
-            Some(follows) => by_state - by_inputs.select_columns(&places) * follows,
-            None => by_state,
-        }
-    }
-
-    fn derivatives(
-        &mut self,
-        t: f64,
-        x: &[f64],
-        selectors: &[f64],
-        by: std::ops::Range<usize>,
-    ) -> (Vec<f64>, DMatrix<f64>) {
-        self.evaluations += 1;
-        self.set_point(t, x, Some(selectors));
-        let (mut rate, mut matrix) = self.jacobian(&*self.system.flow, by);
-        for &state in &self.held {
-            rate[state] = 0.0;
-            matrix.row_mut(state).fill(0.0);
-        }
-        (rate, matrix)
     }
 
     /// The right side in the current mode; not a number where sliding selectors cannot be found.
@@ -299,69 +216,6 @@ impl<'a> Field<'a> {
         self.evaluations = before.1;
         std::mem::replace(&mut self.selectors, before.0)
     }
-
-    fn sliding_rate(&mut self, t: f64, x: &[f64], rate: &mut [f64]) {
-        self.set_point(t, x, None);
-        let Field { system, point, parameters, memory, .. } = self;
-        memory.slide_on(&self.modes);
-        system.switching.jacobian(point, parameters, &mut memory.psi, &mut memory.normals);
-        let first = system.layout.selectors().start - system.layout.p;
-        for _ in 0..30 {
-            self.evaluations += 1;
-            system.flow.jacobian(point, parameters, &mut memory.flow, &mut memory.by_inputs);
-            read(&memory.flow, rate);
-            self.held.iter().for_each(|&state| rate[state] = 0.0);
-            if !memory.solve(system, rate, &self.held) {
-                break;
-            }
-            let mut is_solved = true;
-            for (&surface, change) in memory.sliding.iter().zip(&memory.change) {
-                let selector = &mut point.column_mut(first + surface)[0];
-                *selector += change;
-                is_solved &= change.abs() <= SOLVED * (1.0 + selector.abs());
-            }
-            if is_solved {
-                memory.sliding.iter().for_each(|&i| self.selectors[i] = point.column(first + i)[0]);
-                return memory.follow(rate, &self.held);
-            }
-        }
-        rate.fill(f64::NAN);
-    }
-
-    /// Newton's steps along `df/ds` back to the sliding surfaces.
-    pub fn project(&mut self, t: f64, x: &mut [f64]) {
-        let sliding = self.sliding();
-        for _ in 0..if sliding.is_empty() { 0 } else { 3 } {
-            let normals = self.normals(t, x);
-            if sliding.iter().all(|&i| normals.psi[i].abs() <= PROJECTED * normals.noise(i, x)) {
-                return;
-            }
-            let selectors = self.selectors.clone();
-            let (_, by_selector) = self.with_selectors(t, x, &selectors);
-            let directions = by_selector.select_columns(&sliding);
-            let matrix = normals.by_state.select_rows(&sliding) * &directions;
-            let psi =
-                DVector::from_iterator(sliding.len(), sliding.iter().map(|&i| normals.psi[i]));
-            let Some(along) = matrix.lu().solve(&psi) else { return };
-            let change = directions * along;
-            if !change.iter().all(|value| value.is_finite()) {
-                return;
-            }
-            x.iter_mut().zip(change.iter()).for_each(|(x, change)| *x -= change);
-        }
-    }
-}
-
-/// `r = d f + psi_t` and `B = -d df/ds` of some surfaces.
-pub(crate) fn surface_rates(
-    normals: &Normals,
-    rate: &[f64],
-    by_selector: &DMatrix<f64>,
-    surfaces: &[usize],
-) -> (DVector<f64>, DMatrix<f64>) {
-    let r = DVector::from_iterator(surfaces.len(), surfaces.iter().map(|&i| normals.rate(i, rate)));
-    let b = -(normals.by_state.select_rows(surfaces) * by_selector.select_columns(surfaces));
-    (r, b)
 }
 
 fn read(table: &Columns, values: &mut [f64]) {
@@ -371,12 +225,4 @@ fn read(table: &Columns, values: &mut [f64]) {
 
 fn column_values(table: &Columns) -> Vec<f64> {
     (0..table.columns()).map(|column| table.column(column)[0]).collect()
-}
-
-/// One Newton step along a gradient.
-pub(crate) fn correct(x: &mut [f64], gradient: &[f64], value: f64) {
-    let square: f64 = gradient.iter().map(|g| g * g).sum();
-    if square > 0.0 {
-        x.iter_mut().zip(gradient).for_each(|(x, g)| *x -= value * g / square);
-    }
 }

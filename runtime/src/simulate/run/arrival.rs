@@ -12,7 +12,7 @@ use super::Run;
 use crate::simulate::field::direction::length;
 use crate::simulate::field::{Field, surface_rates};
 use crate::simulate::mode::Mode;
-use crate::simulate::result::{Kind, Method, Status};
+use crate::simulate::result::{EventKind, Method, Status};
 use crate::simulate::steps::Step;
 use crate::simulate::system::Ball;
 use crate::simulate::tape::{Cause, Rule};
@@ -100,11 +100,11 @@ impl Run<'_> {
         let before = self.field.modes[first];
         let departs_already = before == Mode::Moving && self.field.departure[first] == self.t;
         let kind = match (before, next) {
-            (_, Mode::Sliding) if !self.has_begun => Some(Kind::StartsSliding),
+            (_, Mode::Sliding) if !self.has_begun => Some(EventKind::StartsSliding),
             _ if !self.has_begun || departs_already => None,
-            (Mode::Moving, Mode::Sliding) => Some(Kind::EntersSliding),
-            (Mode::Sliding, Mode::Moving) => Some(Kind::LeavesUp),
-            (Mode::Moving, Mode::Moving) => Some(Kind::Passes),
+            (Mode::Moving, Mode::Sliding) => Some(EventKind::EntersSliding),
+            (Mode::Sliding, Mode::Moving) => Some(EventKind::LeavesUp),
+            (Mode::Moving, Mode::Moving) => Some(EventKind::Passes),
             _ => None,
         };
         let margin = self.ball_margin(ball);

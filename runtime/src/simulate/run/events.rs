@@ -6,7 +6,7 @@ use crate::simulate::field::correct;
 use crate::simulate::location::Condition;
 use crate::simulate::mode::Mode;
 use crate::simulate::modes::decide;
-use crate::simulate::result::{Event, Kind, Status};
+use crate::simulate::result::{Event, EventKind, Status};
 use crate::simulate::tuning::events::{AT_EXIT, CLEAR, MOST_AT_ONCE, SMALL_WAY};
 use crate::simulate::tuning::field::ON_SURFACE;
 
@@ -99,7 +99,7 @@ impl Run<'_> {
         let [first, last] = self.field.system.interval;
         let here = self.record.events.iter().rev().take_while(|event| event.time == self.t);
         let is_crossing =
-            |event: &&Event| matches!(event.kind, Kind::CrossesUp | Kind::CrossesDown);
+            |event: &&Event| matches!(event.kind, EventKind::CrossesUp | EventKind::CrossesDown);
         let crossed: Vec<usize> = here.filter(is_crossing).map(|event| event.surface).collect();
         for &surface in surfaces.iter().filter(|surface| crossed.contains(surface)) {
             if let Some(limit_time) =
@@ -143,7 +143,7 @@ impl Run<'_> {
         if self.goes_through(surface, onward) {
             self.field.set_mode(surface, onward);
         }
-        self.event_from(before, surface, Kind::Jump(jump), margin);
+        self.event_from(before, surface, EventKind::Jump(jump), margin);
         let is_last = of.at_most.is_some_and(|limit| self.jumps[jump] as f64 >= limit);
         if let Some(held) = of.then_hold.filter(|_| is_last) {
             self.hold(jump, held);
@@ -215,7 +215,7 @@ impl Run<'_> {
         self.x.iter_mut().zip(rate).for_each(|(x, rate)| *x += rest * rate);
         self.t = limit_time;
         self.hold(jump, held);
-        self.event_from(before, held, Kind::EntersSliding, 0.0);
+        self.event_from(before, held, EventKind::EntersSliding, 0.0);
         Ok(())
     }
 
@@ -250,13 +250,13 @@ impl Run<'_> {
         }
         let before = self.field.modes[surface];
         let kind = match (before, next) {
-            (_, Mode::Sliding) if !self.has_begun => Some(Kind::StartsSliding),
+            (_, Mode::Sliding) if !self.has_begun => Some(EventKind::StartsSliding),
             _ if !self.has_begun => None,
-            (Mode::Below, Mode::Above) => Some(Kind::CrossesUp),
-            (Mode::Above, Mode::Below) => Some(Kind::CrossesDown),
-            (Mode::Below | Mode::Above, Mode::Sliding) => Some(Kind::EntersSliding),
-            (Mode::Sliding, Mode::Above) => Some(Kind::LeavesUp),
-            (Mode::Sliding, Mode::Below) => Some(Kind::LeavesDown),
+            (Mode::Below, Mode::Above) => Some(EventKind::CrossesUp),
+            (Mode::Above, Mode::Below) => Some(EventKind::CrossesDown),
+            (Mode::Below | Mode::Above, Mode::Sliding) => Some(EventKind::EntersSliding),
+            (Mode::Sliding, Mode::Above) => Some(EventKind::LeavesUp),
+            (Mode::Sliding, Mode::Below) => Some(EventKind::LeavesDown),
             _ => None,
         };
         let margin = self.margin(surface);
@@ -267,11 +267,11 @@ impl Run<'_> {
     }
 
     /// Notes an event that leaves the state as it is.
-    pub fn event(&mut self, surface: usize, kind: Kind, margin: f64) {
+    pub fn event(&mut self, surface: usize, kind: EventKind, margin: f64) {
         self.event_from(self.x.clone(), surface, kind, margin);
     }
 
-    fn event_from(&mut self, before: Vec<f64>, surface: usize, kind: Kind, margin: f64) {
+    fn event_from(&mut self, before: Vec<f64>, surface: usize, kind: EventKind, margin: f64) {
         let event = Event { time: self.t, surface, kind, margin, before, after: self.x.clone() };
         self.tape.change(&mut self.field, &event);
         self.record.events.push(event);

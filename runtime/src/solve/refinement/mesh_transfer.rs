@@ -17,56 +17,58 @@ pub(super) fn transferred(
     to: &TranscribedNlp,
     parts: &[usize],
 ) -> Start {
-    let carry = Carry { from, to, places: places(parts) };
+    let transfer = MeshTransfer { from, to, places: places(parts) };
     let warm = start.warm.as_ref().map(|Warm { multipliers, mu, widths }| {
         let multipliers = Multipliers {
-            constraints: carry.rows(&multipliers.constraints),
-            lower: carry.bounds(&multipliers.lower),
-            upper: carry.bounds(&multipliers.upper),
+            constraints: transfer.rows(&multipliers.constraints),
+            lower: transfer.bounds(&multipliers.lower),
+            upper: transfer.bounds(&multipliers.upper),
         };
         Warm { multipliers, mu: *mu, widths: widths.clone() }
     });
-    Start { v: carry.values(&start.v), warm }
+    Start { v: transfer.values(&start.v), warm }
 }
 
 /// The interval that each part is in, and which of its parts it is.
-fn places(parts: &[usize]) -> Vec<Place> {
+fn places(parts: &[usize]) -> Vec<IntervalPart> {
     let all = parts.iter().enumerate();
-    all.flat_map(|(interval, &parts)| (0..parts).map(move |part| Place { interval, part, parts }))
-        .collect()
+    all.flat_map(|(interval, &parts)| {
+        (0..parts).map(move |part| IntervalPart { interval, part, parts })
+    })
+    .collect()
 }
 
 #[derive(Clone, Copy)]
-struct Place {
+struct IntervalPart {
     interval: usize,
     part: usize,
     parts: usize,
 }
 
-impl Place {
+impl IntervalPart {
     /// The time of the old interval at a time of the new one.
     fn time(self, time: f64) -> f64 {
         (self.part as f64 + time) / self.parts as f64
     }
 }
 
-struct Carry<'a> {
+struct MeshTransfer<'a> {
     from: &'a TranscribedNlp<'a>,
     to: &'a TranscribedNlp<'a>,
-    places: Vec<Place>,
+    places: Vec<IntervalPart>,
 }
 
-impl Carry<'_> {
+impl MeshTransfer<'_> {
     /// Calls `action` with each variable of the new grid but the unknowns: itself, its slot, and
     /// where it is on the old grid.
-    fn each(&self, mut action: impl FnMut(usize, usize, Place, f64)) {
+    fn each(&self, mut action: impl FnMut(usize, usize, IntervalPart, f64)) {
         let chain = self.to.chain();
         for (slot, time) in self.to.interval().slots.iter().map(|slot| slot.time).enumerate() {
             for (k, place) in self.places.iter().enumerate() {
                 action(chain.state(k).start + slot, slot, *place, place.time(time));
             }
         }
-        let last = Place { interval: self.from.chain().intervals, part: 0, parts: 1 };
+        let last = IntervalPart { interval: self.from.chain().intervals, part: 0, parts: 1 };
         (0..chain.states)
             .for_each(|slot| action(chain.state(chain.intervals).start + slot, slot, last, 0.0));
     }
@@ -119,7 +121,7 @@ impl Carry<'_> {
         carried
     }
 
-    fn defects(&self, place: Place, old: &[f64], new: &mut [f64]) {
+    fn defects(&self, place: IntervalPart, old: &[f64], new: &mut [f64]) {
         let known = blocks(self.from.interval());
         let states = self.from.interval().start.states.len();
         for block in blocks(self.to.interval()) {
@@ -135,7 +137,7 @@ impl Carry<'_> {
         new[last..].copy_from_slice(&old[source..]);
     }
 
-    fn path(&self, place: Place, old: &[f64], new: &mut [f64]) {
+    fn path(&self, place: IntervalPart, old: &[f64], new: &mut [f64]) {
         let (from, to) = (&self.from.interval().path, &self.to.interval().path);
         let rows = new.len() / to.len();
         let share = from.len() as f64 / (to.len() * place.parts) as f64;

@@ -1,10 +1,10 @@
 //! Through which phases an unknown, or the multiplier of a coupling row, is carried in the border.
 //!
 //! Node `j` stands before phase `j`, the last one behind all phases. Going backward a member of the
-//! border is *born* at a node, the first that has an entry of it, and *dies* where it is eliminated:
-//! an unknown before the first phase that has to do with it; a row that holds for a first state
-//! with this state, which makes up for its multiplier; any other row before the phase at whose end
-//! it holds, or an earlier one where that phase has no controls.
+//! border is *born* at a node, the first that has an entry of it, and *dies* where it is
+//! eliminated: an unknown before the first phase that has to do with it; a row that holds for a
+//! first state with this state, which makes up for its multiplier; any other row before the phase
+//! at whose end it holds, or an earlier one where that phase has no controls.
 
 use super::direct::Direct;
 use crate::linalg::structure::phases::PhaseStages;
@@ -133,8 +133,8 @@ impl Lifetimes {
         self.spans.iter().filter(is_there).map(|(item, _)| *item).collect()
     }
 
-    /// Whether a member of the border is an unknown, or a row that holds at the end of a phase, that
-    /// dies at a node and can wait.
+    /// Whether a member of the border is an unknown, or a row that holds at the end of a phase,
+    /// that dies at a node and can wait.
     pub fn may_wait(&self, item: &Item, node: usize) -> bool {
         let is_later = self.spans.get(item).is_some_and(|span| span[1] == node && node > 0);
         is_later && !self.links.contains(item)

@@ -9,8 +9,8 @@
 //! ```
 //!
 //! The border `theta_j` holds only unknowns and multipliers of rows that reach from phase `j` or a
-//! later one to phase `j` or an earlier one ([lifetimes]): so the cost does not grow with the number
-//! of phases, as long as each is tied to the next.
+//! later one to phase `j` or an earlier one ([lifetimes]): so the cost does not grow with the
+//! number of phases, as long as each is tied to the next.
 
 mod direct;
 mod lifetimes;

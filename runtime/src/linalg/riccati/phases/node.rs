@@ -29,7 +29,7 @@ pub(super) struct Node {
     /// How much is eliminated.
     eliminated: usize,
     /// What is there, by its place among all variables, or else among all rows.
-    places: Vec<Place>,
+    places: Vec<NodeEntry>,
     /// Where the value function of the phase behind has its parts here.
     arrives: Vec<usize>,
     added: Vec<Added>,
@@ -47,7 +47,7 @@ pub(super) struct Node {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Place {
+enum NodeEntry {
     Variable(usize),
     Row(usize),
     /// Its diagonal and right side belong to the stages or to another node.
@@ -89,11 +89,11 @@ impl Node {
             Some(Added { is_hessian, from, count, targets })
         });
         let place = |(at, item): (usize, &Item)| match *item {
-            Item::First(phase, i) => Place::Elsewhere(phases[phase].first().start + i),
-            Item::Last(phase, i) => Place::Variable(phases[phase].last().start + i),
-            Item::Unknown(variable) if at < eliminated => Place::Variable(variable),
-            Item::Row(row) if at < eliminated => Place::Row(row),
-            Item::Unknown(at) | Item::Row(at) | Item::Stages(at) => Place::Elsewhere(at),
+            Item::First(phase, i) => NodeEntry::Elsewhere(phases[phase].first().start + i),
+            Item::Last(phase, i) => NodeEntry::Variable(phases[phase].last().start + i),
+            Item::Unknown(variable) if at < eliminated => NodeEntry::Variable(variable),
+            Item::Row(row) if at < eliminated => NodeEntry::Row(row),
+            Item::Unknown(at) | Item::Row(at) | Item::Stages(at) => NodeEntry::Elsewhere(at),
         };
         let is_fixed = |item: &Item| match *item {
             Item::First(phase, i) => fixed[phases[phase].first().start + i],
@@ -149,9 +149,9 @@ impl Node {
         let size = self.size();
         for (at, place) in self.places.iter().enumerate() {
             self.matrix[at * size + at] += match *place {
-                Place::Variable(variable) => sigma[variable],
-                Place::Row(row) => -d[row],
-                Place::Elsewhere(_) => 0.0,
+                NodeEntry::Variable(variable) => sigma[variable],
+                NodeEntry::Row(row) => -d[row],
+                NodeEntry::Elsewhere(_) => 0.0,
             };
         }
         for &at in &self.fixed {
@@ -205,9 +205,9 @@ impl Node {
         let (many, kept) = (self.eliminated, self.kept());
         for (value, place) in self.vector.iter_mut().zip(&self.places) {
             *value = match *place {
-                Place::Variable(variable) => -a[variable],
-                Place::Row(row) => -b[row],
-                Place::Elsewhere(_) => 0.0,
+                NodeEntry::Variable(variable) => -a[variable],
+                NodeEntry::Row(row) => -b[row],
+                NodeEntry::Elsewhere(_) => 0.0,
             };
         }
         for (value, at) in arrived.unwrap_or_default().iter().zip(&self.arrives) {
@@ -237,9 +237,9 @@ impl Node {
         self.vector[many..].copy_from_slice(state);
         for (value, place) in self.vector[..many].iter().zip(&self.places) {
             match *place {
-                Place::Variable(variable) => a[variable] = *value,
-                Place::Row(row) => b[row] = *value,
-                Place::Elsewhere(_) => {}
+                NodeEntry::Variable(variable) => a[variable] = *value,
+                NodeEntry::Row(row) => b[row] = *value,
+                NodeEntry::Elsewhere(_) => {}
             }
         }
     }

@@ -3,7 +3,7 @@
 
 mod controls;
 pub(crate) mod event;
-pub(crate) mod linearization;
+pub(crate) mod linearisation;
 mod reset;
 mod sparse_step;
 pub(crate) mod step;

@@ -9,14 +9,14 @@
 //! So derivatives by `[t | x | u | p]` become those by `[t | x | U | p]`, and directions in the
 //! space of these become directions in that of those.
 
-use super::linearization::{Jacobian, Linearizer};
+use super::linearisation::{Jacobian, Lineariser};
 use crate::problem::{Columns, Layout};
 use crate::simulate::{Controls, Regime};
 use nalgebra::{DMatrix, DVector, RowDVector};
 use std::borrow::Cow;
 use std::ops::Range;
 
-impl<'a> Linearizer<'a> {
+impl<'a> Lineariser<'a> {
     /// The rows of controls that act in a regime.
     pub fn rows(&self, regime: &Regime) -> Range<usize> {
         self.controls.range(regime.segment)

@@ -2,8 +2,8 @@
 //! to rest on a surface.
 
 use super::event::EventOnTape;
-use super::linearization::{Jacobian, Linearizer};
-use crate::simulate::{Instant, Kind, Mode, Regime, Tape};
+use super::linearisation::{Jacobian, Lineariser};
+use crate::simulate::{EventKind, Instant, Mode, Regime, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 /// The derivatives of the state after an event by the state, the time and the inputs `(U, p)`
@@ -15,18 +15,18 @@ pub(crate) struct Reset {
 }
 
 impl Reset {
-    pub fn new(linearizer: &Linearizer, tape: &Tape, event: &EventOnTape) -> Self {
+    pub fn new(lineariser: &Lineariser, tape: &Tape, event: &EventOnTape) -> Self {
         let states = event.before.state.len();
         let regime = &tape.regimes[event.before.regime];
         let mut reset = Reset {
             by_state: DMatrix::identity(states, states),
             by_time: DVector::zeros(states),
-            by_inputs: DMatrix::zeros(states, linearizer.inputs(regime)),
+            by_inputs: DMatrix::zeros(states, lineariser.inputs(regime)),
         };
         let mut from = event.before;
         for change in event.changes {
-            if let Kind::Jump(jump) = change.kind {
-                reset.then(&jump_slopes(linearizer, tape, from, (jump, regime)));
+            if let EventKind::Jump(jump) = change.kind {
+                reset.then(&jump_slopes(lineariser, tape, from, (jump, regime)));
             }
             if change.after.time == event.before.time {
                 from = &change.after;
@@ -34,9 +34,9 @@ impl Reset {
         }
         let gap = event.after.time - event.before.time;
         if gap > 0.0 {
-            reset.then(&straight_on(linearizer, tape, from, (gap, regime)));
+            reset.then(&straight_on(lineariser, tape, from, (gap, regime)));
         }
-        for slopes in rest_slopes(linearizer, tape, event) {
+        for slopes in rest_slopes(lineariser, tape, event) {
             reset.then(&slopes);
         }
         reset
@@ -55,44 +55,44 @@ impl Reset {
 
 /// `r_(t | x | U | p)` of one jump, with the `U` of a regime.
 fn jump_slopes(
-    linearizer: &Linearizer,
+    lineariser: &Lineariser,
     tape: &Tape,
     from: &Instant,
     (jump, regime): (usize, &Regime),
 ) -> DMatrix<f64> {
     let states = from.state.len();
-    let all = jacobian(linearizer, tape, from, &*linearizer.system.resets).by;
-    let all = linearizer.spread(all, regime, from.time);
-    all.view((jump * states, 0), (states, 1 + states + linearizer.inputs(regime))).into_owned()
+    let all = jacobian(lineariser, tape, from, &*lineariser.system.resets).by;
+    let all = lineariser.spread(all, regime, from.time);
+    all.view((jump * states, 0), (states, 1 + states + lineariser.inputs(regime))).into_owned()
 }
 
 /// Where jumps accumulate the state goes straight on until their limit: `x + gap f`, with the
 /// controls of the regime before.
 fn straight_on(
-    linearizer: &Linearizer,
+    lineariser: &Lineariser,
     tape: &Tape,
     from: &Instant,
     (gap, before): (f64, &Regime),
 ) -> DMatrix<f64> {
     let regime = Regime { segment: before.segment, ..tape.regimes[from.regime].clone() };
     let x = DVector::from_column_slice(&from.state);
-    let mut slopes = linearizer.at(&regime, &from.selectors, from.time, &x).by() * gap;
+    let mut slopes = lineariser.at(&regime, &from.selectors, from.time, &x).by() * gap;
     (0..from.state.len()).for_each(|state| slopes[(state, 1 + state)] += 1.0);
     slopes
 }
 
 /// Where the state comes to rest on a surface: the Newton steps on `psi` and on `psi'` that bring
 /// it there.
-fn rest_slopes(linearizer: &Linearizer, tape: &Tape, event: &EventOnTape) -> Vec<DMatrix<f64>> {
+fn rest_slopes(lineariser: &Lineariser, tape: &Tape, event: &EventOnTape) -> Vec<DMatrix<f64>> {
     let [old, new] = [event.before, event.after].map(|at| &tape.regimes[at.regime]);
     let comes = |i: &usize| new.modes[*i] == Mode::Held && old.modes[*i] != Mode::Held;
     let Some(surface) = (0..new.modes.len()).find(comes) else { return Vec::new() };
     let states = event.after.state.len();
-    let psi = jacobian(linearizer, tape, event.before, &*linearizer.system.switching).by;
-    let rates = jacobian(linearizer, tape, event.before, &*linearizer.system.rates).by;
-    let columns = 1 + states + linearizer.inputs(old);
+    let psi = jacobian(lineariser, tape, event.before, &*lineariser.system.switching).by;
+    let rates = jacobian(lineariser, tape, event.before, &*lineariser.system.rates).by;
+    let columns = 1 + states + lineariser.inputs(old);
     let [psi, rates] = [psi, rates].map(|by| {
-        let by = linearizer.spread(by, old, event.before.time);
+        let by = lineariser.spread(by, old, event.before.time);
         by.row(surface).columns(0, columns).into_owned()
     });
     let along = psi.columns(1, states).into_owned();
@@ -111,12 +111,12 @@ fn correction(along: &RowDVector<f64>, slopes: &RowDVector<f64>) -> DMatrix<f64>
 }
 
 fn jacobian(
-    linearizer: &Linearizer,
+    lineariser: &Lineariser,
     tape: &Tape,
     at: &Instant,
     function: &dyn crate::problem::Function,
 ) -> Jacobian {
     let x = DVector::from_column_slice(&at.state);
-    let table = linearizer.table(&tape.regimes[at.regime], &at.selectors, at.time, &x);
-    Jacobian::of(function, &table, &linearizer.parameters)
+    let table = lineariser.table(&tape.regimes[at.regime], &at.selectors, at.time, &x);
+    Jacobian::of(function, &table, &lineariser.parameters)
 }

@@ -4,7 +4,7 @@
 //! forward sensitivities apply the maps in order, the adjoint applies their transposes in reverse.
 
 use super::event::{EventOnTape, LinearEvent};
-use super::linearization::Linearizer;
+use super::linearisation::Lineariser;
 use super::sparse_step::SparseStep;
 use super::step::LinearStep;
 use super::surface::Projection;
@@ -17,23 +17,23 @@ const MOST_KEPT: usize = 20_000;
 
 /// All pieces of a tape.
 pub(crate) struct LinearTape<'t> {
-    pub linearizer: &'t Linearizer<'t>,
+    pub lineariser: &'t Lineariser<'t>,
     pub tape: &'t Tape,
     kept: Vec<LinearPiece<'t>>,
 }
 
 impl<'t> LinearTape<'t> {
-    pub fn new(linearizer: &'t Linearizer<'t>, tape: &'t Tape) -> Self {
+    pub fn new(lineariser: &'t Lineariser<'t>, tape: &'t Tape) -> Self {
         let count = if tape.pieces.len() <= MOST_KEPT { tape.pieces.len() } else { 0 };
-        let kept = (0..count).map(|at| LinearPiece::new(linearizer, tape, at)).collect();
-        LinearTape { linearizer, tape, kept }
+        let kept = (0..count).map(|at| LinearPiece::new(lineariser, tape, at)).collect();
+        LinearTape { lineariser, tape, kept }
     }
 
     /// Does something with one piece.
     pub fn with<R>(&self, at: usize, visit: impl FnOnce(&LinearPiece<'t>) -> R) -> R {
         match self.kept.get(at) {
             Some(piece) => visit(piece),
-            None => visit(&LinearPiece::new(self.linearizer, self.tape, at)),
+            None => visit(&LinearPiece::new(self.lineariser, self.tape, at)),
         }
     }
 }
@@ -57,14 +57,14 @@ pub(crate) enum Map<'t> {
 }
 
 impl<'t> LinearPiece<'t> {
-    pub fn new(linearizer: &Linearizer<'t>, tape: &'t Tape, at: usize) -> Self {
+    pub fn new(lineariser: &Lineariser<'t>, tape: &'t Tape, at: usize) -> Self {
         let regime = |instant: &Instant| &tape.regimes[instant.regime];
         match &tape.pieces[at] {
             Piece::Step { start, h, rule, .. }
-                if SparseStep::fits(linearizer, regime(start), *rule) =>
+                if SparseStep::fits(lineariser, regime(start), *rule) =>
             {
                 LinearPiece {
-                    map: Map::Sparse(SparseStep::new(linearizer, regime(start), start, *h)),
+                    map: Map::Sparse(SparseStep::new(lineariser, regime(start), start, *h)),
                     regime: regime(start),
                     regime_after: regime(start),
                     projection: None,
@@ -72,7 +72,7 @@ impl<'t> LinearPiece<'t> {
             }
             Piece::Step { start, h, stages, rule, .. } => LinearPiece {
                 map: Map::Step(LinearStep::new(
-                    linearizer,
+                    lineariser,
                     regime(start),
                     start,
                     *h,
@@ -81,15 +81,15 @@ impl<'t> LinearPiece<'t> {
                 )),
                 regime: regime(start),
                 regime_after: regime(start),
-                projection: Projection::new(linearizer, regime(start), &tape.pieces[at].end()),
+                projection: Projection::new(lineariser, regime(start), &tape.pieces[at].end()),
             },
             Piece::Event { cause, before, after, changes } => {
                 let event = EventOnTape { cause: *cause, before, after, changes };
                 LinearPiece {
-                    map: Map::Event(LinearEvent::new(linearizer, tape, &event)),
+                    map: Map::Event(LinearEvent::new(lineariser, tape, &event)),
                     regime: regime(before),
                     regime_after: regime(after),
-                    projection: Projection::new(linearizer, regime(after), after),
+                    projection: Projection::new(lineariser, regime(after), after),
                 }
             }
         }

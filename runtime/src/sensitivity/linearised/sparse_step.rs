@@ -1,8 +1,8 @@
 //! One step of the explicit pair where every selector is given and no control changes: most steps
-//! of most tapes. Its stages keep their Jacobians as the compiled function gives them, sparse and in
-//! one piece of memory; the equations are those of [`super::step`].
+//! of most tapes. Its stages keep their Jacobians as the compiled function gives them, sparse and
+//! in one piece of memory; the equations are those of [`super::step`].
 
-use super::linearization::Linearizer;
+use super::linearisation::Lineariser;
 use crate::problem::Columns;
 use crate::simulate::dormand_prince::{A, C, STAGES};
 use crate::simulate::{Instant, Mode, Regime, Rule};
@@ -32,30 +32,30 @@ enum By {
 
 impl<'l> SparseStep<'l> {
     /// Whether a step is of this sort.
-    pub fn fits(linearizer: &Linearizer, regime: &Regime, rule: Rule) -> bool {
+    pub fn fits(lineariser: &Lineariser, regime: &Regime, rule: Rule) -> bool {
         let is_given = |mode: &Mode| matches!(mode, Mode::Below | Mode::Above);
         let is_plain = regime.held.is_empty() && regime.modes.iter().all(is_given);
-        is_plain && rule == Rule::Explicit && !linearizer.is_curved(regime)
+        is_plain && rule == Rule::Explicit && !lineariser.is_curved(regime)
     }
 
     /// Takes the step again.
-    pub fn new(linearizer: &Linearizer<'l>, regime: &Regime, start: &Instant, h: f64) -> Self {
-        let flow = &*linearizer.system.flow;
+    pub fn new(lineariser: &Lineariser<'l>, regime: &Regime, start: &Instant, h: f64) -> Self {
+        let flow = &*lineariser.system.flow;
         let pattern: &[(u32, u32)] = &flow.jacobian_pattern().entries;
         let states = start.state.len();
         let mut entries = Vec::with_capacity(USED * pattern.len());
         let mut rates = [const { Vec::new() }; USED];
-        let results = &mut *linearizer.results.borrow_mut();
+        let results = &mut *lineariser.results.borrow_mut();
         let at = DVector::from_column_slice(&start.state);
-        let mut table = linearizer.table(regime, &start.selectors, start.time, &at);
+        let mut table = lineariser.table(regime, &start.selectors, start.time, &at);
         for stage in 0..USED {
             move_to(&mut table, start, h, stage, &rates);
             let [values, derivatives] = &mut *results;
-            flow.jacobian(&table, &linearizer.parameters, values, derivatives);
+            flow.jacobian(&table, &lineariser.parameters, values, derivatives);
             rates[stage] = first_row(values);
             entries.extend((0..pattern.len()).map(|entry| derivatives.column(entry)[0]));
         }
-        SparseStep { h, pattern, entries, states, inputs: linearizer.inputs(regime) }
+        SparseStep { h, pattern, entries, states, inputs: lineariser.inputs(regime) }
     }
 
     /// The entries of a stage: row, what by, value.

@@ -13,7 +13,7 @@
 //! Where the method is implicit, the `Y_i` are the solution of one linear system with the blocks `I
 //! - h a_ij A_j`, and the `mu_j` that of its transpose.
 
-use super::linearization::{Linearization, Linearizer};
+use super::linearisation::{Linearisation, Lineariser};
 use crate::simulate::{Instant, Regime, Rule};
 use crate::simulate::{departure, dormand_prince, radau};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
@@ -66,7 +66,7 @@ pub(crate) struct LinearStep {
     tableau: &'static Tableau,
     h: f64,
     /// The right side at the stages.
-    pub stages: Vec<Linearization>,
+    pub stages: Vec<Linearisation>,
     /// Where the stages are.
     pub points: Vec<(f64, DVector<f64>)>,
     /// `I - h a_ij A_i` of an implicit method.
@@ -78,7 +78,7 @@ pub(crate) struct LinearStep {
 impl LinearStep {
     /// Takes the step again.
     pub fn new(
-        linearizer: &Linearizer,
+        lineariser: &Lineariser,
         regime: &Regime,
         start: &Instant,
         h: f64,
@@ -91,18 +91,18 @@ impl LinearStep {
             stages: Vec::new(),
             points: Vec::new(),
             implicit: None,
-            inputs: linearizer.inputs(regime),
+            inputs: lineariser.inputs(regime),
         };
         match rule {
-            Rule::Explicit | Rule::Straight => step.take_explicit(linearizer, regime, start),
+            Rule::Explicit | Rule::Straight => step.take_explicit(lineariser, regime, start),
             Rule::Radau | Rule::Collocation => {
-                step.take_implicit(linearizer, regime, start, stages)
+                step.take_implicit(lineariser, regime, start, stages)
             }
         }
         step
     }
 
-    fn take_explicit(&mut self, linearizer: &Linearizer, regime: &Regime, start: &Instant) {
+    fn take_explicit(&mut self, lineariser: &Lineariser, regime: &Regime, start: &Instant) {
         let x = DVector::from_column_slice(&start.state);
         for stage in 0..self.tableau.c.len() {
             let mut at = x.clone();
@@ -111,7 +111,7 @@ impl LinearStep {
             }
             let near = self.stages.last().map_or(&start.selectors, |last| &last.selectors);
             let time = start.time + self.tableau.c[stage] * self.h;
-            let point = linearizer.at(regime, near, time, &at);
+            let point = lineariser.at(regime, near, time, &at);
             self.stages.push(point);
             self.points.push((time, at));
         }
@@ -120,7 +120,7 @@ impl LinearStep {
     /// Newton's method from the stages that are known, with the exact Jacobian of each.
     fn take_implicit(
         &mut self,
-        linearizer: &Linearizer,
+        lineariser: &Lineariser,
         regime: &Regime,
         start: &Instant,
         stages: &[Vec<f64>],
@@ -131,7 +131,7 @@ impl LinearStep {
             times.zip(stages.iter().map(|stage| DVector::from_column_slice(stage))).collect();
         for _ in 0..MOST_ITERATIONS {
             let evaluate = |(time, at): &(f64, DVector<f64>)| {
-                linearizer.at(regime, &start.selectors, *time, at)
+                lineariser.at(regime, &start.selectors, *time, at)
             };
             self.stages = self.points.iter().map(evaluate).collect();
             let system = self.system().lu();

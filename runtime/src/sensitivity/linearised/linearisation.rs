@@ -18,7 +18,7 @@ use std::cell::RefCell;
 const AT_ZERO: f64 = 1e-12;
 
 /// Right side and derivatives at one point.
-pub(crate) struct Linearization {
+pub(crate) struct Linearisation {
     /// `f*`.
     pub rate: DVector<f64>,
     /// All selectors.
@@ -30,7 +30,7 @@ pub(crate) struct Linearization {
     layout: Layout,
 }
 
-impl Linearization {
+impl Linearisation {
     /// `f*_w`, with the columns `[t | x | U | p]`.
     pub fn by(&self) -> DMatrixView<'_, f64> {
         self.whole.columns(0, self.layout.selectors().start)
@@ -66,7 +66,7 @@ impl Linearization {
 }
 
 /// Evaluates right sides and switching functions of one system.
-pub(crate) struct Linearizer<'a> {
+pub(crate) struct Lineariser<'a> {
     pub system: &'a System,
     pub parameters: Vec<f64>,
     /// `d(t0, tf)/dp`.
@@ -77,17 +77,17 @@ pub(crate) struct Linearizer<'a> {
     pub results: RefCell<[Columns; 2]>,
 }
 
-impl<'a> Linearizer<'a> {
+impl<'a> Lineariser<'a> {
     pub fn new(system: &'a System, controls: &'a Controls) -> Self {
         let parameters = system.parameter_values();
         let ends_by = Jacobian::of(&*system.interval_of, &Columns::new(0, 1), &parameters).by;
         let entries = system.flow.jacobian_pattern().entries.len();
         let results = RefCell::new([Columns::new(system.layout.x, 1), Columns::new(entries, 1)]);
-        Linearizer { system, parameters, ends_by, controls, results }
+        Lineariser { system, parameters, ends_by, controls, results }
     }
 
     /// The right side at a point of a regime; sliding selectors are searched from `near` on.
-    pub fn at(&self, regime: &Regime, near: &[f64], t: f64, x: &DVector<f64>) -> Linearization {
+    pub fn at(&self, regime: &Regime, near: &[f64], t: f64, x: &DVector<f64>) -> Linearisation {
         let mut table = self.table(regime, near, t, x);
         let directions = self.follow_directions(&mut table, regime, x);
         let sliding = sliding(regime);
@@ -193,7 +193,7 @@ impl<'a> Linearizer<'a> {
     }
 
     /// The right side with all selectors given.
-    fn free(&self, table: &Columns, regime: &Regime) -> Linearization {
+    fn free(&self, table: &Columns, regime: &Regime) -> Linearisation {
         let layout = self.system.layout;
         let results = &mut *self.results.borrow_mut();
         let Jacobian { values: mut rate, mut by } =
@@ -204,11 +204,11 @@ impl<'a> Linearizer<'a> {
         }
         let first = table.columns() - layout.s;
         let selectors = (first..table.columns()).map(|column| table.column(column)[0]).collect();
-        Linearization { rate, selectors, selectors_by: DMatrix::zeros(0, 0), whole: by, layout }
+        Linearisation { rate, selectors, selectors_by: DMatrix::zeros(0, 0), whole: by, layout }
     }
 
     /// Sliding selectors are functions of the rest.
-    fn eliminate(&self, point: &mut Linearization, rates: &DMatrix<f64>, sliding: &[usize]) {
+    fn eliminate(&self, point: &mut Linearisation, rates: &DMatrix<f64>, sliding: &[usize]) {
         let by_selectors = self.by_selectors(rates).select_columns(sliding).select_rows(sliding);
         let mut by_rest = rates.columns(0, self.system.layout.selectors().start).into_owned();
         if !point.selectors_by.is_empty() {

@@ -9,7 +9,7 @@
 //! the canonical gauge, `D^T lambda = 0`, the limit of the smoothed adjoints (errata A7):
 //! continuous at entries, with a jump at exits.
 
-use super::linearization::{Jacobian, Linearizer, sliding};
+use super::linearisation::{Jacobian, Lineariser, sliding};
 use crate::simulate::{Instant, Regime};
 use nalgebra::{DMatrix, DVector, DVectorView};
 
@@ -27,19 +27,19 @@ pub(crate) struct Projection {
 
 impl Projection {
     /// Nothing where the regime does not slide.
-    pub fn new(linearizer: &Linearizer, regime: &Regime, at: &Instant) -> Option<Self> {
+    pub fn new(lineariser: &Lineariser, regime: &Regime, at: &Instant) -> Option<Self> {
         let sliding = sliding(regime);
         if sliding.is_empty() {
             return None;
         }
-        let layout = linearizer.system.layout;
+        let layout = lineariser.system.layout;
         let x = DVector::from_column_slice(&at.state);
-        let point = linearizer.at(regime, &at.selectors, at.time, &x);
-        let table = linearizer.table(regime, &point.selectors, at.time, &x);
-        let switching = Jacobian::of(&*linearizer.system.switching, &table, &linearizer.parameters);
-        let by = linearizer.spread(switching.by.select_rows(&sliding), regime, at.time);
+        let point = lineariser.at(regime, &at.selectors, at.time, &x);
+        let table = lineariser.table(regime, &point.selectors, at.time, &x);
+        let switching = Jacobian::of(&*lineariser.system.switching, &table, &lineariser.parameters);
+        let by = lineariser.spread(switching.by.select_rows(&sliding), regime, at.time);
         let normals = by.columns(1, layout.x).into_owned();
-        let by_inputs = by.columns(1 + layout.x, linearizer.inputs(regime)).into_owned();
+        let by_inputs = by.columns(1 + layout.x, lineariser.inputs(regime)).into_owned();
         let directions = point.by_selectors().select_columns(&sliding);
         let inverse = (&normals * &directions).try_inverse()?;
         Some(Projection { surfaces: sliding, along: directions * inverse, normals, by_inputs })

@@ -5,7 +5,7 @@ use super::algorithm::Algorithm;
 use super::filter::Filter;
 use super::formulation::Formulation;
 use super::iterate::Iterate;
-use super::tuning::initialization::{BOUND_PUSH, FIRST_MU, WARM_START_BOUND_PUSH};
+use super::tuning::initialisation::{BOUND_PUSH, FIRST_MU, WARM_START_BOUND_PUSH};
 use crate::nlp::{Multipliers, Nlp, Options, Start};
 
 /// The algorithm at its first iterate.

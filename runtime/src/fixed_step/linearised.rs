@@ -10,7 +10,7 @@ use crate::transcribe::tableau::Node;
 use nalgebra::DMatrix;
 
 /// Derivatives at one point.
-pub(super) struct Linearized {
+pub(super) struct Linearised {
     pub flow: Jacobian,
     pub switching: Jacobian,
     /// `h b`
@@ -23,7 +23,7 @@ pub(super) struct Linearized {
     pub normals: DMatrix<f64>,
 }
 
-impl Linearized {
+impl Linearised {
     pub fn new(field: &Field, node: &Node, h: f64, point: &Point) -> Self {
         let (flow, switching) = (field.flow(point), field.switching(point));
         let (layout, weight) = (field.system.layout, h * node.weight);
@@ -35,7 +35,7 @@ impl Linearized {
         let by_end = DMatrix::identity(layout.x, layout.x) - weight * blended(&flow.by);
         let by_selectors = -weight * flow.by.columns_range(field.system.surface_selectors());
         let normals = blended(&switching.by);
-        Linearized { flow, switching, weight, by_end, by_selectors, normals }
+        Linearised { flow, switching, weight, by_end, by_selectors, normals }
     }
 
     /// The derivative of `F` and of the switching functions of some selectors by the end and these

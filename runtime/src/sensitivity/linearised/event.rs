@@ -14,7 +14,7 @@
 //! lambda+) tau_x^T`. Where a change of controls or an end of the interval moves with parameters,
 //! `tau` is its derivative.
 
-use super::linearization::{Jacobian, Linearization, Linearizer};
+use super::linearisation::{Jacobian, Linearisation, Lineariser};
 use super::reset::Reset;
 use crate::problem::Function;
 use crate::simulate::{Cause, Change, Instant, Regime, Tape};
@@ -47,18 +47,18 @@ pub(crate) struct EventOnTape<'t> {
 }
 
 impl LinearEvent {
-    pub fn new(linearizer: &Linearizer, tape: &Tape, event: &EventOnTape) -> Self {
+    pub fn new(lineariser: &Lineariser, tape: &Tape, event: &EventOnTape) -> Self {
         let EventOnTape { before, after, .. } = *event;
-        let Reset { by_state, by_time, by_inputs } = Reset::new(linearizer, tape, event);
+        let Reset { by_state, by_time, by_inputs } = Reset::new(lineariser, tape, event);
         let arriving = match event.cause {
             Cause::Start => DVector::zeros(before.state.len()),
-            _ => &by_state * linearizer.rate_at_instant(tape, before),
+            _ => &by_state * lineariser.rate_at_instant(tape, before),
         };
         let shift = match event.cause {
             Cause::CrossesKink(_) => DVector::zeros(arriving.len()),
-            _ => arriving + by_time - linearizer.rate_at_instant(tape, after),
+            _ => arriving + by_time - lineariser.rate_at_instant(tape, after),
         };
-        let timing = Timing::new(linearizer, tape, event);
+        let timing = Timing::new(lineariser, tape, event);
         LinearEvent { by_state, by_inputs, shift, timing }
     }
 
@@ -83,33 +83,33 @@ impl Timing {
         &self.by_state * s + &self.by_inputs * w
     }
 
-    pub fn new(linearizer: &Linearizer, tape: &Tape, event: &EventOnTape) -> Self {
+    pub fn new(lineariser: &Lineariser, tape: &Tape, event: &EventOnTape) -> Self {
         let regime = &tape.regimes[event.before.regime];
         match event.cause {
-            Cause::Controls if !linearizer.is_stretched() => {
-                return Timing::fixed(linearizer, regime);
+            Cause::Controls if !lineariser.is_stretched() => {
+                return Timing::fixed(lineariser, regime);
             }
             Cause::Start | Cause::Controls => {
-                return Timing::of_clock(linearizer, regime, event.before.time);
+                return Timing::of_clock(lineariser, regime, event.before.time);
             }
             _ => {}
         }
-        let reached = linearizer.at_instant(tape, event.before);
+        let reached = lineariser.at_instant(tape, event.before);
         let slopes_of = |function: &dyn Function| {
             let x = DVector::from_column_slice(&event.before.state);
-            let table = linearizer.table(regime, &reached.selectors, event.before.time, &x);
-            let by = Jacobian::of(function, &table, &linearizer.parameters).by;
-            let by = linearizer.spread(by, regime, event.before.time);
+            let table = lineariser.table(regime, &reached.selectors, event.before.time, &x);
+            let by = Jacobian::of(function, &table, &lineariser.parameters).by;
+            let by = lineariser.spread(by, regime, event.before.time);
             by.columns(0, reached.by().ncols()).into_owned()
         };
         match event.cause {
             Cause::Reaches(surface) => {
-                let by = slopes_of(&*linearizer.system.switching);
-                let slopes = normal(linearizer, &by, &reached.selectors, surface);
+                let by = slopes_of(&*lineariser.system.switching);
+                let slopes = normal(lineariser, &by, &reached.selectors, surface);
                 Timing::implicit(&slopes, &reached.rate)
             }
             Cause::CrossesKink(kink) => {
-                let by = slopes_of(&*linearizer.system.kinks);
+                let by = slopes_of(&*lineariser.system.kinks);
                 Timing::implicit(&by.row(kink).into_owned(), &reached.rate)
             }
             Cause::Leaves(surface) => {
@@ -120,16 +120,16 @@ impl Timing {
     }
 
     /// A time that does not move.
-    fn fixed(linearizer: &Linearizer, regime: &Regime) -> Self {
-        let by_inputs = RowDVector::zeros(linearizer.inputs(regime));
-        Timing { by_state: RowDVector::zeros(linearizer.system.layout.x), by_inputs }
+    fn fixed(lineariser: &Lineariser, regime: &Regime) -> Self {
+        let by_inputs = RowDVector::zeros(lineariser.inputs(regime));
+        Timing { by_state: RowDVector::zeros(lineariser.system.layout.x), by_inputs }
     }
 
     /// A time that is a fixed part of the interval.
-    pub fn of_clock(linearizer: &Linearizer, regime: &Regime, time: f64) -> Self {
-        let layout = linearizer.layout(regime);
-        let mut timing = Timing::fixed(linearizer, regime);
-        timing.by_inputs.columns_mut(layout.u, layout.p).copy_from(&linearizer.clock(time));
+    pub fn of_clock(lineariser: &Lineariser, regime: &Regime, time: f64) -> Self {
+        let layout = lineariser.layout(regime);
+        let mut timing = Timing::fixed(lineariser, regime);
+        timing.by_inputs.columns_mut(layout.u, layout.p).copy_from(&lineariser.clock(time));
         timing
     }
 
@@ -146,12 +146,12 @@ impl Timing {
 
 /// `psi_z` of a surface; of a ball that comes to 0, that of its length.
 fn normal(
-    linearizer: &Linearizer,
+    lineariser: &Lineariser,
     by: &DMatrix<f64>,
     selectors: &[f64],
     surface: usize,
 ) -> RowDVector<f64> {
-    match linearizer.system.balls.iter().find(|ball| ball.surfaces.contains(&surface)) {
+    match lineariser.system.balls.iter().find(|ball| ball.surfaces.contains(&surface)) {
         Some(ball) => {
             let zero = RowDVector::zeros(by.ncols());
             ball.surfaces.clone().fold(zero, |sum, i| sum + by.row(i) * selectors[i])
@@ -160,13 +160,13 @@ fn normal(
     }
 }
 
-impl Linearizer<'_> {
+impl Lineariser<'_> {
     pub fn rate_at_instant(&self, tape: &Tape, at: &Instant) -> DVector<f64> {
         let x = DVector::from_column_slice(&at.state);
         self.rate(&tape.regimes[at.regime], &at.selectors, at.time, &x)
     }
 
-    pub fn at_instant(&self, tape: &Tape, at: &Instant) -> Linearization {
+    pub fn at_instant(&self, tape: &Tape, at: &Instant) -> Linearisation {
         let x = DVector::from_column_slice(&at.state);
         self.at(&tape.regimes[at.regime], &at.selectors, at.time, &x)
     }

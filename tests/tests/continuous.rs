@@ -1,0 +1,103 @@
+//! Smooth models that say nothing of a grid: the optimum in continuous time, certified, against
+//! closed forms and the literature.
+
+use fdcc::{Model, Options, Solution};
+
+fn solved(text: &str) -> Solution {
+    let model = Model::from_text("continuous", text).expect("it has no mistakes");
+    model.solve(&Options::default()).expect("it can be solved")
+}
+
+fn is_global(solution: &Solution) -> bool {
+    solution.outcome.solution.global
+}
+
+#[track_caller]
+fn assert_certified(solution: &Solution, objective: f64, within: f64) {
+    assert!(solution.is_certified(), "{:?}", solution.certificate);
+    let off = (solution.objective() - objective).abs() / objective.abs();
+    assert!(off <= within, "{} instead of {objective}", solution.objective());
+}
+
+/// `x'' = x`, so that the cost is `tanh T`; the problem is convex.
+#[test]
+fn a_regulator_has_its_closed_form() {
+    let text = "time t in [0, 5]\nstate x start 1\ncontrol u\ndynamics { x' = u }\n\
+                minimize integral(x^2 + u^2)\n";
+    let solution = solved(text);
+    assert_certified(&solution, 5.0_f64.tanh(), 1e-10);
+    assert!(is_global(&solution));
+}
+
+/// Of `x' = u`, from 0 to 1 at cost `u^2 exp(t)`: `u` is proportional to `exp(-t)`. What is proved at
+/// the nodes of a grid says nothing between them where time itself matters.
+#[test]
+fn a_proof_on_a_grid_is_none_where_time_matters() {
+    let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-9, 9]\ndynamics { x' = u }\n\
+                end x == 1\nminimize integral(exp(t)*u^2)\n";
+    let solution = solved(text);
+    assert_certified(&solution, 1.0 / (1.0 - (-1.0_f64).exp()), 1e-9);
+    assert!(!is_global(&solution));
+}
+
+/// The double integrator from rest to rest in the least time, and in the least time with a limit
+/// of the speed: an arc of a state.
+#[test]
+fn arcs_of_controls_and_states_are_located() {
+    let text = |limit: &str| {
+        format!(
+            "free T in [0.1, 20]\ntime t in [0, T]\nstate x start 0\nstate v {limit}start 0\n\
+             control u in [-1, 1]\ndynamics {{ x' = v  v' = u }}\nend x == 1\nend v == 0\n\
+             minimize T\n"
+        )
+    };
+    assert_certified(&solved(&text("")), 2.0, 1e-9);
+    assert_certified(&solved(&text("in [-9, 0.5] ")), 2.5, 1e-9);
+}
+
+/// Singular arcs, on which a polynomial of high degree is noise: the batch with two catalysts of
+/// Jackson (1968), bang, singular, bang, and catalyst mixing of COPS 3.0.
+#[test]
+fn singular_arcs_are_followed() {
+    let jackson = "time t in [0, 4]\nstate a start 1\nstate b start 0\nstate c start 0\n\
+                   control u in [0, 1]\ndynamics {\n  a' = -u*(a - 10*b)\n\
+                     b' = u*(a - 10*b) - (1 - u)*b\n  c' = (1 - u)*b\n}\nmaximize c(end)\n";
+    assert_certified(&solved(jackson), 0.191814, 3e-6);
+    let mixing = "time t in [0, 1]\nstate a start 1\nstate b start 0\ncontrol u in [0, 1]\n\
+                  dynamics {\n  a' = u*(10*b - a)\n  b' = u*(a - 10*b) - (1 - u)*b\n}\n\
+                  maximize 1 - a(end) - b(end)\n";
+    assert_certified(&solved(mixing), 0.048055686, 2e-6);
+}
+
+/// `p^3` is flat at 0 and least at -1; a solve on a grid may end at 0, a certificate does not.
+#[test]
+fn a_flat_point_is_not_certified() {
+    let text = "time t in [0, 1]\ncontrol p in [-1, 2]\nminimize integral(p^3)\n";
+    let solution = solved(text);
+    assert!(!solution.is_certified() || (solution.objective() + 1.0).abs() < 1e-6);
+}
+
+/// Who says on how many intervals asks for the problem on these.
+#[test]
+fn a_number_of_intervals_asks_for_the_problem_on_them() {
+    let text = "time t in [0, 5]\nstate x start 1\ncontrol u\ndynamics { x' = u }\n\
+                minimize integral(x^2 + u^2)\nmethod { N = 200 }\n";
+    let solution = solved(text);
+    assert!(solution.certificate.is_none() && is_global(&solution));
+    assert!((solution.objective() - 5.0_f64.tanh()).abs() > 1e-3);
+}
+
+/// With given modes these are convex programs; as they are written they have better answers
+/// elsewhere, which are found from other starts.
+#[test]
+fn what_switches_is_never_called_global() {
+    let relay = "time t in [0, 1]\nstate x start 0\nstate v start 0\ncontrol u in [-10, 10]\n\
+                 surface s = x - 1\ndynamics { x' = u\n v' in 50 + 50*Sgn(s) }\n\
+                 minimize integral(u^2) - v(end)\n";
+    let friction = "time t in [0, 4]\nstate x start 0\nstate v start 0\ncontrol u in [-10, 10]\n\
+                    dynamics { x' = v\n v' in u - 2*Sgn(v) }\n\
+                    minimize integral(u^2) - 5*x(end)\n";
+    for text in [relay, friction] {
+        assert!(!is_global(&solved(text)), "{text}");
+    }
+}

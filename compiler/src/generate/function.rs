@@ -24,7 +24,8 @@ pub(super) struct CompiledFunction {
 #[derive(Default)]
 struct Way {
     steps: OnceLock<Bytecode>,
-    kernel: OnceLock<Kernel>,
+    /// Nothing where it would be too long.
+    kernel: OnceLock<Option<Kernel>>,
     /// How much has been computed step by step, in points.
     done: AtomicUsize,
 }
@@ -34,6 +35,11 @@ const PAYS: usize = 5_000;
 
 /// What a call costs by itself, in points.
 const ENTRY: usize = 4;
+
+/// A schedule of more steps is never made machine code. Long functions keep every number on the
+/// stack, 16 bytes for each, and a thread may have no more than 2 MB; and the time that Cranelift
+/// takes grows faster than their length.
+const MOST_STEPS: usize = 60_000;
 
 /// What is read and written.
 pub(super) struct Call<'c> {
@@ -84,11 +90,14 @@ impl CompiledFunction {
         order.min(highest_order(&self.symbols))
     }
 
-    fn kernel(&self, order: usize) -> &Kernel {
+    fn kernel(&self, order: usize) -> Option<&Kernel> {
         let Source { graph, machine } = &*self.source;
-        self.ways[order]
-            .kernel
-            .get_or_init(|| Kernel::new(machine, graph, &work(graph, &self.symbols, order)))
+        let make = || {
+            let schedule = work(graph, &self.symbols, order);
+            let is_short = schedule.before.len() + schedule.inside.len() <= MOST_STEPS;
+            is_short.then(|| Kernel::new(machine, graph, &schedule))
+        };
+        self.ways[order].kernel.get_or_init(make).as_ref()
     }
 
     fn steps(&self, order: usize) -> &Bytecode {
@@ -114,15 +123,16 @@ impl CompiledFunction {
         if call.count == 0 || self.outputs() == 0 {
             return;
         }
-        if !self.is_worth_code(order, call.count) {
+        let is_worth_code = self.is_worth_code(order, call.count);
+        let Some(kernel) = is_worth_code.then(|| self.kernel(order)).flatten() else {
             return self.steps(order).run(&mut call);
-        }
+        };
         // SAFETY: all tables have been checked to have the columns that the kernel uses, of the
         // same even stride, which is at least twice the number of pairs; the machine is alive in
         // `source`.
         #[allow(unsafe_code)]
         unsafe {
-            self.kernel(order).entry()(&call.tables());
+            kernel.entry()(&call.tables());
         }
     }
 }

@@ -32,7 +32,7 @@ pub struct Stepped {
 const RELATIVE_WIDTH: f64 = 0.01;
 
 impl Gradient {
-    /// The gradient of the true system, discretised, by the numbers of `by`; nothing of a model with
+    /// The gradient of the true system, discretised, by the numbers of `by`; nothing of models with
     /// jumps, which fixed steps do not know.
     ///
     /// # Errors

@@ -66,7 +66,7 @@ impl Gradient {
         self.found.as_ref().is_ok_and(Exact::is_trusted)
     }
 
-    /// The second derivatives, a square matrix: by each pair of numbers in the order of `by`, in SI.
+    /// The second derivatives, a square matrix: by each pair of numbers in the order of `by`; SI.
     ///
     /// # Errors
     ///

@@ -125,8 +125,9 @@ impl Search<'_> {
         answer
     }
 
-    /// Whether every optimum is global. A smooth problem that is convex on a grid is so in continuous
-    /// time where time itself does not matter: what was proved at one node holds between nodes.
+    /// Whether every optimum is global. A smooth problem that is convex on a grid is so in
+    /// continuous time where time itself does not matter: what was proved at one node holds
+    /// between nodes.
     fn is_global(&self) -> bool {
         let Found { problem, outcome, .. } = self.found;
         is_smooth(self.model, self.between) && outcome.solution.global && problem.is_autonomous

@@ -22,6 +22,8 @@ const AWKWARD: &[&str] = &[
     "param m = 2 [\nstate]",
     "surface s =\non minimize v",
     "let a =\nparam\u{663}\nlet b = 1",
+    "data d = csv(\"a.csv\") columns t, x\nfit\nd: x sd 0.1",
+    "state x at\nt1: x <= 1",
     "guess\n{ x = match b\n{ below => 1, above => 2 } }",
 ];
 

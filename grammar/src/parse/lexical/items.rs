@@ -251,6 +251,7 @@ fn is_unknown_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     let inner_words = words::inner_words(so_far.word());
     so_far.tokens[at].begins_line
         && can_end(&so_far.tokens[at - 1])
+        && !begins_soft(so_far, at - 1)
         && !inner_words.contains(&so_far.tokens[at - 1].text)
         && !inner_words.contains(&so_far.tokens[at].text)
         && !so_far.lacks_brace()

@@ -130,7 +130,7 @@ fn bad_control_files_say_what_is_wrong() {
         ("u.csv", "t,u\n0,one\n", "line 2: `one` of `u` is no number"),
         ("u.csv", "t,u\n0,1\n0,1\n0,2\n", "line 4: a third row at t = 0; a jump has two sides"),
         ("u.json", &backwards, "times must ascend, but 1 follows 2"),
-        ("u.json", &short, "`u` has 1 values for 2 intervals"),
+        ("u.json", &short, "`controls.u` has 1 values where there should be 2"),
         ("u.json", &hole, "value 1 of `controls.u` is no number"),
         ("u.json", &other, "there is no control `u`"),
         ("u.json", &empty, "there is no row of values"),

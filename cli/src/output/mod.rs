@@ -26,6 +26,7 @@ pub mod tested;
 pub mod tried;
 pub mod units;
 pub mod verified;
+pub mod whole;
 
 use crate::exit::Exit;
 use std::io::{ErrorKind, IsTerminal, Write};

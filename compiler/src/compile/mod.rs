@@ -4,6 +4,7 @@ pub(crate) mod alike;
 pub(crate) mod chain;
 pub(crate) mod dump;
 pub(crate) mod residuals;
+mod summary;
 
 use crate::differentiate::differentiate;
 use crate::expressions::graph::{self, Graph};

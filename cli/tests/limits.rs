@@ -135,12 +135,12 @@ fn a_start_that_is_not_whole_is_refused() {
         whole["time"].as_array().expect("times").iter().rev().cloned().collect();
     let spoilt: [(&str, &str, Value, &str); 8] = [
         ("states", "x", json!([0.0, null, 0.5, 0.75, 1.0]), "value 2 of `states.x` is no number"),
-        ("states", "x", json!([0.0, 0.25, 0.5]), "`x` has 3 values where there should be 5"),
+        ("states", "x", json!([0.0, 0.25, 0.5]), "`states.x` has 3 values where there should be 5"),
         (
             "controls",
             "u",
             json!([1.0, 1.0, 1.0, 1.0, 1.0]),
-            "`u` has 5 values where there should be 4",
+            "`controls.u` has 5 values where there should be 4",
         ),
         ("controls", "u", json!([null, 1.0, 1.0, 1.0]), "value 1 of `controls.u` is no number"),
         ("time", "", json!(reversed), "times must ascend, but 0.75 follows 1"),
@@ -179,6 +179,14 @@ fn a_solution_without_its_numbers_is_neither_verified_nor_replayed() {
         ("params", "goal", json!(null), "`params.goal` is no number"),
         ("states", "x", json!([0.0, null, 0.5, 0.75, 1.0]), "value 2 of `states.x` is no number"),
         ("controls", "u", json!([1.0, 1.0, 1.0, null]), "value 4 of `controls.u` is no number"),
+        ("states", "x", json!([0.0, 0.25]), "`states.x` has 2 values where there should be 5"),
+        (
+            "states",
+            "x",
+            json!([0, 1, 2, 3, 4, 5, 6, 7]),
+            "`states.x` has 8 values where there should be 5",
+        ),
+        ("controls", "u", json!([1.0]), "`controls.u` has 1 values where there should be 4"),
     ];
     let commands: [&[&str]; 4] = [
         &["verify", "spoilt.sol.json", "ramp.fdc"],
@@ -195,6 +203,40 @@ fn a_solution_without_its_numbers_is_neither_verified_nor_replayed() {
             let output = fdcc(&place, command, "");
             expect_exit(&output, 4, words);
             assert!(stderr(&output).contains(words), "{command:?}: {}", stderr(&output));
+        }
+    }
+}
+
+/// A picture of half a solution would be a wrong one.
+#[test]
+fn a_solution_that_is_not_whole_is_not_drawn() {
+    let place = folder("limits_drawn", &[("ramp.fdc", RAMP.as_bytes())]);
+    let whole = solved(&place);
+    let spoilt = [
+        ("/states/x", json!([0.0, null, 0.5, 0.75, 1.0]), "value 2 of `states.x` is no number"),
+        ("/states/x", json!([0.0, 0.25]), "`states.x` has 2 values where there should be 5"),
+        (
+            "/controls/u",
+            json!([1.0, 1.0, 1.0, 1.0, 1.0]),
+            "`controls.u` has 5 values where there should be 4",
+        ),
+        ("/costates/x", json!([0.0]), "`costates.x` has 1 values where there should be 5"),
+        (
+            "/time",
+            json!([1.0, 0.75, 0.5, 0.25, 0.0]),
+            "`time`: times must ascend, but 0.75 follows 1",
+        ),
+        ("/time", json!([0.0, 0.25, null, 0.75, 1.0]), "value 3 of `time` is no number"),
+    ];
+    for (field, value, words) in spoilt {
+        let mut solution = whole.clone();
+        *solution.pointer_mut(field).expect("the field is there") = value;
+        std::fs::write(place.join("spoilt.sol.json"), solution.to_string())
+            .expect("it can be written");
+        for command in [&["report"][..], &["plot", "--out", "x.svg"]] {
+            let output = fdcc(&place, &[command, &["spoilt.sol.json"]].concat(), "");
+            expect_exit(&output, 4, words);
+            assert!(stderr(&output).contains(words), "{words}: {}", stderr(&output));
         }
     }
 }

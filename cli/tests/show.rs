@@ -34,3 +34,53 @@ fn every_stage_of_a_model_can_be_shown() {
         assert_eq!(stdout(&output).is_empty(), *code != 0, "the answer is on the standard output");
     }
 }
+
+const UNITS: &str = "
+model shown
+param c = 100 [mm/s]
+time t in [0, 10] [ms]
+state x [mm] in [0, 9] start 0
+state v [m/s] start 0
+control u [mm/s^2] in [-1, 1]
+control k [mm/s] in [-3, 3]
+surface s = x - 1 [mm]
+let y = piecewise { x <= 4 [mm] => x  otherwise => 4 [mm] }
+dynamics {
+  x' in k*Sgn(s)
+  v' = u
+}
+path lim: x + y <= 5 [mm]
+path x <= 5
+path v <= 2*c
+minimize integral(u^2) / 1 [mm^2/s^3]
+";
+
+#[test]
+fn numbers_are_in_declared_units_and_formulas_in_si() {
+    let folder = folder("show_units", &[("shown.fdc", UNITS.as_bytes())]);
+    let show = |more: &[&str]| {
+        let output = fdcc(&folder, &[&["show", "shown.fdc"], more].concat(), "");
+        expect_exit(&output, 0, "it is shown");
+        stdout(&output)
+    };
+    let shown = show(&[]);
+    let words = [
+        "units      as declared; formulas in SI",
+        "t0 = 0 ms",
+        "tf = 10 ms",
+        "x [mm] in [0, 9]",
+        "c = 100 mm/s",
+        "s = x - 0.001",
+        "at k = 3 mm/s",
+        "y C^0 at x == 4 [mm]",
+        "lim [mm] <= 5",
+        "x <= 5 (<= 5 mm)",
+        "v <= 2*c (<= 0.2 m/s)",
+    ];
+    words.iter().for_each(|it| assert!(shown.contains(it), "no {it} in {shown}"));
+    for stage in ["model", "graph", "derivatives"] {
+        assert!(show(&["--stage", stage]).starts_with("# formulas in SI\n"), "{stage}");
+    }
+    let in_si = fdcc(&folder, &["show", &model("bounce")], "");
+    assert!(!stdout(&in_si).contains("formulas in SI"), "nothing else is declared");
+}

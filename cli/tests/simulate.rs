@@ -130,7 +130,7 @@ fn bad_control_files_say_what_is_wrong() {
         ("u.csv", "t,u\n0,one\n", "line 2: `one` of `u` is no number"),
         ("u.csv", "t,u\n0,1\n0,1\n0,2\n", "line 4: a third row at t = 0; a jump has two sides"),
         ("u.json", &backwards, "times must ascend, but 1 follows 2"),
-        ("u.json", &short, "`u` has 1 values for 2 intervals"),
+        ("u.json", &short, "`controls.u` has 1 values where there should be 2"),
         ("u.json", &hole, "value 1 of `controls.u` is no number"),
         ("u.json", &other, "there is no control `u`"),
         ("u.json", &empty, "there is no row of values"),
@@ -227,8 +227,13 @@ fn what_cannot_be_continued_says_why() {
         "time t in [0, 1]\nstate x start 0\nsurface edge = x\ndynamics { x' in 2*Sgn(edge) }\n";
     let undefined = "time t in [0, 2]\nstate x start 1\ndynamics {\n  x' = -1/sqrt(x)\n}\n";
     let at_once = "time t in [0, 2]\nstate x start 0\ndynamics {\n  x' = log(x - 1)\n}\n";
-    let files: [(&str, &[u8]); 4] = [
+    // Any number from 1 to 2 is a rate of q where h rests.
+    let resting = "time t in [0, 1]\nstate h start 0\nstate v start 0\nstate q start 0\nsurface ground = \
+                   h\ndynamics {\n  h' = v\n  v' = 0\n  q' in match ground { below => 1, above => 2 \
+                   }\n}\njump stop on ground falling at most 3 { v := 0 }\n";
+    let files: [(&str, &[u8]); 5] = [
         ("ball.fdc", BALL.as_bytes()),
+        ("resting.fdc", resting.as_bytes()),
         ("repelling.fdc", repelling.as_bytes()),
         ("undefined.fdc", undefined.as_bytes()),
         ("at_once.fdc", at_once.as_bytes()),
@@ -248,6 +253,8 @@ fn what_cannot_be_continued_says_why() {
     let several = run("repelling.fdc");
     assert_eq!(several["not_unique"]["candidates"], serde_json::json!(["up", "down", "slide"]));
     assert_eq!(several["not_unique"]["surface"], "edge");
+    let resting = run("resting.fdc");
+    assert_eq!(resting["not_unique"]["candidates"], serde_json::json!(["up", "down", "slide"]));
     let undefined = run("undefined.fdc");
     assert_eq!(
         (&undefined["status"], &undefined["not_finite"]["line"]),

@@ -30,6 +30,7 @@ pub mod tried;
 pub mod units;
 pub mod verification;
 pub mod verified;
+pub mod whole;
 
 use crate::exit::Exit;
 use std::io::{ErrorKind, IsTerminal, Write};

@@ -1,6 +1,7 @@
 //! What is read of a `.sol.json`: to start from it, to replay it, to verify it.
 
 use super::named::Named;
+use super::whole::{Signals, Twice};
 use crate::failure::Failure;
 use crate::input;
 use fdcc::Record;
@@ -111,8 +112,8 @@ impl<'de> Deserialize<'de> for Column {
 }
 
 impl Saved {
-    /// Reads a `.sol.json`. One in which a signal, a parameter or an unknown has no number is
-    /// refused.
+    /// Reads a `.sol.json`. One in which a signal, a parameter or an unknown has no number, or a
+    /// signal not as many values as there are times, is refused.
     pub fn read(path: &Path) -> Result<Saved, Failure> {
         let failure = |what: String| Failure::File(format!("{}{what}", path.display()));
         let text =
@@ -123,40 +124,20 @@ impl Saved {
         Ok(saved)
     }
 
-    /// Whether everything has a number that a replay or a start takes over; says which has none.
+    /// Whether everything has the numbers that a replay or a start takes over; says what has not.
     fn check(&self) -> Result<(), String> {
-        is_whole("time", &self.time)?;
         are_numbers("free", &self.free)?;
         are_numbers("params", &self.params)?;
-        are_whole("states", &self.states)?;
-        are_whole("controls", &self.controls)?;
+        let jumps = Twice::At(self.jumps.iter().map(|jump| jump.time.0).collect());
+        signals(String::new(), jumps, (&self.time, &self.states, &self.controls)).check()?;
         for (name, phase) in &self.phases.0 {
-            is_whole(&format!("phases.{name}.time"), &phase.time)?;
-            are_whole(&format!("phases.{name}.states"), &phase.states)?;
-            are_whole(&format!("phases.{name}.controls"), &phase.controls)?;
+            let own = (&phase.time, &phase.states, &phase.controls);
+            signals(format!("phases.{name}."), Twice::Any, own).check()?;
         }
         for (at, jump) in self.jumps.iter().enumerate() {
             are_numbers(&format!("jumps[{at}].before"), &jump.before)?;
         }
-        self.is_ascending()
-    }
-
-    /// Two times are the same only where a jump happens.
-    fn is_ascending(&self) -> Result<(), String> {
-        let jumps = |time: f64| self.jumps.iter().any(|jump| jump.time.0 == time);
-        let times = &self.time.0;
-        let is_wrong = |pair: &[f64]| {
-            let rises = pair[0] < pair[1] || pair[0] == pair[1] && jumps(pair[0]);
-            !rises
-        };
-        match times.windows(2).position(is_wrong) {
-            Some(at) => {
-                let [before, after] = [times[at], times[at + 1]];
-                let place = at + 2;
-                Err(format!("`time`: times must ascend, but {after} follows {before} at {place}"))
-            }
-            None => Ok(()),
-        }
+        Ok(())
     }
 
     /// Nothing if it is no number.
@@ -231,15 +212,13 @@ fn are_numbers(field: &str, of: &Named<Number>) -> Result<(), String> {
     }
 }
 
-fn are_whole(field: &str, of: &Named<Column>) -> Result<(), String> {
-    of.0.iter().try_for_each(|(name, column)| is_whole(&format!("{field}.{name}"), column))
-}
-
-fn is_whole(field: &str, column: &Column) -> Result<(), String> {
-    match column.0.iter().position(|value| !value.is_finite()) {
-        Some(at) => Err(format!("value {} of `{field}` is no number", at + 1)),
-        None => Ok(()),
-    }
+fn signals<'s>(
+    prefix: String,
+    twice: Twice,
+    (time, states, controls): (&'s Column, &'s Named<Column>, &'s Named<Column>),
+) -> Signals<'s> {
+    let (states, controls) = (columns(states), columns(controls));
+    Signals { prefix, time: &time.0, twice, states, controls }
 }
 
 fn jump(it: &SavedJump) -> JumpRecord<'_> {

@@ -1,6 +1,7 @@
 //! A JSON document as the page sees it: in the order in which it was written, read leniently.
 //! What an earlier version did not write is absent, and a number that was not finite is NaN.
 
+use super::whole;
 use crate::failure::Failure;
 use crate::input;
 use crate::output::named::Named;
@@ -28,7 +29,7 @@ pub enum Json {
 pub static NULL: Json = Json::Null;
 
 impl Json {
-    /// Reads a `.sol.json`.
+    /// Reads a `.sol.json`; one whose signals do not fit its times is refused.
     pub fn read(path: &Path) -> Result<Json, Failure> {
         let failure = |what: String| Failure::File(format!("{}{what}", path.display()));
         let text = input::text(path).map_err(|it| failure(format!(" cannot be read: {it}")))?;
@@ -36,7 +37,9 @@ impl Json {
             .map_err(|error| failure(format!(" is not a solution: {error}")))?;
         match json.at("time").is_absent() {
             true => Err(failure(" is not a solution: it has no `time`".into())),
-            false => Ok(json),
+            false => {
+                whole::check(&json).map(|()| json).map_err(|what| failure(format!(": {what}")))
+            }
         }
     }
 

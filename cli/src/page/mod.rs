@@ -15,6 +15,7 @@ pub mod svg;
 mod tables;
 mod tags;
 mod units;
+mod whole;
 
 use drawing::Drawing;
 use headline::{Claim, Mark, claims, mark, title};

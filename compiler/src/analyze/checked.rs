@@ -113,9 +113,16 @@ impl Model {
 
 /// What `solve` will refuse. To `check` it is no mistake: the model is right, and waits.
 fn told_early(model: &Model) -> Option<Diagnostic> {
-    let mut first = model.not_yet.first()?.clone();
+    let written = || model.not_yet.first().cloned();
+    let by_all = written().or_else(|| model.jump_in_phase()).or_else(|| model.rows_beside_jumps());
+    // Where nothing is minimised, the model may be there to be simulated.
+    let by_solve = || model.jump_by_side().filter(|_| model.objective.is_some());
+    let (mut first, help) = match by_all {
+        Some(found) => (found, "`solve`, `simulate` and `grad` refuse it"),
+        None => (by_solve()?, "`simulate` and `grad` take it, `solve` refuses it"),
+    };
     first.severity = Severity::Advice;
-    Some(first.help("it is checked all the same; `solve`, `simulate` and `grad` refuse it"))
+    Some(first.help(format!("it is checked all the same; {help}")))
 }
 
 /// Whether there can be no meaning. What waits for a value, what has no unique trajectory and what

@@ -3,12 +3,13 @@
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 
 /// Marks, embeddings, overrides and isolates of Unicode's bidirectional algorithm, and characters
-/// without width; not those that join letters of a script or parts of a picture, U+200C and U+200D,
+/// without width, and separators of lines and paragraphs, at which an editor may show a new line in
+/// the middle of a comment; not those that join letters of a script or parts of a picture, U+200C and U+200D,
 /// nor the mark in front of a text, which says how it is written.
 fn is_unseen((at, letter): &(usize, char)) -> bool {
     match letter {
         '\u{61c}' | '\u{200b}' | '\u{200e}' | '\u{200f}' => true,
-        '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' => true,
+        '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' => true,
         '\u{ad}' | '\u{180e}' => true,
         '\u{feff}' => *at > 0,
         _ => false,
@@ -40,8 +41,9 @@ pub(crate) fn found(text: &str) -> Option<Diagnostic> {
 mod tests {
     use super::*;
 
-    const UNSEEN: &str = "\u{61c}\u{200b}\u{200e}\u{200f}\u{202a}\u{202b}\u{202c}\u{202d}\
-                          \u{202e}\u{2060}\u{2066}\u{2067}\u{2068}\u{2069}\u{ad}\u{180e}\u{feff}";
+    const UNSEEN: &str = "\u{61c}\u{200b}\u{200e}\u{200f}\u{2028}\u{2029}\u{202a}\u{202b}\u{202c}\
+                          \u{202d}\u{202e}\u{2060}\u{2066}\u{2067}\u{2068}\u{2069}\u{ad}\u{180e}\
+                          \u{feff}";
 
     #[test]
     fn what_is_not_seen_is_told_once_and_taken_out() {

@@ -4,7 +4,7 @@ use super::alike::Alike;
 use super::{ProblemCode, by_parameters_like, machine_code};
 use crate::lower::{self, Expected, LoweredLink, LoweredProblem};
 use crate::model::numbers::{Numbers, numbers as numbers_of};
-use crate::model::{Model, Phase, not_yet};
+use crate::model::{Model, Phase};
 use fdcc_grammar::Diagnostic;
 use fdcc_runtime::problem::{
     ByParameters, Chain, ChainByParameters, Function, Link, Measurements, Problem,
@@ -50,9 +50,7 @@ impl ChainCode {
     }
 
     fn like(model: &Model, alike: &mut Alike) -> Result<Self, Vec<Diagnostic>> {
-        let jump = model.phases.iter().find_map(|phase| phase.model.jumps.first());
-        let jump = jump.map(|jump| not_yet(jump.place.span, "a jump within a phase"));
-        if let Some(first) = model.not_yet.first().cloned().or(jump) {
+        if let Some(first) = model.not_yet.first().cloned().or_else(|| model.jump_in_phase()) {
             return Err(vec![first]);
         }
         if model.phases.is_empty() {

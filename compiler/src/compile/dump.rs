@@ -1,21 +1,17 @@
 //! Any stage of a model as text, for `fdcc show`.
 
 use super::not_yet;
+use super::summary::summary;
 use crate::differentiate::Differentiated;
 use crate::differentiate::differentiate;
 use crate::expressions::graph::{ExprId, Graph, print};
 use crate::generate;
 use crate::lower::VectorFunction;
 use crate::lower::{LoweredProblem, lower};
-use crate::model::numbers::{Numbers, numbers};
-use crate::model::{Model, Place, Range, Symbol};
-use crate::surfaces::report::surfaces;
-use crate::surfaces::smoothness::smoothness;
-use crate::surfaces::{Order, Smoothness, SurfaceReport};
-use crate::symbols::text::{self, bounded};
+use crate::model::numbers::numbers;
+use crate::model::{Model, Symbol};
 use fdcc_grammar::Diagnostic;
 use fdcc_runtime::problem::Layout;
-use std::fmt::Write;
 
 /// What can be shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,20 +31,26 @@ pub enum Stage {
 /// One stage of a model as text.
 pub fn dump(model: &Model, stage: Stage) -> Result<String, Vec<Diagnostic>> {
     if stage == Stage::Model {
-        return Ok(symbols(model));
+        return Ok(in_si(model) + &symbols(model));
     }
     not_yet(model)?;
     let numbers = numbers(model)?;
     let lowered = lower(model);
     Ok(match stage {
-        Stage::Graph => functions(model, &lowered),
-        Stage::Derivatives => with_derivatives(model, &lowered),
+        Stage::Graph => in_si(model) + &functions(model, &lowered),
+        Stage::Derivatives => in_si(model) + &with_derivatives(model, &lowered),
         Stage::Clif => {
             let (graph, differentiated) = differentiated(&lowered);
             generate::clif(&graph, &differentiated)
         }
         _ => summary(model, &lowered, &numbers),
     })
+}
+
+/// What is said above formulas of a model that declares other units: their numbers have none of
+/// these.
+fn in_si(model: &Model) -> String {
+    if model.is_in_si() { String::new() } else { "# formulas in SI\n".into() }
 }
 
 /// The name of a symbol in the model's words.
@@ -85,7 +87,7 @@ fn selector_name(model: &Model, index: usize) -> String {
 }
 
 /// Expressions over the symbols of the model.
-fn over_symbols(model: &Model, roots: &[(String, ExprId)]) -> String {
+pub(super) fn over_symbols(model: &Model, roots: &[(String, ExprId)]) -> String {
     print(&model.graph, roots, &|input| symbol_name(model, model.symbols[input as usize]))
 }
 
@@ -162,7 +164,7 @@ fn labelled(function: &VectorFunction) -> Vec<(String, ExprId)> {
     function.outputs.iter().enumerate().map(label).collect()
 }
 
-fn differentiated(lowered: &LoweredProblem) -> (Graph, Vec<Differentiated>) {
+pub(super) fn differentiated(lowered: &LoweredProblem) -> (Graph, Vec<Differentiated>) {
     let mut graph = lowered.graph.clone();
     let functions = lowered.functions().into_iter().cloned().collect::<Vec<_>>();
     let functions =
@@ -191,75 +193,4 @@ fn with_derivatives(model: &Model, lowered: &LoweredProblem) -> String {
         );
     }
     text
-}
-
-/// The problem as understood.
-fn summary(model: &Model, lowered: &LoweredProblem, numbers: &Numbers) -> String {
-    let mut text = format!("model {}\n", model.name);
-    let ends =
-        over_symbols(model, &[("t0".into(), model.interval[0]), ("tf".into(), model.interval[1])]);
-    section(&mut text, "time", ends.lines().map(str::to_string));
-    let named = |place: &Place, range: Range| text::ranged(model, numbers, place, range);
-    section(&mut text, "states", model.states.iter().map(|it| named(&it.place, it.range)));
-    let controls = model.controls.iter().map(|it| named(&it.place, it.range));
-    section(&mut text, "controls", controls);
-    section(&mut text, "free", (0..model.frees.len()).map(|at| text::free(model, numbers, at)));
-    section(&mut text, "params", (0..model.params.len()).map(|at| text::param(model, numbers, at)));
-    section(&mut text, "surfaces", surfaces(model, numbers).iter().flat_map(surface_lines));
-    let rough = smoothness(model, numbers).into_iter().filter(|it| it.order != Order::Always);
-    section(&mut text, "smoothness", rough.map(smoothness_line));
-    let path = model.path.iter().map(|it| bounded(&it.place.name, numbers.bounds(model, it.range)));
-    section(&mut text, "path", path);
-    section(&mut text, "boundary", model.boundary.iter().map(|it| it.place.name.clone()));
-    let at_times = model.at_times.iter().flat_map(|it| &it.rows);
-    section(&mut text, "at times", at_times.map(|it| it.place.name.clone()));
-    let objective: Vec<(String, ExprId)> =
-        model.objective.iter().map(|it| (it.0.name.clone(), it.1)).collect();
-    section(&mut text, "objective", over_symbols(model, &objective).lines().map(str::to_string));
-    section(&mut text, "functions", differentiated(lowered).1.iter().map(sizes));
-    text
-}
-
-/// What is known about a surface, a line for each.
-fn surface_lines(surface: &SurfaceReport) -> Vec<String> {
-    let mut lines = vec![format!("{} = {}", surface.place.name, surface.function)];
-    let mut line = |title: &str, text: &str| lines.push(format!("  {title:<9}{text}"));
-    if !surface.gradient.is_empty() {
-        line("gradient", &surface.gradient.join(", "));
-        line("jump", &surface.jump);
-    }
-    line("class", &surface.meaning);
-    surface.holding.iter().for_each(|condition| line("held if", condition));
-    lines
-}
-
-/// `y_cl is C^2 at x == pi`.
-fn smoothness_line(it: Smoothness) -> String {
-    format!("{} {} at {}", it.name, it.order, it.knots.join(", "))
-}
-
-fn section(text: &mut String, title: &str, lines: impl Iterator<Item = String>) {
-    let mut title = title;
-    for line in lines {
-        writeln!(text, "{title:<10} {line}").expect("writing to a string cannot fail");
-        title = "";
-    }
-}
-
-fn sizes(function: &Differentiated) -> String {
-    let VectorFunction { name, outputs, by, .. } = &function.function;
-    let (jacobian, hessian) = (function.jacobian.0.entries.len(), function.hessian.0.entries.len());
-    match by.is_empty() {
-        true => format!("{name}: {}", counted(outputs.len())),
-        false => format!(
-            "{name}: {}, Jacobian {jacobian} of {} entries, Hessian {hessian} of {}",
-            counted(outputs.len()),
-            outputs.len() * by.len(),
-            by.len() * (by.len() + 1) / 2
-        ),
-    }
-}
-
-fn counted(outputs: usize) -> String {
-    if outputs == 1 { "1 output".into() } else { format!("{outputs} outputs") }
 }

@@ -4,6 +4,7 @@ pub(crate) mod alike;
 pub(crate) mod chain;
 pub(crate) mod dump;
 pub(crate) mod residuals;
+mod summary;
 
 use crate::differentiate::differentiate;
 use crate::expressions::graph::{self, Graph};
@@ -43,7 +44,7 @@ impl ProblemCode {
     /// Compiles what is not alike to what has been compiled.
     pub(super) fn like(model: &Model, alike: &mut Alike) -> Result<Self, Vec<Diagnostic>> {
         not_yet(model)?;
-        sums_or_jumps(model)?;
+        model.rows_beside_jumps().map_or(Ok(()), |found| Err(vec![found]))?;
         let model = &between_jumps(model);
         known(model)?;
         let lowered = lower(model);
@@ -150,16 +151,6 @@ fn known(model: &Model) -> Result<Numbers, Vec<Diagnostic>> {
     let mut found = model.misplaced_rows(&numbers);
     found.retain(|it| it.severity == Severity::Error);
     if found.is_empty() { Ok(numbers) } else { Err(found) }
-}
-
-/// Rows may be in any of the phases between jumps.
-fn sums_or_jumps(model: &Model) -> Result<(), Vec<Diagnostic>> {
-    match (model.jumps.first(), model.sums.first()) {
-        (Some(_), Some(sum)) => {
-            Err(vec![model::not_yet(sum.place.span, "a sum over rows in a model with jumps")])
-        }
-        _ => Ok(()),
-    }
 }
 
 /// The first construct that is understood but cannot be solved.

@@ -14,6 +14,7 @@ pub(crate) mod numbers;
 mod overrides;
 pub(crate) mod phases;
 mod switches;
+mod unsolved;
 
 pub(crate) use at_times::Instant;
 pub use declarations::{

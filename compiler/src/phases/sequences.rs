@@ -2,10 +2,8 @@
 
 use super::crossings::{Beginning, beginnings};
 use super::hold::rest;
-use crate::expressions::graph::ExprId;
-use crate::model::not_yet;
 use crate::model::numbers::{Numbers, numbers};
-use crate::model::{Jump, Model, Symbol};
+use crate::model::{Jump, Model};
 use fdcc_grammar::Diagnostic;
 
 /// A jump is tried so often where the model does not say how often it may happen, or says a number
@@ -31,8 +29,8 @@ pub struct Sequences {
 /// All sequences in which no jump happens more often than it may; or says what cannot be solved
 /// yet.
 pub fn sequences(model: &Model) -> Result<Sequences, Vec<Diagnostic>> {
-    if let Some(jump) = model.jumps.iter().find(|jump| reads_selectors(model, jump)) {
-        return Err(vec![not_yet(jump.place.span, "a jump that reads the side of a surface")]);
+    if let Some(found) = model.jump_by_side() {
+        return Err(vec![found]);
     }
     let numbers = numbers(model)?;
     let (most, is_cut) = most(model, &numbers);
@@ -68,12 +66,6 @@ fn may_follow(earlier: &[usize], event: usize, most: &[usize], begins: &[Beginni
             is_before && earlier.iter().filter(|it| **it == event).count() < most[event]
         }
     }
-}
-
-fn reads_selectors(model: &Model, jump: &Jump) -> bool {
-    let values: Vec<ExprId> = jump.resets.iter().map(|reset| reset.1).collect();
-    let read = model.graph.inputs_of(&values);
-    read.iter().any(|at| matches!(model.symbols[*at as usize], Symbol::Selector(_)))
 }
 
 /// How often each jump may happen, if that is limited.

@@ -8,6 +8,7 @@ use super::local::Local;
 use super::view::View;
 use crate::model::numbers::Numbers;
 use crate::model::{Model, Place, Symbol};
+use crate::symbols::text::valued;
 use fdcc_grammar::ast::Direction;
 
 /// One surface in words.
@@ -35,14 +36,14 @@ pub(crate) fn surfaces(model: &Model, numbers: &Numbers) -> Vec<SurfaceReport> {
     let view = View::of_model(model, numbers);
     let switches = model.switches().into_iter();
     let reports = switches.map(|switch| match switch.is_ball {
-        true => ball(&view, switch.surfaces.start, switch.place),
+        true => ball(&view, switch.surfaces.start, model, switch.place),
         false => report(&view, switch.surfaces.start, model),
     });
     reports.collect()
 }
 
 /// The vector of a `Dir`, whose first component is the surface `at`.
-fn ball(view: &View<'_>, at: usize, place: &Place) -> SurfaceReport {
+fn ball(view: &View<'_>, at: usize, model: &Model, place: &Place) -> SurfaceReport {
     let ball = view.balls.iter().find(|ball| ball.surfaces.start == at);
     let mut ball = ball.and_then(|ball| LocalBall::new(view, ball));
     let class = ball.as_mut().map_or(Class::Unknown { mixed: false }, LocalBall::classify);
@@ -56,7 +57,7 @@ fn ball(view: &View<'_>, at: usize, place: &Place) -> SurfaceReport {
         function: format!("Dir({})", place.name),
         gradient: Vec::new(),
         jump: String::new(),
-        meaning: in_words(&class, view).replace("on both sides", "in every direction"),
+        meaning: in_words(&class, view, model).replace("on both sides", "in every direction"),
         class,
         holding,
     }
@@ -93,16 +94,15 @@ fn report(view: &View<'_>, at: usize, model: &Model) -> SurfaceReport {
         let way = if jump.direction == Direction::Falling { "falling" } else { "rising" };
         format!("; {way}, `{}` resets the state", jump.place.name)
     });
-    let meaning = std::iter::once(in_words(&class, view)).chain(resets).collect();
+    let meaning = std::iter::once(in_words(&class, view, model)).chain(resets).collect();
     let jump = local.jump;
     let jump = text(&mut local, jump);
     SurfaceReport { place, function, gradient, jump, class, meaning, holding }
 }
 
 /// The class in words.
-fn in_words(class: &Class, view: &View<'_>) -> String {
-    let value =
-        |it: &(Symbol, f64)| format!("{} = {}", view.name(it.0), crate::syntax::text::number(it.1));
+fn in_words(class: &Class, view: &View<'_>, model: &Model) -> String {
+    let value = |it: &(Symbol, f64)| valued(model, &view.name(it.0), it.1);
     let text = match class {
         Class::Apart => "out of reach: the bounds keep every state away from it",
         Class::Crossed { strictly: true } => "crossed",

@@ -95,7 +95,10 @@ fn look_at(
         return;
     }
     let orders = definition.parts.iter().map(|part| of_expression(&view, &definition.name, *part));
-    information.smoothness = orders.min_by_key(|it| it.order);
+    information.smoothness = orders.min_by_key(|it| it.order).map(|mut it| {
+        it.knots.iter_mut().for_each(|knot| *knot = text::place(model, knot));
+        it
+    });
     if information.smoothness.as_ref().is_some_and(|it| it.order == Order::Jumps) {
         return;
     }

@@ -2,7 +2,7 @@
 //! 100]`.
 
 use crate::model::numbers::Numbers;
-use crate::model::{Model, Place, Range, Symbol};
+use crate::model::{Constraint, Model, Place, Range, Symbol};
 use crate::syntax::text::number;
 use crate::units::NamedUnit;
 use fdcc_runtime::problem::Bounds;
@@ -22,6 +22,11 @@ impl Model {
     pub fn unit_size(&self, name: &str) -> f64 {
         let scale = self.unit_of(name).map_or(1.0, |it| it.scale);
         if scale.is_finite() && scale > 0.0 { scale } else { 1.0 }
+    }
+
+    /// Whether every number of the text is one of SI.
+    pub(crate) fn is_in_si(&self) -> bool {
+        self.units.iter().all(|it| it.scale == 1.0)
     }
 }
 
@@ -49,14 +54,58 @@ pub(crate) fn valued(model: &Model, name: &str, value: f64) -> String {
     format!("{name} = {value} {unit}").trim_end().to_string()
 }
 
+/// An end of the time, in SI: `tf = 10 ms`.
+pub(crate) fn time(model: &Model, name: &str, value: f64) -> String {
+    let unit = model.units.iter().find(|it| it.is_time).map_or("", |it| &it.unit);
+    let value = short(value / model.time_size());
+    format!("{name} = {value} {unit}").trim_end().to_string()
+}
+
+/// A condition: `limit [mm] <= 5`; one without a name is what stands in the text, and between which
+/// numbers: `x <= 2*w (<= 5 mm)`.
+pub(crate) fn condition(model: &Model, numbers: &Numbers, it: &Constraint) -> String {
+    let name = it.place.name.as_str();
+    let is_it = |unit: &&NamedUnit| {
+        let rest = name.strip_prefix(unit.name.as_str());
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    };
+    let unit = model.condition_units.iter().find(is_it);
+    let (scale, unit) = unit.map_or((1.0, ""), |it| (it.scale, it.unit.as_str()));
+    let bounds = scaled(numbers.bounds(model, it.range), scale);
+    if name.contains(' ') {
+        let bounds = bounded("", bounds);
+        return format!("{name} ({})", format!("{} {unit}", bounds.trim_start()).trim_end());
+    }
+    match unit {
+        "" => bounded(name, bounds),
+        unit => bounded(&format!("{name} [{unit}]"), bounds),
+    }
+}
+
+/// Where a name has a value, `x == 0.004` in SI, with that in its unit: `x == 4 [mm]`. A place that
+/// is a formula stays as it is.
+pub(crate) fn place(model: &Model, equation: &str) -> String {
+    let sides = equation.split_once(" == ");
+    let found = sides.and_then(|(name, value)| {
+        let unit = model.unit_of(name).filter(|it| !it.unit.is_empty())?;
+        let value = short(value.parse::<f64>().ok()? / unit.scale);
+        Some(format!("{name} == {value} [{}]", unit.unit))
+    });
+    found.unwrap_or_else(|| equation.into())
+}
+
 /// `v [km/h] in [0, 100]`
 fn in_units(model: &Model, name: &str, bounds: Bounds) -> String {
-    let scale = scale(model, name);
-    let [lower, upper] = [bounds.lower / scale, bounds.upper / scale].map(rounded);
+    let bounds = scaled(bounds, scale(model, name));
     match model.unit_of(name).filter(|it| !it.unit.is_empty()) {
-        Some(it) => bounded(&format!("{name} [{}]", it.unit), Bounds { lower, upper }),
-        None => bounded(name, Bounds { lower, upper }),
+        Some(it) => bounded(&format!("{name} [{}]", it.unit), bounds),
+        None => bounded(name, bounds),
     }
+}
+
+fn scaled(bounds: Bounds, scale: f64) -> Bounds {
+    let [lower, upper] = [bounds.lower / scale, bounds.upper / scale].map(rounded);
+    Bounds { lower, upper }
 }
 
 /// How many SI units one of the units is in which a name is declared.

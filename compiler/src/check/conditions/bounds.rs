@@ -9,6 +9,10 @@ use crate::units;
 use fdcc_grammar::ast::{Ident, Interval, Item, ItemKind, Start};
 use fdcc_grammar::{Code, Diagnostic, Edit, Fix, Label, Span};
 
+/// Relative to the sizes of the bounds, whatever their unit: a start of `0.1 + 0.2` is not above
+/// 0.3. A bound of `1e-10` beside one of 1 still counts.
+const ROUNDING: f64 = 1e-13;
+
 /// Reports all of them together: they have one cause, a typo, and one repair.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let mut mistakes =
@@ -122,7 +126,7 @@ fn starts_free(
         let [lower, upper] = numbers(meaning, state.range);
         // The end of the start's range that is nearest to the bounds.
         let nearest = if first > upper { first } else { last };
-        if first > upper || last < lower {
+        if side([first, last], [lower, upper]).is_some() {
             let subject = Subject { name: &state.place.name, verb: "starts", span, scale };
             outside(meaning, subject, nearest, state.range, mistakes);
         }
@@ -177,6 +181,22 @@ struct Subject<'a> {
     scale: f64,
 }
 
+enum Side {
+    Below,
+    Above,
+}
+
+/// On which side of bounds all of a range lies, by more than rounding.
+fn side([first, last]: [f64; 2], [lower, upper]: [f64; 2]) -> Option<Side> {
+    let sizes = [first, last, lower, upper].map(f64::abs).into_iter().filter(|it| it.is_finite());
+    let rounding = ROUNDING * sizes.fold(0.0, f64::max);
+    match () {
+        _ if first - upper > rounding => Some(Side::Above),
+        _ if lower - last > rounding => Some(Side::Below),
+        _ => None,
+    }
+}
+
 fn outside(
     meaning: &Elaborator<'_>,
     subject: Subject<'_>,
@@ -185,11 +205,11 @@ fn outside(
     mistakes: &mut Mistakes,
 ) {
     let [lower, upper] = numbers(meaning, range);
-    let (side, change, limit) = match () {
+    let (side, change, limit) = match side([given, given], [lower, upper]) {
         _ if lower > upper => return,
-        _ if given < lower => ("below its own lower bound", "lower", lower),
-        _ if given > upper => ("above its own upper bound", "raise", upper),
-        _ => return,
+        Some(Side::Below) => ("below its own lower bound", "lower", lower),
+        Some(Side::Above) => ("above its own upper bound", "raise", upper),
+        None => return,
     };
     let [limit, given] = [limit, given].map(|it| shown(it / subject.scale));
     mistakes

@@ -143,6 +143,9 @@ impl Known {
         let mut tape = Tape::new(&meaning.graph, &[value]);
         let inputs: Vec<u32> = tape.inputs().collect();
         let possible = tape.evaluate(&self.domain)[0];
+        if has_no_value(possible) {
+            return None;
+        }
         let spans = || inputs.iter().flat_map(|&at| self.because[at as usize].clone()).collect();
         (are_apart(possible, allowed) || self.has_other_sign(meaning, value, allowed)).then(spans)
     }
@@ -268,6 +271,13 @@ fn interval(meaning: &Elaborator<'_>, range: Range) -> Interval {
     let lower = if lower.is_nan() { f64::NEG_INFINITY } else { lower };
     let upper = if upper.is_nan() { f64::INFINITY } else { upper };
     if lower <= upper { Interval::new(lower, upper) } else { Interval::ALL }
+}
+
+/// Whether nothing is known of a value: at time 0 `x/t` is `0/0` and `log(t)` no number, and a path
+/// condition holds from the next point of the grid on only.
+fn has_no_value(it: Interval) -> bool {
+    let is_beyond = |end: f64| end > 0.5 * f64::MAX;
+    it.is_empty() || is_beyond(it.lower) || is_beyond(-it.upper)
 }
 
 /// Whether two intervals have nothing in common, not even up to rounding.

@@ -89,7 +89,7 @@ impl<'a> Inference<'a> {
             let own = |part: &Part| match part.plain {
                 true => self.number(it.name, it.item),
                 false if part.declared.form == Form::Quantity => part.clone().into_name(),
-                false => part.clone().into_definition(),
+                false => part.clone().into_formula(),
             };
             given.0.iter().map(own).collect()
         };

@@ -37,15 +37,6 @@ impl Part {
         Part { declared: self.declared.into_name(), ..self }
     }
 
-    /// The same as a name without a unit of its own. Of terms in different units, none is that of
-    /// the sum: it is in SI, as it is shown.
-    pub fn into_definition(self) -> Self {
-        match self.declared.form {
-            Form::Mixed => Part { declared: Declared::SI, ..self },
-            _ => self.into_formula(),
-        }
-    }
-
     /// Whether it is a number without a unit, and not 0, which has every unit.
     pub fn is_bare(&self) -> bool {
         self.plain && self.dimension.is_some()

@@ -4,7 +4,7 @@
 //! The rates `r(s)` of the surfaces are linearised until nothing changes (selectors may multiply
 //! each other). If `B` is a P-matrix, or positive definite where there are balls, the solution is
 //! the only one. Otherwise all combinations of sides are tried, and only a single consistent one is
-//! taken.
+//! taken. Where there is none, those in which the state rests on surfaces are told.
 
 pub(crate) mod ball;
 pub(crate) mod complementarity;
@@ -35,6 +35,14 @@ struct Corner<'f, 'a> {
 struct Choice {
     modes: Vec<Mode>,
     s: DVector<f64>,
+}
+
+/// Whether a state may stay on a surface that its selector does not move: a stone at rest on the
+/// ground. Any value of the selector keeps it there, so that is never the only way to go on.
+#[derive(Clone, Copy, PartialEq)]
+enum Rest {
+    Refused,
+    Told,
 }
 
 /// The modes of `surfaces` after a point that is on all of them. Balls that move from there find
@@ -137,9 +145,13 @@ impl Corner<'_, '_> {
             }
             sides
         };
-        let mut found: Vec<Choice> =
-            (0..count).filter_map(|number| self.consistent(&sides(number))).collect();
-        if found.len() == 1 && self.attracts(&found[0]) {
+        let mut all = |rest| -> Vec<Choice> {
+            (0..count).filter_map(|number| self.consistent(&sides(number), rest)).collect()
+        };
+        let mut found = all(Rest::Refused);
+        if found.is_empty() {
+            found = all(Rest::Told);
+        } else if found.len() == 1 && self.attracts(&found[0]) {
             return Ok(found.swap_remove(0));
         }
         let candidates = found.iter().map(|choice| self.candidate(choice)).collect();
@@ -169,13 +181,20 @@ impl Corner<'_, '_> {
     }
 
     /// What happens if the state goes on with these sides, if it can.
-    fn consistent(&mut self, sides: &[i8]) -> Option<Choice> {
+    fn consistent(&mut self, sides: &[i8], rest: Rest) -> Option<Choice> {
+        let rest = if self.balls.is_empty() { rest } else { Rest::Refused };
         let mut s = DVector::from_iterator(sides.len(), sides.iter().map(|side| f64::from(*side)));
         let free: Vec<usize> = (0..sides.len()).filter(|&i| sides[i] == 0).collect();
         for _ in 0..if free.is_empty() { 0 } else { 20 } {
             let (r, b, _) = self.rates(&s);
             let b = b.select_rows(&free).select_columns(&free);
-            let change = self.change(&s.select_rows(&free), &r.select_rows(&free), b, &free)?;
+            let found = self.change(&s.select_rows(&free), &r.select_rows(&free), b, &free);
+            let Some(change) = found else {
+                match rest {
+                    Rest::Refused => return None,
+                    Rest::Told => break,
+                }
+            };
             free.iter().zip(change.iter()).for_each(|(&i, change)| s[i] += change);
         }
         let (r, _, tie) = self.rates(&s);
@@ -191,7 +210,7 @@ impl Corner<'_, '_> {
         let is_tie = |i: usize| sides[i] != 0 && r[i].abs() <= tie[i];
         let (all_fit, has_tie) = ((0..sides.len()).all(fits), (0..sides.len()).any(is_tie));
         let choice = self.choice(sides, s, &r, &tie);
-        (all_fit && (!has_tie || self.goes_there(sides, &choice))).then_some(choice)
+        (all_fit && (!has_tie || self.goes_there(sides, &choice, rest))).then_some(choice)
     }
 
     /// By how much the free selectors change in one iteration; those of balls stay in them.
@@ -210,8 +229,8 @@ impl Corner<'_, '_> {
         is_unique(&b, &balls).then(|| solution(&(r + &b * s), &b, &balls))?.map(|next| next - s)
     }
 
-    /// Where rates vanish a short step tells on which side it ends.
-    fn goes_there(&mut self, sides: &[i8], choice: &Choice) -> bool {
+    /// Where rates vanish a short step tells on which side it ends, or that it ends on the surface.
+    fn goes_there(&mut self, sides: &[i8], choice: &Choice, rest: Rest) -> bool {
         let before = (self.field.modes.clone(), self.field.selectors.clone());
         let of_balls = (self.field.departure.clone(), self.field.direction.clone());
         choice.begin(self.field, self.surfaces, self.t);
@@ -221,10 +240,11 @@ impl Corner<'_, '_> {
         let psi = self.field.psi(self.t + h, &end);
         (self.field.modes, self.field.selectors) = before;
         (self.field.departure, self.field.direction) = of_balls;
+        let rests = |psi: f64| rest == Rest::Told && psi == 0.0;
         self.surfaces
             .iter()
             .zip(sides)
-            .all(|(&i, &side)| side == 0 || f64::from(side) * psi[i] > 0.0)
+            .all(|(&i, &side)| side == 0 || f64::from(side) * psi[i] > 0.0 || rests(psi[i]))
     }
 }
 

@@ -1,0 +1,32 @@
+//! What is understood but cannot be solved yet, each said in one place: `check` tells it early, and
+//! what compiles a problem refuses it.
+
+use super::{Jump, Model, Symbol, not_yet};
+use crate::expressions::graph::ExprId;
+use fdcc_grammar::Diagnostic;
+
+impl Model {
+    /// A jump within a phase.
+    pub(crate) fn jump_in_phase(&self) -> Option<Diagnostic> {
+        let jump = self.phases.iter().find_map(|phase| phase.model.jumps.first())?;
+        Some(not_yet(jump.place.span, "a jump within a phase"))
+    }
+
+    /// Measured data beside jumps: a row may be in any of the phases between them.
+    pub(crate) fn rows_beside_jumps(&self) -> Option<Diagnostic> {
+        let (Some(_), Some(sum)) = (self.jumps.first(), self.sums.first()) else { return None };
+        Some(not_yet(sum.place.span, "a sum over rows in a model with jumps"))
+    }
+
+    /// A jump that reads the side of a surface, which a simulation knows and a problem does not.
+    pub(crate) fn jump_by_side(&self) -> Option<Diagnostic> {
+        let jump = self.jumps.iter().find(|jump| self.reads_selectors(jump))?;
+        Some(not_yet(jump.place.span, "a jump that reads the side of a surface"))
+    }
+
+    fn reads_selectors(&self, jump: &Jump) -> bool {
+        let values: Vec<ExprId> = jump.resets.iter().map(|reset| reset.1).collect();
+        let read = self.graph.inputs_of(&values);
+        read.iter().any(|at| matches!(self.symbols[*at as usize], Symbol::Selector(_)))
+    }
+}

@@ -94,6 +94,24 @@ pub(crate) mod search {
     pub(crate) const ROUNDING: f64 = 8.0 * f64::EPSILON;
 }
 
+pub(crate) mod hidden {
+    /// No pulse may move a state unseen by more than this part of its size.
+    pub(crate) const PART: f64 = 1e-2;
+    /// Nor by less than so many relative tolerances: the curve is no more exact.
+    pub(crate) const TOLERANCES: f64 = 100.0;
+    /// Nor by less than this part of what the bounds over a whole step would allow: what is 0 has
+    /// no size.
+    pub(crate) const LEAST_OF_WHOLE: f64 = 1e-4;
+    /// Nor by less than so many times what rounding makes of its rate, the width of bounds at a
+    /// point.
+    pub(crate) const ROUNDINGS: f64 = 4.0;
+    /// So many parts are looked at, whatever they hide.
+    pub(crate) const EVEN_PARTS: usize = 16;
+    /// Beyond them only one that hides this part of all that is hidden, and no more than so many.
+    pub(crate) const STANDS_OUT: f64 = 0.2;
+    pub(crate) const MOST_PARTS: usize = 80;
+}
+
 pub(crate) mod discontinuity {
     /// How far beside a change of sign a function is looked at, in the least parts of a step that
     /// differ, and so many times as far for comparison.
@@ -176,6 +194,9 @@ pub(crate) mod advance {
     pub(crate) const MOST_SHRINKING: f64 = 0.1;
     pub(crate) const MOST_GROWTH: f64 = 5.0;
     pub(crate) const LEAST_ERROR: f64 = 1e-10;
+    /// A step that hides something ends before it, but keeps at least, and loses at least so much
+    /// of its length.
+    pub(crate) const BEFORE_HIDDEN: [f64; 2] = [0.1, 0.5];
     /// Of the first length (Hairer, Norsett, Wanner I, II.4, (4.14)): sizes below this say nothing,
     /// then it is this part of the time; else the state changes by this part; rates below this are
     /// none; and the second guess is at most so many times the first.

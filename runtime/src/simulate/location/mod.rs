@@ -9,6 +9,7 @@
 mod bisection;
 mod discontinuity;
 pub(crate) mod extremes;
+pub(crate) mod hidden;
 mod search;
 mod sliding;
 mod tube;

@@ -95,15 +95,13 @@ pub(crate) mod search {
 }
 
 pub(crate) mod hidden {
-    /// No pulse may move a state unseen by more than this part of its size.
+    /// A pulse may move a state unseen by this part of its way since the beginning,
     pub(crate) const PART: f64 = 1e-2;
-    /// Nor by less than so many relative tolerances: the curve is no more exact.
+    /// or by so many tolerances of a step, as the curve is no more exact,
     pub(crate) const TOLERANCES: f64 = 100.0;
-    /// Nor by less than this part of what the bounds over a whole step would allow: what is 0 has
-    /// no size.
+    /// or by this part of what bounds over the whole step allow: what has not moved has no way,
     pub(crate) const LEAST_OF_WHOLE: f64 = 1e-4;
-    /// Nor by less than so many times what rounding makes of its rate, the width of bounds at a
-    /// point.
+    /// or by so many times what rounding makes of its rate, the width of bounds at a point.
     pub(crate) const ROUNDINGS: f64 = 4.0;
     /// So many parts are looked at, whatever they hide.
     pub(crate) const EVEN_PARTS: usize = 16;

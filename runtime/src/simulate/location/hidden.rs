@@ -8,8 +8,8 @@
 //! (width of f_i over the part - |f_i(b) - f_i(a)|) (b - a) h,
 //! ```
 //!
-//! bounds how far a pulse inside could move the state. If the sum over all parts is a small part of
-//! the state for every state, the step is as it seems. Else the part that may hide most is halved,
+//! bounds how far a pulse inside could move the state. If the sum over all parts is small beside
+//! the way of the state so far, the step is as it seems. Else the part that may hide most is halved,
 //! and the rate in its middle compared with that of the curve:
 //!
 //! ```text
@@ -19,6 +19,10 @@
 //! Where it shows a pulse, the step is too long. Intervals of a right side in which an input occurs
 //! often may be wide however smooth it is, but so they are everywhere: after a few parts only
 //! what stands out is halved any more.
+//!
+//! Selectors that follow the state answer to a pulse at once. Bounds, and what is known between
+//! them, are those of the right side with the selectors of one point; the defect is the true one,
+//! and counts for every state, as selectors pass pulses on.
 
 use crate::simulate::bernstein::{slopes, value};
 use crate::simulate::field::Field;
@@ -29,35 +33,12 @@ use crate::simulate::tuning::hidden::{
     EVEN_PARTS, LEAST_OF_WHOLE, MOST_PARTS, PART, ROUNDINGS, STANDS_OUT, TOLERANCES,
 };
 
-/// A part of the step, with the rates at its ends.
+/// A part of the step, with the rates of all states at its ends.
 struct Part {
     ends: [f64; 2],
-    /// The rates of the rows at both ends.
     rates: [Vec<f64>; 2],
     /// What intervals leave of each row between: a rate.
     hidden: Vec<f64>,
-}
-
-impl Part {
-    fn length(&self) -> f64 {
-        self.ends[1] - self.ends[0]
-    }
-}
-
-/// A state whose rate is looked at.
-struct Row {
-    state: usize,
-    /// How far it may be moved unseen.
-    allowed: f64,
-    /// How fast it forgets: its own slope, as far as the method knows it.
-    fades: f64,
-}
-
-impl Row {
-    /// How far a rate moves the state in a time.
-    fn moved(&self, rate: f64, time: f64) -> f64 {
-        if rate == 0.0 { 0.0 } else { rate * time.min(1.0 / self.fades) }
-    }
 }
 
 /// The part of a step at which something begins that its stages do not know of; nothing if there is
@@ -66,64 +47,90 @@ pub(crate) fn first_hidden(field: &mut Field, step: &Step) -> Option<f64> {
     if field.system.enclosures.sudden.is_empty() {
         return None;
     }
-    let tube = Tube::new(field);
-    let mut search = Search { step, rows: Vec::new(), tube, field };
-    let whole = search.begin()?;
-    let selectors = search.field.selectors.clone();
-    let found = search.halve(whole);
-    search.field.selectors.copy_from_slice(&selectors);
+    let (tube, selectors) = (Tube::new(field), field.selectors.clone());
+    let is_fixed = field.sliding().is_empty() && field.moving().is_empty();
+    let mut search = Search { step, rows: Vec::new(), tube, selectors, is_fixed, field };
+    let found = search.begin().and_then(|whole| search.halve(whole));
+    let Search { field, selectors, .. } = search;
+    field.selectors.copy_from_slice(&selectors);
     found
 }
 
 struct Search<'s, 'a> {
     field: &'s mut Field<'a>,
     step: &'s Step,
-    rows: Vec<Row>,
+    /// The states that something may move unseen, and how far it may.
+    rows: Vec<(usize, f64)>,
     tube: Tube,
+    /// Those of the end of the step, and whether they are the same all along.
+    selectors: Vec<f64>,
+    is_fixed: bool,
 }
 
 impl Search<'_, '_> {
-    /// Looks at the whole step: notes the rows that may hide something.
+    /// Looks at the whole step, and notes the rows that may hide something.
     fn begin(&mut self) -> Option<Part> {
-        let mut hidden = Vec::new();
+        let (mut hidden, mut ends) = (Vec::new(), None);
         let system = self.field.system;
         for &state in &system.enclosures.sudden {
-            if self.field.held.contains(&state) {
-                continue;
-            }
             let width = self.width(state, [0.0, 1.0]);
-            let (rate, h) = ((width - self.step.spread(state)).max(0.0), self.step.h);
-            let mut row = self.row(state, width);
-            if row.moved(rate, h) <= row.allowed {
+            let most = self.moved(state, width);
+            if self.field.held.contains(&state) || most <= self.allowed(state) {
                 continue;
             }
-            row.allowed = row.allowed.max(ROUNDINGS * self.rounding(state) * h);
-            if row.moved(rate, h) > row.allowed {
-                self.rows.push(row);
+            let rate = (width - self.known(state, &mut ends)).max(0.0);
+            let limit = self.limit(state, most);
+            if self.moved(state, rate) > limit {
+                self.rows.push((state, limit));
                 hidden.push(rate);
             }
         }
         if self.rows.is_empty() {
             return None;
         }
-        let ends = [0.0, 1.0];
-        Some(Part { ends, rates: [self.rates(0.0), self.rates(1.0)], hidden })
+        let rates = ends.unwrap_or_else(|| [0.0, 1.0].map(|end| self.rates(end)));
+        Some(Part { ends: [0.0, 1.0], rates, hidden })
     }
 
-    /// A state whose rate has bounds of some width along the step.
-    fn row(&self, state: usize, width: f64) -> Row {
-        let Step { h, start, end, method, newton, .. } = self.step;
-        let tolerance = &self.field.tolerance;
-        let size = start[state].abs().max(end[state].abs()).max(tolerance.sizes[state]);
-        let part = PART.max(TOLERANCES * tolerance.rtol);
-        let whole = if width.is_finite() { LEAST_OF_WHOLE * width * h } else { 0.0 };
-        let fades = if *method == Method::Stiff { newton.own_slope(state) } else { 0.0 };
-        Row { state, allowed: (part * size).max(whole), fades }
+    /// By how much a rate is known to change along the step.
+    fn known(&mut self, state: usize, ends: &mut Option<[Vec<f64>; 2]>) -> f64 {
+        if self.is_fixed {
+            let [low, high] = self.step.rates(state);
+            return high - low;
+        }
+        let [first, last] = ends.get_or_insert_with(|| [0.0, 1.0].map(|end| self.rates(end)));
+        (last[state] - first[state]).abs()
     }
 
-    /// What rounding makes of a rate.
-    fn rounding(&mut self, state: usize) -> f64 {
-        self.width(state, [0.0; 2]).max(self.width(state, [1.0; 2]))
+    /// How far a state may be moved unseen, as its way and its tolerance tell.
+    fn allowed(&self, state: usize) -> f64 {
+        let Step { h, start, end, .. } = self.step;
+        let (tolerance, [low, high]) = (&self.field.tolerance, self.step.rates(state));
+        let ends = [start[state], end[state]];
+        let way = (h * low.abs().max(high.abs())).max((ends[1] - ends[0]).abs());
+        let exact = TOLERANCES * tolerance.of(state, ends, 0.0);
+        exact.max(PART * way.max(tolerance.ways[state]))
+    }
+
+    /// The same, as bounds that would move it so far over the whole step tell, and rounding, too.
+    fn limit(&mut self, state: usize, most: f64) -> f64 {
+        let rounding = [0.0, 1.0].map(|end| self.width(state, [end; 2]));
+        let rounding = ROUNDINGS * self.step.h * rounding[0].max(rounding[1]);
+        let whole = if most.is_finite() { LEAST_OF_WHOLE * most } else { 0.0 };
+        self.allowed(state).max(rounding).max(whole)
+    }
+
+    /// How far a rate moves a state along the step. One that is fast forgets it soon.
+    fn moved(&self, state: usize, rate: f64) -> f64 {
+        self.moved_in(state, rate, self.step.h)
+    }
+
+    fn moved_in(&self, state: usize, rate: f64, time: f64) -> f64 {
+        let fades = match self.step.method {
+            Method::Stiff => self.step.newton.own_slope(state),
+            Method::Explicit => 0.0,
+        };
+        if rate == 0.0 { 0.0 } else { rate * time.min(1.0 / fades) }
     }
 
     /// The width of the bounds of a rate during a part of the step; 0 where it has no value.
@@ -135,11 +142,14 @@ impl Search<'_, '_> {
         (high - low).max(0.0)
     }
 
-    /// The rates of the rows at a part of the step.
+    /// All rates at a part of the step, with the selectors of its end.
     fn rates(&mut self, theta: f64) -> Vec<f64> {
-        let at = self.step.at(theta);
-        let rate = self.field.rate(self.step.t + theta * self.step.h, &at);
-        self.rows.iter().map(|row| rate[row.state]).collect()
+        let (t, at) = (self.step.t + theta * self.step.h, self.step.at(theta));
+        if self.is_fixed {
+            self.field.rate(t, &at)
+        } else {
+            self.field.with_selectors(t, &at, &self.selectors).0
+        }
     }
 
     /// Halves the part that may hide most, again and again.
@@ -150,15 +160,14 @@ impl Search<'_, '_> {
             if parts.len() >= EVEN_PARTS && share < STANDS_OUT {
                 return None;
             }
-            let part = parts.swap_remove(worst);
-            let middle = 0.5 * (part.ends[0] + part.ends[1]);
+            let Part { ends: [from, to], rates: [first, last], .. } = parts.swap_remove(worst);
+            let middle = 0.5 * (from + to);
             let rates = self.rates(middle);
-            if self.contradicts(&part, middle, &rates) {
-                return Some(part.ends[0]);
+            if self.contradicts([from, to], &rates) {
+                return Some(from);
             }
-            let [first, last] = part.rates;
-            parts.push(self.part([part.ends[0], middle], [first, rates.clone()]));
-            parts.push(self.part([middle, part.ends[1]], [rates, last]));
+            parts.push(self.part([from, middle], [first, rates.clone()]));
+            parts.push(self.part([middle, to], [rates, last]));
         }
         None
     }
@@ -166,8 +175,9 @@ impl Search<'_, '_> {
     fn part(&mut self, ends: [f64; 2], rates: [Vec<f64>; 2]) -> Part {
         let mut hidden = Vec::new();
         for at in 0..self.rows.len() {
-            let known = (rates[1][at] - rates[0][at]).abs();
-            hidden.push((self.width(self.rows[at].state, ends) - known).max(0.0));
+            let state = self.rows[at].0;
+            let known = (rates[1][state] - rates[0][state]).abs();
+            hidden.push((self.width(state, ends) - known).max(0.0));
         }
         Part { ends, rates, hidden }
     }
@@ -175,33 +185,40 @@ impl Search<'_, '_> {
     /// The part that may hide most of the row that may hide most, and its share of that, none if
     /// there are no bounds; nothing if no row may be moved farther than it is allowed to.
     fn worst(&self, parts: &[Part]) -> Option<(usize, f64)> {
-        let mut worst = (1.0, 0);
-        let hides = |part: &Part, at: usize| part.hidden[at] * part.length() * self.step.h;
-        for (at, row) in self.rows.iter().enumerate() {
+        let hides =
+            |part: &Part, at: usize| part.hidden[at] * (part.ends[1] - part.ends[0]) * self.step.h;
+        let ratio = |at: usize| {
+            let (state, limit) = self.rows[at];
             let sum: f64 = parts.iter().map(|part| hides(part, at)).sum();
             let most = parts.iter().map(|part| part.hidden[at]).fold(0.0, f64::max);
-            let ratio = sum.min(row.moved(most, f64::INFINITY)) / row.allowed;
-            if ratio > worst.0 {
-                worst = (ratio, at);
-            }
-        }
-        if worst.0 == 1.0 {
-            return None;
-        }
-        let of = |part: &Part| hides(part, worst.1);
-        let sum: f64 = parts.iter().map(of).sum();
-        let largest = (0..parts.len()).max_by(|a, b| of(&parts[*a]).total_cmp(&of(&parts[*b])))?;
-        let share = of(&parts[largest]) / sum;
-        Some((largest, if share.is_nan() { 0.0 } else { share }))
+            sum.min(self.moved_in(state, most, f64::INFINITY)) / limit
+        };
+        let ratios = (0..self.rows.len()).map(|at| (at, ratio(at)));
+        let (row, _) = ratios.filter(|it| it.1 > 1.0).max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let all: Vec<f64> = parts.iter().map(|part| hides(part, row)).collect();
+        let at = (0..all.len()).max_by(|a, b| all[*a].total_cmp(&all[*b]))?;
+        let share = all[at] / all.iter().sum::<f64>();
+        Some((at, if share.is_nan() { 0.0 } else { share }))
     }
 
     /// Whether the rates in the middle of a part are not those of the curve.
-    fn contradicts(&self, part: &Part, middle: f64, rates: &[f64]) -> bool {
-        let h = self.step.h;
-        self.rows.iter().zip(rates).any(|(row, rate)| {
-            let slopes = slopes(&self.step.extension.coefficients(row.state));
-            let defect = (rate - value(&slopes, middle) / h).abs();
-            row.moved(defect, part.length() * h) > row.allowed
+    fn contradicts(&mut self, [from, to]: [f64; 2], rates: &[f64]) -> bool {
+        let (middle, time) = (0.5 * (from + to), (to - from) * self.step.h);
+        let beside = |search: &Self, state: usize, rate: f64| {
+            let slopes = slopes(&search.step.extension.coefficients(state));
+            let defect = (rate - value(&slopes, middle) / search.step.h).abs();
+            search.moved_in(state, defect, time)
+        };
+        if self.is_fixed {
+            return self.rows.iter().any(|row| beside(self, row.0, rates[row.0]) > row.1);
+        }
+        let rates = self.field.rate(self.step.t + middle * self.step.h, &self.step.at(middle));
+        (0..rates.len()).any(|state| {
+            let beside = beside(self, state, rates[state]);
+            beside > self.allowed(state) && {
+                let width = self.width(state, [0.0, 1.0]);
+                beside > self.limit(state, self.moved(state, width))
+            }
         })
     }
 }

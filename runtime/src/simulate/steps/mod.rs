@@ -183,14 +183,15 @@ impl Step {
         self.extension.component(i, theta)
     }
 
-    /// By how much the rate of a component differs between the stages.
-    pub fn spread(&self, i: usize) -> f64 {
-        let [low, high] = match self.rule {
-            Rule::Explicit => around_all(self.stages.iter().map(|stage| stage[i])),
-            Rule::Radau => around_all(self.newton.stage_rates(i).chain([self.stages[0][i]])),
-            Rule::Collocation | Rule::Straight => [0.0; 2],
-        };
-        high - low
+    /// The least and the greatest rate of a component at the stages.
+    pub fn rates(&self, i: usize) -> [f64; 2] {
+        let widened = |[low, high]: [f64; 2], rate: f64| [low.min(rate), high.max(rate)];
+        let first = [self.stages[0][i]; 2];
+        match self.rule {
+            Rule::Explicit => self.stages.iter().map(|stage| stage[i]).fold(first, widened),
+            Rule::Radau => self.newton.stage_rates(i).fold(first, widened),
+            Rule::Collocation | Rule::Straight => first,
+        }
     }
 
     /// By how much it is stiff: `h` times the largest eigenvalue, as far as the method knows it.
@@ -200,11 +201,4 @@ impl Step {
             Method::Stiff => self.h * self.newton.stiffness(),
         }
     }
-}
-
-/// The least and the greatest of some numbers.
-fn around_all(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-        [low.min(value), high.max(value)]
-    })
 }

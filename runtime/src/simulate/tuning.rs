@@ -37,6 +37,8 @@ pub(crate) mod tolerance {
     pub(crate) const REACHED: f64 = 1e-9;
     /// The same of what nothing moves, relative to the largest state.
     pub(crate) const LEAST: f64 = 1e-60;
+    /// What is smaller than this, such as the tail of a pulse, is soon too small for its digits.
+    pub(crate) const SMALLEST: f64 = 1e-280;
     /// Selectors that solve a linear system are known so well.
     pub(crate) const SOLVED: f64 = 1e-13;
     /// So many states may pass on to each other that they are uncertain.

@@ -13,7 +13,7 @@ use super::Field;
 use super::tube::Tube;
 use crate::simulate::mode::Mode;
 use crate::simulate::result::Options;
-use crate::simulate::tuning::tolerance::{KEPT, LEAST, PART, PASSES, REACHED, SOLVED};
+use crate::simulate::tuning::tolerance::{KEPT, LEAST, PART, PASSES, REACHED, SMALLEST, SOLVED};
 
 /// The tolerances of all states.
 pub(crate) struct Tolerance {
@@ -95,7 +95,7 @@ impl Field<'_> {
         for (i, rate) in rate.iter().enumerate() {
             let pushes: f64 = by_selector.row(i).iter().map(|push| push.abs()).sum();
             let reached = REACHED * (last - first) * (rate.abs() + pushes);
-            let least = LEAST * if largest > 0.0 { largest } else { 1.0 };
+            let least = (LEAST * if largest > 0.0 { largest } else { 1.0 }).max(SMALLEST);
             self.tolerance.least[i] = if reached.is_finite() { reached.max(least) } else { least };
         }
     }

@@ -24,9 +24,10 @@
 //! them, are those of the right side with the selectors of one point; the defect is the true one,
 //! and counts for every state, as selectors pass pulses on.
 
-use crate::simulate::bernstein::{slopes, value};
+use crate::simulate::bernstein::value;
 use crate::simulate::field::Field;
 use crate::simulate::field::tube::Tube;
+use crate::simulate::mode::Mode;
 use crate::simulate::result::Method;
 use crate::simulate::steps::Step;
 use crate::simulate::tuning::hidden::{
@@ -47,12 +48,13 @@ pub(crate) fn first_hidden(field: &mut Field, step: &Step) -> Option<f64> {
     if field.system.enclosures.sudden.is_empty() {
         return None;
     }
-    let (tube, selectors) = (Tube::new(field), field.selectors.clone());
-    let is_fixed = field.sliding().is_empty() && field.moving().is_empty();
+    let (tube, selectors) = (field.lend_tube(), field.selectors.clone());
+    let is_fixed = !field.modes.iter().any(|mode| matches!(mode, Mode::Sliding | Mode::Moving));
     let mut search = Search { step, rows: Vec::new(), tube, selectors, is_fixed, field };
     let found = search.begin().and_then(|whole| search.halve(whole));
-    let Search { field, selectors, .. } = search;
+    let Search { field, selectors, tube, .. } = search;
     field.selectors.copy_from_slice(&selectors);
+    field.tube = Some(tube);
     found
 }
 
@@ -205,7 +207,7 @@ impl Search<'_, '_> {
     fn contradicts(&mut self, [from, to]: [f64; 2], rates: &[f64]) -> bool {
         let (middle, time) = (0.5 * (from + to), (to - from) * self.step.h);
         let beside = |search: &Self, state: usize, rate: f64| {
-            let slopes = slopes(&search.step.extension.coefficients(state));
+            let slopes = search.step.extension.slopes(state);
             let defect = (rate - value(&slopes, middle) / search.step.h).abs();
             search.moved_in(state, defect, time)
         };

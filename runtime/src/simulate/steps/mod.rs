@@ -37,6 +37,12 @@ impl Extension {
         added.map(|added| self.start[i] + added)
     }
 
+    /// Those of its rate, per step.
+    pub fn slopes(&self, i: usize) -> [f64; 4] {
+        let values = self.coefficients(i);
+        std::array::from_fn(|at| 4.0 * (values[at + 1] - values[at]))
+    }
+
     /// A component at a part of the step, or beyond it.
     pub fn component(&self, i: usize, theta: f64) -> f64 {
         let rest = 1.0 - theta;

@@ -83,6 +83,10 @@ class System:
         self.start = [draw.uniform(-1, 1), draw.uniform(-1, 1)]
         self.surfaces = [Surface(draw) for _ in range(draw.randint(1, 2))]
         self.pulse = Pulse(draw) if draw.random() < 0.5 else None
+        # What is at rest but for the pulse takes the longest steps.
+        if self.pulse and draw.random() < 0.5:
+            self.stiffness = self.damping = self.swing = self.feedback = 0.0
+            self.start[1] = draw.choice([0.0, self.start[1]])
 
     def text(self):
         count = len(self.surfaces)

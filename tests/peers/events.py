@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Random hybrid systems whose surfaces oscillate, nearly touch 0 or leave it for a moment, by SciPy with dense sampling.
 
-    x1' = x2,   x2' = -w^2 x1 - d x2 + A cos(W t) + b sum_i Sgn(psi_i),   y_i' in Sgn(psi_i)
+    x1' = x2,   x2' = -w^2 x1 - d x2 + A cos(W t) + P + b sum_i Sgn(psi_i),   y_i' in Sgn(psi_i)
 
+P is 0 in every other system, else a pulse of time or of x1, between a thousandth and a twentieth of the time wide; SciPy takes steps that are short beside it.
 Every psi_i depends on t and x1 alone, so it is crossed and never held. SciPy integrates between two crossings (DOP853, 1e-12); each psi is sampled 4000
 times in each unit of time along its dense output, every extremum near 0 is searched, every root refined. A system in which an extremum comes
 so near to 0 that the tolerances decide is counted as delicate, and not judged.
@@ -56,6 +57,22 @@ class Surface:
         self.value = lambda t, x1: eval(code, names, {"t": t, "x1": x1})
 
 
+class Pulse:
+    """A short push: its width is a part of the whole time, or of the way of x1."""
+
+    def __init__(self, draw):
+        self.width = LAST * 10 ** draw.uniform(-3, -1.3)
+        self.of = draw.choice(["t", "t", "x1"])
+        middle = draw.uniform(0.03, 0.97) * LAST if self.of == "t" else draw.uniform(-1, 1)
+        # It changes the velocity by a number of the size of 1.
+        push = draw.choice([-1, 1]) * draw.uniform(0.3, 2) / self.width
+        z = f"(({self.of} - ({middle!r}))/{self.width!r})"
+        shapes = [f"exp(-{z}^2)", f"(tanh({z} + 1) - tanh({z} - 1))", f"1/(1 + {z}^2)"]
+        self.text = f"({push!r})*{draw.choice(shapes)}"
+        code = compile(self.text.replace("^", "**"), "pulse", "eval")
+        self.value = lambda t, x1: eval(code, {"exp": math.exp, "tanh": math.tanh}, {"t": t, "x1": x1})
+
+
 class System:
     """A random system."""
 
@@ -65,6 +82,11 @@ class System:
         self.feedback = draw.choice([0.0, 0.0, draw.uniform(-0.3, 0.3)])
         self.start = [draw.uniform(-1, 1), draw.uniform(-1, 1)]
         self.surfaces = [Surface(draw) for _ in range(draw.randint(1, 2))]
+        self.pulse = Pulse(draw) if draw.random() < 0.5 else None
+        # What is at rest but for the pulse takes the longest steps.
+        if self.pulse and draw.random() < 0.5:
+            self.stiffness = self.damping = self.swing = self.feedback = 0.0
+            self.start[1] = draw.choice([0.0, self.start[1]])
 
     def text(self):
         count = len(self.surfaces)
@@ -74,6 +96,7 @@ class System:
         lines += [f"surface s{i} = {it.text}" for i, it in enumerate(self.surfaces)]
         pushes = "".join(f" + ({self.feedback!r})*Sgn(s{i})" for i in range(count)) if self.feedback else ""
         rest = f"-{self.stiffness!r}*x1 - {self.damping!r}*x2 + {self.swing!r}*cos({self.frequency!r}*t)"
+        rest += f" + {self.pulse.text}" if self.pulse else ""
         lines += ["dynamics {", " x1' = x2", f" x2' {'in' if pushes else '='} {rest}{pushes}"]
         lines += [f" y{i}' in Sgn(s{i})" for i in range(count)] + ["}"]
         return "\n".join(lines) + "\n"
@@ -83,9 +106,16 @@ class System:
 
         def rate(t, x):
             force = -self.stiffness * x[0] - self.damping * x[1] + self.swing * math.cos(self.frequency * t)
+            force += self.pulse.value(t, x[0]) if self.pulse else 0.0
             return [x[1], force + push]
 
         return rate
+
+    def longest(self):
+        """No step of SciPy passes over a pulse; of x1 it is the shorter the faster x1 is."""
+        if not self.pulse:
+            return 0.05
+        return min(0.05, self.pulse.width / (2 if self.pulse.of == "t" else 10))
 
     def events(self):
         """Times, surfaces and directions of all crossings; None if the system is delicate."""
@@ -97,7 +127,7 @@ class System:
         while t < LAST:
             until = LAST if not self.feedback else min(LAST, t + 1)
             arc = solve_ivp(self.rate(sides), (t, until + BEYOND), x, method="DOP853", rtol=1e-12, atol=1e-13,
-                            dense_output=True, max_step=0.05)
+                            dense_output=True, max_step=self.longest())
             crossings = [self.crossings(i, arc.sol, t, until, found) for i in range(len(sides))]
             if any(it is None for it in crossings):
                 return None

@@ -6,6 +6,7 @@
 //! tell how fast the value can change.
 
 use super::function::VectorFunction;
+use super::sudden::sudden;
 use crate::expressions::graph::derivative::gradient;
 use crate::expressions::graph::{ExprId, Graph};
 use crate::expressions::interval::{Interval, Tape};
@@ -28,6 +29,7 @@ pub(super) struct Watched<'a> {
 pub(super) fn enclosures(graph: &mut Graph, layout: &Layout, watched: &Watched) -> Enclosures {
     let Watched { flow, switching, kinks, rates, path, guess } = watched;
     let along = 0..layout.controls().end;
+    let suddens = sudden(graph, layout, flow);
     let mut of = |function: &VectorFunction, by: &Range<usize>| -> Vec<Enclosure> {
         function
             .outputs
@@ -37,6 +39,7 @@ pub(super) fn enclosures(graph: &mut Graph, layout: &Layout, watched: &Watched) 
     };
     Enclosures {
         flow: of(flow, &(0..0)),
+        sudden: suddens,
         switching: of(switching, &along),
         kinks: of(kinks, &along),
         rates: of(rates, &layout.selectors()),

@@ -27,6 +27,7 @@ mod objective;
 mod problem;
 mod residuals;
 mod simulation;
+mod sudden;
 
 pub(crate) use by_parameters::by_parameters;
 pub use expectations::Expected;

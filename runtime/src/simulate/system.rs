@@ -66,6 +66,9 @@ pub struct Enclosure {
 pub struct Enclosures {
     /// Of [`System::flow`]; without derivatives.
     pub flow: Vec<Enclosure>,
+    /// The outputs of [`System::flow`] that may do something sudden between any points where they
+    /// are looked at, ascending: those that are no polynomials of a low degree.
+    pub sudden: Vec<usize>,
     /// Of [`System::switching`]; by `t` and `x`.
     pub switching: Vec<Enclosure>,
     /// Of [`System::kinks`]; by `t`, `x` and `u`.

@@ -37,6 +37,8 @@ pub(crate) mod tolerance {
     pub(crate) const REACHED: f64 = 1e-9;
     /// The same of what nothing moves, relative to the largest state.
     pub(crate) const LEAST: f64 = 1e-60;
+    /// What is smaller than this, such as the tail of a pulse, is soon too small for its digits.
+    pub(crate) const SMALLEST: f64 = 1e-280;
     /// Selectors that solve a linear system are known so well.
     pub(crate) const SOLVED: f64 = 1e-13;
     /// So many states may pass on to each other that they are uncertain.
@@ -92,6 +94,22 @@ pub(crate) mod search {
     pub(crate) const SLACK: f64 = 1e-9;
     /// Rounding of times, relative to them.
     pub(crate) const ROUNDING: f64 = 8.0 * f64::EPSILON;
+}
+
+pub(crate) mod hidden {
+    /// A pulse may move a state unseen by this part of its way since the beginning,
+    pub(crate) const PART: f64 = 1e-2;
+    /// or by so many tolerances of a step, as the curve is no more exact,
+    pub(crate) const TOLERANCES: f64 = 100.0;
+    /// or by this part of what bounds over the whole step allow: what has not moved has no way,
+    pub(crate) const LEAST_OF_WHOLE: f64 = 1e-4;
+    /// or by so many times what rounding makes of its rate, the width of bounds at a point.
+    pub(crate) const ROUNDINGS: f64 = 4.0;
+    /// So many parts are looked at, whatever they hide.
+    pub(crate) const EVEN_PARTS: usize = 16;
+    /// Beyond them only one that hides this part of all that is hidden, and no more than so many.
+    pub(crate) const STANDS_OUT: f64 = 0.2;
+    pub(crate) const MOST_PARTS: usize = 80;
 }
 
 pub(crate) mod discontinuity {
@@ -176,6 +194,9 @@ pub(crate) mod advance {
     pub(crate) const MOST_SHRINKING: f64 = 0.1;
     pub(crate) const MOST_GROWTH: f64 = 5.0;
     pub(crate) const LEAST_ERROR: f64 = 1e-10;
+    /// A step that hides something ends before it, but keeps at least, and loses at least so much
+    /// of its length.
+    pub(crate) const BEFORE_HIDDEN: [f64; 2] = [0.1, 0.5];
     /// Of the first length (Hairer, Norsett, Wanner I, II.4, (4.14)): sizes below this say nothing,
     /// then it is this part of the time; else the state changes by this part; rates below this are
     /// none; and the second guess is at most so many times the first.

@@ -74,11 +74,15 @@ impl Tape {
                 Instruction::Number(value) => Interval::point(*value),
                 Instruction::Input(position) => domain(*position as usize),
                 Instruction::Square(operand) => self.values[*operand].square(),
-                Instruction::Call(builtin, operands) => {
-                    let operands: SmallVec<[Interval; 4]> =
-                        operands.iter().map(|&at| self.values[at]).collect();
-                    apply(*builtin, &operands)
-                }
+                Instruction::Call(builtin, operands) => match operands.as_slice() {
+                    [one] => apply(*builtin, &[self.values[*one]]),
+                    [a, b] => apply(*builtin, &[self.values[*a], self.values[*b]]),
+                    all => {
+                        let operands: SmallVec<[Interval; 4]> =
+                            all.iter().map(|&at| self.values[at]).collect();
+                        apply(*builtin, &operands)
+                    }
+                },
             };
         }
         self.roots.iter().map(|&root| self.values[root])

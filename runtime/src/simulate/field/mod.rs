@@ -24,6 +24,7 @@ use crate::simulate::mode::Mode;
 use curve::Curve;
 use memory::Memory;
 use tolerance::Tolerance;
+use tube::Tube;
 
 /// The right side, with the memory that its evaluation needs.
 pub(crate) struct Field<'a> {
@@ -46,6 +47,8 @@ pub(crate) struct Field<'a> {
     /// What rounding makes of the terms of each surface, then of each kink.
     pub rounding: Vec<f64>,
     pub evaluations: usize,
+    /// Lent to whoever looks along a step.
+    pub tube: Option<Tube>,
     /// Which segment of the controls is followed.
     pub segment: Option<usize>,
     /// The controls of that segment, where they change in it.
@@ -73,6 +76,7 @@ impl<'a> Field<'a> {
             tolerance: Tolerance::new(options, &system.start),
             rounding: vec![0.0; surfaces + system.kinks.outputs()],
             evaluations: 0,
+            tube: None,
             segment: None,
             curve: None,
             controls,

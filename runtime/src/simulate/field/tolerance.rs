@@ -13,7 +13,7 @@ use super::Field;
 use super::tube::Tube;
 use crate::simulate::mode::Mode;
 use crate::simulate::result::Options;
-use crate::simulate::tuning::tolerance::{KEPT, LEAST, PART, PASSES, REACHED, SOLVED};
+use crate::simulate::tuning::tolerance::{KEPT, LEAST, PART, PASSES, REACHED, SMALLEST, SOLVED};
 
 /// The tolerances of all states.
 pub(crate) struct Tolerance {
@@ -21,6 +21,9 @@ pub(crate) struct Tolerance {
     atol: Option<f64>,
     /// How large each has been lately.
     pub sizes: Vec<f64>,
+    /// How far each has come away from its start.
+    pub ways: Vec<f64>,
+    start: Vec<f64>,
     /// How large each counts at least.
     least: Vec<f64>,
     /// By how much their rates are uncertain.
@@ -31,12 +34,16 @@ impl Tolerance {
     pub fn new(options: &Options, start: &[f64]) -> Self {
         let sizes = start.iter().map(|x| x.abs()).collect();
         let (least, doubts) = (vec![LEAST; start.len()], vec![0.0; start.len()]);
-        Tolerance { rtol: options.rtol, atol: options.atol, sizes, least, doubts }
+        let (ways, start) = (vec![0.0; start.len()], start.to_vec());
+        Tolerance { rtol: options.rtol, atol: options.atol, sizes, ways, start, least, doubts }
     }
 
     /// Notes how large the states are after a step.
     pub fn see(&mut self, x: &[f64]) {
         self.sizes.iter_mut().zip(x).for_each(|(size, x)| *size = (KEPT * *size).max(x.abs()));
+        let begins = self.start.iter();
+        let ways = self.ways.iter_mut().zip(begins.zip(x));
+        ways.for_each(|(way, (begin, x))| *way = way.max((x - begin).abs()));
     }
 
     /// Of a state that is `before` and `after` a step of length `h`.
@@ -88,7 +95,7 @@ impl Field<'_> {
         for (i, rate) in rate.iter().enumerate() {
             let pushes: f64 = by_selector.row(i).iter().map(|push| push.abs()).sum();
             let reached = REACHED * (last - first) * (rate.abs() + pushes);
-            let least = LEAST * if largest > 0.0 { largest } else { 1.0 };
+            let least = (LEAST * if largest > 0.0 { largest } else { 1.0 }).max(SMALLEST);
             self.tolerance.least[i] = if reached.is_finite() { reached.max(least) } else { least };
         }
     }

@@ -17,14 +17,25 @@ impl Tube {
     /// Selectors and parameters, and controls that are held, do not change along a step.
     pub fn new(field: &Field) -> Self {
         let layout = field.system.layout;
-        let mut inputs = vec![[0.0; 2]; layout.inputs()];
-        let mut put = |first: usize, values: &[f64]| {
-            inputs[first..].iter_mut().zip(values).for_each(|(input, value)| *input = [*value; 2]);
-        };
-        put(layout.controls().start, field.control());
-        put(layout.parameters().start, field.parameters());
-        put(layout.selectors().start, &field.selectors);
-        Tube { inputs, speeds: vec![[0.0; 2]; layout.controls().end], ranges: Vec::new() }
+        let (inputs, speeds) =
+            (vec![[0.0; 2]; layout.inputs()], vec![[0.0; 2]; layout.controls().end]);
+        let mut tube = Tube { inputs, speeds, ranges: Vec::new() };
+        tube.put(layout.parameters().start, field.parameters());
+        tube.begin(field);
+        tube
+    }
+
+    /// Puts selectors and controls where they are at the last point.
+    fn begin(&mut self, field: &Field) {
+        let layout = field.system.layout;
+        self.put(layout.controls().start, field.control());
+        self.put(layout.selectors().start, &field.selectors);
+        self.speeds[layout.controls()].fill([0.0; 2]);
+    }
+
+    fn put(&mut self, first: usize, values: &[f64]) {
+        let inputs = self.inputs[first..].iter_mut().zip(values);
+        inputs.for_each(|(input, value)| *input = [*value; 2]);
     }
 
     /// At one point.
@@ -41,5 +52,18 @@ impl Tube {
         self.ranges.clear();
         self.ranges.resize(1 + of.by.len(), [0.0; 2]);
         (of.over)(&self.inputs, &mut self.ranges);
+    }
+}
+
+impl Field<'_> {
+    /// A tube in memory that was used before; whoever is done with it puts it back.
+    pub fn lend_tube(&mut self) -> Tube {
+        match self.tube.take() {
+            Some(mut tube) => {
+                tube.begin(self);
+                tube
+            }
+            None => Tube::new(self),
+        }
     }
 }

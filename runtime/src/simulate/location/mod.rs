@@ -9,6 +9,7 @@
 mod bisection;
 mod discontinuity;
 pub(crate) mod extremes;
+pub(crate) mod hidden;
 mod search;
 mod sliding;
 mod tube;
@@ -16,7 +17,6 @@ mod tube;
 use super::field::Field;
 use super::field::direction::length;
 use super::steps::Step;
-use crate::simulate::field::tube::Tube;
 use crate::simulate::mode::Mode;
 use crate::simulate::tape::Cause;
 use crate::simulate::tuning::location::{NEAR, SECANT_OFFSET, SELECTOR_NOISE, SHORTEST};
@@ -68,9 +68,10 @@ pub(crate) enum First {
 pub(crate) fn first(field: &mut Field, step: &Step) -> First {
     let (mut until, mut found, mut is_known) = (1.0, None, true);
     for condition in conditions(field) {
-        let tube = Tube::new(field);
+        let tube = field.lend_tube();
         let mut signal = Signal { field, step, condition, tube };
         if signal.clearly_holds(until) {
+            signal.field.tube = Some(signal.tube);
             continue;
         }
         let noise = signal.noise(0.0);

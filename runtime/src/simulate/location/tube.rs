@@ -5,7 +5,7 @@
 //! of its Bernstein coefficients over a part; so does its rate, and so do controls that are
 //! polynomials in time.
 
-use crate::simulate::bernstein::{restrict, slopes};
+use crate::simulate::bernstein::restrict;
 use crate::simulate::field::Field;
 use crate::simulate::field::tube::Tube;
 use crate::simulate::interval::{ALL, around, plus, scaled, times};
@@ -72,7 +72,7 @@ fn guessed(field: &Field, control: usize, time: Interval) -> Interval {
 /// A state and its rate, per step, during a part of it.
 fn component(step: &Step, state: usize, part: [f64; 2]) -> (Interval, Interval) {
     let mut value = step.extension.coefficients(state);
-    let mut speed = slopes(&value);
+    let mut speed = step.extension.slopes(state);
     restrict(&mut value, part);
     restrict(&mut speed, part);
     (around(&value), around(&speed))

@@ -4,15 +4,17 @@ use super::Run;
 use crate::problem::Origin;
 use crate::simulate::field::surface_rates;
 use crate::simulate::location;
+use crate::simulate::location::hidden::first_hidden;
 use crate::simulate::location::{Condition, First};
 use crate::simulate::modes::ball::{blocks, is_unique};
 use crate::simulate::result::{Integrator, Method, Status};
 use crate::simulate::steps::Step;
 use crate::simulate::tape::Cause;
 use crate::simulate::tuning::advance::{
-    BORDER, BORDER_POWER, BORDER_RTOL, CHANGE, EXPLICIT_ORDER, LEAST_ERROR, LEAST_PART, MOST_BENDS,
-    MOST_GROWTH, MOST_LONGER, MOST_NUMBERS, MOST_SHRINKING, NO_RATE, NO_REST, NO_SIZE, NOT_STIFF,
-    NOT_STIFF_AFTER, SAFETY, SAME_TIME, SHARE, SMALL_BORDER, STIFF_AFTER, STIFF_ORDER, STUCK,
+    BEFORE_HIDDEN, BORDER, BORDER_POWER, BORDER_RTOL, CHANGE, EXPLICIT_ORDER, LEAST_ERROR,
+    LEAST_PART, MOST_BENDS, MOST_GROWTH, MOST_LONGER, MOST_NUMBERS, MOST_SHRINKING, NO_RATE,
+    NO_REST, NO_SIZE, NOT_STIFF, NOT_STIFF_AFTER, SAFETY, SAME_TIME, SHARE, SMALL_BORDER,
+    STIFF_AFTER, STIFF_ORDER, STUCK,
 };
 
 /// What a step leaves for the next.
@@ -185,8 +187,8 @@ impl Run<'_> {
         }
     }
 
-    /// Takes a step whose error is small enough, to the stop at most and no longer than a fall
-    /// allows; chooses the length of the next.
+    /// Takes a step whose error is small enough and that hides nothing, to the stop at most and no
+    /// longer than a fall allows; chooses the length of the next.
     fn accepted(&mut self, step: &mut Step, rest: f64, longest: f64) -> Result<(), Status> {
         let wanted = self.pace.h;
         // Two steps of equal length are better than a long and a very short one.
@@ -213,11 +215,14 @@ impl Run<'_> {
                 // With the present length: what a longer step made of uncertain rates is too much.
                 self.doubt(step);
             }
-            let next = h * factor(step);
+            let mut next = h * factor(step);
             if step.error <= 1.0 {
-                // A step that a stop made short says nothing against long ones.
-                self.pace.h = if is_short { next.max(wanted) } else { next };
-                return Ok(());
+                let Some(theta) = first_hidden(&mut self.field, step) else {
+                    // A step that a stop made short says nothing against long ones.
+                    self.pace.h = if is_short { next.max(wanted) } else { next };
+                    return Ok(());
+                };
+                next = h * theta.clamp(BEFORE_HIDDEN[0], BEFORE_HIDDEN[1]);
             }
             self.field.selectors.copy_from_slice(&selectors);
             self.counts.rejected += 1;

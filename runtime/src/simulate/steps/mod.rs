@@ -37,6 +37,12 @@ impl Extension {
         added.map(|added| self.start[i] + added)
     }
 
+    /// Those of its rate, per step.
+    pub fn slopes(&self, i: usize) -> [f64; 4] {
+        let values = self.coefficients(i);
+        std::array::from_fn(|at| 4.0 * (values[at + 1] - values[at]))
+    }
+
     /// A component at a part of the step, or beyond it.
     pub fn component(&self, i: usize, theta: f64) -> f64 {
         let rest = 1.0 - theta;
@@ -181,6 +187,17 @@ impl Step {
     /// A component of the state at `t + theta h`.
     pub fn component(&self, i: usize, theta: f64) -> f64 {
         self.extension.component(i, theta)
+    }
+
+    /// The least and the greatest rate of a component at the stages.
+    pub fn rates(&self, i: usize) -> [f64; 2] {
+        let widened = |[low, high]: [f64; 2], rate: f64| [low.min(rate), high.max(rate)];
+        let first = [self.stages[0][i]; 2];
+        match self.rule {
+            Rule::Explicit => self.stages.iter().map(|stage| stage[i]).fold(first, widened),
+            Rule::Radau => self.newton.stage_rates(i).fold(first, widened),
+            Rule::Collocation | Rule::Straight => first,
+        }
     }
 
     /// By how much it is stiff: `h` times the largest eigenvalue, as far as the method knows it.

@@ -171,6 +171,11 @@ impl Newton {
         self.error_lu.solve(n, &mut self.change[..n], 1);
     }
 
+    /// The rates of a state at the stages of the last iteration.
+    pub fn stage_rates(&self, i: usize) -> impl Iterator<Item = f64> + '_ {
+        self.rates.iter().copied().skip(i).step_by(self.at.len())
+    }
+
     /// How much the rate of a state depends on the state itself.
     pub fn own_slope(&self, i: usize) -> f64 {
         self.jacobian[(i, i)].abs()

@@ -12,7 +12,7 @@ pip install numpy scipy
 python3 tests/peers/random_optima/run.py target/release/fdcc --count {count} --seed {seed} --table docs/method/random-optima.md
 ```
 
-and `tests/peers/random_optima/ci.sh` runs a sample. A certificate is called false where
+and `tests/peers/random_problems/ci.sh` runs a sample. A certificate is called false where
 
 - the controls of the document, simulated from event to event by SciPy (`tests/peers/random_optima/simulate.py`: DOP853 with dense output; a held surface by the selector that keeps psi' = 0), do not lead to the states at all grid times, the end conditions, the bounds or the objective of the document, to 1e-5 of their sizes; or
 - a neighbour does better (`tests/peers/random_optima/descent.py`). Directions are hats on each control, short pieces with other controls (at each switch, those of its other side; there and elsewhere the bounds and their middle), longer or shorter time, other free starts. Derivatives are differences of simulations of the true system; steps down the slope with the end conditions kept, and random steps, are corrected by Newton's method until the conditions hold to 1e-8. A step counts if SciPy's simulation confirms that it is better by more than 1e-6 of the objective.

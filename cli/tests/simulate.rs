@@ -228,9 +228,18 @@ fn what_cannot_be_continued_says_why() {
     let undefined = "time t in [0, 2]\nstate x start 1\ndynamics {\n  x' = -1/sqrt(x)\n}\n";
     let at_once = "time t in [0, 2]\nstate x start 0\ndynamics {\n  x' = log(x - 1)\n}\n";
     // Any number from 1 to 2 is a rate of q where h rests.
-    let resting = "time t in [0, 1]\nstate h start 0\nstate v start 0\nstate q start 0\nsurface ground = \
-                   h\ndynamics {\n  h' = v\n  v' = 0\n  q' in match ground { below => 1, above => 2 \
-                   }\n}\njump stop on ground falling at most 3 { v := 0 }\n";
+    let resting = "time t in [0, 1]
+state h start 0
+state v start 0
+state q start 0
+surface ground = h
+dynamics {
+  h' = v
+  v' = 0
+  q' in match ground { below => 1, above => 2 }
+}
+jump stop on ground falling at most 3 { v := 0 }
+";
     let files: [(&str, &[u8]); 5] = [
         ("ball.fdc", BALL.as_bytes()),
         ("resting.fdc", resting.as_bytes()),

@@ -2,10 +2,10 @@
 
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 
-/// Marks, embeddings, overrides and isolates of Unicode's bidirectional algorithm, and characters
+/// Marks, embeddings, overrides and isolates of Unicode's bidirectional algorithm, characters
 /// without width, and separators of lines and paragraphs, at which an editor may show a new line in
-/// the middle of a comment; not those that join letters of a script or parts of a picture, U+200C and U+200D,
-/// nor the mark in front of a text, which says how it is written.
+/// the middle of a comment; not those that join letters of a script or parts of a picture, U+200C
+/// and U+200D, nor the mark in front of a text, which says how it is written.
 fn is_unseen((at, letter): &(usize, char)) -> bool {
     match letter {
         '\u{61c}' | '\u{200b}' | '\u{200e}' | '\u{200f}' => true,

@@ -8,7 +8,6 @@ use super::local::Local;
 use super::view::View;
 use crate::model::numbers::Numbers;
 use crate::model::{Model, Place, Symbol};
-use crate::symbols::text::valued;
 use fdcc_grammar::ast::Direction;
 
 /// One surface in words.
@@ -102,7 +101,7 @@ fn report(view: &View<'_>, at: usize, model: &Model) -> SurfaceReport {
 
 /// The class in words.
 fn in_words(class: &Class, view: &View<'_>, model: &Model) -> String {
-    let value = |it: &(Symbol, f64)| valued(model, &view.name(it.0), it.1);
+    let value = |it: &(Symbol, f64)| model.valued(&view.name(it.0), it.1);
     let text = match class {
         Class::Apart => "out of reach: the bounds keep every state away from it",
         Class::Crossed { strictly: true } => "crossed",

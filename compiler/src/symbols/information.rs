@@ -88,8 +88,8 @@ fn look_at(
         && fixed.iter().all(|value| value.is_finite())
     {
         let named = |(at, value): (usize, &f64)| match fixed.len() {
-            1 => text::valued(model, &definition.name, *value),
-            _ => text::valued(model, &format!("{}[{}]", definition.name, at + 1), *value),
+            1 => model.valued(&definition.name, *value),
+            _ => model.valued(&format!("{}[{}]", definition.name, at + 1), *value),
         };
         information.values.extend(fixed.iter().enumerate().map(named));
         return;

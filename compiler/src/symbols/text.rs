@@ -24,6 +24,13 @@ impl Model {
         if scale.is_finite() && scale > 0.0 { scale } else { 1.0 }
     }
 
+    /// A name with its value, which is given in SI: `m = 2 kg`.
+    pub(crate) fn valued(&self, name: &str, value: f64) -> String {
+        let unit = self.unit_of(name).map_or("", |it| &it.unit);
+        let value = short(value / scale(self, name));
+        format!("{name} = {value} {unit}").trim_end().to_string()
+    }
+
     /// Whether every number of the text is one of SI.
     pub(crate) fn is_in_si(&self) -> bool {
         self.units.iter().all(|it| it.scale == 1.0)
@@ -44,14 +51,7 @@ pub(crate) fn free(model: &Model, numbers: &Numbers, at: usize) -> String {
 
 /// A parameter: `m = 2 kg`.
 pub(crate) fn param(model: &Model, numbers: &Numbers, at: usize) -> String {
-    valued(model, &model.params[at].place.name, numbers.of(Symbol::Param(at)))
-}
-
-/// A name with its value in SI: `m = 2 kg`.
-pub(crate) fn valued(model: &Model, name: &str, value: f64) -> String {
-    let unit = model.unit_of(name).map_or("", |it| &it.unit);
-    let value = short(value / scale(model, name));
-    format!("{name} = {value} {unit}").trim_end().to_string()
+    model.valued(&model.params[at].place.name, numbers.of(Symbol::Param(at)))
 }
 
 /// An end of the time, in SI: `tf = 10 ms`.

@@ -277,3 +277,25 @@ fn smooth_systems_take_no_shorter_steps() {
         assert!(taken[1] as f64 <= 1.6 * evaluations as f64, "{taken:?}, {evaluations}\n{text}");
     }
 }
+
+/// Only what is no polynomial of a low degree in what moves can have a pulse.
+#[test]
+fn polynomials_have_no_pulses() {
+    let model = meaning(
+        "param k = 2
+time t in [0, 1]
+state a start 0
+state b start 0
+state c start 0
+state d start 0
+dynamics {
+  a' = t^4 - a*b/exp(k)
+  b' = a^2*b^3
+  c' = exp(-t)
+  d' = a/(1 + b)
+}
+",
+    );
+    let system = compile_simulation(&model).expect("the model can be simulated");
+    assert_eq!(system.enclosures.sudden, [1, 2, 3]);
+}

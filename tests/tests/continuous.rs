@@ -29,8 +29,8 @@ fn a_regulator_has_its_closed_form() {
     assert!(is_global(&solution));
 }
 
-/// Of `x' = u`, from 0 to 1 at cost `u^2 exp(t)`: `u` is proportional to `exp(-t)`. What is proved at
-/// the nodes of a grid says nothing between them where time itself matters.
+/// Of `x' = u`, from 0 to 1 at cost `u^2 exp(t)`: `u` is proportional to `exp(-t)`. What is proved
+/// at the nodes of a grid says nothing between them where time itself matters.
 #[test]
 fn a_proof_on_a_grid_is_none_where_time_matters() {
     let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-9, 9]\ndynamics { x' = u }\n\

@@ -271,8 +271,8 @@ impl Located {
     }
 }
 
-/// Where a direction is flat the last digits may take more iterations than there are, or more digits;
-/// what they are worth the certificate says.
+/// Where a direction is flat the last digits may take more iterations than there are, or more
+/// digits; what they are worth the certificate says.
 fn is_stationary(found: &NlpSolution) -> bool {
     let has_ended = matches!(
         found.status,

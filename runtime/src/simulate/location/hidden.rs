@@ -9,8 +9,8 @@
 //! ```
 //!
 //! bounds how far a pulse inside could move the state. If the sum over all parts is small beside
-//! the way of the state so far, the step is as it seems. Else the part that may hide most is halved,
-//! and the rate in its middle compared with that of the curve:
+//! the way of the state so far, the step is as it seems. Else the part that may hide most is
+//! halved, and the rate in its middle compared with that of the curve:
 //!
 //! ```text
 //! d = f(t, p(t)) - p'(t)

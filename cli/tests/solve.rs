@@ -273,7 +273,10 @@ fn exit_codes_and_words_are_those_of_the_contract() {
             ("still.fdc", b"time t in [0, 1]\n"),
             ("fall.fdc", b"time t in [0, 1]\nstate x start 0\ndynamics { x' = 1 }\n"),
             ("waits.fdc", RAMP.replace("goal = 1", "goal").as_bytes()),
-            ("other.sol.json", br#"{"time": [0, 1], "states": {"y": [0, 1]}, "controls": {}, "free": {}}"#),
+            (
+                "other.sol.json",
+                br#"{"time": [0, 1], "states": {"y": [0, 1]}, "controls": {}, "free": {}}"#,
+            ),
             ("broken.sol.json", b"{"),
         ],
     );

@@ -397,12 +397,16 @@ fn enormous_numbers_end_with_an_honest_status() {
                 dynamics { v' = u }\nminimize integral(u^2)\n";
     let slow = "time t in [0, 2e302]\nstate x start 1\nsurface s = x - 2\nstate y start 0\n\
                 dynamics {\n x' = 1e-302\n y' in Sgn(s)\n}\n";
-    let cases =
-        [("clock", clock, "time_limit"), ("push", push, "not_finite"), ("slow", slow, "completed")];
-    for (name, text, status) in cases {
+    // The number of steps ends the clock on a fast machine, the time on a slow one.
+    let cases = [
+        ("clock", clock, "time_limit step_limit"),
+        ("push", push, "not_finite"),
+        ("slow", slow, "completed"),
+    ];
+    for (name, text, statuses) in cases {
         let folder = folder(&format!("simulate_{name}"), &[("big.fdc", text.as_bytes())]);
         let output = fdcc(&folder, &["simulate", "big.fdc", "--json", "--time-limit", "1"], "");
-        let found = json(&output)["status"].clone();
-        assert_eq!(found, status, "{name}");
+        let found = json(&output)["status"].as_str().expect("a status").to_owned();
+        assert!(statuses.split(' ').any(|it| it == found), "{name}: {found}");
     }
 }

@@ -152,6 +152,7 @@ CASES = {
     'switched/furthest_jump': classic('furthest_jump', TRIED + '; two bounces', sense=-1),
     'switched/lens': classic('lens', 'a local optimum; a way round the lens is shorter, 4.4901'),
     'switched/stacked_reverse': classic('stacked_reverse', TRIED),
+    'switched/load_lets_go': classic('load_lets_go', TRIED + '; in km and min'),
     'switched/symmetric_relays': classic('symmetric_relays', 'two optima, one the image of the other; between them a '
                                          'stationary point of 4/3'),
 }

@@ -31,6 +31,7 @@ const CERTIFIED: &[&str] = &[
     "switched/hard_pull",
     "switched/heater",
     "switched/ice_patch",
+    "switched/load_lets_go",
     "switched/moving_wall",
     "switched/nearly_together",
     "switched/overdrive",

@@ -62,6 +62,7 @@ impl Search<'_> {
             candidates.extend(self.one_by_one(j, [&phases[j - 1], &phases[j]]));
             candidates.extend(self.releases(located, j));
         }
+        candidates.extend(self.releases_at_ends(located));
         candidates
     }
 
@@ -70,23 +71,40 @@ impl Search<'_> {
     fn releases(&self, located: &Located, j: usize) -> Vec<Candidate> {
         let phases = &located.structure.phases;
         let [before, after] = [&phases[j - 1], &phases[j]];
+        let goes_on = |at: usize| after.modes[at] == Mode::Held && before.modes != after.modes;
+        let released = self.released(located, j - 1, 1).into_iter().filter(|it| goes_on(it.0));
+        let off = |(at, mode)| [before, after].map(|beside| off_surface(j, beside, at, mode));
+        released.flat_map(off).collect()
+    }
+
+    /// The same at the first and the last time.
+    fn releases_at_ends(&self, located: &Located) -> Vec<Candidate> {
+        let phases = &located.structure.phases;
+        let last = phases.len() - 1;
+        let ends = [(0, 0, 0), (last, 1, last + 1)].into_iter();
+        ends.flat_map(|(j, end, before)| {
+            let released = self.released(located, j, end).into_iter();
+            released.map(move |(at, mode)| off_surface(before, &phases[j], at, mode))
+        })
+        .collect()
+    }
+
+    /// The surfaces whose selectors are at a bound where a hold begins (0) or ends (1), and the mode
+    /// in which that is left.
+    fn released(&self, located: &Located, j: usize, end: usize) -> Vec<(usize, Mode)> {
+        let phase = &located.structure.phases[j];
         let mut next = self.model.controls.len();
         let mut all = Vec::new();
         for (at, switch) in self.model.switches().iter().enumerate() {
-            if before.modes[at] != Mode::Held {
+            if phase.modes[at] != Mode::Held {
                 continue;
             }
-            let last = polynomials(&located.outcome.phases[j - 1].trajectory, next);
-            let selector = last.last().map_or(0.0, |it| it.at(it.ends[1]));
+            let pieces = polynomials(&located.outcome.phases[j].trajectory, next);
+            let piece = if end == 0 { pieces.first() } else { pieces.last() };
+            let selector = piece.map_or(0.0, |it| it.at(it.ends[end]));
             next += switch.surfaces.len();
-            let is_at_bound = selector.abs() > RELEASED && !switch.is_ball;
-            let goes_on = after.modes[at] == Mode::Held && before.modes != after.modes;
-            for beside in [before, after].into_iter().filter(|_| is_at_bound && goes_on) {
-                let mut off = PhaseOfModes { jump: None, ..beside.clone() };
-                off.modes[at] = if selector > 0.0 { Mode::Above } else { Mode::Below };
-                off.release();
-                let slope = f64::NEG_INFINITY;
-                all.push(Candidate { before: j, held: off, slope, is_forced: false });
+            if selector.abs() > RELEASED && !switch.is_ball {
+                all.push((at, if selector > 0.0 { Mode::Above } else { Mode::Below }));
             }
         }
         all
@@ -223,6 +241,14 @@ impl Search<'_> {
             unknowns: unknowns.collect(),
         }
     }
+}
+
+/// A phase beside another one that is off a surface which that holds.
+fn off_surface(before: usize, beside: &PhaseOfModes, at: usize, mode: Mode) -> Candidate {
+    let mut off = PhaseOfModes { jump: None, ..beside.clone() };
+    off.modes[at] = mode;
+    off.release();
+    Candidate { before, held: off, slope: f64::NEG_INFINITY, is_forced: false }
 }
 
 /// The problem of the least Hamiltonian at a point; nothing where its terms are not known.

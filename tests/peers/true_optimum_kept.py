@@ -214,8 +214,9 @@ def stacked_reverse():
 
 
 def load_lets_go():
-    """In km and min."""
-    return Model(start=lambda p: [0, 0, 0, 0], T=given(2.1), bounds=[(-2.84, 2.84)], cost=square,
+    """In km and min, but for the objective: in m^2/s^3."""
+    return Model(start=lambda p: [0, 0, 0, 0], T=given(2.1), bounds=[(-2.84, 2.84)],
+                 cost=lambda t, x, u, s, p: u[0]**2 * 1000**2 / 60**3,
                  surfaces=lambda t, x, p: [x[1] - x[3], x[3]], ends=to(0.69, 0),
                  rate=lambda t, x, u, s, p: [x[1], u[0] - 0.87 * s[0], x[3], 0.87 * s[0] - 0.17 * s[1]],
                  guess=straight([0, 0, 0, 0], [0.3, 0.5, 0.2, 0.4], [0.69, 0, 0.6, 0.1]),

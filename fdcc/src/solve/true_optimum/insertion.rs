@@ -89,8 +89,8 @@ impl Search<'_> {
         .collect()
     }
 
-    /// The surfaces whose selectors are at a bound where a hold begins (0) or ends (1), and the mode
-    /// in which that is left.
+    /// The surfaces whose selectors are at a bound where a hold begins (0) or ends (1), and the
+    /// mode in which that is left.
     fn released(&self, located: &Located, j: usize, end: usize) -> Vec<(usize, Mode)> {
         let phase = &located.structure.phases[j];
         let mut next = self.model.controls.len();

@@ -76,9 +76,7 @@ impl Lagrangian<'_> {
         let (stages, path) = (self.nlp.chain(), &*by.path);
         let rows = &self.solution.multipliers.constraints;
         for (at, point) in self.nlp.interval().path.iter().enumerate() {
-            let mut points = Columns::new(path.layout().point_inputs(), stages.intervals);
-            point.set_times(self.nlp.mesh(), &mut points);
-            point.load(stages, path.layout(), &self.solution.v, &mut points);
+            let points = self.points_at(path, point);
             let first = at * path.outputs();
             add_slopes(path, &points, &self.parameters, sums, |output| {
                 (0..stages.intervals)

@@ -10,6 +10,7 @@
 //! in which nothing is approximated beyond the transcription: the mean of `H_k` is exactly the
 //! derivative by the final time.
 
+use super::elsewhere::Elsewhere;
 use super::lagrangian::{Lagrangian, add_slopes};
 use super::minimum;
 use crate::nlp::Solution;
@@ -35,7 +36,7 @@ pub struct Hamiltonian {
     /// conditions at the ends gain by it.
     pub expected: Option<f64>,
     /// One for each control: the part of the time on which it does not minimise the Hamiltonian, by
-    /// the sign of the slope.
+    /// the sign of the slope or because it is less elsewhere.
     pub violations: Vec<f64>,
     /// What a pause on a surface would gain, per time, where one is possible: above 0 it is no
     /// optimum.
@@ -55,7 +56,7 @@ impl Hamiltonian {
     ) -> Self {
         let lagrangian = Lagrangian::new(problem, nlp, solution);
         let ((values, size), expected) = (lagrangian.hamiltonian(duration), lagrangian.expected());
-        let noise = NOISE * problem.method.tol / duration.abs();
+        let noise = noise(problem, duration);
         let is_noise = size <= noise;
         let size = size.max(noise);
         let violations = match is_noise {
@@ -63,7 +64,20 @@ impl Hamiltonian {
             false => minimum::violations(&problem.controls, nlp, solution, (duration, size)),
         };
         let is_constant = problem.is_autonomous;
-        Hamiltonian { values, size, is_constant, expected, violations, pause: None, is_noise }
+        let mut own =
+            Hamiltonian { values, size, is_constant, expected, violations, pause: None, is_noise };
+        if own.has_to_be_least(problem, solution) {
+            let parts = Elsewhere::new(nlp, solution, (duration, &own)).parts;
+            let both = own.violations.iter_mut().zip(parts);
+            both.for_each(|(part, elsewhere)| *part = part.max(elsewhere));
+        }
+        own
+    }
+
+    /// Whether values of controls far from their own can say that it is no optimum: not through
+    /// thin layers, nor where the optimum of the grid is proved to be global.
+    pub(crate) fn has_to_be_least(&self, problem: &Problem, solution: &Solution) -> bool {
+        problem.surfaces.is_empty() && !solution.global
     }
 
     /// The mean difference from what it has to be, over all intervals; nothing where it may be
@@ -81,9 +95,14 @@ impl Hamiltonian {
     }
 }
 
+/// Terms that are not larger than this are none, over this time.
+pub(super) fn noise(problem: &Problem, duration: f64) -> f64 {
+    NOISE * problem.method.tol / duration.abs()
+}
+
 impl Lagrangian<'_> {
     /// One for each interval, of the objective of the model; and the mean size of its terms.
-    fn hamiltonian(&self, duration: f64) -> (Vec<f64>, f64) {
+    pub(super) fn hamiltonian(&self, duration: f64) -> (Vec<f64>, f64) {
         let (mut sums, mut sizes) = (vec![0.0; self.nlp.chain().intervals], 0.0);
         for node in &self.nlp.interval().nodes {
             let dynamics = &*self.problem.dynamics;

@@ -6,12 +6,12 @@
 //! ```
 //!
 //! where `b_i` is the bound at which row `i` is. By time it is the
-//! [Hamiltonian](super::hamiltonian); by parameters, see [`super::by_parameters`].
+//! [Hamiltonian](super::hamiltonian); by parameters, see [`mod@super::by_parameters`].
 
 use crate::nlp::Solution;
 use crate::problem::{Columns, Function, Problem};
 use crate::transcribe::TranscribedNlp;
-use crate::transcribe::interval::Node;
+use crate::transcribe::interval::{Node, Point};
 
 /// What the objective of the model changes by with the bound of each path constraint, per time: one
 /// column per row, `N` entries each.
@@ -45,6 +45,8 @@ pub(super) struct Lagrangian<'a> {
     pub(super) problem: &'a Problem,
     pub(super) nlp: &'a TranscribedNlp<'a>,
     pub(super) solution: &'a Solution,
+    /// The variables: those of the solution, or others in their place.
+    pub(super) v: &'a [f64],
     /// All of `p`, with the unknowns of the solution.
     pub(super) parameters: Vec<f64>,
 }
@@ -55,7 +57,14 @@ impl<'a> Lagrangian<'a> {
         nlp: &'a TranscribedNlp,
         solution: &'a Solution,
     ) -> Self {
-        Lagrangian { problem, nlp, solution, parameters: nlp.parameters_at(&solution.v) }
+        let (v, parameters) = (&solution.v, nlp.parameters_at(&solution.v));
+        Lagrangian { problem, nlp, solution, v, parameters }
+    }
+
+    /// With other signals and the same multipliers.
+    pub(super) fn at<'b>(&'b self, v: &'b [f64]) -> Lagrangian<'b> {
+        let &Lagrangian { problem, nlp, solution, .. } = self;
+        Lagrangian { problem, nlp, solution, v, parameters: self.parameters.clone() }
     }
 
     /// `[x(start), x(end)]`
@@ -64,17 +73,22 @@ impl<'a> Lagrangian<'a> {
         let mut points = Columns::new(boundary.layout().point_inputs(), 1);
         let ends = stages.state(0).take(states).chain(stages.state(stages.intervals).take(states));
         for (i, variable) in ends.enumerate() {
-            points.column_mut(i)[0] = self.solution.v[variable];
+            points.column_mut(i)[0] = self.v[variable];
         }
         points
     }
 
     /// `[tau | x | u]` of a node in all intervals.
     pub(super) fn points(&self, function: &dyn Function, node: &Node) -> Columns {
+        self.points_at(function, &node.point)
+    }
+
+    /// The same at any point.
+    pub(super) fn points_at(&self, function: &dyn Function, point: &Point) -> Columns {
         let stages = self.nlp.chain();
         let mut points = Columns::new(function.layout().point_inputs(), stages.intervals);
-        node.point.set_times(self.nlp.mesh(), &mut points);
-        node.point.load(stages, function.layout(), &self.solution.v, &mut points);
+        point.set_times(self.nlp.mesh(), &mut points);
+        point.load(stages, function.layout(), self.v, &mut points);
         points
     }
 

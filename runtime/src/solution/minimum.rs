@@ -86,7 +86,7 @@ pub(crate) fn add_multipliers_of_fixed(nlp: &TranscribedNlp, slopes: &[f64], low
 
 /// The variables that are values of a control, each with its interval; a value that two intervals
 /// share belongs to the later one.
-fn variables<'a>(
+pub(super) fn variables<'a>(
     nlp: &'a TranscribedNlp,
     control: usize,
 ) -> impl Iterator<Item = (usize, usize)> + 'a {

@@ -2,6 +2,7 @@
 //! modes of surfaces, costates and multipliers, and what contradicts that it is an optimum.
 
 pub(crate) mod by_parameters;
+mod elsewhere;
 mod hamiltonian;
 pub(crate) mod lagrangian;
 mod minimum;
@@ -13,6 +14,7 @@ mod quadrature;
 mod trajectory;
 
 pub use by_parameters::by_parameters;
+pub(crate) use elsewhere::Elsewhere;
 pub use hamiltonian::Hamiltonian;
 pub use minimum::control_slopes;
 pub use outcome::{Attempt, ChainOutcome, Limiting, Outcome};

@@ -1,10 +1,12 @@
-//! Random starting points, and which of two solutions is the better one.
+//! Other starting points, random or better by the Hamiltonian, and which of two solutions is the
+//! better one.
 
 use super::tuning::multistart::VARIATION;
 use super::warm_start::values_of;
 use crate::nlp::{Nlp, Solution, Start};
 use crate::problem::{Bounds, Chain};
 use crate::random::Random;
+use crate::solution::{ChainOutcome, Elsewhere};
 use crate::transcribe::TranscribedNlp;
 use crate::transcribe::chain::ChainNlp;
 use crate::transcribe::interval::Signal;
@@ -27,6 +29,30 @@ pub fn perturbed(chain: &Chain, base: Option<Vec<f64>>, index: u32) -> Start {
         *value += VARIATION * size.min(value.abs().max(1.0)) * random.next();
     }
     start
+}
+
+/// Starts at a solution with the controls that make its Hamiltonian less, where others than its own
+/// do: with its multipliers, as a large barrier parameter drives controls away from bounds, and
+/// without, as the multipliers may lead back.
+pub fn elsewhere(chain: &Chain, outcome: &ChainOutcome) -> Vec<Start> {
+    let mut nlp = ChainNlp::new(chain);
+    let whole = Start::near(&outcome.solution);
+    let mut own = nlp.shape().split(&whole);
+    let mut is_better = false;
+    for (at, (phase, problem)) in outcome.phases.iter().zip(&chain.phases).enumerate() {
+        let (trajectory, solution) = (&phase.trajectory, &phase.solution);
+        let (hamiltonian, time) = (&trajectory.hamiltonian, &trajectory.time);
+        if hamiltonian.has_to_be_least(problem, solution) {
+            let duration = time[time.len() - 1] - time[0];
+            let nlp = nlp.phase_at(at, &whole.v);
+            let it = Elsewhere::new(nlp, solution, (duration, hamiltonian));
+            is_better |= it.parts.iter().any(|part| *part > 0.0);
+            own[at].v = it.v;
+        }
+    }
+    let near = nlp.shape().joined(&own, &whole);
+    let cold = Start { v: near.v.clone(), warm: None };
+    if is_better { vec![near, cold] } else { Vec::new() }
 }
 
 fn vary_signals(nlp: &TranscribedNlp, random: &mut Random, v: &mut [f64]) {

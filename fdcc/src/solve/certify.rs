@@ -6,8 +6,8 @@ use super::true_optimum::certificate_limits::{
     CONTACT, GAIN, HAMILTONIAN, MODES, REPLAYED, STATIONARY, TIMING, WORTH, WRONG_SIGN,
 };
 use super::true_optimum::{
-    Certificate, Check, Contacts, Located, Stretch, Switch, beyond_bounds, is_attracted, variation,
-    wrong_sign,
+    Certificate, Check, Contacts, Located, Stretch, Switch, beyond_bounds, is_attracted, ranges,
+    variation, wrong_sign,
 };
 use crate::verification::{Stay, Verification, modes};
 use fdcc_compiler::{Arc, Model, PhaseOfModes, Switch as Switched, limits};
@@ -30,7 +30,8 @@ pub(super) fn certificate(
     let objective = |it: &Verification| other_objective(located, solution, it);
     let phases = 0..located.structure.phases.len();
     let trajectories = located.outcome.phases.iter().map(|it| &it.trajectory);
-    let beyond = trajectories.map(|it| beyond_bounds(&between.controls, it)).fold(0.0, f64::max);
+    let ranges = ranges(&between.controls, &located.outcome.phases);
+    let beyond = trajectories.map(|it| beyond_bounds(&ranges, it)).fold(0.0, f64::max);
     let is_held = phases.clone().all(|j| is_attracted(model, located, j));
     let checks = vec![
         check("stationary", own.kkt_error, STATIONARY),

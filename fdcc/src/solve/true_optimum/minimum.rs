@@ -3,11 +3,10 @@
 //! be worth having though no small change of the controls is.
 
 use super::insertion::{Least, at_point, least};
-use super::structure::width;
-use super::tuning::minimum::{PARTS, SAMPLES};
+use super::range::ranges;
+use super::tuning::minimum::PARTS;
 use super::{Located, Search};
 use fdcc_compiler::Arc;
-use fdcc_runtime::problem::Variable;
 
 impl Search<'_> {
     /// By how much another control makes the Hamiltonian less, at some points of each phase, for
@@ -48,26 +47,10 @@ impl Search<'_> {
             other[at] = value;
             other
         };
-        let each = self.problem.controls.iter().enumerate();
-        each.flat_map(|(at, control)| {
-            let [lower, upper] = reach(located, at, control);
-            let step = (upper - lower) / SAMPLES as f64;
-            (0..=SAMPLES).map(move |sample| (at, lower + step * sample as f64))
-        })
-        .map(|(at, value)| with(at, value))
-        .collect()
-    }
-}
-
-/// The bounds of a control; where one is infinite, how far it goes in all, and as far again.
-fn reach(located: &Located, at: usize, control: &Variable) -> [f64; 2] {
-    let values = located.outcome.phases.iter().flat_map(|it| &it.trajectory.controls[at]);
-    let values: Vec<f64> = values.copied().collect();
-    let (bounds, width) = (control.bounds, width(control.bounds, &values));
-    match (bounds.lower.is_finite(), bounds.upper.is_finite()) {
-        (true, true) => [bounds.lower, bounds.upper],
-        (true, false) => [bounds.lower, bounds.lower + 2.0 * width],
-        (false, true) => [bounds.upper - 2.0 * width, bounds.upper],
-        (false, false) => [-2.0 * width, 2.0 * width],
+        let ranges = ranges(&self.problem.controls, &located.outcome.phases);
+        let each = ranges.into_iter().enumerate();
+        each.flat_map(|(at, range)| range.tried().into_iter().map(move |value| (at, value)))
+            .map(|(at, value)| with(at, value))
+            .collect()
     }
 }

@@ -1,10 +1,10 @@
 //! Controls that are polynomials on the intervals of a phase: what they do between their nodes.
 
-use super::structure::width;
+use super::range::Range;
 use super::tuning::polynomials::{AT_BOUND, PART_ROUGH, PARTS, ROUGH};
 use fdcc_compiler::Arc;
 use fdcc_runtime::lagrange;
-use fdcc_runtime::problem::{Bounds, Problem, Variable};
+use fdcc_runtime::problem::Bounds;
 use fdcc_runtime::solution::Trajectory;
 use fdcc_runtime::solve::Outcome;
 
@@ -42,8 +42,8 @@ impl Polynomial<'_> {
     }
 
     /// The bound at or beyond which it is where it begins or ends, or at the node next to that.
-    pub fn bound_at(&self, end: usize, bounds: Bounds) -> Arc {
-        let slack = AT_BOUND * width(bounds, self.values);
+    pub fn bound_at(&self, end: usize, Range { bounds, width }: &Range) -> Arc {
+        let slack = AT_BOUND * width;
         let node = self.values[end * (self.values.len() - 1)];
         let ends = [self.at(self.ends[end]), node];
         match () {
@@ -66,14 +66,13 @@ impl Polynomial<'_> {
     }
 }
 
-/// By how much a control leaves its bounds between its nodes, for their distance.
-pub(crate) fn beyond_bounds(controls: &[Variable], trajectory: &Trajectory) -> f64 {
-    let of = |(at, control): (usize, &Variable)| {
-        let width = width(control.bounds, &trajectory.controls[at]);
+/// By how much a control leaves its bounds between its nodes, for its width.
+pub(crate) fn beyond_bounds(ranges: &[Range], trajectory: &Trajectory) -> f64 {
+    let of = |(at, range): (usize, &Range)| {
         let pieces = polynomials(trajectory, at).into_iter();
-        pieces.map(|it| it.violation(control.bounds) / width).fold(0.0, f64::max)
+        pieces.map(|it| it.violation(range.bounds) / range.width).fold(0.0, f64::max)
     };
-    controls.iter().enumerate().map(of).fold(0.0, f64::max)
+    ranges.iter().enumerate().map(of).fold(0.0, f64::max)
 }
 
 /// Where a control is far from linear.
@@ -87,9 +86,8 @@ pub(super) enum Rough {
 }
 
 /// Whether a control is far from linear on several intervals of a phase, and where.
-pub(super) fn roughness(between: &Problem, outcome: &Outcome) -> Option<Rough> {
-    let of = |(at, control): (usize, &Variable)| {
-        let width = width(control.bounds, &outcome.trajectory.controls[at]);
+pub(super) fn roughness(ranges: &[Range], outcome: &Outcome) -> Option<Rough> {
+    let of = |(at, Range { width, .. }): (usize, &Range)| {
         let pieces = polynomials(&outcome.trajectory, at);
         let is_rough = |pieces: &[Polynomial]| {
             let rough = pieces.iter().filter(|it| it.off_line() > ROUGH * width);
@@ -100,8 +98,8 @@ pub(super) fn roughness(between: &Problem, outcome: &Outcome) -> Option<Rough> {
         is_rough(&pieces).then(|| if is_rough(middle) { Rough::Throughout } else { Rough::AtEnds })
     };
     // A control without bounds has no singular arcs: it would have no optimum.
-    let is_bounded = |it: &Variable| (it.bounds.upper - it.bounds.lower).is_finite();
-    let controls = between.controls.iter().enumerate().filter(|it| is_bounded(it.1));
+    let is_bounded = |it: &Range| (it.bounds.upper - it.bounds.lower).is_finite();
+    let controls = ranges.iter().enumerate().filter(|it| is_bounded(it.1));
     let all: Vec<Rough> = controls.filter_map(of).collect();
     all.iter().find(|it| **it == Rough::Throughout).or(all.first()).copied()
 }

@@ -2,7 +2,8 @@
 
 use super::Located;
 use super::contacts::{Contacts, points, rows_of_switch};
-use super::structure::{Structure, width};
+use super::range::ranges;
+use super::structure::Structure;
 use super::tuning::certificate::{CONTACT, WRONG_SIGN};
 use super::tuning::repair::NOTHING;
 use fdcc_compiler::{Arc, Mode, Model};
@@ -39,20 +40,19 @@ pub(super) fn better(model: &Model, between: &Problem, located: &Located) -> Opt
 /// The phase and the control at a bound whose slope has the wrong sign most, and by how much.
 pub(crate) fn wrong_sign(between: &Problem, located: &Located) -> Option<(usize, usize, f64)> {
     let mut all = Vec::new();
+    let ranges = ranges(&between.controls, &located.outcome.phases);
     for (j, phase) in located.structure.phases.iter().enumerate() {
         let (problem, outcome) = (&located.chain.phases[j], &located.outcome.phases[j]);
         let slopes = control_slopes(problem, outcome);
         let size = outcome.trajectory.hamiltonian.size.max(f64::MIN_POSITIVE);
         for (control, arc) in phase.arcs.iter().enumerate() {
-            let values = &outcome.trajectory.controls[control];
-            let width = width(between.controls[control].bounds, values);
             let [least, largest] = slopes[control];
             let wrong = match arc {
                 Arc::Free => continue,
                 Arc::Lower => -least,
                 Arc::Upper => largest,
             };
-            all.push((j, control, wrong * width / size));
+            all.push((j, control, wrong * ranges[control].width / size));
         }
     }
     all.into_iter().max_by(|a, b| a.2.total_cmp(&b.2))

@@ -3,14 +3,16 @@
 use super::Whole;
 use super::contacts::{Contacts, InPhase};
 use super::polynomials::{Rough, beyond_bounds, polynomials, roughness};
+use super::range::{Range, ranges};
 use super::tracks::Track;
 use super::tuning::repair::NOTHING;
 use super::tuning::structure::{
     BEYOND, FEWEST_INTERVALS, HALVINGS, INACCURATE, MOST_HALVINGS, SHORT, SHORTEST, TRIED,
 };
 use fdcc_compiler::{Arc, Mode, PhaseOfModes};
-use fdcc_runtime::problem::{Bounds, ControlShape, Problem, Variable};
+use fdcc_runtime::problem::{ControlShape, Problem};
 use fdcc_runtime::solve::Outcome;
+use std::slice;
 
 /// Which of the arcs that controls have in a phase are taken over.
 #[derive(Clone, Copy)]
@@ -40,9 +42,9 @@ impl Structure {
         let least = if whole.is_exact { NOTHING * duration } else { shortest };
         let modes = outcome.modes.iter().map(|spans| Track::of_modes(spans, least));
         let modes: Vec<Track<Mode>> = modes.collect();
-        let controls = problem.controls.iter().zip(&outcome.trajectory.controls);
-        let arcs = controls
-            .map(|(control, values)| Track::of_arcs(time, values, control.bounds, shortest));
+        let ranges = ranges(&problem.controls, slice::from_ref(outcome));
+        let controls = ranges.iter().zip(&outcome.trajectory.controls);
+        let arcs = controls.map(|(range, values)| Track::of_arcs(time, values, range, shortest));
         let arcs: Vec<Track<Arc>> = arcs.collect();
         let mut begins: Vec<f64> = vec![time[0]];
         begins.extend(modes.iter().flat_map(Track::switches));
@@ -114,10 +116,11 @@ impl Structure {
     ) -> Self {
         let mut other = Structure { phases: Vec::new(), times: vec![self.times[0]] };
         let mut touched_before = Vec::new();
+        let between = between.map(|it| (ranges(&it.0.controls, located), it.1));
         for ((j, phase), outcome) in self.phases.iter().enumerate().zip(located) {
-            let mut arcs = between.map_or(Vec::new(), |it| arcs_of(it.0, outcome, it.1));
+            let mut arcs = between.as_ref().map_or(Vec::new(), |it| arcs_of(&it.0, outcome, it.1));
             let mut phase = phase.clone();
-            let roughness = between.and_then(|it| roughness(it.0, outcome));
+            let roughness = between.as_ref().and_then(|it| roughness(&it.0, outcome));
             if let Some(roughness) = roughness.filter(|_| !phase.needs_polynomials()) {
                 // What noise does at bounds are no arcs.
                 arcs.clear();
@@ -190,10 +193,11 @@ impl Structure {
     pub fn finer(&self, between: &Problem, located: &[Outcome]) -> Self {
         let mut other = self.clone();
         let [first, last] = self.ends();
+        let ranges = ranges(&between.controls, located);
         for (phase, outcome) in other.phases.iter_mut().zip(located) {
             let is_rough = phase.shape == ControlShape::Polynomial
                 && (variation(outcome) > INACCURATE * (last - first)
-                    || beyond_bounds(&between.controls, &outcome.trajectory) > BEYOND);
+                    || beyond_bounds(&ranges, &outcome.trajectory) > BEYOND);
             phase.halvings += u32::from(is_rough && phase.halvings < MOST_HALVINGS);
         }
         other
@@ -306,13 +310,6 @@ impl Structure {
     }
 }
 
-/// The distance of the bounds of a control; how large it is where one of them is infinite.
-pub(crate) fn width(bounds: Bounds, values: &[f64]) -> f64 {
-    let finite = bounds.upper - bounds.lower;
-    let largest = values.iter().fold(f64::MIN_POSITIVE, |a, it| a.max(it.abs()));
-    if finite.is_finite() { finite } else { largest }
-}
-
 /// By how much of its size the Hamiltonian changes inside of a phase, times its duration; 0 where
 /// time matters by itself.
 pub(crate) fn variation(phase: &Outcome) -> f64 {
@@ -341,28 +338,28 @@ fn least_step(time: &[f64]) -> f64 {
 }
 
 /// What each control does in a phase, by its values at the nodes.
-fn arcs_of(between: &Problem, outcome: &Outcome, which: NewArcs) -> Vec<Track<Arc>> {
+fn arcs_of(ranges: &[Range], outcome: &Outcome, which: NewArcs) -> Vec<Track<Arc>> {
     let own = &outcome.trajectory;
     let [first, last] = [own.time[0], own.time[own.time.len() - 1]];
     let step = least_step(&own.time);
-    let of = |(at, control): (usize, &Variable)| match &own.nodes {
+    let of = |(at, range): (usize, &Range)| match &own.nodes {
         Some(nodes) => {
             // A value holds until half way to the next node.
             let halves = nodes.time.windows(2).map(|it| 0.5 * (it[0] + it[1]));
             let time: Vec<f64> = [first].into_iter().chain(halves).chain([last]).collect();
-            let track = Track::of_arcs(&time, &nodes.values[at], control.bounds, 0.5 * step);
+            let track = Track::of_arcs(&time, &nodes.values[at], range, 0.5 * step);
             let pieces = polynomials(own, at);
             let ends = [(&pieces[0], 0), (&pieces[pieces.len() - 1], 1)];
-            let bounds = ends.map(|(piece, end)| piece.bound_at(end, control.bounds));
+            let bounds = ends.map(|(piece, end)| piece.bound_at(end, range));
             track.with_ends(
                 bounds,
                 [first, last],
                 [0, own.time.len() - 2].map(|k| 0.1 * (own.time[k + 1] - own.time[k])),
             )
         }
-        None => Track::of_arcs(&own.time, &own.controls[at], control.bounds, 1.5 * step),
+        None => Track::of_arcs(&own.time, &own.controls[at], range, 1.5 * step),
     };
-    let tracks = between.controls.iter().enumerate().map(of);
+    let tracks = ranges.iter().enumerate().map(of);
     match which {
         NewArcs::All => tracks.collect(),
         NewArcs::Longest => tracks.map(|it| it.with_longest(last)).collect(),

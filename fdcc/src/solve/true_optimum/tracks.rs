@@ -1,9 +1,8 @@
 //! What one surface, one control or one limit does over time.
 
-use super::structure::width;
+use super::range::Range;
 use super::tuning::tracks::AT_BOUND;
 use fdcc_compiler::{Arc, Mode};
-use fdcc_runtime::problem::Bounds;
 use fdcc_runtime::solution::modes::{self, Span};
 
 /// Pieces of time, one behind the other.
@@ -28,8 +27,8 @@ impl Track<Mode> {
 
 impl Track<Arc> {
     /// Of a control by its values on the intervals.
-    pub fn of_arcs(time: &[f64], values: &[f64], bounds: Bounds, shortest: f64) -> Self {
-        let width = width(bounds, values);
+    pub fn of_arcs(time: &[f64], values: &[f64], range: &Range, shortest: f64) -> Self {
+        let Range { bounds, width } = range;
         let arc = |value: &f64| match () {
             () if value - bounds.lower < AT_BOUND * width => Arc::Lower,
             () if bounds.upper - value < AT_BOUND * width => Arc::Upper,

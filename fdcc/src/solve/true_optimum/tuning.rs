@@ -37,7 +37,7 @@ pub(super) mod structure {
     pub(crate) const TRIED: f64 = 0.01;
     /// The Hamiltonian may change by so much of its size, on average over the time.
     pub(crate) const INACCURATE: f64 = 1e-6;
-    /// A control may leave its bounds by so much of their distance between nodes.
+    /// A control may leave its bounds by so much of its width between nodes.
     pub(crate) const BEYOND: f64 = 5e-7;
     /// Intervals are halved so often where nothing tells how accurate a trajectory is.
     pub(crate) const HALVINGS: u32 = 2;
@@ -93,11 +93,18 @@ pub(super) mod insertion {
     pub(crate) const INSIDE: f64 = 1e-7;
 }
 
+pub(super) mod range {
+    /// A control that is 0 throughout has this part of its unit.
+    pub(crate) const LEAST_OF_UNIT: f64 = 1e-3;
+    /// Other values are tried up to so many times its width.
+    pub(crate) const FAR: f64 = 10.0;
+    /// So many of them, and one more.
+    pub(crate) const SAMPLES: usize = 4;
+}
+
 pub(super) mod minimum {
     /// Where the Hamiltonian of a phase is looked at, as parts of its intervals.
     pub(crate) const PARTS: [f64; 3] = [0.15, 0.5, 0.85];
-    /// Minima are looked for from so many values of each control, and one more.
-    pub(crate) const SAMPLES: usize = 4;
 }
 
 /// The largest figures of a certificate.

@@ -40,6 +40,23 @@ fn a_proof_on_a_grid_is_none_where_time_matters() {
     assert!(!is_global(&solution));
 }
 
+/// A bound that is far away is no size of the control: neither slopes at the other bound nor what
+/// is beyond it between nodes are compared with its distance.
+#[test]
+fn wide_bounds_say_nothing_of_sizes() {
+    let text = |upper: &str| {
+        format!(
+            "time t in [0, 1]\nstate x start 0\ncontrol u in [0, {upper}]\ndynamics {{ x' = u - \
+             2*x }}\nminimize integral(1e-5*u^2 + 5*(x - t*sin(10*t))^2)\n"
+        )
+    };
+    let narrow = solved(&text("100"));
+    assert_certified(&narrow, narrow.objective(), 0.0);
+    for upper in ["1e4", "1e6", "1e8"] {
+        assert_certified(&solved(&text(upper)), narrow.objective(), 1e-8);
+    }
+}
+
 /// The double integrator from rest to rest in the least time, and in the least time with a limit
 /// of the speed: an arc of a state.
 #[test]

@@ -16,17 +16,17 @@ fn is_contradicted(solution: &Solution) -> bool {
     checks.iter().any(|it| it.condition == Condition::Minimum && it.contradicts())
 }
 
-/// The guess is where the slope of `tanh` is 0, to all digits. J by CasADi and IPOPT, from u = 1.
+/// The guess is where the slope of `tanh` is 0, to all digits, and J is 0.0834. The infimum is that
+/// of `x' = 1` as long as `x` is below 0.5: 0.0392 by CasADi and IPOPT, from u = 1.
 #[test]
 fn a_plateau_is_left() {
-    for [guess, upper] in [["", "1e4"], ["guess 5000", "1e4"]] {
+    for (guess, upper) in [("500", "1e3"), ("3000", "1e4"), ("5000", "1e4")] {
         let solution = solved(&format!(
-            "time t in [0, 1] state x start 0 control u in [0, {upper}] {guess}\n\
-             dynamics {{ x' = tanh(u) }}\nminimize integral((x - 0.5)^2 + 1e-9*u^2)\n\
-             method {{ N = 50 }}"
+            "time t in [0, 1] state x start 0 control u in [0, {upper}] guess {guess}\n\
+             dynamics {{ x' = tanh(u) }}\nminimize integral((x - 0.5)^2)\nmethod {{ N = 50 }}"
         ));
-        let off = solution.objective() - 0.0392000360066;
-        assert!(off.abs() < 1e-6, "{guess}: {}", solution.objective());
+        let above = solution.objective() - 0.0392;
+        assert!((-1e-8..1e-4).contains(&above), "{guess}: {above}");
         assert!(!is_contradicted(&solution), "{guess}");
     }
 }

@@ -88,6 +88,41 @@ fn a_guess_on_a_saddle_is_left() {
     assert_solved(text, &solved(text), -0.5);
 }
 
+/// With a condition at the end the direction of negative curvature has to be told from others that
+/// curve nearly as much. `J >= (1 - c) x(end)^2` by Cauchy and Schwarz, with equality for a
+/// constant control.
+#[test]
+fn a_saddle_beside_a_condition_is_left() {
+    let cases =
+        [("1e3", "100", 5.0, -40000.0), ("300", "1", 1.5, -0.5), ("100", "10", 5.0, -400.0)];
+    for (range, end, weight, least) in cases {
+        for intervals in [10, 20, 21] {
+            let text = format!(
+                "time t in [0, 1] state x start 0 control u in [-{range}, {range}] dynamics {{ x' \
+                 = u }}\nend -{end} <= x <= {end}\nminimize integral(u^2) - {weight}*x(end)^2 \
+                 method {{ N = {intervals} }}"
+            );
+            assert_solved(&text, &solved(&text), least);
+        }
+    }
+}
+
+/// To pass by an obstacle on one side or the other; the way through its middle is a saddle, to
+/// which regularised steps are slow. J on either side as from an asymmetric guess.
+#[test]
+fn a_saddle_to_which_steps_are_slow_is_left() {
+    let text = |range: &str, guess: &str| {
+        format!(
+            "time t in [0, 1] state x start -1 state y start 0\n\
+             control u in [-{range}, {range}] control w in [-{range}, {range}]\n\
+             dynamics {{ x' = u  y' = w }} end x == 1 end y == 0 {guess}\n\
+             minimize integral(u^2 + w^2 + 100*exp(-4*(x^2 + y^2))) method {{ N = 50 }}"
+        )
+    };
+    let beside = solved(&text("1e3", "guess { y = sin(3*t) }"));
+    assert_solved("through the middle", &solved(&text("1e6", "")), beside.objective);
+}
+
 /// A form that is convex is called so, at any size of its terms, also where it is singular.
 #[test]
 fn convex_forms_are_recognised() {

@@ -271,6 +271,11 @@ fn why(solved: &Solved) -> String {
         Status::TimeLimit => "the time of `--time-limit` is up; this is the last iterate".into(),
         Status::Interrupted => "stopped by Ctrl-C; this is the last iterate".into(),
         Status::NotFinite(_) => "an expression of the model has no value".into(),
+        Status::NumericalFailure if solved.solution.outcome.solution.is_saddle => {
+            "a saddle: stationary, but no minimum, and no step leads on; another `guess` or \
+             `--starts 8` may help"
+                .into()
+        }
         // Those that are solved have been answered already.
         Status::NumericalFailure | Status::Solved | Status::Acceptable => {
             "no step makes progress; another `guess`, `sigma` or N may help".into()

@@ -119,7 +119,7 @@ fn run(
 
 /// Where a solved problem may have a better optimum; not on a grid that was made for this one.
 fn better_starts(found: &Refined) -> Vec<nlp::Start> {
-    match found.outcome.solution.status == Status::Solved && found.error.is_none() {
+    match found.outcome.solution.status.is_solved() && found.error.is_none() {
         true => elsewhere(&found.chain, &found.outcome),
         false => Vec::new(),
     }

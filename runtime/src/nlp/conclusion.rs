@@ -60,7 +60,10 @@ pub(super) fn conclude(nlp: &mut dyn Nlp, ended: Ended, options: &Options) -> So
 /// judge.
 fn judged(status: Status, found: &Assessment, is_saddle: bool, tol: f64) -> Status {
     match status {
-        Status::Solved if found.is_convincing(tol) && !is_saddle => Status::Solved,
+        // A point from which the objective falls to second order is no optimum, not even a rough
+        // one.
+        Status::Solved | Status::Acceptable if is_saddle => Status::NumericalFailure,
+        Status::Solved if found.is_convincing(tol) => Status::Solved,
         Status::Solved | Status::Acceptable | Status::NumericalFailure => {
             if found.is_acceptable(tol) { Status::Acceptable } else { Status::NumericalFailure }
         }

@@ -5,9 +5,9 @@ use super::formulation::Formulation;
 use super::iterate::Slopes;
 use super::kkt::Kkt;
 use super::tuning::inertia::{
-    CAUTION_GROWTH, CUT_SHORT, DECAY, DEPENDENT_ROWS, FIRST_GROWTH, FIRST_REGULARIZATION, GROWTH,
-    LARGEST_REGULARIZATION, MOST_CAUTION, MU_POWER, NOT_CUT, ROW_REGULARIZATION,
-    SMALLEST_REGULARIZATION,
+    BISECTIONS, CAUTION_GROWTH, CUT_SHORT, DECAY, DEPENDENT_ROWS, FIRST_GROWTH,
+    FIRST_REGULARIZATION, GROWTH, LARGEST_REGULARIZATION, MOST_CAUTION, MU_POWER, NOT_CUT,
+    ROW_REGULARIZATION, SMALLEST_REGULARIZATION,
 };
 use crate::linalg::Inertia;
 use crate::nlp::Counts;
@@ -51,8 +51,8 @@ impl Kkt {
         true
     }
 
-    /// Factors with a regularisation of at least `least` that gives the right inertia, to a factor
-    /// of [`GROWTH`]; `true` if that is `least` itself, or none does.
+    /// Factors with a regularisation of at least `least` that gives the right inertia, and hardly
+    /// more than one that does not; `true` if that is `least` itself, or none does.
     pub(super) fn factor_barely(
         &mut self,
         formulation: &Formulation,
@@ -62,17 +62,35 @@ impl Kkt {
         counts: &mut Counts,
     ) -> bool {
         self.regularization = least;
-        let mut rows = 0.0;
+        let (mut rows, mut wrong) = (0.0, None);
         loop {
             match self.factor_once(formulation, slopes, rows, counts) {
-                Inertia::Correct => return self.regularization == least,
+                Inertia::Correct => break,
                 Inertia::Singular if rows == 0.0 => rows = ROW_REGULARIZATION * mu.powf(MU_POWER),
-                Inertia::Wrong | Inertia::Singular => self.regularization *= GROWTH,
+                Inertia::Wrong | Inertia::Singular => {
+                    wrong = Some(self.regularization);
+                    self.regularization *= GROWTH;
+                }
             }
             if self.regularization.is_nan() || self.regularization > LARGEST_REGULARIZATION {
                 return true;
             }
         }
+        let Some(mut wrong) = wrong else { return true };
+        // Inverse iteration tells directions apart by their distances from the regularisation.
+        let mut right = self.regularization;
+        for _ in 0..BISECTIONS {
+            self.regularization = (wrong * right).sqrt();
+            match self.factor_once(formulation, slopes, rows, counts) {
+                Inertia::Correct => right = self.regularization,
+                Inertia::Wrong | Inertia::Singular => wrong = self.regularization,
+            }
+        }
+        if self.regularization != right {
+            self.regularization = right;
+            self.factor_once(formulation, slopes, rows, counts);
+        }
+        false
     }
 
     /// Whether the last factorisation was that of Newton's own matrix.

@@ -31,7 +31,7 @@ use super::{Multipliers, Nlp, Options, Progress, Solution, Start, Status, Watch}
 use crate::linalg::solvers::{cheapest, more_robust};
 use crate::problem::Linear;
 use algorithm::Algorithm;
-use tuning::fallback::{FAR, MOST_FLAT_POINTS, MOST_RESCALINGS};
+use tuning::fallback::{FAR, MORE_WORK, MOST_FLAT_POINTS, MOST_RESCALINGS};
 
 /// Solves the NLP from `start`. Progress is reported unscaled, once per iteration. Nobody is
 /// told "infeasible" for want of luck: where an attempt ends without a solution others are made,
@@ -89,8 +89,8 @@ fn rescaled_by_the_answer(
     best
 }
 
-/// Where derivatives of higher order say that an answer is no minimum, others begin beside it; the
-/// lowest objective is the answer.
+/// Where curvature or derivatives of higher order say that an answer is no minimum, others begin
+/// beside it; the lowest objective is the answer.
 fn away_from_flat_points(
     mut best: Solution,
     nlp: &mut dyn Nlp,
@@ -98,13 +98,18 @@ fn away_from_flat_points(
     watch: &mut Watch,
 ) -> Solution {
     for _ in 0..MOST_FLAT_POINTS {
-        let Some(v) = best.descent.take().filter(|_| best.status == Status::Solved) else {
+        let Some(v) = best.descent.take().filter(|_| best.status.is_solved()) else {
             break;
+        };
+        // After a slow end not many times the work: it may be as slow beside it.
+        let max_iter = match best.status {
+            Status::Acceptable => options.max_iter.min(MORE_WORK * best.counts.iterations),
+            _ => options.max_iter,
         };
         let next = fallback(
             best.clone(),
             nlp,
-            options,
+            &Options { max_iter, ..*options },
             from(&Start { v, warm: None }, Algorithm::run),
             watch,
         );

@@ -14,7 +14,7 @@ use super::algorithm::Algorithm;
 use super::iterate::{SearchDirection, Values};
 use super::tuning::saddle::{
     FEW_ITERATIONS, GOLDEN, ITERATIONS, LARGEST_VIOLATION, LEAST_GAIN, MOST_DEPARTURES,
-    MOST_HALVINGS, NOTHING, ROOM, ROUNDING, SHORT_STEPS, SPREAD,
+    MOST_HALVINGS, MOST_ITERATIONS, NOTHING, ROOM, ROUNDING, SHORT_STEPS, SPREAD,
 };
 use super::vectors::dot;
 use crate::nlp::Nlp;
@@ -49,6 +49,20 @@ impl Algorithm {
         self.is_saddle = self.departures >= MOST_DEPARTURES || !self.depart(nlp, &mut step, gain);
         self.departures += 1;
         if self.is_saddle { Departure::Impossible } else { Departure::Taken }
+    }
+
+    /// A point (one value per variable) beside the iterate, which stays, if that is no minimum.
+    pub(super) fn descent_by_curvature(
+        &mut self,
+        nlp: &mut dyn Nlp,
+        found: &Assessment,
+    ) -> Option<Vec<f64>> {
+        let before = (self.at.clone(), self.values.clone(), self.barrier.mu);
+        let is_left = matches!(self.departure(nlp, found), Departure::Taken);
+        let beside = self.at.y[..self.formulation.variables].to_vec();
+        (self.at, self.values, self.barrier.mu) = before;
+        self.is_saddle = false;
+        is_left.then_some(beside)
     }
 
     /// A point (one value per variable) near the iterate, to which the Lagrangian falls although
@@ -101,10 +115,21 @@ impl Algorithm {
         if self.factor_at_iterate(least) {
             return None;
         }
-        let (step, curvature) = self.softest_direction(ITERATIONS)?;
+        let (mut step, mut curvature) = self.softest_direction(ITERATIONS)?;
+        for _ in ITERATIONS..MOST_ITERATIONS {
+            if curvature < -ROUNDING * self.terms_of_curvature(nlp, &step) {
+                return Some((step, curvature));
+            }
+            let Algorithm { formulation, slopes, kkt, .. } = self;
+            curvature = kkt.inverse_iteration(formulation, slopes, &mut step)?;
+        }
+        None
+    }
+
+    /// The sum of the sizes of all terms of the curvature along a step.
+    fn terms_of_curvature(&self, nlp: &dyn Nlp, step: &SearchDirection) -> f64 {
         let terms = nlp.hessian_structure().entries().zip(&self.slopes.derivatives.hessian);
-        let terms: f64 = terms.map(|((i, j), h)| (h * step.y[i] * step.y[j]).abs()).sum();
-        (curvature < -ROUNDING * terms).then_some((step, curvature))
+        terms.map(|((i, j), h)| (h * step.y[i] * step.y[j]).abs()).sum()
     }
 
     /// See [`Kkt::factor_barely`](super::kkt::Kkt::factor_barely), at the iterate.

@@ -45,7 +45,7 @@ impl Algorithm {
         } else if self.is_out_of_patience() {
             Some(self.stalled(nlp))
         } else if self.acceptable >= ACCEPTABLE_ITERATIONS {
-            Some(Status::Acceptable)
+            Some(self.settled(nlp))
         } else if self.watchdog.saved.is_none() && self.has_diverged(nlp) {
             Some(Status::Unbounded)
         } else if self.counts.iterations >= self.options.max_iter {
@@ -53,6 +53,16 @@ impl Algorithm {
         } else {
             None
         }
+    }
+
+    /// The status where the error has been acceptable for long; if that is at a saddle, to which
+    /// regularised steps are slow, with a point beside it.
+    fn settled(&mut self, nlp: &mut dyn Nlp) -> Status {
+        if self.options.is_final && !self.is_relaxed {
+            let found = self.assessment(nlp);
+            self.descent = self.descent_by_curvature(nlp, &found);
+        }
+        Status::Acceptable
     }
 
     /// What the measures say at a point where the error is as small as asked for; nothing where the

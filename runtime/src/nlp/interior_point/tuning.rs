@@ -91,6 +91,9 @@ pub(crate) mod inertia {
     /// The same where rows depend on each other by their multipliers, although the inertia is
     /// right.
     pub(crate) const DEPENDENT_ROWS: f64 = 1e-6;
+    /// How often the least regularisation is bracketed by half, in the logarithm, before directions
+    /// are told apart by it.
+    pub(crate) const BISECTIONS: usize = 3;
     /// The power of `mu` in the regularisation of constraints (`kappa_c`).
     pub(crate) const MU_POWER: f64 = 0.25;
 }
@@ -127,6 +130,8 @@ pub(crate) mod fallback {
     pub(crate) const MOST_RESCALINGS: usize = 3;
     /// A point that is no minimum, though slope and curvature are those of one, is left so often.
     pub(crate) const MOST_FLAT_POINTS: usize = 20;
+    /// With so many times the iterations of all before, at most.
+    pub(crate) const MORE_WORK: usize = 2;
 }
 
 pub(crate) mod restoration {
@@ -143,8 +148,10 @@ pub(crate) mod restoration {
 pub(crate) mod saddle {
     /// A point is left so often.
     pub(crate) const MOST_DEPARTURES: usize = 5;
-    /// Steps of the inverse iteration.
+    /// Steps of the inverse iteration, at least, and at most where none with negative curvature is
+    /// found.
     pub(crate) const ITERATIONS: usize = 8;
+    pub(crate) const MOST_ITERATIONS: usize = 64;
     /// The same where all directions without curvature are as good: they stay together.
     pub(crate) const FEW_ITERATIONS: usize = 2;
     /// Steps where curvature says nothing, as parts of the sizes, from short to long.

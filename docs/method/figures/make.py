@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws certified optima and the strips of the race car for docs/method: the pictures that no test writes.
+"""Draws certified optima for docs/method: the pictures that no test writes.
 
     pip install matplotlib && cargo build --release && python3 docs/method/figures/make.py target/release/fdcc
 """
@@ -164,9 +164,10 @@ def centre(x):
     return np.where(x <= np.pi, np.sin(x), np.where(x <= 2 * np.pi, np.pi - x, -np.pi - np.sin(x)))
 
 
-def race_car(sigma):
-    """The path on the track in the colours of the modes, the controls, and the strips."""
-    answer = solved("racecar", "--method", f"sigma={sigma}")
+def race_car():
+    """The certified path on the track in the colours of the modes, the controls, and the strips."""
+    answer = solved("racecar", "--method", "sigma=0")
+    assert answer["certificate"]["certified"]
     figure, (path, throttle, steering, strip) = plt.subplots(
         4, 1, figsize=(7.6, 8.4), layout="constrained", height_ratios=[6, 1.6, 1.6, 1.6])
     x, y, time = (np.array(it) for it in (answer["states"]["pos.x"], answer["states"]["pos.y"], answer["time"]))
@@ -178,6 +179,9 @@ def race_car(sigma):
         path.plot(x[own], y[own], color=MODES[it["mode"]], linewidth=2.5)
     for name, word in (("held", "rolls (held)"), ("above", "slips (above)"), ("below", "slips (below)")):
         path.plot([], [], color=MODES[name], linewidth=2.5, label=word)
+    touched = [it["from"] for it in answer["certificate"]["arcs"]["track"] if it["mode"] != "free"]
+    at = [np.argmin(abs(time - it)) for it in touched]
+    path.plot(x[at], y[at], "o", color="black", markersize=4, label="touches the limit of the track")
     path.legend(frameon=False, loc="upper right")
     path.set_aspect("equal")
     path.set_xlabel("pos.x")
@@ -197,7 +201,7 @@ def main():
     slide = lambda push, mode, grip: push - {"above": grip, "below": -grip, "held": push}[mode]
     certified("block", "F", lambda u, mode: slide(u / 2, mode, 0.3 * 9.81), lambda u: u**2, " [N^2]")
     certified("coulomb_reverse", "u", lambda u, mode: slide(u, mode, 0.5), lambda u: 1, "")
-    race_car(0.025)
+    race_car()
 
 
 main()

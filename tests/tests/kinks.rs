@@ -133,3 +133,29 @@ fn a_start_that_slides_has_second_derivatives_along_the_surface_only() {
     assert!((second - 6.0 * 1.0_f64.exp()).abs() < 1e-7, "{second}");
     assert!(hessian(&system, &Controls::Guess, &found.simulation, &[Quantity::Start(0)]).is_none());
 }
+
+/// `x(end) = |a| + 1`, the last time is `max(a, 1)`, and `y(end) = -2 |a|`: with a kink of the
+/// parameter alone, wherever the state is; beside it there is none.
+#[test]
+fn kinks_of_parameters_alone_are_seen() {
+    let texts = [
+        ("a", 0.0, "time t in [0, 1] state x start abs(a) dynamics { x' = 1 } minimize x(end)"),
+        ("T", 1.0, "time t in [0, max(T, 1)] state x start 0 dynamics { x' = 1 } minimize x(end)"),
+        (
+            "a",
+            0.0,
+            "time t in [0, 1] state x start -0.5 state y start 0 surface s = x - abs(a)
+             dynamics { x' = 1 y' in Sgn(s) } minimize y(end)",
+        ),
+    ];
+    for (name, place, text) in texts {
+        for (value, is_on) in [(place, true), (place + 0.1, false), (place - 0.1, false)] {
+            let whole = meaning(&format!("param {name} = {value} {text}"));
+            let system = compile_sensitivities(&whole).expect("it can be simulated");
+            let by = [parameter(&system, name)];
+            let found = gradient(&system, &Controls::Guess, &Options::default(), &by);
+            let kink = found.expect("the last time is reached").kink;
+            assert_eq!(kink.is_some_and(|it| it.is_of_parameters), is_on, "{text} at {value}");
+        }
+    }
+}

@@ -226,13 +226,18 @@ fn doubts(system: &System, exact: &Exact) -> Vec<String> {
 fn bent(kink: &Kink, source: &SourceFile) -> String {
     let line = source.line_column(kink.of.span.0).line;
     let which = format!(
-        "a kink of `{}` (line {line}: `abs`, `min`, `max` or a knot of `piecewise`): the \
-         derivatives are those of one side of it",
+        "a kink of `{}` (line {line}: `abs`, `min`, `max` or a knot of `piecewise`)",
         kink.of.label
     );
+    let one_side = "the derivatives are those of one side of it";
     match kink.time {
-        Some(time) => format!("from t = {} on the state stays on {which}", short(time)),
-        None => format!("the trajectory ends on {which}"),
+        _ if kink.is_of_parameters => {
+            format!("the parameters are on {which}: by them there is no derivative")
+        }
+        Some(time) => {
+            format!("from t = {} on the state stays on {which}: {one_side}", short(time))
+        }
+        None => format!("the trajectory ends on {which}: {one_side}"),
     }
 }
 

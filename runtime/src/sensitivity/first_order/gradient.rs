@@ -7,6 +7,7 @@ use crate::sensitivity::linearised::linearisation::Lineariser;
 use crate::sensitivity::linearised::variational_equation::LinearTape;
 use crate::sensitivity::nondifferentiability::kink::{Kink, first_kink};
 use crate::sensitivity::nondifferentiability::objective_kink::{Direction, objective_kink};
+use crate::sensitivity::nondifferentiability::parameter_kink::parameter_kink;
 use crate::sensitivity::nondifferentiability::{Nondifferentiability, nondifferentiabilities};
 use crate::simulate::{Controls, Options, Simulation, Status, System, simulate};
 use nalgebra::DMatrix;
@@ -119,7 +120,9 @@ pub fn gradient(
         adjoint,
         costates,
         nondifferentiabilities: nondifferentiabilities(&pieces),
-        kink: first_kink(&lineariser, tape).or(kink),
+        kink: parameter_kink(&lineariser, tape, quantities)
+            .or_else(|| first_kink(&lineariser, tape))
+            .or(kink),
         simulation,
     })
 }

@@ -17,6 +17,8 @@ pub struct Kink {
     pub of: Origin,
     /// Since when; nothing for the objective.
     pub time: Option<f64>,
+    /// Whether the parameters alone are on it, wherever the state is.
+    pub is_of_parameters: bool,
 }
 
 /// The first.
@@ -34,7 +36,7 @@ pub(crate) fn first_kink(lineariser: &Lineariser, tape: &Tape) -> Option<Kink> {
         let end = Here::new(lineariser, tape, &piece.end());
         let stays = |k: &usize| here.is_on(*k) && end.is_on(*k) && !here.is_fixed(*k);
         let kink = (0..kinks.outputs()).find(stays)?;
-        Some(Kink { of: kinks.origin(kink), time: Some(start.time) })
+        Some(Kink { of: kinks.origin(kink), time: Some(start.time), is_of_parameters: false })
     })
 }
 

@@ -6,6 +6,7 @@
 
 pub(crate) mod kink;
 pub(crate) mod objective_kink;
+pub(crate) mod parameter_kink;
 
 use super::linearised::linearisation::{Jacobian, Lineariser};
 use super::linearised::variational_equation::LinearTape;

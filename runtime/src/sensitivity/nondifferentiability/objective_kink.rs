@@ -38,7 +38,11 @@ pub(crate) fn objective_kink(
     let inputs = ends.iter().chain(&lineariser.parameters);
     let terms: f64 = slopes.iter().zip(inputs).map(|(by, value)| (by * value).abs()).sum();
     let is_kinked = directions.any(|direction| is_kinked(lineariser, ends, &direction, terms));
-    is_kinked.then(|| Kink { of: lineariser.system.objective.origin(0), time: None })
+    is_kinked.then(|| Kink {
+        of: lineariser.system.objective.origin(0),
+        time: None,
+        is_of_parameters: false,
+    })
 }
 
 fn is_kinked(
@@ -47,11 +51,16 @@ fn is_kinked(
     direction: &Direction,
     terms: f64,
 ) -> bool {
-    let distance = DISTANCE * if direction.value == 0.0 { 1.0 } else { direction.value.abs() };
-    let value = |part: f64| value(lineariser, ends, &(part * distance * &direction.by));
+    is_bent(direction.value, terms, |moved| value(lineariser, ends, &(moved * &direction.by)))
+}
+
+/// Whether a function of how far a quantity is moved from its value has a kink there; `terms` is
+/// the size of what it is a sum of.
+pub(super) fn is_bent(quantity: f64, terms: f64, value: impl Fn(f64) -> f64) -> bool {
+    let distance = DISTANCE * if quantity == 0.0 { 1.0 } else { quantity.abs() };
     let own = value(0.0);
     let bend = |part: f64| {
-        let [above, below] = [value(part), value(-part)];
+        let [above, below] = [value(part * distance), value(-part * distance)];
         ((above - own) - (own - below)).abs()
     };
     let (far, near) = (bend(1.0), bend(1.0 / NEARER));

@@ -1,0 +1,65 @@
+//! Kinks that only parameters reach: `start abs(a)` at `a = 0`, `time t in [0, max(a, 1)]` at 1, or
+//! `surface s = x - abs(a)`. They are found as those of an objective are.
+
+use super::kink::Kink;
+use super::objective_kink::is_bent;
+use crate::problem::{Columns, Function};
+use crate::sensitivity::Quantity;
+use crate::sensitivity::linearised::linearisation::Lineariser;
+use crate::simulate::{Piece, Tape};
+
+/// The first kink that one of the parameters is on: of the times, of the starts, or of a surface
+/// where a step begins.
+pub(crate) fn parameter_kink(
+    lineariser: &Lineariser,
+    tape: &Tape,
+    quantities: &[Quantity],
+) -> Option<Kink> {
+    let system = lineariser.system;
+    let nothing = Columns::new(0, 1);
+    let fixed = [(&system.interval_of, nothing.clone()), (&system.start_of, nothing)];
+    let watched = begins(lineariser, tape).into_iter().map(|point| (&system.switching, point));
+    let parameter = |it: &Quantity| match *it {
+        Quantity::Parameter(at) => Some(at),
+        Quantity::Start(_) | Quantity::Control { .. } => None,
+    };
+    let parameters: Vec<usize> = quantities.iter().filter_map(parameter).collect();
+    fixed.into_iter().chain(watched).find_map(|(function, point)| {
+        let of = |parameter: &usize| bent_output(&**function, &point, lineariser, *parameter);
+        let output = parameters.iter().find_map(of)?;
+        Some(Kink { of: function.origin(output), time: None, is_of_parameters: true })
+    })
+}
+
+/// Where the first steps of all regimes begin.
+fn begins(lineariser: &Lineariser, tape: &Tape) -> Vec<Columns> {
+    let mut seen = vec![false; tape.regimes.len()];
+    let mut points = Vec::new();
+    for piece in &tape.pieces {
+        let Piece::Step { start, .. } = piece else { continue };
+        if !std::mem::replace(&mut seen[start.regime], true) {
+            let (regime, state) = (&tape.regimes[start.regime], start.state.clone().into());
+            points.push(lineariser.table(regime, &start.selectors, start.time, &state));
+        }
+    }
+    points
+}
+
+/// The first output of a function at a point that has a kink along a parameter.
+fn bent_output(
+    function: &dyn Function,
+    point: &Columns,
+    lineariser: &Lineariser,
+    parameter: usize,
+) -> Option<usize> {
+    let values = |moved: f64| {
+        let mut parameters = lineariser.parameters.clone();
+        parameters[parameter] += moved;
+        let mut values = Columns::new(function.outputs(), 1);
+        function.value(point, &parameters, &mut values);
+        (0..function.outputs()).map(|it| values.column(it)[0]).collect::<Vec<f64>>()
+    };
+    let value = lineariser.parameters[parameter];
+    let largest = values(0.0).iter().fold(0.0, |most: f64, it| most.max(it.abs()));
+    (0..function.outputs()).find(|it| is_bent(value, largest, |moved| values(moved)[*it]))
+}

@@ -120,11 +120,20 @@ pub fn gradient(
         adjoint,
         costates,
         nondifferentiabilities: nondifferentiabilities(&pieces),
-        kink: parameter_kink(&lineariser, tape, quantities)
+        kink: parameter_kink(&lineariser, tape, &parameters(quantities))
             .or_else(|| first_kink(&lineariser, tape))
             .or(kink),
         simulation,
     })
+}
+
+/// Those that are parameters.
+fn parameters(quantities: &[Quantity]) -> Vec<usize> {
+    let parameter = |it: &Quantity| match *it {
+        Quantity::Parameter(at) => Some(at),
+        Quantity::Start(_) | Quantity::Control { .. } => None,
+    };
+    quantities.iter().filter_map(parameter).collect()
 }
 
 fn backward(pieces: &LinearTape, objective: &Objective, zero: Gradient) -> (Gradient, Costates) {

@@ -4,26 +4,20 @@
 use super::kink::Kink;
 use super::objective_kink::is_bent;
 use crate::problem::{Columns, Function};
-use crate::sensitivity::Quantity;
 use crate::sensitivity::linearised::linearisation::Lineariser;
 use crate::simulate::{Piece, Tape};
 
-/// The first kink that one of the parameters is on: of the times, of the starts, or of a surface
+/// The first kink that one of these parameters is on: of the times, of the starts, or of a surface
 /// where a step begins.
 pub(crate) fn parameter_kink(
     lineariser: &Lineariser,
     tape: &Tape,
-    quantities: &[Quantity],
+    parameters: &[usize],
 ) -> Option<Kink> {
     let system = lineariser.system;
     let nothing = Columns::new(0, 1);
     let fixed = [(&system.interval_of, nothing.clone()), (&system.start_of, nothing)];
     let watched = begins(lineariser, tape).into_iter().map(|point| (&system.switching, point));
-    let parameter = |it: &Quantity| match *it {
-        Quantity::Parameter(at) => Some(at),
-        Quantity::Start(_) | Quantity::Control { .. } => None,
-    };
-    let parameters: Vec<usize> = quantities.iter().filter_map(parameter).collect();
     fixed.into_iter().chain(watched).find_map(|(function, point)| {
         let of = |parameter: &usize| bent_output(&**function, &point, lineariser, *parameter);
         let output = parameters.iter().find_map(of)?;

@@ -44,8 +44,8 @@ pub use replay::Replay;
 pub use simulation::Simulation;
 pub use solve::true_optimum;
 pub use solve::{
-    Case, Cases, Compiled, Controller, Ended, Grid, Jump, Options, Part, Phases, Report, Sequence,
-    Solution, Start, Sweep, optimality,
+    Case, Cases, Compiled, Controller, Ended, Family, Grid, Jump, Options, Part, Phases, Report,
+    Sequence, Solution, Start, Sweep, optimality,
 };
 pub use verification::{Condition, Gap, LinkGap, Stay, TIME_OF, Verification, modes};
 

@@ -137,6 +137,20 @@ fn what_is_certified_is_the_true_optimum() {
     }
 }
 
+/// Starts that lead to one optimum are told as one, and those that are not certified as such.
+#[test]
+fn several_starts_lead_to_families() {
+    let path = place("switched/lens").expect("it is there");
+    let options = Options { starts: 6, ..Options::default() };
+    let model = Model::from_file(&path.to_string_lossy()).expect("a model");
+    let solution = model.solve(&options).expect("an answer");
+    let certified = |it: &&fdcc::Family| it.is_certified;
+    let best = solution.families.iter().find(certified).expect("one is certified");
+    assert_eq!(best.objective, solution.objective());
+    assert_eq!(solution.families.iter().map(|it| it.starts).sum::<usize>(), 6);
+    assert!(solution.families.len() > 1 && solution.is_certified());
+}
+
 /// What follows from surfaces that are held in the end is not asked for again, or the Jacobian
 /// would lose rank; what does not follow is.
 #[test]

@@ -10,7 +10,7 @@ use super::named::Named;
 use super::optimality::Optimality;
 use super::phases::Phase;
 use super::picture::Picture;
-use super::tried::{Ended, Happened, Tried};
+use super::tried::{Ended, Family, Happened, Tried};
 use super::units::Units;
 use super::verification::Verification;
 use crate::version::VERSION;
@@ -81,6 +81,10 @@ pub struct Document {
     /// How each of several starts ended, in their order; absent where there was one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub starts: Vec<Ended>,
+    /// To which optima of the system that was written they lead; absent where these were not
+    /// looked for, or there is one only.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub families: Vec<Family>,
     /// What the estimates of a fit are worth; absent where no squares over rows of data are
     /// minimised.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -203,6 +207,7 @@ impl Document {
             sequences: found.sequences.iter().map(Tried::from).collect(),
             sequences_left_out: found.sequences_left_out,
             starts: found.starts.iter().map(Ended::from).collect(),
+            families: found.families.iter().map(Family::from).collect(),
             picture: Picture::new(found, &units),
             estimates: None,
             residuals: Vec::new(),

@@ -17,6 +17,20 @@ impl From<&fdcc::Ended> for Ended {
     }
 }
 
+/// Starts that lead to one optimum of the system that was written.
+#[derive(Clone, Debug, Serialize)]
+pub struct Family {
+    pub objective: f64,
+    pub certified: bool,
+    pub starts: usize,
+}
+
+impl From<&fdcc::Family> for Family {
+    fn from(it: &fdcc::Family) -> Self {
+        Family { objective: it.objective, certified: it.is_certified, starts: it.starts }
+    }
+}
+
 /// A jump of the solution.
 #[derive(Clone, Debug, Serialize)]
 pub struct Happened {

@@ -5,6 +5,7 @@ use crate::output::modes::switching;
 use crate::output::number::{scientific, short};
 use crate::output::optimality::on_the_true_system;
 use crate::output::plural;
+use crate::output::tried::Family;
 use crate::report::attempts;
 use crate::solved::Solved;
 use fdcc::{Ended, Solution};
@@ -97,12 +98,19 @@ fn spread(solution: &Solution, document: &Document) -> Vec<String> {
     // The best one is the answer, whichever way is better.
     found.sort_by(|a, b| (a - document.objective).abs().total_cmp(&(b - document.objective).abs()));
     let same = |a: &f64, b: &f64| (a - b).abs() <= SAME * b.abs().max(1.0);
-    let row = |found: &[f64]| {
-        let value = document.units.value("objective", found[0], 9);
-        format!("       {} of {} starts: objective {value}", found.len(), solution.starts.len())
+    let row = |count: usize, objective: f64, words: &str| {
+        let value = document.units.value("objective", objective, 9);
+        format!("       {count} of {} starts: objective {value}{words}", solution.starts.len())
     };
     let solved = found.len();
-    let mut rows: Vec<String> = found.chunk_by(same).map(row).collect();
+    let smoothed = found.chunk_by(same).map(|found| row(found.len(), found[0], ""));
+    let mut rows: Vec<String> = match document.families.as_slice() {
+        [] => smoothed.collect(),
+        families => {
+            let words = |it: &Family| if it.certified { ", certified" } else { ", not certified" };
+            families.iter().map(|it| row(it.starts, it.objective, words(it))).collect()
+        }
+    };
     match solution.starts.len() - solved {
         0 => {}
         others => {

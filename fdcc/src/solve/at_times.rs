@@ -25,7 +25,7 @@ pub(super) fn solve(
     let chain = compile_chain(&divided).map_err(Error::Model)?;
     let start = earlier.and_then(|it| start(it, model, between, &chain));
     let found = multistart::solve(&chain, start, options, Part::default())?;
-    let FoundChain { chain, mut outcome, step_errors, starts } = found;
+    let FoundChain { chain, mut outcome, step_errors, starts, .. } = found;
     if !model.has_order_of_times() {
         // A proof says something of this order only.
         outcome.is_impossible = false;

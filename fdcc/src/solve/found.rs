@@ -110,9 +110,20 @@ pub(super) struct FoundChain {
     pub outcome: ChainOutcome,
     pub step_errors: Option<f64>,
     pub starts: Vec<Ended>,
+    /// Answers of other starts with other objectives, the best one first.
+    pub others: Vec<(Chain, ChainOutcome)>,
 }
 
 impl FoundChain {
+    /// The other answers to a problem of one phase.
+    pub fn other_singles(&mut self) -> Vec<Found> {
+        let others = std::mem::take(&mut self.others).into_iter();
+        let single = |(mut chain, outcome): (Chain, ChainOutcome)| {
+            Found::new(chain.phases.swap_remove(0), outcome.into_single())
+        };
+        others.map(single).collect()
+    }
+
     /// Whether it can be used.
     pub fn is_solved(&self) -> bool {
         self.outcome.solution.status.is_solved()

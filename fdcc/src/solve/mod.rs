@@ -6,6 +6,7 @@ mod bounds;
 mod cases;
 mod certify;
 mod controller;
+mod families;
 mod found;
 mod grid;
 mod located;
@@ -21,6 +22,7 @@ pub mod true_optimum;
 
 pub use cases::{Case, Cases};
 pub use controller::Controller;
+pub use families::Family;
 pub use found::{Jump, Phases, Sequence};
 pub use grid::Grid;
 pub use report::{Ended, Options, Part, Report, Start};
@@ -132,11 +134,12 @@ impl Compiled {
             Start::Record(record) => Some(warm_start::from_record(record, &self.chain)),
             Start::Solution(it) => Some(it.as_start(&self.chain)),
         };
-        let found = multistart::solve(&self.chain, start, options, Part::default())?;
+        let mut found = multistart::solve(&self.chain, start, options, Part::default())?;
         if !meaning.phases.is_empty() {
             return Ok(Solution::of_phases(self.model.clone(), found));
         }
-        Ok(located::solution(&self.model, found.into_single(), options))
+        let others = found.other_singles();
+        Ok(families::best(&self.model, found.into_single(), others, options))
     }
 
     /// Where time is divided at certain times, or at jumps.

@@ -1,5 +1,6 @@
 //! Looking for an answer from one starting point or from several, and keeping the best.
 
+use super::families::is_same;
 use super::found::FoundChain;
 use super::report::{Ended, Options, Part, Report};
 use crate::error::Error;
@@ -8,6 +9,7 @@ use fdcc_runtime::problem::Chain;
 use fdcc_runtime::solve::multistart::{elsewhere, is_better, perturbed};
 use fdcc_runtime::solve::refinement::{self, Refined};
 use fdcc_runtime::solve::{Attempt, ChainOutcome, Refusal};
+use std::cmp::Ordering;
 
 /// A solved problem is solved so often once more where other controls are better.
 const MOST_ELSEWHERE: usize = 3;
@@ -30,16 +32,32 @@ pub(super) fn solve(
     for (index, ended) in starts.iter().enumerate() {
         (options.report)(&Report::Ended(Part { start: Some(index), ..part }, ended));
     }
-    let best = |a: Refined, b: Refined| {
-        if is_better(&b.outcome.solution, &a.outcome.solution) { b } else { a }
-    };
     let outcomes = all.iter().map(|it| &it.outcome);
     let (attempts, stopped) = (all_attempts(outcomes.clone()), first_stopped(outcomes));
-    let Refined { chain, outcome, error } =
-        all.into_iter().reduce(best).expect("there is at least one start");
+    let mut all = distinct(all).into_iter();
+    let Refined { chain, outcome, error } = all.next().expect("there is at least one start");
     let mut outcome = ChainOutcome { attempts, ..outcome };
     unless_stopped(&mut outcome.solution, stopped);
-    Ok(FoundChain { chain, outcome, step_errors: error, starts })
+    let others = all.map(|it| (it.chain, it.outcome)).collect();
+    Ok(FoundChain { chain, outcome, step_errors: error, starts, others })
+}
+
+/// The best answer, then others that are solved, of those with the same objective one.
+fn distinct(mut all: Vec<Refined>) -> Vec<Refined> {
+    all.sort_by(|a, b| match (&a.outcome.solution, &b.outcome.solution) {
+        (a, b) if is_better(a, b) => Ordering::Less,
+        (a, b) if is_better(b, a) => Ordering::Greater,
+        _ => Ordering::Equal,
+    });
+    let mut kept: Vec<Refined> = Vec::new();
+    for it in all {
+        let own = &it.outcome.solution;
+        let is_known = |other: &Refined| is_same(other.outcome.solution.objective, own.objective);
+        if kept.is_empty() || own.status.is_solved() && !kept.iter().any(is_known) {
+            kept.push(it);
+        }
+    }
+    kept
 }
 
 /// From the start as it is given and from variations of it, in parallel.

@@ -19,7 +19,7 @@ pub(super) struct Whole {
 impl Solution {
     /// The solution of a model with phases.
     pub(super) fn of_phases(model: Model, found: FoundChain) -> Self {
-        let FoundChain { chain, outcome, step_errors, starts } = found;
+        let FoundChain { chain, outcome, step_errors, starts, .. } = found;
         let own = model.phases().into_iter().zip(&chain.phases).zip(&outcome.phases);
         let parts = own.map(|((model, problem), outcome)| {
             Solution::new(model, super::found::Found::new(problem.clone(), outcome.clone()))

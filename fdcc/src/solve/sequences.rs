@@ -260,7 +260,7 @@ impl Alternative {
 
     /// The answer as one trajectory.
     fn joined(self, between: &Problem, found: FoundChain) -> Found {
-        let FoundChain { chain, outcome, step_errors, starts } = found;
+        let FoundChain { chain, outcome, step_errors, starts, .. } = found;
         let (whole, jumps) = joined(between, &chain, &outcome);
         let jumps = self.jumps.into_iter().zip(jumps);
         let jumps = jumps.filter_map(|(name, jump)| Some(happened(between, name?, jump))).collect();

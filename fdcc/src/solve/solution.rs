@@ -1,5 +1,6 @@
 //! What came out of a solve, asked in the words of the model.
 
+use super::families::Family;
 use super::found::{Found, Jump, Phases, Sequence};
 use super::phases::Whole;
 use super::report::Ended;
@@ -52,6 +53,8 @@ pub struct Solution {
     pub step_errors: Option<f64>,
     /// How the solves from several starting points ended.
     pub starts: Vec<Ended>,
+    /// To which optima of the system that was written they lead, if these were looked for.
+    pub families: Vec<Family>,
     /// The jumps of the answer.
     pub jumps: Vec<Jump>,
     /// All sequences of jumps that were tried.
@@ -76,6 +79,7 @@ impl Solution {
             outcome: found.outcome,
             step_errors: found.step_errors,
             starts: found.starts,
+            families: Vec::new(),
             jumps: found.jumps,
             sequences: found.sequences,
             sequences_left_out: found.is_cut,

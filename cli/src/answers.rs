@@ -41,7 +41,8 @@ impl Answer {
             let mut document = document(&self.solution, self.seconds);
             if self.solution.status().is_solved() {
                 document.sensitivities = Named::of(self.solution.sensitivities());
-                document.replay(&self.solution, USUAL_GAP);
+                let accuracy = self.solution.problem.method.accuracy;
+                document.replay(&self.solution, accuracy.unwrap_or(USUAL_GAP));
             }
             document
         })

@@ -137,6 +137,31 @@ fn what_is_certified_is_the_true_optimum() {
     }
 }
 
+/// One number for tolerances, replays and certificates; what is named beside it wins, in any order.
+#[test]
+fn accuracy_is_one_number() {
+    let text = "time t in [0, 2]\nstate x start 0\nstate v start 0\ncontrol u in [-9, 9]\n\
+                surface slip = v\ndynamics { x' = v  v' in u - Sgn(slip) }\n\
+                end x == 1\nend v == 0\nminimize integral(u^2)\n";
+    let method = |keys: &str| {
+        let text = format!("{text}method {{ {keys} }}");
+        Model::from_text("slide", &text).expect("a model")
+    };
+    for (keys, tol, tolerance) in [
+        ("accuracy = 1e-4", 1e-6, 1e-4),
+        ("accuracy = 1e-4 tol = 1e-9", 1e-9, 1e-4),
+        ("tol = 1e-9 tolerance = 1e-2 accuracy = 1e-4", 1e-9, 1e-2),
+    ] {
+        let model = method(keys);
+        let own = &model.meaning().method;
+        assert!((own.tol / tol - 1.0).abs() < 1e-12 && own.tolerance == tolerance, "{keys}");
+    }
+    let solution = method("accuracy = 1e-9").solve(&Options::default()).expect("an answer");
+    let certificate = solution.certificate.as_ref().expect("it was looked for");
+    let replayed = certificate.checks.iter().find(|it| it.name == "replayed");
+    assert!(solution.is_certified() && replayed.expect("a check").limit == 1e-9);
+}
+
 /// Starts that lead to one optimum are told as one, and those that are not certified as such.
 #[test]
 fn several_starts_lead_to_families() {

@@ -10,6 +10,7 @@ use crate::watch::Deadline;
 use clap::Args;
 use fdcc::{Checked, Model};
 use fdcc_grammar::{Diagnostic, Severity, SourceFile};
+use fdcc_runtime::problem::Method;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -62,10 +63,18 @@ pub const USUAL_GAP: f64 = 1e-3;
 #[derive(Args, Clone)]
 pub struct Gap {
     /// The largest difference between solution and true system that is called confirmation: of a
-    /// state for how far it moves, of a condition for the size of its terms
+    /// state for how far it moves, of a condition for the size of its terms; without it the
+    /// `accuracy` of the method, or 0.001
     #[arg(allow_negative_numbers = true)]
-    #[arg(long, value_name = "G", default_value_t = USUAL_GAP, value_parser = difference)]
-    pub gap: f64,
+    #[arg(long, value_name = "G", value_parser = difference)]
+    gap: Option<f64>,
+}
+
+impl Gap {
+    /// What is named, else the `accuracy` of a method, else the usual one.
+    pub fn of(&self, method: &Method) -> f64 {
+        self.gap.or(method.accuracy).unwrap_or(USUAL_GAP)
+    }
 }
 
 fn difference(text: &str) -> Result<f64, String> {

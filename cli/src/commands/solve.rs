@@ -61,7 +61,8 @@ impl Solve {
             solved.document.sensitivities = Named::of(solved.solution.sensitivities());
         }
         if solved.solution.status().is_solved() && !self.no_verify {
-            solved.replay(self.gap.gap);
+            let gap = self.gap.of(&solved.solution.problem.method);
+            solved.replay(gap);
         }
         Ok(solved)
     }

@@ -164,7 +164,7 @@ impl Sweep {
         let tables = meaning.phases.iter().map(|phase| &phase.model.tables);
         let tables: Vec<_> = tables.chain([&meaning.tables]).collect();
         let (version, text) = (format!("{VERSION} {BUILD}"), &model.source().text);
-        let confirmed = self.confirmed.then_some(self.gap.gap);
+        let confirmed = self.confirmed.then(|| self.gap.of(&meaning.method));
         let seed = meaning.method.seed;
         Ok(short(&format!(
             "{version} {text} {tables:?} {changes:?} {warm:?} {time_limit:?} {starts} {seed} \
@@ -286,7 +286,8 @@ impl Sweep {
         let document = document(&solution, Seconds { compile, solve: total - compile, total });
         let mut solved = Solved { solution, document };
         if self.confirmed && solved.is_good() {
-            solved.replay(self.gap.gap);
+            let gap = self.gap.of(&solved.solution.problem.method);
+            solved.replay(gap);
         }
         Ok(Some(solved))
     }

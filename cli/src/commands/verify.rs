@@ -82,8 +82,8 @@ impl Verify {
                 source.name
             ));
         }
-        let document =
-            VerifyDocument::new(&verified, saved.objective(), source, same_source, self.gap.gap);
+        let gap = self.gap.of(&model.meaning().method);
+        let document = VerifyDocument::new(&verified, saved.objective(), source, same_source, gap);
         Ok(document.in_units(model.meaning().into()))
     }
 

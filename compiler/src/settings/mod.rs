@@ -27,6 +27,9 @@ enum Takes {
     Words(fn() -> words::Groups),
 }
 
+/// The objective of a solution can improve by at most a hundred times `tol`.
+const TOL_OF_ACCURACY: f64 = 1e-2;
+
 /// **The table** of the keys.
 pub(crate) const KEYS: &[Key] = &[
     Key {
@@ -67,11 +70,26 @@ pub(crate) const KEYS: &[Key] = &[
         },
     },
     Key {
+        name: "accuracy",
+        takes: Takes::Number("a number above 0"),
+        doc: "How accurate the answer is to be, relative to sizes: sets `tolerance`, a hundredth \
+         of it as `tol`, what a replay may differ by (`--gap`), and the limits of the certificate; \
+         each of these, named, wins.",
+        set: |m, given| {
+            let accuracy = positive(given)?;
+            m.accuracy = Some(accuracy);
+            m.tol = if m.names_tol { m.tol } else { TOL_OF_ACCURACY * accuracy };
+            m.tolerance = if m.names_tolerance { m.tolerance } else { accuracy };
+            Some(())
+        },
+    },
+    Key {
         name: "tolerance",
         takes: Takes::Number("a number above 0"),
         doc: "With `N = auto`: the sum of the errors of all steps that the grid may have.",
         set: |m, given| {
             m.tolerance = positive(given)?;
+            m.names_tolerance = true;
             Some(())
         },
     },
@@ -145,6 +163,7 @@ pub(crate) const KEYS: &[Key] = &[
         doc: "Tolerance on the scaled optimality error. The last digits cost few iterations.",
         set: |m, given| {
             m.tol = positive(given)?;
+            m.names_tol = true;
             Some(())
         },
     },
@@ -294,6 +313,9 @@ pub fn default_method() -> Method {
         controls: ControlShape::Constant,
         path_at_nodes: false,
         grid: Grid::Uniform(200),
+        accuracy: None,
+        names_tol: false,
+        names_tolerance: false,
         names_grid: false,
         order: Order::Fixed,
         tolerance: 1e-3,

@@ -33,15 +33,16 @@ pub(super) fn certificate(
     let ranges = ranges(&between.controls, &located.outcome.phases);
     let beyond = trajectories.map(|it| beyond_bounds(&ranges, it)).fold(0.0, f64::max);
     let is_held = phases.clone().all(|j| is_attracted(model, located, j));
+    let accuracy = between.method.accuracy.unwrap_or(REPLAYED);
     let checks = vec![
         check("stationary", own.kkt_error, STATIONARY),
         check("second order", f64::from(u8::from(own.is_saddle)), 0.0),
-        check("replayed", replay.and_then(Verification::state_gap).unwrap_or(unknown), REPLAYED),
-        check("objective", replay.map_or(unknown, objective), REPLAYED),
-        check("conditions", replay.map_or(unknown, violation), REPLAYED),
+        check("replayed", replay.and_then(Verification::state_gap).unwrap_or(unknown), accuracy),
+        check("objective", replay.map_or(unknown, objective), accuracy),
+        check("conditions", replay.map_or(unknown, violation), accuracy),
         check("modes", replay.map_or(unknown, |it| other_modes(model, solution, it)), MODES),
         check("timing", gap_of_a_moment(solution), TIMING),
-        check("bounds", beyond, REPLAYED),
+        check("bounds", beyond, accuracy),
         check("arcs", wrong_sign(between, located).map_or(0.0, |it| it.2.max(0.0)), WRONG_SIGN),
         check("contacts", wrong_contact(between, model, located), CONTACT),
         check("holds", f64::from(u8::from(!is_held)), 0.0),

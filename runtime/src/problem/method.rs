@@ -52,6 +52,13 @@ pub struct Method {
     pub order: Order,
     /// The sum of the relative errors of all steps that a refined grid may have.
     pub tolerance: f64,
+    /// How accurate the answer is to be in all, if that is named: what is compared in a certificate
+    /// and in a replay, and what `tol` and `tolerance` are where they are not named.
+    pub accuracy: Option<f64>,
+    /// Whether `tol` is named.
+    pub names_tol: bool,
+    /// Whether `tolerance` is named.
+    pub names_tolerance: bool,
     /// Whether the number of intervals is written: then the problem on these is meant, else that in
     /// continuous time.
     pub names_grid: bool,

@@ -12,6 +12,7 @@
 //! no `H'`.
 
 use super::polynomials::polynomials;
+use super::tuning::certificate::WORTH;
 use super::tuning::insertion::{INSIDE, ON_SURFACE, RELEASED, SETTLED};
 use super::{Located, Search};
 use fdcc_compiler::{
@@ -63,6 +64,7 @@ impl Search<'_> {
             candidates.extend(self.releases(located, j));
         }
         candidates.extend(self.releases_at_ends(located));
+        candidates.extend(self.departures_at_the_end(located));
         candidates
     }
 
@@ -87,6 +89,18 @@ impl Search<'_> {
             released.map(move |(at, mode)| off_surface(before, &phases[j], at, mode))
         })
         .collect()
+    }
+
+    /// What is held at the last time may be left by other controls than its own. The derivative does
+    /// not know whether these leave it to that side, so that its worth is tried.
+    fn departures_at_the_end(&self, located: &Located) -> Vec<Candidate> {
+        let phases = &located.structure.phases;
+        let (last, behind) = (&phases[phases.len() - 1], phases.len());
+        let switches = self.model.switches().into_iter().enumerate();
+        let held = switches.filter(|(at, it)| last.modes[*at] == Mode::Held && !it.is_ball);
+        let both = held.flat_map(|(at, _)| [Mode::Above, Mode::Below].map(|mode| (at, mode)));
+        let off = both.map(|(at, mode)| off_surface(behind, last, at, mode));
+        off.filter(|it| self.worth(located, behind, &it.held).0 < -WORTH).collect()
     }
 
     /// The surfaces whose selectors are at a bound where a hold begins (0) or ends (1), and the

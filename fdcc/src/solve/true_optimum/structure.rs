@@ -194,10 +194,11 @@ impl Structure {
         let mut other = self.clone();
         let [first, last] = self.ends();
         let ranges = ranges(&between.controls, located);
+        let beyond = between.method.accuracy.map_or(BEYOND, |it| 0.5 * it);
         for (phase, outcome) in other.phases.iter_mut().zip(located) {
             let is_rough = phase.shape == ControlShape::Polynomial
                 && (variation(outcome) > INACCURATE * (last - first)
-                    || beyond_bounds(&ranges, &outcome.trajectory) > BEYOND);
+                    || beyond_bounds(&ranges, &outcome.trajectory) > beyond);
             phase.halvings += u32::from(is_rough && phase.halvings < MOST_HALVINGS);
         }
         other

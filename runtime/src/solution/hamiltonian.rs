@@ -19,6 +19,8 @@ use crate::transcribe::TranscribedNlp;
 
 /// Over the whole time, terms that are not larger than this times the tolerance are none.
 const NOISE: f64 = 100.0;
+/// Terms that are less than this part of noise are those of an objective that is 0.
+const NOTHING: f64 = 1e-8;
 /// An unknown with a larger multiplier is at its bound.
 const AT_BOUND: f64 = 1e-4;
 
@@ -30,6 +32,9 @@ pub struct Hamiltonian {
     /// The mean size of the terms that it is a sum of, or of noise where that is more: what
     /// deviations are to be compared with.
     pub size: f64,
+    /// The same where its terms are less than noise, but not nothing: what an optimum of small
+    /// numbers is to be judged by.
+    pub scale: f64,
     /// Whether it has to be constant: time itself does not matter.
     pub is_constant: bool,
     /// What it has to be at the last time, where that is unknown: minus what the objective and the
@@ -58,14 +63,23 @@ impl Hamiltonian {
         let ((values, size), expected) = (lagrangian.hamiltonian(duration), lagrangian.expected());
         let noise = noise(problem, duration);
         let is_noise = size <= noise;
+        let scale = if size > NOTHING * noise { size } else { noise };
         let size = size.max(noise);
         let violations = match is_noise {
             true => vec![0.0; problem.layout.u],
             false => minimum::violations(&problem.controls, nlp, solution, (duration, size)),
         };
         let is_constant = problem.is_autonomous;
-        let mut own =
-            Hamiltonian { values, size, is_constant, expected, violations, pause: None, is_noise };
+        let mut own = Hamiltonian {
+            values,
+            size,
+            scale,
+            is_constant,
+            expected,
+            violations,
+            pause: None,
+            is_noise,
+        };
         if own.has_to_be_least(problem, solution) {
             let parts = Elsewhere::new(nlp, solution, (duration, &own)).parts;
             let both = own.violations.iter_mut().zip(parts);

@@ -100,7 +100,7 @@ pub fn solve_chain(
     } else {
         None
     };
-    let is_impossible = proof.is_some_and(|it| it.status == Status::Infeasible);
+    let is_impossible = is_proof(chain) && proof.is_some_and(|it| it.status == Status::Infeasible);
     if is_impossible {
         solution.status = Status::Infeasible;
     }
@@ -136,6 +136,11 @@ fn widths(chain: &Chain) -> Option<Vec<f64>> {
     (!is_ours).then_some(widths)
 }
 
+/// Whether what is proved of the smoothed problem is proved of the one that is meant.
+fn is_proof(chain: &Chain) -> bool {
+    chain.surfaces().next().is_none() || widths(chain).is_some()
+}
+
 fn finish(run: Run, nlp: &mut ChainNlp, solution: Solution, convex: bool) -> ChainOutcome {
     let Run { chain, sigma, attempts, .. } = run;
     let slopes = nlp.slopes_of_links(&solution);
@@ -146,7 +151,7 @@ fn finish(run: Run, nlp: &mut ChainNlp, solution: Solution, convex: bool) -> Cha
     });
     let phases: Vec<Outcome> = phases.collect();
     let limiting = limiting(nlp, &solution, &phases, chain.method().tol);
-    let is_impossible = convex && solution.status == Status::Infeasible;
+    let is_impossible = convex && is_proof(chain) && solution.status == Status::Infeasible;
     ChainOutcome { solution, phases, sigma, convex, limiting, is_impossible, attempts }
 }
 

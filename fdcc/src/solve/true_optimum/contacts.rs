@@ -247,7 +247,7 @@ impl<'l> Contacts<'l> {
     }
 
     pub(super) fn size(&self, j: usize) -> f64 {
-        self.located.outcome.phases[j].trajectory.hamiltonian.size.max(f64::MIN_POSITIVE)
+        self.located.outcome.phases[j].trajectory.hamiltonian.scale.max(f64::MIN_POSITIVE)
     }
 
     /// How far a limit goes up and down; on an arc, its condition is another one.

@@ -34,6 +34,8 @@ pub(super) struct Candidate {
     pub slope: f64,
     /// Whether nothing else is possible there: neither side can be left to.
     pub is_forced: bool,
+    /// Whether it may be impossible: then nothing follows where it cannot be solved.
+    pub is_doubtful: bool,
 }
 
 impl Search<'_> {
@@ -56,7 +58,7 @@ impl Search<'_> {
         all.extend(held.map(|held| (last + 1, held)));
         let candidate = |(before, held)| {
             let (slope, is_forced) = self.worth(located, before, &held);
-            Candidate { before, held, slope, is_forced }
+            Candidate { before, held, slope, is_forced, is_doubtful: false }
         };
         let mut candidates: Vec<Candidate> = all.into_iter().map(candidate).collect();
         for j in (1..phases.len()).filter(|j| phases[*j].jump.is_none()) {
@@ -99,8 +101,12 @@ impl Search<'_> {
         let switches = self.model.switches().into_iter().enumerate();
         let held = switches.filter(|(at, it)| last.modes[*at] == Mode::Held && !it.is_ball);
         let both = held.flat_map(|(at, _)| [Mode::Above, Mode::Below].map(|mode| (at, mode)));
-        let off = both.map(|(at, mode)| off_surface(behind, last, at, mode));
-        off.filter(|it| self.worth(located, behind, &it.held).0 < -WORTH).collect()
+        let off = both.map(|(at, mode)| Candidate {
+            is_doubtful: true,
+            ..off_surface(behind, last, at, mode)
+        });
+        let worth = |it: &Candidate| self.worth(located, behind, &it.held).0;
+        off.filter(|it| (f64::MIN..-WORTH).contains(&worth(it))).collect()
     }
 
     /// The surfaces whose selectors are at a bound where a hold begins (0) or ends (1), and the
@@ -154,7 +160,13 @@ impl Search<'_> {
         let candidate = |modes| {
             let mut held = PhaseOfModes { modes, jump: None, ..after.clone() };
             held.release();
-            Candidate { before: j, held, slope: f64::NEG_INFINITY, is_forced: false }
+            Candidate {
+                before: j,
+                held,
+                slope: f64::NEG_INFINITY,
+                is_forced: false,
+                is_doubtful: false,
+            }
         };
         all.into_iter().map(candidate).collect()
     }
@@ -204,7 +216,7 @@ impl Search<'_> {
             let [end, next] = ends(column);
             end + INSIDE * (next - end)
         });
-        let size = outcome.trajectory.hamiltonian.size.max(f64::MIN_POSITIVE);
+        let size = outcome.trajectory.hamiltonian.scale.max(f64::MIN_POSITIVE);
         let mut own = phases[beside].clone();
         own.arcs.fill(fdcc_compiler::Arc::Free);
         let least = |of: &PhaseOfModes, point: &Point| match at_point(self.model, of, point) {
@@ -262,7 +274,7 @@ fn off_surface(before: usize, beside: &PhaseOfModes, at: usize, mode: Mode) -> C
     let mut off = PhaseOfModes { jump: None, ..beside.clone() };
     off.modes[at] = mode;
     off.release();
-    Candidate { before, held: off, slope: f64::NEG_INFINITY, is_forced: false }
+    Candidate { before, held: off, slope: f64::NEG_INFINITY, is_forced: false, is_doubtful: false }
 }
 
 /// The problem of the least Hamiltonian at a point; nothing where its terms are not known.

@@ -44,8 +44,8 @@ use std::ops::ControlFlow;
 use structure::{NewArcs, Structure};
 use tuning::certificate::{STATIONARY, WORTH};
 use tuning::search::{
-    BUDGET, FEWEST, FEWEST_ITERATIONS, FINER, GAIN, GRADES, INTERVALS, MOST_ITERATIONS,
-    MOST_SOLVES, TOLERANCE, WORSE,
+    BUDGET, FEWEST, FEWEST_ITERATIONS, FINER, GAIN, GAIN_OF_TRIAL, GRADES, INTERVALS,
+    MOST_ITERATIONS, MOST_SOLVES, TOLERANCE, WORSE,
 };
 
 /// A structure with its optimum.
@@ -148,7 +148,7 @@ impl Search<'_> {
     }
 
     /// What a located answer asks for, and was not tried: a repair, then new arcs and touch points,
-    /// then the latter alone.
+    /// then the latter alone, then that a surface is not touched.
     fn other(&self, located: &Located, tried: &[Vec<PhaseOfModes>]) -> Option<Structure> {
         let contacts = Contacts::new(self.model, located);
         let (own, phases) = (&located.structure, &located.outcome.phases);
@@ -156,7 +156,8 @@ impl Search<'_> {
         let arcs = |which| own.with_arcs(Some((self.problem, which)), &contacts, phases);
         let all = repaired
             .chain([arcs(NewArcs::All), arcs(NewArcs::Longest)])
-            .chain([own.with_arcs(None, &contacts, phases)]);
+            .chain([own.with_arcs(None, &contacts, phases)])
+            .chain(repair::without_touches(own));
         all.into_iter().find(|it| !tried.contains(&it.phases))
     }
 
@@ -180,6 +181,7 @@ impl Search<'_> {
         for candidate in candidates.filter(|it| it.slope < -WORTH || it.is_forced) {
             match self.held(&located, &candidate) {
                 Trial::Better(better) => return self.with_holds(*better),
+                Trial::Unsolved if candidate.is_doubtful => {}
                 _ if candidate.is_forced => located.insertion = f64::INFINITY,
                 Trial::NotBetter if candidate.slope == f64::NEG_INFINITY => {}
                 _ => located.insertion = located.insertion.max(-candidate.slope),
@@ -214,7 +216,9 @@ impl Search<'_> {
                 return true;
             }
             let [own, its] = [held, located].map(|it| it.outcome.solution.objective);
-            own < its - GAIN * its.abs().max(located.objective_size())
+            let is_known = candidate.slope > f64::NEG_INFINITY;
+            let least = if is_known { GAIN } else { GAIN_OF_TRIAL };
+            own < its - least * its.abs().max(located.objective_size())
         };
         let whole = located.whole(self.problem);
         let Some(first) = self.solve(structure, &whole) else { return Trial::Unsolved };
@@ -260,7 +264,7 @@ impl Located {
 
     /// What the terms of the Hamiltonian add up to over time.
     pub fn objective_size(&self) -> f64 {
-        let sizes = self.outcome.phases.iter().map(|it| it.trajectory.hamiltonian.size);
+        let sizes = self.outcome.phases.iter().map(|it| it.trajectory.hamiltonian.scale);
         let [first, last] = self.structure.ends();
         sizes.fold(0.0, f64::max) * (last - first)
     }

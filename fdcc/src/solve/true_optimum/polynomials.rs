@@ -42,7 +42,7 @@ impl Polynomial<'_> {
     }
 
     /// The bound at or beyond which it is where it begins or ends, or at the node next to that.
-    pub fn bound_at(&self, end: usize, Range { bounds, width }: &Range) -> Arc {
+    pub fn bound_at(&self, end: usize, Range { bounds, width, .. }: &Range) -> Arc {
         let slack = AT_BOUND * width;
         let node = self.values[end * (self.values.len() - 1)];
         let ends = [self.at(self.ends[end]), node];

@@ -10,6 +10,9 @@ pub(crate) struct Range {
     /// The distance of its bounds, or twice its largest value where they are farther away: a bound
     /// is no statement about a size (decision 30).
     pub width: f64,
+    /// How large other values may be: its width, or its unit where that is more, as what is 0
+    /// throughout need not be small elsewhere.
+    near: f64,
 }
 
 /// Those of all controls, by what they do in all of these phases.
@@ -18,18 +21,27 @@ pub(crate) fn ranges(controls: &[Variable], phases: &[Outcome]) -> Vec<Range> {
         let values = phases.iter().flat_map(|it| &it.trajectory.controls[at]);
         let largest = values.fold(LEAST_OF_UNIT * control.unit, |most, it| most.max(it.abs()));
         let bounds = control.bounds;
-        Range { bounds, width: (bounds.upper - bounds.lower).min(2.0 * largest) }
+        let width = (bounds.upper - bounds.lower).min(2.0 * largest);
+        Range { bounds, width, near: width.max(control.unit) }
     };
     controls.iter().enumerate().map(of).collect()
 }
 
 impl Range {
-    /// Other values that are worth a try: up to its width from 0, and up to many times that where
+    /// The ends of what is nearer to 0 than this, or near to it.
+    fn within(&self, far: f64) -> [f64; 2] {
+        [self.bounds.lower.max(-far), self.bounds.upper.min(far)]
+    }
+
+    /// The ends of the range in which other values are looked for first.
+    pub fn ends(&self) -> [f64; 2] {
+        self.within(self.near)
+    }
+
+    /// Other values that are worth a try: up to its size from 0, and up to many times that where
     /// its bounds are so far away.
     pub fn tried(&self) -> Vec<f64> {
-        let Bounds { lower, upper } = self.bounds;
-        let within = |far: f64| [lower.max(-far), upper.min(far)];
-        let (near, far) = (within(self.width), within(FAR * self.width));
+        let (near, far) = (self.within(self.near), self.within(FAR * self.near));
         let between = |[lower, upper]: [f64; 2]| {
             let step = (upper - lower) / SAMPLES as f64;
             (0..=SAMPLES).map(move |sample| lower + step * sample as f64)

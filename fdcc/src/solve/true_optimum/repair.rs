@@ -13,12 +13,10 @@ use fdcc_runtime::solution::{Trajectory, control_slopes};
 /// The structure without the phase that is least there; with a control released; else nothing.
 pub(super) fn better(model: &Model, between: &Problem, located: &Located) -> Option<Structure> {
     let structure = &located.structure;
-    let [first, last] = structure.ends();
-    let is_nothing =
-        |j: &usize| structure.times[j + 1] - structure.times[*j] < NOTHING * (last - first);
     let count = structure.phases.len();
-    let is_gone =
-        |j: &usize| is_nothing(j) && !structure.is_touch(*j) && structure.may_leave_out(*j);
+    let is_gone = |j: &usize| {
+        is_nothing(structure, *j) && !structure.is_touch(*j) && structure.may_leave_out(*j)
+    };
     let gone: Vec<usize> = (0..count).filter(is_gone).collect();
     if !gone.is_empty() && gone.len() < count {
         let rest = gone.iter().rev().fold(structure.clone(), |rest, j| rest.without_phase(*j));
@@ -37,6 +35,20 @@ pub(super) fn better(model: &Model, between: &Problem, located: &Located) -> Opt
     Some(other.merged())
 }
 
+/// The structures without one of the holds that have shrunk to a touch: a touch that is not worth
+/// it is stationary, too.
+pub(super) fn without_touches(structure: &Structure) -> Vec<Structure> {
+    let phases = 0..structure.phases.len();
+    let touches = phases.filter(|j| is_nothing(structure, *j) && structure.is_touch(*j));
+    touches.filter(|j| structure.may_leave_out(*j)).map(|j| structure.without(j)).collect()
+}
+
+/// Whether a phase has no length.
+fn is_nothing(structure: &Structure, j: usize) -> bool {
+    let [first, last] = structure.ends();
+    structure.times[j + 1] - structure.times[j] < NOTHING * (last - first)
+}
+
 /// The phase and the control at a bound whose slope has the wrong sign most, and by how much.
 pub(crate) fn wrong_sign(between: &Problem, located: &Located) -> Option<(usize, usize, f64)> {
     let mut all = Vec::new();
@@ -44,7 +56,7 @@ pub(crate) fn wrong_sign(between: &Problem, located: &Located) -> Option<(usize,
     for (j, phase) in located.structure.phases.iter().enumerate() {
         let (problem, outcome) = (&located.chain.phases[j], &located.outcome.phases[j]);
         let slopes = control_slopes(problem, outcome);
-        let size = outcome.trajectory.hamiltonian.size.max(f64::MIN_POSITIVE);
+        let size = outcome.trajectory.hamiltonian.scale.max(f64::MIN_POSITIVE);
         for (control, arc) in phase.arcs.iter().enumerate() {
             let [least, largest] = slopes[control];
             let wrong = match arc {

@@ -319,7 +319,7 @@ pub(crate) fn variation(phase: &Outcome) -> f64 {
     let largest = own.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let is_meant = own.is_constant && !own.is_noise;
     let duration = time[time.len() - 1] - time[0];
-    if is_meant { (largest - least) / own.size * duration } else { 0.0 }
+    if is_meant { (largest - least) / own.scale * duration } else { 0.0 }
 }
 
 /// What is steep at an end is smooth on graded grids, and on shorter intervals; a singular arc is

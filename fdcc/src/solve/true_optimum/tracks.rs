@@ -28,7 +28,7 @@ impl Track<Mode> {
 impl Track<Arc> {
     /// Of a control by its values on the intervals.
     pub fn of_arcs(time: &[f64], values: &[f64], range: &Range, shortest: f64) -> Self {
-        let Range { bounds, width } = range;
+        let Range { bounds, width, .. } = range;
         let arc = |value: &f64| match () {
             () if value - bounds.lower < AT_BOUND * width => Arc::Lower,
             () if bounds.upper - value < AT_BOUND * width => Arc::Upper,

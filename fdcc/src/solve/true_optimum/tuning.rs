@@ -24,6 +24,8 @@ pub(super) mod search {
     pub(crate) const WORSE: f64 = 1e-5;
     /// An objective has to fall by so much of its size, or a phase is not worth having.
     pub(crate) const GAIN: f64 = 1e-9;
+    /// The same where nothing but a trial says that it is: other intervals gain a little, too.
+    pub(crate) const GAIN_OF_TRIAL: f64 = 1e-7;
 }
 
 pub(super) mod structure {
@@ -104,7 +106,9 @@ pub(super) mod range {
 
 pub(super) mod minimum {
     /// Where the Hamiltonian of a phase is looked at, as parts of its intervals.
-    pub(crate) const PARTS: [f64; 3] = [0.15, 0.5, 0.85];
+    pub(crate) const PARTS: [f64; 5] = [0.0, 0.15, 0.5, 0.85, 1.0];
+    /// Of more controls not all combinations of their ends are tried.
+    pub(crate) const MOST_TOGETHER: usize = 4;
 }
 
 /// The largest figures of a certificate.

@@ -206,7 +206,8 @@ fn refine(field: &mut Field, step: &Step, condition: Condition, theta: f64) -> F
 }
 
 /// Newton's steps onto a surface that is reached but for rounding and tolerances: the least change
-/// of the states, each in units of how exact it is.
+/// of the states, each in units of how exact it is. What more than that would be needed for, such
+/// as rounding of the time where states hardly move the surface, is left as it is.
 fn bring_to(field: &mut Field, surface: usize, t: f64, state: &mut [f64]) {
     let exact: Vec<f64> =
         state.iter().enumerate().map(|(i, x)| field.tolerance.of(i, [*x; 2], 0.0)).collect();
@@ -216,10 +217,12 @@ fn bring_to(field: &mut Field, surface: usize, t: f64, state: &mut [f64]) {
         let largest = slope.iter().zip(&exact).map(|(d, e)| (d * e).abs()).fold(0.0, f64::max);
         let shares: Vec<f64> = slope.iter().zip(&exact).map(|(d, e)| d * e / largest).collect();
         let square: f64 = shares.iter().map(|share| share * share).sum();
-        if square.is_nan() || square == 0.0 {
+        let factor = normals.psi[surface] / largest / square;
+        // In units of how exact the states are.
+        let way = factor.abs() * square.sqrt();
+        if way.is_nan() || way > 1.0 {
             return;
         }
-        let factor = normals.psi[surface] / largest / square;
         let changes = shares.iter().zip(&exact).map(|(share, e)| factor * share * e);
         state.iter_mut().zip(changes).for_each(|(x, change)| *x -= change);
     }

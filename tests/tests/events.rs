@@ -1,0 +1,66 @@
+//! What an event does to a state, and what a simulation says where events cannot be told apart.
+
+use fdcc_compiler::compile_simulation;
+use fdcc_runtime::simulate::{Controls, Options, Simulation, Status, simulate};
+use fdcc_tests::models::meaning;
+use fdcc_tests::random::Random;
+
+fn run_with(text: &str, options: &Options) -> Simulation {
+    let system = compile_simulation(&meaning(text)).expect("the model can be simulated");
+    simulate(&system, &Controls::Guess, options)
+}
+
+fn run(text: &str) -> Simulation {
+    run_with(text, &Options::default())
+}
+
+/// A clock, `q = cos(3t)`, and a surface that time moves more than the states do.
+fn clocked(psi: &str) -> String {
+    format!(
+        "time t in [0, 10]
+state q start 1
+state w start 0
+state y start 0
+surface s = {psi}
+dynamics {{
+  q' = -3*w
+  w' = 3*q
+  y' in Sgn(s)
+}}
+"
+    )
+}
+
+fn check_clock(psi: &str) {
+    let simulation = run(&clocked(psi));
+    assert!(matches!(simulation.status, Status::Completed), "{:?}\n{psi}", simulation.status);
+    assert!(!simulation.events.is_empty(), "{psi}");
+    let ends = simulation.events.iter().map(|it| (it.time, &it.after));
+    for (time, state) in ends.chain([(simulation.end_time, &simulation.end)]) {
+        let gap = (state[0] - (3.0 * time).cos()).abs();
+        assert!(gap < 1e-6, "{gap:e} at {time}\n{psi}");
+    }
+}
+
+#[test]
+fn an_event_leaves_a_state_where_it_is_if_time_moves_the_surface() {
+    for psi in
+        ["sin(3.7*t) + 0.3*tanh(20*q)", "sin(t) + 1e-20*q", "cos(3.7*t) + 0.5/(1 + exp(-40*q))"]
+    {
+        check_clock(psi);
+    }
+}
+
+#[test]
+fn events_of_random_surfaces_over_time_leave_the_clock_alone() {
+    let mut random = Random::new(17);
+    for _ in 0..20 {
+        let time = random.of(&["sin(A*t + B)", "cos(A*t) + 0.2*sin(B*t)", "sin(A*t)*cos(B*t)"]);
+        let state = random.of(&["0.3*tanh(C*q)", "0.4/(1 + exp(-C*w))", "1e-15*C*q", "0.1*q*w"]);
+        let psi = format!("{time} + {state}")
+            .replace('A', &format!("{:.3}", random.between(1.0, 5.0)))
+            .replace('B', &format!("{:.3}", random.between(0.5, 3.0)))
+            .replace('C', &format!("{:.3}", random.between(5.0, 60.0)));
+        check_clock(&psi);
+    }
+}

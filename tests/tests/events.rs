@@ -64,3 +64,28 @@ fn events_of_random_surfaces_over_time_leave_the_clock_alone() {
         check_clock(&psi);
     }
 }
+
+/// What was large before a jump says nothing of how exact the motion behind it has to be.
+#[test]
+fn a_jump_to_a_small_scale_begins_anew() {
+    let text = "time t in [0, 40]
+state x start 1
+state v start 0
+surface k = t - 10
+dynamics {
+  x' = v
+  v' = -x
+}
+jump kick on k rising {
+  v := 1e-12
+  x := 0.0 - 1e-13
+}
+";
+    let simulation = run(text);
+    assert!(matches!(simulation.status, Status::Completed));
+    let (sin, cos) = 30.0_f64.sin_cos();
+    let expected = [-1e-13 * cos + 1e-12 * sin, 1e-13 * sin + 1e-12 * cos];
+    for (found, expected) in simulation.end.iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-19, "{found:e} {expected:e}");
+    }
+}

@@ -139,6 +139,7 @@ impl Run<'_> {
         let [back, onward] = if of.is_falling { sides } else { [sides[1], sides[0]] };
         self.field.set_mode(surface, back);
         self.find_sides();
+        self.field.tolerance.jump(&before, &self.x);
         self.field.find_sides_of_kinks(self.t, &self.x);
         if self.goes_through(surface, onward) {
             self.field.set_mode(surface, onward);

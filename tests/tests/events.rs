@@ -1,7 +1,7 @@
 //! What an event does to a state, and what a simulation says where events cannot be told apart.
 
 use fdcc_compiler::compile_simulation;
-use fdcc_runtime::simulate::{Controls, Options, Simulation, Status, simulate};
+use fdcc_runtime::simulate::{Controls, EventKind, Options, Simulation, Status, simulate};
 use fdcc_tests::models::meaning;
 use fdcc_tests::random::Random;
 
@@ -63,6 +63,62 @@ fn events_of_random_surfaces_over_time_leave_the_clock_alone() {
             .replace('C', &format!("{:.3}", random.between(5.0, 60.0)));
         check_clock(&psi);
     }
+}
+
+fn stone(right: &str, jump: &str) -> String {
+    format!(
+        "time t in [0, 2]
+state h start 1
+state v start 0
+state on start 1
+state z start 0
+surface ground = h
+dynamics {{
+  h' = v
+  v' {right}
+  on' = 0
+  z' in Sgn(ground)
+}}
+jump hit on ground falling {{ {jump} }}
+"
+    )
+}
+
+/// `z` may go any way while the stone lies, on whichever side rounding sees it.
+#[test]
+fn a_stone_that_lies_is_on_the_ground_but_for_rounding() {
+    for height in ["", "h := 0", "h := 1e-49", "h := 0 - 1e-49"] {
+        let text = stone("= -9.81*on", &format!("v := 0  on := 0  {height}"));
+        let simulation = run(&text);
+        let Status::NotUnique { candidates, .. } = simulation.status else {
+            panic!("{height}: {:?}", simulation.status)
+        };
+        let mut sides: Vec<i8> = candidates.iter().map(|it| it.sides[0].1).collect();
+        sides.sort_unstable();
+        assert_eq!(sides, [-1, 0, 1], "{height}");
+    }
+}
+
+/// Without `z` it has one future: it lies.
+#[test]
+fn a_stone_that_weighs_nothing_on_the_ground_stays_there() {
+    let text = "time t in [0, 2]
+state h start 1
+state v start 0
+surface ground = h
+dynamics {
+  h' = v
+  v' in match ground { below => 0, above => -9.81 }
+}
+jump hit on ground falling { v := 0 }
+";
+    let simulation = run(text);
+    assert!(matches!(simulation.status, Status::Completed), "{:?}", simulation.status);
+    let jumps = simulation.events.iter().filter(|it| matches!(it.kind, EventKind::Jump(_)));
+    assert_eq!((jumps.count(), simulation.events.len()), (1, 1));
+    let fallen = (2.0_f64 / 9.81).sqrt();
+    assert!((simulation.events[0].time - fallen).abs() < 1e-9);
+    assert!(simulation.end.iter().all(|it| it.abs() < 1e-9), "{:?}", simulation.end);
 }
 
 /// What was large before a jump says nothing of how exact the motion behind it has to be.

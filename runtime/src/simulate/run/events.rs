@@ -72,10 +72,13 @@ impl Run<'_> {
     pub fn settle(&mut self, mut surfaces: Vec<usize>) -> Result<(), Status> {
         for _ in 0..MOST_AT_ONCE {
             surfaces.retain(|&surface| !self.stays_beside(surface));
-            let modes = decide(&mut self.field, self.t, &self.x, &surfaces)?;
-            let jump = surfaces.iter().zip(&modes).find_map(|(&i, &mode)| self.jump_at(i, mode));
+            let next = decide(&mut self.field, self.t, &self.x, &surfaces)?;
+            let crossed = next.iter().filter(|it| !it.rests);
+            let jump = crossed.clone().find_map(|it| self.jump_at(it.surface, it.mode));
             let Some(jump) = jump else {
-                surfaces.iter().zip(modes).for_each(|(&i, mode)| self.change(i, mode));
+                crossed.for_each(|it| self.change(it.surface, it.mode));
+                let at_rest = next.iter().filter(|it| it.rests);
+                at_rest.for_each(|it| self.field.set_mode(it.surface, it.mode));
                 let mut x = std::mem::take(&mut self.x);
                 self.field.project(self.t, &mut x);
                 self.x = x;

@@ -121,6 +121,41 @@ jump hit on ground falling { v := 0 }
     assert!(simulation.end.iter().all(|it| it.abs() < 1e-9), "{:?}", simulation.end);
 }
 
+fn waves(argument: &str, last: &str) -> String {
+    format!(
+        "time t in [0, {last}]
+state x start 0
+state y start 0
+surface s = sin({argument})
+dynamics {{
+  x' = 1
+  y' in Sgn(s)
+}}
+"
+    )
+}
+
+/// Crossings that no times tell apart are not passed over in silence, nor do they pile up.
+#[test]
+fn what_cannot_be_resolved_is_not_completed() {
+    let options = Options { max_steps: 2000, ..Options::default() };
+    let fast =
+        [14, 15, 16, 17, 18, 19, 20, 22, 30].map(|power| waves(&format!("1e{power}*x"), "10"));
+    let long = [30, 60, 100].map(|power| waves("x", &format!("1e{power}")));
+    let late = [waves("1e14*x", "20").replace("[0,", "[10,").replace("x start 0", "x start 10")];
+    for text in fast.iter().chain(&long).chain(&late) {
+        let status = run_with(text, &options).status;
+        assert!(matches!(status, Status::StepLimit), "{status:?}\n{text}");
+    }
+}
+
+#[test]
+fn many_crossings_that_times_tell_apart_are_found() {
+    let simulation = run(&waves("1e3*x", "1"));
+    assert!(matches!(simulation.status, Status::Completed));
+    assert_eq!(simulation.events.len(), 318);
+}
+
 /// What was large before a jump says nothing of how exact the motion behind it has to be.
 #[test]
 fn a_jump_to_a_small_scale_begins_anew() {

@@ -287,3 +287,14 @@ fn a_start_without_a_value_is_refused() {
     expect_exit(&refused, 1, "a start without a value");
     assert!(stderr(&refused).contains("FDC0401"), "{}", stderr(&refused));
 }
+
+/// Parameters that nothing reads cost what it takes to read them.
+#[test]
+fn unused_parameters_take_time_in_proportion_to_their_number() {
+    let many: String = (0..40_000).map(|i| format!("param p{i} = {i}\n")).collect();
+    let place = folder("limits_parameters", &[("many.fdc", (RAMP.to_owned() + &many).as_bytes())]);
+    let begin = Instant::now();
+    let output = fdcc(&place, &["solve", "many.fdc"], "");
+    assert!(begin.elapsed() < 2 * AT_ONCE, "{:?}", begin.elapsed());
+    expect_exit(&output, 0, "40000 parameters");
+}

@@ -298,3 +298,14 @@ fn unused_parameters_take_time_in_proportion_to_their_number() {
     assert!(begin.elapsed() < 2 * AT_ONCE, "{:?}", begin.elapsed());
     expect_exit(&output, 0, "40000 parameters");
 }
+
+/// They divide the time once, and are not carried through every interval of both parts.
+#[test]
+fn many_conditions_at_one_time_are_solved_at_once() {
+    let many: String = (1..=1000).map(|i| format!("at 0.5: x <= {i}\n")).collect();
+    let place = folder("limits_at_one_time", &[("many.fdc", (RAMP.to_owned() + &many).as_bytes())]);
+    let begin = Instant::now();
+    let output = fdcc(&place, &["solve", "many.fdc", "--log", "none"], "");
+    assert!(begin.elapsed() < AT_ONCE, "{:?}", begin.elapsed());
+    expect_exit(&output, 0, "1000 conditions");
+}

@@ -309,3 +309,45 @@ fn many_conditions_at_one_time_are_solved_at_once() {
     assert!(begin.elapsed() < AT_ONCE, "{:?}", begin.elapsed());
     expect_exit(&output, 0, "1000 conditions");
 }
+
+fn expect_too_many(name: &str, text: &str, number: &str) {
+    let place = folder(&format!("limits_{name}"), &[("large.fdc", text.as_bytes())]);
+    let begin = Instant::now();
+    let output = fdcc(&place, &["solve", "large.fdc"], "");
+    assert!(begin.elapsed() < 2 * AT_ONCE, "{name}: {:?}", begin.elapsed());
+    expect_exit(&output, 3, name);
+    let said = stderr(&output);
+    assert!(said.contains(number) && said.contains("too many"), "{name}: {said}");
+}
+
+/// Phases are solved at once: what each may have alone is too much for all together.
+#[test]
+fn sizes_are_counted_over_all_phases() {
+    let phase = |i: usize| {
+        format!(
+            "phase a{i} {{\ntime t in [{i}, {}]\nstate v{}\ncontrol u in [-1, 1]\n\
+             dynamics {{ v' = u }}\n}}\n",
+            i + 1,
+            if i == 0 { " start 1" } else { "" }
+        )
+    };
+    let phases: String = (0..10).map(phase).collect();
+    let links: String = (1..10).map(|i| format!("link a{} -> a{i} {{ same }}\n", i - 1)).collect();
+    let whole = |method: &str| {
+        format!("{phases}{links}minimize a9.v(end)^2\nmethod {{ {method} scheme = euler }}\n")
+    };
+    expect_too_many("phase_steps", &whole("N = 100 steps = 2000"), "2000000 steps");
+    expect_too_many("phase_intervals", &whole("N = 500000"), "5000000 steps");
+}
+
+#[test]
+fn conditions_and_surfaces_count() {
+    let many = |line: &dyn Fn(usize) -> String| -> String { (1..=20_000).map(line).collect() };
+    let ramp = RAMP.replace("N = 4", "N = 200");
+    let paths = ramp.clone() + &many(&|i| format!("path x <= {i}\n"));
+    expect_too_many("paths", &paths, "4000000 conditions");
+    let surfaces = many(&|i| format!("surface s{i} = x - {i}\n"));
+    expect_too_many("surfaces", &(ramp.clone() + &surfaces), "4000000 conditions");
+    let jumps = many(&|i| format!("jump j{i} on s{i} rising {{ x := 0 }}\n"));
+    expect_too_many("jumps", &(ramp + &surfaces + &jumps), "4000000 conditions");
+}

@@ -351,3 +351,21 @@ fn conditions_and_surfaces_count() {
     let jumps = many(&|i| format!("jump j{i} on s{i} rising {{ x := 0 }}\n"));
     expect_too_many("jumps", &(ramp + &surfaces + &jumps), "4000000 conditions");
 }
+
+/// What simplifies to a number is none where one of its parts is infinite, or 0/0.
+#[test]
+fn what_is_no_number_before_it_is_simplified_is_refused() {
+    let bounds = ["0*inf", "inf/inf", "inf^0", "1/inf", "(1 - 1)*inf"];
+    let bounds = bounds.map(|it| RAMP.replace("[-4, 4]", &format!("[0, {it}]")));
+    let ratios = ["p/p", "3 + 2*(p/p)", "(p/p)^2"];
+    let ratios = ratios.map(|it| format!("{RAMP}param p = 0\nparam z = {it}\n"));
+    for text in bounds.iter().chain(&ratios) {
+        let place = folder("limits_no_number", &[("m.fdc", text.as_bytes())]);
+        let output = fdcc(&place, &["check", "m.fdc"], "");
+        expect_exit(&output, 1, text);
+        assert!((stdout(&output) + &stderr(&output)).contains("FDC0411"), "{text}");
+    }
+    let right = RAMP.replace("[-4, 4]", "[-4, inf]") + "param p = 2\nparam z = p/p\n";
+    let place = folder("limits_number", &[("m.fdc", right.as_bytes())]);
+    expect_exit(&fdcc(&place, &["check", "m.fdc"], ""), 0, &right);
+}

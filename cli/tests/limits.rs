@@ -336,7 +336,11 @@ fn sizes_are_counted_over_all_phases() {
     let whole = |method: &str| {
         format!("{phases}{links}minimize a9.v(end)^2\nmethod {{ {method} scheme = euler }}\n")
     };
-    expect_too_many("phase_steps", &whole("N = 100 steps = 2000"), "2000000 steps");
+    expect_too_many(
+        "phase_steps",
+        &whole("N = 100 steps = 2000"),
+        "2000000 steps in all phases together are too many; at most 200000",
+    );
     expect_too_many("phase_intervals", &whole("N = 500000"), "5000000 steps");
 }
 

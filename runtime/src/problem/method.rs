@@ -116,7 +116,7 @@ impl Method {
 
     /// The same of several phases together.
     pub fn excess_of<'m>(phases: impl Iterator<Item = &'m Method> + Clone) -> Option<[usize; 2]> {
-        let kinds = [(false, MOST_INTERVALS), (true, MOST_STEPS)];
+        let kinds = [(true, MOST_STEPS), (false, MOST_INTERVALS)];
         kinds.into_iter().find_map(|(has_many, most)| {
             let own = phases.clone().filter(|method| !has_many || method.steps > 1);
             let steps = own.map(|it| it.intervals().saturating_mul(it.steps));

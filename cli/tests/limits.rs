@@ -287,3 +287,89 @@ fn a_start_without_a_value_is_refused() {
     expect_exit(&refused, 1, "a start without a value");
     assert!(stderr(&refused).contains("FDC0401"), "{}", stderr(&refused));
 }
+
+/// Parameters that nothing reads cost what it takes to read them.
+#[test]
+fn unused_parameters_take_time_in_proportion_to_their_number() {
+    let many: String = (0..40_000).map(|i| format!("param p{i} = {i}\n")).collect();
+    let place = folder("limits_parameters", &[("many.fdc", (RAMP.to_owned() + &many).as_bytes())]);
+    let begin = Instant::now();
+    let output = fdcc(&place, &["solve", "many.fdc"], "");
+    assert!(begin.elapsed() < 2 * AT_ONCE, "{:?}", begin.elapsed());
+    expect_exit(&output, 0, "40000 parameters");
+}
+
+/// They divide the time once, and are not carried through every interval of both parts.
+#[test]
+fn many_conditions_at_one_time_are_solved_at_once() {
+    let many: String = (1..=1000).map(|i| format!("at 0.5: x <= {i}\n")).collect();
+    let place = folder("limits_at_one_time", &[("many.fdc", (RAMP.to_owned() + &many).as_bytes())]);
+    let begin = Instant::now();
+    let output = fdcc(&place, &["solve", "many.fdc", "--log", "none"], "");
+    assert!(begin.elapsed() < AT_ONCE, "{:?}", begin.elapsed());
+    expect_exit(&output, 0, "1000 conditions");
+}
+
+fn expect_too_many(name: &str, text: &str, number: &str) {
+    let place = folder(&format!("limits_{name}"), &[("large.fdc", text.as_bytes())]);
+    let begin = Instant::now();
+    let output = fdcc(&place, &["solve", "large.fdc"], "");
+    assert!(begin.elapsed() < 2 * AT_ONCE, "{name}: {:?}", begin.elapsed());
+    expect_exit(&output, 3, name);
+    let said = stderr(&output);
+    assert!(said.contains(number) && said.contains("too many"), "{name}: {said}");
+}
+
+/// Phases are solved at once: what each may have alone is too much for all together.
+#[test]
+fn sizes_are_counted_over_all_phases() {
+    let phase = |i: usize| {
+        format!(
+            "phase a{i} {{\ntime t in [{i}, {}]\nstate v{}\ncontrol u in [-1, 1]\n\
+             dynamics {{ v' = u }}\n}}\n",
+            i + 1,
+            if i == 0 { " start 1" } else { "" }
+        )
+    };
+    let phases: String = (0..10).map(phase).collect();
+    let links: String = (1..10).map(|i| format!("link a{} -> a{i} {{ same }}\n", i - 1)).collect();
+    let whole = |method: &str| {
+        format!("{phases}{links}minimize a9.v(end)^2\nmethod {{ {method} scheme = euler }}\n")
+    };
+    expect_too_many(
+        "phase_steps",
+        &whole("N = 100 steps = 2000"),
+        "2000000 steps in all phases together are too many; at most 200000",
+    );
+    expect_too_many("phase_intervals", &whole("N = 500000"), "5000000 steps");
+}
+
+#[test]
+fn conditions_and_surfaces_count() {
+    let many = |line: &dyn Fn(usize) -> String| -> String { (1..=20_000).map(line).collect() };
+    let ramp = RAMP.replace("N = 4", "N = 200");
+    let paths = ramp.clone() + &many(&|i| format!("path x <= {i}\n"));
+    expect_too_many("paths", &paths, "4000000 conditions");
+    let surfaces = many(&|i| format!("surface s{i} = x - {i}\n"));
+    expect_too_many("surfaces", &(ramp.clone() + &surfaces), "4000000 conditions");
+    let jumps = many(&|i| format!("jump j{i} on s{i} rising {{ x := 0 }}\n"));
+    expect_too_many("jumps", &(ramp + &surfaces + &jumps), "4000000 conditions");
+}
+
+/// What simplifies to a number is none where one of its parts is infinite, or 0/0.
+#[test]
+fn what_is_no_number_before_it_is_simplified_is_refused() {
+    let bounds = ["0*inf", "inf/inf", "inf^0", "1/inf", "(1 - 1)*inf"];
+    let bounds = bounds.map(|it| RAMP.replace("[-4, 4]", &format!("[0, {it}]")));
+    let ratios = ["p/p", "3 + 2*(p/p)", "(p/p)^2"];
+    let ratios = ratios.map(|it| format!("{RAMP}param p = 0\nparam z = {it}\n"));
+    for text in bounds.iter().chain(&ratios) {
+        let place = folder("limits_no_number", &[("m.fdc", text.as_bytes())]);
+        let output = fdcc(&place, &["check", "m.fdc"], "");
+        expect_exit(&output, 1, text);
+        assert!((stdout(&output) + &stderr(&output)).contains("FDC0411"), "{text}");
+    }
+    let right = RAMP.replace("[-4, 4]", "[-4, inf]") + "param p = 2\nparam z = p/p\n";
+    let place = folder("limits_number", &[("m.fdc", right.as_bytes())]);
+    expect_exit(&fdcc(&place, &["check", "m.fdc"], ""), 0, &right);
+}

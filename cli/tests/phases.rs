@@ -104,3 +104,33 @@ fn a_solution_with_phases_is_a_start() {
     let difference = number(&several["objective"]) - number(&cold["objective"]);
     assert!(difference.abs() < 1e-8 * number(&cold["objective"]), "{difference}");
 }
+
+/// A width belongs to the phase that has the surface, not to what the phases share.
+#[test]
+fn one_phase_with_friction_beside_one_without_is_solved_with_a_width() {
+    let text = b"model c
+phase a {
+  time t in [0, 1]
+  state v start 1
+  surface s = v
+  control u in [-1, 1]
+  dynamics { v' in u - 0.5*Sgn(s) }
+  path v <= 2
+}
+phase b {
+  time t in [1, 2]
+  state v
+  control u in [-1, 1]
+  dynamics { v' = u }
+}
+link a -> b { same }
+minimize b.v(end)^2
+method { N = 20 sigma = 0.1 }
+";
+    let folder = folder("phases_one_with_friction", &[("c.fdc", text)]);
+    let output = fdcc(&folder, &["solve", "c.fdc", "--json"], "");
+    let document = json(&output);
+    assert_eq!(document["status"], "solved", "{}", stderr(&output));
+    let limits = |phase: &str| document["phases"][phase]["path"].as_object().map(|it| it.len());
+    assert_eq!((limits("a"), limits("b")), (Some(1), None));
+}

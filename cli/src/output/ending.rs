@@ -110,8 +110,9 @@ impl Ending {
                 )
             }
             Why::StepLimit { .. } => {
-                "step limit: its events may pile up, its tolerances may be too small, or it is \
-                 stiff and the method is explicit"
+                "step limit: its events may pile up or follow each other faster than times can be \
+                 told apart, its tolerances may be too small, or it is stiff and the method is \
+                 explicit"
                     .into()
             }
             Why::TimeLimit { time, .. } => format!("time limit: it came to t = {}", short(*time)),

@@ -71,6 +71,10 @@ fn pair(bounds: &Bounds) -> [f64; 2] {
 fn path(found: &Solution) -> Named<PathCondition> {
     let (problem, trajectory) = (&found.problem, &found.outcome.trajectory);
     let (path, time) = (&*problem.path, &trajectory.time);
+    // What phases share has none, and the functions of one of them.
+    if problem.path_bounds.is_empty() {
+        return Named::default();
+    }
     let [Some(first), Some(last)] = [time.first(), time.last()] else { return Named::default() };
     let mut inputs = Columns::new(path.layout().point_inputs(), time.len() - 1);
     for (tau, time) in inputs.column_mut(0).iter_mut().zip(&time[1..]) {

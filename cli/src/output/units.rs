@@ -5,15 +5,17 @@ use super::named::Named;
 use super::number::{short, significant};
 use fdcc_compiler::{Model, NamedUnit};
 use serde::{Serialize, Serializer};
+use std::collections::HashMap;
 
-/// The units of the names of a model, of its conditions, and of a width of smoothing.
+/// The units of the names of a model, of its conditions, and of a width of smoothing; where each
+/// name stands.
 #[derive(Clone, Debug, Default)]
-pub struct Units(Vec<NamedUnit>, Vec<NamedUnit>, Option<NamedUnit>);
+pub struct Units(Vec<NamedUnit>, Vec<NamedUnit>, Option<NamedUnit>, HashMap<String, usize>);
 
 impl From<&Model> for Units {
     fn from(model: &Model) -> Self {
         let width = model.width_unit.as_ref().map(|it| it.unit.clone());
-        Units(model.units.clone(), model.condition_units.clone(), width)
+        Units::new(model.units.clone(), model.condition_units.clone(), width)
     }
 }
 
@@ -27,6 +29,15 @@ pub struct Shown {
 }
 
 impl Units {
+    fn new(names: Vec<NamedUnit>, conditions: Vec<NamedUnit>, width: Option<NamedUnit>) -> Self {
+        let mut places: HashMap<String, usize> = HashMap::new();
+        for (place, it) in names.iter().enumerate().rev() {
+            let time = it.is_time.then(|| "time".to_owned());
+            places.extend([it.name.clone()].into_iter().chain(time).map(|name| (name, place)));
+        }
+        Units(names, conditions, width, places)
+    }
+
     /// The unit in which people see each name; that of time is also under `time`.
     pub fn shown(&self) -> Named<Shown> {
         let shown = |it: &NamedUnit| Shown { unit: it.unit.clone(), si: it.scale };
@@ -41,7 +52,7 @@ impl Units {
     }
 
     fn of(&self, name: &str) -> Option<&NamedUnit> {
-        self.0.iter().find(|it| it.name == name || name == "time" && it.is_time)
+        self.3.get(name).map(|place| &self.0[*place])
     }
 
     /// `92.3 km/h`
@@ -61,7 +72,9 @@ impl Units {
                 .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
         };
         match self.1.iter().find(is_it) {
-            Some(it) => Units(vec![it.clone()], Vec::new(), None).value(&it.name, value, digits),
+            Some(it) => {
+                Units::new(vec![it.clone()], Vec::new(), None).value(&it.name, value, digits)
+            }
             None => self.value(condition, value, digits),
         }
     }
@@ -155,7 +168,7 @@ mod tests {
             named("n", "", "", 1.0),
         ];
         let conditions = vec![named("end pos == goal", "mm", "m", 1e-3)];
-        Units(names, conditions, None)
+        Units::new(names, conditions, None)
     }
 
     #[test]

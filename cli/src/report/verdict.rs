@@ -12,6 +12,7 @@ use fdcc::{Ended, Solution};
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Chain, Method, Order, Problem};
 use fdcc_runtime::transcribe::unknowns;
+use std::collections::HashMap;
 
 mod jumps;
 mod rest;
@@ -218,8 +219,10 @@ fn hamiltonian(document: &Document) -> Option<String> {
 /// What the optimum is worth to each parameter.
 fn sensitivities(document: &Document) -> impl Iterator<Item = String> {
     let all = document.sensitivities.0.iter().filter(|(_, slope)| slope.is_finite());
-    all.map(|(name, slope)| {
-        let value = document.params.get(name).copied().unwrap_or(f64::NAN);
+    let params = document.params.0.iter().rev();
+    let values: HashMap<&str, f64> = params.map(|(name, value)| (name.as_str(), *value)).collect();
+    all.map(move |(name, slope)| {
+        let value = values.get(name.as_str()).copied().unwrap_or(f64::NAN);
         let percent = 0.01 * value * slope;
         let percent = if percent == 0.0 || !percent.is_finite() {
             String::new()

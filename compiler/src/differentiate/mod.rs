@@ -15,6 +15,7 @@ use crate::expressions::graph::{ExprId, Graph};
 use crate::lower::{Order, VectorFunction};
 use degree::degrees;
 use fdcc_runtime::problem::{Degree, Pattern};
+use std::collections::HashMap;
 
 /// A function with its derivatives.
 #[derive(Clone, Debug)]
@@ -42,9 +43,11 @@ pub fn differentiate(graph: &mut Graph, function: VectorFunction) -> Differentia
 
 fn jacobian(graph: &mut Graph, function: &VectorFunction) -> (Pattern, Vec<ExprId>) {
     let mut matrix = Matrix::new(graph, function.outputs.len(), function.layout.inputs());
+    let places = places(function);
     for (row, &output) in function.outputs.iter().enumerate() {
-        let gradient = gradient(graph, output, &function.by);
-        for (&column, entry) in function.by.iter().zip(gradient) {
+        let by = read(graph, &[output], &places);
+        let gradient = gradient(graph, output, &by);
+        for (&column, entry) in by.iter().zip(gradient) {
             matrix.push(row as u32, column, entry);
         }
     }
@@ -53,18 +56,31 @@ fn jacobian(graph: &mut Graph, function: &VectorFunction) -> (Pattern, Vec<ExprI
 
 fn hessian(graph: &mut Graph, function: &VectorFunction) -> (Pattern, Vec<ExprId>) {
     let lagrangian = lagrangian(graph, &function.outputs);
-    let gradient = gradient(graph, lagrangian, &function.by);
-    let columns: Vec<Vec<ExprId>> = (0..function.by.len())
-        .map(|column| tangents(graph, &gradient[column..], function.by[column]))
-        .collect();
+    let by = read(graph, &function.outputs, &places(function));
+    let gradient = gradient(graph, lagrangian, &by);
+    let columns: Vec<Vec<ExprId>> =
+        (0..by.len()).map(|column| tangents(graph, &gradient[column..], by[column])).collect();
     let inputs = function.layout.inputs();
     let mut matrix = Matrix::new(graph, inputs, inputs);
-    for (i, &row) in function.by.iter().enumerate() {
-        for (j, &column) in function.by[..=i].iter().enumerate() {
+    for (i, &row) in by.iter().enumerate() {
+        for (j, &column) in by[..=i].iter().enumerate() {
             matrix.push(row, column, columns[j][i - j]);
         }
     }
     matrix.finish()
+}
+
+/// Where each of the inputs stands by which a function is differentiated.
+fn places(function: &VectorFunction) -> HashMap<u32, usize> {
+    function.by.iter().enumerate().map(|(place, input)| (*input, place)).collect()
+}
+
+/// Those of the inputs that some outputs read, in their order: there may be thousands of others.
+fn read(graph: &Graph, outputs: &[ExprId], places: &HashMap<u32, usize>) -> Vec<u32> {
+    let mut inputs = graph.inputs_of(outputs);
+    inputs.retain(|input| places.contains_key(input));
+    inputs.sort_by_key(|input| places[input]);
+    inputs
 }
 
 fn lagrangian(graph: &mut Graph, outputs: &[ExprId]) -> ExprId {

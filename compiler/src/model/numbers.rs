@@ -26,11 +26,9 @@ pub fn numbers(model: &Model) -> Result<Numbers, Vec<Diagnostic>> {
     if !missing.is_empty() {
         return Err(missing);
     }
-    let places = model.symbols.iter().enumerate().rev().map(|(at, symbol)| (*symbol, at)).collect();
-    let mut numbers = Numbers { inputs: vec![f64::NAN; model.symbols.len()], places };
+    let mut numbers = Numbers::of_nothing(model);
     for &index in &model.param_order {
-        let value = model.params[index].value.map_or(f64::NAN, |value| numbers.value(model, value));
-        numbers.set(Symbol::Param(index), value);
+        numbers.compute_param(model, index);
     }
     numbers.guess_unknowns(model);
     let widths = model.widths.iter().map(|&(place, width)| (place, numbers.value(model, width)));
@@ -40,6 +38,20 @@ pub fn numbers(model: &Model) -> Result<Numbers, Vec<Diagnostic>> {
 }
 
 impl Numbers {
+    /// Nothing has a value yet.
+    pub(crate) fn of_nothing(model: &Model) -> Self {
+        let places = model.symbols.iter().enumerate().rev();
+        let places = places.map(|(at, symbol)| (*symbol, at)).collect();
+        Numbers { inputs: vec![f64::NAN; model.symbols.len()], places }
+    }
+
+    /// The value of a parameter, once those that it is made of have theirs.
+    pub(crate) fn compute_param(&mut self, model: &Model, index: usize) -> f64 {
+        let value = model.params[index].value.map_or(f64::NAN, |value| self.value(model, value));
+        self.set(Symbol::Param(index), value);
+        value
+    }
+
     /// The value of an expression over parameters and unknowns.
     pub fn value(&self, model: &Model, id: ExprId) -> f64 {
         match model.graph.as_number(id) {

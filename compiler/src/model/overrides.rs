@@ -2,11 +2,13 @@
 
 use crate::expressions::graph::evaluate;
 use crate::model::Model;
+use crate::model::numbers::Numbers;
 use crate::settings::conflicts::misfit;
 use crate::settings::{Given, Refused, keys, nearest_key, nearest_word, set};
 use crate::syntax::closest;
 use crate::syntax::text::number;
 use crate::units::{NamedUnit, Quantity, WidthUnit, parse_quantity};
+use std::collections::HashMap;
 
 impl Model {
     /// Gives a parameter another value, such as `0.2` or `200[g]`; a plain number is in its
@@ -88,8 +90,8 @@ impl Model {
 
     fn give(&mut self, index: usize, value: f64) {
         self.phases.iter_mut().for_each(|phase| phase.model.give(index, value));
-        self.params[index].value = Some(self.graph.number(value));
-        if !self.param_order.contains(&index) {
+        let before = self.params[index].value.replace(self.graph.number(value));
+        if before.is_none() {
             self.param_order.insert(0, index);
         }
     }
@@ -97,14 +99,21 @@ impl Model {
     /// Gives parameters the values that a solution was made with. One that is computed from others
     /// and has that value anyhow stays so.
     pub fn restore_params(&mut self, values: &[(String, f64)]) {
-        let given =
-            |name: &str| values.iter().find(|(own, _)| own == name).map(|(_, value)| *value);
+        let given: HashMap<&str, f64> =
+            values.iter().rev().map(|(name, value)| (name.as_str(), *value)).collect();
         let waiting = (0..self.params.len()).filter(|&at| self.params[at].value.is_none());
-        for index in waiting.chain(self.param_order.clone()).collect::<Vec<_>>() {
-            let Some(value) = given(&self.params[index].place.name) else { continue };
-            let now = self.params[index].value.map_or(f64::NAN, |value| self.of_params(value));
-            if now != value {
-                self.give(index, value);
+        for index in waiting.collect::<Vec<_>>() {
+            if let Some(value) = given.get(self.params[index].place.name.as_str()) {
+                self.give(index, *value);
+            }
+        }
+        let mut numbers = Numbers::of_nothing(self);
+        for index in self.param_order.clone() {
+            let now = numbers.compute_param(self, index);
+            let value = given.get(self.params[index].place.name.as_str()).filter(|it| **it != now);
+            if let Some(value) = value {
+                self.give(index, *value);
+                numbers.compute_param(self, index);
             }
         }
     }

@@ -34,8 +34,8 @@ use crate::executor::Executor;
 use crate::model::{Model, frame};
 use crate::record::Record;
 use crate::warm_start;
-use fdcc_runtime::problem::{Chain, Linear, Problem, often_called};
-use fdcc_runtime::transcribe::unknowns;
+use fdcc_runtime::problem::{Chain, Linear, Method, Problem, often_called};
+use fdcc_runtime::transcribe::{conditions, unknowns};
 use found::Found;
 
 /// A model with the problem that is solved for it.
@@ -66,7 +66,7 @@ impl Model {
     /// A model that cannot be solved.
     pub fn compile(&self) -> Result<Compiled, Error> {
         let chain = self.chain()?;
-        refuse_senseless(&chain)?;
+        refuse_senseless(&chain, self.meaning().jumps.len())?;
         if self.meaning().jumps.is_empty() && self.meaning().at_times.is_empty() {
             self.make_ready(|| chain.phases.iter().for_each(make_machine_code));
         }
@@ -159,12 +159,32 @@ fn make_machine_code(problem: &Problem) {
     Executor::default().in_order(functions.len(), prepare, |()| false);
 }
 
-/// More need more memory than a computer has to spare: about 1 kB each.
+/// More, conditions included, need more memory than a computer has to spare: about 1 kB each.
 const MOST_UNKNOWNS: usize = 2_000_000;
 
-/// What a solver cannot begin with.
-fn refuse_senseless(chain: &Chain) -> Result<(), Error> {
-    chain.phases.iter().try_for_each(refuse_phase)
+/// What a solver cannot begin with; jumps divide the time before it does.
+fn refuse_senseless(chain: &Chain, jumps: usize) -> Result<(), Error> {
+    chain.phases.iter().try_for_each(refuse_phase)?;
+    if let Some([steps, most]) = Method::excess_of(chain.phases.iter().map(|it| &it.method)) {
+        return Err(Error::Call(format!(
+            "{steps} steps in all phases together are too many; at most {most} are possible"
+        )));
+    }
+    let sum = |count: fn(&Problem) -> usize| {
+        chain.phases.iter().map(count).fold(0, usize::saturating_add)
+    };
+    let intervals = sum(|it| it.method.intervals());
+    // The surface of a jump bounds every piece of a sequence.
+    let conditions = sum(conditions).saturating_add(intervals.saturating_mul(jumps));
+    let unknowns = sum(unknowns);
+    if unknowns.saturating_add(conditions) <= MOST_UNKNOWNS {
+        return Ok(());
+    }
+    let conditions = match conditions {
+        0 => String::new(),
+        many => format!(" with {many} conditions on them and surfaces beside them"),
+    };
+    Err(Error::Call(format!("{unknowns} unknowns{conditions} are too many; N = {intervals}")))
 }
 
 fn refuse_phase(problem: &Problem) -> Result<(), Error> {
@@ -177,10 +197,6 @@ fn refuse_phase(problem: &Problem) -> Result<(), Error> {
             "`linear = riccati` treats all {} unknowns of an interval as dense; leave it out, or \
              choose fewer `steps`",
             many / problem.method.intervals()
-        ))),
-        many if many > MOST_UNKNOWNS => Err(Error::Call(format!(
-            "{many} unknowns are too many; N = {}",
-            problem.method.intervals()
         ))),
         _ => Ok(()),
     }

@@ -10,6 +10,7 @@ use super::terms::{Inputs, Terms, terms};
 use crate::record::{Record, number};
 use fdcc_runtime::problem::{Bounds, Columns, Function, Parameter, Problem, Variable};
 use fdcc_runtime::simulate::{Extreme, Simulation, System};
+use std::collections::HashMap;
 
 /// `abs`, `min` and `max` in a condition are those of the true system: as narrow as this part of
 /// the width with which it was solved.
@@ -224,10 +225,9 @@ impl<'a> Conditions<'a> {
 
 /// Those of the solution, with widths that smooth nothing.
 fn parameters(problem: &Problem, record: &Record) -> Vec<f64> {
-    let of_solution = |name: &str| {
-        let all = [&record.params, &record.free];
-        all.iter().find_map(|it| number(it, name))
-    };
+    // The first of a name, as elsewhere.
+    let known = record.params.iter().chain(&record.free).rev();
+    let known: HashMap<&str, f64> = known.filter(|it| it.1.is_finite()).copied().collect();
     let settings = &record.settings;
     let sigma = settings.sigma.filter(|sigma| sigma.is_finite());
     let width = |name: &str| number(&settings.sigmas, name).or(sigma);
@@ -237,7 +237,7 @@ fn parameters(problem: &Problem, record: &Record) -> Vec<f64> {
         .and_then(|name| name.strip_suffix(')'))
     {
         Some(surface) => NO_WIDTH * width(surface).unwrap_or(it.value),
-        None => of_solution(&it.name).unwrap_or(it.value),
+        None => known.get(it.name.as_str()).copied().unwrap_or(it.value),
     };
     problem.parameters.iter().map(value).collect()
 }

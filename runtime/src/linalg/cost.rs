@@ -12,8 +12,10 @@
 //! which hardly any state may have to do with.
 
 use super::sparse_ldl::SparseLdl;
+use super::structure::phases::PhaseStages;
 use super::structure::stages::Stages;
 use super::structure::triplets::Triplets;
+use std::collections::BTreeSet;
 
 /// So many multiplications the recursion makes while the sparse factorisation makes one; measured
 /// were 6 to 12. What is in doubt is the recursion's, whose inertia is exact.
@@ -23,6 +25,10 @@ const DENSE_SPEED: f64 = 16.0;
 /// that may be most of its work and memory.
 const FEW_INNER: usize = 100;
 
+/// With no more links, and globals, than this beyond what is in a stage the recursion of phases is
+/// quick enough.
+const FEW_LINKS: usize = 50;
+
 /// Whether the sparse factorisation takes less time than the recursion. It is analysed for that
 /// only if the border is larger than a stage, or if there is much inside an interval.
 pub(super) fn is_sparse_cheaper(stages: Stages, hessian: &Triplets, jacobian: &Triplets) -> bool {
@@ -31,6 +37,40 @@ pub(super) fn is_sparse_cheaper(stages: Stages, hessian: &Triplets, jacobian: &T
     }
     let sparse = SparseLdl::new(hessian, jacobian, &vec![false; stages.variables()], stages.rows());
     multiplications(stages) > DENSE_SPEED * sparse.multiplications()
+}
+
+/// The same of several phases. What links them is part of the border of each of its phases.
+pub(super) fn is_sparse_cheaper_for(
+    phases: &[PhaseStages],
+    hessian: &Triplets,
+    jacobian: &Triplets,
+) -> bool {
+    let bordered = |phase: &PhaseStages| Stages {
+        coupling_constraints: phase.stages.coupling_constraints + links(phase, phases, jacobian),
+        ..phase.stages
+    };
+    let bordered: Vec<Stages> = phases.iter().map(bordered).collect();
+    if bordered.iter().all(|stages| border(*stages) <= FEW_LINKS + stages.states + stages.controls)
+    {
+        return false;
+    }
+    let variables = phases.iter().flat_map(|it| it.globals.iter().map(|at| at + 1));
+    let variables = variables.chain(phases.iter().map(|it| it.variables.end)).max().unwrap_or(0);
+    let rows =
+        jacobian.families.iter().map(|it| it.row + 1 + it.count.saturating_sub(1) * it.row_step);
+    let rows = rows.chain(phases.iter().map(|it| it.rows.end)).max().unwrap_or(0);
+    let sparse = SparseLdl::new(hessian, jacobian, &vec![false; variables], rows);
+    let recursion: f64 = bordered.into_iter().map(multiplications).sum();
+    recursion > DENSE_SPEED * sparse.multiplications()
+}
+
+/// How many rows that belong to no phase read something of one.
+fn links(phase: &PhaseStages, phases: &[PhaseStages], jacobian: &Triplets) -> usize {
+    let is_link = |row: usize| phases.iter().all(|it| !it.rows.contains(&row));
+    let own = jacobian.families.iter().filter(|it| phase.variables.contains(&it.column));
+    let rows = own.filter(|it| is_link(it.row));
+    let rows = rows.flat_map(|it| (0..it.count).map(|k| it.row + k * it.row_step));
+    rows.collect::<BTreeSet<usize>>().len()
 }
 
 fn border(stages: Stages) -> usize {

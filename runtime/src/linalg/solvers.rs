@@ -1,6 +1,6 @@
 //! **The table** of linear solvers. A new one is a file that implements [`Factor`] and a row here.
 
-use super::cost::is_sparse_cheaper;
+use super::cost::{is_sparse_cheaper, is_sparse_cheaper_for};
 use super::riccati::{PhasedRiccati, Riccati};
 use super::sparse_ldl::SparseLdl;
 use super::structure::factor::Factor;
@@ -71,7 +71,8 @@ pub(crate) fn cheapest(
     jacobian: &Triplets,
 ) -> Linear {
     match stages {
-        None if !phases.is_empty() => Linear::Riccati,
+        None if phases.is_empty() => Linear::SparseLdl,
+        None if !is_sparse_cheaper_for(phases, hessian, jacobian) => Linear::Riccati,
         Some(stages) if !is_sparse_cheaper(stages, hessian, jacobian) => Linear::Riccati,
         _ => Linear::SparseLdl,
     }

@@ -121,6 +121,17 @@ impl Method {
         (steps > most).then_some([steps, most])
     }
 
+    /// The same of several phases together.
+    pub fn excess_of<'m>(phases: impl Iterator<Item = &'m Method> + Clone) -> Option<[usize; 2]> {
+        let kinds = [(true, MOST_STEPS), (false, MOST_INTERVALS)];
+        kinds.into_iter().find_map(|(has_many, most)| {
+            let own = phases.clone().filter(|method| !has_many || method.steps > 1);
+            let steps = own.map(|it| it.intervals().saturating_mul(it.steps));
+            let steps = steps.fold(0, usize::saturating_add);
+            (steps > most).then_some([steps, most])
+        })
+    }
+
     /// Gives a scheme whose order is open the stages that are tried first.
     pub fn begin(&mut self) {
         if self.order == Order::Auto {

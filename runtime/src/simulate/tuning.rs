@@ -76,6 +76,9 @@ pub(crate) mod location {
     pub(crate) const SELECTOR_NOISE: f64 = 1e-12;
     /// A shorter part of a step is not told from its beginning.
     pub(crate) const SHORTEST: f64 = 1e-12;
+    /// What is sooner in a step, and by so many roundings of its time, needs a shorter one.
+    pub(crate) const SOON: f64 = 1e-10;
+    pub(crate) const ROUNDINGS: f64 = 1e3;
     /// The second point of the secant method, relative to the first.
     pub(crate) const SECANT_OFFSET: f64 = 1e-6;
     /// It stays within this part of the first.
@@ -87,6 +90,10 @@ pub(crate) mod search {
     pub(crate) const MOST_PARTS: usize = 1000;
     /// What stays within this many times its rounding errors stays at 0, and does not fail.
     pub(crate) const FLAT: f64 = 1000.0;
+    /// Polynomials of degree 4 that stay within rounding errors have rates of 32 of them at most
+    /// (A. A. Markov); what has this many, at one of these parts of a step, turns too often.
+    pub(crate) const FAR: f64 = 100.0;
+    pub(crate) const SAMPLES: [f64; 3] = [0.1, 0.37, 0.83];
     /// The lowest value of a shallow part is found with so many sections by the golden ratio.
     pub(crate) const SECTIONS: usize = 40;
     pub(crate) const GOLDEN: f64 = 0.618_033_988_749_895;
@@ -248,4 +255,10 @@ pub(crate) mod zeno {
     pub(crate) const STEADY: f64 = 0.02;
     /// A ratio of successive intervals this near to 1 is that of jumps which go on for ever.
     pub(crate) const REGULAR: f64 = 1e-6;
+    /// The times of so many jumps tell a series whose intervals fall slowly from equal ones;
+    pub(crate) const REMEMBERED: usize = 9;
+    /// three ratios are enough below this.
+    pub(crate) const FAST: f64 = 0.7;
+    /// Intervals of fewer roundings of a time are not known.
+    pub(crate) const CLEAR: f64 = 1e3;
 }

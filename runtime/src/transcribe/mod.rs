@@ -205,6 +205,14 @@ pub fn unknowns(problem: &Problem) -> usize {
     in_all.saturating_add(interval.carried + problem.unknowns.len())
 }
 
+/// How many path conditions it has to meet, and functions of surfaces it looks at, in all intervals
+/// together, counted without transcribing.
+pub fn conditions(problem: &Problem) -> usize {
+    let interval = Interval::new(&problem.method, &problem.layout);
+    let in_each = problem.path_bounds.len().saturating_mul(interval.path.len());
+    problem.method.intervals().saturating_mul(in_each.saturating_add(problem.surfaces.len()))
+}
+
 fn stages(problem: &Problem, interval: &Interval) -> Stages {
     Stages {
         intervals: problem.method.intervals(),

@@ -5,7 +5,7 @@ use crate::expressions::graph::{Expr, ExprId, evaluate};
 use crate::model::{Range, Symbol};
 use crate::resolve::elaborator::constants::ConstantPart;
 use crate::resolve::elaborator::{Elaborator, Role, Usage};
-use crate::syntax::text;
+use crate::syntax::{text, walk};
 use fdcc_grammar::ast::{self, ExprKind, Interval, Item, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Span};
 use std::collections::HashSet;
@@ -27,7 +27,8 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
 
 /// The constant parts of all formulas, each place and each value once.
 fn of_constants(meaning: &Elaborator<'_>, told: &Told, found: &mut Vec<Diagnostic>) {
-    let roots: Vec<ExprId> = meaning.constants.iter().map(|it| it.value).collect();
+    let constants = meaning.constants.iter().chain(&meaning.cancelled);
+    let roots: Vec<ExprId> = constants.clone().map(|it| it.value).collect();
     let values = evaluate(&meaning.graph, &roots, &param_values(meaning), &[]);
     let is_bad = |(part, value): &(&ConstantPart<'_>, f64)| match part.is_divisor {
         true => *value == 0.0,
@@ -35,7 +36,7 @@ fn of_constants(meaning: &Elaborator<'_>, told: &Told, found: &mut Vec<Diagnosti
     };
     let defined = definitions(meaning);
     let (mut places, mut without_value) = (HashSet::new(), HashSet::new());
-    for (part, value) in meaning.constants.iter().zip(values).filter(is_bad) {
+    for (part, value) in constants.zip(values).filter(is_bad) {
         let is_first = places.insert(part.expr.span) && !told.is_within(part.expr.span);
         let needed = meaning.graph.reachable(&[part.value]);
         let follows = !has_values(meaning, part.value)
@@ -117,6 +118,7 @@ fn of_bounds(
     for (id, text, open) in ends {
         let bad =
             value(meaning, id).filter(|it| !it.is_finite() && (*it != open || !is_infinity(text)));
+        let bad = bad.or_else(|| hides_infinity(meaning, text).then_some(f64::NAN));
         found.extend(bad.map(|value| told_as("a bound", value, text.span)));
     }
 }
@@ -129,6 +131,20 @@ fn is_infinity(expr: &ast::Expr) -> bool {
         // A vector of bounds.
         ExprKind::Tuple(_) => true,
         _ => false,
+    }
+}
+
+/// `inf` inside of a formula: `0*inf` is no number, though simplified it is 0.
+fn hides_infinity(meaning: &Elaborator<'_>, expr: &ast::Expr) -> bool {
+    let is_inf = |it: &ast::Expr| matches!(&it.kind, ExprKind::Name(name) if name == "inf");
+    match &expr.kind {
+        ExprKind::Tuple(parts) => parts.iter().any(|it| hides_infinity(meaning, it)),
+        _ if is_infinity(expr) || meaning.scope.find("inf").is_some() => false,
+        _ => {
+            let mut is_inside = false;
+            walk::visit(expr, &mut |inner| is_inside |= is_inf(inner));
+            is_inside
+        }
     }
 }
 

@@ -37,6 +37,16 @@ impl<'a> Elaborator<'a> {
         }
     }
 
+    /// Keeps a constant that is divided by itself: simplified that is 1, whatever the constant is.
+    pub fn keep_cancelled(&mut self, dividend: &Value, expr: &'a Expr, divisor: &Value) {
+        if self.is_own_constant(divisor) && dividend.parts.as_slice() == divisor.parts.as_slice() {
+            let named = divisor.parts.as_slice().iter();
+            let named = named.filter(|it| self.graph.as_number(**it).is_none());
+            let all = named.map(|&value| ConstantPart { expr, value, is_divisor: true });
+            self.cancelled.extend(all);
+        }
+    }
+
     /// A choice between constants decides which of its pieces count, so none is kept.
     pub fn forget_constants(&mut self, before: usize) {
         self.constants.truncate(before);

@@ -138,6 +138,8 @@ pub(crate) struct Elaborator<'a> {
     pub written: Vec<(&'a ast::Expr, ExprId)>,
     /// The largest parts of formulas that are constant.
     pub constants: Vec<ConstantPart<'a>>,
+    /// What constants were divided by that cancelled.
+    pub cancelled: Vec<ConstantPart<'a>>,
     /// The states whose equations are understood.
     pub known_rates: HashSet<usize>,
     /// What has been resolved so far; graph, symbols, surfaces and integrals are moved in at the
@@ -202,6 +204,7 @@ impl<'a> Elaborator<'a> {
             arguments: Vec::new(),
             written: Vec::new(),
             constants: Vec::new(),
+            cancelled: Vec::new(),
             known_rates: HashSet::new(),
             model: Model::empty(),
             at_end: Vec::new(),

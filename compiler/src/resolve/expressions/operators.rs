@@ -25,8 +25,11 @@ impl<'a> Elaborator<'a> {
         if !self.sets_allow(operator, &left, &right) {
             return Value::default();
         }
-        if operator == BinaryOperator::Divide && !Self::is_constant(&left.0) {
-            self.keep_divisor(right.1, &right.0);
+        if operator == BinaryOperator::Divide {
+            match Self::is_constant(&left.0) {
+                true => self.keep_cancelled(&left.0, right.1, &right.0),
+                false => self.keep_divisor(right.1, &right.0),
+            }
         }
         let named = left.0.named.or(right.0.named);
         let parts = self.combine(operator, &left, &right);

@@ -147,7 +147,7 @@ impl<'a> Inference<'a> {
             ("min" | "max", [a, b]) => into_formula(self.equal(Reason::Together(name), a, b)),
             ("atan2", [a, b]) => {
                 self.equal(Reason::Together(name), a, b);
-                no_unit(&given)
+                angle()
             }
             ("norm", [only]) => into_formula(self.one_unit(name, only)),
             ("normsq", [only]) => {
@@ -177,6 +177,7 @@ impl<'a> Inference<'a> {
     /// `sin(x)` and all that are defined for numbers alone.
     fn without_unit(&mut self, name: &'a str, expr: &'a Expr, only: &Operand<'a>) -> Value {
         match self.need_none(Reason::NoUnit(name), expr.span, only) {
+            true if matches!(name, "asin" | "acos" | "atan") => angle(),
             true => no_unit(std::slice::from_ref(only)),
             false => vec![self.free(expr.span)],
         }
@@ -244,6 +245,11 @@ impl<'a> Inference<'a> {
 
 fn into_formula(value: Value) -> Value {
     value.into_iter().map(Part::into_formula).collect()
+}
+
+/// In radians, also of plain numbers: an angle is no number that may count in degrees.
+fn angle() -> Value {
+    vec![Part::of(Dimension::none())]
 }
 
 fn no_unit(arguments: &[Operand<'_>]) -> Value {

@@ -13,7 +13,7 @@ use super::{Inference, Operand, side};
 use crate::syntax::text;
 use crate::units::dimension::Dimension;
 use crate::units::dimension::notation::Notation;
-use fdcc_grammar::ast::{BinaryOperator, Expr, ExprKind};
+use fdcc_grammar::ast::{Argument, BinaryOperator, Expr, ExprKind};
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 use std::collections::HashMap;
 
@@ -125,7 +125,7 @@ impl<'a> Inference<'a> {
     }
 }
 
-/// The terms of a sum, and of the sums in it.
+/// The terms of a sum, and of the sums in it; one of several is each of these.
 fn terms(expr: &Expr) -> Vec<&Expr> {
     let (mut found, mut pending) = (Vec::new(), vec![expr]);
     while let Some(next) = pending.pop() {
@@ -134,10 +134,22 @@ fn terms(expr: &Expr) -> Vec<&Expr> {
                 pending.extend([&**left, &**right])
             }
             ExprKind::Negate(inner) => pending.push(inner),
+            ExprKind::Call(callee, arguments) if is_one_of_them(callee) => {
+                let values = arguments.iter().filter_map(|it| match it {
+                    Argument::Expr(value) => Some(value),
+                    _ => None,
+                });
+                pending.extend(values);
+            }
             _ => found.push(next),
         }
     }
     found
+}
+
+/// `min` and `max` are as large as one of their arguments, `abs` is as large as its own.
+fn is_one_of_them(callee: &Expr) -> bool {
+    matches!(&callee.kind, ExprKind::Name(name) if matches!(name.as_str(), "min" | "max" | "abs"))
 }
 
 /// The findings, once it is known what each formula measures.

@@ -21,6 +21,8 @@ pub(crate) struct Tolerance {
     atol: Option<f64>,
     /// How large each has been lately.
     pub sizes: Vec<f64>,
+    /// The same since the last jump that reset it.
+    fresh: Vec<f64>,
     /// How far each has come away from its start.
     pub ways: Vec<f64>,
     start: Vec<f64>,
@@ -32,24 +34,43 @@ pub(crate) struct Tolerance {
 
 impl Tolerance {
     pub fn new(options: &Options, start: &[f64]) -> Self {
-        let sizes = start.iter().map(|x| x.abs()).collect();
+        let sizes: Vec<f64> = start.iter().map(|x| x.abs()).collect();
+        let fresh = sizes.clone();
         let (least, doubts) = (vec![LEAST; start.len()], vec![0.0; start.len()]);
         let (ways, start) = (vec![0.0; start.len()], start.to_vec());
-        Tolerance { rtol: options.rtol, atol: options.atol, sizes, ways, start, least, doubts }
+        Tolerance {
+            rtol: options.rtol,
+            atol: options.atol,
+            sizes,
+            fresh,
+            ways,
+            start,
+            least,
+            doubts,
+        }
     }
 
     /// Notes how large the states are after a step.
     pub fn see(&mut self, x: &[f64]) {
-        self.sizes.iter_mut().zip(x).for_each(|(size, x)| *size = (KEPT * *size).max(x.abs()));
+        for sizes in [&mut self.sizes, &mut self.fresh] {
+            sizes.iter_mut().zip(x).for_each(|(size, x)| *size = (KEPT * *size).max(x.abs()));
+        }
         let begins = self.start.iter();
         let ways = self.ways.iter_mut().zip(begins.zip(x));
         ways.for_each(|(way, (begin, x))| *way = way.max((x - begin).abs()));
     }
 
+    /// What a jump resets is as large as after it: what it was says nothing of the motion behind,
+    /// but how exactly the state is on a surface.
+    pub fn jump(&mut self, before: &[f64], after: &[f64]) {
+        let sizes = self.fresh.iter_mut().zip(before.iter().zip(after));
+        sizes.filter(|(_, (x, y))| x != y).for_each(|(size, (_, y))| *size = y.abs());
+    }
+
     /// Of a state that is `before` and `after` a step of length `h`.
     pub fn of(&self, i: usize, [before, after]: [f64; 2], h: f64) -> f64 {
         let size = before.abs().max(after.abs());
-        let atol = self.atol.unwrap_or(PART * size.max(self.sizes[i]).max(self.least[i]));
+        let atol = self.atol.unwrap_or(PART * size.max(self.fresh[i]).max(self.least[i]));
         atol + self.rtol * size + h * self.doubts[i]
     }
 

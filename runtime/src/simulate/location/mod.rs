@@ -19,7 +19,9 @@ use super::field::direction::length;
 use super::steps::Step;
 use crate::simulate::mode::Mode;
 use crate::simulate::tape::Cause;
-use crate::simulate::tuning::location::{NEAR, SECANT_OFFSET, SELECTOR_NOISE, SHORTEST};
+use crate::simulate::tuning::location::{
+    NEAR, ROUNDINGS, SECANT_OFFSET, SELECTOR_NOISE, SHORTEST, SOON,
+};
 pub(crate) use bisection::bisect;
 use search::{Search, Signal};
 
@@ -62,11 +64,15 @@ pub(crate) enum First {
     At(Found),
     /// There is none before this part of the step; what comes then takes too long to find out.
     NotBefore(f64),
+    /// There are more than times that can be told apart.
+    Unresolved,
 }
 
 /// The first event of a step.
 pub(crate) fn first(field: &mut Field, step: &Step) -> First {
     let (mut until, mut found, mut is_known) = (1.0, None, true);
+    // A step may be too long to have times at its beginning that can be told apart.
+    let distinct = f64::MIN_POSITIVE.max(ROUNDINGS * f64::EPSILON * step.t.abs());
     for condition in conditions(field) {
         let tube = field.lend_tube();
         let mut signal = Signal { field, step, condition, tube };
@@ -75,8 +81,14 @@ pub(crate) fn first(field: &mut Field, step: &Step) -> First {
             continue;
         }
         let noise = signal.noise(0.0);
+        if matches!(condition, Condition::Reaches(_)) && signal.is_unresolved(until, noise) {
+            return First::Unresolved;
+        }
         match signal.first_failure(until, noise) {
             Search::Holds => {}
+            Search::Fails([_, soon], _) if soon < SOON && soon * step.h > distinct => {
+                return First::NotBefore(soon / SOON.sqrt());
+            }
             Search::Fails(ends, noise) => {
                 until = root(&mut |theta| signal.value(theta), ends, noise);
                 let is_jump = matches!(condition, Condition::Reaches(_))
@@ -206,7 +218,8 @@ fn refine(field: &mut Field, step: &Step, condition: Condition, theta: f64) -> F
 }
 
 /// Newton's steps onto a surface that is reached but for rounding and tolerances: the least change
-/// of the states, each in units of how exact it is.
+/// of the states, each in units of how exact it is. What more than that would be needed for, such
+/// as rounding of the time where states hardly move the surface, is left as it is.
 fn bring_to(field: &mut Field, surface: usize, t: f64, state: &mut [f64]) {
     let exact: Vec<f64> =
         state.iter().enumerate().map(|(i, x)| field.tolerance.of(i, [*x; 2], 0.0)).collect();
@@ -216,10 +229,12 @@ fn bring_to(field: &mut Field, surface: usize, t: f64, state: &mut [f64]) {
         let largest = slope.iter().zip(&exact).map(|(d, e)| (d * e).abs()).fold(0.0, f64::max);
         let shares: Vec<f64> = slope.iter().zip(&exact).map(|(d, e)| d * e / largest).collect();
         let square: f64 = shares.iter().map(|share| share * share).sum();
-        if square.is_nan() || square == 0.0 {
+        let factor = normals.psi[surface] / largest / square;
+        // In units of how exact the states are.
+        let way = factor.abs() * square.sqrt();
+        if way.is_nan() || way > 1.0 {
             return;
         }
-        let factor = normals.psi[surface] / largest / square;
         let changes = shares.iter().zip(&exact).map(|(share, e)| factor * share * e);
         state.iter_mut().zip(changes).for_each(|(x, change)| *x -= change);
     }

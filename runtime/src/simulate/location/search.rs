@@ -22,7 +22,9 @@ use crate::simulate::field::tube::Tube;
 use crate::simulate::interval::{ALL, scaled};
 use crate::simulate::steps::Step;
 use crate::simulate::system::Interval;
-use crate::simulate::tuning::search::{FLAT, GOLDEN, MOST_PARTS, ROUNDING, SECTIONS, SLACK};
+use crate::simulate::tuning::search::{
+    FAR, FLAT, GOLDEN, MOST_PARTS, ROUNDING, SAMPLES, SECTIONS, SLACK,
+};
 
 /// A condition along a step.
 pub(crate) struct Signal<'f, 'a> {
@@ -102,6 +104,24 @@ impl Signal<'_, '_> {
         self.bounds([0.0, until])[0][0] >= 0.0
     }
 
+    /// Whether the value changes its sign so often that times cannot be told apart: all values are
+    /// what rounding may make of 0, and yet it moves far, as nothing smooth does that stays there.
+    pub fn is_unresolved(&mut self, until: f64, noise: f64) -> bool {
+        let [least, most] = self.bounds([0.0, until])[0];
+        if !(-noise..0.0).contains(&least) || most > noise {
+            return false;
+        }
+        self.moves_farther_than(noise, until)
+    }
+
+    /// Whether it moves so fast that it cannot stay within a value without turning often.
+    fn moves_farther_than(&mut self, value: f64, until: f64) -> bool {
+        let rates = SAMPLES.map(|part| self.bounds([part * until; 2])[1]);
+        // Where rounding alone leaves a rate open, it is as fast as that.
+        let fastest = rates.iter().map(|[low, high]| high.max(-low)).filter(|it| it.is_finite());
+        until * fastest.fold(0.0, f64::max) > FAR * value
+    }
+
     /// Where before a part of the step the condition first fails by more than rounding.
     pub fn first_failure(&mut self, until: f64, noise: f64) -> Search {
         let values = [self.value(0.0), self.value(until)];
@@ -121,7 +141,7 @@ impl Signal<'_, '_> {
                 }
             }
         }
-        let is_flat = largest <= FLAT * noise;
+        let is_flat = largest <= FLAT * noise && !self.moves_farther_than(largest, until);
         parts
             .last()
             .filter(|_| !is_flat)

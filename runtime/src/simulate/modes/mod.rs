@@ -35,6 +35,18 @@ struct Corner<'f, 'a> {
 struct Choice {
     modes: Vec<Mode>,
     s: DVector<f64>,
+    /// Whether the selectors of surfaces that hold the state were solved for.
+    is_solved: bool,
+    /// Whether the state stays on a surface although it is not held there.
+    rests: Vec<bool>,
+}
+
+/// What follows at a surface.
+pub(crate) struct Next {
+    pub surface: usize,
+    pub mode: Mode,
+    /// Whether the right side of this mode leaves the state on the surface: it crosses nothing.
+    pub rests: bool,
 }
 
 /// Whether a state may stay on a surface that its selector does not move: a stone at rest on the
@@ -42,6 +54,8 @@ struct Choice {
 #[derive(Clone, Copy, PartialEq)]
 enum Rest {
     Refused,
+    /// If a short step with a selector between leaves the state there, too.
+    Still,
     Told,
 }
 
@@ -52,7 +66,7 @@ pub(crate) fn decide(
     t: f64,
     x: &[f64],
     surfaces: &[usize],
-) -> Result<Vec<Mode>, Status> {
+) -> Result<Vec<Next>, Status> {
     if surfaces.is_empty() {
         return Ok(Vec::new());
     }
@@ -65,7 +79,8 @@ pub(crate) fn decide(
         None => corner.only_combination()?,
     };
     choice.note_directions(field, surfaces);
-    Ok(choice.modes)
+    let next = |(at, &surface)| Next { surface, mode: choice.modes[at], rests: choice.rests[at] };
+    Ok(surfaces.iter().enumerate().map(next).collect())
 }
 
 fn mode(side: i8) -> Mode {
@@ -126,7 +141,7 @@ impl Corner<'_, '_> {
             let moves = own >= 1.0 - AT_END && rate > tie;
             modes[ball].fill(if moves { Mode::Moving } else { Mode::Sliding });
         }
-        Choice { modes, s }
+        Choice { rests: vec![false; modes.len()], is_solved: true, modes, s }
     }
 
     fn is_in_ball(&self, at: usize) -> bool {
@@ -148,10 +163,12 @@ impl Corner<'_, '_> {
         let mut all = |rest| -> Vec<Choice> {
             (0..count).filter_map(|number| self.consistent(&sides(number), rest)).collect()
         };
-        let mut found = all(Rest::Refused);
-        if found.is_empty() {
-            found = all(Rest::Told);
-        } else if found.len() == 1 && self.attracts(&found[0]) {
+        let ways = [Rest::Refused, Rest::Still, Rest::Told].into_iter();
+        let mut told = ways.map(|rest| (rest, all(rest)));
+        let (rest, mut found) = told.find(|(_, it)| !it.is_empty()).unwrap_or((Rest::Told, vec![]));
+        if let [only] = &found[..]
+            && (rest == Rest::Refused && self.attracts(only) || rest == Rest::Still && only.rests())
+        {
             return Ok(found.swap_remove(0));
         }
         let candidates = found.iter().map(|choice| self.candidate(choice)).collect();
@@ -183,6 +200,7 @@ impl Corner<'_, '_> {
     /// What happens if the state goes on with these sides, if it can.
     fn consistent(&mut self, sides: &[i8], rest: Rest) -> Option<Choice> {
         let rest = if self.balls.is_empty() { rest } else { Rest::Refused };
+        let mut is_solved = true;
         let mut s = DVector::from_iterator(sides.len(), sides.iter().map(|side| f64::from(*side)));
         let free: Vec<usize> = (0..sides.len()).filter(|&i| sides[i] == 0).collect();
         for _ in 0..if free.is_empty() { 0 } else { 20 } {
@@ -190,10 +208,11 @@ impl Corner<'_, '_> {
             let b = b.select_rows(&free).select_columns(&free);
             let found = self.change(&s.select_rows(&free), &r.select_rows(&free), b, &free);
             let Some(change) = found else {
-                match rest {
-                    Rest::Refused => return None,
-                    Rest::Told => break,
+                if rest == Rest::Refused {
+                    return None;
                 }
+                is_solved = false;
+                break;
             };
             free.iter().zip(change.iter()).for_each(|(&i, change)| s[i] += change);
         }
@@ -209,8 +228,9 @@ impl Corner<'_, '_> {
         };
         let is_tie = |i: usize| sides[i] != 0 && r[i].abs() <= tie[i];
         let (all_fit, has_tie) = ((0..sides.len()).all(fits), (0..sides.len()).any(is_tie));
-        let choice = self.choice(sides, s, &r, &tie);
-        (all_fit && (!has_tie || self.goes_there(sides, &choice, rest))).then_some(choice)
+        let mut choice = Choice { is_solved, ..self.choice(sides, s, &r, &tie) };
+        let is_clear = is_solved && !has_tie;
+        (all_fit && (is_clear || self.goes_there(sides, &mut choice, rest))).then_some(choice)
     }
 
     /// By how much the free selectors change in one iteration; those of balls stay in them.
@@ -229,8 +249,21 @@ impl Corner<'_, '_> {
         is_unique(&b, &balls).then(|| solution(&(r + &b * s), &b, &balls))?.map(|next| next - s)
     }
 
-    /// Where rates vanish a short step tells on which side it ends, or that it ends on the surface.
-    fn goes_there(&mut self, sides: &[i8], choice: &Choice, rest: Rest) -> bool {
+    /// Where rates vanish a short step tells on which side it ends, or that it stays where it is,
+    /// which is on the surface but for rounding; notes where it does.
+    fn goes_there(&mut self, sides: &[i8], choice: &mut Choice, rest: Rest) -> bool {
+        let moved = self.moved(choice);
+        let is_still = |at: &usize| moved[*at] == 0.0;
+        let rests = |at: &usize| rest != Rest::Refused && sides[*at] != 0 && is_still(at);
+        choice.rests = (0..sides.len()).map(|at| rests(&at)).collect();
+        (0..sides.len()).all(|at| match sides[at] {
+            0 => rest != Rest::Still || choice.is_solved || is_still(&at),
+            side => f64::from(side) * moved[at] > 0.0 || choice.rests[at],
+        })
+    }
+
+    /// By how much the functions of the surfaces change in a short step with some modes.
+    fn moved(&mut self, choice: &Choice) -> Vec<f64> {
         let before = (self.field.modes.clone(), self.field.selectors.clone());
         let of_balls = (self.field.departure.clone(), self.field.direction.clone());
         choice.begin(self.field, self.surfaces, self.t);
@@ -240,21 +273,27 @@ impl Corner<'_, '_> {
         let psi = self.field.psi(self.t + h, &end);
         (self.field.modes, self.field.selectors) = before;
         (self.field.departure, self.field.direction) = of_balls;
-        let rests = |psi: f64| rest == Rest::Told && psi == 0.0;
-        self.surfaces
-            .iter()
-            .zip(sides)
-            .all(|(&i, &side)| side == 0 || f64::from(side) * psi[i] > 0.0 || rests(psi[i]))
+        self.surfaces.iter().map(|&i| psi[i] - self.normals.psi[i]).collect()
     }
 }
 
 impl Choice {
+    /// Whether the state stays where it is, though nothing holds it.
+    fn rests(&self) -> bool {
+        self.rests.contains(&true) && !self.modes.contains(&Mode::Sliding)
+    }
+
     /// Puts a field into these modes.
     fn begin(&self, field: &mut Field, surfaces: &[usize], t: f64) {
         self.note_directions(field, surfaces);
-        for (&surface, &mode) in surfaces.iter().zip(&self.modes) {
+        for (at, (&surface, &mode)) in surfaces.iter().zip(&self.modes).enumerate() {
             field.set_mode(surface, mode);
             field.departure[surface] = t;
+            if mode == Mode::Sliding && !self.is_solved {
+                // No equation has this selector: it is tried as it is.
+                field.set_mode(surface, Mode::Held);
+                field.selectors[surface] = self.s[at];
+            }
         }
     }
 

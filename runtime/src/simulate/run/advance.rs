@@ -127,7 +127,7 @@ impl Run<'_> {
         if self.options.integrator == Integrator::Automatic && self.field.moving().is_empty() {
             self.pace.choose(step, self.options.rtol);
         }
-        if let Some(found) = self.first_event(step) {
+        if let Some(found) = self.first_event(step)? {
             self.go(step, [step.t + found.h, found.h], &found.state);
             if let Condition::Reaches(surface) = found.condition
                 && found.is_jump
@@ -155,20 +155,21 @@ impl Run<'_> {
 
     /// The first event in a step, which becomes shorter where it is not known beyond.
     /// Kinks that follow each other without any way between them are not looked for after a while.
-    fn first_event(&mut self, step: &mut Step) -> Option<location::Found> {
+    fn first_event(&mut self, step: &mut Step) -> Result<Option<location::Found>, Status> {
         self.field.is_blind = self.pace.kinks > MOST_BENDS;
         let found = loop {
             match location::first(&mut self.field, step) {
                 First::None => break None,
                 First::At(found) => break Some(found),
                 First::NotBefore(theta) => step.attempt(&mut self.field, theta * step.h),
+                First::Unresolved => return Err(Status::StepLimit),
             }
         };
         let is_bend = |it: &location::Found| matches!(it.condition, Condition::CrossesKink(_));
         let is_there = |it: &location::Found| it.h <= SAME_TIME * step.t.abs();
         let is_idle = found.as_ref().is_some_and(|it| is_bend(it) && is_there(it));
         self.pace.kinks = if is_idle { self.pace.kinks + 1 } else { 0 };
-        found
+        Ok(found)
     }
 
     /// Goes to the state at a time, `h` after the beginning of a step.

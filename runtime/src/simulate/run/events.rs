@@ -9,6 +9,7 @@ use crate::simulate::modes::decide;
 use crate::simulate::result::{Event, EventKind, Status};
 use crate::simulate::tuning::events::{AT_EXIT, CLEAR, MOST_AT_ONCE, SMALL_WAY};
 use crate::simulate::tuning::field::ON_SURFACE;
+use std::collections::BTreeSet;
 
 impl Run<'_> {
     /// What follows where a condition ceases to hold.
@@ -70,16 +71,20 @@ impl Run<'_> {
 
     /// Decides the modes at a point on some surfaces, with the jumps that follow.
     pub fn settle(&mut self, mut surfaces: Vec<usize>) -> Result<(), Status> {
+        let known = self.record.events.len();
         for _ in 0..MOST_AT_ONCE {
             surfaces.retain(|&surface| !self.stays_beside(surface));
-            let modes = decide(&mut self.field, self.t, &self.x, &surfaces)?;
-            let jump = surfaces.iter().zip(&modes).find_map(|(&i, &mode)| self.jump_at(i, mode));
+            let next = decide(&mut self.field, self.t, &self.x, &surfaces)?;
+            let crossed = next.iter().filter(|it| !it.rests);
+            let jump = crossed.clone().find_map(|it| self.jump_at(it.surface, it.mode));
             let Some(jump) = jump else {
-                surfaces.iter().zip(modes).for_each(|(&i, mode)| self.change(i, mode));
+                crossed.for_each(|it| self.change(it.surface, it.mode));
+                let at_rest = next.iter().filter(|it| it.rests);
+                at_rest.for_each(|it| self.field.set_mode(it.surface, it.mode));
                 let mut x = std::mem::take(&mut self.x);
                 self.field.project(self.t, &mut x);
                 self.x = x;
-                return self.end_of_crossings(&surfaces);
+                return self.end_of_crossings(known);
             };
             self.jump(jump)?;
             surfaces = self.surfaces_here();
@@ -94,17 +99,17 @@ impl Run<'_> {
         self.reach_zeno_point(jump, self.t)
     }
 
-    /// A surface that is crossed ever faster ends the simulation like jumps that accumulate.
-    fn end_of_crossings(&mut self, surfaces: &[usize]) -> Result<(), Status> {
+    /// A surface that is crossed ever faster ends the simulation like jumps that accumulate; of all
+    /// events the first ones are known.
+    fn end_of_crossings(&mut self, known: usize) -> Result<(), Status> {
         let [first, last] = self.field.system.interval;
-        let here = self.record.events.iter().rev().take_while(|event| event.time == self.t);
         let is_crossing =
             |event: &&Event| matches!(event.kind, EventKind::CrossesUp | EventKind::CrossesDown);
-        let crossed: Vec<usize> = here.filter(is_crossing).map(|event| event.surface).collect();
-        for &surface in surfaces.iter().filter(|surface| crossed.contains(surface)) {
-            if let Some(limit_time) =
-                self.crossing_times[surface].limit(self.t, last - first, false)
-            {
+        let crossings = self.record.events[known..].iter().filter(is_crossing);
+        let crossed: BTreeSet<usize> = crossings.map(|event| event.surface).collect();
+        for surface in crossed {
+            let limit = self.crossing_times[surface].limit(self.t, last - first, false);
+            if let Some(limit_time) = limit {
                 return Err(Status::Zeno { jump: None, surface, limit_time });
             }
         }
@@ -134,6 +139,7 @@ impl Run<'_> {
         let margin = self.margin(surface);
         let after = self.field.reset(jump, self.t, &self.x);
         let before = std::mem::replace(&mut self.x, after);
+        self.field.tolerance.jump(&before, &self.x);
         self.jumps[jump] += 1;
         let sides = [Mode::Above, Mode::Below];
         let [back, onward] = if of.is_falling { sides } else { [sides[1], sides[0]] };

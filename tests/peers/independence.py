@@ -19,7 +19,7 @@ SAME = 1e-8
 
 HEAD = '''# Where the search begins
 
-The optimum of the true system does not depend on the smoothed problem, but what is found first does. {models} models of `tests/classics/switched` were solved as they are, then with first widths {widths} (`--method continue=W --method sigma=0`) and `N` = {grids}: {runs}
+The optimum of the true system does not depend on the smoothed problem, but what is found first does: `fdcc/src/solve/true_optimum/structure.rs` reads the modes and arcs to begin with from it. {models} models of `tests/classics/switched` were solved as they are, then with first widths {widths} (`--method continue=W --method sigma=0`) and `N` = {grids}: {runs}
 runs each. This page is written by
 
 ```sh

@@ -93,8 +93,8 @@ impl Search<'_> {
         .collect()
     }
 
-    /// What is held at the last time may be left by other controls than its own. The derivative does
-    /// not know whether these leave it to that side, so that its worth is tried.
+    /// What is held at the last time may be left by other controls than its own. The derivative
+    /// does not know whether these leave it to that side, so that its worth is tried.
     fn departures_at_the_end(&self, located: &Located) -> Vec<Candidate> {
         let phases = &located.structure.phases;
         let (last, behind) = (&phases[phases.len() - 1], phases.len());

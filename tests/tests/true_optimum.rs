@@ -339,6 +339,41 @@ fn controls_that_are_best_only_near_themselves_are_not_certified() {
     assert_eq!(solution.status_name(), "uncertified");
 }
 
+/// `u = w = 1` is better by 1 than 0, though neither is alone; and a dead zone is left for what is
+/// worth it, in whatever unit the objective is.
+#[test]
+fn controls_that_are_better_together_or_in_small_units_are_seen() {
+    let joint = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]\ncontrol w in [-1, 1]\n\
+                 dynamics { x' = u + w }\n\
+                 minimize integral(u^2 + w^2 - 3*u^2*w^2 + 0.001*x^2)\n";
+    let zone = "time t in [0, 1]\nstate x start 0\ncontrol u in [-3, 3]\n\
+                dynamics { x' = piecewise { u <= -1 => u + 1\n u <= 1 => 0\n otherwise => u - 1 } \
+                }\nminimize 1e-9*(integral(0.01*u^2) + (x(end) - 1)^2)\n";
+    for text in [joint, zone] {
+        let model = Model::from_text("together", text).expect("it has no mistakes");
+        let solution = model.solve(&Options::default()).expect("it can be solved");
+        assert!(!solution.is_certified(), "{text}: {}", solution.objective());
+    }
+}
+
+/// A touch that is not worth it, and a hold that other controls at the end would leave: both are
+/// stationary, and were found from this width and grid.
+#[test]
+fn what_is_stationary_but_no_optimum_is_left() {
+    for name in ["switched/dip", "switched/load_lets_go"] {
+        let path = place(name).expect("a kind of models");
+        let model = Model::from_file(path.to_str().expect("a path")).expect("it has no mistakes");
+        let keys = [("continue", "0.3"), ("sigma", "0"), ("N", "100")];
+        let model =
+            keys.iter().fold(model, |it, (key, value)| it.with_method(key, *value).expect("a key"));
+        let solution = model.solve(&Options::default()).expect("it can be solved");
+        let all = references();
+        let reference = all.iter().find(|it| it.name == name).expect("a reference").objective;
+        assert!(solution.is_certified(), "{name}");
+        assert!(relative(solution.objective(), reference) < RIGHT, "{name}");
+    }
+}
+
 /// `sigma = 0` in a model, or in its place, asks for the true system.
 #[test]
 fn a_width_of_zero_is_none() {

@@ -82,7 +82,7 @@ pub struct Document {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub starts: Vec<Ended>,
     /// To which optima of the system that was written they lead; absent where these were not
-    /// looked for, or there is one only.
+    /// looked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub families: Vec<Family>,
     /// What the estimates of a fit are worth; absent where no squares over rows of data are

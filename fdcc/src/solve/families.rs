@@ -43,7 +43,7 @@ pub(super) fn best(model: &Model, first: Found, others: Vec<Found>, options: &Op
     };
     let mut counts = vec![count(&first)];
     let mut all = vec![located::solution(model, first, options)];
-    if all[0].certificate.is_none() || others.is_empty() {
+    if all[0].certificate.is_none() || starts.is_empty() {
         return all.remove(0);
     }
     for other in others.into_iter().take(MOST_FAMILIES - 1) {

@@ -42,7 +42,8 @@ pub fn elsewhere(chain: &Chain, outcome: &ChainOutcome) -> Vec<Start> {
     for (at, (phase, problem)) in outcome.phases.iter().zip(&chain.phases).enumerate() {
         let (trajectory, solution) = (&phase.trajectory, &phase.solution);
         let (hamiltonian, time) = (&trajectory.hamiltonian, &trajectory.time);
-        if hamiltonian.has_to_be_least(problem, solution) {
+        let is_violated = hamiltonian.violations.iter().any(|part| *part > 0.0);
+        if is_violated && hamiltonian.has_to_be_least(problem, solution) {
             let duration = time[time.len() - 1] - time[0];
             let nlp = nlp.phase_at(at, &whole.v);
             let it = Elsewhere::new(nlp, solution, (duration, hamiltonian));

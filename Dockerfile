@@ -6,7 +6,8 @@ FROM rust:1.95-slim AS build
 RUN apt-get update && apt-get install --yes --no-install-recommends git && rm -rf /var/lib/apt/lists/*
 COPY . /source
 WORKDIR /source
-RUN cargo build --release --locked --package fdcc-cli
+# The compiler of the image, not the newest one that `rust-toolchain.toml` asks for.
+RUN rm rust-toolchain.toml && cargo build --release --locked --package fdcc-cli
 
 FROM debian:stable-slim
 COPY --from=build /source/target/release/fdcc /usr/local/bin/fdcc

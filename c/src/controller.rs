@@ -117,9 +117,8 @@ impl Controller {
             Ok(found) => found,
             Err(error) => return self.wrong(&error.to_string()),
         };
-        for (value, column) in controls.iter_mut().zip(&found.outcome.trajectory.controls) {
-            *value = column.first().copied().unwrap_or(f64::NAN);
-        }
+        let (first, _) = found.first_controls();
+        controls.iter_mut().zip(first).for_each(|(value, first)| *value = first);
         let status = match found.status() {
             fdcc::Status::TimeLimit => Status::TimeLimit,
             _ if found.is_solved() => Status::Solved,

@@ -132,5 +132,5 @@ pub fn simulation(simulated: &Simulation, model: &Model) -> String {
 /// second derivatives if they are wanted.
 pub fn gradient(of: &str, found: &Gradient, has_second: bool, model: &Model) -> String {
     let document = gradients::GradientDocument::new(of, found, has_second, model);
-    output::json(&document.in_units(model.meaning().into()))
+    output::json(&document.in_units(model.into()))
 }

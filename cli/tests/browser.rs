@@ -99,4 +99,8 @@ fn pages_are_drawn_without_complaints_and_fit_every_width() {
     let both = ["report", "block.sol.json", "ramp.sol.json", "--out", "both.html"];
     expect_exit(&fdcc(&folder, &both, ""), 0, "report");
     look(browser, &folder.join("both.html"));
+    expect_exit(&fdcc(&folder, &["simulate", &models[1], "--out", "."], ""), 0, "simulate");
+    look(browser, &folder.join("bounce.sim.html"));
+    expect_exit(&fdcc(&folder, &["mpc", "ramp.fdc", "--steps", "3", "--out", "."], ""), 0, "mpc");
+    look(browser, &folder.join("ramp.mpc.html"));
 }

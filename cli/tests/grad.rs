@@ -392,3 +392,26 @@ fn a_gradient_along_a_kink_is_not_trusted() {
     );
     assert_eq!(across["trusted"], true);
 }
+
+/// `y` is 1 where the jump finds it, as `p` is.
+#[test]
+fn a_jump_on_a_kink_has_no_derivative_to_trust() {
+    for (assigned, is_kink) in [
+        ("max(y, 1)", true),
+        ("max(p, 1)", true),
+        ("2 + abs(y - p/2 - 0.5)", true),
+        ("max(y, 0.5)", false),
+        ("max(q, 1)", false),
+        ("y^2 + p", false),
+    ] {
+        let text = format!(
+            "param p = 1  param q = 1  time t in [0, 2]  state x start 0  state y start p\nsurface \
+             s = x - 1\ndynamics {{ x' = 1\n y' = 0 }}\njump hit on s rising {{ y := {assigned} \
+             }}\nminimize y(end)\n"
+        );
+        let found = found("grad_reset_kink", &text, &["--wrt", "p"], if is_kink { 2 } else { 0 });
+        assert_eq!(found["trusted"], !is_kink, "{assigned}: {found}");
+        let said = found["warnings"].to_string().contains("the jump at t = 1 is on a kink");
+        assert_eq!(said, is_kink, "{assigned}: {found}");
+    }
+}

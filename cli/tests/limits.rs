@@ -133,7 +133,38 @@ fn a_start_that_is_not_whole_is_refused() {
     let whole = solved(&place);
     let reversed: Vec<Value> =
         whole["time"].as_array().expect("times").iter().rev().cloned().collect();
-    let spoilt: [(&str, &str, Value, &str); 8] = [
+    let nodes = |time: Value, u: Value| json!({"time": time, "values": {"u": u}});
+    let spoilt: [(&str, &str, Value, &str); 13] = [
+        (
+            "control_nodes",
+            "",
+            nodes(json!([0.1, 1.9]), json!([1, 1])),
+            "`control_nodes` have 1.9, outside of its times",
+        ),
+        (
+            "control_nodes",
+            "",
+            nodes(json!([0.9, 0.1]), json!([1, 1])),
+            "`control_nodes` must ascend, but 0.1 follows 0.9",
+        ),
+        (
+            "control_nodes",
+            "",
+            nodes(json!([0.1, 0.9]), json!([1])),
+            "`control_nodes.values.u` has 1 values where there should be 2",
+        ),
+        (
+            "control_nodes",
+            "",
+            nodes(json!([0.1, 0.9]), json!([1, null])),
+            "value 2 of `control_nodes.values.u` is no number",
+        ),
+        (
+            "control_nodes",
+            "",
+            json!({"time": [0.1, 0.9], "values": {}}),
+            "`control_nodes` has no values of `u`",
+        ),
         ("states", "x", json!([0.0, null, 0.5, 0.75, 1.0]), "value 2 of `states.x` is no number"),
         ("states", "x", json!([0.0, 0.25, 0.5]), "`states.x` has 3 values where there should be 5"),
         (
@@ -361,7 +392,7 @@ fn conditions_and_surfaces_count() {
 fn what_is_no_number_before_it_is_simplified_is_refused() {
     let bounds = ["0*inf", "inf/inf", "inf^0", "1/inf", "(1 - 1)*inf"];
     let bounds = bounds.map(|it| RAMP.replace("[-4, 4]", &format!("[0, {it}]")));
-    let ratios = ["p/p", "3 + 2*(p/p)", "(p/p)^2"];
+    let ratios = ["p/p", "3 + 2*(p/p)", "(p/p)^2", "2*p/p", "p^2/p", "p*(1/p)", "0/p", "1/(1/p)"];
     let ratios = ratios.map(|it| format!("{RAMP}param p = 0\nparam z = {it}\n"));
     for text in bounds.iter().chain(&ratios) {
         let place = folder("limits_no_number", &[("m.fdc", text.as_bytes())]);
@@ -369,7 +400,10 @@ fn what_is_no_number_before_it_is_simplified_is_refused() {
         expect_exit(&output, 1, text);
         assert!((stdout(&output) + &stderr(&output)).contains("FDC0411"), "{text}");
     }
-    let right = RAMP.replace("[-4, 4]", "[-4, inf]") + "param p = 2\nparam z = p/p\n";
-    let place = folder("limits_number", &[("m.fdc", right.as_bytes())]);
-    expect_exit(&fdcc(&place, &["check", "m.fdc"], ""), 0, &right);
+    let chosen = "param p = 0\nlet z = piecewise { p > 0 => 2*p/p  otherwise => 1 }\n";
+    for more in ["param p = 2\nparam z = 2*p/p\n", chosen] {
+        let right = RAMP.replace("[-4, 4]", "[-4, inf]") + more;
+        let place = folder("limits_number", &[("m.fdc", right.as_bytes())]);
+        expect_exit(&fdcc(&place, &["check", "m.fdc"], ""), 0, &right);
+    }
 }

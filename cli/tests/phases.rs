@@ -77,6 +77,38 @@ fn problems_of_the_literature_meet_their_expectations() {
     assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
 }
 
+/// A solution in a file is confirmed as it was when it was found; one whose phases do not fit each
+/// other is not.
+#[test]
+fn a_solution_with_phases_is_verified_from_its_file() {
+    let folder = folder("phases_verify", &[("hop.fdc", HOP)]);
+    let output = fdcc(&folder, &["solve", "hop.fdc", "--out", "out", "--log", "none"], "");
+    expect_exit(&output, 0, "solve");
+    let verified = json(&fdcc(&folder, &["verify", "out/hop.sol.json", "hop.fdc", "--json"], ""));
+    let solved = std::fs::read_to_string(folder.join("out/hop.sol.json")).expect("it is there");
+    let mut solved: Value = serde_json::from_str(&solved).expect("it is JSON");
+    for field in ["confirmed", "phase_by_phase", "state_gap", "relative_violation"] {
+        assert_eq!(verified["verification"][field], solved["verification"][field], "{field}");
+    }
+    assert_eq!(verified["phases"]["down"]["verification"]["confirmed"], true);
+    assert!(number(&verified["links"]["up -> down: h"]["relative"]) < 1e-9);
+    let output = fdcc(&folder, &["verify", "out/hop.sol.json", "hop.fdc"], "");
+    assert!(stdout(&output).starts_with(" confirmed on the true system, phase by phase: "));
+    // The second phase begins a metre higher than the first one ends.
+    let heights = solved["phases"]["down"]["states"]["h"].as_array_mut().expect("a signal");
+    heights[0] = serde_json::json!(number(&heights[0]) + 1.0);
+    std::fs::write(folder.join("off.sol.json"), solved.to_string()).expect("it is written");
+    let off = fdcc(&folder, &["verify", "off.sol.json", "hop.fdc", "--json"], "");
+    expect_exit(&off, 2, "verify");
+    assert!(number(&json(&off)["links"]["up -> down: h"]["violation"]) > 0.99);
+    // One without a phase is refused.
+    solved["phases"].as_object_mut().expect("phases").remove("down");
+    std::fs::write(folder.join("half.sol.json"), solved.to_string()).expect("it is written");
+    let half = fdcc(&folder, &["verify", "half.sol.json", "hop.fdc"], "");
+    expect_exit(&half, 4, "verify");
+    assert!(stderr(&half).contains("it has no phase `down`"), "{}", stderr(&half));
+}
+
 #[test]
 fn files_are_written_for_each_phase() {
     let folder = folder("phases_files", &[("hop.fdc", HOP)]);

@@ -52,6 +52,8 @@ dynamics {
 path lim: x + y <= 5 [mm]
 path x <= 5
 path v <= 2*c
+path -1 <= x <= 3
+path 4 >= x
 minimize integral(u^2) / 1 [mm^2/s^3]
 ";
 
@@ -76,6 +78,8 @@ fn numbers_are_in_declared_units_and_formulas_in_si() {
         "lim [mm] <= 5",
         "x <= 5 (<= 5 mm)",
         "v <= 2*c (<= 0.2 m/s)",
+        "-1 <= x <= 3 (in [-1, 3] mm)",
+        "4 >= x (<= 4 mm)",
     ];
     words.iter().for_each(|it| assert!(shown.contains(it), "no {it} in {shown}"));
     for stage in ["model", "graph", "derivatives"] {

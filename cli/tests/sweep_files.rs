@@ -25,9 +25,11 @@ fn merged(folder: &Path, name: &str) -> String {
     stdout(&output)
 }
 
+/// The files of rows; beside them stands a page.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).expect("a folder").map(|it| it.expect("a file").path());
-    let mut files: Vec<PathBuf> = entries.collect();
+    let is_rows = |path: &PathBuf| path.extension().is_some_and(|it| it == "jsonl");
+    let mut files: Vec<PathBuf> = entries.filter(is_rows).collect();
     files.sort();
     files
 }

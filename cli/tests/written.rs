@@ -247,6 +247,27 @@ fn ctrl_c_writes_no_row_that_never_ran_and_counts_those_that_did() {
 }
 
 #[test]
+fn ctrl_c_prints_no_row_that_was_cut_off() {
+    let place = folder("written_table", &[]);
+    let racecar = model("racecar");
+    let rows = format!("muN={}", vec!["1"; 200].join(","));
+    let arguments = ["sweep", &racecar, &rows, "--jobs", "2", "--json", "--method", "N=400"];
+    let mut child = start(&place, &arguments);
+    let mut lines = BufReader::new(child.stderr.take().expect("piped")).lines();
+    assert!(lines.any(|line| line.expect("text").contains("row 1 solved")), "a row is solved");
+    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(kill.expect("kill runs").success());
+    let said: Vec<String> = lines.map(|line| line.expect("text")).collect();
+    let output = child.wait_with_output().expect("it ends");
+    expect_exit(&output, 2, "interrupted");
+    let rows = json(&output);
+    let rows = rows.as_array().expect("rows");
+    assert!(!rows.is_empty() && rows.iter().all(|row| row["status"] == "solved"), "{rows:?}");
+    let counted = format!("interrupted: {} of 200 rows ran", rows.len());
+    assert!(said.iter().any(|line| line.contains(&counted)), "{said:?}");
+}
+
+#[test]
 fn ctrl_c_counts_the_starts_that_ran() {
     let place = folder("written_starts", &[]);
     let racecar = model("racecar");

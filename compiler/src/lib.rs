@@ -26,9 +26,10 @@ pub use analyze::{Analysis, Checked, analyze, analyze_with, check, check_with};
 pub use compile::alike::Alike;
 pub use compile::chain::{
     ChainCode, ChainExpectations, chain_expectations, compile_chain, compile_chain_by_parameters,
-    compile_chain_like,
+    compile_chain_like, integrands,
 };
 pub use compile::dump::{Stage, dump};
+pub use compile::emit::emit_c;
 pub use compile::residuals::{Residuals, residuals};
 pub use compile::{Expectations, expectations};
 pub use compile::{ProblemCode, compile, compile_by_parameters};
@@ -39,8 +40,9 @@ pub use expressions::{graph, interval, kernels};
 pub use lower::{Expected, LoweredProblem};
 pub use model::{Model, Phase, Switch};
 pub use phases::{
-    Arc, Limit, Mode, PhaseOfModes, Point, Sequences, between_jumps, crossings, ends_at,
-    hamiltonian, is_uncontrolled, limits, may_hold, sequences, with_modes, with_phases, with_times,
+    Arc, HoldNormals, Limit, Mode, NormalsAt, PhaseOfModes, Point, Sequences, Slopes,
+    between_jumps, crossings, ends_at, hamiltonian, is_uncontrolled, limits, may_hold, sequences,
+    with_modes, with_modes_in_phases, with_phases, with_times,
 };
 pub use settings::is_key as is_method_key;
 pub use surfaces::{Order, Smoothness, SurfaceClass, SurfaceReport, smoothness, surfaces};

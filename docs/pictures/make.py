@@ -20,6 +20,10 @@ FOLDER = Path(__file__).resolve().parent
 SIZES = [(400, 1500), (1200, 1700), (1920, 1500)]
 MODELS = ["racecar", "block", "bounce", "slider_fit"]
 SWEEP = ["sweep", "block.fdc", "mu=0.1,0.2,0.3", "--out", "all", "--trajectories", "--log", "none"]
+# One look at each is enough.
+PRODUCT = ["sweep", "block.fdc", "mu=0.05:0.05:0.6", "m=0.5:0.25:3", "sigma=0.1", "N=50", "--product",
+           "--out", "product", "--log", "none"]
+FOLLOW = (ROOT / "docs" / "real-time.md").read_text().split("```fdc\n")[1].split("```")[0]
 DARK = ["--force-dark-mode", "--blink-settings=preferredColorScheme=0"]
 
 
@@ -66,6 +70,13 @@ def main():
             for width, height in SIZES:
                 picture = FOLDER / f"{name}-{width}.png"
                 shoot(folder / f"{name}.html", picture, width, height)
+        (folder / "follow.fdc").write_text(FOLLOW)
+        run("mpc", "follow.fdc", "--steps", "60", "--out", ".")
+        shoot(folder / "block.mpc.html", FOLDER / "mpc-1200.png", 1200, 820)
+        # Some rows need more force than there is, which is exit code 2.
+        subprocess.run([fdcc, *PRODUCT], capture_output=True, cwd=folder)
+        [page] = (folder / "product").glob("*.html")
+        shoot(page, FOLDER / "product-1200.png", 1200, 620)
         dark = FOLDER / "block-dark.png"
         shoot(folder / "block.html", dark, 1200, 1000, *DARK)
     shoot_site()

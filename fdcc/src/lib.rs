@@ -15,11 +15,13 @@
 //! All numbers are in SI. An `Err` is a wrong model or a wrong call; that nothing was found is a
 //! status. Nothing here prints, and files are read by [`Model::from_file`] and [`DataFiles`] alone.
 
+mod closed_loop;
 mod error;
 mod estimates;
 mod executor;
 mod expectations;
 mod gradient;
+pub mod language;
 mod model;
 pub mod names;
 mod plant;
@@ -30,6 +32,7 @@ mod solve;
 mod verification;
 mod warm_start;
 
+pub use closed_loop::ClosedLoop;
 pub use error::Error;
 pub use estimates::{Estimate, Estimates, Residual};
 pub use executor::Executor;
@@ -37,15 +40,15 @@ pub use expectations::{Expectation, Expected, Sides};
 pub use fdcc_runtime::nlp::{Status, Stop};
 pub use fdcc_runtime::simulate::{Controls, Options as Accuracy, Polynomials};
 pub use gradient::{By, Exact, Gradient, NotBy, Stepped, by_names};
-pub use model::{Checked, DataFiles, Model, Value, check, check_with, text};
+pub use model::{Checked, DataFiles, Model, Stage, Value, check, check_with, text};
 pub use plant::Plant;
 pub use record::Record;
 pub use replay::Replay;
 pub use simulation::Simulation;
 pub use solve::true_optimum;
 pub use solve::{
-    Case, Cases, Compiled, Controller, Ended, Family, Grid, Jump, Options, Part, Phases, Report,
-    Sequence, Solution, Start, Sweep, optimality,
+    Case, Cases, Compiled, Controller, CostatesBefore, Ended, Family, Grid, Jump, Options, Part,
+    PathCondition, Phases, Reach, Report, Sequence, Solution, Start, Sweep, optimality,
 };
 pub use verification::{Condition, Gap, LinkGap, Stay, TIME_OF, Verification, modes};
 

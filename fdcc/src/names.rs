@@ -20,6 +20,11 @@ pub fn status_name(status: &Status, is_impossible: bool) -> &'static str {
     }
 }
 
+/// [`Status::is_solved`] of a status by its name, where only that is known.
+pub fn is_solved(name: &str) -> bool {
+    [Status::Solved, Status::Acceptable].iter().any(|it| status_name(it, false) == name)
+}
+
 /// The name of a mode in files and verdicts.
 pub fn mode_name(mode: Mode) -> &'static str {
     match mode {
@@ -40,5 +45,26 @@ pub fn event_name(kind: EventKind) -> &'static str {
         EventKind::Passes => "passes",
         EventKind::Jump(_) => "jump",
         EventKind::StartsSliding => "starts_sliding",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_says_of_a_status_whether_it_is_solved() {
+        for status in [
+            Status::Solved,
+            Status::Acceptable,
+            Status::Infeasible,
+            Status::Unbounded,
+            Status::IterationLimit,
+            Status::TimeLimit,
+            Status::Interrupted,
+            Status::NumericalFailure,
+        ] {
+            assert_eq!(is_solved(status_name(&status, false)), status.is_solved(), "{status:?}");
+        }
     }
 }

@@ -59,14 +59,14 @@ impl Controller {
         let step = py.detach(|| {
             let mut inner = self.inner.lock().expect("nobody panics with the lock");
             let found = inner.step(&state, &options)?;
-            let first = |column: &Vec<f64>| column.first().copied().unwrap_or(f64::NAN);
+            let (controls, duration) = found.first_controls();
             let solution = &found.outcome.solution;
             Ok((
-                found.outcome.trajectory.controls.iter().map(first).collect(),
+                controls,
                 found.status_name(),
                 found.is_solved(),
                 found.objective(),
-                found.time()[1] - found.time()[0],
+                duration,
                 solution.constraint_violation,
                 solution.counts.iterations,
             ))

@@ -18,6 +18,8 @@ pub struct Agreed {
     pub snippets: bool,
     /// Whether a diagnostic may name further places.
     pub related: bool,
+    /// Whether hints are asked for again where that is wished.
+    pub refreshes_hints: bool,
 }
 
 /// Reads the parameters of `initialize`.
@@ -34,5 +36,6 @@ pub fn agree(params: &Value) -> Agreed {
         snippets: is_true("/textDocument/completion/completionItem/snippetSupport"),
         related: is_true("/textDocument/publishDiagnostics/relatedInformation")
             || is_true("/textDocument/diagnostic/relatedInformation"),
+        refreshes_hints: is_true("/workspace/inlayHint/refreshSupport"),
     }
 }

@@ -8,7 +8,7 @@ use crate::pages;
 use crate::runner::Job;
 use crate::state::State;
 use lsp_server::Request;
-use lsp_types::{ExecuteCommandParams, Uri};
+use lsp_types::{ExecuteCommandParams, InlayHintRefreshRequest, Uri};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError};
@@ -32,9 +32,16 @@ fn begin(state: &State, client: &Client, job: Job) -> Result<(), Failure> {
         .map_err(|error| Failure::request(format!("fdcc cannot be started: {error}")))?;
     let list = state.commands.running.clone();
     list.lock().unwrap_or_else(PoisonError::into_inner).push(running.clone());
-    let client = client.clone();
+    let (client, results) = (client.clone(), state.results.clone());
+    let refreshes_hints = state.agreed.refreshes_hints;
     std::thread::spawn(move || {
         let result = running.follow(&client, &job);
+        if let (true, Ok(printed)) = (job.arguments[0] == "solve", &result) {
+            results.keep(&job.uri, &job.text, printed["output"].as_str().unwrap_or_default());
+            if refreshes_hints {
+                client.ask::<InlayHintRefreshRequest>(());
+            }
+        }
         list.lock().unwrap_or_else(PoisonError::into_inner).retain(|it| !Arc::ptr_eq(it, &running));
         client.answer(job.id, result);
     });
@@ -79,8 +86,8 @@ fn subject(state: &State, uri: &Uri) -> Result<(Arc<str>, String), Failure> {
         ));
     }
     let snapshot = document.snapshot();
-    match &snapshot.analysis.model {
-        Some(model) => Ok((snapshot.text.text.clone(), model.name.clone())),
+    match snapshot.model_name() {
+        Some(name) => Ok((snapshot.text.text.clone(), name.to_owned())),
         None => Err(Failure::request("this model has mistakes; mend them first")),
     }
 }

@@ -1,10 +1,11 @@
 //! What a request is answered from: the text it is about, in the words of the protocol and in those
 //! of the compiler.
 
-use crate::documents::Document;
+use crate::documents::TextDocument;
+use crate::results::Said;
 use crate::snapshot::Snapshot;
 use crate::state::State;
-use fdcc_compiler::{Model, NamedUnit};
+use fdcc::language::NamedUnit;
 use fdcc_grammar::{Edit, Span};
 use lsp_types::{Location, Position, Range, TextEdit, WorkspaceEdit};
 
@@ -13,7 +14,7 @@ pub struct Context<'s> {
     /// What is known beside it.
     pub state: &'s State,
     /// The text it is about.
-    pub document: &'s Document,
+    pub document: &'s TextDocument,
 }
 
 impl Context<'_> {
@@ -22,22 +23,21 @@ impl Context<'_> {
         self.document.snapshot()
     }
 
-    /// What the text means, or meant when it had no mistakes.
-    pub fn model(&self) -> Option<&Model> {
-        self.document.modelled()?.analysis.model.as_ref()
-    }
-
-    /// What a phase means, or meant; without a name, what stands outside of all phases.
-    pub fn model_of(&self, phase: Option<&str>) -> Option<&Model> {
-        let Some(name) = phase else { return self.model() };
-        self.model()?.phases.iter().map(|phase| &phase.model).find(|it| it.name == name)
+    /// The text, or its last state without mistakes.
+    pub fn without_mistakes(&self) -> Option<&Snapshot> {
+        self.document.modelled().map(|it| &**it)
     }
 
     /// The unit of each name; what was known before where the text has none that can be told now.
     pub fn units(&self) -> &[NamedUnit] {
-        let now = &self.snapshot().analysis.units;
-        let before = || self.document.modelled().map_or(&[][..], |it| &it.analysis.units);
+        let now = self.snapshot().units();
+        let before = || self.document.modelled().map_or(&[][..], |it| it.units());
         if now.is_empty() { before() } else { now }
+    }
+
+    /// What the last solve of this very text said.
+    pub fn said(&self) -> Option<Said> {
+        self.state.results.of(&self.document.uri, &self.snapshot().text.text)
     }
 
     /// The byte of a place.

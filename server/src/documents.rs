@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 /// One open text.
-pub struct Document {
+pub struct TextDocument {
     /// Its address.
     pub uri: Uri,
     /// The client's number for this state of it.
@@ -26,7 +26,7 @@ pub struct Document {
     is_published: bool,
 }
 
-impl Document {
+impl TextDocument {
     /// What is known about it, found out when it is first asked for.
     pub fn snapshot(&self) -> &Rc<Snapshot> {
         self.snapshot.get_or_init(|| {
@@ -39,7 +39,7 @@ impl Document {
 
     /// The last state that could be read: this one if possible.
     pub fn readable(&self) -> Option<&Rc<Snapshot>> {
-        if self.snapshot().is_readable {
+        if self.snapshot().is_readable() {
             Some(self.snapshot())
         } else {
             self.last_readable.as_ref()
@@ -48,19 +48,15 @@ impl Document {
 
     /// The last state without mistakes: this one if possible.
     pub fn modelled(&self) -> Option<&Rc<Snapshot>> {
-        if self.snapshot().analysis.model.is_some() {
-            Some(self.snapshot())
-        } else {
-            self.last_model.as_ref()
-        }
+        if self.snapshot().has_meaning() { Some(self.snapshot()) } else { self.last_model.as_ref() }
     }
 
     fn become_text(&mut self, text: Text) {
         if let Some(snapshot) = self.snapshot.take() {
-            if snapshot.is_readable {
+            if snapshot.is_readable() {
                 self.last_readable = Some(snapshot.clone());
             }
-            if snapshot.analysis.model.is_some() {
+            if snapshot.has_meaning() {
                 self.last_model = Some(snapshot);
             }
         }
@@ -72,24 +68,24 @@ impl Document {
 /// All open texts.
 #[derive(Default)]
 pub struct Documents {
-    open: BTreeMap<String, Document>,
+    open: BTreeMap<String, TextDocument>,
 }
 
 impl Documents {
     /// The text at an address, if it is open.
-    pub fn get(&self, uri: &Uri) -> Option<&Document> {
+    pub fn get(&self, uri: &Uri) -> Option<&TextDocument> {
         self.open.get(&uri.0)
     }
 
     /// All texts, in the order of their addresses.
-    pub fn all(&self) -> impl Iterator<Item = &Document> {
+    pub fn all(&self) -> impl Iterator<Item = &TextDocument> {
         self.open.values()
     }
 
     /// A text is opened, or opened anew.
     pub fn open(&mut self, uri: Uri, version: i32, text: &str, encoding: Encoding) {
         let text = Text::new(text, encoding);
-        let document = Document {
+        let document = TextDocument {
             uri: uri.clone(),
             version,
             last_readable: None,
@@ -126,7 +122,7 @@ impl Documents {
     }
 
     /// A text that has changed since something was said about it.
-    pub fn next_unpublished(&self) -> Option<&Document> {
+    pub fn next_unpublished(&self) -> Option<&TextDocument> {
         self.open.values().find(|document| !document.is_published)
     }
 

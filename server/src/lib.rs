@@ -20,6 +20,7 @@ mod documents;
 mod features;
 mod pages;
 mod reader;
+mod results;
 mod runner;
 mod session;
 mod signals;

@@ -3,6 +3,7 @@
 use crate::agreed::Agreed;
 use crate::client::Client;
 use crate::documents::Documents;
+use crate::results::Results;
 use crate::runner::Running;
 use lsp_server::RequestId;
 use lsp_types::{ProgressToken, Uri};
@@ -19,6 +20,8 @@ pub struct State {
     pub documents: Documents,
     /// What runs.
     pub commands: Commands,
+    /// What solves have said.
+    pub results: Results,
     /// `fdcc`.
     pub program: PathBuf,
 }
@@ -26,8 +29,8 @@ pub struct State {
 impl State {
     /// With nothing open.
     pub fn new(client: Client, program: PathBuf) -> Self {
-        let (agreed, documents, commands) = Default::default();
-        State { client, agreed, documents, commands, program }
+        let (agreed, documents, commands, results) = Default::default();
+        State { client, agreed, documents, commands, results, program }
     }
 }
 

@@ -25,8 +25,12 @@ esac
 ";
 
 fn program(name: &str) -> PathBuf {
+    program_of(name, PROGRAM)
+}
+
+fn program_of(name: &str, text: &str) -> PathBuf {
     let path = std::env::temp_dir().join(format!("fdcc-{name}-{}", std::process::id()));
-    fs::write(&path, PROGRAM).expect("a script can be written");
+    fs::write(&path, text).expect("a script can be written");
     fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("it can be run");
     path
 }
@@ -73,6 +77,47 @@ fn a_command_tells_how_it_goes_and_what_came_out() {
         _ => None,
     });
     assert_eq!(shown, Some(json!("solved 4 lines, -")));
+    assert!(client.end());
+    fs::remove_file(program).expect("the script is there");
+}
+
+/// A program that solves a block, as `fdcc` prints it.
+const SOLVES: &str = "#!/bin/sh
+cat >/dev/null
+echo ' done  local optimum of the true system, 2 switches located'
+echo '       objective 65.9568257 N^2 s'
+echo ' slip  held 0-1.568, above 1.568-2.996, held 2.996-4 s'
+";
+
+const BLOCK: &str = "model block\ntime t in [0, 4]\nstate v start 0\ncontrol F in [-9, 9]\n\
+    surface slip = v\ndynamics { v' in F - Sgn(slip) }\nminimize integral(F^2)\n";
+
+#[test]
+fn what_a_solve_said_stands_in_its_text_and_in_no_other() {
+    let program = program_of("results", SOLVES);
+    let mut client = Client::connect_with(&program.display().to_string());
+    let capabilities = json!({ "workspace": { "inlayHint": { "refreshSupport": true } } });
+    client.result("initialize", json!({ "capabilities": capabilities }));
+    client.open(URI, BLOCK);
+    let range = json!({ "start": { "line": 0, "character": 0 },
+        "end": { "line": 9, "character": 0 } });
+    let about = json!({ "textDocument": { "uri": URI }, "range": range });
+    let hints =
+        |client: &mut Client| client.result("textDocument/inlayHint", about.clone()).to_string();
+    let hover = |client: &mut Client| {
+        client.result("textDocument/hover", client::at(URI, 4, 9)).to_string()
+    };
+    assert!(!hints(&mut client).contains("65.95") && !hover(&mut client).contains("last solve"));
+    client.result("workspace/executeCommand", command("fdcc.solve"));
+    let shown = hints(&mut client);
+    assert!(shown.contains("done: local optimum of the true system, 65.9568257 N^2 s"), "{shown}");
+    assert!(shown.contains("held 0-1.568, above 1.568-2.996, held 2.996-4 s"), "{shown}");
+    assert!(hover(&mut client).contains("the last solve: held 0-1.568"));
+    let refresh = "workspace/inlayHint/refresh";
+    let is_refresh = |it: &Message| matches!(it, Message::Request(it) if it.method == refresh);
+    assert!(client.heard.iter().any(is_refresh));
+    client.change(URI, 2, json!([{ "text": BLOCK.replace("[-9, 9]", "[-8, 8]") }]));
+    assert!(!hints(&mut client).contains("65.95") && !hover(&mut client).contains("last solve"));
     assert!(client.end());
     fs::remove_file(program).expect("the script is there");
 }

@@ -109,7 +109,7 @@ def bounds_of(problem, side):
 
 
 def optimise(problem, variables, sense, objective, rows, verbose):
-    """Hands the programme to IPOPT."""
+    """Hands the program to IPOPT."""
     n = problem.N
     guess_of_time = problem.duration if problem.duration is not None else problem.unknowns[0][2]
     first = [value for k in range(n + 1) for value in problem.first_state(k / n, guess_of_time)]
@@ -118,8 +118,8 @@ def optimise(problem, variables, sense, objective, rows, verbose):
     expressions = [ca.vec(row[0]) for row in rows]
     low = ca.vertcat(*(ca.repmat(ca.DM(row[1]), e.numel(), 1) for row, e in zip(rows, expressions)))
     high = ca.vertcat(*(ca.repmat(ca.DM(row[2]), e.numel(), 1) for row, e in zip(rows, expressions)))
-    programme = {'x': ca.veccat(*variables), 'f': objective, 'g': ca.vertcat(*expressions)}
-    solver = ca.nlpsol('solver', 'ipopt', programme, {
+    program = {'x': ca.veccat(*variables), 'f': objective, 'g': ca.vertcat(*expressions)}
+    solver = ca.nlpsol('solver', 'ipopt', program, {
         'print_time': False, 'ipopt.sb': 'yes', 'ipopt.print_level': 5 if verbose else 0, 'ipopt.tol': 1e-8,
         'ipopt.bound_relax_factor': 0, 'ipopt.max_iter': 3000})
     found = solver(x0=first, lbx=bounds_of(problem, 0), ubx=bounds_of(problem, 1), lbg=low, ubg=high)

@@ -159,7 +159,8 @@ class System:
         step = np.abs(np.diff(psi))
         for k in range(1, len(grid) - 1):
             is_extremum = (psi[k] - psi[k - 1]) * (psi[k + 1] - psi[k]) <= 0
-            if not is_extremum or abs(psi[k]) > 2 * max(step[k - 1], step[k]) + DELICATE:
+            # The two nearest steps may be small where the grid is uneven, and the peak between them high.
+            if not is_extremum or abs(psi[k]) > 2 * max(step[max(0, k - 3):k + 3]) + DELICATE:
                 continue
             sign = 1 if psi[k] >= max(psi[k - 1], psi[k + 1]) else -1
             best = minimize_scalar(lambda t: -sign * value(t), bounds=(grid[k - 1], grid[k + 1]), method="bounded",

@@ -12,6 +12,7 @@ import true_optimum_race as race
 import true_optimum_struck as struck
 import true_optimum_surfaces as surfaces
 import true_optimum_switched as switched
+import true_optimum_textbook as textbook
 
 WAIT = 'not unique: the mass may wait before, after or both; how long it slides is unique'
 ONE = 'one optimum'
@@ -153,6 +154,10 @@ CASES = {
     'switched/lens': classic('lens', 'a local optimum; a way round the lens is shorter, 4.4901'),
     'switched/stacked_reverse': classic('stacked_reverse', TRIED),
     'switched/load_lets_go': classic('load_lets_go', TRIED + '; in km and min'),
+    'switched/corner': Case(textbook.corner, None, TRIED),
+    'switched/eclipse': Case(None, textbook.eclipse),
+    'switched/sand_and_road': Case(None, textbook.sand_and_road),
+    'switched/springs': Case(textbook.springs, None, TRIED),
     'switched/symmetric_relays': classic('symmetric_relays', 'two optima, one the image of the other; between them a '
                                          'stationary point of 4/3'),
 }

@@ -1,5 +1,6 @@
 //! The tests of fdcc live in `tests/`; this crate has no code of its own but what they share.
 
+pub mod closed_loop;
 pub mod expected;
 pub mod expressions;
 pub mod functions;

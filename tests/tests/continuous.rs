@@ -118,3 +118,51 @@ fn what_switches_is_never_called_global() {
         assert!(!is_global(&solved(text)), "{text}");
     }
 }
+
+/// `w(t)` below.
+type Weight = fn(f64) -> f64;
+
+/// Of `minimize integral(w(t) u^2)` with `x' = u` and a given end the control is `p / (2 w)`, as
+/// far as its bounds allow, and at a bound where `w` is negative: it is steep where that changes,
+/// which no polynomial between its nodes is.
+#[test]
+fn weights_that_change_their_sign_are_followed_to_the_end_of_each_arc() {
+    let problems: [(&str, Weight, [f64; 3]); 4] = [
+        ("0.3 + cos(t)", |t| 0.3 + t.cos(), [6.0, 1.0, 3.0]),
+        ("0.3 + cos(t)", |t| 0.3 + t.cos(), [6.0, 1.0, 2.6]),
+        ("t - 0.01", |t| t - 0.01, [1.0, 3.0, 0.3]),
+        (
+            "1 - 1.3*exp(-((t - 0.503)/0.002)^2)",
+            |t| 1.0 - 1.3 * (-((t - 0.503) / 0.002).powi(2)).exp(),
+            [1.0, 3.0, 0.3],
+        ),
+    ];
+    for (text, weight, [last, most, end]) in problems {
+        let model = format!(
+            "time t in [0, {last}]\nstate x start 0\ncontrol u in [-{most}, {most}]
+dynamics {{ x' = u }}\nend x == {end}\nminimize integral(u^2*({text}))"
+        );
+        let model = Model::from_text("weights", &model).expect("it is a model");
+        let solution = model.solve(&Options::default()).expect("it can be solved");
+        let [expected, terms] = least_weighted(weight, [last, most, end]);
+        assert!(solution.is_certified(), "{text}: {}", solution.status_name());
+        let off = (solution.objective() - expected).abs() / terms;
+        assert!(off < 1e-6, "{text}: {} instead of {expected}", solution.objective());
+    }
+}
+
+/// The least value, and the integral of the size of its terms, by the rule of the middle.
+fn least_weighted(weight: Weight, [last, most, end]: [f64; 3]) -> [f64; 2] {
+    const COUNT: usize = 200_000;
+    let step = last / COUNT as f64;
+    let weights: Vec<f64> = (0..COUNT).map(|k| weight((k as f64 + 0.5) * step)).collect();
+    let control = |w: f64, p: f64| if w > 0.0 { (p / (2.0 * w)).min(most) } else { most };
+    let [mut low, mut high] = [0.0, 10.0];
+    for _ in 0..50 {
+        let p = 0.5 * (low + high);
+        let moved: f64 = weights.iter().map(|w| control(*w, p) * step).sum();
+        if moved < end { low = p } else { high = p }
+    }
+    let term = |w: &f64| w * control(*w, low).powi(2) * step;
+    [weights.iter().map(term).sum(), weights.iter().map(|w| term(w).abs()).sum()]
+}

@@ -180,3 +180,29 @@ jump kick on k rising {
         assert!((found - expected).abs() < 1e-19, "{found:e} {expected:e}");
     }
 }
+
+/// A reset that does not move its surface happens once where the state starts there, whichever way
+/// it leaves: `n` counts the times at which `100 t` is a multiple of `2 pi`.
+#[test]
+fn a_jump_at_the_start_happens_once() {
+    for (psi, counted) in [("sin(100*t)", 16.0), ("x", 1.0), ("-x", 0.0), ("t", 1.0)] {
+        let simulation = run(&format!(
+            "time t in [0, 1]\nstate x start 0\nstate n start 0\nsurface s = {psi}\n\
+             dynamics {{\n x' = 1\n n' = 0\n}}\njump count on s rising {{ n := n + 1 }}\n"
+        ));
+        assert!(matches!(simulation.status, Status::Completed), "{psi}: {:?}", simulation.status);
+        assert_eq!(simulation.end[1], counted, "{psi}");
+    }
+}
+
+/// A ball that starts on the ground bounces at once: `h = 0.8 t - t^2/2`, until 1.6.
+#[test]
+fn a_ball_that_starts_on_the_ground_bounces_once() {
+    let simulation = run(
+        "time t in [0, 1]\nstate h start 0\nstate v start -1\nsurface ground = h\ndynamics {\n \
+         h' = v\n v' = -1\n}\njump bounce on ground falling { v := -0.8*v }\n",
+    );
+    assert!(matches!(simulation.status, Status::Completed), "{:?}", simulation.status);
+    assert_eq!(simulation.events.len(), 1, "{:?}", simulation.events);
+    assert!((simulation.end[0] - 0.3).abs() < 1e-12, "{:?}", simulation.end);
+}

@@ -2,7 +2,9 @@
 //! are; all in closed form.
 
 use fdcc_compiler::compile_sensitivities;
-use fdcc_runtime::sensitivity::{NondifferentiabilityKind, Quantity, gradient, hessian, one_sided};
+use fdcc_runtime::sensitivity::{
+    KinkMet, NondifferentiabilityKind, Quantity, gradient, hessian, one_sided,
+};
 use fdcc_runtime::simulate::{Controls, Options, System};
 use fdcc_tests::models::meaning;
 
@@ -14,7 +16,7 @@ struct Kink {
 }
 
 /// The first derivative of each model is by the parameter named.
-const KINKS: [Kink; 8] = [
+const KINKS: [Kink; 12] = [
     Kink {
         // x(T) = (x0 - T)+
         text: "param x0 = 1  time t in [0, 1]  state x start x0  surface zero = x
@@ -75,6 +77,39 @@ const KINKS: [Kink; 8] = [
         trouble: None,
         by: "x0",
         sides: [0.0, 0.0],
+    },
+    Kink {
+        // a force at the limit of friction: x(1) = (F - 1)/2 for F > 1
+        text: "param F = 1  time t in [0, 1]  state x start 0  state v start 0  surface slip = v
+            dynamics { x' = v  v' in F - Sgn(slip) }  minimize x(end)",
+        trouble: Some((NondifferentiabilityKind::Limit, 0.0)),
+        by: "F",
+        sides: [0.0, 0.5],
+    },
+    Kink {
+        // the same of a force that rises to the limit and stays, which rounding decides: for F > 1
+        // x(2) = (F - 1)/2
+        text: "param F = 1  time t in [0, 2]  state x start 0  state v start 0  surface slip = v
+            dynamics { x' = v  v' in F*min(t, 1) - Sgn(slip) }  minimize x(end)",
+        trouble: Some((NondifferentiabilityKind::End, 2.0)),
+        by: "F",
+        sides: [0.0, 0.5],
+    },
+    Kink {
+        // friction in every direction: v(1) = F - 1 for F > 1
+        text: "param F = 1  time t in [0, 1]  state v(x, y) start (0, 0)
+            dynamics { v' in (0.6*F, 0.8*F) - Dir(v) }  minimize 5*v.x(end)",
+        trouble: Some((NondifferentiabilityKind::Limit, 0.0)),
+        by: "F",
+        sides: [0.0, 3.0],
+    },
+    Kink {
+        // what is at the limit and depends on nothing
+        text: "param a = 2  time t in [0, 1]  state y start a  state v start 0  surface slip = v
+            dynamics { y' = a  v' in 1 - Sgn(slip) }  minimize y(end) + v(end)",
+        trouble: Some((NondifferentiabilityKind::Limit, 0.0)),
+        by: "a",
+        sides: [2.0, 2.0],
     },
     Kink {
         // a reset that is grazed: h = (t - 1)^2 + c bounces only if c < 0, then h(2) = 2 sqrt(-c) +
@@ -155,7 +190,8 @@ fn kinks_of_parameters_alone_are_seen() {
             let by = [parameter(&system, name)];
             let found = gradient(&system, &Controls::Guess, &Options::default(), &by);
             let kink = found.expect("the last time is reached").kink;
-            assert_eq!(kink.is_some_and(|it| it.is_of_parameters), is_on, "{text} at {value}");
+            let is_found = kink.is_some_and(|it| it.met == KinkMet::ByParameters);
+            assert_eq!(is_found, is_on, "{text} at {value}");
         }
     }
 }

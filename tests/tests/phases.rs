@@ -1,7 +1,7 @@
 //! A model with phases as a chain of problems: what each phase depends on, and what ties them
 //! together, by hand.
 
-use fdcc_compiler::{Model, analyze, chain_expectations, compile_chain};
+use fdcc_compiler::{Model, analyze, chain_expectations, compile_chain, integrands};
 use fdcc_runtime::problem::{Bounds, Chain, Columns, End, Function, Link};
 
 fn model(text: &str) -> Model {
@@ -249,7 +249,8 @@ fn a_state_outside_of_all_phases_goes_on() {
 fn expectations_read_all_phases() {
     let text =
         format!("{CARTS}expect {{ b.x(end) - a.x(start) == integral(a.v^2) + b.D within 0.1 }}");
-    let asked = chain_expectations(&model(&text));
+    let model = model(&text);
+    let asked = chain_expectations(&model);
     assert_eq!(asked.list.len(), 1);
     // State and control at the ends of `a`, then of `b`; parameters; the integrals of each phase.
     let ends = [1.0, 0.0, 2.0, 0.0, 3.0, 0.0, 7.0, 0.0];
@@ -257,7 +258,8 @@ fn expectations_read_all_phases() {
     given.extend([0.25, 0.5, 0.75]);
     assert_eq!(values(&*asked.function, &ends, &given), [6.0, 0.25 + 4.0, 0.1]);
     // tau, x, the hidden integral, the control: T v^2.
-    assert_eq!(values(&*asked.integrands[0], &[0.5, 2.0, 0.0, 0.5], &GIVEN), [2.0 * 0.25]);
+    let integrands = integrands(&model.phases[0].model);
+    assert_eq!(values(&*integrands, &[0.5, 2.0, 0.0, 0.5], &GIVEN), [2.0 * 0.25]);
 }
 
 /// Unknown jumps of a state, which no phase reads.

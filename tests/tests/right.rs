@@ -14,7 +14,7 @@ const UNSOLVED: &[(&str, &str)] = &[
     (
         "gripper",
         "the same as the sled; it was called solved, at an objective 10 % too high, while \
-         multipliers excused every error",
+         multipliers discounted every error",
     ),
     (
         "sled_on_ice",

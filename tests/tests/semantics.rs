@@ -34,6 +34,7 @@ fn models_give_neither_errors_nor_warnings() {
         "tests/right",
         "tests/classics",
         "tests/classics/phases",
+        "tests/classics/switched_phases",
         "tests/classics/fits",
         "tests/classics/at_times",
     ];

@@ -204,7 +204,7 @@ fn too_many_steps_end_with_the_trajectory_so_far() {
 /// written in.
 #[test]
 fn small_oscillators_are_as_exact_as_large_ones() {
-    for amplitude in [1e-30, 1e-12, 1.0, 1e12] {
+    for amplitude in [1e-300, 1e-100, 1e-30, 1e-12, 1.0, 1e12, 1e100] {
         for (x, v) in [(amplitude, 0.0), (0.0, amplitude)] {
             let text = format!(
                 "time t in [0, 10]\nstate X start 1e6\nstate x start {x:e}\nstate v start {v:e}\n\
@@ -227,7 +227,7 @@ fn small_oscillators_are_as_exact_as_large_ones() {
 /// The same crossings at every scale.
 #[test]
 fn small_oscillators_cross_surfaces_when_large_ones_do() {
-    for amplitude in [1e-30, 1e-12, 1.0, 1e12] {
+    for amplitude in [1e-30, 1e-12, 1.0, 1e12, 1e100] {
         let text = format!(
             "time t in [0, 10]\nstate x start {amplitude:e}\nstate v start 0\nstate y start \
              0\nsurface s = x\n\
@@ -240,6 +240,31 @@ fn small_oscillators_cross_surfaces_when_large_ones_do() {
             times.len() == 3 && times.iter().zip(exact).all(|(a, b)| near(*a, b)),
             "{amplitude}: {times:?}"
         );
+    }
+}
+
+/// `x = A e^-t` moves `y' = 2 x/A - Sgn(y)`: `y` leaves 0 upwards, turns at `ln 2`, and is held
+/// from the root of `2 (1 - e^-t) = t` on, whatever `A` is. A force that begins late is followed.
+#[test]
+fn states_of_very_different_sizes_do_not_blur_each_other() {
+    for amplitude in [1e-200, 1e-100, 1e-40, 1.0, 1e40, 1e100, 1e200] {
+        let text = format!(
+            "time t in [0, 10]\nstate x start {amplitude:e}\nstate y start 0\nstate w start 0\n\
+             state late start 0\nsurface s = y\ndynamics {{\n x' = -x\n \
+             y' in 2*x/{amplitude:e} - Sgn(s)\n w' = selected(Sgn(s))\n \
+             late' = exp(-((t - 5)/0.1)^2)\n}}\n"
+        );
+        let (system, simulation) = run(&text, &[], &Controls::Guess, &Options::default());
+        let times: Vec<f64> = simulation.events.iter().map(|event| event.time).collect();
+        // SciPy's brentq of 2 (1 - exp(-t)) - t in [1, 2].
+        let rest = 1.593_624_260_040_04;
+        assert!(times.len() == 1 && near(times[0], rest), "{amplitude}: {times:?}");
+        let held = 2.0 * ((-rest).exp() - (-10.0_f64).exp());
+        let late = 0.1 * std::f64::consts::PI.sqrt();
+        for (name, exact) in [("w", rest + held), ("late", late)] {
+            let got = end(&system, &simulation, name);
+            assert!((got - exact).abs() <= 1e-8, "{amplitude}: {name} = {got}, not {exact}");
+        }
     }
 }
 

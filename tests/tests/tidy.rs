@@ -22,8 +22,8 @@ const CRATES: &[(&str, &[&str])] = &[
     ("runtime", &[]),
     ("compiler", &["fdcc-grammar", "fdcc-runtime"]),
     ("fdcc", &["fdcc-grammar", "fdcc-compiler", "fdcc-runtime"]),
-    ("server", &["fdcc-grammar", "fdcc-compiler", "fdcc"]),
-    ("cli", &["fdcc-grammar", "fdcc-compiler", "fdcc-runtime", "fdcc", "fdcc-server"]),
+    ("server", &["fdcc-grammar", "fdcc"]),
+    ("cli", &["fdcc-grammar", "fdcc-runtime", "fdcc", "fdcc-server"]),
     ("c", &["fdcc"]),
     ("python", &["fdcc-grammar", "fdcc-runtime", "fdcc", "fdcc-cli"]),
     ("tests", &["fdcc-grammar", "fdcc-compiler", "fdcc-runtime", "fdcc"]),
@@ -53,6 +53,37 @@ fn crates_depend_on_each_other_as_drawn() {
     all_well(breaches);
 }
 
+/// What stands behind `name = "..."` of a lock file, up to the next package.
+fn locked<'l>(lock: &'l str, package: &str) -> &'l str {
+    let named = format!("name = \"{package}\"\n");
+    lock.split("[[package]]").find(|it| it.contains(&named)).unwrap_or_default()
+}
+
+#[test]
+fn the_lock_of_the_python_package_has_what_our_crates_use() {
+    let read = |path: &str| fs::read_to_string(repository().join(path)).expect("it is there");
+    let (lock, workspace) = (read("python/Cargo.lock"), read("Cargo.toml"));
+    // What has another name here is left out.
+    let is_renamed = |name: &str| workspace.contains(&format!("\n{name} = {{ package"));
+    let mut breaches = Vec::new();
+    for folder in ["grammar", "runtime", "compiler", "fdcc", "server", "cli"] {
+        let package = if folder == "fdcc" { "fdcc".into() } else { format!("fdcc-{folder}") };
+        let manifest = read(&format!("{folder}/Cargo.toml"));
+        let own = manifest.lines().skip_while(|line| *line != "[dependencies]").skip(1);
+        let own = own.take_while(|line| !line.starts_with('['));
+        let names = own.filter_map(|line| line.split(['.', ' ', '=']).next());
+        for name in names.filter(|name| !name.is_empty() && !name.starts_with('#')) {
+            let is_there = locked(&lock, &package).contains(&format!(" \"{name}"));
+            if !is_there && !is_renamed(name) {
+                breaches.push(format!(
+                    "python/Cargo.lock: {package} uses {name}; run `cargo metadata` in python/"
+                ));
+            }
+        }
+    }
+    all_well(breaches);
+}
+
 /// Crates of others, and the only places that may name them: theirs is the code to change when they
 /// change.
 const FOREIGN: &[(&str, &[&str])] = &[
@@ -62,7 +93,7 @@ const FOREIGN: &[(&str, &[&str])] = &[
     ("clarabel", &["runtime/src/nlp/convex/clarabel.rs"]),
     ("amd", &["runtime/src/linalg/sparse_ldl/tree.rs"]),
     ("miette", &["cli/src/drawing/render.rs"]),
-    ("plotters", &["cli/src/page/svg.rs"]),
+    ("plotters", &["cli/src/page/svg.rs", "cli/src/page/cells.rs"]),
     ("similar", &["cli/src/drawing/difference.rs"]),
     ("serde", &["cli/src/output/", "cli/src/page/", "server/src/dispatch.rs"]),
     ("serde_json", &["cli/src/output/", "cli/src/page/", "cli/tests/", "server/", "tests/"]),
@@ -125,7 +156,8 @@ fn folders_import_each_other_in_no_circle() {
 }
 
 /// Folders whose tuned numbers stand in files called `tuning.rs`, with their sources.
-const TUNED: &[&str] = &["runtime/src/nlp/", "runtime/src/solve/", "runtime/src/simulate/"];
+const TUNED: &[&str] =
+    &["runtime/src/nlp/", "runtime/src/solve/", "runtime/src/simulate/", "fdcc/src/"];
 
 /// Files with other numbers, which are not tuned but follow from a method.
 const NUMBERS_OF_METHODS: &[(&str, &str)] = &[
@@ -139,6 +171,7 @@ const NUMBERS_OF_METHODS: &[(&str, &str)] = &[
         "runtime/src/solve/refinement/error_estimate.rs",
         "weights of the classical Runge-Kutta scheme",
     ),
+    ("fdcc/src/solve/controller.rs", "an example in a message"),
     ("runtime/src/nlp/convex/convexity.rs", "a bound of the rounding errors of a factorisation"),
 ];
 
@@ -173,6 +206,36 @@ fn tuned_numbers_stand_in_their_files() {
                     source.path
                 ));
             }
+        }
+    }
+    all_well(breaches);
+}
+
+/// Names that were given up for the field's own, which `docs/glossary.md` defines.
+const FORMER_WORDS: &[(&str, &str)] = &[
+    ("programme", "nonlinear program"),
+    ("swift pace", "superlinear barrier update"),
+    ("careful pace", "monotone barrier update"),
+    ("second opinion", "solver fallback"),
+    ("feasible first", "phase-I restart"),
+    ("multipliers excuse", "scaling of the KKT error"),
+    ("setting out", "departure of a vector switch"),
+    ("rehearsal", "preflight"),
+];
+
+#[test]
+fn former_words_do_not_come_back() {
+    let mut breaches = Vec::new();
+    for source in sources().iter().filter(|source| source.path != "tests/tests/tidy.rs") {
+        let (path, text) = (source.path.replace(['-', '_'], " "), source.text.to_lowercase());
+        for (word, instead) in FORMER_WORDS {
+            if names(&path, word) {
+                breaches.push(format!("{}: name it by \"{instead}\"", source.path));
+            }
+            let lines = text.lines().enumerate().filter(|(_, line)| names(line, word));
+            breaches.extend(
+                lines.map(|(at, _)| format!("{}:{}: say \"{instead}\"", source.path, at + 1)),
+            );
         }
     }
     all_well(breaches);

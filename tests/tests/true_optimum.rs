@@ -25,7 +25,9 @@ const CERTIFIED: &[&str] = &[
     "right/pushed_table",
     "switched/belt",
     "switched/cart_pole_friction",
+    "switched/corner",
     "switched/drag_regimes",
+    "switched/eclipse",
     "switched/free_time",
     "switched/gear_loss",
     "switched/hard_pull",
@@ -39,8 +41,10 @@ const CERTIFIED: &[&str] = &[
     "switched/puck_aside",
     "switched/relay",
     "switched/ricochet",
+    "switched/sand_and_road",
     "switched/shoreline",
     "switched/speed_limit",
+    "switched/springs",
     "switched/stay",
     "switched/stribeck",
     "switched/swing_up",
@@ -395,4 +399,121 @@ fn a_named_width_is_taken() {
     let solution = model.solve(&Options::default()).expect("it can be solved");
     assert!(solution.certificate.is_none());
     assert!((solution.objective() - 59.835987805166).abs() < 1e-3);
+}
+
+/// A block that is pulled with force `F = m f` for a while and rests before and after: with the
+/// duration `tau = (36 / (mu g)^2)^(1/4)` the objective is `m^2 (12 / tau^3 + tau (mu g)^2)`. In
+/// newtons the forces on a small one count as nothing, and its objective counts as 0.
+#[test]
+fn a_block_of_any_mass_ends_at_the_same_digits() {
+    let friction: f64 = 0.3 * 9.81;
+    let tau = (36.0 / friction.powi(2)).powf(0.25);
+    let expected = 12.0 / tau.powi(3) + tau * friction.powi(2);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/block.fdc");
+    let block = Model::from_file(path.to_str().expect("a path in UTF-8")).expect("it is a model");
+    for mass in [2.0, 1e-5, 1e-9, 1e-12] {
+        let block = block.with("m", mass).expect("`m` is a parameter");
+        let solution = block.solve(&Options::default()).expect("it can be solved");
+        let own = solution.objective() / mass.powi(2);
+        assert!(solution.is_certified(), "m = {mass}: {}", solution.status_name());
+        assert!((own / expected - 1.0).abs() < RIGHT, "m = {mass}: {own} instead of {expected}");
+    }
+}
+
+/// The block rests, slides under a force that begins at twice the friction `f`, and rests again:
+/// `H = F^2 + x' lambda_x + (F - f) lambda_v / m = 0` where it begins to slide, with
+/// `lambda_v = -2 m F`. A small push before that, or where it rests in the end, is lost at once, so
+/// that `lambda_v = 0` on both holds: it goes on at the entry and jumps at the exit by
+/// `kappa = 4 m f`.
+#[test]
+fn costates_on_holds_are_gradients() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/block.fdc");
+    let block = Model::from_file(path.to_str().expect("a path in UTF-8")).expect("it is a model");
+    let solution = block.solve(&Options::default()).expect("it can be solved");
+    let certificate = solution.certificate.as_ref().expect("the model has a surface");
+    let [exit, entry] = &certificate.switches[..] else { panic!("{certificate:?}") };
+    let kappa = 4.0 * 2.0 * (0.3 * 2.0 * 9.81);
+    assert!((exit.kappa.expect("known") / kappa - 1.0).abs() < RIGHT, "{exit:?}");
+    assert!(entry.kappa.expect("known").abs() < RIGHT * kappa, "{entry:?}");
+    assert!([exit, entry].iter().all(|it| it.margin.is_some_and(|margin| margin > 0.9)));
+    let lambda = solution.costate("v").expect("a state");
+    for (time, lambda) in solution.time().iter().zip(lambda) {
+        let is_held = *time < exit.time || *time >= entry.time;
+        assert!(!is_held || lambda.abs() < RIGHT * kappa, "{lambda} at {time}");
+    }
+}
+
+/// (Stewart & Anitescu 2005, section 3; the numbers by hand: `lambda_v` falls from -2/5 to -2/3.)
+#[test]
+fn kappa_is_the_jump_of_the_costate_at_a_crossing() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/coulomb_reverse.fdc");
+    let model = Model::from_file(path.to_str().expect("a path in UTF-8")).expect("it is a model");
+    let solution = model.solve(&Options::default()).expect("it can be solved");
+    let certificate = solution.certificate.as_ref().expect("the model has a surface");
+    let kappa = certificate.switches[0].kappa.expect("known");
+    assert!((kappa - (2.0 / 3.0 - 2.0 / 5.0)).abs() < 1e-6, "{kappa}");
+}
+
+/// Parameters that move what is held at the ends: a start beside the surface is led onto it at
+/// once, and the objective does not change; an end beside it costs `4 m f` per speed on one side,
+/// and nothing on the other, on which the block is pulled once only, at the end.
+#[test]
+fn sensitivities_by_what_is_held_at_the_ends_are_those_of_the_true_system() {
+    let block = include_str!("../../models/block.fdc");
+    let at_start = "param v0 = 0 [m/s]\nstate v [m/s] start v0";
+    let at_start = block.replace("state v [m/s] start 0", at_start);
+    assert!(sensitivity(&at_start, "v0").abs() < 1e-6);
+    assert!((sensitivity(&at_start, "m") / sensitivity(block, "m") - 1.0).abs() < RIGHT);
+    let at_end = block.replace("end v == 0", "param v1 = 0 [m/s]\nend v == v1");
+    assert!(sensitivity(&at_end, "v1").is_nan(), "there is a kink");
+    let below = at_end.replace("v1 = 0", "v1 = -1e-3");
+    let kappa = 4.0 * 2.0 * (0.3 * 2.0 * 9.81);
+    assert!((sensitivity(&below, "v1") / -kappa - 1.0).abs() < 1e-3);
+    let above = at_end.replace("v1 = 0", "v1 = 1e-3");
+    assert!(sensitivity(&above, "v1").abs() < 1e-3 * kappa);
+}
+
+fn sensitivity(text: &str, parameter: &str) -> f64 {
+    let model = Model::from_text("block", text).expect("it is a model");
+    let solution = model.solve(&Options::default()).expect("it can be solved");
+    assert!(solution.is_certified());
+    let found = solution.sensitivities().into_iter().find(|it| it.0 == parameter);
+    found.expect("a parameter").1
+}
+
+/// A start that is chosen is bounded, too, and may begin on a bound, which is an arc from there on
+/// if it stays, and on what holds it. A block of 2 kg comes to rest at 1 m against a friction of
+/// 6 N from the speed `v0`, with `3 v0^2` for that: the force falls in a straight line to 0.
+#[test]
+fn chosen_starts_are_located() {
+    let text = |speeds: &str| {
+        format!(
+            "time t in [0, 4]\nstate x start 0\nstate v in {speeds}
+control F in [-12, 12]\nsurface slip = v
+dynamics {{ x' = v\n 2*v' in -6*Sgn(slip) + F }}\nend x == 1\nend v == 0
+minimize integral(F^2) + 3*v(start)^2"
+        )
+    };
+    // With the duration `d` of the slide after the arc at `v = 1`: `F = 6 (1 - t/d)`, so that
+    // `d = 2/3`, which takes 4/9 m; the arc takes 5/9 m with 6 N.
+    let on_arc = 36.0 * 5.0 / 9.0 + 36.0 / 3.0 * 2.0 / 3.0 + 3.0;
+    // At `v0 = 3/2` the same slide lasts 1 s.
+    let at_bound = 36.0 / 3.0 + 3.0 * 1.5 * 1.5;
+    for (speeds, expected) in [("[-1, 1]", on_arc), ("[-1, 1.5]", at_bound)] {
+        let model = Model::from_text("thrown", &text(speeds)).expect("it is a model");
+        let solution = model.solve(&Options::default()).expect("it can be solved");
+        assert!(solution.is_certified(), "{speeds}: {}", solution.status_name());
+        let found = solution.objective();
+        assert!((found / expected - 1.0).abs() < RIGHT, "{speeds}: {found}, not {expected}");
+    }
+}
+
+/// What is 0 in any magnitude is solved once, and stays 0.
+#[test]
+fn what_is_nothing_stays_so() {
+    let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]
+dynamics { x' = u + 0.1*sin(x) }\nminimize integral(u^2) + x(end)^2";
+    let model = Model::from_text("rest", text).expect("it is a model");
+    let solution = model.solve(&Options::default()).expect("it can be solved");
+    assert!(solution.is_certified() && solution.objective().abs() < 1e-12);
 }

@@ -295,3 +295,33 @@ fn an_objective_without_a_value_is_no_optimum() {
     let solution = solve(&problem(text, &[("a", "-1")], &[])).solution;
     assert!(matches!(solution.status, Status::NotFinite(_)), "{solution:?}");
 }
+
+/// What takes a control of 2e6, or 1e13, is feasible: no proof may rest on how far away that is.
+#[test]
+fn what_is_far_away_is_not_proved_to_be_infeasible() {
+    let far = "time t in [0, 1]\nstate x start 0\nstate y start 0\ncontrol u in [0, 1e7]
+control w\ndynamics { x' = 1e-6*u\n y' = x + w }\nend x == 2\nend y == 0
+minimize integral(u^2 + w^2)\nmethod { grid N = 10 }";
+    let solved = solve(&problem(far, &[], &[]));
+    assert!(solved.solution.status.is_solved(), "{:?}", solved.solution.status);
+    assert!((solved.solution.objective / 4e12 - 1.0).abs() < 1e-6);
+    let heavy = "time t in [0, 1]\nstate v start 0\ncontrol F
+dynamics { v' = F/1e13 }\nend v == 1\nminimize integral(F^2)\nmethod { grid N = 10 }";
+    let solved = solve(&problem(heavy, &[], &[]));
+    assert!((solved.solution.objective / 1e26 - 1.0).abs() < 1e-6);
+}
+
+/// A variable of 1e12 at an optimum has not left the problem.
+#[test]
+fn what_is_far_away_is_not_unbounded() {
+    let far = "time t in [0, 1]\nstate x start 0\ncontrol u\ndynamics { x' = u }
+minimize (x(end)/1e12 - 1)^2 + integral((u/1e12)^2)\nmethod { grid N = 20 }";
+    // `1e-6 u^2 - u` is least at 5e5.
+    let steep = "time t in [0, 1]\nstate x start 0\nstate y start 0\ncontrol u
+dynamics { x' = u\n y' = u^2 }\nminimize 1e-6*y(end) - x(end)\nmethod { grid N = 10 }";
+    for (text, optimum) in [(far, 0.5), (steep, -250_000.0)] {
+        let solved = solve(&problem(text, &[], &[]));
+        assert!(solved.solution.status.is_solved(), "{:?}", solved.solution.status);
+        assert!((solved.solution.objective / optimum - 1.0).abs() < 1e-6);
+    }
+}

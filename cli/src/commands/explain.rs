@@ -1,4 +1,4 @@
-//! `fdcc explain`: why a diagnostic is given, a wrong model and a right one.
+//! `fdcc explain`: why a diagnostic is given, a wrong model and a right one; what a verdict says.
 
 use crate::exit::Exit;
 use clap::Args;
@@ -6,16 +6,23 @@ use fdcc_grammar::Code;
 
 use crate::output;
 
-/// Explain a diagnostic, with a wrong and a right model
+/// Explain a diagnostic, with a wrong and a right model, or what a verdict says
 #[derive(Args)]
 pub struct Explain {
-    /// Such as FDC0101 or 101
+    /// Such as FDC0101 or 101; or `verdict`
     code: String,
 }
+
+/// What each line says at the end of a solve.
+const VERDICT: &str = include_str!("../../../docs/reference/verdict.md");
 
 impl Explain {
     /// Prints the page of the code.
     pub fn run(self) -> Exit {
+        if self.code.eq_ignore_ascii_case("verdict") {
+            output::print(VERDICT);
+            return Exit::Fine;
+        }
         match self.code.parse::<Code>() {
             Ok(code) => {
                 output::print(code.page());

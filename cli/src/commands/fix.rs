@@ -2,7 +2,7 @@
 
 use crate::exit::Exit;
 use clap::Args;
-use fdcc_compiler::{analyze, repair};
+use fdcc::language::repair;
 use fdcc_grammar::{Diagnostic, Severity, SourceFile};
 
 use super::rewrite;
@@ -31,7 +31,7 @@ impl Fix {
         if file != "-" && written == Exit::Fine {
             rewrite::show(source, &text);
         }
-        written.max(verdict(source, &analyze(&text).diagnostics))
+        written.max(verdict(source, &fdcc::check(&source.name, text.into()).diagnostics))
     }
 }
 

@@ -81,7 +81,7 @@ impl Grad {
         let gradient = Gradient::new(&model, system, controls, by, &accuracy);
         let of = self.of.as_deref().unwrap_or("objective");
         let document = GradientDocument::new(of, &gradient, has_second, &model);
-        Ok(document.in_units(model.meaning().into()))
+        Ok(document.in_units((&model).into()))
     }
 
     /// Whether second derivatives are wanted; not by thousands of rows of controls.

@@ -4,6 +4,7 @@ mod accuracy;
 mod check;
 mod completions;
 mod driven;
+mod emit;
 mod explain;
 mod fix;
 mod fmt;
@@ -46,6 +47,7 @@ pub enum Command {
     Merge(merge::Merge),
     Test(Box<test::Test>),
     Show(show::Show),
+    Emit(emit::Emit),
     Fix(fix::Fix),
     Fmt(fmt::Fmt),
     New(new::New),
@@ -71,6 +73,7 @@ impl Command {
             Command::Merge(merge) => merge.run(),
             Command::Test(test) => test.run(),
             Command::Show(show) => show.run(),
+            Command::Emit(emit) => emit.run(),
             Command::Fix(fix) => fix.run(),
             Command::Fmt(fmt) => fmt.run(),
             Command::New(new) => new.run(),

@@ -1,14 +1,18 @@
 //! `fdcc mpc`: a model as the controller of a true system, in closed loop.
 
 use super::options::{Changes, read};
+use super::solver::wrote;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::output;
 use crate::output::closed_loop::{ClosedLoopDocument, ClosedLoopStep};
+use crate::output::picture::all_bounds;
 use crate::output::units::Units;
+use crate::output::{self, files};
+use crate::page;
 use crate::watch::{Deadline, catch_interrupts, is_interrupted};
 use clap::Args;
-use fdcc::{Accuracy, Controller, Error, Model, Options, Plant};
+use fdcc::{Accuracy, ClosedLoop, Model, Options};
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// Control a true system by a model, in closed loop
@@ -36,6 +40,9 @@ pub struct Mpc {
     /// Print the result as one JSON document, and nothing else, on the standard output
     #[arg(long)]
     json: bool,
+    /// Write MODEL.mpc.json, MODEL.mpc.csv and MODEL.mpc.html to this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
 }
 
 impl Mpc {
@@ -62,68 +69,59 @@ impl Mpc {
 
     /// The loop.
     fn close(&self, model: &Model, plant: &Model) -> Result<ClosedLoopDocument, Failure> {
-        let mut controller = model.controller(model.problem()?.method.intervals())?;
-        let mut document = ClosedLoopDocument::new(&controller, plant.name());
-        let mut plant = plant.plant()?;
+        let problem = model.problem()?;
+        let controller = model.controller(problem.method.intervals())?;
+        let mut document = ClosedLoopDocument::new(&controller, plant.name(), all_bounds(&problem));
+        let mut closed = ClosedLoop::new(controller, plant.plant()?)?;
         for _ in 0..self.steps {
             if is_interrupted() {
                 document.end("interrupted");
                 break;
             }
-            let state = measured(&controller, &plant)?;
-            let (step, duration) = self.step(&mut controller, &plant, &state)?;
-            let controls: Vec<(&str, f64)> =
-                controller.controls().zip(step.controls.iter().copied()).collect();
-            let arrives = plant.step(&controls, duration, &Accuracy::default())?;
-            document.add(step);
-            if !arrives {
+            document.add(self.solve(&mut closed)?);
+            if !closed.apply(&Accuracy::default())? {
                 document.end("the simulation of the plant ends early");
                 break;
             }
         }
-        document.close(plant.time(), &measured(&controller, &plant)?);
+        document.close(closed.time(), closed.state());
         Ok(document)
     }
 
-    /// One solve, and for how long its controls are meant.
-    fn step(
-        &self,
-        controller: &mut Controller,
-        plant: &Plant,
-        state: &[f64],
-    ) -> Result<(ClosedLoopStep, f64), Failure> {
+    /// One solve, within its time.
+    fn solve(&self, closed: &mut ClosedLoop) -> Result<ClosedLoopStep, Failure> {
+        let (time, state) = (closed.time(), closed.state().to_vec());
         let begin = Instant::now();
         let seconds = self.budget.map(|budget| f64::from(budget) * 1e-6);
         let deadline = Deadline::after(begin, seconds);
         let options = Options { stop: &|| deadline.check(), ..Options::default() };
-        let found = controller.step(state, &options)?;
-        let first = |column: &Vec<f64>| column.first().copied().unwrap_or(f64::NAN);
-        let step = ClosedLoopStep {
-            time: plant.time(),
-            state: state.to_vec(),
-            controls: found.outcome.trajectory.controls.iter().map(first).collect(),
+        let found = closed.solve(&options)?;
+        Ok(ClosedLoopStep {
+            time,
+            state,
+            controls: found.first_controls().0,
             status: found.status_name(),
             is_solved: found.is_solved(),
             iterations: found.outcome.solution.counts.iterations,
             seconds: begin.elapsed().as_secs_f64(),
-        };
-        Ok((step, found.time()[1] - found.time()[0]))
+        })
     }
 
     fn report(&self, document: &ClosedLoopDocument, model: &Model) -> Exit {
+        let written = match &self.out {
+            Some(folder) => {
+                let json = output::json(document);
+                let page = page::of(&json);
+                let all = [("mpc.json", json), ("mpc.csv", document.csv()), ("mpc.html", page)];
+                files::write_all(folder, &document.model, &all)
+            }
+            None => Ok(Vec::new()),
+        };
         output::print(&match self.json {
             true => output::json(document),
-            false => document.words(&Units::from(model.meaning())),
+            false => document.words(&Units::from(model)),
         });
-        if document.is_fine() { Exit::Fine } else { Exit::NotSolved }
+        let exit = if document.is_fine() { Exit::Fine } else { Exit::NotSolved };
+        wrote(written, self.json, exit, model.source())
     }
-}
-
-/// The states of the plant that the controller knows.
-fn measured(controller: &Controller, plant: &Plant) -> Result<Vec<f64>, Failure> {
-    let value = |name: &str| {
-        let missing = || Error::Call(format!("the plant has no state `{name}`"));
-        plant.state(name).ok_or_else(missing)
-    };
-    Ok(controller.states().map(value).collect::<Result<_, _>>()?)
 }

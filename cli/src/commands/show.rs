@@ -1,7 +1,8 @@
 //! `fdcc show`: a model as the compiler understands it, at any stage.
 
-use super::options::{Changes, read_at_any_rate, show};
+use super::options::{Changes, read_at_any_rate};
 use crate::exit::Exit;
+use crate::failure::Failure;
 use crate::output;
 use crate::watch::Deadline;
 use clap::{Args, ValueEnum};
@@ -38,25 +39,22 @@ impl Show {
             Ok(model) => model,
             Err(exit) => return exit,
         };
-        match fdcc_compiler::dump(model.meaning(), self.stage()) {
+        match model.shown(self.stage()) {
             Ok(text) => {
                 output::print(&text);
                 Exit::Fine
             }
-            Err(diagnostics) => {
-                show(diagnostics.iter(), model.source());
-                Exit::ModelError
-            }
+            Err(error) => Failure::from(error).report(model.source()),
         }
     }
 
-    fn stage(&self) -> fdcc_compiler::Stage {
+    fn stage(&self) -> fdcc::Stage {
         match self.stage {
-            None => fdcc_compiler::Stage::Summary,
-            Some(Stage::Model) => fdcc_compiler::Stage::Model,
-            Some(Stage::Graph) => fdcc_compiler::Stage::Graph,
-            Some(Stage::Derivatives) => fdcc_compiler::Stage::Derivatives,
-            Some(Stage::Clif) => fdcc_compiler::Stage::Clif,
+            None => fdcc::Stage::Summary,
+            Some(Stage::Model) => fdcc::Stage::Model,
+            Some(Stage::Graph) => fdcc::Stage::Graph,
+            Some(Stage::Derivatives) => fdcc::Stage::Derivatives,
+            Some(Stage::Clif) => fdcc::Stage::Clif,
         }
     }
 }

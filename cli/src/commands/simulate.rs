@@ -7,6 +7,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::simulation::SimulationDocument;
 use crate::output::{self, files};
+use crate::page;
 use clap::Args;
 use fdcc::{Accuracy, Model, Simulation};
 use std::path::PathBuf;
@@ -22,7 +23,7 @@ pub struct Simulate {
     /// Print the result as one JSON document, and nothing else, on the standard output
     #[arg(long)]
     json: bool,
-    /// Write MODEL.sim.json and MODEL.sim.csv to this folder
+    /// Write MODEL.sim.json, MODEL.sim.csv and MODEL.sim.html to this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -65,11 +66,12 @@ impl Simulate {
 
     fn report(&self, document: &SimulationDocument, exit: Exit, model: &Model) -> Exit {
         let written = match &self.out {
-            Some(folder) => files::write_all(
-                folder,
-                &document.model,
-                &[("sim.json", output::json(document)), ("sim.csv", document.csv())],
-            ),
+            Some(folder) => {
+                let json = output::json(document);
+                let page = page::of(&json);
+                let all = [("sim.json", json), ("sim.csv", document.csv()), ("sim.html", page)];
+                files::write_all(folder, &document.model, &all)
+            }
             None => Ok(Vec::new()),
         };
         if self.json {

@@ -5,6 +5,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output;
 use crate::output::document::{Document, Seconds};
+use crate::output::reach::Reach;
 use crate::output::saved::Saved;
 use crate::output::units::Units;
 use crate::report::log::{Level, Log};
@@ -124,20 +125,23 @@ impl Compiled {
     /// Solves from `start`, and from variations of it if there are to be several starts.
     pub fn solve(self, start: Start, options: &Options, log: &mut Log) -> Result<Solved, Failure> {
         let Compiled { compiled, begin, seconds } = self;
-        log.show_widths_in(&Units::from(compiled.model().meaning()));
+        log.show_widths_in(&Units::from(compiled.model()));
         let log = &*log;
         let deadline = Deadline::after(begin, options.time_limit);
-        let solution = compiled.solve(&fdcc::Options {
+        let options = fdcc::Options {
             starts: options.starts as usize,
             start,
             report: &|report| log.report(report),
             stop: &|| deadline.check(),
             ..fdcc::Options::default()
-        })?;
+        };
+        let solution = compiled.solve(&options)?;
+        let reach = solution.reach(&options);
         let total = begin.elapsed().as_secs_f64();
         let seconds = Seconds { compile: seconds, solve: total - seconds, total };
         let mut document = document(&solution, seconds);
         document.convergence = log.convergence();
+        document.reach = reach.map(Reach::from);
         Ok(Solved { solution, document })
     }
 }
@@ -157,7 +161,7 @@ pub fn wrong_start(error: Error, options: &Options) -> Failure {
 /// The document of a solution, before it is replayed.
 pub fn document(solution: &Solution, seconds: Seconds) -> Document {
     let model = solution.model();
-    let (sha256, units) = (sha256(&model.source().text), Units::from(model.meaning()));
+    let (sha256, units) = (sha256(&model.source().text), Units::from(model));
     Document::new(solution, &sha256, units, seconds)
         .with_phases(solution)
         .with_estimates(solution.estimates())

@@ -12,10 +12,12 @@ use crate::output::named::Named;
 use crate::output::rows::{Line, Row, Summary};
 use crate::output::saved::Saved;
 use crate::output::units::Units;
-use crate::output::{self, plural, table};
+use crate::output::{self, files, plural, table};
+use crate::page::sweep as page;
 use crate::report::log::{self, Level, Log};
 use crate::solved::Solved;
 use crate::sweep::journal::{Journal, Sweep as Rows};
+use crate::sweep::merge::Merged;
 use crate::sweep::part::Part;
 use crate::sweep::values;
 use crate::version::{BUILD, VERSION};
@@ -138,7 +140,7 @@ impl Sweep {
         let rows = kept.iter().map(|(at, row)| (grid.row(*at), row));
         output::print(&match self.options.json {
             true => output::json(&kept.iter().map(|(_, row)| row).collect::<Vec<_>>()),
-            false => table::table(rows, &Units::from(model.meaning()), self.confirmed),
+            false => table::table(rows, &Units::from(model), self.confirmed),
         });
         let is_fine = kept.len() == grid.rows && kept.iter().all(|(_, row)| row.scalars.is_fine());
         Ok(if is_fine { Exit::Fine } else { Exit::NotSolved })
@@ -178,6 +180,7 @@ impl Sweep {
         let (before, all) = (journal.tally().rows, (0..grid.rows).filter(|row| part.has(*row)));
         let todo: Vec<usize> = all.filter(|row| !journal.has(*row)).collect();
         self.solve(model, grid, Some(journal), &todo)?;
+        self.draw(model, folder_of(&self.options), journal)?;
         let tally = journal.tally();
         let expected = before + todo.len();
         if tally.rows < expected {
@@ -186,12 +189,28 @@ impl Sweep {
         let (file, statuses) = (journal.path(), Named(tally.statuses.into_iter().collect()));
         let seconds = begin.elapsed().as_secs_f64();
         let summary = Summary { rows: tally.rows, before, statuses, seconds, file };
-        let folder = self.options.out.as_deref().unwrap_or("".as_ref()).display();
+        let folder = folder_of(&self.options).display();
         output::print(&match self.options.json {
             true => output::json(&summary),
             false => format!(" {}\n in {folder}, {seconds:.3} s\n", words(&summary)),
         });
         Ok(if tally.fine == expected { Exit::Fine } else { Exit::NotSolved })
+    }
+
+    /// The page of the rows that all parts have written so far; of very many there is none.
+    fn draw(&self, model: &Model, folder: &Path, journal: &Journal) -> Result<(), Failure> {
+        let (files, all) = (journal.files(folder)?, journal.rows());
+        if all > page::MOST || journal.tally().rows == 0 {
+            return Ok(());
+        }
+        let mut rows = Vec::new();
+        Merged::new(&files)?.each(&mut |row, scalars| rows.push((row, scalars)))?;
+        let (units, source) = (Units::from(model), &model.source().text);
+        let params: Vec<String> =
+            model.meaning().params.iter().map(|it| it.place.name.clone()).collect();
+        let (units, params) = (&units, params.as_slice());
+        let page = page::Page { model: model.name(), source, units, params, rows, all };
+        files::write_file(&folder.join(format!("{}.html", journal.name())), &page.html())
     }
 
     /// What is kept of the rows that ran.
@@ -268,7 +287,7 @@ impl Sweep {
             (None, None) => Start::Guess,
         };
         let mut log = Log::of_several(self.level(), &run.bar, &format!("row {} ", row + 1));
-        log.show_widths_in(&Units::from(case.model().meaning()));
+        log.show_widths_in(&Units::from(case.model()));
         let options = fdcc::Options {
             starts: self.options.starts as usize,
             start,
@@ -295,16 +314,16 @@ impl Sweep {
     /// What a row leaves behind as soon as it is solved: what comes later cannot cost it.
     fn left(&self, run: &Run, at: usize, solved: &Solved) -> Result<Option<(usize, Row)>, Failure> {
         let Solved { document, .. } = solved;
+        // What was interrupted did not run; with a file it is solved again.
+        if document.status == "interrupted" {
+            return Ok(None);
+        }
         let row = Row::new(&run.grid.row(at), document, self.confirmed);
         run.bar.inc(1);
         let Some(journal) = run.journal else {
             self.tell(run, at, solved);
             return Ok(Some((at, row)));
         };
-        // What was interrupted is solved again.
-        if document.status == "interrupted" {
-            return Ok(None);
-        }
         if let (true, Some(folder)) = (self.trajectories, &self.options.out) {
             written::write(document, folder, &format!("{}.{}", document.model, at + 1))?;
         }
@@ -320,6 +339,11 @@ impl Sweep {
             run.bar.suspend(|| output::tell(&format!("{line}  {iterations}\n")));
         }
     }
+}
+
+/// Where the rows are written.
+fn folder_of(options: &Options) -> &Path {
+    options.out.as_deref().unwrap_or("".as_ref())
 }
 
 /// Stands for the values of a row.

@@ -13,6 +13,7 @@ use crate::report::log::Level;
 use crate::solved::Solved;
 use crate::watch::catch_interrupts;
 use clap::Args;
+use fdcc::names::is_solved;
 use fdcc::{Expectation, Expected, Model, Sides};
 use std::time::Instant;
 
@@ -106,7 +107,7 @@ fn line(found: Expectation, model: &Model) -> Line {
 
 impl Tested {
     fn is_solved(&self) -> bool {
-        self.status.as_deref().is_none_or(|status| matches!(status, "solved" | "acceptable"))
+        self.status.as_deref().is_none_or(is_solved)
     }
 
     fn count(&self, outcome: Word) -> usize {

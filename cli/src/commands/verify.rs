@@ -6,7 +6,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output;
 use crate::output::saved::Saved;
-use crate::output::verified::VerifyDocument;
+use crate::output::verified::{VerifyDocument, VerifyPhasesDocument};
 use clap::Args;
 use fdcc::{Error, Model};
 use fdcc_grammar::SourceFile;
@@ -65,14 +65,10 @@ impl Verify {
         })
     }
 
-    fn verify(&self, saved: &Saved, model: &Model) -> Result<VerifyDocument, Failure> {
+    fn verify(&self, saved: &Saved, model: &Model) -> Result<Document, Failure> {
         let solved = model.changed(|meaning| {
             meaning.restore_params(&saved.params());
             Ok::<(), Error>(())
-        })?;
-        let verified = solved.verify(&saved.record()).map_err(|error| match error {
-            Error::Record(what) => Failure::File(format!("{}: {what}", self.solution.display())),
-            other => other.into(),
         })?;
         let source = model.source();
         let same_source = saved.source_sha256 == sha256(&source.text);
@@ -82,13 +78,56 @@ impl Verify {
                 source.name
             ));
         }
+        if !model.meaning().phases.is_empty() {
+            return self.verify_phases(saved, &solved, same_source).map(Document::Phases);
+        }
+        let verified = solved.verify(&saved.record()).map_err(|it| self.failed(it))?;
         let gap = self.gap.of(&model.meaning().method);
         let document = VerifyDocument::new(&verified, saved.objective(), source, same_source, gap);
-        Ok(document.in_units(model.meaning().into()))
+        Ok(Document::One(document.in_units(model.into())))
     }
 
-    fn report(&self, document: &VerifyDocument) -> Exit {
-        output::print(&if self.json { output::json(document) } else { document.words() });
-        if document.is_confirmed() { Exit::Fine } else { Exit::NotSolved }
+    fn verify_phases(
+        &self,
+        saved: &Saved,
+        model: &Model,
+        same_source: bool,
+    ) -> Result<VerifyPhasesDocument, Failure> {
+        let record = saved.record();
+        let (all, links) = model.verify_phases(&record).map_err(|it| self.failed(it))?;
+        let gap = self.gap.of(&model.meaning().method);
+        let phase = |(own, it): (Model, &fdcc::Verification)| {
+            let document = VerifyDocument::new(it, None, model.source(), same_source, gap);
+            (it.system.name.clone(), document.in_units((&own).into()))
+        };
+        let phases = model.phases().into_iter().zip(&all).map(phase).collect();
+        let name = &model.meaning().name;
+        let document =
+            VerifyPhasesDocument::new((phases, &links), name, saved.objective(), same_source, gap);
+        Ok(document.in_units(model.into()))
     }
+
+    fn failed(&self, error: Error) -> Failure {
+        match error {
+            Error::Record(what) => Failure::File(format!("{}: {what}", self.solution.display())),
+            other => other.into(),
+        }
+    }
+
+    fn report(&self, document: &Document) -> Exit {
+        let (text, is_confirmed) = match document {
+            Document::One(it) if self.json => (output::json(it), it.is_confirmed()),
+            Document::One(it) => (it.words(), it.is_confirmed()),
+            Document::Phases(it) if self.json => (output::json(it), it.is_confirmed()),
+            Document::Phases(it) => (it.words(), it.is_confirmed()),
+        };
+        output::print(&text);
+        if is_confirmed { Exit::Fine } else { Exit::NotSolved }
+    }
+}
+
+/// Of a model of one piece, or of one with phases.
+enum Document {
+    One(VerifyDocument),
+    Phases(VerifyPhasesDocument),
 }

@@ -40,6 +40,10 @@ pub struct Switch {
     pub time: f64,
     pub from: &'static str,
     pub to: &'static str,
+    /// The multiplier of `psi = 0`: what the costates lose there is `kappa dpsi/dx`.
+    pub kappa: Option<f64>,
+    /// How far from grazing, as in the events of a simulation.
+    pub margin: Option<f64>,
 }
 
 /// What a certificate speaks of.
@@ -60,6 +64,8 @@ impl Certificate {
             time: it.time,
             from: mode_name(it.from),
             to: mode_name(it.to),
+            kappa: it.kappa,
+            margin: it.margin,
         };
         let stretch =
             |it: &true_optimum::Stretch| Span { mode: it.arc.into(), from: it.from, to: it.to };
@@ -188,6 +194,9 @@ pub fn missed(check: &str, [figure, limit]: [f64; 2]) -> String {
                 "another control makes the Hamiltonian less by {figure} of its size (limit {limit})"
             )
         }
+        "controls" => format!(
+            "between their nodes controls lose {figure} of the objective's size (limit {limit})"
+        ),
         "arcs" => format!("a bound multiplier has the wrong sign by {figure} (limit {limit})"),
         "hamiltonian" => {
             format!(

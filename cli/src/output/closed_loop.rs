@@ -3,7 +3,7 @@
 use super::named::Named;
 use super::number::significant;
 use super::plural;
-use super::units::Units;
+use super::units::{Shown, Units};
 use crate::version::VERSION;
 use fdcc::Controller;
 use serde::Serialize;
@@ -12,7 +12,7 @@ use serde::Serialize;
 #[derive(Serialize)]
 pub struct ClosedLoopDocument {
     fdcc: &'static str,
-    model: String,
+    pub model: String,
     plant: String,
     /// `completed`, or why it ended early.
     ended: &'static str,
@@ -25,6 +25,11 @@ pub struct ClosedLoopDocument {
     status: Vec<&'static str>,
     iterations: Vec<usize>,
     seconds: Vec<f64>,
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    display_units: Named<Shown>,
+    bounds: Named<[f64; 2]>,
+    /// The text of the model that controls.
+    source: String,
     #[serde(skip)]
     unsolved: usize,
 }
@@ -41,7 +46,7 @@ pub struct ClosedLoopStep {
 }
 
 impl ClosedLoopDocument {
-    pub fn new(controller: &Controller, plant: &str) -> Self {
+    pub fn new(controller: &Controller, plant: &str, bounds: Named<[f64; 2]>) -> Self {
         let named = |name: &str| (name.to_owned(), Vec::new());
         ClosedLoopDocument {
             fdcc: VERSION,
@@ -54,6 +59,9 @@ impl ClosedLoopDocument {
             status: Vec::new(),
             iterations: Vec::new(),
             seconds: Vec::new(),
+            display_units: Units::from(controller.model()).shown(),
+            bounds,
+            source: controller.model().source().text.to_string(),
             unsolved: 0,
         }
     }
@@ -86,6 +94,22 @@ impl ClosedLoopDocument {
     /// Whether it came to its end and every step was solved.
     pub fn is_fine(&self) -> bool {
         self.ended == "completed" && self.unsolved == 0
+    }
+
+    /// The text of `MODEL.mpc.csv`: what each step began with and did.
+    pub fn csv(&self) -> String {
+        let names = self.states.0.iter().chain(&self.controls.0).map(|(name, _)| name.as_str());
+        let head = ["t"].into_iter().chain(names).chain(["status", "iterations", "seconds"]);
+        let mut text = head.collect::<Vec<_>>().join(",") + "\n";
+        for (k, status) in self.status.iter().enumerate() {
+            let columns = self.states.0.iter().chain(&self.controls.0);
+            let mut row = vec![self.time[k].to_string()];
+            row.extend(columns.map(|(_, column)| column[k].to_string()));
+            row.push((*status).to_owned());
+            row.extend([self.iterations[k].to_string(), self.seconds[k].to_string()]);
+            text += &(row.join(",") + "\n");
+        }
+        text
     }
 
     /// ` 400 steps to t = 8 s, all solved: x = 1 m, v = 0 m/s`, and how long they took.

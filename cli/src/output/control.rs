@@ -28,14 +28,14 @@ pub fn read(path: &Path, model: &Model) -> Result<Driver, Failure> {
     } else {
         let text =
             input::text(path).map_err(|error| failure(format!(" cannot be read: {error}")))?;
-        from_csv(&text, model.meaning())
+        from_csv(&text, model)
     };
     let checked = replay.and_then(|replay| replay.check().map(|()| replay));
     let replay = checked.map_err(|what| failure(format!(": {what}")))?;
     Ok(Driver { replay, source_sha256 })
 }
 
-fn from_csv(text: &str, model: &fdcc_compiler::Model) -> Result<Replay, String> {
+fn from_csv(text: &str, model: &Model) -> Result<Replay, String> {
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let header = lines.next().ok_or("the file is empty; it needs a header such as `t,u`")?.1;
     let names: Vec<&str> =
@@ -79,7 +79,8 @@ fn from_csv(text: &str, model: &fdcc_compiler::Model) -> Result<Replay, String> 
 
 /// The column of each control. States and reports may stand beside them, as in the `.csv` of a
 /// solve.
-fn columns(names: &[&str], model: &fdcc_compiler::Model) -> Result<Vec<usize>, String> {
+fn columns(names: &[&str], model: &Model) -> Result<Vec<usize>, String> {
+    let (called, model) = (model.name(), model.meaning());
     let controls = || model.controls.iter().map(|control| control.place.name.as_str());
     if names[0] != "t" {
         let example = std::iter::once("t").chain(controls()).collect::<Vec<_>>().join(",");
@@ -100,7 +101,7 @@ fn columns(names: &[&str], model: &fdcc_compiler::Model) -> Result<Vec<usize>, S
         }
         if !controls().any(|control| control == *name) && !others.contains(name) {
             let known = controls().collect::<Vec<_>>().join(", ");
-            return Err(format!("`{name}` is no control of the model `{}` ({known})", model.name));
+            return Err(format!("`{name}` is no control of the model `{called}` ({known})"));
         }
     }
     controls()

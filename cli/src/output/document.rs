@@ -10,6 +10,7 @@ use super::named::Named;
 use super::optimality::Optimality;
 use super::phases::Phase;
 use super::picture::Picture;
+use super::reach::Reach;
 use super::tried::{Ended, Family, Happened, Tried};
 use super::units::Units;
 use super::verification::Verification;
@@ -110,6 +111,9 @@ pub struct Document {
     /// What the controls do on the true system; absent where they were not replayed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verification: Option<Verification>,
+    /// How far the condition in the way can be met; only where nothing feasible was found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reach: Option<Reach>,
 }
 
 /// The values between which a control is linear, or through which it is a polynomial on each
@@ -167,11 +171,6 @@ impl Document {
         let nodes = trajectory.nodes.as_ref();
         let report = problem.report_names.iter().cloned().zip(trajectory.report.iter().cloned());
         let claims = problem.has_objective && found.status().is_solved();
-        // Where an expression has no value, no error was measured.
-        let measured = |error: f64| {
-            if matches!(solution.status, Status::NotFinite(_)) { f64::NAN } else { error }
-        };
-        let is_smooth = problem.surfaces.is_empty() && found.model().meaning().jumps.is_empty();
         Document {
             fdcc: VERSION.to_string(),
             model: problem.name.clone(),
@@ -183,8 +182,8 @@ impl Document {
             params: Named::of(found.parameters()),
             method: MethodUsed::new(found),
             iterations: solution.counts.iterations,
-            kkt_error: measured(solution.kkt_error),
-            constraint_violation: measured(solution.constraint_violation),
+            kkt_error: measured(&solution.status, solution.kkt_error),
+            constraint_violation: measured(&solution.status, solution.constraint_violation),
             regularizations: solution.counts.regularizations,
             counts: Counts::new(&solution.counts),
             seconds,
@@ -214,8 +213,12 @@ impl Document {
             units,
             convergence: Convergence::default(),
             optimality: claims.then(|| Optimality::new(&found.optimality(None))),
-            certificate: found.certificate.as_ref().map(|it| Certificate::new(it, is_smooth)),
+            certificate: found
+                .certificate
+                .as_ref()
+                .map(|it| Certificate::new(it, is_smooth(found))),
             verification: None,
+            reach: None,
         }
     }
 
@@ -223,7 +226,7 @@ impl Document {
     pub fn with_phases(mut self, found: &Solution) -> Self {
         let seconds = self.seconds;
         let phase = |own: &Solution| {
-            let units = Units::from(own.model().meaning());
+            let units = Units::from(own.model());
             let document = Document::new(own, &self.source_sha256, units, seconds);
             (own.problem.name.clone(), Phase(document))
         };
@@ -256,6 +259,17 @@ impl Document {
             .filter(move |jump| nearest(jump.time) == Some(point))
             .map(|jump| &jump.before)
     }
+}
+
+/// Where an expression has no value, no error was measured.
+fn measured(status: &Status, error: f64) -> f64 {
+    if matches!(status, Status::NotFinite(_)) { f64::NAN } else { error }
+}
+
+/// Whether nothing switches and nothing jumps, in any of its phases.
+fn is_smooth(found: &Solution) -> bool {
+    let mut switching = found.phases().iter().chain([found]).map(|it| &it.problem.surfaces);
+    switching.all(Vec::is_empty) && found.model().meaning().jumps.is_empty()
 }
 
 /// By the words that the outputs of a function have in the model, from the first on that counts.

@@ -8,7 +8,7 @@ use crate::version::VERSION;
 use fdcc::{By, Exact, Gradient, Model, Stepped};
 use fdcc_grammar::SourceFile;
 use fdcc_runtime::problem::Method;
-use fdcc_runtime::sensitivity::{Kink, Nondifferentiability, NondifferentiabilityKind};
+use fdcc_runtime::sensitivity::{Kink, KinkMet, Nondifferentiability, NondifferentiabilityKind};
 use fdcc_runtime::simulate::{Simulation, System};
 use serde::Serialize;
 
@@ -33,7 +33,7 @@ pub struct GradientDocument {
     pub trusted: bool,
     /// Whether it stays on a kink.
     #[serde(skip)]
-    pub is_bent: bool,
+    pub has_kink: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub one_sided: Option<Named<Sides>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -105,7 +105,7 @@ impl GradientDocument {
         let (source, method) = (model.source(), &model.meaning().method);
         let gradient = &exact.gradient;
         let mut warnings = doubts(system, exact);
-        warnings.extend(exact.found.kink.as_ref().map(|kink| bent(kink, source)));
+        warnings.extend(exact.found.kink.as_ref().map(|kink| kink_warning(kink, source)));
         let second = has_second.then(|| found.second());
         let second = second.and_then(|found| found.map_err(|why| warnings.push(why)).ok());
         let mut other = |what: &str, found: Result<Stepped, String>| match found {
@@ -134,7 +134,7 @@ impl GradientDocument {
             compare,
             differentiable: is_plain,
             trusted: exact.is_trusted(),
-            is_bent: exact.found.kink.is_some(),
+            has_kink: exact.found.kink.is_some(),
             one_sided: (!is_plain && !sides.0.is_empty()).then_some(sides),
             cause: first.map(|found| Reason::new(system, found)),
             warnings,
@@ -162,7 +162,7 @@ impl GradientDocument {
             compare: Compare::default(),
             differentiable: false,
             trusted: false,
-            is_bent: false,
+            has_kink: false,
             one_sided: None,
             cause: None,
             events: events(system, simulation),
@@ -190,6 +190,7 @@ impl Reason {
                     "`{surface}` is met at t = {time}, when the controls change or at the start"
                 )
             }
+            "limit" => format!("`{surface}` is held as hard as it can be from t = {time} on"),
             _ => format!("`{surface}` is met at the end, t = {time}"),
         }
     }
@@ -201,6 +202,7 @@ fn kind_name(kind: NondifferentiabilityKind) -> &'static str {
         NondifferentiabilityKind::Corner => "corner",
         NondifferentiabilityKind::Coincident => "coincident",
         NondifferentiabilityKind::End => "end",
+        NondifferentiabilityKind::Limit => "limit",
     }
 }
 
@@ -223,21 +225,24 @@ fn doubts(system: &System, exact: &Exact) -> Vec<String> {
 }
 
 /// What is to be known of a kink that the trajectory stays on.
-fn bent(kink: &Kink, source: &SourceFile) -> String {
+fn kink_warning(kink: &Kink, source: &SourceFile) -> String {
     let line = source.line_column(kink.of.span.0).line;
     let which = format!(
         "a kink of `{}` (line {line}: `abs`, `min`, `max` or a knot of `piecewise`)",
         kink.of.label
     );
     let one_side = "the derivatives are those of one side of it";
-    match kink.time {
-        _ if kink.is_of_parameters => {
+    match kink.met {
+        KinkMet::ByParameters => {
             format!("the parameters are on {which}: by them there is no derivative")
         }
-        Some(time) => {
+        KinkMet::Since(time) => {
             format!("from t = {} on the state stays on {which}: {one_side}", short(time))
         }
-        None => format!("the trajectory ends on {which}: {one_side}"),
+        KinkMet::ByJump(time) => {
+            format!("the jump at t = {} is on {which}: {one_side}", short(time))
+        }
+        KinkMet::AtEnd => format!("the trajectory ends on {which}: {one_side}"),
     }
 }
 

@@ -34,7 +34,7 @@ impl GradientDocument {
         let agreement = scientific(self.agreement.unwrap_or(f64::NAN), 1);
         match (self.trusted, self.differentiable) {
             (true, _) => format!("differentiable; forward and adjoint agree to {agreement}"),
-            (false, true) if self.is_bent => "NOT TRUSTED: it is on a kink".into(),
+            (false, true) if self.has_kink => "NOT TRUSTED: it is on a kink".into(),
             (false, true) => format!("NOT TRUSTED: forward and adjoint differ by {agreement}"),
             (false, false) => {
                 let why = self.cause.as_ref().map(Reason::words).unwrap_or_default();

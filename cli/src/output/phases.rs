@@ -4,7 +4,7 @@ use super::document::{ControlNodes, Document};
 use super::hamiltonian_check::HamiltonianCheck;
 use super::modes::Span;
 use super::named::Named;
-use super::picture::PathCondition;
+use super::picture::{Before, PathCondition};
 use super::verification::Verification;
 use serde::{Serialize, Serializer};
 
@@ -24,6 +24,8 @@ struct Shown<'d> {
     #[serde(skip_serializing_if = "Option::is_none")]
     control_nodes: Option<&'d ControlNodes>,
     costates: &'d Named<Vec<f64>>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    costates_before: &'d [Before],
     path_multipliers: &'d Named<Vec<f64>>,
     end_multipliers: &'d Named<f64>,
     hamiltonian: &'d [f64],
@@ -49,6 +51,7 @@ impl Serialize for Phase {
             controls: &of.controls,
             control_nodes: of.control_nodes.as_ref(),
             costates: &of.costates,
+            costates_before: &of.picture.costates_before,
             path_multipliers: &of.path_multipliers,
             end_multipliers: &of.end_multipliers,
             hamiltonian: &of.hamiltonian,

@@ -4,6 +4,8 @@ use super::document::{Document, Seconds};
 use super::named::Named;
 use super::optimality::Optimality;
 use super::verification::Verification;
+use fdcc::language::parse_quantity;
+use fdcc::names::is_solved;
 use serde::{Deserialize, Serialize};
 
 /// What came out of a row, in numbers and words.
@@ -75,8 +77,15 @@ impl Row {
     pub fn new(swept: &[(&str, &str)], document: &Document, confirmed: bool) -> Self {
         let finite = |value: f64| Some(value).filter(|it| it.is_finite());
         let free = document.free.0.iter().map(|(name, value)| (name.clone(), finite(*value)));
+        // A plain number is in the declared unit of its parameter, which may be another than SI.
+        let si = |name: &str, text: &str| match (value(text), document.params.get(name)) {
+            (Value::Word(word), _) => Value::Word(word),
+            (Value::Whole(it), Some(si)) if it as f64 == *si => Value::Whole(it),
+            (_, Some(si)) => Value::Number(*si),
+            (given, None) => given,
+        };
         let scalars = Scalars {
-            swept: swept.iter().map(|(name, text)| ((*name).to_owned(), value(text))).collect(),
+            swept: swept.iter().map(|(name, it)| ((*name).to_owned(), si(name, it))).collect(),
             status: document.status.clone(),
             objective: finite(document.objective),
             free: free.collect(),
@@ -95,7 +104,7 @@ impl Row {
 }
 
 fn value(text: &str) -> Value {
-    match (text.parse(), fdcc_compiler::parse_quantity(text)) {
+    match (text.parse(), parse_quantity(text)) {
         (Ok(whole), _) => Value::Whole(whole),
         (_, Ok(quantity)) => Value::Number(quantity.value),
         _ => Value::Word(text.to_owned()),
@@ -105,7 +114,7 @@ fn value(text: &str) -> Value {
 impl Scalars {
     /// Whether it can be used, and is confirmed if that was asked.
     pub fn is_fine(&self) -> bool {
-        matches!(&*self.status, "solved" | "acceptable") && self.confirmed != Some(false)
+        is_solved(&self.status) && self.confirmed != Some(false)
     }
 }
 

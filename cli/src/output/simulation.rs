@@ -2,7 +2,7 @@
 
 use super::ending::{Ending, EventEntry, events, state};
 use super::named::Named;
-use super::units::Units;
+use super::units::{Shown, Units};
 use crate::version::VERSION;
 use fdcc::{Model, Simulation};
 use serde::Serialize;
@@ -25,6 +25,9 @@ pub struct SimulationDocument {
     counts: Counts,
     #[serde(skip_serializing_if = "Units::is_empty")]
     units: Units,
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    display_units: Named<Shown>,
+    source: String,
 }
 
 #[derive(Serialize)]
@@ -61,7 +64,9 @@ impl SimulationDocument {
                 stiff: counts.stiff,
                 evaluations: counts.evaluations,
             },
-            units: model.meaning().into(),
+            display_units: Units::from(model).shown(),
+            units: model.into(),
+            source: model.source().text.to_string(),
         }
     }
 

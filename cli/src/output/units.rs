@@ -3,7 +3,8 @@
 
 use super::named::Named;
 use super::number::{short, significant};
-use fdcc_compiler::{Model, NamedUnit};
+use fdcc::Model;
+use fdcc::language::NamedUnit;
 use serde::{Serialize, Serializer};
 use std::collections::HashMap;
 
@@ -14,8 +15,8 @@ pub struct Units(Vec<NamedUnit>, Vec<NamedUnit>, Option<NamedUnit>, HashMap<Stri
 
 impl From<&Model> for Units {
     fn from(model: &Model) -> Self {
-        let width = model.width_unit.as_ref().map(|it| it.unit.clone());
-        Units::new(model.units.clone(), model.condition_units.clone(), width)
+        let width = model.meaning().width_unit.as_ref().map(|it| it.unit.clone());
+        Units::new(model.units().to_vec(), model.condition_units().to_vec(), width)
     }
 }
 

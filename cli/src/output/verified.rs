@@ -9,7 +9,7 @@ use super::units::Units;
 use super::verification::{Verification, measured};
 use crate::version::VERSION;
 use fdcc::modes::name;
-use fdcc::{Gap, Stay};
+use fdcc::{Gap, LinkGap, Stay};
 use fdcc_grammar::SourceFile;
 use serde::Serialize;
 
@@ -29,6 +29,23 @@ pub struct VerifyDocument {
     conditions: Named<ConditionEntry>,
     events: Vec<EventEntry>,
     surfaces: Named<Vec<Span>>,
+    #[serde(skip_serializing_if = "Units::is_empty")]
+    units: Units,
+}
+
+/// What `fdcc verify --json` prints of a model with phases.
+#[derive(Serialize)]
+pub struct VerifyPhasesDocument {
+    fdcc: String,
+    pub model: String,
+    /// Whether the text of the model is still the one that was solved.
+    same_source: bool,
+    /// What the solution says of the objective.
+    objective: Option<f64>,
+    verification: Verification,
+    /// How far the conditions of links are violated by the ends of the replays.
+    links: Named<ConditionEntry>,
+    phases: Named<VerifyDocument>,
     #[serde(skip_serializing_if = "Units::is_empty")]
     units: Units,
 }
@@ -104,48 +121,19 @@ impl VerifyDocument {
         parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n")
     }
 
+    /// The tables of a phase.
+    fn tables(&self) -> String {
+        let parts = [self.states(), self.met(), self.modes()];
+        parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n")
+    }
+
     fn verdict(&self) -> String {
-        let Verification { asked, completed, worst, .. } = &self.verification;
-        let first = match self.ending.why().filter(|_| !completed) {
-            None if *completed => {
-                let word = if self.is_confirmed() { "confirmed" } else { "NOT CONFIRMED" };
-                let differs = self.verification.difference(&self.units);
-                let differs = differs.unwrap_or_else(|| "no state differs".into());
-                let violated = worst.as_ref().zip(self.verification.violation(&self.units));
-                let violated = violated
-                    .map(|(worst, amount)| format!("violates `{}` by {amount}", worst.condition));
-                let violated = violated.unwrap_or_else(|| "meets all conditions".into());
-                format!(
-                    " {word} on the true system: {differs}, {violated} (asked for: {})\n",
-                    short(*asked)
-                )
-            }
-            why => {
-                let why = why.unwrap_or_else(|| "it ended early".into());
-                format!(
-                    " NOT CONFIRMED: the replay on the true system does not reach the end\n {why}\n"
-                )
-            }
-        };
-        let place = worst.as_ref().filter(|worst| worst.time.is_some());
-        let place = place.map(|it| {
-            let time = self.units.value("time", it.time.unwrap_or(f64::NAN), 6);
-            format!(" worst at t = {time}: {}\n", self.units.pairs(&it.state, 6))
-        });
-        first + &place.unwrap_or_default()
+        verdict(&self.verification, self.ending.why(), &self.units)
     }
 
     fn numbers(&self) -> String {
-        let text = |value: f64| self.units.value("objective", value, 9);
-        let of = |value: Option<f64>| value.map_or("-".to_string(), text);
-        match (self.objective, self.verification.objective) {
-            (_, None) => String::new(),
-            (own, replayed) => {
-                format!(" objective {}   of the solution {}\n", of(replayed), of(own))
-            }
-        }
+        numbers(self.objective, self.verification.objective, &self.units)
     }
-
     fn states(&self) -> String {
         let row = |(name, it): &(String, GapEntry)| {
             let difference = self.units.value(measured(name), it.difference, 6);
@@ -174,5 +162,98 @@ impl VerifyDocument {
                 .map(move |it| vec![name.clone(), it.mode.clone(), digits(it.from), digits(it.to)])
         });
         with_head(["surface", "mode", "from", "to"].to_vec(), rows.collect())
+    }
+}
+
+impl VerifyPhasesDocument {
+    pub fn new(
+        (phases, links): (Vec<(String, VerifyDocument)>, &[LinkGap]),
+        model: &str,
+        objective: Option<f64>,
+        same_source: bool,
+        asked: f64,
+    ) -> Self {
+        let own = phases.iter().map(|(name, it)| (name.as_str(), &it.verification));
+        let verification = Verification::of_phases(&own.collect::<Vec<_>>(), links, asked);
+        let link = |it: &LinkGap| {
+            let entry = ConditionEntry { violation: it.violation, relative: it.part, time: None };
+            (it.label.clone(), entry)
+        };
+        VerifyPhasesDocument {
+            fdcc: VERSION.to_string(),
+            model: model.to_string(),
+            same_source,
+            objective,
+            verification,
+            links: links.iter().map(link).collect(),
+            phases: Named(phases),
+            units: Units::default(),
+        }
+    }
+
+    /// The same with the units of its values.
+    pub fn in_units(self, units: Units) -> Self {
+        VerifyPhasesDocument { units, ..self }
+    }
+
+    /// Whether the solution is confirmed.
+    pub fn is_confirmed(&self) -> bool {
+        self.verification.confirmed
+    }
+
+    /// The verdict, then the tables of each phase, then those of the links.
+    pub fn words(&self) -> String {
+        let why = self.phases.0.iter().find_map(|(_, it)| it.ending.why());
+        let mut words = verdict(&self.verification, why, &self.units);
+        for (name, phase) in &self.phases.0 {
+            words += &format!("\n {name}\n{}", phase.tables());
+        }
+        let row = |(name, it): &(String, ConditionEntry)| {
+            let violation = self.units.violation(name, it.violation, 6);
+            vec![name.clone(), violation, short(it.relative)]
+        };
+        let rows = self.links.0.iter().map(row).collect();
+        words + "\n" + &with_head(["link", "violated by", "of its terms"].to_vec(), rows)
+    }
+}
+
+/// The first line, and where the worst is.
+fn verdict(verification: &Verification, why: Option<String>, units: &Units) -> String {
+    let Verification { asked, completed, worst, .. } = verification;
+    let first = match why.filter(|_| !completed) {
+        None if *completed => {
+            let word = if verification.confirmed { "confirmed" } else { "NOT CONFIRMED" };
+            let how = if verification.phase_by_phase { ", phase by phase" } else { "" };
+            let differs = verification.difference(units);
+            let differs = differs.unwrap_or_else(|| "no state differs".into());
+            let violated = worst.as_ref().zip(verification.violation(units));
+            let violated = violated
+                .map(|(worst, amount)| format!("violates `{}` by {amount}", worst.condition));
+            let violated = violated.unwrap_or_else(|| "meets all conditions".into());
+            let asked = short(*asked);
+            format!(" {word} on the true system{how}: {differs}, {violated} (asked for: {asked})\n")
+        }
+        why => {
+            let why = why.unwrap_or_else(|| "it ended early".into());
+            format!(
+                " NOT CONFIRMED: the replay on the true system does not reach the end\n {why}\n"
+            )
+        }
+    };
+    let place = worst.as_ref().filter(|worst| worst.time.is_some());
+    let place = place.map(|it| {
+        let time = units.value("time", it.time.unwrap_or(f64::NAN), 6);
+        format!(" worst at t = {time}: {}\n", units.pairs(&it.state, 6))
+    });
+    first + &place.unwrap_or_default()
+}
+
+/// The objective of the replay, if it has one, and that of the solution.
+fn numbers(own: Option<f64>, replayed: Option<f64>, units: &Units) -> String {
+    let text = |value: f64| units.value("objective", value, 9);
+    let of = |value: Option<f64>| value.map_or("-".to_string(), text);
+    match replayed {
+        None => String::new(),
+        Some(_) => format!(" objective {}   of the solution {}\n", of(replayed), of(own)),
     }
 }

@@ -51,7 +51,11 @@ fn under<'j>(document: &'j Json, keys: &[String]) -> &'j Json {
 /// The values of a state or a costate just before jumps and switches, with the grid points that
 /// have those after them.
 fn values_before(document: &Json, curve: &Curve, time: &[f64]) -> Vec<(usize, f64)> {
-    let [group, name] = &curve.values[..] else { return Vec::new() };
+    // That of a phase stands under its name.
+    let Some((of, [group, name])) = curve.values.split_last_chunk::<2>() else {
+        return Vec::new();
+    };
+    let document = under(document, of);
     let (list, key) = match group.as_str() {
         "states" => ("jumps", "before"),
         "costates" => ("costates_before", "values"),
@@ -69,8 +73,8 @@ fn values_before(document: &Json, curve: &Curve, time: &[f64]) -> Vec<(usize, f6
 fn jumps(document: &Json, curve: &Curve, [from, to]: [f64; 2]) -> bool {
     let all = [document.at("jumps"), document.at("certificate").at("switches")];
     let times = all.iter().flat_map(|it| it.list()).filter_map(|it| it.at("time").number());
-    curve.values.first().is_some_and(|it| it == "control_nodes")
-        && times.into_iter().any(|time| from < time && time < to)
+    let is_polynomial = curve.values.iter().any(|it| it == "control_nodes");
+    is_polynomial && times.into_iter().any(|time| from < time && time < to)
 }
 
 /// Where a plot begins and ends: flat where values differ by nothing but rounding; a limit that is

@@ -61,7 +61,8 @@ pub fn times(documents: &[Json]) -> [f64; 2] {
     if first < last { [first, last] } else { [0.0, 1.0] }
 }
 
-/// The jumps, the times between phases, and the switches that were located.
+/// The jumps, the events of a simulation, the times between phases, and the switches that were
+/// located.
 fn marks(document: &Json) -> Vec<Moment> {
     let certificate = document.at("certificate");
     let is_certified = certificate.at("certified").is_true();
@@ -79,6 +80,11 @@ fn marks(document: &Json) -> Vec<Moment> {
         Some(Moment { time, what: name.clone() })
     };
     let phases = document.at("phases").pairs().iter().skip(1).filter_map(phase);
+    let event = |it: &Json| {
+        let what = format!("{}: {}", it.at("surface").text(), it.at("kind").text());
+        Some(Moment { time: it.at("time").number()?, what: what.replace('_', " ") })
+    };
+    let events = document.at("events").list().iter().filter_map(event);
     let jumps = document.at("jumps").list().iter().filter_map(jump);
-    jumps.chain(phases).chain(switches.iter().filter_map(switch)).collect()
+    jumps.chain(events).chain(phases).chain(switches.iter().filter_map(switch)).collect()
 }

@@ -1,7 +1,7 @@
 //! The plots of a page: which columns of its documents are drawn in which, with which units and
 //! limits. A description holds no numbers of curves; it says where they stand.
 
-use super::json::Json;
+use super::json::{Json, NULL};
 use super::units::{Unit, of_condition, of_time, of_value, per};
 use serde::Serialize;
 
@@ -86,6 +86,7 @@ const PATH: &str = "Path conditions";
 pub const COSTATES: &str = "Costates";
 const MULTIPLIERS: &str = "Multipliers of path conditions";
 pub const HAMILTONIAN: &str = "Hamiltonian";
+const WORK: &str = "Each step of the loop";
 
 /// A document, or a phase of one: what has signals over a time of its own.
 pub struct Part<'j> {
@@ -141,6 +142,14 @@ pub fn figures(documents: &[Json]) -> Vec<Figure> {
         let (label, of, kind) = (label(part), part.of, Kind::Steps);
         let figure = figure(&mut figures, HAMILTONIAN, HAMILTONIAN, unit);
         figure.curves.push(Curve { label, of, kind, time, values });
+    }
+    for part in parts.iter().filter(|part| !part.json.at("plant").is_absent()) {
+        for name in ["iterations", "seconds"] {
+            let (label, of, kind) = (label(part), part.of, Kind::Steps);
+            let (time, values) = (part.keys(&["time"]), part.keys(&[name]));
+            let figure = figure(&mut figures, WORK, name, || of_value(&NULL, name));
+            figure.curves.push(Curve { label, of, kind, time, values });
+        }
     }
     figures
 }

@@ -1,9 +1,11 @@
 //! What is certain of a solution and what is not, in sentences.
 
 use super::json::{Json, NULL};
+use super::runs;
 use super::units::{of_condition, of_time, of_value};
 use crate::output::certificate::{located, missed, system};
 use crate::output::number::{scientific, significant};
+use fdcc::names;
 
 /// How sure a sentence is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +30,8 @@ fn claim(mark: Mark, text: impl Into<String>) -> Claim {
 }
 
 fn is_solved(document: &Json) -> bool {
-    ["solved", "acceptable", "uncertified"].contains(&document.at("status").text())
+    let status = document.at("status").text();
+    names::is_solved(status) || status == "uncertified"
 }
 
 fn is_confirmed(document: &Json) -> bool {
@@ -43,6 +46,9 @@ fn is_certified(document: &Json) -> bool {
 
 /// The whole in one sentence.
 pub fn title(document: &Json) -> String {
+    if let Some(run) = runs::of(document) {
+        return run.title(document);
+    }
     if !is_solved(document) {
         return format!("Not solved: {}", document.at("status").text().replace('_', " "));
     }
@@ -87,7 +93,10 @@ fn all_located(document: &Json) -> String {
 
 /// Whether nothing switches and nothing jumps.
 fn is_smooth(document: &Json) -> bool {
-    document.at("surfaces").pairs().is_empty() && document.at("jumps").list().is_empty()
+    let switches = |it: &Json| !it.at("surfaces").pairs().is_empty();
+    let phases = document.at("phases").pairs();
+    let is_any = switches(document) || phases.iter().any(|(_, it)| switches(it));
+    !is_any && document.at("jumps").list().is_empty()
 }
 
 fn smoothed(document: &Json) -> bool {
@@ -97,6 +106,9 @@ fn smoothed(document: &Json) -> bool {
 
 /// How sure the whole is: as sure as what is least so of what was checked.
 pub fn mark(document: &Json) -> Mark {
+    if let Some(run) = runs::of(document) {
+        return run.mark(document);
+    }
     let replay = document.at("verification");
     let is_wrong = document.at("optimality").at("contradicted").is_true()
         || !replay.is_absent() && !replay.at("confirmed").is_true();
@@ -109,6 +121,9 @@ pub fn mark(document: &Json) -> Mark {
 
 /// What is certain and what is not.
 pub fn claims(document: &Json) -> Vec<Claim> {
+    if let Some(run) = runs::of(document) {
+        return run.claims(document);
+    }
     let mut claims = vec![tolerances(document)];
     if is_solved(document) {
         claims.extend(replayed(document));

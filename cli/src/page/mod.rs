@@ -3,15 +3,18 @@
 //!
 //! The page is made from the JSON document of the solve and holds it, with fewer digits.
 
+mod cells;
 mod curves;
 mod drawing;
 pub mod figures;
 mod headline;
 pub mod json;
 pub mod notebook;
+mod runs;
 mod sections;
 mod strips;
 pub mod svg;
+pub mod sweep;
 mod tables;
 mod tags;
 mod units;

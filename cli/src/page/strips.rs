@@ -36,8 +36,11 @@ pub fn strips(documents: &[Json], of: usize) -> Vec<Strip> {
     }
     let arcs = documents[of].at("certificate");
     let arcs = if arcs.at("certified").is_true() { arcs.at("arcs").pairs() } else { &[] };
+    let phases = documents[of].at("phases").pairs();
     for (name, spans) in arcs {
-        extend(&mut strips, name, "control", spans.list().iter().map(span).collect());
+        let own = phases.iter().find_map(|(phase, _)| name.strip_prefix(phase)?.strip_prefix('.'));
+        let spans = spans.list().iter().map(span).collect();
+        extend(&mut strips, own.unwrap_or(name), "control", spans);
     }
     for part in own().filter(|_| arcs.is_empty()) {
         for (name, values) in part.json.at("controls").pairs() {

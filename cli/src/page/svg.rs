@@ -11,8 +11,8 @@ use crate::output::number::significant;
 use plotters::prelude::*;
 
 /// Coordinates are whole numbers: there are this many for a pixel.
-const FINE: i32 = 4;
-const WIDTH: i32 = 640;
+pub(super) const FINE: i32 = 4;
+pub(super) const WIDTH: i32 = 640;
 const HEIGHT: i32 = 210;
 /// Of a plot of one signal over another.
 const TALL: i32 = 400;
@@ -20,16 +20,16 @@ const LEFT: i32 = 64;
 const BELOW: i32 = 40;
 const FONT: i32 = 13;
 
-const PLAN: RGBColor = RGBColor(31, 95, 168);
+pub(super) const PLAN: RGBColor = RGBColor(31, 95, 168);
 const REPLAY: RGBColor = RGBColor(194, 65, 12);
-const LIMIT: RGBColor = RGBColor(179, 38, 30);
-const HELD: RGBColor = RGBColor(226, 160, 18);
+pub(super) const LIMIT: RGBColor = RGBColor(179, 38, 30);
+pub(super) const HELD: RGBColor = RGBColor(226, 160, 18);
 const GRID: RGBColor = RGBColor(222, 225, 230);
 const INK: RGBColor = RGBColor(60, 66, 74);
 
 type ChartPoint = (f64, f64);
-type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
-type Chart<'a, 'b> = ChartContext<
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+pub(super) type Chart<'a, 'b> = ChartContext<
     'a,
     SVGBackend<'b>,
     Cartesian2d<plotters::coord::types::RangedCoordf64, plotters::coord::types::RangedCoordf64>,
@@ -105,36 +105,37 @@ fn held(document: &Json, second: f64) -> Vec<[f64; 2]> {
 }
 
 fn drawn(plots: &[Plot], height: i32) -> String {
-    let size = [WIDTH, height * plots.len() as i32].map(|it| (it * FINE) as u32);
+    canvas([WIDTH, height * plots.len() as i32], |area| {
+        let rows = area.split_evenly((plots.len(), 1));
+        plots.iter().zip(&rows).try_for_each(|(plot, row)| plot.draw(row))
+    })
+}
+
+/// A picture of so many pixels.
+pub(super) fn canvas(size: [i32; 2], draw: impl FnOnce(&Area) -> Drawn) -> String {
+    let fine = size.map(|it| (it * FINE) as u32);
     let mut text = String::new();
     {
-        let area = SVGBackend::with_string(&mut text, (size[0], size[1])).into_drawing_area();
-        let rows = area.split_evenly((plots.len(), 1));
-        let drawn = area
-            .fill(&WHITE)
-            .and_then(|()| plots.iter().zip(&rows).try_for_each(|(plot, row)| plot.draw(row)));
+        let area = SVGBackend::with_string(&mut text, (fine[0], fine[1])).into_drawing_area();
+        let drawn = area.fill(&WHITE).and_then(|()| draw(&area));
         drawn.expect("a text takes everything");
     }
-    let [width, height] = size.map(|it| it as i32 / FINE);
-    let fine = format!("width=\"{}\" height=\"{}\"", size[0], size[1]);
+    let [width, height] = size;
+    let fine = format!("width=\"{}\" height=\"{}\"", fine[0], fine[1]);
     text.replacen(&fine, &format!("width=\"{width}\" height=\"{height}\""), 1)
 }
 
-type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+pub(super) type Drawn = Result<(), Failed>;
 
 impl Plot {
     fn draw(&self, area: &Area) -> Drawn {
         let [[left, right], [low, high]] = self.ranges;
-        let mut chart = ChartBuilder::on(area)
-            .margin(10 * FINE)
-            .x_label_area_size(BELOW * FINE)
-            .y_label_area_size(LEFT * FINE)
-            .build_cartesian_2d(left..right, low..high)?;
+        let mut chart = chart(area, self.ranges)?;
         let shade = HELD.mix(0.15).filled();
         chart.draw_series(
             self.shaded.iter().map(|[from, to]| Rectangle::new([(*from, low), (*to, high)], shade)),
         )?;
-        self.draw_axes(&mut chart)?;
+        draw_axes(&mut chart, self.ranges, &self.titles)?;
         for limit in self.limits.iter().filter(|it| (low..=high).contains(*it)) {
             dashed(&mut chart, &[(left, *limit), (right, *limit)], LIMIT)?;
         }
@@ -148,26 +149,42 @@ impl Plot {
         }
         Ok(())
     }
+}
 
-    fn draw_axes(&self, chart: &mut Chart) -> Drawn {
-        let font = ("sans-serif", FONT * FINE).into_font().color(&INK);
-        let [across_label, up_label] = self.ranges.map(|range| move |it: &f64| label(*it, range));
-        let [across, up] = &self.titles;
-        chart
-            .configure_mesh()
-            .label_style(font.clone())
-            .axis_desc_style(font)
-            .axis_style(GRID.stroke_width(FINE as u32))
-            .bold_line_style(GRID.stroke_width(FINE as u32))
-            .light_line_style(TRANSPARENT)
-            .x_labels(8)
-            .y_labels(6)
-            .x_label_formatter(&across_label)
-            .y_label_formatter(&up_label)
-            .x_desc(across)
-            .y_desc(up)
-            .draw()
-    }
+type Failed = DrawingAreaErrorKind<std::io::Error>;
+
+pub(super) fn chart<'a, 'b>(
+    area: &'a Area<'b>,
+    [[left, right], [low, high]]: [[f64; 2]; 2],
+) -> Result<Chart<'a, 'b>, Failed> {
+    ChartBuilder::on(area)
+        .margin(10 * FINE)
+        .x_label_area_size(BELOW * FINE)
+        .y_label_area_size(LEFT * FINE)
+        .build_cartesian_2d(left..right, low..high)
+}
+
+pub(super) fn draw_axes(
+    chart: &mut Chart,
+    ranges: [[f64; 2]; 2],
+    [across, up]: &[String; 2],
+) -> Drawn {
+    let font = ("sans-serif", FONT * FINE).into_font().color(&INK);
+    let [across_label, up_label] = ranges.map(|range| move |it: &f64| label(*it, range));
+    chart
+        .configure_mesh()
+        .label_style(font.clone())
+        .axis_desc_style(font)
+        .axis_style(GRID.stroke_width(FINE as u32))
+        .bold_line_style(GRID.stroke_width(FINE as u32))
+        .light_line_style(TRANSPARENT)
+        .x_labels(8)
+        .y_labels(6)
+        .x_label_formatter(&across_label)
+        .y_label_formatter(&up_label)
+        .x_desc(across)
+        .y_desc(up)
+        .draw()
 }
 
 /// Of a tick: 0 where nothing but rounding is left.
@@ -176,7 +193,7 @@ fn label(value: f64, [low, high]: [f64; 2]) -> String {
     significant(if is_zero { 0.0 } else { value }, 5)
 }
 
-fn line(chart: &mut Chart, points: &[ChartPoint], colour: RGBColor) -> Drawn {
+pub(super) fn line(chart: &mut Chart, points: &[ChartPoint], colour: RGBColor) -> Drawn {
     let style = colour.stroke_width(2 * FINE as u32);
     chart.draw_series(LineSeries::new(points.iter().copied(), style)).map(|_| ())
 }

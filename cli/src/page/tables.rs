@@ -1,6 +1,7 @@
 //! The numbers of a document that no plot shows, as tables.
 
 use super::json::Json;
+use super::runs;
 use super::tags::{Cell, escape, section, table};
 use super::units::{of_condition, of_time, of_value, per};
 use crate::output::number::{scientific, significant};
@@ -31,6 +32,9 @@ pub fn differing(documents: &[Json]) -> Vec<&str> {
 
 /// All tables of a document, and its text.
 pub fn tables(document: &Json) -> String {
+    if runs::of(document).is_some() {
+        return runs::table_of_events(document) + &text(document);
+    }
     [
         sensitivities(document),
         switches(document),
@@ -209,9 +213,11 @@ fn text(document: &Json) -> String {
         return String::new();
     }
     let model = document.at("model").text();
-    let again = format!(
-        "fdcc solve {model}.fdc --out results\nfdcc verify results/{model}.sol.json {model}.fdc"
-    );
+    let solve = || {
+        let verify = format!("fdcc verify results/{model}.sol.json {model}.fdc");
+        format!("fdcc solve {model}.fdc --out results\n{verify}")
+    };
+    let again = runs::of(document).map_or_else(solve, |run| run.again(document));
     section(
         "The model",
         &format!(

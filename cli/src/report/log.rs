@@ -25,8 +25,10 @@ pub enum Level {
     Full,
 }
 
-const HEADER: &str = " iter    objective    inf_pr   inf_du lg(mu)  ||d||  lg(rg) alpha_du \
-                      alpha_pr  ls  sigma       N";
+const HEADER: &str =
+    " iter    objective    inf_pr   inf_du lg(mu)  ||d||   alpha_pr  sigma       N";
+/// What a full log has besides, at its end: the short one fits a terminal of 80 columns.
+const MORE: &str = " lg(rg) alpha_du  ls";
 /// The header is repeated after this many lines.
 const PAGE: usize = 20;
 const SHORT: usize = 10;
@@ -104,11 +106,13 @@ impl Log {
         if !wanted {
             return;
         }
-        let line = line(progress, level, self.scale);
+        let is_full = self.level == Level::Full;
+        let line = line(progress, level, self.scale, is_full);
+        let more = if is_full { MORE } else { "" };
         let with_header = self.next_line(part).is_multiple_of(PAGE);
         self.bar.suspend(|| {
             if with_header {
-                tell(&format!("{label}{HEADER}\n"));
+                tell(&format!("{label}{HEADER}{more}\n"));
             }
             tell(&format!("{label}{line}\n"));
         });
@@ -170,28 +174,32 @@ fn progress(bar: ProgressBar, level: Level, template: &str) -> ProgressBar {
     bar
 }
 
-fn line(p: &Progress, level: solve::Level, scale: f64) -> String {
-    let logarithm =
-        |value: f64| if value > 0.0 { format!("{:.1}", value.log10()) } else { "-".to_string() };
-    let (mu, regularization) = (logarithm(p.mu), logarithm(p.regularization));
+fn line(p: &Progress, level: solve::Level, scale: f64, is_full: bool) -> String {
     let sigma = level.sigma.iter().fold(0.0f64, |a, sigma| a.max(*sigma));
     let sigma = if sigma > 0.0 { scientific(sigma / scale, 1) } else { "-".into() };
     let stages = level.stages.map(|stages| format!("x{stages}")).unwrap_or_default();
     let grid = format!("{}{stages}", level.intervals);
+    let more = if is_full { more(p) } else { String::new() };
     format!(
-        "{:5}{} {:>13} {:>8} {:>8} {:>5} {:>8} {:>5} {:>8} {:>8} {:>3}  {:>7} {:>6}",
+        "{:5}{} {:>13} {:>8} {:>8} {:>5} {:>8} {:>9}  {:>7} {:>6}{more}",
         p.iteration,
         if p.restoration { 'r' } else { ' ' },
         scientific(p.objective, 6),
         scientific(p.primal_infeasibility, 2),
         scientific(p.dual_infeasibility, 2),
-        mu,
+        logarithm(p.mu),
         scientific(p.step, 2),
-        regularization,
-        scientific(p.alpha_dual, 2),
         scientific(p.alpha_primal, 2),
-        p.trials,
         sigma,
         grid
     )
+}
+
+fn more(p: &Progress) -> String {
+    let alpha = scientific(p.alpha_dual, 2);
+    format!(" {:>6} {alpha:>8} {:>3}", logarithm(p.regularization), p.trials)
+}
+
+fn logarithm(value: f64) -> String {
+    if value > 0.0 { format!("{:.1}", value.log10()) } else { "-".into() }
 }

@@ -15,6 +15,7 @@ use fdcc_runtime::transcribe::unknowns;
 use std::collections::HashMap;
 
 mod jumps;
+mod next;
 mod rest;
 
 /// The size of the problem: one line, or one for each phase.
@@ -69,9 +70,10 @@ pub fn verdict(solved: &Solved) -> String {
     if let Some(estimates) = &document.estimates {
         lines.extend(estimates.lines(document));
     }
-    lines.extend(surfaces(document, ""));
+    let is_certified = document.is_certified();
+    lines.extend(surfaces(document, "", is_certified));
     for (name, phase) in &document.phases.0 {
-        lines.extend(surfaces(&phase.0, &format!("{name}.")));
+        lines.extend(surfaces(&phase.0, &format!("{name}."), is_certified));
     }
     if let Some(certificate) = &document.certificate {
         lines.extend(certificate.lines(&document.units));
@@ -79,12 +81,14 @@ pub fn verdict(solved: &Solved) -> String {
         lines.extend(certificate.advice().map(str::to_owned));
     }
     lines.extend(rest::lines(solved));
+    lines.extend(document.reach.iter().map(|it| format!(" near  {}", it.words(&document.units))));
     lines.extend(replayed(document));
     lines.extend(refined(solved));
     if solved.solution.status().is_solved() && solved.solution.problem.has_objective {
         lines.extend(hamiltonian(document));
     }
     lines.extend(sensitivities(document));
+    lines.extend(next::line(document));
     lines.join("\n") + "\n"
 }
 
@@ -122,7 +126,7 @@ fn spread(solution: &Solution, document: &Document) -> Vec<String> {
 }
 
 /// What each surface did, if the trajectory says anything about it.
-fn surfaces(document: &Document, phase: &str) -> impl Iterator<Item = String> {
+fn surfaces(document: &Document, phase: &str, is_certified: bool) -> impl Iterator<Item = String> {
     let has_trajectory = document.status != "not_finite";
     let units = &document.units;
     let sigmas = document.method.sigmas.0.iter().filter(move |_| has_trajectory);
@@ -130,7 +134,7 @@ fn surfaces(document: &Document, phase: &str) -> impl Iterator<Item = String> {
         let modes =
             document.surfaces.get(own).map(|spans| switching(spans, units)).unwrap_or_default();
         let name = format!("{phase}{own}");
-        if document.is_certified() {
+        if is_certified {
             return format!(" {name:<5} {modes}");
         }
         format!(
@@ -157,8 +161,7 @@ fn how(solved: &Solved) -> String {
         return certificate.headline(found, problem.has_objective, solution.jumps.len());
     }
     let status = &outcome.solution.status;
-    let of =
-        if document.surfaces.0.is_empty() { "discretised problem" } else { "smoothed problem" };
+    let of = if has_surfaces(document) { "smoothed problem" } else { "discretised problem" };
     let uncertified = if document.certificate.is_some() { "NOT CERTIFIED, " } else { "" };
     let tolerance = format!("tolerance {:e}", document.method.tol);
     let proof = if document.global || !problem.has_objective { "" } else { "; not proved global" };
@@ -179,6 +182,11 @@ fn how(solved: &Solved) -> String {
         Status::Infeasible if !outcome.is_impossible => format!("NOT SOLVED, {}", why(solved)),
         _ => format!("NOT SOLVED, {}: {}", solution.status_name().replace('_', " "), why(solved)),
     }
+}
+
+fn has_surfaces(document: &Document) -> bool {
+    let phases = document.phases.0.iter().map(|(_, phase)| &phase.0);
+    phases.chain([document]).any(|it| !it.surfaces.0.is_empty())
 }
 
 /// What was reached where the grid was to be chosen.
@@ -218,11 +226,17 @@ fn hamiltonian(document: &Document) -> Option<String> {
 
 /// What the optimum is worth to each parameter.
 fn sensitivities(document: &Document) -> impl Iterator<Item = String> {
-    let all = document.sensitivities.0.iter().filter(|(_, slope)| slope.is_finite());
+    let is_located = document.certificate.as_ref().is_some_and(|it| it.certified);
+    let is_told = move |slope: &f64| slope.is_finite() || is_located && slope.is_nan();
+    let all = document.sensitivities.0.iter().filter(move |(_, slope)| is_told(slope));
     let params = document.params.0.iter().rev();
     let values: HashMap<&str, f64> = params.map(|(name, value)| (name.as_str(), *value)).collect();
     all.map(move |(name, slope)| {
         let value = values.get(name.as_str()).copied().unwrap_or(f64::NAN);
+        let at = document.units.value(name, value, 6);
+        if slope.is_nan() {
+            return format!(" if    {name} = {at} changes, the objective has a kink");
+        }
         let percent = 0.01 * value * slope;
         let percent = if percent == 0.0 || !percent.is_finite() {
             String::new()
@@ -230,8 +244,7 @@ fn sensitivities(document: &Document) -> impl Iterator<Item = String> {
             format!("   1 % more: {}", document.units.value("objective", percent, 3))
         };
         format!(
-            " if    {name} = {} changes, the objective changes by {}{percent}",
-            document.units.value(name, value, 6),
+            " if    {name} = {at} changes, the objective changes by {}{percent}",
             document.units.per("objective", name, *slope, 5)
         )
     })

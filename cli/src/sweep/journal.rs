@@ -28,6 +28,8 @@ pub struct Sweep<'s> {
 /// The file of one process.
 pub struct Journal {
     path: PathBuf,
+    /// That of the sweep.
+    name: String,
     /// Whether a row was solved before.
     done: Vec<bool>,
     file: Mutex<Growing>,
@@ -88,12 +90,32 @@ impl Journal {
                 }
             }
         }
-        Ok(Journal { path, done, file: Mutex::new(Growing { file, tally }) })
+        let name = sweep.name.clone();
+        Ok(Journal { path, name, done, file: Mutex::new(Growing { file, tally }) })
     }
 
     /// Where it is.
     pub fn path(&self) -> String {
         self.path.display().to_string()
+    }
+
+    /// What its files have in common.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// How many rows the sweep has.
+    pub fn rows(&self) -> usize {
+        self.done.len()
+    }
+
+    /// The files of all parts.
+    ///
+    /// # Errors
+    ///
+    /// A folder that cannot be read.
+    pub fn files(&self, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+        files(folder, &self.name)
     }
 
     /// Whether a row, counted from 0, was solved before.

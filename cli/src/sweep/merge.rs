@@ -86,21 +86,32 @@ impl Merged {
     ///
     /// A file that cannot be read.
     pub fn write(&self, to: &mut dyn FnMut(&str)) -> Result<(), Failure> {
+        let mut is_first = true;
+        self.each(&mut |row, scalars| {
+            if std::mem::take(&mut is_first) {
+                to(&joined(names(&scalars)));
+            }
+            to(&joined(cells(row, &scalars)));
+        })
+    }
+
+    /// Shows each row with its number, in their order.
+    ///
+    /// # Errors
+    ///
+    /// A file that cannot be read.
+    pub fn each(&self, to: &mut dyn FnMut(usize, Scalars)) -> Result<(), Failure> {
         let mut readers = Vec::new();
         for path in &self.files {
             readers.push(BufReader::new(File::open(path).map_err(|error| io(path, error))?));
         }
-        let mut is_first = true;
         for (row, (file, begin, _)) in &self.places {
             let (path, reader, mut text) = (&self.files[*file], &mut readers[*file], Vec::new());
             reader.seek(SeekFrom::Start(*begin)).map_err(|error| io(path, error))?;
             reader.read_until(b'\n', &mut text).map_err(|error| io(path, error))?;
             let line = Line::read(&text);
             let line = line.ok_or_else(|| wrong(format!("{} has changed", path.display())))?;
-            if std::mem::take(&mut is_first) {
-                to(&joined(names(&line.scalars)));
-            }
-            to(&joined(cells(*row, &line.scalars)));
+            to(*row, line.scalars);
         }
         Ok(())
     }

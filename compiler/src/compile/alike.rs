@@ -1,5 +1,5 @@
-//! Functions that are alike are compiled once: those of phases that differ only in which unknowns
-//! are the times at their ends.
+//! Functions that are alike are compiled once, and share their machine code: those of phases that
+//! differ only in which unknowns are the times at their ends.
 
 use crate::expressions::graph::builtins::Builtin;
 use crate::expressions::graph::{ById, Expr, ExprId, Graph, Operands};

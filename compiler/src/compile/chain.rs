@@ -3,8 +3,8 @@
 use super::alike::Alike;
 use super::{ProblemCode, by_parameters_like, machine_code};
 use crate::lower::{self, Expected, LoweredLink, LoweredProblem};
+use crate::model::Model;
 use crate::model::numbers::{Numbers, numbers as numbers_of};
-use crate::model::{Model, Phase};
 use fdcc_grammar::Diagnostic;
 use fdcc_runtime::problem::{
     ByParameters, Chain, ChainByParameters, Function, Link, Measurements, Problem,
@@ -129,9 +129,6 @@ pub struct ChainExpectations {
     /// out; parameters and unknowns; the integrals and the sums over rows of each phase in turn.
     /// Three outputs for each expectation: left side, right side, tolerance; values only.
     pub function: Arc<dyn Function>,
-    /// For each phase its integrands over normalised time `[tau | x | u | p]`, times the duration;
-    /// values only.
-    pub integrands: Vec<Arc<dyn Function>>,
     /// For each phase its sums; values only.
     pub sums: Vec<Vec<Measurements>>,
 }
@@ -147,14 +144,16 @@ fn sums_of(model: &Model) -> Vec<Measurements> {
 pub fn chain_expectations(model: &Model) -> ChainExpectations {
     let (graph, function, list) = lower::expectations_of_phases(model);
     let function = machine_code(graph, vec![function]).remove(0);
-    let of = |phase: &Phase| {
-        let (graph, integrands) = lower::integrands(&phase.model);
-        machine_code(graph, vec![integrands]).remove(0)
-    };
     ChainExpectations {
         list,
         function,
-        integrands: model.phases.iter().map(of).collect(),
         sums: model.phases.iter().map(|phase| sums_of(&phase.model)).collect(),
     }
+}
+
+/// The integrands of a phase over normalised time `[tau | x | u | p]`, times its duration; values
+/// only.
+pub fn integrands(model: &Model) -> Arc<dyn Function> {
+    let (graph, integrands) = lower::integrands(model);
+    machine_code(graph, vec![integrands]).remove(0)
 }

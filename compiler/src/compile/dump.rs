@@ -113,7 +113,7 @@ fn symbols(model: &Model) -> String {
 }
 
 /// The names of a function's inputs.
-fn input_names(model: &Model, lowered: &LoweredProblem, layout: &Layout) -> Vec<String> {
+pub(super) fn input_names(model: &Model, lowered: &LoweredProblem, layout: &Layout) -> Vec<String> {
     let hidden = lowered.hidden.iter().map(|it| it.place(model).name.clone());
     let states: Vec<String> =
         model.states.iter().map(|it| it.place.name.clone()).chain(hidden).collect();

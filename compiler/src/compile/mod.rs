@@ -1,8 +1,12 @@
-//! The pipeline: lowering, derivatives, machine code.
+//! The pipeline behind the checks: lowering, derivatives, machine code.
+//!
+//! [`ProblemCode`] is what a solve needs of one phase; [`chain`] puts phases together,
+//! [`compile_simulation`] and its neighbours make the true system.
 
 pub(crate) mod alike;
 pub(crate) mod chain;
 pub(crate) mod dump;
+pub(crate) mod emit;
 pub(crate) mod residuals;
 mod summary;
 
@@ -41,7 +45,7 @@ impl ProblemCode {
         Self::like(model, &mut Alike::default())
     }
 
-    /// Compiles what is not alike to what has been compiled.
+    /// Compiles what is not alike to what has been compiled for another phase.
     pub(super) fn like(model: &Model, alike: &mut Alike) -> Result<Self, Vec<Diagnostic>> {
         not_yet(model)?;
         model.rows_beside_jumps().map_or(Ok(()), |found| Err(vec![found]))?;

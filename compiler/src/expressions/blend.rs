@@ -61,8 +61,8 @@ pub(crate) fn sides(
     original: ExprId,
     rebuilt: ExprId,
 ) -> Option<(ExprId, [ExprId; 2])> {
-    let bent = [Builtin::Abs, Builtin::Min, Builtin::Max, Builtin::SelectLe];
-    let builtin = bent.into_iter().find(|it| {
+    let with_kinks = [Builtin::Abs, Builtin::Min, Builtin::Max, Builtin::SelectLe];
+    let builtin = with_kinks.into_iter().find(|it| {
         graph.as_call(original, *it).is_some() && graph.as_call(rebuilt, *it).is_some()
     })?;
     let operands = graph.operands(rebuilt).to_vec();

@@ -2,6 +2,7 @@
 //! step until machine code pays.
 
 mod bytecode;
+pub(crate) mod c;
 mod cranelift;
 mod function;
 mod numbers;

@@ -155,6 +155,8 @@ pub struct Model {
     /// What a width of smoothing measures, if the text uses units and all surfaces measure the
     /// same.
     pub width_unit: Option<WidthUnit>,
+    /// How large names are that an answer showed to be far smaller than one of their unit.
+    pub magnitudes: Vec<(String, f64)>,
 }
 
 impl Model {
@@ -200,6 +202,7 @@ impl Model {
             units: Vec::new(),
             condition_units: Vec::new(),
             width_unit: None,
+            magnitudes: Vec::new(),
         }
     }
 

@@ -138,6 +138,32 @@ impl<'m> Division<'m> {
         })
     }
 
+    /// A value in the first phase at its first time, of its own start.
+    pub fn at_own_start(&mut self, value: ExprId) -> ExprId {
+        let model = self.model;
+        self.with_symbols(value, &mut |own, symbol| match symbol {
+            Symbol::Time => Some(own.times[0]),
+            Symbol::State(at) => {
+                let input = model.input_of(Symbol::AtStart(at)).expect("it was added");
+                Some(own.graph.input(input))
+            }
+            _ => None,
+        })
+    }
+
+    /// A value in the last phase at its last time, of its own end.
+    pub fn at_own_end(&mut self, value: ExprId) -> ExprId {
+        let model = self.model;
+        self.with_symbols(value, &mut |own, symbol| match symbol {
+            Symbol::Time => Some(own.times[own.times.len() - 1]),
+            Symbol::State(at) => {
+                let input = model.input_of(Symbol::AtEnd(at)).expect("it was added");
+                Some(own.graph.input(input))
+            }
+            _ => None,
+        })
+    }
+
     /// What is said of the whole time: it begins with the first phase, ends with the last, and
     /// integrals add up.
     pub fn of_whole(&mut self, value: ExprId) -> ExprId {

@@ -25,8 +25,8 @@ mod shares;
 pub use at_times::{ends_at, with_times};
 pub use crossings::crossings;
 pub use modes::{
-    Arc, Limit, Mode, PhaseOfModes, Point, hamiltonian, is_uncontrolled, limits, may_hold,
-    with_modes,
+    Arc, HoldNormals, Limit, Mode, NormalsAt, PhaseOfModes, Point, Slopes, hamiltonian,
+    is_uncontrolled, limits, may_hold, with_modes, with_modes_in_phases,
 };
 pub use sequences::{Sequences, sequences};
 

@@ -13,7 +13,7 @@ use super::view::View;
 use super::words::Words;
 use crate::expressions::graph::derivative::gradient;
 use crate::expressions::graph::{ById, Expr, ExprId, Graph};
-use crate::expressions::interval::{Interval, Prover};
+use crate::expressions::interval::{Interval, Prover, Tape};
 use crate::expressions::polynomial::{NormalForms, Polynomial};
 use crate::model::Symbol;
 
@@ -109,6 +109,20 @@ impl Local {
         self.graph.inputs_of(&[self.psi]).iter().all(is_fixed)
             && self.gradient.iter().all(stays)
             && self.rate(view, None).is_some_and(|rate| self.form(rate).is_zero())
+    }
+
+    /// Whether the function has one sign wherever states, controls and unknowns are, also out of
+    /// their bounds.
+    pub fn has_one_sign(&self) -> bool {
+        let everywhere =
+            self.symbols.iter().zip(&self.domain).map(|(symbol, domain)| match symbol {
+                Symbol::State(_) | Symbol::Control(_) | Symbol::Free(_) => Interval::ALL,
+                _ => *domain,
+            });
+        let domain: Vec<Interval> = everywhere.collect();
+        let range = Tape::new(&self.graph, &[self.psi]).evaluate(&domain)[0];
+        let [is_above, is_below] = [range.lower > 0.0, range.upper < 0.0];
+        is_above && range.lower.is_finite() || is_below && range.upper.is_finite()
     }
 
     /// Adds what happens on the surface; says whether all rates that matter are known.

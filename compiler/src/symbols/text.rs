@@ -18,8 +18,12 @@ impl Model {
         self.units.iter().find(|it| it.is_time).map_or(1.0, |it| it.scale)
     }
 
-    /// One of the declared unit of a name in SI; 1 where the text declares none.
+    /// One of the declared unit of a name in SI, 1 where the text declares none; less where it is
+    /// known to be far smaller.
     pub fn unit_size(&self, name: &str) -> f64 {
+        if let Some((_, magnitude)) = self.magnitudes.iter().find(|it| it.0 == name) {
+            return *magnitude;
+        }
         let scale = self.unit_of(name).map_or(1.0, |it| it.scale);
         if scale.is_finite() && scale > 0.0 { scale } else { 1.0 }
     }

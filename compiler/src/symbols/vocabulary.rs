@@ -39,6 +39,10 @@ pub fn function(name: &str) -> Option<Function> {
     })
 }
 
+/// The numbers that have a name of their own, and what each is.
+pub const NUMBERS: &[(&str, &str)] =
+    &[("pi", "3.141592653589793"), ("inf", "A side of bounds that is open: `in [0, inf]`.")];
+
 /// A key of the method.
 pub struct Setting {
     /// Its name.

@@ -19,6 +19,18 @@ if vim.lsp.semantic_tokens then
   end
 end
 
+-- Units that were found, and what the last solve said, behind the lines they are about.
+if vim.lsp.inlay_hint then
+  vim.api.nvim_create_autocmd("LspAttach", {
+    callback = function(event)
+      local client = vim.lsp.get_client_by_id(event.data.client_id)
+      if client and client.name == "fdcc" then
+        vim.lsp.inlay_hint.enable(true, { bufnr = event.buf })
+      end
+    end,
+  })
+end
+
 if vim.lsp.enable then
   vim.lsp.enable("fdcc")
   return

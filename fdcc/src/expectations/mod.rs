@@ -117,7 +117,11 @@ fn evaluate(solution: &Solution) -> Vec<Expectation> {
 }
 
 /// The integrals that expectations read, over the time of one phase.
-fn of_phase(problem: &Problem, outcome: &Outcome, integrands: &dyn Function) -> Vec<f64> {
+pub(super) fn of_phase(
+    problem: &Problem,
+    outcome: &Outcome,
+    integrands: &dyn Function,
+) -> Vec<f64> {
     integrals(problem, &outcome.solution, &outcome.trajectory.parameters, integrands)
 }
 

@@ -1,6 +1,7 @@
 //! Beside the exact gradient: those that a user may be computing otherwise, of the smoothed and of
 //! the discretised problem.
 
+use super::tuning::approximations::RELATIVE_WIDTH;
 use super::{Gradient, quantities};
 use fdcc_runtime::fixed_step::{self, Failure, Grid, step_through};
 use fdcc_runtime::problem::{Columns, Scheme};
@@ -27,9 +28,6 @@ pub struct Stepped {
     /// By each quantity.
     pub gradient: Vec<f64>,
 }
-
-/// Where the method names no width: this part of the largest value of a switching function.
-const RELATIVE_WIDTH: f64 = 0.01;
 
 impl Gradient {
     /// The gradient of the true system, discretised, by the numbers of `by`; nothing of models with

@@ -1,17 +1,9 @@
 //! The exact gradient of the true system, and whether it is one: both ways to compute it agree, and
 //! both sides do.
 
+use super::tuning::exact::{AGREEMENT, MOST_SIDES, SIDES};
 use fdcc_runtime::sensitivity::{Quantity, Sensitivity, gradient, one_sided};
 use fdcc_runtime::simulate::{Controls, Options, Simulation, System};
-
-/// Forward sensitivities and adjoint that differ by more are not trusted.
-const AGREEMENT: f64 = 1e-10;
-
-/// Derivatives from two sides that differ by more, relative to what they are the sums of, are two.
-const SIDES: f64 = 1e-5;
-
-/// For more quantities nobody waits for the derivatives from both sides.
-const MOST_SIDES: usize = 64;
 
 /// A gradient and what is to be thought of it.
 ///

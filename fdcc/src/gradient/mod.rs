@@ -4,6 +4,7 @@
 mod approximations;
 pub(crate) mod exact;
 pub(crate) mod quantities;
+mod tuning;
 
 pub use approximations::Stepped;
 pub use exact::Exact;

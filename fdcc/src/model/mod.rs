@@ -3,10 +3,13 @@
 mod code;
 mod data;
 mod reading;
+mod stages;
 mod values;
 
 pub use data::DataFiles;
+pub(crate) use reading::analyze;
 pub use reading::{Checked, check, check_with, text};
+pub use stages::Stage;
 pub use values::Value;
 
 use crate::error::Error;
@@ -102,6 +105,12 @@ impl Model {
         Model { source, diagnostics, meaning: Arc::new(meaning), files, code: Arc::default() }
     }
 
+    /// Another meaning of the same text.
+    pub(crate) fn with_meaning(&self, meaning: fdcc_compiler::Model) -> Self {
+        let (source, diagnostics) = (Arc::clone(&self.source), Arc::clone(&self.diagnostics));
+        Model::new(source, diagnostics, meaning, self.files.clone())
+    }
+
     /// The name that the model gives itself.
     pub fn name(&self) -> &str {
         &self.meaning.name
@@ -154,6 +163,12 @@ impl Model {
         names.map(text).collect()
     }
 
+    /// The same, where some names are known to be far smaller than one of their units.
+    pub(crate) fn with_magnitudes(&self, magnitudes: Vec<(String, f64)>) -> Model {
+        let meaning = fdcc_compiler::Model { magnitudes, ..(*self.meaning).clone() };
+        Model { meaning: Arc::new(meaning), ..self.clone() }
+    }
+
     /// Does once for all values of its parameters what makes its functions ready.
     pub(crate) fn make_ready(&self, make: impl FnOnce()) {
         self.code.make_ready(make);
@@ -161,10 +176,7 @@ impl Model {
 
     /// Its phases, as models of their own; none if it has none.
     pub fn phases(&self) -> Vec<Model> {
-        let own = |phase: &fdcc_compiler::Phase| {
-            let (source, diagnostics) = (Arc::clone(&self.source), Arc::clone(&self.diagnostics));
-            Model::new(source, diagnostics, phase.model.clone(), self.files.clone())
-        };
+        let own = |phase: &fdcc_compiler::Phase| self.with_meaning(phase.model.clone());
         self.meaning.phases.iter().map(own).collect()
     }
 

@@ -38,8 +38,7 @@ pub fn check_with(name: &str, bytes: Vec<u8>, files: Option<DataFiles>) -> Check
         return Checked { source, model: None, diagnostics: Arc::new(vec![diagnostic]) };
     }
     let cache = &mut ParseCache::default();
-    let Analysis { model, diagnostics, .. } =
-        analyze_with(cache, &source.text, loader(&files).as_deref());
+    let Analysis { model, diagnostics, .. } = analyze(cache, &source.text, files.as_ref());
     Checked::new(source, model, diagnostics, files)
 }
 
@@ -82,7 +81,7 @@ impl Model {
     /// The same with another objective: any expression that has a value at the end, such as
     /// `x(end)`. The places of what is found are in that expression.
     pub fn with_objective(&self, of: &str) -> Checked {
-        let load = loader(&self.files);
+        let load = loader(self.files.as_ref());
         let tree = parse(&self.source.text).tree;
         let checked = check_with_objective(&tree, of, load.as_deref());
         let files = self.files.clone();
@@ -91,9 +90,14 @@ impl Model {
     }
 }
 
+/// Reads and checks a text: the one way in which the library does.
+pub(crate) fn analyze(cache: &mut ParseCache, text: &str, files: Option<&DataFiles>) -> Analysis {
+    analyze_with(cache, text, loader(files).as_deref())
+}
+
 /// Data files as the compiler wants them.
-fn loader(files: &Option<DataFiles>) -> Option<Box<Files<'_>>> {
-    let files = files.as_ref()?;
+fn loader(files: Option<&DataFiles>) -> Option<Box<Files<'_>>> {
+    let files = files?;
     Some(Box::new(|name: &str| files.text(name)))
 }
 

@@ -2,6 +2,7 @@
 //! unknowns, starts and method.
 
 pub(crate) mod polynomials;
+mod tuning;
 
 use crate::record::{Record, Settings, find};
 use fdcc_compiler::Model;
@@ -9,6 +10,7 @@ use fdcc_compiler::kernels;
 use fdcc_runtime::problem::{ControlShape, Grid, Order, Scheme};
 use fdcc_runtime::simulate::Controls;
 use polynomials::polynomials;
+use tuning::SLACK;
 
 /// Controls over time; parameters, unknowns, start values and method of a solution.
 ///
@@ -103,7 +105,7 @@ impl Replay {
 
     /// What about the times is likely a slip, though it can be followed.
     pub fn doubts(&self, [first, last]: [f64; 2]) -> Option<String> {
-        let slack = 1e-9 * (last - first);
+        let slack = SLACK * (last - first);
         let times = self.controls.begins();
         let begin = *times.first()?;
         let unused = times.iter().filter(|time| **time > last + slack).count();

@@ -1,5 +1,6 @@
 //! Controls that are polynomials on each interval of a solution, through its nodes.
 
+use super::tuning::ROUNDING;
 use crate::record::{NodesRecord, Record, find};
 use fdcc_runtime::simulate::{Controls, Polynomials};
 use std::ops::Range;
@@ -29,6 +30,14 @@ pub(crate) fn polynomials(
     let ascends = |range: &Range<usize>| knots[range.clone()].is_sorted_by(|a, b| a < b);
     if let Some(at) = ranges.iter().position(|range| !ascends(range)) {
         return Err(format!("the times of its controls do not ascend in interval {}", at + 1));
+    }
+    let is_inside = |(at, range): (usize, &Range<usize>)| {
+        let [begin, end] = [record.time[at], record.time[at + 1]];
+        let slack = ROUNDING * (end - begin);
+        knots[range.clone()].iter().all(|knot| begin - slack <= *knot && *knot <= end + slack)
+    };
+    if let Some(at) = ranges.iter().enumerate().position(|it| !is_inside(it)) {
+        return Err(format!("the times of its controls are not all in interval {}", at + 1));
     }
     let row = |at: usize| columns.iter().map(|column| column[at]).collect();
     Ok(Controls::Polynomial(Polynomials {
@@ -70,6 +79,14 @@ mod tests {
         assert_eq!(range(12, 4, 1), Some(3..6));
         assert_eq!(range(7, 4, 0), None);
         assert_eq!(range(0, 0, 0), None);
+    }
+
+    #[test]
+    fn nodes_outside_of_their_interval_are_refused() {
+        let nodes = NodesRecord { time: &[0.0, 2.0, 3.0], values: vec![("u", &[0.0; 3])] };
+        let record = Record { time: &[0.0, 1.0, 3.0], ..Record::default() };
+        let refused = polynomials(&record, &nodes, &["u"]).expect_err("2 is after 1");
+        assert_eq!(refused, "the times of its controls are not all in interval 1");
     }
 
     #[test]

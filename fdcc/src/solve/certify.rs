@@ -6,8 +6,8 @@ use super::true_optimum::certificate_limits::{
     CONTACT, GAIN, HAMILTONIAN, MODES, REPLAYED, STATIONARY, TIMING, WORTH, WRONG_SIGN,
 };
 use super::true_optimum::{
-    Certificate, Check, Contacts, Located, Stretch, Switch, beyond_bounds, is_attracted, ranges,
-    variation, wrong_sign,
+    Certificate, Check, Contacts, Located, Stretch, beyond_bounds, is_attracted, ranges, variation,
+    wrong_sign,
 };
 use crate::verification::{Stay, Verification, modes};
 use fdcc_compiler::{Arc, Model, PhaseOfModes, Switch as Switched, limits};
@@ -33,7 +33,7 @@ pub(super) fn certificate(
     let ranges = ranges(&between.controls, &located.outcome.phases);
     let beyond = trajectories.map(|it| beyond_bounds(&ranges, it)).fold(0.0, f64::max);
     let is_held = phases.clone().all(|j| is_attracted(model, located, j));
-    let accuracy = between.method.accuracy.unwrap_or(REPLAYED);
+    let accuracy = accuracy(between);
     let checks = vec![
         check("stationary", own.kkt_error, STATIONARY),
         check("second order", f64::from(u8::from(own.is_saddle)), 0.0),
@@ -48,10 +48,16 @@ pub(super) fn certificate(
         check("holds", f64::from(u8::from(!is_held)), 0.0),
         check("insertion", located.insertion, WORTH),
         check("minimum", located.gain, GAIN),
+        check("controls", located.loss, accuracy),
         check("hamiltonian", hamiltonian(located), HAMILTONIAN),
     ];
-    let switches = switches(between, solution);
+    let switches = located.switches(model, between, replay);
     Certificate { checks, switches, arcs: arcs(between, model, located) }
+}
+
+/// By how much replays may differ from what was planned.
+pub(super) fn accuracy(problem: &Problem) -> f64 {
+    problem.method.accuracy.unwrap_or(REPLAYED)
 }
 
 /// The difference between the objective of the replay and that of the plan, for its size; infinite
@@ -72,20 +78,6 @@ fn wrong_contact(between: &Problem, model: &Model, located: &Located) -> f64 {
     let contacts = Contacts::new(model, located);
     let wrong = contacts.wrong_sign().map_or(0.0, |it| it.part.max(0.0));
     if between.has_objective && contacts.is_at_jump() { f64::INFINITY } else { wrong }
-}
-
-fn switches(between: &Problem, solution: &Solution) -> Vec<Switch> {
-    let mut all = Vec::new();
-    for (surface, spans) in between.surfaces.iter().zip(&solution.outcome.modes) {
-        all.extend(spans.windows(2).map(|pair| Switch {
-            surface: surface.name.clone(),
-            time: pair[1].from,
-            from: pair[0].mode,
-            to: pair[1].mode,
-        }));
-    }
-    all.sort_by(|a, b| a.time.total_cmp(&b.time));
-    all
 }
 
 /// What each control does, and each state and path condition that is at a bound anywhere; where it

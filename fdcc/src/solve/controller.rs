@@ -5,7 +5,8 @@ use crate::error::Error;
 use crate::model::{Model, Value};
 
 /// Solves a model once for each state that it is told, from the solution before with its
-/// multipliers. The smoothed problem is solved.
+/// multipliers, or from what is left of that after its first interval where the state is nearer to
+/// it. The smoothed problem is solved.
 ///
 /// ```
 /// let model = fdcc::Model::from_text("hop", "time t in [0, 1]
@@ -98,11 +99,8 @@ impl Controller {
             return Err(Error::Call(format!("a state has {count} finite values")));
         }
         self.compiled.begin_at(state);
-        let again = |earlier| Options { start: Start::Solution(earlier), ..*options };
-        let found = match &self.last {
-            Some(earlier) => self.compiled.solve(&again(earlier))?,
-            None => self.compiled.solve(&Options { start: Start::Guess, ..*options })?,
-        };
+        let start = self.last.as_ref().map_or(Start::Guess, |plan| begin_of(plan, state));
+        let found = self.compiled.solve(&Options { start, ..*options })?;
         let is_lost = !found.is_solved() && (options.stop)().is_continue() && self.last.is_some();
         let found = match is_lost {
             true => self.compiled.solve(&Options { start: Start::Guess, ..*options })?,
@@ -110,6 +108,24 @@ impl Controller {
         };
         Ok(self.last.insert(found))
     }
+}
+
+/// Where a solve from a state begins: at the plan, or at what is left of it after its first
+/// interval if the state is nearer to that.
+fn begin_of<'p>(plan: &'p Solution, state: &[f64]) -> Start<'p> {
+    let shown = plan.problem.states.iter().zip(&plan.outcome.trajectory.states);
+    let columns = shown.filter(|(state, _)| !state.hidden).map(|(_, column)| column);
+    let (mut now, mut later) = (0.0, 0.0);
+    for (column, value) in columns.zip(state) {
+        let size = column.iter().fold(0.0, |size: f64, it| size.max((it - column[0]).abs()));
+        if size > 0.0 {
+            now += ((value - column[0]) / size).powi(2);
+            later += ((value - column[1]) / size).powi(2);
+        }
+    }
+    // Where the end of time is chosen, too, an interval later is another part of the plan.
+    let is_receding = plan.problem.unknowns.is_empty();
+    if is_receding && later < now { Start::Later(plan) } else { Start::Solution(plan) }
 }
 
 impl Compiled {

@@ -2,13 +2,9 @@
 
 use super::found::Found;
 use super::report::Options;
+use super::tuning::families::{MOST_FAMILIES, SAME};
 use super::{Solution, located};
 use crate::model::Model;
-
-/// Of more families of answers the worse ones are not looked at.
-const MOST_FAMILIES: usize = 8;
-/// Objectives within this, relative to their size, are of one family.
-const SAME: f64 = 1e-6;
 
 /// Starts that lead to one optimum of the system that was written.
 ///

@@ -1,6 +1,7 @@
 //! The best answer of all that were looked for, before it is a [`Solution`](super::Solution).
 
 use super::report::Ended;
+use super::true_optimum::Joint;
 use crate::names::status_name;
 use fdcc_compiler::Model;
 use fdcc_runtime::problem::{Chain, Problem};
@@ -85,6 +86,12 @@ pub struct Phases {
     pub chain: Chain,
     /// The solution of these.
     pub outcome: ChainOutcome,
+}
+
+impl From<Joint> for Phases {
+    fn from(Joint { model, chain, outcome }: Joint) -> Self {
+        Phases { model, chain, outcome }
+    }
 }
 
 impl Found {

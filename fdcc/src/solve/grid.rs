@@ -1,6 +1,7 @@
 //! Lists of values, and the rows that they make.
 
 mod range;
+mod tuning;
 
 use crate::error::Error;
 use crate::model::{Model, Value};

@@ -2,7 +2,7 @@
 
 use super::Solution;
 use super::certify::certificate;
-use super::found::{Found, Phases};
+use super::found::Found;
 use super::report::Options;
 use super::sequences::happened;
 use super::true_optimum::{
@@ -58,6 +58,7 @@ impl Search<'_> {
             is_exact: false,
             jumps: jumps(found),
             phases: Vec::new(),
+            beside: Vec::new(),
         };
         let mut least = self.nothing();
         let mut near = self.attempt(&smoothed);
@@ -86,8 +87,19 @@ impl Search<'_> {
         Err(least)
     }
 
-    /// On shorter and shorter intervals where nothing is wrong but the replay.
+    /// The first that is certified: what was located at last, or on the way.
     fn refined(&mut self, mut located: Located) -> (Solution, Whole) {
+        let others = std::mem::take(&mut located.others);
+        let last = self.halved(located);
+        if last.0.is_certified() {
+            return last;
+        }
+        let mut others = others.into_iter().map(|it| self.halved(it));
+        others.find(|it| it.0.is_certified()).unwrap_or(last)
+    }
+
+    /// On shorter and shorter intervals where nothing is wrong but the replay.
+    fn halved(&mut self, mut located: Located) -> (Solution, Whole) {
         let mut answer = self.answer(&located);
         while answer.certificate.as_ref().is_some_and(Certificate::is_inaccurate) {
             let models = [self.model.meaning(), self.between];
@@ -159,11 +171,15 @@ fn asks_for_truth(model: &Model, between: &fdcc_compiler::Model, found: &Found) 
     if is_smooth(model, between) {
         return status.is_solved() && is_in_continuous_time(between);
     }
-    // What cannot be solved where it is smoothed, such as a rest to which friction alone leads, may
-    // be near an answer of the true system.
-    let may_be_near = matches!(status, Status::IterationLimit | Status::Infeasible);
     let is_meant = between.surfaces.is_empty() || !between.method.names_width();
-    is_meant && (status.is_solved() || may_be_near && !found.outcome.is_impossible)
+    is_meant && may_be_near(status, found.outcome.is_impossible)
+}
+
+/// Whether an answer of the true system may be near one that is smoothed: also near one that cannot
+/// be solved where it is, such as a rest to which friction alone leads.
+pub(super) fn may_be_near(status: &Status, is_impossible: bool) -> bool {
+    let is_lost = matches!(status, Status::IterationLimit | Status::Infeasible);
+    status.is_solved() || is_lost && !is_impossible
 }
 
 /// Whether nothing switches and nothing jumps.
@@ -173,8 +189,7 @@ fn is_smooth(model: &Model, between: &fdcc_compiler::Model) -> bool {
 
 /// Whether a smooth model has an optimum in continuous time that is looked for.
 fn is_in_continuous_time(model: &fdcc_compiler::Model) -> bool {
-    let is_one_phase = model.at_times.is_empty() && model.sums.is_empty();
-    !model.method.names_grid && model.objective.is_some() && is_one_phase
+    !model.method.names_grid && model.objective.is_some() && model.sums.is_empty()
 }
 
 fn of(model: &Model, between: &fdcc_compiler::Model, found: &Found, located: Located) -> Solution {
@@ -199,8 +214,11 @@ fn of(model: &Model, between: &fdcc_compiler::Model, found: &Found, located: Loc
     let replay = solution.verify().ok();
     let certificate = certificate(&located, between, smoothed, &solution, replay.as_ref());
     solution.certificate = Some(certificate);
-    let Located { model: phased, chain, outcome, .. } = located;
-    solution.between_jumps = Some(Phases { model: phased, chain, outcome });
+    solution.of_holds = located.sensitivities_of_holds(between, smoothed);
+    let located = located.with_gradients(between, smoothed);
+    let costates = located.whole(smoothed).outcome.trajectory.costates;
+    solution.outcome.trajectory.costates = costates;
+    solution.between_jumps = Some(located.in_phases().into());
     solution
 }
 

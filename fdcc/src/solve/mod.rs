@@ -10,22 +10,30 @@ mod families;
 mod found;
 mod grid;
 mod located;
+mod located_at_times;
+mod located_in_phases;
+mod magnitudes;
 mod multistart;
 pub mod optimality;
 mod phases;
+mod reach;
 mod report;
 mod sequences;
+mod shown;
 mod solution;
 mod sweep;
 mod timing;
 pub mod true_optimum;
+mod tuning;
 
 pub use cases::{Case, Cases};
 pub use controller::Controller;
 pub use families::Family;
 pub use found::{Jump, Phases, Sequence};
 pub use grid::Grid;
+pub use reach::Reach;
 pub use report::{Ended, Options, Part, Report, Start};
+pub use shown::{CostatesBefore, PathCondition};
 pub use solution::Solution;
 pub use sweep::Sweep;
 
@@ -109,34 +117,48 @@ impl Compiled {
     pub fn check_start(&self, start: Start) -> Result<(), Error> {
         match start {
             Start::Record(record) => warm_start::check(record, &self.chain),
-            Start::Guess | Start::Solution(_) => Ok(()),
+            Start::Guess | Start::Solution(_) | Start::Later(_) => Ok(()),
         }
     }
 
-    /// Solves.
+    /// Solves; once more in other units where numbers turn out to be far smaller than one of
+    /// theirs.
     ///
     /// # Errors
     ///
     /// See [`Model::solve`].
     pub fn solve(&self, options: &Options) -> Result<Solution, Error> {
+        magnitudes::with_own_magnitudes(self.solve_once(options)?, options)
+    }
+
+    /// In three ways: time is divided at jumps and at conditions between the ends, and the chain of
+    /// its parts is solved; or the model has phases, and is a chain itself; or it is one problem.
+    /// Where it can be, the optimum of the true system is looked for at what was found.
+    fn solve_once(&self, options: &Options) -> Result<Solution, Error> {
         self.check_start(options.start)?;
         let meaning = self.model.meaning();
         if !meaning.at_times.is_empty() || !meaning.jumps.is_empty() {
             let found = match options.start {
                 Start::Guess => self.solve_divided(None, options)?,
                 Start::Record(it) => self.solve_divided(Some(it), options)?,
-                Start::Solution(it) => self.solve_divided(Some(&it.record()), options)?,
+                Start::Solution(it) | Start::Later(it) => {
+                    self.solve_divided(Some(&it.record()), options)?
+                }
             };
-            return Ok(located::solution(&self.model, found, options));
+            return Ok(match meaning.at_times.is_empty() {
+                true => located::solution(&self.model, found, options),
+                false => located_at_times::solution(&self.model, found, options),
+            });
         }
         let start = match options.start {
             Start::Guess => None,
             Start::Record(record) => Some(warm_start::from_record(record, &self.chain)),
             Start::Solution(it) => Some(it.as_start(&self.chain)),
+            Start::Later(it) => Some(it.as_later_start(&self.chain)),
         };
         let mut found = multistart::solve(&self.chain, start, options, Part::default())?;
         if !meaning.phases.is_empty() {
-            return Ok(Solution::of_phases(self.model.clone(), found));
+            return Ok(located_in_phases::solution(&self.model, found, options));
         }
         let others = found.other_singles();
         Ok(families::best(&self.model, found.into_single(), others, options))

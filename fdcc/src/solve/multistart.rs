@@ -135,9 +135,11 @@ fn run(
     Ok(best)
 }
 
-/// Where a solved problem may have a better optimum; not on a grid that was made for this one.
+/// Where a problem that is solved, or stays at a saddle, may have a better optimum; not on a grid
+/// that was made for this one.
 fn better_starts(found: &Refined) -> Vec<nlp::Start> {
-    match found.outcome.solution.status.is_solved() && found.error.is_none() {
+    let solution = &found.outcome.solution;
+    match (solution.status.is_solved() || solution.is_saddle) && found.error.is_none() {
         true => elsewhere(&found.chain, &found.outcome),
         false => Vec::new(),
     }

@@ -7,12 +7,8 @@
 //! `docs/method/costate.md`.
 
 use super::Solution;
+use super::tuning::optimality::{OFF, VIOLATED};
 use crate::verification::Verification;
-
-/// The Hamiltonian may be off by so much of the size of its terms.
-const OFF: f64 = 0.4;
-/// On how much of the time a control may violate the rule of signs.
-const VIOLATED: f64 = 0.01;
 
 /// One condition of an optimum.
 ///
@@ -71,9 +67,9 @@ impl Check {
 }
 
 impl Solution {
-    /// The conditions of an optimum that can be checked. The states of a coarse grid excuse as much
-    /// as the replay differs. Where the optimum of the discrete problem is proved to be global,
-    /// what its Hamiltonian misses is the grid alone.
+    /// The conditions of an optimum that can be checked. The states of a coarse grid account for as
+    /// much as the replay differs. Where the optimum of the discrete problem is proved to be
+    /// global, what its Hamiltonian misses is the grid alone.
     ///
     /// ```
     /// # let text = "time t in [0, 1]\nstate x start 0\ncontrol u in [-1, 1]

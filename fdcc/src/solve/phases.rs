@@ -5,7 +5,7 @@ use super::solution::Solution;
 use crate::error::Error;
 use crate::model::{Model, frame};
 use crate::record::Record;
-use crate::verification::{Gap, LinkGap, Verification, gaps_of_links, verify};
+use crate::verification::{LinkGap, Verification, verify_phases};
 use fdcc_runtime::problem::Chain;
 use fdcc_runtime::solution::Trajectory;
 use fdcc_runtime::solve::{ChainOutcome, Outcome};
@@ -39,17 +39,6 @@ impl Solution {
         &self.parts
     }
 
-    /// A state that rests in one phase may move in another: its gap counts for all its motion.
-    fn compare_with_whole(&self, gap: &mut Gap) {
-        let columns = self.parts.iter().filter_map(|part| part.state(&gap.name));
-        let (least, most) = columns
-            .flatten()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |it, x| (it.0.min(*x), it.1.max(*x)));
-        if most > least {
-            gap.part = gap.part.min(gap.difference / (most - least));
-        }
-    }
-
     /// What a replay and another solve need of a phase: its times may depend on the unknowns of
     /// others.
     pub(super) fn record_of<'s>(&'s self, part: &'s Solution) -> Record<'s> {
@@ -63,16 +52,8 @@ impl Solution {
     ///
     /// As for [`verify`](Solution::verify).
     pub fn verify_phases(&self) -> Result<(Vec<Verification>, Vec<LinkGap>), Error> {
-        let replayed =
-            |part: &Solution| verify(part.model().meaning(), &part.problem, &self.record_of(part));
-        let mut all: Vec<Verification> =
-            self.parts.iter().map(replayed).collect::<Result<_, _>>()?;
-        all.iter_mut().flat_map(|it| &mut it.gaps).for_each(|gap| self.compare_with_whole(gap));
-        let gaps = match &self.whole {
-            Some(Whole { chain, outcome }) => gaps_of_links(chain, outcome, &all),
-            None => Vec::new(),
-        };
-        Ok((all, gaps))
+        let Some(Whole { chain, .. }) = &self.whole else { return Ok((Vec::new(), Vec::new())) };
+        verify_phases(self.model().meaning(), chain, &self.record())
     }
 }
 

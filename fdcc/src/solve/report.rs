@@ -67,6 +67,9 @@ pub enum Start<'a> {
     Record(&'a Record<'a>),
     /// At another solution; with its multipliers if the grid is the same.
     Solution(&'a Solution),
+    /// At what is left of another solution after the first interval of its grid. Where the grid is
+    /// another one, or not uniform, as [`Start::Solution`].
+    Later(&'a Solution),
 }
 
 /// Which of several solves a report is about; nothing of it where there is one.

@@ -4,6 +4,9 @@
 use super::found::{Found, FoundChain, Jump, Phases, Sequence};
 use super::multistart::{self, all_attempts, first_stopped, is_stopped, unless_stopped};
 use super::report::{Ended, Options, Part, Report};
+use super::tuning::sequences::{
+    BRIEF, FEW, FEW_SEQUENCES, FEWEST_INTERVALS, LONGEST, SHORTEST, STEPS, WORSE,
+};
 use crate::error::Error;
 use crate::executor::Executor;
 use crate::record::Record;
@@ -77,16 +80,6 @@ pub(super) fn solve(
     Ok(Found { sequences: tried, is_cut, ..alternative.joined(between, found) })
 }
 
-/// More sequences than so many are solved on coarse grids first.
-const FEW_SEQUENCES: usize = 3;
-/// So many iterations are enough there.
-const BRIEF: usize = 150;
-/// A phase has so many intervals there at least.
-const FEWEST_INTERVALS: usize = 20;
-/// Sequences that are worse than the best by more than this part of its objective are not solved
-/// once more.
-const WORSE: f64 = 0.05;
-
 /// The answer of each, up to the first that is enough. Where there are many, those that lead to
 /// nothing on a coarse grid, or to something clearly worse, are left at that.
 fn each(
@@ -152,15 +145,6 @@ fn on_own_grids(
     }
     found.into_iter().collect()
 }
-
-/// A guess is not worth more steps of a simulation.
-const STEPS: usize = 20_000;
-/// More are not looked for where the guess leads to that many.
-const LONGEST: usize = 100;
-/// More than so many events pile up where two of them are nearer than this part of the largest
-/// distance.
-const FEW: usize = 8;
-const SHORTEST: f64 = 1e-3;
 
 /// The jumps and crossings on the true system with everything as it is guessed.
 fn simulated(model: &Model, possible: &Sequences) -> Option<Vec<usize>> {

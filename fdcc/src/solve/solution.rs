@@ -16,7 +16,7 @@ use fdcc_grammar::Diagnostic;
 use fdcc_runtime::nlp::{self, Status};
 use fdcc_runtime::problem::{Chain, Problem, Variable};
 use fdcc_runtime::solution::by_parameters;
-use fdcc_runtime::solve::warm_start::again;
+use fdcc_runtime::solve::warm_start::{again, one_interval_later};
 use fdcc_runtime::solve::{ChainOutcome, Outcome, by_parameters_of_chain};
 
 /// A solution, or the best iterate where there is none; numbers are in SI.
@@ -65,6 +65,8 @@ pub struct Solution {
     pub between_jumps: Option<Phases>,
     /// What was checked of the optimum of the true system; nothing where nobody looked for one.
     pub certificate: Option<Certificate>,
+    /// What holds at the ends add to [`Self::sensitivities`].
+    pub(super) of_holds: Vec<f64>,
     /// Those of its phases.
     pub(super) parts: Vec<Solution>,
     /// What the solver saw of a model with phases.
@@ -85,6 +87,7 @@ impl Solution {
             sequences_left_out: found.is_cut,
             between_jumps: found.phases,
             certificate: None,
+            of_holds: Vec::new(),
             parts: Vec::new(),
             whole: None,
         }
@@ -137,6 +140,13 @@ impl Solution {
     /// A control on all intervals.
     pub fn control(&self, name: &str) -> Option<&[f64]> {
         column(&self.problem.controls, &self.outcome.trajectory.controls, name)
+    }
+
+    /// The first value of each control, and for how long it is meant: what a closed loop applies.
+    pub fn first_controls(&self) -> (Vec<f64>, f64) {
+        let first = |column: &Vec<f64>| column.first().copied().unwrap_or(f64::NAN);
+        let duration = self.time()[1] - self.time()[0];
+        (self.outcome.trajectory.controls.iter().map(first).collect(), duration)
     }
 
     /// The derivative of the objective by a state, at all grid points.
@@ -225,6 +235,22 @@ impl Solution {
     /// Where another solve begins that starts at this one: with all multipliers if the grid is the
     /// same.
     pub(super) fn as_start(&self, chain: &Chain) -> nlp::Start {
+        match self.has_grid_of(chain) {
+            true => again(chain, &self.outcome.solution, self.chosen_widths()),
+            false => from_record(&self.record(), chain),
+        }
+    }
+
+    /// The same for a solve one interval later.
+    pub(super) fn as_later_start(&self, chain: &Chain) -> nlp::Start {
+        let is_uniform = chain.phases.len() == 1 && chain.method().grid.times().is_empty();
+        match self.has_grid_of(chain) && is_uniform {
+            true => one_interval_later(chain, &self.outcome.solution, self.chosen_widths()),
+            false => self.as_start(chain),
+        }
+    }
+
+    fn has_grid_of(&self, chain: &Chain) -> bool {
         let shape = |problem: &Problem| {
             let method = &problem.method;
             (method.intervals(), method.scheme, method.controls, method.grid.times().to_vec())
@@ -233,11 +259,11 @@ impl Solution {
             Some(whole) => whole.chain.phases.iter().collect(),
             None => vec![&self.problem],
         };
-        if own.into_iter().map(shape).eq(chain.phases.iter().map(shape)) {
-            let widths: &[f64] = if self.has_chosen_widths() { &self.outcome.sigma } else { &[] };
-            return again(chain, &self.outcome.solution, widths);
-        }
-        from_record(&self.record(), chain)
+        own.into_iter().map(shape).eq(chain.phases.iter().map(shape))
+    }
+
+    fn chosen_widths(&self) -> &[f64] {
+        if self.has_chosen_widths() { &self.outcome.sigma } else { &[] }
     }
 
     fn settings(&self) -> Settings<'_> {
@@ -271,7 +297,7 @@ impl Solution {
     }
 
     /// The derivative of the optimal objective by each parameter, by its multipliers; nothing
-    /// without an objective.
+    /// without an objective, NaN where that has a kink.
     pub fn sensitivities(&self) -> Vec<(&str, f64)> {
         let params = &self.model.meaning().params;
         if params.is_empty() || !self.problem.has_objective {
@@ -286,7 +312,9 @@ impl Solution {
             None => of_one(self.model.meaning(), &self.problem, &self.outcome),
         };
         let names = params.iter().map(|param| param.place.name.as_str());
-        found.map(|found| names.zip(found).collect()).unwrap_or_default()
+        let mut found = found.unwrap_or_default();
+        found.iter_mut().zip(&self.of_holds).for_each(|(sum, more)| *sum += more);
+        names.zip(found).collect()
     }
 }
 

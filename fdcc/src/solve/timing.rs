@@ -3,17 +3,15 @@
 //! somewhere else, and the answer is a limit that nothing near it comes close to.
 
 use super::Solution;
+use super::tuning::timing::MOMENT;
 use crate::record::{NodesRecord, Record};
 use crate::verification::Verification;
 
-/// Controls come so much earlier or later, for the whole time.
-const MOMENT: f64 = 1e-9;
-
 /// The largest difference of a state where the controls come a moment before or after what was
 /// planned, for how far it moves; infinite where such a replay does not reach the end. Nothing is
-/// said where states jump: they differ for that moment.
+/// said where states jump, because they differ for that moment, nor where nothing switches.
 pub(super) fn gap_of_a_moment(solution: &Solution) -> f64 {
-    if !solution.jumps.is_empty() {
+    if !solution.jumps.is_empty() || solution.problem.surfaces.is_empty() {
         return 0.0;
     }
     let gap = |part: f64| {
@@ -29,8 +27,9 @@ fn shifted(solution: &Solution, part: f64) -> Option<Verification> {
     let [first, last] = [record.time[0], record.time[record.time.len() - 1]];
     let by = part * (last - first);
     let moved = |times: &[f64]| -> Vec<f64> {
-        let inner = |time: &f64| if *time == first || *time == last { *time } else { time + by };
-        times.iter().map(inner).map(|time| time.clamp(first, last)).collect()
+        // Near the ends by less, so that their order stays.
+        let room = |time: f64| (time - first).min(last - time) / (2.0 * by.abs());
+        times.iter().map(|time| time + by * room(*time).min(1.0)).collect()
     };
     let time = moved(record.time);
     let nodes = record.nodes.as_ref().map(|nodes| moved(nodes.time));

@@ -4,11 +4,9 @@
 //! two times, and next to none to the trajectory. So the pieces between the jumps are compared,
 //! each stretched to the length of the other, and the times of the jumps by themselves.
 
+use super::tuning::alignment::AFTER;
 use crate::record::JumpRecord;
 use fdcc_runtime::simulate::{EventKind, Simulation, System};
-
-/// So much of the whole time after a jump the state is that after it.
-const AFTER: f64 = 1e-9;
 
 /// The times of the jumps in a solution and in its replay.
 pub(super) struct Alignment {

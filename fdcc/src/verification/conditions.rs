@@ -7,14 +7,11 @@
 use super::motion::Motion;
 use super::points::Points;
 use super::terms::{Inputs, Terms, terms};
+use super::tuning::conditions::NO_WIDTH;
 use crate::record::{Record, number};
 use fdcc_runtime::problem::{Bounds, Columns, Function, Parameter, Problem, Variable};
 use fdcc_runtime::simulate::{Extreme, Simulation, System};
 use std::collections::HashMap;
-
-/// `abs`, `min` and `max` in a condition are those of the true system: as narrow as this part of
-/// the width with which it was solved.
-const NO_WIDTH: f64 = 1e-12;
 
 /// By how much a condition is violated at worst.
 ///
@@ -224,7 +221,7 @@ impl<'a> Conditions<'a> {
 }
 
 /// Those of the solution, with widths that smooth nothing.
-fn parameters(problem: &Problem, record: &Record) -> Vec<f64> {
+pub(super) fn parameters(problem: &Problem, record: &Record) -> Vec<f64> {
     // The first of a name, as elsewhere.
     let known = record.params.iter().chain(&record.free).rev();
     let known: HashMap<&str, f64> = known.filter(|it| it.1.is_finite()).copied().collect();

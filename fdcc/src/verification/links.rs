@@ -1,8 +1,8 @@
 //! Links between the replays of phases.
 
 use super::Verification;
-use fdcc_runtime::problem::{Chain, Columns, End, Link};
-use fdcc_runtime::solve::ChainOutcome;
+use crate::record::{Record, find};
+use fdcc_runtime::problem::{Chain, Columns, End, Link, Problem, Variable};
 
 /// How far a condition of a link is violated by the ends of the replays.
 ///
@@ -24,45 +24,65 @@ pub struct LinkGap {
     pub part: f64,
 }
 
-/// One for each condition of each link. A phase begins as it does in the solution, and ends where
-/// its replay does.
-pub(crate) fn gaps_of_links(
-    chain: &Chain,
-    outcome: &ChainOutcome,
-    replays: &[Verification],
-) -> Vec<LinkGap> {
+/// What the links read of a phase: it begins as it does in the solution, and ends where its replay
+/// does.
+pub(crate) struct Ends {
+    /// States, then controls, at the first and the last time.
+    signals: [Vec<f64>; 2],
+    /// The largest size of each in the solution.
+    sizes: Vec<f64>,
+}
+
+impl Ends {
+    pub(super) fn new(problem: &Problem, record: &Record, replay: &Verification) -> Self {
+        let columns = |of: &[Variable], own: &[(&str, &[f64])]| -> Vec<Vec<f64>> {
+            // Integrals are no signals of a solution; they begin at 0.
+            of.iter().map(|it| find(own, &it.name).map_or(vec![0.0], <[f64]>::to_vec)).collect()
+        };
+        let states = columns(&problem.states, &record.states);
+        let controls = columns(&problem.controls, &record.controls);
+        let own = |at: fn(&[f64]) -> Option<&f64>| -> Vec<f64> {
+            let all = states.iter().chain(&controls);
+            all.map(|it| at(it).copied().unwrap_or(f64::NAN)).collect()
+        };
+        let mut last = own(<[f64]>::last);
+        for (state, it) in last.iter_mut().zip(&problem.states) {
+            let at = replay.system.states.iter().position(|own| own.name == it.name);
+            *state = at.and_then(|at| replay.simulation.end.get(at).copied()).unwrap_or(*state);
+        }
+        let size = |column: &Vec<f64>| column.iter().fold(0.0, |size: f64, it| size.max(it.abs()));
+        let sizes = states.iter().chain(&controls).map(size).collect();
+        Ends { signals: [own(<[f64]>::first), last], sizes }
+    }
+
+    fn at(phases: &[Ends], end: End) -> &[f64] {
+        let own = &phases[end.phase()];
+        &own.signals[usize::from(matches!(end, End::Last(_)))]
+    }
+}
+
+/// One for each condition of each link.
+pub(super) fn gaps_of_links(chain: &Chain, parameters: &[f64], phases: &[Ends]) -> Vec<LinkGap> {
     let of = |link: &Link| {
-        let ends = || link.ends.iter();
-        let inputs: Vec<f64> = ends().flat_map(|end| signals(outcome, replays, *end)).collect();
-        let sizes: Vec<f64> = ends().flat_map(|end| sizes(outcome, *end)).collect();
-        gaps(link, (&inputs, &sizes), &outcome.phases[0].trajectory.parameters)
+        let ends = || link.ends.iter().copied();
+        let inputs: Vec<f64> = ends().flat_map(|end| Ends::at(phases, end)).copied().collect();
+        let sizes = ends().flat_map(|end| &phases[end.phase()].sizes).copied();
+        gaps(link, (&inputs, &sizes.collect::<Vec<_>>()), parameters)
     };
     chain.links.iter().flat_map(of).collect()
 }
 
-/// States, then controls, at an end of a phase.
-fn signals(outcome: &ChainOutcome, replays: &[Verification], end: End) -> Vec<f64> {
-    let trajectory = &outcome.phases[end.phase()].trajectory;
-    let own = |columns: &[Vec<f64>]| -> Vec<f64> {
-        let value = |column: &Vec<f64>| match end {
-            End::First(_) => column.first().copied(),
-            End::Last(_) => column.last().copied(),
-        };
-        columns.iter().map(|column| value(column).unwrap_or(f64::NAN)).collect()
+/// What all links add to the objective of the minimisation problem.
+pub(super) fn objectives(chain: &Chain, parameters: &[f64], phases: &[Ends]) -> f64 {
+    let of = |link: &Link| {
+        let inputs = link.ends.iter().flat_map(|end| Ends::at(phases, *end)).copied();
+        let points = Columns::of_point(&inputs.collect::<Vec<f64>>());
+        let mut values = Columns::new(link.function.outputs(), 1);
+        let parameters = &parameters[..link.function.layout().p];
+        link.function.value(&points, parameters, &mut values);
+        values.column(0)[0]
     };
-    let mut states = own(&trajectory.states);
-    if let End::Last(phase) = end {
-        let replayed = &replays[phase].simulation.end;
-        states.iter_mut().zip(replayed).for_each(|(state, replayed)| *state = *replayed);
-    }
-    [states, own(&trajectory.controls)].concat()
-}
-
-/// The largest size of each state and control of a phase.
-fn sizes(outcome: &ChainOutcome, end: End) -> impl Iterator<Item = f64> {
-    let trajectory = &outcome.phases[end.phase()].trajectory;
-    let size = |column: &Vec<f64>| column.iter().fold(0.0, |size: f64, it| size.max(it.abs()));
-    trajectory.states.iter().chain(&trajectory.controls).map(size)
+    chain.links.iter().map(of).sum()
 }
 
 fn gaps(link: &Link, (inputs, sizes): (&[f64], &[f64]), parameters: &[f64]) -> Vec<LinkGap> {

@@ -8,14 +8,16 @@ mod gaps;
 mod links;
 pub mod modes;
 mod motion;
+mod phases;
 mod points;
 mod terms;
+mod tuning;
 
 pub use conditions::Condition;
 pub use gaps::{Gap, TIME_OF};
 pub use links::LinkGap;
-pub(crate) use links::gaps_of_links;
 pub use modes::Stay;
+pub(crate) use phases::{objective_of_links, verify_phases};
 
 use crate::error::Error;
 use crate::record::{Record, find};
@@ -28,6 +30,7 @@ use fdcc_runtime::simulate::{Options, Simulation, Status, System, simulate};
 use gaps::{gaps, gaps_of_jumps};
 use modes::stays;
 use points::Points;
+use tuning::times::OTHER_TIME;
 
 /// A replay that needs more steps, of a very stiff system, is given up: nobody waits for it.
 const FEWEST_STEPS: usize = 200_000;
@@ -155,7 +158,7 @@ fn fits(record: &Record, system: &System) -> Result<(), String> {
     let own = [record.time.first(), record.time.last()]
         .map(|end| end.copied().filter(|time| time.is_finite()).unwrap_or(f64::NAN));
     let differs = |own: f64, end: f64| {
-        own.is_nan() || (own - end).abs() > 1e-6 * (1.0 + (last - first).abs())
+        own.is_nan() || (own - end).abs() > OTHER_TIME * (1.0 + (last - first).abs())
     };
     if differs(own[0], first) || differs(own[1], last) {
         return Err(format!(

@@ -6,12 +6,8 @@
 //! pressure of 100 bar that moves by 1 Pa is not right because it is off by as little. A declared
 //! unit says only what rounding is.
 
+use super::tuning::motion::{ROUNDING, ROUNDING_OF_UNIT};
 use fdcc_runtime::problem::Variable;
-
-/// A difference of less than this part of the largest value is rounding.
-const ROUNDING: f64 = 1e-10;
-/// So is one of less than this part of the declared unit, around 0.
-const ROUNDING_OF_UNIT: f64 = 1e-14;
 
 /// How far a quantity moves.
 #[derive(Clone, Copy, Debug, Default)]

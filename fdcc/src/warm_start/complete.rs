@@ -1,7 +1,8 @@
 //! Whether an earlier solution has a number wherever it should: half of one is no place to start
 //! from.
 
-use crate::record::{Record, find};
+use super::tuning::ROUNDING;
+use crate::record::{NodesRecord, Record, find};
 use fdcc_runtime::problem::Problem;
 
 /// Says what is missing of the signals and unknowns of the problem that the solution has.
@@ -15,6 +16,9 @@ pub(super) fn check(record: &Record, problem: &Problem) -> Result<(), String> {
     for control in &problem.controls {
         signal(find(&record.controls, &control.name), &control.name, points - 1)?;
     }
+    if let Some(nodes) = &record.nodes {
+        nodes_of_controls(nodes, problem, record.time)?;
+    }
     for unknown in &problem.unknowns {
         let name = &problem.parameters[unknown.parameter].name;
         if find(&record.free, name).is_some_and(|value| !value.is_finite()) {
@@ -22,6 +26,29 @@ pub(super) fn check(record: &Record, problem: &Problem) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// Each control has a value at each of its nodes, which do not go back in time, and are within it.
+fn nodes_of_controls(nodes: &NodesRecord, problem: &Problem, times: &[f64]) -> Result<(), String> {
+    is_whole(nodes.time, "control_nodes.time")?;
+    if let Some(pair) = nodes.time.windows(2).find(|pair| pair[1] < pair[0]) {
+        let [before, after] = [pair[0], pair[1]];
+        return Err(format!("its `control_nodes` must ascend, but {after} follows {before}"));
+    }
+    let [first, last] = [times[0], times[times.len() - 1]];
+    let slack = ROUNDING * (last - first);
+    let is_outside = |time: &&f64| **time < first - slack || **time > last + slack;
+    if let Some(time) = nodes.time.iter().find(is_outside) {
+        return Err(format!("its `control_nodes` have {time}, outside of its times"));
+    }
+    let mut own = problem.controls.iter().map(|it| &it.name);
+    own.try_for_each(|name| {
+        let found = find(&nodes.values, name);
+        if found.is_none() {
+            return Err(format!("`control_nodes` has no values of `{name}`"));
+        }
+        signal(found, &format!("control_nodes.values.{name}"), nodes.time.len())
+    })
 }
 
 /// A state has a value at each time, a control one for each interval.

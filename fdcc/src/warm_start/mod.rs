@@ -2,6 +2,7 @@
 
 mod complete;
 pub(crate) mod phases;
+mod tuning;
 
 use crate::error::Error;
 use crate::record::{Record, find, number, whole};

@@ -74,13 +74,24 @@ pub(crate) mod nominal {
     pub(crate) const LONGEST_RANGE: f64 = 1e4;
     /// What is smaller than this part of its unit at an answer may be rounding.
     pub(crate) const LEAST_ANSWER: f64 = 1e-4;
-    /// Estimates beyond this, or below its inverse, are rounding or poles.
+    /// Estimates beyond so many units, or below its inverse, are rounding or poles.
     pub(crate) const LARGEST_ESTIMATE: f64 = 1e8;
+    /// The same where nothing else led to a solution.
+    pub(crate) const LARGEST_ASKED_FOR: f64 = 1e15;
+}
+
+pub(crate) mod farkas {
+    /// A slope that is less than this part of its terms is what rounding makes of 0.
+    pub(crate) const ROUNDING: f64 = 1e-13;
+    /// The sum has to be above 0 by this part of its terms.
+    pub(crate) const MARGIN: f64 = 1e-9;
+    /// Multipliers are moved so often: once, and again for what rounding left.
+    pub(crate) const REPAIRS: usize = 4;
+    /// The weight of a multiplier that is 0, which stays 0.
+    pub(crate) const NOT_USED: f64 = 1e-20;
 }
 
 pub(crate) mod convex {
-    /// A variable without a bound is thought to be within so many of its units.
-    pub(crate) const FARTHEST: f64 = 1e6;
     /// What of a ray is smaller than this part of it is rounding.
     pub(crate) const RAY_ROUNDING: f64 = 1e-9;
     /// The same of its curvature.

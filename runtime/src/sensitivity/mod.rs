@@ -19,6 +19,6 @@ pub use first_order::one_sided::one_sided;
 pub use first_order::perturbed::perturbed;
 pub use first_order::quantity::Quantity;
 pub(crate) use linearised::linearisation::Jacobian;
-pub use nondifferentiability::kink::Kink;
+pub use nondifferentiability::kink::{Kink, KinkMet};
 pub use nondifferentiability::{Nondifferentiability, NondifferentiabilityKind};
 pub use second_order::hessian;

@@ -163,6 +163,12 @@ impl System {
         }
     }
 
+    /// A surface alone, or all components of the ball that it is one of.
+    pub(crate) fn held_together(&self, surface: usize) -> Range<usize> {
+        let ball = self.balls.iter().find(|ball| ball.surfaces.contains(&surface));
+        ball.map_or(surface..surface + 1, |ball| ball.surfaces.clone())
+    }
+
     /// The same system with other parameters, its interval and its start computed anew.
     pub fn with_parameters(&self, values: &[f64]) -> Self {
         let mut other = self.clone();

@@ -35,9 +35,10 @@ pub(crate) mod tolerance {
     /// A state counts at least as this part of how far its rate, whatever the selectors, could take
     /// it in the whole time: what leaves 0 may grow so slowly that no step is short enough.
     pub(crate) const REACHED: f64 = 1e-9;
-    /// The same of what nothing moves, relative to the largest state.
+    /// The same of what hardly moves, relative to how large it can become, or to the largest state.
     pub(crate) const LEAST: f64 = 1e-60;
-    /// What is smaller than this, such as the tail of a pulse, is soon too small for its digits.
+    /// What is smaller than this, such as the tail of a pulse, is soon too small for its digits; so
+    /// is this part of what can never become as large as 1.
     pub(crate) const SMALLEST: f64 = 1e-280;
     /// Selectors that solve a linear system are known so well.
     pub(crate) const SOLVED: f64 = 1e-13;

@@ -6,7 +6,9 @@
 //! solution: one evaluation of the right side for each. Values that a path constraint excludes do
 //! not count.
 
-use super::hamiltonian::{Hamiltonian, noise};
+mod together;
+
+use super::hamiltonian::Hamiltonian;
 use super::lagrangian::Lagrangian;
 use super::minimum::variables;
 use crate::nlp::Solution;
@@ -42,12 +44,14 @@ impl Elsewhere {
         let problem = nlp.problem();
         let lagrangian = Lagrangian::new(problem, nlp, solution);
         let own: Vec<f64> = hamiltonian.values.iter().map(|it| it * problem.sense).collect();
-        let least = noise(problem, duration).max(GAIN * hamiltonian.size);
+        let least = hamiltonian.noise.max(GAIN * hamiltonian.size);
         let search = Search { lagrangian, own, violation: Vec::new(), duration, least };
         let search = Search { violation: search.violation(&solution.v), ..search };
+        let alone: Vec<Best> = (0..problem.layout.u).map(|control| search.best(control)).collect();
+        let together = search.together(&alone);
         let (mut v, mut parts) = (solution.v.clone(), Vec::new());
-        for control in 0..problem.layout.u {
-            let best = search.best(control);
+        for (control, (alone, together)) in alone.iter().zip(&together).enumerate() {
+            let best: Best = alone.iter().zip(together).map(|(one, all)| one.or(*all)).collect();
             parts.push(search.part(&best));
             for (k, at) in variables(nlp, control) {
                 v[at] = best[k].map_or(v[at], |it| it.0);
@@ -56,6 +60,10 @@ impl Elsewhere {
         Elsewhere { parts, v }
     }
 }
+
+/// For each interval the value of a control that gains most, and what it gains; nothing where none
+/// does.
+type Best = Vec<Option<(f64, f64)>>;
 
 /// What others are compared with.
 struct Search<'a> {
@@ -70,13 +78,13 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// For each interval the value of a control that gains most, and what it gains; nothing where
-    /// none does.
-    fn best(&self, control: usize) -> Vec<Option<(f64, f64)>> {
+    fn best(&self, control: usize) -> Best {
         let mut best = vec![None; self.own.len()];
         let it = &self.lagrangian.problem.controls[control];
         for value in ladder(it.bounds, it.unit) {
-            for (best, gain) in best.iter_mut().zip(self.gains(control, value)) {
+            let mut v = self.lagrangian.solution.v.clone();
+            self.set(control, value, &mut v);
+            for (best, gain) in best.iter_mut().zip(self.gains(&v)) {
                 let before = best.map_or(self.least, |(_, gain)| gain);
                 if gain > before {
                     *best = Some((value, gain));
@@ -86,13 +94,16 @@ impl Search<'_> {
         best
     }
 
-    /// What one value of a control gains on each interval; nothing where it is not allowed.
-    fn gains(&self, control: usize, value: f64) -> Vec<f64> {
-        let Lagrangian { problem, nlp, solution, .. } = self.lagrangian;
-        let mut v = solution.v.clone();
-        variables(nlp, control).for_each(|(_, at)| v[at] = value);
-        let (values, _) = self.lagrangian.at(&v).hamiltonian(self.duration);
-        let violation = self.violation(&v).into_iter().zip(&self.violation);
+    /// A control has this value at all times.
+    fn set(&self, control: usize, value: f64, v: &mut [f64]) {
+        variables(self.lagrangian.nlp, control).for_each(|(_, at)| v[at] = value);
+    }
+
+    /// What other controls gain on each interval; nothing where they are not allowed.
+    fn gains(&self, v: &[f64]) -> Vec<f64> {
+        let problem = self.lagrangian.problem;
+        let (values, _) = self.lagrangian.at(v).hamiltonian(self.duration);
+        let violation = self.violation(v).into_iter().zip(&self.violation);
         let is_allowed = violation.map(|(violation, own)| violation <= *own);
         let gains = self.own.iter().zip(values).map(|(own, other)| own - problem.sense * other);
         gains
@@ -119,7 +130,7 @@ impl Search<'_> {
     }
 
     /// The part of the time on which something is better.
-    fn part(&self, best: &[Option<(f64, f64)>]) -> f64 {
+    fn part(&self, best: &Best) -> f64 {
         let part = |k: usize| self.lagrangian.nlp.mesh().relative(k) / best.len() as f64;
         let better = best.iter().enumerate().filter(|(_, best)| best.is_some());
         better.map(|(k, _)| part(k)).fold(0.0, |sum: f64, part| (sum + part).min(1.0))

@@ -13,7 +13,7 @@
 use super::elsewhere::Elsewhere;
 use super::lagrangian::{Lagrangian, add_slopes};
 use super::minimum;
-use crate::nlp::Solution;
+use crate::nlp::{Nlp, Solution};
 use crate::problem::{Columns, Problem};
 use crate::transcribe::TranscribedNlp;
 
@@ -49,6 +49,8 @@ pub struct Hamiltonian {
     /// Whether all its terms together are no more than the tolerance of the solver: then nothing
     /// can be said of it.
     pub is_noise: bool,
+    /// Terms that are not larger than this are none.
+    pub noise: f64,
 }
 
 impl Hamiltonian {
@@ -61,7 +63,7 @@ impl Hamiltonian {
     ) -> Self {
         let lagrangian = Lagrangian::new(problem, nlp, solution);
         let ((values, size), expected) = (lagrangian.hamiltonian(duration), lagrangian.expected());
-        let noise = noise(problem, duration);
+        let noise = noise(problem, nlp, duration);
         let is_noise = size <= noise;
         let scale = if size > NOTHING * noise { size } else { noise };
         let size = size.max(noise);
@@ -79,6 +81,7 @@ impl Hamiltonian {
             violations,
             pause: None,
             is_noise,
+            noise,
         };
         if own.has_to_be_least(problem, solution) {
             let parts = Elsewhere::new(nlp, solution, (duration, &own)).parts;
@@ -109,9 +112,10 @@ impl Hamiltonian {
     }
 }
 
-/// Terms that are not larger than this are none, over this time.
-pub(super) fn noise(problem: &Problem, duration: f64) -> f64 {
-    NOISE * problem.method.tol / duration.abs()
+/// Terms that are not larger than this are none, over this time: the tolerance in units of the
+/// objective, which are small where all numbers of a model are.
+fn noise(problem: &Problem, nlp: &mut TranscribedNlp, duration: f64) -> f64 {
+    NOISE * problem.method.tol * nlp.objective_unit() / duration.abs()
 }
 
 impl Lagrangian<'_> {

@@ -1,6 +1,7 @@
 //! One solve after the other, with what they share: the widths, the work done, and the person who
 //! watches.
 
+use super::tuning::run::NEAR;
 use super::{Attempt, Level, Watch};
 use crate::nlp::{Counts, Options, Progress, Solution, Start, Status, convex, interior_point};
 use crate::problem::{Chain, Order};
@@ -61,7 +62,8 @@ impl<'p> Run<'p> {
         nlp.set_widths(&self.sigma);
     }
 
-    /// One solve; a warm start that fails is repeated with fresh multipliers.
+    /// One solve; a warm start that fails is repeated with fresh multipliers, unless it is near a
+    /// solution.
     pub(super) fn solve(
         &mut self,
         nlp: &mut ChainNlp,
@@ -70,7 +72,8 @@ impl<'p> Run<'p> {
         watch: &mut Watch,
     ) -> Solution {
         let solution = self.once(nlp, start, target, watch);
-        if start.warm.is_none() || !is_retried(&solution.status) {
+        let is_near = solution.kkt_error <= NEAR;
+        if start.warm.is_none() || is_near || !is_retried(&solution.status) {
             return solution;
         }
         self.once(nlp, &Start { v: start.v.clone(), warm: None }, target, watch)

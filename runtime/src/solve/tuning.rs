@@ -33,6 +33,12 @@ pub(crate) mod grid_sequencing {
     pub(crate) const CLOSE: f64 = 1e-5;
 }
 
+pub(crate) mod run {
+    /// An attempt that ends with a smaller optimality error is not made again with fresh
+    /// multipliers.
+    pub(crate) const NEAR: f64 = 1e-7;
+}
+
 pub(crate) mod multistart {
     /// Relative size of a variation.
     pub(crate) const VARIATION: f64 = 0.3;

@@ -112,7 +112,25 @@ pub fn from_earlier(chain: &Chain, earlier: &[Earlier]) -> Start {
 /// A solution on the same grids, found with these widths, of a chain with other parameters or
 /// another width.
 pub fn again(chain: &Chain, solution: &Solution, widths: &[f64]) -> Start {
+    with_room(chain, Start::near(solution), widths)
+}
+
+/// The same one interval later: each interval begins where the next one was, the last one stays as
+/// it is. For a chain of one phase on a uniform grid.
+pub fn one_interval_later(chain: &Chain, solution: &Solution, widths: &[f64]) -> Start {
     let mut start = Start::near(solution);
+    let stages = TranscribedNlp::new(&chain.phases[0]).chain();
+    let Some(Warm { multipliers, .. }) = &mut start.warm else { return start };
+    let (step, end) = (stages.variable_step(), stages.intervals * stages.variable_step());
+    for variables in [&mut start.v, &mut multipliers.lower, &mut multipliers.upper] {
+        variables.copy_within(step..end + stages.states, 0);
+    }
+    let step = stages.row_step();
+    multipliers.constraints.copy_within(step..stages.intervals * step, 0);
+    with_room(chain, start, widths)
+}
+
+fn with_room(chain: &Chain, mut start: Start, widths: &[f64]) -> Start {
     if let (Some(warm), Some((mut nlp, widths))) = (&mut start.warm, first_width(chain, widths)) {
         (warm.mu, warm.widths) = (room(&mut nlp, &start.v), widths);
     }

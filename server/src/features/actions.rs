@@ -3,7 +3,7 @@
 use crate::client::Failure;
 use crate::context::Context;
 use crate::features::diagnostics::shown;
-use fdcc_compiler::repair;
+use fdcc::language::repair;
 use fdcc_grammar::{Diagnostic, Edit, Fix, Span};
 use lsp_types::{CodeAction, CodeActionKind, CodeActionParams, CodeActionResponse};
 
@@ -21,7 +21,7 @@ pub fn actions(
     let mut all: Vec<CodeActionResponse> = Vec::new();
     if asked(&CodeActionKind::QuickFix) {
         let touched = |it: &&Diagnostic| it.labels.iter().any(|label| touches(label.span, wanted));
-        for found in snapshot.analysis.diagnostics.iter().filter(touched) {
+        for found in snapshot.diagnostics().iter().filter(touched) {
             all.extend(found.fixes.iter().map(|fix| quick_fix(context, found, fix).into()));
         }
     }
@@ -57,7 +57,7 @@ fn quick_fix(context: &Context<'_>, found: &Diagnostic, fix: &Fix) -> CodeAction
 fn fix_all(context: &Context<'_>) -> Option<CodeAction> {
     let text = &context.snapshot().text.text;
     let is_certain = |it: &Diagnostic| it.fixes.iter().any(|fix| fix.certain);
-    if !context.snapshot().analysis.diagnostics.iter().any(is_certain) {
+    if !context.snapshot().diagnostics().iter().any(is_certain) {
         return None;
     }
     let edit = difference(text, &repair(text, false))?;

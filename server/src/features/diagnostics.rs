@@ -3,7 +3,7 @@
 use crate::agreed::Agreed;
 use crate::client::Failure;
 use crate::context::Context;
-use crate::documents::Document;
+use crate::documents::TextDocument;
 use crate::pages;
 use crate::snapshot::Snapshot;
 use fdcc_grammar::{Code, Diagnostic, Label, Severity};
@@ -14,7 +14,7 @@ use lsp_types::{
 };
 
 /// What is sent unasked.
-pub fn publishable(document: &Document, agreed: &Agreed) -> PublishDiagnosticsParams {
+pub fn publishable(document: &TextDocument, agreed: &Agreed) -> PublishDiagnosticsParams {
     let diagnostics = all(document, agreed);
     PublishDiagnosticsParams {
         uri: document.uri.clone(),
@@ -33,14 +33,10 @@ pub fn report(
     Ok(RelatedFullDocumentDiagnosticReport::new(None, full).into())
 }
 
-fn all(document: &Document, agreed: &Agreed) -> Vec<lsp_types::Diagnostic> {
+fn all(document: &TextDocument, agreed: &Agreed) -> Vec<lsp_types::Diagnostic> {
     let snapshot = document.snapshot();
-    snapshot
-        .analysis
-        .diagnostics
-        .iter()
-        .map(|it| shown(it, snapshot, &document.uri, agreed))
-        .collect()
+    let shown = |it| shown(it, snapshot, &document.uri, agreed);
+    snapshot.diagnostics().iter().map(shown).collect()
 }
 
 /// A finding in the words of the protocol.

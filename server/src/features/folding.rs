@@ -2,7 +2,7 @@
 
 use crate::client::Failure;
 use crate::context::Context;
-use fdcc_compiler::symbols::enclosing;
+use fdcc::language::enclosing;
 use fdcc_grammar::{Span, comments};
 use lsp_types::{
     FoldingRange, FoldingRangeKind, FoldingRangeParams, SelectionRange, SelectionRangeParams,
@@ -67,7 +67,7 @@ pub fn selection(
     let snapshot = context.snapshot();
     let around = |offset: u32| {
         let mut spans = vec![Span::new(0, snapshot.text.text.len())];
-        spans.extend(enclosing(&snapshot.analysis.tree, offset));
+        spans.extend(enclosing(snapshot.tree(), offset));
         spans.extend(snapshot.names().at(offset).map(|it| it.span));
         let mut chain: Option<Box<SelectionRange>> = None;
         for span in spans {

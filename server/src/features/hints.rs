@@ -1,10 +1,10 @@
 //! What the text does not say, shown in it: units that were found, when a surface is held, how
-//! smooth a `piecewise` is.
+//! smooth a `piecewise` is; and what the last solve of it said.
 
 use crate::client::Failure;
 use crate::context::Context;
-use fdcc_compiler::symbols::{Definition, Kind};
-use fdcc_compiler::{Model, NamedUnit, Order, SurfaceReport, symbol_information};
+use crate::snapshot::Snapshot;
+use fdcc::language::{Definition, Kind, NamedUnit, Order, SurfaceReport};
 use lsp_types::{InlayHint, InlayHintKind, InlayHintParams};
 
 /// `textDocument/inlayHint`
@@ -15,9 +15,9 @@ pub fn hints(
     let snapshot = context.snapshot();
     let wanted = snapshot.text.span(params.range);
     let mut found: Vec<(u32, String)> = Vec::new();
-    found.extend(snapshot.analysis.units.iter().filter_map(unit));
+    found.extend(snapshot.units().iter().filter_map(unit));
     // Of a text with mistakes nothing more is known; old places are elsewhere by now.
-    if let Some(model) = &snapshot.analysis.model {
+    if snapshot.has_meaning() {
         let definitions = || {
             snapshot
                 .names()
@@ -31,7 +31,16 @@ pub fn hints(
                 .filter(|it| it.kind == Kind::Surface)
                 .filter_map(|it| held(it, surfaces())),
         );
-        found.extend(definitions().filter_map(|it| smoothness(it, model, &snapshot.text.text)));
+        found.extend(definitions().filter_map(|it| smoothness(it, snapshot)));
+        if let Some(said) = context.said() {
+            let objective = snapshot.objective().map(|it| it.end);
+            found.extend(objective.zip(said.answer()));
+            let surfaces = definitions().filter(|it| it.kind == Kind::Surface);
+            found.extend(
+                surfaces
+                    .filter_map(|it| Some((it.item.end, said.of_surface(&it.name)?.to_owned()))),
+            );
+        }
     }
     found.retain(|it| wanted.start <= it.0 && it.0 <= wanted.end);
     found.sort();
@@ -67,10 +76,10 @@ fn held(it: &Definition, surfaces: &[SurfaceReport]) -> Option<(u32, String)> {
 }
 
 /// Behind a definition in pieces: `C^2`.
-fn smoothness(it: &Definition, model: &Model, text: &str) -> Option<(u32, String)> {
+fn smoothness(it: &Definition, snapshot: &Snapshot) -> Option<(u32, String)> {
     let has_pieces = matches!(it.kind, Kind::Function | Kind::Let)
-        && text[it.item.range()].contains("piecewise");
-    let found = symbol_information(model, &it.name).filter(|_| has_pieces)?.smoothness?;
+        && snapshot.text.text[it.item.range()].contains("piecewise");
+    let found = snapshot.information(None, &it.name).filter(|_| has_pieces)?.smoothness?;
     let text = match found.order {
         Order::Always => "smooth".into(),
         order => order.to_string(),

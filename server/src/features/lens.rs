@@ -8,12 +8,12 @@ use lsp_types::{CodeLens, CodeLensParams, Command};
 
 /// `textDocument/codeLens`: nothing for a model that has mistakes.
 pub fn lenses(context: &Context<'_>, _: CodeLensParams) -> Result<Option<Vec<CodeLens>>, Failure> {
-    let analysis = &context.snapshot().analysis;
-    if analysis.model.is_none() {
+    let snapshot = context.snapshot();
+    if !snapshot.has_meaning() {
         return Ok(Some(Vec::new()));
     }
-    let first = analysis.tree.items.first().map_or(0, |item| item.span.start);
-    let start = analysis.tree.name.as_ref().map_or(first, |name| name.span.start.min(first));
+    let first = snapshot.tree().items.first().map_or(0, |item| item.span.start);
+    let start = snapshot.tree().name.as_ref().map_or(first, |name| name.span.start.min(first));
     let range = context.range(Span { start, end: start });
     let lens = |(name, title): &(&str, &str)| CodeLens {
         range,

@@ -2,7 +2,7 @@
 
 use crate::client::Failure;
 use crate::context::Context;
-use fdcc_compiler::symbols::{Occurrence, Role};
+use fdcc::language::{Occurrence, Role};
 use lsp_types::{
     Definition, DefinitionParams, DefinitionResponse, DocumentHighlight, DocumentHighlightKind,
     DocumentHighlightParams, Location, ReferenceParams,

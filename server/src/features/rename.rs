@@ -4,7 +4,7 @@
 use crate::client::Failure;
 use crate::context::Context;
 use crate::snapshot::Snapshot;
-use fdcc_compiler::symbols::{Meaning, Names, Occurrence, Role};
+use fdcc::language::{Meaning, Names, Occurrence, Role};
 use fdcc_grammar::ast::{Item, ItemKind};
 use fdcc_grammar::{Edit, parse};
 use lsp_types::{
@@ -43,7 +43,7 @@ pub fn rename(
 fn renamable(snapshot: &Snapshot, offset: u32) -> Result<usize, Failure> {
     let names = snapshot.names();
     match names.at(offset).map(|it| it.meaning) {
-        Some(Meaning::Declared(_)) if !snapshot.is_readable => Err(Failure::request(
+        Some(Meaning::Declared(_)) if !snapshot.is_readable() => Err(Failure::request(
             "this text has mistakes of syntax, and a name in what cannot be read would be missed; \
              mend them first",
         )),

@@ -4,8 +4,8 @@ use crate::client::Failure;
 use crate::context::Context;
 use crate::features::cursor::CursorContext;
 use crate::snapshot::Snapshot;
-use fdcc_compiler::symbols::Kind;
-use fdcc_compiler::vocabulary;
+use fdcc::language::Kind;
+use fdcc::language::vocabulary;
 use lsp_types::{
     MarkupContent, MarkupKind, ParameterInformation, SignatureHelp, SignatureHelpParams,
     SignatureInformation,

@@ -2,7 +2,7 @@
 
 use crate::client::Failure;
 use crate::context::Context;
-use fdcc_compiler::symbols::{Kind, Names};
+use fdcc::language::{Kind, Names};
 use fdcc_grammar::Span;
 use fdcc_grammar::ast::{Binding, Item, ItemKind, Sense};
 use lsp_types::{DocumentSymbol, DocumentSymbolParams, DocumentSymbolResponse, SymbolKind};
@@ -13,7 +13,7 @@ pub fn symbols(
     _: DocumentSymbolParams,
 ) -> Result<Option<DocumentSymbolResponse>, Failure> {
     let outline = Outline { context, names: context.snapshot().names() };
-    let items = &context.snapshot().analysis.tree.items;
+    let items = &context.snapshot().tree().items;
     Ok(Some(outline.items(items).into()))
 }
 

@@ -5,7 +5,7 @@
 
 use crate::client::Failure;
 use crate::context::Context;
-use fdcc_compiler::symbols::{Kind, Meaning, Names, Occurrence, Role};
+use fdcc::language::{Kind, Meaning, Names, Occurrence, Role};
 use fdcc_grammar::Span;
 use lsp_types::{
     SemanticToken, SemanticTokens, SemanticTokensLegend, SemanticTokensParams,

@@ -3,7 +3,7 @@
 use crate::context::Context;
 use crate::features::symbols::kind;
 use crate::state::State;
-use fdcc_compiler::symbols::{Definition, Kind};
+use fdcc::language::{Definition, Kind};
 use lsp_types::{BaseSymbolInformation, SymbolInformation, WorkspaceSymbolParams};
 
 /// `workspace/symbol`: declared names that hold what was typed, whatever its case.

@@ -71,10 +71,10 @@ class Descent:
         return int(seen)
 
     def steps(self):
-        """Down the steepest slope with the equations kept, by linear programmes: of few directions; and at random."""
+        """Down the steepest slope with the equations kept, by linear programs: of few directions; and at random."""
         n = len(self.usable)
         for size in (1e-4, 1e-3, 5e-3, 2e-2):
-            found = self.programme(self.gradient, np.zeros(len(self.jacobian)), size)
+            found = self.program(self.gradient, np.zeros(len(self.jacobian)), size)
             if found is not None:
                 self.price = self.shadow
                 yield found.x
@@ -84,7 +84,7 @@ class Descent:
                 step[self.rng.integers(0, n, 2)] = scale * self.rng.random(2)
                 yield step
 
-    def programme(self, cost, right, size):
+    def program(self, cost, right, size):
         """The cheapest directions with jacobian d = right and at most `size` in all; None if there are none."""
         sides = np.array(self.sides, int)
         both, one = sides == 0, sides != 0
@@ -110,7 +110,7 @@ class Descent:
                 return None
             if not len(found[1]) or np.abs(found[1]).max() < MET:
                 return found
-            change = self.programme(self.effort, -found[1][self.free], 0.2)
+            change = self.program(self.effort, -found[1][self.free], 0.2)
             if change is None:
                 return None
             step = step + change.x

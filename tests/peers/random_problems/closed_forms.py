@@ -1,4 +1,4 @@
-"""The optimum of a quadratic programme without inequalities, by one dense linear system."""
+"""The optimum of a quadratic program without inequalities, by one dense linear system."""
 
 import casadi as ca
 import numpy as np
@@ -14,7 +14,7 @@ def equality_optimum(discrete):
     if np.any(np.isfinite(discrete.lower[free])) or np.any(np.isfinite(discrete.upper[free])):
         return None
     z = np.where(free, 0.0, discrete.lower)
-    x, f, g = (discrete.programme[key] for key in 'xfg')
+    x, f, g = (discrete.program[key] for key in 'xfg')
     hessian, gradient = ca.Function('h', [x], [*ca.hessian(f, x)])(z)
     rows, jacobian = ca.Function('j', [x], [g, ca.jacobian(g, x)])(z)
     hessian, jacobian = hessian.full()[np.ix_(free, free)], jacobian.full()[:, free]

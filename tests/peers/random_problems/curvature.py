@@ -32,7 +32,7 @@ def gain_along_curvature(discrete, z):
 def derivatives(discrete, z):
     """Gradient, Jacobian, rows and their sizes as arrays."""
     if not hasattr(discrete, 'first'):
-        x, f, g = (discrete.programme[key] for key in 'xfg')
+        x, f, g = (discrete.program[key] for key in 'xfg')
         discrete.first = ca.Function('first', [x], [ca.gradient(f, x), ca.jacobian(g, x)])
     gradient, jacobian = discrete.first(z)
     _, _, g, sizes = discrete.measures(z)
@@ -42,7 +42,7 @@ def derivatives(discrete, z):
 def lagrangian(discrete):
     """The Hessian of the Lagrangian as a function of variables and multipliers."""
     if not hasattr(discrete, 'second'):
-        x, f, g = (discrete.programme[key] for key in 'xfg')
+        x, f, g = (discrete.program[key] for key in 'xfg')
         multipliers = ca.SX.sym('l', g.numel())
         hessian = ca.hessian(f + ca.dot(multipliers, g), x)[0]
         discrete.second = ca.Function('second', [x, multipliers], [hessian])

@@ -79,14 +79,14 @@ class Discrete:
         self.high += [high] * count
 
     def build(self):
-        """The programme, bounds of variables, measures at a point."""
+        """The program, bounds of variables, measures at a point."""
         self.z, g = ca.veccat(self.x, self.u, self.inner, self.p), ca.vertcat(*self.rows)
         self.measures = ca.Function(
             'm', [self.z], [self.objective, self.objective_size, g, ca.vertcat(*self.row_sizes)]).expand()
-        programme = ca.Function('nlp', [self.z], [self.objective, g]).expand()
+        program = ca.Function('nlp', [self.z], [self.objective, g]).expand()
         z = ca.SX.sym('z', self.z.numel())
-        objective, g = programme(z)
-        self.programme = {'x': z, 'f': objective, 'g': g}
+        objective, g = program(z)
+        self.program = {'x': z, 'f': objective, 'g': g}
         self.low, self.high = np.array(self.low), np.array(self.high)
         self.lower, self.upper = (self.bounds_of(side) for side in ('low', 'high'))
         self.solvers = {}

@@ -38,7 +38,7 @@ def run(discrete, start, lower=None, upper=None, near=False):
     """One solve from `start`."""
     if near not in discrete.solvers:
         options = {**OPTIONS, **(NEAR if near else {})}
-        discrete.solvers[near] = ca.nlpsol('solver', 'ipopt', discrete.programme, options)
+        discrete.solvers[near] = ca.nlpsol('solver', 'ipopt', discrete.program, options)
     solver = discrete.solvers[near]
     lower, upper = discrete.lower if lower is None else lower, discrete.upper if upper is None else upper
     found = solver(x0=np.clip(start, lower, upper), lbx=lower, ubx=upper, lbg=discrete.low, ubg=discrete.high)

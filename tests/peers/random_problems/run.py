@@ -22,6 +22,8 @@ sys.dont_write_bytecode = True
 os.environ.setdefault('OMP_NUM_THREADS', '1')
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 
+import ipopt  # noqa: E402
+from discrete import Discrete  # noqa: E402
 from generate import generate  # noqa: E402
 from judge import Judgement  # noqa: E402
 from table import page, summary  # noqa: E402
@@ -68,7 +70,7 @@ def judged(fdcc, key, path):
         result = json.loads(output)
     except (TypeError, json.JSONDecodeError):
         if said.startswith('FDC0410'):
-            return contradicted(row, problem), problem
+            return contradicted(row, problem, rng), problem
         return {**row, 'status': 'no result', 'wrong': [['solved', said[:300]]], 'notes': [], 'failed': True}, problem
     headline = ''
     if result['status'] == 'infeasible':
@@ -83,9 +85,11 @@ def judged(fdcc, key, path):
             'notes': judgement.notes, 'failed': bool(judgement.failed())}, problem
 
 
-def contradicted(row, problem):
-    """The row of a problem whose conditions `check` calls contradictory: it is proved to be infeasible."""
-    wrong = [] if problem.truth == 'infeasible' else [['infeasible', 'FDC0410, but it is not by construction']]
+def contradicted(row, problem, rng):
+    """The row of a problem whose conditions `check` calls contradictory: wrong if IPOPT solves it."""
+    wrong = []
+    if problem.truth != 'infeasible' and any(answer.solved for answer in ipopt.answers(Discrete(problem), rng, 0)):
+        wrong = [['infeasible', 'FDC0410, but IPOPT solves it']]
     nothing = {'iterations': 0, 'seconds': 0.0, 'ipopt': '', 'ipopt_iterations': 0, 'notes': []}
     return {**row, **nothing, 'status': 'infeasible', 'global': False, 'confirmed': False, 'objective': None,
             'contradicted': False, 'known': None, 'wrong': wrong, 'failed': False}

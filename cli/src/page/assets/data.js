@@ -11,8 +11,9 @@ const at = (of, keys) => keys.reduce((object, key) => object?.[key], solutions[o
 /// The values of a state or a costate just before jumps and switches, by the grid point that has
 /// the values after them.
 function valuesBefore(curve, time) {
-  const [group, name] = curve.values;
-  const solution = solutions[curve.of];
+  const [group, name] = curve.values.slice(-2);
+  // That of a phase stands under its name.
+  const solution = at(curve.of, curve.values.slice(0, -2)) ?? {};
   const all = {
     states: () => (solution.jumps ?? []).map((it) => ({ time: it.time, value: it.before[name] })),
     costates: () => (solution.costates_before ?? []).map((it) => ({ time: it.time, value: it.values[name] })),
@@ -30,7 +31,7 @@ function valuesBefore(curve, time) {
 function jumpsBetween(curve, a, b) {
   const { jumps, certificate } = solutions[curve.of];
   const events = [...(jumps ?? []), ...(certificate?.switches ?? [])];
-  return curve.values[0] === "control_nodes" && events.some(({ time }) => a < time && time < b);
+  return curve.values.includes("control_nodes") && events.some(({ time }) => a < time && time < b);
 }
 
 /// The pieces of a curve between jumps and gaps: lists of times and of values.

@@ -17,7 +17,9 @@ function toScale(x, y, width, height) {
 /// The points of two figures at the same times, a list for each piece of each curve.
 function paired(over, of) {
   return over.curves.flatMap((curve) => {
-    const isSame = (it) => it.of === curve.of && it.label === curve.label && it.kind === curve.kind;
+    // Of several phases each has curves of its own.
+    const place = (it) => it.values.slice(0, -2).join();
+    const isSame = (it) => it.of === curve.of && it.kind === curve.kind && place(it) === place(curve);
     const other = of.curves.find(isSame);
     if (!other) return [];
     const [xs, ys] = [pieces(curve, over.unit), pieces(other, of.unit)];

@@ -1,6 +1,7 @@
 //! FDC0411: constants and bounds that are no finite numbers: `1/0`, `0/0`.
 
 use crate::check::facts::{Facts, Told};
+use crate::expressions::graph::builtins::Builtin;
 use crate::expressions::graph::{Expr, ExprId, evaluate};
 use crate::model::{Range, Symbol};
 use crate::resolve::elaborator::constants::ConstantPart;
@@ -27,16 +28,14 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
 
 /// The constant parts of all formulas, each place and each value once.
 fn of_constants(meaning: &Elaborator<'_>, told: &Told, found: &mut Vec<Diagnostic>) {
-    let constants = meaning.constants.iter().chain(&meaning.cancelled);
-    let roots: Vec<ExprId> = constants.clone().map(|it| it.value).collect();
-    let values = evaluate(&meaning.graph, &roots, &param_values(meaning), &[]);
+    let values = values_of(meaning, &meaning.constants);
     let is_bad = |(part, value): &(&ConstantPart<'_>, f64)| match part.is_divisor {
         true => *value == 0.0,
         false => !value.is_finite(),
     };
     let defined = definitions(meaning);
     let (mut places, mut without_value) = (HashSet::new(), HashSet::new());
-    for (part, value) in constants.zip(values).filter(is_bad) {
+    for (part, value) in meaning.constants.iter().zip(values).filter(is_bad) {
         let is_first = places.insert(part.expr.span) && !told.is_within(part.expr.span);
         let needed = meaning.graph.reachable(&[part.value]);
         let follows = !has_values(meaning, part.value)
@@ -44,6 +43,38 @@ fn of_constants(meaning: &Elaborator<'_>, told: &Told, found: &mut Vec<Diagnosti
         without_value.extend(Some(part.value).filter(|it| defined.contains(it)));
         found.extend((is_first && !follows).then(|| of_constant(part, value)));
     }
+    for part in cancelled(meaning) {
+        let is_first = places.insert(part.expr.span) && !told.is_within(part.expr.span);
+        found.extend(is_first.then(|| of_constant(part, 0.0)));
+    }
+}
+
+fn values_of(meaning: &Elaborator<'_>, parts: &[ConstantPart<'_>]) -> Vec<f64> {
+    let roots: Vec<ExprId> = parts.iter().map(|it| it.value).collect();
+    evaluate(&meaning.graph, &roots, &param_values(meaning), &[])
+}
+
+/// The divisors that are 0 and left no trace in the constant that they are in: `2*p/p` is 2.
+fn cancelled<'m, 'a>(meaning: &'m Elaborator<'a>) -> impl Iterator<Item = &'m ConstantPart<'a>> {
+    let values = values_of(meaning, &meaning.constant_divisors);
+    let all = meaning.constant_divisors.iter().zip(values);
+    let zeros = all.filter(|(_, value)| *value == 0.0).map(|(part, _)| part);
+    zeros.filter(move |part| {
+        let mut around = meaning.constants.iter().filter(|it| encloses(it, part));
+        !around.any(|it| divides_by(meaning, it.value, part.value))
+    })
+}
+
+fn encloses(whole: &ConstantPart<'_>, part: &ConstantPart<'_>) -> bool {
+    let [whole, part] = [whole, part].map(|it| it.expr.span);
+    whole.start <= part.start && part.end <= whole.end
+}
+
+/// Whether anything in a value is divided by a divisor, or by a factor of it.
+fn divides_by(meaning: &Elaborator<'_>, value: ExprId, divisor: ExprId) -> bool {
+    let parts = meaning.graph.reachable(&[divisor]);
+    let by = |id: &ExprId| meaning.graph.as_call(*id, Builtin::Div).map(|operands| operands[1]);
+    meaning.graph.reachable(&[value]).iter().filter_map(by).any(|it| parts.contains(&it))
 }
 
 /// The values that have names: where such a one is infinite, nothing is said of what is made of it.

@@ -1,4 +1,4 @@
-//! FDC0312: a surface whose function does not change along a motion.
+//! FDC0312: a surface whose function does not change along a motion, or never its sign.
 
 use super::Subject;
 use crate::check::facts::Facts;
@@ -8,11 +8,13 @@ use crate::syntax::text;
 use fdcc_grammar::{Code, Diagnostic, Span};
 
 impl Subject<'_, '_, '_> {
-    /// The finding, where the function is proved to stay the same.
+    /// The finding, where the function is proved to stay the same, or on one side of 0.
     pub fn constant(&mut self) -> Option<Diagnostic> {
         let psi = self.view.surfaces[self.at].1?;
+        let what = format!("surface `{}` never changes sides", self.name());
         if !self.local.is_constant(self.view, &reset(self.facts)) {
-            return None;
+            let has_one_sign = self.local.has_one_sign();
+            return has_one_sign.then(|| told(what, self.function(), "never 0".into()));
         }
         let symbols = &self.facts.meaning.symbols;
         let is_param = |input: u32| matches!(symbols[input as usize], Symbol::Param(_));
@@ -22,7 +24,6 @@ impl Subject<'_, '_, '_> {
             Some(value) => format!("always {}", text::number(value)),
             None => "the same at all times".into(),
         };
-        let what = format!("surface `{}` never changes sides", self.name());
         Some(told(what, self.function(), label))
     }
 }

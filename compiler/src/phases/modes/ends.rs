@@ -2,20 +2,25 @@
 //!
 //! Where `psi = 0` is held until the end, `end` conditions that add up to it would be said twice,
 //! and the Jacobian of the chain would lose rank: a block that rests in the end with `end v == 0`.
+//!
+//! Bounds of states and path conditions hold at the nodes of the collocation, which say nothing of
+//! the last time: a tank would be emptied behind the last node.
 
+use super::hold_parameters::is_of_end;
 use super::independent::Independent;
-use super::{Mode, Modes};
+use super::limits::rates;
+use super::{Arc, Mode, Modes};
 use crate::expressions::graph::ExprId;
-use crate::model::{Constraint, Symbol};
+use crate::model::{Constraint, Place};
 
 impl Modes<'_> {
-    /// The conditions at the ends of the whole time; those that follow from what is held in the end
-    /// have no bounds.
+    /// The conditions at the ends of the whole time: first bounds that nobody wrote as one, then
+    /// what is written; what follows from what is held in the end has no bounds.
     pub(super) fn boundary(&mut self) -> Vec<Constraint> {
         let model = self.between.division.model;
         let unbounded = self.unbounded();
         let mut rows = model.boundary.clone();
-        let ends: Vec<usize> = (0..rows.len()).filter(|at| self.is_of_end(&rows[*at])).collect();
+        let ends: Vec<usize> = (0..rows.len()).filter(|at| is_of_end(model, &rows[*at])).collect();
         let held = self.held_in_the_end();
         let mut known = Independent::default();
         held.iter().for_each(|psi| {
@@ -27,18 +32,36 @@ impl Modes<'_> {
                 rows[at].range = unbounded;
             }
         }
-        rows
+        let fixed = |row: &&Constraint| row.range.lower == row.range.upper;
+        for row in model.boundary.iter().filter(fixed) {
+            let gap = self.between.division.graph.sub(row.value, row.range.lower);
+            known.add(self, gap);
+        }
+        let mut all = self.limits_at_end(&known);
+        all.extend(rows);
+        all
     }
 
-    /// Whether it is an equation of the state at the last time alone.
-    fn is_of_end(&self, row: &Constraint) -> bool {
-        let model = self.between.division.model;
-        let read = model.graph.inputs_of(&[row.value, row.range.lower]);
-        let is_of_end = |at: &u32| {
-            let symbol = model.symbols[*at as usize];
-            matches!(symbol, Symbol::AtEnd(_) | Symbol::Param(_) | Symbol::Free(_))
-        };
-        row.range.lower == row.range.upper && read.iter().all(is_of_end)
+    /// Those on whose rates a control acts at once, that are not kept in the last phase, and not
+    /// fixed by what is known of its end.
+    fn limits_at_end(&mut self, known: &Independent) -> Vec<Constraint> {
+        let last = &self.phases[self.phases.len() - 1];
+        let moving = self.moving(last);
+        let states = self.all_bounds_of_states();
+        let limits = states.iter().chain(&moving.path).zip(&last.contacts);
+        let free = limits.filter(|it| *it.1 == Arc::Free).map(|it| it.0);
+        let mut rows = Vec::new();
+        for row in free {
+            let value = self.between.division.at_own_end(row.value);
+            let rates = rates(&moving, &mut self.between.division.graph, row.value);
+            let is_moved_at_once = rates.is_some_and(|it| it.len() == 2);
+            if is_moved_at_once && known.clone().add(self, value) {
+                let name = format!("{} at the end", row.place.name);
+                let place = Place { name, ..row.place };
+                rows.push(Constraint { place, value, range: row.range });
+            }
+        }
+        rows
     }
 
     /// The functions of the surfaces that are held in the last phase.

@@ -45,7 +45,7 @@ pub fn hamiltonian(
     let times = divide(&mut whole, Vec::new());
     let between = MultiPhase::new(&jumps, Division::new(&whole, times), &[]);
     let phases = std::slice::from_ref(of);
-    Ok(Modes { between, phases }.into_hamiltonian(point))
+    Ok(Modes { between, phases, linked: None }.into_hamiltonian(point))
 }
 
 impl Modes<'_> {
@@ -75,15 +75,9 @@ impl Modes<'_> {
     #[expect(clippy::option_option, reason = "no running cost is not one that is unknown")]
     pub(super) fn running_cost(&mut self, meanings: &[ExprId]) -> Option<Option<ExprId>> {
         let model = self.between.division.model;
-        let Some((_, value)) = model.objective else { return Some(None) };
         let mut terms = Vec::new();
-        for (at, integral) in model.integrals.iter().enumerate() {
-            let Some(input) = model.input_of(Symbol::Integral(at)) else { continue };
-            let factor = derivative(&mut self.between.division.graph, value, input);
-            if !is_given(model, &self.between.division.graph, factor) {
-                return None;
-            }
-            let integrand = self.with_selectors(integral.integrand, meanings);
+        for (at, factor) in weights(model, &mut self.between.division.graph)? {
+            let integrand = self.with_selectors(model.integrals[at].integrand, meanings);
             terms.push(self.between.division.graph.mul(factor, integrand));
         }
         Some((!terms.is_empty()).then(|| self.between.division.graph.sum(&terms)))
@@ -109,6 +103,22 @@ impl Modes<'_> {
         let own = Model { graph: frozen.graph, symbols, path, controls, ..model.clone() };
         resting(own, value)
     }
+}
+
+/// Each integral of the objective with its derivative by it; nothing where that is not known
+/// beforehand.
+pub(super) fn weights(model: &Model, graph: &mut Graph) -> Option<Vec<(usize, ExprId)>> {
+    let Some((_, value)) = model.objective else { return Some(Vec::new()) };
+    let mut all = Vec::new();
+    for at in 0..model.integrals.len() {
+        let Some(input) = model.input_of(Symbol::Integral(at)) else { continue };
+        let weight = derivative(graph, value, input);
+        if !is_given(model, graph, weight) {
+            return None;
+        }
+        all.push((at, weight));
+    }
+    Some(all)
 }
 
 /// A model whose time, states and unknowns are numbers.

@@ -6,12 +6,13 @@ use super::Modes;
 use crate::expressions::graph::ExprId;
 use crate::expressions::graph::evaluate::evaluate;
 use crate::model::Symbol;
+use crate::model::numbers::numbers;
 
 /// What is left of a function that others add up to, for its size.
 const NOTHING: f64 = 1e-10;
 
 /// What some functions are at several points, as an orthonormal basis.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Independent(Vec<Vec<f64>>);
 
 impl Independent {
@@ -40,10 +41,12 @@ impl Modes<'_> {
     fn sampled(&self, of: ExprId) -> Vec<f64> {
         let division = &self.between.division;
         let count = division.model.states.len();
+        let Ok(params) = numbers(self.between.division.model) else { return Vec::new() };
         let at = |point: usize| {
             let input = |symbol: &Symbol| match *symbol {
                 Symbol::State(at) | Symbol::AtEnd(at) => scattered(at, point + 1),
-                Symbol::Param(at) => scattered(at, 0),
+                // What follows for these parameters need not follow for others.
+                Symbol::Param(_) => params.of(*symbol),
                 Symbol::Free(at) => scattered(division.model.params.len() + at, 0),
                 // What changes with time by itself is no sum of what does not.
                 _ => scattered(count, point + 1),

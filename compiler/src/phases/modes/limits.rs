@@ -43,7 +43,7 @@ pub fn limits(model: &Model) -> Vec<Limit> {
     all
 }
 
-fn bounded_states(model: &Model) -> Vec<usize> {
+pub(super) fn bounded_states(model: &Model) -> Vec<usize> {
     let is_infinite = |bound| model.graph.as_number(bound).is_some_and(f64::is_infinite);
     let is_bounded = |state: &State| {
         let Range { lower, upper } = state.range;
@@ -54,7 +54,7 @@ fn bounded_states(model: &Model) -> Vec<usize> {
 
 /// A value and its derivatives along the motion, up to the first on which a control acts; nothing
 /// where none does.
-fn rates(model: &Model, graph: &mut Graph, value: ExprId) -> Option<Vec<ExprId>> {
+pub(super) fn rates(model: &Model, graph: &mut Graph, value: ExprId) -> Option<Vec<ExprId>> {
     let mut all = vec![value];
     for _ in 0..=model.states.len() {
         let last = all[all.len() - 1];
@@ -77,8 +77,8 @@ impl Modes<'_> {
     /// Adds what bounds states, and puts arcs in the place of path conditions. `moving` has the
     /// equations of the phase.
     pub(super) fn limit(&mut self, of: &PhaseOfModes, moving: &Model, rows: &mut Vec<Constraint>) {
-        let states = bounded_states(self.between.division.model);
-        for (at, row) in self.bounds_of_states(&states).iter().enumerate() {
+        let states = self.all_bounds_of_states();
+        for (at, row) in states.iter().enumerate() {
             rows.push(self.on_arc(row, of.contacts[at], moving));
         }
         for (at, arc) in of.contacts[states.len()..].iter().enumerate() {
@@ -93,7 +93,12 @@ impl Modes<'_> {
     }
 
     /// `c`, `c'` and so on to `c^(q)`; nothing off the bounds.
-    fn rates_of(&mut self, row: &Constraint, arc: Arc, moving: &Model) -> Option<Vec<ExprId>> {
+    pub(super) fn rates_of(
+        &mut self,
+        row: &Constraint,
+        arc: Arc,
+        moving: &Model,
+    ) -> Option<Vec<ExprId>> {
         let graph = &mut self.between.division.graph;
         let gap = match arc {
             Arc::Lower => graph.sub(row.value, row.range.lower),
@@ -110,7 +115,7 @@ impl Modes<'_> {
         let mut rows = Vec::new();
         let moving = self.moving(after);
         let mut known = self.zero_between(j);
-        let states = self.bounds_of_states(&bounded_states(self.between.division.model));
+        let states = self.all_bounds_of_states();
         for (at, row) in states.iter().chain(&moving.path).enumerate() {
             let is_moved = self.is_moved(j, row.value);
             let is_new = before.contacts[at] != after.contacts[at] || is_moved;
@@ -138,14 +143,15 @@ impl Modes<'_> {
         rows
     }
 
-    fn bounds_of_states(&mut self, states: &[usize]) -> Vec<Constraint> {
-        let of = |at: &usize| {
-            let state = &self.between.division.model.states[*at];
-            let value =
-                self.between.division.graph.input(self.between.division.input_of_state(*at));
+    /// As path conditions.
+    pub(super) fn all_bounds_of_states(&mut self) -> Vec<Constraint> {
+        let model = self.between.division.model;
+        let of = |at: usize| {
+            let state = &model.states[at];
+            let value = self.between.division.graph.input(self.between.division.input_of_state(at));
             Constraint { place: state.place.clone(), value, range: state.range }
         };
-        states.iter().map(of).collect()
+        bounded_states(model).into_iter().map(of).collect()
     }
 
     /// The model with the equations and path conditions of a phase.

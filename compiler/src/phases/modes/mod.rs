@@ -20,14 +20,22 @@
 mod departures;
 mod ends;
 mod hamiltonian;
+mod hold_normals;
+mod hold_parameters;
+mod in_phases;
 mod independent;
 mod junctions;
 mod limits;
+mod linked;
 mod links;
 mod phase;
+mod starts;
 
 pub use departures::{is_uncontrolled, may_hold};
 pub use hamiltonian::{Point, hamiltonian};
+pub use hold_normals::{HoldNormals, NormalsAt};
+pub use hold_parameters::Slopes;
+pub use in_phases::with_modes_in_phases;
 pub use limits::{Limit, limits};
 
 use super::division::{Division, divide, numbered};
@@ -36,6 +44,7 @@ use super::{Jumps, MultiPhase, between_jumps};
 use crate::model::{Model, Place, Symbol, not_yet};
 use fdcc_grammar::Diagnostic;
 use fdcc_runtime::problem::ControlShape;
+use linked::Linked;
 
 /// Where the state is relative to a surface in a phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -135,13 +144,22 @@ impl PhaseOfModes {
 ///
 /// What cannot be divided into phases of given modes yet: phases, sums over rows.
 pub fn with_modes(model: &Model, phases: &[PhaseOfModes]) -> Result<Model, Vec<Diagnostic>> {
+    with_modes_from(model, phases, None)
+}
+
+/// The same of one of several phases, which links put where it begins.
+fn with_modes_from(
+    model: &Model,
+    phases: &[PhaseOfModes],
+    linked: Option<Linked>,
+) -> Result<Model, Vec<Diagnostic>> {
     refuse(model)?;
     let (jumps, mut whole) = (Jumps::new(model)?, prepared(model));
     let place = |j: usize| Place { name: format!("time of switch {j}"), ..Place::default() };
     let times = divide(&mut whole, (1..phases.len()).map(place).collect());
     let events: Vec<Option<usize>> = phases[1..].iter().map(|it| it.jump).collect();
     let between = MultiPhase::new(&jumps, Division::new(&whole, times), &events);
-    Ok(Modes { between, phases }.into_model())
+    Ok(Modes { between, phases, linked }.into_model())
 }
 
 /// The model with symbols of selectors that are chosen, which stand behind the controls.
@@ -165,6 +183,8 @@ struct Modes<'m> {
     /// What the jumps make of the phases.
     between: MultiPhase<'m>,
     phases: &'m [PhaseOfModes],
+    /// What links say of the state at the first time.
+    linked: Option<Linked>,
 }
 
 impl Modes<'_> {
@@ -174,7 +194,9 @@ impl Modes<'_> {
         let (last, boundary) = (self.between.division.last(), self.boundary());
         if last == 0 {
             let objective = model.objective.clone();
-            return Model { boundary, objective, ..self.phase(0, &shares) };
+            let phase = self.phase(0, &shares);
+            let boundary = phase.boundary.iter().chain(&boundary).cloned().collect();
+            return Model { boundary, objective, ..phase };
         }
         let phases = numbered(&model.name, (0..=last).map(|j| self.phase(j, &shares)));
         let mut links: Vec<_> = (0..last).map(|j| self.link(j)).collect();

@@ -22,12 +22,13 @@ impl Modes<'_> {
         let value = shares.of_phase(&mut self.between.division.graph, j, last);
         let place = model.objective.as_ref().map(|it| it.0.clone());
         let report = self.report(&meanings);
+        let boundary = if j == 0 { self.starts() } else { Vec::new() };
         let method = Method { controls: of.shape, ..model.method.clone() };
         Model {
             method,
             interval: [self.between.division.times[j], self.between.division.times[j + 1]],
             graph: self.between.division.graph.clone(),
-            boundary: Vec::new(),
+            boundary,
             objective: place.zip(value),
             surfaces: Vec::new(),
             balls: Vec::new(),

@@ -37,24 +37,30 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// Keeps a constant that is divided by itself: simplified that is 1, whatever the constant is.
-    pub fn keep_cancelled(&mut self, dividend: &Value, expr: &'a Expr, divisor: &Value) {
-        if self.is_own_constant(divisor) && dividend.parts.as_slice() == divisor.parts.as_slice() {
-            let named = divisor.parts.as_slice().iter();
-            let named = named.filter(|it| self.graph.as_number(**it).is_none());
+    /// Keeps what a constant is divided by: simplified `2*p/p` is 2, whatever `p` is.
+    pub fn keep_constant_divisor(&mut self, expr: &'a Expr, value: &Value) {
+        if self.is_own_constant(value) {
+            let parts = value.parts.as_slice().iter();
+            let named = parts.filter(|it| self.graph.as_number(**it).is_none());
             let all = named.map(|&value| ConstantPart { expr, value, is_divisor: true });
-            self.cancelled.extend(all);
+            self.constant_divisors.extend(all);
         }
     }
 
+    /// How many constants and divisors are kept.
+    pub fn kept_constants(&self) -> [usize; 2] {
+        [self.constants.len(), self.constant_divisors.len()]
+    }
+
     /// A choice between constants decides which of its pieces count, so none is kept.
-    pub fn forget_constants(&mut self, before: usize) {
-        self.constants.truncate(before);
+    pub fn forget_constants(&mut self, [constants, divisors]: [usize; 2]) {
+        self.constants.truncate(constants);
+        self.constant_divisors.truncate(divisors);
     }
 
     /// Whether a value is constant, and no bound, which may be infinite, nor an argument of a
     /// function that is looked at by itself.
     fn is_own_constant(&self, value: &Value) -> bool {
-        Self::is_constant(value) && !self.context.is_bound && !self.examining
+        Self::is_constant(value) && !self.here.context.is_bound && !self.here.examining
     }
 }

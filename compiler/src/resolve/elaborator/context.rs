@@ -83,12 +83,12 @@ impl Elaborator<'_> {
     pub fn admit(&mut self, what: &str, value: Value, span: Span) -> Value {
         // What a set has no business in is told in the words of sets.
         let of_sets = if value.traits.sets.is_empty() { Reads::default() } else { Reads::SELECTOR };
-        let beyond = value.traits.reads.beyond(self.context.allowed.or(of_sets));
+        let beyond = value.traits.reads.beyond(self.here.context.allowed.or(of_sets));
         if beyond.is_empty() {
             return value;
         }
-        let (label, help) = explain(what, beyond, self.context);
-        let message = format!("`{what}` has no meaning in {}", self.context.name);
+        let (label, help) = explain(what, beyond, self.here.context);
+        let message = format!("`{what}` has no meaning in {}", self.here.context.name);
         self.fail(Diagnostic::new(Code::NotAllowedHere, message, span, label).help(help))
     }
 }

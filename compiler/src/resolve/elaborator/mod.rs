@@ -6,12 +6,15 @@
 
 pub(crate) mod constants;
 pub(crate) mod context;
+pub(crate) mod here;
 pub(crate) mod knots;
 pub(crate) mod phases;
 pub(crate) mod value;
 
 use super::elaborator::constants::ConstantPart;
 use super::elaborator::context::Context;
+use super::elaborator::here::Here;
+use super::elaborator::knots::Site;
 use super::elaborator::phases::{Handed, Inner};
 use super::elaborator::value::{Parts, Reads, Traits, Value};
 use crate::data::Tables;
@@ -91,20 +94,8 @@ pub(crate) struct Elaborator<'a> {
     pub values: Vec<Value>,
     /// Values of the parameters, NaN where unknown.
     pub param_values: Vec<f64>,
-    /// Names of the current function's arguments or of earlier guesses, from `frame` on.
-    pub locals: Vec<(&'a str, Value)>,
-    /// Where the visible locals begin.
-    pub frame: usize,
-    /// What may be read where we are.
-    pub context: Context,
-    /// How deep we are.
-    pub depth: usize,
-    /// The declaration whose definition is being evaluated.
-    pub owner: Option<usize>,
-    /// Whether a function's body is examined with arguments that are no real values.
-    pub examining: bool,
-    /// The rows of the sum over data that we are in.
-    pub rows: Option<Rows>,
+    /// Where in the text we are.
+    pub here: Here<'a>,
     /// Data sets that were read.
     pub tables: &'a Tables,
     /// Curves through them.
@@ -120,8 +111,6 @@ pub(crate) struct Elaborator<'a> {
     /// By what the value of a text is multiplied, because it stands beside something in another
     /// unit than that of SI.
     pub readings: &'a Readings,
-    /// The input of each integral.
-    pub integral_inputs: Vec<ExprId>,
     /// The inputs of the states at the start and at the end.
     pub at_ends: [Vec<ExprId>; 2],
     /// The input that is time, if there is a time.
@@ -129,7 +118,7 @@ pub(crate) struct Elaborator<'a> {
     /// Results of functions, by function, examination and arguments.
     pub applied: HashMap<(usize, bool, Vec<Value>), Value>,
     /// Piecewise definitions by their place.
-    pub sites: HashMap<Span, crate::resolve::elaborator::knots::Site<'a>>,
+    pub sites: HashMap<Span, Site<'a>>,
     /// What selections compare.
     pub guards: Guards,
     /// Stand-ins for the arguments of functions that are examined by themselves.
@@ -138,8 +127,8 @@ pub(crate) struct Elaborator<'a> {
     pub written: Vec<(&'a ast::Expr, ExprId)>,
     /// The largest parts of formulas that are constant.
     pub constants: Vec<ConstantPart<'a>>,
-    /// What constants were divided by that cancelled.
-    pub cancelled: Vec<ConstantPart<'a>>,
+    /// What constants are divided by.
+    pub constant_divisors: Vec<ConstantPart<'a>>,
     /// The states whose equations are understood.
     pub known_rates: HashSet<usize>,
     /// What has been resolved so far; graph, symbols, surfaces and integrals are moved in at the
@@ -181,13 +170,7 @@ impl<'a> Elaborator<'a> {
             symbols: Vec::new(),
             values,
             param_values: Vec::new(),
-            locals: Vec::new(),
-            frame: 0,
-            context: Context::DEFINITION,
-            depth: 0,
-            owner: None,
-            examining: false,
-            rows: None,
+            here: Here::outside(),
             tables,
             curves: Vec::new(),
             surfaces: Vec::new(),
@@ -195,7 +178,6 @@ impl<'a> Elaborator<'a> {
             surface_of: HashMap::new(),
             integrals: Vec::new(),
             readings,
-            integral_inputs: Vec::new(),
             at_ends: Default::default(),
             time: None,
             applied: HashMap::new(),
@@ -204,7 +186,7 @@ impl<'a> Elaborator<'a> {
             arguments: Vec::new(),
             written: Vec::new(),
             constants: Vec::new(),
-            cancelled: Vec::new(),
+            constant_divisors: Vec::new(),
             known_rates: HashSet::new(),
             model: Model::empty(),
             at_end: Vec::new(),
@@ -242,7 +224,7 @@ impl<'a> Elaborator<'a> {
 
     /// Reports a shape mismatch, unless arguments of an examined function are to blame.
     pub fn fail_shape(&mut self, diagnostic: Diagnostic) -> Value {
-        if !self.examining {
+        if !self.here.examining {
             self.diagnostics.push(diagnostic);
         }
         Value::default()
@@ -255,9 +237,9 @@ impl<'a> Elaborator<'a> {
 
     /// Evaluates in another context.
     pub fn evaluate_in(&mut self, context: Context, expr: &'a ast::Expr) -> Value {
-        let outer = std::mem::replace(&mut self.context, context);
+        let outer = self.here.enter(context);
         let value = self.evaluate(expr);
-        self.context = outer;
+        self.here.context = outer;
         value
     }
 

@@ -25,7 +25,7 @@ impl<'a> Elaborator<'a> {
 
     fn is_own_function(&self, inner: &Expr) -> bool {
         let ExprKind::Name(name) = &inner.kind else { return false };
-        let is_local = self.locals[self.frame..].iter().any(|local| local.0 == name);
+        let is_local = self.here.local(name).is_some();
         let found = self.scope.find(name).filter(|_| !is_local);
         found.is_some_and(|at| matches!(self.scope.declarations[at].item.kind, ItemKind::Fn { .. }))
     }
@@ -42,7 +42,7 @@ impl<'a> Elaborator<'a> {
         if self.numeric(size) <= 0.0 {
             return self.fail(no_width(width.span, self.numeric(size)));
         }
-        if !self.examining {
+        if !self.here.examining {
             self.model.widths.push((width.span, size));
         }
         match rounded(&mut self.graph, value.parts.as_slice(), size, &mut self.guards) {
@@ -50,7 +50,7 @@ impl<'a> Elaborator<'a> {
             None => {
                 // Within a function that depends on its arguments; it is told where the function is
                 // examined by itself.
-                if self.examining || self.locals.len() == self.frame {
+                if self.here.examining || self.here.visible().is_empty() {
                     self.diagnostics.push(nothing_to_round(inner, span));
                 }
                 Value { traits, ..value }

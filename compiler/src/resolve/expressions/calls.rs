@@ -28,7 +28,7 @@ impl<'a> Elaborator<'a> {
         }
         let ExprKind::Name(name) = &callee.kind else {
             if let (ExprKind::Part(..) | ExprKind::Index(..), true, [at]) =
-                (&callee.kind, self.rows.is_some(), arguments)
+                (&callee.kind, self.here.rows.is_some(), arguments)
             {
                 return self.at_a_row(callee, at, expr.span);
             }
@@ -40,7 +40,7 @@ impl<'a> Elaborator<'a> {
                 ItemKind::Fn { arguments: formal, body, .. } => {
                     self.own_function(at, formal, body, arguments, expr.span)
                 }
-                _ if self.rows.is_some() && arguments.len() == 1 => {
+                _ if self.here.rows.is_some() && arguments.len() == 1 => {
                     self.at_a_row(callee, &arguments[0], expr.span)
                 }
                 _ if !is_function(name) => {

@@ -45,7 +45,7 @@ impl<'a> Elaborator<'a> {
         whole: &'a Expr,
     ) -> Value {
         let Some(at) = self.data_set(data) else { return Value::default() };
-        if self.rows.is_some() {
+        if self.here.rows.is_some() {
             let found = Diagnostic::new(
                 Code::NotAllowedHere,
                 "a sum over data inside another one",
@@ -55,11 +55,11 @@ impl<'a> Elaborator<'a> {
             return self.fail(found.help("give each data set a sum of its own"));
         }
         let row = Value { named: Some(at), ..Value::default() };
-        self.locals.push((&name.name, row));
-        self.rows = Some(Rows::default());
-        let value = self.evaluate_in(self.context.of_rows(), term);
-        let rows = self.rows.take().unwrap_or_default();
-        self.locals.pop();
+        self.here.locals.push((&name.name, row));
+        self.here.rows = Some(Rows::default());
+        let value = self.evaluate_in(self.here.context.of_rows(), term);
+        let rows = self.here.rows.take().unwrap_or_default();
+        self.here.locals.pop();
         let traits =
             Traits { reads: value.traits.reads.beyond(Reads::ROW), ..value.traits.clone() };
         let (Some(part), Some(table)) = (self.expect_number(&value, term.span), self.table_of(at))
@@ -70,7 +70,7 @@ impl<'a> Elaborator<'a> {
             return Value::default();
         }
         match rows.time {
-            _ if self.examining => Value::unknown(traits),
+            _ if self.here.examining => Value::unknown(traits),
             None => self.added_up(part, table, traits, whole),
             Some(time) => self.measured(Measured { part, table, time, term }, traits, whole),
         }
@@ -176,7 +176,7 @@ impl<'a> Elaborator<'a> {
         let reads = value.traits.reads.beyond(AT_A_TIME).or(Reads::ROW);
         let traits = Traits { reads, ..value.traits };
         let Some(time) = self.expect_number(&time, at.span) else { return Value::unknown(traits) };
-        let rows = self.rows.as_mut().expect("only a sum has rows");
+        let rows = self.here.rows.as_mut().expect("only a sum has rows");
         if *rows.time.get_or_insert(time) != time {
             let message = "one sum reads the trajectory at two times of each row";
             let found = Diagnostic::new(Code::NotAllowedHere, message, span, "another time");

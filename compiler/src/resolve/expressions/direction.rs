@@ -26,7 +26,7 @@ impl<'a> Elaborator<'a> {
         let mut set = SetUse { surface: name.as_str().into(), span, form: SetForm::Dir };
         match &value.parts {
             Parts::Scalar(_) if is_single => return self.sgn(vector, span),
-            Parts::Vector(parts) if is_single && !self.examining => {
+            Parts::Vector(parts) if is_single && !self.here.examining => {
                 let ball = self.ball(name, vector.span, &value, parts);
                 set.surface = self.balls[ball].place.name.as_str().into();
                 let surfaces = self.balls[ball].surfaces.clone();

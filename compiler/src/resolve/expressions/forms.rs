@@ -59,12 +59,12 @@ impl<'a> Elaborator<'a> {
     }
 
     pub fn surface_named(&mut self, name: &str) -> Option<usize> {
-        let is_local = self.locals[self.frame..].iter().any(|local| local.0 == name);
+        let is_local = self.here.local(name).is_some();
         if is_local { None } else { self.surface_of.get(&self.scope.find(name)?).copied() }
     }
 
     fn unnamed_surface(&mut self, psi: &'a Expr, name: &str) -> Option<usize> {
-        let is_local = self.locals[self.frame..].iter().any(|local| local.0 == name);
+        let is_local = self.here.local(name).is_some();
         if matches!(&psi.kind, ExprKind::Name(_)) && !is_local && self.scope.find(name).is_none() {
             let found = self.scope.unknown(name, psi.span, &[], &format!("surface {name} = x"));
             self.diagnostics.push(found);
@@ -72,7 +72,7 @@ impl<'a> Elaborator<'a> {
         }
         let value = self.evaluate_in(Context::SURFACE, psi);
         if !self.single_valued(&value.traits.sets, psi.span, "the argument of `Sgn`")
-            || self.examining
+            || self.here.examining
         {
             return None;
         }
@@ -198,10 +198,11 @@ impl<'a> Elaborator<'a> {
         let of_phases = value.traits.reads.within(Reads::PHASE.or(Reads::FOREIGN));
         let traits = Traits { reads: of_phases.or(Reads::WHOLE), ..value.traits };
         let place = Place { name: text::expr(whole), span: whole.span };
-        let input = part.filter(|_| !self.examining).and_then(|part| match self.phases.len() {
-            0 => Some(self.integrated(part, place)),
-            _ => self.integral_of_phases(part, &place),
-        });
+        let input =
+            part.filter(|_| !self.here.examining).and_then(|part| match self.phases.len() {
+                0 => Some(self.integrated(part, place)),
+                _ => self.integral_of_phases(part, &place),
+            });
         let value = input.map_or(Value::unknown(traits.clone()), |it| Value::scalar(it, traits));
         self.admit("integral", value, whole.span)
     }
@@ -211,11 +212,9 @@ impl<'a> Elaborator<'a> {
         let known = self.integrals.iter().position(|it| it.integrand == integrand);
         let at = known.unwrap_or_else(|| {
             self.integrals.push(Integral { place, integrand, is_linked: false });
-            let input = self.symbol(Symbol::Integral(self.integrals.len() - 1));
-            self.integral_inputs.push(input);
             self.integrals.len() - 1
         });
-        self.integral_inputs[at]
+        self.known_symbol(Symbol::Integral(at))
     }
 
     /// `x(end)` and `x(start)`.

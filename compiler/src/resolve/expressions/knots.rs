@@ -31,7 +31,7 @@ impl<'a> Elaborator<'a> {
     pub fn find_knots(&mut self, expr: &'a Expr, guards: &[Guard<'a>], arms: &[&[ExprId]]) {
         if !self.sites.contains_key(&expr.span) {
             let knots = (0..guards.len()).filter_map(|at| self.knot(at, guards, arms)).collect();
-            let site = Site { expr, owner: self.owner, knots, guards: BTreeSet::new() };
+            let site = Site { expr, owner: self.here.owner, knots, guards: BTreeSet::new() };
             self.sites.insert(expr.span, site);
         }
         let sides =

@@ -22,19 +22,19 @@ use fdcc_grammar::{Code, Diagnostic, Span};
 impl<'a> Elaborator<'a> {
     /// The value of an expression; unknown after a mistake, which has then been reported.
     pub fn evaluate(&mut self, expr: &'a Expr) -> Value {
-        if self.depth > DEEPEST {
+        if self.here.depth > DEEPEST {
             return self.too_deep(expr.span);
         }
-        self.depth += 1;
+        self.here.depth += 1;
         let before = self.constants.len();
         let value = self.evaluate_kind(expr);
         let value = self.in_its_unit(expr, value);
-        self.depth -= 1;
+        self.here.depth -= 1;
         if is_composed(expr) {
             self.keep_constant(expr, &value, before);
         }
         if let (ExprKind::Call(..), Parts::Scalar(part), true) =
-            (&expr.kind, &value.parts, self.owner.is_none())
+            (&expr.kind, &value.parts, self.here.owner.is_none())
         {
             self.written.push((expr, *part));
         }
@@ -100,9 +100,7 @@ impl<'a> Elaborator<'a> {
     }
 
     fn name(&mut self, name: &'a str, span: Span) -> Value {
-        if let Some((_, value)) =
-            self.locals[self.frame..].iter().rev().find(|local| local.0 == name)
-        {
+        if let Some(value) = self.here.local(name) {
             return value.clone();
         }
         let Some(at) = self.scope.find(name) else {
@@ -126,17 +124,17 @@ impl<'a> Elaborator<'a> {
 
     /// `in [0, inf]`: no bound on that side. Nothing else is infinite.
     fn infinity(&mut self, span: Span) -> Value {
-        if self.context.is_bound {
+        if self.here.context.is_bound {
             return self.constant(f64::INFINITY);
         }
-        let message = format!("`inf` has no meaning in {}", self.context.name);
+        let message = format!("`inf` has no meaning in {}", self.here.context.name);
         let found = Diagnostic::new(Code::NotAllowedHere, message, span, "not a number");
         self.fail(found.help("only a side of bounds may be missing: `in [0, inf]`, `in [-inf, 3]`"))
     }
 
     fn unknown_name(&mut self, name: &str, span: Span) -> Value {
         let locals: Vec<&str> =
-            self.locals[self.frame..].iter().map(|local| local.0).chain(["pi"]).collect();
+            self.here.visible().iter().map(|local| local.0).chain(["pi"]).collect();
         let found = self.scope.unknown(name, span, &locals, &format!("param {name} = 1"));
         self.fail(found)
     }
@@ -172,7 +170,7 @@ impl<'a> Elaborator<'a> {
     /// `obs.t` of a data set, known by name, without a value here; `coast.h` of a phase.
     fn part_of_container(&mut self, base: &'a Expr, part: &'a Ident, span: Span) -> Option<Value> {
         let ExprKind::Name(name) = &base.kind else { return None };
-        if self.locals[self.frame..].iter().any(|local| local.0 == name) {
+        if self.here.local(name).is_some() {
             return None;
         }
         let at = self.scope.find(name)?;
@@ -247,7 +245,7 @@ impl<'a> Elaborator<'a> {
 
     /// `x'` in a guess: the derivative in real time of what was guessed for `x`.
     fn prime(&mut self, base: &'a Expr, span: Span) -> Value {
-        if !self.context.is_guess {
+        if !self.here.context.is_guess {
             let found = Diagnostic::new(
                 Code::NotAllowedHere,
                 "a derivative on this side",

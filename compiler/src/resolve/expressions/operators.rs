@@ -27,7 +27,7 @@ impl<'a> Elaborator<'a> {
         }
         if operator == BinaryOperator::Divide {
             match Self::is_constant(&left.0) {
-                true => self.keep_cancelled(&left.0, right.1, &right.0),
+                true => self.keep_constant_divisor(right.1, &right.0),
                 false => self.keep_divisor(right.1, &right.0),
             }
         }

@@ -56,11 +56,11 @@ impl<'a> Elaborator<'a> {
         body: &'a Expr,
         values: Vec<Value>,
     ) -> Value {
-        let key = (at, self.examining, values);
+        let key = (at, self.here.examining, values);
         if let Some(known) = self.applied.get(&key) {
             return known.clone();
         }
-        if self.depth > DEEPEST {
+        if self.here.depth > DEEPEST {
             return Value::default();
         }
         let value = self.with_arguments(at, formal, key.2.clone(), |this| {
@@ -77,12 +77,12 @@ impl<'a> Elaborator<'a> {
         values: Vec<Value>,
         run: impl FnOnce(&mut Self) -> Value,
     ) -> Value {
-        let outer = (self.frame, self.owner.replace(at));
-        self.frame = self.locals.len();
-        self.locals.extend(formal.iter().map(|name| name.name.as_str()).zip(values));
+        let outer = (self.here.frame, self.here.owner.replace(at));
+        self.here.frame = self.here.locals.len();
+        self.here.locals.extend(formal.iter().map(|name| name.name.as_str()).zip(values));
         let value = run(self);
-        self.locals.truncate(self.frame);
-        (self.frame, self.owner) = outer;
+        self.here.locals.truncate(self.here.frame);
+        (self.here.frame, self.here.owner) = outer;
         value
     }
 }

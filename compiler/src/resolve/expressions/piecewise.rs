@@ -12,7 +12,7 @@ use fdcc_grammar::{Code, Diagnostic, Fix};
 impl<'a> Elaborator<'a> {
     /// The value of a piecewise definition.
     pub fn piecewise(&mut self, whole: &'a Expr, arms: &'a [Arm], otherwise: &'a Expr) -> Value {
-        let before = self.constants.len();
+        let before = self.kept_constants();
         let values: Vec<Value> = arms.iter().map(|arm| self.evaluate(&arm.value)).collect();
         let rest = self.evaluate(otherwise);
         let sides: Vec<Option<Guard<'a>>> = arms.iter().map(|arm| self.guard(arm)).collect();

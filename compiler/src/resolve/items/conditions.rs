@@ -175,7 +175,7 @@ impl<'a> Elaborator<'a> {
         rows: &mut Vec<Constraint>,
     ) {
         let context = Context {
-            allowed: left.0.traits.reads.or(self.context.allowed),
+            allowed: left.0.traits.reads.or(self.here.context.allowed),
             ..Context::DEFINITION
         };
         let e = (self.evaluate_in(context, inner), inner);

@@ -25,10 +25,10 @@ impl<'a> Elaborator<'a> {
         let order = order::order(&self.scope, &mut self.diagnostics);
         self.circular = order.circular;
         for at in order.sequence {
-            self.owner = Some(at);
+            self.here.owner = Some(at);
             self.define(at);
         }
-        self.owner = None;
+        self.here.owner = None;
         for at in 0..self.scope.declarations.len() {
             self.bound(at);
         }
@@ -185,9 +185,9 @@ impl<'a> Elaborator<'a> {
             .iter()
             .map(|&part| Value::scalar(part, Traits::default()));
         let values = values.collect();
-        self.examining = true;
+        self.here.examining = true;
         let value = self.apply(at, arguments, body, values);
-        self.examining = false;
+        self.here.examining = false;
         self.keep_definition(at, arguments, &value.parts);
     }
 

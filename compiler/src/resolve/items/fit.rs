@@ -53,9 +53,9 @@ impl<'a> Elaborator<'a> {
         let inner = inner.filter(|it| is_time(it.1.item)).map(|it| *it.0);
         let names: Vec<&str> = own.map(|it| it.name.name.as_str()).chain(inner).collect();
         if let Some(column) = names.iter().find_map(|name| self.place_of_column(at, name)) {
-            let outer = std::mem::replace(&mut self.context, Context::FIT);
+            let outer = self.here.enter(Context::FIT);
             let times = self.data_column(at, column, data.span);
-            self.context = outer;
+            self.here.context = outer;
             return times.parts.as_slice().first().copied();
         }
         let name = names.first().unwrap_or(&"t");
@@ -76,12 +76,12 @@ impl<'a> Elaborator<'a> {
 
     fn fitted(&mut self, at: usize, time: ExprId, fitted: &'a Fitted) -> Option<ExprId> {
         let column = self.column_of(at, fitted)?;
-        let outer = std::mem::replace(&mut self.context, Context::FIT);
-        self.rows = Some(Rows { time: Some(time) });
+        let outer = self.here.enter(Context::FIT);
+        self.here.rows = Some(Rows { time: Some(time) });
         let measured = self.data_column(at, column, fitted.span);
         let deviation = self.evaluate_in(Context::DEVIATION, &fitted.deviation);
-        self.rows = None;
-        self.context = outer;
+        self.here.rows = None;
+        self.here.context = outer;
         let signal = self.signal(&fitted.signal);
         if !self.single_valued(&signal.traits.sets, fitted.signal.span, "what was measured") {
             return None;
@@ -109,9 +109,9 @@ impl<'a> Elaborator<'a> {
         let value = self.evaluate_in(Context::AT_A_ROW, signal);
         let reads = value.traits.reads.beyond(AT_A_TIME);
         let traits = Traits { reads, ..value.traits };
-        let outer = std::mem::replace(&mut self.context, Context::OBJECTIVE);
+        let outer = self.here.enter(Context::OBJECTIVE);
         let value = self.admit(&text::expr(signal), Value { traits, ..value }, signal.span);
-        self.context = outer;
+        self.here.context = outer;
         value
     }
 

@@ -11,9 +11,9 @@ use fdcc_grammar::{Code, Diagnostic};
 impl<'a> Elaborator<'a> {
     /// Resolves the lines of a block from top to bottom.
     pub fn guess(&mut self, bindings: &'a [Binding]) {
-        let before = self.locals.len();
+        let before = self.here.locals.len();
         bindings.iter().for_each(|binding| self.guess_line(binding));
-        self.locals.truncate(before);
+        self.here.locals.truncate(before);
     }
 
     fn guess_line(&mut self, binding: &'a Binding) {
@@ -40,7 +40,8 @@ impl<'a> Elaborator<'a> {
         }
         if !is_free {
             let parts = crate::resolve::elaborator::value::Parts::from_list(&parts);
-            self.locals
+            self.here
+                .locals
                 .push((&binding.name.name, Value { parts, traits: value.traits, named: Some(at) }));
         }
     }

@@ -102,12 +102,16 @@ impl<'a> Inference<'a> {
 
     fn condition(&mut self, condition: &'a Condition) {
         let mut left = self.operand(&condition.first);
-        self.values.insert(condition.span, left.0.clone());
+        let mut compared = left.0.clone();
         for (_, next) in &condition.rest {
             let right = self.operand(next);
             self.compare(Reason::Comparison, &left, &right);
+            if compared.iter().all(|part| part.plain) {
+                compared = right.0.clone();
+            }
             left = right;
         }
+        self.values.insert(condition.span, compared);
     }
 
     /// The time of a condition measures what time does.

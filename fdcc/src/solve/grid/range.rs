@@ -1,11 +1,6 @@
 //! Ranges of numbers, from one to another in equal steps.
 
-/// More values are a mistake.
-const MOST: f64 = 1e8;
-/// The last step may miss the end by so much of a step.
-const ROUNDING: f64 = 1e-6;
-/// More decimals a number does not have.
-const DECIMALS: i32 = 17;
+use super::tuning::{DECIMALS, MOST, ROUNDING};
 
 /// The values of `FIRST:STEP:LAST`, as in `0.1:0.2:0.7` or `100:50:300[g]`; a text of another form
 /// is the only value.

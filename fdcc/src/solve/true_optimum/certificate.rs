@@ -2,6 +2,7 @@
 //! the true system, each with its limit.
 
 use fdcc_runtime::solution::modes::Mode;
+use std::cmp::Ordering;
 
 /// Everything that was checked of a located answer.
 ///
@@ -41,6 +42,13 @@ pub struct Switch {
     pub from: Mode,
     /// After it.
     pub to: Mode,
+    /// The multiplier of `psi = 0`, in units of the objective by those of `psi`: before the switch
+    /// the costates are those behind it and `kappa dpsi/dx` (Bryson & Ho, *Applied Optimal
+    /// Control*, 1975, section 3.7). Not of a `Dir`, and not beside a jump.
+    pub kappa: Option<f64>,
+    /// How far the true system is from grazing, as the `margin` of an event; nothing where its
+    /// replay does not switch there.
+    pub margin: Option<f64>,
 }
 
 /// A control at a bound, or free.
@@ -107,6 +115,55 @@ impl Certificate {
     pub(crate) fn nothing_located(name: &'static str) -> Self {
         let check = Check { name, figure: f64::INFINITY, limit: 0.0 };
         Certificate { checks: vec![check], ..Certificate::default() }
+    }
+
+    /// With the names of its surfaces and controls as the whole calls those of a phase.
+    pub(crate) fn of_phase(mut self, phase: &str) -> Self {
+        for name in self.switches.iter_mut().map(|it| &mut it.surface) {
+            *name = format!("{phase}.{name}");
+        }
+        self.arcs.iter_mut().for_each(|(name, _)| *name = format!("{phase}.{name}"));
+        self
+    }
+
+    /// Without the names of these phases before those of surfaces and controls; what a control does
+    /// in one phase after the other is told at once.
+    pub(crate) fn of_whole(self, phases: &[String]) -> Self {
+        let own = |name: &str| {
+            let short = phases.iter().find_map(|it| name.strip_prefix(&**it)?.strip_prefix('.'));
+            short.unwrap_or(name).to_owned()
+        };
+        let mut arcs: Vec<(String, Vec<Stretch>)> = Vec::new();
+        for (name, all) in self.arcs {
+            let name = own(&name);
+            match arcs.iter_mut().find(|it| it.0 == name) {
+                Some((_, known)) => known.extend(all),
+                None => arcs.push((name, all)),
+            }
+        }
+        let switch = |it: Switch| Switch { surface: own(&it.surface), ..it };
+        let switches = self.switches.into_iter().map(switch).collect();
+        Certificate { checks: self.checks, switches, arcs }
+    }
+
+    /// That of two phases: the worse figure of each check.
+    pub(crate) fn with(mut self, other: Self) -> Self {
+        for (own, its) in self.checks.iter_mut().zip(other.checks) {
+            if its.figure.partial_cmp(&own.figure).is_none_or(Ordering::is_gt) {
+                *own = its;
+            }
+        }
+        self.switches.extend(other.switches);
+        self.arcs.extend(other.arcs);
+        self
+    }
+
+    /// With a check in place of that of the same name.
+    pub(crate) fn put(&mut self, check: Check) {
+        match self.checks.iter_mut().find(|it| it.name == check.name) {
+            Some(own) => *own = check,
+            None => self.checks.push(check),
+        }
     }
 
     /// The one of two with fewer checks that fail.

@@ -18,10 +18,11 @@ use super::{Located, Search};
 use fdcc_compiler::{
     Mode, Model, PhaseOfModes, Point, compile_chain, hamiltonian, is_uncontrolled, may_hold,
 };
-use fdcc_runtime::nlp::{Status, Stop};
+use fdcc_runtime::nlp::{Nlp, Start, Status, Stop};
 use fdcc_runtime::problem::Chain;
 use fdcc_runtime::solve::warm_start::{Earlier, from_earlier};
 use fdcc_runtime::solve::{Outcome, solve_chain};
+use fdcc_runtime::transcribe::chain::ChainNlp;
 use std::ops::ControlFlow;
 
 /// A hold that could be inserted.
@@ -67,6 +68,7 @@ impl Search<'_> {
         }
         candidates.extend(self.releases_at_ends(located));
         candidates.extend(self.departures_at_the_end(located));
+        candidates.extend(self.across_links(located));
         candidates
     }
 
@@ -289,19 +291,7 @@ pub(super) fn least(
     near: Option<&[f64]>,
     stop: &(dyn Fn() -> ControlFlow<Stop> + Sync),
 ) -> Least {
-    let problem = &chain.phases[0];
-    let start = near.map(|controls| {
-        let control = |at: usize| Some(vec![*controls.get(at)?]);
-        let earlier = Earlier {
-            states: vec![None; problem.states.len()],
-            controls: (0..problem.controls.len()).map(control).collect(),
-            unknowns: Vec::new(),
-            widths: Vec::new(),
-            times: vec![0.0, 1.0],
-            variables: None,
-        };
-        from_earlier(chain, &[earlier])
-    });
+    let start = near.map(|controls| with_controls(chain, controls));
     match solve_chain(chain, start, &mut |_, _| stop()) {
         Ok(outcome) if outcome.solution.status.is_solved() => {
             let controls = outcome.phases[0].trajectory.controls.iter().map(|it| it[0]);
@@ -310,6 +300,27 @@ pub(super) fn least(
         Ok(outcome) if outcome.solution.status == Status::Infeasible => Least::Nothing,
         _ => Least::Unknown,
     }
+}
+
+/// A Hamiltonian with these controls and selectors.
+pub(super) fn hamiltonian_at(chain: &Chain, controls: &[f64]) -> f64 {
+    let mut nlp = ChainNlp::new(chain);
+    let mut rows = vec![0.0; nlp.constraint_bounds().len()];
+    nlp.values(&with_controls(chain, controls).v, &mut rows)
+}
+
+fn with_controls(chain: &Chain, controls: &[f64]) -> Start {
+    let problem = &chain.phases[0];
+    let control = |at: usize| Some(vec![*controls.get(at)?]);
+    let earlier = Earlier {
+        states: vec![None; problem.states.len()],
+        controls: (0..problem.controls.len()).map(control).collect(),
+        unknowns: Vec::new(),
+        widths: Vec::new(),
+        times: vec![0.0, 1.0],
+        variables: None,
+    };
+    from_earlier(chain, &[earlier])
 }
 
 /// The least value of a Hamiltonian, with the controls and selectors there.

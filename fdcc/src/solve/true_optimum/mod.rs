@@ -9,11 +9,16 @@
 //! certify     everything that an optimum of the true system meets
 //! ```
 
+mod across;
 mod answer;
 mod certificate;
 mod contacts;
+mod costates;
+mod hold_sensitivities;
 mod insertion;
+mod joint;
 mod minimum;
+mod parts;
 mod polynomials;
 mod range;
 mod repair;
@@ -21,12 +26,15 @@ mod replayed;
 mod signs;
 mod start;
 mod structure;
+mod switches;
 mod tracks;
 mod tuning;
 
 pub(crate) use answer::Whole;
 pub use certificate::{Certificate, Check, Stretch, Switch};
 pub(crate) use contacts::Contacts;
+pub(crate) use joint::{Joint, Part};
+pub(crate) use parts::{halved_in_phases, locate_in_phases};
 pub(crate) use polynomials::beyond_bounds;
 pub(crate) use range::ranges;
 pub(crate) use repair::{is_attracted, wrong_sign};
@@ -34,33 +42,37 @@ pub(crate) use replayed::replayed;
 pub(crate) use structure::variation;
 pub(crate) use tuning::certificate as certificate_limits;
 
-use fdcc_compiler::{Model, PhaseOfModes, compile_chain, limits, with_modes};
-use fdcc_runtime::nlp::{Solution as NlpSolution, Status, Stop};
-use fdcc_runtime::problem::{Chain, ControlShape, Grid, Method, Order, Problem, Scheme};
-use fdcc_runtime::solve::{ChainOutcome, solve_chain};
+use fdcc_compiler::{Model, PhaseOfModes, limits};
+use fdcc_runtime::nlp::Stop;
+use fdcc_runtime::problem::{Chain, Problem};
+use fdcc_runtime::solve::ChainOutcome;
 use insertion::Candidate;
-use start::Signals;
+use joint::Among;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use structure::{NewArcs, Structure};
-use tuning::certificate::{STATIONARY, WORTH};
-use tuning::search::{
-    BUDGET, FEWEST, FEWEST_ITERATIONS, FINER, GAIN, GAIN_OF_TRIAL, GRADES, INTERVALS,
-    MOST_ITERATIONS, MOST_SOLVES, TOLERANCE, WORSE,
-};
+use tuning::certificate::WORTH;
+use tuning::search::{GAIN, GAIN_OF_TRIAL, MOST_ALTERNATIVES, WORSE};
 
 /// A structure with its optimum.
 #[derive(Clone)]
 pub(crate) struct Located {
-    /// A model of several phases, none of which has surfaces.
-    pub model: Model,
+    /// All that was solved at once: of a model with phases that of all of them.
+    pub joint: Arc<Joint>,
     pub chain: Chain,
     pub outcome: ChainOutcome,
     pub structure: Structure,
+    /// Those of the other phases of a model with phases, in their order.
+    pub beside: Vec<Located>,
     /// By how much the objective falls with the duration of a hold that was not inserted, at most,
     /// for the size of the Hamiltonian.
     pub insertion: f64,
     /// By how much another control makes the Hamiltonian less, at most, for its size.
     pub gain: f64,
+    /// What the objective loses, for its size, where a control differs from the best one.
+    pub loss: f64,
+    /// What was located on the way, to be looked at where this is not certified; the last first.
+    pub others: Vec<Located>,
 }
 
 /// How a hold that was tried ended.
@@ -79,6 +91,8 @@ struct Search<'s> {
     model: &'s Model,
     /// The smoothed problem.
     problem: &'s Problem,
+    /// The model with phases of which it is one.
+    among: Option<Among<'s>>,
     stop: &'s (dyn Fn() -> ControlFlow<Stop> + Sync),
     spent: &'s mut Spent,
 }
@@ -100,12 +114,14 @@ pub(crate) fn locate(
     stop: &(dyn Fn() -> ControlFlow<Stop> + Sync),
     spent: &mut Spent,
 ) -> Option<Located> {
-    let mut search = Search { written, model, problem, stop, spent };
+    let mut search = Search { written, model, problem, among: None, stop, spent };
     let structure = Structure::of(problem, smoothed, limits(model).len());
     let first = search.repaired(structure, smoothed)?;
-    let held = search.with_holds(first);
-    let mut located = search.refined(held);
-    located.gain = search.gain(&located);
+    let mut held = search.with_holds(first);
+    let passed = std::mem::take(&mut held.others);
+    let refined = search.refined(held);
+    let mut located = search.followed(refined);
+    located.others.extend(search.alternatives(passed));
     Some(located)
 }
 
@@ -118,10 +134,10 @@ pub(crate) fn on_half_intervals(
     stop: &(dyn Fn() -> ControlFlow<Stop> + Sync),
     spent: &mut Spent,
 ) -> Option<Located> {
-    let mut search = Search { written, model, problem, stop, spent };
-    let finer = search.solve(located.structure.halved()?, &located.whole(problem))?;
+    let mut search = Search { written, model, problem, among: None, stop, spent };
+    let finer = search.solve(located.structure.halved()?, &search.whole(located))?;
     let mut finer = Located { insertion: located.insertion, ..finer };
-    finer.gain = search.gain(&finer);
+    search.compared(&mut finer);
     Some(finer)
 }
 
@@ -134,17 +150,33 @@ impl Search<'_> {
 
     /// Mends the structure until nothing new can be tried; what cannot be solved is passed over.
     fn mended(&mut self, mut located: Located) -> Option<Located> {
-        let mut tried: Vec<Vec<PhaseOfModes>> = Vec::new();
-        tried.push(located.structure.phases.clone());
+        let mut passed = std::mem::take(&mut located.others);
+        let mut tried = vec![located.structure.phases.clone()];
         while let Some(structure) = self.other(&located, &tried) {
             tried.push(structure.phases.clone());
-            let whole = located.whole(self.problem);
+            let whole = self.whole(&located);
             let may_rise = structure.conditions() > located.structure.conditions()
                 || structure.fineness() > located.structure.fineness();
             let better = self.solve(structure, &whole);
-            located = better.filter(|it| may_rise || !it.is_worse(&located)).unwrap_or(located);
+            if let Some(better) = better.filter(|it| may_rise || !it.is_worse(&located)) {
+                passed.push(std::mem::replace(&mut located, better));
+            }
         }
+        located.others = passed;
         Some(located)
+    }
+
+    /// What was passed by on the way, ready to be certified. Where surfaces may be held these are
+    /// none: holds were inserted in the last one only.
+    fn alternatives(&self, passed: Vec<Located>) -> Vec<Located> {
+        let is_smooth = self.model.surfaces.is_empty() && self.written.jumps.is_empty();
+        let last = passed.into_iter().rev().filter(|_| is_smooth).take(MOST_ALTERNATIVES);
+        let ready = last.map(|it| {
+            let mut it = Located { insertion: 0.0, ..it };
+            self.compared(&mut it);
+            it
+        });
+        ready.collect()
     }
 
     /// What a located answer asks for, and was not tried: a repair, then new arcs and touch points,
@@ -197,7 +229,7 @@ impl Search<'_> {
             if structure.phases == located.structure.phases {
                 return located;
             }
-            let whole = located.whole(self.problem);
+            let whole = self.whole(&located);
             match self.solve(structure, &whole) {
                 Some(finer) => {
                     let insertion = located.insertion;
@@ -207,6 +239,36 @@ impl Search<'_> {
                 None => return located,
             }
         }
+    }
+
+    /// With graded intervals where controls are steep, as long as that helps.
+    fn followed(&mut self, mut even: Located) -> Located {
+        let mut losses = self.compared(&mut even);
+        let (mut best, mut located) = (even.clone(), even.clone());
+        while let Some(finer) = self.graded(&located, &losses) {
+            located = Located { insertion: even.insertion, ..finer };
+            losses = self.compared(&mut located);
+            let is_as_smooth = self.roughness(&located) <= self.roughness(&best);
+            if located.loss < best.loss && is_as_smooth {
+                best = located.clone();
+                best.others = vec![even.clone()];
+            }
+        }
+        best
+    }
+
+    /// On graded and shorter intervals where something is lost; nothing where all are.
+    fn graded(&mut self, located: &Located, losses: &[f64]) -> Option<Located> {
+        let structure = located.structure.finer(self.problem, &located.outcome.phases);
+        let structure = structure.graded(losses);
+        let is_new = structure.phases != located.structure.phases;
+        if is_new { self.solve(structure, &self.whole(located)) } else { None }
+    }
+
+    /// By how much trajectories are less accurate than they should be; 1 where they just are.
+    fn roughness(&self, located: &Located) -> f64 {
+        let all = located.structure.roughness(self.problem, &located.outcome.phases);
+        all.into_iter().fold(1.0, f64::max)
     }
 
     fn held(&mut self, located: &Located, candidate: &Candidate) -> Trial {
@@ -220,38 +282,12 @@ impl Search<'_> {
             let least = if is_known { GAIN } else { GAIN_OF_TRIAL };
             own < its - least * its.abs().max(located.objective_size())
         };
-        let whole = located.whole(self.problem);
+        let whole = self.whole(located);
         let Some(first) = self.solve(structure, &whole) else { return Trial::Unsolved };
         // What is left out of it may have been worth little, but not nothing.
         let mended = self.mended(first.clone()).into_iter();
         let held = mended.chain([first]).find(is_better);
         held.map_or(Trial::NotBetter, |it| Trial::Better(Box::new(it)))
-    }
-
-    fn solve(&mut self, structure: Structure, from: &Whole) -> Option<Located> {
-        self.spent.solves += 1;
-        let is_spent = self.spent.solves > MOST_SOLVES || self.spent.work > BUDGET;
-        if is_spent || (self.stop)().is_break() {
-            return None;
-        }
-        let model = with_modes(self.written, &structure.phases).ok()?;
-        let model = with_polynomials(model, &structure);
-        let mut chain = compile_chain(&model).ok()?;
-        let intervals: usize = chain.phases.iter().map(|it| it.method.intervals()).sum();
-        for phase in &mut chain.phases {
-            let left = (BUDGET - self.spent.work) / intervals;
-            phase.method.max_iter = MOST_ITERATIONS.min(left.max(FEWEST_ITERATIONS));
-        }
-        let unknowns =
-            self.problem.unknowns.iter().map(|it| from.outcome.trajectory.parameters[it.parameter]);
-        let signals = Signals { from, unknowns: unknowns.collect() };
-        let start = signals.start(self.model, &chain, &structure);
-        let outcome = solve_chain(&chain, Some(start), &mut |_, _| (self.stop)()).ok()?;
-        self.spent.work += outcome.solution.counts.iterations * intervals;
-        let mut located = Located { model, chain, outcome, structure, insertion: 0.0, gain: 0.0 };
-        located.structure.times = located.times();
-        let own = &located.outcome.solution;
-        is_stationary(own).then_some(located)
     }
 }
 
@@ -275,55 +311,4 @@ impl Located {
         let last = phases.clone().next_back().and_then(|it| it.last().copied());
         phases.map(|it| it[0]).chain(last).collect()
     }
-}
-
-/// Where a direction is flat the last digits may take more iterations than there are, or more
-/// digits; what they are worth the certificate says.
-fn is_stationary(found: &NlpSolution) -> bool {
-    let has_ended = matches!(
-        found.status,
-        Status::Solved | Status::Acceptable | Status::IterationLimit | Status::NumericalFailure
-    );
-    has_ended && found.kkt_error.max(found.constraint_violation) <= STATIONARY
-}
-
-/// Gauss nodes keep off the ends of phases, where a surface is 0.
-fn with_polynomials(mut model: Model, structure: &Structure) -> Model {
-    polynomials(&mut model.method, 1.0, &structure.phases[0]);
-    let [first, last] = structure.ends();
-    let phases = model.phases.iter_mut().zip(&structure.phases);
-    for ((phase, own), pair) in phases.zip(structure.times.windows(2)) {
-        polynomials(&mut phase.model.method, (pair[1] - pair[0]) / (last - first), own);
-    }
-    model
-}
-
-/// Of equal intervals the first and the last are halved towards the ends again and again.
-fn graded(intervals: usize) -> Grid {
-    let step = 1.0 / intervals as f64;
-    let begin = (0..GRADES).rev().map(|k| step * 0.5f64.powi(k + 1));
-    let begin: Vec<f64> = begin.collect();
-    let even = (1..intervals).map(|k| step * k as f64);
-    let end = begin.iter().rev().map(|it| 1.0 - it);
-    let inside = begin.iter().copied().chain(even).chain(end);
-    Grid::Mesh([0.0].into_iter().chain(inside).chain([1.0]).collect())
-}
-
-/// `part` is that of the whole time.
-fn polynomials(method: &mut Method, part: f64, phase: &PhaseOfModes) {
-    let finer = if method.controls == ControlShape::Linear { FINER } else { 1 };
-    let own = INTERVALS * part * f64::from(1 << phase.halvings);
-    let intervals = (own.round() as usize).max(FEWEST) * finer;
-    *method = Method {
-        scheme: Scheme::Gauss(4),
-        order: Order::Fixed,
-        path_at_nodes: true,
-        steps: 1,
-        lagged: Vec::new(),
-        grid: if phase.is_graded { graded(intervals) } else { Grid::Uniform(intervals) },
-        tol: TOLERANCE,
-        sigma: None,
-        continuation: Vec::new(),
-        ..method.clone()
-    };
 }

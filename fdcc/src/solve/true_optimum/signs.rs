@@ -71,12 +71,7 @@ impl Contacts<'_> {
     fn wrong_of_touch(&self, j: usize, limit: usize, arc: Arc) -> f64 {
         let located = self.located;
         let name = located.chain.phases[j].path.origin(self.row(j, limit)).label;
-        let link = &located.chain.links[j - 1];
-        let is_it = |row: &usize| *link.function.origin(row + 1).label == format!("{name} reached");
-        let rows = &located.outcome.solution.multipliers.constraints;
-        let behind: usize = located.chain.links[j - 1..].iter().map(|it| it.bounds.len()).sum();
-        let found = (0..link.bounds.len()).find(is_it);
-        let kappa = found.map_or(0.0, |row| -rows[rows.len() - behind + row]);
+        let kappa = located.link_multiplier(j, &format!("{name} reached")).unwrap_or(0.0);
         let duration = located.structure.ends()[1] - located.structure.ends()[0];
         -side(arc) * kappa * self.ranges[limit] / (self.size(j) * duration)
     }

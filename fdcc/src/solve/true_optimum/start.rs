@@ -2,35 +2,34 @@
 
 use super::Whole;
 use super::structure::Structure;
-use fdcc_compiler::Model;
-use fdcc_runtime::nlp::Start;
-use fdcc_runtime::problem::Chain;
-use fdcc_runtime::solve::warm_start::{Earlier, from_earlier};
+use fdcc_compiler::{Model, PhaseOfModes};
+use fdcc_runtime::problem::Problem;
+use fdcc_runtime::solve::warm_start::Earlier;
 
 /// Signals of a whole trajectory.
 pub(super) struct Signals<'t> {
     pub from: &'t Whole,
     /// The unknowns of the model.
     pub unknowns: Vec<f64>,
+    /// The times of all switches, which are unknowns of the chain behind those of the model.
+    pub switches: &'t [f64],
 }
 
 impl Signals<'_> {
-    pub fn start(&self, model: &Model, chain: &Chain, structure: &Structure) -> Start {
-        let phases = structure.times.windows(2).enumerate();
-        let phases: Vec<Earlier> =
-            phases.map(|(j, ends)| self.phase(model, chain, structure, j, ends)).collect();
-        from_earlier(chain, &phases)
-    }
-
-    fn phase(
+    /// Where the next of these problems begin, one for each phase of the structure of a model.
+    pub fn phases<'p>(
         &self,
         model: &Model,
-        chain: &Chain,
+        problems: &mut impl Iterator<Item = &'p Problem>,
         structure: &Structure,
-        j: usize,
-        ends: &[f64],
-    ) -> Earlier {
-        let (problem, own) = (&chain.phases[j], &self.from.outcome.trajectory);
+    ) -> Vec<Earlier> {
+        let phases = structure.phases.iter().zip(structure.times.windows(2));
+        let phases = phases.zip(problems);
+        phases.map(|((of, ends), problem)| self.phase(model, problem, of, ends)).collect()
+    }
+
+    fn phase(&self, model: &Model, problem: &Problem, of: &PhaseOfModes, ends: &[f64]) -> Earlier {
+        let own = &self.from.outcome.trajectory;
         let inside = own.time.iter().copied().filter(|time| *time > ends[0] && *time < ends[1]);
         let times: Vec<f64> = [ends[0]].into_iter().chain(inside).chain([ends[1]]).collect();
         let shown = model.states.len();
@@ -53,7 +52,7 @@ impl Signals<'_> {
         let unknown = |parameter: usize| {
             let at = parameter - model.params.len();
             match at.checked_sub(model.frees.len()) {
-                Some(switch) => structure.times.get(switch + 1).copied(),
+                Some(switch) => self.switches.get(switch).copied(),
                 None => self.unknowns.get(at).copied(),
             }
         };
@@ -63,7 +62,7 @@ impl Signals<'_> {
             controls: (0..problem.controls.len()).map(control).collect(),
             unknowns: problem.unknowns.iter().map(|it| unknown(it.parameter)).collect(),
             widths: Vec::new(),
-            variables: self.from.variables_of(&structure.phases[j], ends).map(<[f64]>::to_vec),
+            variables: self.from.variables_of(of, ends).map(<[f64]>::to_vec),
             times: times.iter().map(|time| (time - ends[0]) / duration).collect(),
         }
     }

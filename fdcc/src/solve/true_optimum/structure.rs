@@ -7,7 +7,8 @@ use super::range::{Range, ranges};
 use super::tracks::Track;
 use super::tuning::repair::NOTHING;
 use super::tuning::structure::{
-    BEYOND, FEWEST_INTERVALS, HALVINGS, INACCURATE, MOST_HALVINGS, SHORT, SHORTEST, TRIED,
+    AT_END, BEYOND, FEWEST_INTERVALS, HALVINGS, INACCURATE, LOSS, MOST_HALVINGS, SAME_SWITCH,
+    SHORT, SHORTEST, SHORTEST_ARC, TRIED, TRIED_BESIDE,
 };
 use fdcc_compiler::{Arc, Mode, PhaseOfModes};
 use fdcc_runtime::problem::{ControlShape, Problem};
@@ -153,7 +154,7 @@ impl Structure {
         let held = contacts.modes.iter().flat_map(Track::switches);
         let mut begins: Vec<f64> = tracks.chain(held).chain(touched).collect();
         begins.sort_by(f64::total_cmp);
-        begins.dedup_by(|b, a| *b - *a < 0.25 * step);
+        begins.dedup_by(|b, a| *b - *a < SAME_SWITCH * step);
         let ends = begins.iter().copied().chain([last]);
         for (begin, end) in [time[0]].into_iter().chain(begins.iter().copied()).zip(ends) {
             let middle = 0.5 * (begin + end);
@@ -188,18 +189,38 @@ impl Structure {
         }
     }
 
-    /// With shorter intervals where the Hamiltonian varies though time itself does not matter, or a
-    /// control is beyond its bounds between nodes: there the trajectory is not accurate.
+    /// With shorter intervals where a trajectory is not accurate.
     pub fn finer(&self, between: &Problem, located: &[Outcome]) -> Self {
         let mut other = self.clone();
+        let roughness = self.roughness(between, located);
+        for (phase, roughness) in other.phases.iter_mut().zip(roughness) {
+            let is_rough = phase.shape == ControlShape::Polynomial && roughness > 1.0;
+            phase.halvings += u32::from(is_rough && phase.halvings < MOST_HALVINGS);
+        }
+        other
+    }
+
+    /// By how much the Hamiltonian of each phase varies though time itself does not matter, or a
+    /// control is beyond its bounds between nodes, for what is allowed.
+    pub fn roughness(&self, between: &Problem, located: &[Outcome]) -> Vec<f64> {
         let [first, last] = self.ends();
         let ranges = ranges(&between.controls, located);
         let beyond = between.method.accuracy.map_or(BEYOND, |it| 0.5 * it);
-        for (phase, outcome) in other.phases.iter_mut().zip(located) {
-            let is_rough = phase.shape == ControlShape::Polynomial
-                && (variation(outcome) > INACCURATE * (last - first)
-                    || beyond_bounds(&ranges, &outcome.trajectory) > beyond);
-            phase.halvings += u32::from(is_rough && phase.halvings < MOST_HALVINGS);
+        let of = |outcome: &Outcome| {
+            let varies = variation(outcome) / (INACCURATE * (last - first));
+            varies.max(beyond_bounds(&ranges, &outcome.trajectory) / beyond)
+        };
+        located.iter().map(of).collect()
+    }
+
+    /// With graded intervals, and then with shorter ones, where the objective loses these parts of
+    /// its size by controls that are not the best ones: they are steep where a phase begins or
+    /// ends.
+    pub fn graded(&self, losses: &[f64]) -> Self {
+        let mut other = self.clone();
+        for (phase, _) in other.phases.iter_mut().zip(losses).filter(|it| *it.1 > LOSS) {
+            phase.halvings += u32::from(phase.is_graded && phase.halvings < MOST_HALVINGS);
+            phase.is_graded = true;
         }
         other
     }
@@ -263,7 +284,7 @@ impl Structure {
         let beside = [before.checked_sub(1), Some(before).filter(|it| *it < count)];
         let lengths = beside.into_iter().flatten().map(|j| self.times[j + 1] - self.times[j]);
         let shortest = lengths.fold(f64::INFINITY, f64::min);
-        let length = (TRIED * (last - first)).min(0.2 * shortest);
+        let length = (TRIED * (last - first)).min(TRIED_BESIDE * shortest);
         let at = self.times[before];
         let ends = match before {
             0 => [at, at + length],
@@ -355,10 +376,10 @@ fn arcs_of(ranges: &[Range], outcome: &Outcome, which: NewArcs) -> Vec<Track<Arc
             track.with_ends(
                 bounds,
                 [first, last],
-                [0, own.time.len() - 2].map(|k| 0.1 * (own.time[k + 1] - own.time[k])),
+                [0, own.time.len() - 2].map(|k| AT_END * (own.time[k + 1] - own.time[k])),
             )
         }
-        None => Track::of_arcs(&own.time, &own.controls[at], range, 1.5 * step),
+        None => Track::of_arcs(&own.time, &own.controls[at], range, SHORTEST_ARC * step),
     };
     let tracks = ranges.iter().enumerate().map(of);
     match which {

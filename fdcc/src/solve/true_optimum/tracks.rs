@@ -1,7 +1,7 @@
 //! What one surface, one control or one limit does over time.
 
 use super::range::Range;
-use super::tuning::tracks::AT_BOUND;
+use super::tuning::tracks::{AT_BOUND, SWITCH};
 use fdcc_compiler::{Arc, Mode};
 use fdcc_runtime::solution::modes::{self, Span};
 
@@ -81,7 +81,7 @@ impl Track<Arc> {
         let mut j = 1;
         while j + 1 < self.pieces.len() {
             let [before, own, after] = [self.pieces[j - 1], self.pieces[j], self.pieces[j + 1]];
-            let is_short = after.0 - own.0 <= 1.5 * shortest;
+            let is_short = after.0 - own.0 <= SWITCH * shortest;
             let are_opposite = before.1 != after.1 && before.1 != Arc::Free && after.1 != Arc::Free;
             if own.1 == Arc::Free && is_short && are_opposite {
                 self.pieces[j + 1].0 = 0.5 * (own.0 + after.0);

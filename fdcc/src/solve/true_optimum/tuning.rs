@@ -20,6 +20,10 @@ pub(super) mod search {
     pub(crate) const FEWEST_ITERATIONS: usize = 20;
     /// More iterations are not worth it.
     pub(crate) const MOST_ITERATIONS: usize = 250;
+    /// So many structures that were passed by are looked at where the last one is not certified.
+    pub(crate) const MOST_ALTERNATIVES: usize = 4;
+    /// The phases of a model are mended one after the other so often.
+    pub(crate) const MOST_ROUNDS: usize = 4;
     /// A structure without new conditions is another optimum where the objective rises by so much.
     pub(crate) const WORSE: f64 = 1e-5;
     /// An objective has to fall by so much of its size, or a phase is not worth having.
@@ -37,8 +41,19 @@ pub(super) mod structure {
     pub(crate) const SHORT: f64 = 0.15;
     /// What a phase that is tried begins with, for the whole time.
     pub(crate) const TRIED: f64 = 0.01;
+    /// But with no more than this part of the phases beside it.
+    pub(crate) const TRIED_BESIDE: f64 = 0.2;
+    /// Switches that are nearer than this part of a step are one.
+    pub(crate) const SAME_SWITCH: f64 = 0.25;
+    /// An arc that was not seen, of a control that is at its bound at an end, begins with this part
+    /// of an interval.
+    pub(crate) const AT_END: f64 = 0.1;
+    /// An arc of a control has so many steps at least.
+    pub(crate) const SHORTEST_ARC: f64 = 1.5;
     /// The Hamiltonian may change by so much of its size, on average over the time.
     pub(crate) const INACCURATE: f64 = 1e-6;
+    /// The objective may lose so much of its size by the controls of a phase.
+    pub(crate) const LOSS: f64 = 1e-7;
     /// A control may leave its bounds by so much of its width between nodes.
     pub(crate) const BEYOND: f64 = 5e-7;
     /// Intervals are halved so often where nothing tells how accurate a trajectory is.
@@ -62,6 +77,9 @@ pub(super) mod polynomials {
 pub(super) mod tracks {
     /// A control is at a bound that is nearer than this, for the distance of its bounds.
     pub(crate) const AT_BOUND: f64 = 1e-3;
+    /// A free piece between opposite bounds that is not longer than the shortest arc times this is
+    /// a switch.
+    pub(crate) const SWITCH: f64 = 1.5;
 }
 
 pub(super) mod contacts {
@@ -105,8 +123,15 @@ pub(super) mod range {
 }
 
 pub(super) mod minimum {
-    /// Where the Hamiltonian of a phase is looked at, as parts of its intervals.
+    /// Where the Hamiltonian of a phase is looked at, as parts of its time.
     pub(crate) const PARTS: [f64; 5] = [0.0, 0.15, 0.5, 0.85, 1.0];
+    /// The same on its first interval, and mirrored on its last: between nodes, where a control
+    /// that is steep at an end differs most from a polynomial.
+    pub(crate) const BESIDE: [f64; 2] = [0.035, 0.2];
+    /// Between grid points states and costates are polynomials through so many of them.
+    pub(crate) const POINTS: usize = 4;
+    /// A minimum at a distance of more than this part of the width of a control is not near.
+    pub(crate) const FAR: f64 = 0.1;
     /// Of more controls not all combinations of their ends are tried.
     pub(crate) const MOST_TOGETHER: usize = 4;
 }
@@ -134,4 +159,16 @@ pub(crate) mod certificate {
     pub(crate) const HAMILTONIAN: f64 = 1e-4;
     /// For so much of the time plan and replay may be in different modes.
     pub(crate) const MODES: f64 = 1e-4;
+}
+
+pub(super) mod switches {
+    /// An event of the replay is that of a switch where their times differ by at most this, for the
+    /// duration.
+    pub(crate) const SAME_TIME: f64 = 1e-4;
+}
+
+pub(super) mod costates {
+    /// Surfaces and conditions say the same where less than this is left of one beside the others,
+    /// for its size.
+    pub(crate) const SAME: f64 = 1e-10;
 }

@@ -258,14 +258,23 @@ impl Reader<'_> {
 
     fn number(&mut self, pair: &Pair<'_, Rule>) -> f64 {
         let value: f64 = pair.as_str().parse().expect("the grammar's numbers are Rust's numbers");
-        if value.is_infinite() {
-            let message = format!("`{}` is larger than any number", pair.as_str());
-            let diagnostic =
-                Diagnostic::new(Code::Unfinished, message, self.span(pair), "above 1.8e308");
-            self.report(diagnostic.help("write a smaller exponent"));
+        let is_lost = value == 0.0 && has_a_digit(pair.as_str());
+        if value.is_infinite() || is_lost {
+            let [than, limit, help] = match is_lost {
+                true => ["smaller than any number but 0", "below 4.9e-324", "write 0"],
+                false => ["larger than any number", "above 1.8e308", "write a smaller exponent"],
+            };
+            let message = format!("`{}` is {than}", pair.as_str());
+            let diagnostic = Diagnostic::new(Code::Unfinished, message, self.span(pair), limit);
+            self.report(diagnostic.help(help));
         }
         value
     }
+}
+
+/// Whether a number has a digit other than 0 before its exponent.
+fn has_a_digit(number: &str) -> bool {
+    number.chars().take_while(|it| !it.eq_ignore_ascii_case(&'e')).any(|it| matches!(it, '1'..='9'))
 }
 
 /// `<` and `<=` mean the same: they differ at a single point.

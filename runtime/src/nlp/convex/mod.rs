@@ -6,20 +6,21 @@
 
 mod clarabel;
 mod convexity;
+mod farkas;
 mod one_sided;
 
 use super::conclusion::{Ended, conclude};
 use super::scaling::Scaled;
+use super::scaling::factors::ScalingFactors;
 use super::{
-    Counts, Derivatives, Multipliers, Nlp, Options, Progress, Quantities, Solution, Start, Status,
-    Stop, Watch, constraint_violation,
+    Counts, Derivatives, Multipliers, Nlp, Options, Progress, Solution, Start, Status, Stop, Watch,
+    constraint_violation,
 };
 use crate::linalg::{Columns, Triplets};
-use crate::nlp::tuning::convex::{
-    CONIC_TOLERANCE, FARTHEST, FLAT_RAY, LEAST_CONIC_TOLERANCE, RAY_ROUNDING,
-};
+use crate::nlp::tuning::convex::{CONIC_TOLERANCE, FLAT_RAY, LEAST_CONIC_TOLERANCE, RAY_ROUNDING};
 use crate::problem::{Bounds, Chain, Degree, Link, Problem};
 use clarabel::{ConicProgram, ConicSolution, ConicStatus, solve_conic};
+use farkas::proves_infeasible;
 use one_sided::OneSidedConstraints;
 
 /// Whether the transcription of a chain is affine in its rows and quadratic in its objective.
@@ -71,7 +72,24 @@ pub fn solve(
     options: &Options,
     watch: &mut Watch,
 ) -> Option<Solution> {
-    let mut scaled = Scaled::new(nlp, &start.v);
+    let used = ScalingFactors::new(nlp, &start.v);
+    let first = with_factors(nlp, used.clone(), start, options, watch)?;
+    let is_lost = matches!(first.status, Status::NumericalFailure | Status::IterationLimit);
+    let other = ScalingFactors::of_equations(nlp, &start.v);
+    if !is_lost || other.distance(&used) <= 1.0 {
+        return Some(first);
+    }
+    with_factors(nlp, other, start, options, watch)
+}
+
+fn with_factors(
+    nlp: &mut dyn Nlp,
+    factors: ScalingFactors,
+    start: &Start,
+    options: &Options,
+    watch: &mut Watch,
+) -> Option<Solution> {
+    let mut scaled = Scaled::with(nlp, factors);
     let v = scaled.start(start).v;
     let mut ended = solve_scaled(&mut scaled, &v, options, watch)?;
     scaled.unscale(&mut ended.v, &mut ended.multipliers);
@@ -166,31 +184,6 @@ fn ended(
     let kkt_error = stationarity(nlp, &v, &multipliers).max(constraint_violation(nlp, &v));
     let (mu, is_saddle, descent, decrement) = (0.0, false, None, f64::INFINITY);
     Ended { status, v, multipliers, mu, kkt_error, is_saddle, descent, decrement, counts }
-}
-
-/// Whether multipliers of affine rows prove that no point within the bounds meets them (Farkas'
-/// lemma; Boyd & Vandenberghe, Convex Optimization, section 5.8): at all these points the sum of
-/// the rows, each times its multiplier, is larger than their bounds allow.
-fn proves_infeasible(nlp: &mut dyn Nlp, lambda: &[f64]) -> bool {
-    let origin = vec![0.0; nlp.variable_bounds().len()];
-    let (mut rows, mut at) = (vec![0.0; lambda.len()], Derivatives::new(nlp));
-    nlp.values(&origin, &mut rows);
-    nlp.derivatives(&origin, 0.0, &vec![0.0; lambda.len()], &mut at);
-    let mut slopes = origin;
-    nlp.jacobian_structure().transposed_multiply_add(&at.jacobian, lambda, &mut slopes);
-    let Quantities { variables, units, .. } = nlp.quantities();
-    let least = |(i, slope): (usize, &f64)| {
-        let (bounds, farthest) = (nlp.variable_bounds()[i], FARTHEST * units[variables[i]]);
-        slope * if *slope > 0.0 { bounds.lower.max(-farthest) } else { bounds.upper.min(farthest) }
-    };
-    let least: f64 = slopes.iter().enumerate().map(least).sum();
-    let excess = |((lambda, row), bounds): ((&f64, &f64), &Bounds)| match *lambda {
-        0.0 => 0.0,
-        above if above > 0.0 => above * (row - bounds.upper),
-        below => below * (row - bounds.lower),
-    };
-    let excesses: f64 = lambda.iter().zip(&rows).zip(nlp.constraint_bounds()).map(excess).sum();
-    excesses + least > 0.0
 }
 
 /// Whether along a ray the objective falls without end and no condition ends it: each entry of the

@@ -39,15 +39,17 @@ pub(super) struct Algorithm {
     pub(super) counts: Counts,
     pub(super) progress: Progress,
     pub(super) residuals: Residuals,
+    /// Iterates in a row whose error is acceptable.
     pub(super) acceptable: usize,
+    /// Tiny steps in a row.
     pub(super) tiny_steps: usize,
     /// Accepted steps in a row that were cut down to rounding.
     pub(super) stalled_steps: usize,
     pub(super) watchdog: Watchdog,
     /// How often the filter was emptied at a feasible point.
     pub(super) emptied: usize,
-    /// Whether rows were given the values that they have, because a violation below the acceptable
-    /// one could not be mended.
+    /// Whether constraints were given the values that they have, because a violation below the
+    /// acceptable one could not be mended.
     pub(super) is_relaxed: bool,
     pub(super) target: Target,
     /// How often a saddle was left.
@@ -61,6 +63,10 @@ pub(super) struct Algorithm {
     pub(super) decrement: f64,
     /// Whether the derivatives belong to the iterate.
     pub(super) fresh: bool,
+    /// The iterate with the least error, if that is acceptable.
+    pub(super) best: Option<(Iterate, Residuals)>,
+    /// How often in a row the objective has fallen far away from the start, and what it was last.
+    pub(super) falls: (usize, f64),
 }
 
 impl Algorithm {
@@ -93,6 +99,8 @@ impl Algorithm {
             descent: None,
             decrement: f64::INFINITY,
             fresh: false,
+            best: None,
+            falls: (0, f64::INFINITY),
             formulation,
             at,
             options,
@@ -157,6 +165,7 @@ impl Algorithm {
     /// From here on with new multipliers and an empty filter.
     pub(super) fn begin_anew(&mut self, nlp: &mut dyn Nlp) {
         self.watchdog.end();
+        self.best = None;
         self.resume(nlp);
         self.filter.clear();
     }
@@ -232,7 +241,7 @@ impl Algorithm {
         self.progress
     }
 
-    /// Row multipliers by least squares at the iterate.
+    /// Multipliers of the constraints by least squares at the iterate.
     pub(super) fn estimate_multipliers(&mut self, nlp: &mut dyn Nlp) {
         self.at.lambda.fill(0.0);
         if self.slopes.evaluate(nlp, &self.formulation, &self.at, &mut self.counts) {

@@ -60,7 +60,29 @@ pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Wa
     if start.warm.is_none() && is_lost(&best) {
         best = fallback(best, nlp, &options, from(start, Algorithm::run_with_phase_one), watch);
     }
+    if start.warm.is_none() && is_lost(&best) {
+        best = in_other_sizes(best, nlp, start, &options, watch);
+    }
     best
+}
+
+/// In the sizes that conditions and equations ask for, where these are others.
+fn in_other_sizes(
+    best: Solution,
+    nlp: &mut dyn Nlp,
+    start: &Start,
+    options: &Options,
+    watch: &mut Watch,
+) -> Solution {
+    let used = ScalingFactors::new(nlp, &start.v);
+    let factors = ScalingFactors::of_equations(nlp, &start.v);
+    if factors.distance(&used) <= FAR {
+        return best;
+    }
+    let run = |nlp: &mut dyn Nlp, options: &Options, watch: &mut Watch| {
+        attempt_scaled(nlp, factors, start, options, Algorithm::run, watch)
+    };
+    fallback(best, nlp, options, run, watch)
 }
 
 /// Guess and bounds may say little of how large an answer is. Where a solve ends without one that

@@ -11,7 +11,7 @@ use super::kkt::System;
 use super::residuals::weighted_violation;
 use super::saddle::Departure;
 use super::tuning::termination::{
-    ACCEPTABLE_ERROR, ACCEPTABLE_ITERATIONS, DIVERGED, FASTEST, LEAST_TARGET,
+    ACCEPTABLE_ERROR, ACCEPTABLE_ITERATIONS, DIVERGED, FALLS, FASTEST, LEAST_FALL, LEAST_TARGET,
     MOST_WEIGHTED_VIOLATION, PATIENCE, SLOWEST,
 };
 use super::vectors::largest;
@@ -36,6 +36,7 @@ impl Algorithm {
     /// The status, if this is the end.
     pub(super) fn finished(&mut self, nlp: &mut dyn Nlp) -> Option<Status> {
         let error = self.residuals.error(0.0);
+        self.note_best(error);
         // Watchdog steps say nothing of the point that they began at.
         if self.watchdog.saved.is_none() {
             self.acceptable = if error <= ACCEPTABLE_ERROR { self.acceptable + 1 } else { 0 };
@@ -49,9 +50,24 @@ impl Algorithm {
         } else if self.watchdog.saved.is_none() && self.has_diverged(nlp) {
             Some(Status::Unbounded)
         } else if self.counts.iterations >= self.options.max_iter {
+            self.return_to_best();
             Some(Status::IterationLimit)
         } else {
             None
+        }
+    }
+
+    /// Where a direction is flat, steps along it spoil what was found before.
+    fn note_best(&mut self, error: f64) {
+        let least = self.best.as_ref().map_or(ACCEPTABLE_ERROR, |it| it.1.error(0.0));
+        if error < least {
+            self.best = Some((self.at.clone(), self.residuals));
+        }
+    }
+
+    fn return_to_best(&mut self) {
+        if let Some((at, residuals)) = self.best.take() {
+            (self.at, self.residuals) = (at, residuals);
         }
     }
 
@@ -159,11 +175,18 @@ impl Algorithm {
             <= MOST_WEIGHTED_VIOLATION * self.options.tol
     }
 
-    fn has_diverged(&self, nlp: &dyn Nlp) -> bool {
+    /// Whether the objective falls by a part of itself again and again where variables are far
+    /// away: that these are large says nothing, as their optimum may be there.
+    fn has_diverged(&mut self, nlp: &dyn Nlp) -> bool {
         let largest = largest(&self.at.y[..self.formulation.variables]);
-        largest > DIVERGED
+        let is_far = largest > DIVERGED
             && self.residuals.primal <= self.options.tol * largest
-            && largest > DIVERGED * farthest_bound(nlp)
+            && largest > DIVERGED * farthest_bound(nlp);
+        let (falls, before) = self.falls;
+        let objective = self.values.objective;
+        let is_falling = is_far && objective < before - LEAST_FALL * before.abs();
+        self.falls = (if is_falling { falls + 1 } else { 0 }, objective);
+        self.falls.0 >= FALLS
     }
 }
 

@@ -9,7 +9,9 @@
 //!      all below 1/100, at the start and near it, are scaled up to 1. All but the factors of steep
 //!      rows are powers of two, which round nothing.
 
-use super::nominal::{largest, magnitudes, magnitudes_of_answer, near, slopes};
+use super::nominal::{
+    largest, magnitudes, magnitudes_of_answer, magnitudes_of_equations, near, slopes,
+};
 use crate::nlp::tuning::factors::{
     LARGEST_FACTOR, LARGEST_OBJECTIVE, LEAST_FACTOR, LEAST_OBJECTIVE, MODERATE, MODERATE_GRADIENT,
     SMALLEST,
@@ -30,6 +32,14 @@ impl ScalingFactors {
     pub(in crate::nlp) fn new(nlp: &mut dyn Nlp, v: &[f64]) -> Self {
         let (quantities, v) = (nlp.quantities(), inside(nlp, v));
         let magnitudes = magnitudes(nlp, &quantities, &v);
+        ScalingFactors::of_sizes(nlp, &quantities, &v, &magnitudes)
+    }
+
+    /// Those for another solve that begins at `v`, where what is known of that led nowhere: how
+    /// large variables are is asked of conditions and equations.
+    pub(in crate::nlp) fn of_equations(nlp: &mut dyn Nlp, v: &[f64]) -> Self {
+        let (quantities, v) = (nlp.quantities(), inside(nlp, v));
+        let magnitudes = magnitudes_of_equations(nlp, &quantities, &v);
         ScalingFactors::of_sizes(nlp, &quantities, &v, &magnitudes)
     }
 

@@ -31,12 +31,6 @@ pub(crate) struct Scaled<'a> {
 }
 
 impl<'a> Scaled<'a> {
-    /// With the factors for a solve that begins at `v`.
-    pub(crate) fn new(inner: &'a mut dyn Nlp, v: &[f64]) -> Self {
-        let factors = ScalingFactors::new(inner, v);
-        Scaled::with(inner, factors)
-    }
-
     /// With these factors.
     pub(in crate::nlp) fn with(inner: &'a mut dyn Nlp, factors: ScalingFactors) -> Self {
         let ScalingFactors { variables, rows, .. } = &factors;

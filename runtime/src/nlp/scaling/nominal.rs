@@ -15,7 +15,7 @@
 //! more. Beyond 1 they do not raise it.
 
 use crate::nlp::tuning::nominal::{
-    GOLDEN, LARGEST_ESTIMATE, LEAST_ANSWER, LEAST_PART, LONGEST_RANGE, SMALL,
+    GOLDEN, LARGEST_ASKED_FOR, LARGEST_ESTIMATE, LEAST_ANSWER, LEAST_PART, LONGEST_RANGE, SMALL,
 };
 use crate::nlp::{Derivatives, Nlp, Quantities};
 use crate::problem::Bounds;
@@ -28,9 +28,38 @@ pub(in crate::nlp) fn magnitudes(
     v: &[f64],
 ) -> Vec<f64> {
     let guesses = largest(&quantities.variables, v.iter().map(|value| value.abs()));
+    told(nlp, quantities, v, &guesses, LARGEST_ESTIMATE)
+}
+
+/// The same where a guess counts only beside a range that says something: else it may be ours.
+pub(in crate::nlp) fn magnitudes_of_equations(
+    nlp: &mut dyn Nlp,
+    quantities: &Quantities,
+    v: &[f64],
+) -> Vec<f64> {
+    let mut guesses = largest(&quantities.variables, v.iter().map(|value| value.abs()));
+    let ranges = ranges(nlp, quantities);
+    guesses.iter_mut().zip(ranges).filter(|it| it.1 == 0.0).for_each(|(guess, _)| *guess = 0.0);
+    told(nlp, quantities, v, &guesses, LARGEST_ASKED_FOR)
+}
+
+/// The lengths of the ranges; 0 where that is no statement about a size.
+fn ranges(nlp: &dyn Nlp, quantities: &Quantities) -> Vec<f64> {
     let mut ranges = largest(&quantities.variables, nlp.variable_bounds().iter().map(range));
     let wide = |(range, unit): &(&mut f64, &f64)| **range > LONGEST_RANGE * **unit;
     ranges.iter_mut().zip(&quantities.units).filter(wide).for_each(|(range, _)| *range = 0.0);
+    ranges
+}
+
+/// Estimates are at most `most` units.
+fn told(
+    nlp: &mut dyn Nlp,
+    quantities: &Quantities,
+    v: &[f64],
+    guesses: &[f64],
+    most: f64,
+) -> Vec<f64> {
+    let ranges = ranges(nlp, quantities);
     let mut magnitudes: Vec<f64> =
         guesses.iter().zip(ranges).map(|(guess, range)| stated(*guess, range)).collect();
     if magnitudes.contains(&0.0) {
@@ -45,7 +74,9 @@ pub(in crate::nlp) fn magnitudes(
             fill(&mut magnitudes, |i| if i < quantities.stepped { guesses[i] } else { 0.0 });
         } else {
             fill(&mut magnitudes, |i| {
-                if found[i] > 0.0 { believed(found[i], guesses[i]) } else { 0.0 }
+                let unit = quantities.units[i];
+                let range = [unit / most, unit * most];
+                if found[i] > 0.0 { believed(found[i], guesses[i], range) } else { 0.0 }
             });
         }
         if magnitudes == known {
@@ -96,12 +127,8 @@ fn stated(guess: f64, range: f64) -> f64 {
 }
 
 /// What an estimate says beside a small guess, or without one.
-fn believed(estimate: f64, guess: f64) -> f64 {
-    if guess > 0.0 {
-        estimate.min(1.0).max(guess)
-    } else {
-        estimate.clamp(1.0 / LARGEST_ESTIMATE, LARGEST_ESTIMATE)
-    }
+fn believed(estimate: f64, guess: f64, [least, most]: [f64; 2]) -> f64 {
+    if guess > 0.0 { estimate.min(1.0).max(guess) } else { estimate.clamp(least, most) }
 }
 
 /// How far each quantity has to move for conditions on it alone.

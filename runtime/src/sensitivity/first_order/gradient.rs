@@ -8,8 +8,9 @@ use crate::sensitivity::linearised::variational_equation::LinearTape;
 use crate::sensitivity::nondifferentiability::kink::{Kink, first_kink};
 use crate::sensitivity::nondifferentiability::objective_kink::{Direction, objective_kink};
 use crate::sensitivity::nondifferentiability::parameter_kink::parameter_kink;
+use crate::sensitivity::nondifferentiability::reset_kink::{Moved, reset_kink};
 use crate::sensitivity::nondifferentiability::{Nondifferentiability, nondifferentiabilities};
-use crate::simulate::{Controls, Options, Simulation, Status, System, simulate};
+use crate::simulate::{Controls, Options, Piece, Simulation, Status, System, Tape, simulate};
 use nalgebra::DMatrix;
 
 /// With more quantities than this, forward sensitivities are computed along one sum of them only.
@@ -94,7 +95,9 @@ pub fn gradient(
     };
     let directions = Directions::new(system, controls, quantities, &weights);
     let (mut on_the_way, mut largest): (f64, f64) = (0.0, 0.0);
+    let mut before_events = Vec::new();
     let end = super::forward(&pieces, &directions, &mut |at, s| {
+        before_events.extend(moved_before(tape, at + 1, s));
         on_the_way = on_the_way.max(costates.pairing(at + 1, s));
         largest = largest.max(s.amax());
     });
@@ -122,9 +125,17 @@ pub fn gradient(
         nondifferentiabilities: nondifferentiabilities(&pieces),
         kink: parameter_kink(&lineariser, tape, &parameters(quantities))
             .or_else(|| first_kink(&lineariser, tape))
+            .or_else(|| reset_kink(&lineariser, tape, &parameters(quantities), &before_events))
             .or(kink),
         simulation,
     })
+}
+
+/// The states that quantities move before a piece, if it is an event.
+fn moved_before(tape: &Tape, event: usize, s: &DMatrix<f64>) -> Option<Moved> {
+    let piece = tape.pieces.get(event)?;
+    let states = (0..s.nrows()).filter(|row| s.row(*row).amax() > 0.0);
+    matches!(piece, Piece::Event { .. }).then(|| Moved { event, states: states.collect() })
 }
 
 /// Those that are parameters.

@@ -51,8 +51,8 @@ impl Projection {
 
     /// Moves a second derivative back to the surface, given `psi_zz` of the sliding surfaces along
     /// its pair of directions.
-    pub fn correct(&self, x: DVectorView<'_, f64>, bent: &DVector<f64>) -> DVector<f64> {
-        x - &self.along * (&self.normals * x + bent)
+    pub fn correct(&self, x: DVectorView<'_, f64>, curvature: &DVector<f64>) -> DVector<f64> {
+        x - &self.along * (&self.normals * x + curvature)
     }
 
     /// The adjoint before the projection and the derivative by `(U, p)`.

@@ -10,15 +10,26 @@ use crate::sensitivity::linearised::linearisation::{Jacobian, Lineariser, slidin
 use crate::simulate::{Cause, Instant, Piece, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-/// A kink that a trajectory stays on, or ends on.
+/// A kink that a trajectory stays on, jumps on, or ends on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kink {
-    /// The right side, or the objective.
+    /// The right side, what a jump assigns, or the objective.
     pub of: Origin,
-    /// Since when; nothing for the objective.
-    pub time: Option<f64>,
-    /// Whether the parameters alone are on it, wherever the state is.
-    pub is_of_parameters: bool,
+    /// Who is on it.
+    pub met: KinkMet,
+}
+
+/// When a trajectory is on a kink.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum KinkMet {
+    /// From this time on.
+    Since(f64),
+    /// Where it jumps, at this time.
+    ByJump(f64),
+    /// At its end.
+    AtEnd,
+    /// At no time: the parameters alone are on it, wherever the state is.
+    ByParameters,
 }
 
 /// The first.
@@ -36,7 +47,7 @@ pub(crate) fn first_kink(lineariser: &Lineariser, tape: &Tape) -> Option<Kink> {
         let end = Here::new(lineariser, tape, &piece.end());
         let stays = |k: &usize| here.is_on(*k) && end.is_on(*k) && !here.is_fixed(*k);
         let kink = (0..kinks.outputs()).find(stays)?;
-        Some(Kink { of: kinks.origin(kink), time: Some(start.time), is_of_parameters: false })
+        Some(Kink { of: kinks.origin(kink), met: KinkMet::Since(start.time) })
     })
 }
 

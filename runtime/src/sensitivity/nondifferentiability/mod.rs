@@ -1,12 +1,14 @@
 //! Where a trajectory has no derivative, or is so near such a place that one cannot tell.
 //!
-//! Four ways: it touches a surface without crossing it, it meets two surfaces at one time, it meets
-//! a surface when the controls change or when it starts, it meets one at the end. All are
-//! suspicions; [`one_sided()`](super::first_order::one_sided::one_sided()) decides.
+//! Five ways: it touches a surface without crossing it, it meets two surfaces at one time, it meets
+//! a surface when the controls change or when it starts, it meets one at the end, it slides on one
+//! that can hold it no harder. All are suspicions;
+//! [`one_sided()`](super::first_order::one_sided::one_sided()) decides.
 
 pub(crate) mod kink;
 pub(crate) mod objective_kink;
 pub(crate) mod parameter_kink;
+pub(crate) mod reset_kink;
 
 use super::linearised::linearisation::{Jacobian, Lineariser};
 use super::linearised::variational_equation::LinearTape;
@@ -34,6 +36,8 @@ pub enum NondifferentiabilityKind {
     Coincident,
     /// A surface is met at the end.
     End,
+    /// A surface holds the state as hard as it can, and goes on to hold it.
+    Limit,
 }
 
 /// A place without derivative.
@@ -54,7 +58,10 @@ pub(crate) fn nondifferentiabilities(pieces: &LinearTape) -> Vec<Nondifferentiab
     let mut found = Vec::new();
     for (at, piece) in tape.pieces.iter().enumerate() {
         match piece {
-            Piece::Step { start, h, end, .. } => watch.touches(start, *h, end, &mut found),
+            Piece::Step { start, h, end, .. } => {
+                watch.limits(start, &mut found);
+                watch.touches(start, *h, end, &mut found);
+            }
             Piece::Event { .. } => watch.event(at, &mut found),
         }
     }
@@ -159,6 +166,21 @@ impl Watch<'_> {
                     surface,
                     time,
                 });
+            }
+        }
+    }
+
+    /// Surfaces on which a step begins with selectors at the end of their interval: a little more
+    /// force would move the state. Each is noted where that begins.
+    fn limits(&self, start: &Instant, found: &mut Vec<Nondifferentiability>) {
+        let kind = NondifferentiabilityKind::Limit;
+        let modes = &self.tape.regimes[start.regime].modes;
+        for surface in (0..modes.len()).filter(|&i| modes[i] == Mode::Sliding) {
+            let together = self.lineariser.system.held_together(surface);
+            let size = start.selectors[together.clone()].iter().map(|s| s * s).sum::<f64>().sqrt();
+            let is_known = found.iter().any(|it| (it.kind, it.surface) == (kind, surface));
+            if size >= 1.0 - TOUCHING && surface == together.start && !is_known {
+                found.push(Nondifferentiability { kind, surface, time: start.time });
             }
         }
     }

@@ -4,7 +4,7 @@
 //! as the distance shrinks: `|J(z + e d) - 2 J(z) + J(z - e d)|` falls like `e` at a kink, like
 //! `e^2` where there are two derivatives.
 
-use super::kink::Kink;
+use super::kink::{Kink, KinkMet};
 use crate::problem::Columns;
 use crate::sensitivity::linearised::linearisation::Lineariser;
 use nalgebra::DVector;
@@ -38,11 +38,8 @@ pub(crate) fn objective_kink(
     let inputs = ends.iter().chain(&lineariser.parameters);
     let terms: f64 = slopes.iter().zip(inputs).map(|(by, value)| (by * value).abs()).sum();
     let is_kinked = directions.any(|direction| is_kinked(lineariser, ends, &direction, terms));
-    is_kinked.then(|| Kink {
-        of: lineariser.system.objective.origin(0),
-        time: None,
-        is_of_parameters: false,
-    })
+    let of = lineariser.system.objective.origin(0);
+    is_kinked.then_some(Kink { of, met: KinkMet::AtEnd })
 }
 
 fn is_kinked(
@@ -51,12 +48,12 @@ fn is_kinked(
     direction: &Direction,
     terms: f64,
 ) -> bool {
-    is_bent(direction.value, terms, |moved| value(lineariser, ends, &(moved * &direction.by)))
+    has_kink(direction.value, terms, |moved| value(lineariser, ends, &(moved * &direction.by)))
 }
 
 /// Whether a function of how far a quantity is moved from its value has a kink there; `terms` is
 /// the size of what it is a sum of.
-pub(super) fn is_bent(quantity: f64, terms: f64, value: impl Fn(f64) -> f64) -> bool {
+pub(super) fn has_kink(quantity: f64, terms: f64, value: impl Fn(f64) -> f64) -> bool {
     let distance = DISTANCE * if quantity == 0.0 { 1.0 } else { quantity.abs() };
     let own = value(0.0);
     let bend = |part: f64| {

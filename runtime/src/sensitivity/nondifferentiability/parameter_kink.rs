@@ -1,11 +1,12 @@
 //! Kinks that only parameters reach: `start abs(a)` at `a = 0`, `time t in [0, max(a, 1)]` at 1, or
 //! `surface s = x - abs(a)`. They are found as those of an objective are.
 
-use super::kink::Kink;
-use super::objective_kink::is_bent;
+use super::kink::{Kink, KinkMet};
+use super::objective_kink::has_kink;
 use crate::problem::{Columns, Function};
 use crate::sensitivity::linearised::linearisation::Lineariser;
 use crate::simulate::{Piece, Tape};
+use std::ops::Range;
 
 /// The first kink that one of these parameters is on: of the times, of the starts, or of a surface
 /// where a step begins.
@@ -19,9 +20,9 @@ pub(crate) fn parameter_kink(
     let fixed = [(&system.interval_of, nothing.clone()), (&system.start_of, nothing)];
     let watched = begins(lineariser, tape).into_iter().map(|point| (&system.switching, point));
     fixed.into_iter().chain(watched).find_map(|(function, point)| {
-        let of = |parameter: &usize| bent_output(&**function, &point, lineariser, *parameter);
+        let of = |parameter: &usize| output_with_kink(&**function, &point, lineariser, *parameter);
         let output = parameters.iter().find_map(of)?;
-        Some(Kink { of: function.origin(output), time: None, is_of_parameters: true })
+        Some(Kink { of: function.origin(output), met: KinkMet::ByParameters })
     })
 }
 
@@ -40,7 +41,7 @@ fn begins(lineariser: &Lineariser, tape: &Tape) -> Vec<Columns> {
 }
 
 /// The first output of a function at a point that has a kink along a parameter.
-fn bent_output(
+fn output_with_kink(
     function: &dyn Function,
     point: &Columns,
     lineariser: &Lineariser,
@@ -49,11 +50,25 @@ fn bent_output(
     let values = |moved: f64| {
         let mut parameters = lineariser.parameters.clone();
         parameters[parameter] += moved;
-        let mut values = Columns::new(function.outputs(), 1);
-        function.value(point, &parameters, &mut values);
-        (0..function.outputs()).map(|it| values.column(it)[0]).collect::<Vec<f64>>()
+        values_of(function, point, &parameters)
     };
-    let value = lineariser.parameters[parameter];
-    let largest = values(0.0).iter().fold(0.0, |most: f64, it| most.max(it.abs()));
-    (0..function.outputs()).find(|it| is_bent(value, largest, |moved| values(moved)[*it]))
+    first_with_kink(lineariser.parameters[parameter], 0..function.outputs(), values)
+}
+
+/// The outputs of a function at a point.
+pub(super) fn values_of(function: &dyn Function, point: &Columns, parameters: &[f64]) -> Vec<f64> {
+    let mut values = Columns::new(function.outputs(), 1);
+    function.value(point, parameters, &mut values);
+    (0..function.outputs()).map(|it| values.column(it)[0]).collect()
+}
+
+/// The first of some outputs that has a kink along an input of this value, which is moved.
+pub(super) fn first_with_kink(
+    input: f64,
+    mut outputs: Range<usize>,
+    values: impl Fn(f64) -> Vec<f64>,
+) -> Option<usize> {
+    let own = values(0.0);
+    let largest = own[outputs.clone()].iter().fold(0.0, |most: f64, it| most.max(it.abs()));
+    outputs.find(|it| has_kink(input, largest, |moved| values(moved)[*it]))
 }

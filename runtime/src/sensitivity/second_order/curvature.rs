@@ -121,8 +121,8 @@ impl<'l, 'a> Curvature<'l, 'a> {
             sum += push * hessians.along(&a.whole, &b.whole).select_rows(sliding);
         }
         if self.lineariser.is_curved(self.regime) {
-            let bent = self.lineariser.control_curvature(self.regime, self.time, [a, b], 0.0);
-            sum += self.by_controls() * bent;
+            let curvature = self.lineariser.control_curvature(self.regime, self.time, [a, b], 0.0);
+            sum += self.by_controls() * curvature;
         }
         sum
     }
@@ -203,8 +203,8 @@ impl Lineariser<'_> {
             ((whole[0] - ends[0] - tau * stretch) / duration, stretch)
         };
         let ((tau_a, stretch_a), (tau_b, stretch_b)) = (slopes(a), slopes(b));
-        let bent = self.interval_curvature(&parameters(a), &parameters(b));
-        let ends = bent[0] + tau * (bent[1] - bent[0]);
+        let curvature = self.interval_curvature(&parameters(a), &parameters(b));
+        let ends = curvature[0] + tau * (curvature[1] - curvature[0]);
         let tau_ab = (t_ij - ends - tau_a * stretch_b - tau_b * stretch_a) / duration;
         [tau_a, tau_b, tau_ab]
     }

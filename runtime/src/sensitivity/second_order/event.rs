@@ -88,9 +88,9 @@ impl SecondOrderEvent<'_> {
                 let by_controls = by.columns_range(system.layout.controls());
                 moved.x = moved.x.map(|i, j, x| {
                     let (pair, tau) = ([&whole[i], &whole[j]], moved.tau.at(i, j)[0]);
-                    let bent = hessians.along(&pair[0].whole, &pair[1].whole);
-                    let bent = bent.rows(jump * states, states) + by_time * tau;
-                    by_state * x + bent + by_controls * self.control_curvature(pair, tau)
+                    let curvature = hessians.along(&pair[0].whole, &pair[1].whole);
+                    let curvature = curvature.rows(jump * states, states) + by_time * tau;
+                    by_state * x + curvature + by_controls * self.control_curvature(pair, tau)
                 });
                 for (i, whole) in whole.iter().enumerate() {
                     moved.s.set_column(i, &(by * &whole.whole));
@@ -156,8 +156,8 @@ impl SecondOrderEvent<'_> {
         let hessians = Hessians::of(&**function, &table, &self.lineariser.parameters);
         let whole = self.moved(directions, s);
         x.map(|i, j, x| {
-            let bent = hessians.along(&whole[i].whole, &whole[j].whole)[row];
-            DVector::from_element(1, -((&normal * x)[0] + bent) / speed)
+            let curvature = hessians.along(&whole[i].whole, &whole[j].whole)[row];
+            DVector::from_element(1, -((&normal * x)[0] + curvature) / speed)
         })
     }
 

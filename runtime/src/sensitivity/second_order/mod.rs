@@ -162,15 +162,15 @@ impl<'t> Second<'t> {
         let whole: Vec<_> =
             whole.iter().map(|it| self.lineariser.whole(it, regime, at.time)).collect();
         self.x = self.x.map(|i, j, x| {
-            let bent = hessians.along(&whole[i], &whole[j]);
-            projection.correct(x, &bent.select_rows(&projection.surfaces))
+            let curvature = hessians.along(&whole[i], &whole[j]);
+            projection.correct(x, &curvature.select_rows(&projection.surfaces))
         });
     }
 
     /// `J_ij = J_z Z_ij + J_zz[Z_i, Z_j]` with `Z = (x(t0), x(T), p)`.
     fn of_objective(&self, objective: &Objective, simulation: &Simulation) -> DMatrix<f64> {
         let system = self.lineariser.system;
-        let (start, end, bent_end) = self.at_end();
+        let (start, end, curvature_end) = self.at_end();
         let mut point = Columns::new(2 * system.layout.x, 1);
         for (at, value) in system.start.iter().chain(&simulation.end).enumerate() {
             point.column_mut(at)[0] = *value;
@@ -184,11 +184,11 @@ impl<'t> Second<'t> {
             DVector::from_vec(all)
         };
         DMatrix::from_fn(self.directions.count(), self.directions.count(), |i, j| {
-            let bent_start = self
+            let curvature_start = self
                 .lineariser
                 .start_curvature(&parameters(i).into_owned(), &parameters(j).into_owned());
-            (&objective.by_start * bent_start)[0]
-                + (&objective.by_end * bent_end.at(i, j))[0]
+            (&objective.by_start * curvature_start)[0]
+                + (&objective.by_end * curvature_end.at(i, j))[0]
                 + hessians.along(&whole(i), &whole(j))[0]
         })
     }

@@ -112,13 +112,40 @@ impl Field<'_> {
         let [first, last] = self.system.interval;
         let selectors = self.selectors.clone();
         let (rate, by_selector) = self.with_selectors(t, x, &selectors);
+        let pushes = by_selector.row_iter().map(|row| row.iter().map(|push| push.abs()).sum());
+        let ways = rate.iter().zip(pushes).map(|(f, push): (&f64, f64)| f.abs() + push);
+        let ways: Vec<f64> = ways.map(|rate| (last - first) * rate).collect();
         let largest = x.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        for (i, rate) in rate.iter().enumerate() {
-            let pushes: f64 = by_selector.row(i).iter().map(|push| push.abs()).sum();
-            let reached = REACHED * (last - first) * (rate.abs() + pushes);
-            let least = (LEAST * if largest > 0.0 { largest } else { 1.0 }).max(SMALLEST);
+        let largest = if largest > 0.0 { largest } else { 1.0 };
+        let sizes = self.sizes_at_rest(t, x, &ways, largest);
+        for (i, (way, size)) in ways.iter().zip(sizes).enumerate() {
+            let least = (LEAST * size).max(SMALLEST * size.min(1.0)).max(f64::MIN_POSITIVE);
+            let reached = REACHED * way;
             self.tolerance.least[i] = if reached.is_finite() { reached.max(least) } else { least };
         }
+    }
+
+    /// How large states can become that hardly move: as bounds of their rates allow over all the
+    /// time, where the other states go on as they begin, or else as large as any other is.
+    fn sizes_at_rest(&mut self, t: f64, x: &[f64], ways: &[f64], largest: f64) -> Vec<f64> {
+        let last = self.system.interval[1];
+        let is_at_rest = |i: &usize| REACHED * ways[*i] < LEAST * largest;
+        let (mut ways, at_rest) = (ways.to_vec(), (0..x.len()).filter(is_at_rest));
+        let at_rest: Vec<usize> = at_rest.collect();
+        let mut tube = Tube::at(self, t, x);
+        tube.inputs[0] = [t, last];
+        let passes = if at_rest.is_empty() { 0 } else { PASSES };
+        for _ in 0..passes {
+            let around = x.iter().zip(&ways).map(|(x, way)| [x - way, x + way]);
+            tube.inputs[self.system.layout.t..].iter_mut().zip(around).for_each(|(a, b)| *a = b);
+            for &i in &at_rest {
+                tube.evaluate(&self.system.enclosures.flow[i]);
+                let [low, high] = tube.ranges[0];
+                ways[i] = ways[i].max((last - t) * low.abs().max(high.abs()));
+            }
+        }
+        let is_known = |i: usize| at_rest.contains(&i) && ways[i] > 0.0 && ways[i] < largest;
+        (0..x.len()).map(|i| if is_known(i) { ways[i].max(x[i].abs()) } else { largest }).collect()
     }
 
     /// Finds by how much rates are uncertain if states may be off by a part of their tolerance, and

@@ -116,9 +116,12 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// The jump of a surface that is about to be crossed.
+    /// The jump of a surface that is about to be crossed. A state that starts on a surface may have
+    /// come from either side, until it has jumped there.
     fn jump_at(&self, surface: usize, next: Mode) -> Option<usize> {
-        let is_falling = match (next, self.field.modes[surface], self.has_begun) {
+        let has_come =
+            self.has_begun || self.record.events.iter().any(|event| event.surface == surface);
+        let is_falling = match (next, self.field.modes[surface], has_come) {
             (Mode::Below, Mode::Above, _) | (Mode::Below, _, false) => true,
             (Mode::Above, Mode::Below, _) | (Mode::Above, _, false) => false,
             _ => return None,

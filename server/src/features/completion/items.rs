@@ -1,7 +1,7 @@
 //! One proposal: what is shown, what is written, where it stands in the list.
 
-use fdcc_compiler::symbols::{Definition, Kind};
-use fdcc_compiler::vocabulary;
+use fdcc::language::vocabulary;
+use fdcc::language::{Definition, Kind};
 use fdcc_grammar::words::Word;
 use lsp_types::{CompletionItem, CompletionItemKind, InsertTextFormat, MarkupContent, MarkupKind};
 

@@ -6,8 +6,8 @@ mod names;
 use crate::client::Failure;
 use crate::context::Context;
 use crate::features::cursor::{CursorContext, Open};
-use fdcc_compiler::symbols::Kind;
-use fdcc_compiler::vocabulary;
+use fdcc::language::Kind;
+use fdcc::language::vocabulary;
 use fdcc_grammar::words::{self, inner_words};
 use items::{Proposal, entry, item, keyword, own, plain, word};
 use lsp_types::{CompletionList, CompletionParams, CompletionResponse};
@@ -137,7 +137,7 @@ fn expression(place: &CursorContext<'_>, scope: &Scope) -> Vec<Proposal> {
     let mut all = scope.proposals(is_value);
     all.extend(scope.locals(place));
     all.extend(vocabulary::functions().into_iter().map(items::function));
-    all.extend(["pi", "inf"].into_iter().map(plain));
+    all.extend(vocabulary::NUMBERS.iter().map(|it| plain(it.0)));
     all.extend(["piecewise", "match"].into_iter().map(word));
     if place.is_among_items() {
         all.extend(inner_words(place.item).iter().map(|it| keyword(it)));

@@ -4,7 +4,7 @@
 use super::items::{Proposal, name};
 use crate::context::Context;
 use crate::features::cursor::CursorContext;
-use fdcc_compiler::symbols::{Kind, Names};
+use fdcc::language::{Kind, Names};
 use std::collections::BTreeSet;
 
 /// The names that are known at a place.

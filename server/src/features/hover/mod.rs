@@ -8,8 +8,8 @@ mod settings;
 
 use crate::client::Failure;
 use crate::context::Context;
-use fdcc_compiler::symbols::{Meaning, Occurrence};
-use fdcc_compiler::vocabulary;
+use fdcc::language::vocabulary;
+use fdcc::language::{Meaning, Occurrence};
 use lsp_types::{Contents, Hover, HoverParams, MarkupContent, MarkupKind};
 
 /// `textDocument/hover`
@@ -34,11 +34,8 @@ fn shown(context: &Context<'_>, found: &Occurrence, value: String) -> Hover {
 }
 
 fn function(name: &str) -> Option<String> {
-    if name == "pi" {
-        return Some("```fdc\npi\n```\n3.141592653589793".into());
-    }
-    if name == "inf" {
-        return Some("```fdc\ninf\n```\nA side of bounds that is open: `in [0, inf]`.".into());
+    if let Some((_, doc)) = vocabulary::NUMBERS.iter().find(|it| it.0 == name) {
+        return Some(format!("```fdc\n{name}\n```\n{doc}"));
     }
     let it = vocabulary::function(name)?;
     Some(format!("```fdc\n{name}({})\n```\n{}", it.arguments.join(", "), it.doc))

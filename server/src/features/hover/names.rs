@@ -1,10 +1,8 @@
 //! Declared names: the declaration, the unit, and what the compiler makes of it.
 
 use crate::context::Context;
-use fdcc_compiler::symbols::{Definition, Kind};
-use fdcc_compiler::{
-    Model, NamedUnit, Order, Smoothness, SurfaceReport, SymbolInformation, surfaces,
-    symbol_information,
+use fdcc::language::{
+    Definition, Kind, NamedUnit, Order, Smoothness, SurfaceReport, SymbolInformation,
 };
 use fdcc_grammar::comments;
 
@@ -21,16 +19,20 @@ pub fn told(context: &Context<'_>, definition: usize) -> String {
     if let Some(comment) = comment(context, it) {
         text += &format!("\n\n{comment}");
     }
-    let model = context.model_of(names.phase_of(definition));
+    let (model, phase) = (context.without_mistakes(), names.phase_of(definition));
+    let solved = || Some(format!("the last solve: {}", context.said()?.of_surface(&full)?));
     let facts = match it.kind {
-        Kind::Surface => model.map(|model| surface(model, &full)).unwrap_or_default(),
+        Kind::Surface => {
+            let known = model.and_then(|it| it.surface(phase, &full)).map(surface);
+            known.unwrap_or_default().into_iter().chain(solved()).collect()
+        }
         Kind::Argument | Kind::Column | Kind::Row | Kind::Phase | Kind::Model | Kind::Data => {
             Vec::new()
         }
-        _ => model
-            .and_then(|model| symbol_information(model, &full))
-            .map(|it| facts(&it))
-            .unwrap_or_default(),
+        _ => {
+            let information = model.and_then(|it| it.information(phase, &full));
+            information.map(|it| facts(&it)).unwrap_or_default()
+        }
     };
     for fact in facts {
         text += &format!("\n\n{fact}");
@@ -108,11 +110,7 @@ pub fn smoothness(it: &Smoothness) -> String {
 }
 
 /// Gradient, jump, class and the condition for being held.
-fn surface(model: &Model, name: &str) -> Vec<String> {
-    let reports = surfaces(model).unwrap_or_default();
-    let Some(report) = reports.into_iter().find(|it| it.place.name == name) else {
-        return Vec::new();
-    };
+fn surface(report: SurfaceReport) -> Vec<String> {
     let SurfaceReport { gradient, jump, meaning, holding, .. } = report;
     let mut facts = vec![format!("**{meaning}**")];
     if !gradient.is_empty() {

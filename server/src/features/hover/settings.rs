@@ -1,15 +1,17 @@
 //! Keys of the method: what each does and what it costs.
 
 use crate::context::Context;
-use fdcc_compiler::vocabulary::{self, Setting};
-use fdcc_compiler::{Grid, grid};
+use fdcc::language::Grid;
+use fdcc::language::vocabulary::{self, Setting};
 
 /// What a key does, and what its value costs in this model.
 pub fn told(context: &Context<'_>, key: &str) -> Option<String> {
     let Setting { takes, doc, .. } =
         vocabulary::settings().into_iter().find(|it| it.name == key)?;
     let mut text = format!("`{key}`: {takes}\n\n{doc}");
-    if let Some(grid) = context.model().and_then(grid).filter(|it| it.step.is_finite()) {
+    if let Some(grid) =
+        context.without_mistakes().and_then(|it| it.grid()).filter(|it| it.step.is_finite())
+    {
         text += &costs(key, &grid);
     }
     Some(text)

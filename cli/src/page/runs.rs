@@ -1,0 +1,185 @@
+//! What a page says of a run that is no solve: a simulation, or a closed loop.
+
+use super::headline::{Claim, Mark};
+use super::json::Json;
+use super::tags::{Cell, table};
+use super::units::of_time;
+use crate::output::number::significant;
+use crate::output::plural;
+
+/// A run that is no solve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Run {
+    Simulation,
+    ClosedLoop,
+}
+
+/// Which one a document is of; nothing for a solve.
+pub fn of(document: &Json) -> Option<Run> {
+    let has = |key: &str| !document.at(key).is_absent();
+    match () {
+        _ if has("ended") && has("plant") => Some(Run::ClosedLoop),
+        _ if !document.at("counts").at("rejected").is_absent() => Some(Run::Simulation),
+        _ => None,
+    }
+}
+
+impl Run {
+    /// The whole in one sentence.
+    pub fn title(self, document: &Json) -> String {
+        let happened = match self {
+            Run::Simulation => plural(events(document).len(), "event"),
+            Run::ClosedLoop => plural(statuses(document).len(), "step"),
+        };
+        let what = if self == Run::Simulation { "Simulated" } else { "In closed loop" };
+        match self.early(document) {
+            None if self == Run::Simulation => format!("{what} to the end, {happened}"),
+            None => format!("{what}: {happened}, {}", solved(document)),
+            Some(why) => format!("{what}, {happened}; ended early: {why}"),
+        }
+    }
+
+    /// How sure the whole is.
+    pub fn mark(self, document: &Json) -> Mark {
+        match self.early(document) {
+            None if unsolved(document) == 0 => Mark::Certain,
+            None => Mark::Open,
+            Some(_) => Mark::Wrong,
+        }
+    }
+
+    /// What is certain and what is not.
+    pub fn claims(self, document: &Json) -> Vec<Claim> {
+        let claim = |mark: Mark, text: String| Claim { mark, text };
+        let end = self
+            .early(document)
+            .map(|why| claim(Mark::Wrong, format!("The last time is not reached: {why}.")));
+        let mut claims = match self {
+            Run::Simulation => vec![claim(Mark::Certain, located(document))],
+            Run::ClosedLoop => {
+                let mark = if unsolved(document) == 0 { Mark::Certain } else { Mark::Wrong };
+                let steps = match unsolved(document) {
+                    0 => "Every step is solved.".to_owned(),
+                    _ => format!("Of the steps {}.", solved(document)),
+                };
+                let other = "This is one run: from another state, or with another plant, the loop \
+                             may do something else.";
+                let plant = format!(
+                    "The plant “{}” is integrated from event to event: nothing of it is smoothed.",
+                    document.at("plant").text()
+                );
+                vec![
+                    claim(mark, steps),
+                    claim(Mark::Certain, plant),
+                    claim(Mark::Open, other.into()),
+                ]
+            }
+        };
+        claims.extend(end);
+        claims
+    }
+
+    /// How it is done again.
+    pub fn again(self, document: &Json) -> String {
+        let model = document.at("model").text();
+        match self {
+            Run::Simulation => format!("fdcc simulate {model}.fdc --out results"),
+            Run::ClosedLoop => {
+                let steps = statuses(document).len();
+                let plant = document.at("plant").text();
+                let plant =
+                    if plant == model { String::new() } else { format!(" --plant {plant}.fdc") };
+                format!("fdcc mpc {model}.fdc{plant} --steps {steps} --out results")
+            }
+        }
+    }
+
+    /// Why it did not come to its end.
+    fn early(self, document: &Json) -> Option<String> {
+        let key = if self == Run::Simulation { "status" } else { "ended" };
+        let how = document.at(key).text();
+        (how != "completed").then(|| how.replace('_', " "))
+    }
+}
+
+fn events(document: &Json) -> &[Json] {
+    document.at("events").list()
+}
+
+fn statuses(document: &Json) -> Vec<&str> {
+    let statuses = document.at("status").list();
+    statuses.iter().map(Json::text).collect()
+}
+
+fn unsolved(document: &Json) -> usize {
+    let is_unsolved = |status: &&&str| !["solved", "acceptable"].contains(*status);
+    statuses(document).iter().filter(is_unsolved).count()
+}
+
+fn solved(document: &Json) -> String {
+    match unsolved(document) {
+        0 => "all are solved".into(),
+        1 => "one is not solved".into(),
+        many => format!("{many} are not solved"),
+    }
+}
+
+fn located(document: &Json) -> String {
+    let steps = document.at("counts").at("steps").number().unwrap_or(0.0);
+    format!(
+        "The system as it was written, integrated in {} from event to event: each of the {} is \
+         located, nothing is smoothed.",
+        plural(steps as usize, "step"),
+        plural(events(document).len(), "event")
+    )
+}
+
+/// When what happened, and how far from grazing.
+pub fn table_of_events(document: &Json) -> String {
+    let row = |it: &Json| {
+        let number = |key: &str| it.at(key).number().unwrap_or(f64::NAN);
+        vec![
+            Cell::text(it.at("surface").text()),
+            Cell::text(it.at("kind").text().replace('_', " ")),
+            Cell::Number(of_time(document).value(number("time"), 10)),
+            Cell::Number(significant(number("margin"), 4)),
+        ]
+    };
+    let rows: Vec<_> = events(document).iter().map(row).collect();
+    table("Events", &["surface", "what happens", "time", "margin"], &rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of_text(text: &str) -> (Run, Json) {
+        let json: Json = serde_json::from_str(text).expect("it is JSON");
+        (of(&json).expect("it is a run"), json)
+    }
+
+    #[test]
+    fn a_simulation_that_ends_early_is_not_certain() {
+        let text = |status: &str| {
+            format!(r#"{{"status":"{status}","counts":{{"rejected":0,"steps":3}},"events":[1]}}"#)
+        };
+        let (run, json) = of_text(&text("completed"));
+        assert_eq!(run.title(&json), "Simulated to the end, 1 event");
+        assert_eq!(run.mark(&json), Mark::Certain);
+        let (run, json) = of_text(&text("not_unique"));
+        assert!(run.title(&json).ends_with("ended early: not unique"), "{}", run.title(&json));
+        assert_eq!(run.mark(&json), Mark::Wrong);
+        assert!(run.claims(&json).iter().any(|it| it.mark == Mark::Wrong));
+    }
+
+    #[test]
+    fn a_loop_tells_steps_that_are_not_solved() {
+        let (run, json) = of_text(
+            r#"{"model":"a","plant":"b","ended":"completed","status":["solved","time_limit"]}"#,
+        );
+        assert_eq!(run, Run::ClosedLoop);
+        assert_eq!(run.title(&json), "In closed loop: 2 steps, one is not solved");
+        assert_eq!(run.mark(&json), Mark::Open);
+        assert_eq!(run.again(&json), "fdcc mpc a.fdc --plant b.fdc --steps 2 --out results");
+    }
+}

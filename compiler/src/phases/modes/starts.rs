@@ -1,0 +1,101 @@
+//! Conditions at the first time, where the start is chosen.
+//!
+//! Bounds of states, path conditions and sides of surfaces hold at the nodes of the collocation,
+//! which say nothing of the first time. What is held or on an arc from the first time on begins
+//! there.
+
+use super::independent::Independent;
+use super::{Arc, Mode, Modes};
+use crate::expressions::graph::ExprId;
+use crate::model::{Constraint, Place, Range, Symbol};
+
+impl Modes<'_> {
+    /// Those of the first phase; none of what is given at the start.
+    pub(super) fn starts(&mut self) -> Vec<Constraint> {
+        let mut known = Independent::default();
+        let mut rows = self.surfaces_at_start(&mut known);
+        rows.extend(self.limits_at_start(&mut known));
+        rows
+    }
+
+    fn surfaces_at_start(&mut self, known: &mut Independent) -> Vec<Constraint> {
+        let (model, phases) = (self.between.division.model, self.phases);
+        let mut rows = Vec::new();
+        for (switch, mode) in model.switches().iter().zip(&phases[0].modes) {
+            let range = match mode {
+                Mode::Held => self.between.division.exactly_zero(),
+                Mode::Above => self.between.division.not_below(),
+                Mode::Below => self.between.division.not_above(),
+            };
+            let is_held = *mode == Mode::Held;
+            for surface in &model.surfaces[switch.surfaces.clone()] {
+                let is_asked = (is_held || !switch.is_ball) && self.is_chosen(surface.psi);
+                let is_told = is_asked && !self.is_linked_to_zero(surface.psi);
+                if is_told && (!is_held || known.add(self, surface.psi)) {
+                    rows.push(self.at_start(&surface.place, surface.psi, range));
+                }
+            }
+        }
+        rows
+    }
+
+    fn limits_at_start(&mut self, known: &mut Independent) -> Vec<Constraint> {
+        let first = &self.phases[0];
+        let moving = self.moving(first);
+        let states = self.all_bounds_of_states();
+        let mut rows = Vec::new();
+        for (row, arc) in states.iter().chain(&moving.path).zip(&first.contacts) {
+            let range = self.between.division.exactly_zero();
+            let (values, range) = match self.rates_of(row, *arc, &moving) {
+                Some(rates) => (rates[..rates.len() - 1].to_vec(), range),
+                None if self.is_linked_to_bound(row) => continue,
+                None if self.is_of_states(row.value) => (vec![row.value], row.range),
+                None => continue,
+            };
+            for value in values {
+                let is_told = self.is_chosen(value) && !self.is_linked_to_zero(value);
+                if is_told && (*arc == Arc::Free || known.add(self, value)) {
+                    rows.push(self.at_start(&row.place, value, range));
+                }
+            }
+        }
+        rows
+    }
+
+    /// Whether links say that it is 0 at the first time.
+    fn is_linked_to_zero(&mut self, value: ExprId) -> bool {
+        let (division, linked) = (&self.between.division, &mut self.linked);
+        let own = (&division.graph, &division.symbols[..]);
+        linked.as_mut().is_some_and(|it| it.is_zero(own, value))
+    }
+
+    /// Whether links put it on one of its bounds.
+    fn is_linked_to_bound(&mut self, row: &Constraint) -> bool {
+        [row.range.lower, row.range.upper].into_iter().any(|bound| {
+            let gap = self.between.division.graph.sub(row.value, bound);
+            self.is_linked_to_zero(gap)
+        })
+    }
+
+    /// Whether it reads a state whose start is chosen.
+    fn is_chosen(&self, value: ExprId) -> bool {
+        let division = &self.between.division;
+        let is_chosen = |at: &u32| match division.symbols[*at as usize] {
+            Symbol::State(state) => division.model.states[state].start.is_none(),
+            _ => false,
+        };
+        division.graph.inputs_of(&[value]).iter().any(is_chosen)
+    }
+
+    pub(super) fn is_of_states(&self, value: ExprId) -> bool {
+        let division = &self.between.division;
+        let is_control = |at: &u32| matches!(division.symbols[*at as usize], Symbol::Control(_));
+        !division.graph.inputs_of(&[value]).iter().any(is_control)
+    }
+
+    fn at_start(&mut self, place: &Place, value: ExprId, range: Range) -> Constraint {
+        let value = self.between.division.at_own_start(value);
+        let place = Place { name: format!("{} at the start", place.name), ..place.clone() };
+        Constraint { place, value, range }
+    }
+}

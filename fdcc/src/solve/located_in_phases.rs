@@ -1,0 +1,215 @@
+//! From the smoothed answer to a model with phases to the optimum of the true system, where the
+//! model asks for that.
+
+use super::Solution;
+use super::certify::{accuracy, certificate};
+use super::found::{FoundChain, Phases};
+use super::located::{grid, may_be_near};
+use super::phases::Whole as WholeChain;
+use super::report::Options;
+use super::true_optimum::{
+    Certificate, Check, Contacts, Located, Part, Spent, Whole, halved_in_phases, locate_in_phases,
+};
+use crate::model::Model;
+use crate::verification::{LinkGap, Verification, objective_of_links};
+use fdcc_runtime::nlp::Status;
+use fdcc_runtime::problem::{Method, Problem};
+use fdcc_runtime::solve::{ChainOutcome, Outcome};
+
+/// The located optimum if it is certified; else the smoothed answer, with what was checked.
+pub(super) fn solution(model: &Model, found: FoundChain, options: &Options) -> Solution {
+    if !asks_for_truth(model, &found) {
+        return Solution::of_phases(model.clone(), found);
+    }
+    let unknowns = &found.chain.unknowns;
+    let problems = found.chain.phases.iter();
+    let problems: Vec<Problem> =
+        problems.map(|it| Problem { unknowns: unknowns.clone(), ..it.clone() }).collect();
+    let own = model.meaning().phases.iter().map(|it| &it.model).zip(&problems);
+    let parts: Vec<Part> = own.map(|(model, problem)| Part { model, problem }).collect();
+    let search = Search { model, found: &found, parts: &parts, options };
+    match search.certified() {
+        Ok(answer) => answer,
+        Err(certificate) => {
+            let is_solved = found.is_solved();
+            let mut smoothed = Solution::of_phases(model.clone(), found);
+            smoothed.certificate = is_solved.then_some(certificate);
+            smoothed
+        }
+    }
+}
+
+/// What is known before anything is located.
+struct Search<'s> {
+    model: &'s Model,
+    found: &'s FoundChain,
+    parts: &'s [Part<'s>],
+    options: &'s Options<'s>,
+}
+
+impl Search<'_> {
+    /// The answer that is certified, or the certificate that fails least.
+    fn certified(&self) -> Result<Solution, Certificate> {
+        let (whole, stop) = (self.model.meaning(), self.options.stop);
+        let mut spent = Spent::default();
+        let smoothed: Vec<Whole> = self.found.outcome.phases.iter().map(smoothed).collect();
+        let located = locate_in_phases(whole, self.parts, &smoothed, stop, &mut spent);
+        let Some(mut located) = located else { return Err(self.nothing()) };
+        let mut answer = self.answer(&located);
+        while answer.certificate.as_ref().is_some_and(Certificate::is_inaccurate) {
+            let finer = halved_in_phases(whole, self.parts, located, stop, &mut spent);
+            let Some(finer) = finer else { break };
+            answer = self.answer(&finer);
+            located = finer;
+        }
+        match answer.certificate.take_if(|it| !it.is_certified()) {
+            Some(missing) => Err(missing),
+            None => Ok(self.ended(answer)),
+        }
+    }
+
+    /// What is certified meets more than the tolerance of the search.
+    fn ended(&self, mut answer: Solution) -> Solution {
+        let (is_global, first) = (self.is_global(), &self.found.outcome.solution);
+        let solution = &mut answer.outcome.solution;
+        solution.status = Status::Solved;
+        solution.global = is_global;
+        solution.counts.iterations += first.counts.iterations;
+        answer
+    }
+
+    /// Whether every optimum is global: as for a model of one piece.
+    fn is_global(&self) -> bool {
+        let is_smooth = |it: &Part| it.model.surfaces.is_empty() && it.problem.is_autonomous;
+        self.found.outcome.solution.global && self.parts.iter().all(is_smooth)
+    }
+
+    /// Where no structure could be solved.
+    fn nothing(&self) -> Certificate {
+        let is_stopped = (self.options.stop)().is_break();
+        Certificate::nothing_located(if is_stopped { "finished" } else { "located" })
+    }
+
+    /// All phases in the words of the model, with what is checked of them.
+    fn answer(&self, located: &[Located]) -> Solution {
+        let joint = &located[0].joint;
+        let pairs = || self.parts.iter().zip(located);
+        let phases: Vec<Outcome> = pairs().map(|(part, it)| outcome(part, it)).collect();
+        let problems = pairs().zip(&phases).map(|((part, it), own)| problem(part, it, own));
+        let mut chain = self.found.chain.clone();
+        chain.phases = problems.collect();
+        let outcome = ChainOutcome { phases, sigma: Vec::new(), ..joint.outcome.clone() };
+        let starts = self.found.starts.clone();
+        let found = FoundChain { chain, outcome, step_errors: None, starts, others: Vec::new() };
+        let mut solution = Solution::of_phases(self.model.clone(), found);
+        solution.certificate = Some(self.certificate(located, &solution));
+        let mut first = 0;
+        for ((part, own), it) in pairs().zip(&mut solution.parts) {
+            let gradients = own.with_gradients(part.model, part.problem);
+            it.outcome.trajectory.costates =
+                gradients.whole(part.problem).outcome.trajectory.costates;
+            it.between_jumps = Some(gradients.in_phase(first).into());
+            first += own.structure.phases.len();
+        }
+        solution.of_holds = self.sensitivities_of_holds(located);
+        let (model, chain) = (joint.model.clone(), joint.chain.clone());
+        let outcome = joint.outcome.clone();
+        solution.between_jumps = Some(Phases { model, chain, outcome });
+        solution
+    }
+
+    fn sensitivities_of_holds(&self, located: &[Located]) -> Vec<f64> {
+        let mut sum = vec![0.0; self.model.meaning().params.len()];
+        for (part, it) in self.parts.iter().zip(located) {
+            let own = it.sensitivities_of_holds(part.model, part.problem);
+            sum.iter_mut().zip(own).for_each(|(sum, more)| *sum += more);
+        }
+        sum
+    }
+
+    /// Each figure is the worst of all phases; beside these the objective and the links, which are
+    /// of all phases.
+    fn certificate(&self, located: &[Located], solution: &Solution) -> Certificate {
+        let replays = solution.verify_phases().ok();
+        let of = |(at, (part, it)): (usize, (&Part, &Located))| {
+            let replay = replays.as_ref().map(|it| &it.0[at]);
+            let own = certificate(it, part.model, part.problem, &solution.parts[at], replay);
+            own.of_phase(&self.model.meaning().phases[at].place.name)
+        };
+        let all = self.parts.iter().zip(located).enumerate().map(of);
+        let mut all = all.reduce(Certificate::with).unwrap_or_default();
+        let limit = accuracy(self.parts[0].problem);
+        let links = replays.as_ref().map_or(f64::INFINITY, |it| largest(&it.1));
+        all.put(Check { name: "links", figure: links, limit });
+        let objective = |it: &Vec<Verification>| gap_of_objective(located, solution, it);
+        let objective = replays.as_ref().map_or(f64::INFINITY, |it| objective(&it.0));
+        all.put(Check { name: "objective", figure: objective, limit });
+        all
+    }
+}
+
+fn largest(gaps: &[LinkGap]) -> f64 {
+    gaps.iter().map(|it| it.part.abs()).fold(0.0, f64::max)
+}
+
+/// The difference between the objective of the replays and that of the plan, for its size.
+fn gap_of_objective(located: &[Located], solution: &Solution, replays: &[Verification]) -> f64 {
+    let Some(WholeChain { chain, .. }) = &solution.whole else { return f64::INFINITY };
+    if !solution.problem.has_objective {
+        return 0.0;
+    }
+    let own = solution.objective();
+    let sizes = located.iter().map(Located::objective_size);
+    let size = own.abs().max(sizes.fold(0.0, f64::max));
+    let of_phases: f64 = replays.iter().filter_map(|it| it.simulation.objective).sum();
+    let linked = solution.problem.sense * objective_of_links(chain, &solution.record(), replays);
+    let is_whole = replays.iter().all(|it| it.is_whole);
+    let gap = (of_phases + linked - own).abs() / size;
+    if is_whole { gap } else { f64::INFINITY }
+}
+
+fn smoothed(outcome: &Outcome) -> Whole {
+    Whole {
+        outcome: outcome.clone(),
+        is_exact: false,
+        jumps: Vec::new(),
+        phases: Vec::new(),
+        beside: Vec::new(),
+    }
+}
+
+/// A phase as one trajectory.
+fn outcome(part: &Part, located: &Located) -> Outcome {
+    let mut outcome = located.whole(part.problem).outcome;
+    Contacts::new(part.model, located).put_multipliers(&mut outcome.trajectory);
+    outcome
+}
+
+/// A phase on the grid of its answer.
+fn problem(part: &Part, located: &Located, outcome: &Outcome) -> Problem {
+    let finest = located.chain.phases.iter().max_by_key(|it| it.method.intervals());
+    let method = finest.map_or(&part.problem.method, |it| &it.method).clone();
+    let method = Method { grid: grid(&outcome.trajectory.time), ..method };
+    Problem { method, ..part.problem.clone() }
+}
+
+/// Whether the system that was written is meant: where something switches, because no width is
+/// named; else because no phase says on how many intervals.
+fn asks_for_truth(model: &Model, found: &FoundChain) -> bool {
+    let phases = || model.meaning().phases.iter().map(|it| &it.model);
+    if phases().any(|it| !it.sums.is_empty()) {
+        return false;
+    }
+    let mut switched = phases().filter(|it| !it.surfaces.is_empty()).peekable();
+    let outcome = &found.outcome;
+    match switched.peek() {
+        Some(_) => {
+            may_be_near(&outcome.solution.status, outcome.is_impossible)
+                && switched.all(|it| !it.method.names_width())
+        }
+        None => {
+            let has_objective = found.chain.phases[0].has_objective;
+            found.is_solved() && has_objective && phases().all(|it| !it.method.names_grid)
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! What the multipliers of a chain do not say of the sensitivity of the optimal cost: parameters
+//! that move a surface which is held from the first time on, or until the last.
+//!
+//! A start beside the surface is led onto it at once, so that the objective changes by the gradient
+//! (`costates.rs`) and not by the multipliers: with `lambda = gradient + sum of c d` by `c dpsi/dp`
+//! less. An end beside it is another motion for each side, so that there the objective has a kink.
+
+use super::Located;
+use super::costates::Hold;
+use super::tuning::costates::SAME;
+use fdcc_compiler::{Model, Slopes};
+use fdcc_runtime::problem::Problem;
+use nalgebra::{DMatrix, DVector};
+
+impl Located {
+    /// What is to be added to the derivative by each parameter; NaN at a kink. `model` is what
+    /// holds between jumps, `problem` what is smoothed of that.
+    pub fn sensitivities_of_holds(&self, model: &Model, problem: &Problem) -> Vec<f64> {
+        let mut all = vec![0.0; model.params.len()];
+        if let Some(hold) = Hold::new(self, (model, problem), 0) {
+            let coefficients = hold.at(0).0;
+            let slopes = hold.normals.starts_by_parameters(&hold.point(0));
+            for (c, slopes) in coefficients.iter().zip(slopes) {
+                all.iter_mut().zip(slopes).for_each(|(sum, slope)| *sum -= c * slope);
+            }
+        }
+        if let Some(hold) = Hold::new(self, (model, problem), self.structure.phases.len() - 1) {
+            let last = hold.point(hold.trajectory().time.len() - 1);
+            let (psi, ends) = (hold.normals.slopes(&last), hold.normals.slopes_of_ends(&last));
+            let kinks = kinks(psi, ends, all.len());
+            all.iter_mut().zip(kinks).filter(|it| it.1).for_each(|it| *it.0 = f64::NAN);
+        }
+        all
+    }
+}
+
+/// For each parameter whether it moves a condition at the end that what is `known` there, and the
+/// conditions before it, say already, and does not move these as much.
+fn kinks(mut known: Vec<Slopes>, ends: Vec<Slopes>, parameters: usize) -> Vec<bool> {
+    let mut all = vec![false; parameters];
+    for end in ends {
+        let Some(parts) = parts(&known, &end.by_state) else {
+            known.push(end);
+            continue;
+        };
+        for (at, is_kink) in all.iter_mut().enumerate() {
+            let moved = known.iter().zip(&parts).map(|(it, part)| part * it.by_parameters[at]);
+            let (own, moved) = (end.by_parameters[at], moved.sum::<f64>());
+            *is_kink |= (own - moved).abs() > SAME * (own.abs() + moved.abs());
+        }
+    }
+    all
+}
+
+/// How much of each slope adds up to another one; nothing if they do not.
+fn parts(known: &[Slopes], other: &[f64]) -> Option<Vec<f64>> {
+    let column = |it: &Slopes| DVector::from_column_slice(&it.by_state);
+    let columns: Vec<DVector<f64>> = known.iter().map(column).collect();
+    let matrix = DMatrix::from_columns(&columns);
+    let other = DVector::from_column_slice(other);
+    let decomposed = matrix.clone().svd(true, true);
+    let least = SAME * decomposed.singular_values.max();
+    let parts = decomposed.solve(&other, least).ok()?;
+    let rest = (&matrix * &parts - &other).norm();
+    // What rounding leaves is no part.
+    let size = SAME * other.norm();
+    let part = |(part, column): (&f64, &DVector<f64>)| {
+        if part.abs() * column.norm() > size { *part } else { 0.0 }
+    };
+    (rest <= size).then(|| parts.iter().zip(&columns).map(part).collect())
+}

@@ -1,0 +1,259 @@
+//! One solve of a structure: of the phases of given modes of a model, or of all phases of a model
+//! with phases at once, of which one has another structure than before.
+
+use super::start::Signals;
+use super::structure::Structure;
+use super::tuning::certificate::STATIONARY;
+use super::tuning::search::{
+    BUDGET, FEWEST, FEWEST_ITERATIONS, FINER, GRADES, INTERVALS, MOST_ITERATIONS, MOST_SOLVES,
+    TOLERANCE,
+};
+use super::{Located, Search, Whole};
+use fdcc_compiler::{Model, PhaseOfModes, compile_chain, with_modes, with_modes_in_phases};
+use fdcc_runtime::nlp::{Solution as NlpSolution, Start, Status};
+use fdcc_runtime::problem::{Chain, ControlShape, Grid, Method, Order, Problem, Scheme};
+use fdcc_runtime::solve::warm_start::from_earlier;
+use fdcc_runtime::solve::{ChainOutcome, solve_chain};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// What was solved.
+pub(crate) struct Joint {
+    /// A model of several phases, none of which has surfaces.
+    pub model: Model,
+    pub chain: Chain,
+    pub outcome: ChainOutcome,
+}
+
+/// A phase as it is written.
+#[derive(Clone, Copy)]
+pub(crate) struct Part<'s> {
+    pub model: &'s Model,
+    /// The smoothed problem, with the unknowns of the whole.
+    pub problem: &'s Problem,
+}
+
+/// A phase among those of a model.
+#[derive(Clone, Copy)]
+pub(super) struct Among<'s> {
+    pub whole: &'s Model,
+    pub parts: &'s [Part<'s>],
+    /// Which of them it is.
+    pub own: usize,
+}
+
+/// A phase with the structure that it is to have, and where its solve begins.
+struct Planned<'p> {
+    part: Part<'p>,
+    structure: &'p Structure,
+    from: &'p Whole,
+}
+
+impl<'s> Search<'s> {
+    pub(super) fn solve(&mut self, structure: Structure, from: &Whole) -> Option<Located> {
+        let phases = self.among.map_or(1, |it| it.parts.len());
+        self.spent.solves += 1;
+        let is_spent =
+            self.spent.solves > phases * MOST_SOLVES || self.spent.work > phases * BUDGET;
+        if is_spent || (self.stop)().is_break() {
+            return None;
+        }
+        let planned = self.planned(&structure, from);
+        let model = with_polynomials(self.divided(&planned)?, &planned);
+        let mut chain = compile_chain(&model).ok()?;
+        let intervals: usize = chain.phases.iter().map(|it| it.method.intervals()).sum();
+        for phase in &mut chain.phases {
+            let left = (phases * BUDGET - self.spent.work) / intervals;
+            phase.method.max_iter = MOST_ITERATIONS.min(left.max(FEWEST_ITERATIONS));
+        }
+        let start = start(&planned, &chain);
+        let outcome = solve_chain(&chain, Some(start), &mut |_, _| (self.stop)()).ok()?;
+        self.spent.work += outcome.solution.counts.iterations * intervals;
+        let joint = Joint { model, chain, outcome };
+        is_stationary(&joint.outcome.solution).then(|| self.located(joint, &planned))
+    }
+
+    /// All phases, in the order of the model.
+    fn planned<'p>(&self, structure: &'p Structure, from: &'p Whole) -> Vec<Planned<'p>>
+    where
+        's: 'p,
+    {
+        let own = Part { model: self.model, problem: self.problem };
+        let mut all = vec![Planned { part: own, structure, from }];
+        if let Some(Among { parts, own, .. }) = self.among {
+            let others = parts.iter().enumerate().filter(|it| it.0 != own);
+            let others = others.zip(&from.beside).map(|((_, part), (structure, from))| Planned {
+                part: *part,
+                structure,
+                from,
+            });
+            all.extend(others);
+            all[..=own].rotate_left(1);
+        }
+        all
+    }
+
+    fn divided(&self, planned: &[Planned]) -> Option<Model> {
+        let Some(among) = self.among else {
+            return with_modes(self.written, &planned[0].structure.phases).ok();
+        };
+        let structures: Vec<&[PhaseOfModes]> =
+            planned.iter().map(|it| &it.structure.phases[..]).collect();
+        with_modes_in_phases(among.whole, &structures).ok()
+    }
+
+    /// What was found for the phase, with what was found for the others.
+    fn located(&self, joint: Joint, planned: &[Planned]) -> Located {
+        let written = self.among.map_or(0, |it| it.whole.links.len());
+        let links = &joint.model.links[..joint.model.links.len() - written];
+        let told = links.iter().filter(|it| it.objective.is_some() || !it.rows.is_empty()).count();
+        let joint = Arc::new(joint);
+        let (mut all, mut phase, mut link) = (Vec::new(), 0, 0);
+        for it in planned {
+            let phases = phase..phase + it.structure.phases.len();
+            let is_own = |at: &usize| {
+                joint.chain.links[*at].ends.iter().all(|end| phases.contains(&end.phase()))
+            };
+            let count = (link..told).take_while(is_own).count();
+            let slice = Slice { phases: phases.clone(), links: link..link + count };
+            all.push(slice.located(&joint, it));
+            (phase, link) = (phases.end, link + count);
+        }
+        let own = all.remove(self.among.map_or(0, |it| it.own));
+        Located { beside: all, ..own }
+    }
+
+    /// Where a solve begins that differs in the structure of this phase.
+    pub(super) fn whole(&self, located: &Located) -> Whole {
+        let mut whole = located.whole(self.problem);
+        if let Some(Among { parts, own, .. }) = self.among {
+            let others = parts.iter().enumerate().filter(|it| it.0 != own).map(|it| it.1);
+            let others = others.zip(&located.beside);
+            whole.beside =
+                others.map(|(part, it)| (it.structure.clone(), it.whole(part.problem))).collect();
+        }
+        whole
+    }
+}
+
+/// What belongs to one phase of the model.
+struct Slice {
+    phases: Range<usize>,
+    links: Range<usize>,
+}
+
+impl Slice {
+    fn located(self, joint: &Arc<Joint>, of: &Planned) -> Located {
+        let (chain, outcome) = (&joint.chain, &joint.outcome);
+        let mut phases = outcome.phases[self.phases.clone()].to_vec();
+        let models = &joint.model.phases;
+        let added = match &models[models.len().min(self.phases.start)..] {
+            [first, ..] if self.phases.len() > 1 => first.model.boundary.len(),
+            [only, ..] => only.model.boundary.len() - of.part.model.boundary.len(),
+            [] => joint.model.boundary.len() - of.part.model.boundary.len(),
+        };
+        // The multipliers of conditions that nobody wrote are told to nobody.
+        phases[0].trajectory.end_multipliers.drain(..added);
+        let mut solution = outcome.solution.clone();
+        solution.multipliers.constraints = self.multipliers(joint);
+        let mut located = Located {
+            joint: Arc::clone(joint),
+            chain: Chain {
+                phases: chain.phases[self.phases].to_vec(),
+                links: chain.links[self.links].to_vec(),
+                ..chain.clone()
+            },
+            outcome: ChainOutcome { solution, phases, ..outcome.clone() },
+            structure: of.structure.clone(),
+            beside: Vec::new(),
+            insertion: f64::INFINITY,
+            gain: f64::INFINITY,
+            loss: f64::INFINITY,
+            others: Vec::new(),
+        };
+        located.structure.times = located.times();
+        located
+    }
+
+    /// Those of its links; the links of all phases come last.
+    fn multipliers(&self, joint: &Joint) -> Vec<f64> {
+        let count = |links: Range<usize>| -> usize {
+            joint.chain.links[links].iter().map(|it| it.bounds.len()).sum()
+        };
+        let rows = &joint.outcome.solution.multipliers.constraints;
+        let behind = count(self.links.start..joint.chain.links.len());
+        let first = rows.len() - behind;
+        rows[first..first + count(self.links.clone())].to_vec()
+    }
+}
+
+fn start(planned: &[Planned], chain: &Chain) -> Start {
+    let times = planned.iter().flat_map(|it| {
+        let times = &it.structure.times;
+        times[1..times.len() - 1].iter().copied()
+    });
+    let switches: Vec<f64> = times.collect();
+    let mut problems = chain.phases.iter();
+    let mut phases = Vec::new();
+    for Planned { part, structure, from } in planned {
+        let own = &from.outcome.trajectory.parameters;
+        let unknowns = part.problem.unknowns.iter().map(|it| own[it.parameter]).collect();
+        let signals = Signals { from, unknowns, switches: &switches };
+        phases.extend(signals.phases(part.model, &mut problems, structure));
+    }
+    from_earlier(chain, &phases)
+}
+
+/// Where a direction is flat the last digits may take more iterations than there are, or more
+/// digits; what they are worth the certificate says.
+fn is_stationary(found: &NlpSolution) -> bool {
+    let has_ended = matches!(
+        found.status,
+        Status::Solved | Status::Acceptable | Status::IterationLimit | Status::NumericalFailure
+    );
+    has_ended && found.kkt_error.max(found.constraint_violation) <= STATIONARY
+}
+
+/// Gauss nodes keep off the ends of phases, where a surface is 0.
+fn with_polynomials(mut model: Model, planned: &[Planned]) -> Model {
+    polynomials(&mut model.method, 1.0, &planned[0].structure.phases[0]);
+    let mut phases = model.phases.iter_mut();
+    for Planned { structure, .. } in planned {
+        let [first, last] = structure.ends();
+        let all = structure.phases.iter().zip(structure.times.windows(2)).zip(&mut phases);
+        for ((own, pair), phase) in all {
+            polynomials(&mut phase.model.method, (pair[1] - pair[0]) / (last - first), own);
+        }
+    }
+    model
+}
+
+/// Of equal intervals the first and the last are halved towards the ends again and again.
+fn graded(intervals: usize) -> Grid {
+    let step = 1.0 / intervals as f64;
+    let begin = (0..GRADES).rev().map(|k| step * 0.5f64.powi(k + 1));
+    let begin: Vec<f64> = begin.collect();
+    let even = (1..intervals).map(|k| step * k as f64);
+    let end = begin.iter().rev().map(|it| 1.0 - it);
+    let inside = begin.iter().copied().chain(even).chain(end);
+    Grid::Mesh([0.0].into_iter().chain(inside).chain([1.0]).collect())
+}
+
+/// `part` is that of the whole time.
+fn polynomials(method: &mut Method, part: f64, phase: &PhaseOfModes) {
+    let finer = if method.controls == ControlShape::Linear { FINER } else { 1 };
+    let own = INTERVALS * part * f64::from(1 << phase.halvings);
+    let intervals = (own.round() as usize).max(FEWEST) * finer;
+    *method = Method {
+        scheme: Scheme::Gauss(4),
+        order: Order::Fixed,
+        path_at_nodes: true,
+        steps: 1,
+        lagged: Vec::new(),
+        grid: if phase.is_graded { graded(intervals) } else { Grid::Uniform(intervals) },
+        tol: TOLERANCE,
+        sigma: None,
+        continuation: Vec::new(),
+        ..method.clone()
+    };
+}

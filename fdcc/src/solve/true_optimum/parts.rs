@@ -1,0 +1,127 @@
+//! The search in a model with phases: each phase has a structure of its own, and all are solved at
+//! once.
+//!
+//! ```text
+//! structure   of each phase, from its smoothed signals
+//! solve       all phases with the links between them
+//! mend        one phase after the other, the structures of the others as they are,
+//!             until nothing changes in any of them
+//! ```
+
+use super::joint::{Among, Part};
+use super::structure::Structure;
+use super::tuning::search::MOST_ROUNDS;
+use super::{Located, Search, Spent, Whole};
+use fdcc_compiler::{Model, limits};
+use fdcc_runtime::nlp::Stop;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+type Watch<'s> = &'s (dyn Fn() -> ControlFlow<Stop> + Sync);
+
+/// Looks for the optimum of the true system near the smoothed solutions of all phases; one of each
+/// phase, or nothing.
+pub(crate) fn locate_in_phases(
+    whole: &Model,
+    parts: &[Part],
+    smoothed: &[Whole],
+    stop: Watch,
+    spent: &mut Spent,
+) -> Option<Vec<Located>> {
+    let mut phases = Phases { whole, parts, stop, spent };
+    let mut all = phases.first_solved(smoothed)?;
+    for _ in 0..MOST_ROUNDS {
+        let before = Arc::clone(&all[0].joint);
+        for own in 0..parts.len() {
+            all = phases.mended(all, own)?;
+        }
+        if Arc::ptr_eq(&before, &all[0].joint) {
+            return Some(all);
+        }
+    }
+    // What was not looked at since another phase changed is not known to hold.
+    Some(all)
+}
+
+/// The same structures on intervals of half the length; nothing where these are short already.
+pub(crate) fn halved_in_phases(
+    whole: &Model,
+    parts: &[Part],
+    all: Vec<Located>,
+    stop: Watch,
+    spent: &mut Spent,
+) -> Option<Vec<Located>> {
+    let mut phases = Phases { whole, parts, stop, spent };
+    let halved: Vec<Structure> =
+        all.iter().map(|it| it.structure.halved()).collect::<Option<_>>()?;
+    let insertions: Vec<f64> = all.iter().map(|it| it.insertion).collect();
+    let mut search = phases.search(0);
+    let mut from = search.whole(&seen_from(all, 0));
+    from.beside.iter_mut().zip(&halved[1..]).for_each(|(it, own)| it.0.clone_from(own));
+    let mut finer = in_order(search.solve(halved[0].clone(), &from)?, 0);
+    for (own, (located, insertion)) in finer.iter_mut().zip(insertions).enumerate() {
+        located.insertion = insertion;
+        phases.search(own).compared(located);
+    }
+    Some(finer)
+}
+
+struct Phases<'s> {
+    whole: &'s Model,
+    parts: &'s [Part<'s>],
+    stop: Watch<'s>,
+    spent: &'s mut Spent,
+}
+
+impl Phases<'_> {
+    fn search(&mut self, own: usize) -> Search<'_> {
+        let Part { model, problem } = self.parts[own];
+        Search {
+            written: model,
+            model,
+            problem,
+            among: Some(Among { whole: self.whole, parts: self.parts, own }),
+            stop: self.stop,
+            spent: self.spent,
+        }
+    }
+
+    /// All phases as they look while they are smoothed; where that fails, one of them simpler.
+    fn first_solved(&mut self, smoothed: &[Whole]) -> Option<Vec<Located>> {
+        let of = |(part, whole): (&Part, &Whole)| {
+            Structure::of(part.problem, whole, limits(part.model).len())
+        };
+        let all: Vec<Structure> = self.parts.iter().zip(smoothed).map(of).collect();
+        (0..all.len()).find_map(|own| {
+            let others = all.iter().zip(smoothed).enumerate().filter(|it| it.0 != own);
+            let beside = others.map(|(_, (structure, whole))| (structure.clone(), whole.clone()));
+            let from = Whole { beside: beside.collect(), ..smoothed[own].clone() };
+            let located = self.search(own).first_solved(all[own].clone(), &from)?;
+            Some(in_order(located, own))
+        })
+    }
+
+    /// With one of the phases mended, and holds in it where they are worth having.
+    fn mended(&mut self, all: Vec<Located>, own: usize) -> Option<Vec<Located>> {
+        let mut search = self.search(own);
+        let mended = search.mended(seen_from(all, own))?;
+        let held = search.with_holds(mended);
+        let refined = search.refined(held);
+        let mut located = search.followed(refined);
+        located.others.clear();
+        Some(in_order(located, own))
+    }
+}
+
+/// One of the phases, with the others beside it.
+fn seen_from(mut all: Vec<Located>, own: usize) -> Located {
+    let located = all.remove(own);
+    Located { beside: all, ..located }
+}
+
+/// All phases, of which `own` has the others beside it.
+fn in_order(mut located: Located, own: usize) -> Vec<Located> {
+    let mut all = std::mem::take(&mut located.beside);
+    all.insert(own, located);
+    all
+}

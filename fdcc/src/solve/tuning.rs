@@ -1,0 +1,58 @@
+//! Every tuned number of solves by the library, by the file that uses it.
+
+pub(super) mod families {
+    /// Of more families of answers the worse ones are not looked at.
+    pub(crate) const MOST_FAMILIES: usize = 8;
+    /// Objectives within this, relative to their size, are of one family.
+    pub(crate) const SAME: f64 = 1e-6;
+}
+
+pub(super) mod magnitudes {
+    /// What is smaller than this part of its unit counts as nothing, and an objective below the
+    /// second as 0 (decision 30).
+    pub(crate) const NOTHING: f64 = 1e-6;
+    pub(crate) const NO_OBJECTIVE: f64 = 1e-8;
+    /// An objective that changes by a larger factor, or by its inverse, was rounding.
+    pub(crate) const ROUNDING: f64 = 1e3;
+    /// So often what is found is smaller again.
+    pub(crate) const MOST: usize = 4;
+}
+
+pub(super) mod optimality {
+    /// The Hamiltonian may be off by so much of the size of its terms.
+    pub(crate) const OFF: f64 = 0.4;
+    /// On how much of the time a control may violate the rule of signs.
+    pub(crate) const VIOLATED: f64 = 0.01;
+}
+
+pub(super) mod reach {
+    /// What is less than this part of the numbers that differ is no distance.
+    pub(crate) const NOTHING: f64 = 1e-6;
+    /// A search that takes more iterations is given up: this is news of a failure, not an answer.
+    pub(crate) const MOST_ITERATIONS: usize = 200;
+}
+
+pub(super) mod sequences {
+    /// More sequences than so many are solved on coarse grids first.
+    pub(crate) const FEW_SEQUENCES: usize = 3;
+    /// So many iterations are enough there.
+    pub(crate) const BRIEF: usize = 150;
+    /// A phase has so many intervals there at least.
+    pub(crate) const FEWEST_INTERVALS: usize = 20;
+    /// Sequences that are worse than the best by more than this part of its objective are not
+    /// solved once more.
+    pub(crate) const WORSE: f64 = 0.05;
+    /// A guess is not worth more steps of a simulation.
+    pub(crate) const STEPS: usize = 20_000;
+    /// More are not looked for where the guess leads to that many.
+    pub(crate) const LONGEST: usize = 100;
+    /// More than so many events pile up where two of them are nearer than this part of the largest
+    /// distance.
+    pub(crate) const FEW: usize = 8;
+    pub(crate) const SHORTEST: f64 = 1e-3;
+}
+
+pub(super) mod timing {
+    /// Controls come so much earlier or later, for the whole time.
+    pub(crate) const MOMENT: f64 = 1e-9;
+}

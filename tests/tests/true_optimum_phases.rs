@@ -1,7 +1,7 @@
 //! The true optimum of models with phases: every switch and arc located in each of them, all solved
 //! at once.
 
-use fdcc::{Expectation, Expected, Model, Options, Solution};
+use fdcc::{Executor, Expectation, Expected, Model, Options, Solution};
 use fdcc_tests::repository;
 
 fn solved(text: &str) -> Solution {
@@ -51,17 +51,18 @@ fn switches_are_located_in_every_phase() {
 fn smooth_phases_end_in_continuous_time() {
     let table = std::fs::read_to_string(repository().join("tests/peers/phases.csv"));
     let table = table.expect("the table is there");
-    let mut wrong = Vec::new();
-    for (name, text) in models("phases") {
-        let solution = solved(&without_method(&text));
+    let all = models("phases");
+    let wrong = |(name, text): &(String, String)| {
+        let solution = solved(&without_method(text));
         let row = table.lines().find_map(|it| it.strip_prefix(&format!("{name},objective,")));
         let known = row.and_then(|it| it.split(',').next()).and_then(|it| it.parse::<f64>().ok());
         let known = known.expect("each has a row");
         let difference = (solution.objective() - known).abs() / known.abs().max(1.0);
-        if !solution.is_certified() || difference > 1e-6 {
-            wrong.push(format!("{name}: {} {known}", solution.objective()));
-        }
-    }
+        let is_right = solution.is_certified() && difference <= 1e-6;
+        (!is_right).then(|| format!("{name}: {} {known}", solution.objective()))
+    };
+    let wrong = Executor::default().in_order(all.len(), |it| wrong(&all[it]), |_| false);
+    let wrong: Vec<_> = wrong.into_iter().flatten().collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 

@@ -5,11 +5,14 @@ use fdcc_tests::models::{problem, solve};
 
 /// A state without bounds that a control without bounds moves; what is minimised, and what else is
 /// declared.
-const CASES: [(&str, &str, &str); 9] = [
+const CASES: [(&str, &str, &str); 12] = [
     ("linear", "", "x(end)"),
     ("linear and small", "", "1e-6*x(end)"),
     ("linear, to one side", "control w in [-inf, 3]", "integral(w)"),
     ("quadratic", "", "-integral(u^2)"),
+    ("cubic, from a flat point", "", "integral(u^3)"),
+    ("quartic, from a flat point", "", "-integral(u^4)"),
+    ("exponential", "", "-integral(exp(u))"),
     ("a saddle", "control w", "integral(u*w)"),
     ("beyond a conjugate point", "", "integral(u^2 - 10*x^2)"),
     ("a root", "control w in [0, inf] guess 1", "-integral(sqrt(w + 1)) + integral(u^2)"),

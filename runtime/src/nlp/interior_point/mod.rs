@@ -112,7 +112,7 @@ fn rescaled_by_the_answer(
 }
 
 /// Where curvature or derivatives of higher order say that an answer is no minimum, others begin
-/// beside it; the lowest objective is the answer.
+/// beside it; the lowest objective is the answer, or that there is none.
 fn away_from_flat_points(
     mut best: Solution,
     nlp: &mut dyn Nlp,
@@ -135,7 +135,8 @@ fn away_from_flat_points(
             from(&Start { v, warm: None }, Algorithm::run),
             watch,
         );
-        let is_lower = next.status == Status::Solved && next.objective < best.objective;
+        let is_solved = next.status == Status::Solved || next.status == Status::Unbounded;
+        let is_lower = is_solved && next.objective < best.objective;
         best.counts = next.counts;
         if is_lower {
             best = next;
@@ -174,6 +175,8 @@ fn fallback(
         Status::NumericalFailure => first.status == Status::NumericalFailure,
         // A verdict says more than a failure.
         Status::Infeasible => first.status == Status::NumericalFailure,
+        // It falls without end at points that meet all conditions: there is no optimum.
+        Status::Unbounded => true,
         _ => false,
     };
     // Whoever stops the search is not told that there is nothing.

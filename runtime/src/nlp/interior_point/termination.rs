@@ -11,8 +11,8 @@ use super::kkt::System;
 use super::residuals::weighted_violation;
 use super::saddle::Departure;
 use super::tuning::termination::{
-    ACCEPTABLE_ERROR, ACCEPTABLE_ITERATIONS, DIVERGED, FALLS, FASTEST, LEAST_FALL, LEAST_TARGET,
-    MOST_WEIGHTED_VIOLATION, PATIENCE, SLOWEST,
+    ACCEPTABLE_ERROR, ACCEPTABLE_ITERATIONS, DIVERGED, FALLEN, FALLS, FASTEST, LEAST_FALL,
+    LEAST_TARGET, MOST_WEIGHTED_VIOLATION, PATIENCE, SLOWEST,
 };
 use super::vectors::largest;
 use crate::nlp::assessment::Assessment;
@@ -176,14 +176,15 @@ impl Algorithm {
     }
 
     /// Whether the objective falls by a part of itself again and again where variables are far
-    /// away: that these are large says nothing, as their optimum may be there.
+    /// away: that these are large says nothing, as their optimum may be there. Or where it is so
+    /// low as it gets at no finite answer: exponential functions fall before variables are far.
     fn has_diverged(&mut self, nlp: &dyn Nlp) -> bool {
         let largest = largest(&self.at.y[..self.formulation.variables]);
-        let is_far = largest > DIVERGED
-            && self.residuals.primal <= self.options.tol * largest
-            && largest > DIVERGED * farthest_bound(nlp);
         let (falls, before) = self.falls;
         let objective = self.values.objective;
+        let is_far = self.residuals.primal <= self.options.tol * largest.max(1.0)
+            && (objective < -FALLEN
+                || largest > DIVERGED && largest > DIVERGED * farthest_bound(nlp));
         let is_falling = is_far && objective < before - LEAST_FALL * before.abs();
         self.falls = (if is_falling { falls + 1 } else { 0 }, objective);
         self.falls.0 >= FALLS

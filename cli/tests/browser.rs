@@ -1,8 +1,6 @@
 //! Pages of solutions in a real browser: Chromium, where there is one.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 

@@ -1,8 +1,6 @@
 //! The page about sweeps on clusters: its commands do what it says.
 
-mod common;
-
-use common::{expect_exit, fdcc, folder, stdout};
+use crate::common::{expect_exit, fdcc, folder, stdout};
 use std::fs;
 
 /// The blocks of the page with their tags, in their order.

@@ -1,8 +1,6 @@
 //! The command from outside: what it prints, and how it ends.
 
-mod common;
-
-use common::stdout;
+use crate::common::{self, stdout};
 use std::process::Output;
 
 const MODELS: &[(&str, &[u8])] = &[

@@ -1,9 +1,7 @@
 //! `--confirmed`: the exit code tells whether an answer holds on the true system and nothing
 //! contradicts that it is an optimum.
 
-mod common;
-
-use common::{RAMP, expect_exit, fdcc, folder, json, model, number, stderr, stdout};
+use crate::common::{RAMP, expect_exit, fdcc, folder, json, model, number, stderr, stdout};
 use serde_json::Value;
 
 /// Friction 5.886 N on 2 kg over 1 m: the block waits, then is pulled for `tau = sqrt(6 m d/f)`, at

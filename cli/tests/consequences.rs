@@ -3,9 +3,7 @@
 //! Where what is left has a mistake in its syntax, that is all that is said, but for advice:
 //! nothing follows from what could not be read.
 
-mod common;
-
-use common::{fdcc, folder, json, model};
+use crate::common::{fdcc, folder, json, model};
 use std::fs;
 use std::ops::Range;
 

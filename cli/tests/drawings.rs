@@ -4,9 +4,7 @@
 //! With `UPDATE=1` the drawings are written to `tests/snapshots/` instead of compared with what is
 //! there. They are there to be read.
 
-mod common;
-
-use common::{fdcc_with, folder, stdout};
+use crate::common::{fdcc_with, folder, stdout};
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -1,8 +1,6 @@
 //! `fdcc emit`: the functions of a model as C.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use std::fs;
 
 #[test]

@@ -1,8 +1,6 @@
 //! `fdcc test`: what is expected, and what holds.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use serde_json::Value;
 
 /// [`RAMP`] with an `expect` block.

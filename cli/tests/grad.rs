@@ -1,8 +1,6 @@
 //! `fdcc grad` from outside: closed forms, what may be asked, and where there is no gradient.
 
-mod common;
-
-use common::{column, expect_exit, fdcc, folder, json, model, number, stderr, stdout};
+use crate::common::{column, expect_exit, fdcc, folder, json, model, number, stderr, stdout};
 use serde_json::Value;
 
 /// Example (2.3): `x(end) = a(2 + x0/(2 + a))`, `J' = 2(x0 + 1)/9 - x0^2/3 + (x0 + 6)^2/27` for `a
@@ -187,6 +185,44 @@ fn at_a_grazing_there_are_two_derivatives() {
     assert!(said.contains("below") && said.contains("above"), "{said}");
     let beside = fdcc(&folder, &["grad", "model.fdc", "--of", "y(end)", "--set", "p=0.01"], "");
     expect_exit(&beside, 0, "off the grazing");
+}
+
+/// `y = p - (x - 1)^2 (x - 2)^2` touches 0 twice in one long step: for `p < 0` all of `p` is left,
+/// for `p > 0` nothing, as of a grazing.
+const TWICE: &str = "\
+param p = 0
+time t in [0, 3]
+state x start 0
+state y start -4 + p
+surface edge = y
+dynamics {
+  x' = 1
+  y' in match edge {
+    below => -2*(x - 1)*(x - 2)*(2*x - 3)
+    above => -2*(x - 1)*(x - 2)*(2*x - 3) - 1
+  }
+}
+";
+
+/// A block at rest, pulled as hard as friction holds it, for an instant.
+const PULLED: &str = "\
+param p = 0
+time t in [0, 3]
+state x start 0
+state v start 0
+surface slip = v
+dynamics { x' = v  v' in (1 + p - (t - 1)^2*(t - 2)^2) - Sgn(slip) }
+";
+
+#[test]
+fn what_is_touched_inside_a_long_step_is_seen() {
+    for (name, text, of) in [("twice", TWICE, "y(end)"), ("pulled", PULLED, "x(end)")] {
+        let beside = &["--of", of, "--set", "p=-1e-3"];
+        found(&format!("grad_{name}_beside"), text, beside, 0);
+        let found = found(&format!("grad_{name}"), text, &["--of", of], 2);
+        assert_eq!(found["trusted"], false, "{name}: {found}");
+        assert!(number(&found["cause"]["time"]) > 0.5, "{name}: {found}");
+    }
 }
 
 /// Whether two derivatives are one does not depend on the unit of what is differentiated.

@@ -1,8 +1,6 @@
 //! Files that are no models: a clear answer at once from every command, and no panic.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use std::time::{Duration, Instant};
 
 /// Generous: the tests share the machine.

@@ -1,8 +1,6 @@
 //! What an installation needs besides the command: which program it is, completions, the manual.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use std::fs;
 
 #[test]

@@ -1,8 +1,6 @@
 //! `fdcc simulate` with other tolerances and methods.
 
-mod common;
-
-use common::{expect_exit, fdcc, folder, json, number, stderr};
+use crate::common::{expect_exit, fdcc, folder, json, number, stderr};
 
 /// `y = cos t`.
 const FAST: &str = "\

@@ -1,8 +1,6 @@
 //! What is too large, takes too long or is not whole is refused at once, with the number.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 

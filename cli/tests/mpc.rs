@@ -1,8 +1,6 @@
 //! `fdcc mpc`: a model controls a true system.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 
 /// It wants to be at 1, with a price on force.
 const BLOCK: &str = "\

@@ -1,8 +1,6 @@
 //! `fdcc new` from outside: every template is right, in the canonical layout, and can be solved.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use std::fs;
 
 #[test]

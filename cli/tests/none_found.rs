@@ -1,9 +1,7 @@
 //! What is said where nothing feasible is found: what was tried, and never that there is nothing,
 //! unless it is proved.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 
 /// The torque is too small for fifty intervals of implicit Euler, not for a hundred.
 const PENDULUM: &str = "model pendulum\ntime t in [0, 12]\nstate th start 0\nstate w start \

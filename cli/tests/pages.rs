@@ -5,9 +5,7 @@
 //! Numbers count as the same if they agree to six digits, or are rounding; iterations and seconds
 //! are not compared. With UPDATE=1 the pages are written anew.
 
-mod common;
-
-use common::{fdcc, folder, stdout};
+use crate::common::{fdcc, folder, stdout};
 use std::fs;
 use std::path::{Path, PathBuf};
 

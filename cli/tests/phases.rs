@@ -1,8 +1,6 @@
 //! Models with phases from the command line: documents, files, starts.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use serde_json::Value;
 
 const HOP: &[u8] = b"model hop\n\

@@ -1,9 +1,7 @@
 //! Repairs in `check --format json` and `sarif`: whoever applies them by their places gets what
 //! `fdcc fix` writes.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use serde_json::Value;
 use std::fs;
 

@@ -1,8 +1,6 @@
 //! The page of a solution: what it says, and that it needs nothing else.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use serde_json::Value;
 use std::path::Path;
 

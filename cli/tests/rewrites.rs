@@ -1,9 +1,7 @@
 //! `fdcc fmt`, `fdcc fix` and `fdcc check --watch` from outside: what they write, what they leave
 //! alone, how they end.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use std::fs;
 
 const WIDE: &str = "param a=1\nparam  bb = 2\n";

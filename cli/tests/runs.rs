@@ -1,8 +1,6 @@
 //! Pages of runs that are no solve: simulations, closed loops, sweeps; and what a terminal shows.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use std::fs;
 use std::path::Path;
 

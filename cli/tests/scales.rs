@@ -1,9 +1,7 @@
 //! The verdict does not depend on the units in which a model is written, nor on how large its
 //! numbers are.
 
-mod common;
-
-use common::{expect_exit, fdcc, folder, json, number, stdout};
+use crate::common::{expect_exit, fdcc, folder, json, number, stdout};
 use serde_json::Value;
 
 /// A block of mass 1 that friction of 3 m/s^2 holds, pulled over half a micrometre within 2 ms.

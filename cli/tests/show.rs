@@ -1,8 +1,6 @@
 //! `fdcc show`: a model at each stage of the compiler.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 
 #[test]
 fn every_stage_of_a_model_can_be_shown() {

@@ -1,8 +1,6 @@
 //! `fdcc simulate` from outside: JSON, control files, exit codes.
 
-mod common;
-
-use common::{RAMP, expect_exit, fdcc, folder, json, model, number, stderr, stdout};
+use crate::common::{RAMP, expect_exit, fdcc, folder, json, model, number, stderr, stdout};
 
 /// `v' in u - Sgn(v)` from rest.
 const BLOCK: &str = "\

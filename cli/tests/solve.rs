@@ -1,8 +1,6 @@
 //! `fdcc solve`: what it answers, on which stream, and how it ends.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use serde_json::Value;
 use std::path::Path;
 

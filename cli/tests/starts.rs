@@ -1,8 +1,6 @@
 //! Several starting points: the best solution is kept, and what was found is told.
 
-mod common;
-
-use common::{expect_exit, fdcc, folder, json, stdout};
+use crate::common::{expect_exit, fdcc, folder, json, stdout};
 
 /// `(p^2 - 1)^2 + p/10` has a minimum near 1, where the guess leads, and a lower one near -1. They
 /// are the outer roots of `4 p^3 - 4 p + 1/10`, by the trigonometric formula for three real roots.

@@ -1,9 +1,7 @@
 //! Solves that do not end with a solution: what is said at which line, and what is written all the
 //! same.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use serde_json::Value;
 
 #[test]

@@ -1,8 +1,6 @@
 //! `fdcc sweep`: one row per value, whatever the number of threads.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use serde_json::{Value, json};
 
 fn ramp(test: &str) -> std::path::PathBuf {
@@ -183,7 +181,7 @@ fn a_continued_sweep_starts_from_the_row_before() {
 fn the_lists_may_stand_in_the_model() {
     let ramp = RAMP.replace("goal = 1", "goal = 1 [m]");
     let text = format!("{ramp}sweep {{ goal = 100, 200 [cm]  N = 4 }}\n");
-    let folder = common::folder("sweep_in_model", &[("ramp.fdc", text.as_bytes())]);
+    let folder = folder("sweep_in_model", &[("ramp.fdc", text.as_bytes())]);
     let rows = json(&fdcc(&folder, &["sweep", "ramp.fdc", "--json"], ""));
     let goals: Vec<&str> =
         [0, 1].map(|row| rows[row]["swept"]["goal"].as_str().unwrap_or_default()).to_vec();

@@ -1,9 +1,7 @@
 //! `fdcc sweep --out` and `fdcc merge`: rows in files, which several processes write, and which
 //! another run goes on with.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};

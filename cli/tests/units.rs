@@ -1,9 +1,7 @@
 //! Units from outside: what is typed is in declared units, what is printed says them, files are in
 //! SI.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 
 /// A block that is braked: lengths in mm, time in ms, force in N.
 const BLOCK: &str = "\

@@ -1,8 +1,6 @@
 //! Every solve replays its controls on the true system, and says what comes of it.
 
-mod common;
-
-use common::{expect_exit, fdcc, folder, json, model, stdout};
+use crate::common::{expect_exit, fdcc, folder, json, model, stdout};
 
 /// The paper's own solution for sigma = 0.1, N = 1000 is not admissible: with the set-valued
 /// friction its controls leave the track by .346 and cost 7.000. Source: an independent replay with
@@ -31,7 +29,7 @@ fn the_race_car_is_not_called_solved_without_hearing_that_it_leaves_the_track() 
 /// solution itself.
 #[test]
 fn an_exact_scheme_is_confirmed_to_rounding() {
-    let ramp = common::RAMP.as_bytes();
+    let ramp = RAMP.as_bytes();
     let folder = folder("confirmed", &[("ramp.fdc", ramp)]);
     let verification = json(&fdcc(&folder, &["solve", "ramp.fdc", "--json", "--log", "none"], ""))
         ["verification"]

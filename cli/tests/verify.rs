@@ -1,9 +1,7 @@
 //! `fdcc verify`: a solution against the true system. The solutions are written by hand, so that
 //! all differences are known.
 
-mod common;
-
-use common::{RAMP, column, expect_exit, fdcc, folder, json, model, number, stderr, stdout};
+use crate::common::{RAMP, column, expect_exit, fdcc, folder, json, model, number, stderr, stdout};
 use serde_json::Value;
 use std::path::Path;
 

@@ -55,6 +55,7 @@ fn name(condition: Condition) -> &'static str {
         Condition::HamiltonianValue => "hamiltonian_value",
         Condition::Pause => "pause",
         Condition::Minimum => "minimum",
+        Condition::Curvature => "curvature",
     }
 }
 
@@ -74,6 +75,7 @@ fn words(it: &optimality::Check) -> String {
             let control = it.control.as_deref().unwrap_or_default();
             format!("`{control}` does not minimise the Hamiltonian on {percent} % of the time")
         }
+        Condition::Curvature => "the objective falls to second order along a direction".into(),
     }
 }
 
@@ -107,5 +109,8 @@ mod tests {
         assert_eq!(says(Condition::Minimum, 0.5, 0.01), sign);
         let undefined = "a pause on a surface gains NaN % of the size of its Hamiltonian";
         assert_eq!(says(Condition::Pause, f64::NAN, 0.4), undefined);
+        assert_eq!(says(Condition::Curvature, 0.0, 0.0), "nothing contradicts");
+        let falls = "the objective falls to second order along a direction";
+        assert_eq!(says(Condition::Curvature, 1.0, 0.0), falls);
     }
 }

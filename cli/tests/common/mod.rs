@@ -1,6 +1,4 @@
 //! Running the command from outside.
-#![allow(dead_code, reason = "each test file uses a part of it")]
-
 use serde_json::Value;
 use std::fs;
 use std::io::Write;
@@ -32,9 +30,11 @@ pub fn classic(name: &str) -> String {
     format!("{}/../tests/classics/{name}.fdc", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// An empty folder for one test, with some files.
-pub fn folder(test: &str, files: &[(&str, &[u8])]) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(test);
+/// An empty folder of the test that calls it, with some files.
+pub fn folder(name: &str, files: &[(&str, &[u8])]) -> PathBuf {
+    let thread = std::thread::current();
+    let test = thread.name().expect("it has the name of the test").replace("::", "-");
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(test).join(name);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("the folder for tests can be made");
     for (name, content) in files {

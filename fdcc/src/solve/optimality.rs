@@ -57,6 +57,8 @@ pub enum Condition {
     Pause,
     /// The control is at the bound that the slope of the Hamiltonian points to, or the slope is 0.
     Minimum,
+    /// No direction along the conditions was found in which the objective falls to second order.
+    Curvature,
 }
 
 impl Check {
@@ -106,6 +108,14 @@ impl Solution {
             size: 1.0,
             limit: VIOLATED,
         });
-        constant.into_iter().chain(pause).chain(signs).collect()
+        // Curvature has no size: it was found to be negative, or not.
+        let curvature = Check {
+            condition: Condition::Curvature,
+            control: None,
+            figure: f64::from(u8::from(self.outcome.solution.is_saddle)),
+            size: 1.0,
+            limit: 0.0,
+        };
+        constant.into_iter().chain(pause).chain(signs).chain([curvature]).collect()
     }
 }

@@ -33,4 +33,5 @@ pub use result::{
 pub use run::simulate;
 pub(crate) use steps::{departure, dormand_prince, radau};
 pub use system::{Ball, Enclosure, Enclosures, Interval, Jump, System, value};
-pub use tape::{Cause, Change, Instant, Piece, Regime, Rule, Tape};
+pub use tape::{Cause, Change, Instant, Piece, Regime, Rule, Tape, Touch};
+pub(crate) use tuning::touch::TOUCHING;

@@ -41,6 +41,15 @@ pub struct Instant {
     pub regime: usize,
 }
 
+/// A stop that would have been, had the state come the least bit nearer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Which.
+    pub of: Cause,
+    /// When.
+    pub time: f64,
+}
+
 /// One piece of a simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Piece {
@@ -56,6 +65,8 @@ pub enum Piece {
         rule: Rule,
         /// The states at the stages of an implicit rule, nearly.
         stages: Vec<Vec<f64>>,
+        /// What it almost ended at.
+        touches: Vec<Touch>,
     },
     /// What happens at one time.
     Event {

@@ -86,6 +86,13 @@ pub(crate) mod location {
     pub(crate) const NEAR: f64 = 1e-3;
 }
 
+pub(crate) mod touch {
+    /// What is smaller than this part of its terms is touched: a derivative is in doubt there.
+    pub(crate) const TOUCHING: f64 = 1e-9;
+    /// So many parts of one step are looked at.
+    pub(crate) const MOST_PARTS: usize = 1000;
+}
+
 pub(crate) mod search {
     /// More parts than this of one step are looked at in shorter steps.
     pub(crate) const MOST_PARTS: usize = 1000;

@@ -14,7 +14,7 @@ use super::algorithm::Algorithm;
 use super::iterate::{SearchDirection, Values};
 use super::tuning::saddle::{
     FEW_ITERATIONS, GOLDEN, ITERATIONS, LARGEST_VIOLATION, LEAST_GAIN, MOST_DEPARTURES,
-    MOST_HALVINGS, MOST_ITERATIONS, NOTHING, ROOM, ROUNDING, SHORT_STEPS, SPREAD,
+    MOST_HALVINGS, MOST_ITERATIONS, NOTHING, ROOM, ROUNDING, SHORT_STEPS, SIGN_PATTERNS, SPREAD,
 };
 use super::vectors::dot;
 use crate::nlp::Nlp;
@@ -75,15 +75,28 @@ impl Algorithm {
     ) -> Option<Vec<f64>> {
         let least = self.least_curvature(nlp, found);
         self.factor_at_iterate(least);
-        let (mut step, _) = self.softest_direction(FEW_ITERATIONS)?;
-        self.stretch(&self.own_sizes(nlp), &mut step);
-        let (counts, lagrangian) =
-            (found.least_gain(self.options.tol), self.barrier_lagrangian(&self.values));
+        let counts = found.least_gain(self.options.tol);
+        (0..SIGN_PATTERNS).find_map(|pattern| {
+            let start = signs(nlp, pattern);
+            let (mut step, _) = self.softest_direction(&start, FEW_ITERATIONS)?;
+            self.stretch(&self.own_sizes(nlp), &mut step);
+            self.descent_along(nlp, &mut step, counts)
+        })
+    }
+
+    /// The same along a step or back.
+    fn descent_along(
+        &mut self,
+        nlp: &mut dyn Nlp,
+        step: &mut SearchDirection,
+        counts: f64,
+    ) -> Option<Vec<f64>> {
+        let lagrangian = self.barrier_lagrangian(&self.values);
         for _ in 0..2 {
             for part in SHORT_STEPS {
                 let alpha =
-                    part.min(self.barrier.longest_steps(&self.formulation, &self.at, &step).0);
-                let (y, values) = self.moved(nlp, &step, alpha)?;
+                    part.min(self.barrier.longest_steps(&self.formulation, &self.at, step).0);
+                let (y, values) = self.moved(nlp, step, alpha)?;
                 let change = self.barrier_lagrangian(&values) - lagrangian;
                 if change < -counts && values.violation <= LARGEST_VIOLATION {
                     return Some(y[..self.formulation.variables].to_vec());
@@ -92,7 +105,7 @@ impl Algorithm {
                     break;
                 }
             }
-            turn(&mut step);
+            turn(step);
         }
         None
     }
@@ -115,7 +128,7 @@ impl Algorithm {
         if self.factor_at_iterate(least) {
             return None;
         }
-        let (mut step, mut curvature) = self.softest_direction(ITERATIONS)?;
+        let (mut step, mut curvature) = self.softest_direction(&signs(nlp, 0), ITERATIONS)?;
         for _ in ITERATIONS..MOST_ITERATIONS {
             if curvature < -ROUNDING * self.terms_of_curvature(nlp, &step) {
                 return Some((step, curvature));
@@ -140,14 +153,19 @@ impl Algorithm {
     }
 
     /// A unit vector over `y` in the null space of the rows along which the matrix that was
-    /// factored last has the lowest curvature, and the curvature without its regularisation.
-    fn softest_direction(&mut self, iterations: usize) -> Option<(SearchDirection, f64)> {
+    /// factored last has the lowest curvature, and the curvature without its regularisation; by
+    /// inverse iterations from these signs of the variables.
+    fn softest_direction(
+        &mut self,
+        signs: &[f64],
+        iterations: usize,
+    ) -> Option<(SearchDirection, f64)> {
         let Algorithm { formulation, slopes, kkt, .. } = self;
         let mut step = SearchDirection::new(formulation);
         // Nearly the same at all times: of several directions that are as good, one that goes to
         // one side.
-        let start = |i: usize| 1.0 + SPREAD * (i as f64 * GOLDEN).fract();
-        (0..formulation.variables).for_each(|i| step.y[i] = start(i));
+        let size = |i: usize| 1.0 + SPREAD * (i as f64 * GOLDEN).fract();
+        signs.iter().enumerate().for_each(|(i, sign)| step.y[i] = sign * size(i));
         let mut curvature = f64::NAN;
         for _ in 0..iterations {
             curvature = kkt.inverse_iteration(formulation, slopes, &mut step)?;
@@ -233,6 +251,14 @@ impl Algorithm {
     fn barrier_lagrangian(&self, values: &Values) -> f64 {
         self.barrier.value(values) + dot(&self.at.lambda, &values.residuals)
     }
+}
+
+/// A sign for each variable, the same for all of a quantity; pattern 0 has no minus. Of three
+/// quantities that follow each other the first four patterns have all signs, but for turning.
+fn signs(nlp: &dyn Nlp, pattern: usize) -> Vec<f64> {
+    let is_even = |quantity: &usize| (quantity & pattern).count_ones().is_multiple_of(2);
+    let quantities = nlp.quantities().variables;
+    quantities.iter().map(|it| if is_even(it) { 1.0 } else { -1.0 }).collect()
 }
 
 fn turn(step: &mut SearchDirection) {

@@ -154,6 +154,8 @@ pub(crate) mod saddle {
     pub(crate) const MOST_ITERATIONS: usize = 64;
     /// The same where all directions without curvature are as good: they stay together.
     pub(crate) const FEW_ITERATIONS: usize = 2;
+    /// So many of them, with other signs of the quantities.
+    pub(crate) const SIGN_PATTERNS: usize = 4;
     /// Steps where curvature says nothing, as parts of the sizes, from short to long.
     pub(crate) const SHORT_STEPS: [f64; 3] = [1e-3, 1e-2, 1e-1];
     /// A quantity that is smaller than this part of its nominal magnitude is 0.

@@ -12,15 +12,12 @@ pub(crate) mod reset_kink;
 
 use super::linearised::linearisation::{Jacobian, Lineariser};
 use super::linearised::variational_equation::LinearTape;
-use crate::problem::Columns;
-use crate::simulate::{Cause, Instant, Mode, Piece, Tape};
+pub(crate) use crate::simulate::TOUCHING;
+use crate::simulate::{Cause, Instant, Mode, Piece, Tape, Touch};
 use nalgebra::DVector;
 
 /// Cosines between a field and a normal below this are grazing.
 pub(crate) const TANGENT: f64 = 1e-6;
-
-/// Distances from a surface, relative to what `psi` is made of, below this are 0.
-pub(crate) const TOUCHING: f64 = 1e-9;
 
 /// Differences of times, relative to the interval, below this are 0.
 const TOGETHER: f64 = 1e-10;
@@ -58,9 +55,9 @@ pub(crate) fn nondifferentiabilities(pieces: &LinearTape) -> Vec<Nondifferentiab
     let mut found = Vec::new();
     for (at, piece) in tape.pieces.iter().enumerate() {
         match piece {
-            Piece::Step { start, h, end, .. } => {
+            Piece::Step { start, touches, .. } => {
                 watch.limits(start, &mut found);
-                watch.touches(start, *h, end, &mut found);
+                found.extend(touches.iter().filter_map(touched));
             }
             Piece::Event { .. } => watch.event(at, &mut found),
         }
@@ -76,6 +73,16 @@ pub(crate) fn nondifferentiabilities(pieces: &LinearTape) -> Vec<Nondifferentiab
     }
     found.dedup();
     found
+}
+
+/// A surface that is touched beside it, or that holds the state as hard as it can for an instant.
+fn touched(Touch { of, time }: &Touch) -> Option<Nondifferentiability> {
+    let (kind, surface) = match *of {
+        Cause::Reaches(surface) => (NondifferentiabilityKind::Grazing, surface),
+        Cause::Leaves(surface) => (NondifferentiabilityKind::Limit, surface),
+        _ => return None,
+    };
+    Some(Nondifferentiability { kind, surface, time: *time })
 }
 
 struct Watch<'t> {
@@ -122,19 +129,6 @@ impl Watch<'_> {
         }
     }
 
-    /// `psi'` at both ends of a step, at the selectors of its start.
-    fn rates(&self, start: &Instant, h: f64, end: &[f64]) -> [DVector<f64>; 2] {
-        let regime = &self.tape.regimes[start.regime];
-        [(start.time, start.state.as_slice()), (start.time + h, end)].map(|(time, state)| {
-            let state = DVector::from_column_slice(state);
-            let table = self.lineariser.table(regime, &start.selectors, time, &state);
-            let rates = &self.lineariser.system.rates;
-            let mut values = Columns::new(rates.outputs(), 1);
-            rates.value(&table, &self.lineariser.parameters, &mut values);
-            DVector::from_fn(rates.outputs(), |row, _| values.column(row)[0])
-        })
-    }
-
     fn is_beside(&self, at: &Instant, surface: usize) -> bool {
         matches!(self.tape.regimes[at.regime].modes[surface], Mode::Below | Mode::Above)
     }
@@ -142,32 +136,6 @@ impl Watch<'_> {
     fn beside(&self, at: &Instant) -> impl Iterator<Item = usize> {
         let modes = &self.tape.regimes[at.regime].modes;
         (0..modes.len()).filter(|&i| self.is_beside(at, i))
-    }
-
-    /// Surfaces that come nearest inside a step, almost at distance 0; by the cubic through both
-    /// ends.
-    fn touches(&self, start: &Instant, h: f64, end: &[f64], found: &mut Vec<Nondifferentiability>) {
-        let turns = |at: &usize, [first, last]: &[DVector<f64>; 2]| first[*at] * last[*at] < 0.0;
-        let rates = self.rates(start, h, end);
-        for surface in self.beside(start).filter(|at| turns(at, &rates)) {
-            let end = Instant { time: start.time + h, state: end.to_vec(), ..start.clone() };
-            let [first, last] = [start, &end].map(|at| self.distances(at));
-            // A surface that has just been left is still near: its rate is 0 up to rounding.
-            if first.touches(surface) && first.is_tangent(surface) {
-                continue;
-            }
-            let [a, b] = [&first, &last].map(|it| (it.value[surface], h * it.rate[surface]));
-            let (part, nearest) = extremum(a, b);
-            let size = 1.0 + first.size[surface].max(last.size[surface]);
-            if nearest.abs() <= TOUCHING * size {
-                let time = start.time + part * h;
-                found.push(Nondifferentiability {
-                    kind: NondifferentiabilityKind::Grazing,
-                    surface,
-                    time,
-                });
-            }
-        }
     }
 
     /// Surfaces on which a step begins with selectors at the end of their interval: a little more
@@ -254,19 +222,4 @@ impl Watch<'_> {
         let here = here.into_iter().filter(move |i| just_before.is_none_or(|it| it.0 != *i));
         just_before.into_iter().chain(here.map(move |surface| (surface, last)))
     }
-}
-
-/// Where the cubic with values and slopes at 0 and 1 has its extremum, and the value there, if the
-/// slopes have opposite signs.
-fn extremum((value, slope): (f64, f64), (end, end_slope): (f64, f64)) -> (f64, f64) {
-    let quadratic = 3.0 * (end - value) - 2.0 * slope - end_slope;
-    let cubic = 2.0 * (value - end) + slope + end_slope;
-    let at = |part: f64| value + part * (slope + part * (quadratic + part * cubic));
-    let slope_at = |part: f64| slope + part * (2.0 * quadratic + 3.0 * part * cubic);
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if (slope_at(middle) > 0.0) == (slope > 0.0) { low = middle } else { high = middle }
-    }
-    (low, at(low))
 }

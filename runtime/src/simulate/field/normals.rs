@@ -33,7 +33,12 @@ impl Normals {
 
     /// What rounding of the terms `dpsi/dx x` may make of their sum.
     pub fn rounding(&self, surface: usize, x: &[f64]) -> f64 {
-        ROUNDING * self.by_state.row(surface).iter().zip(x).map(|(d, x)| (d * x).abs()).sum::<f64>()
+        ROUNDING * self.size(surface, x)
+    }
+
+    /// The size of the terms `dpsi/dx x`.
+    pub fn size(&self, surface: usize, x: &[f64]) -> f64 {
+        self.by_state.row(surface).iter().zip(x).map(|(d, x)| (d * x).abs()).sum()
     }
 }
 

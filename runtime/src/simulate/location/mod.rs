@@ -12,6 +12,7 @@ pub(crate) mod extremes;
 pub(crate) mod hidden;
 mod search;
 mod sliding;
+pub(crate) mod touch;
 mod tube;
 
 use super::field::Field;

@@ -79,7 +79,7 @@ impl Signal<'_, '_> {
     }
 
     /// Value and rate over a part of the step.
-    fn bounds(&mut self, part: [f64; 2]) -> [Interval; 2] {
+    pub(super) fn bounds(&mut self, part: [f64; 2]) -> [Interval; 2] {
         let (enclosure, side) = match self.condition {
             Condition::Reaches(i) => {
                 (&self.field.system.enclosures.switching[i], self.field.modes[i].side())

@@ -1,6 +1,7 @@
 //! The tape while it is made.
 
 use crate::simulate::field::Field;
+use crate::simulate::location::touch::touches;
 use crate::simulate::result::Event;
 use crate::simulate::steps::{Step, departure, radau};
 use crate::simulate::tape::{Cause, Change, Instant, Piece, Regime, Rule, Tape};
@@ -61,7 +62,9 @@ impl Writer {
             let start = self.instant(field, step.t, &step.start);
             let at = |c: &f64| step.at(c * h / step.h);
             let stages = step.rule.implicit_nodes().iter().map(at).collect();
-            self.push(Piece::Step { start, h, end: end.to_vec(), rule: step.rule, stages });
+            let touches = touches(field, step, h / step.h);
+            let end = end.to_vec();
+            self.push(Piece::Step { start, h, end, rule: step.rule, stages, touches });
         }
     }
 

@@ -1,0 +1,39 @@
+//! The command as a user sees it, in one program. `cargo test -p fdcc-cli grad::` runs the tests of
+//! one file.
+
+mod browser;
+mod clusters;
+mod commands;
+mod common;
+mod confirmed;
+mod consequences;
+mod drawings;
+mod emit;
+mod expectations;
+mod grad;
+mod hostile;
+mod installing;
+mod integrators;
+mod limits;
+mod lsp;
+mod mpc;
+mod new;
+mod none_found;
+mod pages;
+mod phases;
+mod repairs_as_data;
+mod report;
+mod rewrites;
+mod runs;
+mod scales;
+mod show;
+mod simulate;
+mod solve;
+mod starts;
+mod stops;
+mod sweep;
+mod sweep_files;
+mod units;
+mod verification;
+mod verify;
+mod written;

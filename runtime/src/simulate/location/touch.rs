@@ -1,0 +1,73 @@
+//! Where a condition `g >= 0` is touched inside a step: `g` comes so near to 0 that it cannot be
+//! told from it, and goes away again.
+//!
+//! Branch and bound, as in [`search`](super::search): a part of the step is done where `g` is
+//! enclosed above the limit or its rate has one sign, and halved else.
+
+use super::search::Signal;
+use super::{Condition, conditions};
+use crate::simulate::field::Field;
+use crate::simulate::steps::Step;
+use crate::simulate::tape::{Cause, Touch};
+use crate::simulate::tuning::touch::{MOST_PARTS, TOUCHING};
+
+/// What is touched before a part of a step, each once.
+pub(crate) fn touches(field: &mut Field, step: &Step, until: f64) -> Vec<Touch> {
+    let mut found = Vec::new();
+    for condition in conditions(field) {
+        if matches!(condition, Condition::CrossesKink(_)) {
+            continue;
+        }
+        let limit = limit(field, step, until, condition);
+        let tube = field.lend_tube();
+        let mut signal = Signal { field, step, condition, tube };
+        let place = signal.touched(until, limit);
+        signal.field.tube = Some(signal.tube);
+        let time = |theta: f64| step.t + theta * step.h;
+        found.extend(place.map(|theta| Touch { of: Cause::from(condition), time: time(theta) }));
+    }
+    found
+}
+
+/// What cannot be told from 0, for the sizes of the terms of a condition.
+fn limit(field: &mut Field, step: &Step, until: f64, condition: Condition) -> f64 {
+    let Condition::Reaches(surface) = condition else { return TOUCHING };
+    let mut size = |theta: f64| {
+        let state = step.at(theta);
+        field.normals(step.t + theta * step.h, &state).size(surface, &state)
+    };
+    TOUCHING * (1.0 + size(0.0).max(size(until)))
+}
+
+impl Signal<'_, '_> {
+    /// The part of the step before `until` at which the value is first below the limit, while it
+    /// is well above it before and after.
+    fn touched(&mut self, until: f64, limit: f64) -> Option<f64> {
+        let mut parts = vec![[0.0, until]];
+        let mut seen = [0.0, until].map(|theta| [theta, self.value(theta)]).to_vec();
+        let mut near = Vec::new();
+        for _ in 0..MOST_PARTS {
+            let Some([from, to]) = parts.pop() else { break };
+            let [[least, _], [falls, grows]] = self.bounds([from, to]);
+            let is_done = least > limit || falls > 0.0 || grows < 0.0;
+            if is_done || to - from <= self.shortest() {
+                continue;
+            }
+            let middle = 0.5 * (from + to);
+            let value = self.value(middle);
+            if value <= limit {
+                near.push(middle);
+            } else {
+                seen.push([middle, value]);
+                parts.extend([[middle, to], [from, middle]]);
+            }
+        }
+        let is_left = |it: &[f64; 2]| it[1] > 2.0 * limit;
+        let is_between = |theta: &f64| {
+            let mut left = seen.iter().filter(|it| is_left(it)).map(|it| it[0] < *theta);
+            let first = left.next();
+            first.is_some_and(|side| left.any(|it| it != side))
+        };
+        near.into_iter().find(is_between)
+    }
+}

@@ -198,7 +198,7 @@ surface edge = y
 dynamics {
   x' = 1
   y' in match edge {
-    below => -2*(x - 1)*(x - 2)*(2*x - 3)
+    below => -2*(x - 1)*(x - 2)*(2*x - 3),
     above => -2*(x - 1)*(x - 2)*(2*x - 3) - 1
   }
 }

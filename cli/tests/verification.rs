@@ -1,6 +1,6 @@
 //! Every solve replays its controls on the true system, and says what comes of it.
 
-use crate::common::{expect_exit, fdcc, folder, json, model, stdout};
+use crate::common::{RAMP, expect_exit, fdcc, folder, json, model, stdout};
 
 /// The paper's own solution for sigma = 0.1, N = 1000 is not admissible: with the set-valued
 /// friction its controls leave the track by .346 and cost 7.000. Source: an independent replay with

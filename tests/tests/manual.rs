@@ -12,7 +12,6 @@ use fdcc_tests::models::analyze;
 use fdcc_tests::{blocks, documents, repository, unclaimed};
 use std::fs;
 
-#[path = "manual/places.rs"]
 mod places;
 
 /// A model of the reference.

@@ -3,7 +3,6 @@
 //! The rates `psi_t + psi_x f` on both sides are computed here from the model by itself, at points
 //! of the surface found by Newton's method from random places within the bounds.
 
-#[path = "proved/directions.rs"]
 mod directions;
 
 use fdcc_compiler::graph::derivative;

@@ -8,12 +8,7 @@
 //!
 //! `SYSTEMS=20 cargo test --release -p fdcc-tests random_gradients::` takes 20 times as many.
 
-#[path = "random_simulations/affine.rs"]
-#[expect(dead_code, reason = "only the coefficients are taken")]
-mod affine;
-#[path = "random_gradients/differences.rs"]
 mod differences;
-#[path = "random_gradients/family.rs"]
 mod family;
 
 use differences::{Seen, check};

@@ -10,11 +10,8 @@
 //! Sgn(x+_i)`, surface by surface until nothing changes; its error is of order `h`. The first
 //! components may form a ball, `s in Dir(x)`.
 
-#[path = "random_simulations/affine.rs"]
-mod affine;
-#[path = "random_simulations/exact.rs"]
+pub(crate) mod affine;
 mod exact;
-#[path = "random_simulations/flow.rs"]
 mod flow;
 
 use affine::Affine;

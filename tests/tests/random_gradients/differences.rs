@@ -1,6 +1,6 @@
 //! Derivatives against central differences with Richardson's extrapolation, `(4 D(h) - D(2 h))/3`.
 
-use crate::family::Case;
+use super::family::Case;
 use fdcc_runtime::sensitivity::{Quantity, Sensitivity, gradient, hessian, perturbed};
 use fdcc_runtime::simulate::{
     Controls, EventKind, Mode, Options, Simulation, Status, System, simulate,

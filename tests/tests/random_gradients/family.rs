@@ -1,6 +1,6 @@
 //! Families of systems with coefficients for parameters.
 
-use crate::affine::Affine;
+use crate::random_simulations::affine::Affine;
 use fdcc_compiler::compile_sensitivities;
 use fdcc_runtime::problem::Parameter;
 use fdcc_runtime::simulate::{Controls, Polynomials, System};

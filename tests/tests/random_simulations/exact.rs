@@ -5,8 +5,8 @@
 //! delicate. Surfaces that hold each other without a P-matrix are no unique continuation: solutions
 //! may leave on spirals, which no combination of sides describes.
 
-use crate::affine::{Affine, LAST, Matrix, dot};
-use crate::flow::{Condition, Flow, NEAR};
+use super::affine::{Affine, LAST, Matrix, dot};
+use super::flow::{Condition, Flow, NEAR};
 use fdcc_runtime::simulate::EventKind;
 
 /// A step of the search for events.

@@ -3,7 +3,7 @@
 //! Where nothing is held `y' = M y`, so `y(t + h) = sum_k (h M)^k y / k!`; where something is, the
 //! classical Runge-Kutta method takes steps as short as it must.
 
-use crate::affine::{Affine, Matrix, dot, solve};
+use super::affine::{Affine, Matrix, dot, solve};
 
 /// The shortest step of the Runge-Kutta method.
 const SHORTEST: f64 = 1e-5;

@@ -56,7 +56,7 @@ impl Signal<'_, '_> {
             let middle = 0.5 * (from + to);
             let value = self.value(middle);
             if value <= limit {
-                near.push(middle);
+                near.push(self.turning_point([from, to]));
             } else {
                 seen.push([middle, value]);
                 parts.extend([[middle, to], [from, middle]]);
@@ -69,5 +69,19 @@ impl Signal<'_, '_> {
             first.is_some_and(|side| left.any(|it| it != side))
         };
         near.into_iter().find(is_between)
+    }
+
+    /// Where in a part of the step the value ceases to fall.
+    fn turning_point(&mut self, [mut from, mut to]: [f64; 2]) -> f64 {
+        while to - from > self.shortest() {
+            let middle = 0.5 * (from + to);
+            let [_, [low, high]] = self.bounds([middle; 2]);
+            if low + high < 0.0 {
+                from = middle;
+            } else {
+                to = middle;
+            }
+        }
+        to
     }
 }

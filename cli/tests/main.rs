@@ -1,5 +1,5 @@
-//! The command as a user sees it, in one program. `cargo test -p fdcc-cli grad::` runs the tests of
-//! one file.
+//! The command as a user sees it, in one program. `cargo test --release -p fdcc-cli grad::` runs
+//! the tests of one file.
 
 mod browser;
 mod clusters;

@@ -67,6 +67,20 @@ fn the_changes_of_a_tape_are_the_events() {
 }
 
 #[test]
+fn a_tape_makes_no_difference() {
+    for (name, text) in documents("tests/simulations", "fdc") {
+        let (taped, _) = taped(&text, &Controls::Guess);
+        let system = compile_simulation(&changed(&text, &[], &[])).expect("it can be simulated");
+        let bare = simulate(&system, &Controls::Guess, &Options::default());
+        let [with, without] = [&taped, &bare].map(|trajectory| {
+            let events = trajectory.events.iter().map(|event| (event.time, event.surface));
+            (trajectory.end.clone(), events.collect::<Vec<_>>(), trajectory.counts.steps)
+        });
+        assert_eq!(with, without, "{name}");
+    }
+}
+
+#[test]
 fn regimes_name_the_segment_of_the_controls() {
     let text = documents("tests/simulations", "fdc").into_iter().find(|(name, _)| name == "sticks");
     let rows = vec![vec![2.0], vec![0.0], vec![-3.0]];

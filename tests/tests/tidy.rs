@@ -53,31 +53,18 @@ fn crates_depend_on_each_other_as_drawn() {
     all_well(breaches);
 }
 
-/// What stands behind `name = "..."` of a lock file, up to the next package.
-fn locked<'l>(lock: &'l str, package: &str) -> &'l str {
-    let named = format!("name = \"{package}\"\n");
-    lock.split("[[package]]").find(|it| it.contains(&named)).unwrap_or_default()
-}
-
+/// A file that is no module of the program of its folder is never built, and nobody says so.
 #[test]
-fn the_lock_of_the_python_package_has_what_our_crates_use() {
-    let read = |path: &str| fs::read_to_string(repository().join(path)).expect("it is there");
-    let (lock, workspace) = (read("python/Cargo.lock"), read("Cargo.toml"));
-    // What has another name here is left out.
-    let is_renamed = |name: &str| workspace.contains(&format!("\n{name} = {{ package"));
+fn every_file_of_tests_is_run() {
     let mut breaches = Vec::new();
-    for folder in ["grammar", "runtime", "compiler", "fdcc", "server", "cli"] {
-        let package = if folder == "fdcc" { "fdcc".into() } else { format!("fdcc-{folder}") };
-        let manifest = read(&format!("{folder}/Cargo.toml"));
-        let own = manifest.lines().skip_while(|line| *line != "[dependencies]").skip(1);
-        let own = own.take_while(|line| !line.starts_with('['));
-        let names = own.filter_map(|line| line.split(['.', ' ', '=']).next());
-        for name in names.filter(|name| !name.is_empty() && !name.starts_with('#')) {
-            let is_there = locked(&lock, &package).contains(&format!(" \"{name}"));
-            if !is_there && !is_renamed(name) {
-                breaches.push(format!(
-                    "python/Cargo.lock: {package} uses {name}; run `cargo metadata` in python/"
-                ));
+    for folder in ["tests/tests/", "cli/tests/"] {
+        let main = fs::read_to_string(repository().join(folder).join("main.rs"));
+        let main = main.expect("the program is there");
+        for source in rust_sources() {
+            let name = source.path.strip_prefix(folder).and_then(|it| it.strip_suffix(".rs"));
+            let Some(name) = name.filter(|it| !it.contains('/') && *it != "main") else { continue };
+            if !main.lines().any(|line| line == format!("mod {name};")) {
+                breaches.push(format!("{folder}main.rs: `mod {name};` is missing"));
             }
         }
     }

@@ -1,7 +1,8 @@
 //! The work that every model costs, as a table under version control: a worse algorithm shows in
 //! its diff.
 //!
-//! `UPDATE=1 cargo test` rewrites the table. It is no reference for anything but itself.
+//! `UPDATE=1 cargo test --release --workspace` rewrites the table. It is no reference for
+//! anything but itself.
 
 use std::fmt::Write;
 

@@ -4,13 +4,7 @@
 set -euo pipefail
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 peers=$(dirname "$0")/..
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-if ! { python3 -m venv "$folder/venv" && timeout 300 "$folder/venv/bin/pip" install --quiet casadi numpy scipy; } >/dev/null 2>&1; then
-  echo "skipped: python3 with casadi, numpy and scipy cannot be had"
-  exit 0
-fi
-python=$folder/venv/bin/python
+python=$("$peers/environment") || { echo "skipped: python3 with casadi, numpy and scipy cannot be had"; exit 0; }
 "$python" "$peers/random_problems/check_judge.py"
 "$python" "$peers/random_problems/run.py" "$1" --seconds 50 --seed 7
 "$python" "$peers/events.py" "$1" --seconds 30 --seed 7

@@ -183,9 +183,11 @@ pub(crate) mod termination {
     /// Variables beyond this many times the farthest bound, at a point that is feasible relative to
     /// them, have left the problem.
     pub(crate) const DIVERGED: f64 = 1e10;
-    /// as has a scaled objective below minus this;
+    /// A scaled objective below minus this has left it, too: an exponential function gets there
+    /// before variables are far, and regularisation ends (`LARGEST_REGULARIZATION`) beyond it.
     pub(crate) const FALLEN: f64 = 1e30;
-    /// and the objective has no end if it falls by this part of itself, so often in a row.
+    /// What has left the problem has no end if the objective falls by this part of itself, so often
+    /// in a row.
     pub(crate) const LEAST_FALL: f64 = 1e-2;
     pub(crate) const FALLS: usize = 10;
     /// The target is not lowered below this part of the tolerance, nor faster than that; lower ones

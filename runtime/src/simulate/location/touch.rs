@@ -11,9 +11,11 @@ use crate::simulate::steps::Step;
 use crate::simulate::tape::{Cause, Touch};
 use crate::simulate::tuning::touch::{MOST_PARTS, TOUCHING};
 
-/// What is touched before a part of a step, each once.
+/// What is touched before a part of a step, each once; leaves the selectors as they are, so that a
+/// simulation is the same with a tape and without.
 pub(crate) fn touches(field: &mut Field, step: &Step, until: f64) -> Vec<Touch> {
     let mut found = Vec::new();
+    let selectors = field.selectors.clone();
     for condition in conditions(field) {
         if matches!(condition, Condition::CrossesKink(_)) {
             continue;
@@ -26,6 +28,7 @@ pub(crate) fn touches(field: &mut Field, step: &Step, until: f64) -> Vec<Touch> 
         let time = |theta: f64| step.t + theta * step.h;
         found.extend(place.map(|theta| Touch { of: Cause::from(condition), time: time(theta) }));
     }
+    field.selectors = selectors;
     found
 }
 

@@ -1,4 +1,4 @@
-//! The command as a user sees it, in one program. `cargo test --release -p fdcc-cli grad::` runs
+//! The command as a user sees it, in one program. `cargo test --release --test all grad::` runs
 //! the tests of one file.
 
 mod browser;

@@ -1,7 +1,7 @@
 //! The grammars of the editors use the words of the compiler, which stand in one list,
 //! `editors/words.json`.
 //!
-//! `UPDATE=1 cargo test --release -p fdcc-tests editors::` writes the list and the places
+//! `UPDATE=1 cargo test --release --test all editors::` writes the list and the places
 //! where others repeat it anew.
 
 use fdcc_compiler::{analyze, function_names};

@@ -1,5 +1,5 @@
 //! All tests that span crates, in one program: it is built and linked once, and no processor waits
-//! for the slowest test of a file. `cargo test --release -p fdcc-tests tidy::` runs those of one
+//! for the slowest test of a file. `cargo test --release --test all tidy::` runs those of one
 //! file.
 
 mod at_times;

@@ -153,7 +153,7 @@ fn without_comments(text: &str) -> String {
     text.lines().map(|line| format!("{}\n", line.split('#').next().unwrap_or_default())).collect()
 }
 
-/// `UPDATE=1 cargo test --release -p fdcc-tests manual::` writes the page anew.
+/// `UPDATE=1 cargo test --release --test all manual::` writes the page anew.
 #[test]
 fn the_page_of_functions_is_that_of_the_table() {
     let path = repository().join("docs/reference/functions.md");
@@ -169,7 +169,7 @@ const FUNCTIONS_HEAD: &str = "\
 # Operators and functions
 
 <!-- Written from the table in compiler/src/expressions/graph/builtins.rs; change it there, then
-     `UPDATE=1 cargo test --release -p fdcc-tests manual::`. -->
+     `UPDATE=1 cargo test --release --test all manual::`. -->
 
 All of them take numbers. `+`, `-` and `abs` take vectors as well, component by component, and `*` \
 and `/` a vector with a

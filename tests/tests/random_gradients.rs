@@ -6,7 +6,7 @@
 //! events beside a system (where the start is on a surface that slides, the second derivatives of
 //! both sides differ), differences with one and two steps that have nothing in common.
 //!
-//! `SYSTEMS=20 cargo test --release -p fdcc-tests random_gradients::` takes 20 times as many.
+//! `SYSTEMS=20 cargo test --release --test all random_gradients::` takes 20 times as many.
 
 mod differences;
 mod family;

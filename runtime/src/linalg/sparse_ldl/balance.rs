@@ -1,6 +1,6 @@
 //! Units of rows in which a symmetric matrix has entries of about the same size.
 
-use super::tree::{Entry, Node};
+use crate::linalg::structure::columns::Columns;
 
 /// So often all rows are divided by the root of their largest entry.
 const ROUNDS: usize = 2;
@@ -19,15 +19,14 @@ impl Balance {
 
     /// Balances the matrix with these values (Ruiz 2001). The factors are powers of two, so that
     /// nothing is rounded.
-    pub(super) fn update(&mut self, nodes: &[Node], values: &[f64]) {
+    pub(super) fn update(&mut self, pattern: &Columns, values: &[f64]) {
         self.factors.fill(1.0);
         for _ in 0..ROUNDS {
             self.largest.fill(0.0);
-            for entry in nodes.iter().flat_map(|node| &node.entries) {
-                let size = self.scaled(entry, values).abs();
-                for row in [entry.row as usize, entry.column as usize] {
-                    self.largest[row] = self.largest[row].max(size);
-                }
+            for (row, column, value) in pattern.places() {
+                let size = self.scaled(row, column, values[value]).abs();
+                self.largest[row] = self.largest[row].max(size);
+                self.largest[column] = self.largest[column].max(size);
             }
             for (factor, largest) in self.factors.iter_mut().zip(&self.largest) {
                 *factor *= if *largest > 0.0 { power_of_two(1.0 / largest.sqrt()) } else { 1.0 };
@@ -36,9 +35,8 @@ impl Balance {
     }
 
     /// An entry of the balanced matrix.
-    pub(super) fn scaled(&self, entry: &Entry, values: &[f64]) -> f64 {
-        let (row, column) = (entry.row as usize, entry.column as usize);
-        self.factors[row] * values[entry.value as usize] * self.factors[column]
+    pub(super) fn scaled(&self, row: usize, column: usize, value: f64) -> f64 {
+        self.factors[row] * value * self.factors[column]
     }
 
     /// Multiplies a right side, or a solution of the balanced matrix, by the factors.

@@ -1,10 +1,8 @@
 //! The elimination of some rows of a dense symmetric matrix, with pivots of one and two rows that
 //! keep its entries moderate.
 
-/// A pivot is refused if the elimination could enlarge entries by more than one over this. Feedback
-/// gains are such growth, and no error: where many rows wait for better pivots, fronts become
-/// large.
-const THRESHOLD: f64 = 1e-6;
+/// A pivot is refused if the elimination could enlarge entries by more than one over this.
+const THRESHOLD: f64 = 1e-4;
 /// Rows of a balanced matrix with nothing above this are rounding.
 const TINY: f64 = 16.0 * f64::EPSILON;
 /// So many columns of `L` are subtracted at a time.

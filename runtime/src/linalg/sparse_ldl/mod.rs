@@ -6,6 +6,7 @@ mod balance;
 mod factors;
 mod front;
 mod multifrontal;
+mod pairs;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -42,11 +43,11 @@ impl SparseLdl {
         let (pattern, mut targets) = Columns::of_places(&places, size, size);
         let diagonal = targets.split_off(targets.len() - size).into_iter().flatten().collect();
         let jacobian = targets.split_off(hessian.len());
-        let values = vec![0.0; pattern.values.len()];
+        let values = pattern.values.clone();
         SparseLdl {
             variables,
             fixed: fixed.to_vec(),
-            ldl: Multifrontal::new(&pattern),
+            ldl: Multifrontal::new(pattern),
             values,
             hessian: targets,
             jacobian,

@@ -11,12 +11,16 @@
 use super::balance::Balance;
 use super::factors::Factors;
 use super::front::Front;
+use super::pairs::Pairs;
 use super::tree::{self, Node};
 use crate::linalg::structure::columns::Columns;
 
 /// A matrix of one pattern, and its factors.
 pub(crate) struct Multifrontal {
+    pattern: Columns,
     nodes: Vec<Node>,
+    /// Whether the nodes were made for the sizes of a matrix, too.
+    is_paired: bool,
     balance: Balance,
     front: Front,
     left: Stack,
@@ -42,15 +46,24 @@ struct Left {
 
 impl Multifrontal {
     /// Analyses a pattern, the upper triangle of a symmetric matrix.
-    pub(crate) fn new(pattern: &Columns) -> Self {
+    pub(crate) fn new(pattern: Columns) -> Self {
         Multifrontal {
-            nodes: tree::nodes(pattern),
+            nodes: tree::nodes(&pattern, &Pairs::none(pattern.rows)),
+            is_paired: false,
             balance: Balance::new(pattern.rows),
             front: Front::default(),
             left: Stack::default(),
             factors: Factors::default(),
             position: vec![0; pattern.rows],
+            pattern,
         }
+    }
+
+    /// Analyses the pattern once more, with the sizes of the first matrix of it.
+    fn pair(&mut self, values: &[f64]) {
+        let balanced = |row, column, value: usize| self.balance.scaled(row, column, values[value]);
+        self.nodes = tree::nodes(&self.pattern, &Pairs::of(&self.pattern, balanced));
+        self.is_paired = true;
     }
 
     /// How many multiplications a factorisation takes, about.
@@ -61,7 +74,10 @@ impl Multifrontal {
     /// Factors the matrix with these values of its pattern; the number of negative eigenvalues, or
     /// `None` if it is singular.
     pub(crate) fn factor(&mut self, values: &[f64]) -> Option<usize> {
-        self.balance.update(&self.nodes, values);
+        self.balance.update(&self.pattern, values);
+        if !self.is_paired {
+            self.pair(values);
+        }
         self.factors.clear();
         self.left.clear();
         let mut negative = 0;
@@ -99,7 +115,7 @@ impl Multifrontal {
         front.rows.iter().enumerate().for_each(|(at, row)| position[*row as usize] = at as u32);
         for entry in &node.entries {
             let (row, column) = (entry.row as usize, entry.column as usize);
-            let value = balance.scaled(entry, values);
+            let value = balance.scaled(row, column, values[entry.value as usize]);
             front.add(position[row] as usize, position[column] as usize, value);
         }
         (0..node.children).for_each(|_| left.pop_into(front, position));

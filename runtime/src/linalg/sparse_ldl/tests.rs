@@ -1,6 +1,7 @@
 //! Solutions and inertia of matrices that need pivots, against dense eigenvalues.
 
 use super::multifrontal::Multifrontal;
+use super::pairs::Pairs;
 use crate::linalg::structure::columns::Columns;
 use crate::random::Random;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
@@ -50,8 +51,9 @@ fn upper(matrix: &DMatrix<f64>) -> Columns {
 
 fn factor(matrix: &DMatrix<f64>) -> (Multifrontal, Option<usize>) {
     let columns = upper(matrix);
-    let mut factors = Multifrontal::new(&columns);
-    let negative = factors.factor(&columns.values);
+    let values = columns.values.clone();
+    let mut factors = Multifrontal::new(columns);
+    let negative = factors.factor(&values);
     (factors, negative)
 }
 
@@ -181,4 +183,23 @@ fn a_second_factorisation_forgets_the_first() {
     let opposite: Vec<f64> = columns.values.iter().map(|value| -value).collect();
     assert_eq!(factors.factor(&opposite), found.map(|negative| 30 - negative));
     assert_eq!(factors.factor(&columns.values), found);
+}
+
+/// `x_{k+1} = x_k + u_k`: nothing but the controls has a curvature.
+#[test]
+fn every_row_of_a_chain_has_a_variable_for_its_partner() {
+    let steps = 20;
+    let variables = 2 * steps + 1;
+    let hessian = DMatrix::from_fn(variables, variables, |i, j| f64::from(i == j && i > steps));
+    let jacobian = DMatrix::from_fn(steps, variables, |k, j| match j {
+        _ if j == k + 1 => 1.0,
+        _ if j == k || j == steps + 1 + k => -1.0,
+        _ => 0.0,
+    });
+    let columns = upper(&saddle(&hessian, &jacobian));
+    let pairs = Pairs::of(&columns, |_, _, value| columns.values[value]);
+    for row in variables..variables + steps {
+        assert!(pairs.partner(row) < variables, "row {row}");
+        assert_eq!(pairs.partner(pairs.partner(row)), row);
+    }
 }

@@ -1,6 +1,7 @@
 //! Which rows are eliminated together, and in which order: the elimination tree, some of whose
 //! nodes are merged.
 
+use super::pairs::Pairs;
 use crate::linalg::structure::columns::Columns;
 
 /// Nodes that eliminate fewer rows than this are merged with their parent although that makes zeros
@@ -39,17 +40,34 @@ impl Node {
 
 /// The nodes, children before their parents and next to them as a stack wants it. `pattern` is an
 /// upper triangle.
-pub(super) fn nodes(pattern: &Columns) -> Vec<Node> {
-    let order = fill_reducing_order(pattern);
+pub(super) fn nodes(pattern: &Columns, pairs: &Pairs) -> Vec<Node> {
+    let order = order_of_pairs(pattern, pairs);
     let mut place = vec![0; order.len()];
     order.iter().enumerate().for_each(|(at, row)| place[*row] = at);
-    let mut forest = Forest::new(pattern, &place);
+    let is_pair = |at: usize| order.get(at + 1) == Some(&pairs.partner(order[at]));
+    let is_pair: Vec<bool> = (0..order.len()).map(is_pair).collect();
+    let mut forest = Forest::new(pattern, &place, &is_pair);
     let mut nodes = forest.in_postorder();
     for row in nodes.iter_mut().flat_map(|node| node.own.iter_mut().chain(&mut node.rest)) {
         *row = order[*row as usize] as u32;
     }
     add_entries(&mut nodes, pattern, &place);
     nodes
+}
+
+/// A fill-reducing order in which partners follow each other.
+fn order_of_pairs(pattern: &Columns, pairs: &Pairs) -> Vec<usize> {
+    let members = pairs.members();
+    let mut home = vec![0; pattern.rows];
+    members.iter().enumerate().for_each(|(at, rows)| rows.iter().for_each(|it| home[*it] = at));
+    let place = |(row, column, _): (usize, usize, usize)| {
+        let (a, b) = (home[row], home[column]);
+        Some((a.min(b), a.max(b)))
+    };
+    let places: Vec<_> = pattern.places().map(place).collect();
+    let (compressed, _) = Columns::of_places(&places, members.len(), members.len());
+    let order = fill_reducing_order(&compressed);
+    order.into_iter().flat_map(|at| members[at].iter().copied()).collect()
 }
 
 /// Approximate minimum degree (Amestoy, Davis, Duff 1996): which row is eliminated first, second,
@@ -85,7 +103,8 @@ struct Forest {
 }
 
 impl Forest {
-    fn new(pattern: &Columns, place: &[usize]) -> Self {
+    /// `is_pair[at]`: the row at this place is to be eliminated with the next one.
+    fn new(pattern: &Columns, place: &[usize], is_pair: &[bool]) -> Self {
         let mut forest = Forest {
             nodes: lower_triangle(pattern, place),
             children: vec![Vec::new(); place.len()],
@@ -94,7 +113,7 @@ impl Forest {
         let mut seen = vec![usize::MAX; place.len()];
         for at in 0..place.len() {
             forest.collect_rest(at, &mut seen);
-            forest.merge_children(at);
+            forest.merge_children(at, at > 0 && is_pair[at - 1]);
             match forest.nodes[at].rest.iter().min() {
                 Some(parent) => forest.children[*parent as usize].push(at),
                 None => forest.roots.push(at),
@@ -115,13 +134,15 @@ impl Forest {
         self.nodes[at].rest = rest;
     }
 
-    /// Merges the node with those of its children that lose nothing by it, or are small.
-    fn merge_children(&mut self, at: usize) {
+    /// Merges the node with those of its children that lose nothing by it, or are small, or end
+    /// with its partner.
+    fn merge_children(&mut self, at: usize, is_after_partner: bool) {
         let children = std::mem::take(&mut self.children[at]);
         for child in children {
             let (below, above) = (&self.nodes[child], &self.nodes[at]);
             let has_same_rows = below.rest.len() == above.own.len() + above.rest.len();
-            if has_same_rows || (below.own.len() < SMALL && above.own.len() < SMALL) {
+            let is_partner = is_after_partner && child + 1 == at;
+            if has_same_rows || is_partner || (below.own.len() < SMALL && above.own.len() < SMALL) {
                 let mut own = std::mem::take(&mut self.nodes[child]).own;
                 own.append(&mut self.nodes[at].own);
                 self.nodes[at].own = own;

@@ -45,6 +45,15 @@ impl Columns {
         (result, targets)
     }
 
+    /// Row, column and index of each value.
+    pub(crate) fn places(&self) -> impl Iterator<Item = (usize, usize, usize)> {
+        let of = move |column: usize| {
+            let values = self.column_starts[column]..self.column_starts[column + 1];
+            values.map(move |value| (self.row_indices[value], column, value))
+        };
+        (0..self.column_starts.len() - 1).flat_map(of)
+    }
+
     /// The sum of entries (row, column, value).
     pub(crate) fn of_entries(entries: &[(usize, usize, f64)], rows: usize, columns: usize) -> Self {
         let places: Vec<_> = entries.iter().map(|(row, column, _)| Some((*row, *column))).collect();

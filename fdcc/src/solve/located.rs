@@ -6,7 +6,7 @@ use super::found::Found;
 use super::report::Options;
 use super::sequences::happened;
 use super::true_optimum::{
-    Certificate, Contacts, Located, Spent, Whole, locate, on_half_intervals, replayed,
+    Certificate, Contacts, Located, Spent, Whole, locate, on_half_intervals, polished, replayed,
 };
 use crate::model::Model;
 use fdcc_compiler::between_jumps;
@@ -66,29 +66,29 @@ impl Search<'_> {
         let most_replays = if is_smooth(self.model, self.between) { 0 } else { MOST_REPLAYS };
         for replays in 0..=most_replays {
             let Some(located) = near.take() else { break };
-            let (answer, whole) = self.refined(located);
+            let (answer, located) = self.refined(located);
             least = least.least(answer.certificate.clone().unwrap_or_default());
             if least.is_certified() {
-                return Ok(self.ended(answer));
+                return Ok(self.ended(answer, &located));
             }
             if replays < most_replays {
-                near = self.replayed(&answer, &whole);
+                near = self.replayed(&answer, &located.whole(&found.problem));
             }
         }
         let answer = Solution::new(self.model.clone(), found.clone());
         let near = if most_replays > 0 { self.replayed(&answer, &smoothed) } else { None };
         if let Some(located) = near {
-            let (answer, _) = self.refined(located);
+            let (answer, located) = self.refined(located);
             least = least.least(answer.certificate.clone().unwrap_or_default());
             if least.is_certified() {
-                return Ok(self.ended(answer));
+                return Ok(self.ended(answer, &located));
             }
         }
         Err(least)
     }
 
     /// The first that is certified: what was located at last, or on the way.
-    fn refined(&mut self, mut located: Located) -> (Solution, Whole) {
+    fn refined(&mut self, mut located: Located) -> (Solution, Located) {
         let others = std::mem::take(&mut located.others);
         let last = self.halved(located);
         if last.0.is_certified() {
@@ -99,7 +99,7 @@ impl Search<'_> {
     }
 
     /// On shorter and shorter intervals where nothing is wrong but the replay.
-    fn halved(&mut self, mut located: Located) -> (Solution, Whole) {
+    fn halved(&mut self, mut located: Located) -> (Solution, Located) {
         let mut answer = self.answer(&located);
         while answer.certificate.as_ref().is_some_and(Certificate::is_inaccurate) {
             let models = [self.model.meaning(), self.between];
@@ -109,7 +109,7 @@ impl Search<'_> {
             located = finer;
             answer = self.answer(&located);
         }
-        (answer, located.whole(&self.found.problem))
+        (answer, located)
     }
 
     fn answer(&self, located: &Located) -> Solution {
@@ -128,13 +128,22 @@ impl Search<'_> {
     }
 
     /// What is certified meets more than the tolerance of the search.
-    fn ended(&self, mut answer: Solution) -> Solution {
+    fn ended(&mut self, answer: Solution, located: &Located) -> Solution {
+        let mut answer = self.polished(located).unwrap_or(answer);
         let (is_global, first) = (self.is_global(), &self.found.outcome.solution);
         let solution = &mut answer.outcome.solution;
         solution.status = Status::Solved;
         solution.global = is_global;
         solution.counts.iterations += first.counts.iterations;
         answer
+    }
+
+    /// With more digits, where it is certified with these, too.
+    fn polished(&mut self, located: &Located) -> Option<Solution> {
+        let models = [self.model.meaning(), self.between];
+        let (problem, stop) = (&self.found.problem, self.options.stop);
+        let polished = polished(models, problem, located, stop, &mut self.spent)?;
+        Some(self.answer(&polished)).filter(Solution::is_certified)
     }
 
     /// Whether every optimum is global. A smooth problem that is convex on a grid is so in

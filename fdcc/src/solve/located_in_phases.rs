@@ -9,6 +9,7 @@ use super::phases::Whole as WholeChain;
 use super::report::Options;
 use super::true_optimum::{
     Certificate, Check, Contacts, Located, Part, Spent, Whole, halved_in_phases, locate_in_phases,
+    polished_in_phases,
 };
 use crate::model::Model;
 use crate::verification::{LinkGap, Verification, objective_of_links};
@@ -57,14 +58,18 @@ impl Search<'_> {
         let Some(mut located) = located else { return Err(self.nothing()) };
         let mut answer = self.answer(&located);
         while answer.certificate.as_ref().is_some_and(Certificate::is_inaccurate) {
-            let finer = halved_in_phases(whole, self.parts, located, stop, &mut spent);
+            let finer = halved_in_phases(whole, self.parts, located.clone(), stop, &mut spent);
             let Some(finer) = finer else { break };
             answer = self.answer(&finer);
             located = finer;
         }
         match answer.certificate.take_if(|it| !it.is_certified()) {
             Some(missing) => Err(missing),
-            None => Ok(self.ended(answer)),
+            None => {
+                let polished = polished_in_phases(whole, self.parts, located, stop, &mut spent);
+                let sharper = polished.map(|it| self.answer(&it)).filter(Solution::is_certified);
+                Ok(self.ended(sharper.unwrap_or(answer)))
+            }
         }
     }
 

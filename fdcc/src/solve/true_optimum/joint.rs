@@ -43,7 +43,7 @@ pub(super) struct Among<'s> {
 }
 
 /// A phase with the structure that it is to have, and where its solve begins.
-struct Planned<'p> {
+pub(super) struct Planned<'p> {
     part: Part<'p>,
     structure: &'p Structure,
     from: &'p Whole,
@@ -74,7 +74,7 @@ impl<'s> Search<'s> {
     }
 
     /// All phases, in the order of the model.
-    fn planned<'p>(&self, structure: &'p Structure, from: &'p Whole) -> Vec<Planned<'p>>
+    pub(super) fn planned<'p>(&self, structure: &'p Structure, from: &'p Whole) -> Vec<Planned<'p>>
     where
         's: 'p,
     {
@@ -103,7 +103,7 @@ impl<'s> Search<'s> {
     }
 
     /// What was found for the phase, with what was found for the others.
-    fn located(&self, joint: Joint, planned: &[Planned]) -> Located {
+    pub(super) fn located(&self, joint: Joint, planned: &[Planned]) -> Located {
         let written = self.among.map_or(0, |it| it.whole.links.len());
         let links = &joint.model.links[..joint.model.links.len() - written];
         let told = links.iter().filter(|it| it.objective.is_some() || !it.rows.is_empty()).count();
@@ -206,7 +206,7 @@ fn start(planned: &[Planned], chain: &Chain) -> Start {
 
 /// Where a direction is flat the last digits may take more iterations than there are, or more
 /// digits; what they are worth the certificate says.
-fn is_stationary(found: &NlpSolution) -> bool {
+pub(super) fn is_stationary(found: &NlpSolution) -> bool {
     let has_ended = matches!(
         found.status,
         Status::Solved | Status::Acceptable | Status::IterationLimit | Status::NumericalFailure

@@ -7,6 +7,7 @@
 //! repair      phases that shrank to nothing, arcs with a multiplier of the wrong sign
 //! insert      a hold where a surface is crossed, or where the motion begins or ends on it
 //! certify     everything that an optimum of the true system meets
+//! polish      the last digits of what is certified
 //! ```
 
 mod across;
@@ -19,6 +20,7 @@ mod insertion;
 mod joint;
 mod minimum;
 mod parts;
+mod polish;
 mod polynomials;
 mod range;
 mod repair;
@@ -34,7 +36,7 @@ pub(crate) use answer::Whole;
 pub use certificate::{Certificate, Check, Stretch, Switch};
 pub(crate) use contacts::Contacts;
 pub(crate) use joint::{Joint, Part};
-pub(crate) use parts::{halved_in_phases, locate_in_phases};
+pub(crate) use parts::{halved_in_phases, locate_in_phases, polished_in_phases};
 pub(crate) use polynomials::beyond_bounds;
 pub(crate) use range::ranges;
 pub(crate) use repair::{is_attracted, wrong_sign};
@@ -141,6 +143,18 @@ pub(crate) fn on_half_intervals(
     Some(finer)
 }
 
+/// The same optimum with more of its digits; nothing where there are none.
+/// The arguments are those of [`locate`].
+pub(crate) fn polished(
+    [written, model]: [&Model; 2],
+    problem: &Problem,
+    located: &Located,
+    stop: &(dyn Fn() -> ControlFlow<Stop> + Sync),
+    spent: &mut Spent,
+) -> Option<Located> {
+    Search { written, model, problem, among: None, stop, spent }.polished(located)
+}
+
 impl Search<'_> {
     /// Solves, and mends the structure until nothing contradicts it.
     fn repaired(&mut self, structure: Structure, from: &Whole) -> Option<Located> {
@@ -162,8 +176,18 @@ impl Search<'_> {
                 passed.push(std::mem::replace(&mut located, better));
             }
         }
+        self.turned_back(&mut located, &mut passed);
         located.others = passed;
         Some(located)
+    }
+
+    /// A phase that shrank to nothing may have been tried from what there is without it.
+    fn turned_back(&self, located: &mut Located, passed: &mut Vec<Located>) {
+        let Some(asked) = repair::better(self.model, self.problem, located) else { return };
+        if let Some(at) = passed.iter().rposition(|it| it.structure.phases == asked.phases) {
+            let last = std::mem::replace(located, passed.remove(at));
+            passed.push(last);
+        }
     }
 
     /// What was passed by on the way, ready to be certified. Where surfaces may be held these are

@@ -58,12 +58,22 @@ pub(crate) fn halved_in_phases(
     let mut search = phases.search(0);
     let mut from = search.whole(&seen_from(all, 0));
     from.beside.iter_mut().zip(&halved[1..]).for_each(|(it, own)| it.0.clone_from(own));
-    let mut finer = in_order(search.solve(halved[0].clone(), &from)?, 0);
-    for (own, (located, insertion)) in finer.iter_mut().zip(insertions).enumerate() {
-        located.insertion = insertion;
-        phases.search(own).compared(located);
-    }
-    Some(finer)
+    let finer = search.solve(halved[0].clone(), &from)?;
+    Some(phases.compared(in_order(finer, 0), insertions))
+}
+
+/// The same optimum with more of its digits; nothing where there are none.
+pub(crate) fn polished_in_phases(
+    whole: &Model,
+    parts: &[Part],
+    all: Vec<Located>,
+    stop: Watch,
+    spent: &mut Spent,
+) -> Option<Vec<Located>> {
+    let mut phases = Phases { whole, parts, stop, spent };
+    let insertions: Vec<f64> = all.iter().map(|it| it.insertion).collect();
+    let polished = phases.search(0).polished(&seen_from(all, 0))?;
+    Some(phases.compared(in_order(polished, 0), insertions))
 }
 
 struct Phases<'s> {
@@ -84,6 +94,15 @@ impl Phases<'_> {
             stop: self.stop,
             spent: self.spent,
         }
+    }
+
+    /// The same structures, solved anew: what holds were worth is known.
+    fn compared(&mut self, mut all: Vec<Located>, insertions: Vec<f64>) -> Vec<Located> {
+        for (own, (located, insertion)) in all.iter_mut().zip(insertions).enumerate() {
+            located.insertion = insertion;
+            self.search(own).compared(located);
+        }
+        all
     }
 
     /// All phases as they look while they are smoothed; where that fails, one of them simpler.

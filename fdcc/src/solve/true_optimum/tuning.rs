@@ -32,6 +32,13 @@ pub(super) mod search {
     pub(crate) const GAIN_OF_TRIAL: f64 = 1e-7;
 }
 
+pub(super) mod polish {
+    /// The tolerance of the last solve of an answer.
+    pub(crate) const TOLERANCE: f64 = 1e-12;
+    /// It begins where another has ended.
+    pub(crate) const MOST_ITERATIONS: usize = 20;
+}
+
 pub(super) mod structure {
     /// A shorter phase, for the whole time, is dropped.
     pub(crate) const SHORTEST: f64 = 0.004;

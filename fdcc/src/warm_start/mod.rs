@@ -65,7 +65,7 @@ fn earlier(record: &Record, problem: &Problem) -> Earlier {
         controls: controls.collect(),
         unknowns: names.map(|name| number(&record.free, name)).collect(),
         widths: widths(record, problem),
-        variables: None,
+        pieces: Vec::new(),
     }
 }
 

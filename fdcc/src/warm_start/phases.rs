@@ -83,7 +83,7 @@ impl Cut<'_> {
             controls: controls.map(|it| own(&record.controls, &it.name)).collect(),
             unknowns: problem.unknowns.iter().map(|it| self.unknown(it.parameter)).collect(),
             widths: widths(record, problem),
-            variables: None,
+            pieces: Vec::new(),
         }
     }
 

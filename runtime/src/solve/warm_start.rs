@@ -1,6 +1,10 @@
 //! Warm starts: where an earlier solution ended, with multipliers and as much room as the change of
 //! the problem asks for.
 
+mod pieces;
+
+pub use pieces::Piece;
+
 use super::tuning::warm_start::{FACTOR, LEAST};
 use crate::linalg::Stages;
 use crate::nlp::{Solution, Start, Warm, constraint_violation, multiplier_estimate};
@@ -8,9 +12,10 @@ use crate::problem::{Chain, Problem};
 use crate::transcribe::TranscribedNlp;
 use crate::transcribe::chain::ChainNlp;
 use crate::transcribe::interval::Signal;
+use pieces::Curves;
 
 /// Signals of an earlier solution over normalised time; `None` where it has none of that name.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Default)]
 pub struct Earlier {
     /// Grid points, from 0 to 1.
     pub times: Vec<f64>,
@@ -22,8 +27,9 @@ pub struct Earlier {
     pub unknowns: Vec<Option<f64>>,
     /// The smoothing width of each surface.
     pub widths: Vec<Option<f64>>,
-    /// All variables of the phase, where it was solved on the same grid.
-    pub variables: Option<Vec<f64>>,
+    /// The same with what it is between grid points, where that is known, in the order of time;
+    /// what they lack is taken from the columns.
+    pub pieces: Vec<Piece>,
 }
 
 /// The earlier solutions of all phases on the grids of the chain; what they lack comes from the
@@ -33,10 +39,7 @@ fn resample(chain: &Chain, earlier: &[Earlier]) -> Vec<f64> {
     let whole = Start { v: nlp.guess(), warm: None };
     let mut own = nlp.shape().split(&whole);
     for ((phase, start), earlier) in nlp.each().zip(&mut own).zip(earlier) {
-        match earlier.variables.as_ref().filter(|it| it.len() == start.v.len()) {
-            Some(variables) => start.v.copy_from_slice(variables),
-            None => resample_phase(phase, earlier, &mut start.v),
-        }
+        resample_phase(phase, earlier, &mut start.v);
     }
     let mut v = nlp.shape().joined(&own, &whole).v;
     for (unknown, place) in chain.unknowns.iter().zip(nlp.shape().unknowns[0]..) {
@@ -55,6 +58,7 @@ fn resample(chain: &Chain, earlier: &[Earlier]) -> Vec<f64> {
 fn resample_phase(nlp: &TranscribedNlp, earlier: &Earlier, v: &mut [f64]) {
     let stages = nlp.chain();
     let slots = nlp.interval().slots.clone();
+    let curves = Curves::new(nlp.problem(), &earlier.pieces);
     for (place, slot) in slots.iter().enumerate() {
         for k in 0..values_of(place, stages) {
             let value = match slot.signal {
@@ -65,8 +69,9 @@ fn resample_phase(nlp: &TranscribedNlp, earlier: &Earlier, v: &mut [f64]) {
                 }
                 Signal::Control(i) => earlier.control(i, 1.0),
             };
+            let curve = curves.at(slot.signal, nlp.mesh().at(k, slot.time));
             let variable = &mut v[place + k * stages.variable_step()];
-            *variable = value.unwrap_or(*variable);
+            *variable = curve.or(value).unwrap_or(*variable);
         }
     }
 }

@@ -104,13 +104,6 @@ impl PhaseOfModes {
             && self.jump.is_none()
     }
 
-    /// Whether it has the same equations and the same grid as another; what happens where it begins
-    /// may differ.
-    pub fn is_alike_inside(&self, other: &Self) -> bool {
-        let begin = |it: &Self| PhaseOfModes { touches: Vec::new(), jump: None, ..it.clone() };
-        begin(self) == begin(other)
-    }
-
     /// Whether something determines the controls at each node.
     pub fn needs_polynomials(&self) -> bool {
         self.modes.contains(&Mode::Held) || self.contacts.iter().any(|it| *it != Arc::Free)

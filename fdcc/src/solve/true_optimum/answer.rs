@@ -2,10 +2,11 @@
 
 use super::structure::Structure;
 use super::{Joint, Located};
-use fdcc_compiler::{Mode, Model, PhaseOfModes};
+use fdcc_compiler::{Mode, Model};
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::solution::modes::{self, Span};
 use fdcc_runtime::solution::phases::{Jump, located};
+use fdcc_runtime::solve::warm_start::Piece;
 use fdcc_runtime::solve::{ChainOutcome, Outcome};
 
 /// One trajectory, and where it jumps.
@@ -25,16 +26,26 @@ pub(crate) struct Whole {
 /// A phase with all variables of its solution.
 #[derive(Clone)]
 pub(crate) struct SolvedPhase {
-    of: PhaseOfModes,
+    problem: Problem,
     ends: [f64; 2],
     variables: Vec<f64>,
 }
 
 impl Whole {
-    /// The variables of a phase that does the same between the same times.
-    pub fn variables_of(&self, phase: &PhaseOfModes, ends: &[f64]) -> Option<&[f64]> {
-        let is_same = |it: &&SolvedPhase| it.ends == ends && it.of.is_alike_inside(phase);
-        self.phases.iter().find(is_same).map(|it| &it.variables[..])
+    /// What was solved between two times, with the time between them normalised.
+    pub fn pieces(&self, ends: &[f64]) -> Vec<Piece> {
+        let normalised = |time: f64| (time - ends[0]) / (ends[1] - ends[0]);
+        let is_inside = |it: &&SolvedPhase| {
+            let [begin, end] = it.ends;
+            begin < end && end > ends[0] && begin < ends[1]
+        };
+        let inside = self.phases.iter().filter(is_inside);
+        let piece = |it: &SolvedPhase| Piece {
+            problem: it.problem.clone(),
+            ends: it.ends.map(normalised),
+            variables: it.variables.clone(),
+        };
+        inside.map(piece).collect()
     }
 }
 
@@ -69,14 +80,14 @@ impl Located {
     }
 
     fn solved_phases(&self) -> Vec<SolvedPhase> {
-        let all = self.structure.phases.iter().zip(self.structure.times.windows(2));
-        let solved = all.zip(&self.outcome.phases);
-        let of = |((of, pair), outcome): ((&PhaseOfModes, &[f64]), &Outcome)| SolvedPhase {
-            of: of.clone(),
+        let solved = self.chain.phases.iter().zip(&self.outcome.phases);
+        let all = self.structure.times.windows(2).zip(solved);
+        let of = |(pair, (problem, outcome)): (&[f64], (&Problem, &Outcome))| SolvedPhase {
+            problem: problem.clone(),
             ends: [pair[0], pair[1]],
             variables: outcome.solution.v.clone(),
         };
-        solved.map(of).collect()
+        all.map(of).collect()
     }
 
     /// What a surface does from when to when.

@@ -318,7 +318,7 @@ fn with_controls(chain: &Chain, controls: &[f64]) -> Start {
         unknowns: Vec::new(),
         widths: Vec::new(),
         times: vec![0.0, 1.0],
-        variables: None,
+        pieces: Vec::new(),
     };
     from_earlier(chain, &[earlier])
 }

@@ -2,7 +2,7 @@
 
 use super::Whole;
 use super::structure::Structure;
-use fdcc_compiler::{Model, PhaseOfModes};
+use fdcc_compiler::Model;
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::solve::warm_start::Earlier;
 
@@ -23,12 +23,11 @@ impl Signals<'_> {
         problems: &mut impl Iterator<Item = &'p Problem>,
         structure: &Structure,
     ) -> Vec<Earlier> {
-        let phases = structure.phases.iter().zip(structure.times.windows(2));
-        let phases = phases.zip(problems);
-        phases.map(|((of, ends), problem)| self.phase(model, problem, of, ends)).collect()
+        let phases = structure.times.windows(2).zip(problems);
+        phases.map(|(ends, problem)| self.phase(model, problem, ends)).collect()
     }
 
-    fn phase(&self, model: &Model, problem: &Problem, of: &PhaseOfModes, ends: &[f64]) -> Earlier {
+    fn phase(&self, model: &Model, problem: &Problem, ends: &[f64]) -> Earlier {
         let own = &self.from.outcome.trajectory;
         let inside = own.time.iter().copied().filter(|time| *time > ends[0] && *time < ends[1]);
         let times: Vec<f64> = [ends[0]].into_iter().chain(inside).chain([ends[1]]).collect();
@@ -62,7 +61,7 @@ impl Signals<'_> {
             controls: (0..problem.controls.len()).map(control).collect(),
             unknowns: problem.unknowns.iter().map(|it| unknown(it.parameter)).collect(),
             widths: Vec::new(),
-            variables: self.from.variables_of(of, ends).map(<[f64]>::to_vec),
+            pieces: self.from.pieces(ends),
             times: times.iter().map(|time| (time - ends[0]) / duration).collect(),
         }
     }

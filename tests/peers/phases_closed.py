@@ -62,6 +62,26 @@ def two_stages(c=2500, g=9.81):
     return {'objective': h1 + h2 + v2**2 / (2 * g), 'T1': 50, 'T2': 87.5, 'T3': v2 / g}
 
 
+def sounding_rocket(c=2800, g=9.81):
+    """Full thrust in each of three stages, by the fuel of the second and the third; 4900 kg of all may be burnt."""
+    def burn(state, fuel, push):
+        h, v, m = state
+        time, r = fuel * c / push, m / (m - fuel)
+        climb = v * time + c * time * (1 - log(r) / (r - 1)) - g * time**2 / 2 if fuel else 0
+        return h + climb, v + c * log(r) - g * time, m - fuel
+
+    def height(second, third):
+        h, v, m = burn((0, 0, 10000), 4900 - second - third, 2e5)
+        h, v, m = burn((h, v, m - 800), second, 6e4)
+        h, v, m = burn((h, v, m - 300), third, 1.5e4)
+        return h + v**2 / (2 * g)
+    found = minimize(lambda b: -height(*b), (300, 200), method='Nelder-Mead',
+                     options={'xatol': 1e-10, 'fatol': 1e-12, 'maxiter': 4000})
+    second, third = found.x
+    return {'objective': -found.fun, 'T1': (4900 - second - third) * c / 2e5, 'T2': second * c / 6e4,
+            'T3': third * c / 1.5e4}
+
+
 def gears():
     """v_s is where another second in first gear gains as much as it saves in second, after the drag of the shift."""
     k = exp(-0.03)
@@ -131,6 +151,7 @@ CLOSED = {
     # T + 12/T^3 is least at T^4 = 36
     'chain_shared': {'objective': 4 / 3 * sqrt(6), 'T': sqrt(6)},
     'two_stages': two_stages(),
+    'sounding_rocket': sounding_rocket(),
     # 6.75 + 4.5 (a + b) + 3 (a^2 + a b + b^2), the sum of two `hermite`
     'periodic_tour': {'objective': 4.5, 'v0': -0.5, 'v2': -0.5},
     'walker': walker(),

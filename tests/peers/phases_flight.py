@@ -20,11 +20,11 @@ def after(index):
     return times
 
 
-def climb(push):
+def climb(push, exhaust=2500):
     """A rocket without drag in 100 km, km/s, t; `push` is its thrust in kN, or None for a control."""
     def rate(t, x, u, p):
         thrust = u[0] if push is None else push
-        return [x[1] / 100, (thrust / x[2] - 9.81) / 1000, -thrust / 2500]
+        return [x[1] / 100, (thrust / x[2] - 9.81) / 1000, -thrust / exhaust]
     return rate
 
 
@@ -154,6 +154,17 @@ FLIGHT = {
         {'T1': (10, 80, 45), 'T2': (10, 150, 80), 'T3': (10, 600, 350)},
         {('boost', 'sustain'): drop, ('sustain', 'coast'): same}, mayer=lambda a, b, p: 1e5 * b['coast'][0],
         maximize=True, scale=1e-5),
+    # as hard as it can until its fuel is gone, by the maximum principle
+    'sounding_rocket': Problem(
+        {'first': Phase(after(0), climb(200, 2800), lambda s: [0.3 * s, 1.2 * s, 10 - 4 * s], start=[0, 0, 10], N=4),
+         'second': Phase(after(1), climb(60, 2800), lambda s: [0.3 + 0.2 * s, 1.2, 5 - 0.5 * s], N=4),
+         'third': Phase(after(2), climb(15, 2800), lambda s: [0.5, 1.1, 4.2 - 0.2 * s], N=4),
+         'coast': Phase(after(3), climb(0), lambda s: [0.5 + 0.6 * s, 1 - s, 4], N=4)},
+        {'T1': (1, 200, 60), 'T2': (1, 200, 20), 'T3': (1, 200, 20), 'Tc': (1, 2000, 100)},
+        {('first', 'second'): lambda x, p: [x[0], x[1], x[2] - 0.8],
+         ('second', 'third'): lambda x, p: [x[0], x[1], x[2] - 0.3], ('third', 'coast'): same},
+        ends=lambda a, b, p: [(b['third'][2], 4, 4), (b['coast'][1], 0, 0)],
+        mayer=lambda a, b, p: 1e5 * b['coast'][0], maximize=True, scale=1e-5),
     # models/twostage.fdc; its phases are cut where the thrust is switched off
     'twostage': Problem(
         {'boost': Phase(after(0), climb(40), lambda s: [0.4 * s, 1.4 * s, 1.5 - 0.8 * s], start=[0, 0, 1.5]),

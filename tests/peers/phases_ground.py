@@ -16,6 +16,16 @@ def effort(t, x, u, p):
     return u[0]**2
 
 
+def wagon(t, x, u, p):
+    """A mass of 1.59 with a drag of 0.1."""
+    return [x[1], (u[0] - 0.1 * x[1]) / 1.59]
+
+
+def tenth(t, x, u, p):
+    """A tenth of the effort."""
+    return 0.1 * u[0]**2
+
+
 def same(x, p):
     """A link that changes nothing."""
     return [x[i] for i in range(x.numel())]
@@ -137,6 +147,22 @@ GROUND = {
          'drain': Phase(fixed(2, 3), lambda t, x, u, p: [-x[0]], lambda s: [0.5], state_bounds={0: (-INF, 1)})},
         links={('fill', 'drain'): lambda x, p: [2 * x[0]]}, mayer=lambda a, b, p: b['drain'][0], maximize=True,
         tell=lambda a, b, p: {'x': b['fill'][0]}),
+    # slower than the limit where the second phase begins, at it for a while, then at full brakes
+    'limit_after_link': Problem(
+        {'fast': Phase(on(0), wagon, lambda s: [2.12 + 0.4 * s, 0.7 + 0.3 * s], start=[2.12, 0.7], bounds=[(-1.11, 2.97)],
+                       cost=tenth),
+         'near': Phase(on(0, 1), wagon, lambda s: [2.52 + 0.2 * s, 0.56 + 0.01 * s], bounds=[(0.057, 1.4)], cost=tenth),
+         'limit': Phase(on(0, 1, 2), lambda t, x, u, p: [x[1], 0 * x[1]], lambda s: [2.7 + s, 0.57],
+                        cost=lambda t, x, u, p: 0.1 * 0.057**2, N=4),
+         'slower': Phase(on(0, 1, 2, 3), wagon, lambda s: [3.6 + 0.2 * s, 0.57 - 0.1 * s], bounds=[(-0.72, 0.057)],
+                         cost=tenth),
+         'brake': Phase(on(0, 1, 2, 3, 4), lambda t, x, u, p: [x[1], (-0.72 - 0.1 * x[1]) / 1.59],
+                        lambda s: [3.8 + 0.2 * s, 0.5 * (1 - s)], cost=lambda t, x, u, p: 0.1 * 0.72**2, N=4)},
+        {'T1': (0.1, 3, 0.5), 'T2': (0.01, 3, 0.3), 'T3': (0.1, 5, 1.5), 'T4': (0.01, 3, 0.2), 'T5': (0.1, 3, 1)},
+        {('fast', 'near'): lambda x, p: [x[0], 0.58 * x[1]], **legs(['near', 'limit', 'slower', 'brake'], same)},
+        ends=lambda a, b, p: [(b['fast'][0], 2.52, 2.52), (b['near'][1], 0.57, 0.57), (b['brake'][0], 3.98, 3.98),
+                              (b['brake'][1], 0, 0)],
+        mayer=lambda a, b, p: p[0] + p[1] + p[2] + p[3] + p[4]),
     'two_roads': Problem(
         {'rough': Phase(on(0), road(8), lambda s: [s, 3 - 2 * s], start=[0, 3], bounds=[(0.1, 5)], controls=[1]),
          'smooth_road': Phase(on(0, 1), road(1), lambda s: [1 + s, 1 - s], bounds=[(0.1, 5)], controls=[1])},

@@ -48,21 +48,53 @@ pub(crate) fn violations(
     gains.map(violated).collect()
 }
 
-/// For each control the least and the largest slope of the Hamiltonian of the minimisation problem
-/// by it, over all of its values in a phase.
-pub fn control_slopes(problem: &Problem, outcome: &Outcome) -> Vec<[f64; 2]> {
+/// The slope of the Hamiltonian of the minimisation problem by a control, over all of its values in
+/// a phase.
+#[derive(Clone, Copy)]
+pub struct ControlSlopes {
+    /// The least one.
+    pub least: f64,
+    /// The largest one.
+    pub largest: f64,
+    /// The largest sum of the sizes of what it is the sum of.
+    pub terms: f64,
+}
+
+/// Those of all controls of a phase.
+pub fn control_slopes(problem: &Problem, outcome: &Outcome) -> Vec<ControlSlopes> {
     let mut nlp = TranscribedNlp::new(problem);
     let parameters = outcome.trajectory.parameters.iter().enumerate();
     parameters.for_each(|(index, value)| nlp.set_parameter(index, *value));
     let slopes = slopes(&mut nlp, &outcome.solution);
+    let sizes = sizes_of_slopes(&mut nlp, &outcome.solution);
     let time = &outcome.trajectory.time;
     let stages = problem.method.scheme.stages() as f64;
+    let none = ControlSlopes { least: f64::INFINITY, largest: f64::NEG_INFINITY, terms: 0.0 };
     let of = |control: usize| {
-        let all =
-            variables(&nlp, control).map(|(k, at)| slopes[at] * stages / (time[k + 1] - time[k]));
-        all.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], it| [a.min(it), b.max(it)])
+        variables(&nlp, control).fold(none, |all, (k, at)| {
+            let [slope, terms] =
+                [slopes[at], sizes[at]].map(|it| it * stages / (time[k + 1] - time[k]));
+            ControlSlopes {
+                least: all.least.min(slope),
+                largest: all.largest.max(slope),
+                terms: all.terms.max(terms),
+            }
+        })
     };
     (0..problem.controls.len()).map(of).collect()
+}
+
+/// Of each slope, what its terms add up to without their signs.
+fn sizes_of_slopes(nlp: &mut TranscribedNlp, solution: &Solution) -> Vec<f64> {
+    let mut derivatives = Derivatives::new(nlp);
+    let rows = &solution.multipliers.constraints;
+    nlp.derivatives(&solution.v, 1.0, rows, &mut derivatives);
+    let Derivatives { gradient, jacobian, .. } = derivatives;
+    let mut sizes: Vec<f64> = gradient.iter().map(|it| it.abs()).collect();
+    let jacobian: Vec<f64> = jacobian.iter().map(|it| it.abs()).collect();
+    let rows: Vec<f64> = rows.iter().map(|it| it.abs()).collect();
+    nlp.jacobian_structure().transposed_multiply_add(&jacobian, &rows, &mut sizes);
+    sizes
 }
 
 /// The gradient of the Lagrangian without the multipliers of bounds.

@@ -16,7 +16,7 @@ mod trajectory;
 pub use by_parameters::by_parameters;
 pub(crate) use elsewhere::Elsewhere;
 pub use hamiltonian::Hamiltonian;
-pub use minimum::control_slopes;
+pub use minimum::{ControlSlopes, control_slopes};
 pub use outcome::{Attempt, ChainOutcome, Limiting, Outcome};
 pub(crate) use pause::gain as gain_of_pauses;
 pub use quadrature::{integrals, sums_over_rows, terms_of_rows};

@@ -12,7 +12,7 @@ use fdcc_runtime::solution::Trajectory;
 
 /// The limits of a model along a located trajectory.
 pub(crate) struct Contacts<'l> {
-    model: &'l Model,
+    pub(super) model: &'l Model,
     pub(super) located: &'l Located,
     pub(super) limits: Vec<Limit>,
     /// How far each limit goes up and down.

@@ -153,7 +153,7 @@ impl Slice {
             [] => joint.model.boundary.len() - of.part.model.boundary.len(),
         };
         // The multipliers of conditions that nobody wrote are told to nobody.
-        phases[0].trajectory.end_multipliers.drain(..added);
+        let starts = phases[0].trajectory.end_multipliers.drain(..added).collect();
         let mut solution = outcome.solution.clone();
         solution.multipliers.constraints = self.multipliers(joint);
         let mut located = Located {
@@ -166,6 +166,7 @@ impl Slice {
             outcome: ChainOutcome { solution, phases, ..outcome.clone() },
             structure: of.structure.clone(),
             beside: Vec::new(),
+            starts,
             insertion: f64::INFINITY,
             gain: f64::INFINITY,
             loss: f64::INFINITY,

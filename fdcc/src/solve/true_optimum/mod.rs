@@ -66,6 +66,9 @@ pub(crate) struct Located {
     pub structure: Structure,
     /// Those of the other phases of a model with phases, in their order.
     pub beside: Vec<Located>,
+    /// What the objective changes by with each condition at the first time that nobody wrote: the
+    /// first ones of the first phase.
+    pub starts: Vec<f64>,
     /// By how much the objective falls with the duration of a hold that was not inserted, at most,
     /// for the size of the Hamiltonian.
     pub insertion: f64,

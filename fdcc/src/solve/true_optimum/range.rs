@@ -13,21 +13,32 @@ pub(crate) struct Range {
     /// How large other values may be: its width, or its unit where that is more, as what is 0
     /// throughout need not be small elsewhere.
     near: f64,
+    /// Whether it is 0 throughout.
+    is_zero: bool,
 }
 
 /// Those of all controls, by what they do in all of these phases.
 pub(crate) fn ranges(controls: &[Variable], phases: &[Outcome]) -> Vec<Range> {
     let of = |(at, control): (usize, &Variable)| {
         let values = phases.iter().flat_map(|it| &it.trajectory.controls[at]);
-        let largest = values.fold(LEAST_OF_UNIT * control.unit, |most, it| most.max(it.abs()));
+        let least = LEAST_OF_UNIT * control.unit;
+        let largest = values.fold(least, |most, it| most.max(it.abs()));
         let bounds = control.bounds;
         let width = (bounds.upper - bounds.lower).min(2.0 * largest);
-        Range { bounds, width, near: width.max(control.unit) }
+        Range { bounds, width, near: width.max(control.unit), is_zero: largest == least }
     };
     controls.iter().enumerate().map(of).collect()
 }
 
 impl Range {
+    /// What a slope is worth over the range: over its width; of a control that is 0 throughout,
+    /// which says nothing of its size, over as much of it as would matter, and its bounds allow.
+    pub fn worth(&self, slope: f64, that_matters: f64) -> f64 {
+        let Bounds { lower, upper, .. } = self.bounds;
+        let allowed = (upper - lower).min(that_matters);
+        slope * if self.is_zero { self.width.max(allowed) } else { self.width }
+    }
+
     /// The ends of what is nearer to 0 than this, or near to it.
     fn within(&self, far: f64) -> [f64; 2] {
         [self.bounds.lower.max(-far), self.bounds.upper.min(far)]

@@ -8,7 +8,7 @@ use super::tuning::certificate::{CONTACT, WRONG_SIGN};
 use super::tuning::repair::NOTHING;
 use fdcc_compiler::{Arc, Mode, Model};
 use fdcc_runtime::problem::{Columns, Problem};
-use fdcc_runtime::solution::{Trajectory, control_slopes};
+use fdcc_runtime::solution::{ControlSlopes, Trajectory, control_slopes};
 
 /// The structure without the phase that is least there; with a control released; else nothing.
 pub(super) fn better(model: &Model, between: &Problem, located: &Located) -> Option<Structure> {
@@ -58,13 +58,14 @@ pub(crate) fn wrong_sign(between: &Problem, located: &Located) -> Option<(usize,
         let slopes = control_slopes(problem, outcome);
         let size = outcome.trajectory.hamiltonian.scale.max(f64::MIN_POSITIVE);
         for (control, arc) in phase.arcs.iter().enumerate() {
-            let [least, largest] = slopes[control];
+            let ControlSlopes { least, largest, terms } = slopes[control];
             let wrong = match arc {
                 Arc::Free => continue,
                 Arc::Lower => -least,
                 Arc::Upper => largest,
             };
-            all.push((j, control, wrong * ranges[control].width / size));
+            let that_matters = if terms > 0.0 { size / terms } else { 0.0 };
+            all.push((j, control, ranges[control].worth(wrong, that_matters) / size));
         }
     }
     all.into_iter().max_by(|a, b| a.2.total_cmp(&b.2))

@@ -104,6 +104,12 @@ pub(super) mod contacts {
     pub(crate) const NEAR: usize = 2;
 }
 
+pub(super) mod signs {
+    /// At the end of an arc a multiplier is the polynomial through its values on so many intervals;
+    /// that through one less tells how uncertain it is.
+    pub(crate) const POINTS: usize = 4;
+}
+
 pub(super) mod repair {
     /// A shorter phase, for the whole time, has shrunk to nothing.
     pub(crate) const NOTHING: f64 = 1e-5;

@@ -1,8 +1,6 @@
 //! The elimination of some rows of a dense symmetric matrix, with pivots of one and two rows that
 //! keep its entries moderate.
 
-/// A pivot is refused if the elimination could enlarge entries by more than one over this.
-const THRESHOLD: f64 = 1e-4;
 /// Rows of a balanced matrix with nothing above this are rounding.
 const TINY: f64 = 16.0 * f64::EPSILON;
 /// So many columns of `L` are subtracted at a time.
@@ -12,6 +10,8 @@ const BATCH: usize = 4;
 /// as there are pivots; then their columns hold `L` below the blocks of `D`.
 #[derive(Debug, Default)]
 pub(super) struct Front {
+    /// A pivot is refused if the elimination could enlarge entries by more than one over this.
+    pub(super) threshold: f64,
     /// Names of the rows.
     pub(super) rows: Vec<u32>,
     /// `size x size`
@@ -36,6 +36,10 @@ pub(super) struct Singular;
 type Choice = Result<Option<Pivot>, Singular>;
 
 impl Front {
+    pub(super) fn new(threshold: f64) -> Self {
+        Front { threshold, ..Front::default() }
+    }
+
     pub(super) fn size(&self) -> usize {
         self.rows.len()
     }
@@ -84,7 +88,7 @@ impl Front {
         if diagonal.max(largest) <= TINY {
             return Err(Singular);
         }
-        if diagonal > TINY && diagonal >= THRESHOLD * largest {
+        if diagonal > TINY && diagonal >= self.threshold * largest {
             return Ok(Some(Pivot::One(r)));
         }
         Ok(partner.filter(|s| self.is_good_pair(k, r, *s)).map(|s| Pivot::Two(r.min(s), r.max(s))))
@@ -114,7 +118,7 @@ impl Front {
             others.fold(0.0, |most: f64, i| most.max(self.at(i, row).abs()))
         };
         let (p, q, determinant) = (others(r), others(s), (a * c - b * b).abs());
-        let most = determinant / THRESHOLD;
+        let most = determinant / self.threshold;
         determinant >= 0.5 * (a * c).abs().max(b * b)
             && c.abs() * p + b.abs() * q <= most
             && b.abs() * p + a.abs() * q <= most

@@ -6,14 +6,24 @@
 //! along a tree ([`tree`]). Each node adds up its entries of the matrix and what its children
 //! leave, in a small dense matrix, its front, and eliminates its own rows ([`super::front`]). A row
 //! that has no good pivot there is left to the parent. So the factors are accurate without any
-//! change of the matrix, and the signs of `D` are its inertia.
+//! change of the matrix, and the signs of `D` are its inertia. Where so many rows are left that the
+//! fronts fill up, worse pivots have to do.
 
 use super::balance::Balance;
 use super::factors::Factors;
-use super::front::Front;
+use super::front::{Front, Singular};
 use super::pairs::Pairs;
 use super::tree::{self, Node};
 use crate::linalg::structure::columns::Columns;
+
+/// The threshold of pivots at first.
+const THRESHOLD: f64 = 1e-4;
+/// What it becomes where fronts fill up, for what it was.
+const LOWER: f64 = 1e-2;
+/// A matrix whose fronts fill up with pivots as small as this is as good as singular.
+const LEAST: f64 = 1e-9;
+/// So many times what a factorisation takes without late rows are too many multiplications.
+const TOO_MANY: f64 = 4.0;
 
 /// A matrix of one pattern, and its factors.
 pub(crate) struct Multifrontal {
@@ -27,6 +37,20 @@ pub(crate) struct Multifrontal {
     factors: Factors,
     /// Where each row is in the front.
     position: Vec<u32>,
+}
+
+/// Why there are no factors.
+#[derive(Debug)]
+enum Stop {
+    Singular,
+    /// Late rows make the fronts too large.
+    Full,
+}
+
+impl From<Singular> for Stop {
+    fn from(_: Singular) -> Self {
+        Stop::Singular
+    }
 }
 
 /// What nodes left to their parents: symmetric matrices, by columns of their lower triangles.
@@ -51,7 +75,7 @@ impl Multifrontal {
             nodes: tree::nodes(&pattern, &Pairs::none(pattern.rows)),
             is_paired: false,
             balance: Balance::new(pattern.rows),
-            front: Front::default(),
+            front: Front::new(THRESHOLD),
             left: Stack::default(),
             factors: Factors::default(),
             position: vec![0; pattern.rows],
@@ -78,21 +102,40 @@ impl Multifrontal {
         if !self.is_paired {
             self.pair(values);
         }
+        let before = self.front.threshold;
+        while self.front.threshold > LEAST {
+            match self.eliminate(values) {
+                Ok(negative) => return Some(negative),
+                Err(Stop::Singular) => break,
+                Err(Stop::Full) => self.front.threshold *= LOWER,
+            }
+        }
+        self.front.threshold = before;
+        None
+    }
+
+    /// Eliminates all rows; the number of negative eigenvalues.
+    fn eliminate(&mut self, values: &[f64]) -> Result<usize, Stop> {
         self.factors.clear();
         self.left.clear();
-        let mut negative = 0;
+        let most = TOO_MANY * self.multiplications();
+        let (mut negative, mut done) = (0, 0.0);
         for at in 0..self.nodes.len() {
             let ready = self.assemble(at, values);
-            self.front.eliminate(ready).ok()?;
+            done += tree::multiplications(ready, self.front.size());
+            if done > most {
+                return Err(Stop::Full);
+            }
+            self.front.eliminate(ready)?;
             let late = ready - self.front.blocks.len();
             if late > 0 && self.nodes[at].rest.is_empty() {
-                return None;
+                return Err(Stop::Singular);
             }
             negative += self.front.negative;
             self.factors.keep(&self.front);
             self.left.push(&self.front, late);
         }
-        Some(negative)
+        Ok(negative)
     }
 
     /// Replaces `b` by the solution.

@@ -33,9 +33,13 @@ pub(super) struct Entry {
 impl Node {
     /// How many multiplications the elimination takes, about, if nothing is left over by children.
     pub(super) fn multiplications(&self) -> f64 {
-        let size = self.own.len() + self.rest.len();
-        (0..self.own.len()).map(|k| ((size - k) as f64).powi(2)).sum()
+        multiplications(self.own.len(), self.own.len() + self.rest.len())
     }
+}
+
+/// About how many multiplications it takes to eliminate so many rows of a front of this size.
+pub(super) fn multiplications(rows: usize, size: usize) -> f64 {
+    (0..rows).map(|k| ((size - k) as f64).powi(2)).sum()
 }
 
 /// The nodes, children before their parents and next to them as a stack wants it. `pattern` is an

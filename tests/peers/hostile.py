@@ -59,6 +59,22 @@ def phases(n):
     return "time t in [0, 1]\n" + "".join(map(each, range(n)))
 
 
+def arms(n):
+    return "piecewise { " + " ".join(f"t <= {i}/{n} => {i}" for i in range(n)) + " otherwise => 0 }"
+
+
+def apart(n):
+    each = lambda i: f"phase a{i} {{ time t in [0, 1] state x{i} start 0 dynamics {{ x{i}' = 1 }} }}\n"
+    return "".join(map(each, range(n)))
+
+
+def table(n):
+    """A model with a curve through n rows, and the rows."""
+    data = 'data obs = csv("table.csv") columns t, y\n'
+    rows = "".join(f"{i / (n - 1)},{(7 * i) % 11}\n" for i in range(n))
+    return motion("interpolate(obs.t, obs.y, t)", more=data), "t,y\n" + rows
+
+
 def sized(steps):
     return lambda n: motion("-x", f"N = 10 steps = {n}" if steps else f"N = {n}")
 
@@ -85,6 +101,11 @@ INPUTS = [
     ("n nested `phase a {` on one line", 20_000, lambda n: "phase a { " * n, CHECK, {1}),
     ("n nested phases, closed", 20_000, lambda n: "phase a {\n" * n + "}\n" * n, CHECK, {1}),
     ("n phases side by side", 1_000, phases, CHECK, {0, 1}),
+    ("n phases with times of their own", 1_000, apart, CHECK, {0, 1}),
+    ("n conditions `at` times", 8_000, lambda n: motion("x", more="".join(f"at {(i + 1) / (n + 2)}: x <= 1\n" for i in range(n))), CHECK, {0, 1}),
+    ("a report of one `piecewise` of n arms", 2_000, lambda n: motion("x", more=f"report {{ q = {arms(n)} }}\n"), CHECK, {0, 1}),
+    ("`interpolate` of n rows", 1_000, table, ["show"], {0, 1}),
+    ("`simulate`, `interpolate` of n rows", 500, table, ["simulate"], {0, 2}),
     ("n `param` that nothing mentions", 100_000, lambda n: "".join(f"param p{i} = {i}\n" for i in range(n)), CHECK, {0, 1}),
     ("n `param` in one sum", 10_000, lambda n: motion(total(n, lambda i: f"p{i}"), more="".join(f"param p{i} = {i}\n" for i in range(1, n + 1))), CHECK, {0, 1}),
     ("n states", 1_000, stacked, CHECK, {0, 1}),
@@ -115,6 +136,8 @@ INPUTS = [
 def measured(fdcc, folder, text, command):
     """Seconds, MB, exit code and the last line of what was said."""
     model = folder / "model.fdc"
+    text, rows = text if isinstance(text, tuple) else (text, "")
+    (folder / "table.csv").write_text(rows)
     model.write_text(text)
     timed = ["/usr/bin/time", "-q", "-f", "%e %M", "-o", str(folder / "time")]
     run = [fdcc, command[0], str(model), *command[1:]]

@@ -12,10 +12,11 @@ use crate::resolve::elaborator::phases::Inner;
 use crate::resolve::phases::in_order;
 use crate::resolve::{Around, resolve, resolve_phase};
 use crate::syntax::like::written_out;
+use crate::syntax::outer::Outer;
 use crate::units::{self, NamedUnit, Units};
 use fdcc_grammar::ast::{self, Assignment, Item, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Severity, Span};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// What a syntax tree means, and what is wrong with it.
 pub struct Checked {
@@ -51,14 +52,16 @@ pub fn check_with(tree: &ast::Model, files: Option<&Files>) -> Checked {
 
 fn check_tables(tree: &ast::Model, tables: &Tables) -> Checked {
     let mut diagnostics = Vec::new();
-    let tree = &*written_out(tree, &mut diagnostics);
+    let (tree, written) = (&*written_out(tree, &mut diagnostics), tree);
     let everything: Vec<&Item> = tree.items.iter().collect();
     let phases = phases(&tree.items);
     let units = units::infer(tree);
     let mut not_yet = Vec::new();
     let mut inner = Vec::new();
+    let outer = Outer::new(&tree.items);
     for phase in &phases {
-        let mut part = resolve_phase(&everything, &phase.around, &units.readings, tables);
+        let seen = outer.seen_by(phase.name, phase.items);
+        let mut part = resolve_phase(&seen, &phase.around, &units.readings, tables);
         diagnostics.extend(checked(&mut part, phase.around.items.clone(), tree, Some(phase.name)));
         not_yet.append(&mut part.not_yet);
         inner.push(Inner::new(phase.name, part));
@@ -68,6 +71,7 @@ fn check_tables(tree: &ast::Model, tables: &Tables) -> Checked {
     whole.not_yet.append(&mut not_yet);
     diagnostics.extend(checks::unused(tree));
     diagnostics.extend(checks::lookalike(tree));
+    diagnostics.extend(checks::twice(written, tree));
     diagnostics.extend(units.diagnostics.iter().cloned());
     sort(&mut diagnostics);
     let mut diagnostics = without_echoes(without_consequences(diagnostics));
@@ -91,17 +95,24 @@ fn check_tables(tree: &ast::Model, tables: &Tables) -> Checked {
 impl Model {
     /// Gives the whole and each phase the units of the names that it knows.
     fn take_units(&mut self, units: &Units, phases: &[Phase<'_>]) {
+        let holding = |unit: &NamedUnit| -> Vec<usize> {
+            (0..phases.len()).filter(|at| phases[*at].holds(unit.span)).collect()
+        };
+        let holders: Vec<Vec<usize>> = units.names.iter().map(holding).collect();
         let mut names = units.names.clone();
-        for unit in &units.names {
-            for phase in phases.iter().filter(|phase| phase.holds(unit.span)) {
-                let name = format!("{}.{}", phase.name.name, unit.name);
+        for (unit, holders) in units.names.iter().zip(&holders) {
+            for at in holders {
+                let name = format!("{}.{}", phases[*at].name.name, unit.name);
                 names.push(NamedUnit { name, ..unit.clone() });
             }
         }
-        for (phase, part) in phases.iter().zip(&mut self.phases) {
-            let is_known =
-                |unit: &&NamedUnit| unit.name.contains('.') || phase.knows(unit.span, phases);
-            part.model.units = names.iter().filter(is_known).cloned().collect();
+        let (own, of_phases) = names.split_at(holders.len());
+        for (at, part) in self.phases.iter_mut().enumerate() {
+            let is_known = |(unit, holders): &(&NamedUnit, &Vec<usize>)| {
+                unit.name.contains('.') || holders.is_empty() || holders.contains(&at)
+            };
+            let known = own.iter().zip(&holders).filter(is_known).map(|it| it.0);
+            part.model.units = known.chain(of_phases).cloned().collect();
             part.model.width_unit.clone_from(&units.width);
             part.model.condition_units.clone_from(&units.conditions);
         }
@@ -138,6 +149,7 @@ fn is_fatal(found: &Diagnostic) -> bool {
 /// A phase of a tree.
 struct Phase<'a> {
     name: &'a ast::Ident,
+    items: &'a [Item],
     /// Its block, and the items that it takes over from others.
     spans: Vec<Span>,
     around: Around<'a>,
@@ -147,32 +159,32 @@ impl Phase<'_> {
     fn holds(&self, place: Span) -> bool {
         self.spans.iter().any(|span| span.start <= place.start && place.end <= span.end)
     }
-
-    /// Whether what is declared at a place is known in this phase.
-    fn knows(&self, place: Span, phases: &[Phase<'_>]) -> bool {
-        self.holds(place) || !phases.iter().any(|phase| phase.holds(place))
-    }
 }
 
 /// The phases of a text, those that are linked in the order of time.
 fn phases(items: &[Item]) -> Vec<Phase<'_>> {
     let mut before: HashSet<&str> = HashSet::new();
     let mut phases = Vec::new();
-    let links: Vec<(&str, &str, &[Assignment])> = items.iter().filter_map(link).collect();
+    let mut into: HashMap<&str, Vec<&str>> = HashMap::new();
+    let mut out_of: HashMap<&str, Vec<&[Assignment]>> = HashMap::new();
+    for (from, to, assignments) in items.iter().filter_map(link) {
+        into.entry(to).or_default().push(from);
+        out_of.entry(from).or_default().push(assignments);
+    }
     for item in in_order(items) {
         let ItemKind::Phase { name, items, .. } = &item.kind else { continue };
-        let own = links.iter().filter(|link| link.0 == name.name).map(|link| link.2);
+        let earlier = into.get(name.name.as_str()).into_iter().flatten();
         let around = Around {
             items: items.iter().collect(),
-            follows: links.iter().any(|link| link.1 == name.name && before.contains(link.0)),
-            links: own.collect(),
+            follows: earlier.into_iter().any(|from| before.contains(from)),
+            links: out_of.get(name.name.as_str()).cloned().unwrap_or_default(),
         };
         before.insert(&name.name);
         let is_taken_over =
             |it: &&Item| it.span.end < item.span.start || item.span.end < it.span.start;
         let taken_over = items.iter().filter(is_taken_over).map(|it| it.span);
         let spans = std::iter::once(item.span).chain(taken_over).collect();
-        phases.push(Phase { name, spans, around });
+        phases.push(Phase { name, items, spans, around });
     }
     phases
 }

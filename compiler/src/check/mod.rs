@@ -53,4 +53,5 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, is_phase: bool) -> Vec<Diagnostic
 }
 
 pub(crate) use names::lookalike::check as lookalike;
+pub(crate) use names::twice::check as twice;
 pub(crate) use names::unused::check as unused;

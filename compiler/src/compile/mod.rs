@@ -106,7 +106,7 @@ pub fn compile_smoothed(model: &Model) -> Result<System, Vec<Diagnostic>> {
 fn compile_system(model: &Model, purpose: Purpose) -> Result<System, Vec<Diagnostic>> {
     not_yet(model)?;
     if let Some(sum) = model.sums.first() {
-        return Err(vec![model::not_yet(sum.place.span, "a simulation of a sum over rows")]);
+        return Err(vec![model::not_simulated_yet(sum.place.span, "a sum over rows")]);
     }
     let numbers = known(model)?;
     let (graph, lowered) = lower::simulation(model, purpose);

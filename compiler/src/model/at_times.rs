@@ -6,6 +6,7 @@ use crate::expressions::interval::{Interval, Tape};
 use crate::model::{AtTime, Model, Symbol};
 use crate::syntax::text;
 use fdcc_grammar::{Code, Diagnostic};
+use std::collections::{BTreeMap, HashMap};
 
 /// Times that differ by less, relative to the duration, are one.
 const ROUNDING: f64 = 1e-9;
@@ -25,19 +26,17 @@ impl Model {
     /// as they are guessed.
     pub(crate) fn instants(&self, numbers: &Numbers) -> Vec<Instant<'_>> {
         let [first, last] = self.interval.map(|end| numbers.value(self, end));
-        let room = ROUNDING * (last - first).abs();
+        let mut places = Places::within(ROUNDING * (last - first).abs());
         let mut all: Vec<Instant> = Vec::new();
         for it in &self.at_times {
             let guess = numbers.value(self, it.time);
-            let is_same = |other: &&mut Instant| {
-                let both = [other.time, it.time];
-                both[0] == both[1]
-                    || both.iter().all(|time| self.is_given(*time))
-                        && (other.guess - guess).abs() <= room
-            };
-            match all.iter_mut().find(is_same) {
-                Some(known) => known.conditions.push(it),
-                None => all.push(Instant { time: it.time, guess, conditions: vec![it] }),
+            let given = self.is_given(it.time).then_some(guess);
+            match places.find(it.time, given) {
+                Some(known) => all[known].conditions.push(it),
+                None => {
+                    places.add(it.time, given, all.len());
+                    all.push(Instant { time: it.time, guess, conditions: vec![it] });
+                }
             }
         }
         all.sort_by(|a, b| a.guess.total_cmp(&b.guess));
@@ -50,14 +49,8 @@ impl Model {
         inputs.iter().all(|at| matches!(self.symbols[*at as usize], Symbol::Param(_)))
     }
 
-    /// Where the difference of two times, the later one first, may lie.
-    pub(crate) fn between_times(
-        &self,
-        graph: &mut Graph,
-        numbers: &Numbers,
-        [later, earlier]: [ExprId; 2],
-    ) -> Interval {
-        let difference = graph.sub(later, earlier);
+    /// Where every input may lie that is the same at any time.
+    pub(crate) fn timeless(&self, numbers: &Numbers) -> Vec<Interval> {
         let one = |symbol: &Symbol| match *symbol {
             Symbol::Free(at) => {
                 let bounds = numbers.bounds(self, self.frees[at].range);
@@ -66,18 +59,21 @@ impl Model {
             symbol @ Symbol::Param(_) => Interval::point(numbers.of(symbol)),
             _ => Interval::ALL,
         };
-        let domain: Vec<Interval> = self.symbols.iter().map(one).collect();
-        Tape::new(graph, &[difference]).evaluate(&domain)[0]
+        self.symbols.iter().map(one).collect()
     }
 
     /// Conditions at times that are never inside of the horizon, and those whose order nothing
     /// tells.
     pub(crate) fn misplaced_times(&self, numbers: &Numbers) -> Vec<Diagnostic> {
         let instants = self.instants(numbers);
+        if instants.is_empty() {
+            return Vec::new();
+        }
+        let mut differences = Differences::new(self, numbers);
         let mut found: Vec<Diagnostic> =
-            instants.iter().filter_map(|it| self.outside(numbers, it)).collect();
+            instants.iter().filter_map(|it| self.outside(numbers, &mut differences, it)).collect();
         if found.is_empty() {
-            found.extend(instants.windows(2).filter_map(|pair| self.open_order(numbers, pair)));
+            found.extend(instants.windows(2).filter_map(|it| open_order(&mut differences, it)));
         }
         found
     }
@@ -86,15 +82,19 @@ impl Model {
     pub fn has_order_of_times(&self) -> bool {
         numbers(self).is_ok_and(|numbers| {
             let instants = self.instants(&numbers);
-            instants.windows(2).all(|pair| self.open_order(&numbers, pair).is_none())
+            let mut differences = Differences::new(self, &numbers);
+            instants.windows(2).all(|it| open_order(&mut differences, it).is_none())
         })
     }
 
-    fn outside(&self, numbers: &Numbers, instant: &Instant) -> Option<Diagnostic> {
-        let mut graph = self.graph.clone();
-        let mut difference = |pair| self.between_times(&mut graph, numbers, pair);
-        let passed = difference([instant.time, self.interval[0]]);
-        let left = difference([self.interval[1], instant.time]);
+    fn outside(
+        &self,
+        numbers: &Numbers,
+        differences: &mut Differences,
+        instant: &Instant,
+    ) -> Option<Diagnostic> {
+        let passed = differences.between([instant.time, self.interval[0]]);
+        let left = differences.between([self.interval[1], instant.time]);
         let room = ROUNDING * (passed.upper + left.upper).abs();
         let (word, end) = match () {
             () if passed.upper <= room => ("start", "begins"),
@@ -118,20 +118,81 @@ impl Model {
              written `{word} ...`"
         )))
     }
+}
 
-    fn open_order(&self, numbers: &Numbers, pair: &[Instant]) -> Option<Diagnostic> {
-        let times = [pair[1].time, pair[0].time];
-        let passed = self.between_times(&mut self.graph.clone(), numbers, times);
-        if passed.lower >= 0.0 {
-            return None;
-        }
-        let [first, second] = [&pair[0], &pair[1]].map(|it| &it.conditions[0].place);
-        let message = format!("`{}` is taken to be before `{}`", first.name, second.name);
-        let label = "as they are guessed; their bounds allow both orders";
-        let found = Diagnostic::new(Code::OrderOfTimes, message, second.span, label);
-        Some(found.label(first.span, "before").help(
-            "only this order is solved: give the unknown bounds that say so, or the other order by \
-             other guesses",
-        ))
+fn open_order(differences: &mut Differences, pair: &[Instant]) -> Option<Diagnostic> {
+    let passed = differences.between([pair[1].time, pair[0].time]);
+    if passed.lower >= 0.0 {
+        return None;
     }
+    let [first, second] = [&pair[0], &pair[1]].map(|it| &it.conditions[0].place);
+    let message = format!("`{}` is taken to be before `{}`", first.name, second.name);
+    let label = "as they are guessed; their bounds allow both orders";
+    let found = Diagnostic::new(Code::OrderOfTimes, message, second.span, label);
+    Some(found.label(first.span, "before").help(
+        "only this order is solved: give the unknown bounds that say so, or the other order by \
+         other guesses",
+    ))
+}
+
+/// Where differences of times may lie, as far as the bounds of the unknowns tell.
+struct Differences {
+    graph: Graph,
+    domain: Vec<Interval>,
+}
+
+impl Differences {
+    fn new(model: &Model, numbers: &Numbers) -> Self {
+        Differences { graph: model.graph.clone(), domain: model.timeless(numbers) }
+    }
+
+    fn between(&mut self, times: [ExprId; 2]) -> Interval {
+        between_times(&mut self.graph, &self.domain, times)
+    }
+}
+
+/// Where the difference of two times, the later one first, may lie.
+pub(crate) fn between_times(
+    graph: &mut Graph,
+    domain: &[Interval],
+    [later, earlier]: [ExprId; 2],
+) -> Interval {
+    let difference = graph.sub(later, earlier);
+    Tape::new(graph, &[difference]).evaluate(domain)[0]
+}
+
+/// Which of some times is another one: the same expression, or nearly the same number.
+struct Places {
+    room: f64,
+    by_time: HashMap<ExprId, usize>,
+    by_number: BTreeMap<i64, (f64, usize)>,
+}
+
+impl Places {
+    /// Numbers that differ by no more than `room` are one.
+    fn within(room: f64) -> Self {
+        Places { room, by_time: HashMap::new(), by_number: BTreeMap::new() }
+    }
+
+    fn find(&self, time: ExprId, number: Option<f64>) -> Option<usize> {
+        self.by_time.get(&time).copied().or_else(|| {
+            let number = number.filter(|it| it.is_finite() && self.room.is_finite())?;
+            let near = self.by_number.range(key(number - self.room)..=key(number + self.room));
+            let near = near.filter(|it| (it.1.0 - number).abs() <= self.room);
+            near.map(|it| it.1.1).min()
+        })
+    }
+
+    fn add(&mut self, time: ExprId, number: Option<f64>, place: usize) {
+        self.by_time.entry(time).or_insert(place);
+        if let Some(number) = number {
+            self.by_number.entry(key(number)).or_insert((number, place));
+        }
+    }
+}
+
+/// Whole numbers in the order of `f64::total_cmp`.
+fn key(number: f64) -> i64 {
+    let bits = number.to_bits() as i64;
+    bits ^ (((bits >> 63) as u64) >> 1) as i64
 }

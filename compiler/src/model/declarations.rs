@@ -110,6 +110,8 @@ pub struct Jump {
     /// States, as indices into [`Model::states`](super::Model::states), with their values
     /// after the jump.
     pub resets: Vec<(usize, ExprId)>,
+    /// What assigns each of these.
+    pub assignments: Vec<Span>,
 }
 
 /// A scalar row of a condition: `lower <= value <= upper`.

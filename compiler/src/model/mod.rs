@@ -16,7 +16,7 @@ pub(crate) mod phases;
 mod switches;
 mod unsolved;
 
-pub(crate) use at_times::Instant;
+pub(crate) use at_times::{Instant, between_times};
 pub use declarations::{
     AtTime, Ball, Constraint, Control, Definition, Free, Integral, Jump, Param, Place, Range,
     State, Surface, Swept,
@@ -232,4 +232,11 @@ impl Model {
 pub(crate) fn not_yet(span: Span, what: &str) -> Diagnostic {
     let message = format!("{what} cannot be solved yet");
     Diagnostic::new(Code::NotYet, message, span, "understood by `check`, not yet by `solve`")
+}
+
+/// "This is solved but cannot be simulated yet."
+pub(crate) fn not_simulated_yet(span: Span, what: &str) -> Diagnostic {
+    let message = format!("{what} cannot be simulated yet");
+    let label = "understood by `solve`, not yet by `simulate`, `grad` and `verify`";
+    Diagnostic::new(Code::NotYet, message, span, label)
 }

@@ -11,9 +11,10 @@
 use super::division::{Division, add_symbols, numbered};
 use super::shares::Shares;
 use crate::expressions::graph::Graph;
+use crate::expressions::interval::Interval;
 use crate::model::guess::straight_guesses;
 use crate::model::numbers::{Numbers, numbers};
-use crate::model::{Constraint, Instant, Link, Model, Place, Range, State, Symbol};
+use crate::model::{Constraint, Instant, Link, Model, Place, Range, State, Symbol, between_times};
 use fdcc_grammar::{Diagnostic, Severity};
 use fdcc_runtime::problem::{End, Grid, Method};
 
@@ -35,7 +36,9 @@ pub fn with_times(model: &Model) -> Result<Model, Vec<Diagnostic>> {
     let [begin, end] = model.interval;
     let times = std::iter::once(begin).chain(instants.iter().map(|it| it.time)).chain([end]);
     let division = Division::new(&whole, times.collect());
-    Ok(Pieces { written: model, numbers: &numbers, instants: &instants, division }.into_model())
+    let domain = model.timeless(&numbers);
+    let (numbers, instants) = (&numbers, &instants);
+    Ok(Pieces { written: model, numbers, domain, instants, division }.into_model())
 }
 
 /// For each time of a condition, as it is guessed, a model whose end conditions are those that hold
@@ -74,6 +77,8 @@ struct Pieces<'m> {
     /// The model as it is written.
     written: &'m Model,
     numbers: &'m Numbers,
+    /// Where the parameters and the unknowns of the written model may lie.
+    domain: Vec<Interval>,
     instants: &'m [Instant<'m>],
     division: Division<'m>,
 }
@@ -160,7 +165,7 @@ impl Pieces<'_> {
     fn duration(&mut self, j: usize, of: &Place, word: &str) -> Option<Constraint> {
         let times = [self.division.times[j + 1], self.division.times[j]];
         let graph = &mut self.division.graph;
-        let passed = self.written.between_times(graph, self.numbers, times);
+        let passed = between_times(graph, &self.domain, times);
         let place = Place { name: format!("time {word} {}", of.name), span: of.span };
         let value = graph.sub(times[0], times[1]);
         let range: Range = self.division.not_below();

@@ -31,6 +31,7 @@ pub fn crossings(model: &Model) -> Vec<Jump> {
         at_most: None,
         then_hold: None,
         resets: Vec::new(),
+        assignments: Vec::new(),
     };
     model.jumps.iter().map(crossing).collect()
 }

@@ -19,18 +19,19 @@ impl MultiPhase<'_> {
     pub(super) fn at_jump(&mut self, j: usize) -> Vec<Constraint> {
         let jump = self.jump(j);
         let zero = self.division.graph.number(0.0);
-        let row = |name: String, value| Constraint {
-            place: Place { name, span: jump.place.span },
+        let row = |name: String, span, value| Constraint {
+            place: Place { name, span },
             value,
             range: Range { lower: zero, upper: zero },
         };
         let psi = self.division.at_end(j, self.whole().surfaces[jump.surface].psi);
-        let mut rows = vec![row(jump.place.name.clone(), psi)];
+        let mut rows = vec![row(jump.place.name.clone(), jump.place.span, psi)];
         rows.extend(self.direction(j));
         for (index, state) in self.division.model.states.iter().enumerate() {
-            let reset = jump.resets.iter().find(|it| it.0 == index).map(|it| it.1);
+            let reset = jump.resets.iter().position(|it| it.0 == index);
+            let span = reset.map_or(jump.place.span, |at| jump.assignments[at]);
             let before = match reset {
-                Some(value) => self.division.at_end(j, value),
+                Some(at) => self.division.at_end(j, jump.resets[at].1),
                 None => self.division.of_phase(j, Symbol::AtEnd(index)),
             };
             let start = self.division.of_phase(j + 1, Symbol::AtStart(index));
@@ -38,7 +39,7 @@ impl MultiPhase<'_> {
                 Some(approach) => approach,
                 None => self.division.graph.sub(start, before),
             };
-            rows.push(row(format!("{} after {}", state.place.name, jump.place.name), gap));
+            rows.push(row(format!("{} after {}", state.place.name, jump.place.name), span, gap));
         }
         rows
     }

@@ -12,6 +12,7 @@ pub(crate) mod phases;
 
 use crate::data::Tables;
 use crate::model::{Model, Phase, Place, Surface};
+use crate::settings::SCHEME_OF_FITS;
 use crate::syntax::scope::Scope;
 use crate::units::{self, Readings};
 use elaborator::Elaborator;
@@ -124,6 +125,18 @@ impl Elaborator<'_> {
         };
         model.bounds_as_conditions();
         phases::distribute(&mut model);
+        choose_scheme(&mut model);
         model
+    }
+}
+
+/// Where rows of data are added up and no scheme is written.
+fn choose_scheme(model: &mut Model) {
+    let adds_up = |it: &Model| !it.sums.is_empty();
+    if adds_up(model) || model.phases.iter().any(|it| adds_up(&it.model)) {
+        let of_phases = model.phases.iter_mut().map(|it| &mut it.model.method);
+        for method in of_phases.chain([&mut model.method]).filter(|it| !it.names_scheme) {
+            method.scheme = SCHEME_OF_FITS;
+        }
     }
 }

@@ -110,6 +110,7 @@ pub(crate) const KEYS: &[Key] = &[
         set: |m, given| {
             let Given::Word(word) = given else { return None };
             m.scheme = Scheme::named(word)?;
+            m.names_scheme = true;
             m.order = if Scheme::is_family(word) { Order::Auto } else { Order::Fixed };
             Some(())
         },
@@ -306,6 +307,10 @@ pub(crate) fn nearest_word<'e>(expected: &'e str, given: &str) -> Option<&'e str
     )
 }
 
+/// The scheme of a model that adds up over rows of data, where it names none: by one of the first
+/// order estimates would be many of their standard errors off.
+pub(crate) const SCHEME_OF_FITS: Scheme = Scheme::Radau(3);
+
 /// What is used where the model is silent.
 pub fn default_method() -> Method {
     Method {
@@ -317,6 +322,7 @@ pub fn default_method() -> Method {
         names_tol: false,
         names_tolerance: false,
         names_grid: false,
+        names_scheme: false,
         order: Order::Fixed,
         tolerance: 1e-3,
         lagged: Vec::new(),

@@ -11,6 +11,7 @@ pub(crate) mod degenerate;
 pub(crate) mod endless;
 pub(crate) mod holding;
 pub(crate) mod local;
+mod on_side;
 pub(crate) mod others;
 pub(crate) mod report;
 mod roots;

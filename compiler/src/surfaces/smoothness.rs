@@ -12,12 +12,13 @@
 //! what is said.
 
 use super::local::Local;
+use super::on_side::on_side;
 use super::roots::{at_power, at_root};
 use super::sample;
 use super::view::View;
 use crate::expressions::graph::builtins::Builtin;
 use crate::expressions::graph::derivative::derivative;
-use crate::expressions::graph::{Expr, ExprId, Operands, evaluate};
+use crate::expressions::graph::{Expr, ExprId, evaluate};
 use crate::expressions::interval::{Claim, Prover};
 use crate::expressions::polynomial::Polynomial;
 use crate::model::numbers::Numbers;
@@ -105,8 +106,7 @@ fn at_places(local: &mut Local, roots: &[ExprId], gap: ExprId) -> Order {
 
 /// Whether an expression depends on more than parameters.
 fn varies(local: &Local, expr: ExprId) -> bool {
-    let inputs = local.graph.inputs_of(&[expr]);
-    inputs.into_iter().any(|at| !matches!(local.symbols[at as usize], Symbol::Param(_)))
+    !varying(local, expr).is_empty()
 }
 
 /// Of one expression, under a name.
@@ -155,13 +155,21 @@ fn knots(local: &mut Local, root: ExprId) -> Vec<(Order, Polynomial)> {
             _ => {}
         }
     }
-    let all: Vec<ExprId> = zeros.keys().copied().collect();
-    for (zero, may_jump) in zeros {
+    let all: Vec<(ExprId, Vec<u32>)> =
+        zeros.keys().map(|zero| (*zero, varying(local, *zero))).collect();
+    for ((zero, may_jump), at) in zeros.into_iter().zip(0..) {
         found.extend(
-            across(local, root, zero, may_jump, &all).map(|order| (order, local.form(zero))),
+            across(local, root, (at, may_jump), &all).map(|order| (order, local.form(zero))),
         );
     }
     found
+}
+
+/// The inputs of an expression that are no parameters.
+fn varying(local: &Local, expr: ExprId) -> Vec<u32> {
+    let mut inputs = local.graph.inputs_of(&[expr]);
+    inputs.retain(|&at| !matches!(local.symbols[at as usize], Symbol::Param(_)));
+    inputs
 }
 
 /// Adds a function where something switches, and whether that may jump; multiples of a function are
@@ -180,15 +188,15 @@ pub(super) fn may_vanish(local: &Local, function: ExprId) -> bool {
         && !prover.proves(&local.graph, &[(function, Claim::Negative)])
 }
 
-/// The order across `zero`: the first derivative in which the two sides differ, at some points of
-/// it.
+/// The order across a zero set, one of `all`, with what varies in each: the first derivative in
+/// which the two sides differ, at some points of it.
 fn across(
     local: &mut Local,
     root: ExprId,
-    zero: ExprId,
-    may_jump: bool,
-    all: &[ExprId],
+    (at, may_jump): (usize, bool),
+    all: &[(ExprId, Vec<u32>)],
 ) -> Option<Order> {
+    let zero = all[at].0;
     if !may_vanish(local, zero) {
         return None;
     }
@@ -198,31 +206,23 @@ fn across(
     if points.is_empty() {
         return Some(promised);
     }
-    let varying = steepest(local, zero, &points);
+    let along = steepest(local, zero, &points);
     let orders =
-        points.iter().zip(varying).filter_map(|(point, input)| at_point(local, root, point, input));
+        points.iter().zip(along).filter_map(|(point, input)| at_point(local, root, point, input));
     let found = orders.min();
-    let is_alone =
-        all.iter().all(|other| same_inputs(local, zero, *other) || apart(local, zero, *other));
     match found {
         Some(order) if order <= promised => found,
-        _ if is_alone && is_affine(local, zero) => found,
+        _ if is_alone(local, at, all) && is_affine(local, zero) => found,
         _ if all.len() == 1 => by_division(local, root, zero, &points[0], promised),
         _ => Some(promised),
     }
 }
 
-/// Whether two functions depend on the same single input: then the knots of one are single places
-/// for the other.
-fn same_inputs(local: &Local, zero: ExprId, other: ExprId) -> bool {
-    let varying = |id: ExprId| {
-        let inputs = local.graph.inputs_of(&[id]).into_iter();
-        inputs
-            .filter(|&at| !matches!(local.symbols[at as usize], Symbol::Param(_)))
-            .collect::<Vec<u32>>()
-    };
-    let own = varying(zero);
-    own.len() == 1 && varying(other) == own
+/// Whether the other functions are not 0 where this one is, but at single places: those that depend
+/// on the same single input, or differ from it by a number.
+fn is_alone(local: &mut Local, at: usize, all: &[(ExprId, Vec<u32>)]) -> bool {
+    let (zero, own) = &all[at];
+    all.iter().all(|(other, read)| own.len() == 1 && read == own || apart(local, *zero, *other))
 }
 
 /// Whether two functions differ by a number, so that they are never 0 together; or are the same.
@@ -273,7 +273,7 @@ fn sides(local: &mut Local, root: ExprId, point: &[f64], input: u32) -> [ExprId;
     [-1.0, 1.0].map(|side| {
         let mut near = point.to_vec();
         near[input as usize] += side * NUDGE * (1.0 + point[input as usize].abs());
-        on_side(local, root, &near)
+        on_side(&mut local.graph, root, &near)
     })
 }
 
@@ -306,33 +306,6 @@ fn first_difference(local: &mut Local, mut sides: [ExprId; 2], point: &[f64], in
 /// The derivative of some order by one input.
 pub(super) fn along(local: &mut Local, expr: ExprId, input: u32, times: u32) -> ExprId {
     (0..times).fold(expr, |expr, _| derivative(&mut local.graph, expr, input))
-}
-
-/// The expression with every switch replaced by the branch that is taken near a point.
-fn on_side(local: &mut Local, root: ExprId, near: &[f64]) -> ExprId {
-    let nodes = local.graph.reachable(&[root]);
-    let values = evaluate(&local.graph, &nodes, near, &[]);
-    let value: BTreeMap<ExprId, f64> = nodes.iter().copied().zip(values).collect();
-    let mut copies: BTreeMap<ExprId, ExprId> = BTreeMap::new();
-    for id in nodes {
-        let copy = match local.graph.expr(id).clone() {
-            Expr::Call(builtin, operands) => {
-                let now: Operands = operands.iter().map(|operand| copies[operand]).collect();
-                let is_less = operands.len() > 1 && value[&operands[0]] <= value[&operands[1]];
-                match (builtin, is_less) {
-                    (Builtin::Abs, _) if value[&operands[0]] < 0.0 => local.graph.neg(now[0]),
-                    (Builtin::Abs, _) | (Builtin::Min, true) | (Builtin::Max, false) => now[0],
-                    (Builtin::Min, false) | (Builtin::Max, true) => now[1],
-                    (Builtin::SelectLe, true) => now[2],
-                    (Builtin::SelectLe, false) => now[3],
-                    _ => local.graph.call(builtin, &now),
-                }
-            }
-            _ => id,
-        };
-        copies.insert(id, copy);
-    }
-    copies[&root]
 }
 
 /// For each point the input by which a function changes most.

@@ -1,8 +1,9 @@
 //! `phase coast like boost { ... }`: a text in which each phase has written out what it takes over.
 //!
 //! What is named is replaced by what the phase itself declares under that name, its time by its
-//! time, an equation by one of the same state, a condition by one with the same left side. The
-//! start of a state that a link hands over is left behind, and so is what is expected.
+//! time, an equation, a report or a weight by one of the same name, a condition by one with the
+//! same left side. The start of a state that a link hands over is left behind, and so is what is
+//! expected.
 
 use super::scope::{declared, kind_word};
 use super::{closest, text};
@@ -156,22 +157,46 @@ fn circular(name: &Ident, like: &Ident) -> Diagnostic {
 
 /// An item, as far as later ones do not replace it.
 fn without(item: Item, later: &[Item]) -> Option<Item> {
-    let Item { kind, span } = item;
-    match kind {
-        ItemKind::Dynamics { mut equations } => {
+    let Item { mut kind, span } = item;
+    let is_left = match &mut kind {
+        ItemKind::Dynamics { equations } => {
             equations.retain(|it| !moves(later, &it.state.name));
-            (!equations.is_empty()).then_some(Item { kind: ItemKind::Dynamics { equations }, span })
+            !equations.is_empty()
         }
-        kind => {
-            let item = Item { kind, span };
-            (!later.iter().any(|it| replaces(it, &item))).then_some(item)
+        ItemKind::Report { bindings } => {
+            bindings.retain(|it| !reports(later, &it.name.name));
+            !bindings.is_empty()
         }
-    }
+        ItemKind::Metric { weights } => {
+            weights.retain(|it| !weighs(later, &it.0.name));
+            !weights.is_empty()
+        }
+        _ => return without_whole(Item { kind, span }, later),
+    };
+    is_left.then_some(Item { kind, span })
+}
+
+fn without_whole(item: Item, later: &[Item]) -> Option<Item> {
+    (!later.iter().any(|it| replaces(it, &item))).then_some(item)
 }
 
 fn moves(items: &[Item], state: &str) -> bool {
     items.iter().any(|item| match &item.kind {
         ItemKind::Dynamics { equations } => equations.iter().any(|it| it.state.name == state),
+        _ => false,
+    })
+}
+
+fn reports(items: &[Item], name: &str) -> bool {
+    items.iter().any(|item| match &item.kind {
+        ItemKind::Report { bindings } => bindings.iter().any(|it| it.name.name == name),
+        _ => false,
+    })
+}
+
+fn weighs(items: &[Item], state: &str) -> bool {
+    items.iter().any(|item| match &item.kind {
+        ItemKind::Metric { weights } => weights.iter().any(|it| it.0.name == state),
         _ => false,
     })
 }

@@ -4,6 +4,7 @@
 pub(crate) mod functions;
 pub(crate) mod like;
 pub(crate) mod order;
+pub(crate) mod outer;
 pub(crate) mod scope;
 mod spelling;
 pub(crate) mod text;

@@ -39,6 +39,15 @@ pub(crate) fn described(name: &str) -> Option<String> {
     Some(format!("{}, {}", si.trim_end(), notation.noun(&dimension)))
 }
 
+/// A number in SI in the unit in which its name is declared, which is told unless it is that of SI.
+pub(crate) fn in_words(value: f64, unit: Option<&Unit>) -> String {
+    let scaled = unit.map(|unit| (unit, scale(unit, &mut Vec::new()))).filter(|it| it.1 != 1.0);
+    let Some((unit, scale)) = scaled else { return number(value) };
+    // Without the digits that the change of units leaves behind.
+    let shown = format!("{:.12e}", value / scale).parse().map_or(value / scale, |it: f64| it);
+    format!("{} {}", number(shown), dimension::notation::written(unit))
+}
+
 /// What the text says about units.
 #[derive(Default)]
 pub(crate) struct Units {
@@ -80,6 +89,7 @@ pub(crate) fn infer(tree: &ast::Model) -> Units {
             let findings = Findings { inference, solution, notation: &speaker.notation };
             let mut diagnostics = told(&speaker, known, &mistakes);
             diagnostics.extend(inference::readings::found(inference, solution, &speaker.notation));
+            diagnostics.extend(inference::columns::found(inference, solution));
             let names = findings.names(&tree.items);
             let conditions = findings.conditions(&tree.items, &names);
             let readings = inference.readings.clone();

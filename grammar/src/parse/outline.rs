@@ -112,7 +112,9 @@ impl Marks {
     fn read(&mut self, pair: &Pair<'_, Rule>) {
         let start = pair.as_span().start();
         match pair.as_rule() {
-            Rule::name | Rule::unit_name | Rule::number | Rule::exponent => self.atom(pair),
+            Rule::name | Rule::word | Rule::unit_name | Rule::number | Rule::exponent => {
+                self.atom(pair)
+            }
             Rule::negation => self.part(start, Part::Negation),
             Rule::operator | Rule::scaling | Rule::times if matches!(pair.as_str(), "*" | "/") => {
                 self.part(start, Part::Product)

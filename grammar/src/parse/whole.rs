@@ -25,6 +25,13 @@ const AWKWARD: &[&str] = &[
     "data d = csv(\"a.csv\") columns t, x\nfit\nd: x sd 0.1",
     "state x at\nt1: x <= 1",
     "guess\n{ x = match b\n{ below => 1, above => 2 } }",
+    "data d = csv(\"a.csv\") columns time [s],\nstate,\nend\nend x == 1",
+    "data d = csv(\"a.csv\") columns\ntime\nfree a",
+    "data d = csv(\"a.csv\") columns t, time path x <= 1",
+    "phase a { data d = csv(\"a.csv\") columns t,\nphase, link }",
+    "path x <= d.time path y >= d.end\nminimize d.start free T",
+    "fit d: x = end sd d.path end x == 1",
+    "state x\nstart d.time >= x at d.end: x == 1",
 ];
 
 /// What a search by coverage has found, right and wrong.

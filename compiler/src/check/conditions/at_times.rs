@@ -2,10 +2,12 @@
 //! be the same at any time; and two at one time that exclude each other.
 
 use crate::check::facts::Facts;
+use crate::expressions::graph::ExprId;
 use crate::model::{AtTime, Constraint, Symbol};
 use crate::resolve::elaborator::Elaborator;
 use fdcc_grammar::ast::ItemKind;
 use fdcc_grammar::{Code, Diagnostic, Span};
+use std::collections::HashMap;
 
 /// Reports conditions at times that cannot be treated, or say nothing of their time.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
@@ -78,21 +80,49 @@ fn contradictions(meaning: &Elaborator<'_>, found: &mut Vec<Diagnostic>) {
     let model = &meaning.model;
     let always = model.path.iter().map(|row| (None, row));
     let at_times =
-        model.at_times.iter().flat_map(|it| it.rows.iter().map(move |row| (Some(it), row)));
-    let all: Vec<(Option<&AtTime>, &Constraint)> = always.chain(at_times).collect();
-    let ends = |row: &Constraint| [row.range.lower, row.range.upper].map(|it| meaning.numeric(it));
+        (model.at_times.iter()).flat_map(|it| it.rows.iter().map(move |row| (Some(it.time), row)));
+    let all: Vec<(Option<ExprId>, &Constraint)> = always.chain(at_times).collect();
+    let mut before: HashMap<(ExprId, Option<ExprId>), Furthest> = HashMap::new();
     for (at, (time, row)) in all.iter().enumerate() {
-        let Some(time) = time else { continue };
-        let [lower, upper] = ends(row);
-        let excludes = |it: &&(Option<&AtTime>, &Constraint)| {
-            let [low, high] = ends(it.1);
-            let is_then = it.0.is_none_or(|other| other.time == time.time);
-            is_then && it.1.value == row.value && (low > upper || high < lower)
-        };
-        if let Some((_, other)) = all[..at].iter().find(excludes) {
-            let message = format!("`{}` cannot hold at that time", row.place.name);
-            let told = Diagnostic::new(Code::Contradiction, message, row.place.span, "excluded");
-            found.push(told.label(other.place.span, "by this").help("leave one of them out"));
+        let ends = [row.range.lower, row.range.upper].map(|it| meaning.numeric(it));
+        if time.is_some() {
+            let then = [*time, None].map(|time| before.get(&(row.value, time)));
+            let other = then.into_iter().flatten().filter_map(|it| it.excludes(ends)).min();
+            found.extend(other.map(|other| excluded(row, all[other].1)));
         }
+        before.entry((row.value, *time)).or_default().add(at, ends);
+    }
+}
+
+fn excluded(row: &Constraint, by: &Constraint) -> Diagnostic {
+    let message = format!("`{}` cannot hold at that time", row.place.name);
+    Diagnostic::new(Code::Contradiction, message, row.place.span, "excluded")
+        .label(by.place.span, "by this")
+        .help("leave one of them out")
+}
+
+/// Bounds of one value, each with its row: those that reach further than all before them.
+#[derive(Default)]
+struct Furthest {
+    lower: Vec<(f64, usize)>,
+    upper: Vec<(f64, usize)>,
+}
+
+impl Furthest {
+    fn add(&mut self, row: usize, [lower, upper]: [f64; 2]) {
+        if !lower.is_nan() && self.lower.last().is_none_or(|it| lower > it.0) {
+            self.lower.push((lower, row));
+        }
+        if !upper.is_nan() && self.upper.last().is_none_or(|it| upper < it.0) {
+            self.upper.push((upper, row));
+        }
+    }
+
+    /// The first row that leaves nothing between these bounds.
+    fn excludes(&self, [lower, upper]: [f64; 2]) -> Option<usize> {
+        let above = self.lower.partition_point(|it| upper.is_nan() || it.0 <= upper);
+        let below = self.upper.partition_point(|it| lower.is_nan() || it.0 >= lower);
+        let both = [self.lower.get(above), self.upper.get(below)];
+        both.into_iter().flatten().map(|it| it.1).min()
     }
 }

@@ -7,6 +7,7 @@ use crate::resolve::elaborator::knots::{Knot, Site};
 use crate::resolve::elaborator::value::KnotUse;
 use crate::resolve::elaborator::{Elaborator, Role};
 use crate::surfaces::Order;
+use crate::syntax::scope::declared;
 use crate::syntax::text::{self, Style};
 use crate::syntax::walk;
 use fdcc_grammar::ast::{Argument, BinaryOperator, Equation, Expr, ExprKind, ItemKind, Relation};
@@ -17,6 +18,7 @@ use std::cell::LazyCell;
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let meaning = &facts.meaning;
     let view = LazyCell::new(|| view_of(meaning));
+    let surface = LazyCell::new(|| new_name(facts));
     for usage in &meaning.usages {
         if matches!(usage.role, Role::Report(_) | Role::Number(_)) {
             continue;
@@ -32,7 +34,7 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
                     .iter()
                     .map(|item| item.span)
                     .find(|span| holds(*span, knot_use.used));
-                found.push(jump(meaning, site, knot, knot_use, &usage.role, item));
+                found.push(jump(meaning, site, knot, knot_use, &usage.role, item, *surface));
             }
         }
     }
@@ -45,6 +47,7 @@ fn jump(
     place: &KnotUse,
     role: &Role<'_>,
     item: Option<Span>,
+    surface: &str,
 ) -> Diagnostic {
     let name = owner(meaning, site).map_or("this `piecewise`".into(), |name| format!("`{name}`"));
     let size = text::number((knot.limits[1] - knot.limits[0]).abs());
@@ -59,10 +62,6 @@ fn jump(
         true => found,
         false => found.label(place.used, format!("used in {}", role.describe())),
     };
-    let surface = ["boost", "switch", "switching"]
-        .into_iter()
-        .find(|name| meaning.scope.find(name).is_none());
-    let surface = surface.unwrap_or("switch_");
     let written = match role {
         Role::Equation(equation) => {
             rewritten(meaning, site, knot, place, equation).map(|it| (*equation, it))
@@ -76,6 +75,15 @@ fn jump(
         }
         _ => found,
     }
+}
+
+/// A name for a surface that nothing has.
+fn new_name(facts: &Facts<'_, '_>) -> &'static str {
+    let outer = || facts.tree.items.iter().filter_map(declared);
+    let is_new = |name: &&str| {
+        facts.meaning.scope.find(name).is_none() && !outer().any(|it| it.name == **name)
+    };
+    ["boost", "switch", "switching"].into_iter().find(is_new).unwrap_or("switch_")
 }
 
 fn holds(item: Span, place: Span) -> bool {

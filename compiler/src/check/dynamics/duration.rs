@@ -1,12 +1,13 @@
 //! FDC0402: a duration that the optimiser may choose must stay above 0.
 //!
 //! With `D = tf - t0` affine in the unknowns, its least value over their bounds is
-//! `D(0) + sum_i min(c_i lower_i, c_i upper_i)`.
+//! `D(0) + sum_i min(c_i lower_i, c_i upper_i)`. Where all `c_i` are above 0 the unknowns that may
+//! be too small are told, otherwise the difference of both times.
 
 use crate::check::facts::Facts;
 use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::evaluate;
-use crate::model::Symbol;
+use crate::model::{Place, Symbol};
 use crate::syntax::{text, walk};
 use crate::units;
 use fdcc_grammar::ast::{Expr, Ident, Interval, ItemKind, Sense, Unit};
@@ -40,6 +41,13 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     if least > 0.0 || least.is_nan() {
         return;
     }
+    if involved.iter().any(|it| it.1 < 0.0)
+        && let Some(interval) = interval(facts)
+    {
+        let names = involved.iter().map(|it| &facts.meaning.model.frees[it.0].place);
+        found.push(difference(interval, &names.collect::<Vec<_>>(), least));
+        return;
+    }
     for (index, slope, ends) in involved {
         // The end of its range that shortens the time is to blame.
         let worst = if slope > 0.0 { ends[0] } else { -ends[1] };
@@ -47,6 +55,34 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
             found.push(unbounded(facts, index, worst));
         }
     }
+}
+
+/// The first and the last time, as they are written.
+fn interval<'a>(facts: &Facts<'a, '_>) -> Option<&'a Interval> {
+    facts.items.iter().find_map(|item| match &item.kind {
+        ItemKind::Time { interval, .. } => Some(interval),
+        _ => None,
+    })
+}
+
+/// No unknown is to blame where one is subtracted from the other.
+fn difference(interval: &Interval, frees: &[&Place], least: f64) -> Diagnostic {
+    let [first, last] = [&interval.lower, &interval.upper].map(text::expr);
+    let what = if least == 0.0 { "0" } else { "0 or negative" };
+    let message = format!("the duration from `{first}` to `{last}` may become {what}");
+    let label = match least.is_finite() {
+        true => format!("{} where the bounds make it shortest", text::number(least)),
+        false => "no bounds keep it above 0".into(),
+    };
+    let found = Diagnostic::new(Code::NoDuration, message, interval.span, label);
+    let found = frees.iter().fold(found, |found, it| found.label(it.span, "chosen in its bounds"));
+    found.help(match frees {
+        [one] => format!("give `{}` bounds that keep the last time after the first", one.name),
+        _ => format!(
+            "declare a duration above 0, such as `free D in [0.1, 10]`, and write the time over \
+             `[{first}, {first} + D]`; or give both times bounds that do not overlap"
+        ),
+    })
 }
 
 fn unbounded(facts: &Facts<'_, '_>, index: usize, worst: f64) -> Diagnostic {

@@ -1,4 +1,5 @@
 //! Checks of names alone.
 
 pub(super) mod lookalike;
+pub(super) mod twice;
 pub(super) mod unused;

@@ -24,6 +24,7 @@ use builtins::Builtin;
 
 pub use derivative::derivative;
 pub use evaluate::evaluate;
+pub(crate) use evaluate::evaluate_with;
 pub use print::print;
 pub use verify::verify;
 

@@ -19,7 +19,7 @@ use super::elaborator::phases::{Handed, Inner};
 use super::elaborator::value::{Parts, Reads, Traits, Value};
 use crate::data::Tables;
 use crate::expressions::blend::Guards;
-use crate::expressions::graph::evaluate;
+use crate::expressions::graph::evaluate_with;
 use crate::expressions::graph::{ExprId, Graph};
 use crate::model::{self, Ball, Integral, Model, Place, Symbol};
 use crate::syntax::scope::Scope;
@@ -311,12 +311,11 @@ impl<'a> Elaborator<'a> {
         if let Some(value) = self.graph.as_number(id) {
             return value;
         }
-        let value = |symbol: &Symbol| match symbol {
-            Symbol::Param(index) => self.param_values[*index],
+        let value = |input: u32| match self.symbols[input as usize] {
+            Symbol::Param(index) => self.param_values[index],
             _ => f64::NAN,
         };
-        let inputs: Vec<f64> = self.symbols.iter().map(value).collect();
-        evaluate(&self.graph, &[id], &inputs, &[])[0]
+        evaluate_with(&self.graph, &[id], value, &[])[0]
     }
 
     /// Whether a value is a constant of the problem.

@@ -8,6 +8,7 @@ use crate::resolve::elaborator::context::Context;
 use crate::resolve::elaborator::value::{Reads, Traits, Value};
 use crate::resolve::elaborator::{Curve, Elaborator, Rows};
 use crate::syntax::{scope, text};
+use crate::units;
 use fdcc_grammar::ast::{Argument, Expr, ExprKind, Ident, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Span};
 
@@ -281,13 +282,18 @@ impl<'a> Elaborator<'a> {
     pub fn check_curves(&mut self) {
         let Some(time) = self.time.map(|time| self.graph.input(time)) else { return };
         let [first, last] = self.interval.map(|end| self.numeric(end));
+        let unit = self.scope.declarations.iter().find_map(|it| match &it.item.kind {
+            ItemKind::Time { unit, .. } => unit.as_ref(),
+            _ => None,
+        });
         for at in 0..self.curves.len() {
             let Curve { table, ends, place, span } = self.curves[at];
             let room = 1e-9 * (last - first).abs();
             if place != time || !(ends[0] > first + room || ends[1] < last - room) {
                 continue;
             }
-            let [from, to, first, last] = [ends[0], ends[1], first, last].map(text::number);
+            let ends = [ends[0], ends[1], first, last];
+            let [from, to, first, last] = ends.map(|it| units::in_words(it, unit));
             let message =
                 format!("the data goes from {from} to {to}, and time from {first} to {last}");
             let label = "outside it has the value at the end";

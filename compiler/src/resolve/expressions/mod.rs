@@ -4,6 +4,7 @@ mod blend;
 mod calls;
 pub(crate) mod data;
 mod direction;
+mod first_arm;
 mod forms;
 pub(crate) mod knots;
 mod operators;

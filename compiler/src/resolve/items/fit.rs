@@ -45,14 +45,15 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// The column that has the time of each row: it is called as the time is.
+    /// The column that has the time of each row: it is called as the time is, or else `time`.
     fn times_of(&mut self, at: usize, data: &'a Ident) -> Option<ExprId> {
         let is_time = |item: &Item| matches!(item.kind, ItemKind::Time { .. });
         let own = self.scope.declarations.iter().filter(|it| is_time(it.item));
         let inner = self.phases.iter().flat_map(|phase| &phase.names);
         let inner = inner.filter(|it| is_time(it.1.item)).map(|it| *it.0);
         let names: Vec<&str> = own.map(|it| it.name.name.as_str()).chain(inner).collect();
-        if let Some(column) = names.iter().find_map(|name| self.place_of_column(at, name)) {
+        let mut all = names.iter().chain(&["time"]);
+        if let Some(column) = all.find_map(|name| self.place_of_column(at, name)) {
             let outer = self.here.enter(Context::FIT);
             let times = self.data_column(at, column, data.span);
             self.here.context = outer;

@@ -23,7 +23,11 @@ impl<'a> Elaborator<'a> {
         let at_most = at_most
             .as_ref()
             .and_then(|number| self.evaluate_number("a number of jumps", Context::NUMBER, number));
-        let resets = assignments.iter().flat_map(|reset| self.reset(reset)).collect();
+        let resets = assignments.iter().flat_map(|reset| {
+            let span = reset.name.span.to(reset.value.span);
+            self.reset(reset).into_iter().map(move |it| (it, span))
+        });
+        let (resets, assignments) = resets.unzip();
         let place = Place { name: name.name.clone(), span: name.span };
         if let (Some(surface), None | Some(Some(_))) = (surface, then_hold) {
             let then_hold = then_hold.flatten();
@@ -34,6 +38,7 @@ impl<'a> Elaborator<'a> {
                 at_most,
                 then_hold,
                 resets,
+                assignments,
             });
         }
     }

@@ -8,8 +8,8 @@ use crate::resolve::elaborator::context::Context;
 use crate::resolve::elaborator::phases::Handed;
 use crate::resolve::elaborator::value::Parts;
 use crate::syntax::scope::kind_word;
-use crate::syntax::text;
-use fdcc_grammar::ast::{Assignment, Ident, Item, ItemKind};
+use crate::units;
+use fdcc_grammar::ast::{Assignment, Ident, Item, ItemKind, Unit};
 use fdcc_grammar::{Code, Diagnostic, Span};
 use fdcc_runtime::problem::End;
 use std::collections::{HashMap, HashSet};
@@ -120,13 +120,21 @@ impl<'a> Elaborator<'a> {
         let message = format!("the time of `{second}` does not begin where that of `{first}` ends");
         let label = match size.is_nan() {
             true => "the times need not meet".into(),
-            false => format!("a gap of {}", text::number(size)),
+            false => format!("a gap of {}", units::in_words(size, self.unit_of_time(target))),
         };
         let found = Diagnostic::new(Code::TimeGap, message, place.span, label);
         self.diagnostics.push(found.help(
             "nothing happens in between; to go on without a gap let the time of the second phase \
              begin with the end of the first: `time t in [T1, T1 + T2]` after `[0, T1]`",
         ));
+    }
+
+    /// The unit in which the time of a phase is declared.
+    fn unit_of_time(&self, phase: usize) -> Option<&'a Unit> {
+        self.phases[phase].names.values().find_map(|it| match &it.item.kind {
+            ItemKind::Time { unit, .. } => unit.as_ref(),
+            _ => None,
+        })
     }
 
     fn linked_phase(&mut self, name: &Ident) -> Option<usize> {

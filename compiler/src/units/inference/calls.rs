@@ -50,7 +50,7 @@ impl<'a> Inference<'a> {
     fn at_a_row(&mut self, callee: &'a Expr, arguments: &'a [Argument]) -> Value {
         let name = match &callee.kind {
             ExprKind::Name(name) => name,
-            ExprKind::Part(_, part) if !self.rows.is_empty() => &part.name,
+            ExprKind::Part(_, part) if self.sums > 0 => &part.name,
             _ => return Value::new(),
         };
         let (value, time) = (self.evaluate(callee), self.time());
@@ -99,8 +99,9 @@ impl<'a> Inference<'a> {
 
     /// Something changes sides where this is 0.
     pub fn gap(&mut self, gap: &Part) {
-        if let Some(gaps) = self.gaps.as_mut().filter(|gaps| !gaps.contains(gap)) {
-            gaps.push(gap.clone());
+        let gap = gap.clone().alone();
+        if let Some(gaps) = self.gaps.as_mut().filter(|gaps| !gaps.contains(&gap)) {
+            gaps.push(gap);
         }
     }
 
@@ -203,13 +204,14 @@ impl<'a> Inference<'a> {
         let (value, side) = operand;
         let Some(first) = value.first() else { return Value::new() };
         let first = (vec![first.clone()], side.clone());
-        value[1..].iter().fold(first.0.clone(), |one, part| {
+        let one = value[1..].iter().fold(first.0.clone(), |one, part| {
             self.equal(
                 Reason::Together(name),
                 &(one, side.clone()),
                 &(vec![part.clone()], side.clone()),
             )
-        })
+        });
+        one.into_iter().map(Part::alone).collect()
     }
 
     /// `a_i b_j - a_j b_i`: a number in the plane, a vector in space.
@@ -230,15 +232,18 @@ impl<'a> Inference<'a> {
     fn set(&mut self, name: &'a str, only: &Operand<'a>) -> Value {
         let one = self.one_unit(name, only);
         self.switches.extend(one);
-        only.0.iter().map(|_| Part::of(Dimension::none())).collect()
+        only.0.iter().map(|part| Part::of(Dimension::none()).called_as(part)).collect()
     }
 
     /// `sum(k in data, term)`.
     fn sum(&mut self, row: &'a Ident, data: &'a Ident, term: &'a Expr) -> Value {
         let Some(at) = self.scope.find(&data.name) else { return Value::new() };
-        self.rows.push((&row.name, self.scope.declarations[at].item));
+        let columns = self.row_of(self.scope.declarations[at].item);
+        self.locals.push((&row.name, columns));
+        self.sums += 1;
         let value = self.evaluate(term);
-        self.rows.pop();
+        self.sums -= 1;
+        self.locals.pop();
         value
     }
 }
@@ -249,7 +254,7 @@ fn into_formula(value: Value) -> Value {
 
 /// In radians, also of plain numbers: an angle is no number that may count in degrees.
 fn angle() -> Value {
-    vec![Part::of(Dimension::none())]
+    vec![Part::of(Dimension::none()).in_unit(Declared::radians())]
 }
 
 fn no_unit(arguments: &[Operand<'_>]) -> Value {

@@ -33,33 +33,33 @@ impl<'a> Inference<'a> {
         let unit = scope::unit(it.item);
         let value = match &it.item.kind {
             ItemKind::State { parts, .. } | ItemKind::Control { parts, .. } => {
-                self.variable(parts.len(), unit)
+                self.variable(parts, unit)
             }
-            ItemKind::Time { .. } => self.variable(1, unit),
+            ItemKind::Time { .. } => self.variable(&[], unit),
             ItemKind::Free { bounds, guess, .. } => {
                 let given = bounds.iter().flat_map(|it| [&it.lower, &it.upper]).chain(guess);
                 match unit {
                     None if is_number(given) => vec![self.number(it.name, it.item)],
-                    _ => self.variable(1, unit),
+                    _ => self.variable(&[], unit),
                 }
             }
-            ItemKind::Param { value: None, .. } => self.variable(1, unit),
+            ItemKind::Param { value: None, .. } => self.variable(&[], unit),
             ItemKind::Data { columns, .. } => return self.declare_columns(columns),
             _ => return,
         };
         self.values.insert(it.name.span, value);
     }
 
-    fn declare_columns(&mut self, columns: &'a [(Ident, Option<Unit>)]) {
-        for (name, unit) in columns {
-            let value = self.variable(1, unit.as_ref());
-            self.values.insert(name.span, value);
-        }
-    }
-
     /// One part for each component, with the written unit or each with its own that is to be found.
-    fn variable(&mut self, parts: usize, unit: Option<&Unit>) -> Value {
-        (0..parts.max(1)).map(|_| unit.map_or_else(|| self.unknown(), written)).collect()
+    pub fn variable(&mut self, parts: &[Ident], unit: Option<&Unit>) -> Value {
+        let mut part = |called| {
+            let part = unit.map_or_else(|| self.unknown(), written);
+            Part { called, ..part }
+        };
+        match parts {
+            [] => vec![part(None)],
+            _ => parts.iter().map(|it| part(Some(it.name.as_str().into()))).collect(),
+        }
     }
 
     fn define(&mut self, it: Declaration<'a>) {
@@ -84,10 +84,10 @@ impl<'a> Inference<'a> {
         let own: Value = if let Some(unit) = unit {
             let declared = (vec![written(unit)], named(it.name.span));
             self.compare(Reason::Given("its value", it.name), &declared, &given);
-            given.0.iter().map(|_| written(unit)).collect()
+            given.0.iter().map(|part| written(unit).called_as(part)).collect()
         } else {
             let own = |part: &Part| match part.plain {
-                true => self.number(it.name, it.item),
+                true => self.number(it.name, it.item).called_as(part),
                 false if part.declared.form == Form::Quantity => part.clone().into_name(),
                 false => part.clone().into_formula(),
             };
@@ -96,7 +96,7 @@ impl<'a> Inference<'a> {
         if !self.suspects.contains(&it.name.span) {
             return own;
         }
-        let used: Value = own.iter().map(|_| self.unknown()).collect();
+        let used: Value = own.iter().map(|part| self.unknown().called_as(part)).collect();
         self.equal(Reason::Uses(it.name), &(used.clone(), named(it.name.span)), &(own, given.1));
         used
     }

@@ -57,16 +57,27 @@ impl Declared {
         Declared { form: Form::Name, ..self }
     }
 
+    /// That of an angle that a function gives.
+    pub fn radians() -> Self {
+        Declared { factors: vec![("rad".into(), Ratio::ONE)], form: Form::Formula }
+    }
+
     pub fn times(&self, other: &Declared) -> Self {
-        self.in_a_formula().combined(&other.in_a_formula().factors, Ratio::ONE, Form::Formula)
+        self.product(other, Ratio::ONE)
     }
 
     pub fn over(&self, other: &Declared) -> Self {
-        self.in_a_formula().combined(&other.in_a_formula().factors, Ratio::whole(-1), Form::Formula)
+        self.product(other, Ratio::whole(-1))
+    }
+
+    fn product(&self, other: &Declared, by: Ratio) -> Self {
+        let form = other.form.with(Form::Formula);
+        self.in_a_formula().combined(&other.in_a_formula().factors, by, form)
     }
 
     pub fn power(&self, exponent: Ratio) -> Self {
-        Declared::SI.combined(&self.in_a_formula().factors, exponent, Form::Formula)
+        let form = self.form.with(Form::Formula);
+        Declared::SI.combined(&self.in_a_formula().factors, exponent, form)
     }
 
     /// The same as a formula: beside `max(x, y)` nothing is read in the unit of `x`.

@@ -35,13 +35,17 @@ impl<'a> Inference<'a> {
             ExprKind::Binary(..) => self.chain(expr),
             ExprKind::Call(callee, arguments) => self.call(expr, callee, arguments),
             ExprKind::Part(base, part) => self.part(base, part),
-            ExprKind::Index(base, index) => picked(&self.evaluate(base), index.wrapping_sub(1)),
+            ExprKind::Index(base, index) => {
+                let part = self.evaluate(base).into_iter().nth(index.wrapping_sub(1));
+                part.map(Part::alone).into_iter().collect()
+            }
             ExprKind::Prime(base) => {
                 let (base, time) = (self.evaluate(base), self.time());
                 pairwise(&base, &time, Part::over)
             }
             ExprKind::Tuple(parts) => {
-                parts.iter().map(|part| self.evaluate(part).pop().unwrap_or(Part::ANY)).collect()
+                let part = |part| self.evaluate(part).pop().unwrap_or(Part::ANY).alone();
+                parts.iter().map(part).collect()
             }
             ExprKind::Piecewise { arms, otherwise } => self.piecewise(arms, otherwise),
             ExprKind::Match { below, above, .. } => {
@@ -53,9 +57,7 @@ impl<'a> Inference<'a> {
     }
 
     fn name(&mut self, name: &str) -> Value {
-        if let Some((_, value)) =
-            self.locals[self.frame..].iter().rev().find(|local| local.0 == name)
-        {
+        if let Some(value) = self.local(name) {
             return value.clone();
         }
         match self.scope.find(name) {
@@ -67,6 +69,12 @@ impl<'a> Inference<'a> {
             None if name == "pi" => vec![Part::number(std::f64::consts::PI)],
             None => Value::new(),
         }
+    }
+
+    /// An argument of the function we are in, or a row of data.
+    fn local(&self, name: &str) -> Option<&Value> {
+        let visible = &self.locals[self.frame..];
+        visible.iter().rev().find(|local| local.0 == name).map(|local| &local.1)
     }
 
     /// The unit of time.
@@ -148,40 +156,32 @@ impl<'a> Inference<'a> {
     }
 
     fn part(&mut self, base: &'a Expr, part: &'a Ident) -> Value {
-        if let ExprKind::Name(name) = &base.kind {
-            if let Some(column) = self.column(name, part) {
-                return self.values.get(&column).cloned().unwrap_or_default();
-            }
-            if let Some(phase) = self.phases.get(name.as_str()) {
-                let found = phase.find(&part.name).map(|at| phase.declarations[at].name.span);
-                return found.and_then(|span| self.values.get(&span).cloned()).unwrap_or_default();
-            }
+        if let Some(value) = self.part_of_container(base, part) {
+            return value;
         }
-        let value = self.evaluate(base);
-        let position = self.names_of_parts(base).iter().position(|it| it.name == part.name);
-        position.map_or(Value::new(), |at| picked(&value, at))
+        let parts = self.evaluate(base);
+        let found = parts.into_iter().find(|it| it.called.as_deref() == Some(part.name.as_str()));
+        found.map(Part::alone).into_iter().collect()
+    }
+
+    /// `obs.t` of a data set, `coast.h` of a phase.
+    fn part_of_container(&self, base: &Expr, part: &Ident) -> Option<Value> {
+        let ExprKind::Name(name) = &base.kind else { return None };
+        if self.local(name).is_some() {
+            return None;
+        }
+        let at = match self.phases.get(name.as_str()) {
+            Some(phase) => phase.find(&part.name).map(|at| phase.declarations[at].name.span),
+            None => Some(self.column(name, part)?),
+        };
+        Some(at.and_then(|at| self.values.get(&at).cloned()).unwrap_or_default())
     }
 
     /// The place of a column of data.
     fn column(&self, name: &str, part: &Ident) -> Option<Span> {
-        let row = self.rows.iter().rev().find(|row| row.0 == name).map(|row| row.1);
-        let item = row.or_else(|| Some(self.scope.declarations[self.scope.find(name)?].item))?;
+        let item = self.scope.declarations[self.scope.find(name)?].item;
         let ItemKind::Data { columns, .. } = &item.kind else { return None };
         columns.iter().find(|column| column.0.name == part.name).map(|column| column.0.span)
-    }
-
-    /// How the parts of a vector are called: those of the first declared vector in it.
-    fn names_of_parts(&self, expr: &'a Expr) -> &'a [Ident] {
-        let mut names: &'a [Ident] = &[];
-        walk::visit(expr, &mut |inner| {
-            let ExprKind::Name(name) = &inner.kind else { return };
-            let item = self.scope.find(name).map(|at| self.scope.declarations[at].item);
-            names = match item {
-                Some(item) if names.is_empty() => scope::parts(item),
-                _ => names,
-            };
-        });
-        names
     }
 
     fn piecewise(&mut self, arms: &'a [Arm], otherwise: &'a Expr) -> Value {
@@ -201,8 +201,4 @@ impl<'a> Inference<'a> {
 /// What a written unit measures; one with an unknown name goes with everything.
 pub(crate) fn written(unit: &Unit) -> Part {
     table::dimension(unit).map_or(Part::ANY, |it| Part::of(it).in_unit(Declared::of(unit)))
-}
-
-fn picked(value: &[Part], at: usize) -> Value {
-    value.get(at).cloned().into_iter().collect()
 }

@@ -3,11 +3,12 @@
 use super::requirement::Reason;
 use super::value::{Part, Value, pairwise};
 use super::{Inference, Operand, named, side};
+use crate::syntax::outer::Outer;
 use crate::syntax::scope::{Declaration, Scope, parts};
 use fdcc_grammar::Span;
 use fdcc_grammar::ast::{
-    self, Assignment, Check, Condition, Equation, Expr, ExprKind, Fitted, Ident, Item, ItemKind,
-    Setting, SettingValue, Swept, Unit,
+    self, Assignment, Check, Condition, Equation, Expr, ExprKind, Ident, Item, ItemKind, Setting,
+    SettingValue, Swept, Unit,
 };
 
 impl<'a> Inference<'a> {
@@ -15,10 +16,12 @@ impl<'a> Inference<'a> {
     pub fn model(&mut self, tree: &'a ast::Model) {
         let outer: Vec<&'a Item> = tree.items.iter().collect();
         self.enter(Scope::new(&outer, &mut Vec::new()));
+        let around = Outer::new(&tree.items);
         for item in &tree.items {
             let ItemKind::Phase { name, items, .. } = &item.kind else { continue };
             let inner: Vec<&'a Item> = items.iter().collect();
-            let all: Vec<&'a Item> = outer.iter().chain(&inner).copied().collect();
+            let seen = around.seen_by(name, items);
+            let all: Vec<&'a Item> = seen.iter().chain(&inner).copied().collect();
             self.enter(Scope::new(&all, &mut Vec::new()));
             self.items(&inner);
             let scope = std::mem::take(&mut self.scope);
@@ -55,6 +58,7 @@ impl<'a> Inference<'a> {
                 self.values.insert(*keyword, value);
             }
             ItemKind::Fit { data, signals, .. } => {
+                self.times_of_rows(data);
                 signals.iter().for_each(|it| self.fitted(data, it))
             }
             ItemKind::Guess { bindings } => {
@@ -96,7 +100,7 @@ impl<'a> Inference<'a> {
         self.equal(Reason::Equation(&equation.state), &(left, named(span)), &right);
     }
 
-    fn declared(&self, name: &Ident) -> Option<Declaration<'a>> {
+    pub fn declared(&self, name: &Ident) -> Option<Declaration<'a>> {
         self.scope.find(&name.name).map(|at| self.scope.declarations[at])
     }
 
@@ -120,26 +124,6 @@ impl<'a> Inference<'a> {
         let Some(declared) = self.scope.declarations.iter().find(is_time).copied() else { return };
         let subject = (self.subject(declared).0, named(declared.name.span));
         self.value_for("the time of a condition", declared.name, &subject, time);
-    }
-
-    /// A signal, its column and the standard deviation measure the same.
-    fn fitted(&mut self, data: &'a Ident, fitted: &'a Fitted) {
-        let signal = self.operand(&fitted.signal);
-        let Some(ItemKind::Data { columns, .. }) = self.declared(data).map(|it| &it.item.kind)
-        else {
-            return;
-        };
-        let name = match (&fitted.column, &fitted.signal.kind) {
-            (Some(column), _) => column.name.as_str(),
-            (None, ExprKind::Name(name)) => name,
-            (None, ExprKind::Part(_, part)) => &part.name,
-            _ => return,
-        };
-        let Some((column, _)) = columns.iter().find(|it| it.0.name == name) else { return };
-        let measured = self.values.get(&column.span).cloned().unwrap_or_default();
-        let measured = (measured, named(column.span));
-        self.compare(Reason::Given("the signal", column), &measured, &signal);
-        self.value_for("the standard deviation", column, &measured, &fitted.deviation);
     }
 
     fn check(&mut self, check: &'a Check) {
@@ -305,7 +289,7 @@ impl<'a> Inference<'a> {
         let sum = |one: Part, other: &Part| {
             let declared = one.declared.sum(&other.declared);
             let dimension = one.dimension.filter(|it| other.dimension.as_ref() == Some(it));
-            Part { dimension, declared, plain: false }
+            Part { dimension, declared, ..Part::ANY }
         };
         let parts = self.switches.iter().filter(|it| it.dimension.is_some());
         let mut parts = parts.map(|it| Part { plain: false, ..it.clone() });

@@ -5,6 +5,7 @@
 //! and nothing follows from it.
 
 mod calls;
+pub(super) mod columns;
 pub(super) mod declare;
 pub(super) mod declared;
 mod expression;
@@ -16,6 +17,7 @@ pub(super) mod value;
 pub(super) mod walk;
 
 use super::dimension::{Atom, Dimension};
+use super::inference::columns::Column;
 use super::inference::declared::Declared;
 use super::inference::readings::{Bare, Readings};
 use super::inference::requirement::{Call, Reason, Requirement, Side};
@@ -49,12 +51,14 @@ pub(crate) struct Inference<'a> {
     pub unknowns: usize,
     /// What was given as a plain number.
     pub numbers: Vec<PlainNumber<'a>>,
-    /// Arguments of the function we are in, from `frame` on.
+    /// Arguments of the function we are in, from `frame` on, and rows of data.
     pub locals: Vec<(&'a str, Value)>,
     /// Where the visible locals begin.
     pub frame: usize,
-    /// Rows of data by the name that `sum` gives them.
-    pub rows: Vec<(&'a str, &'a Item)>,
+    /// How many sums over rows of data we are in.
+    pub sums: usize,
+    /// Columns of data that are declared without a unit.
+    pub columns: Vec<Column<'a>>,
     /// The functions we are in.
     pub calls: Vec<Call<'a>>,
     /// Results of functions, by function, arguments and whether their gaps are asked for, with
@@ -97,7 +101,8 @@ impl<'a> Inference<'a> {
             numbers: Vec::new(),
             locals: Vec::new(),
             frame: 0,
-            rows: Vec::new(),
+            sums: 0,
+            columns: Vec::new(),
             calls: Vec::new(),
             applied: HashMap::new(),
             gaps: None,
@@ -207,9 +212,11 @@ impl<'a> Inference<'a> {
         if !matches!(reason, Reason::Uses(_)) {
             self.read_term(left, right);
         }
-        let sum = Part { plain, declared: left.0.sum_with(right.0), ..left.0.clone() };
+        let called = left.0.called.clone().or_else(|| right.0.called.clone());
+        let declared = left.0.sum_with(right.0);
+        let sum = Part { plain, declared, called, ..left.0.clone() };
         match (&left.0.dimension, &right.0.dimension) {
-            _ if self.wrong.contains(&site) => self.free(site),
+            _ if self.wrong.contains(&site) => self.free(site).called_as(&sum),
             (Some(a), Some(b)) if a == b => sum,
             // Names for numbers keep what their place may make of them.
             (Some(a), Some(b)) if plain => {

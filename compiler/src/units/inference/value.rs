@@ -2,6 +2,7 @@
 
 use super::declared::{Declared, Form};
 use crate::units::dimension::{Atom, Dimension};
+use std::rc::Rc;
 
 /// The dimension of a number, or of one component of a vector.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
@@ -12,11 +13,14 @@ pub(crate) struct Part {
     pub plain: bool,
     /// The unit in which a plain number beside it is read.
     pub declared: Declared,
+    /// What it is called as a part of its vector.
+    pub called: Option<Rc<str>>,
 }
 
 impl Part {
     /// Goes with everything.
-    pub const ANY: Part = Part { dimension: None, plain: false, declared: Declared::SI };
+    pub const ANY: Part =
+        Part { dimension: None, plain: false, declared: Declared::SI, called: None };
 
     pub fn of(dimension: Dimension) -> Self {
         Part { dimension: Some(dimension), ..Part::ANY }
@@ -25,6 +29,16 @@ impl Part {
     /// The same, declared in a unit.
     pub fn in_unit(self, declared: Declared) -> Self {
         Part { declared, ..self }
+    }
+
+    /// The same, called as another part.
+    pub fn called_as(self, other: &Part) -> Self {
+        Part { called: other.called.clone(), ..self }
+    }
+
+    /// The same by itself.
+    pub fn alone(self) -> Self {
+        Part { called: None, ..self }
     }
 
     /// The same as a formula, beside which no plain number is read in the unit of a name.
@@ -88,12 +102,13 @@ impl Part {
     ) -> Part {
         let both = self.dimension.as_ref().zip(other.dimension.as_ref());
         let dimension = both.and_then(|(a, b)| apply(a, b));
-        Part { dimension, plain: self.plain && other.plain, declared }
+        let called = self.called.clone().or_else(|| other.called.clone());
+        Part { dimension, plain: self.plain && other.plain, declared, called }
     }
 
     pub fn power(&self, exponent: crate::units::dimension::ratio::Ratio) -> Part {
         let dimension = self.dimension.as_ref().and_then(|it| it.power(exponent));
-        Part { dimension, plain: self.plain, declared: self.declared.power(exponent) }
+        Part { dimension, declared: self.declared.power(exponent), ..self.clone() }
     }
 }
 

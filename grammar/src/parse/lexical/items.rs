@@ -4,7 +4,8 @@
 //! an entry begins. Item words are reserved, so they begin an item wherever the text before them is
 //! complete, and at the beginning of a line even inside brackets that somebody forgot to close.
 //! `start`, `end`, `guess` and `free` also stand inside items and need a closer look. `fit` and
-//! `at` may be names, and begin an item where no name could stand.
+//! `at` may be names, and begin an item where no name could stand. A column of data may be called
+//! as an item word.
 
 use std::ops::Range;
 
@@ -39,6 +40,8 @@ struct SoFar<'s, 't> {
     /// Whether a `{` has come, and a `piecewise` or `match`.
     has_brace: bool,
     has_switch: bool,
+    /// Whether it has come to the columns of a data set and not beyond them.
+    in_columns: bool,
 }
 
 impl<'t> SoFar<'_, 't> {
@@ -73,9 +76,31 @@ impl<'t> SoFar<'_, 't> {
             && ahead.find(is_bracket).is_some_and(|bracket| bracket.text == "]")
     }
 
+    /// Whether a token belongs to the list behind `columns`.
+    fn goes_on_with_columns(&self, at: usize) -> bool {
+        let token = &self.tokens[at];
+        let is_listed = self.open.last() == Some(&"]") || matches!(token.text, "," | "[");
+        let begins = token.text == "columns" && at > self.head && self.tokens[at - 1].text == ")";
+        begins || self.in_columns && (is_listed || self.follows_columns(at))
+    }
+
+    /// Whether a word stands where a column is named.
+    fn follows_columns(&self, at: usize) -> bool {
+        let is_word = self.tokens[at].kind == Kind::Word;
+        self.in_columns && is_word && matches!(self.tokens[at - 1].text, "columns" | ",")
+    }
+
+    /// Whether a reserved word is a name: that of a column, or behind a dot.
+    fn is_name_here(&self, at: usize) -> bool {
+        let is_dotted =
+            at > self.head && self.tokens[at - 1].text == "." && !self.tokens[at].begins_line;
+        is_dotted || self.follows_columns(at)
+    }
+
     /// Keeps account of the open brackets. A closer also closes what was left open inside its pair.
     fn track(&mut self, at: usize) {
         let token = &self.tokens[at];
+        self.in_columns = self.goes_on_with_columns(at);
         self.has_brace |= token.text == "{";
         self.has_switch |= matches!(token.text, "piecewise" | "match");
         if token.kind == Kind::Open {
@@ -97,14 +122,21 @@ fn cut(
 ) -> Vec<Region> {
     let mut regions = Vec::new();
     let (head, end) = (range.start, range.end);
-    let mut so_far =
-        SoFar { tokens, head, end, open: Vec::new(), has_brace: false, has_switch: false };
+    let mut so_far = SoFar {
+        tokens,
+        head,
+        end,
+        open: Vec::new(),
+        has_brace: false,
+        has_switch: false,
+        in_columns: false,
+    };
     for at in range.clone() {
         if at > so_far.head && begins(&so_far, at) {
             regions.push(so_far.head..at);
             so_far.head = at;
             so_far.open.clear();
-            (so_far.has_brace, so_far.has_switch) = (false, false);
+            (so_far.has_brace, so_far.has_switch, so_far.in_columns) = (false, false, false);
         }
         so_far.track(at);
     }
@@ -120,7 +152,7 @@ fn begins_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     match (token.kind, words::reserved(token.text)) {
         (Kind::Close, _) => outside,
         (Kind::Open, _) if token.text == "{" && outside => is_nameless_block(so_far, at),
-        (Kind::Word, _) if so_far.is_in_unit(at) => false,
+        (Kind::Word, _) if so_far.is_in_unit(at) || names_a_column(so_far, at) => false,
         (Kind::Word, Some(word)) if word.item.is_some() => {
             if so_far.in_phase() {
                 return token.begins_line && matches!(token.text, "phase" | "link");
@@ -143,13 +175,25 @@ fn can_begin(so_far: &SoFar<'_, '_>, at: usize) -> bool {
         [.., start, free] => start.text == "start" && free.text == "free",
         _ => false,
     };
-    so_far.tokens[at].begins_line || can_end(&so_far.tokens[at - 1]) || is_start_free
+    so_far.tokens[at].begins_line || can_end(so_far, at - 1) || is_start_free
+}
+
+/// Whether a column is called as an item word. In an unfinished list the word begins an item: a
+/// name follows, or what no list goes on with.
+fn names_a_column(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let Some(next) = so_far.tokens[..so_far.end].get(at + 1) else {
+        return so_far.follows_columns(at);
+    };
+    let begins_next = words::always_begins(next.text) || begins_soft(so_far, at + 1);
+    let goes_on = matches!(next.text, "," | "[" | "}") || begins_next;
+    so_far.follows_columns(at) && (goes_on || !so_far.tokens[at].begins_line)
 }
 
 /// Whether a region may end with a token.
-fn can_end(token: &Token<'_>) -> bool {
+fn can_end(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let token = &so_far.tokens[at];
     match token.kind {
-        Kind::Word => words::reserved(token.text).is_none(),
+        Kind::Word => words::reserved(token.text).is_none() || so_far.is_name_here(at),
         Kind::Sign => token.text == "'",
         Kind::Open => false,
         Kind::Number | Kind::Text | Kind::Close | Kind::Foreign => true,
@@ -164,7 +208,7 @@ fn continues_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
         |words: &[&str]| words.contains(&so_far.word()) || words::reserved(so_far.word()).is_none();
     match so_far.tokens[at].text {
         "free" => {
-            so_far.tokens[at - 1].text == "start"
+            (so_far.tokens[at - 1].text == "start" && !so_far.is_name_here(at - 1))
                 || (item(&["state"]) && ["", "in"].contains(&next))
         }
         "guess" => item(&["free", "control"]) && next != "{",
@@ -188,6 +232,7 @@ fn has_relation(so_far: &SoFar<'_, '_>, at: usize) -> bool {
             "{" => braces += 1,
             "}" => braces -= 1,
             "<=" | ">=" | "==" if braces == 0 => return true,
+            _ if so_far.is_name_here(at) => {}
             word if words::always_begins(word) && !is_argument(so_far, at) => return false,
             _ if begins_soft(so_far, at) => return false,
             _ => {}
@@ -215,6 +260,7 @@ fn begins_at(so_far: &SoFar<'_, '_>, at: usize) -> bool {
             _ if token.kind == Kind::Close => open -= 1,
             _ if open > 0 => {}
             "+" | "-" | "*" | "/" | "^" | "." | "'" => {}
+            word if words::always_begins(word) && so_far.is_name_here(at + 1 + count) => {}
             _ if !is_value || follows_value || words::always_begins(token.text) => return false,
             _ => {}
         }
@@ -250,7 +296,7 @@ fn is_misspelt_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
 fn is_unknown_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     let inner_words = words::inner_words(so_far.word());
     so_far.tokens[at].begins_line
-        && can_end(&so_far.tokens[at - 1])
+        && can_end(so_far, at - 1)
         && !begins_soft(so_far, at - 1)
         && !inner_words.contains(&so_far.tokens[at - 1].text)
         && !inner_words.contains(&so_far.tokens[at].text)
@@ -263,14 +309,14 @@ fn is_nameless_block(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     let is_block = words::entry_form(so_far.word()).is_some() || matches!(so_far.word(), "phase");
     let is_switch = at.checked_sub(2).is_some_and(|at| so_far.tokens[at].text == "match");
     so_far.tokens[at].begins_line
-        && can_end(before)
+        && can_end(so_far, at - 1)
         && !is_switch
         && (!is_block || before.text == "}")
 }
 
 fn begins_entry(so_far: &SoFar<'_, '_>, at: usize, block: &str) -> bool {
     let token = &so_far.tokens[at];
-    let complete = can_end(&so_far.tokens[at - 1]);
+    let complete = can_end(so_far, at - 1);
     if looks_like_entry(so_far, at, block)
         && (token.begins_line || (complete && so_far.open.is_empty()))
     {

@@ -260,5 +260,17 @@ fn superfluous(context: &ErrorContext<'_, '_>) -> Diagnostic {
         None => "this does not belong here".to_owned(),
     };
     let message = format!("`{}` cannot stand here", token.text);
-    context.example(Diagnostic::new(Code::Unfinished, message, token.span(), label))
+    let found = Diagnostic::new(Code::Unfinished, message, token.span(), label);
+    match word_before_range(context, token) {
+        Some(word) => found.help(format!("`in` and its range stand before `{word}`")),
+        None => context.example(found),
+    }
+}
+
+/// `start` or `guess`, if the range of a declaration stands behind it.
+fn word_before_range<'t>(context: &ErrorContext<'_, 't>, token: &Token<'_>) -> Option<&'t str> {
+    let before = &context.tokens[context.region.start..context.at];
+    let item = before.first().filter(|it| matches!(it.text, "state" | "control" | "free"));
+    let word = before.iter().find(|it| matches!(it.text, "start" | "guess"));
+    word.filter(|_| item.is_some() && token.text == "in").map(|it| it.text)
 }

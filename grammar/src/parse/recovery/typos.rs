@@ -153,15 +153,20 @@ pub(super) fn is_renamed_elsewhere(tokens: &[Token<'_>], token: &Token<'_>) -> b
         && (0..tokens.len()).any(|at| tokens[at].text == token.text && is_declared(tokens, at))
 }
 
-/// The place of a reserved word, its declaration, and its uses as a value.
+/// The place of a reserved word, its declaration, and its uses as a value. Columns of data may be
+/// called so, and keep their names.
 fn uses(tokens: &[Token<'_>], at_name: usize) -> Vec<usize> {
     let word = tokens[at_name].text;
+    let is_column = |at: usize| tokens[at].text == word && names_a_column(tokens, at);
+    let is_part =
+        matches!(tokens[at_name - 1].text, "(" | ",") && !(1..tokens.len()).any(is_column);
     let is_use = |at: usize| {
         let after = tokens.get(at + 1).map_or("", |token| token.text);
         let before = &tokens[at - 1];
         let is_argument = before.text == "(" && after == ")";
         let as_value = match before.kind {
-            Kind::Sign => before.text != "'",
+            Kind::Sign if before.text == "." => is_part,
+            Kind::Sign => before.text != "'" && !is_column(at),
             Kind::Open => before.text != "{" && !is_argument,
             Kind::Word => {
                 !tokens[at].begins_line
@@ -174,6 +179,19 @@ fn uses(tokens: &[Token<'_>], at_name: usize) -> Vec<usize> {
     (1..tokens.len())
         .filter(|at| tokens[*at].text == word && (*at == at_name || is_use(*at)))
         .collect()
+}
+
+/// More columns than anybody lists.
+const MOST_COLUMNS: usize = 500;
+
+/// Whether a token stands in the list behind `columns`.
+fn names_a_column(tokens: &[Token<'_>], at: usize) -> bool {
+    let is_listed = |token: &&Token<'_>| {
+        matches!(token.kind, Kind::Word | Kind::Number)
+            || matches!(token.text, "," | "[" | "]" | "*" | "/" | "^" | "-")
+    };
+    let mut list = tokens[..at].iter().rev().take(MOST_COLUMNS).take_while(is_listed);
+    matches!(tokens[at - 1].text, "columns" | ",") && list.any(|it| it.text == "columns")
 }
 
 /// `=` for `==`, `==` for `=`, and comparisons that conditions do not have.

@@ -21,9 +21,11 @@ pub(super) fn children<'p>(
     pair.clone().into_inner().filter(move |inner| inner.as_rule() == rule)
 }
 
-/// The first name directly below a pair.
+/// The first name directly below a pair, also if it is a reserved word behind a dot.
 pub(super) fn ident(reader: &Reader<'_>, pair: &Pair<'_, Rule>) -> Ident {
-    reader.name(&child(pair, Rule::name).expect("the grammar has a name here"))
+    let dotted = || child(pair, Rule::dotted).and_then(|it| child(&it, Rule::word));
+    let found = child(pair, Rule::name).or_else(|| child(pair, Rule::word)).or_else(dotted);
+    reader.name(&found.expect("the grammar has a name here"))
 }
 
 impl Reader<'_> {

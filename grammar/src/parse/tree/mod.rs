@@ -185,7 +185,8 @@ impl Reader<'_> {
         let mut signal = |fitted: Pair<'_, Rule>| {
             let sides = self.expressions_in(&fitted);
             let [signal, deviation] = sides.try_into().expect("a signal and its deviation");
-            let column = child(&fitted, Rule::name).map(|column| self.name(&column));
+            let reserved = child(&fitted, Rule::equal_to).map(|it| ident(self, &it));
+            let column = child(&fitted, Rule::name).map(|column| self.name(&column)).or(reserved);
             Fitted { signal, column, deviation, span: self.span(&fitted) }
         };
         let signals = children(pair, Rule::fitted).map(&mut signal).collect();

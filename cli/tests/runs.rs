@@ -97,7 +97,7 @@ fn swept_values_are_in_si() {
     let text = RAMP.replace("param goal = 1", "param m = 2 [g]\nparam goal = 1");
     let text = text.replace("integral(u^2)", "integral(u^2) * m");
     let folder = folder("swept_si", &[("ramp.fdc", text.as_bytes())]);
-    let output = fdcc(&folder, &["sweep", "ramp.fdc", "m=1,2.5,3[kg]", "--json"], "");
+    let output = fdcc(&folder, &["sweep", "ramp.fdc", "m=1[g],2.5[g],3[kg]", "--json"], "");
     let rows = json(&output);
     let swept = |at: usize| number(&rows[at]["swept"]["m"]);
     assert_eq!([0, 1, 2].map(swept), [0.001, 0.0025, 3.0]);

@@ -84,3 +84,31 @@ fn what_cannot_be_met_is_told_in_the_units_of_the_model() {
     assert!(halves.iter().any(|half| said.contains(half)), "{said}");
     assert!(said.contains(" km in one step"), "{said}");
 }
+
+/// Up a step: what is left of the speed has no value on the guess, which stands still.
+const STEP: &str = "model step\ntime t in [0, 3]\nstate x start 0\nstate v start 0\ncontrol u\n\
+                    surface slip = v\nsurface step = x - 1\n\
+                    dynamics {\n  x' = v\n  v' in u - 0.2*Sgn(slip)\n}\n\
+                    jump up on step rising at most 1 { v := sqrt(v^2 - 0.5) }\n";
+
+#[test]
+fn a_reset_without_a_value_on_the_guess_is_named() {
+    let goal = format!("{STEP}end x == 1.5\nend v == 0\nminimize integral(u^2)\n");
+    let near = format!("{STEP}end x <= 1.5\nminimize integral(u^2) - x(end)\n");
+    let files: [(&str, &[u8]); 2] = [("goal.fdc", goal.as_bytes()), ("near.fdc", near.as_bytes())];
+    let folder = folder("without_value", &files);
+    let method = ["--log", "none", "--method", "sigma=0.1", "--method", "N=40"];
+    let solve = |file: &str| fdcc(&folder, &[&["solve", file][..], &method].concat(), "");
+    let failed = solve("goal.fdc");
+    expect_exit(&failed, 2, "no trajectory is found");
+    let (said, found) = (stderr(&failed), stdout(&failed));
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    let words = "`v := sqrt(v^2 - 0.5)` has no value on the guess";
+    assert!(said.contains("FDC0602") && said.contains("goal.fdc:12:"), "{said}");
+    assert!(said.contains(words) && said.contains("with `up` this has no value"), "{said}");
+    assert!(said.contains("arrives there with a state"), "{said}");
+    let line = format!("       up: {words}: give a `guess`");
+    assert!(found.contains(" jumps none\n") && found.contains(&line), "{found}");
+    let found = stdout(&solve("near.fdc"));
+    assert!(found.contains(&line) && !found.contains("not finite"), "{found}");
+}

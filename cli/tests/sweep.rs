@@ -30,8 +30,8 @@ fn the_table_has_a_row_per_value_and_a_column_per_name() {
 /// The least cost of reaching `goal` is `goal^2`, and out of reach beyond 4.
 #[test]
 fn rows_are_compact_json_in_the_order_of_the_values() {
-    let output =
-        fdcc(&ramp("sweep_json"), &["sweep", "ramp.fdc", "goal=3,1,200[cm]", "N=8", "--json"], "");
+    let arguments = ["sweep", "ramp.fdc", "goal=3[m],1[m],200[cm]", "N=8", "--json"];
+    let output = fdcc(&ramp("sweep_json"), &arguments, "");
     expect_exit(&output, 0, "sweep");
     let rows = json(&output);
     let rows = rows.as_array().expect("an array");

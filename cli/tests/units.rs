@@ -79,6 +79,29 @@ fn a_sweep_reads_and_prints_declared_units_and_its_rows_are_in_si() {
     assert!((number(&rows[1]["swept"]["sigma"]) - 5e-4).abs() < 1e-15, "{rows}");
 }
 
+/// The unit behind a list is that of all its numbers, as in a `sweep` block; others have their own.
+#[test]
+fn a_unit_behind_a_list_is_that_of_all_its_numbers() {
+    let block_of = |list: &str| BLOCK.to_owned() + &format!("sweep {{ gap = {list} }}\n");
+    for (list, own, expected) in [
+        ("gap=0.3,0.4[cm]", "0.3, 0.4 [cm]", [3e-3, 4e-3]),
+        ("gap=0.3:0.1:0.4[cm]", "0.3 [cm], 0.4 [cm]", [3e-3, 4e-3]),
+        ("gap=3[mm],0.4[cm]", "3 [mm], 0.4 [cm]", [3e-3, 4e-3]),
+        ("gap=0.3[cm],4", "0.3 [cm], 4", [3e-3, 4e-3]),
+    ] {
+        let text = block_of(own);
+        let folder = folder("units_listed", &[("block.fdc", text.as_bytes())]);
+        for lists in [&[list][..], &[]] {
+            let command = [&["sweep", "block.fdc", "--log", "none", "--json"][..], lists].concat();
+            let rows = json(&fdcc(&folder, &command, ""));
+            for (at, gap) in expected.iter().enumerate() {
+                let swept = number(&rows[at]["swept"]["gap"]);
+                assert!((swept - gap).abs() < 1e-15, "{lists:?} {own}: {rows}");
+            }
+        }
+    }
+}
+
 #[test]
 fn expectations_are_compared_in_their_units() {
     let output = fdcc(&block("units_expected"), &["test", "block.fdc"], "");

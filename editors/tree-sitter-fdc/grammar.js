@@ -51,6 +51,7 @@ module.exports = grammar({
     names: ($) => seq("(", list($.name), ")"),
     data: ($) =>
       item("data", field("name", $.name), "=", "csv", "(", $.string, ")", "columns", list($.column)),
+    // Where nothing but a name can stand, here and behind a dot, a reserved word is one.
     column: ($) => seq(field("name", $.name), optional($.unit)),
     free: ($) => item("free", field("name", $.name), optional($._range), optional($.guess_value)),
     time: ($) => item("time", field("name", $.name), $.bounds, optional($.unit)),

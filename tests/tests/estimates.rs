@@ -182,6 +182,44 @@ fn an_unknown_at_its_bound_is_held_there() {
     assert_eq!(found.degrees_of_freedom, Some(10));
 }
 
+/// Three measurements of `b`, beside an unknown `k` that an objective pulls to its lower bound: `b`
+/// is their mean, with the error `s/sqrt(3)` and `s^2 = sum of (x - b)^2 / 2`.
+fn beside_a_bound(k: &str, pull: &str) -> Estimates {
+    let text = format!(
+        "data obs = csv(\"a.csv\") columns t, x\nfree k in {k} guess 2\nfree b in [-1, 1] guess \
+         0\ntime t in [0, 1]\nstate x start 0\ndynamics {{ x' = 0 }}\nminimize sum(r in obs, \
+         (x(r.t) + b - r.x)^2) + {pull}\nmethod {{ solver = interior_point scheme = gauss3 grid \
+         N = 5 }}"
+    );
+    estimates(&text, "t,x\n0.2,0.1\n0.5,0.12\n0.8,0.09\n")
+}
+
+fn expect_mean(found: &Estimates, of: &str) {
+    assert!(found.is_minimum && found.degrees_of_freedom == Some(2), "{of}: {found:#?}");
+    let k = estimate(found, "k");
+    assert!(k.is_at_bound && k.standard_error.is_none(), "{of}: {k:?}");
+    let mean = 0.31 / 3.0;
+    let rest: f64 = [0.1, 0.12, 0.09].iter().map(|x| (x - mean) * (x - mean)).sum();
+    let expected = (rest / 2.0 / 3.0).sqrt();
+    assert!((error(found, "b") - expected).abs() < 1e-6 * expected, "{of}: {found:#?}");
+}
+
+/// A bound of 0, at which an unknown has no size of its own, is a bound like others.
+#[test]
+fn an_unknown_at_a_bound_of_zero_is_held_there() {
+    for k in ["[1, 5]", "[0, 5]", "[0, 1e9]", "[0, inf]"] {
+        expect_mean(&beside_a_bound(k, "10*k + k^2"), k);
+    }
+}
+
+/// Where the objective is concave along an unknown at its bound, the other directions decide.
+#[test]
+fn what_a_bound_forbids_needs_no_curvature() {
+    for (k, pull) in [("[1, 5]", "10*k - k^2"), ("[0, 5]", "10*k - k^2"), ("[0, 5]", "10*k")] {
+        expect_mean(&beside_a_bound(k, pull), k);
+    }
+}
+
 /// Two experiments, a phase for each, share an unknown.
 #[test]
 fn phases_share_unknowns() {
@@ -309,4 +347,16 @@ fn mistakes_in_a_fit_are_told() {
         let is_it = |it: &(&str, &str)| it.0 == code && it.1.starts_with(message);
         assert!(found.iter().any(is_it), "{line}: {found:#?}");
     }
+}
+
+/// A fit is solved, so what is refused is told of the commands that refuse it.
+#[test]
+fn a_fit_is_not_simulated_yet() {
+    let files = DataFiles::from(|_| Ok(points()));
+    let checked =
+        fdcc::check_with("a test", format!("{LINE}fit obs: x sd 1").into_bytes(), Some(files));
+    let system = checked.model.expect("it has a meaning").system();
+    let Err(fdcc::Error::Model(refused)) = system else { panic!("it is refused") };
+    assert!(refused[0].message.contains("simulated"), "{refused:#?}");
+    assert!(refused[0].labels[0].text.starts_with("understood by `solve`"), "{refused:#?}");
 }

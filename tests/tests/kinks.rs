@@ -195,3 +195,47 @@ fn kinks_of_parameters_alone_are_seen() {
         }
     }
 }
+
+/// Surfaces, starts and resets that are sums which cancel and have no kink: where a regime begins
+/// on its surface its value is rounding, and says nothing of the size of its terms.
+#[test]
+fn rounding_is_no_kink() {
+    let on = |surface: &str| {
+        format!(
+            "time t in [0, 3] state x start -1 state y start 0.5 surface s = {surface}
+             dynamics {{ x' in 2 - Sgn(s) y' = -0.1 }} minimize x(end)"
+        )
+    };
+    let surfaces = ["x - 0.2*p", "x - p", "5*x - p", "x - p*y", "x + p*t", "sin(2.35*t + p)"];
+    let mut texts: Vec<String> = surfaces.map(on).into();
+    texts.push(
+        "time t in [0, 1] state x start 1 - cos(p/300) dynamics { x' = 1 } minimize x(end)".into(),
+    );
+    texts.push(
+        "time t in [0, 1] state x start -1 surface s = x dynamics { x' = 3 }
+         jump j on s rising at most 1 { x := x + 3*p - 2.1 } minimize x(end)"
+            .into(),
+    );
+    for text in texts {
+        for p in [0.7, 0.83, 0.9, 1.0, 1.07, 1.1, 1.3] {
+            let system = compile_sensitivities(&meaning(&format!("param p = {p} {text}")));
+            let system = system.expect("it can be simulated");
+            let by = [parameter(&system, "p")];
+            let found = gradient(&system, &Controls::Guess, &Options::default(), &by);
+            let kink = found.expect("the last time is reached").kink;
+            assert!(kink.is_none(), "{text} at {p}: {kink:?}");
+        }
+    }
+}
+
+/// `x := x + |p - 0.7|` where `p` is 0.7: the state is 0, the reset as well.
+#[test]
+fn a_kink_of_a_reset_that_is_zero_is_seen() {
+    let text = "param p = 0.7 time t in [0, 1] state x start -1 surface s = x dynamics { x' = 3 }
+        jump j on s rising at most 1 { x := x + abs(p - 0.7) } minimize x(end)";
+    let system = compile_sensitivities(&meaning(text)).expect("it can be simulated");
+    let by = [parameter(&system, "p")];
+    let found = gradient(&system, &Controls::Guess, &Options::default(), &by);
+    let kink = found.expect("the last time is reached").kink.expect("it is on a kink");
+    assert!(matches!(kink.met, KinkMet::ByJump(_)), "{kink:?}");
+}

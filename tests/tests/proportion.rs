@@ -146,3 +146,25 @@ fn many_names_that_nothing_mentions_are_told_at_once() {
     assert_eq!(found.iter().filter(|it| it.code == Code::Unused).count(), 100_000);
     assert!(begin.elapsed() < Duration::from_secs(10), "{:?}", begin.elapsed());
 }
+
+/// Each took minutes, with the square of the number.
+#[test]
+fn many_of_one_construct_are_checked_at_once() {
+    let repeated = |count: usize, line: fn(usize) -> String| (0..count).map(line).collect();
+    let lines: String = repeated(16_000, |i| format!("at {}: x <= 1\n", (i + 1) as f64 / 16_002.0));
+    let arms: String = repeated(4_000, |i| format!("t <= {i}/4000 => {i} "));
+    let phases: String = repeated(4_000, |i| {
+        format!("phase a{i} {{ time t in [0, 1] state x{i} start 0 dynamics {{ x{i}' = 1 }} }}\n")
+    });
+    let texts = [
+        motion("0", &lines, ""),
+        motion("0", &format!("report {{ q = piecewise {{ {arms}otherwise => 0 }} }}\n"), ""),
+        phases,
+    ];
+    for text in texts {
+        let begin = Instant::now();
+        let found = analyze(&text).diagnostics;
+        assert!(found.iter().all(|it| it.severity < Severity::Error), "{found:#?}");
+        assert!(begin.elapsed() < Duration::from_secs(10), "{:?}", begin.elapsed());
+    }
+}

@@ -608,3 +608,19 @@ fn functions_that_multiply_are_refused_at_once() {
         "{codes:?}"
     );
 }
+
+/// `b` begins two minutes before `a` ends.
+#[test]
+fn a_gap_between_phases_is_in_the_unit_of_time() {
+    for (unit, told) in [("[min]", "a gap of -2 min"), ("[s]", "a gap of -2"), ("", "a gap of -2")]
+    {
+        let phase = |name: &str, state: &str| {
+            let dynamics = "dynamics { x' = 1 }";
+            format!("phase {name} {{ time t in [0, 2] {unit}  state x {state}  {dynamics} }}\n")
+        };
+        let [a, b] = [phase("a", "start 1"), phase("b", "")];
+        let found = diagnostics(&format!("{a}{b}link a -> b {{ same }}\nminimize b.x(end)\n"));
+        let gap = found.iter().find(|it| it.code == Code::TimeGap).expect("a gap");
+        assert_eq!(gap.labels[0].text, told);
+    }
+}

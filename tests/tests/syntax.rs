@@ -264,3 +264,14 @@ fn spans_end_with_the_last_token() {
     ];
     assert_eq!(ends.collect::<Vec<_>>(), expected);
 }
+
+#[test]
+fn a_range_behind_the_start_is_told_where_it_goes() {
+    for (text, word) in
+        [("state v start 0 in [0, 8]", "start"), ("free T guess 1 in [0, 8]", "guess")]
+    {
+        let found = parse(text).diagnostics;
+        let help = found[0].help.as_deref().unwrap_or_default();
+        assert_eq!(help, format!("`in` and its range stand before `{word}`"), "{text}");
+    }
+}

@@ -306,6 +306,19 @@ fn what_is_no_optimum_is_not_certified() {
     assert!(solution.outcome.sigma.iter().all(|sigma| *sigma > 0.0), "the smoothed answer");
 }
 
+/// A bowling ball, which only its start drives, ends to roll: nothing that is not there comes late.
+#[test]
+fn without_controls_nothing_is_said_of_their_timing() {
+    let text = "free v0 in [1, 12] guess 6\nfree w0 in [-20, 20] guess 0\ntime t in [0, 3]\n\
+                state x start 0\nstate v start v0\nstate w start w0\nsurface slip = v - w\n\
+                dynamics { x' = v  v' in -1*Sgn(slip)  w' in 2.5*Sgn(slip) }\nend x == 10\n\
+                minimize v0^2 + 0.4*w0^2\n";
+    let model = Model::from_text("bowling", text).expect("it has no mistakes");
+    let solution = model.solve(&Options::default()).expect("it can be solved");
+    let certificate = solution.certificate.as_ref().expect("it was looked for");
+    assert_eq!(certificate.figure("timing"), Some(0.0), "{certificate:?}");
+}
+
 /// What random models and an independent judge found (`tests/peers/random_optima`): a cost that is
 /// high for a moment only falls between the nodes, and a hold at `|s| = 1` is better left a moment
 /// before something else changes.

@@ -44,6 +44,9 @@ pub struct Sweep {
     /// A `param` or a key of the `method` block, with its values, or a range `FIRST:STEP:LAST`;
     /// several lists go together row by row
     ///
+    /// A number may have its unit, `m=100[g],1[kg]`; one behind the last number of a list is that
+    /// of all numbers without their own, and a number without any is in the declared unit.
+    ///
     /// Without any, the lists of the `sweep` block of the model.
     #[arg(value_name = "NAME=V1,V2,...")]
     lists: Vec<String>,

@@ -100,7 +100,8 @@ impl Estimates {
                 let degrees = plural(count, "degree");
                 words += &format!("   {degrees} of freedom   residuals {}{of}", short(deviation));
             }
-            _ => words += "   no more measurements than what they determine",
+            _ if self.is_minimum => words += "   no more measurements than what they determine",
+            _ => {}
         }
         words
     }

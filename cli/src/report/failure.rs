@@ -2,6 +2,7 @@
 
 use crate::output::units::Units;
 use crate::report::attempts;
+use crate::report::verdict::without_value::WithoutValue;
 use crate::solved::Solved;
 use fdcc::Solution;
 use fdcc_grammar::{Code, Diagnostic, Span};
@@ -81,7 +82,12 @@ fn infeasible(solved: &Solved, limiting: &Limiting) -> Diagnostic {
     for (control, text) in saturated(problem, outcome, limiting, units) {
         diagnostic = diagnostic.label(span(control.origin.span), text);
     }
-    diagnostic.help(advice(solution))
+    let diagnostic = diagnostic.help(advice(solution));
+    let without_value = solution.sequences.iter().find_map(|it| WithoutValue::of(solution, it));
+    match without_value {
+        Some(it) => it.before(diagnostic),
+        None => diagnostic,
+    }
 }
 
 /// A proof and a failed search want different words.

@@ -17,6 +17,7 @@ use std::collections::HashMap;
 mod jumps;
 mod next;
 mod rest;
+pub mod without_value;
 
 /// The size of the problem: one line, or one for each phase.
 pub fn headline(chain: &Chain) -> String {

@@ -43,7 +43,7 @@ pub(super) fn certificate(
         check("modes", replay.map_or(unknown, |it| other_modes(model, solution, it)), MODES),
         check("timing", gap_of_a_moment(solution), TIMING),
         check("bounds", beyond, accuracy),
-        check("arcs", wrong_sign(between, located).map_or(0.0, |it| it.2.max(0.0)), WRONG_SIGN),
+        check("arcs", wrong_sign(between, located).map_or(0.0, |it| it.part.max(0.0)), WRONG_SIGN),
         check("contacts", wrong_contact(between, model, located), CONTACT),
         check("holds", f64::from(u8::from(!is_held)), 0.0),
         check("insertion", located.insertion, WORTH),

@@ -4,6 +4,7 @@ use super::report::Ended;
 use super::true_optimum::Joint;
 use crate::names::status_name;
 use fdcc_compiler::Model;
+use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::solve::{ChainOutcome, Outcome};
 
@@ -148,11 +149,18 @@ impl Ended {
     /// How a solve ended.
     pub(super) fn of(chain: &Chain, outcome: &ChainOutcome) -> Self {
         let ChainOutcome { solution, is_impossible, .. } = outcome;
+        let without_value = match &solution.status {
+            Status::NotFinite(place) if !place.origin.label.is_empty() => {
+                Some(place.origin.clone())
+            }
+            _ => None,
+        };
         Ended {
             status: status_name(&solution.status, *is_impossible),
             is_solved: solution.status.is_solved(),
             objective: chain.phases[0].sense * solution.objective,
             iterations: solution.counts.iterations,
+            without_value,
         }
     }
 }

@@ -33,7 +33,8 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Reads `NAME=V1,V2,...`; a plain number is in the declared unit of the name.
+    /// Reads `NAME=V1,V2,...`; a plain number is in the unit behind the last one, or else in the
+    /// declared unit of the name.
     ///
     /// # Errors
     ///
@@ -97,7 +98,14 @@ impl Grid {
         Ok(Grid { lists, strides, rows })
     }
 
-    /// Reads one list, `NAME=V1,V2,...`. `0.1:0.2:0.7` stands for 0.1, 0.3, 0.5, 0.7.
+    /// Reads one list, `NAME=V1,V2,...`. `0.1:0.2:0.7` stands for 0.1, 0.3, 0.5, 0.7; a unit behind
+    /// the last value is that of all plain numbers, as in a `sweep` block.
+    ///
+    /// ```
+    /// let (_, values) = fdcc::Grid::list("a=1,2[mm],3[cm]")?;
+    /// assert_eq!(values, ["1[cm]", "2[mm]", "3[cm]"]);
+    /// # Ok::<(), fdcc::Error>(())
+    /// ```
     ///
     /// # Errors
     ///
@@ -114,7 +122,8 @@ impl Grid {
             let range = range::values(value).map_err(|what| format!("`{name}`: {what}"));
             range.map_err(Error::Call)
         });
-        Ok((name.to_owned(), each.collect::<Result<Vec<_>, _>>()?.concat()))
+        let values = each.collect::<Result<Vec<_>, _>>()?.concat();
+        Ok((name.to_owned(), with_last_unit(values)))
     }
 
     fn side_by_side(lists: Vec<List>) -> Result<Self, Error> {
@@ -140,6 +149,17 @@ impl Grid {
     pub fn values(&self, index: usize) -> Vec<(&str, Value)> {
         self.row(index).into_iter().map(|(name, value)| (name, value.into())).collect()
     }
+}
+
+/// The unit behind the last value behind every plain number.
+fn with_last_unit(values: Vec<String>) -> Vec<String> {
+    let unit = values.last().and_then(|last| Some(last[last.find('[')?..].to_owned()));
+    let Some(unit) = unit else { return values };
+    let with_unit = |value: String| match value.parse::<f64>() {
+        Ok(_) => format!("{value}{unit}"),
+        Err(_) => value,
+    };
+    values.into_iter().map(with_unit).collect()
 }
 
 fn unique(lists: &[List]) -> Result<(), Error> {

@@ -4,6 +4,7 @@ use crate::executor::Executor;
 use crate::record::Record;
 use crate::solve::Solution;
 use fdcc_runtime::nlp::{Progress, Stop};
+use fdcc_runtime::problem::Origin;
 use fdcc_runtime::solve::Level;
 use std::ops::ControlFlow;
 
@@ -158,4 +159,6 @@ pub struct Ended {
     pub objective: f64,
     /// All iterations.
     pub iterations: usize,
+    /// What of the model had no value, such as what a jump assigns, if that ended the solve.
+    pub without_value: Option<Origin>,
 }

@@ -9,9 +9,12 @@ use crate::verification::Verification;
 
 /// The largest difference of a state where the controls come a moment before or after what was
 /// planned, for how far it moves; infinite where such a replay does not reach the end. Nothing is
-/// said where states jump, because they differ for that moment, nor where nothing switches.
+/// said where states jump, because they differ for that moment, nor where nothing switches, nor
+/// where there are no controls: the replay is then that of the check `replayed`.
 pub(super) fn gap_of_a_moment(solution: &Solution) -> f64 {
-    if !solution.jumps.is_empty() || solution.problem.surfaces.is_empty() {
+    let problem = &solution.problem;
+    let is_timed = !problem.surfaces.is_empty() && !problem.controls.is_empty();
+    if !is_timed || !solution.jumps.is_empty() {
         return 0.0;
     }
     let gap = |part: f64| {

@@ -13,8 +13,12 @@
 //! direction that constraints forbid, one of 1 a direction in which nothing changes. `R` is first
 //! soft: what holds a variable worse than that does not hold it. Then it is as stiff as what was
 //! found, so that no digits are lost.
+//!
+//! A bound holds a variable where its spring, multiplier over distance, is stiffer than all else
+//! that holds it. So it is, too, where the Lagrangian falls along the variable: the curvature is
+//! then that in the other directions.
 
-use super::tuning::covariance::{HARD, NEAR, SMALL, SOFT, TINY};
+use super::tuning::covariance::{CLOSE, HARD, LEAST, NEAR, SMALL, SOFT, TINY};
 use super::{Derivatives, Nlp, Solution};
 use crate::linalg::dense::eigen::eigen;
 use crate::linalg::solvers::{Structure, prepare};
@@ -35,34 +39,38 @@ pub struct Covariance {
     pub directions: usize,
 }
 
+/// How large a variable may be taken to be: its value, or a part of what its bounds leave it.
+pub(crate) fn size_of(value: f64, bounds: &Bounds) -> f64 {
+    let width = bounds.upper - bounds.lower;
+    value.abs().max(if width.is_finite() { LEAST * width } else { 0.0 })
+}
+
 /// That over a range of variables of which these are the sizes, where the objective is about
-/// `unit` times a number of order 1; none where the Lagrangian falls along some direction.
+/// `unit` times a number of order 1; none where the Lagrangian falls along some direction that no
+/// bound forbids.
 pub(crate) fn covariance(
     nlp: &mut dyn Nlp,
     solution: &Solution,
     of: Range<usize>,
     (sizes, unit): (&[f64], f64),
 ) -> Option<Covariance> {
-    let mut system = System::new(nlp, solution, of.clone(), unit);
+    let mut system = System::new(nlp, solution, of, (sizes, unit));
     let soft = |size: &f64| unit.max(TINY) / (SOFT * size).powi(2);
     let mut springs: Vec<f64> = sizes.iter().map(soft).collect();
+    let is_at_bound = system.hold(&solution.v, sizes, &mut springs)?;
     let first = system.inverse(&springs)?;
-    let own = |i: usize| first[i][i].max(TINY * sizes[i] * sizes[i]);
-    let is_held = |i: usize| {
-        let (v, bounds) = (solution.v[of.start + i], system.bounds[of.start + i]);
-        let room = (v - bounds.lower).min(bounds.upper - v);
-        room <= NEAR * sizes[i] && system.sigma[of.start + i] * own(i) > 1.0
-    };
-    let is_at_bound: Vec<bool> = (0..sizes.len()).map(is_held).collect();
-    let held = (0..sizes.len()).filter(|i| is_at_bound[*i]);
-    held.clone().for_each(|i| springs[i] = HARD / own(i));
-    let soft = Springs::new(&system.inverse(&springs)?, &springs, &is_at_bound);
+    let soft = Springs::new(&first, &springs, &is_at_bound);
     for i in (0..sizes.len()).filter(|i| !is_at_bound[*i]) {
-        springs[i] = springs[i].max(1.0 / own(i));
+        springs[i] = springs[i].max(1.0 / first[i][i].max(least(sizes[i])));
     }
     let stiff = Springs::new(&system.inverse(&springs)?, &springs, &is_at_bound);
-    let directions = system.directions().saturating_sub(held.count());
+    let directions = system.directions(&is_at_bound);
     Some(stiff.taken_off(soft.count_open(), is_at_bound, directions))
+}
+
+/// The least entry of an inverse.
+fn least(size: f64) -> f64 {
+    TINY * size * size
 }
 
 /// The inverse with springs, taken apart.
@@ -120,7 +128,7 @@ struct System {
     factor: Box<dyn Factor>,
     derivatives: Derivatives,
     bounds: Vec<Bounds>,
-    /// What bounds add to the diagonal.
+    /// What bounds add to the diagonal; `inverse()` leaves that of the range out.
     sigma: Vec<f64>,
     /// What inequalities add to the diagonal of their rows.
     d: Vec<f64>,
@@ -130,7 +138,12 @@ struct System {
 }
 
 impl System {
-    fn new(nlp: &mut dyn Nlp, solution: &Solution, of: Range<usize>, unit: f64) -> Self {
+    fn new(
+        nlp: &mut dyn Nlp,
+        solution: &Solution,
+        of: Range<usize>,
+        (sizes, unit): (&[f64], f64),
+    ) -> Self {
         let worth = solution.objective.abs().max(unit).max(TINY);
         let (v, multipliers) = (&solution.v, &solution.multipliers);
         let mut derivatives = Derivatives::new(nlp);
@@ -149,16 +162,37 @@ impl System {
             equality: &equality,
         };
         let (_, factor) = prepare(Linear::SparseLdl, &structure);
-        let spring = |i: usize, distance: f64, multiplier: f64| {
-            spring(distance, multiplier, (v[i].abs(), worth))
+        let size = |i: usize| i.checked_sub(of.start).and_then(|at| sizes.get(at));
+        let side = |i: usize, distance: f64, multiplier: f64| match size(i) {
+            Some(size) => multiplier.max(0.0) / distance.max(CLOSE * size),
+            None => spring(distance, multiplier, (size_of(v[i], &bounds[i]), worth)),
         };
-        let lower = |i: usize| spring(i, v[i] - bounds[i].lower, multipliers.lower[i]);
-        let upper = |i: usize| spring(i, bounds[i].upper - v[i], multipliers.upper[i]);
+        let lower = |i: usize| side(i, v[i] - bounds[i].lower, multipliers.lower[i]);
+        let upper = |i: usize| side(i, bounds[i].upper - v[i], multipliers.upper[i]);
         let sigma = (0..v.len()).map(|i| lower(i) + upper(i)).collect();
         let rows = nlp.constraint_bounds().iter().zip(&values).zip(&multipliers.constraints);
         let d = rows.map(|((bounds, value), lambda)| slack(bounds, *value, *lambda, worth));
         let d = d.collect();
         System { factor, derivatives, bounds, sigma, d, fixed, equality, of }
+    }
+
+    /// Which variables a bound holds, whose springs become hard; none if the inertia is wrong with
+    /// the springs of all bounds. With `with = 1/(own + bound)` that of a variable itself is `own`.
+    fn hold(&mut self, v: &[f64], sizes: &[f64], springs: &mut [f64]) -> Option<Vec<bool>> {
+        let bounds = self.sigma[self.of.clone()].to_vec();
+        let all: Vec<f64> = springs.iter().zip(&bounds).map(|(own, bound)| own + bound).collect();
+        let with = self.inverse(&all)?;
+        let held = (0..sizes.len()).map(|i| {
+            let (at, with, bound) = (self.of.start + i, with[i][i].max(least(sizes[i])), bounds[i]);
+            let room = (v[at] - self.bounds[at].lower).min(self.bounds[at].upper - v[at]);
+            let is_held = self.fixed[at] || room <= NEAR * sizes[i] && bound * with > 0.5;
+            if is_held {
+                let own = (1.0 / with - bound).abs().max(f64::EPSILON * bound);
+                springs[i] = HARD * own.max(springs[i]);
+            }
+            is_held
+        });
+        Some(held.collect())
     }
 
     /// With these springs; none if the inertia is wrong.
@@ -181,10 +215,13 @@ impl System {
         Some((0..n).map(|i| (0..n).map(|j| mean(i, j)).collect()).collect())
     }
 
-    /// How many variables may change at will: those that are not fixed, less the equations.
-    fn directions(&self) -> usize {
+    /// How many variables may change at will: those that are neither fixed nor held, less the
+    /// equations.
+    fn directions(&self, is_at_bound: &[bool]) -> usize {
+        let held = self.of.clone().zip(is_at_bound).filter(|(i, held)| **held && !self.fixed[*i]);
         let variables = self.fixed.iter().filter(|it| !**it).count();
-        variables.saturating_sub(self.equality.iter().filter(|it| **it).count())
+        let equations = self.equality.iter().filter(|it| **it).count();
+        variables.saturating_sub(equations + held.count())
     }
 }
 

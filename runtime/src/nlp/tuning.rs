@@ -42,6 +42,11 @@ pub(crate) mod covariance {
     pub(crate) const HARD: f64 = 1e12;
     /// A variable is at a bound if it is as near as this part of its size.
     pub(crate) const NEAR: f64 = 1e-4;
+    /// What is nearer than this part of its size is as near as that: else a multiplier that is
+    /// rounding would hold it.
+    pub(crate) const CLOSE: f64 = 1e-12;
+    /// A variable is at least this part of the width of its bounds.
+    pub(crate) const LEAST: f64 = 1e-2;
     /// A smaller component of a direction does not belong to it.
     pub(crate) const SMALL: f64 = 0.1;
 }

@@ -62,6 +62,8 @@ pub struct Method {
     /// Whether the number of intervals is written: then the problem on these is meant, else that in
     /// continuous time.
     pub names_grid: bool,
+    /// Whether the scheme is written.
+    pub names_scheme: bool,
     /// Integration steps in each control interval.
     pub steps: usize,
     /// Smoothing width, if the model names one.

@@ -52,10 +52,10 @@ pub(crate) fn violations(
 /// a phase.
 #[derive(Clone, Copy)]
 pub struct ControlSlopes {
-    /// The least one.
-    pub least: f64,
+    /// The least one, and the interval that it is on.
+    pub least: (f64, usize),
     /// The largest one.
-    pub largest: f64,
+    pub largest: (f64, usize),
     /// The largest sum of the sizes of what it is the sum of.
     pub terms: f64,
 }
@@ -69,14 +69,15 @@ pub fn control_slopes(problem: &Problem, outcome: &Outcome) -> Vec<ControlSlopes
     let sizes = sizes_of_slopes(&mut nlp, &outcome.solution);
     let time = &outcome.trajectory.time;
     let stages = problem.method.scheme.stages() as f64;
-    let none = ControlSlopes { least: f64::INFINITY, largest: f64::NEG_INFINITY, terms: 0.0 };
+    let none =
+        ControlSlopes { least: (f64::INFINITY, 0), largest: (f64::NEG_INFINITY, 0), terms: 0.0 };
     let of = |control: usize| {
         variables(&nlp, control).fold(none, |all, (k, at)| {
             let [slope, terms] =
                 [slopes[at], sizes[at]].map(|it| it * stages / (time[k + 1] - time[k]));
             ControlSlopes {
-                least: all.least.min(slope),
-                largest: all.largest.max(slope),
+                least: if slope < all.least.0 { (slope, k) } else { all.least },
+                largest: if slope > all.largest.0 { (slope, k) } else { all.largest },
                 terms: all.terms.max(terms),
             }
         })

@@ -18,7 +18,7 @@ pub(crate) mod continuation {
 }
 
 pub(crate) mod covariance {
-    /// An unknown is at least this part of the width of its bounds.
+    /// An unknown without two bounds is at least this part of its guess.
     pub(crate) const LEAST: f64 = 1e-2;
 }
 

@@ -3,6 +3,7 @@
 use crate::output::document::Document;
 use crate::output::plural;
 use crate::output::tried::Happened;
+use crate::report::verdict::without_value::WithoutValue;
 use fdcc::{Sequence, Solution};
 
 /// The jumps, and what the best answer with others is worth.
@@ -14,6 +15,7 @@ pub fn lines(solution: &Solution, document: &Document) -> Vec<String> {
         |it: &Happened| format!("{} at t = {}", it.jump, document.units.value("time", it.time, 6));
     let happened = match document.jumps.len() {
         0 if solution.sequences.iter().any(is_unfinished) => "none".into(),
+        0 if !solution.sequences.iter().any(|it| it.ended.is_solved) => "none".into(),
         0 => "none is best".into(),
         _ => document.jumps.iter().map(when).collect::<Vec<_>>().join(", "),
     };
@@ -34,12 +36,18 @@ fn is_unfinished(sequence: &Sequence) -> bool {
     ["time_limit", "interrupted", "iteration_limit"].contains(&sequence.ended.status)
 }
 
+/// Whether the answer has exactly the jumps of a sequence, wherever it was found.
+fn is_found(sequence: &Sequence, document: &Document) -> bool {
+    let jumps = document.jumps.iter().map(|it| &it.jump);
+    sequence.crosses.is_empty() && !sequence.jumps.is_empty() && jumps.eq(&sequence.jumps)
+}
+
 /// So many of the other sequences are told.
 const OTHERS: usize = 4;
 
 /// What is the best with other jumps, the best of them first.
 fn with_others(solution: &Solution, document: &Document) -> Vec<String> {
-    let others = solution.sequences.iter().filter(|it| !it.is_answer);
+    let others = solution.sequences.iter().filter(|it| !it.is_answer && !is_found(it, document));
     let is_solved = |it: &&Sequence| it.ended.is_solved;
     let (mut solved, failed): (Vec<&Sequence>, Vec<&Sequence>) = others.partition(is_solved);
     let distance = |it: &Sequence| (it.ended.objective - document.objective).abs();
@@ -56,13 +64,22 @@ fn with_others(solution: &Solution, document: &Document) -> Vec<String> {
     lines.extend((!unfinished.is_empty()).then(|| {
         format!("       {many}: not finished ({})", unfinished[0].ended.status.replace('_', " "))
     }));
-    match failed.as_slice() {
-        [] => {}
-        [one] => {
-            lines.push(format!("       {}: {}", one.words, one.ended.status.replace('_', " ")))
-        }
-        many => lines
-            .push(format!("       {}: no trajectory found", plural(many.len(), "other sequence"))),
-    }
+    lines.extend(those_that_failed(solution, &failed));
     lines
+}
+
+/// What is said of the sequences for which nothing was found.
+fn those_that_failed(solution: &Solution, failed: &[&Sequence]) -> Vec<String> {
+    let why = failed.iter().find_map(|it| Some((it, WithoutValue::of(solution, it)?)));
+    let why = why.map(|(it, why)| format!("       {}: {}", it.words, why.words()));
+    let all = match failed {
+        [] => None,
+        [_] if why.is_some() => None,
+        [one] => Some(format!("       {}: {}", one.words, one.ended.status.replace('_', " "))),
+        many => {
+            let many = plural(many.len(), "other sequence");
+            Some(format!("       {many}: no trajectory found"))
+        }
+    };
+    all.into_iter().chain(why).collect()
 }

@@ -221,8 +221,13 @@ impl Search<'_> {
     }
 
     /// Solves; where that fails, without arcs on holds, and then without ever longer phases: what a
-    /// smoothed layer looks like need not be there.
+    /// smoothed layer looks like need not be there; then with free controls.
     fn first_solved(&mut self, structure: Structure, from: &Whole) -> Option<Located> {
+        let released = structure.released();
+        self.simplest_solved(structure, from).or_else(|| self.solve(released?, from))
+    }
+
+    fn simplest_solved(&mut self, structure: Structure, from: &Whole) -> Option<Located> {
         let mut simpler = Some(structure);
         while let Some(structure) = simpler {
             if let Some(located) = self.solve(structure.clone(), from) {

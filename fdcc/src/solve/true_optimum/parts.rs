@@ -105,18 +105,23 @@ impl Phases<'_> {
         all
     }
 
-    /// All phases as they look while they are smoothed; where that fails, one of them simpler.
+    /// All phases as they look while they are smoothed; where that fails, one of them simpler; then
+    /// all of them with free controls.
     fn first_solved(&mut self, smoothed: &[Whole]) -> Option<Vec<Located>> {
         let of = |(part, whole): (&Part, &Whole)| {
             Structure::of(part.problem, whole, limits(part.model).len())
         };
         let all: Vec<Structure> = self.parts.iter().zip(smoothed).map(of).collect();
-        (0..all.len()).find_map(|own| {
-            let others = all.iter().zip(smoothed).enumerate().filter(|it| it.0 != own);
-            let beside = others.map(|(_, (structure, whole))| (structure.clone(), whole.clone()));
-            let from = Whole { beside: beside.collect(), ..smoothed[own].clone() };
-            let located = self.search(own).first_solved(all[own].clone(), &from)?;
+        let simplest = (0..all.len()).find_map(|own| {
+            let from = beside_others(&all, smoothed, own);
+            let located = self.search(own).simplest_solved(all[own].clone(), &from)?;
             Some(in_order(located, own))
+        });
+        simplest.or_else(|| {
+            let all = all.iter().map(|it| it.released().unwrap_or_else(|| it.clone()));
+            let all: Vec<Structure> = all.collect();
+            let from = beside_others(&all, smoothed, 0);
+            Some(in_order(self.search(0).solve(all[0].clone(), &from)?, 0))
         })
     }
 
@@ -130,6 +135,13 @@ impl Phases<'_> {
         located.others.clear();
         Some(in_order(located, own))
     }
+}
+
+/// A smoothed phase with the others beside it, each with its structure.
+fn beside_others(all: &[Structure], smoothed: &[Whole], own: usize) -> Whole {
+    let others = all.iter().zip(smoothed).enumerate().filter(|it| it.0 != own);
+    let beside = others.map(|(_, (structure, whole))| (structure.clone(), whole.clone()));
+    Whole { beside: beside.collect(), ..smoothed[own].clone() }
 }
 
 /// One of the phases, with the others beside it.

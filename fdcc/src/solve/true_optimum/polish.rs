@@ -7,7 +7,7 @@
 use super::joint::{Joint, is_stationary};
 use super::tuning::polish::{MOST_ITERATIONS, TOLERANCE};
 use super::{Located, Search};
-use fdcc_runtime::nlp::{Solution, Start};
+use fdcc_runtime::nlp::Start;
 use fdcc_runtime::solve::solve_chain;
 
 impl Search<'_> {
@@ -24,7 +24,7 @@ impl Search<'_> {
         let start = Start::after(before);
         let mut outcome = solve_chain(&sharper, Some(start), &mut |_, _| (self.stop)()).ok()?;
         let own = &mut outcome.solution;
-        let is_sharper = own.mu < before.mu && error(own) <= error(before);
+        let is_sharper = own.mu < before.mu && own.kkt_error <= before.kkt_error;
         own.counts.add(&before.counts);
         if !is_sharper || !is_stationary(own) {
             return None;
@@ -37,8 +37,4 @@ impl Search<'_> {
         self.compared(&mut polished);
         Some(polished)
     }
-}
-
-fn error(solution: &Solution) -> f64 {
-    solution.kkt_error.max(solution.constraint_violation)
 }

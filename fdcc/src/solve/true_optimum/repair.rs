@@ -29,9 +29,9 @@ pub(super) fn better(model: &Model, between: &Problem, located: &Located) -> Opt
     if let Some(wrong) = Contacts::new(model, located).wrong_sign().filter(|it| it.part > CONTACT) {
         return Some(structure.without_contact(wrong.phase, wrong.limit));
     }
-    let (phase, control, _) = wrong_sign(between, located).filter(|it| it.2 > WRONG_SIGN)?;
+    let wrong = wrong_sign(between, located).filter(|it| it.part > WRONG_SIGN)?;
     let mut other = structure.clone();
-    other.phases[phase].arcs[control] = Arc::Free;
+    other.phases[wrong.phase].arcs[wrong.control] = Arc::Free;
     Some(other.merged())
 }
 
@@ -49,8 +49,16 @@ fn is_nothing(structure: &Structure, j: usize) -> bool {
     structure.times[j + 1] - structure.times[j] < NOTHING * (last - first)
 }
 
-/// The phase and the control at a bound whose slope has the wrong sign most, and by how much.
-pub(crate) fn wrong_sign(between: &Problem, located: &Located) -> Option<(usize, usize, f64)> {
+/// A control at a bound in a phase, whose slope has the wrong sign.
+pub(crate) struct WrongArc {
+    phase: usize,
+    control: usize,
+    /// By how much, for the size of the Hamiltonian and the distance of the bounds.
+    pub part: f64,
+}
+
+/// The worst of all arcs.
+pub(crate) fn wrong_sign(between: &Problem, located: &Located) -> Option<WrongArc> {
     let mut all = Vec::new();
     let ranges = ranges(&between.controls, &located.outcome.phases);
     for (j, phase) in located.structure.phases.iter().enumerate() {
@@ -61,14 +69,15 @@ pub(crate) fn wrong_sign(between: &Problem, located: &Located) -> Option<(usize,
             let ControlSlopes { least, largest, terms } = slopes[control];
             let wrong = match arc {
                 Arc::Free => continue,
-                Arc::Lower => -least,
-                Arc::Upper => largest,
+                Arc::Lower => -least.0,
+                Arc::Upper => largest.0,
             };
             let that_matters = if terms > 0.0 { size / terms } else { 0.0 };
-            all.push((j, control, ranges[control].worth(wrong, that_matters) / size));
+            let part = ranges[control].worth(wrong, that_matters) / size;
+            all.push(WrongArc { phase: j, control, part });
         }
     }
-    all.into_iter().max_by(|a, b| a.2.total_cmp(&b.2))
+    all.into_iter().max_by(|a, b| a.part.total_cmp(&b.part))
 }
 
 /// Whether what is held in a phase draws the state to itself: `psi'` falls with the selector.

@@ -265,6 +265,14 @@ impl Structure {
         is_short.then(|| self.without(shortest.0))
     }
 
+    /// With free controls throughout: what a smoothed layer, or a coarse grid, says of them need
+    /// not be so, and an arc that is too short to be seen may be what makes the others possible.
+    pub fn released(&self) -> Option<Self> {
+        let mut other = self.clone();
+        other.phases.iter_mut().for_each(|it| it.arcs.fill(Arc::Free));
+        (other.phases != self.phases).then(|| other.merged())
+    }
+
     /// With a limit released, or touched only where control acts on its second derivative at first.
     pub fn without_contact(&self, j: usize, limit: usize) -> Self {
         let mut other = self.clone();

@@ -19,6 +19,13 @@ const FALLS: f64 = 1.0 / 64.0;
 /// What is less than this part of the terms is rounding.
 const ROUNDING: f64 = 1e-13;
 
+/// Constants, such as the 1 of `1 - cos(p)`, are no terms that are known here, and are rounded,
+/// too. So what is less than this part of the terms is a kink only if it grows with the distance:
+/// by these parts of so many times the distance.
+const PLAIN: f64 = 1e-6;
+const FARTHER: [f64; 2] = [2.0, 3.0];
+const GROWS: std::ops::Range<f64> = 0.55..1.5;
+
 /// How the ends of a trajectory move with a quantity.
 pub(crate) struct Direction {
     /// The quantity.
@@ -58,10 +65,12 @@ pub(super) fn has_kink(quantity: f64, terms: f64, value: impl Fn(f64) -> f64) ->
     let own = value(0.0);
     let bend = |part: f64| {
         let [above, below] = [value(part * distance), value(-part * distance)];
-        ((above - own) - (own - below)).abs()
+        (above - own) - (own - below)
     };
-    let (far, near) = (bend(1.0), bend(1.0 / NEARER));
-    near > ROUNDING * (terms + own.abs()) && near > FALLS * far
+    let (far, near, size) = (bend(1.0), bend(1.0 / NEARER), terms + own.abs());
+    let grows = |by: f64| GROWS.contains(&(bend(by / NEARER) / (by * near)));
+    let is_bent = near.abs() > ROUNDING * size && near.abs() > FALLS * far.abs();
+    is_bent && (near.abs() > PLAIN * size || FARTHER.into_iter().all(grows))
 }
 
 /// The objective at the ends, moved.

@@ -4,7 +4,7 @@
 use super::kink::{Kink, KinkMet};
 use super::objective_kink::has_kink;
 use crate::problem::{Columns, Function};
-use crate::sensitivity::linearised::linearisation::Lineariser;
+use crate::sensitivity::linearised::linearisation::{Jacobian, Lineariser};
 use crate::simulate::{Piece, Tape};
 use std::ops::Range;
 
@@ -52,7 +52,8 @@ fn output_with_kink(
         parameters[parameter] += moved;
         values_of(function, point, &parameters)
     };
-    first_with_kink(lineariser.parameters[parameter], 0..function.outputs(), values)
+    let terms = terms_of(function, point, &lineariser.parameters);
+    first_with_kink(lineariser.parameters[parameter], 0..function.outputs(), &terms, values)
 }
 
 /// The outputs of a function at a point.
@@ -62,13 +63,24 @@ pub(super) fn values_of(function: &dyn Function, point: &Columns, parameters: &[
     (0..function.outputs()).map(|it| values.column(it)[0]).collect()
 }
 
-/// The first of some outputs that has a kink along an input of this value, which is moved.
+/// The size of what each output of a function at a point is a sum of: `sum of |dy/dz z|` over all
+/// inputs. On a surface, for example, the output itself is 0 and says nothing of its rounding.
+pub(super) fn terms_of(function: &dyn Function, point: &Columns, parameters: &[f64]) -> Vec<f64> {
+    let mut inputs: Vec<f64> = (0..point.columns()).map(|at| point.column(at)[0]).collect();
+    let place = function.layout().parameters().start;
+    inputs.splice(place..place, parameters.iter().copied());
+    let by = Jacobian::of(function, point, parameters).by;
+    let term = |(by, input): (&f64, &f64)| Some((by * input).abs()).filter(|it| it.is_finite());
+    by.row_iter().map(|row| row.iter().zip(&inputs).filter_map(term).sum()).collect()
+}
+
+/// The first of some outputs that has a kink along an input of this value, which is moved; `terms`
+/// are those of all outputs.
 pub(super) fn first_with_kink(
     input: f64,
     mut outputs: Range<usize>,
+    terms: &[f64],
     values: impl Fn(f64) -> Vec<f64>,
 ) -> Option<usize> {
-    let own = values(0.0);
-    let largest = own[outputs.clone()].iter().fold(0.0, |most: f64, it| most.max(it.abs()));
-    outputs.find(|it| has_kink(input, largest, |moved| values(moved)[*it]))
+    outputs.find(|it| has_kink(input, terms[*it], |moved| values(moved)[*it]))
 }

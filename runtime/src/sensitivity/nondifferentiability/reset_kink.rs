@@ -2,7 +2,7 @@
 //! where `y` is 1.
 
 use super::kink::{Kink, KinkMet};
-use super::parameter_kink::{first_with_kink, values_of};
+use super::parameter_kink::{first_with_kink, terms_of, values_of};
 use crate::sensitivity::linearised::linearisation::Lineariser;
 use crate::simulate::{EventKind, Instant, Piece, Regime, Tape};
 use nalgebra::DVector;
@@ -52,17 +52,25 @@ struct Here<'h> {
 
 impl Here<'_> {
     fn bent(&self, parameters: &[usize], states: &[usize]) -> Option<usize> {
-        let values = &self.lineariser.parameters;
+        let terms = self.terms();
+        let first = |value: f64, values: &dyn Fn(f64) -> Vec<f64>| {
+            first_with_kink(value, self.rows.clone(), &terms, values)
+        };
         let by_parameter = |&at: &usize| {
-            first_with_kink(values[at], self.rows.clone(), |moved| {
-                self.values(None, Some((at, moved)))
-            })
+            let value = self.lineariser.parameters[at];
+            first(value, &|moved| self.values(None, Some((at, moved))))
         };
-        let by_state = |&at: &usize| {
-            let value = self.from.state[at];
-            first_with_kink(value, self.rows.clone(), |moved| self.values(Some((at, moved)), None))
-        };
+        let by_state =
+            |&at: &usize| first(self.from.state[at], &|moved| self.values(Some((at, moved)), None));
         parameters.iter().find_map(by_parameter).or_else(|| states.iter().find_map(by_state))
+    }
+
+    /// The sizes of what all resets are sums of.
+    fn terms(&self) -> Vec<f64> {
+        let Instant { time, selectors, state, .. } = self.from;
+        let x = DVector::from_column_slice(state);
+        let point = self.lineariser.table(self.regime, selectors, *time, &x);
+        terms_of(&*self.lineariser.system.resets, &point, &self.lineariser.parameters)
     }
 
     /// All resets with a state, or a parameter, moved.

@@ -32,7 +32,7 @@ pub(crate) struct Multifrontal {
     /// Whether the nodes were made for the sizes of a matrix, too.
     is_paired: bool,
     balance: Balance,
-    front: Front,
+    pub(super) front: Front,
     left: Stack,
     factors: Factors,
     /// Where each row is in the front.

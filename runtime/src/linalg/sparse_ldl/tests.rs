@@ -203,3 +203,45 @@ fn every_row_of_a_chain_has_a_variable_for_its_partner() {
         assert_eq!(pairs.partner(pairs.partner(row)), row);
     }
 }
+
+/// The optimality conditions of `x_{k+1} = A x_k + B u_k` with a given end, in which nothing but
+/// the controls has a curvature.
+fn controlled(steps: usize, random: &mut Random) -> DMatrix<f64> {
+    let (states, controls) = (5, 2);
+    let stage = states + controls;
+    let variables = steps * stage + states;
+    let mut curvature = DMatrix::zeros(variables, variables);
+    let mut rates = DMatrix::zeros((steps + 1) * states, variables);
+    for k in 0..steps {
+        (k * stage + states..(k + 1) * stage).for_each(|j| curvature[(j, j)] = 1.0);
+        for i in 0..states {
+            let row = k * states + i;
+            (0..states).for_each(|j| rates[(row, k * stage + j)] = 0.1 * random.next());
+            (states..stage).for_each(|j| rates[(row, k * stage + j)] = random.next());
+            rates[(row, k * stage + i)] += 1.0;
+            rates[(row, (k + 1) * stage + i)] = -1.0;
+        }
+    }
+    (0..states).for_each(|i| rates[(steps * states + i, variables - states + i)] = 1.0);
+    saddle(&curvature, &rates)
+}
+
+/// No pivot passes a threshold above 1, so rows wait until the fronts are full.
+#[test]
+fn full_fronts_lower_the_threshold_and_the_solution_is_accurate() {
+    let matrix = controlled(60, &mut Random(19));
+    let columns = upper(&matrix);
+    let values = columns.values.clone();
+    let mut factors = Multifrontal::new(columns);
+    factors.front.threshold = 1e3;
+    assert_eq!(factors.factor(&values), Some(305), "as many as there are equations");
+    let lowered = factors.front.threshold;
+    assert!((1e-6..1.0).contains(&lowered), "{lowered}");
+    let exact = DVector::from_fn(matrix.nrows(), |i, _| 1.0 + (i % 7) as f64);
+    let mut x = (&matrix * &exact).as_slice().to_vec();
+    factors.solve(&mut x);
+    let error = (DVector::from_vec(x) - exact).amax();
+    assert!(error < 1e-6, "{error}");
+    assert_eq!(factors.factor(&values), Some(305));
+    assert_eq!(factors.front.threshold, lowered, "a threshold that served stays");
+}

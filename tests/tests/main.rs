@@ -37,6 +37,7 @@ mod hostile;
 mod jumps;
 mod jumps_in_chains;
 mod kinks;
+mod kinks_of_optima;
 mod manual;
 mod models;
 mod orders;

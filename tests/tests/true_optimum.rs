@@ -29,6 +29,7 @@ const CERTIFIED: &[&str] = &[
     "switched/drag_regimes",
     "switched/eclipse",
     "switched/free_time",
+    "switched/fuel_abs",
     "switched/gear_loss",
     "switched/hard_pull",
     "switched/heater",
@@ -72,7 +73,6 @@ const LEFT_OUT: &[&str] = &[
     "right/sled_on_ice",
     "switched/billiard",
     "switched/fan",
-    "switched/fuel_abs",
     "switched/hysteresis_car",
     "switched/power_limit",
 ];

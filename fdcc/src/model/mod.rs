@@ -14,6 +14,7 @@ pub use values::Value;
 
 use crate::error::Error;
 use code::Code;
+use fdcc_compiler::Kinks;
 use fdcc_grammar::{Diagnostic, SourceFile};
 use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::simulate::System;
@@ -167,6 +168,17 @@ impl Model {
     pub(crate) fn with_magnitudes(&self, magnitudes: Vec<(String, f64)>) -> Model {
         let meaning = fdcc_compiler::Model { magnitudes, ..(*self.meaning).clone() };
         Model { meaning: Arc::new(meaning), ..self.clone() }
+    }
+
+    /// The model in which unknowns and surfaces stand for the kinks that an optimum may lie on;
+    /// nothing where there are none.
+    pub(crate) fn without_kinks(&self, kinks: Kinks) -> Option<Model> {
+        let is_smooth = self.meaning.surfaces.is_empty() && self.meaning.jumps.is_empty();
+        let method = &self.meaning.method;
+        let is_discrete = if is_smooth { method.names_grid } else { method.names_width() };
+        let meaning = fdcc_compiler::without_kinks(&self.meaning, kinks, !is_discrete)?;
+        let code = if kinks == Kinks::Relaxed { self.code.without_kinks() } else { Arc::default() };
+        Some(Model { meaning: Arc::new(meaning), code, ..self.clone() })
     }
 
     /// Does once for all values of its parameters what makes its functions ready.

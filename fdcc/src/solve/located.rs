@@ -3,6 +3,7 @@
 use super::Solution;
 use super::certify::certificate;
 use super::found::Found;
+use super::kinks::is_tight;
 use super::report::Options;
 use super::sequences::happened;
 use super::true_optimum::{
@@ -177,6 +178,9 @@ fn jumps(found: &Found) -> Vec<(usize, phases::Jump)> {
 /// holds between jumps.
 fn asks_for_truth(model: &Model, between: &fdcc_compiler::Model, found: &Found) -> bool {
     let status = &found.outcome.solution.status;
+    if !is_tight(&found.problem, &found.outcome.trajectory) {
+        return false;
+    }
     if is_smooth(model, between) {
         return status.is_solved() && is_in_continuous_time(between);
     }

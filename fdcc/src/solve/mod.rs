@@ -9,6 +9,7 @@ mod controller;
 mod families;
 mod found;
 mod grid;
+mod kinks;
 mod located;
 mod located_at_times;
 mod located_in_phases;
@@ -42,6 +43,7 @@ use crate::executor::Executor;
 use crate::model::{Model, frame};
 use crate::record::Record;
 use crate::warm_start;
+use fdcc_compiler::Kinks;
 use fdcc_runtime::problem::{Chain, Linear, Method, Problem, often_called};
 use fdcc_runtime::transcribe::{conditions, unknowns};
 use found::Found;
@@ -63,6 +65,8 @@ pub struct Compiled {
     model: Model,
     problem: Problem,
     chain: Chain,
+    /// The same in which unknowns stand for kinks.
+    without_kinks: Option<Box<Compiled>>,
 }
 
 impl Model {
@@ -73,12 +77,20 @@ impl Model {
     ///
     /// A model that cannot be solved.
     pub fn compile(&self) -> Result<Compiled, Error> {
+        let without_kinks = self.without_kinks(Kinks::Relaxed);
+        let without_kinks = without_kinks.map(|it| it.compile_as_it_is(None)).transpose()?;
+        self.compile_as_it_is(without_kinks)
+    }
+
+    fn compile_as_it_is(&self, without_kinks: Option<Compiled>) -> Result<Compiled, Error> {
         let chain = self.chain()?;
         refuse_senseless(&chain, self.meaning().jumps.len())?;
-        if self.meaning().jumps.is_empty() && self.meaning().at_times.is_empty() {
+        let is_one = self.meaning().jumps.is_empty() && self.meaning().at_times.is_empty();
+        if is_one && without_kinks.is_none() {
             self.make_ready(|| chain.phases.iter().for_each(make_machine_code));
         }
-        Ok(Compiled { model: self.clone(), problem: frame(&chain), chain })
+        let without_kinks = without_kinks.map(Box::new);
+        Ok(Compiled { model: self.clone(), problem: frame(&chain), chain, without_kinks })
     }
 
     /// Solves. That nothing was found is no error: the [status](Solution::status) says so.
@@ -121,13 +133,20 @@ impl Compiled {
         }
     }
 
-    /// Solves; once more in other units where numbers turn out to be far smaller than one of
-    /// theirs.
+    /// Solves; first without kinks, where there are any.
     ///
     /// # Errors
     ///
     /// See [`Model::solve`].
     pub fn solve(&self, options: &Options) -> Result<Solution, Error> {
+        let without = self.without_kinks.as_ref();
+        let own = without.map(|it| kinks::solve(self, it, options)).transpose()?.flatten();
+        own.map_or_else(|| self.solve_as_it_is(options), Ok)
+    }
+
+    /// Solves; once more in other units where numbers turn out to be far smaller than one of
+    /// theirs.
+    fn solve_as_it_is(&self, options: &Options) -> Result<Solution, Error> {
         magnitudes::with_own_magnitudes(self.solve_once(options)?, options)
     }
 

@@ -58,18 +58,7 @@ pub struct CostatesBefore {
 impl Solution {
     /// The path conditions at the grid points.
     pub fn path_conditions(&self) -> Vec<PathCondition> {
-        let (problem, trajectory) = (&self.problem, &self.outcome.trajectory);
-        // What phases share has none, and the functions of one of them.
-        if problem.path_bounds.is_empty() || trajectory.time.is_empty() {
-            return Vec::new();
-        }
-        let values = path_values(problem, trajectory);
-        let condition = |(row, bounds): (usize, &Bounds)| {
-            let values = std::iter::once(f64::NAN).chain(values.column(row).iter().copied());
-            let name = problem.path.origin(row).label.to_string();
-            PathCondition { name, bounds: *bounds, values: values.collect() }
-        };
-        problem.path_bounds.iter().enumerate().map(condition).collect()
+        path_conditions(&self.problem, &self.outcome.trajectory)
     }
 
     /// The costates just before each jump and each switch that was located;
@@ -92,6 +81,20 @@ impl Solution {
             |(state, column): (&Variable, &Vec<f64>)| Some((state.name.clone(), *column.last()?));
         Some(CostatesBefore { time: *time.last()?, values: values.filter_map(last).collect() })
     }
+}
+
+pub(super) fn path_conditions(problem: &Problem, trajectory: &Trajectory) -> Vec<PathCondition> {
+    // What phases share has none, and the functions of one of them.
+    if problem.path_bounds.is_empty() || trajectory.time.is_empty() {
+        return Vec::new();
+    }
+    let values = path_values(problem, trajectory);
+    let condition = |(row, bounds): (usize, &Bounds)| {
+        let values = std::iter::once(f64::NAN).chain(values.column(row).iter().copied());
+        let name = problem.path.origin(row).label.to_string();
+        PathCondition { name, bounds: *bounds, values: values.collect() }
+    };
+    problem.path_bounds.iter().enumerate().map(condition).collect()
 }
 
 /// The path functions at the grid points after the first, each with the control before it.

@@ -93,6 +93,11 @@ impl Solution {
         }
     }
 
+    /// The same answer in the words of another model.
+    pub(super) fn of_model(self, model: Model, problem: Problem, outcome: Outcome) -> Self {
+        Solution { model, problem, outcome, ..self }
+    }
+
     /// The model that was solved.
     pub fn model(&self) -> &Model {
         &self.model

@@ -18,6 +18,22 @@ pub(super) mod magnitudes {
     pub(crate) const MOST: usize = 4;
 }
 
+pub(super) mod kinks {
+    /// A kink is met where its two conditions are off by no more than this part of their size.
+    pub(crate) const TIGHT: f64 = 1e-5;
+    /// The same where means over intervals are known, which mix both sides where a kink is crossed.
+    pub(crate) const LOOSE: f64 = 0.02;
+    /// What gaps cost at first, for what the objective is.
+    pub(crate) const PRICE: f64 = 10.0;
+    /// A smaller objective says nothing of what prices are high: one of its units does then.
+    pub(crate) const NOTHING: f64 = 1e-6;
+    /// How much higher the next price is, and how many are tried.
+    pub(crate) const HIGHER: f64 = 30.0;
+    pub(crate) const MOST_PRICES: usize = 4;
+    /// Where the objective of the replay differs by more, surfaces are tried in place of unknowns.
+    pub(crate) const EXACT: f64 = 1e-8;
+}
+
 pub(super) mod optimality {
     /// The Hamiltonian may be off by so much of the size of its terms.
     pub(crate) const OFF: f64 = 0.4;

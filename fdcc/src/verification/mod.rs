@@ -24,7 +24,7 @@ use crate::record::{Record, find};
 use crate::replay::Replay;
 use alignment::Alignment;
 use conditions::Conditions;
-use fdcc_compiler::Model;
+use fdcc_compiler::{Model, is_kink};
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::simulate::{Options, Simulation, Status, System, simulate};
 use gaps::{gaps, gaps_of_jumps};
@@ -85,7 +85,8 @@ impl Verification {
 
     /// The condition that is violated most for the size of its terms, if any is.
     pub fn worst(&self) -> Option<&Condition> {
-        let violated = self.conditions.iter().filter(|it| it.part > 0.0);
+        // What stands for a kink is compared with the kink itself.
+        let violated = self.conditions.iter().filter(|it| it.part > 0.0 && !is_kink(&it.label));
         violated.max_by(|a, b| a.part.total_cmp(&b.part).then(a.violation.total_cmp(&b.violation)))
     }
 }

@@ -1,0 +1,135 @@
+//! Which kinks bend what the optimum depends on, and what they depend on themselves.
+
+use super::{Kind, Kink, roots};
+use crate::expressions::graph::derivative::derivative;
+use crate::expressions::graph::{ById, ExprId, Graph};
+use crate::model::{Model, Place, Symbol};
+
+/// More kinks are left as they are: each would be one more control on all intervals.
+const MOST: usize = 100;
+
+/// The kinks that an optimum may lie on.
+pub(super) struct Bent {
+    /// What each can become, and where it is read.
+    pub kinks: ById<(Kind, Place)>,
+}
+
+/// A kink in a copy of the graph, in which an input stands for `max(-e, 0)`.
+struct Tried {
+    original: ExprId,
+    e: ExprId,
+    /// Behind the symbols of the model, in the order of the kinks.
+    input: u32,
+}
+
+impl Bent {
+    pub fn of(model: &Model) -> Self {
+        let mut kinks = ById::default();
+        let mut graph = model.graph.clone();
+        let (tried, rewritten) = all_replaced(model, &mut graph);
+        if tried.len() > MOST {
+            return Bent { kinks };
+        }
+        let mut readers: Vec<(ExprId, Place)> = rewritten.into_iter().zip(places(model)).collect();
+        // What is inside of another one comes first.
+        for (it, kind) in tried.iter().zip(kinds(model, &graph, &tried)).rev() {
+            let Some(kind) = kind else { continue };
+            let reader = readers.iter().find(|reader| is_bent(&mut graph, reader.0, it));
+            let Some((_, place)) = reader.cloned() else { continue };
+            readers.push((it.e, place.clone()));
+            kinks.insert(it.original, (kind, place));
+        }
+        Bent { kinks }
+    }
+
+    /// Whether a kink of this kind is among them.
+    pub fn has(&self, kind: Kind) -> bool {
+        self.kinks.values().any(|it| it.0 == kind)
+    }
+}
+
+/// The roots with an input for each kink.
+fn all_replaced(model: &Model, graph: &mut Graph) -> (Vec<Tried>, Vec<ExprId>) {
+    let (mut tried, mut next) = (Vec::new(), model.symbols.len() as u32);
+    let rewritten = graph.rewrite(&roots(model), |graph, original, rebuilt| {
+        let Some(kink) = Kink::of(graph, original, rebuilt) else { return rebuilt };
+        let input = next;
+        next += 1;
+        tried.push(Tried { original, e: kink.e, input });
+        let unknown = graph.input(input);
+        kink.with_unknown(graph, unknown)
+    });
+    (tried, rewritten)
+}
+
+/// What each kink can become, by what moves it; nothing where nothing does, or where friction does.
+fn kinds(model: &Model, graph: &Graph, tried: &[Tried]) -> Vec<Option<Kind>> {
+    let rates: Vec<ExprId> = model.states.iter().map(|it| it.rate).collect();
+    let in_rates = model.graph.reachable(&rates);
+    let mut kinds = Vec::new();
+    for it in tried {
+        let kind = movers(model, graph, it, &kinds).and_then(|movers| match movers {
+            Movers { is_moving: false, is_of_ends, .. } => is_of_ends.then_some(Kind::AtEnds),
+            Movers { has_control: true, .. } => Some(Kind::Along),
+            _ if in_rates.contains(&it.original) => Some(Kind::Surface),
+            _ => Some(Kind::Either),
+        });
+        kinds.push(kind);
+    }
+    kinds
+}
+
+/// What moves a kink.
+#[derive(Default)]
+struct Movers {
+    is_moving: bool,
+    has_control: bool,
+    is_of_ends: bool,
+}
+
+/// `inner` are the kinds of the kinks before it; nothing where friction moves it.
+fn movers(model: &Model, graph: &Graph, it: &Tried, inner: &[Option<Kind>]) -> Option<Movers> {
+    let mut movers = Movers::default();
+    for at in graph.inputs_of(&[it.e]) {
+        let at = at as usize;
+        match model.symbols.get(at) {
+            Some(Symbol::Time | Symbol::Param(_)) => {}
+            Some(Symbol::State(_)) => movers.is_moving = true,
+            Some(Symbol::Control(_)) => (movers.is_moving, movers.has_control) = (true, true),
+            Some(
+                Symbol::Free(_)
+                | Symbol::AtStart(_)
+                | Symbol::AtEnd(_)
+                | Symbol::Integral(_)
+                | Symbol::ControlAtStart(_)
+                | Symbol::ControlAtEnd(_),
+            ) => movers.is_of_ends = true,
+            Some(_) => return None,
+            None => match inner[at - model.symbols.len()] {
+                Some(Kind::AtEnds) => movers.is_of_ends = true,
+                Some(_) => (movers.is_moving, movers.has_control) = (true, true),
+                None => {}
+            },
+        }
+    }
+    Some(movers)
+}
+
+/// Whether what reads a kink has a kink there: not `v*abs(v)`, nor `max(x, 0)^2`.
+fn is_bent(graph: &mut Graph, root: ExprId, kink: &Tried) -> bool {
+    let slope = derivative(graph, root, kink.input);
+    let zero = graph.number(0.0);
+    let below = graph.substitute(&[slope], &|at| (at == kink.input).then_some(zero))[0];
+    let there = graph.rewrite(&[below], |_, original, rebuilt| match original == kink.e {
+        true => zero,
+        false => rebuilt,
+    })[0];
+    graph.as_number(there) != Some(0.0)
+}
+
+/// Where the roots are written.
+fn places(model: &Model) -> impl Iterator<Item = Place> {
+    let rates = model.states.iter().map(|it| &it.equation);
+    let integrands = model.integrals.iter().map(|it| &it.place);
+    rates.chain(integrands).chain(model.objective.iter().map(|it| &it.0)).cloned()
+}

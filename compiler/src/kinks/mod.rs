@@ -1,0 +1,236 @@
+//! Optima on kinks of `abs`, `min` and `max`.
+//!
+//! What minimises `integral(abs(u))` rests at `u = 0`, where no derivative says so. So a kink gives
+//! way to an unknown, `q = max(-e, 0)`:
+//!
+//! ```text
+//! |e| = e + 2 q     max(a, b) = a + q, min(a, b) = b - q with e = a - b     q >= 0, q + e >= 0
+//! ```
+//!
+//! The two conditions allow more than the kink does. Where less `q` is worth something, as in an
+//! objective that is convex, one of them holds as an equality, and the optimum of what is allowed
+//! is that of the model. Whoever solves has to look whether it does.
+//!
+//! A kink of states alone in the right side of an equation would be a force without a reason. It
+//! becomes a surface, which is located like others:
+//!
+//! ```text
+//! |e| = s e     max(a, b) = (a + b + s e)/2     min(a, b) = (a + b - s e)/2     s in Sgn(e)
+//! ```
+
+mod bent;
+
+use crate::expressions::blend::sides;
+use crate::expressions::graph::builtins::Builtin;
+use crate::expressions::graph::{ExprId, Graph};
+use crate::model::phases::Symbols;
+use crate::model::{Constraint, Control, Free, Integral, Model, Place, Range, Surface, Symbol};
+use bent::Bent;
+
+/// What is made of kinks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kinks {
+    /// Unknowns, where that can be.
+    Relaxed,
+    /// The same, and `q (q + e)` has a price, so that a trajectory on which both conditions are
+    /// inequalities is no optimum (Leyffer, Lopez-Calva, Nocedal, *Interior methods for
+    /// mathematical programs with complementarity constraints*, 2006).
+    Priced(f64),
+    /// Surfaces, where that can be; nothing where that makes no difference.
+    Located,
+}
+
+/// The model in which unknowns and surfaces stand for kinks; nothing where it has none, or says how
+/// wide they are to be smoothed. `is_true` where the optimum of the system that was written is
+/// meant; without that nothing becomes a surface.
+///
+/// What is new stands behind what the model declares: controls with a path condition each, unknowns
+/// with a condition at the ends each, surfaces.
+pub fn without_kinks(model: &Model, kinks: Kinks, is_true: bool) -> Option<Model> {
+    let is_smoothed = model.smooth && model.method.names_width();
+    let is_whole = model.phases.is_empty() && model.not_yet.is_empty() && model.sums.is_empty();
+    let bent = Bent::of(model);
+    let makes_difference = kinks != Kinks::Located || bent.has(Kind::Either) && is_true;
+    if is_smoothed || !is_whole || !makes_difference {
+        return None;
+    }
+    let mut without = Without { own: model.clone(), bent: &bent, kinks, is_true, all: Vec::new() };
+    without.rewrite();
+    if let Kinks::Priced(price) = kinks {
+        without.charge(price);
+    }
+    (!without.all.is_empty()).then_some(without.own)
+}
+
+/// Whether a name is that of something that stands for a kink; no name of a model is.
+pub fn is_kink(name: &str) -> bool {
+    name.starts_with(NAME)
+}
+
+/// What the names begin with.
+const NAME: &str = "kink ";
+
+/// What a kink can become.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    /// A control and a path condition.
+    Along,
+    /// An unknown and a condition at the ends.
+    AtEnds,
+    /// A surface.
+    Surface,
+    /// A control, or a surface.
+    Either,
+}
+
+/// The roots in which kinks are looked for: right sides, integrands, the objective.
+fn roots(model: &Model) -> Vec<ExprId> {
+    let rates = model.states.iter().map(|it| it.rate);
+    let integrands = model.integrals.iter().map(|it| it.integrand);
+    rates.chain(integrands).chain(model.objective.iter().map(|it| it.1)).collect()
+}
+
+/// A kink: `above + share * q`, and `q = max(-e, 0)`.
+struct Kink {
+    e: ExprId,
+    below: ExprId,
+    above: ExprId,
+    share: f64,
+}
+
+impl Kink {
+    /// Nothing of what is none.
+    fn of(graph: &mut Graph, original: ExprId, rebuilt: ExprId) -> Option<Kink> {
+        let shares = [(Builtin::Abs, 2.0), (Builtin::Max, 1.0), (Builtin::Min, -1.0)];
+        let share = shares.into_iter().find(|it| graph.as_call(original, it.0).is_some())?.1;
+        let (e, [below, above]) = sides(graph, original, rebuilt)?;
+        Some(Kink { e, below, above, share })
+    }
+
+    /// Its value where an unknown stands for `q`.
+    fn with_unknown(&self, graph: &mut Graph, unknown: ExprId) -> ExprId {
+        let part = graph.scale(self.share, unknown);
+        graph.add(self.above, part)
+    }
+
+    /// Its value where a selector says on which side of 0 `e` is.
+    fn with_selector(&self, graph: &mut Graph, selector: ExprId) -> ExprId {
+        let (sum, jump) = (graph.add(self.below, self.above), graph.sub(self.above, self.below));
+        let change = graph.mul(selector, jump);
+        let twice = graph.add(sum, change);
+        graph.scale(0.5, twice)
+    }
+}
+
+/// What stands for a kink.
+struct Standing {
+    kind: Kind,
+    e: ExprId,
+    /// `max(-e, 0)`, or the selector.
+    value: ExprId,
+}
+
+struct Without<'m> {
+    own: Model,
+    bent: &'m Bent,
+    kinks: Kinks,
+    is_true: bool,
+    all: Vec<Standing>,
+}
+
+impl Without<'_> {
+    fn rewrite(&mut self) {
+        let roots = roots(&self.own);
+        let mut graph = std::mem::take(&mut self.own.graph);
+        let rewritten = graph.rewrite(&roots, |graph, original, rebuilt| {
+            self.replaced(graph, original, rebuilt).unwrap_or(rebuilt)
+        });
+        self.own.graph = graph;
+        let mut rewritten = rewritten.into_iter();
+        let mut next = || rewritten.next().expect("one for each root");
+        self.own.states.iter_mut().for_each(|it| it.rate = next());
+        self.own.integrals.iter_mut().for_each(|it| it.integrand = next());
+        self.own.objective.iter_mut().for_each(|it| it.1 = next());
+    }
+
+    /// The value of a kink by what stands for it.
+    fn replaced(&mut self, graph: &mut Graph, original: ExprId, rebuilt: ExprId) -> Option<ExprId> {
+        let (kind, place) = self.bent.kinks.get(&original)?;
+        let kind = match kind {
+            Kind::Either if self.kinks == Kinks::Located => Kind::Surface,
+            Kind::Either => Kind::Along,
+            other => *other,
+        };
+        let is_left = kind == Kind::Surface && !self.is_true;
+        let kink = Kink::of(graph, original, rebuilt).filter(|_| !is_left)?;
+        let known = self.known(graph, kink.e);
+        let (kind, value) = known.unwrap_or_else(|| (kind, self.stand(graph, kind, place, kink.e)));
+        Some(match kind {
+            Kind::Surface => kink.with_selector(graph, value),
+            _ => kink.with_unknown(graph, value),
+        })
+    }
+
+    /// What stands for another kink at the same place: `max(e, 0) = max(-e, 0) + e`.
+    fn known(&self, graph: &mut Graph, e: ExprId) -> Option<(Kind, ExprId)> {
+        let opposite = graph.neg(e);
+        let is_same = |it: &&Standing| it.e == e || it.e == opposite;
+        let known = self.all.iter().find(is_same)?;
+        let value = match known.kind {
+            _ if known.e == e => known.value,
+            Kind::Surface => graph.neg(known.value),
+            _ => graph.add(known.value, known.e),
+        };
+        Some((known.kind, value))
+    }
+
+    /// Declares what stands for a kink.
+    fn stand(&mut self, graph: &mut Graph, kind: Kind, place: &Place, e: ExprId) -> ExprId {
+        let symbol = match kind {
+            Kind::Along | Kind::Either => Symbol::Control(self.own.controls.len()),
+            Kind::AtEnds => Symbol::Free(self.own.frees.len()),
+            Kind::Surface => Symbol::Selector(self.own.surfaces.len()),
+        };
+        let input = Symbols { graph, symbols: &mut self.own.symbols }.input(symbol);
+        let value = graph.input(input);
+        self.all.push(Standing { kind, e, value });
+        let place = Place { name: format!("{NAME}{}", self.all.len()), ..place.clone() };
+        let [lower, upper] = [0.0, f64::INFINITY].map(|it| graph.number(it));
+        let range = Range { lower, upper };
+        let row = Constraint { place: place.clone(), value: graph.add(value, e), range };
+        match kind {
+            Kind::Along | Kind::Either => {
+                self.own.controls.push(Control { place, range, guess: None });
+                self.own.path.push(row);
+            }
+            Kind::AtEnds => {
+                self.own.frees.push(Free { place, range, guess: None });
+                self.own.boundary.push(row);
+            }
+            Kind::Surface => self.own.surfaces.push(Surface { place, psi: e }),
+        }
+        value
+    }
+
+    /// Adds `price * q (q + e)` to what is minimised.
+    fn charge(&mut self, price: f64) {
+        let mut sums = [Vec::new(), Vec::new()];
+        for it in self.all.iter().filter(|it| it.kind != Kind::Surface) {
+            let other = self.own.graph.add(it.value, it.e);
+            let product = self.own.graph.mul(it.value, other);
+            sums[usize::from(it.kind == Kind::AtEnds)].push(product);
+        }
+        let [integrand, at_ends] = sums.map(|it| self.own.graph.sum(&it));
+        let place = Place { name: format!("{NAME}price"), ..Place::default() };
+        let symbol = Symbol::Integral(self.own.integrals.len());
+        self.own.integrals.push(Integral { place: place.clone(), integrand, is_linked: false });
+        let input = self.own.symbols_mut().input(symbol);
+        let integral = self.own.graph.input(input);
+        let gap = self.own.graph.add(integral, at_ends);
+        let charge = self.own.graph.scale(self.own.sense * price, gap);
+        self.own.objective = Some(match self.own.objective.take() {
+            Some((place, value)) => (place, self.own.graph.add(value, charge)),
+            None => (place, charge),
+        });
+    }
+}

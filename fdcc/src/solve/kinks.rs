@@ -1,0 +1,222 @@
+//! Optima on kinks: what an answer to a model without kinks says of the model that has them.
+//!
+//! There `q >= 0` and `q + e >= 0` stand for `q = max(-e, 0)`. The answer is one to the model where
+//! one of both is 0 at all times; then the controls that the model has are an optimum of it, as
+//! what it allows is a part of what was allowed. Where neither is, `q (q + e)` gets a price.
+
+use super::found::Phases;
+use super::report::{Options, Start};
+use super::shown::path_conditions;
+use super::tuning::kinks::{EXACT, HIGHER, LOOSE, MOST_PRICES, NOTHING, PRICE, TIGHT};
+use super::{Compiled, PathCondition, Solution};
+use crate::error::Error;
+use crate::model::Model;
+use crate::record::Record;
+use crate::verification::Verification;
+use fdcc_compiler::{Kinks, is_kink};
+use fdcc_runtime::nlp::Status;
+use fdcc_runtime::problem::{Chain, Function, Problem};
+use fdcc_runtime::solution::{ChainOutcome, Outcome, Trajectory};
+
+/// The answer in the words of the model with its kinks; nothing where it is to be solved as it is.
+pub(super) fn solve(
+    own: &Compiled,
+    without: &Compiled,
+    options: &Options,
+) -> Result<Option<Solution>, Error> {
+    let Some(found) = tight(own, without.solve(options)?, options)? else { return Ok(None) };
+    let first = with_kinks(own, found);
+    Ok(Some(located(own, &first, options)?.unwrap_or(first)))
+}
+
+/// The first answer without gaps, at higher and higher prices.
+fn tight(
+    own: &Compiled,
+    mut found: Solution,
+    options: &Options,
+) -> Result<Option<Solution>, Error> {
+    let mut price = None;
+    for _ in 0..MOST_PRICES {
+        if is_end(&found, options) {
+            return Ok(Some(found));
+        }
+        let next = price.map_or_else(|| first_price(&found), |it: f64| it * HIGHER);
+        let Some(model) = own.model.without_kinks(Kinks::Priced(next)) else { break };
+        price = Some(next);
+        found = near(&model, &found, options)?;
+    }
+    Ok(Some(found).filter(|it| is_end(it, options)))
+}
+
+/// The certified answer in which surfaces stand for kinks of states; nothing where what was found
+/// is as good.
+fn located(own: &Compiled, first: &Solution, options: &Options) -> Result<Option<Solution>, Error> {
+    let replayed = first.certificate.as_ref().and_then(|it| it.figure("objective"));
+    let is_exact = first.is_certified() && replayed.is_some_and(|it| it < EXACT);
+    if is_exact || !first.status().is_solved() || (options.stop)().is_break() {
+        return Ok(None);
+    }
+    let Some(model) = own.model.without_kinks(Kinks::Located) else { return Ok(None) };
+    let mut found = with_kinks(own, near(&model, first, options)?);
+    // What is convex in unknowns that are as small as they can be is convex without them.
+    let is_convex = first.outcome.solution.global && found.problem.is_autonomous;
+    found.outcome.solution.global = is_convex;
+    Ok(Some(found).filter(Solution::is_certified))
+}
+
+/// Solves from what was found for other kinks.
+fn near(model: &Model, found: &Solution, options: &Options) -> Result<Solution, Error> {
+    let record = record(found);
+    let start = if found.status().is_solved() { Start::Record(&record) } else { options.start };
+    model.compile_as_it_is(None)?.solve(&Options { start, ..*options })
+}
+
+/// Whether it is an answer to the model with its kinks, or there is none, or no time is left.
+fn is_end(found: &Solution, options: &Options) -> bool {
+    let is_infeasible = matches!(found.status(), Status::Infeasible);
+    let is_answer =
+        || found.status().is_solved() && is_tight(&found.problem, &found.outcome.trajectory);
+    (options.stop)().is_break() || is_infeasible || is_answer()
+}
+
+fn with_kinks(own: &Compiled, found: Solution) -> Solution {
+    let mut own = in_words_of(own, found);
+    replay_again(&mut own);
+    own
+}
+
+/// Without what stands for kinks, which may be anything where nothing forbids it.
+fn record(found: &Solution) -> Record<'_> {
+    let mut record = found.record();
+    record.controls.retain(|it| !is_kink(it.0));
+    record.free.retain(|it| !is_kink(it.0));
+    record.nodes = None;
+    record
+}
+
+/// An unknown that stands for a kink over time, with the other of its conditions.
+struct Gap {
+    /// The sum over time of the lesser of `q` and `q + e`.
+    least: f64,
+    /// That of the larger.
+    largest: f64,
+    /// That of `e^2`.
+    square: f64,
+}
+
+fn gaps(problem: &Problem, trajectory: &Trajectory) -> Vec<Gap> {
+    let rows = path_conditions(problem, trajectory);
+    let rows = rows.iter().filter(|it| is_kink(&it.name));
+    let unknowns = problem.controls.iter().zip(&trajectory.controls);
+    let unknowns = unknowns.filter(|it| is_kink(&it.0.name)).map(|it| it.1);
+    let gap = |(unknown, row): (&Vec<f64>, &PathCondition)| {
+        let mut gap = Gap { least: 0.0, largest: f64::MIN_POSITIVE, square: 0.0 };
+        let both = unknown.iter().zip(&row.values[1..]);
+        for ((q, row), pair) in both.zip(trajectory.time.windows(2)) {
+            let step = pair[1] - pair[0];
+            gap.least += q.min(*row).max(0.0) * step;
+            gap.largest += q.abs().max(row.abs()) * step;
+            gap.square += (row - q).powi(2) * step;
+        }
+        gap
+    };
+    unknowns.zip(rows).map(gap).collect()
+}
+
+/// Whether one of the two conditions on each unknown that stands for a kink is an equality: at all
+/// times, or on average where controls are known by their means on intervals only.
+pub(super) fn is_tight(problem: &Problem, trajectory: &Trajectory) -> bool {
+    let limit = if trajectory.nodes.is_some() { LOOSE } else { TIGHT };
+    gaps(problem, trajectory).iter().all(|it| it.least <= limit * it.largest)
+}
+
+/// So high that what an answer gains by gaps counts little beside what they cost.
+fn first_price(found: &Solution) -> f64 {
+    let (time, trajectory) = (found.time(), &found.outcome.trajectory);
+    let scale = trajectory.hamiltonian.scale * (time[time.len() - 1] - time[0]);
+    let size = found.objective().abs().max(scale);
+    let size = if size > NOTHING { size } else { 1.0 };
+    let squares = gaps(&found.problem, trajectory).iter().map(|it| it.square).sum::<f64>();
+    let price = PRICE * size / squares;
+    if found.status().is_solved() && price.is_finite() { price } else { PRICE }
+}
+
+/// The answer without what stands for kinks.
+fn in_words_of(own: &Compiled, mut found: Solution) -> Solution {
+    let method = found.problem.method.clone();
+    let problem = Problem { method, ..own.problem.clone() };
+    let outcome = without(&found.problem, &problem, &found.outcome);
+    let seen = Phases {
+        model: found.model().meaning().clone(),
+        chain: Chain::single(found.problem.clone()),
+        outcome: ChainOutcome::single(found.outcome.clone()),
+    };
+    found.between_jumps.get_or_insert(seen);
+    if let Some(it) = &mut found.certificate {
+        it.arcs.retain(|arc| !is_kink(&arc.0));
+        it.switches.retain(|switch| !is_kink(&switch.surface));
+    }
+    found.of_model(own.model.clone(), problem, outcome)
+}
+
+/// What the true system with its kinks does with the controls of a certified answer.
+fn replay_again(own: &mut Solution) {
+    if !own.is_certified() {
+        return;
+    }
+    let replay = own.verify().ok();
+    let unknown = f64::INFINITY;
+    let hamiltonian = &own.outcome.trajectory.hamiltonian;
+    let time = own.time();
+    let size = own.objective().abs().max(hamiltonian.scale * (time[time.len() - 1] - time[0]));
+    let objective = |it: &Verification| {
+        it.simulation.objective.map_or(unknown, |its| (its - own.objective()).abs() / size)
+    };
+    let figures = [
+        ("replayed", replay.as_ref().and_then(Verification::state_gap).unwrap_or(unknown)),
+        ("objective", replay.as_ref().map_or(unknown, objective)),
+    ];
+    for check in own.certificate.iter_mut().flat_map(|it| &mut it.checks) {
+        let again = figures.iter().find(|it| it.0 == check.name);
+        check.figure = again.map_or(check.figure, |it| check.figure.max(it.1));
+    }
+}
+
+fn without(seen: &Problem, own: &Problem, outcome: &Outcome) -> Outcome {
+    let is_shown = |name: &str| !is_kink(name);
+    let controls: Vec<bool> = seen.controls.iter().map(|it| is_shown(&it.name)).collect();
+    let surfaces: Vec<bool> = seen.surfaces.iter().map(|it| is_shown(&it.name)).collect();
+    let rows = |function: &dyn Function, from: usize| -> Vec<bool> {
+        (from..function.outputs()).map(|row| is_shown(&function.origin(row).label)).collect()
+    };
+    let [path, ends] = [rows(&*seen.path, 0), rows(&*seen.boundary, 1)];
+    let its = &outcome.trajectory;
+    let value = |name: &str| {
+        let at = seen.parameters.iter().position(|it| it.name == name);
+        at.map_or(f64::NAN, |at| its.parameters[at])
+    };
+    let mut trajectory = Trajectory {
+        controls: kept(&its.controls, &controls),
+        path_multipliers: kept(&its.path_multipliers, &path),
+        end_multipliers: kept(&its.end_multipliers, &ends),
+        switching: kept(&its.switching, &surfaces),
+        parameters: own.parameters.iter().map(|it| value(&it.name)).collect(),
+        ..its.clone()
+    };
+    trajectory.hamiltonian.violations = kept(&its.hamiltonian.violations, &controls);
+    if let Some(nodes) = &mut trajectory.nodes {
+        nodes.values = kept(&nodes.values, &controls);
+    }
+    Outcome {
+        trajectory,
+        sigma: kept(&outcome.sigma, &surfaces),
+        modes: kept(&outcome.modes, &surfaces),
+        ..outcome.clone()
+    }
+}
+
+/// The entries that are to be kept; all that nothing is said of.
+fn kept<T: Clone>(all: &[T], is_kept: &[bool]) -> Vec<T> {
+    let is_kept = is_kept.iter().copied().chain(std::iter::repeat(true));
+    all.iter().zip(is_kept).filter(|it| it.1).map(|it| it.0.clone()).collect()
+}

@@ -1,0 +1,144 @@
+//! Optima that lie on kinks of `abs`, `min` and `max`, or cross them, against closed forms.
+
+use fdcc::{Model, Options, Solution};
+
+struct OnKink {
+    text: &'static str,
+    objective: f64,
+    is_global: bool,
+}
+
+/// The work of both burns of a rocket that starts and ends at rest: `t (T - t) = d`.
+const BURN: f64 = 0.267_949_192_431_122_7;
+
+fn all() -> Vec<OnKink> {
+    vec![
+        // Least fuel: one burn at each end.
+        OnKink {
+            text: "time t in [0, 4]  state x start 0  state v start 0  control u in [-1, 1]
+                dynamics { x' = v  v' = u }  end x == 1  end v == 0
+                minimize integral(abs(u))",
+            objective: 2.0 * BURN,
+            is_global: true,
+        },
+        OnKink {
+            text: "time t in [0, 4]  state x start 0  state v start 0  control u in [-1, 1]
+                dynamics { x' = v  v' = u }  end x == 1  end v == 0
+                maximize integral(-abs(u))",
+            objective: -2.0 * BURN,
+            is_global: true,
+        },
+        // Braking costs twice as much; both kinks are at one place.
+        OnKink {
+            text: "time t in [0, 4]  state x start 0  state v start 0  control u in [-1, 1]
+                dynamics { x' = v  v' = u }  end x == 1  end v == 0
+                minimize integral(max(u, 0) + 2*max(-u, 0))",
+            objective: 3.0 * BURN,
+            is_global: true,
+        },
+        // u = -3/8
+        OnKink {
+            text: "time t in [0, 1]  state x start 1  control u in [-5, 5]  dynamics { x' = u }
+                minimize integral(u^2 + 0.5*abs(u)) + x(end)^2",
+            objective: 0.718_75,
+            is_global: true,
+        },
+        // The end is on the kink: 2*0.8 < 3.
+        OnKink {
+            text: "time t in [0, 1]  state x start 1  control u in [-1, 1]  dynamics { x' = u }
+                minimize integral(u^2) + 3*abs(x(end) - 0.2)",
+            objective: 0.64,
+            is_global: true,
+        },
+        // Rest at the kink from x = u^2/10 on.
+        OnKink {
+            text: "time t in [0, 2]  state x start 1  control u in [-1, 1]  dynamics { x' = u }
+                minimize integral(abs(x) + 0.1*u^2)",
+            objective: 0.495 + 0.09 + 1.0 / 75.0,
+            is_global: true,
+        },
+        // A dead zone: the force that is left is half of what is paid for.
+        OnKink {
+            text: "time t in [0, 2]  state x start 1  control u in [-3, 3]
+                dynamics { x' = max(u - 0.5, 0) - max(-u - 0.5, 0) }  end x == 0
+                minimize integral(u^2)",
+            objective: 2.0,
+            is_global: false,
+        },
+        OnKink { text: LEAK, objective: leak(), is_global: false },
+    ]
+}
+
+/// A leak that ends at 0.
+const LEAK: &str = "time t in [0, 2]  state x start 1  control u  dynamics { x' = u - max(x, 0) }
+    end x == -1  minimize integral(u^2)";
+
+/// `u = -c e^t` until `x = 0`, constant from then on, where `sinh(t) = 2 - t`.
+fn leak() -> f64 {
+    let mut t: f64 = 1.0;
+    for _ in 0..50 {
+        t -= (t.sinh() + t - 2.0) / (t.cosh() + 1.0);
+    }
+    let grown = (2.0 * t).exp();
+    let c = 2.0 / (grown - 1.0);
+    c * c * (0.5 * (grown - 1.0) + grown * (2.0 - t))
+}
+
+fn solved(text: &str) -> Solution {
+    let model = Model::from_text("kink", text).expect("it is right");
+    model.solve(&Options::default()).expect("it can be solved")
+}
+
+#[test]
+fn optima_on_kinks_are_certified_and_those_of_closed_forms() {
+    for OnKink { text, objective, is_global } in all() {
+        let solution = solved(text);
+        assert!(solution.is_certified(), "{text}: {:?}", solution.status());
+        let off = (solution.objective() - objective).abs() / objective.abs();
+        assert!(off < 1e-8, "{text}: {} and not {objective}", solution.objective());
+        assert_eq!(solution.outcome.solution.global, is_global, "{text}");
+    }
+}
+
+/// What stands for a kink is the solver's own matter.
+#[test]
+fn an_answer_has_the_names_of_its_model_only() {
+    for OnKink { text, .. } in all() {
+        let solution = solved(text);
+        let (problem, trajectory) = (&solution.problem, &solution.outcome.trajectory);
+        assert_eq!(trajectory.controls.len(), problem.controls.len());
+        assert_eq!(trajectory.parameters.len(), problem.parameters.len());
+        assert_eq!(trajectory.switching.len(), problem.surfaces.len());
+        assert_eq!(solution.control("u").map(<[f64]>::len), Some(solution.time().len() - 1));
+        let certificate = solution.certificate.as_ref().expect("the true optimum is meant");
+        let arcs = certificate.arcs.iter().map(|it| it.0.as_str());
+        let surfaces = certificate.switches.iter().map(|it| it.surface.as_str());
+        assert!(arcs.chain(surfaces).all(|name| !fdcc_compiler::is_kink(name)), "{text}");
+        assert!(solution.verify().is_ok_and(|it| it.worst().is_none_or(|it| it.part < 1e-6)));
+    }
+}
+
+/// On a grid that is named the discrete problem is solved; the least work is `2 u dt` for an `u`
+/// that acts for some of the intervals only.
+#[test]
+fn kinks_of_a_discrete_problem_are_those_of_a_linear_program() {
+    let text = format!("{} method {{ N = 100 }}", all()[0].text);
+    let solution = solved(&text);
+    assert!(solution.is_solved() && solution.outcome.solution.global);
+    // By the end of an interval the position has gained `dt^2 u` more than in continuous time.
+    assert!((solution.objective() - 2.0 * BURN).abs() < 0.02, "{}", solution.objective());
+    let from = Options { start: fdcc::Start::Solution(&solution), ..Options::default() };
+    let again = solution.model().solve(&from).expect("it begins at a solution");
+    assert!((again.objective() - solution.objective()).abs() < 1e-7);
+}
+
+/// Where a kink is worth something, no optimum lies on it.
+#[test]
+fn a_kink_that_is_a_reward_is_left() {
+    let solution = solved(
+        "time t in [0, 2]  state x start 0  control u in [-1, 1]  dynamics { x' = u }
+        end x == 0  minimize integral(0.1*u - abs(u))",
+    );
+    assert!(solution.status().is_solved(), "{:?}", solution.status());
+    assert!((solution.objective() + 2.0).abs() < 1e-3, "{}", solution.objective());
+}

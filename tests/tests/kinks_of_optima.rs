@@ -66,6 +66,22 @@ fn all() -> Vec<OnKink> {
             is_global: false,
         },
         OnKink { text: LEAK, objective: leak(), is_global: false },
+        // Two engines share a limit: first the longer way, then both.
+        OnKink {
+            text: "time t in [0, 3]  state x start 1  state y start 0.5  control u(a, b)
+                dynamics { x' = u.a  y' = u.b }  path abs(u.a) + abs(u.b) <= 1
+                minimize integral(x^2 + y^2)",
+            objective: 7.0 / 12.0,
+            is_global: true,
+        },
+        // The nearest point of a square: (0.5, 0).
+        OnKink {
+            text: "time t in [0, 1]  state x start 1  state y start 0.2  control u(a, b)
+                dynamics { x' = u.a  y' = u.b }  end abs(x) + abs(y) <= 0.5
+                minimize integral(normsq(u))",
+            objective: 0.29,
+            is_global: true,
+        },
     ]
 }
 
@@ -109,13 +125,27 @@ fn an_answer_has_the_names_of_its_model_only() {
         assert_eq!(trajectory.controls.len(), problem.controls.len());
         assert_eq!(trajectory.parameters.len(), problem.parameters.len());
         assert_eq!(trajectory.switching.len(), problem.surfaces.len());
-        assert_eq!(solution.control("u").map(<[f64]>::len), Some(solution.time().len() - 1));
+        assert_eq!(trajectory.path_multipliers.len(), problem.path_bounds.len());
+        assert_eq!(trajectory.end_multipliers.len(), problem.boundary_bounds.len());
         let certificate = solution.certificate.as_ref().expect("the true optimum is meant");
         let arcs = certificate.arcs.iter().map(|it| it.0.as_str());
         let surfaces = certificate.switches.iter().map(|it| it.surface.as_str());
         assert!(arcs.chain(surfaces).all(|name| !fdcc_compiler::is_kink(name)), "{text}");
         assert!(solution.verify().is_ok_and(|it| it.worst().is_none_or(|it| it.part < 1e-6)));
     }
+}
+
+/// Those of all sides together: here the motion is on both.
+#[test]
+fn the_multiplier_of_a_condition_is_that_of_all_its_sides() {
+    let solution = solved(
+        "time t in [0, 1]  state x start 1  state y start 0.2  control u(a, b)
+        dynamics { x' = u.a  y' = u.b }  end abs(x) + abs(y) <= 0.5
+        minimize integral(normsq(u))",
+    );
+    // (1 - r)^2 + 0.2^2 by r at 0.5
+    let multiplier = solution.end_multiplier("end abs(x) + abs(y) <= 0.5").expect("its text");
+    assert!((multiplier + 1.0).abs() < 1e-6, "{multiplier}");
 }
 
 /// On a grid that is named the discrete problem is solved; the least work is `2 u dt` for an `u`

@@ -15,18 +15,18 @@ pub(super) struct Bent {
 }
 
 /// A kink in a copy of the graph, in which an input stands for `max(-e, 0)`.
-struct Tried {
-    original: ExprId,
-    e: ExprId,
+pub(super) struct Tried {
+    pub original: ExprId,
+    pub e: ExprId,
     /// Behind the symbols of the model, in the order of the kinks.
-    input: u32,
+    pub input: u32,
 }
 
 impl Bent {
     pub fn of(model: &Model) -> Self {
         let mut kinks = ById::default();
         let mut graph = model.graph.clone();
-        let (tried, rewritten) = all_replaced(model, &mut graph);
+        let (tried, rewritten) = replaced(&mut graph, model.symbols.len(), &roots(model));
         if tried.len() > MOST {
             return Bent { kinks };
         }
@@ -48,10 +48,14 @@ impl Bent {
     }
 }
 
-/// The roots with an input for each kink.
-fn all_replaced(model: &Model, graph: &mut Graph) -> (Vec<Tried>, Vec<ExprId>) {
-    let (mut tried, mut next) = (Vec::new(), model.symbols.len() as u32);
-    let rewritten = graph.rewrite(&roots(model), |graph, original, rebuilt| {
+/// Roots with an input for each kink, behind the first `symbols`.
+pub(super) fn replaced(
+    graph: &mut Graph,
+    symbols: usize,
+    roots: &[ExprId],
+) -> (Vec<Tried>, Vec<ExprId>) {
+    let (mut tried, mut next) = (Vec::new(), symbols as u32);
+    let rewritten = graph.rewrite(roots, |graph, original, rebuilt| {
         let Some(kink) = Kink::of(graph, original, rebuilt) else { return rebuilt };
         let input = next;
         next += 1;

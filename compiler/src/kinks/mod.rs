@@ -17,8 +17,11 @@
 //! ```text
 //! |e| = s e     max(a, b) = (a + b + s e)/2     min(a, b) = (a + b - s e)/2     s in Sgn(e)
 //! ```
+//!
+//! A condition with kinks is one for each side of them, where that says the same ([`sides`]).
 
 mod bent;
+mod sides;
 
 use crate::expressions::blend::sides;
 use crate::expressions::graph::builtins::Builtin;
@@ -51,15 +54,17 @@ pub fn without_kinks(model: &Model, kinks: Kinks, is_true: bool) -> Option<Model
     let is_whole = model.phases.is_empty() && model.not_yet.is_empty() && model.sums.is_empty();
     let bent = Bent::of(model);
     let makes_difference = kinks != Kinks::Located || bent.has(Kind::Either) && is_true;
-    if is_smoothed || !is_whole || !makes_difference {
+    // Without an objective nothing draws the unknowns to their bounds.
+    if is_smoothed || !is_whole || !makes_difference || model.objective.is_none() {
         return None;
     }
     let mut without = Without { own: model.clone(), bent: &bent, kinks, is_true, all: Vec::new() };
     without.rewrite();
+    let is_divided = without.divide_conditions();
     if let Kinks::Priced(price) = kinks {
         without.charge(price);
     }
-    (!without.all.is_empty()).then_some(without.own)
+    (is_divided || !without.all.is_empty()).then_some(without.own)
 }
 
 /// Whether a name is that of something that stands for a kink; no name of a model is.
@@ -67,8 +72,14 @@ pub fn is_kink(name: &str) -> bool {
     name.starts_with(NAME)
 }
 
-/// What the names begin with.
+/// The condition that a name is another side of; nothing where it is of none.
+pub fn side_of(name: &str) -> Option<&str> {
+    name.strip_prefix(NAME)?.strip_prefix(SIDE)
+}
+
+/// What the names begin with, and what those of sides go on with.
 const NAME: &str = "kink ";
+const SIDE: &str = "side of ";
 
 /// What a kink can become.
 #[derive(Clone, Copy, PartialEq)]
@@ -212,6 +223,27 @@ impl Without<'_> {
         value
     }
 
+    /// Puts sides in the place of conditions with kinks; whether there are any.
+    fn divide_conditions(&mut self) -> bool {
+        let (symbols, graph) = (self.own.symbols.len(), &mut self.own.graph);
+        let mut is_any = false;
+        for rows in [&mut self.own.path, &mut self.own.boundary] {
+            let mut others = Vec::new();
+            for row in rows.iter_mut() {
+                let Some(values) = sides::sides(graph, symbols, row) else { continue };
+                is_any = true;
+                let name = format!("{NAME}{SIDE}{}", row.place.name);
+                let place = Place { name, ..row.place.clone() };
+                row.value = values[0];
+                let other =
+                    |value: &ExprId| Constraint { place: place.clone(), value: *value, ..*row };
+                others.extend(values[1..].iter().map(other));
+            }
+            rows.extend(others);
+        }
+        is_any
+    }
+
     /// Adds `price * q (q + e)` to what is minimised.
     fn charge(&mut self, price: f64) {
         let mut sums = [Vec::new(), Vec::new()];
@@ -223,14 +255,12 @@ impl Without<'_> {
         let [integrand, at_ends] = sums.map(|it| self.own.graph.sum(&it));
         let place = Place { name: format!("{NAME}price"), ..Place::default() };
         let symbol = Symbol::Integral(self.own.integrals.len());
-        self.own.integrals.push(Integral { place: place.clone(), integrand, is_linked: false });
+        self.own.integrals.push(Integral { place, integrand, is_linked: false });
         let input = self.own.symbols_mut().input(symbol);
         let integral = self.own.graph.input(input);
         let gap = self.own.graph.add(integral, at_ends);
         let charge = self.own.graph.scale(self.own.sense * price, gap);
-        self.own.objective = Some(match self.own.objective.take() {
-            Some((place, value)) => (place, self.own.graph.add(value, charge)),
-            None => (place, charge),
-        });
+        let graph = &mut self.own.graph;
+        self.own.objective.iter_mut().for_each(|it| it.1 = graph.add(it.1, charge));
     }
 }

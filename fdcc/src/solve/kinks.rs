@@ -7,15 +7,16 @@
 use super::found::Phases;
 use super::report::{Options, Start};
 use super::shown::path_conditions;
+use super::true_optimum::Stretch;
 use super::tuning::kinks::{EXACT, HIGHER, LOOSE, MOST_PRICES, NOTHING, PRICE, TIGHT};
-use super::{Compiled, PathCondition, Solution};
+use super::{Compiled, Solution};
 use crate::error::Error;
 use crate::model::Model;
 use crate::record::Record;
 use crate::verification::Verification;
-use fdcc_compiler::{Kinks, is_kink};
+use fdcc_compiler::{Kinks, is_kink, side_of};
 use fdcc_runtime::nlp::Status;
-use fdcc_runtime::problem::{Chain, Function, Problem};
+use fdcc_runtime::problem::{Chain, Function, Problem, Variable};
 use fdcc_runtime::solution::{ChainOutcome, Outcome, Trajectory};
 
 /// The answer in the words of the model with its kinks; nothing where it is to be solved as it is.
@@ -39,6 +40,9 @@ fn tight(
     for _ in 0..MOST_PRICES {
         if is_end(&found, options) {
             return Ok(Some(found));
+        }
+        if matches!(found.status(), Status::Infeasible) {
+            break;
         }
         let next = price.map_or_else(|| first_price(&found), |it: f64| it * HIGHER);
         let Some(model) = own.model.without_kinks(Kinks::Priced(next)) else { break };
@@ -71,9 +75,10 @@ fn near(model: &Model, found: &Solution, options: &Options) -> Result<Solution, 
     model.compile_as_it_is(None)?.solve(&Options { start, ..*options })
 }
 
-/// Whether it is an answer to the model with its kinks, or there is none, or no time is left.
+/// Whether it is an answer to the model with its kinks, or there is none, or no time is left. What
+/// is proved to have no solution has none with kinks either.
 fn is_end(found: &Solution, options: &Options) -> bool {
-    let is_infeasible = matches!(found.status(), Status::Infeasible);
+    let is_infeasible = matches!(found.status(), Status::Infeasible) && found.outcome.is_impossible;
     let is_answer =
         || found.status().is_solved() && is_tight(&found.problem, &found.outcome.trajectory);
     (options.stop)().is_break() || is_infeasible || is_answer()
@@ -106,10 +111,8 @@ struct Gap {
 
 fn gaps(problem: &Problem, trajectory: &Trajectory) -> Vec<Gap> {
     let rows = path_conditions(problem, trajectory);
-    let rows = rows.iter().filter(|it| is_kink(&it.name));
-    let unknowns = problem.controls.iter().zip(&trajectory.controls);
-    let unknowns = unknowns.filter(|it| is_kink(&it.0.name)).map(|it| it.1);
-    let gap = |(unknown, row): (&Vec<f64>, &PathCondition)| {
+    let gap = |(control, unknown): (&Variable, &Vec<f64>)| {
+        let row = rows.iter().find(|it| it.name == control.name)?;
         let mut gap = Gap { least: 0.0, largest: f64::MIN_POSITIVE, square: 0.0 };
         let both = unknown.iter().zip(&row.values[1..]);
         for ((q, row), pair) in both.zip(trajectory.time.windows(2)) {
@@ -118,9 +121,9 @@ fn gaps(problem: &Problem, trajectory: &Trajectory) -> Vec<Gap> {
             gap.largest += q.abs().max(row.abs()) * step;
             gap.square += (row - q).powi(2) * step;
         }
-        gap
+        Some(gap)
     };
-    unknowns.zip(rows).map(gap).collect()
+    problem.controls.iter().zip(&trajectory.controls).filter_map(gap).collect()
 }
 
 /// Whether one of the two conditions on each unknown that stands for a kink is an equality: at all
@@ -153,10 +156,44 @@ fn in_words_of(own: &Compiled, mut found: Solution) -> Solution {
     };
     found.between_jumps.get_or_insert(seen);
     if let Some(it) = &mut found.certificate {
-        it.arcs.retain(|arc| !is_kink(&arc.0));
+        it.arcs = in_words(std::mem::take(&mut it.arcs));
         it.switches.retain(|switch| !is_kink(&switch.surface));
     }
     found.of_model(own.model.clone(), problem, outcome)
+}
+
+/// Without the arcs of what stands for kinks; a condition is at its bound where one of its sides
+/// is.
+fn in_words(arcs: Vec<(String, Vec<Stretch>)>) -> Vec<(String, Vec<Stretch>)> {
+    let mut own: Vec<(String, Vec<Stretch>)> = Vec::new();
+    for (name, stretches) in arcs {
+        let of = side_of(&name).map(str::to_owned);
+        match own.iter_mut().find(|it| Some(&it.0) == of.as_ref()) {
+            Some((_, known)) => *known = both(known, &stretches),
+            None => own.push((of.unwrap_or(name), stretches)),
+        }
+    }
+    own.retain(|it| !is_kink(&it.0));
+    own
+}
+
+/// At a bound where one of two is.
+fn both(one: &[Stretch], other: &[Stretch]) -> Vec<Stretch> {
+    let ends = one.iter().chain(other).flat_map(|it| [it.from, it.to]);
+    let mut times: Vec<f64> = ends.collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let mut all: Vec<Stretch> = Vec::new();
+    for pair in times.windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        let there = one.iter().chain(other).filter(|it| it.from <= from && to <= it.to);
+        let bound = there.map(|it| it.arc).find(|it| *it != "free").unwrap_or("free");
+        match all.last_mut().filter(|it| it.arc == bound) {
+            Some(last) => last.to = to,
+            None => all.push(Stretch { arc: bound, from, to }),
+        }
+    }
+    all
 }
 
 /// What the true system with its kinks does with the controls of a certified answer.
@@ -172,9 +209,11 @@ fn replay_again(own: &mut Solution) {
     let objective = |it: &Verification| {
         it.simulation.objective.map_or(unknown, |its| (its - own.objective()).abs() / size)
     };
+    let violated = |it: &Verification| it.worst().map_or(0.0, |it| it.part);
     let figures = [
         ("replayed", replay.as_ref().and_then(Verification::state_gap).unwrap_or(unknown)),
         ("objective", replay.as_ref().map_or(unknown, objective)),
+        ("conditions", replay.as_ref().map_or(unknown, violated)),
     ];
     for check in own.certificate.iter_mut().flat_map(|it| &mut it.checks) {
         let again = figures.iter().find(|it| it.0 == check.name);
@@ -186,10 +225,6 @@ fn without(seen: &Problem, own: &Problem, outcome: &Outcome) -> Outcome {
     let is_shown = |name: &str| !is_kink(name);
     let controls: Vec<bool> = seen.controls.iter().map(|it| is_shown(&it.name)).collect();
     let surfaces: Vec<bool> = seen.surfaces.iter().map(|it| is_shown(&it.name)).collect();
-    let rows = |function: &dyn Function, from: usize| -> Vec<bool> {
-        (from..function.outputs()).map(|row| is_shown(&function.origin(row).label)).collect()
-    };
-    let [path, ends] = [rows(&*seen.path, 0), rows(&*seen.boundary, 1)];
     let its = &outcome.trajectory;
     let value = |name: &str| {
         let at = seen.parameters.iter().position(|it| it.name == name);
@@ -197,8 +232,12 @@ fn without(seen: &Problem, own: &Problem, outcome: &Outcome) -> Outcome {
     };
     let mut trajectory = Trajectory {
         controls: kept(&its.controls, &controls),
-        path_multipliers: kept(&its.path_multipliers, &path),
-        end_multipliers: kept(&its.end_multipliers, &ends),
+        path_multipliers: with_sides(&*seen.path, 0, &its.path_multipliers, &|sum, it| {
+            sum.iter_mut().zip(it).for_each(|(sum, it)| *sum += it);
+        }),
+        end_multipliers: with_sides(&*seen.boundary, 1, &its.end_multipliers, &|sum, it| {
+            *sum += it
+        }),
         switching: kept(&its.switching, &surfaces),
         parameters: own.parameters.iter().map(|it| value(&it.name)).collect(),
         ..its.clone()
@@ -213,6 +252,27 @@ fn without(seen: &Problem, own: &Problem, outcome: &Outcome) -> Outcome {
         modes: kept(&outcome.modes, &surfaces),
         ..outcome.clone()
     }
+}
+
+/// The multipliers of the outputs of a function from the first of them on, without those of what
+/// stands for kinks; those of all sides of a condition are added up.
+fn with_sides<T: Clone>(
+    function: &dyn Function,
+    first: usize,
+    all: &[T],
+    add: &dyn Fn(&mut T, &T),
+) -> Vec<T> {
+    let label = |row: usize| function.origin(first + row).label;
+    let own: Vec<usize> = (0..all.len()).filter(|row| !is_kink(&label(*row))).collect();
+    let mut kept: Vec<T> = own.iter().map(|row| all[*row].clone()).collect();
+    for (row, multiplier) in all.iter().enumerate() {
+        let name = label(row);
+        let of = side_of(&name).and_then(|it| own.iter().position(|own| *label(*own) == *it));
+        if let Some(of) = of {
+            add(&mut kept[of], multiplier);
+        }
+    }
+    kept
 }
 
 /// The entries that are to be kept; all that nothing is said of.

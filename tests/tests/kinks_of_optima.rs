@@ -74,6 +74,13 @@ fn all() -> Vec<OnKink> {
             objective: 7.0 / 12.0,
             is_global: true,
         },
+        // Nothing is done, and all kinks are at rest.
+        OnKink {
+            text: "time t in [0, 3]  state x start 1  control u in [-1, 1]
+                dynamics { x' = abs(u) - abs(x) }  minimize integral(u^2) + abs(x(end))",
+            objective: (-3.0_f64).exp(),
+            is_global: false,
+        },
         // The nearest point of a square: (0.5, 0).
         OnKink {
             text: "time t in [0, 1]  state x start 1  state y start 0.2  control u(a, b)
@@ -160,6 +167,29 @@ fn kinks_of_a_discrete_problem_are_those_of_a_linear_program() {
     let from = Options { start: fdcc::Start::Solution(&solution), ..Options::default() };
     let again = solution.model().solve(&from).expect("it begins at a solution");
     assert!((again.objective() - solution.objective()).abs() < 1e-7);
+}
+
+/// The inner one is subtracted, so that what is allowed beside it would be worth something.
+#[test]
+fn kinks_inside_of_kinks_have_their_own_value() {
+    let text = "time t in [0, 1]  state x start 1  control u in [-1, 1]  dynamics { x' = u }
+        minimize integral(u^2) + 0.5*abs(x(end) - abs(x(end) - 0.3))";
+    for method in ["", " method { N = 100 }"] {
+        let solution = solved(&format!("{text}{method}"));
+        assert!(solution.is_solved() && !solution.outcome.solution.global, "{method}");
+        assert!((solution.objective() - 0.15).abs() < 1e-6, "{}", solution.objective());
+    }
+}
+
+/// A file has nodes of the controls of the model only.
+#[test]
+fn a_solve_begins_at_a_record_of_another() {
+    let first = solved(all()[0].text);
+    let record = first.record();
+    assert!(record.nodes.is_some());
+    let from = Options { start: fdcc::Start::Record(&record), ..Options::default() };
+    let again = first.model().solve(&from).expect("it begins at a solution");
+    assert!(again.is_certified() && (again.objective() - first.objective()).abs() < 1e-8);
 }
 
 /// Where a kink is worth something, no optimum lies on it.

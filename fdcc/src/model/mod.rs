@@ -173,12 +173,18 @@ impl Model {
     /// The model in which unknowns and surfaces stand for the kinks that an optimum may lie on;
     /// nothing where there are none.
     pub(crate) fn without_kinks(&self, kinks: Kinks) -> Option<Model> {
-        let is_smooth = self.meaning.surfaces.is_empty() && self.meaning.jumps.is_empty();
-        let method = &self.meaning.method;
-        let is_discrete = if is_smooth { method.names_grid } else { method.names_width() };
-        let meaning = fdcc_compiler::without_kinks(&self.meaning, kinks, !is_discrete)?;
+        let is_true = !self.names_its_discretisation();
+        let meaning = fdcc_compiler::without_kinks(&self.meaning, kinks, is_true)?;
         let code = if kinks == Kinks::Relaxed { self.code.without_kinks() } else { Arc::default() };
         Some(Model { meaning: Arc::new(meaning), code, ..self.clone() })
+    }
+
+    /// Whether a grid is named, or the width of layers where there are any: then the optimum of
+    /// that is meant, and not that of the system that was written.
+    pub(crate) fn names_its_discretisation(&self) -> bool {
+        let is_smooth = self.meaning.surfaces.is_empty() && self.meaning.jumps.is_empty();
+        let method = &self.meaning.method;
+        if is_smooth { method.names_grid } else { method.names_width() }
     }
 
     /// Does once for all values of its parameters what makes its functions ready.

@@ -8,7 +8,7 @@ use super::found::Phases;
 use super::report::{Options, Start};
 use super::shown::path_conditions;
 use super::true_optimum::Stretch;
-use super::tuning::kinks::{EXACT, HIGHER, LOOSE, MOST_PRICES, NOTHING, PRICE, TIGHT};
+use super::tuning::kinks::{EXACT, HIGHER, LOOSE, MOST_PRICES, NOTHING, PRICE, ROUNDING, TIGHT};
 use super::{Compiled, Solution};
 use crate::error::Error;
 use crate::model::Model;
@@ -16,7 +16,7 @@ use crate::record::Record;
 use crate::verification::Verification;
 use fdcc_compiler::{Kinks, is_kink, side_of};
 use fdcc_runtime::nlp::Status;
-use fdcc_runtime::problem::{Chain, Function, Problem, Variable};
+use fdcc_runtime::problem::{Chain, Columns, Function, Problem, Variable};
 use fdcc_runtime::solution::{ChainOutcome, Outcome, Trajectory};
 
 /// The answer in the words of the model with its kinks; nothing where it is to be solved as it is.
@@ -25,31 +25,42 @@ pub(super) fn solve(
     without: &Compiled,
     options: &Options,
 ) -> Result<Option<Solution>, Error> {
-    let Some(found) = tight(own, without.solve(options)?, options)? else { return Ok(None) };
+    // Nodes of controls have to be those of all controls.
+    let record = match options.start {
+        Start::Record(it) => Some(Record { nodes: None, ..it.clone() }),
+        _ => None,
+    };
+    let start = record.as_ref().map_or(options.start, Start::Record);
+    let found = without.solve(&Options { start, ..*options })?;
+    let Some(found) = tight(own, found, options)? else { return Ok(None) };
     let first = with_kinks(own, found);
     Ok(Some(located(own, &first, options)?.unwrap_or(first)))
 }
 
-/// The first answer without gaps, at higher and higher prices.
-fn tight(
-    own: &Compiled,
-    mut found: Solution,
-    options: &Options,
-) -> Result<Option<Solution>, Error> {
-    let mut price = None;
+/// The first answer without gaps: as it was found, or certified at a price. What has gaps has no
+/// objective of the model, so it is none.
+fn tight(own: &Compiled, found: Solution, options: &Options) -> Result<Option<Solution>, Error> {
+    if is_end(&found, options) {
+        return Ok(Some(found));
+    }
+    let is_lost = matches!(found.status(), Status::Infeasible);
+    if is_lost || own.model.names_its_discretisation() {
+        return Ok(None);
+    }
+    let (mut found, mut price) = (found, None);
     for _ in 0..MOST_PRICES {
-        if is_end(&found, options) {
-            return Ok(Some(found));
-        }
-        if matches!(found.status(), Status::Infeasible) {
-            break;
-        }
         let next = price.map_or_else(|| first_price(&found), |it: f64| it * HIGHER);
         let Some(model) = own.model.without_kinks(Kinks::Priced(next)) else { break };
         price = Some(next);
         found = near(&model, &found, options)?;
+        if found.is_certified() && is_end(&found, options) {
+            return Ok(Some(found));
+        }
+        if (options.stop)().is_break() {
+            break;
+        }
     }
-    Ok(Some(found).filter(|it| is_end(it, options)))
+    Ok(None)
 }
 
 /// The certified answer in which surfaces stand for kinks of states; nothing where what was found
@@ -99,38 +110,84 @@ fn record(found: &Solution) -> Record<'_> {
     record
 }
 
-/// An unknown that stands for a kink over time, with the other of its conditions.
+/// An unknown that stands for a kink, with the other of its conditions; over time their integrals.
 struct Gap {
-    /// The sum over time of the lesser of `q` and `q + e`.
+    /// The lesser of `q` and `q + e`.
     least: f64,
-    /// That of the larger.
+    /// The larger of both.
     largest: f64,
-    /// That of `e^2`.
+    /// `e^2`
     square: f64,
+    /// The part of the larger that the lesser may be.
+    limit: f64,
+    /// What is nothing, beside rounding.
+    nothing: f64,
+}
+
+impl Gap {
+    fn new(limit: f64, unit: f64) -> Self {
+        Gap { least: 0.0, largest: 0.0, square: 0.0, limit, nothing: ROUNDING * unit }
+    }
+
+    fn add(&mut self, q: f64, row: f64, duration: f64) {
+        self.least += q.min(row).max(0.0) * duration;
+        self.largest += q.abs().max(row.abs()) * duration;
+        self.square += (row - q).powi(2) * duration;
+    }
+
+    fn is_none(&self) -> bool {
+        self.least <= (self.limit * self.largest).max(self.nothing)
+    }
 }
 
 fn gaps(problem: &Problem, trajectory: &Trajectory) -> Vec<Gap> {
     let rows = path_conditions(problem, trajectory);
+    let limit = if trajectory.nodes.is_some() { LOOSE } else { TIGHT };
     let gap = |(control, unknown): (&Variable, &Vec<f64>)| {
-        let row = rows.iter().find(|it| it.name == control.name)?;
-        let mut gap = Gap { least: 0.0, largest: f64::MIN_POSITIVE, square: 0.0 };
-        let both = unknown.iter().zip(&row.values[1..]);
-        for ((q, row), pair) in both.zip(trajectory.time.windows(2)) {
-            let step = pair[1] - pair[0];
-            gap.least += q.min(*row).max(0.0) * step;
-            gap.largest += q.abs().max(row.abs()) * step;
-            gap.square += (row - q).powi(2) * step;
+        let row = rows.iter().find(|it| is_kink(&it.name) && it.name == control.name)?;
+        let time = &trajectory.time;
+        let mut gap = Gap::new(limit, control.unit * (time[time.len() - 1] - time[0]));
+        for ((q, row), pair) in unknown.iter().zip(&row.values[1..]).zip(time.windows(2)) {
+            gap.add(*q, *row, pair[1] - pair[0]);
         }
         Some(gap)
     };
-    problem.controls.iter().zip(&trajectory.controls).filter_map(gap).collect()
+    let along = problem.controls.iter().zip(&trajectory.controls).filter_map(gap);
+    along.chain(gaps_of_ends(problem, trajectory)).collect()
+}
+
+fn gaps_of_ends(problem: &Problem, trajectory: &Trajectory) -> Vec<Gap> {
+    let unknowns = problem.unknowns.iter().map(|it| it.parameter);
+    let unknowns = unknowns.filter(|at| is_kink(&problem.parameters[*at].name));
+    let unknowns: Vec<usize> = unknowns.collect();
+    if unknowns.is_empty() {
+        return Vec::new();
+    }
+    let boundary = &*problem.boundary;
+    let (layout, count) = (boundary.layout(), boundary.layout().x / 2);
+    let mut ends = Columns::new(layout.point_inputs(), 1);
+    for (at, column) in trajectory.states.iter().take(count).enumerate() {
+        let first = layout.states().start + at;
+        ends.column_mut(first)[0] = column[0];
+        ends.column_mut(first + count)[0] = column[column.len() - 1];
+    }
+    let mut values = Columns::new(boundary.outputs(), 1);
+    boundary.value(&ends, &trajectory.parameters, &mut values);
+    let gap = |at: usize| {
+        let parameter = &problem.parameters[at];
+        let row =
+            (1..boundary.outputs()).find(|row| *boundary.origin(*row).label == *parameter.name)?;
+        let mut gap = Gap::new(TIGHT, parameter.unit);
+        gap.add(trajectory.parameters[at], values.column(row)[0], 1.0);
+        Some(gap)
+    };
+    unknowns.into_iter().filter_map(gap).collect()
 }
 
 /// Whether one of the two conditions on each unknown that stands for a kink is an equality: at all
 /// times, or on average where controls are known by their means on intervals only.
 pub(super) fn is_tight(problem: &Problem, trajectory: &Trajectory) -> bool {
-    let limit = if trajectory.nodes.is_some() { LOOSE } else { TIGHT };
-    gaps(problem, trajectory).iter().all(|it| it.least <= limit * it.largest)
+    gaps(problem, trajectory).iter().all(Gap::is_none)
 }
 
 /// So high that what an answer gains by gaps counts little beside what they cost.

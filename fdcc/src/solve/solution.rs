@@ -11,7 +11,7 @@ use crate::names::status_name;
 use crate::record::{JumpRecord, NodesRecord, Record, Settings};
 use crate::verification::{Verification, verify};
 use crate::warm_start::from_record;
-use fdcc_compiler::{compile_by_parameters, compile_chain_by_parameters};
+use fdcc_compiler::{compile_by_parameters, compile_chain_by_parameters, is_kink};
 use fdcc_grammar::Diagnostic;
 use fdcc_runtime::nlp::{self, Status};
 use fdcc_runtime::problem::{Chain, Problem, Variable};
@@ -242,7 +242,14 @@ impl Solution {
     pub(super) fn as_start(&self, chain: &Chain) -> nlp::Start {
         match self.has_grid_of(chain) {
             true => again(chain, &self.outcome.solution, self.chosen_widths()),
-            false => from_record(&self.record(), chain),
+            false => {
+                let mut controls = chain.phases.iter().flat_map(|it| &it.controls);
+                let has_kinks = controls.any(|it| is_kink(&it.name));
+                let record = self.record();
+                // Nodes of controls have to be those of all controls.
+                let nodes = record.nodes.clone().filter(|_| !has_kinks);
+                from_record(&Record { nodes, ..record }, chain)
+            }
         }
     }
 
@@ -258,11 +265,14 @@ impl Solution {
     fn has_grid_of(&self, chain: &Chain) -> bool {
         let shape = |problem: &Problem| {
             let method = &problem.method;
-            (method.intervals(), method.scheme, method.controls, method.grid.times().to_vec())
+            let sizes = [problem.controls.len(), problem.unknowns.len(), problem.path_bounds.len()];
+            let grid = method.grid.times().to_vec();
+            (method.intervals(), method.scheme, method.controls, grid, sizes)
         };
-        let own: Vec<&Problem> = match &self.whole {
-            Some(whole) => whole.chain.phases.iter().collect(),
-            None => vec![&self.problem],
+        let own: Vec<&Problem> = match (&self.whole, &self.between_jumps) {
+            (Some(whole), _) => whole.chain.phases.iter().collect(),
+            (None, Some(between)) => between.chain.phases.iter().collect(),
+            (None, None) => vec![&self.problem],
         };
         own.into_iter().map(shape).eq(chain.phases.iter().map(shape))
     }

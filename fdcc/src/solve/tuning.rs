@@ -23,6 +23,8 @@ pub(super) mod kinks {
     pub(crate) const TIGHT: f64 = 1e-5;
     /// The same where means over intervals are known, which mix both sides where a kink is crossed.
     pub(crate) const LOOSE: f64 = 0.02;
+    /// A smaller part of a unit is none.
+    pub(crate) const ROUNDING: f64 = 1e-7;
     /// What gaps cost at first, for what the objective is.
     pub(crate) const PRICE: f64 = 10.0;
     /// A smaller objective says nothing of what prices are high: one of its units does then.

@@ -18,7 +18,7 @@
 //! |e| = s e     max(a, b) = (a + b + s e)/2     min(a, b) = (a + b - s e)/2     s in Sgn(e)
 //! ```
 //!
-//! A condition with kinks is one for each side of them, where that says the same ([`sides`]).
+//! A condition with kinks is one for each side of them, where that says the same ([`mod@sides`]).
 
 mod bent;
 mod sides;

@@ -74,6 +74,13 @@ fn all() -> Vec<OnKink> {
             objective: 7.0 / 12.0,
             is_global: true,
         },
+        // The smaller of two returns is largest where both are equal.
+        OnKink {
+            text: "time t in [0, 1]  state x start 0  control u in [-2, 2]
+                dynamics { x' = u }  maximize integral(min(u, 1 - u))",
+            objective: 0.5,
+            is_global: true,
+        },
         // Nothing is done, and all kinks are at rest.
         OnKink {
             text: "time t in [0, 3]  state x start 1  control u in [-1, 1]

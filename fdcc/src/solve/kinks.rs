@@ -86,13 +86,15 @@ fn near(model: &Model, found: &Solution, options: &Options) -> Result<Solution, 
     model.compile_as_it_is(None)?.solve(&Options { start, ..*options })
 }
 
-/// Whether it is an answer to the model with its kinks, or there is none, or no time is left. What
+/// Whether it is an answer to the model with its kinks, or there is none, or it was stopped. What
 /// is proved to have no solution has none with kinks either.
 fn is_end(found: &Solution, options: &Options) -> bool {
     let is_infeasible = matches!(found.status(), Status::Infeasible) && found.outcome.is_impossible;
     let is_answer =
         || found.status().is_solved() && is_tight(&found.problem, &found.outcome.trajectory);
-    (options.stop)().is_break() || is_infeasible || is_answer()
+    // An answer with gaps that came just in time is no answer.
+    let is_stopped = (options.stop)().is_break() && !found.status().is_solved();
+    is_stopped || is_infeasible || is_answer()
 }
 
 fn with_kinks(own: &Compiled, found: Solution) -> Solution {
@@ -278,6 +280,7 @@ fn replay_again(own: &mut Solution) {
     }
 }
 
+/// What was found, without what stands for kinks in the problem that was seen.
 fn without(seen: &Problem, own: &Problem, outcome: &Outcome) -> Outcome {
     let is_shown = |name: &str| !is_kink(name);
     let controls: Vec<bool> = seen.controls.iter().map(|it| is_shown(&it.name)).collect();

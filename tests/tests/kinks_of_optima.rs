@@ -88,6 +88,29 @@ fn all() -> Vec<OnKink> {
             objective: (-3.0_f64).exp(),
             is_global: false,
         },
+        // A load that sets in at 0.7: the control is constant.
+        OnKink {
+            text:
+                "time t in [0, 2]  state x start 0  control u  dynamics { x' = u - max(t - 0.7, 0) }
+                minimize integral(u^2) + 10*(x(end) - 1)^2",
+            objective: 10.0 * 1.845 * 1.845 / 21.0,
+            is_global: false,
+        },
+        // A price that rises until 1.2: at the bound until 1, then 5*(1.4 - t), then 1.
+        OnKink {
+            text: "time t in [0, 2]  state x start 0  control u in [0, 2]  dynamics { x' = u }
+                end x == 3.1  minimize integral(u*min(t, 1.2) + 0.1*u^2)",
+            objective: 211.0 / 75.0,
+            is_global: false,
+        },
+        // A load with a kink inside of a kink: it is there before 0.55 and behind 1.45.
+        OnKink {
+            text: "time t in [0, 2]  state x start 0  control u
+                dynamics { x' = u - max(abs(t - 1) - 0.45, 0) }
+                minimize integral(u^2) + 10*(x(end) - 1)^2",
+            objective: 10.0 * 1.3025 * 1.3025 / 21.0,
+            is_global: false,
+        },
         // The nearest point of a square: (0.5, 0).
         OnKink {
             text: "time t in [0, 1]  state x start 1  state y start 0.2  control u(a, b)

@@ -39,6 +39,7 @@ const CERTIFIED: &[&str] = &[
     "switched/nearly_together",
     "switched/overdrive",
     "switched/paddle",
+    "switched/power_limit",
     "switched/puck_aside",
     "switched/relay",
     "switched/ricochet",
@@ -74,7 +75,6 @@ const LEFT_OUT: &[&str] = &[
     "switched/billiard",
     "switched/fan",
     "switched/hysteresis_car",
-    "switched/power_limit",
 ];
 
 /// A row of the table of references.

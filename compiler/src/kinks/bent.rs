@@ -32,7 +32,7 @@ impl Bent {
         }
         let mut readers: Vec<(ExprId, Place)> = rewritten.into_iter().zip(places(model)).collect();
         // What is inside of another one comes first.
-        for (it, kind) in tried.iter().zip(kinds(model, &graph, &tried)).rev() {
+        for (it, kind) in tried.iter().zip(kinds(model, &mut graph, &tried)).rev() {
             let Some(kind) = kind else { continue };
             let reader = readers.iter().find(|reader| is_bent(&mut graph, reader.0, it));
             let Some((_, place)) = reader.cloned() else { continue };
@@ -42,9 +42,9 @@ impl Bent {
         Bent { kinks }
     }
 
-    /// Whether a kink of this kind is among them.
-    pub fn has(&self, kind: Kind) -> bool {
-        self.kinks.values().any(|it| it.0 == kind)
+    /// Whether some become surfaces only where they are located.
+    pub fn has_more_surfaces(&self) -> bool {
+        self.kinks.values().any(|it| matches!(it.0, Kind::Either | Kind::Timed))
     }
 }
 
@@ -67,53 +67,48 @@ pub(super) fn replaced(
 }
 
 /// What each kink can become, by what moves it; nothing where nothing does, or where friction does.
-fn kinds(model: &Model, graph: &Graph, tried: &[Tried]) -> Vec<Option<Kind>> {
+fn kinds(model: &Model, graph: &mut Graph, tried: &[Tried]) -> Vec<Option<Kind>> {
     let rates: Vec<ExprId> = model.states.iter().map(|it| it.rate).collect();
     let in_rates = model.graph.reachable(&rates);
-    let mut kinds = Vec::new();
-    for it in tried {
-        let kind = movers(model, graph, it, &kinds).and_then(|movers| match movers {
-            Movers { is_moving: false, is_of_ends, .. } => is_of_ends.then_some(Kind::AtEnds),
-            Movers { has_control: true, .. } => Some(Kind::Along),
-            _ if in_rates.contains(&it.original) => Some(Kind::Surface),
-            _ => Some(Kind::Either),
-        });
-        kinds.push(kind);
-    }
-    kinds
+    let mut kind = |it: &Tried| {
+        let e = Kink::of(graph, it.original, it.original)?.e;
+        Some(match movers(model, graph, e)? {
+            Movers { has_control: true, .. } => Kind::Along,
+            Movers { has_state: true, .. } if !in_rates.contains(&it.original) => Kind::Either,
+            Movers { has_state: true, .. } => Kind::Surface,
+            Movers { has_time: true, .. } => Kind::Timed,
+            Movers { is_of_ends: true, .. } => Kind::AtEnds,
+            _ => return None,
+        })
+    };
+    tried.iter().map(&mut kind).collect()
 }
 
 /// What moves a kink.
 #[derive(Default)]
 struct Movers {
-    is_moving: bool,
     has_control: bool,
+    has_state: bool,
+    has_time: bool,
     is_of_ends: bool,
 }
 
-/// `inner` are the kinds of the kinks before it; nothing where friction moves it.
-fn movers(model: &Model, graph: &Graph, it: &Tried, inner: &[Option<Kind>]) -> Option<Movers> {
+/// Nothing where friction moves it.
+fn movers(model: &Model, graph: &Graph, e: ExprId) -> Option<Movers> {
     let mut movers = Movers::default();
-    for at in graph.inputs_of(&[it.e]) {
-        let at = at as usize;
-        match model.symbols.get(at) {
-            Some(Symbol::Time | Symbol::Param(_)) => {}
-            Some(Symbol::State(_)) => movers.is_moving = true,
-            Some(Symbol::Control(_)) => (movers.is_moving, movers.has_control) = (true, true),
-            Some(
-                Symbol::Free(_)
-                | Symbol::AtStart(_)
-                | Symbol::AtEnd(_)
-                | Symbol::Integral(_)
-                | Symbol::ControlAtStart(_)
-                | Symbol::ControlAtEnd(_),
-            ) => movers.is_of_ends = true,
-            Some(_) => return None,
-            None => match inner[at - model.symbols.len()] {
-                Some(Kind::AtEnds) => movers.is_of_ends = true,
-                Some(_) => (movers.is_moving, movers.has_control) = (true, true),
-                None => {}
-            },
+    for at in graph.inputs_of(&[e]) {
+        match model.symbols[at as usize] {
+            Symbol::Param(_) => {}
+            Symbol::Time => movers.has_time = true,
+            Symbol::State(_) => movers.has_state = true,
+            Symbol::Control(_) => movers.has_control = true,
+            Symbol::Free(_)
+            | Symbol::AtStart(_)
+            | Symbol::AtEnd(_)
+            | Symbol::Integral(_)
+            | Symbol::ControlAtStart(_)
+            | Symbol::ControlAtEnd(_) => movers.is_of_ends = true,
+            _ => return None,
         }
     }
     Some(movers)

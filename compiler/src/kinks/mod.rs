@@ -12,7 +12,7 @@
 //! is that of the model. Whoever solves has to look whether it does.
 //!
 //! A kink of states alone in the right side of an equation would be a force without a reason. It
-//! becomes a surface, which is located like others:
+//! becomes a surface, which is located like others, and so does one of time alone:
 //!
 //! ```text
 //! |e| = s e     max(a, b) = (a + b + s e)/2     min(a, b) = (a + b - s e)/2     s in Sgn(e)
@@ -52,10 +52,12 @@ pub enum Kinks {
 pub fn without_kinks(model: &Model, kinks: Kinks, is_true: bool) -> Option<Model> {
     let is_smoothed = model.smooth && model.method.names_width();
     let is_whole = model.phases.is_empty() && model.not_yet.is_empty() && model.sums.is_empty();
-    let bent = Bent::of(model);
-    let makes_difference = kinks != Kinks::Located || bent.has(Kind::Either) && is_true;
     // Without an objective nothing draws the unknowns to their bounds.
-    if is_smoothed || !is_whole || !makes_difference || model.objective.is_none() {
+    if is_smoothed || !is_whole || model.objective.is_none() {
+        return None;
+    }
+    let bent = Bent::of(model);
+    if kinks == Kinks::Located && !(is_true && bent.has_more_surfaces()) {
         return None;
     }
     let mut without = Without { own: model.clone(), bent: &bent, kinks, is_true, all: Vec::new() };
@@ -90,8 +92,10 @@ enum Kind {
     AtEnds,
     /// A surface.
     Surface,
-    /// A control, or a surface.
+    /// A control, or a surface where it is located.
     Either,
+    /// Of time alone: a surface where it is located.
+    Timed,
 }
 
 /// The roots in which kinks are looked for: right sides, integrands, the objective.
@@ -168,14 +172,19 @@ impl Without<'_> {
     fn replaced(&mut self, graph: &mut Graph, original: ExprId, rebuilt: ExprId) -> Option<ExprId> {
         let (kind, place) = self.bent.kinks.get(&original)?;
         let kind = match kind {
-            Kind::Either if self.kinks == Kinks::Located => Kind::Surface,
+            Kind::Either | Kind::Timed if self.kinks == Kinks::Located => Kind::Surface,
             Kind::Either => Kind::Along,
             other => *other,
         };
-        let is_left = kind == Kind::Surface && !self.is_true;
+        let is_left = kind == Kind::Timed || kind == Kind::Surface && !self.is_true;
         let kink = Kink::of(graph, original, rebuilt).filter(|_| !is_left)?;
-        let known = self.known(graph, kink.e);
-        let (kind, value) = known.unwrap_or_else(|| (kind, self.stand(graph, kind, place, kink.e)));
+        // A surface knows no others: what switches where the kinks inside of it are none.
+        let e = match kind {
+            Kind::Surface => Kink::of(graph, original, original)?.e,
+            _ => kink.e,
+        };
+        let known = self.known(graph, e);
+        let (kind, value) = known.unwrap_or_else(|| (kind, self.stand(graph, kind, place, e)));
         Some(match kind {
             Kind::Surface => kink.with_selector(graph, value),
             _ => kink.with_unknown(graph, value),
@@ -200,7 +209,7 @@ impl Without<'_> {
         let symbol = match kind {
             Kind::Along | Kind::Either => Symbol::Control(self.own.controls.len()),
             Kind::AtEnds => Symbol::Free(self.own.frees.len()),
-            Kind::Surface => Symbol::Selector(self.own.surfaces.len()),
+            Kind::Surface | Kind::Timed => Symbol::Selector(self.own.surfaces.len()),
         };
         let input = Symbols { graph, symbols: &mut self.own.symbols }.input(symbol);
         let value = graph.input(input);
@@ -218,7 +227,7 @@ impl Without<'_> {
                 self.own.frees.push(Free { place, range, guess: None });
                 self.own.boundary.push(row);
             }
-            Kind::Surface => self.own.surfaces.push(Surface { place, psi: e }),
+            Kind::Surface | Kind::Timed => self.own.surfaces.push(Surface { place, psi: e }),
         }
         value
     }

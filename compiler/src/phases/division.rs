@@ -129,11 +129,12 @@ impl<'m> Division<'m> {
         })
     }
 
-    /// A function of time and state at the beginning of a phase.
+    /// A function of time, state and control at the beginning of a phase.
     pub fn at_start(&mut self, j: usize, value: ExprId) -> ExprId {
         self.with_symbols(value, &mut |own, symbol| match symbol {
             Symbol::Time => Some(own.times[j]),
             Symbol::State(at) => Some(own.of_phase(j, Symbol::AtStart(at))),
+            Symbol::Control(at) => Some(own.of_phase(j, Symbol::ControlAtStart(at))),
             _ => None,
         })
     }

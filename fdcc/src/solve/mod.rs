@@ -141,7 +141,7 @@ impl Compiled {
     pub fn solve(&self, options: &Options) -> Result<Solution, Error> {
         let without = self.without_kinks.as_ref();
         let own = without.map(|it| kinks::solve(self, it, options)).transpose()?.flatten();
-        own.map_or_else(|| self.solve_as_it_is(options), Ok)
+        own.map_or_else(|| kinks::in_time(self, self.solve_as_it_is(options)?, options), Ok)
     }
 
     /// Solves; once more in other units where numbers turn out to be far smaller than one of

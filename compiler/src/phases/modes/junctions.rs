@@ -7,6 +7,7 @@
 //! objective hardly does: it changes with the third power of that time, and Newton's method would
 //! be slow.
 
+use super::limits::bounded_states;
 use super::{Arc, Modes};
 use crate::expressions::graph::ExprId;
 use crate::expressions::graph::derivative::derivative;
@@ -36,6 +37,35 @@ impl Modes<'_> {
             }
         }
         rows
+    }
+
+    /// Path conditions on which a control acts at once, on both sides of the end of phase `j`, where
+    /// they are not met as equations: for the same reason.
+    pub(super) fn ends_of_path(&mut self, j: usize) -> Vec<Constraint> {
+        let phases = self.phases;
+        let states = bounded_states(self.between.division.model).len();
+        let mut rows = Vec::new();
+        for phase in [j, j + 1] {
+            let own = &phases[phase];
+            let path = self.moving(own).path.into_iter().zip(&own.contacts[states..]);
+            for (row, arc) in path {
+                if *arc == Arc::Free && self.reads_control(row.value) {
+                    let value = match phase == j {
+                        true => self.between.division.at_end(j, row.value),
+                        false => self.between.division.at_start(phase, row.value),
+                    };
+                    rows.push(Constraint { value, ..row });
+                }
+            }
+        }
+        rows
+    }
+
+    fn reads_control(&self, value: ExprId) -> bool {
+        let division = &self.between.division;
+        let symbols = &division.symbols;
+        let read = division.graph.inputs_of(&[value]).into_iter();
+        read.map(|at| symbols[at as usize]).any(|it| matches!(it, Symbol::Control(_)))
     }
 
     fn has_bounds(&self, range: Range) -> bool {

@@ -18,6 +18,7 @@ impl Modes<'_> {
         rows.extend(self.entries(j));
         rows.extend(self.departures(j));
         rows.extend(self.ends_of_controls(j));
+        rows.extend(self.ends_of_path(j));
         rows.push(self.duration(j));
         if j + 1 == self.between.division.last() {
             rows.push(self.duration(j + 1));

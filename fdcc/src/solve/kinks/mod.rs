@@ -1,0 +1,150 @@
+//! Optima on kinks: what an answer to a model without kinks says of the model that has them.
+//!
+//! There `q >= 0` and `q + e >= 0` stand for `q = max(-e, 0)`. The answer is one to the model where
+//! one of both is 0 at all times; then the controls that the model has are an optimum of it, as
+//! what it allows is a part of what was allowed. Where neither is, `q (q + e)` gets a price.
+
+mod gaps;
+mod words;
+
+use super::report::{Options, Start};
+use super::tuning::kinks::{EXACT, HIGHER, MOST_PRICES};
+use super::{Compiled, Solution};
+use crate::error::Error;
+use crate::model::Model;
+use crate::record::Record;
+use crate::verification::Verification;
+use fdcc_compiler::{Kinks, is_kink};
+use fdcc_runtime::nlp::Status;
+use gaps::first_price;
+use words::in_words_of;
+
+pub(super) use gaps::is_tight;
+
+/// The answer in the words of the model with its kinks; nothing where it is to be solved as it is.
+pub(super) fn solve(
+    own: &Compiled,
+    without: &Compiled,
+    options: &Options,
+) -> Result<Option<Solution>, Error> {
+    // Nodes of controls have to be those of all controls.
+    let record = match options.start {
+        Start::Record(it) => Some(Record { nodes: None, ..it.clone() }),
+        _ => None,
+    };
+    let start = record.as_ref().map_or(options.start, Start::Record);
+    let found = without.solve(&Options { start, ..*options })?;
+    let Some(found) = tight(own, found, options)? else { return Ok(None) };
+    let first = with_kinks(own, found);
+    Ok(Some(located(own, &first, options)?.unwrap_or(first)))
+}
+
+/// The answer to a model whose kinks stayed as they are; where those of time alone can be located,
+/// and that is more exact, the one with surfaces in their place.
+pub(super) fn in_time(
+    own: &Compiled,
+    first: Solution,
+    options: &Options,
+) -> Result<Solution, Error> {
+    Ok(located(own, &first, options)?.unwrap_or(first))
+}
+
+/// The first answer without gaps: as it was found, or certified at a price. What has gaps has no
+/// objective of the model, so it is none.
+fn tight(own: &Compiled, found: Solution, options: &Options) -> Result<Option<Solution>, Error> {
+    if is_end(&found, options) {
+        return Ok(Some(found));
+    }
+    let is_lost = matches!(found.status(), Status::Infeasible);
+    if is_lost || own.model.names_its_discretisation() {
+        return Ok(None);
+    }
+    let (mut found, mut price) = (found, None);
+    for _ in 0..MOST_PRICES {
+        let next = price.map_or_else(|| first_price(&found), |it: f64| it * HIGHER);
+        let Some(model) = own.model.without_kinks(Kinks::Priced(next)) else { break };
+        price = Some(next);
+        found = near(&model, &found, options)?;
+        if found.is_certified() && is_end(&found, options) {
+            return Ok(Some(found));
+        }
+        if (options.stop)().is_break() {
+            break;
+        }
+    }
+    Ok(None)
+}
+
+/// The certified answer in which surfaces stand for kinks of states; nothing where what was found
+/// is as good.
+fn located(own: &Compiled, first: &Solution, options: &Options) -> Result<Option<Solution>, Error> {
+    let replayed = first.certificate.as_ref().and_then(|it| it.figure("objective"));
+    let is_exact = first.is_certified() && replayed.is_some_and(|it| it < EXACT);
+    if is_exact || !first.status().is_solved() || (options.stop)().is_break() {
+        return Ok(None);
+    }
+    let Some(model) = own.model.without_kinks(Kinks::Located) else { return Ok(None) };
+    let mut found = with_kinks(own, near(&model, first, options)?);
+    // What is convex in unknowns that are as small as they can be is convex without them.
+    let is_convex = first.outcome.solution.global && found.problem.is_autonomous;
+    found.outcome.solution.global = is_convex;
+    Ok(Some(found).filter(Solution::is_certified))
+}
+
+/// Solves from what was found for other kinks.
+fn near(model: &Model, found: &Solution, options: &Options) -> Result<Solution, Error> {
+    let record = record(found);
+    let start = if found.status().is_solved() { Start::Record(&record) } else { options.start };
+    model.compile_as_it_is(None)?.solve(&Options { start, ..*options })
+}
+
+/// Whether it is an answer to the model with its kinks, or there is none, or it was stopped. What
+/// is proved to have no solution has none with kinks either.
+fn is_end(found: &Solution, options: &Options) -> bool {
+    let is_infeasible = matches!(found.status(), Status::Infeasible) && found.outcome.is_impossible;
+    let is_answer =
+        || found.status().is_solved() && is_tight(&found.problem, &found.outcome.trajectory);
+    // An answer with gaps that came just in time is no answer.
+    let is_stopped = (options.stop)().is_break() && !found.status().is_solved();
+    is_stopped || is_infeasible || is_answer()
+}
+
+fn with_kinks(own: &Compiled, found: Solution) -> Solution {
+    let mut own = in_words_of(own, found);
+    replay_again(&mut own);
+    own
+}
+
+/// Without what stands for kinks, which may be anything where nothing forbids it.
+fn record(found: &Solution) -> Record<'_> {
+    let mut record = found.record();
+    record.controls.retain(|it| !is_kink(it.0));
+    record.free.retain(|it| !is_kink(it.0));
+    record.nodes = None;
+    record
+}
+
+/// What the true system with its kinks does with the controls of a certified answer.
+fn replay_again(own: &mut Solution) {
+    if !own.is_certified() {
+        return;
+    }
+    let replay = own.verify().ok();
+    let unknown = f64::INFINITY;
+    let hamiltonian = &own.outcome.trajectory.hamiltonian;
+    let time = own.time();
+    let size = own.objective().abs().max(hamiltonian.scale * (time[time.len() - 1] - time[0]));
+    let objective = |it: &Verification| {
+        it.simulation.objective.map_or(unknown, |its| (its - own.objective()).abs() / size)
+    };
+    let violated = |it: &Verification| it.worst().map_or(0.0, |it| it.part);
+    let figures = [
+        ("replayed", replay.as_ref().and_then(Verification::state_gap).unwrap_or(unknown)),
+        ("objective", replay.as_ref().map_or(unknown, objective)),
+        ("conditions", replay.as_ref().map_or(unknown, violated)),
+    ];
+    for check in own.certificate.iter_mut().flat_map(|it| &mut it.checks) {
+        let again = figures.iter().find(|it| it.0 == check.name);
+        check.figure = again.map_or(check.figure, |it| check.figure.max(it.1));
+    }
+}
